@@ -1,0 +1,33 @@
+/// A CAN frame as the services see it.
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstdint>
+
+namespace canopen {
+
+/// A classic CAN data or remote frame. The data begin at a multiple of four, so that codecs may use whole words.
+struct Frame {
+  std::uint32_t id = 0;  ///< 11 bits, or 29 with `extended`
+  std::uint8_t size = 0; ///< number of data bytes, 0..8; of a remote frame the length asked for
+  bool extended = false;
+  bool remote = false;
+  alignas(4) std::array<std::uint8_t, 8> data{};
+
+  friend constexpr bool operator==(const Frame& a, const Frame& b) {
+    if (a.id != b.id || a.size != b.size || a.extended != b.extended || a.remote != b.remote) return false;
+    for (std::uint8_t i = 0; !a.remote && i < a.size; ++i) {
+      if (a.data[i] != b.data[i]) return false;
+    }
+    return true;
+  }
+};
+
+/// What a node sends through. `send` answers false when the controller has no room now; the frame is then not taken.
+template <class T>
+concept Bus = requires(T& bus, const Frame& frame) {
+  { bus.send(frame) } -> std::same_as<bool>;
+};
+
+}  // namespace canopen

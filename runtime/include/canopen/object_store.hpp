@@ -1,0 +1,265 @@
+/// The values of one device: typed access by object, and access by index and sub-index for the services.
+#pragma once
+
+#include <bit>
+#include <cstring>
+#include <memory>
+#include <span>
+
+#include "canopen/abort_code.hpp"
+#include "canopen/dictionary.hpp"
+#include "canopen/node_id.hpp"
+#include "canopen/object.hpp"
+
+namespace canopen {
+
+static_assert(std::endian::native == std::endian::little, "values lie in memory as CiA 301, 7.1 sends them: low byte first");
+
+/// Memory and tables behind one node's entries, whatever its device: what an SDO server works on.
+class EntryAccess {
+ public:
+  constexpr EntryAccess(const Dictionary& dictionary, std::uint8_t* ram, NodeId node_id)
+      : dictionary_{dictionary}, ram_{ram}, node_id_{node_id} {}
+
+  [[nodiscard]] constexpr const Dictionary& dictionary() const { return dictionary_; }
+
+  /// The bytes of an entry as SDO sends them. Immediate values are put into `scratch`, others are seen in place.
+  /// Of an unbound domain: no bytes, and a null pointer.
+  [[nodiscard]] std::span<const std::uint8_t> read(entry::Word word, std::span<std::uint8_t, 8> scratch) const {
+    const std::uint8_t* const where = address(word);
+    if (where == nullptr) {
+      const std::uint64_t value = immediate_value(word);
+      std::memcpy(scratch.data(), &value, sizeof value);
+      return {scratch.data(), entry::wire_bytes(word)};
+    }
+    if (entry::is_string(word)) {
+      const std::size_t terminator = dictionary_.zero_terminated_strings ? 1 : 0;
+      return {where + string_header, load<std::uint16_t>(where) + terminator};
+    }
+    if (entry::is_domain(word)) {
+      const Domain domain = load<Domain>(where);
+      return {domain.data, domain.size};
+    }
+    return {where, entry::wire_bytes(word)};
+  }
+
+  /// What speaks against writing these bytes: their length, then their value. CiA 301, 7.2.4.3.17.
+  [[nodiscard]] AbortCode check(std::uint16_t index, std::uint8_t sub_index, entry::Word word,
+                                std::span<const std::uint8_t> bytes) const {
+    if (const AbortCode length = check_length(index, sub_index, word, bytes.size()); length != ok) return length;
+    if (entry::is_boolean(word)) return bytes[0] > 1 ? AbortCode::invalid_value : ok;
+    if ((word & entry::limited) == 0 || entry::class_of(word) == entry::Class::special) return ok;
+    const std::uint32_t key = object_key(index, limits_sub_index(index, sub_index));
+    if (entry::size_of(word) <= 4) {
+      const Limits* row = dictionary_.find_limits(key);
+      return row == nullptr ? ok : check_range<std::uint32_t, std::int32_t, float>(word, bytes, row->low, row->high);
+    }
+    const WideLimits* row = dictionary_.find_wide_limits(key);
+    return row == nullptr ? ok : check_range<std::uint64_t, std::int64_t, double>(word, bytes, row->low, row->high);
+  }
+
+  /// Whether a value of this length fits the entry.
+  [[nodiscard]] AbortCode check_length(std::uint16_t index, std::uint8_t sub_index, entry::Word word,
+                                       std::size_t length) const {
+    if (entry::is_string(word)) {
+      return length > capacity(index, sub_index) ? AbortCode::length_too_high : ok;
+    }
+    if (entry::is_domain(word)) {
+      return length > load<Domain>(address(word)).capacity ? AbortCode::length_too_high : ok;
+    }
+    if (length > entry::wire_bytes(word)) return AbortCode::length_too_high;
+    return length < entry::wire_bytes(word) ? AbortCode::length_too_low : ok;
+  }
+
+  /// Stores bytes that `check` let pass into an entry in RAM.
+  void write(entry::Word word, std::span<const std::uint8_t> bytes) const {
+    std::uint8_t* const where = ram_ + entry::offset_of(word);
+    if (entry::is_string(word)) {
+      const auto size = static_cast<std::uint16_t>(bytes.size());
+      std::memcpy(where, &size, sizeof size);
+      copy(where + string_header, bytes);
+    } else if (entry::is_domain(word)) {
+      Domain domain = load<Domain>(where);
+      copy(domain.data, bytes);
+      domain.size = static_cast<std::uint32_t>(bytes.size());
+      std::memcpy(where, &domain, sizeof domain);
+    } else {
+      store_number(word, where, bytes);
+    }
+  }
+
+  /// Bytes that a string entry can hold.
+  [[nodiscard]] std::uint32_t capacity(std::uint16_t index, std::uint8_t sub_index) const {
+    const Limits* row = dictionary_.find_limits(object_key(index, limits_sub_index(index, sub_index)));
+    return row == nullptr ? 0 : row->high;
+  }
+
+ private:
+  static constexpr std::size_t string_header = sizeof(std::uint16_t);
+
+  template <class T>
+  [[nodiscard]] static T load(const std::uint8_t* where) {
+    T value;
+    std::memcpy(&value, where, sizeof value);
+    return value;
+  }
+
+  static void copy(std::uint8_t* to, std::span<const std::uint8_t> bytes) {
+    if (!bytes.empty()) std::memcpy(to, bytes.data(), bytes.size());
+  }
+
+  /// Numbers of 3, 5, 6 and 7 bytes lie in the next wider type, sign extended.
+  static void store_number(entry::Word word, std::uint8_t* where, std::span<const std::uint8_t> bytes) {
+    const std::size_t size = entry::wire_bytes(word);
+    std::memcpy(where, bytes.data(), size);
+    if (size == 3 || (size > 4 && size < 8)) {
+      const bool negative = entry::class_of(word) == entry::Class::signed_integer && (bytes[size - 1] & 0x80) != 0;
+      std::memset(where + size, negative ? 0xFF : 0, (size == 3 ? 4u : 8u) - size);
+    }
+  }
+
+  /// Null for immediate values.
+  [[nodiscard]] const std::uint8_t* address(entry::Word word) const {
+    switch (entry::place_of(word)) {
+      case entry::Place::ram: return ram_ + entry::offset_of(word);
+      case entry::Place::rom: return static_cast<const std::uint8_t*>(dictionary_.constants) + entry::offset_of(word);
+      case entry::Place::immediate:
+      case entry::Place::immediate_plus_node_id: break;
+    }
+    return nullptr;
+  }
+
+  [[nodiscard]] std::uint64_t immediate_value(entry::Word word) const {
+    const std::uint16_t value = entry::offset_of(word);
+    if (entry::place_of(word) == entry::Place::immediate_plus_node_id) return std::uint32_t{value} + node_id_.value();
+    if (entry::class_of(word) == entry::Class::signed_integer) {
+      return static_cast<std::uint64_t>(std::int64_t{static_cast<std::int16_t>(value)});
+    }
+    return value;
+  }
+
+  [[nodiscard]] std::uint8_t limits_sub_index(std::uint16_t index, std::uint8_t sub_index) const {
+    const bool array = entry::kind_of(dictionary_.find_index(index)) == entry::Kind::array;
+    return array && sub_index > 1 ? std::uint8_t{1} : sub_index;
+  }
+
+  template <class Unsigned, class Signed, class Real>
+  [[nodiscard]] static AbortCode check_range(entry::Word word, std::span<const std::uint8_t> bytes, Unsigned low,
+                                             Unsigned high) {
+    Unsigned raw = 0;
+    std::memcpy(&raw, bytes.data(), bytes.size());
+    switch (entry::class_of(word)) {
+      case entry::Class::signed_integer: {
+        const unsigned unused = static_cast<unsigned>((sizeof raw - bytes.size()) * 8);
+        const auto value = static_cast<Signed>(static_cast<Signed>(raw << unused) >> unused);
+        return in_range(value, std::bit_cast<Signed>(low), std::bit_cast<Signed>(high));
+      }
+      case entry::Class::real:
+        return in_range(std::bit_cast<Real>(raw), std::bit_cast<Real>(low), std::bit_cast<Real>(high));
+      case entry::Class::unsigned_integer:
+      case entry::Class::special: break;
+    }
+    return in_range(raw, low, high);
+  }
+
+  template <class T>
+  [[nodiscard]] static AbortCode in_range(T value, T low, T high) {
+    if (value > high) return AbortCode::value_too_high;
+    if (value < low) return AbortCode::value_too_low;
+    return value == value ? ok : AbortCode::invalid_value;  // a REAL that is not a number
+  }
+
+  const Dictionary& dictionary_;
+  std::uint8_t* ram_;
+  NodeId node_id_;
+};
+
+/// The values of one device, and typed access to them. `Device` is what edsc generates.
+template <class Device>
+class ObjectStore {
+ public:
+  constexpr ObjectStore() = default;
+
+  /// The value of an object, whatever its access on the bus.
+  template <DictionaryObject O>
+  [[nodiscard]] typename O::type get() const {
+    constexpr entry::Word word = word_of<O>();
+    using T = typename O::type;
+    if constexpr (entry::place_of(word) == entry::Place::ram) {
+      return load<T, entry::offset_of(word)>(reinterpret_cast<const std::uint8_t*>(&values_));
+    } else if constexpr (entry::place_of(word) == entry::Place::rom) {
+      return load<T, entry::offset_of(word)>(static_cast<const std::uint8_t*>(Device::dictionary.constants));
+    } else if constexpr (entry::place_of(word) == entry::Place::immediate_plus_node_id) {
+      return static_cast<T>(entry::offset_of(word) + node_id_.value());
+    } else if constexpr (entry::class_of(word) == entry::Class::signed_integer) {
+      return static_cast<T>(static_cast<std::int16_t>(entry::offset_of(word)));
+    } else {
+      return static_cast<T>(entry::offset_of(word));
+    }
+  }
+
+  /// Sets an object that lives in RAM. Says whether the value has changed.
+  template <DictionaryObject O>
+  bool set(const typename O::type& value) {
+    constexpr entry::Word word = word_of<O>();
+    static_assert(entry::place_of(word) == entry::Place::ram, "a constant of the data sheet cannot be set");
+    const bool changed = std::memcmp(ram() + entry::offset_of(word), &value, sizeof value) != 0;
+    std::memcpy(std::assume_aligned<alignof(typename O::type)>(ram() + entry::offset_of(word)), &value, sizeof value);
+    return changed;
+  }
+
+  /// Whether an object can be set: constants cannot.
+  template <DictionaryObject O>
+  [[nodiscard]] static constexpr bool settable() {
+    return entry::place_of(word_of<O>()) == entry::Place::ram;
+  }
+
+  /// Default values for 1000h..1FFFh, with the node-ID added where the data sheet says so.
+  void reset_communication(NodeId node_id) {
+    node_id_ = node_id;
+    Device::reset_communication(values_);
+    add_node_id(Device::node_id_relative_communication());
+  }
+
+  /// Default values for 2000h..9FFFh.
+  void reset_application() {
+    Device::reset_application(values_);
+    add_node_id(Device::node_id_relative_application());
+  }
+
+  [[nodiscard]] NodeId node_id() const { return node_id_; }
+  [[nodiscard]] EntryAccess entries() { return {Device::dictionary, ram(), node_id_}; }
+  [[nodiscard]] typename Device::Values& values() { return values_; }
+  [[nodiscard]] const typename Device::Values& values() const { return values_; }
+
+ private:
+  template <DictionaryObject O>
+  [[nodiscard]] static constexpr entry::Word word_of() {
+    constexpr entry::Word word = Device::dictionary.find(O::index, O::sub_index);
+    static_assert(word > Dictionary::no_sub_index, "this device has no such object");
+    return word;
+  }
+
+  template <class T, std::uint16_t Offset>
+  [[nodiscard]] static T load(const std::uint8_t* base) {
+    T value;
+    std::memcpy(&value, std::assume_aligned<alignof(T)>(base + Offset), sizeof value);
+    return value;
+  }
+
+  [[nodiscard]] std::uint8_t* ram() { return reinterpret_cast<std::uint8_t*>(&values_); }
+
+  void add_node_id(std::span<const NodeIdRelative> rows) {
+    for (const NodeIdRelative& row : rows) {
+      std::uint64_t value = 0;
+      std::memcpy(&value, ram() + row.offset, row.size);
+      value += node_id_.value();
+      std::memcpy(ram() + row.offset, &value, row.size);
+    }
+  }
+
+  typename Device::Values values_{};
+  NodeId node_id_{};
+};
+
+}  // namespace canopen
