@@ -24,6 +24,11 @@ struct Frame {
   }
 };
 
+/// The CAN-ID of a frame as a COB-ID holds it: bit 29 tells the extended ones.
+[[nodiscard]] constexpr std::uint32_t cob_id_of(const Frame& frame) {
+  return frame.id | (frame.extended ? std::uint32_t{0x2000'0000} : 0);
+}
+
 /// What a node sends through. `send` answers false when the controller has no room now; the frame is then not taken.
 template <class T>
 concept Bus = requires(T& bus, const Frame& frame) {

@@ -37,10 +37,29 @@ class EntryAccess {
       return {where + string_header, load<std::uint16_t>(where) + terminator};
     }
     if (entry::is_domain(word)) {
-      const Domain domain = load<Domain>(where);
-      return {domain.data, domain.size};
+      const Domain memory = domain(word);
+      return {memory.data, memory.size};
     }
     return {where, entry::wire_bytes(word)};
+  }
+
+  /// An unsigned value of up to 32 bits.
+  [[nodiscard]] std::uint32_t number(entry::Word word) const {
+    const std::uint8_t* const where = address(word);
+    if (where == nullptr) return static_cast<std::uint32_t>(immediate_value(word));
+    if (entry::size_of(word) == 1) return *where;
+    if (entry::size_of(word) == 2) return load<std::uint16_t>(std::assume_aligned<alignof(std::uint16_t)>(where));
+    return load<std::uint32_t>(std::assume_aligned<alignof(std::uint32_t)>(where));
+  }
+
+  /// The memory behind a DOMAIN.
+  [[nodiscard]] Domain domain(entry::Word word) const { return load<Domain>(ram_ + entry::offset_of(word)); }
+
+  /// Says how many bytes of a DOMAIN's memory are its value.
+  void resize_domain(entry::Word word, std::uint32_t size) const {
+    Domain resized = domain(word);
+    resized.size = size;
+    std::memcpy(ram_ + entry::offset_of(word), &resized, sizeof resized);
   }
 
   /// What speaks against writing these bytes: their length, then their value. CiA 301, 7.2.4.3.17.
@@ -49,26 +68,20 @@ class EntryAccess {
     if (const AbortCode length = check_length(index, sub_index, word, bytes.size()); length != ok) return length;
     if (entry::is_boolean(word)) return bytes[0] > 1 ? AbortCode::invalid_value : ok;
     if ((word & entry::limited) == 0 || entry::class_of(word) == entry::Class::special) return ok;
-    const std::uint32_t key = object_key(index, limits_sub_index(index, sub_index));
-    if (entry::size_of(word) <= 4) {
-      const Limits* row = dictionary_.find_limits(key);
-      return row == nullptr ? ok : check_range<std::uint32_t, std::int32_t, float>(word, bytes, row->low, row->high);
-    }
-    const WideLimits* row = dictionary_.find_wide_limits(key);
-    return row == nullptr ? ok : check_range<std::uint64_t, std::int64_t, double>(word, bytes, row->low, row->high);
+    return check_limits(object_key(index, limits_sub_index(index, sub_index)), word, bytes);
   }
 
   /// Whether a value of this length fits the entry.
   [[nodiscard]] AbortCode check_length(std::uint16_t index, std::uint8_t sub_index, entry::Word word,
                                        std::size_t length) const {
-    if (entry::is_string(word)) {
-      return length > capacity(index, sub_index) ? AbortCode::length_too_high : ok;
-    }
-    if (entry::is_domain(word)) {
-      return length > load<Domain>(address(word)).capacity ? AbortCode::length_too_high : ok;
-    }
-    if (length > entry::wire_bytes(word)) return AbortCode::length_too_high;
+    if (length > longest(index, sub_index, word)) return AbortCode::length_too_high;
     return length < entry::wire_bytes(word) ? AbortCode::length_too_low : ok;
+  }
+
+  /// Bytes of the longest value that the entry takes.
+  [[nodiscard]] std::uint32_t longest(std::uint16_t index, std::uint8_t sub_index, entry::Word word) const {
+    if (entry::is_string(word)) return capacity(index, sub_index);
+    return entry::is_domain(word) ? domain(word).capacity : entry::wire_bytes(word);
   }
 
   /// Stores bytes that `check` let pass into an entry in RAM.
@@ -79,10 +92,8 @@ class EntryAccess {
       std::memcpy(where, &size, sizeof size);
       copy(where + string_header, bytes);
     } else if (entry::is_domain(word)) {
-      Domain domain = load<Domain>(where);
-      copy(domain.data, bytes);
-      domain.size = static_cast<std::uint32_t>(bytes.size());
-      std::memcpy(where, &domain, sizeof domain);
+      copy(domain(word).data, bytes);
+      resize_domain(word, static_cast<std::uint32_t>(bytes.size()));
     } else {
       store_number(word, where, bytes);
     }
@@ -104,8 +115,9 @@ class EntryAccess {
     return value;
   }
 
+  /// A segmented download has put a DOMAIN's bytes in place already.
   static void copy(std::uint8_t* to, std::span<const std::uint8_t> bytes) {
-    if (!bytes.empty()) std::memcpy(to, bytes.data(), bytes.size());
+    if (!bytes.empty() && bytes.data() != to) std::memcpy(to, bytes.data(), bytes.size());
   }
 
   /// Numbers of 3, 5, 6 and 7 bytes lie in the next wider type, sign extended.
@@ -143,30 +155,52 @@ class EntryAccess {
     return array && sub_index > 1 ? std::uint8_t{1} : sub_index;
   }
 
-  template <class Unsigned, class Signed, class Real>
-  [[nodiscard]] static AbortCode check_range(entry::Word word, std::span<const std::uint8_t> bytes, Unsigned low,
-                                             Unsigned high) {
-    Unsigned raw = 0;
-    std::memcpy(&raw, bytes.data(), bytes.size());
+  [[nodiscard]] AbortCode check_limits(std::uint32_t key, entry::Word word, std::span<const std::uint8_t> bytes) const {
+    alignas(8) std::uint8_t wide[8] = {};
+    store_number(word, wide, bytes);
+    std::uint64_t low = 0;
+    std::uint64_t high = 0;
+    if (entry::size_of(word) <= 4) {
+      const Limits* row = dictionary_.find_limits(key);
+      if (row == nullptr) return ok;
+      low = sortable(word, row->low);
+      high = sortable(word, row->high);
+    } else {
+      const WideLimits* row = dictionary_.find_wide_limits(key);
+      if (row == nullptr) return ok;
+      low = sortable(word, row->low);
+      high = sortable(word, row->high);
+    }
+    const std::uint64_t raw = load<std::uint64_t>(wide);
+    if (entry::class_of(word) == entry::Class::real && not_a_number(word, raw)) return AbortCode::invalid_value;
+    const std::uint64_t value = sortable(word, raw);
+    if (value > high) return AbortCode::value_too_high;
+    return value < low ? AbortCode::value_too_low : ok;
+  }
+
+  /// A value of up to 32 bits stands in the upper half, so that its sign is bit 63.
+  [[nodiscard]] static std::uint64_t left_aligned(entry::Word word, std::uint64_t raw) {
+    return entry::size_of(word) <= 4 ? raw << 32 : raw;
+  }
+
+  /// A number that sorts among unsigned ones as the value does among its like: no floating-point library is needed.
+  [[nodiscard]] static std::uint64_t sortable(entry::Word word, std::uint64_t raw) {
+    constexpr std::uint64_t sign = std::uint64_t{1} << 63;
+    const std::uint64_t aligned = left_aligned(word, raw);
     switch (entry::class_of(word)) {
-      case entry::Class::signed_integer: {
-        const unsigned unused = static_cast<unsigned>((sizeof raw - bytes.size()) * 8);
-        const auto value = static_cast<Signed>(static_cast<Signed>(raw << unused) >> unused);
-        return in_range(value, std::bit_cast<Signed>(low), std::bit_cast<Signed>(high));
-      }
+      case entry::Class::signed_integer: return aligned ^ sign;
       case entry::Class::real:
-        return in_range(std::bit_cast<Real>(raw), std::bit_cast<Real>(low), std::bit_cast<Real>(high));
+        if ((aligned & ~sign) == 0) return sign;  // -0 equals +0
+        return (aligned & sign) != 0 ? ~aligned : aligned | sign;
       case entry::Class::unsigned_integer:
       case entry::Class::special: break;
     }
-    return in_range(raw, low, high);
+    return aligned;
   }
 
-  template <class T>
-  [[nodiscard]] static AbortCode in_range(T value, T low, T high) {
-    if (value > high) return AbortCode::value_too_high;
-    if (value < low) return AbortCode::value_too_low;
-    return value == value ? ok : AbortCode::invalid_value;  // a REAL that is not a number
+  [[nodiscard]] static bool not_a_number(entry::Word word, std::uint64_t raw) {
+    const std::uint64_t infinity = entry::size_of(word) == 4 ? 0xFF00'0000'0000'0000 : 0xFFE0'0000'0000'0000;
+    return (left_aligned(word, raw) << 1) > infinity;
   }
 
   const Dictionary& dictionary_;
@@ -212,6 +246,20 @@ class ObjectStore {
   template <DictionaryObject O>
   [[nodiscard]] static constexpr bool settable() {
     return entry::place_of(word_of<O>()) == entry::Place::ram;
+  }
+
+  /// The unsigned value of an entry that exists, by number: what services use that know the object and not its type.
+  template <std::uint16_t Index, std::uint8_t SubIndex>
+  [[nodiscard]] std::uint32_t number() const {
+    constexpr entry::Word word = Device::dictionary.find(Index, SubIndex);
+    static_assert(word > Dictionary::no_sub_index && entry::wire_bytes(word) >= 1 && entry::wire_bytes(word) <= 4);
+    if constexpr (entry::wire_bytes(word) == 1) {
+      return get<Object<Index, SubIndex, std::uint8_t, Access::ro>>();
+    } else if constexpr (entry::wire_bytes(word) == 2) {
+      return get<Object<Index, SubIndex, std::uint16_t, Access::ro>>();
+    } else {
+      return get<Object<Index, SubIndex, std::uint32_t, Access::ro>>();
+    }
   }
 
   /// Default values for 1000h..1FFFh, with the node-ID added where the data sheet says so.

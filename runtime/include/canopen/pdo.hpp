@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "canopen/dictionary.hpp"
 #include "canopen/frame.hpp"
 #include "canopen/object.hpp"
 
@@ -23,6 +24,13 @@ struct Dummy {
   static constexpr std::uint8_t sub_index = 0;
   static constexpr Access access = Access::wo;
   static constexpr Mappable mappable = Mappable::rpdo;
+  static constexpr std::uint16_t bits = Bits;
+};
+
+/// An entry that takes more bits in a PDO than its type has: a BOOLEAN in a whole byte, as many devices send it.
+template <class O, std::uint16_t Bits>
+struct Padded : O {
+  static_assert(Bits >= O::bits);
   static constexpr std::uint16_t bits = Bits;
 };
 
@@ -143,6 +151,13 @@ struct PdoLayout {
     return pdo_detail::from_bits<typename O::type, O::bits>(pdo_detail::take<offsets[I], O::bits>(data));
   }
 
+  /// Puts the value of entry `I` into data bytes where it is zero so far.
+  template <std::size_t I>
+  static constexpr void put(Data& data, const typename std::tuple_element_t<I, std::tuple<Objects...>>::type& value) {
+    using O = std::tuple_element_t<I, std::tuple<Objects...>>;
+    pdo_detail::put<offsets[I], O::bits>(data, pdo_detail::to_bits(value));
+  }
+
   /// Calls `visit.template operator()<O, I>()` for each entry in order.
   template <class Visit>
   static constexpr void for_each(Visit&& visit) {
@@ -181,6 +196,34 @@ struct NumberedPdo : Layout {
 template <class... Pdos>
 struct PdoList {
   static constexpr std::size_t count = sizeof...(Pdos);
+
+  /// Calls `visit.template operator()<Pdo, I>()` for each PDO in order.
+  template <class Visit>
+  static constexpr void for_each([[maybe_unused]] Visit&& visit) {
+    [&]<std::size_t... I>(std::index_sequence<I...>) { (visit.template operator()<Pdos, I>(), ...); }(
+        std::index_sequence_for<Pdos...>{});
+  }
 };
+
+namespace pdo_detail {
+
+template <const Dictionary& D, std::uint16_t FirstParameter, class Taken, class List>
+struct Served;
+template <const Dictionary& D, std::uint16_t FirstParameter, class... Taken>
+struct Served<D, FirstParameter, PdoList<Taken...>, PdoList<>> {
+  using type = PdoList<Taken...>;
+};
+template <const Dictionary& D, std::uint16_t FirstParameter, class... Taken, class P, class... Rest>
+struct Served<D, FirstParameter, PdoList<Taken...>, PdoList<P, Rest...>> {
+  static constexpr bool serves = P::entries > 0 && D.has(FirstParameter + P::number - 1, 1);
+  using type = typename Served<D, FirstParameter,
+                               std::conditional_t<serves, PdoList<Taken..., P>, PdoList<Taken...>>, PdoList<Rest...>>::type;
+};
+
+}  // namespace pdo_detail
+
+/// Those PDOs of a list that carry something and whose COB-ID is in the dictionary, at `FirstParameter` + number - 1.
+template <const Dictionary& D, std::uint16_t FirstParameter, class List>
+using ServedPdos = typename pdo_detail::Served<D, FirstParameter, PdoList<>, List>::type;
 
 }  // namespace canopen

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <span>
 #include <string_view>
 
@@ -57,6 +58,8 @@ struct VisibleString : StringStorage<Capacity> {
 template <std::size_t Capacity>
 struct OctetString : StringStorage<Capacity> {
   constexpr OctetString() = default;
+  constexpr OctetString(std::initializer_list<std::uint8_t> octets)
+      : OctetString{std::span<const std::uint8_t>{octets.begin(), octets.size()}} {}
   /// Bytes beyond the capacity are cut.
   constexpr OctetString(std::span<const std::uint8_t> octets) {  // NOLINT(google-explicit-constructor)
     while (this->size < octets.size() && this->size < Capacity) {

@@ -1,0 +1,71 @@
+# edsc_add_dictionary(TARGET EDS file [NAMESPACE name] [NODE_ID n] [OPTIONS file] [KEEP_GOING])
+#
+# Makes TARGET an INTERFACE library whose headers are generated at build time from an EDS or DCF:
+#
+#   edsc_add_dictionary(cpc_tc1 EDS eds/cpc-tc1.eds)
+#   target_link_libraries(drive PRIVATE cpc_tc1)        # #include <cpc_tc1/device.hpp>
+#
+# NAMESPACE  C++ namespace and include folder; TARGET by default.
+# NODE_ID    turns $NODEID formulas into numbers.
+# OPTIONS    options file; NAME.options.json beside the data sheet by default, if it is there.
+# KEEP_GOING generates in spite of errors in a bought device's file and leaves out what is wrong.
+#
+# The headers are made again when the data sheet, its options file, a template or edsc itself changes.
+function(edsc_add_dictionary target)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "KEEP_GOING" "EDS;NAMESPACE;NODE_ID;OPTIONS" "")
+  if(arg_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "edsc_add_dictionary(${target}): unknown arguments: ${arg_UNPARSED_ARGUMENTS}")
+  endif()
+  if(NOT arg_EDS)
+    message(FATAL_ERROR "edsc_add_dictionary(${target}): EDS is missing")
+  endif()
+  if(NOT arg_NAMESPACE)
+    set(arg_NAMESPACE ${target})
+  endif()
+  get_filename_component(eds ${arg_EDS} ABSOLUTE)
+  if(NOT EXISTS ${eds})
+    message(FATAL_ERROR "edsc_add_dictionary(${target}): ${eds} does not exist")
+  endif()
+
+  set(output_dir ${CMAKE_CURRENT_BINARY_DIR}/edsc/${target})
+  set(depfile ${output_dir}/${arg_NAMESPACE}.d)
+  set(headers device.hpp dictionary.hpp pdo.hpp description.hpp)
+  list(TRANSFORM headers PREPEND ${output_dir}/${arg_NAMESPACE}/)
+
+  set(arguments ${eds} -o ${output_dir} --name ${arg_NAMESPACE} --depfile ${depfile})
+  if(arg_NODE_ID)
+    list(APPEND arguments --node-id ${arg_NODE_ID})
+  endif()
+  if(arg_KEEP_GOING)
+    list(APPEND arguments --keep-going)
+  endif()
+  set(dependencies ${eds})
+  if(arg_OPTIONS)
+    get_filename_component(options ${arg_OPTIONS} ABSOLUTE)
+    list(APPEND arguments --options ${options})
+    list(APPEND dependencies ${options})
+  else()
+    # An options file that appears later is seen at the next configure; one that is there is in the depfile.
+    string(REGEX REPLACE "\\.[^.]*$" ".options.json" options ${eds})
+    if(EXISTS ${options})
+      list(APPEND dependencies ${options})
+    endif()
+  endif()
+
+  # edsc leaves unchanged headers alone, so that nothing is compiled again in vain; the stamp is what ninja compares.
+  set(stamp ${output_dir}/${arg_NAMESPACE}.stamp)
+  add_custom_command(
+    OUTPUT ${stamp}
+    BYPRODUCTS ${headers}
+    COMMAND edsc::edsc generate ${arguments}
+    COMMAND ${CMAKE_COMMAND} -E touch ${stamp}
+    DEPENDS ${dependencies} edsc::edsc $<TARGET_FILE:edsc::edsc>
+    COMMENT "Generating ${arg_NAMESPACE} from ${arg_EDS}"
+    VERBATIM)
+  add_custom_target(${target}_headers DEPENDS ${stamp})
+
+  add_library(${target} INTERFACE)
+  add_dependencies(${target} ${target}_headers)
+  target_include_directories(${target} INTERFACE ${output_dir})
+  target_link_libraries(${target} INTERFACE edsc::runtime)
+endfunction()

@@ -1,0 +1,54 @@
+#include <fmt/format.h>
+
+#include "commands/commands.hpp"
+#include "commands/load_device.hpp"
+#include "render/view.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr const char* examples = R"(Examples:
+  edsc dump drive.eds                                      the resolved device as JSON
+  edsc dump drive.eds --node-id 5 | jq '.objects[].name'   formulas as numbers; the names of all objects
+  edsc dump drive.eds --cpp                                also what the C++ templates see)";
+
+struct Settings {
+  LoadSettings load;
+  bool cpp = false;
+  bool keep_going = false;
+  ColorOption color;
+};
+
+int dump(const Settings& settings) {
+  Diagnostics diagnostics;
+  const auto loaded = load_device(settings.load, diagnostics);
+  nlohmann::ordered_json view;
+  if (loaded->device) {
+    view = device_view(*loaded->device);
+    if (settings.cpp) view["cpp"] = cpp_view(*loaded->device, loaded->options, diagnostics);
+  }
+  print_findings(stderr, diagnostics, settings.color);
+  if (loaded->unreadable) return exit_wrong_usage;
+  const bool failed = !loaded->device || diagnostics.errors() > 0;
+  if (!failed || (settings.keep_going && loaded->device)) {
+    fmt::print("{}\n", view.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  }
+  return failed ? exit_input_has_errors : exit_fine;
+}
+
+}  // namespace
+
+void add_dump_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("dump", "the resolved device as JSON");
+  command->footer(examples);
+  auto settings = std::make_shared<Settings>();
+  command->add_option("FILE", settings->load.path, "EDS or DCF")->required();
+  add_node_id_option(*command, settings->load.node_id);
+  command->add_option("--options", settings->load.options_path, "options file (default: FILE's name with .options.json, if there)");
+  command->add_flag("--cpp", settings->cpp, "add the view of the C++ templates");
+  command->add_flag("--keep-going", settings->keep_going, "print the device in spite of errors");
+  settings->color.add_to(*command);
+  command->callback([settings, &exit_code] { exit_code = dump(*settings); });
+}
+
+}  // namespace edsc

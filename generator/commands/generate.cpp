@@ -1,0 +1,134 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <stdexcept>
+
+#include "commands/commands.hpp"
+#include "commands/load_device.hpp"
+#include "device/identifier.hpp"
+#include "render/render.hpp"
+#include "render/view.hpp"
+#include "render/write_files.hpp"
+
+namespace edsc {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* examples = R"(Examples:
+  edsc generate eds/drive.eds -o build/generated           headers for namespace drive
+  edsc generate drive.eds -o out --name axis1 --node-id 5  a second one, with its node-ID fixed
+  edsc generate vendor.eds -o out --keep-going             leave out what is wrong in a bought device's file)";
+
+struct Settings {
+  LoadSettings load;
+  std::string output;
+  std::string depfile;
+  std::string templates;
+  bool keep_going = false;
+  bool verbose = false;
+  ColorOption color;
+};
+
+/// A template's text, and the file it came from when it is not the built-in one.
+struct ChosenTemplate {
+  Template built_in;
+  std::unique_ptr<SourceFile> replacement;
+
+  [[nodiscard]] std::string_view text() const { return replacement ? replacement->text() : built_in.text; }
+};
+
+/// The built-in templates, each replaced by the file of the same name in `folder`, where there is one.
+std::vector<ChosenTemplate> choose_templates(const std::string& folder) {
+  std::vector<ChosenTemplate> chosen;
+  for (const Template& built_in : built_in_templates()) {
+    ChosenTemplate one{built_in, nullptr};
+    const fs::path path = fs::path{folder} / (std::string{built_in.file_name} + ".mustache");
+    if (!folder.empty() && fs::exists(path)) {
+      std::string error;
+      one.replacement = read_source_file(path.string(), error);
+      if (!one.replacement) throw std::runtime_error{path.string() + ": " + error};
+    }
+    chosen.push_back(std::move(one));
+  }
+  return chosen;
+}
+
+/// A path in a make rule: blanks, dollars and hashes escaped.
+std::string make_path(std::string_view path) {
+  std::string out;
+  for (const char c : path) {
+    if (c == ' ' || c == '#') out += '\\';
+    if (c == '$') out += '$';
+    out += c;
+  }
+  return out;
+}
+
+std::string depfile_text(const std::vector<OutputFile>& outputs, const std::vector<std::string>& inputs) {
+  std::string text;
+  for (const OutputFile& output : outputs) text += (text.empty() ? "" : " ") + make_path(output.path);
+  text += ":";
+  for (const std::string& input : inputs) text += " \\\n  " + make_path(input);
+  return text + "\n";
+}
+
+std::vector<OutputFile> render_all(const Settings& settings, const LoadedDevice& loaded, Diagnostics& diagnostics) {
+  const auto templates = choose_templates(settings.templates);
+  const auto view = cpp_view(*loaded.device, loaded.options, diagnostics);
+  std::vector<OutputFile> files;
+  std::vector<std::string> inputs{settings.load.path};
+  if (loaded.options_source) inputs.push_back(loaded.options_source->name());
+  for (const ChosenTemplate& one : templates) {
+    const fs::path path = fs::path{settings.output} / loaded.device->name / one.built_in.file_name;
+    files.push_back({path.string(), render(one.text(), view)});
+    if (one.replacement) inputs.push_back(one.replacement->name());
+  }
+  if (!settings.depfile.empty()) files.push_back({settings.depfile, depfile_text(files, inputs)});
+  return files;
+}
+
+int generate(const Settings& settings) {
+  Diagnostics diagnostics;
+  const auto loaded = load_device(settings.load, diagnostics);
+  std::vector<OutputFile> files;
+  const bool go_on = loaded->device && (diagnostics.errors() == 0 || settings.keep_going);
+  if (go_on) files = render_all(settings, *loaded, diagnostics);
+  print_findings(stderr, diagnostics, settings.color);
+  if (loaded->unreadable) return exit_wrong_usage;
+  if (!loaded->device || (diagnostics.errors() > 0 && !settings.keep_going)) return exit_input_has_errors;
+
+  if (const std::string problem = write_files(files); !problem.empty()) {
+    fmt::print(stderr, "edsc: {}\n", problem);
+    return exit_wrong_usage;
+  }
+  if (settings.verbose) {
+    for (const OutputFile& file : files) fmt::print("{}\n", file.path);
+  }
+  return exit_fine;
+}
+
+}  // namespace
+
+void add_generate_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("generate", "C++ headers for one device");
+  command->footer(examples);
+  auto settings = std::make_shared<Settings>();
+  command->add_option("FILE", settings->load.path, "EDS or DCF")->required();
+  command->add_option("-o,--output", settings->output, "folder; the headers go to its subfolder NAME")->required();
+  command->add_option("--name", settings->load.name, "C++ namespace (default: the file's name)")
+      ->check([](const std::string& name) {
+        return to_snake_case(name) == name ? std::string{} : "a namespace in snake_case is wanted, not \"" + name + "\"";
+      });
+  add_node_id_option(*command, settings->load.node_id);
+  command->add_option("--options", settings->load.options_path, "options file (default: FILE's name with .options.json, if there)");
+  command->add_option("--templates", settings->templates, "folder with templates that replace the built-in ones")
+      ->check(CLI::ExistingDirectory);
+  command->add_option("--depfile", settings->depfile, "write what the headers depend on, for make and ninja");
+  command->add_flag("--keep-going", settings->keep_going, "generate in spite of errors; what is wrong is left out");
+  command->add_flag("-v,--verbose", settings->verbose, "name the files that are written");
+  settings->color.add_to(*command);
+  command->callback([settings, &exit_code] { exit_code = generate(*settings); });
+}
+
+}  // namespace edsc

@@ -1,0 +1,36 @@
+/// From a path to a checked device: what every command begins with.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "device/device.hpp"
+#include "device/options.hpp"
+#include "eds/data_sheet.hpp"
+#include "text/source_file.hpp"
+
+namespace edsc {
+
+struct LoadSettings {
+  std::string path;
+  std::string options_path;             ///< empty: `NAME.options.json` beside the data sheet, if it is there
+  std::string name;                     ///< C++ namespace; empty: from the file's name
+  std::optional<std::uint8_t> node_id;
+};
+
+/// A device and all that its positions point into.
+struct LoadedDevice {
+  std::unique_ptr<SourceFile> source;
+  std::unique_ptr<SourceFile> options_source;  ///< null when there is no options file
+  Options options;
+  DataSheet sheet;
+  std::optional<Device> device;  ///< nothing when the file could not be read as a data sheet at all
+  bool unreadable = false;       ///< a file could not be read: wrong usage, not wrong input
+};
+
+/// Reads, resolves and checks. Everything that is wrong stands in `diagnostics`; positions there point into the result.
+[[nodiscard]] std::unique_ptr<LoadedDevice> load_device(const LoadSettings& settings, Diagnostics& diagnostics);
+
+}  // namespace edsc

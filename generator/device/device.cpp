@@ -1,0 +1,55 @@
+#include "device/device.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace edsc {
+
+std::string_view to_string(ObjectType type) {
+  switch (type) {
+    case ObjectType::null: return "NULL";
+    case ObjectType::domain: return "DOMAIN";
+    case ObjectType::deftype: return "DEFTYPE";
+    case ObjectType::defstruct: return "DEFSTRUCT";
+    case ObjectType::var: return "VAR";
+    case ObjectType::array: return "ARRAY";
+    case ObjectType::record: return "RECORD";
+  }
+  return "?";
+}
+
+const Entry* Object::find(std::uint8_t sub_index) const {
+  const auto at = std::lower_bound(entries.begin(), entries.end(), sub_index,
+                                   [](const Entry& entry, std::uint8_t wanted) { return entry.sub_index < wanted; });
+  return at != entries.end() && at->sub_index == sub_index ? &*at : nullptr;
+}
+
+unsigned Pdo::bits() const {
+  unsigned sum = 0;
+  for (const PdoEntry& entry : entries) sum += entry.bits;
+  return sum;
+}
+
+const Object* Device::find(std::uint16_t index) const {
+  const auto at = std::lower_bound(objects.begin(), objects.end(), index,
+                                   [](const Object& object, std::uint16_t wanted) { return object.index < wanted; });
+  return at != objects.end() && at->index == index ? &*at : nullptr;
+}
+
+const Entry* Device::find(std::uint16_t index, std::uint8_t sub_index) const {
+  const Object* object = find(index);
+  return object == nullptr ? nullptr : object->find(sub_index);
+}
+
+std::string entry_label(std::uint16_t index, std::uint8_t sub_index) {
+  return fmt::format("{:04X}h:{:02X}", index, sub_index);
+}
+
+std::string index_label(std::uint16_t index) { return fmt::format("{:04X}h", index); }
+
+std::string pdo_label(const Pdo& pdo) {
+  return fmt::format("{} {}", pdo.direction == PdoDirection::receive ? "RPDO" : "TPDO", pdo.number);
+}
+
+}  // namespace edsc

@@ -1,0 +1,125 @@
+/// The device: a data sheet with every formula, compact form and missing key resolved. Each value still knows its line.
+#pragma once
+
+#include <canopen/access.hpp>
+#include <canopen/data_type.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "diagnostics/diagnostics.hpp"
+
+namespace edsc {
+
+/// Object codes of CiA 301, 7.4.3, table 42.
+enum class ObjectType : std::uint8_t {
+  null = 0x00,
+  domain = 0x02,
+  deftype = 0x05,
+  defstruct = 0x06,
+  var = 0x07,
+  array = 0x08,
+  record = 0x09,
+};
+
+[[nodiscard]] std::string_view to_string(ObjectType type);
+
+/// A value of the data sheet. Numbers are held as the bits of their type: two's complement extended to 64 bits, or the
+/// IEEE 754 pattern.
+struct Value {
+  std::uint64_t bits = 0;
+  bool plus_node_id = false;  ///< the node-ID is added when it is known
+  bool hexadecimal = false;   ///< spelled so in the data sheet
+  std::string bytes;          ///< of strings
+  Position position;
+};
+
+/// One entry of the object dictionary: what an SDO can name.
+struct Entry {
+  std::uint16_t index = 0;
+  std::uint8_t sub_index = 0;
+  std::string name;        ///< ParameterName
+  std::string identifier;  ///< the same in C++: unique in its object, of a VAR unique in the device
+  const canopen::DataTypeRow* type = nullptr;
+  canopen::Access access = canopen::Access::rw;
+  bool pdo_mapping = false;
+  std::optional<Value> default_value;  ///< of a DCF the ParameterValue, where there is one
+  std::optional<Value> low_limit;
+  std::optional<Value> high_limit;
+  Position position;            ///< the section
+  Position access_position;     ///< where a rule about its access points
+  Position mapping_position;    ///< where a rule about PDOMapping points
+
+  /// In which PDOs it may be mapped.
+  [[nodiscard]] canopen::Mappable mappable() const {
+    return pdo_mapping ? canopen::mappable_by(access) : canopen::Mappable::no;
+  }
+};
+
+struct Object {
+  std::uint16_t index = 0;
+  ObjectType type = ObjectType::var;
+  std::string name;
+  std::string identifier;        ///< unique in the device
+  std::vector<Entry> entries;    ///< ascending by sub-index; of a VAR or DOMAIN exactly one
+  Position position;
+
+  [[nodiscard]] bool has_sub_indices() const { return type == ObjectType::array || type == ObjectType::record; }
+  [[nodiscard]] const Entry* find(std::uint8_t sub_index) const;
+};
+
+enum class PdoDirection : std::uint8_t { receive, transmit };
+
+/// One entry of a default mapping.
+struct PdoEntry {
+  std::uint8_t position = 0;  ///< 1..64: its sub-index in the mapping parameter
+  std::uint16_t index = 0;
+  std::uint8_t sub_index = 0;
+  std::uint8_t bits = 0;
+  const Entry* object = nullptr;                 ///< null when the device has no such entry
+  const canopen::DataTypeRow* dummy = nullptr;   ///< set when the index is that of a data type
+  Position place;                                ///< the mapping value
+};
+
+/// A PDO with its default communication and mapping parameters.
+struct Pdo {
+  PdoDirection direction = PdoDirection::receive;
+  std::uint16_t number = 1;            ///< 1..512
+  const Object* communication = nullptr;
+  const Object* mapping = nullptr;     ///< null when the object is missing
+  std::vector<PdoEntry> entries;       ///< as many as sub-index 0 says
+  Position position;                   ///< the communication parameter's section, else the mapping parameter's
+  bool broken = false;                 ///< a rule found an error in it: no layout can be made
+
+  [[nodiscard]] unsigned bits() const;
+};
+
+
+struct Device {
+  const SourceFile* source = nullptr;
+  std::string name;             ///< C++ namespace
+  std::string vendor_name;
+  std::string product_name;
+  std::uint32_t vendor_number = 0;
+  std::uint32_t product_number = 0;
+  std::uint32_t revision_number = 0;
+  std::optional<std::uint8_t> node_id;    ///< fixed at generation
+  std::vector<std::uint16_t> dummies;     ///< data type indices that RPDOs may use as dummy entries
+  std::vector<Object> objects;            ///< ascending by index
+  std::vector<Object> types;              ///< DEFTYPE and DEFSTRUCT: named by DataType, not part of the dictionary
+  std::vector<Pdo> pdos;                  ///< RPDOs, then TPDOs, each ascending by number
+
+  [[nodiscard]] const Object* find(std::uint16_t index) const;
+  [[nodiscard]] const Entry* find(std::uint16_t index, std::uint8_t sub_index) const;
+};
+
+/// `1018h:01`
+[[nodiscard]] std::string entry_label(std::uint16_t index, std::uint8_t sub_index);
+/// `1018h`
+[[nodiscard]] std::string index_label(std::uint16_t index);
+/// `RPDO 2`
+[[nodiscard]] std::string pdo_label(const Pdo& pdo);
+
+}  // namespace edsc

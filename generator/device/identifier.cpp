@@ -1,0 +1,125 @@
+#include "device/identifier.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+namespace edsc {
+namespace {
+
+/// Words that cannot name an object: keywords, alternative tokens, usual macros in lower case, and the members that each
+/// generated object has.
+constexpr std::array reserved_words = {
+    "alignas",       "alignof",     "and",          "and_eq",        "asm",          "assert",      "auto",
+    "bitand",        "bitor",       "bits",         "bool",          "break",        "canopen",     "case",
+    "catch",         "char",        "char16_t",     "char32_t",      "char8_t",      "class",       "co_await",
+    "co_return",     "co_yield",    "compl",        "concept",       "const",        "const_cast",  "consteval",
+    "constexpr",     "constinit",   "continue",     "decltype",      "default",      "default_value", "delete",
+    "do",            "double",      "dynamic_cast", "else",          "enum",         "errno",       "explicit",
+    "export",        "extern",      "false",        "final",         "float",        "for",         "friend",
+    "goto",          "high_limit",  "if",           "import",        "index",        "inline",      "int",
+    "linux",         "long",        "low_limit",    "major",         "mappable",     "minor",       "module",
+    "mutable",       "name",        "namespace",    "new",           "noexcept",     "not",         "not_eq",
+    "nullptr",       "od",          "offsetof",     "operator",      "or",           "or_eq",       "override",
+    "private",       "protected",   "public",       "register",      "reinterpret_cast", "requires", "return",
+    "setjmp",        "short",       "signed",       "sizeof",        "static",       "static_assert", "static_cast",
+    "std",           "stderr",      "stdin",        "stdout",        "struct",       "sub_index",   "switch",
+    "template",      "this",        "thread_local", "throw",         "true",         "try",         "type",
+    "typedef",       "typeid",      "typename",     "union",         "unix",         "unsigned",    "using",
+    "va_arg",        "virtual",     "void",         "volatile",      "wchar_t",      "while",       "xor",
+    "xor_eq",        "access",
+};
+
+struct Spelling {
+  std::uint32_t code_point;
+  std::string_view text;
+};
+
+constexpr std::array spellings = {
+    Spelling{0x00B0, "deg"}, Spelling{0x00B2, "2"},  Spelling{0x00B3, "3"},  Spelling{0x00B5, "u"},
+    Spelling{0x00C4, "Ae"},  Spelling{0x00D6, "Oe"}, Spelling{0x00DC, "Ue"}, Spelling{0x00DF, "ss"},
+    Spelling{0x00E0, "a"},   Spelling{0x00E1, "a"},  Spelling{0x00E4, "ae"}, Spelling{0x00E8, "e"},
+    Spelling{0x00E9, "e"},   Spelling{0x00EA, "e"},  Spelling{0x00F1, "n"},  Spelling{0x00F3, "o"},
+    Spelling{0x00F6, "oe"},  Spelling{0x00FC, "ue"}, Spelling{0x03A9, "ohm"}, Spelling{0x03BC, "u"},
+    Spelling{0x2126, "ohm"},
+};
+
+constexpr bool is_lower(char c) { return c >= 'a' && c <= 'z'; }
+constexpr bool is_upper(char c) { return c >= 'A' && c <= 'Z'; }
+constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
+constexpr char to_lower(char c) { return is_upper(c) ? static_cast<char>(c - 'A' + 'a') : c; }
+
+/// ASCII letters and digits stay, code points with a usual spelling are written out, all else becomes a blank.
+std::string to_ascii(std::string_view name) {
+  std::string out;
+  for (std::size_t i = 0; i < name.size();) {
+    const auto lead = static_cast<unsigned char>(name[i]);
+    if (lead < 0x80) {
+      out += name[i++];
+      continue;
+    }
+    const std::size_t length = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : 2;
+    std::uint32_t code_point = lead & (0xFFu >> (length + 1));
+    for (std::size_t k = 1; k < length && i + k < name.size(); ++k) {
+      code_point = (code_point << 6) | (static_cast<unsigned char>(name[i + k]) & 0x3Fu);
+    }
+    const auto at = std::ranges::find(spellings, code_point, &Spelling::code_point);
+    out += at == spellings.end() ? " " : at->text;
+    i += length;
+  }
+  return out;
+}
+
+/// Whether a new word begins at `i`: after a lower-case letter or digit, or where the last capital of a run starts a word
+/// (`RxPDOMapping`: rx, pdo, mapping).
+bool word_begins(std::string_view text, std::size_t i) {
+  if (i == 0 || !is_upper(text[i])) return false;
+  if (is_lower(text[i - 1])) return true;
+  if (is_upper(text[i - 1]) && i + 1 < text.size() && is_lower(text[i + 1])) {
+    return i + 2 < text.size() && is_lower(text[i + 2]);  // `COBs`, `PDOs`: a plural, no new word
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string to_snake_case(std::string_view name) {
+  const std::string text = to_ascii(name);
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool letter = is_lower(text[i]) || is_upper(text[i]) || is_digit(text[i]);
+    const bool gap = !letter || word_begins(text, i);
+    if (gap && !out.empty() && out.back() != '_') out += '_';
+    if (letter) out += to_lower(text[i]);
+  }
+  while (!out.empty() && out.back() == '_') out.pop_back();
+  if (!out.empty() && is_digit(out.front())) out.insert(0, "n_");
+  if (std::ranges::find(reserved_words, out) != reserved_words.end()) out += '_';
+  return out;
+}
+
+std::string to_camel_case(std::string_view snake_case) {
+  std::string out;
+  bool upper = true;
+  for (const char c : snake_case) {
+    if (c == '_') {
+      upper = true;
+      continue;
+    }
+    out += upper && is_lower(c) ? static_cast<char>(c - 'a' + 'A') : c;
+    upper = false;
+  }
+  return out;
+}
+
+std::string IdentifierScope::take(const std::string& wanted, std::string_view suffix) {
+  if (taken_.insert(wanted).second) return wanted;
+  std::string base = wanted;
+  if (base.back() != '_') base += '_';
+  base += suffix;
+  std::string candidate = base;
+  for (int i = 2; !taken_.insert(candidate).second; ++i) candidate = base + "_" + std::to_string(i);
+  return candidate;
+}
+
+}  // namespace edsc

@@ -1,0 +1,181 @@
+#include "device/options.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "eds/number.hpp"
+
+namespace edsc {
+namespace {
+
+using nlohmann::json;
+
+/// Members of canopen::DeviceOptions, by the type of their value.
+constexpr std::array runtime_flags = {
+    "sdo_upload_size_indicated",
+    "event_driven_on_change",
+    "inhibit_time_writable_while_valid",
+};
+constexpr std::array runtime_masks = {"pdo_cob_id_writable"};
+
+/// `1018h:04`, `1018:4` or `1018h`: an entry of the dictionary.
+std::optional<EntryKey> parse_entry_key(std::string_view text) {
+  const std::size_t colon = text.find(':');
+  std::string_view index = text.substr(0, colon);
+  const std::string_view sub_index = colon == std::string_view::npos ? "0" : text.substr(colon + 1);
+  if (index.ends_with('h')) index.remove_suffix(1);
+  const auto i = parse_unsigned("0x" + std::string{index});
+  const auto s = parse_unsigned("0x" + std::string{sub_index});
+  if (!i || !s || *i > 0xFFFF || *s > 0xFF) return std::nullopt;
+  return EntryKey{static_cast<std::uint16_t>(*i), static_cast<std::uint8_t>(*s)};
+}
+
+class OptionsReader {
+ public:
+  OptionsReader(const SourceFile& source, Diagnostics& diagnostics) : source_{source}, diagnostics_{diagnostics} {}
+
+  Options read() {
+    json document;
+    try {
+      document = json::parse(source_.text());
+    } catch (const json::parse_error& problem) {
+      diagnostics_.error("options-syntax", position_at(problem.byte), "not JSON: " + what_of(problem));
+      return {};
+    }
+    if (!document.is_object()) {
+      error("", "the options file holds one JSON object");
+      return {};
+    }
+    for (const auto& [name, value] : document.items()) member(name, value);
+    return std::move(options_);
+  }
+
+ private:
+  void member(const std::string& name, const json& value) {
+    if (name == "$schema") return;
+    if (name == "names") return each_entry(name, value, [&](EntryKey key, const json& v) { return name_of(key, v); });
+    if (name == "string_capacity") {
+      return each_entry(name, value, [&](EntryKey key, const json& v) { return capacity_of(key, v); });
+    }
+    if (name == "settable") return settable(value);
+    if (name == "silence") return silence(value);
+    if (name == "zero_terminated_strings") return flag(name, value, options_.zero_terminated_strings);
+    for (const char* option : runtime_flags) {
+      if (name != option) continue;
+      bool on = false;
+      flag(name, value, on);
+      options_.runtime.emplace_back(name, on ? "true" : "false");
+      return;
+    }
+    for (const char* option : runtime_masks) {
+      if (name == option) return mask(name, value);
+    }
+    error(name, "no such option");
+  }
+
+  void each_entry(const std::string& name, const json& value, const std::function<bool(EntryKey, const json&)>& take) {
+    if (!value.is_object()) return error(name, "an object with one member for each entry, such as \"1018h:04\"");
+    for (const auto& [entry, v] : value.items()) {
+      const auto key = parse_entry_key(entry);
+      if (!key) {
+        error(name + "/" + entry, "not an entry such as \"1018h:04\"");
+      } else if (!take(*key, v)) {
+        error(name + "/" + entry, "a value of the wrong type");
+      }
+    }
+  }
+
+  bool name_of(EntryKey key, const json& value) {
+    if (!value.is_string()) return false;
+    options_.names[key] = value.get<std::string>();
+    return true;
+  }
+
+  bool capacity_of(EntryKey key, const json& value) {
+    if (!value.is_number_unsigned() || value.get<std::uint64_t>() > 0xFFFF) return false;
+    options_.string_capacity[key] = value.get<std::uint16_t>();
+    return true;
+  }
+
+  void settable(const json& value) {
+    if (!value.is_array()) return error("settable", "an array of entries such as \"1018h:04\"");
+    for (const json& item : value) {
+      const auto key = item.is_string() ? parse_entry_key(item.get<std::string>()) : std::nullopt;
+      if (!key) {
+        error("settable", "not an entry such as \"1018h:04\"");
+      } else {
+        options_.settable.push_back(*key);
+      }
+    }
+  }
+
+  void silence(const json& value) {
+    if (!value.is_array()) return error("silence", "an array of rule ids");
+    for (const json& item : value) {
+      if (item.is_string()) {
+        options_.silence.push_back(item.get<std::string>());
+      } else {
+        error("silence", "an array of rule ids");
+      }
+    }
+  }
+
+  void flag(const std::string& name, const json& value, bool& target) {
+    if (!value.is_boolean()) return error(name, "true or false");
+    target = value.get<bool>();
+  }
+
+  void mask(const std::string& name, const json& value) {
+    const auto bits = value.is_string() ? parse_unsigned(value.get<std::string>()) : std::nullopt;
+    if (!bits || *bits > 0xFFFF'FFFF) return error(name, "a 32-bit mask such as \"0x80000780\"");
+    options_.runtime.emplace_back(name, fmt::format("0x{:08X}", *bits));
+  }
+
+  /// Where a member's name stands in the text, as well as can be told: its first occurrence in quotes.
+  [[nodiscard]] Position position_of(std::string_view member) const {
+    const std::string_view last = member.substr(member.rfind('/') + 1);
+    const std::size_t at = source_.text().find("\"" + std::string{last} + "\"");
+    return at == std::string_view::npos ? Position{&source_} : position_at(at + 1);
+  }
+
+  /// `byte` counts from 1.
+  [[nodiscard]] Position position_at(std::size_t byte) const {
+    Position position{&source_, 1, 1};
+    const std::string_view text = source_.text();
+    for (std::size_t i = 0; i + 1 < byte && i < text.size(); ++i) {
+      ++position.column;
+      if (text[i] == '\n') {
+        ++position.line;
+        position.column = 1;
+      }
+    }
+    return position;
+  }
+
+  /// The parser's words without its own place and number.
+  static std::string what_of(const json::parse_error& problem) {
+    const std::string_view what = problem.what();
+    const std::size_t colon = what.find(": ");
+    return std::string{colon == std::string_view::npos ? what : what.substr(colon + 2)};
+  }
+
+  void error(const std::string& member, const std::string& message) {
+    diagnostics_.error("options", position_of(member), member.empty() ? message : member + ": " + message);
+  }
+
+  const SourceFile& source_;
+  Diagnostics& diagnostics_;
+  Options options_;
+};
+
+}  // namespace
+
+Options read_options(const SourceFile& source, Diagnostics& diagnostics) {
+  return OptionsReader{source, diagnostics}.read();
+}
+
+}  // namespace edsc

@@ -1,0 +1,11 @@
+/// The default PDOs of a device, from the communication and mapping parameters 1400h..1BFFh (CiA 301, 7.5.2.35..38).
+#pragma once
+
+#include "device/device.hpp"
+
+namespace edsc {
+
+/// Fills `device.pdos`. The device's objects must not move afterwards: PDOs point at them.
+void resolve_pdos(Device& device);
+
+}  // namespace edsc

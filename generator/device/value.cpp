@@ -1,0 +1,264 @@
+#include "device/value.hpp"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <string>
+
+#include "eds/number.hpp"
+#include "text/ini.hpp"
+
+namespace edsc {
+namespace {
+
+using canopen::DataClass;
+using canopen::DataType;
+using canopen::DataTypeRow;
+
+std::string_view trim(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+  return text;
+}
+
+bool is_hexadecimal(std::string_view digits) { return digits.starts_with("0x") || digits.starts_with("0X"); }
+
+/// `12LL`, `0xFFu`: C suffixes have no place in an EDS; they are cut.
+std::string_view without_suffix(std::string_view digits) {
+  while (digits.size() > 1 && std::string_view{"uUlL"}.find(digits.back()) != std::string_view::npos) {
+    digits.remove_suffix(1);
+  }
+  return digits;
+}
+
+std::optional<double> parse_real(std::string_view text) {
+  double value = 0;
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (result.ec != std::errc{} || result.ptr != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// One field on its way to a value.
+class ValueReader {
+ public:
+  ValueReader(const Field& field, const DataTypeRow& type, std::optional<std::uint8_t> node_id,
+              Diagnostics& diagnostics)
+      : field_{field}, type_{type}, node_id_{node_id}, diagnostics_{diagnostics} {}
+
+  std::optional<Value> read() {
+    if (!field_.present || trim(field_.text).empty()) return std::nullopt;
+    switch (type_.kind) {
+      case DataClass::string: return string();
+      case DataClass::domain:
+        warning("domain-value", "a DOMAIN has no value in a data sheet; it is left out");
+        return std::nullopt;
+      case DataClass::boolean:
+      case DataClass::unsigned_integer:
+      case DataClass::signed_integer:
+      case DataClass::real:
+      case DataClass::time: break;
+    }
+    const std::string_view text = strip_inline_comment(field_.text);
+    if (text.find('$') != std::string_view::npos) return formula(text);
+    if (type_.kind == DataClass::real) return real(text);
+    if (type_.kind == DataClass::boolean) return boolean(text);
+    if (type_.kind == DataClass::time) {
+      if (auto pair = days_and_milliseconds(text)) return pair;
+    }
+    return integer(text);
+  }
+
+ private:
+  [[nodiscard]] Value value(std::uint64_t bits) const {
+    Value result;
+    result.bits = bits;
+    result.hexadecimal = field_.text.find("0x") != std::string_view::npos || field_.text.find("0X") != std::string_view::npos;
+    result.position = field_.position;
+    return result;
+  }
+
+  void error(std::string_view rule, std::string message) { diagnostics_.error(rule, field_.position, std::move(message)); }
+  void warning(std::string_view rule, std::string message) {
+    diagnostics_.warning(rule, field_.position, std::move(message));
+  }
+
+  std::optional<Value> not_a_number() {
+    error("number-format", fmt::format("\"{}\" is not a value of type {}", field_.text.substr(0, 60), type_.name));
+    return std::nullopt;
+  }
+
+  /// `$NODEID`, `$NODEID+0x180`, `0x180 + $NodeID`: CiA 306-1, 4.6.2.3.
+  std::optional<Value> formula(std::string_view text) {
+    if (type_.kind != DataClass::unsigned_integer && type_.kind != DataClass::signed_integer) return not_a_number();
+    const std::size_t plus = text.find('+');
+    std::string_view variable = trim(text.substr(0, plus));
+    std::string_view constant = plus == std::string_view::npos ? std::string_view{} : trim(text.substr(plus + 1));
+    if (variable.empty() || variable.front() != '$') std::swap(variable, constant);
+    if (!is_node_id(variable)) {
+      error("node-id-formula", fmt::format("\"{}\" is not a formula of $NODEID and a number", text.substr(0, 60)));
+      return std::nullopt;
+    }
+    std::uint64_t number = 0;
+    if (plus != std::string_view::npos) {
+      const auto parsed = parse_unsigned(without_suffix(constant));
+      if (!parsed) {
+        error("node-id-formula", fmt::format("\"{}\" is not a formula of $NODEID and a number", text.substr(0, 60)));
+        return std::nullopt;
+      }
+      number = *parsed;
+    }
+    if (type_.bits < 64 && (number >> type_.bits) != 0) return out_of_range();
+    if (node_id_) return value(number + *node_id_);
+    Value result = value(number);
+    result.plus_node_id = true;
+    return result;
+  }
+
+  bool is_node_id(std::string_view variable) {
+    if (equal_ignoring_case(variable, "$NODEID")) return true;
+    if (!equal_ignoring_case(variable, "$NODE_ID") && !equal_ignoring_case(variable, "$MY_NODE_ID")) return false;
+    warning("node-id-formula", fmt::format("{} is read as $NODEID", variable));
+    return true;
+  }
+
+  std::optional<Value> out_of_range() {
+    error("number-range", fmt::format("\"{}\" does not fit into {}", field_.text.substr(0, 60), type_.name));
+    return std::nullopt;
+  }
+
+  std::optional<Value> boolean(std::string_view text) {
+    if (equal_ignoring_case(text, "true") || equal_ignoring_case(text, "false")) {
+      warning("number-spelling", "a BOOLEAN is written as 0 or 1");
+      return value(equal_ignoring_case(text, "true") ? 1 : 0);
+    }
+    const auto number = parse_unsigned(without_suffix(text));
+    if (!number) return not_a_number();
+    if (*number > 1) {
+      warning("number-range", fmt::format("\"{}\" is no BOOLEAN; it is read as 1", text));
+    }
+    return value(*number != 0 ? 1 : 0);
+  }
+
+  std::optional<Value> integer(std::string_view text) {
+    const bool negative = text.starts_with('-');
+    const std::string_view digits = negative ? trim(text.substr(1)) : text;
+    const std::string_view plain = without_suffix(digits);
+    const auto magnitude = parse_unsigned(plain);
+    if (!magnitude) return whole_real(text);
+    if (plain.size() != digits.size()) warning("number-spelling", "a C suffix has no place in a data sheet");
+    return negative ? negative_integer(*magnitude) : positive_integer(*magnitude, is_hexadecimal(plain));
+  }
+
+  std::optional<Value> negative_integer(std::uint64_t magnitude) {
+    const std::uint64_t lowest = std::uint64_t{1} << (type_.bits - 1);
+    if (magnitude > lowest) return out_of_range();
+    if (type_.kind != DataClass::signed_integer && magnitude != 0) {
+      warning("number-range", fmt::format("a negative value of the unsigned type {}; its two's complement is taken",
+                                          type_.name));
+      return value((~magnitude + 1) & mask());
+    }
+    return value(~magnitude + 1);
+  }
+
+  /// A signed value in hexadecimal may be its two's complement: 0xFFFF is -1 of an INTEGER16.
+  std::optional<Value> positive_integer(std::uint64_t magnitude, bool hexadecimal) {
+    if (magnitude > mask()) return out_of_range();
+    if (type_.kind != DataClass::signed_integer) return value(magnitude);
+    const std::uint64_t sign = std::uint64_t{1} << (type_.bits - 1);
+    if (magnitude < sign) return value(magnitude);
+    if (!hexadecimal) {
+      warning("number-range", fmt::format("\"{}\" is over the highest {}; it is read as two's complement",
+                                          field_.text.substr(0, 60), type_.name));
+    }
+    return value(magnitude | ~mask());
+  }
+
+  /// `0.0` for an integer: accepted when nothing is lost.
+  std::optional<Value> whole_real(std::string_view text) {
+    const auto number = parse_real(text);
+    if (!number || std::trunc(*number) != *number || std::abs(*number) > 9e15) return not_a_number();
+    warning("number-spelling", fmt::format("an {} is written without a decimal point", type_.name));
+    const auto magnitude = static_cast<std::uint64_t>(std::abs(*number));
+    return *number < 0 ? negative_integer(magnitude) : positive_integer(magnitude, false);
+  }
+
+  /// A hexadecimal number is the IEEE 754 pattern; all else a decimal number.
+  std::optional<Value> real(std::string_view text) {
+    if (is_hexadecimal(text)) {
+      const auto bits = parse_unsigned(text);
+      if (!bits) return not_a_number();
+      if (*bits > mask()) return out_of_range();
+      return value(*bits);
+    }
+    const auto number = parse_real(text);
+    if (!number) return not_a_number();
+    if (type_.bits == 64) return value(std::bit_cast<std::uint64_t>(*number));
+    const auto single = static_cast<float>(*number);
+    if (std::isinf(single) && !std::isinf(*number)) return out_of_range();
+    return value(std::bit_cast<std::uint32_t>(single));
+  }
+
+  /// TIME_OF_DAY as two numbers: days and milliseconds.
+  std::optional<Value> days_and_milliseconds(std::string_view text) {
+    const std::size_t blank = text.find_first_of(" \t");
+    if (blank == std::string_view::npos) return std::nullopt;
+    const auto days = parse_unsigned(text.substr(0, blank));
+    const auto milliseconds = parse_unsigned(trim(text.substr(blank)));
+    if (!days || !milliseconds || *days > 0xFFFF || *milliseconds > 0x0FFF'FFFF) return std::nullopt;
+    return value((*days << 32) | *milliseconds);
+  }
+
+  std::optional<Value> string() {
+    Value result = value(0);
+    if (type_.type == DataType::octet_string) {
+      if (!hex_bytes(field_.text, result.bytes)) {
+        warning("octet-string", "an OCTET_STRING is written as pairs of hexadecimal digits; its characters are taken");
+        result.bytes = field_.text;
+      }
+    } else {
+      result.bytes = field_.text;
+    }
+    return result;
+  }
+
+  static bool hex_bytes(std::string_view text, std::string& bytes) {
+    int high = -1;
+    for (const char c : is_hexadecimal(text) ? text.substr(2) : text) {
+      if (c == ' ' || c == '\t') continue;
+      const int digit = c >= '0' && c <= '9'   ? c - '0'
+                        : c >= 'a' && c <= 'f' ? c - 'a' + 10
+                        : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                               : -1;
+      if (digit < 0) return false;
+      if (high < 0) {
+        high = digit;
+      } else {
+        bytes += static_cast<char>(high * 16 + digit);
+        high = -1;
+      }
+    }
+    if (high >= 0) bytes.clear();
+    return high < 0;
+  }
+
+  [[nodiscard]] std::uint64_t mask() const {
+    return type_.bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << type_.bits) - 1;
+  }
+
+  const Field& field_;
+  const DataTypeRow& type_;
+  std::optional<std::uint8_t> node_id_;
+  Diagnostics& diagnostics_;
+};
+
+}  // namespace
+
+std::optional<Value> parse_value(const Field& field, const canopen::DataTypeRow& type,
+                                 std::optional<std::uint8_t> node_id, Diagnostics& diagnostics) {
+  return ValueReader{field, type, node_id, diagnostics}.read();
+}
+
+}  // namespace edsc

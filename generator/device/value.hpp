@@ -1,0 +1,18 @@
+/// Values as an EDS spells them: numbers, node-ID formulas, strings (CiA 306-1, 4.6.2.3).
+#pragma once
+
+#include <canopen/data_type.hpp>
+#include <cstdint>
+#include <optional>
+
+#include "device/device.hpp"
+#include "eds/data_sheet.hpp"
+
+namespace edsc {
+
+/// The value of DefaultValue, ParameterValue, LowLimit or HighLimit for an entry of this type. Nothing when the field is
+/// missing or empty, or when it cannot be read, which is then reported. With a node-ID, formulas become numbers.
+[[nodiscard]] std::optional<Value> parse_value(const Field& field, const canopen::DataTypeRow& type,
+                                               std::optional<std::uint8_t> node_id, Diagnostics& diagnostics);
+
+}  // namespace edsc

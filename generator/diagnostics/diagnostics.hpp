@@ -1,0 +1,99 @@
+/// Diagnostics: what is wrong, how bad it is, and where it stands.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+namespace edsc {
+
+class SourceFile;
+
+/// A place in a source file. Lines and columns count from 1, columns in bytes of the UTF-8 text; a line of 0 means the
+/// file as a whole.
+struct Position {
+  const SourceFile* file = nullptr;
+  std::uint32_t line = 0;
+  std::uint32_t column = 0;
+  std::uint32_t length = 1;  ///< bytes to underline
+};
+
+enum class Severity : std::uint8_t { note, warning, error };
+
+[[nodiscard]] std::string_view to_string(Severity severity);
+
+struct Note {
+  Position position;
+  std::string message;
+};
+
+struct Diagnostic {
+  Severity severity = Severity::error;
+  std::string_view rule;  ///< id of a row of the rule table; lives as long as the program
+  Position position;
+  std::string message;
+  std::vector<Note> notes;  ///< further places that explain the first
+};
+
+/// Collects what the passes over one or more files find, in the order they find it.
+class Diagnostics {
+ public:
+  void report(Diagnostic diagnostic);
+  void error(std::string_view rule, const Position& position, std::string message);
+  void warning(std::string_view rule, const Position& position, std::string message);
+
+  /// Rules whose findings are dropped.
+  void silence(std::string rule);
+  /// From here on a warning counts as an error (`--strict`).
+  void treat_warnings_as_errors() { strict_ = true; }
+
+  /// The listed findings. `errors()` and `warnings()` count the suppressed ones too.
+  [[nodiscard]] const std::vector<Diagnostic>& all() const { return all_; }
+  [[nodiscard]] std::size_t errors() const { return errors_; }
+  [[nodiscard]] std::size_t warnings() const { return warnings_; }
+  /// How many findings of `rule` in `file` came after the first `most_per_rule` and were counted only.
+  struct Suppressed {
+    const SourceFile* file;
+    std::string_view rule;
+    Severity severity;
+    std::size_t count;
+    std::size_t last_listed;  ///< where in `all()` the last listed one of this kind stands
+  };
+  [[nodiscard]] const std::vector<Suppressed>& suppressed() const { return suppressed_; }
+
+  /// A rule that fires more often than this in one file (and with one severity) is counted, not listed: nobody reads
+  /// the 51st.
+  static constexpr std::size_t most_per_rule = 50;
+
+ private:
+  struct Kind {
+    const SourceFile* file;
+    std::string_view rule;
+    Severity severity;
+    bool operator==(const Kind&) const = default;
+  };
+  struct KindHash {
+    std::size_t operator()(const Kind& kind) const;
+  };
+  struct Tally {
+    std::size_t found = 0;
+    std::size_t last_listed = 0;     ///< in `all_`
+    std::size_t suppressed_row = 0;  ///< in `suppressed_`, once more than `most_per_rule` were found
+  };
+
+  void count(Severity severity);
+  [[nodiscard]] bool is_silenced(std::string_view rule) const;
+
+  std::vector<Diagnostic> all_;
+  std::unordered_map<Kind, Tally, KindHash> tallies_;
+  std::vector<Suppressed> suppressed_;
+  std::vector<std::string> silenced_;
+  std::size_t errors_ = 0;
+  std::size_t warnings_ = 0;
+  bool strict_ = false;
+};
+
+}  // namespace edsc

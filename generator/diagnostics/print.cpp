@@ -1,0 +1,225 @@
+#include "diagnostics/print.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <vector>
+
+#include "diagnostics/excerpt.hpp"
+#include "text/source_file.hpp"
+#include "text/utf8.hpp"
+
+namespace edsc {
+namespace {
+
+/// Columns in code points, as an editor counts them.
+struct Place {
+  std::string file;  ///< empty when there is none
+  std::uint32_t line = 0;
+  std::size_t column = 0;
+  std::size_t length = 0;
+};
+
+Place place_of(const Position& position) {
+  Place place;
+  if (position.file == nullptr) {
+    return place;
+  }
+  place.file = position.file->name();
+  if (position.line == 0) {
+    return place;
+  }
+  const std::string_view line = position.file->line(position.line);
+  const std::size_t start = std::min<std::size_t>(position.column == 0 ? 0 : position.column - 1, line.size());
+  place.line = position.line;
+  place.column = count_code_points(line.substr(0, start)) + 1;
+  place.length = std::max<std::size_t>(count_code_points(line.substr(start, position.length)), 1);
+  return place;
+}
+
+/// ANSI escape sequences, or nothing.
+struct Palette {
+  std::string_view place, error, warning, note, caret, reset;
+
+  [[nodiscard]] std::string_view of(Severity severity) const {
+    switch (severity) {
+      case Severity::note:
+        return note;
+      case Severity::warning:
+        return warning;
+      case Severity::error:
+        return error;
+    }
+    return {};
+  }
+};
+
+constexpr Palette plain{};
+constexpr Palette coloured{"\x1B[1m", "\x1B[1;31m", "\x1B[1;35m", "\x1B[1;36m", "\x1B[1;32m", "\x1B[0m"};
+
+std::string file_name(const SourceFile* file) { return file == nullptr ? std::string() : printable(file->name()); }
+
+/// What one file's findings come to.
+struct FileSum {
+  const SourceFile* file;
+  std::size_t errors = 0;
+  std::size_t warnings = 0;
+
+  void add(Severity severity, std::size_t count) {
+    errors += severity == Severity::error ? count : 0;
+    warnings += severity == Severity::warning ? count : 0;
+  }
+};
+
+std::vector<FileSum> sums_by_file(const Diagnostics& diagnostics) {
+  std::vector<FileSum> sums;
+  const auto sum_of = [&](const SourceFile* file) -> FileSum& {
+    const auto found = std::find_if(sums.begin(), sums.end(), [&](const FileSum& sum) { return sum.file == file; });
+    return found != sums.end() ? *found : sums.emplace_back(FileSum{file});
+  };
+  for (const Diagnostic& diagnostic : diagnostics.all()) {
+    sum_of(diagnostic.position.file).add(diagnostic.severity, 1);
+  }
+  for (const Diagnostics::Suppressed& suppressed : diagnostics.suppressed()) {
+    sum_of(suppressed.file).add(suppressed.severity, suppressed.count);
+  }
+  return sums;
+}
+
+std::string counted(std::size_t count, std::string_view noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+class TextPrinter {
+ public:
+  TextPrinter(std::string& out, bool colour) : out_(out), palette_(colour ? coloured : plain) {}
+
+  void print(const Diagnostic& diagnostic) {
+    print_head(diagnostic.position, diagnostic.severity, diagnostic.message, diagnostic.rule);
+    print_source(diagnostic.position);
+    for (const Note& note : diagnostic.notes) {
+      print_head(note.position, Severity::note, note.message, {});
+      print_source(note.position);
+    }
+  }
+
+  void print(const Diagnostics::Suppressed& suppressed) {
+    print_head({suppressed.file}, suppressed.severity, fmt::format("{} more of this kind", suppressed.count),
+               suppressed.rule);
+  }
+
+  void print(const FileSum& sum) {
+    if (sum.file != nullptr) {
+      append("{}: ", file_name(sum.file));
+    }
+    append("{}, {}\n", counted(sum.errors, "error"), counted(sum.warnings, "warning"));
+  }
+
+ private:
+  template <typename... Values>
+  void append(fmt::format_string<Values...> format, Values&&... values) {
+    fmt::format_to(std::back_inserter(out_), format, std::forward<Values>(values)...);
+  }
+
+  void print_head(const Position& position, Severity severity, std::string_view message, std::string_view rule) {
+    const Place place = place_of(position);
+    if (!place.file.empty()) {
+      append("{}{}:", palette_.place, printable(place.file));
+      if (place.line != 0) {
+        append("{}:{}:", place.line, place.column);
+      }
+      append("{} ", palette_.reset);
+    }
+    append("{}{}:{} {}", palette_.of(severity), to_string(severity), palette_.reset, printable(message));
+    if (!rule.empty()) {
+      append(" [{}]", rule);
+    }
+    out_ += '\n';
+  }
+
+  void print_source(const Position& position) {
+    if (position.file == nullptr || position.line == 0) {
+      return;
+    }
+    const Excerpt shown = excerpt(position.file->line(position.line), position);
+    const std::string number = fmt::format("{:>5}", position.line);
+    append("{} | {}\n", number, shown.text);
+    append("{:{}} | {:{}}{}^{:~<{}}{}\n", "", number.size(), "", shown.caret, palette_.caret, "",
+           shown.caret_columns - 1, palette_.reset);
+  }
+
+  std::string& out_;
+  const Palette& palette_;
+};
+
+nlohmann::json to_json(const Position& position) {
+  Place place = place_of(position);
+  return {{"file", std::move(place.file)}, {"line", place.line}, {"column", place.column}, {"length", place.length}};
+}
+
+nlohmann::json to_json(const Diagnostic& diagnostic) {
+  nlohmann::json notes = nlohmann::json::array();
+  for (const Note& note : diagnostic.notes) {
+    nlohmann::json& row = notes.emplace_back(to_json(note.position));
+    row["message"] = note.message;
+  }
+  nlohmann::json row = to_json(diagnostic.position);
+  row["severity"] = to_string(diagnostic.severity);
+  row["rule"] = diagnostic.rule;
+  row["message"] = diagnostic.message;
+  row["notes"] = std::move(notes);
+  return row;
+}
+
+nlohmann::json to_json(const Diagnostics::Suppressed& suppressed) {
+  return {{"file", suppressed.file == nullptr ? std::string() : suppressed.file->name()},
+          {"severity", to_string(suppressed.severity)},
+          {"rule", suppressed.rule},
+          {"count", suppressed.count}};
+}
+
+template <typename Rows>
+nlohmann::json to_json_array(const Rows& rows) {
+  nlohmann::json array = nlohmann::json::array();
+  for (const auto& row : rows) {
+    array.push_back(to_json(row));
+  }
+  return array;
+}
+
+}  // namespace
+
+void print_text(std::string& out, const Diagnostics& diagnostics, bool colour) {
+  TextPrinter printer(out, colour);
+  const std::vector<Diagnostic>& all = diagnostics.all();
+  for (std::size_t at = 0; at < all.size(); ++at) {
+    printer.print(all[at]);
+    for (const Diagnostics::Suppressed& suppressed : diagnostics.suppressed()) {
+      if (suppressed.last_listed == at) {
+        printer.print(suppressed);
+      }
+    }
+  }
+  for (const FileSum& sum : sums_by_file(diagnostics)) {
+    printer.print(sum);
+  }
+}
+
+void print_text(std::FILE* out, const Diagnostics& diagnostics, bool colour) {
+  std::string text;
+  print_text(text, diagnostics, colour);
+  std::fwrite(text.data(), 1, text.size(), out);
+}
+
+nlohmann::json print_json(const Diagnostics& diagnostics) {
+  return {{"version", 1},
+          {"diagnostics", to_json_array(diagnostics.all())},
+          {"suppressed", to_json_array(diagnostics.suppressed())},
+          {"errors", diagnostics.errors()},
+          {"warnings", diagnostics.warnings()}};
+}
+
+}  // namespace edsc

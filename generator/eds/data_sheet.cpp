@@ -1,0 +1,251 @@
+#include "eds/data_sheet.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "diagnostics/quote.hpp"
+#include "eds/duplicates.hpp"
+#include "eds/keys.hpp"
+#include "eds/number.hpp"
+#include "eds/object_lists.hpp"
+#include "eds/object_sections.hpp"
+#include "eds/section_name.hpp"
+#include "text/source_file.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr KeyRow<FileInfo> file_info_rows[] = {
+    {"FileName", &FileInfo::file_name},
+    {"FileVersion", &FileInfo::file_version},
+    {"FileRevision", &FileInfo::file_revision},
+    {"EDSVersion", &FileInfo::eds_version},
+    {"Description", &FileInfo::description},
+    {"CreatedBy", &FileInfo::created_by},
+    {"CreationTime", nullptr},
+    {"CreationDate", nullptr},
+    {"ModificationTime", nullptr},
+    {"ModificationDate", nullptr},
+    {"ModifiedBy", nullptr},
+    {"LastEDS", nullptr},
+};
+
+constexpr KeyRow<DeviceInfo> device_info_rows[] = {
+    {"VendorName", &DeviceInfo::vendor_name},
+    {"VendorNumber", &DeviceInfo::vendor_number},
+    {"ProductName", &DeviceInfo::product_name},
+    {"ProductNumber", &DeviceInfo::product_number},
+    {"RevisionNumber", &DeviceInfo::revision_number},
+    {"OrderCode", &DeviceInfo::order_code},
+    {"SimpleBootUpMaster", &DeviceInfo::simple_boot_up_master},
+    {"SimpleBootUpSlave", &DeviceInfo::simple_boot_up_slave},
+    {"Granularity", &DeviceInfo::granularity},
+    {"DynamicChannelsSupported", &DeviceInfo::dynamic_channels_supported},
+    {"GroupMessaging", &DeviceInfo::group_messaging},
+    {"NrOfRXPDO", &DeviceInfo::nr_of_rx_pdo},
+    {"NrOfTXPDO", &DeviceInfo::nr_of_tx_pdo},
+    {"LSS_Supported", &DeviceInfo::lss_supported},
+    {"CompactPDO", &DeviceInfo::compact_pdo},
+    {"LSS_Master", nullptr},
+    {"NG_Slave", nullptr},
+    {"NG_Master", nullptr},
+    {"NrOfNG_MonitoredNodes", nullptr},
+};
+
+constexpr KeyRow<DeviceCommissioning> commissioning_rows[] = {
+    {"NodeID", &DeviceCommissioning::node_id},
+    {"NodeName", &DeviceCommissioning::node_name},
+    {"Baudrate", &DeviceCommissioning::baudrate},
+    {"NetNumber", &DeviceCommissioning::net_number},
+    {"NetworkName", &DeviceCommissioning::network_name},
+    {"CANopenManager", &DeviceCommissioning::canopen_manager},
+    {"LSS_SerialNumber", &DeviceCommissioning::lss_serial_number},
+    {"NodeRefd", nullptr},
+    {"NetRefd", nullptr},
+};
+
+constexpr std::span<const KeyRow<FileInfo>> file_info_keys = file_info_rows;
+constexpr std::span<const KeyRow<DeviceInfo>> device_info_keys = device_info_rows;
+constexpr std::span<const KeyRow<DeviceCommissioning>> commissioning_keys = commissioning_rows;
+
+constexpr std::string_view baud_rate_prefix = "BaudRate_";
+constexpr std::string_view dummy_prefix = "Dummy";
+constexpr std::size_t dummy_digits = 4;
+constexpr std::uint16_t last_dummy = 0xFF;
+
+constexpr bool is_object_kind(SectionKind kind) {
+  return kind >= SectionKind::object && kind <= SectionKind::compact_denotations;
+}
+
+class DataSheetReader {
+ public:
+  DataSheetReader(const IniFile& ini, Diagnostics& diagnostics)
+      : ini_(ini), source_(*ini.source), diagnostics_(diagnostics) {}
+
+  DataSheet read() {
+    sheet_.source = &source_;
+    if (!ini_.sections.empty()) {  // else the INI reader has said why
+      sort_sections();
+      read_file_info();
+      read_device_info();
+      read_commissioning();
+      read_dummy_usage();
+      read_objects();
+    }
+    sheet_.is_dcf = sheet_.commissioning.present || ends_with_ignoring_case(source_.name(), ".dcf");
+    return std::move(sheet_);
+  }
+
+ private:
+  void sort_sections() {
+    for (const IniSection& section : ini_.sections) {
+      const SectionName name = read_section_name(section.name);
+      report_name(section, name);
+      if (is_object_kind(name.kind)) {
+        object_sections_.push_back({name, &section});
+      } else if (name.kind < SectionKind::object) {
+        place_single(section, name.kind);
+      }
+    }
+  }
+
+  void report_name(const IniSection& section, const SectionName& name) {
+    const Position position = section_position(source_, section);
+    if (name.kind == SectionKind::malformed) {
+      diagnostics_.error("section-name", position,
+                         fmt::format("{} names no object: {}", quote(section.name), name.remark));
+    } else if (name.kind == SectionKind::not_used) {
+      diagnostics_.warning("section-not-used", position,
+                           fmt::format("section {} is not used: {}", quote(section.name), name.remark));
+    } else if (name.kind == SectionKind::unknown) {
+      diagnostics_.warning("unknown-section", position,
+                           fmt::format("CiA 306 knows no section {}; it is left out", quote(section.name)));
+    } else if (name.has_short_index) {
+      diagnostics_.warning(
+          "section-name", position,
+          fmt::format("an index has four digits; {} is taken for {:04X}h", quote(section.name), name.index));
+    }
+  }
+
+  void place_single(const IniSection& section, SectionKind kind) {
+    const IniSection*& place = single_[static_cast<std::size_t>(kind)];
+    if (place == nullptr) {
+      place = &section;
+    } else {
+      report_duplicate_section(source_, section, *place, diagnostics_);
+    }
+  }
+
+  /// The section of a kind that stands once; null when there is none.
+  [[nodiscard]] const IniSection* single(SectionKind kind) const { return single_[static_cast<std::size_t>(kind)]; }
+
+  /// Where a field of this section is missing: the section, or the file when the section is missing too.
+  [[nodiscard]] Position place_of(const IniSection* section) const {
+    return section == nullptr ? Position{&source_} : section_position(source_, *section);
+  }
+
+  void read_file_info() {
+    const IniSection* const section = single(SectionKind::file_info);
+    place_fields(file_info_keys, place_of(section), sheet_.file_info);
+    if (section != nullptr) {
+      read_keys(source_, *section, diagnostics_,
+                [&](std::string_view key) { return find_key(file_info_keys, key, sheet_.file_info); });
+    }
+  }
+
+  void read_device_info() {
+    const IniSection* const section = single(SectionKind::device_info);
+    sheet_.device_info.present = section != nullptr;
+    sheet_.device_info.position = place_of(section);
+    place_fields(device_info_keys, place_of(section), sheet_.device_info);
+    if (section != nullptr) {
+      read_keys(source_, *section, diagnostics_, [&](std::string_view key) {
+        const KeyMatch match = find_key(device_info_keys, key, sheet_.device_info);
+        return match.is_known ? match : find_baud_rate(key);
+      });
+    }
+  }
+
+  /// `BaudRate_125` and its like. A rate that CiA 306 has no key for is taken just the same.
+  KeyMatch find_baud_rate(std::string_view key) {
+    if (!starts_with_ignoring_case(key, baud_rate_prefix)) {
+      return {};
+    }
+    const std::optional<std::uint64_t> rate = parse_unsigned(key.substr(baud_rate_prefix.size()));
+    if (!rate || *rate > std::numeric_limits<std::uint16_t>::max()) {
+      return {};
+    }
+    std::vector<DeviceInfo::BaudRate>& rates = sheet_.device_info.baud_rates;
+    const auto found = std::find_if(rates.begin(), rates.end(),
+                                    [&](const DeviceInfo::BaudRate& known) { return known.kbit_per_second == *rate; });
+    const auto kbit_per_second = static_cast<std::uint16_t>(*rate);
+    return {true, found != rates.end() ? &found->field
+                                       : &rates.emplace_back(DeviceInfo::BaudRate{kbit_per_second, {}}).field};
+  }
+
+  void read_commissioning() {
+    const IniSection* const section = single(SectionKind::device_commissioning);
+    sheet_.commissioning.present = section != nullptr;
+    sheet_.commissioning.position = place_of(section);
+    place_fields(commissioning_keys, place_of(section), sheet_.commissioning);
+    if (section != nullptr) {
+      read_keys(source_, *section, diagnostics_,
+                [&](std::string_view key) { return find_key(commissioning_keys, key, sheet_.commissioning); });
+    }
+  }
+
+  void read_dummy_usage() {
+    if (const IniSection* const section = single(SectionKind::dummy_usage)) {
+      read_keys(source_, *section, diagnostics_, [&](std::string_view key) { return find_dummy(key); });
+    }
+  }
+
+  /// `Dummy0005`: the index of a data type, in hexadecimal.
+  KeyMatch find_dummy(std::string_view key) {
+    if (!starts_with_ignoring_case(key, dummy_prefix) || key.size() != dummy_prefix.size() + dummy_digits) {
+      return {};
+    }
+    const std::optional<std::uint16_t> index = parse_hex(key.substr(dummy_prefix.size()), dummy_digits);
+    if (!index || *index == 0 || *index > last_dummy) {
+      return {};
+    }
+    std::vector<NumberedField>& dummies = sheet_.dummy_usage;
+    const auto found = std::find_if(dummies.begin(), dummies.end(),
+                                    [&](const NumberedField& known) { return known.number == *index; });
+    return {true, found != dummies.end() ? &found->field : &dummies.emplace_back(NumberedField{*index, {}}).field};
+  }
+
+  void read_objects() {
+    if (object_sections_.empty()) {
+      diagnostics_.error("no-objects", {&source_}, "there is no section of an object in this file, such as [1000]");
+      return;
+    }
+    sheet_.objects = edsc::read_objects(source_, std::move(object_sections_), diagnostics_);
+    const ObjectListSections lists{single(SectionKind::mandatory_objects), single(SectionKind::optional_objects),
+                                   single(SectionKind::manufacturer_objects)};
+    sheet_.listed = read_object_lists(source_, lists, diagnostics_);
+    compare_lists_with_objects(sheet_, diagnostics_);
+  }
+
+  const IniFile& ini_;
+  const SourceFile& source_;
+  Diagnostics& diagnostics_;
+  DataSheet sheet_;
+  std::array<const IniSection*, static_cast<std::size_t>(SectionKind::object)> single_{};
+  std::vector<ObjectSection> object_sections_;
+};
+
+}  // namespace
+
+DataSheet read_data_sheet(const IniFile& ini, Diagnostics& diagnostics) {
+  return DataSheetReader(ini, diagnostics).read();
+}
+
+}  // namespace edsc

@@ -1,0 +1,66 @@
+/// Reading the keys of a section into the members of a struct, by a table.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "diagnostics/diagnostics.hpp"
+#include "eds/data_sheet.hpp"
+#include "eds/duplicates.hpp"
+#include "text/ini.hpp"
+
+namespace edsc {
+
+/// A key and where its value goes; null for a key that is known but says nothing about the device's function.
+template <typename Struct>
+struct KeyRow {
+  std::string_view name;
+  Field Struct::*field;
+};
+
+struct KeyMatch {
+  bool is_known = false;
+  Field* field = nullptr;
+};
+
+template <typename Struct>
+[[nodiscard]] KeyMatch find_key(std::span<const KeyRow<Struct>> table, std::string_view key, Struct& target) {
+  for (const KeyRow<Struct>& row : table) {
+    if (equal_ignoring_case(row.name, key)) {
+      return {true, row.field == nullptr ? nullptr : &(target.*row.field)};
+    }
+  }
+  return {};
+}
+
+/// Gives each field the place where it is missing.
+template <typename Struct>
+void place_fields(std::span<const KeyRow<Struct>> table, const Position& position, Struct& target) {
+  for (const KeyRow<Struct>& row : table) {
+    if (row.field != nullptr) {
+      (target.*row.field).position = position;
+    }
+  }
+}
+
+[[nodiscard]] Field make_field(const SourceFile& source, const IniEntry& entry);
+
+void report_unknown_key(const SourceFile& source, const IniSection& section, const IniEntry& entry,
+                        Diagnostics& diagnostics);
+
+/// Puts each value where `find` says its key belongs; `find` takes a key and gives a KeyMatch.
+template <typename Find>
+void read_keys(const SourceFile& source, const IniSection& section, Diagnostics& diagnostics, Find find) {
+  for (const IniEntry& entry : section.entries) {
+    const KeyMatch match = find(entry.key);
+    if (!match.is_known) {
+      report_unknown_key(source, section, entry, diagnostics);
+    } else if (match.field != nullptr && match.field->present) {
+      report_duplicate_key(source, entry, match.field->position, diagnostics);
+    } else if (match.field != nullptr) {
+      *match.field = make_field(source, entry);
+    }
+  }
+}
+
+}  // namespace edsc

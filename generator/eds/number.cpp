@@ -1,0 +1,53 @@
+#include "eds/number.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <system_error>
+
+#include "text/ascii.hpp"
+
+namespace edsc {
+namespace {
+
+/// Takes the prefix off that names the base; "0" alone is a decimal number.
+int take_base(std::string_view& text) {
+  if (text.starts_with("0x") || text.starts_with("0X")) {
+    text.remove_prefix(2);
+    return 16;
+  }
+  if (text.size() > 1 && text.starts_with('0')) {
+    text.remove_prefix(1);
+    return 8;
+  }
+  return 10;
+}
+
+}  // namespace
+
+std::optional<std::uint64_t> parse_unsigned(std::string_view text) {
+  text = trim(text);
+  if (text.starts_with('+')) {
+    text.remove_prefix(1);
+  }
+  const int base = take_base(text);
+  std::uint64_t number = 0;
+  const char* const end = text.data() + text.size();
+  const std::from_chars_result result = std::from_chars(text.data(), end, number, base);
+  if (result.ec != std::errc() || result.ptr != end) {
+    return std::nullopt;
+  }
+  return number;
+}
+
+std::optional<std::uint16_t> parse_hex(std::string_view text, std::size_t most_digits) {
+  if (text.empty() || text.size() > most_digits || !std::all_of(text.begin(), text.end(), is_hex_digit)) {
+    return std::nullopt;
+  }
+  std::uint16_t number = 0;
+  std::from_chars(text.data(), text.data() + text.size(), number, 16);
+  return number;
+}
+
+std::string_view strip_inline_comment(std::string_view text) { return trim(text.substr(0, text.find_first_of(";#"))); }
+
+}  // namespace edsc

@@ -1,0 +1,153 @@
+#include "eds/object_lists.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+
+#include "diagnostics/quote.hpp"
+#include "eds/number.hpp"
+#include "eds/numbered_section.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr CountKey supported_objects{"SupportedObjects", "Supported Objects", "object-list-count", true};
+
+constexpr std::string_view section_name(ObjectListKind kind) {
+  switch (kind) {
+    case ObjectListKind::mandatory:
+      return "MandatoryObjects";
+    case ObjectListKind::optional:
+      return "OptionalObjects";
+    case ObjectListKind::manufacturer:
+      return "ManufacturerObjects";
+  }
+  return "";
+}
+
+/// The list where an object belongs. Ranges before that do not name it, the first that does counts.
+struct ListRange {
+  std::uint16_t first, last;
+  ObjectListKind list;
+};
+
+constexpr ListRange list_ranges[] = {
+    {0x1000, 0x1001, ObjectListKind::mandatory}, {0x1018, 0x1018, ObjectListKind::mandatory},
+    {0x1000, 0x1FFF, ObjectListKind::optional},  {0x2000, 0x5FFF, ObjectListKind::manufacturer},
+    {0x6000, 0xFFFF, ObjectListKind::optional},
+};
+
+/// Nothing for the data types below 1000h, of which CiA 306 does not say where they are listed.
+std::optional<ObjectListKind> list_of(std::uint16_t index) {
+  for (const ListRange& range : list_ranges) {
+    if (index >= range.first && index <= range.last) {
+      return range.list;
+    }
+  }
+  return std::nullopt;
+}
+
+class ObjectListReader {
+ public:
+  ObjectListReader(const SourceFile& source, Diagnostics& diagnostics) : source_(source), diagnostics_(diagnostics) {}
+
+  void read(const IniSection* section, ObjectListKind list) {
+    if (section == nullptr) {
+      return;
+    }
+    for (const NumberedField& entry : read_numbered_section(source_, *section, supported_objects, diagnostics_)) {
+      const std::optional<std::uint64_t> index = parse_unsigned(strip_inline_comment(entry.field.text));
+      if (index && *index >= 0x0001 && *index <= 0xFFFF) {
+        add({list, static_cast<std::uint16_t>(*index), entry.field.position});
+      } else {
+        diagnostics_.error("number", entry.field.position,
+                           fmt::format("{} is no index; the index of an object is expected, 0x0001 to 0xFFFF",
+                                       quote(entry.field.text)));
+      }
+    }
+  }
+
+  std::vector<ListedObject> take() { return std::move(listed_); }
+
+ private:
+  void add(const ListedObject& object) {
+    const auto [first, is_new] = first_place_.try_emplace(object.index, object.position);
+    if (!is_new) {
+      diagnostics_.report({Severity::warning,
+                           "object-list",
+                           object.position,
+                           fmt::format("{:04X}h is listed twice", object.index),
+                           {{first->second, "the first time"}}});
+      return;
+    }
+    check_list(object);
+    listed_.push_back(object);
+  }
+
+  void check_list(const ListedObject& object) {
+    const std::optional<ObjectListKind> right = list_of(object.index);
+    if (right && *right != object.list) {
+      diagnostics_.warning("object-list", object.position,
+                           fmt::format("{:04X}h stands in [{}], but belongs in [{}]", object.index,
+                                       section_name(object.list), section_name(*right)));
+    }
+  }
+
+  const SourceFile& source_;
+  Diagnostics& diagnostics_;
+  std::vector<ListedObject> listed_;
+  std::unordered_map<std::uint16_t, Position> first_place_;
+};
+
+std::vector<std::uint16_t> sorted_indices(const std::vector<ListedObject>& listed) {
+  std::vector<std::uint16_t> indices;
+  indices.reserve(listed.size());
+  for (const ListedObject& object : listed) {
+    indices.push_back(object.index);
+  }
+  std::sort(indices.begin(), indices.end());
+  return indices;
+}
+
+}  // namespace
+
+std::vector<ListedObject> read_object_lists(const SourceFile& source, const ObjectListSections& sections,
+                                            Diagnostics& diagnostics) {
+  ObjectListReader reader(source, diagnostics);
+  reader.read(sections.mandatory, ObjectListKind::mandatory);
+  reader.read(sections.optional, ObjectListKind::optional);
+  reader.read(sections.manufacturer, ObjectListKind::manufacturer);
+  return reader.take();
+}
+
+void compare_lists_with_objects(const DataSheet& sheet, Diagnostics& diagnostics) {
+  const auto has_object = [&](std::uint16_t index) {
+    const auto found =
+        std::lower_bound(sheet.objects.begin(), sheet.objects.end(), index,
+                         [](const ObjectDescription& object, std::uint16_t i) { return object.index < i; });
+    return found != sheet.objects.end() && found->index == index;
+  };
+  for (const ListedObject& listed : sheet.listed) {
+    if (!has_object(listed.index)) {
+      diagnostics.warning(
+          "object-without-section", listed.position,
+          fmt::format("{:04X}h is listed, but there is no section [{:04X}]", listed.index, listed.index));
+    }
+  }
+  const std::vector<std::uint16_t> listed = sorted_indices(sheet.listed);
+  for (const ObjectDescription& object : sheet.objects) {
+    if (object.has_section && !std::binary_search(listed.begin(), listed.end(), object.index)) {
+      const std::optional<ObjectListKind> list = list_of(object.index);
+      diagnostics.warning("object-not-listed", object.position,
+                          fmt::format("{:04X}h is in no object list{}", object.index,
+                                      list ? fmt::format("; it belongs in [{}]", section_name(*list)) : ""));
+    }
+  }
+}
+
+}  // namespace edsc

@@ -1,0 +1,155 @@
+#include "eds/object_sections.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <string>
+
+#include "eds/duplicates.hpp"
+#include "eds/keys.hpp"
+#include "eds/numbered_section.hpp"
+
+namespace edsc {
+namespace {
+
+/// Keys of object and sub-object sections; the frequent ones first.
+constexpr KeyRow<EntryDescription> entry_rows[] = {
+    {"ParameterName", &EntryDescription::parameter_name}, {"ObjectType", &EntryDescription::object_type},
+    {"DataType", &EntryDescription::data_type},           {"AccessType", &EntryDescription::access_type},
+    {"DefaultValue", &EntryDescription::default_value},   {"PDOMapping", &EntryDescription::pdo_mapping},
+    {"LowLimit", &EntryDescription::low_limit},           {"HighLimit", &EntryDescription::high_limit},
+    {"ObjFlags", &EntryDescription::obj_flags},           {"ParameterValue", &EntryDescription::parameter_value},
+    {"Denotation", &EntryDescription::denotation},        {"UploadFile", &EntryDescription::upload_file},
+    {"DownloadFile", &EntryDescription::download_file},   {"ParamRefd", nullptr},
+};
+
+/// Keys of object sections only.
+constexpr KeyRow<ObjectDescription> object_rows[] = {
+    {"SubNumber", &ObjectDescription::sub_number},
+    {"CompactSubObj", &ObjectDescription::compact_sub_obj},
+};
+
+constexpr std::span<const KeyRow<EntryDescription>> entry_keys = entry_rows;
+constexpr std::span<const KeyRow<ObjectDescription>> object_keys = object_rows;
+
+constexpr CountKey nr_of_entries{"NrOfEntries", {}, "entry-count", false};
+
+using ObjectSections = std::span<const ObjectSection>;
+
+void sort_sections(std::vector<ObjectSection>& sections) {
+  const auto before = [](const ObjectSection& a, const ObjectSection& b) { return a.order() < b.order(); };
+  if (!std::is_sorted(sections.begin(), sections.end(), before)) {
+    std::stable_sort(sections.begin(), sections.end(), before);
+  }
+}
+
+std::size_t count_indices(ObjectSections sections) {
+  std::size_t indices = 0;
+  for (std::size_t at = 0; at < sections.size(); ++at) {
+    indices += at == 0 || sections[at].name.index != sections[at - 1].name.index ? 1 : 0;
+  }
+  return indices;
+}
+
+/// How many sections at the start of `sections` have one index.
+std::size_t length_of_object(ObjectSections sections) {
+  const std::uint16_t index = sections[0].name.index;
+  const auto end = std::find_if(sections.begin(), sections.end(),
+                                [&](const ObjectSection& section) { return section.name.index != index; });
+  return static_cast<std::size_t>(end - sections.begin());
+}
+
+class ObjectReader {
+ public:
+  ObjectReader(const SourceFile& source, Diagnostics& diagnostics) : source_(source), diagnostics_(diagnostics) {}
+
+  /// `sections` all have one index and are in order.
+  void read(ObjectSections sections, ObjectDescription& object) {
+    object.index = sections[0].name.index;
+    object.has_section = sections[0].name.kind == SectionKind::object;
+    place(section_position(source_, *sections[0].section), object);
+    if (!object.has_section) {
+      report_missing_section(sections[0], object);
+    }
+    object.sub_objects.reserve(static_cast<std::size_t>(std::count_if(
+        sections.begin(), sections.end(), [](const auto& s) { return s.name.kind == SectionKind::sub_object; })));
+
+    const ObjectSection* first = nullptr;
+    for (const ObjectSection& section : sections) {
+      if (first != nullptr && first->order() == section.order()) {
+        report_duplicate_section(source_, *section.section, *first->section, diagnostics_);
+      } else {
+        first = &section;
+        read_section(section, object);
+      }
+    }
+  }
+
+ private:
+  static void place(const Position& position, ObjectDescription& object) {
+    object.position = position;
+    place_fields<EntryDescription>(entry_keys, position, object);
+    place_fields<ObjectDescription>(object_keys, position, object);
+  }
+
+  void report_missing_section(const ObjectSection& first, const ObjectDescription& object) {
+    diagnostics_.warning("sub-object-without-object", object.position,
+                         fmt::format("[{}] stands without a section [{:04X}]", first.section->name, object.index));
+  }
+
+  void read_section(const ObjectSection& section, ObjectDescription& object) {
+    if (section.name.kind == SectionKind::object) {
+      read_object(*section.section, object);
+    } else if (section.name.kind == SectionKind::sub_object) {
+      read_sub_object(section, object.sub_objects.emplace_back());
+    } else if (section.name.kind == SectionKind::compact_names) {
+      object.compact_names = read_list(*section.section);
+    } else if (section.name.kind == SectionKind::compact_values) {
+      object.compact_values = read_list(*section.section);
+    } else if (section.name.kind == SectionKind::compact_denotations) {
+      object.compact_denotations = read_list(*section.section);
+    }
+  }
+
+  void read_object(const IniSection& section, ObjectDescription& object) {
+    read_keys(source_, section, diagnostics_, [&](std::string_view key) {
+      const KeyMatch match = find_key<EntryDescription>(entry_keys, key, object);
+      return match.is_known ? match : find_key<ObjectDescription>(object_keys, key, object);
+    });
+  }
+
+  void read_sub_object(const ObjectSection& section, SubObjectDescription& sub_object) {
+    sub_object.sub_index = section.name.sub_index;
+    sub_object.position = section_position(source_, *section.section);
+    place_fields<EntryDescription>(entry_keys, sub_object.position, sub_object);
+    read_keys(source_, *section.section, diagnostics_,
+              [&](std::string_view key) { return find_key<EntryDescription>(entry_keys, key, sub_object); });
+  }
+
+  std::vector<NumberedField> read_list(const IniSection& section) {
+    return read_numbered_section(source_, section, nr_of_entries, diagnostics_);
+  }
+
+  const SourceFile& source_;
+  Diagnostics& diagnostics_;
+};
+
+}  // namespace
+
+std::vector<ObjectDescription> read_objects(const SourceFile& source, std::vector<ObjectSection> sections,
+                                            Diagnostics& diagnostics) {
+  sort_sections(sections);
+  std::vector<ObjectDescription> objects;
+  objects.reserve(count_indices(sections));
+  ObjectReader reader(source, diagnostics);
+  for (ObjectSections rest = sections; !rest.empty();) {
+    const std::size_t length = length_of_object(rest);
+    reader.read(rest.first(length), objects.emplace_back());
+    rest = rest.subspan(length);
+  }
+  return objects;
+}
+
+}  // namespace edsc

@@ -1,0 +1,12 @@
+# Writes OUTPUT: the TEMPLATES (a list of *.mustache files) as string literals. Run with cmake -P.
+set(text "#include \"render/render.hpp\"\n\nnamespace edsc {\n\n")
+string(APPEND text "const std::vector<Template>& built_in_templates() {\n")
+string(APPEND text "  static const std::vector<Template> templates = {\n")
+foreach(file IN LISTS TEMPLATES)
+  get_filename_component(name ${file} NAME)
+  string(REGEX REPLACE "\\.mustache$" "" name ${name})
+  file(READ ${file} content)
+  string(APPEND text "      {\"${name}\", R\"mustache(${content})mustache\"},\n")
+endforeach()
+string(APPEND text "  };\n  return templates;\n}\n\n}  // namespace edsc\n")
+file(WRITE ${OUTPUT} "${text}")

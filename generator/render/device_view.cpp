@@ -1,0 +1,118 @@
+#include <fmt/format.h>
+
+#include <bit>
+
+#include "render/view.hpp"
+#include "text/source_file.hpp"
+
+namespace edsc {
+namespace {
+
+using canopen::DataClass;
+using nlohmann::ordered_json;
+
+/// Bytes as pairs of hexadecimal digits.
+std::string hex_pairs(std::string_view bytes) {
+  std::string out;
+  for (const char c : bytes) out += fmt::format("{:02X}", static_cast<unsigned char>(c));
+  return out;
+}
+
+/// Numbers as numbers, strings as text, OCTET_STRINGs as hexadecimal digits, formulas as `$NODEID+0x180`.
+ordered_json value_view(const Value& value, const canopen::DataTypeRow& type) {
+  switch (type.kind) {
+    case DataClass::boolean: return value.bits != 0;
+    case DataClass::signed_integer:
+      if (value.plus_node_id) break;
+      return static_cast<std::int64_t>(value.bits);
+    case DataClass::unsigned_integer:
+    case DataClass::time:
+      if (value.plus_node_id) break;
+      return value.bits;
+    case DataClass::real:
+      if (type.bits == 32) return std::bit_cast<float>(static_cast<std::uint32_t>(value.bits));
+      return std::bit_cast<double>(value.bits);
+    case DataClass::string:
+      return type.type == canopen::DataType::octet_string ? hex_pairs(value.bytes) : value.bytes;
+    case DataClass::domain: return nullptr;
+  }
+  return fmt::format("$NODEID+0x{:X}", value.bits);
+}
+
+ordered_json entry_view(const Entry& entry) {
+  ordered_json view;
+  view["index"] = entry.index;
+  view["sub_index"] = entry.sub_index;
+  view["name"] = entry.name;
+  view["identifier"] = entry.identifier;
+  view["data_type"] = entry.type->name;
+  view["bits"] = entry.type->bits;
+  view["access"] = canopen::row_of(entry.access).name;
+  view["pdo_mapping"] = entry.pdo_mapping;
+  if (entry.default_value) view["default_value"] = value_view(*entry.default_value, *entry.type);
+  if (entry.low_limit) view["low_limit"] = value_view(*entry.low_limit, *entry.type);
+  if (entry.high_limit) view["high_limit"] = value_view(*entry.high_limit, *entry.type);
+  view["line"] = entry.position.line;
+  return view;
+}
+
+ordered_json pdo_view(const Pdo& pdo) {
+  ordered_json view;
+  view["direction"] = pdo.direction == PdoDirection::receive ? "receive" : "transmit";
+  view["number"] = pdo.number;
+  view["bits"] = pdo.bits();
+  view["broken"] = pdo.broken;
+  view["line"] = pdo.position.line;
+  ordered_json entries = ordered_json::array();
+  unsigned offset = 0;
+  for (const PdoEntry& entry : pdo.entries) {
+    ordered_json row;
+    row["index"] = entry.index;
+    row["sub_index"] = entry.sub_index;
+    row["offset"] = offset;
+    row["bits"] = entry.bits;
+    row["name"] = entry.object != nullptr ? entry.object->name : entry.dummy != nullptr ? std::string{entry.dummy->name} : "";
+    row["dummy"] = entry.dummy != nullptr;
+    offset += entry.bits;
+    entries.push_back(std::move(row));
+  }
+  view["entries"] = std::move(entries);
+  return view;
+}
+
+}  // namespace
+
+ordered_json device_view(const Device& device) {
+  ordered_json view;
+  view["schema"] = 1;
+  const std::string& path = device.source->name();
+  view["source"] = path.substr(path.find_last_of('/') + 1);
+  view["name"] = device.name;
+  view["vendor_name"] = device.vendor_name;
+  view["vendor_number"] = device.vendor_number;
+  view["product_name"] = device.product_name;
+  view["product_number"] = device.product_number;
+  view["revision_number"] = device.revision_number;
+  view["node_id"] = device.node_id ? ordered_json(*device.node_id) : ordered_json(nullptr);
+  view["dummies"] = device.dummies;
+  ordered_json objects = ordered_json::array();
+  for (const Object& object : device.objects) {
+    ordered_json row;
+    row["index"] = object.index;
+    row["object_type"] = to_string(object.type);
+    row["name"] = object.name;
+    row["identifier"] = object.identifier;
+    row["line"] = object.position.line;
+    ordered_json entries = ordered_json::array();
+    for (const Entry& entry : object.entries) entries.push_back(entry_view(entry));
+    row["entries"] = std::move(entries);
+    objects.push_back(std::move(row));
+  }
+  view["objects"] = std::move(objects);
+  ordered_json pdos = ordered_json::array();
+  for (const Pdo& pdo : device.pdos) pdos.push_back(pdo_view(pdo));
+  view["pdos"] = std::move(pdos);
+  return view;
+}
+
+}  // namespace edsc

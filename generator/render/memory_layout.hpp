@@ -1,0 +1,53 @@
+/// Where the entries of a device live: which are constants in flash, which are values in RAM, and the tables that find
+/// them. What it makes are lines of C++ for the templates; the words of the tables are those of canopen/dictionary.hpp.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "device/device.hpp"
+#include "device/options.hpp"
+
+namespace edsc {
+
+/// A member of a generated struct.
+struct Member {
+  std::string type;
+  std::string name;
+  std::string initializer;  ///< empty in structs that start from zero
+  std::string comment;
+  unsigned alignment = 1;
+};
+
+struct Struct {
+  std::string type;  ///< name of the struct
+  std::string name;  ///< of the member or variable that has this type
+  std::string comment;
+  std::vector<Member> members;  ///< widest alignment first: no padding between them
+};
+
+/// A row of a table, and what a comment says beside it.
+struct TableRow {
+  std::string text;
+  std::string comment;
+};
+
+struct MemoryLayout {
+  std::vector<Struct> record_types;  ///< shared by all records of equal shape
+  std::vector<Struct> values;        ///< the parts of Values that are not empty
+  Struct constants;
+  std::vector<TableRow> runs, entries, groups, subs, limits, wide_limits;
+  std::vector<TableRow> node_id_relative_communication, node_id_relative_application;
+  std::uint32_t longest_download = 4;
+};
+
+[[nodiscard]] MemoryLayout lay_out(const Device& device, const Options& options, Diagnostics& diagnostics);
+
+/// An ARRAY whose elements 1..N have one numeric type and the same rights and limits: in C++ one template.
+[[nodiscard]] bool describes_uniform_array(const Object& object);
+
+/// The C++ type of an entry: of strings with their capacity.
+[[nodiscard]] std::string cpp_type(const Entry& entry, const Options& options);
+
+}  // namespace edsc

@@ -1,0 +1,23 @@
+/// Views through templates into files.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace edsc {
+
+/// A template built into edsc, or read from a folder.
+struct Template {
+  std::string_view file_name;  ///< of the generated file, such as `dictionary.hpp`
+  std::string_view text;
+};
+
+/// The templates of the generated headers, in the order in which their files are written.
+[[nodiscard]] const std::vector<Template>& built_in_templates();
+
+/// Fills a template. Throws std::runtime_error with a message when the template itself is wrong.
+[[nodiscard]] std::string render(std::string_view text, const nlohmann::ordered_json& view);
+
+}  // namespace edsc

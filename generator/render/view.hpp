@@ -1,0 +1,17 @@
+/// The JSON view of a device: what `edsc dump` prints and what the templates see. Its schema stands in docs/schema/.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "device/device.hpp"
+#include "device/options.hpp"
+
+namespace edsc {
+
+/// The device itself: objects, entries, values and PDO layouts, free of any target language.
+[[nodiscard]] nlohmann::ordered_json device_view(const Device& device);
+
+/// What the C++ templates need besides: declarations and tables as lines of C++.
+[[nodiscard]] nlohmann::ordered_json cpp_view(const Device& device, const Options& options, Diagnostics& diagnostics);
+
+}  // namespace edsc

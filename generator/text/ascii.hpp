@@ -1,0 +1,39 @@
+/// ASCII letters, digits and blanks, independent of the locale.
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+namespace edsc {
+
+[[nodiscard]] constexpr bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+
+[[nodiscard]] constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+[[nodiscard]] constexpr bool is_hex_digit(char c) {
+  return is_digit(c) || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F');
+}
+
+[[nodiscard]] constexpr char to_lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; }
+
+/// Space and tab. Ctrl-Z too: DOS programs end a text with it, and nowhere else is it let through.
+[[nodiscard]] constexpr bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\x1A'; }
+
+[[nodiscard]] constexpr std::string_view trim_left(std::string_view text) {
+  std::size_t blanks = 0;
+  while (blanks < text.size() && is_blank(text[blanks])) {
+    ++blanks;
+  }
+  return text.substr(blanks);
+}
+
+[[nodiscard]] constexpr std::string_view trim_right(std::string_view text) {
+  while (!text.empty() && is_blank(text.back())) {
+    text.remove_suffix(1);
+  }
+  return text;
+}
+
+[[nodiscard]] constexpr std::string_view trim(std::string_view text) { return trim_right(trim_left(text)); }
+
+}  // namespace edsc

@@ -1,0 +1,218 @@
+#include "text/source_file.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "text/code_page.hpp"
+#include "text/utf8.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr std::string_view utf8_mark = "\xEF\xBB\xBF";
+constexpr std::string_view utf16_le_mark = "\xFF\xFE";
+constexpr std::string_view utf16_be_mark = "\xFE\xFF";
+
+constexpr std::string_view too_large = "larger than 1 GiB";
+
+/// One code unit of UTF-16 after another.
+class Utf16Reader {
+ public:
+  Utf16Reader(std::string_view bytes, Encoding encoding)
+      : bytes_(bytes), high_(encoding == Encoding::utf16_be ? 0 : 1) {}
+
+  [[nodiscard]] bool at_end() const { return at_ + 1 >= bytes_.size(); }
+  [[nodiscard]] bool has_odd_byte() const { return bytes_.size() % 2 != 0; }
+  [[nodiscard]] char32_t peek() const { return (byte(high_) << 8U) | byte(1 - high_); }
+
+  char32_t next_code_point() {
+    const char32_t unit = take();
+    const bool is_high_surrogate = unit >= 0xD800 && unit < 0xDC00;
+    const bool is_low_surrogate = unit >= 0xDC00 && unit < 0xE000;
+    if (is_high_surrogate && !at_end() && peek() >= 0xDC00 && peek() < 0xE000) {
+      return 0x10000 + ((unit - 0xD800) << 10U) + (take() - 0xDC00);
+    }
+    return is_high_surrogate || is_low_surrogate ? replacement_character : unit;
+  }
+
+ private:
+  [[nodiscard]] char32_t byte(std::size_t offset) const { return static_cast<unsigned char>(bytes_[at_ + offset]); }
+  char32_t take() {
+    const char32_t unit = peek();
+    at_ += 2;
+    return unit;
+  }
+
+  std::string_view bytes_;
+  std::size_t high_;  ///< where in a pair the high byte stands
+  std::size_t at_ = 0;
+};
+
+std::string from_utf16(std::string_view bytes, Encoding encoding) {
+  std::string text;
+  text.reserve(bytes.size() / 2 + bytes.size() / 16);
+  Utf16Reader reader(bytes, encoding);
+  while (!reader.at_end()) {
+    append_utf8(text, reader.next_code_point());
+  }
+  if (reader.has_odd_byte()) {
+    append_utf8(text, replacement_character);
+  }
+  return text;
+}
+
+/// UTF-16 without a byte order mark: at the start of the text every second byte, and no other, is NUL.
+bool has_nul_as_every_second_byte(std::string_view bytes, std::size_t first_nul) {
+  const std::string_view start = bytes.substr(0, 512);
+  if (start.size() < 4) {
+    return false;
+  }
+  for (std::size_t at = 0; at < start.size(); ++at) {
+    if ((start[at] == '\0') != (at % 2 == first_nul)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+std::string reason(int error_number) { return std::generic_category().message(error_number); }
+
+constexpr std::size_t read_at_once = std::size_t{1} << 16;
+
+/// Reads all of `file` into `bytes`, whose size is a guess at what it needs. Gives the reason when that fails, else an
+/// empty string.
+std::string read_all(std::FILE* file, std::string& bytes) {
+  std::size_t size = 0;
+  std::size_t got = 0;
+  do {
+    bytes.resize(std::max(size + read_at_once, bytes.size()));
+    errno = 0;
+    got = std::fread(bytes.data() + size, 1, bytes.size() - size, file);
+    size += got;
+    if (size > SourceFile::max_bytes) {
+      return std::string(too_large);
+    }
+  } while (got > 0);
+  bytes.resize(size);
+  return std::ferror(file) != 0 ? reason(errno) : std::string();
+}
+
+std::string read_file(const std::string& path, std::string& bytes) {
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(path, ignored)) {
+    const std::uintmax_t size = std::filesystem::file_size(path, ignored);
+    if (!ignored && size > SourceFile::max_bytes) {
+      return std::string(too_large);
+    }
+    bytes.resize(ignored ? 0 : static_cast<std::size_t>(size) + read_at_once);
+  }
+  std::FILE* const file = std::fopen(path.c_str(), "rb");
+  if (file == nullptr) {
+    return reason(errno);
+  }
+  std::string why = read_all(file, bytes);
+  std::fclose(file);
+  return why;
+}
+
+}  // namespace
+
+std::string_view to_string(Encoding encoding) {
+  switch (encoding) {
+    case Encoding::ascii:
+      return "ASCII";
+    case Encoding::utf8:
+      return "UTF-8";
+    case Encoding::utf16_le:
+      return "UTF-16LE";
+    case Encoding::utf16_be:
+      return "UTF-16BE";
+    case Encoding::cp1252:
+      return "CP1252";
+    case Encoding::cp437:
+      return "CP437";
+  }
+  return "";
+}
+
+SourceFile::SourceFile(std::string name, std::string bytes) : name_(std::move(name)) {
+  if (bytes.size() > max_bytes) {
+    throw std::length_error(name_ + ": " + std::string(too_large));
+  }
+  decode(std::move(bytes));
+  find_lines();
+}
+
+void SourceFile::decode(std::string bytes) {
+  const std::string_view view = bytes;
+  if (view.starts_with(utf16_le_mark) || view.starts_with(utf16_be_mark)) {
+    encoding_ = view.starts_with(utf16_le_mark) ? Encoding::utf16_le : Encoding::utf16_be;
+    text_ = from_utf16(view.substr(2), encoding_);
+  } else if (has_nul_as_every_second_byte(view, 1) || has_nul_as_every_second_byte(view, 0)) {
+    encoding_ = view[1] == '\0' ? Encoding::utf16_le : Encoding::utf16_be;
+    text_ = from_utf16(view, encoding_);
+  } else if (view.starts_with(utf8_mark) && is_utf8(view)) {
+    encoding_ = Encoding::utf8;
+    text_ = bytes.substr(utf8_mark.size());
+  } else if (is_utf8(view)) {
+    encoding_ = is_ascii(view) ? Encoding::ascii : Encoding::utf8;
+    text_ = std::move(bytes);
+  } else {
+    encoding_ = looks_like_cp437(view) ? Encoding::cp437 : Encoding::cp1252;
+    text_ = encoding_ == Encoding::cp437 ? from_cp437(view) : from_cp1252(view);
+  }
+}
+
+void SourceFile::find_lines() {
+  starts_.reserve(text_.size() / 16 + 2);
+  starts_.push_back(0);
+  for (std::size_t at = 0; at < text_.size(); ++at) {
+    const char c = text_[at];
+    if (c > '\r') {
+      continue;
+    }
+    const bool is_cr_of_cr_lf = c == '\r' && at + 1 < text_.size() && text_[at + 1] == '\n';
+    if (c == '\n' || (c == '\r' && !is_cr_of_cr_lf)) {
+      starts_.push_back(static_cast<std::uint32_t>(at + 1));
+    }
+  }
+  if (starts_.back() != text_.size()) {
+    starts_.push_back(static_cast<std::uint32_t>(text_.size()));
+  }
+}
+
+std::uint32_t SourceFile::lines() const { return static_cast<std::uint32_t>(starts_.size() - 1); }
+
+std::string_view SourceFile::line(std::uint32_t number) const {
+  if (number == 0 || number > lines()) {
+    return {};
+  }
+  const std::uint32_t start = starts_[number - 1];
+  std::string_view line = text().substr(start, starts_[number] - start);
+  if (line.ends_with('\n')) {
+    line.remove_suffix(1);
+  }
+  if (line.ends_with('\r')) {
+    line.remove_suffix(1);
+  }
+  return line;
+}
+
+std::unique_ptr<SourceFile> read_source_file(const std::string& path, std::string& error) {
+  const bool is_standard_input = path == "-";
+  std::string bytes;
+  const std::string why = is_standard_input ? read_all(stdin, bytes) : read_file(path, bytes);
+  const std::string name = is_standard_input ? "<stdin>" : path;
+  if (!why.empty()) {
+    error = "cannot read " + name + ": " + why;
+    return nullptr;
+  }
+  return std::make_unique<SourceFile>(name, std::move(bytes));
+}
+
+}  // namespace edsc

@@ -1,0 +1,25 @@
+/// UTF-8: what every text inside the generator is.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace edsc {
+
+inline constexpr char32_t replacement_character = 0xFFFD;
+
+/// Length of the well-formed sequence that `text` begins with; 0 where there is none.
+[[nodiscard]] std::size_t utf8_sequence_length(std::string_view text);
+
+[[nodiscard]] bool is_ascii(std::string_view text);
+[[nodiscard]] bool is_utf8(std::string_view text);
+
+void append_utf8(std::string& text, char32_t code_point);
+
+/// True for every byte of a code point but its first.
+[[nodiscard]] constexpr bool is_utf8_continuation(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
+
+[[nodiscard]] std::size_t count_code_points(std::string_view text);
+
+}  // namespace edsc

@@ -1,0 +1,90 @@
+/// What a write to the communication parameters of a PDO has to obey (CiA 301, 7.5.2.35 and 7.5.2.37).
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <span>
+
+#include "canopen/abort_code.hpp"
+#include "canopen/cob_id.hpp"
+#include "canopen/device_options.hpp"
+#include "canopen/object_store.hpp"
+#include "canopen/transmission_type.hpp"
+
+namespace canopen {
+
+inline constexpr std::uint16_t rpdo_communication = 0x1400;
+inline constexpr std::uint16_t tpdo_communication = 0x1800;
+
+/// Sub-indices of a PDO communication parameter.
+namespace pdo_parameter {
+inline constexpr std::uint8_t cob_id = 1;
+inline constexpr std::uint8_t transmission_type = 2;
+inline constexpr std::uint8_t inhibit_time = 3;
+inline constexpr std::uint8_t event_timer = 5;
+}  // namespace pdo_parameter
+
+[[nodiscard]] constexpr bool is_rpdo_communication(std::uint16_t index) { return (index & 0xFE00) == rpdo_communication; }
+[[nodiscard]] constexpr bool is_tpdo_communication(std::uint16_t index) { return (index & 0xFE00) == tpdo_communication; }
+
+/// Whether a PDO may go from one COB-ID to another. 0609 0030h: its CAN-ID may change only while the PDO is not valid, is of
+/// 11 or 29 bits, and one that other services need cannot be made valid.
+[[nodiscard]] constexpr AbortCode check_pdo_cob_id(CobId before, CobId after) {
+  constexpr std::uint32_t identifier = 0x3FFF'FFFF;
+  const bool changed = ((before.value() ^ after.value()) & identifier) != 0;
+  if (before.valid() && after.valid() && changed) return AbortCode::invalid_value;
+  if (!after.extended() && (after.value() & 0x1FFF'F800) != 0) return AbortCode::invalid_value;
+  const bool made_valid = !before.valid() && after.valid();
+  if (made_valid && !after.extended() && restriction_of(after.can_id()) != nullptr) return AbortCode::invalid_value;
+  return ok;
+}
+
+/// 0609 0030h where the device has not what the COB-ID asks for.
+[[nodiscard]] constexpr AbortCode check_pdo_features(const DeviceOptions& options, bool tpdo, CobId cob_id) {
+  if (!options.pdo_extended_ids && cob_id.extended()) return AbortCode::invalid_value;
+  if (tpdo && !options.tpdo_remote_frames && cob_id.valid() && cob_id.rtr_allowed()) return AbortCode::invalid_value;
+  return ok;
+}
+
+/// 0609 0030h for reserved transmission types.
+[[nodiscard]] constexpr AbortCode check_transmission_type(const DeviceOptions& options, bool tpdo, std::uint8_t type) {
+  switch (transmission_of(type)) {
+    case Transmission::synchronous:
+    case Transmission::event_driven: return ok;
+    case Transmission::remote_synchronous:
+    case Transmission::remote: return tpdo && options.tpdo_remote_frames ? ok : AbortCode::invalid_value;
+    case Transmission::reserved: break;
+  }
+  return AbortCode::invalid_value;
+}
+
+/// What speaks against writing these bytes, whose length is right, to 1400h..15FFh or 1800h..19FFh. Bits of a COB-ID that
+/// the device does not let change are put back into `bytes`.
+[[nodiscard]] inline AbortCode check_pdo_parameter(const DeviceOptions& options, const EntryAccess& entries,
+                                                   std::uint16_t index, std::uint8_t sub_index,
+                                                   std::span<std::uint8_t> bytes) {
+  const bool tpdo = is_tpdo_communication(index);
+  switch (sub_index) {
+    case pdo_parameter::cob_id: {
+      const std::uint32_t before = entries.number(entries.dictionary().find(index, sub_index));
+      std::uint32_t after = 0;
+      std::memcpy(&after, bytes.data(), sizeof after);
+      after = (after & options.pdo_cob_id_writable) | (before & ~options.pdo_cob_id_writable);
+      std::memcpy(bytes.data(), &after, sizeof after);
+      const AbortCode code = check_pdo_cob_id(CobId{before}, CobId{after});
+      return code != ok ? code : check_pdo_features(options, tpdo, CobId{after});
+    }
+    case pdo_parameter::transmission_type: return check_transmission_type(options, tpdo, bytes[0]);
+    case pdo_parameter::inhibit_time: {
+      if (!tpdo || options.inhibit_time_writable_while_valid) return ok;
+      const CobId cob_id{entries.number(entries.dictionary().find(index, pdo_parameter::cob_id))};
+      const std::uint32_t before = entries.number(entries.dictionary().find(index, sub_index));
+      const std::uint32_t after = bytes[0] | static_cast<std::uint32_t>(bytes[1] << 8);
+      return cob_id.valid() && before != after ? AbortCode::device_state : ok;
+    }
+    default: return ok;
+  }
+}
+
+}  // namespace canopen

@@ -1,0 +1,38 @@
+/// Names of entries, for tools that show a bus to people.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "canopen/data_type.hpp"
+#include "canopen/dictionary.hpp"
+
+namespace canopen {
+
+struct EntryDescription {
+  std::uint16_t index;
+  std::uint8_t sub_index;
+  DataType type;
+  std::string_view name;  ///< of an entry of an array or record: the object's name, a comma, its own
+};
+
+/// The description of an entry in a table sorted by index and sub-index; null when there is none.
+[[nodiscard]] constexpr const EntryDescription* find_description(std::span<const EntryDescription> rows,
+                                                                 std::uint16_t index, std::uint8_t sub_index) {
+  const std::uint32_t key = object_key(index, sub_index);
+  std::size_t low = 0;
+  std::size_t high = rows.size();
+  while (low < high) {
+    const std::size_t middle = (low + high) / 2;
+    if (object_key(rows[middle].index, rows[middle].sub_index) < key) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  const bool found = low < rows.size() && rows[low].index == index && rows[low].sub_index == sub_index;
+  return found ? &rows[low] : nullptr;
+}
+
+}  // namespace canopen

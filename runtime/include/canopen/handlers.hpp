@@ -1,0 +1,226 @@
+/// What the application does when the bus reads or writes an object or the NMT state changes: callables kept by value in
+/// the node and found by comparing numbers, without heap and without indirect calls.
+///
+///     auto drive = canopen::make_node<Device>(bus, NodeId{5},
+///         canopen::on_write<od::controlword>([](std::uint16_t command) { return accept(command); }),
+///         canopen::on_read<od::temperature>([](auto& node) { node.template set<od::temperature>(measure()); }),
+///         canopen::on_state([](canopen::NmtState state) { show(state); }));
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include "canopen/abort_code.hpp"
+#include "canopen/dictionary.hpp"
+#include "canopen/nmt.hpp"
+#include "canopen/object.hpp"
+#include "canopen/pdo.hpp"
+
+namespace canopen {
+
+template <DictionaryObject O, class F>
+struct WriteHandler {
+  using object = O;
+  [[no_unique_address]] F call;
+};
+
+template <DictionaryObject O, class F>
+struct ReadHandler {
+  using object = O;
+  [[no_unique_address]] F call;
+};
+
+template <class F>
+struct StateHandler {
+  [[no_unique_address]] F call;
+};
+
+/// Called with a value that SDO or an RPDO brings, before it is stored: `handler(value)` or `handler(node, value)`. An
+/// AbortCode other than `ok` refuses the value; no answer is a yes. Of a DOMAIN the value is the memory that has been
+/// filled already.
+template <DictionaryObject O, class F>
+[[nodiscard]] constexpr WriteHandler<O, F> on_write(F handler) {
+  return {std::move(handler)};
+}
+
+/// Called before an SDO upload: `handler()` or `handler(node)`. It may set the object through the node, or answer its
+/// value, or an AbortCode.
+template <DictionaryObject O, class F>
+[[nodiscard]] constexpr ReadHandler<O, F> on_read(F handler) {
+  return {std::move(handler)};
+}
+
+/// Called with each NMT state that the node enters: `handler(state)` or `handler(node, state)`. Initialisation comes at
+/// start and at each reset, when the default values have been taken.
+template <class F>
+[[nodiscard]] constexpr StateHandler<F> on_state(F handler) {
+  return {std::move(handler)};
+}
+
+namespace handler_detail {
+
+/// Calls with the arguments, with the node before them if the callable wants it.
+template <class F, class Node, class... Arguments>
+constexpr decltype(auto) call(F& handler, [[maybe_unused]] Node& node, const Arguments&... arguments) {
+  if constexpr (std::is_invocable_v<F&, const Arguments&...>) {
+    return handler(arguments...);
+  } else {
+    static_assert(std::is_invocable_v<F&, Node&, const Arguments&...>, "a handler takes (value) or (node, value)");
+    return handler(node, arguments...);
+  }
+}
+
+/// The value in the bytes of an SDO download.
+template <DictionaryObject O>
+[[nodiscard]] typename O::type value_from(std::span<std::uint8_t> bytes) {
+  using T = typename O::type;
+  if constexpr (std::is_same_v<T, Domain>) {
+    const auto size = static_cast<std::uint32_t>(bytes.size());
+    return Domain{bytes.data(), size, size};
+  } else if constexpr (O::bits == 0) {
+    T text{};
+    text.size = static_cast<std::uint16_t>(bytes.size());
+    if (!bytes.empty()) std::memcpy(text.bytes.data(), bytes.data(), bytes.size());
+    return text;
+  } else if constexpr (std::is_same_v<T, bool>) {
+    return bytes[0] != 0;
+  } else if constexpr (O::bits == sizeof(T) * 8) {
+    T value;
+    std::memcpy(&value, bytes.data(), sizeof value);
+    return value;
+  } else {
+    std::uint64_t raw = 0;
+    std::memcpy(&raw, bytes.data(), O::bits / 8);
+    return pdo_detail::from_bits<T, O::bits>(raw);
+  }
+}
+
+template <class Handler, class O>
+inline constexpr bool is_write_handler_of = false;
+template <class P, class F, class O>
+inline constexpr bool is_write_handler_of<WriteHandler<P, F>, O> = P::index == O::index && P::sub_index == O::sub_index;
+
+template <class Node, DictionaryObject O, class F>
+AbortCode write(WriteHandler<O, F>& handler, Node& node, const typename O::type& value) {
+  using Answer = decltype(call(handler.call, node, value));
+  if constexpr (std::is_same_v<Answer, AbortCode>) {
+    return call(handler.call, node, value);
+  } else {
+    static_assert(std::is_void_v<Answer>, "a write handler answers an AbortCode or nothing");
+    call(handler.call, node, value);
+    return ok;
+  }
+}
+
+template <class Node, DictionaryObject O, class F>
+AbortCode read(ReadHandler<O, F>& handler, Node& node) {
+  using Answer = decltype(call(handler.call, node));
+  if constexpr (std::is_void_v<Answer>) {
+    call(handler.call, node);
+    return ok;
+  } else if constexpr (std::is_same_v<Answer, AbortCode>) {
+    return call(handler.call, node);
+  } else {
+    return node.template set<O>(call(handler.call, node));
+  }
+}
+
+}  // namespace handler_detail
+
+/// The handlers of one node.
+template <class... Handlers>
+class HandlerSet {
+ public:
+  constexpr explicit HandlerSet(Handlers... handlers) : handlers_{std::move(handlers)...} {}
+
+  /// Whether `O` has a write handler.
+  template <DictionaryObject O>
+  static constexpr bool handles_write = (handler_detail::is_write_handler_of<Handlers, O> || ...);
+
+  /// Asks the write handlers of `O`.
+  template <DictionaryObject O, class Node>
+  AbortCode before_write([[maybe_unused]] Node& node, [[maybe_unused]] const typename O::type& value) {
+    AbortCode code = ok;
+    for_each([&]<class H>([[maybe_unused]] H& handler) {
+      if constexpr (handler_detail::is_write_handler_of<H, O>) {
+        if (code == ok) code = handler_detail::write(handler, node, value);
+      }
+    });
+    return code;
+  }
+
+  /// Asks the write handlers of the object with this number.
+  template <class Node>
+  AbortCode before_write(Node& node, std::uint32_t key, std::span<std::uint8_t> bytes) {
+    AbortCode code = ok;
+    for_each([&](auto& handler) { code = code == ok ? offer_write(handler, node, key, bytes) : code; });
+    return code;
+  }
+
+  /// Asks the read handlers of the object with this number.
+  template <class Node>
+  AbortCode before_read(Node& node, std::uint32_t key) {
+    AbortCode code = ok;
+    for_each([&](auto& handler) { code = code == ok ? offer_read(handler, node, key) : code; });
+    return code;
+  }
+
+  template <class Node>
+  void state_entered(Node& node, NmtState state) {
+    for_each([&](auto& handler) { offer_state(handler, node, state); });
+  }
+
+  /// Whether every handler's object is one of the device's.
+  [[nodiscard]] static constexpr bool known_to(const Dictionary& dictionary) {
+    return (known<Handlers>(dictionary) && ...);
+  }
+
+ private:
+  template <class Visit>
+  constexpr void for_each([[maybe_unused]] Visit&& visit) {
+    std::apply([&](auto&... handler) { (visit(handler), ...); }, handlers_);
+  }
+
+  template <class H>
+  [[nodiscard]] static constexpr bool known([[maybe_unused]] const Dictionary& dictionary) {
+    if constexpr (requires { typename H::object; }) {
+      return dictionary.has(H::object::index, H::object::sub_index);
+    } else {
+      return true;
+    }
+  }
+
+  template <class Handler, class Node>
+  static AbortCode offer_write(Handler&, Node&, std::uint32_t, std::span<std::uint8_t>) {
+    return ok;
+  }
+  template <DictionaryObject O, class F, class Node>
+  static AbortCode offer_write(WriteHandler<O, F>& handler, Node& node, std::uint32_t key, std::span<std::uint8_t> bytes) {
+    if (key != object_key(O::index, O::sub_index)) return ok;
+    return handler_detail::write(handler, node, handler_detail::value_from<O>(bytes));
+  }
+
+  template <class Handler, class Node>
+  static AbortCode offer_read(Handler&, Node&, std::uint32_t) {
+    return ok;
+  }
+  template <DictionaryObject O, class F, class Node>
+  static AbortCode offer_read(ReadHandler<O, F>& handler, Node& node, std::uint32_t key) {
+    return key == object_key(O::index, O::sub_index) ? handler_detail::read(handler, node) : ok;
+  }
+
+  template <class Handler, class Node>
+  static void offer_state(Handler&, Node&, NmtState) {}
+  template <class F, class Node>
+  static void offer_state(StateHandler<F>& handler, Node& node, NmtState state) {
+    handler_detail::call(handler.call, node, state);
+  }
+
+  [[no_unique_address]] std::tuple<Handlers...> handlers_;
+};
+
+}  // namespace canopen

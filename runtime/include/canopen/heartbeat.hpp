@@ -1,0 +1,74 @@
+/// Boot-up message and heartbeat producer (CiA 301, 7.2.8.3.2.2 and 7.2.8.3.3).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "canopen/cob_id.hpp"
+#include "canopen/frame.hpp"
+#include "canopen/nmt.hpp"
+#include "canopen/node_id.hpp"
+#include "canopen/time.hpp"
+
+namespace canopen {
+
+/// What a node sends on 700h + node-ID: one byte, its state. Periods are those of 1017h; 0 is off.
+class HeartbeatProducer {
+ public:
+  /// The boot-up message is due. It counts as the first heartbeat.
+  void boot_up() {
+    boot_up_due_ = true;
+    running_ = false;
+  }
+
+  /// 1017h has been written: the first heartbeat is due at once, the next ones every period.
+  void set_period(Duration period, TimePoint now) {
+    running_ = period.count() != 0;
+    due_ = now;
+  }
+
+  /// Sends the boot-up message when it is due. False when the bus had no room: it stays due.
+  template <Bus B>
+  bool serve_boot_up(B& bus, NodeId node_id, Duration period, TimePoint now) {
+    if (!boot_up_due_) return true;
+    if (!send(bus, node_id, NmtState::initialisation)) return false;
+    boot_up_due_ = false;
+    running_ = period.count() != 0;
+    due_ = now + period;
+    return true;
+  }
+
+  /// Sends a heartbeat when it is due. False when the bus had no room: it stays due.
+  template <Bus B>
+  bool serve(B& bus, NodeId node_id, NmtState state, Duration period, TimePoint now) {
+    if (!running_ || now < due_) return true;
+    if (!send(bus, node_id, state)) return false;
+    due_ = due_ + period;
+    if (now >= due_) due_ = now + period;  // served so late that whole periods are missing
+    return true;
+  }
+
+  /// Whether the boot-up message still waits to be sent.
+  [[nodiscard]] bool boot_up_due() const { return boot_up_due_; }
+
+  /// When the next heartbeat is due.
+  [[nodiscard]] std::optional<TimePoint> next_deadline() const {
+    return running_ ? std::optional{due_} : std::nullopt;
+  }
+
+ private:
+  template <Bus B>
+  [[nodiscard]] static bool send(B& bus, NodeId node_id, NmtState state) {
+    Frame frame{};
+    frame.id = function_code::error_control + std::uint32_t{node_id.value()};
+    frame.size = 1;
+    frame.data[0] = static_cast<std::uint8_t>(state);
+    return bus.send(frame);
+  }
+
+  TimePoint due_{};
+  bool boot_up_due_ = false;
+  bool running_ = false;
+};
+
+}  // namespace canopen

@@ -1,0 +1,52 @@
+/// Network management as a slave sees it (CiA 301, 7.2.8 and 7.3.2): states, commands, and which service runs in which.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "canopen/cob_id.hpp"
+#include "canopen/frame.hpp"
+#include "canopen/node_id.hpp"
+
+namespace canopen {
+
+/// The states with the codes that a heartbeat carries (CiA 301, 7.2.8.3.2.2).
+enum class NmtState : std::uint8_t {
+  initialisation = 0,
+  stopped = 4,
+  operational = 5,
+  pre_operational = 127,
+};
+
+/// The commands of an NMT master (CiA 301, 7.2.8.3.1).
+enum class NmtCommand : std::uint8_t {
+  start = 1,
+  stop = 2,
+  enter_pre_operational = 128,
+  reset_node = 129,
+  reset_communication = 130,
+};
+
+[[nodiscard]] constexpr bool serves_sdo(NmtState state) {
+  return state == NmtState::pre_operational || state == NmtState::operational;
+}
+
+[[nodiscard]] constexpr bool serves_pdo(NmtState state) { return state == NmtState::operational; }
+
+/// The command that a frame brings to this node: two bytes or more on CAN-ID 0, for this node-ID or for all (0). Nothing
+/// when it is for another node, shorter, or not one of the five commands.
+[[nodiscard]] constexpr std::optional<NmtCommand> nmt_command(const Frame& frame, NodeId node_id) {
+  if (frame.id != function_code::nmt || frame.extended || frame.remote || frame.size < 2) return std::nullopt;
+  if (frame.data[1] != 0 && frame.data[1] != node_id.value()) return std::nullopt;
+  const auto command = static_cast<NmtCommand>(frame.data[0]);
+  switch (command) {
+    case NmtCommand::start:
+    case NmtCommand::stop:
+    case NmtCommand::enter_pre_operational:
+    case NmtCommand::reset_node:
+    case NmtCommand::reset_communication: return command;
+  }
+  return std::nullopt;
+}
+
+}  // namespace canopen

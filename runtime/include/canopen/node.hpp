@@ -1,0 +1,351 @@
+/// A CANopen device: the services that its dictionary has objects for, around one set of values.
+///
+/// A node eats frames and time and sends frames; it reads no clock and waits for nothing. It runs in one context.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <type_traits>
+#include <utility>
+
+#include "canopen/abort_code.hpp"
+#include "canopen/cob_id.hpp"
+#include "canopen/communication_parameters.hpp"
+#include "canopen/frame.hpp"
+#include "canopen/handlers.hpp"
+#include "canopen/heartbeat.hpp"
+#include "canopen/nmt.hpp"
+#include "canopen/node_id.hpp"
+#include "canopen/object_store.hpp"
+#include "canopen/rpdo.hpp"
+#include "canopen/sdo_server.hpp"
+#include "canopen/time.hpp"
+#include "canopen/tpdo.hpp"
+
+namespace canopen {
+
+/// `Device` is what edsc generates. A bus without state is kept by value, another one by reference and must outlive the node.
+template <class Device, Bus B, class... Handlers>
+class Node {
+ public:
+  static_assert(HandlerSet<Handlers...>::known_to(Device::dictionary), "a handler is for an object that this device has not");
+
+  constexpr Node(B& can_bus, NodeId node_id, Handlers... handlers)
+      : bus_{can_bus}, handlers_{std::move(handlers)...}, node_id_{node_id} {}
+  Node(const Node&) = delete;
+  Node& operator=(const Node&) = delete;
+
+  /// Power-on: default values, boot-up message, Pre-operational (CiA 301, 7.3.2.1).
+  void start(TimePoint now) {
+    now_ = now;
+    reset_node();
+    serve();
+  }
+
+  /// The same for a node-ID that is known at run time only.
+  void start(NodeId node_id, TimePoint now) {
+    node_id_ = node_id;
+    start(now);
+  }
+
+  /// Takes a frame from the bus. Frames that are not for this node are ignored.
+  void on_frame(const Frame& frame, TimePoint now) {
+    now_ = now;
+    if (state_ == NmtState::initialisation) return;
+    if (attention_) serve();
+    if (frame.remote) return;
+    const std::uint32_t cob_id = cob_id_of(frame);
+    if (cob_id == sdo_request_id()) {
+      on_sdo_request(frame);
+    } else if (cob_id == function_code::nmt) {
+      on_nmt(frame);
+    } else if (serves_pdo(state_)) {
+      on_rpdo(frame);
+    }
+    if (attention_) serve();
+  }
+
+  /// Lets time pass. To be called at `next_deadline()`, when the bus has room again, and at least every half hour.
+  void on_time(TimePoint now) {
+    now_ = now;
+    if (state_ == NmtState::initialisation) return;
+    sdo_.on_time(now);
+    serve();
+  }
+
+  /// When `on_time` has something to do next: not later than the last time told when it has already. Nothing: only a frame
+  /// or the application makes this node send.
+  [[nodiscard]] std::optional<TimePoint> next_deadline() const {
+    if (state_ == NmtState::initialisation) return std::nullopt;
+    if (heartbeat_.boot_up_due() || sdo_.has_reply()) return now_;
+    std::optional<TimePoint> next = heartbeat_.next_deadline();
+    const auto consider = [&next](std::optional<TimePoint> other) {
+      if (other && (!next || *other < *next)) next = other;
+    };
+    consider(sdo_.next_deadline());
+    if constexpr (TpdoService<Device>::count > 0) consider(tpdos_.next_deadline(now_));
+    return next;
+  }
+
+  [[nodiscard]] NmtState state() const { return state_; }
+  [[nodiscard]] NodeId node_id() const { return node_id_; }
+
+  /// The value of an object, whatever its access on the bus.
+  template <DictionaryObject O>
+  [[nodiscard]] typename O::type get() const {
+    return store_.template get<O>();
+  }
+
+  /// Sets an object, whatever its access on the bus. TPDOs that carry it go out with the next `on_time` or `on_frame` when
+  /// the value is a new one. Refused outside the limits of the data sheet: value_too_high, value_too_low, or invalid_value
+  /// for a REAL that is not a number.
+  template <DictionaryObject O>
+  AbortCode set(const typename O::type& value) {
+    static_assert(!std::is_same_v<typename O::type, Domain>, "the memory of a DOMAIN is bound with bind()");
+    if (const AbortCode code = check_limits<O>(value); code != ok) return code;
+    if (store_.template set<O>(value)) changed<O>();
+    return ok;
+  }
+
+  /// Sets an object known by number only, in the bytes that SDO would bring. Its access on the bus does not count, and
+  /// handlers are not called. Refused as a download would be; read_only: it is a constant of the data sheet.
+  AbortCode set(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> bytes) {
+    const entry::Word word = Device::dictionary.find(index, sub_index);
+    if (word == Dictionary::no_object) return AbortCode::no_object;
+    if (word == Dictionary::no_sub_index) return AbortCode::no_sub_index;
+    if (entry::place_of(word) != entry::Place::ram) return AbortCode::read_only;
+    if (const AbortCode code = entries().check(index, sub_index, word, bytes); code != ok) return code;
+    entries().write(word, bytes);
+    after_write(index, sub_index);
+    return ok;
+  }
+
+  /// Gives a DOMAIN its memory: a download may fill all of it, an upload sends the first `size` bytes.
+  template <DictionaryObject O>
+  void bind(std::span<std::uint8_t> memory, std::size_t size) {
+    static_assert(std::is_same_v<typename O::type, Domain>, "only a DOMAIN is bound to memory");
+    store_.template set<O>({memory.data(), static_cast<std::uint32_t>(size), static_cast<std::uint32_t>(memory.size())});
+    sdo_.domain_rebound(O::index, O::sub_index);
+    attention_ = true;
+  }
+
+  /// The same, with all of the memory as the value.
+  template <DictionaryObject O>
+  void bind(std::span<std::uint8_t> memory) {
+    bind<O>(memory, memory.size());
+  }
+
+  /// Gives a DOMAIN that is only read its bytes, which may lie in flash.
+  template <DictionaryObject O>
+  void bind_constant(std::span<const std::uint8_t> bytes) {
+    static_assert(!writable(O::access), "this DOMAIN may be written over the bus");
+    store_.template set<O>({const_cast<std::uint8_t*>(bytes.data()), static_cast<std::uint32_t>(bytes.size()), 0});
+    sdo_.domain_rebound(O::index, O::sub_index);
+    attention_ = true;
+  }
+
+  /// The values as they lie in RAM. What is changed here sends no TPDO and restarts no timer.
+  [[nodiscard]] typename Device::Values& values() { return store_.values(); }
+  [[nodiscard]] const typename Device::Values& values() const { return store_.values(); }
+
+  /// The dictionary by number, for tools.
+  [[nodiscard]] EntryAccess entries() { return store_.entries(); }
+
+ private:
+  using BusMember = std::conditional_t<std::is_empty_v<B>, B, B&>;
+
+  static constexpr bool has_heartbeat_time = Device::dictionary.has(0x1017, 0);
+
+  struct SdoHooks {
+    Node& node;
+    [[nodiscard]] EntryAccess entries() { return node.entries(); }
+    [[nodiscard]] AbortCode before_read(std::uint16_t index, std::uint8_t sub_index) {
+      return node.handlers_.before_read(node, object_key(index, sub_index));
+    }
+    [[nodiscard]] AbortCode before_write(std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
+      return node.before_write(index, sub_index, bytes);
+    }
+    void after_write(std::uint16_t index, std::uint8_t sub_index) { node.after_write(index, sub_index); }
+  };
+
+  // Network management
+
+  void on_nmt(const Frame& frame) {
+    const std::optional<NmtCommand> command = nmt_command(frame, node_id_);
+    if (!command) return;
+    switch (*command) {
+      case NmtCommand::start: enter(NmtState::operational); break;
+      case NmtCommand::stop: enter(NmtState::stopped); break;
+      case NmtCommand::enter_pre_operational: enter(NmtState::pre_operational); break;
+      case NmtCommand::reset_node: reset_node(); break;
+      case NmtCommand::reset_communication: reset_communication(); break;
+    }
+  }
+
+  void enter(NmtState next) {
+    if (state_ == next && next != NmtState::initialisation) return;
+    if (serves_pdo(state_)) tpdos_.leave_operational();
+    state_ = next;
+    if (!serves_sdo(next)) sdo_.reset();
+    if (serves_pdo(next)) tpdos_.enter_operational(entries(), now_);
+    attention_ = true;
+    handlers_.state_entered(*this, next);
+  }
+
+  void reset_node() {
+    store_.reset_application();
+    reset_communication();
+  }
+
+  void reset_communication() {
+    store_.reset_communication(node_id_);
+    enter(NmtState::initialisation);
+    heartbeat_.boot_up();
+    enter(NmtState::pre_operational);
+  }
+
+  // SDO
+
+  [[nodiscard]] std::uint32_t sdo_request_id() const {
+    if constexpr (Device::dictionary.has(0x1200, 1)) {
+      return store_.template number<0x1200, 1>();
+    } else {
+      return std::uint32_t{function_code::sdo_request} + node_id_.value();
+    }
+  }
+
+  [[nodiscard]] CobId sdo_response_id() const {
+    if constexpr (Device::dictionary.has(0x1200, 2)) {
+      return CobId{store_.template number<0x1200, 2>()};
+    } else {
+      return CobId{std::uint32_t{function_code::sdo_response} + node_id_.value()};
+    }
+  }
+
+  void on_sdo_request(const Frame& frame) {
+    if (!serves_sdo(state_) || frame.size != 8) return;
+    sdo_.on_request(frame.data, SdoHooks{*this}, now_);
+    if (attention_ || !send_sdo_reply()) attention_ = true;
+  }
+
+  [[nodiscard]] bool send_sdo_reply() {
+    if (!sdo_.has_reply()) return true;
+    Frame frame{};
+    frame.id = sdo_response_id().can_id();
+    frame.extended = sdo_response_id().extended();
+    frame.size = 8;
+    frame.data = sdo_.reply();
+    if (!bus_.send(frame)) return false;
+    sdo_.reply_sent();
+    return true;
+  }
+
+  [[nodiscard]] AbortCode before_write(std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
+    if (is_rpdo_communication(index) || is_tpdo_communication(index)) {
+      const AbortCode code = check_pdo_parameter(Device::options, entries(), index, sub_index, bytes);
+      if (code != ok) return code;
+    }
+    return handlers_.before_write(*this, object_key(index, sub_index), bytes);
+  }
+
+  /// Tells the services that an object has a new value.
+  void after_write(std::uint16_t index, std::uint8_t sub_index) {
+    attention_ = true;
+    if constexpr (has_heartbeat_time) {
+      if (index == 0x1017) heartbeat_.set_period(heartbeat_period(), now_);
+    }
+    if constexpr (TpdoService<Device>::count > 0) {
+      if (!serves_pdo(state_)) return;
+      if (is_tpdo_communication(index)) tpdos_.parameter_changed(entries(), index, sub_index, now_);
+      tpdos_.changed(index, sub_index);
+    }
+  }
+
+  // PDO
+
+  void on_rpdo(const Frame& frame) {
+    RpdoService<Device>::on_frame(store_, frame, [this]<DictionaryObject O>(const typename O::type& value) { this->template take<O>(value); });
+  }
+
+  /// A value from an RPDO. One that is outside its limits or that its handler refuses is not taken.
+  template <DictionaryObject O>
+  void take(const typename O::type& value) {
+    if (check_limits<O>(value) != ok) return;
+    if (handlers_.template before_write<O>(*this, value) != ok) return;
+    if (store_.template set<O>(value)) changed<O>();
+  }
+
+  template <DictionaryObject O>
+  void changed() {
+    if constexpr (O::index < 0x2000) after_write(O::index, O::sub_index);
+    if constexpr (TpdoService<Device>::count > 0) {
+      if (serves_pdo(state_) && tpdos_.template changed<O>()) attention_ = true;
+    }
+  }
+
+  template <DictionaryObject O>
+  [[nodiscard]] static AbortCode check_limits([[maybe_unused]] const typename O::type& value) {
+    using T = typename O::type;
+    if constexpr (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>) {
+      if constexpr (requires { O::high_limit; } || std::is_integral_v<T>) {
+        if (value > high_limit<O>()) return AbortCode::value_too_high;
+      }
+      if constexpr (requires { O::low_limit; } || std::is_integral_v<T>) {
+        if (value < low_limit<O>()) return AbortCode::value_too_low;
+      }
+      if constexpr (std::is_floating_point_v<T> && requires { O::low_limit; }) {
+        if (value != value) return AbortCode::invalid_value;
+      }
+    }
+    return ok;
+  }
+
+  // Sending
+
+  [[nodiscard]] Duration heartbeat_period() const {
+    if constexpr (has_heartbeat_time) {
+      return from_milliseconds(static_cast<std::uint16_t>(store_.template number<0x1017, 0>()));
+    } else {
+      return Duration{0};
+    }
+  }
+
+  /// Sends what is due, in order of importance; what finds no room stays due.
+  void serve() {
+    attention_ = false;
+    if (!send_due()) attention_ = true;
+  }
+
+  [[nodiscard]] bool send_due() {
+    if (!heartbeat_.serve_boot_up(bus_, node_id_, heartbeat_period(), now_)) return false;
+    if (!send_sdo_reply()) return false;
+    if constexpr (has_heartbeat_time) {
+      if (!heartbeat_.serve(bus_, node_id_, state_, heartbeat_period(), now_)) return false;
+    }
+    if constexpr (TpdoService<Device>::count > 0) {
+      if (serves_pdo(state_)) return tpdos_.serve(store_, bus_, now_);
+    }
+    return true;
+  }
+
+  [[no_unique_address]] BusMember bus_;
+  [[no_unique_address]] HandlerSet<Handlers...> handlers_;
+  ObjectStore<Device> store_{};
+  SdoServer<Device> sdo_{};
+  TpdoService<Device> tpdos_{};
+  HeartbeatProducer heartbeat_{};
+  TimePoint now_{};
+  NodeId node_id_{};
+  NmtState state_ = NmtState::initialisation;
+  bool attention_ = false;  ///< something may have become due since it was last looked after
+};
+
+/// A node of a device on a bus, with its handlers:
+///     auto drive = canopen::make_node<cpc_tc1::Device>(bus, canopen::NodeId{5}, canopen::on_write<...>(...));
+template <class Device, Bus B, class... Handlers>
+[[nodiscard]] constexpr Node<Device, B, Handlers...> make_node(B& bus, NodeId node_id, Handlers... handlers) {
+  return Node<Device, B, Handlers...>{bus, node_id, std::move(handlers)...};
+}
+
+}  // namespace canopen

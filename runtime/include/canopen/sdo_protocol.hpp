@@ -1,0 +1,66 @@
+/// The bytes of SDO frames, as client and server both need them (CiA 301, 7.2.4.3.3 to 7.2.4.3.17).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+
+namespace canopen::sdo {
+
+using Data = std::array<std::uint8_t, 8>;
+
+/// What a client asks for: bits 5..7 of byte 0.
+enum class ClientCommand : std::uint8_t {
+  download_segment = 0,
+  initiate_download = 1,
+  initiate_upload = 2,
+  upload_segment = 3,
+  abort = 4,
+  block_upload = 5,
+  block_download = 6,
+  reserved = 7,
+};
+
+/// What a server answers: bits 5..7 of byte 0.
+enum class ServerCommand : std::uint8_t {
+  upload_segment = 0,
+  download_segment = 1,
+  initiate_upload = 2,
+  initiate_download = 3,
+  abort = 4,
+  block_download = 5,
+  block_upload = 6,
+  reserved = 7,
+};
+
+inline constexpr std::uint8_t size_indicated = 0x01;  ///< initiate: s
+inline constexpr std::uint8_t expedited = 0x02;       ///< initiate: e
+inline constexpr std::uint8_t last_segment = 0x01;    ///< segment: c
+inline constexpr std::uint8_t toggle = 0x10;          ///< segment: t
+inline constexpr std::uint8_t abort_command = 0x80;
+inline constexpr std::uint32_t segment_bytes = 7;
+
+[[nodiscard]] constexpr ClientCommand client_command(std::uint8_t byte) { return static_cast<ClientCommand>(byte >> 5); }
+[[nodiscard]] constexpr ServerCommand server_command(std::uint8_t byte) { return static_cast<ServerCommand>(byte >> 5); }
+
+[[nodiscard]] constexpr std::uint16_t index_of(const Data& data) {
+  return static_cast<std::uint16_t>(data[1] | (data[2] << 8));
+}
+
+constexpr void put_multiplexer(Data& data, std::uint16_t index, std::uint8_t sub_index) {
+  data[1] = static_cast<std::uint8_t>(index & 0xFF);
+  data[2] = static_cast<std::uint8_t>(index >> 8);
+  data[3] = sub_index;
+}
+
+/// Bytes 4..7 as a number: a size or an abort code.
+[[nodiscard]] inline std::uint32_t word_of(const Data& data) {
+  std::uint32_t word = 0;
+  std::memcpy(&word, &data[4], sizeof word);
+  return word;
+}
+
+inline void put_word(Data& data, std::uint32_t word) { std::memcpy(&data[4], &word, sizeof word); }
+
+}  // namespace canopen::sdo

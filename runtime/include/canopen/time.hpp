@@ -1,0 +1,44 @@
+/// Time as the services see it: 32-bit microseconds since start, handed in by the application or a port.
+#pragma once
+
+#include <chrono>
+#include <compare>
+#include <cstdint>
+
+namespace canopen {
+
+/// A span of time, 0 us to 71 minutes. Other std::chrono durations convert to it.
+using Duration = std::chrono::duration<std::uint32_t, std::micro>;
+
+/// A moment since start. It wraps every 71 minutes; two moments compare rightly as long as they are less than half of
+/// that apart.
+class TimePoint {
+ public:
+  constexpr TimePoint() = default;
+  constexpr explicit TimePoint(Duration since_start) : microseconds_{since_start.count()} {}
+
+  [[nodiscard]] constexpr Duration since_start() const { return Duration{microseconds_}; }
+
+  friend constexpr TimePoint operator+(TimePoint time, Duration span) {
+    return TimePoint{Duration{time.microseconds_ + span.count()}};
+  }
+  /// How long `later` is behind `earlier`.
+  friend constexpr Duration operator-(TimePoint later, TimePoint earlier) {
+    return Duration{later.microseconds_ - earlier.microseconds_};
+  }
+  friend constexpr bool operator==(TimePoint, TimePoint) = default;
+  friend constexpr std::strong_ordering operator<=>(TimePoint a, TimePoint b) {
+    return static_cast<std::int32_t>(a.microseconds_ - b.microseconds_) <=> 0;
+  }
+
+ private:
+  std::uint32_t microseconds_ = 0;
+};
+
+/// A time as 1017h or 1800h:05 hold it.
+[[nodiscard]] constexpr Duration from_milliseconds(std::uint16_t count) { return Duration{count * 1000u}; }
+
+/// A time as 1015h or 1800h:03 hold it: in units of 100 us.
+[[nodiscard]] constexpr Duration from_hundred_microseconds(std::uint16_t count) { return Duration{count * 100u}; }
+
+}  // namespace canopen

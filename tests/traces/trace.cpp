@@ -1,0 +1,172 @@
+#include "trace.hpp"
+
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace trace {
+
+namespace {
+
+/// Text in front of the comment; a `#` inside quotes is text.
+std::string without_comment(const std::string& line) {
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"') quoted = !quoted;
+    if (line[i] == '#' && !quoted) return line.substr(0, i);
+  }
+  return line;
+}
+
+std::uint64_t number(const std::string& text, int base = 0) {
+  std::size_t used = 0;
+  const bool negative = text.starts_with('-');
+  const std::uint64_t value = negative ? static_cast<std::uint64_t>(std::stoll(text, &used, base))
+                                       : std::stoull(text, &used, base);
+  if (used != text.size()) throw std::invalid_argument{"\"" + text + "\" is not a number"};
+  return value;
+}
+
+std::uint64_t number_up_to(std::uint64_t highest, const std::string& text, int base) {
+  const std::uint64_t value = number(text, base);
+  if (value > highest) throw std::invalid_argument{"\"" + text + "\" is too high"};
+  return value;
+}
+
+Pattern read_pattern(std::istringstream& words) {
+  Pattern pattern{};
+  std::string word;
+  words >> word;
+  pattern.frame.extended = word.size() == 8;
+  pattern.frame.id = static_cast<std::uint32_t>(number_up_to(pattern.frame.extended ? 0x1FFF'FFFF : 0x7FF, word, 16));
+  while (words >> word) {
+    if (word == "R") {
+      pattern.frame.remote = true;
+      continue;
+    }
+    if (pattern.frame.remote) {
+      pattern.frame.size = static_cast<std::uint8_t>(number_up_to(8, word, 10));
+      continue;
+    }
+    const std::uint8_t at = pattern.frame.size++;
+    if (at == 8) throw std::invalid_argument{"a frame has eight bytes at most"};
+    if (word == "--") {
+      pattern.any = static_cast<std::uint8_t>(pattern.any | (1u << at));
+    } else {
+      pattern.frame.data[at] = static_cast<std::uint8_t>(number_up_to(0xFF, word, 16));
+    }
+  }
+  return pattern;
+}
+
+canopen::Duration read_span(std::istringstream& words) {
+  std::uint32_t count = 0;
+  std::string unit;
+  words >> count >> unit;
+  if (unit == "us") return canopen::Duration{count};
+  if (unit == "ms") return canopen::Duration{count * 1'000};
+  if (unit == "s") return canopen::Duration{count * 1'000'000};
+  throw std::invalid_argument{"a time is a number and us, ms or s"};
+}
+
+/// `1801h:03 0x20F0` or `1008h:00 "text"`.
+void read_object(std::istringstream& words, Line& line) {
+  std::string object;
+  words >> object;
+  if (object.size() != 8 || object.substr(4, 2) != "h:") throw std::invalid_argument{"an object is written 1801h:03"};
+  line.index = static_cast<std::uint16_t>(number_up_to(0xFFFF, object.substr(0, 4), 16));
+  line.sub_index = static_cast<std::uint8_t>(number_up_to(0xFF, object.substr(6), 16));
+  std::string value;
+  std::getline(words >> std::ws, value);
+  value.erase(value.find_last_not_of(" \t\r") + 1);
+  line.value.is_text = value.size() >= 2 && value.front() == '"' && value.back() == '"';
+  if (line.value.is_text) {
+    line.value.text = value.substr(1, value.size() - 2);
+  } else {
+    line.value.number = number(value);
+  }
+}
+
+void read_line(const std::string& text, std::size_t number_of_line, Trace& trace) {
+  std::istringstream words{without_comment(text)};
+  std::string key;
+  if (!(words >> key)) return;
+  Line line;
+  line.number = number_of_line;
+  if (key == "manual") return;
+  if (key == "device") {
+    words >> trace.device;
+    return;
+  }
+  if (key == "node") {
+    std::string id;
+    words >> id;
+    trace.node_id = canopen::NodeId{static_cast<std::uint8_t>(number_up_to(127, id, 10))};
+    return;
+  }
+  if (key == "power") {
+    trace.power_on = true;
+    return;
+  }
+  if (key == "=") {
+    line.step = Step::set;
+    read_object(words, line);
+  } else if (key == "read") {
+    line.step = Step::read;
+    read_object(words, line);
+  } else if (key == "+") {
+    line.step = Step::pass;
+    line.span = read_span(words);
+  } else if (key == ">" || key == "<") {
+    line.step = key == ">" ? Step::send : Step::expect;
+    line.pattern = read_pattern(words);
+  } else {
+    throw std::invalid_argument{"\"" + key + "\" begins no line of a trace"};
+  }
+  trace.lines.push_back(line);
+}
+
+}  // namespace
+
+bool Pattern::matches(const canopen::Frame& other) const {
+  canopen::Frame expected = frame;
+  for (std::size_t i = 0; i < expected.data.size(); ++i) {
+    if ((any >> i & 1) != 0) expected.data[i] = other.data[i];
+  }
+  return expected == other;
+}
+
+Trace read(const std::filesystem::path& file) {
+  std::ifstream stream{file};
+  if (!stream) throw std::runtime_error{file.string() + ": cannot be read"};
+  Trace trace;
+  trace.file = file.string();
+  std::string text;
+  for (std::size_t number_of_line = 1; std::getline(stream, text); ++number_of_line) {
+    try {
+      read_line(text, number_of_line, trace);
+    } catch (const std::logic_error& problem) {
+      throw std::runtime_error{trace.file + ":" + std::to_string(number_of_line) + ": " + problem.what()};
+    }
+  }
+  if (trace.device.empty() || !trace.node_id.valid()) throw std::runtime_error{trace.file + ": no device or no node-ID"};
+  return trace;
+}
+
+std::string to_text(const Pattern& pattern) {
+  char piece[16];
+  std::snprintf(piece, sizeof piece, pattern.frame.extended ? "%08X " : "%03X ", static_cast<unsigned>(pattern.frame.id));
+  std::string text = piece;
+  if (pattern.frame.remote) return text + " R " + std::to_string(pattern.frame.size);
+  for (std::size_t i = 0; i < pattern.frame.size; ++i) {
+    const bool any = (pattern.any >> i & 1) != 0;
+    std::snprintf(piece, sizeof piece, any ? " --" : " %02X", static_cast<unsigned>(pattern.frame.data.at(i)));
+    text += piece;
+  }
+  return text;
+}
+
+std::string to_text(const canopen::Frame& frame) { return to_text(Pattern{frame, 0}); }
+
+}  // namespace trace

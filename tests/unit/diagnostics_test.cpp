@@ -1,0 +1,228 @@
+#include "diagnostics/diagnostics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "diagnostic_matchers.hpp"
+#include "diagnostics/excerpt.hpp"
+#include "diagnostics/print.hpp"
+#include "diagnostics/quote.hpp"
+#include "text/source_file.hpp"
+
+namespace edsc {
+namespace {
+
+std::string printed(const Diagnostics& diagnostics) {
+  std::string text;
+  print_text(text, diagnostics, false);
+  return text;
+}
+
+TEST(Diagnostics, CountErrorsAndWarnings) {
+  const SourceFile file("a.eds", "x\n");
+  Diagnostics diagnostics;
+  diagnostics.error("one", {&file, 1, 1}, "first");
+  diagnostics.warning("two", {&file, 1, 1}, "second");
+  diagnostics.warning("two", {&file, 1, 1}, "third");
+  EXPECT_EQ(diagnostics.errors(), 1U);
+  EXPECT_EQ(diagnostics.warnings(), 2U);
+  EXPECT_EQ(diagnostics.all().size(), 3U);
+}
+
+TEST(Diagnostics, DropSilencedRules) {
+  Diagnostics diagnostics;
+  diagnostics.silence("one");
+  diagnostics.error("one", {}, "dropped");
+  diagnostics.error("two", {}, "kept");
+  EXPECT_EQ(diagnostics.errors(), 1U);
+  EXPECT_EQ(diagnostics.all().at(0).rule, "two");
+}
+
+TEST(Diagnostics, CountWarningsAsErrorsWhenStrict) {
+  Diagnostics diagnostics;
+  diagnostics.warning("one", {}, "before");
+  diagnostics.treat_warnings_as_errors();
+  diagnostics.warning("one", {}, "after");
+  EXPECT_EQ(diagnostics.warnings(), 1U);
+  EXPECT_EQ(diagnostics.errors(), 1U);
+  EXPECT_EQ(diagnostics.all().at(1).severity, Severity::error);
+}
+
+TEST(Diagnostics, ListTheFirstOfARuleAndCountTheRest) {
+  const SourceFile file("a.eds", "x\n");
+  const SourceFile other("b.eds", "x\n");
+  Diagnostics diagnostics;
+  for (int time = 0; time < 100'000; ++time) {
+    diagnostics.warning("one", {&file, 1, 1}, "again");
+  }
+  diagnostics.warning("one", {&other, 1, 1}, "elsewhere");
+  EXPECT_EQ(diagnostics.all().size(), Diagnostics::most_per_rule + 1);
+  ASSERT_EQ(diagnostics.suppressed().size(), 1U);
+  EXPECT_EQ(diagnostics.suppressed()[0].file, &file);
+  EXPECT_EQ(diagnostics.suppressed()[0].rule, "one");
+  EXPECT_EQ(diagnostics.suppressed()[0].count, 100'000 - Diagnostics::most_per_rule);
+  EXPECT_EQ(diagnostics.warnings(), 100'001U);
+}
+
+TEST(PrintText, ShowsTheLineAndUnderlinesThePlace) {
+  const SourceFile file("eds/a.eds", "[1A00sub1]\nDefaultValue=0x60400010\n");
+  Diagnostics diagnostics;
+  diagnostics.error("pdo-direction", {&file, 2, 14, 10}, "TPDO 1 maps \"Controlword\"");
+  EXPECT_EQ(printed(diagnostics),
+            "eds/a.eds:2:14: error: TPDO 1 maps \"Controlword\" [pdo-direction]\n"
+            "    2 | DefaultValue=0x60400010\n"
+            "      |              ^~~~~~~~~~\n"
+            "eds/a.eds: 1 error, 0 warnings\n");
+}
+
+TEST(PrintText, ShowsNotesLikewise) {
+  const SourceFile file("a.eds", "[1000]\n[1000]\n");
+  Diagnostics diagnostics;
+  diagnostics.report({Severity::warning, "twice", {&file, 2, 2, 4}, "second", {{{&file, 1, 2, 4}, "first"}}});
+  EXPECT_EQ(printed(diagnostics),
+            "a.eds:2:2: warning: second [twice]\n"
+            "    2 | [1000]\n"
+            "      |  ^~~~\n"
+            "a.eds:1:2: note: first\n"
+            "    1 | [1000]\n"
+            "      |  ^~~~\n"
+            "a.eds: 0 errors, 1 warning\n");
+}
+
+TEST(PrintText, ShowsNoLineForAWholeFile) {
+  const SourceFile file("a.eds", "");
+  Diagnostics diagnostics;
+  diagnostics.error("empty-file", {&file}, "nothing in it");
+  EXPECT_EQ(printed(diagnostics),
+            "a.eds: error: nothing in it [empty-file]\n"
+            "a.eds: 1 error, 0 warnings\n");
+}
+
+TEST(PrintText, PutsTheSuppressedBehindTheirRule) {
+  const SourceFile file("a.eds", "");
+  Diagnostics diagnostics;
+  for (std::size_t time = 0; time < Diagnostics::most_per_rule + 3; ++time) {
+    diagnostics.warning("one", {&file}, "again");
+  }
+  diagnostics.error("two", {&file}, "last");
+  const std::string text = printed(diagnostics);
+  EXPECT_TRUE(
+      text.ends_with("a.eds: warning: again [one]\n"
+                     "a.eds: warning: 3 more of this kind [one]\n"
+                     "a.eds: error: last [two]\n"
+                     "a.eds: 1 error, 53 warnings\n"))
+      << text;
+}
+
+TEST(PrintText, SumsEachFile) {
+  const SourceFile one("a.eds", "");
+  const SourceFile two("b.eds", "");
+  Diagnostics diagnostics;
+  diagnostics.error("one", {&one}, "x");
+  diagnostics.warning("one", {&two}, "x");
+  const std::string text = printed(diagnostics);
+  EXPECT_TRUE(text.ends_with("a.eds: 1 error, 0 warnings\nb.eds: 0 errors, 1 warning\n")) << text;
+}
+
+TEST(PrintText, CountsColumnsInCodePoints) {
+  const SourceFile file("a.eds", "Maß €=x\n");
+  Diagnostics diagnostics;
+  diagnostics.error("one", {&file, 1, 10, 1}, "here");
+  EXPECT_TRUE(printed(diagnostics)
+                  .starts_with("a.eds:1:7: error: here [one]\n"
+                               "    1 | Maß €=x\n"
+                               "      |       ^\n"))
+      << printed(diagnostics);
+}
+
+TEST(PrintText, LetsNoControlCharacterThrough) {
+  const SourceFile file("a\x1B.eds", "a\tb\x1B[31m\x7F\xC2\x9B\n");
+  Diagnostics diagnostics;
+  diagnostics.error("one", {&file, 1, 1, 1}, "it says \x1B[0m");
+  EXPECT_EQ(printed(diagnostics),
+            "a?.eds:1:1: error: it says ?[0m [one]\n"
+            "    1 | a b?[31m??\n"
+            "      | ^\n"
+            "a?.eds: 1 error, 0 warnings\n");
+}
+
+TEST(PrintText, ColoursOnDemand) {
+  const SourceFile file("a.eds", "x\n");
+  Diagnostics diagnostics;
+  diagnostics.error("one", {&file, 1, 1}, "here");
+  std::string text;
+  print_text(text, diagnostics, true);
+  EXPECT_NE(text.find("\x1B[1;31merror:\x1B[0m here"), std::string::npos) << text;
+}
+
+TEST(Excerpt, ShowsAShortLineWhole) {
+  const Excerpt shown = excerpt("ab=cd", {nullptr, 1, 4, 2});
+  EXPECT_EQ(shown.text, "ab=cd");
+  EXPECT_EQ(shown.caret, 3U);
+  EXPECT_EQ(shown.caret_columns, 2U);
+}
+
+TEST(Excerpt, CutsALongLineAroundThePlace) {
+  const std::string line(100'000'000, 'x');
+  const Excerpt middle = excerpt(line, {nullptr, 1, 50'000'000, 1});
+  EXPECT_EQ(middle.text.size(), Excerpt::most_columns);
+  EXPECT_TRUE(middle.text.starts_with("...x"));
+  EXPECT_TRUE(middle.text.ends_with("x..."));
+  EXPECT_EQ(middle.caret, 60U);
+
+  const Excerpt start = excerpt(line, {nullptr, 1, 1, 100'000'000});
+  EXPECT_TRUE(start.text.starts_with("xxxx"));
+  EXPECT_EQ(start.caret, 0U);
+  EXPECT_LT(start.caret_columns, Excerpt::most_columns);
+
+  const Excerpt end = excerpt(line, {nullptr, 1, 100'000'000, 1});
+  EXPECT_TRUE(end.text.ends_with("xxxx"));
+  EXPECT_LT(end.caret, Excerpt::most_columns);
+}
+
+TEST(Excerpt, KeepsThePlaceBehindTheEndOfTheLine) {
+  const Excerpt shown = excerpt("ab=", {nullptr, 1, 9, 5});
+  EXPECT_EQ(shown.caret, 3U);
+  EXPECT_EQ(shown.caret_columns, 1U);
+}
+
+TEST(Quote, CutsALongTextBetweenCodePoints) {
+  EXPECT_EQ(quote("1018"), "\"1018\"");
+  EXPECT_EQ(quote(std::string(59, 'y') + "ä" + std::string(1000, 'z')), "\"" + std::string(59, 'y') + "...\"");
+}
+
+TEST(PrintJson, HasAStableShape) {
+  const SourceFile file("a.eds", "[1000]\n[1000]\n");
+  Diagnostics diagnostics;
+  diagnostics.report({Severity::warning, "twice", {&file, 2, 2, 4}, "second", {{{&file, 1, 2, 4}, "first"}}});
+  diagnostics.error("empty", {&file}, "whole");
+  const nlohmann::json expected = nlohmann::json::parse(R"({
+    "version": 1,
+    "diagnostics": [
+      {"file": "a.eds", "line": 2, "column": 2, "length": 4, "severity": "warning", "rule": "twice",
+       "message": "second", "notes": [{"file": "a.eds", "line": 1, "column": 2, "length": 4, "message": "first"}]},
+      {"file": "a.eds", "line": 0, "column": 0, "length": 0, "severity": "error", "rule": "empty",
+       "message": "whole", "notes": []}],
+    "suppressed": [],
+    "errors": 1,
+    "warnings": 1})");
+  EXPECT_EQ(print_json(diagnostics), expected);
+}
+
+TEST(PrintJson, CountsTheSuppressed) {
+  const SourceFile file("a.eds", "");
+  Diagnostics diagnostics;
+  for (std::size_t time = 0; time < Diagnostics::most_per_rule + 2; ++time) {
+    diagnostics.warning("one", {&file}, "again");
+  }
+  const nlohmann::json json = print_json(diagnostics);
+  EXPECT_EQ(json["diagnostics"].size(), Diagnostics::most_per_rule);
+  EXPECT_EQ(json["suppressed"],
+            nlohmann::json::parse(R"([{"file": "a.eds", "severity": "warning", "rule": "one", "count": 2}])"));
+  EXPECT_EQ(json["warnings"], Diagnostics::most_per_rule + 2);
+}
+
+}  // namespace
+}  // namespace edsc

@@ -1,0 +1,122 @@
+#include <canopen/node.hpp>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <limits>
+#include <type_traits>
+
+#include "bench.hpp"
+
+namespace {
+
+using bench::Bench;
+using canopen::AbortCode;
+namespace od = sample::od;
+using namespace std::chrono_literals;
+
+struct Nowhere {
+  static bool send(const canopen::Frame&) { return true; }
+};
+Nowhere nowhere;
+constinit auto at_link_time = canopen::make_node<sample::Device>(
+    nowhere, canopen::NodeId{}, canopen::on_write<od::controlword>([](std::uint16_t) {}));
+
+TEST(Node, IsInitialisedWhenTheProgramIsLinked) {
+  at_link_time.start(canopen::NodeId{9}, canopen::TimePoint{});
+  EXPECT_EQ(at_link_time.node_id(), canopen::NodeId{9});
+  EXPECT_EQ(at_link_time.get<od::profile_acceleration>(), 1000u);
+}
+
+TEST(Node, ABusWithoutStateAndHandlersWithoutCapturesTakeNoMemory) {
+  EXPECT_EQ(sizeof at_link_time, sizeof(canopen::Node<sample::Device, Nowhere>));
+}
+
+TEST(Node, CannotBeCopied) {
+  using Node = canopen::Node<sample::Device, Nowhere>;
+  static_assert(!std::is_copy_constructible_v<Node> && !std::is_move_constructible_v<Node>);
+}
+
+TEST(Node, SetsAndGetsObjectsWhateverTheirAccessOnTheBus) {
+  Bench device;
+  EXPECT_EQ(device.node.set<od::statusword>(0x0237), canopen::ok);
+  EXPECT_EQ(device.node.get<od::statusword>(), 0x0237);
+  EXPECT_EQ(device.node.set<od::password>(1), canopen::ok);
+  EXPECT_EQ(device.node.get<od::device_type>(), 0x000F0191u);
+  EXPECT_EQ(device.node.get<od::lowest_temperature>(), -5);
+}
+
+TEST(Node, RefusesValuesOutsideTheirLimits) {
+  Bench device;
+  EXPECT_EQ(device.node.set<od::integer8_value>(101), AbortCode::value_too_high);
+  EXPECT_EQ(device.node.set<od::integer8_value>(-101), AbortCode::value_too_low);
+  EXPECT_EQ(device.node.set<od::unsigned24_value>(0x1000000), AbortCode::value_too_high);
+  EXPECT_EQ(device.node.set<od::real32_value>(1.6f), AbortCode::value_too_high);
+  EXPECT_EQ(device.node.set<od::real32_value>(std::numeric_limits<float>::quiet_NaN()), AbortCode::invalid_value);
+  EXPECT_EQ(device.node.get<od::integer8_value>(), 0);
+}
+
+TEST(Node, SetsObjectsByNumber) {
+  Bench device;
+  const std::uint8_t two[] = {0x34, 0x12};
+  EXPECT_EQ(device.node.set(0x6041, 0, two), canopen::ok);
+  EXPECT_EQ(device.node.get<od::statusword>(), 0x1234);
+  EXPECT_EQ(device.node.set(0x1000, 0, two), AbortCode::read_only);
+  EXPECT_EQ(device.node.set(0x5000, 0, two), AbortCode::no_object);
+  EXPECT_EQ(device.node.set(0x6041, 1, two), AbortCode::no_sub_index);
+  EXPECT_EQ(device.node.set(0x6060, 0, two), AbortCode::length_too_high);
+  const std::uint8_t eleven[] = {11};
+  EXPECT_EQ(device.node.set(0x6060, 0, eleven), AbortCode::value_too_high);
+}
+
+TEST(Node, DoesNotCallHandlersForItsOwnApplication) {
+  int calls = 0;
+  auto device = bench::with(canopen::on_write<od::controlword>([&](std::uint16_t) { ++calls; }));
+  device.node.set<od::controlword>(1);
+  EXPECT_EQ(calls, 0);
+}
+
+TEST(Node, ADomainStaysBoundOverAReset) {
+  Bench device;
+  std::array<std::uint8_t, 6> memory{1, 2, 3, 4, 5, 6};
+  device.node.bind<od::parameter_file>(memory);
+  device.ask(bench::reset_node);
+  EXPECT_EQ(device.ask("605 40 12 20 00 00 00 00 00"), "585 41 12 20 00 06 00 00 00");
+}
+
+TEST(Node, SendsConstantBytesAsADomain) {
+  static constexpr std::uint8_t bytes[] = {1, 2, 3};
+  Bench device;
+  device.node.bind_constant<od::log_file>(bytes);
+  EXPECT_EQ(device.ask("605 40 1A 20 00 00 00 00 00"), "585 47 1A 20 00 01 02 03 00");
+}
+
+TEST(Node, TellsTheNearestDeadline) {
+  Bench device;
+  EXPECT_FALSE(device.node.next_deadline());
+  device.node.set<od::producer_heartbeat_time>(100);
+  device.node.set<od::tpdo_communication_parameter_1::event_timer>(30);
+  EXPECT_EQ(device.pass(0ms), "705 7F");
+  device.ask(bench::start);
+  EXPECT_EQ(device.node.next_deadline(), device.now + 30ms);
+  device.pass(90ms);
+  EXPECT_EQ(device.node.next_deadline(), device.now + 10ms);
+}
+
+TEST(Node, TwoOfTheSameDeviceShareNothing) {
+  Bench first;
+  Bench second;
+  first.node.set<od::statusword>(1);
+  EXPECT_EQ(second.node.get<od::statusword>(), 0);
+}
+
+TEST(Node, SendsTheAnswerBeforeTheHeartbeatAndTheHeartbeatBeforePdos) {
+  auto device = bench::with(canopen::on_write<od::profile_acceleration>([](auto& node, std::uint32_t) {
+    node.template set<od::statusword>(1);
+    node.template set<od::producer_heartbeat_time>(100);
+  }));
+  device.ask(bench::start);
+  EXPECT_EQ(device.ask("605 23 83 60 00 01 00 00 00"),
+            "585 60 83 60 00 00 00 00 00 | 705 05 | 185 01 00 00 00 00 00");
+}
+
+}  // namespace
