@@ -16,9 +16,8 @@ using nlohmann::json;
 
 /// Members of canopen::DeviceOptions, by the type of their value.
 constexpr std::array runtime_flags = {
-    "sdo_upload_size_indicated",
-    "event_driven_on_change",
-    "inhibit_time_writable_while_valid",
+    "pdo_extended_ids",       "tpdo_remote_frames",        "inhibit_time_writable_while_valid",
+    "event_driven_on_change", "sdo_upload_size_indicated",
 };
 constexpr std::array runtime_masks = {"pdo_cob_id_writable"};
 
@@ -164,7 +163,8 @@ class OptionsReader {
   }
 
   void error(const std::string& member, const std::string& message) {
-    diagnostics_.error("options", position_of(member), member.empty() ? message : member + ": " + message);
+    const std::string place = member.empty() ? "" : fmt::format("{}: ", member);
+    diagnostics_.error("options", position_of(member), fmt::format("{}{}", place, message));
   }
 
   const SourceFile& source_;

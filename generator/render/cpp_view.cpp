@@ -267,9 +267,9 @@ ordered_json description_rows(const Device& device) {
   ordered_json rows = ordered_json::array();
   for (const Object& object : device.objects) {
     for (const Entry& entry : object.entries) {
-      const std::string name = object.has_sub_indices() ? object.name + ", " + entry.name : object.name;
-      rows.push_back({{"text", fmt::format("{{0x{:04X}, 0x{:02X}, canopen::DataType::{}, {}}}", entry.index, entry.sub_index,
-                                           type_enumerator(*entry.type), cpp_string(name))}});
+      rows.push_back({{"text", fmt::format("{{0x{:04X}, 0x{:02X}, canopen::DataType::{}, {}, {}}}", entry.index, entry.sub_index,
+                                           type_enumerator(*entry.type), cpp_string(object.name),
+                                           object.has_sub_indices() ? cpp_string(entry.name) : "{}")}});
     }
   }
   return rows;

@@ -1,7 +1,9 @@
 /// CAN-IDs and COB-IDs: the pre-defined connection set, the flag bits, and the identifiers that may not be configured.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <iterator>
 
 #include "canopen/node_id.hpp"
 
@@ -48,28 +50,41 @@ class CobId {
   std::uint32_t value_ = invalid_bit;
 };
 
-/// A range of CAN-IDs that no configurable object may use, with the reason (CiA 301, 7.3.5, table 41).
+/// A range of CAN-IDs that no configurable object may use (CiA 301, 7.3.5, table 41).
 struct RestrictedCanIds {
   std::uint16_t first;
   std::uint16_t last;
-  const char* reason;
 };
 
 inline constexpr RestrictedCanIds restricted_can_ids[] = {
-    {0x000, 0x000, "NMT"},
-    {0x001, 0x07F, "reserved"},
-    {0x101, 0x180, "reserved"},
-    {0x581, 0x5FF, "default SDO, server to client"},
-    {0x601, 0x67F, "default SDO, client to server"},
-    {0x6E0, 0x6FF, "reserved"},
-    {0x701, 0x77F, "NMT error control"},
-    {0x780, 0x7FF, "reserved"},
+    {0x000, 0x000}, {0x001, 0x07F}, {0x101, 0x180}, {0x581, 0x5FF},
+    {0x601, 0x67F}, {0x6E0, 0x6FF}, {0x701, 0x77F}, {0x780, 0x7FF},
 };
+
+/// Why, row by row: for messages only, so that a device's image does not hold them.
+inline constexpr const char* restricted_can_id_reasons[] = {
+    "NMT",
+    "reserved",
+    "reserved",
+    "default SDO, server to client",
+    "default SDO, client to server",
+    "reserved",
+    "NMT error control",
+    "reserved",
+};
+
+/// Whether an 11-bit CAN-ID may not be used by a configurable object.
+[[nodiscard]] constexpr bool is_restricted(std::uint32_t can_id) {
+  for (const auto& range : restricted_can_ids) {
+    if (can_id >= range.first && can_id <= range.last) return true;
+  }
+  return false;
+}
 
 /// Why an 11-bit CAN-ID may not be used by a configurable object; null when it may.
 [[nodiscard]] constexpr const char* restriction_of(std::uint32_t can_id) {
-  for (const auto& range : restricted_can_ids) {
-    if (can_id >= range.first && can_id <= range.last) return range.reason;
+  for (std::size_t i = 0; i < std::size(restricted_can_ids); ++i) {
+    if (can_id >= restricted_can_ids[i].first && can_id <= restricted_can_ids[i].last) return restricted_can_id_reasons[i];
   }
   return nullptr;
 }

@@ -36,7 +36,7 @@ inline constexpr std::uint8_t event_timer = 5;
   if (before.valid() && after.valid() && changed) return AbortCode::invalid_value;
   if (!after.extended() && (after.value() & 0x1FFF'F800) != 0) return AbortCode::invalid_value;
   const bool made_valid = !before.valid() && after.valid();
-  if (made_valid && !after.extended() && restriction_of(after.can_id()) != nullptr) return AbortCode::invalid_value;
+  if (made_valid && !after.extended() && is_restricted(after.can_id())) return AbortCode::invalid_value;
   return ok;
 }
 

@@ -14,7 +14,11 @@ struct EntryDescription {
   std::uint16_t index;
   std::uint8_t sub_index;
   DataType type;
-  std::string_view name;  ///< of an entry of an array or record: the object's name, a comma, its own
+  std::string_view object;  ///< name of the object
+  std::string_view entry;   ///< name of the entry in an array or record; empty in a VAR
+
+  /// What to call it where one name has to do.
+  [[nodiscard]] constexpr std::string_view name() const { return entry.empty() ? object : entry; }
 };
 
 /// The description of an entry in a table sorted by index and sub-index; null when there is none.

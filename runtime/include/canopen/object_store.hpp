@@ -122,11 +122,16 @@ class EntryAccess {
 
   /// Numbers of 3, 5, 6 and 7 bytes lie in the next wider type, sign extended.
   static void store_number(entry::Word word, std::uint8_t* where, std::span<const std::uint8_t> bytes) {
-    const std::size_t size = entry::wire_bytes(word);
-    std::memcpy(where, bytes.data(), size);
-    if (size == 3 || (size > 4 && size < 8)) {
-      const bool negative = entry::class_of(word) == entry::Class::signed_integer && (bytes[size - 1] & 0x80) != 0;
-      std::memset(where + size, negative ? 0xFF : 0, (size == 3 ? 4u : 8u) - size);
+    const std::size_t size = bytes.size();
+    const std::size_t wider = size > 4 ? 8 : 4;
+    widen(word, where, bytes, size <= 2 ? size : wider);
+  }
+
+  static void widen(entry::Word word, std::uint8_t* where, std::span<const std::uint8_t> bytes, std::size_t to) {
+    const bool negative = entry::class_of(word) == entry::Class::signed_integer && (bytes.back() & 0x80) != 0;
+    for (std::size_t i = 0; i < to; ++i) {
+      const auto sign = static_cast<std::uint8_t>(negative ? 0xFF : 0);
+      where[i] = i < bytes.size() ? bytes[i] : sign;
     }
   }
 
@@ -157,7 +162,7 @@ class EntryAccess {
 
   [[nodiscard]] AbortCode check_limits(std::uint32_t key, entry::Word word, std::span<const std::uint8_t> bytes) const {
     alignas(8) std::uint8_t wide[8] = {};
-    store_number(word, wide, bytes);
+    widen(word, wide, bytes, bytes.size() > 4 ? 8 : 4);
     std::uint64_t low = 0;
     std::uint64_t high = 0;
     if (entry::size_of(word) <= 4) {
@@ -171,7 +176,7 @@ class EntryAccess {
       low = sortable(word, row->low);
       high = sortable(word, row->high);
     }
-    const std::uint64_t raw = load<std::uint64_t>(wide);
+    const auto raw = load<std::uint64_t>(std::assume_aligned<alignof(std::uint64_t)>(wide));
     if (entry::class_of(word) == entry::Class::real && not_a_number(word, raw)) return AbortCode::invalid_value;
     const std::uint64_t value = sortable(word, raw);
     if (value > high) return AbortCode::value_too_high;

@@ -82,29 +82,53 @@ template <class T, unsigned Bits>
   }
 }
 
+/// Bytes that `Bits` bits from bit `At` on touch.
+template <unsigned At, unsigned Bits>
+using TouchedBytes = std::make_index_sequence<(At % 8 + Bits + 7) / 8>;
+
+/// Wide enough for `Bits` bits: shifts of 64 bits are dear on small controllers.
+template <unsigned Bits>
+using Raw = std::conditional_t<(Bits <= 32), std::uint32_t, std::uint64_t>;
+
+/// What byte `I` of a value that begins at bit `Shift` of byte 0 holds.
+template <unsigned Shift, std::size_t I, class Value>
+[[nodiscard]] constexpr std::uint8_t byte_of(Value value) {
+  if constexpr (I == 0) {
+    return static_cast<std::uint8_t>(value << Shift);
+  } else {
+    return static_cast<std::uint8_t>(value >> (8 * I - Shift));
+  }
+}
+
+/// The bits of a value that stand in byte `I`, at their place in the value.
+template <class Value, unsigned Shift, std::size_t I>
+[[nodiscard]] constexpr Value bits_of(std::uint8_t byte) {
+  if constexpr (I == 0) {
+    return static_cast<Value>(byte >> Shift);
+  } else {
+    return static_cast<Value>(Value{byte} << (8 * I - Shift));
+  }
+}
+
 /// Puts the low `Bits` bits of `raw` at bit `At` of the data; what stood there is zero. Whole bytes become plain stores.
 template <unsigned At, unsigned Bits>
 constexpr void put(std::array<std::uint8_t, 8>& data, std::uint64_t raw) {
-  if constexpr (At % 8 == 0 && Bits % 8 == 0) {
-    for (unsigned i = 0; i < Bits / 8; ++i) data[At / 8 + i] = static_cast<std::uint8_t>(raw >> (8 * i));
-  } else {
-    constexpr unsigned shift = At % 8;
-    constexpr unsigned bytes = (shift + Bits + 7) / 8;
-    const std::uint64_t low = (raw & mask(Bits)) << shift;
-    for (unsigned i = 0; i < bytes && i < 8; ++i) {
-      data[At / 8 + i] = static_cast<std::uint8_t>(data[At / 8 + i] | (low >> (8 * i)));
+  const auto value = static_cast<Raw<Bits>>(raw & mask(Bits));
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    if constexpr (At % 8 == 0 && Bits % 8 == 0) {
+      ((data[At / 8 + I] = byte_of<0, I>(value)), ...);
+    } else {
+      ((data[At / 8 + I] = static_cast<std::uint8_t>(data[At / 8 + I] | byte_of<At % 8, I>(value))), ...);
     }
-    if constexpr (bytes == 9) data[7] = static_cast<std::uint8_t>(data[7] | ((raw & mask(Bits)) >> (64 - shift)));
-  }
+  }(TouchedBytes<At, Bits>{});
 }
 
 template <unsigned At, unsigned Bits>
 [[nodiscard]] constexpr std::uint64_t take(const std::array<std::uint8_t, 8>& data) {
-  constexpr unsigned shift = At % 8;
-  constexpr unsigned bytes = (shift + Bits + 7) / 8;
-  std::uint64_t raw = 0;
-  for (unsigned i = 0; i < bytes; ++i) raw |= static_cast<std::uint64_t>(data[At / 8 + i]) << (8 * i);
-  return (raw >> shift) & mask(Bits);
+  using Value = Raw<Bits>;
+  return [&]<std::size_t... I>(std::index_sequence<I...>) {
+    return (Value{0} | ... | bits_of<Value, At % 8, I>(data[At / 8 + I]));
+  }(TouchedBytes<At, Bits>{}) & mask(Bits);
 }
 
 }  // namespace pdo_detail

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <chrono>
-#include <compare>
 #include <cstdint>
 
 namespace canopen {
@@ -27,11 +26,16 @@ class TimePoint {
     return Duration{later.microseconds_ - earlier.microseconds_};
   }
   friend constexpr bool operator==(TimePoint, TimePoint) = default;
-  friend constexpr std::strong_ordering operator<=>(TimePoint a, TimePoint b) {
-    return static_cast<std::int32_t>(a.microseconds_ - b.microseconds_) <=> 0;
-  }
+  friend constexpr bool operator<(TimePoint a, TimePoint b) { return ahead(a, b) < 0; }
+  friend constexpr bool operator>(TimePoint a, TimePoint b) { return ahead(a, b) > 0; }
+  friend constexpr bool operator<=(TimePoint a, TimePoint b) { return ahead(a, b) <= 0; }
+  friend constexpr bool operator>=(TimePoint a, TimePoint b) { return ahead(a, b) >= 0; }
 
  private:
+  static constexpr std::int32_t ahead(TimePoint a, TimePoint b) {
+    return static_cast<std::int32_t>(a.microseconds_ - b.microseconds_);
+  }
+
   std::uint32_t microseconds_ = 0;
 };
 

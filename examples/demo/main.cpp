@@ -1,0 +1,206 @@
+/// The demo: five of the reference devices, one of each manual, and a small master on a simulated bus of 500 kbit/s. The
+/// master boots the network, reads each identity, starts the nodes and exchanges PDOs with them; every frame is shown in
+/// the names of the data sheets.
+#include <fmt/format.h>
+
+#include <array>
+#include <can_2017c/description.hpp>
+#include <can_2017c/device.hpp>
+#include <can_2024c/description.hpp>
+#include <can_2024c/device.hpp>
+#include <can_2053c/description.hpp>
+#include <can_2053c/device.hpp>
+#include <can_2057c/description.hpp>
+#include <can_2057c/device.hpp>
+#include <canopen/node.hpp>
+#include <canopen/port/virtual_bus.hpp>
+#include <cpc_tc1/description.hpp>
+#include <cpc_tc1/device.hpp>
+#include <cpd/description.hpp>
+#include <cpd/device.hpp>
+#include <ezd_1136/description.hpp>
+#include <ezd_1136/device.hpp>
+#include <rk5c/description.hpp>
+#include <rk5c/device.hpp>
+
+#include "layout_table.hpp"
+#include "master.hpp"
+#include "trace.hpp"
+
+namespace {
+
+using canopen::NodeId;
+using namespace std::chrono_literals;
+
+constexpr NodeId drive_id{3};
+constexpr NodeId stepper_id{1};
+constexpr NodeId spindle_id{2};
+constexpr NodeId inputs_id{4};
+constexpr NodeId sensor_id{5};
+
+void heading(const char* text) { fmt::print("\n-- {}\n", text); }
+
+/// Statuswords of CiA 402 along the way that shutdown (06h), switch on (07h) and enable operation (0Fh) lead.
+std::uint16_t statusword_after(std::uint16_t controlword) {
+  switch (controlword & 0x0F) {
+    case 0x06: return 0x0231;
+    case 0x07: return 0x0233;
+    case 0x0F: return 0x0237;
+    default: return 0x0250;
+  }
+}
+
+/// A drive's answer to its controlword.
+template <class Statusword>
+constexpr auto answer_controlword = [](auto& node, std::uint16_t controlword) {
+  node.template set<Statusword>(statusword_after(controlword));
+};
+
+template <class VendorId, class ProductCode, class RevisionNumber, class DeviceName>
+void show_identity(demo::Master& master, NodeId node) {
+  const auto vendor = master.read<VendorId>(node);
+  const auto product = master.read<ProductCode>(node);
+  const auto revision = master.read<RevisionNumber>(node);
+  const std::string name = master.read_text<DeviceName>(node);
+  fmt::print("   => node {}: \"{}\", vendor {:08X}h, product {:08X}h, revision {:08X}h\n", node.value(), name,
+             vendor.value_or(0), product.value_or(0), revision.value_or(0));
+}
+
+void show_identities(demo::Master& master) {
+  {
+    namespace id = ezd_1136::od::identity_object;
+    show_identity<id::vendor_id, id::product_code, id::revision_number, ezd_1136::od::manufacturer_device_name>(master, stepper_id);
+  }
+  {
+    namespace id = cpd::od::identity_object;
+    show_identity<id::vendor_id, id::product_code, id::revision_number, cpd::od::manufacturer_device_name>(master, spindle_id);
+  }
+  {
+    namespace id = cpc_tc1::od::identity_object;
+    show_identity<id::vendor_id, id::product_code, id::revision_number, cpc_tc1::od::manufacturer_device_name>(master, drive_id);
+  }
+  {
+    namespace id = can_2053c::od::identity_object;
+    show_identity<id::vendor_id, id::product_code, id::revision_number, can_2053c::od::manufacturer_device_name>(master, inputs_id);
+  }
+  {
+    namespace id = rk5c::od::identity_object;
+    show_identity<id::vendor_id, id::product_code, id::revision_number, rk5c::od::manufacturer_device_name>(master, sensor_id);
+  }
+}
+
+/// What a master sets before it starts the nodes, and one thing that it may not set.
+void configure(demo::Master& master) {
+  master.write<ezd_1136::od::producer_heartbeat_time>(stepper_id, 50);
+  master.write<rk5c::od::tpdo_communication_parameter_1::event_timer>(sensor_id, 20);
+  if (!master.write<rk5c::od::position_values_for_multi_sensor_devices<1>>(sensor_id, 0)) {
+    const auto code = static_cast<std::uint32_t>(master.last_abort());
+    fmt::print("   => refused: {:08X}h {}\n", code, canopen::to_text(master.last_abort()));
+  }
+}
+
+template <class Device>
+void add_to_trace(demo::Trace& trace, NodeId node, const char* name, std::span<const canopen::EntryDescription> names) {
+  trace.add(node, {name, names, demo::describe_pdos<Device>()});
+}
+
+void print_all_layouts() {
+  const auto print = []<class Device>(Device, std::span<const canopen::EntryDescription> names) {
+    demo::print_layouts(Device::name, demo::describe_pdos<Device>(), names);
+  };
+  print(cpc_tc1::Device{}, cpc_tc1::descriptions);
+  print(ezd_1136::Device{}, ezd_1136::descriptions);
+  print(cpd::Device{}, cpd::descriptions);
+  print(can_2053c::Device{}, can_2053c::descriptions);
+  print(can_2057c::Device{}, can_2057c::descriptions);
+  print(can_2017c::Device{}, can_2017c::descriptions);
+  print(can_2024c::Device{}, can_2024c::descriptions);
+  print(rk5c::Device{}, rk5c::descriptions);
+}
+
+int run_demo() {
+  canopen::VirtualBus bus{500'000};
+  demo::Trace trace;
+  add_to_trace<ezd_1136::Device>(trace, stepper_id, "stepper", ezd_1136::descriptions);
+  add_to_trace<cpd::Device>(trace, spindle_id, "spindle", cpd::descriptions);
+  add_to_trace<cpc_tc1::Device>(trace, drive_id, "drive", cpc_tc1::descriptions);
+  add_to_trace<can_2053c::Device>(trace, inputs_id, "inputs", can_2053c::descriptions);
+  add_to_trace<rk5c::Device>(trace, sensor_id, "sensor", rk5c::descriptions);
+  bus.listen([&trace](const canopen::Frame& frame, canopen::TimePoint now) { trace.print(frame, now); });
+  demo::Master master{bus};
+
+  auto& stepper_port = bus.attach();
+  auto stepper = canopen::make_node<ezd_1136::Device>(
+      stepper_port, stepper_id,
+      canopen::on_write<ezd_1136::od::controlword>(answer_controlword<ezd_1136::od::statusword>));
+  auto& spindle_port = bus.attach();
+  auto spindle = canopen::make_node<cpd::Device>(
+      spindle_port, spindle_id, canopen::on_write<cpd::od::controlword>(answer_controlword<cpd::od::statusword>));
+  auto& drive_port = bus.attach();
+  auto drive = canopen::make_node<cpc_tc1::Device>(
+      drive_port, drive_id, canopen::on_write<cpc_tc1::od::controlword>(answer_controlword<cpc_tc1::od::statusword>),
+      canopen::on_write<cpc_tc1::od::target_velocity>([](auto& node, std::int32_t velocity) {
+        node.template set<cpc_tc1::od::velocity_actual_value>(velocity);
+      }));
+  auto& inputs_port = bus.attach();
+  auto inputs = canopen::make_node<can_2053c::Device>(inputs_port, inputs_id);
+  auto& sensor_port = bus.attach();
+  auto sensor = canopen::make_node<rk5c::Device>(sensor_port, sensor_id);
+  canopen::VirtualBus::connect(stepper_port, stepper);
+  canopen::VirtualBus::connect(spindle_port, spindle);
+  canopen::VirtualBus::connect(drive_port, drive);
+  canopen::VirtualBus::connect(inputs_port, inputs);
+  canopen::VirtualBus::connect(sensor_port, sensor);
+
+  heading("power on: each node sends its boot-up message");
+  stepper.start(bus.now());
+  spindle.start(bus.now());
+  drive.start(bus.now());
+  inputs.start(bus.now());
+  sensor.start(bus.now());
+  bus.run_for(5ms);
+
+  heading("the master reads each identity");
+  show_identities(master);
+
+  heading("the master configures; a read-only object answers with an abort");
+  configure(master);
+
+  heading("the master starts all nodes");
+  master.command(canopen::NmtCommand::start);
+  bus.run_for(2ms);
+
+  heading("PDOs: the master enables the drives, an input changes, the sensor moves, the drive turns");
+  std::int32_t position = 0;
+  master.on_tpdo(sensor_id, 1, [&position](const canopen::Frame& frame) { position = rk5c::Tpdo1::get<0>(frame.data); });
+  for (const std::uint16_t controlword : std::array<std::uint16_t, 3>{0x06, 0x07, 0x0F}) {
+    master.send_rpdo<cpd::Rpdo1>(spindle_id, 1, cpd::Rpdo1::pack(controlword));
+    master.send_rpdo<cpc_tc1::Rpdo1>(drive_id, 1, cpc_tc1::Rpdo1::pack(controlword));
+    bus.run_for(2ms);
+  }
+  inputs.set<can_2053c::od::read_input_8_bit<1>>(0b0000'0101);
+  sensor.set<rk5c::od::position_values_for_multi_sensor_devices<1>>(123'456);
+  sensor.set<rk5c::od::speed_value<1>>(-250);
+  bus.run_for(20ms);
+  fmt::print("   => the master has got the position {}\n", position);
+  master.send_rpdo<ezd_1136::Rpdo2>(stepper_id, 2, ezd_1136::Rpdo2::pack(position, 4'000));
+  bus.run_for(10ms);
+
+  heading("the master stops all nodes: heartbeats go on, PDOs do not");
+  master.command(canopen::NmtCommand::stop);
+  bus.run_for(60ms);
+  fmt::print("\n{} frames, {} nodes booted, bus time {:.1f} ms\n", trace.frames(), master.booted().size(),
+             bus.now().since_start().count() / 1000.0);
+
+  const bool as_wanted = master.booted().size() == 5 && position == 123'456 &&
+                         stepper.get<ezd_1136::od::target_position>() == 123'456 &&
+                         drive.get<cpc_tc1::od::statusword>() == 0x0237 && spindle.get<cpd::od::statusword>() == 0x0237;
+  heading("PDO layouts of the eight devices");
+  print_all_layouts();
+  if (!as_wanted) fmt::print(stderr, "demo: the network did not end as it should\n");
+  return as_wanted ? 0 : 1;
+}
+
+}  // namespace
+
+int main() { return run_demo(); }

@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# Runs the whole test suite: as built for use, then the unit and trace tests under AddressSanitizer and UBSan.
+#   ./test.sh           everything
+#   ./test.sh test      only the first part
+#   ./test.sh asan      only the part with sanitizers
+set -euo pipefail
+cd "$(dirname "$0")"
+
+.ci/install-packages test
+presets=("$@")
+[ $# -gt 0 ] || presets=(test asan)
+for preset in "${presets[@]}"; do
+  echo "== $preset"
+  cmake --workflow --preset "$preset"
+done

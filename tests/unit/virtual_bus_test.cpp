@@ -1,0 +1,141 @@
+#include <canopen/node.hpp>
+#include <canopen/port/virtual_bus.hpp>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "bench.hpp"
+
+namespace {
+
+using bench::frame;
+using canopen::Frame;
+using canopen::TimePoint;
+using canopen::VirtualBus;
+namespace od = sample::od;
+using namespace std::chrono_literals;
+
+/// What passes the wire, each frame with its time in microseconds.
+class Log {
+ public:
+  explicit Log(VirtualBus& bus) {
+    bus.listen([this](const Frame& frame, TimePoint now) {
+      lines.push_back(std::to_string(now.since_start().count()) + ": " + bench::text(frame));
+    });
+  }
+  std::vector<std::string> lines;
+};
+
+using Lines = std::vector<std::string>;
+
+TEST(VirtualBus, DeliversToAllOthersButNotToTheSender) {
+  VirtualBus bus;
+  int received[3] = {};
+  VirtualBus::Endpoint* endpoints[3] = {&bus.attach(), &bus.attach(), &bus.attach()};
+  for (int i = 0; i < 3; ++i) {
+    endpoints[i]->on_frame = [&received, i](const Frame&, TimePoint) { ++received[i]; };
+  }
+  endpoints[0]->send(frame("181 01"));
+  EXPECT_EQ(bus.settle(), 1u);
+  EXPECT_EQ(received[0], 0);
+  EXPECT_EQ(received[1], 1);
+  EXPECT_EQ(received[2], 1);
+}
+
+TEST(VirtualBus, TheLowestCanIdWins) {
+  VirtualBus bus;
+  Log log{bus};
+  auto& first = bus.attach();
+  auto& second = bus.attach();
+  first.send(frame("701 05"));
+  first.send(frame("081 00"));
+  second.send(frame("181 01"));
+  second.send(frame("18100000 01"));
+  bus.settle();
+  // A controller sends its own frames in their order.
+  EXPECT_EQ(log.lines, (Lines{"0: 181 01", "0: 18100000 01", "0: 701 05", "0: 081 00"}));
+}
+
+TEST(VirtualBus, FramesSentDuringDeliveryWaitTheirTurn) {
+  VirtualBus bus;
+  Log log{bus};
+  auto& client = bus.attach();
+  auto& server = bus.attach();
+  bool inside = false;
+  server.on_frame = [&](const Frame& got, TimePoint) { server.send(Frame{.id = got.id + 1}); };
+  client.on_frame = [&](const Frame& got, TimePoint) {
+    EXPECT_FALSE(inside);
+    inside = true;
+    if (got.id < 0x105) client.send(Frame{.id = got.id + 1});
+    inside = false;
+  };
+  client.send(frame("100"));
+  EXPECT_EQ(bus.settle(), 6u);
+}
+
+TEST(VirtualBus, AFrameTakesItsTimeOnTheWire) {
+  VirtualBus bus{500'000};
+  Log log{bus};
+  auto& sender = bus.attach();
+  sender.send(frame("181 01 02 03 04 05 06 07 08"));  // 111 bits
+  sender.send(frame("701 05"));                       // 55 bits
+  bus.run_for(1ms);
+  EXPECT_EQ(log.lines, (Lines{"222: 181 01 02 03 04 05 06 07 08", "332: 701 05"}));
+}
+
+TEST(VirtualBus, AFullQueueHasNoRoom) {
+  VirtualBus bus;
+  auto& sender = bus.attach();
+  sender.queue_limit = 1;
+  EXPECT_TRUE(sender.send(frame("181")));
+  EXPECT_FALSE(sender.send(frame("181")));
+}
+
+TEST(VirtualBus, TimeGoesFromDeadlineToDeadline) {
+  VirtualBus bus;
+  Log log{bus};
+  auto& endpoint = bus.attach();
+  auto node = canopen::make_node<sample::Device>(endpoint, canopen::NodeId{5});
+  VirtualBus::connect(endpoint, node);
+  node.start(bus.now());
+  node.set<od::producer_heartbeat_time>(100);
+  bus.run_for(250ms);
+  EXPECT_EQ(log.lines, (Lines{"0: 705 00", "0: 705 7F", "100000: 705 7F", "200000: 705 7F"}));
+  EXPECT_EQ(bus.now(), TimePoint{250ms});
+}
+
+TEST(VirtualBus, NodesTalkToEachOther) {
+  VirtualBus bus{250'000};
+  Log log{bus};
+  auto& master = bus.attach();
+  auto& endpoint = bus.attach();
+  auto node = canopen::make_node<sample::Device>(
+      endpoint, canopen::NodeId{5},
+      canopen::on_write<od::controlword>([](auto& device, std::uint16_t v) { device.template set<od::statusword>(v); }));
+  VirtualBus::connect(endpoint, node);
+  node.start(bus.now());
+  bus.settle();
+  master.send(frame("000 01 05"));
+  bus.settle();
+  log.lines.clear();
+  master.send(frame("205 0F 00 00 00 00 00 00"));
+  bus.settle();
+  ASSERT_EQ(log.lines.size(), 2u);
+  EXPECT_NE(log.lines[1].find("185 0F 00 00 00 00 00"), std::string::npos);
+}
+
+TEST(VirtualBus, ANodeWhoseQueueIsFullSendsLater) {
+  VirtualBus bus{1'000'000};
+  Log log{bus};
+  auto& endpoint = bus.attach();
+  endpoint.queue_limit = 1;
+  auto node = canopen::make_node<sample::Device>(endpoint, canopen::NodeId{5});
+  VirtualBus::connect(endpoint, node);
+  node.start(bus.now());
+  node.set<od::producer_heartbeat_time>(100);
+  bus.run_for(10ms);
+  EXPECT_EQ(log.lines, (Lines{"55: 705 00", "110: 705 7F"}));
+}
+
+}  // namespace
