@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <cstring>
-#include <memory>
 #include <span>
 
 #include "canopen/abort_code.hpp"

@@ -5,8 +5,9 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
-#include <memory>
+#include <optional>
 #include <span>
+#include <type_traits>
 
 #include "canopen/abort_code.hpp"
 #include "canopen/dictionary.hpp"

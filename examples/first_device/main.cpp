@@ -1,0 +1,29 @@
+/// A pump on a simulated bus: a master starts it and sends a speed, the pump answers with its pressure.
+#include <canopen/node.hpp>
+#include <canopen/port/virtual_bus.hpp>
+#include <cstdio>
+#include <pump/device.hpp>
+
+namespace od = pump::od;
+
+int main() {
+  canopen::VirtualBus bus;
+  auto& port = bus.attach();
+  auto& master = bus.attach();
+  master.on_frame = [](const canopen::Frame& frame, canopen::TimePoint) {
+    if (frame.id == 0x185) std::printf("pressure %u mbar\n", unsigned{pump::Tpdo1::get<0>(frame.data)});
+  };
+
+  auto node = canopen::make_node<pump::Device>(
+      port, canopen::NodeId{5},  // an SDO write or RPDO 1 with a new speed comes here
+      canopen::on_write<od::speed_setpoint>([](auto& pump, std::uint16_t speed) {
+        pump.template set<od::pressure>(static_cast<std::uint16_t>(speed / 4));  // TPDO 1 goes out
+      }));
+  bus.connect(port, node);
+
+  node.start(bus.now());
+  master.send({.id = 0x000, .size = 2, .data = {0x01, 0x05}});                               // NMT: start node 5
+  master.send({.id = 0x205, .size = pump::Rpdo1::size, .data = pump::Rpdo1::pack(1'680)});  // RPDO 1
+  bus.settle();
+  return node.get<od::pressure>() == 420 ? 0 : 1;
+}
