@@ -38,9 +38,18 @@ class Player {
     if (!trace_.power_on) outbox_.frames.clear();
     for (const Line& line : trace_.lines) {
       switch (line.step) {
-        case Step::set: expect_silence(line); set(line); break;
-        case Step::pass: expect_silence(line); pass(line.span); break;
-        case Step::send: expect_silence(line); send(line); break;
+        case Step::set:
+          expect_silence(line);
+          set(line);
+          break;
+        case Step::pass:
+          expect_silence(line);
+          pass(line.span);
+          break;
+        case Step::send:
+          expect_silence(line);
+          send(line);
+          break;
         case Step::expect: expect(line); break;
         case Step::read: read(line); break;
       }

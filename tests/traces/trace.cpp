@@ -22,8 +22,8 @@ std::string without_comment(const std::string& line) {
 std::uint64_t number(const std::string& text, int base = 0) {
   std::size_t used = 0;
   const bool negative = text.starts_with('-');
-  const std::uint64_t value = negative ? static_cast<std::uint64_t>(std::stoll(text, &used, base))
-                                       : std::stoull(text, &used, base);
+  const std::uint64_t value =
+      negative ? static_cast<std::uint64_t>(std::stoll(text, &used, base)) : std::stoull(text, &used, base);
   if (used != text.size()) throw std::invalid_argument{"\"" + text + "\" is not a number"};
   return value;
 }
@@ -150,13 +150,15 @@ Trace read(const std::filesystem::path& file) {
       throw std::runtime_error{trace.file + ":" + std::to_string(number_of_line) + ": " + problem.what()};
     }
   }
-  if (trace.device.empty() || !trace.node_id.valid()) throw std::runtime_error{trace.file + ": no device or no node-ID"};
+  if (trace.device.empty() || !trace.node_id.valid())
+    throw std::runtime_error{trace.file + ": no device or no node-ID"};
   return trace;
 }
 
 std::string to_text(const Pattern& pattern) {
   char piece[16];
-  std::snprintf(piece, sizeof piece, pattern.frame.extended ? "%08X " : "%03X ", static_cast<unsigned>(pattern.frame.id));
+  std::snprintf(piece, sizeof piece, pattern.frame.extended ? "%08X " : "%03X ",
+                static_cast<unsigned>(pattern.frame.id));
   std::string text = piece;
   if (pattern.frame.remote) return text + " R " + std::to_string(pattern.frame.size);
   for (std::size_t i = 0; i < pattern.frame.size; ++i) {

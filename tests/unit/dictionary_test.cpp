@@ -1,5 +1,5 @@
-#include <canopen/dictionary.hpp>
 #include <gtest/gtest.h>
+#include <canopen/dictionary.hpp>
 
 #include <cstdint>
 #include <sample/dictionary.hpp>
@@ -57,8 +57,14 @@ TEST(Dictionary, EveryEntryIsFoundWhereTheTablesHaveIt) {
 
 TEST(Dictionary, RejectsRunsOutOfOrder) {
   static constexpr canopen::Run runs[] = {{0x2000, 0}, {0x1000, 1}, {0xFFFF, 2}};
-  static constexpr entry::Word entries[] = {entry::immediate | entry::u8 | entry::ro, entry::immediate | entry::u8 | entry::ro};
-  const Dictionary dictionary{.runs = runs, .entries = entries, .groups = {}, .subs = {}, .limits = {}, .wide_limits = {},
+  static constexpr entry::Word entries[] = {entry::immediate | entry::u8 | entry::ro,
+                                            entry::immediate | entry::u8 | entry::ro};
+  const Dictionary dictionary{.runs = runs,
+                              .entries = entries,
+                              .groups = {},
+                              .subs = {},
+                              .limits = {},
+                              .wide_limits = {},
                               .constants = nullptr};
   EXPECT_FALSE(dictionary.well_formed());
 }

@@ -1,5 +1,5 @@
-#include <canopen/node.hpp>
 #include <gtest/gtest.h>
+#include <canopen/node.hpp>
 
 #include <array>
 #include <limits>
@@ -115,8 +115,7 @@ TEST(Node, SendsTheAnswerBeforeTheHeartbeatAndTheHeartbeatBeforePdos) {
     node.template set<od::producer_heartbeat_time>(100);
   }));
   device.ask(bench::start);
-  EXPECT_EQ(device.ask("605 23 83 60 00 01 00 00 00"),
-            "585 60 83 60 00 00 00 00 00 | 705 05 | 185 01 00 00 00 00 00");
+  EXPECT_EQ(device.ask("605 23 83 60 00 01 00 00 00"), "585 60 83 60 00 00 00 00 00 | 705 05 | 185 01 00 00 00 00 00");
 }
 
 }  // namespace

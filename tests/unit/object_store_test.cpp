@@ -1,5 +1,5 @@
-#include <canopen/object_store.hpp>
 #include <gtest/gtest.h>
+#include <canopen/object_store.hpp>
 
 #include <array>
 #include <cstdint>
@@ -109,13 +109,13 @@ TEST(ObjectStore, TheElementsOfAnArrayShareTheirLimits) {
 
 TEST(ObjectStore, ChecksRealLimits) {
   Store store = fresh();
-  EXPECT_EQ(check(store, 0x200A, 0, {0, 0, 0xC0, 0x3F}), canopen::ok);                   // 1.5
-  EXPECT_EQ(check(store, 0x200A, 0, {1, 0, 0xC0, 0x3F}), AbortCode::value_too_high);     // the next one
-  EXPECT_EQ(check(store, 0x200A, 0, {0, 0, 0xC0, 0xBF}), canopen::ok);                   // -1.5
+  EXPECT_EQ(check(store, 0x200A, 0, {0, 0, 0xC0, 0x3F}), canopen::ok);                // 1.5
+  EXPECT_EQ(check(store, 0x200A, 0, {1, 0, 0xC0, 0x3F}), AbortCode::value_too_high);  // the next one
+  EXPECT_EQ(check(store, 0x200A, 0, {0, 0, 0xC0, 0xBF}), canopen::ok);                // -1.5
   EXPECT_EQ(check(store, 0x200A, 0, {1, 0, 0xC0, 0xBF}), AbortCode::value_too_low);
-  EXPECT_EQ(check(store, 0x200A, 0, {0, 0, 0, 0x80}), canopen::ok);                      // -0
-  EXPECT_EQ(check(store, 0x200A, 0, {0, 0, 0x80, 0x7F}), AbortCode::value_too_high);     // infinity
-  EXPECT_EQ(check(store, 0x200A, 0, {0, 0, 0xC0, 0xFF}), AbortCode::invalid_value);      // not a number
+  EXPECT_EQ(check(store, 0x200A, 0, {0, 0, 0, 0x80}), canopen::ok);                   // -0
+  EXPECT_EQ(check(store, 0x200A, 0, {0, 0, 0x80, 0x7F}), AbortCode::value_too_high);  // infinity
+  EXPECT_EQ(check(store, 0x200A, 0, {0, 0, 0xC0, 0xFF}), AbortCode::invalid_value);   // not a number
 }
 
 TEST(ObjectStore, ResetOfCommunicationLeavesTheApplicationAlone) {

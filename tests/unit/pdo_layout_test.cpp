@@ -1,5 +1,5 @@
-#include <canopen/pdo.hpp>
 #include <gtest/gtest.h>
+#include <canopen/pdo.hpp>
 
 #include <array>
 #include <cstdint>
@@ -80,7 +80,8 @@ void check_lengths(std::integer_sequence<unsigned, Length...>) {
 TEST(PdoLayout, PutsEveryLengthAtEveryBit) {
   [&]<unsigned... First>(std::integer_sequence<unsigned, First...>) {
     (check_lengths<First>(std::make_integer_sequence<unsigned, 64 - First>{}), ...);
-  }(std::make_integer_sequence<unsigned, 64>{});
+  }
+  (std::make_integer_sequence<unsigned, 64>{});
 }
 
 TEST(PdoLayout, CarriesRealsAndTimes) {

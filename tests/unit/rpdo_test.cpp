@@ -79,9 +79,9 @@ TEST(Rpdo, ValuesOutsideTheirLimitsAreNotTakenTheOthersAre) {
 TEST(Rpdo, CallsTheWriteHandlersAndHeedsTheirAnswer) {
   std::vector<int> commands;
   auto device = bench::with(canopen::on_write<od::controlword>([&](std::uint16_t command) {
-                              commands.push_back(command);
-                              return command <= 0x0F ? canopen::ok : canopen::AbortCode::value_too_high;
-                            }));
+    commands.push_back(command);
+    return command <= 0x0F ? canopen::ok : canopen::AbortCode::value_too_high;
+  }));
   device.ask(bench::start);
   device.ask("205 0F 00 01 00 00 00 00");
   device.ask("205 10 00 02 00 00 00 00");

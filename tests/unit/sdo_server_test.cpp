@@ -473,8 +473,9 @@ TEST(SdoServer, AsksTheWriteHandlerBeforeItStores) {
 TEST(SdoServer, GivesStringsAndDomainsToTheirHandlers) {
   std::string text;
   std::uint32_t bytes = 0;
-  auto device = bench::with(canopen::on_write<od::visible_string_value>([&](const auto& value) { text = value.view(); }),
-                            canopen::on_write<od::parameter_file>([&](canopen::Domain file) { bytes = file.size; }));
+  auto device =
+      bench::with(canopen::on_write<od::visible_string_value>([&](const auto& value) { text = value.view(); }),
+                  canopen::on_write<od::parameter_file>([&](canopen::Domain file) { bytes = file.size; }));
   std::array<std::uint8_t, 4> memory{};
   device.node.bind<od::parameter_file>(memory);
   device.ask("605 2B 0C 20 00 48 69 00 00");
@@ -484,9 +485,10 @@ TEST(SdoServer, GivesStringsAndDomainsToTheirHandlers) {
 }
 
 TEST(SdoServer, LetsTheReadHandlerRefreshTheValue) {
-  auto device = bench::with(canopen::on_read<od::position_actual_value>([] { return std::int32_t{77}; }),
-                            canopen::on_read<od::statusword>([](auto& node) { node.template set<od::statusword>(0x37); }),
-                            canopen::on_read<od::integer16_value>([] { return AbortCode::hardware; }));
+  auto device =
+      bench::with(canopen::on_read<od::position_actual_value>([] { return std::int32_t{77}; }),
+                  canopen::on_read<od::statusword>([](auto& node) { node.template set<od::statusword>(0x37); }),
+                  canopen::on_read<od::integer16_value>([] { return AbortCode::hardware; }));
   EXPECT_EQ(device.ask("605 40 64 60 00 00 00 00 00"), "585 43 64 60 00 4D 00 00 00");
   EXPECT_EQ(device.ask("605 40 41 60 00 00 00 00 00"), "585 4B 41 60 00 37 00 00 00");
   EXPECT_EQ(device.ask("605 40 02 20 00 00 00 00 00"), "585 80 02 20 00 00 00 06 06");

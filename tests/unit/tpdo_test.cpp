@@ -188,7 +188,8 @@ TEST(Tpdo, ItsCanIdCannotChangeWhileItIsValid) {
 TEST(Tpdo, CannotBeMadeValidWithARestrictedCanId) {
   Bench device;
   device.ask("605 23 00 18 01 85 01 00 C0");
-  for (const std::string id : {"00 00", "01 00", "7F 00", "01 01", "80 01", "81 05", "01 06", "E0 06", "01 07", "80 07"}) {
+  for (const std::string id :
+       {"00 00", "01 00", "7F 00", "01 01", "80 01", "81 05", "01 06", "E0 06", "01 07", "80 07"}) {
     EXPECT_EQ(device.ask("605 23 00 18 01 " + id + " 00 40"), "585 80 00 18 01 30 00 09 06") << id;
     EXPECT_EQ(device.ask("605 23 00 18 01 " + id + " 00 C0"), "585 60 00 18 01 00 00 00 00") << id;
   }

@@ -1,6 +1,6 @@
+#include <gtest/gtest.h>
 #include <canopen/node.hpp>
 #include <canopen/port/virtual_bus.hpp>
-#include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
@@ -110,9 +110,10 @@ TEST(VirtualBus, NodesTalkToEachOther) {
   Log log{bus};
   auto& master = bus.attach();
   auto& endpoint = bus.attach();
-  auto node = canopen::make_node<sample::Device>(
-      endpoint, canopen::NodeId{5},
-      canopen::on_write<od::controlword>([](auto& device, std::uint16_t v) { device.template set<od::statusword>(v); }));
+  auto node = canopen::make_node<sample::Device>(endpoint, canopen::NodeId{5},
+                                                 canopen::on_write<od::controlword>([](auto& device, std::uint16_t v) {
+                                                   device.template set<od::statusword>(v);
+                                                 }));
   VirtualBus::connect(endpoint, node);
   node.start(bus.now());
   bus.settle();

@@ -31,9 +31,9 @@ inline constexpr std::uint16_t error_control = 0x700;
 /// A COB-ID as the communication parameters hold it: a CAN-ID and three flags (CiA 301, 7.5.2.x).
 class CobId {
  public:
-  static constexpr std::uint32_t invalid_bit = 0x8000'0000;  ///< PDO, SDO, EMCY: does not exist
-  static constexpr std::uint32_t no_rtr_bit = 0x4000'0000;   ///< TPDO: no remote frame; SYNC: this device produces it
-  static constexpr std::uint32_t extended_bit = 0x2000'0000; ///< 29-bit identifier
+  static constexpr std::uint32_t invalid_bit = 0x8000'0000;   ///< PDO, SDO, EMCY: does not exist
+  static constexpr std::uint32_t no_rtr_bit = 0x4000'0000;    ///< TPDO: no remote frame; SYNC: this device produces it
+  static constexpr std::uint32_t extended_bit = 0x2000'0000;  ///< 29-bit identifier
 
   constexpr CobId() = default;
   constexpr explicit CobId(std::uint32_t value) : value_{value} {}
@@ -63,14 +63,8 @@ inline constexpr RestrictedCanIds restricted_can_ids[] = {
 
 /// Why, row by row: for messages only, so that a device's image does not hold them.
 inline constexpr const char* restricted_can_id_reasons[] = {
-    "NMT",
-    "reserved",
-    "reserved",
-    "default SDO, server to client",
-    "default SDO, client to server",
-    "reserved",
-    "NMT error control",
-    "reserved",
+    "NMT",      "reserved",          "reserved", "default SDO, server to client", "default SDO, client to server",
+    "reserved", "NMT error control", "reserved",
 };
 
 /// Whether an 11-bit CAN-ID may not be used by a configurable object.
@@ -84,7 +78,8 @@ inline constexpr const char* restricted_can_id_reasons[] = {
 /// Why an 11-bit CAN-ID may not be used by a configurable object; null when it may.
 [[nodiscard]] constexpr const char* restriction_of(std::uint32_t can_id) {
   for (std::size_t i = 0; i < std::size(restricted_can_ids); ++i) {
-    if (can_id >= restricted_can_ids[i].first && can_id <= restricted_can_ids[i].last) return restricted_can_id_reasons[i];
+    if (can_id >= restricted_can_ids[i].first && can_id <= restricted_can_ids[i].last)
+      return restricted_can_id_reasons[i];
   }
   return nullptr;
 }

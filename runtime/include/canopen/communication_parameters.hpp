@@ -24,11 +24,15 @@ inline constexpr std::uint8_t inhibit_time = 3;
 inline constexpr std::uint8_t event_timer = 5;
 }  // namespace pdo_parameter
 
-[[nodiscard]] constexpr bool is_rpdo_communication(std::uint16_t index) { return (index & 0xFE00) == rpdo_communication; }
-[[nodiscard]] constexpr bool is_tpdo_communication(std::uint16_t index) { return (index & 0xFE00) == tpdo_communication; }
+[[nodiscard]] constexpr bool is_rpdo_communication(std::uint16_t index) {
+  return (index & 0xFE00) == rpdo_communication;
+}
+[[nodiscard]] constexpr bool is_tpdo_communication(std::uint16_t index) {
+  return (index & 0xFE00) == tpdo_communication;
+}
 
-/// Whether a PDO may go from one COB-ID to another. 0609 0030h: its CAN-ID may change only while the PDO is not valid, is of
-/// 11 or 29 bits, and one that other services need cannot be made valid.
+/// Whether a PDO may go from one COB-ID to another. 0609 0030h: its CAN-ID may change only while the PDO is not valid,
+/// is of 11 or 29 bits, and one that other services need cannot be made valid.
 [[nodiscard]] constexpr AbortCode check_pdo_cob_id(CobId before, CobId after) {
   constexpr std::uint32_t identifier = 0x3FFF'FFFF;
   const bool changed = ((before.value() ^ after.value()) & identifier) != 0;
@@ -58,8 +62,8 @@ inline constexpr std::uint8_t event_timer = 5;
   return AbortCode::invalid_value;
 }
 
-/// What speaks against writing these bytes, whose length is right, to 1400h..15FFh or 1800h..19FFh. Bits of a COB-ID that
-/// the device does not let change are put back into `bytes`.
+/// What speaks against writing these bytes, whose length is right, to 1400h..15FFh or 1800h..19FFh. Bits of a COB-ID
+/// that the device does not let change are put back into `bytes`.
 [[nodiscard]] inline AbortCode check_pdo_parameter(const DeviceOptions& options, const EntryAccess& entries,
                                                    std::uint16_t index, std::uint8_t sub_index,
                                                    std::span<std::uint8_t> bytes) {

@@ -12,12 +12,13 @@ struct DeviceOptions {
   std::uint32_t pdo_cob_id_writable = 0xFFFF'FFFF;
   /// PDOs may have 29-bit CAN-IDs. If not, a write with bit 29 set is refused: 0609 0030h.
   bool pdo_extended_ids = true;
-  /// TPDOs may answer remote frames. If not, bit 30 of a valid one must be 1 and types 252 and 253 are refused: 0609 0030h.
+  /// TPDOs may answer remote frames. If not, bit 30 of a valid one must be 1 and types 252 and 253 are refused: 0609
+  /// 0030h.
   bool tpdo_remote_frames = true;
   /// 1800h..19FFh:03 may change while the PDO is valid. If not: 0800 0022h.
   bool inhibit_time_writable_while_valid = false;
-  /// TPDOs of types 254 and 255 are sent when a mapped object changes and on entering Operational; if not, by their event
-  /// timer alone.
+  /// TPDOs of types 254 and 255 are sent when a mapped object changes and on entering Operational; if not, by their
+  /// event timer alone.
   bool event_driven_on_change = true;
   /// Expedited uploads tell how many bytes are valid. If not, they answer 42h.
   bool sdo_upload_size_indicated = true;

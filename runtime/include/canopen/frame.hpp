@@ -9,8 +9,8 @@ namespace canopen {
 
 /// A classic CAN data or remote frame. The data begin at a multiple of four, so that codecs may use whole words.
 struct Frame {
-  std::uint32_t id = 0;  ///< 11 bits, or 29 with `extended`
-  std::uint8_t size = 0; ///< number of data bytes, 0..8; of a remote frame the length asked for
+  std::uint32_t id = 0;   ///< 11 bits, or 29 with `extended`
+  std::uint8_t size = 0;  ///< number of data bytes, 0..8; of a remote frame the length asked for
   bool extended = false;
   bool remote = false;
   alignas(4) std::array<std::uint8_t, 8> data{};

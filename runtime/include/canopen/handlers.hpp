@@ -1,5 +1,5 @@
-/// What the application does when the bus reads or writes an object or the NMT state changes: callables kept by value in
-/// the node and found by comparing numbers, without heap and without indirect calls.
+/// What the application does when the bus reads or writes an object or the NMT state changes: callables kept by value
+/// in the node and found by comparing numbers, without heap and without indirect calls.
 ///
 ///     auto drive = canopen::make_node<Device>(bus, NodeId{5},
 ///         canopen::on_write<od::controlword>([](std::uint16_t command) { return accept(command); }),
@@ -102,7 +102,7 @@ template <DictionaryObject O>
 template <class Handler, class O>
 inline constexpr bool is_write_handler_of = false;
 template <class P, class F, class O>
-inline constexpr bool is_write_handler_of<WriteHandler<P, F>, O> = P::index == O::index && P::sub_index == O::sub_index;
+inline constexpr bool is_write_handler_of<WriteHandler<P, F>, O> = P::index == O::index&& P::sub_index == O::sub_index;
 
 template <class Node, DictionaryObject O, class F>
 AbortCode write(WriteHandler<O, F>& handler, Node& node, const typename O::type& value) {
@@ -199,7 +199,8 @@ class HandlerSet {
     return ok;
   }
   template <DictionaryObject O, class F, class Node>
-  static AbortCode offer_write(WriteHandler<O, F>& handler, Node& node, std::uint32_t key, std::span<std::uint8_t> bytes) {
+  static AbortCode offer_write(WriteHandler<O, F>& handler, Node& node, std::uint32_t key,
+                               std::span<std::uint8_t> bytes) {
     if (key != object_key(O::index, O::sub_index)) return ok;
     return handler_detail::write(handler, node, handler_detail::value_from<O>(bytes));
   }

@@ -52,9 +52,7 @@ class HeartbeatProducer {
   [[nodiscard]] bool boot_up_due() const { return boot_up_due_; }
 
   /// When the next heartbeat is due.
-  [[nodiscard]] std::optional<TimePoint> next_deadline() const {
-    return running_ ? std::optional{due_} : std::nullopt;
-  }
+  [[nodiscard]] std::optional<TimePoint> next_deadline() const { return running_ ? std::optional{due_} : std::nullopt; }
 
  private:
   template <Bus B>

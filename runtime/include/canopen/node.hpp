@@ -25,11 +25,13 @@
 
 namespace canopen {
 
-/// `Device` is what edsc generates. A bus without state is kept by value, another one by reference and must outlive the node.
+/// `Device` is what edsc generates. A bus without state is kept by value, another one by reference and must outlive the
+/// node.
 template <class Device, Bus B, class... Handlers>
 class Node {
  public:
-  static_assert(HandlerSet<Handlers...>::known_to(Device::dictionary), "a handler is for an object that this device has not");
+  static_assert(HandlerSet<Handlers...>::known_to(Device::dictionary),
+                "a handler is for an object that this device has not");
 
   constexpr Node(B& can_bus, NodeId node_id, Handlers... handlers)
       : bus_{can_bus}, handlers_{std::move(handlers)...}, node_id_{node_id} {}
@@ -74,8 +76,8 @@ class Node {
     serve();
   }
 
-  /// When `on_time` has something to do next: not later than the last time told when it has already. Nothing: only a frame
-  /// or the application makes this node send.
+  /// When `on_time` has something to do next: not later than the last time told when it has already. Nothing: only a
+  /// frame or the application makes this node send.
   [[nodiscard]] std::optional<TimePoint> next_deadline() const {
     if (state_ == NmtState::initialisation) return std::nullopt;
     if (heartbeat_.boot_up_due() || sdo_.has_reply()) return now_;
@@ -97,9 +99,9 @@ class Node {
     return store_.template get<O>();
   }
 
-  /// Sets an object, whatever its access on the bus. TPDOs that carry it go out with the next `on_time` or `on_frame` when
-  /// the value is a new one. Refused outside the limits of the data sheet: value_too_high, value_too_low, or invalid_value
-  /// for a REAL that is not a number.
+  /// Sets an object, whatever its access on the bus. TPDOs that carry it go out with the next `on_time` or `on_frame`
+  /// when the value is a new one. Refused outside the limits of the data sheet: value_too_high, value_too_low, or
+  /// invalid_value for a REAL that is not a number.
   template <DictionaryObject O>
   AbortCode set(const typename O::type& value) {
     static_assert(!std::is_same_v<typename O::type, Domain>, "the memory of a DOMAIN is bound with bind()");
@@ -125,7 +127,8 @@ class Node {
   template <DictionaryObject O>
   void bind(std::span<std::uint8_t> memory, std::size_t size) {
     static_assert(std::is_same_v<typename O::type, Domain>, "only a DOMAIN is bound to memory");
-    store_.template set<O>({memory.data(), static_cast<std::uint32_t>(size), static_cast<std::uint32_t>(memory.size())});
+    store_.template set<O>(
+        {memory.data(), static_cast<std::uint32_t>(size), static_cast<std::uint32_t>(memory.size())});
     sdo_.domain_rebound(O::index, O::sub_index);
     attention_ = true;
   }
@@ -265,7 +268,8 @@ class Node {
   // PDO
 
   void on_rpdo(const Frame& frame) {
-    RpdoService<Device>::on_frame(store_, frame, [this]<DictionaryObject O>(const typename O::type& value) { this->template take<O>(value); });
+    RpdoService<Device>::on_frame(
+        store_, frame, [this]<DictionaryObject O>(const typename O::type& value) { this->template take<O>(value); });
   }
 
   /// A value from an RPDO. One that is outside its limits or that its handler refuses is not taken.

@@ -1,6 +1,7 @@
 /// The values of one device: typed access by object, and access by index and sub-index for the services.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstring>
 #include <memory>
@@ -13,7 +14,8 @@
 
 namespace canopen {
 
-static_assert(std::endian::native == std::endian::little, "values lie in memory as CiA 301, 7.1 sends them: low byte first");
+static_assert(std::endian::native == std::endian::little,
+              "values lie in memory as CiA 301, 7.1 sends them: low byte first");
 
 /// Memory and tables behind one node's entries, whatever its device: what an SDO server works on.
 class EntryAccess {
@@ -270,13 +272,17 @@ class ObjectStore {
   /// Default values for 1000h..1FFFh, with the node-ID added where the data sheet says so.
   void reset_communication(NodeId node_id) {
     node_id_ = node_id;
+    const BoundDomains bound = bound_domains();
     Device::reset_communication(values_);
+    bind_again(bound);
     add_node_id(Device::node_id_relative_communication());
   }
 
   /// Default values for 2000h..9FFFh.
   void reset_application() {
+    const BoundDomains bound = bound_domains();
     Device::reset_application(values_);
+    bind_again(bound);
     add_node_id(Device::node_id_relative_application());
   }
 
@@ -298,6 +304,48 @@ class ObjectStore {
     T value;
     std::memcpy(&value, std::assume_aligned<alignof(T)>(base + Offset), sizeof value);
     return value;
+  }
+
+  /// Calls `visit(offset)` for each DOMAIN of the dictionary.
+  template <class Visit>
+  static constexpr void for_each_domain(Visit visit) {
+    const Dictionary& dictionary = Device::dictionary;
+    for (std::size_t run = 0; run + 1 < dictionary.runs.size(); ++run) {
+      for (std::uint32_t at = dictionary.runs[run].position; at < dictionary.runs[run + 1].position; ++at) {
+        const auto index = static_cast<std::uint16_t>(dictionary.runs[run].first + at - dictionary.runs[run].position);
+        const entry::Word word = dictionary.entries[at];
+        const bool var = entry::kind_of(word) == entry::Kind::var;
+        const unsigned highest = var ? 0u : dictionary.groups[entry::offset_of(word)].highest;
+        for (unsigned sub_index = 0; sub_index <= highest; ++sub_index) {
+          const entry::Word found = dictionary.find(index, static_cast<std::uint8_t>(sub_index));
+          if (found > Dictionary::no_sub_index && entry::is_domain(found)) visit(entry::offset_of(found));
+        }
+      }
+    }
+  }
+
+  static constexpr std::size_t domain_count = [] {
+    std::size_t count = 0;
+    for_each_domain([&](std::uint16_t) { ++count; });
+    return count;
+  }();
+
+  static constexpr std::array<std::uint16_t, domain_count> domain_offsets = [] {
+    std::array<std::uint16_t, domain_count> offsets{};
+    std::size_t i = 0;
+    for_each_domain([&](std::uint16_t offset) { offsets[i++] = offset; });
+    return offsets;
+  }();
+
+  /// The application binds a DOMAIN to memory once: a reset keeps that.
+  using BoundDomains = std::array<Domain, domain_count>;
+  [[nodiscard]] BoundDomains bound_domains() {
+    BoundDomains bound{};
+    for (std::size_t i = 0; i < domain_count; ++i) std::memcpy(&bound[i], ram() + domain_offsets[i], sizeof(Domain));
+    return bound;
+  }
+  void bind_again(const BoundDomains& bound) {
+    for (std::size_t i = 0; i < domain_count; ++i) std::memcpy(ram() + domain_offsets[i], &bound[i], sizeof(Domain));
   }
 
   [[nodiscard]] std::uint8_t* ram() { return reinterpret_cast<std::uint8_t*>(&values_); }

@@ -39,7 +39,7 @@ inline constexpr bool is_dummy = O::index < 0x0020;
 
 /// Has a length that is known without a value: strings and domains have not.
 template <class O>
-concept FixedLength = DictionaryObject<O> && (O::bits > 0);
+concept FixedLength = DictionaryObject<O> &&(O::bits > 0);
 
 /// A TPDO may carry it: its data sheet says PDOMapping=1 and an access of ro, rw, rwr or const.
 template <class O>
@@ -51,7 +51,9 @@ concept RpdoMappable = DictionaryObject<O> && allows(O::mappable, Mappable::rpdo
 
 namespace pdo_detail {
 
-[[nodiscard]] constexpr std::uint64_t mask(unsigned bits) { return bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1; }
+[[nodiscard]] constexpr std::uint64_t mask(unsigned bits) {
+  return bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
+}
 
 template <class T>
 [[nodiscard]] constexpr std::uint64_t to_bits(const T& value) {
@@ -110,7 +112,8 @@ template <class Value, unsigned Shift, std::size_t I>
   }
 }
 
-/// Puts the low `Bits` bits of `raw` at bit `At` of the data; what stood there is zero. Whole bytes become plain stores.
+/// Puts the low `Bits` bits of `raw` at bit `At` of the data; what stood there is zero. Whole bytes become plain
+/// stores.
 template <unsigned At, unsigned Bits>
 constexpr void put(std::array<std::uint8_t, 8>& data, std::uint64_t raw) {
   const auto value = static_cast<Raw<Bits>>(raw & mask(Bits));
@@ -120,7 +123,8 @@ constexpr void put(std::array<std::uint8_t, 8>& data, std::uint64_t raw) {
     } else {
       ((data[At / 8 + I] = static_cast<std::uint8_t>(data[At / 8 + I] | byte_of<At % 8, I>(value))), ...);
     }
-  }(TouchedBytes<At, Bits>{});
+  }
+  (TouchedBytes<At, Bits>{});
 }
 
 template <unsigned At, unsigned Bits>
@@ -128,7 +132,8 @@ template <unsigned At, unsigned Bits>
   using Value = Raw<Bits>;
   return [&]<std::size_t... I>(std::index_sequence<I...>) {
     return (Value{0} | ... | bits_of<Value, At % 8, I>(data[At / 8 + I]));
-  }(TouchedBytes<At, Bits>{}) & mask(Bits);
+  }
+  (TouchedBytes<At, Bits>{}) & mask(Bits);
 }
 
 }  // namespace pdo_detail
@@ -185,8 +190,8 @@ struct PdoLayout {
   /// Calls `visit.template operator()<O, I>()` for each entry in order.
   template <class Visit>
   static constexpr void for_each(Visit&& visit) {
-    [&]<std::size_t... I>(std::index_sequence<I...>) { (visit.template operator()<Objects, I>(), ...); }(
-        std::index_sequence_for<Objects...>{});
+    [&]<std::size_t... I>(std::index_sequence<I...>) { (visit.template operator()<Objects, I>(), ...); }
+    (std::index_sequence_for<Objects...>{});
   }
 
  private:
@@ -224,8 +229,8 @@ struct PdoList {
   /// Calls `visit.template operator()<Pdo, I>()` for each PDO in order.
   template <class Visit>
   static constexpr void for_each([[maybe_unused]] Visit&& visit) {
-    [&]<std::size_t... I>(std::index_sequence<I...>) { (visit.template operator()<Pdos, I>(), ...); }(
-        std::index_sequence_for<Pdos...>{});
+    [&]<std::size_t... I>(std::index_sequence<I...>) { (visit.template operator()<Pdos, I>(), ...); }
+    (std::index_sequence_for<Pdos...>{});
   }
 };
 
@@ -240,8 +245,8 @@ struct Served<D, FirstParameter, PdoList<Taken...>, PdoList<>> {
 template <const Dictionary& D, std::uint16_t FirstParameter, class... Taken, class P, class... Rest>
 struct Served<D, FirstParameter, PdoList<Taken...>, PdoList<P, Rest...>> {
   static constexpr bool serves = P::entries > 0 && D.has(FirstParameter + P::number - 1, 1);
-  using type = typename Served<D, FirstParameter,
-                               std::conditional_t<serves, PdoList<Taken..., P>, PdoList<Taken...>>, PdoList<Rest...>>::type;
+  using type = typename Served<D, FirstParameter, std::conditional_t<serves, PdoList<Taken..., P>, PdoList<Taken...>>,
+                               PdoList<Rest...>>::type;
 };
 
 }  // namespace pdo_detail

@@ -28,7 +28,8 @@ template <Bus B>
 class SdoClient {
  public:
   /// A server that is silent for `timeout` ends the transfer with 0504 0000h, which the server is told.
-  constexpr SdoClient(B& can_bus, NodeId server, Duration timeout) : bus_{can_bus}, timeout_{timeout}, server_{server} {}
+  constexpr SdoClient(B& can_bus, NodeId server, Duration timeout)
+      : bus_{can_bus}, timeout_{timeout}, server_{server} {}
 
   /// Begins to read an entry into `memory`. 0504 0005h: the value is longer than that. False while busy.
   bool upload(std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> memory, TimePoint now) {
@@ -62,15 +63,11 @@ class SdoClient {
 
   /// Begins to read an object of a generated dictionary; `value()` gives it. Strings and DOMAINs need `upload`.
   template <DictionaryObject O>
-    requires(O::bits > 0)
-  bool read(TimePoint now) {
-    return upload(O::index, O::sub_index, number_, now);
-  }
+  requires(O::bits > 0) bool read(TimePoint now) { return upload(O::index, O::sub_index, number_, now); }
 
   /// The value that `read<O>` brought; the abort code of the transfer, or 0607 0010h when its length is another one.
   template <DictionaryObject O>
-    requires(O::bits > 0)
-  [[nodiscard]] std::optional<typename O::type> value() {
+  requires(O::bits > 0) [[nodiscard]] std::optional<typename O::type> value() {
     if (busy() || result_ != ok) return std::nullopt;
     if (position_ < (O::bits + 7u) / 8u) {
       result_ = AbortCode::length_mismatch;
@@ -81,8 +78,7 @@ class SdoClient {
 
   /// Begins to write an object of a generated dictionary.
   template <DictionaryObject O>
-    requires(O::bits > 0)
-  bool write(const typename O::type& value, TimePoint now) {
+  requires(O::bits > 0) bool write(const typename O::type& value, TimePoint now) {
     const std::uint64_t raw = pdo_detail::to_bits(value);
     std::memcpy(number_.data(), &raw, sizeof raw);
     return download(O::index, O::sub_index, std::span{number_}.first((O::bits + 7u) / 8u), now);

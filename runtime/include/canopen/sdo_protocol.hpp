@@ -40,8 +40,12 @@ inline constexpr std::uint8_t toggle = 0x10;          ///< segment: t
 inline constexpr std::uint8_t abort_command = 0x80;
 inline constexpr std::uint32_t segment_bytes = 7;
 
-[[nodiscard]] constexpr ClientCommand client_command(std::uint8_t byte) { return static_cast<ClientCommand>(byte >> 5); }
-[[nodiscard]] constexpr ServerCommand server_command(std::uint8_t byte) { return static_cast<ServerCommand>(byte >> 5); }
+[[nodiscard]] constexpr ClientCommand client_command(std::uint8_t byte) {
+  return static_cast<ClientCommand>(byte >> 5);
+}
+[[nodiscard]] constexpr ServerCommand server_command(std::uint8_t byte) {
+  return static_cast<ServerCommand>(byte >> 5);
+}
 
 [[nodiscard]] constexpr std::uint16_t index_of(const Data& data) {
   return static_cast<std::uint16_t>(data[1] | (data[2] << 8));

@@ -31,11 +31,12 @@ concept SdoServerHooks = requires(T hooks, std::uint16_t index, std::uint8_t sub
   hooks.after_write(index, sub_index);
 };
 
-/// One server. It takes requests of eight bytes and leaves at most one answer of eight bytes, which stays until it is sent.
+/// One server. It takes requests of eight bytes and leaves at most one answer of eight bytes, which stays until it is
+/// sent.
 ///
-/// Strings and DOMAINs are uploaded in place: what the application changes meanwhile is what goes out. Numbers are taken
-/// as they were when the upload began. A download is written when it is complete; only a DOMAIN fills up as it comes, and
-/// is empty until its last byte is there.
+/// Strings and DOMAINs are uploaded in place: what the application changes meanwhile is what goes out. Numbers are
+/// taken as they were when the upload began. A download is written when it is complete; only a DOMAIN fills up as it
+/// comes, and is empty until its last byte is there.
 template <class Device>
 class SdoServer {
  public:
@@ -115,7 +116,8 @@ class SdoServer {
   [[nodiscard]] AbortCode initiate_upload(auto& hooks) {
     if (const AbortCode code = find(entry::readable, AbortCode::write_only); code != ok) return code;
     if (const AbortCode code = hooks.before_read(index_, sub_index_); code != ok) return code;
-    const std::span<const std::uint8_t> bytes = hooks.entries().read(word_, std::span<std::uint8_t, 8>{buffer_.data(), 8});
+    const std::span<const std::uint8_t> bytes =
+        hooks.entries().read(word_, std::span<std::uint8_t, 8>{buffer_.data(), 8});
     if (bytes.data() == nullptr) return AbortCode::no_data;
     const std::size_t size = bytes.size();
     if (size >= 1 && size <= 4) {
@@ -160,7 +162,8 @@ class SdoServer {
 
     if ((request[0] & sdo::expedited) != 0) {
       std::size_t size = 4u - ((request[0] >> 2) & 3u);
-      if (!size_indicated_) size = entry::wire_bytes(word_) == 0 ? 4u : std::min<std::size_t>(entry::wire_bytes(word_), 4);
+      if (!size_indicated_)
+        size = entry::wire_bytes(word_) == 0 ? 4u : std::min<std::size_t>(entry::wire_bytes(word_), 4);
       std::memcpy(buffer_.data(), &request[4], size);
       if (const AbortCode code = commit({buffer_.data(), size}, hooks); code != ok) return code;
     } else {

@@ -15,9 +15,9 @@
 
 namespace canopen {
 
-/// All TPDOs of one device. Event-driven ones (types 254 and 255) are sent when a mapped object has changed, when the event
-/// timer has run out, and once on entering Operational; never sooner after the last time than the inhibit time says.
-/// Parameters are those of 1800h and following, as they are at the moment.
+/// All TPDOs of one device. Event-driven ones (types 254 and 255) are sent when a mapped object has changed, when the
+/// event timer has run out, and once on entering Operational; never sooner after the last time than the inhibit time
+/// says. Parameters are those of 1800h and following, as they are at the moment.
 template <class Device>
 class TpdoService {
  public:
@@ -137,8 +137,10 @@ class TpdoService {
     Pdos::for_each([&]<class Pdo, std::size_t I>() {
       constexpr std::uint16_t index = tpdo_communication + Pdo::number - 1;
       const Dictionary& dictionary = Device::dictionary;
-      rows[I] = {index, dictionary.find(index, pdo_parameter::cob_id), dictionary.find(index, pdo_parameter::transmission_type),
-                 dictionary.find(index, pdo_parameter::inhibit_time), dictionary.find(index, pdo_parameter::event_timer)};
+      rows[I] = {index, dictionary.find(index, pdo_parameter::cob_id),
+                 dictionary.find(index, pdo_parameter::transmission_type),
+                 dictionary.find(index, pdo_parameter::inhibit_time),
+                 dictionary.find(index, pdo_parameter::event_timer)};
     });
     return rows;
   }();
@@ -216,8 +218,8 @@ class TpdoService {
     Pdo::for_each([&]<class O, std::size_t I>() { Pdo::template put<I>(frame.data, store.template get<O>()); });
   }
 
-  /// The inhibit time begins, and the event timer starts again: from when it ran out, so that the period does not drift,
-  /// or from now.
+  /// The inhibit time begins, and the event timer starts again: from when it ran out, so that the period does not
+  /// drift, or from now.
   void sent(std::size_t i, const EntryAccess& entries, TimePoint now) {
     Slot& slot = slots_[i];
     slot.flags &= static_cast<std::uint8_t>(~pending);

@@ -29,7 +29,8 @@ namespace canopen {
 class SocketCan {
  public:
   /// Throws std::system_error when the interface does not exist or cannot be opened.
-  explicit SocketCan(const std::string& interface) : socket_{::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW)} {
+  explicit SocketCan(const std::string& interface)
+      : socket_{::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW)} {
     if (socket_ < 0) fail("socket");
     try {
       open(interface);
@@ -95,7 +96,8 @@ class SocketCan {
   [[nodiscard]] static TimePoint now() {
     timespec time{};
     ::clock_gettime(CLOCK_MONOTONIC, &time);
-    const auto microseconds = static_cast<std::uint64_t>(time.tv_sec) * 1'000'000 + static_cast<std::uint64_t>(time.tv_nsec) / 1'000;
+    const auto microseconds =
+        static_cast<std::uint64_t>(time.tv_sec) * 1'000'000 + static_cast<std::uint64_t>(time.tv_nsec) / 1'000;
     return TimePoint{Duration{static_cast<std::uint32_t>(microseconds)}};
   }
 
@@ -103,19 +105,23 @@ class SocketCan {
   [[nodiscard]] int file_descriptor() const { return socket_; }
 
  private:
-  [[noreturn]] static void fail(const std::string& what) { throw std::system_error{errno, std::generic_category(), what}; }
+  [[noreturn]] static void fail(const std::string& what) {
+    throw std::system_error{errno, std::generic_category(), what};
+  }
 
   void open(const std::string& interface) {
     const unsigned index = ::if_nametoindex(interface.c_str());
     if (index == 0) fail("CAN interface \"" + interface + "\"");
     const can_err_mask_t no_errors = 0;
-    if (::setsockopt(socket_, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &no_errors, sizeof no_errors) != 0) fail("CAN_RAW_ERR_FILTER");
+    if (::setsockopt(socket_, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &no_errors, sizeof no_errors) != 0)
+      fail("CAN_RAW_ERR_FILTER");
     const int off = 0;
     if (::setsockopt(socket_, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, &off, sizeof off) != 0) fail("CAN_RAW_RECV_OWN_MSGS");
     sockaddr_can address{};
     address.can_family = AF_CAN;
     address.can_ifindex = static_cast<int>(index);
-    if (::bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) fail("bind to \"" + interface + "\"");
+    if (::bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+      fail("bind to \"" + interface + "\"");
   }
 
   [[nodiscard]] std::optional<Frame> take() {

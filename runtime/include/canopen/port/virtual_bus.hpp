@@ -21,9 +21,9 @@ namespace canopen {
   return (frame.extended ? 67u : 47u) + data;
 }
 
-/// Endpoints are attached to it; each frame that one sends comes to all others, lowest CAN-ID first among those that wait.
-/// With a bit rate a frame takes its time on the wire; without one it takes none. Frames sent while others are delivered
-/// wait their turn: there is no recursion.
+/// Endpoints are attached to it; each frame that one sends comes to all others, lowest CAN-ID first among those that
+/// wait. With a bit rate a frame takes its time on the wire; without one it takes none. Frames sent while others are
+/// delivered wait their turn: there is no recursion.
 class VirtualBus {
  public:
   /// One participant: a Bus for what it sends. It lives as long as the bus and does not move.
@@ -136,8 +136,8 @@ class VirtualBus {
     return earliest;
   }
 
-  /// What arbitration compares, the most dominant one lowest: a base frame wins over an extended one with the same first
-  /// 11 bits, a data frame over a remote one.
+  /// What arbitration compares, the most dominant one lowest: a base frame wins over an extended one with the same
+  /// first 11 bits, a data frame over a remote one.
   [[nodiscard]] static std::uint64_t priority(const Frame& frame) {
     const std::uint64_t base = frame.extended ? frame.id >> 18 : frame.id;
     const std::uint64_t rest = frame.extended ? frame.id & 0x3FFFF : 0;

@@ -1,0 +1,56 @@
+/// A servo drive on SocketCAN: `socketcan_drive can0 5` is node 5 on can0 until it gets SIGINT or SIGTERM.
+#include <atomic>
+#include <canopen/node.hpp>
+#include <canopen/port/socketcan.hpp>
+#include <charconv>
+#include <csignal>
+#include <cstdio>
+#include <cpc_tc1/device.hpp>
+#include <string_view>
+
+namespace od = cpc_tc1::od;
+
+namespace {
+
+std::atomic<bool> stop{false};
+
+/// Statuswords of CiA 402 along the way that shutdown (06h), switch on (07h) and enable operation (0Fh) lead.
+std::uint16_t statusword_after(std::uint16_t controlword) {
+  switch (controlword & 0x0F) {
+    case 0x06: return 0x0231;
+    case 0x07: return 0x0233;
+    case 0x0F: return 0x0237;
+    default: return 0x0250;
+  }
+}
+
+canopen::NodeId parse_node_id(std::string_view text) {
+  unsigned value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = error == std::errc{} && end == text.data() + text.size();
+  return canopen::NodeId{whole && value <= 127 ? static_cast<std::uint8_t>(value) : std::uint8_t{0}};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const canopen::NodeId id = argc == 3 ? parse_node_id(argv[2]) : canopen::NodeId{};
+  if (!id.valid()) {
+    std::fprintf(stderr, "usage: %s INTERFACE NODE-ID\n", argv[0]);
+    return 2;
+  }
+  std::signal(SIGINT, [](int) { stop = true; });
+  std::signal(SIGTERM, [](int) { stop = true; });
+  try {
+    canopen::SocketCan bus{argv[1]};
+    auto drive = canopen::make_node<cpc_tc1::Device>(
+        bus, id, canopen::on_write<od::controlword>([](auto& node, std::uint16_t controlword) {
+          node.template set<od::statusword>(statusword_after(controlword));
+        }));
+    bus.run(drive, stop);
+  } catch (const std::system_error& problem) {
+    std::fprintf(stderr, "%s: %s\n", argv[1], problem.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,91 @@
+#!/usr/bin/env python3
+"""The documents are true: their commands run, their code is that of files which are built and tested, their links lead
+somewhere, and what they say a command prints is what it prints.
+
+    docs_test.py SOURCE_DIR EDSC
+
+In README.md and docs/*.md
+- each line of a ```sh block is run in a copy of the repository, with edsc in the PATH. `./demo.sh` builds and runs there;
+  `./test.sh` is not run by itself, only looked for.
+- a block under `<!-- path -->` stands in that file, letter by letter.
+- a block under `<!-- output: command -->` is what the command prints.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+BLOCK = re.compile(r"(?:<!-- (?P<mark>[^>]+) -->\n)?```(?P<language>\w*)\n(?P<text>.*?)```", re.DOTALL)
+LINK = re.compile(r"\]\((?!https?:)([^)#]+)(?:#[^)]*)?\)")
+NOT_RUN_HERE = {"./test.sh"}
+
+
+def run(command: str, folder: Path, environment: dict[str, str]) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(["bash", "-c", command], cwd=folder, env=environment, capture_output=True, text=True, timeout=600)
+
+
+def check_commands(document: Path, text: str, folder: Path, environment: dict[str, str]) -> list[str]:
+    problems = []
+    for line in text.splitlines():
+        program = folder / shlex.split(line)[0]
+        if line in NOT_RUN_HERE:
+            if not os.access(program, os.X_OK):
+                problems.append(f"{document}: {line}: no such program")
+            continue
+        result = run(line, folder, environment)
+        if result.returncode != 0:
+            problems.append(f"{document}: `{line}` ended with {result.returncode}:\n{result.stdout}{result.stderr}")
+    return problems
+
+
+def check_block(document: Path, block: re.Match[str], source: Path, folder: Path, environment: dict[str, str]) -> list[str]:
+    mark, text = block["mark"], block["text"]
+    if mark and mark.startswith("output: "):
+        printed = run(mark.removeprefix("output: "), folder, environment).stdout
+        return [] if printed == text else [f"{document}: {mark} differs; it prints:\n{printed}"]
+    if mark:
+        found = text in (source / mark).read_text(encoding="utf-8")
+        return [] if found else [f"{document}: the block under {mark} does not stand in that file"]
+    if block["language"] == "sh":
+        return check_commands(document, text, folder, environment)
+    return []
+
+
+def check_links(document: Path, text: str, source: Path) -> list[str]:
+    return [
+        f"{document}: link to {target} leads nowhere"
+        for target in LINK.findall(text)
+        if not (source / document).parent.joinpath(target).exists()
+    ]
+
+
+def main() -> int:
+    source, edsc = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+    documents = [Path("README.md"), Path("CONTRIBUTING.md"), Path("CHANGELOG.md"), *sorted(
+        path.relative_to(source) for path in (source / "docs").glob("*.md"))]
+    problems: list[str] = []
+    blocks = 0
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary) / "edsc"
+        shutil.copytree(source, folder, ignore=shutil.ignore_patterns("build", ".git", "out"))
+        environment = {**os.environ, "PATH": f"{edsc.parent}{os.pathsep}{os.environ['PATH']}"}
+        for document in documents:
+            text = (source / document).read_text(encoding="utf-8")
+            problems += check_links(document, text, source)
+            for block in BLOCK.finditer(text):
+                blocks += 1
+                problems += check_block(document, block, source, folder, environment)
+    print("\n".join(problems))
+    print(f"{len(documents)} documents, {blocks} blocks, {len(problems)} problems")
+    return 1 if problems or blocks == 0 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,94 @@
+/// A device of a data sheet's text, all the way through the front end.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "device/resolve.hpp"
+#include "diagnostic_matchers.hpp"
+#include "eds/data_sheet.hpp"
+#include "rules/check_device.hpp"
+#include "text/ini.hpp"
+#include "text/source_file.hpp"
+
+namespace edsc {
+
+/// Everything the device's positions point into lives here, too.
+struct DeviceFromText {
+  explicit DeviceFromText(std::string text, Options given = {}, ResolveSettings settings = {},
+                          std::string file = "test.eds")
+      : source(std::move(file), std::move(text)),
+        options(std::move(given)),
+        sheet(read_data_sheet(parse_ini(source, diagnostics), diagnostics)),
+        device(resolve_device(sheet, options, settings, diagnostics)) {}
+
+  SourceFile source;
+  Diagnostics diagnostics;
+  Options options;
+  DataSheet sheet;
+  Device device;
+
+  [[nodiscard]] const Entry& entry(std::uint16_t index, std::uint8_t sub_index = 0) const {
+    const Entry* found = device.find(index, sub_index);
+    if (found == nullptr) throw std::runtime_error{entry_label(index, sub_index) + " is missing"};
+    return *found;
+  }
+
+  /// The first finding of a rule; a test fails without one.
+  [[nodiscard]] const Diagnostic& finding(std::string_view rule) const {
+    for (const Diagnostic& diagnostic : diagnostics.all()) {
+      if (diagnostic.rule == rule) return diagnostic;
+    }
+    throw std::runtime_error{"no finding of rule " + std::string{rule}};
+  }
+
+  /// The line that the first finding of a rule points at.
+  [[nodiscard]] std::string_view line_of(std::string_view rule) const {
+    return source.line(finding(rule).position.line);
+  }
+};
+
+/// Rules that speak of the object lists and of mandatory objects: short fixtures have neither.
+inline const std::vector<std::string> list_rules = {"object-not-listed", "mandatory-object"};
+
+/// The ids of all rules that have fired, each once, in the order in which they fired.
+inline std::vector<std::string> rules_of(const Diagnostics& diagnostics) {
+  std::vector<std::string> rules;
+  for (const Diagnostic& diagnostic : diagnostics.all()) {
+    const std::string rule{diagnostic.rule};
+    if (std::ranges::find(list_rules, rule) != list_rules.end()) continue;
+    if (std::ranges::find(rules, rule) == rules.end()) rules.push_back(rule);
+  }
+  return rules;
+}
+
+/// A VAR: `[2000]` and its keys; `more` adds lines such as `DefaultValue=1`.
+inline std::string var(std::string_view index, std::string_view name, std::string_view data_type,
+                       std::string_view access = "rw", std::string_view more = "") {
+  std::string text;
+  const auto line = [&](std::string_view key, std::string_view value) {
+    text.append(key).append("=").append(value).append("\n");
+  };
+  text.append("[").append(index).append("]\n");
+  line("ParameterName", name);
+  line("ObjectType", "0x7");
+  line("DataType", data_type);
+  line("AccessType", access);
+  return text.append(more);
+}
+
+/// The section of a RECORD or ARRAY without its sub-objects; `sub_objects` is what SubNumber says.
+inline std::string group(std::string_view index, std::string_view name, std::string_view object_type,
+                         int sub_objects) {
+  return "[" + std::string{index} + "]\nParameterName=" + std::string{name} + "\nObjectType=" +
+         std::string{object_type} + "\nSubNumber=" + std::to_string(sub_objects) + "\n";
+}
+
+}  // namespace edsc

@@ -1,0 +1,142 @@
+#include "device/options.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "diagnostic_matchers.hpp"
+
+namespace edsc {
+namespace {
+
+using Findings = std::vector<Finding>;
+using Runtime = std::vector<std::pair<std::string, std::string>>;
+
+struct Read {
+  explicit Read(std::string text)
+      : source("test.options.json", std::move(text)), options(read_options(source, diagnostics)) {}
+
+  SourceFile source;
+  Diagnostics diagnostics;
+  Options options;
+};
+
+TEST(OptionsFile, MayBeEmpty) {
+  const Read read(R"({ "$schema": "options.schema.json" })");
+  EXPECT_EQ(findings(read.diagnostics), Findings{});
+  EXPECT_FALSE(read.options.zero_terminated_strings);
+  EXPECT_EQ(read.options.runtime, Runtime{});
+}
+
+TEST(OptionsFile, NamesEntriesByIndexAndSubIndex) {
+  const Read read(R"({ "names": { "1018h:04": "serial", "2000": "speed", "2A:fF": "last" } })");
+  EXPECT_EQ(findings(read.diagnostics), Findings{});
+  EXPECT_EQ(read.options.names.at({0x1018, 4}), "serial");
+  EXPECT_EQ(read.options.names.at({0x2000, 0}), "speed");
+  EXPECT_EQ(read.options.names.at({0x2A, 0xFF}), "last");
+}
+
+TEST(OptionsFile, TakesNamesThatAreIdentifiersOnly) {
+  for (const char* name : {"", "class", "Speed", "1st", "a b", "a-b", "x;int y", "gr\xC3\xB6\xC3\x9F" "e", "type"}) {
+    const Read read("{\n  \"names\": {\n    \"2000h\": \"" + std::string{name} + "\"\n  }\n}\n");
+    EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(3, 5, "options")})) << name;
+    EXPECT_TRUE(read.options.names.empty()) << name;
+  }
+}
+
+TEST(OptionsFile, GivesStringsTheirCapacity) {
+  const Read read(R"({ "string_capacity": { "1008h:00": 15, "2000h": 0, "2001h": 65535 } })");
+  EXPECT_EQ(findings(read.diagnostics), Findings{});
+  EXPECT_EQ(read.options.string_capacity.at({0x1008, 0}), 15);
+  EXPECT_EQ(read.options.string_capacity.at({0x2001, 0}), 65535);
+}
+
+TEST(OptionsFile, RefusesACapacityOutside0To65535) {
+  for (const char* value : {"-1", "65536", "1.5", "\"15\"", "null"}) {
+    const Read read("{\n\"string_capacity\": { \"1008h\": " + std::string{value} + " } }");
+    EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(2, 22, "options")})) << value;
+  }
+}
+
+TEST(OptionsFile, ListsWhatTheApplicationSets) {
+  const Read read(R"({ "settable": ["1008h:00", "1018h:04"] })");
+  EXPECT_EQ(read.options.settable, (std::vector<EntryKey>{{0x1008, 0}, {0x1018, 4}}));
+}
+
+TEST(OptionsFile, ListsRulesToSilence) {
+  const Read read(R"({ "silence": ["sub-number", "object-type"] })");
+  EXPECT_EQ(read.options.silence, (std::vector<std::string>{"sub-number", "object-type"}));
+}
+
+TEST(OptionsFile, SaysThatStringsEndWithAZero) {
+  EXPECT_TRUE(Read(R"({ "zero_terminated_strings": true })").options.zero_terminated_strings);
+  EXPECT_FALSE(Read(R"({ "zero_terminated_strings": false })").options.zero_terminated_strings);
+}
+
+TEST(OptionsFile, HandsEachDepartureToTheRuntime) {
+  for (const char* flag : {"pdo_extended_ids", "tpdo_remote_frames", "inhibit_time_writable_while_valid",
+                           "event_driven_on_change", "sdo_upload_size_indicated"}) {
+    for (const char* value : {"true", "false"}) {
+      const Read read("{ \"" + std::string{flag} + "\": " + value + " }");
+      EXPECT_EQ(findings(read.diagnostics), Findings{}) << flag;
+      EXPECT_EQ(read.options.runtime, (Runtime{{flag, value}}));
+    }
+  }
+  EXPECT_EQ(Read(R"({ "pdo_cob_id_writable": "0x80000780" })").options.runtime,
+            (Runtime{{"pdo_cob_id_writable", "0x80000780"}}));
+}
+
+TEST(OptionsFile, RefusesAValueOfTheWrongType) {
+  for (const char* member :
+       {R"("names": [])", R"("names": { "2000h": 1 })", R"("string_capacity": 5)", R"("settable": "1008h:00")",
+        R"("settable": [4104])", R"("silence": {})", R"("silence": [1])", R"("zero_terminated_strings": 1)",
+        R"("pdo_extended_ids": "no")", R"("event_driven_on_change": null)", R"("pdo_cob_id_writable": 5)",
+        R"("pdo_cob_id_writable": "all")", R"("pdo_cob_id_writable": "0x1FFFFFFFF")"}) {
+    const Read read("{ " + std::string{member} + " }");
+    ASSERT_EQ(read.diagnostics.errors(), 1U) << member;
+    EXPECT_EQ(read.diagnostics.all().front().rule, "options") << member;
+    EXPECT_EQ(read.options.runtime, Runtime{}) << member;
+  }
+}
+
+TEST(OptionsFile, RefusesEntriesThatAreNone) {
+  for (const char* entry : {"", "h", "G000", "1018h:", "1018h:100", "10000h", "1018h:4:5", "-1"}) {
+    const Read read("{ \"settable\": [\"" + std::string{entry} + "\"] }");
+    EXPECT_EQ(read.diagnostics.errors(), 1U) << entry;
+    EXPECT_TRUE(read.options.settable.empty()) << entry;
+  }
+}
+
+TEST(OptionsFile, RefusesAnUnknownMemberWhereItStands) {
+  const Read read("{\n  \"zero_terminated_strings\": true,\n  \"colour\": 1\n}\n");
+  EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(3, 3, "options")}));
+  EXPECT_NE(read.diagnostics.all().front().message.find("colour"), std::string::npos);
+}
+
+TEST(OptionsFile, NamesThePathOfTheMemberThatIsWrong) {
+  const Read read("{ \"string_capacity\": { \"1008h\": true } }");
+  EXPECT_NE(read.diagnostics.all().front().message.find("string_capacity/1008h"), std::string::npos);
+}
+
+TEST(OptionsFile, ThatIsNoJsonIsAnErrorWhereItBreaks) {
+  EXPECT_EQ(findings(Read("{\n  \"settable\": [,]\n}\n").diagnostics), (Findings{error_at(2, 16, "options-syntax")}));
+  EXPECT_EQ(Read("").diagnostics.all().front().rule, "options-syntax");
+  EXPECT_EQ(Read("{").diagnostics.all().front().rule, "options-syntax");
+}
+
+TEST(OptionsFile, WithANumberThatNothingHoldsIsAnError) {
+  EXPECT_EQ(Read(R"({ "string_capacity": { "1008h": 1e999 } })").diagnostics.errors(), 1U);
+}
+
+TEST(OptionsFile, HoldsOneObject) {
+  for (const char* text : {"[]", "1", "\"names\"", "null"}) {
+    const Read read(text);
+    ASSERT_EQ(read.diagnostics.errors(), 1U) << text;
+    EXPECT_EQ(read.diagnostics.all().front().rule, "options") << text;
+  }
+}
+
+}  // namespace
+}  // namespace edsc

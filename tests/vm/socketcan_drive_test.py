@@ -1,0 +1,89 @@
+#!/usr/bin/env python3
+"""A drive on a real SocketCAN interface: boot-up, SDO, NMT, PDOs and heartbeat, as frames on vcan0.
+
+    socketcan_drive_test.py PROGRAM        in a machine whose kernel has vcan0
+
+Uses the kernel's own sockets and nothing of edsc: what it sees is what any other node would see.
+"""
+
+from __future__ import annotations
+
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import time
+
+FRAME = struct.Struct("=IB3x8s")
+NODE = 5
+
+
+class Bus:
+    def __init__(self, interface: str) -> None:
+        self.socket = socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW)
+        self.socket.bind((interface,))
+
+    def send(self, can_id: int, data: str) -> None:
+        payload = bytes.fromhex(data)
+        self.socket.send(FRAME.pack(can_id, len(payload), payload.ljust(8, b"\0")))
+
+    def receive(self, can_id: int, seconds: float = 5.0) -> str:
+        """The next frame with this CAN-ID as hexadecimal digits; others are passed over."""
+        end = time.monotonic() + seconds
+        while (left := end - time.monotonic()) > 0:
+            self.socket.settimeout(left)
+            try:
+                found, size, payload = FRAME.unpack(self.socket.recv(FRAME.size))
+            except TimeoutError:
+                break
+            if found == can_id:
+                return payload[:size].hex(" ").upper()
+        return "nothing"
+
+
+def expect(what: str, got: str, wanted: str) -> None:
+    print(f"{'ok  ' if got == wanted else 'FAIL'} {what}: {got}")
+    if got != wanted:
+        sys.exit(f"{what}: wanted {wanted}")
+
+
+def dialogue(bus: Bus) -> None:
+    expect("boot-up", bus.receive(0x700 + NODE), "00")
+    bus.send(0x600 + NODE, "40 00 10 00 00 00 00 00")
+    expect("device type", bus.receive(0x580 + NODE), "43 00 10 00 92 01 42 00")
+    bus.send(0x600 + NODE, "40 08 10 00 00 00 00 00")
+    expect("device name, 9 bytes", bus.receive(0x580 + NODE), "41 08 10 00 09 00 00 00")
+    bus.send(0x600 + NODE, "60 00 00 00 00 00 00 00")
+    expect("first segment", bus.receive(0x580 + NODE), "00 54 43 31 2D 38 2F 32")
+    bus.send(0x600 + NODE, "70 00 00 00 00 00 00 00")
+    expect("last segment", bus.receive(0x580 + NODE), "1B 33 30 00 00 00 00 00")
+    bus.send(0x600 + NODE, "2B 41 60 00 00 00 00 00")
+    expect("statusword is read-only", bus.receive(0x580 + NODE), "80 41 60 00 02 00 01 06")
+    bus.send(0x000, f"01 {NODE:02X}")
+    expect("TPDO 1 on start", bus.receive(0x180 + NODE), "00 00")
+    bus.send(0x200 + NODE, "06 00")
+    expect("TPDO 1 answers RPDO 1", bus.receive(0x180 + NODE), "31 02")
+    bus.send(0x600 + NODE, "2B 17 10 00 14 00 00 00")
+    expect("heartbeat time written", bus.receive(0x580 + NODE), "60 17 10 00 00 00 00 00")
+    for _ in range(3):
+        expect("heartbeat", bus.receive(0x700 + NODE), "05")
+    bus.send(0x000, "82 00")
+    expect("reset communication", bus.receive(0x700 + NODE), "00")
+
+
+def main() -> int:
+    bus = Bus("vcan0")
+    with subprocess.Popen([sys.argv[1], "vcan0", str(NODE)]) as program:
+        try:
+            dialogue(bus)
+        finally:
+            program.send_signal(signal.SIGTERM)
+        expect("exit code after SIGTERM", str(program.wait(timeout=5)), "0")
+    missing = subprocess.run([sys.argv[1], "can99", "5"], capture_output=True, text=True, check=False)
+    expect("exit code without an interface", str(missing.returncode), "1")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
