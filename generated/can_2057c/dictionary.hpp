@@ -1575,9 +1575,9 @@ inline constexpr canopen::entry::Word entries[] = {
     ram | offsetof(Values, communication_cleared.error_register) | u8 | ro,  // 1001h:00
     array | 0,  // 1003h  Pre-defined error field
     ram | offsetof(Values, communication_preset.cob_id_sync) | u32 | rw,  // 1005h:00
-    ram | offsetof(Values, communication_preset.manufacturer_device_name) | string | ro,  // 1008h:00
-    rom | offsetof(Constants, manufacturer_hardware_version) | string | ro,  // 1009h:00
-    rom | offsetof(Constants, manufacturer_software_version) | string | ro,  // 100Ah:00
+    ram | offsetof(Values, communication_preset.manufacturer_device_name) | visible_string | ro | limited,  // 1008h:00
+    rom | offsetof(Constants, manufacturer_hardware_version) | visible_string | ro,  // 1009h:00
+    rom | offsetof(Constants, manufacturer_software_version) | visible_string | ro,  // 100Ah:00
     ram | offsetof(Values, communication_cleared.guard_time) | u16 | rw,  // 100Ch:00
     ram | offsetof(Values, communication_cleared.life_time_factor) | u8 | rw,  // 100Dh:00
     record | 1,  // 1010h  Store parameters
@@ -1719,6 +1719,10 @@ inline constexpr canopen::Group groups[] = {
     {.ram = offsetof(Values, application_cleared.error_value_output_8_bit), .rom = 0, .subs = 32, .highest = 2, .stride = 1},  // 6207h
 };
 
+inline constexpr canopen::Limits limits[] = {
+    {canopen::object_key(0x1008, 0x00), 0, 15},  // Manufacturer device name
+};
+
 inline constexpr canopen::NodeIdRelative node_id_relative_communication[] = {
     {offsetof(Values, communication_preset.cob_id_emcy), 4},  // 1014h:00
     {offsetof(Values, communication_preset.rpdo_communication_parameter_1.cob_id_used_by_rpdo), 4},  // 1400h:01
@@ -1740,7 +1744,7 @@ inline constexpr canopen::Dictionary dictionary{
     .entries = table::entries,
     .groups = table::groups,
     .subs = table::subs,
-    .limits = {},
+    .limits = table::limits,
     .wide_limits = {},
     .constants = &constants,
     .zero_terminated_strings = true,

@@ -749,9 +749,9 @@ inline constexpr canopen::entry::Word entries[] = {
     array | 0,  // 1003h  Pre-defined error field
     ram | offsetof(Values, communication_preset.cob_id_sync) | u32 | rw | limited,  // 1005h:00
     ram | offsetof(Values, communication_cleared.communication_cycle_period) | u32 | rw,  // 1006h:00
-    rom | offsetof(Constants, manufacturer_device_name) | string | ro,  // 1008h:00
-    rom | offsetof(Constants, manufacturer_hardware_version) | string | ro,  // 1009h:00
-    rom | offsetof(Constants, manufacturer_software_version) | string | ro,  // 100Ah:00
+    rom | offsetof(Constants, manufacturer_device_name) | visible_string | ro,  // 1008h:00
+    rom | offsetof(Constants, manufacturer_hardware_version) | visible_string | ro,  // 1009h:00
+    rom | offsetof(Constants, manufacturer_software_version) | visible_string | ro,  // 100Ah:00
     record | 1,  // 1010h  Store parameters
     record | 2,  // 1011h  Restore default parameters
     ram | offsetof(Values, communication_cleared.high_resolution_time_stamp) | u32 | rw | tpdo | rpdo,  // 1013h:00

@@ -1242,9 +1242,9 @@ inline constexpr canopen::entry::Word entries[] = {
     ram | offsetof(Values, communication_cleared.error_register) | u8 | ro,  // 1001h:00
     array | 0,  // 1003h  Pre-defined error field
     ram | offsetof(Values, communication_preset.cob_id_sync) | u32 | rw,  // 1005h:00
-    rom | offsetof(Constants, manufacturer_device_name) | string | ro,  // 1008h:00
-    rom | offsetof(Constants, manufacturer_hardware_version) | string | ro,  // 1009h:00
-    rom | offsetof(Constants, manufacturer_software_version) | string | ro,  // 100Ah:00
+    rom | offsetof(Constants, manufacturer_device_name) | visible_string | ro,  // 1008h:00
+    rom | offsetof(Constants, manufacturer_hardware_version) | visible_string | ro,  // 1009h:00
+    rom | offsetof(Constants, manufacturer_software_version) | visible_string | ro,  // 100Ah:00
     ram | offsetof(Values, communication_cleared.guard_time) | u16 | rw,  // 100Ch:00
     ram | offsetof(Values, communication_cleared.life_time_factor) | u8 | rw,  // 100Dh:00
     record | 1,  // 1010h  Store parameters

@@ -355,9 +355,9 @@ inline constexpr canopen::entry::Word entries[] = {
     ram | offsetof(Values, communication_cleared.error_register) | u8 | ro,  // 1001h:00
     ram | offsetof(Values, communication_preset.manufacturer_status_register) | u32 | ro,  // 1002h:00
     ram | offsetof(Values, communication_preset.cob_id_sync) | u32 | rw,  // 1005h:00
-    rom | offsetof(Constants, manufacturer_device_name) | string | ro,  // 1008h:00
-    rom | offsetof(Constants, manufacturer_hardware_version) | string | ro,  // 1009h:00
-    rom | offsetof(Constants, manufacturer_software_version) | string | ro,  // 100Ah:00
+    rom | offsetof(Constants, manufacturer_device_name) | visible_string | ro,  // 1008h:00
+    rom | offsetof(Constants, manufacturer_hardware_version) | visible_string | ro,  // 1009h:00
+    rom | offsetof(Constants, manufacturer_software_version) | visible_string | ro,  // 100Ah:00
     record | 0,  // 1010h  Store parameters
     record | 1,  // 1011h  Restore default parameters
     ram | offsetof(Values, communication_preset.cob_id_emcy) | u32 | rw,  // 1014h:00

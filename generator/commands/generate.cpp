@@ -118,7 +118,8 @@ void add_generate_command(CLI::App& app, int& exit_code) {
   command->add_option("-o,--output", settings->output, "folder; the headers go to its subfolder NAME")->required();
   command->add_option("--name", settings->load.name, "C++ namespace (default: the file's name)")
       ->check([](const std::string& name) {
-        return to_snake_case(name) == name ? std::string{} : "a namespace in snake_case is wanted, not \"" + name + "\"";
+        if (!name.empty() && to_namespace(name) == name) return std::string{};
+        return fmt::format("a namespace in snake_case is wanted, not \"{}\"; \"{}\" is one", name, to_namespace(name));
       });
   add_node_id_option(*command, settings->load.node_id);
   command->add_option("--options", settings->load.options_path, "options file (default: FILE's name with .options.json, if there)");

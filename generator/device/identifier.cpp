@@ -30,6 +30,25 @@ constexpr std::array reserved_words = {
     "xor_eq",        "access",
 };
 
+/// Words that cannot name a namespace at global scope besides: functions of the C library, and the constants of
+/// canopen::entry that the generated tables are written in.
+constexpr std::array reserved_namespaces = {
+    // C library and POSIX.
+    "abort",  "abs",    "accept", "access", "acos",   "alarm",  "asin",   "atan",   "atexit",  "bind",   "brk",
+    "cbrt",   "ceil",   "clock",  "close",  "connect", "cos",   "daemon", "div",    "drem",    "dup",    "erf",
+    "exit",   "exp",    "fabs",   "floor",  "fma",    "fork",   "free",   "gamma",  "getline", "gets",   "index",
+    "ioctl",  "j0",     "j1",     "jn",     "kill",   "labs",   "link",   "listen", "log",     "lseek",  "main",
+    "malloc", "mount",  "nan",    "nice",   "open",   "pause",  "perror", "pipe",   "poll",    "pow",    "printf",
+    "puts",   "raise",  "rand",   "random", "read",   "recv",   "remove", "rename", "rindex",  "round",  "select",
+    "send",   "shutdown", "signal", "sin",  "sleep",  "socket", "sqrt",   "stat",   "stime",   "sync",   "system",
+    "tan",    "time",   "times",  "tmpfile", "trunc", "wait",   "write",  "y0",     "y1",      "yn",
+    // canopen::entry.
+    "array",  "boolean", "domain", "gap",   "i8",     "i16",    "i24",    "i32",    "i40",     "i48",    "i56",
+    "i64",    "immediate", "immediate_plus_node_id", "limited", "r32",    "r64",    "ram",     "readable", "record",
+    "ro",     "rom",    "rpdo",   "rw",     "string", "time48", "tpdo",   "u8",     "u16",     "u24",    "u32",
+    "u40",    "u48",    "u56",    "u64",    "wo",     "writable",
+};
+
 struct Spelling {
   std::uint32_t code_point;
   std::string_view text;
@@ -95,6 +114,15 @@ std::string to_snake_case(std::string_view name) {
   while (!out.empty() && out.back() == '_') out.pop_back();
   if (!out.empty() && is_digit(out.front())) out.insert(0, "n_");
   if (std::ranges::find(reserved_words, out) != reserved_words.end()) out += '_';
+  return out;
+}
+
+bool is_identifier(std::string_view name) { return !name.empty() && to_snake_case(name) == name; }
+
+std::string to_namespace(std::string_view name) {
+  std::string out = to_snake_case(name);
+  if (out.empty()) return "device";
+  if (std::ranges::find(reserved_namespaces, out) != reserved_namespaces.end()) out += '_';
   return out;
 }
 

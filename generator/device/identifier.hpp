@@ -12,6 +12,13 @@ namespace edsc {
 /// C++ get a trailing underscore. Empty when nothing is left.
 [[nodiscard]] std::string to_snake_case(std::string_view name);
 
+/// Whether an object can be called so: not empty, snake_case and no word of C++.
+[[nodiscard]] bool is_identifier(std::string_view name);
+
+/// The same for a namespace at global scope, which functions of the C library and the words of the generated tables share:
+/// `signal` -> `signal_`. "device" when nothing is left.
+[[nodiscard]] std::string to_namespace(std::string_view name);
+
 /// `tpdo_communication_parameter` -> `TpdoCommunicationParameter`.
 [[nodiscard]] std::string to_camel_case(std::string_view snake_case);
 

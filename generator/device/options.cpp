@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "device/identifier.hpp"
 #include "eds/number.hpp"
 
 namespace edsc {
@@ -42,7 +43,10 @@ class OptionsReader {
     try {
       document = json::parse(source_.text());
     } catch (const json::parse_error& problem) {
-      diagnostics_.error("options-syntax", position_at(problem.byte), "not JSON: " + what_of(problem));
+      diagnostics_.error("options-syntax", position_at(problem.byte), fmt::format("not JSON: {}", what_of(problem)));
+      return {};
+    } catch (const json::out_of_range& problem) {
+      diagnostics_.error("options-syntax", Position{&source_}, fmt::format("not JSON: {}", what_of(problem)));
       return {};
     }
     if (!document.is_object()) {
@@ -62,12 +66,13 @@ class OptionsReader {
     }
     if (name == "settable") return settable(value);
     if (name == "silence") return silence(value);
-    if (name == "zero_terminated_strings") return flag(name, value, options_.zero_terminated_strings);
+    if (name == "zero_terminated_strings") {
+      flag(name, value, options_.zero_terminated_strings);
+      return;
+    }
     for (const char* option : runtime_flags) {
       if (name != option) continue;
-      bool on = false;
-      flag(name, value, on);
-      options_.runtime.emplace_back(name, on ? "true" : "false");
+      if (bool on = false; flag(name, value, on)) options_.runtime.emplace_back(name, on ? "true" : "false");
       return;
     }
     for (const char* option : runtime_masks) {
@@ -83,13 +88,13 @@ class OptionsReader {
       if (!key) {
         error(name + "/" + entry, "not an entry such as \"1018h:04\"");
       } else if (!take(*key, v)) {
-        error(name + "/" + entry, "a value of the wrong type");
+        error(name + "/" + entry, "not a value that this option can have");
       }
     }
   }
 
   bool name_of(EntryKey key, const json& value) {
-    if (!value.is_string()) return false;
+    if (!value.is_string() || !is_identifier(value.get_ref<const std::string&>())) return false;
     options_.names[key] = value.get<std::string>();
     return true;
   }
@@ -123,9 +128,13 @@ class OptionsReader {
     }
   }
 
-  void flag(const std::string& name, const json& value, bool& target) {
-    if (!value.is_boolean()) return error(name, "true or false");
-    target = value.get<bool>();
+  bool flag(const std::string& name, const json& value, bool& target) {
+    if (value.is_boolean()) {
+      target = value.get<bool>();
+    } else {
+      error(name, "true or false");
+    }
+    return value.is_boolean();
   }
 
   void mask(const std::string& name, const json& value) {
@@ -137,7 +146,7 @@ class OptionsReader {
   /// Where a member's name stands in the text, as well as can be told: its first occurrence in quotes.
   [[nodiscard]] Position position_of(std::string_view member) const {
     const std::string_view last = member.substr(member.rfind('/') + 1);
-    const std::size_t at = source_.text().find("\"" + std::string{last} + "\"");
+    const std::size_t at = source_.text().find(fmt::format("\"{}\"", last));
     return at == std::string_view::npos ? Position{&source_} : position_at(at + 1);
   }
 
@@ -156,7 +165,7 @@ class OptionsReader {
   }
 
   /// The parser's words without its own place and number.
-  static std::string what_of(const json::parse_error& problem) {
+  static std::string what_of(const json::exception& problem) {
     const std::string_view what = problem.what();
     const std::size_t colon = what.find(": ");
     return std::string{colon == std::string_view::npos ? what : what.substr(colon + 2)};

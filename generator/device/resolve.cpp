@@ -62,9 +62,7 @@ class Resolver {
 
  private:
   static std::string namespace_of(const std::string& file) {
-    const std::string stem = std::filesystem::path{file}.stem().string();
-    const std::string name = to_snake_case(stem);
-    return name.empty() ? "device" : name;
+    return to_namespace(std::filesystem::path{file}.stem().string());
   }
 
   /// NodeID of a DCF: a configured device knows its number. 0 and 255 mean none.
@@ -155,7 +153,15 @@ class Resolver {
     return parse_unsigned(strip_inline_comment(description.compact_sub_obj.text)).value_or(0);
   }
 
+  void check_compact_count(const Field& field) {
+    const std::string_view text = strip_inline_comment(field.text);
+    if (text.empty() || parse_unsigned(text)) return;
+    diagnostics_.error("compact-sub-obj", field.position,
+                       fmt::format("CompactSubObj \"{}\" is not a number", text.substr(0, 60)));
+  }
+
   void resolve_sub_objects(const ObjectDescription& description, Object& object) {
+    check_compact_count(description.compact_sub_obj);
     if (compact_count(description) > 0) {
       resolve_compact(description, object);
     } else {
@@ -189,10 +195,12 @@ class Resolver {
       element.object_type = {};
       if (const Field* value = numbered(description.compact_values, i)) element.default_value = *value;
       const Field* name = numbered(description.compact_names, i);
-      const std::string element_name =
+      std::string element_name =
           name != nullptr ? std::string{name->text} : fmt::format("{}{}", description.parameter_name.text, i);
       for (const SubObjectDescription& sub : description.sub_objects) {
-        if (sub.sub_index == i) element = sub;
+        if (sub.sub_index != i) continue;
+        element = sub;
+        if (!sub.parameter_name.empty()) element_name = sub.parameter_name.text;
       }
       if (auto entry = resolve_entry(element, {description.index, static_cast<std::uint8_t>(i), true}, element_name)) {
         object.entries.push_back(std::move(*entry));

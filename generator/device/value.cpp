@@ -110,10 +110,9 @@ class ValueReader {
       }
       number = *parsed;
     }
-    if (type_.bits < 64 && (number >> type_.bits) != 0) return out_of_range();
-    if (node_id_) return value(number + *node_id_);
-    Value result = value(number);
-    result.plus_node_id = true;
+    if (node_id_) return positive_integer(number + *node_id_, true);
+    std::optional<Value> result = positive_integer(number, true);
+    if (result) result->plus_node_id = true;
     return result;
   }
 
@@ -176,11 +175,15 @@ class ValueReader {
     return value(magnitude | ~mask());
   }
 
-  /// `0.0` for an integer: accepted when nothing is lost.
+  /// `0.0` or `0089` for an integer: accepted when nothing is lost.
   std::optional<Value> whole_real(std::string_view text) {
     const auto number = parse_real(text);
     if (!number || std::trunc(*number) != *number || std::abs(*number) > 9e15) return not_a_number();
-    warning("number-spelling", fmt::format("an {} is written without a decimal point", type_.name));
+    if (text.find_first_of(".eE") == std::string_view::npos) {
+      warning("number-spelling", fmt::format("\"{}\" begins like an octal number and is none: it is read as decimal", text));
+    } else {
+      warning("number-spelling", fmt::format("a value of type {} is written without a decimal point", type_.name));
+    }
     const auto magnitude = static_cast<std::uint64_t>(std::abs(*number));
     return *number < 0 ? negative_integer(magnitude) : positive_integer(magnitude, false);
   }

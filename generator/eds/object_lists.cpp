@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <optional>
 #include <string_view>
 #include <unordered_map>
@@ -18,18 +17,6 @@ namespace {
 
 constexpr CountKey supported_objects{"SupportedObjects", "Supported Objects", "object-list-count", true};
 
-constexpr std::string_view section_name(ObjectListKind kind) {
-  switch (kind) {
-    case ObjectListKind::mandatory:
-      return "MandatoryObjects";
-    case ObjectListKind::optional:
-      return "OptionalObjects";
-    case ObjectListKind::manufacturer:
-      return "ManufacturerObjects";
-  }
-  return "";
-}
-
 /// The list where an object belongs. Ranges before that do not name it, the first that does counts.
 struct ListRange {
   std::uint16_t first, last;
@@ -41,16 +28,6 @@ constexpr ListRange list_ranges[] = {
     {0x1000, 0x1FFF, ObjectListKind::optional},  {0x2000, 0x5FFF, ObjectListKind::manufacturer},
     {0x6000, 0xFFFF, ObjectListKind::optional},
 };
-
-/// Nothing for the data types below 1000h, of which CiA 306 does not say where they are listed.
-std::optional<ObjectListKind> list_of(std::uint16_t index) {
-  for (const ListRange& range : list_ranges) {
-    if (index >= range.first && index <= range.last) {
-      return range.list;
-    }
-  }
-  return std::nullopt;
-}
 
 class ObjectListReader {
  public:
@@ -115,6 +92,27 @@ std::vector<std::uint16_t> sorted_indices(const std::vector<ListedObject>& liste
 }
 
 }  // namespace
+
+std::string_view section_name(ObjectListKind kind) {
+  switch (kind) {
+    case ObjectListKind::mandatory:
+      return "MandatoryObjects";
+    case ObjectListKind::optional:
+      return "OptionalObjects";
+    case ObjectListKind::manufacturer:
+      return "ManufacturerObjects";
+  }
+  return "";
+}
+
+std::optional<ObjectListKind> list_of(std::uint16_t index) {
+  for (const ListRange& range : list_ranges) {
+    if (index >= range.first && index <= range.last) {
+      return range.list;
+    }
+  }
+  return std::nullopt;
+}
 
 std::vector<ListedObject> read_object_lists(const SourceFile& source, const ObjectListSections& sections,
                                             Diagnostics& diagnostics) {

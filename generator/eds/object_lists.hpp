@@ -1,6 +1,9 @@
 /// [MandatoryObjects], [OptionalObjects] and [ManufacturerObjects]: CiA 306-1, clause 4.6.1.
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <string_view>
 #include <vector>
 
 #include "diagnostics/diagnostics.hpp"
@@ -8,6 +11,13 @@
 #include "text/ini.hpp"
 
 namespace edsc {
+
+/// `MandatoryObjects` and its like.
+[[nodiscard]] std::string_view section_name(ObjectListKind kind);
+
+/// The list where an object belongs. Nothing for the data types below 1000h, of which CiA 306 does not say where they are
+/// listed.
+[[nodiscard]] std::optional<ObjectListKind> list_of(std::uint16_t index);
 
 /// The three sections; null where one is missing.
 struct ObjectListSections {

@@ -69,8 +69,8 @@ constexpr std::array type_words = {
     TypeWord{DataType::unsigned48, "u48", 8},      TypeWord{DataType::unsigned56, "u56", 8},
     TypeWord{DataType::unsigned64, "u64", 8},      TypeWord{DataType::real32, "r32", 4},
     TypeWord{DataType::real64, "r64", 8},          TypeWord{DataType::time_of_day, "time48", 4},
-    TypeWord{DataType::time_difference, "time48", 4}, TypeWord{DataType::visible_string, "string", 2},
-    TypeWord{DataType::octet_string, "string", 2}, TypeWord{DataType::unicode_string, "string", 2},
+    TypeWord{DataType::time_difference, "time48", 4}, TypeWord{DataType::visible_string, "visible_string", 2},
+    TypeWord{DataType::octet_string, "octet_string", 2}, TypeWord{DataType::unicode_string, "octet_string", 2},
     TypeWord{DataType::domain, "domain", 8},
 };
 
@@ -188,14 +188,14 @@ class Builder {
                                    row.readable && row.writable ? "rw" : row.readable ? "ro" : "wo");
     if (canopen::allows(entry.mappable(), canopen::Mappable::tpdo)) text += " | tpdo";
     if (canopen::allows(entry.mappable(), canopen::Mappable::rpdo)) text += " | rpdo";
-    if (has_limits(entry, row.writable)) text += " | limited";
+    if (has_limits(entry)) text += " | limited";
     return text;
   }
 
-  /// Limits matter where a value can be written; a string's capacity stands in the same table.
-  [[nodiscard]] static bool has_limits(const Entry& entry, bool writable) {
-    if (!writable) return false;
-    return entry.type->kind == DataClass::string || entry.low_limit || entry.high_limit;
+  /// Limits matter where the bus can write a value; a string's capacity, wherever it can change, stands in the same table.
+  [[nodiscard]] bool has_limits(const Entry& entry) const {
+    if (entry.type->kind == DataClass::string) return place(*device_.find(entry.index), entry) == Place::ram;
+    return canopen::writable(entry.access) && !contains(mapping_ranges, entry.index) && (entry.low_limit || entry.high_limit);
   }
 
   [[nodiscard]] static std::string immediate_text(const Entry& entry, Place where) {
@@ -207,12 +207,12 @@ class Builder {
   }
 
   void add_limits(const Entry& entry) {
-    if (!has_limits(entry, canopen::writable(entry.access)) || contains(mapping_ranges, entry.index)) return;
+    if (!has_limits(entry)) return;
     const std::string key = fmt::format("canopen::object_key(0x{:04X}, 0x{:02X})", entry.index, entry.sub_index);
     if (entry.type->kind == DataClass::string) {
       const std::uint32_t capacity = string_capacity(entry, options_);
       layout_.limits.push_back({fmt::format("{{{}, 0, {}}}", key, capacity), entry.name});
-      layout_.longest_download = std::max(layout_.longest_download, capacity);
+      if (canopen::writable(entry.access)) layout_.longest_download = std::max(layout_.longest_download, capacity);
       return;
     }
     const unsigned bits = entry.type->bits <= 32 ? 32 : 64;
@@ -318,6 +318,7 @@ class Builder {
   /// Elements of one numeric type and one set of rights in one kind of memory, without gaps: they share one word.
   [[nodiscard]] bool is_uniform_array(const Object& object) const {
     if (!describes_uniform_array(object)) return false;
+    if (place(object, object.entries[0]) == Place::rom) return false;  // a count of two bytes at most is an immediate
     const Place first = place(object, object.entries[1]);
     if (first != Place::ram && first != Place::rom) return false;
     return std::ranges::all_of(object.entries.begin() + 1, object.entries.end(),
@@ -330,6 +331,7 @@ class Builder {
     const std::size_t length = object.entries.size() - 1;
     const bool in_rom = place(object, first) == Place::rom;
     const Place count_place = place(object, count);
+    add_limits(count);
     add_limits(first);
 
     Member elements;
@@ -538,7 +540,8 @@ class Builder {
 
 std::string cpp_type(const Entry& entry, const Options& options) {
   if (entry.type->kind != DataClass::string) return std::string{entry.type->cpp_type};
-  const std::uint32_t terminator = options.zero_terminated_strings ? 1 : 0;
+  const bool terminated = options.zero_terminated_strings && entry.type->type == DataType::visible_string;
+  const std::uint32_t terminator = terminated ? 1 : 0;
   return fmt::format("{}<{}>", entry.type->cpp_type, string_capacity(entry, options) + terminator);
 }
 

@@ -26,6 +26,12 @@ bool has_content(const std::string& path, const std::string& content) {
   return std::fread(found.data(), 1, found.size(), file.get()) == found.size() && found == content;
 }
 
+/// A rename replaces nothing but files; found out before anything changes.
+std::string check_target(const std::string& path) {
+  std::error_code error;
+  return fs::is_directory(path, error) ? path + ": is a folder" : "";
+}
+
 std::string temporary_name(const std::string& path) { return path + ".edsc-tmp"; }
 
 std::string write_temporary(const OutputFile& file) {
@@ -42,6 +48,7 @@ std::string write_temporary(const OutputFile& file) {
 std::string write_files(const std::vector<OutputFile>& files) {
   std::vector<const OutputFile*> changed;
   for (const OutputFile& file : files) {
+    if (std::string problem = check_target(file.path); !problem.empty()) return problem;
     if (!has_content(file.path, file.content)) changed.push_back(&file);
   }
   std::string problem;

@@ -42,7 +42,7 @@ constexpr std::array rules = {
     Rule{"no-sub-objects", warning, "an ARRAY or RECORD without sub-objects", "CiA 306-1, 4.6.2"},
     Rule{"sub-number", warning, "SubNumber differs from the number of sub-objects", "CiA 306-1, 4.6.2"},
     Rule{"sub-index-0", warning, "an ARRAY or RECORD without sub-index 0", "CiA 301, 7.4.4"},
-    Rule{"compact-sub-obj", error, "CompactSubObj is not in 0..254", "CiA 306-1, 4.6.2.6"},
+    Rule{"compact-sub-obj", error, "CompactSubObj is not a number of 0..254", "CiA 306-1, 4.6.2.6"},
     Rule{"entry-count", warning, "NrOfEntries differs from the number of entries", "CiA 306-1, 4.6.2.6"},
     Rule{"parameter-name", warning, "an object without a name", "CiA 306-1, 4.6.2"},
     Rule{"data-type", error, "DataType is missing or unknown", "CiA 301, 7.4.7"},

@@ -83,17 +83,22 @@ class IniReader {
 
   void read_line(std::string_view line) {
     const std::string_view content = trim(line);
-    if (content.empty() || content[0] == ';') {
+    if (content.empty()) {
       return;
     }
-    if (content[0] == '#') {
+    if (content[0] == ';') {
+      keep_remark(content);
+    } else if (content[0] == '#') {
       report_hash_comment(line, content);
+      keep_remark(content);
     } else if (content[0] == '[') {
       read_header(line, content);
     } else {
       read_entry(line, content);
     }
   }
+
+  void keep_remark(std::string_view text) { file_.remarks.push_back({text, line_number_}); }
 
   void report_hash_comment(std::string_view line, std::string_view comment) {
     if (!found_hash_comment_) {
@@ -117,20 +122,27 @@ class IniReader {
     file_.sections.push_back({name, line_number_, column_of(line, name), {}});
 
     const std::string_view rest = trim(content.substr(end + 1));
-    if (!rest.empty() && rest[0] != ';' && rest[0] != '#') {
-      warning("text-after-section", line, rest, "this text behind the section's name is left out");
+    if (rest.empty()) {
+      return;
+    }
+    keep_remark(rest);
+    if (rest[0] != ';' && rest[0] != '#') {
+      warning("text-after-section", line, rest, "this text behind the section's name is taken as a comment");
     }
   }
 
   void read_entry(std::string_view line, std::string_view content) {
     const std::size_t equals = content.find('=');
     if (equals == std::string_view::npos) {
-      warning("stray-line", line, content, "neither a section nor an entry (there is no '='); this line is left out");
+      keep_remark(content);
+      warning("stray-line", line, content,
+              "neither a section nor an entry (there is no '='); this line is taken as a comment");
       return;
     }
     const std::string_view key = trim_right(content.substr(0, equals));
     if (key.empty()) {
-      warning("stray-line", line, content, "there is no key before the '='; this line is left out");
+      keep_remark(content);
+      warning("stray-line", line, content, "there is no key before the '='; this line is taken as a comment");
       return;
     }
     if (target_ == Target::none_yet) {

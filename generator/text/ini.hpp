@@ -28,12 +28,20 @@ struct IniSection {
   [[nodiscard]] const IniEntry* find(std::string_view key) const;
 };
 
+/// Text that says nothing about the device: a comment, a line that is neither section nor entry, or what stands behind a
+/// section's name. A comment still has its `;` or `#`. Blanks around it are cut.
+struct IniRemark {
+  std::string_view text;
+  std::uint32_t line = 0;
+};
+
 struct IniFile {
   const SourceFile* source = nullptr;
   std::vector<IniSection> sections;
+  std::vector<IniRemark> remarks;  ///< in the order of the file; their lines say between which entries they stand
 };
 
-/// Reads all lines; what is neither a section, an entry, a comment nor blank is reported and left out.
+/// Reads all lines. What is neither a section, an entry, a comment nor blank is reported and becomes a remark.
 [[nodiscard]] IniFile parse_ini(const SourceFile& source, Diagnostics& diagnostics);
 
 /// Letter case ignored, ASCII only, independent of the locale.

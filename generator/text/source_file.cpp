@@ -162,6 +162,7 @@ void SourceFile::decode(std::string bytes) {
   } else if (is_utf8(view)) {
     encoding_ = is_ascii(view) ? Encoding::ascii : Encoding::utf8;
     text_ = std::move(bytes);
+    is_verbatim_ = true;
   } else {
     encoding_ = looks_like_cp437(view) ? Encoding::cp437 : Encoding::cp1252;
     text_ = encoding_ == Encoding::cp437 ? from_cp437(view) : from_cp1252(view);

@@ -29,6 +29,8 @@ class SourceFile {
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::string_view text() const { return text_; }
   [[nodiscard]] Encoding encoding() const { return encoding_; }
+  /// Whether `text()` is the file byte for byte: ASCII or UTF-8, without byte order mark.
+  [[nodiscard]] bool is_verbatim() const { return is_verbatim_; }
   /// Number of lines; the text after the last line end counts when it is not empty.
   [[nodiscard]] std::uint32_t lines() const;
   /// Line `number` (from 1) without its line end (LF, CR LF or CR); empty where there is none.
@@ -41,6 +43,7 @@ class SourceFile {
   std::string name_;
   std::string text_;
   Encoding encoding_ = Encoding::ascii;
+  bool is_verbatim_ = false;
   std::vector<std::uint32_t> starts_;  ///< where each line begins; one more for the end
 };
 

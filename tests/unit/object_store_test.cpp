@@ -16,7 +16,7 @@ namespace od = sample::od;
 
 Store fresh() {
   Store store;
-  store.reset_application();
+  store.reset_application(NodeId{5});
   store.reset_communication(NodeId{5});
   return store;
 }

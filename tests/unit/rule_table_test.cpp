@@ -16,38 +16,48 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// How the sources name the rule that they report: the first argument of a reporting function, the rule of a PDO finding,
-/// the rule of a count key, a constant.
+/// How the sources name the rule that they report: the first argument of Diagnostics::error or warning, or a text of
+/// words with hyphens that begins a list of arguments or of members.
 const std::regex reported_ids{
-    R"re((?:(?:error|warning|report|count)\s*\(\s*|return \{|report_broken\(pdo, \{|rule = |\},\s*)"([a-z][a-z0-9-]*)")re"};
+    R"re((?:iagnostics_?\.(?:error|warning)\(\s*"([a-z0-9-]+)"|[({]"([a-z0-9]+(?:-[a-z0-9]+)+)",))re"};
 
 std::string text_of(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>{in}, {}};
 }
 
-std::set<std::string> reported_in_sources() {
-  std::set<std::string> ids;
+/// The text of the generator's sources but for the table itself.
+std::string sources() {
+  std::string all;
   for (const auto& file : fs::recursive_directory_iterator{fs::path{EDSC_SOURCE_DIR} / "generator"}) {
     const std::string extension = file.path().extension().string();
     if ((extension != ".cpp" && extension != ".hpp") || file.path().filename() == "rule.cpp") continue;
-    const std::string text = text_of(file.path());
-    for (std::sregex_iterator at{text.begin(), text.end(), reported_ids}; at != std::sregex_iterator{}; ++at) {
-      ids.insert((*at)[1].str());
-    }
+    all += text_of(file.path());
+  }
+  return all;
+}
+
+std::set<std::string> reported_in(const std::string& text) {
+  std::set<std::string> ids;
+  for (std::sregex_iterator at{text.begin(), text.end(), reported_ids}; at != std::sregex_iterator{}; ++at) {
+    ids.insert((*at)[1].matched ? (*at)[1].str() : (*at)[2].str());
   }
   return ids;
 }
 
 TEST(RuleTable, HoldsEveryRuleThatIsReported) {
-  const std::set<std::string> reported = reported_in_sources();
+  const std::set<std::string> reported = reported_in(sources());
   ASSERT_GT(reported.size(), 40U) << "the sources were not found, or are written in another way now";
   for (const std::string& id : reported) EXPECT_NE(find_rule(id), nullptr) << id;
 }
 
 TEST(RuleTable, HoldsNoRuleThatIsNeverReported) {
-  const std::set<std::string> reported = reported_in_sources();
-  for (const Rule& rule : all_rules()) EXPECT_TRUE(reported.contains(std::string{rule.id})) << rule.id;
+  const std::string text = sources();
+  for (const Rule& rule : all_rules()) {
+    std::string literal{"\""};
+    literal.append(rule.id).append("\"");
+    EXPECT_NE(text.find(literal), std::string::npos) << rule.id;
+  }
 }
 
 TEST(RuleTable, HoldsEachIdOnceWithMeaningAndSource) {

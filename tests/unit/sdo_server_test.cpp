@@ -440,7 +440,7 @@ TEST(SdoServer, SendsAWaitingAnswerBeforeItTakesTheNextFrame) {
 }
 
 struct WithTimeout : sample::Device {
-  static constexpr canopen::DeviceOptions options{.sdo_timeout = std::chrono::seconds{1}};
+  static constexpr canopen::DeviceOptions options{.sdo_timeout = 1000};
 };
 
 TEST(SdoServer, AnOptionAbortsATransferWhoseClientIsSilent) {

@@ -3,8 +3,6 @@
 
 #include <cstdint>
 
-#include "canopen/time.hpp"
-
 namespace canopen {
 
 struct DeviceOptions {
@@ -22,8 +20,8 @@ struct DeviceOptions {
   bool event_driven_on_change = true;
   /// Expedited uploads tell how many bytes are valid. If not, they answer 42h.
   bool sdo_upload_size_indicated = true;
-  /// A segmented transfer in which nothing comes for this long is aborted: 0504 0000h. 0: never.
-  Duration sdo_timeout{0};
+  /// A segmented transfer in which nothing comes for this many milliseconds is aborted: 0504 0000h. 0: never.
+  std::uint16_t sdo_timeout = 0;
 };
 
 }  // namespace canopen

@@ -51,7 +51,8 @@ inline constexpr Word i64 = type_word(Class::signed_integer, 8);
 inline constexpr Word r32 = type_word(Class::real, 4);
 inline constexpr Word r64 = type_word(Class::real, 8);
 inline constexpr Word time48 = u48;  ///< TIME_OF_DAY and TIME_DIFFERENCE lie in memory as on the wire
-inline constexpr Word string = type_word(Class::special, 0);   ///< a StringStorage
+inline constexpr Word visible_string = type_word(Class::special, 0);  ///< a StringStorage of text
+inline constexpr Word octet_string = type_word(Class::special, 3);    ///< a StringStorage of bytes, UNICODE_STRINGs too
 inline constexpr Word domain = type_word(Class::special, 1);   ///< a Domain
 inline constexpr Word boolean = type_word(Class::special, 2);  ///< a bool: one byte, 0 or 1
 
@@ -83,7 +84,9 @@ inline constexpr Word gap = 0;  ///< a sub-index of a record that does not exist
 [[nodiscard]] constexpr Place place_of(Word word) { return static_cast<Place>((word >> place_shift) & 3); }
 [[nodiscard]] constexpr Kind kind_of(Word word) { return static_cast<Kind>(word >> kind_shift); }
 [[nodiscard]] constexpr Word type_of(Word word) { return word & (Word{0x3F} << size_shift); }
-[[nodiscard]] constexpr bool is_string(Word word) { return type_of(word) == string; }
+[[nodiscard]] constexpr bool is_string(Word word) {
+  return type_of(word) == visible_string || type_of(word) == octet_string;
+}
 [[nodiscard]] constexpr bool is_domain(Word word) { return type_of(word) == domain; }
 [[nodiscard]] constexpr bool is_boolean(Word word) { return type_of(word) == boolean; }
 /// Bytes of the value as SDO carries it; 0 where that varies.

@@ -197,7 +197,7 @@ class Node {
   }
 
   void reset_node() {
-    store_.reset_application();
+    store_.reset_application(node_id_);
     reset_communication();
   }
 

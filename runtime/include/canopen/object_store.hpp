@@ -35,8 +35,7 @@ class EntryAccess {
       return {scratch.data(), entry::wire_bytes(word)};
     }
     if (entry::is_string(word)) {
-      const std::size_t terminator = dictionary_.zero_terminated_strings ? 1 : 0;
-      return {where + string_header, load<std::uint16_t>(where) + terminator};
+      return {where + string_header, load<std::uint16_t>(where) + (is_terminated(word) ? 1u : 0u)};
     }
     if (entry::is_domain(word)) {
       const Domain memory = domain(word);
@@ -93,6 +92,7 @@ class EntryAccess {
       const auto size = static_cast<std::uint16_t>(bytes.size());
       std::memcpy(where, &size, sizeof size);
       copy(where + string_header, bytes);
+      if (is_terminated(word)) where[string_header + bytes.size()] = 0;
     } else if (entry::is_domain(word)) {
       copy(domain(word).data, bytes);
       resize_domain(word, static_cast<std::uint32_t>(bytes.size()));
@@ -109,6 +109,11 @@ class EntryAccess {
 
  private:
   static constexpr std::size_t string_header = sizeof(std::uint16_t);
+
+  /// Whether a 00h follows the text: there is room for it behind the capacity then.
+  [[nodiscard]] bool is_terminated(entry::Word word) const {
+    return dictionary_.zero_terminated_strings && entry::type_of(word) == entry::visible_string;
+  }
 
   template <class T>
   [[nodiscard]] static T load(const std::uint8_t* where) {
@@ -278,8 +283,9 @@ class ObjectStore {
     add_node_id(Device::node_id_relative_communication());
   }
 
-  /// Default values for 2000h..9FFFh.
-  void reset_application() {
+  /// Default values for 2000h..9FFFh, with the node-ID added where the data sheet says so.
+  void reset_application(NodeId node_id) {
+    node_id_ = node_id;
     const BoundDomains bound = bound_domains();
     Device::reset_application(values_);
     bind_again(bound);

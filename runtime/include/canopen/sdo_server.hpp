@@ -49,14 +49,14 @@ class SdoServer {
   /// Aborts a transfer whose client has been silent for too long (0504 0000h).
   void on_time([[maybe_unused]] TimePoint now) {
     if constexpr (has_timeout) {
-      if (state_ != State::idle && now >= last_request_ + Device::options.sdo_timeout) abort(AbortCode::timeout);
+      if (state_ != State::idle && now >= last_request_ + timeout) abort(AbortCode::timeout);
     }
   }
 
   /// When the client will have been silent for too long.
   [[nodiscard]] std::optional<TimePoint> next_deadline() const {
     if constexpr (has_timeout) {
-      if (state_ != State::idle) return last_request_ + Device::options.sdo_timeout;
+      if (state_ != State::idle) return last_request_ + timeout;
     }
     return std::nullopt;
   }
@@ -80,7 +80,8 @@ class SdoServer {
  private:
   enum class State : std::uint8_t { idle, uploading, downloading };
 
-  static constexpr bool has_timeout = Device::options.sdo_timeout.count() != 0;
+  static constexpr Duration timeout = from_milliseconds(Device::options.sdo_timeout);
+  static constexpr bool has_timeout = timeout.count() != 0;
   static constexpr std::size_t number_bytes = 8;
   static constexpr std::size_t buffer_bytes = std::max<std::size_t>(number_bytes, Device::longest_download);
 
