@@ -13,6 +13,13 @@ using canopen::AbortCode;
 namespace od = sample::od;
 using namespace std::chrono_literals;
 
+TEST(SdoServer, RefusesACommandThatNothingCarriesOut) {
+  Bench device;
+  EXPECT_EQ(device.ask("605 40 10 10 01 00 00 00 00"), "585 43 10 10 01 01 00 00 00");
+  EXPECT_EQ(device.ask("605 23 10 10 01 73 61 76 65"), "585 80 10 10 01 20 00 00 08");
+  EXPECT_EQ(device.ask("605 40 10 10 01 00 00 00 00"), "585 43 10 10 01 01 00 00 00");
+}
+
 // Expedited upload
 
 TEST(SdoServer, UploadsUpToFourBytesExpedited) {

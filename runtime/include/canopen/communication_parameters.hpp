@@ -63,13 +63,15 @@ inline constexpr std::uint8_t event_timer = 5;
 }
 
 /// What speaks against writing these bytes, whose length is right, to 1400h..15FFh or 1800h..19FFh. Bits of a COB-ID
-/// that the device does not let change are put back into `bytes`.
+/// that the device does not let change are put back into `bytes`. 0604 0047h: the data sheet gives the parameter another
+/// type than CiA 301.
 [[nodiscard]] inline AbortCode check_pdo_parameter(const DeviceOptions& options, const EntryAccess& entries,
                                                    std::uint16_t index, std::uint8_t sub_index,
                                                    std::span<std::uint8_t> bytes) {
   const bool tpdo = is_tpdo_communication(index);
   switch (sub_index) {
     case pdo_parameter::cob_id: {
+      if (bytes.size() != sizeof(std::uint32_t)) return AbortCode::internal_incompatibility;
       const std::uint32_t before = entries.number(entries.dictionary().find(index, sub_index));
       std::uint32_t after = 0;
       std::memcpy(&after, bytes.data(), sizeof after);
@@ -81,6 +83,7 @@ inline constexpr std::uint8_t event_timer = 5;
     case pdo_parameter::transmission_type: return check_transmission_type(options, tpdo, bytes[0]);
     case pdo_parameter::inhibit_time: {
       if (!tpdo || options.inhibit_time_writable_while_valid) return ok;
+      if (bytes.size() != sizeof(std::uint16_t)) return AbortCode::internal_incompatibility;
       const CobId cob_id{entries.number(entries.dictionary().find(index, pdo_parameter::cob_id))};
       const std::uint32_t before = entries.number(entries.dictionary().find(index, sub_index));
       const std::uint32_t after = bytes[0] | static_cast<std::uint32_t>(bytes[1] << 8);

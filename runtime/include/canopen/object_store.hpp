@@ -67,6 +67,7 @@ class EntryAccess {
   [[nodiscard]] AbortCode check(std::uint16_t index, std::uint8_t sub_index, entry::Word word,
                                 std::span<const std::uint8_t> bytes) const {
     if (const AbortCode length = check_length(index, sub_index, word, bytes.size()); length != ok) return length;
+    if (entry::place_of(word) != entry::Place::ram) return AbortCode::not_stored;  // a command, such as 1010h's, of no service
     if (entry::is_boolean(word)) return bytes[0] > 1 ? AbortCode::invalid_value : ok;
     if ((word & entry::limited) == 0 || entry::class_of(word) == entry::Class::special) return ok;
     return check_limits(object_key(index, limits_sub_index(index, sub_index)), word, bytes);
