@@ -1525,6 +1525,7 @@ inline constexpr canopen::Group groups[] = {
 };
 
 inline constexpr canopen::Limits limits[] = {
+    {canopen::object_key(0x1003, 0x00), 0x0, 0x1},  // 0..1
     {canopen::object_key(0x1201, 0x03), 0x1, 0x7F},  // 1..127
     {canopen::object_key(0x3006, 0x0F), 0x0, 0x2},  // 0..2
     {canopen::object_key(0x3006, 0x10), 0x0, 0x2},  // 0..2

@@ -59,9 +59,10 @@ def check_block(document: Path, block: re.Match[str], source: Path, folder: Path
 
 
 def check_links(document: Path, text: str, source: Path) -> list[str]:
+    prose = BLOCK.sub("", text)
     return [
         f"{document}: link to {target} leads nowhere"
-        for target in LINK.findall(text)
+        for target in LINK.findall(prose)
         if not (source / document).parent.joinpath(target).exists()
     ]
 

@@ -51,6 +51,26 @@ concept RpdoMappable = DictionaryObject<O> && allows(O::mappable, Mappable::rpdo
 
 namespace pdo_detail {
 
+// One object each, so that the compiler's message names the one that is wrong.
+
+template <class O>
+struct PdoEntry {
+  static_assert(FixedLength<O>, "a PDO carries no value without a fixed length: no strings and no domains");
+  static constexpr bool fits = true;
+};
+
+template <class O>
+struct TpdoEntry {
+  static_assert(TpdoMappable<O>, "a TPDO may not carry this object: PDOMapping=0, or access wo or rww");
+  static constexpr bool fits = true;
+};
+
+template <class O>
+struct RpdoEntry {
+  static_assert(RpdoMappable<O>, "an RPDO may not carry this object: PDOMapping=0, or access ro, rwr or const");
+  static constexpr bool fits = true;
+};
+
 [[nodiscard]] constexpr std::uint64_t mask(unsigned bits) {
   return bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
 }
@@ -140,8 +160,9 @@ template <unsigned At, unsigned Bits>
 
 /// The layout of a PDO made of `Objects`, in their order, low bit first. Known without a dictionary: a master or an
 /// analyser uses it as well as the device.
-template <FixedLength... Objects>
+template <DictionaryObject... Objects>
 struct PdoLayout {
+  static_assert((true && ... && pdo_detail::PdoEntry<Objects>::fits));
   static constexpr std::size_t entries = sizeof...(Objects);
   static constexpr unsigned bits = (0u + ... + Objects::bits);
   static_assert(entries <= 64, "a PDO maps 64 objects at most (CiA 301, 7.5.2.36)");
@@ -209,12 +230,16 @@ struct PdoLayout {
 };
 
 /// A PDO that a device sends.
-template <TpdoMappable... Objects>
-struct Tpdo : PdoLayout<Objects...> {};
+template <DictionaryObject... Objects>
+struct Tpdo : PdoLayout<Objects...> {
+  static_assert((true && ... && pdo_detail::TpdoEntry<Objects>::fits));
+};
 
 /// A PDO that a device receives.
-template <RpdoMappable... Objects>
-struct Rpdo : PdoLayout<Objects...> {};
+template <DictionaryObject... Objects>
+struct Rpdo : PdoLayout<Objects...> {
+  static_assert((true && ... && pdo_detail::RpdoEntry<Objects>::fits));
+};
 
 /// A PDO of a device: its number (from 1) and its layout. The parameters are objects 1400h or 1800h + number - 1.
 template <std::uint16_t Number, class Layout>

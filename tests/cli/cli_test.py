@@ -1,0 +1,436 @@
+#!/usr/bin/env python3
+"""What edsc promises to those who call it: exit codes, streams, whole output or none, and stable JSON.
+
+    cli_test.py SOURCE_DIR EDSC [unittest arguments]
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+SOURCE_DIR = Path(sys.argv[1]).resolve()
+EDSC = Path(sys.argv[2]).resolve()
+FIXTURES = SOURCE_DIR / "tests/fixtures"
+GOOD = FIXTURES / "every_type.eds"
+WRONG = FIXTURES / "wrong_mapping_over_64_bits.eds"
+HEADERS = ("dictionary.hpp", "pdo.hpp", "device.hpp", "description.hpp")
+ESCAPE = "\x1b["
+NOBODY = 65534
+
+FINE, INPUT_HAS_ERRORS, WRONG_USAGE = 0, 1, 2
+
+# A device that is fine but for what a test adds to it.
+SMALL = """[FileInfo]
+FileName=small.eds
+[MandatoryObjects]
+SupportedObjects=3
+1=0x1000
+2=0x1001
+3=0x1018
+[1000]
+ParameterName=Device type
+ObjectType=7
+DataType=7
+AccessType=ro
+DefaultValue=0
+[1001]
+ParameterName=Error register
+ObjectType=7
+DataType=5
+AccessType=ro
+[1018]
+ParameterName=Identity object
+ObjectType=9
+SubNumber=2
+[1018sub0]
+ParameterName=Highest sub-index supported
+ObjectType=7
+DataType=5
+AccessType=ro
+DefaultValue=1
+[1018sub1]
+ParameterName=Vendor-ID
+ObjectType=7
+DataType=7
+AccessType=ro
+"""
+
+
+def snapshot(folder: Path) -> dict[str, tuple[bytes, int]]:
+    """Content and time stamp of each file below a folder."""
+    return {str(path.relative_to(folder)): (path.read_bytes(), path.stat().st_mtime_ns)
+            for path in folder.rglob("*") if path.is_file()}
+
+
+class CommandLine(unittest.TestCase):
+    def setUp(self) -> None:
+        self.folder = Path(tempfile.mkdtemp(prefix="edsc-cli-"))
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.output = self.folder / "out"
+
+    def edsc(self, *arguments: object, environment: dict[str, str] | None = None,
+             **more: object) -> subprocess.CompletedProcess[str]:
+        return subprocess.run([EDSC, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True,
+                              errors="replace", timeout=30, env={**os.environ, **(environment or {})}, **more)
+
+    def write(self, name: str, text: str | bytes) -> Path:
+        path = self.folder / name
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return path
+
+    def expect(self, exit_code: int, result: subprocess.CompletedProcess[str], *words: str) -> None:
+        said = result.stdout + result.stderr
+        self.assertEqual(result.returncode, exit_code, said[:2000])
+        for word in words:
+            self.assertIn(word, said[:20000])
+
+
+class BadInput(CommandLine):
+    def refuse(self, path: Path | str, exit_code: int, *words: str) -> None:
+        """Every command refuses it in the same way, and writes nothing."""
+        for arguments in (("generate", path, "-o", self.output), ("check", path), ("dump", path)):
+            with self.subTest(command=arguments[0]):
+                self.expect(exit_code, self.edsc(*arguments), *words)
+        self.assertFalse(self.output.exists())
+
+    def test_a_missing_file(self) -> None:
+        self.refuse("missing.eds", WRONG_USAGE, "missing.eds", "No such file", "[unreadable-file]")
+
+    def test_a_folder(self) -> None:
+        self.refuse(self.folder, WRONG_USAGE, "Is a directory", "[unreadable-file]")
+
+    def test_a_file_without_permission(self) -> None:
+        secret = self.write("secret.eds", SMALL)
+        secret.chmod(0)
+        self.folder.chmod(0o755)
+        as_somebody_else = {"user": NOBODY} if os.geteuid() == 0 else {}
+        try:
+            result = self.edsc("check", secret, **as_somebody_else)
+        except PermissionError:
+            self.skipTest("SKIPPED: another user cannot run this edsc")
+        self.expect(WRONG_USAGE, result, "Permission denied", "[unreadable-file]")
+
+    def test_an_empty_file(self) -> None:
+        self.refuse(self.write("empty.eds", ""), INPUT_HAS_ERRORS, "empty.eds: error:", "[empty-file]")
+
+    def test_comments_only(self) -> None:
+        self.refuse(self.write("comments.eds", "; nothing\n;\n"), INPUT_HAS_ERRORS, "[empty-file]")
+
+    def test_binary_junk(self) -> None:
+        junk = bytes((number * 167 + 13) % 256 for number in range(50_000))
+        self.refuse(self.write("junk.eds", junk), INPUT_HAS_ERRORS, "[binary-file]")
+
+    def test_xml(self) -> None:
+        self.refuse(self.write("device.xdd", '<?xml version="1.0"?>\n<ISO15745ProfileContainer/>\n'), INPUT_HAS_ERRORS,
+                    "[xml-file]")
+
+    def test_a_hundred_megabytes_of_brackets(self) -> None:
+        huge = self.write("huge.eds", b"[" * 100_000_000)
+        result = self.edsc("check", huge)
+        self.expect(INPUT_HAS_ERRORS, result, "[unterminated-section]")
+        self.assertLess(len(result.stdout), 2000)
+
+    def test_a_million_broken_lines(self) -> None:
+        result = self.edsc("check", self.write("broken.eds", "[1000]\n" + "no equals sign\n" * 1_000_000))
+        self.expect(INPUT_HAS_ERRORS, result, "999950 more of this kind [stray-line]")
+        self.assertLess(result.stdout.count("\n"), 400)
+
+    def test_no_object(self) -> None:
+        self.refuse(self.write("info.eds", "[FileInfo]\nFileName=info.eds\n"), INPUT_HAS_ERRORS, "[no-objects]")
+
+    def test_an_unknown_data_type(self) -> None:
+        text = SMALL + "[2000]\nParameterName=Value\nObjectType=7\nDataType=0x77\nAccessType=rw\n"
+        line = text[:text.index("DataType=0x77")].count("\n") + 1
+        self.refuse(self.write("type.eds", text), INPUT_HAS_ERRORS, f"type.eds:{line}:10: error:", "[data-type]")
+
+    def test_a_section_that_stands_twice(self) -> None:
+        text = SMALL + "[1000]\nParameterName=Another\nObjectType=7\nDataType=5\nAccessType=rw\n"
+        line = text[:text.rindex("[1000]")].count("\n") + 1
+        result = self.edsc("check", self.write("twice.eds", text))
+        self.expect(FINE, result, f"twice.eds:{line}:2: warning:", "[duplicate-section]", "note:")
+
+    def test_a_deeply_broken_file(self) -> None:
+        text = SMALL.replace("DataType=7", "DataType=seven").replace("[1018sub1]", "[1018sub1").replace("=ro", "=sometimes")
+        self.refuse(self.write("broken.eds", text), INPUT_HAS_ERRORS, "[data-type]", "[access-type]", "[unterminated-section]")
+
+    def test_wrong_mappings_at_the_entry_that_is_wrong(self) -> None:
+        expected = {
+            "over_64_bits": ("pdo-size", "0x10010008"),
+            "rpdo_object_in_tpdo": ("pdo-direction", "0x20010020"),
+            "string": ("pdo-variable-length", "0x20020020"),
+            "tpdo_object_in_rpdo": ("pdo-direction", "0x20000020"),
+            "unknown_object": ("pdo-object", "0x2ABC0010"),
+            "unmappable_object": ("pdo-mappable", "0x20030010"),
+            "wrong_length": ("pdo-length", "0x20000010"),
+        }
+        files = {path.stem.removeprefix("wrong_mapping_"): path for path in FIXTURES.glob("wrong_mapping_*.eds")}
+        self.assertEqual(files.keys(), expected.keys())
+        for name, (rule, word) in expected.items():
+            with self.subTest(fixture=name):
+                lines = files[name].read_text().splitlines()
+                number = max(at for at, line in enumerate(lines, 1) if line == f"DefaultValue={word}")
+                result = self.edsc("generate", files[name], "-o", self.output)
+                self.expect(INPUT_HAS_ERRORS, result, f"{files[name].name}:{number}:14: error:", f"[{rule}]")
+                self.assertEqual(len(re.findall(r": error: ", result.stderr)), 1, result.stderr)
+                self.assertFalse(self.output.exists())
+
+
+class OptionsFile(CommandLine):
+    def test_beside_the_data_sheet_is_read(self) -> None:
+        sheet = self.write("small.eds", SMALL)
+        self.write("small.options.json", '{ "names": { "1000h": "kind" } }')
+        self.expect(FINE, self.edsc("generate", sheet, "-o", self.output))
+        self.assertIn("struct kind ", (self.output / "small/dictionary.hpp").read_text())
+
+    def test_that_is_wrong_is_an_error_where_it_stands(self) -> None:
+        sheet = self.write("small.eds", SMALL)
+        self.write("small.options.json", '{\n  "colour": 1\n}')
+        self.expect(INPUT_HAS_ERRORS, self.edsc("generate", sheet, "-o", self.output), "small.options.json:2:3: error:")
+        self.assertFalse(self.output.exists())
+
+    def test_that_is_named_and_missing_is_wrong_usage(self) -> None:
+        result = self.edsc("generate", self.write("small.eds", SMALL), "--options", "none.json", "-o", self.output)
+        self.expect(WRONG_USAGE, result, "none.json")
+
+    def test_silences_rules(self) -> None:
+        sheet = self.write("small.eds", SMALL.replace("SubNumber=2", "SubNumber=9"))
+        self.expect(FINE, self.edsc("check", sheet), "[sub-number]")
+        self.write("small.options.json", '{ "silence": ["sub-number"] }')
+        self.assertEqual(self.edsc("check", sheet).stdout, "")
+
+
+class WrongUsage(CommandLine):
+    def test_is_exit_code_2_with_a_hint(self) -> None:
+        for arguments in ((), ("compile",), ("generate",), ("generate", GOOD), ("check",), ("dump",),
+                          ("generate", GOOD, "-o", "out", "--no-such-option"),
+                          ("generate", GOOD, "-o", "out", "--node-id", "0"),
+                          ("generate", GOOD, "-o", "out", "--node-id", "128"),
+                          ("generate", GOOD, "-o", "out", "--node-id", "five"),
+                          ("generate", GOOD, "-o", "out", "--name", "Not Snake"),
+                          ("generate", GOOD, "-o", "out", "--name", "class"),
+                          ("generate", GOOD, "-o", "out", "--name", ""),
+                          ("generate", GOOD, "-o", "out", "--templates", "no-such-folder"),
+                          ("check", GOOD, "--silence", "no-such-rule"), ("check", GOOD, "--format", "xml"),
+                          ("check", GOOD, "--color", "sometimes")):
+            with self.subTest(arguments=arguments[1:]):
+                result = self.edsc(*arguments)
+                self.expect(WRONG_USAGE, result)
+                self.assertEqual(result.stdout, "")
+                self.assertNotEqual(result.stderr, "")
+        self.assertFalse(self.output.exists())
+
+    def test_help_has_examples_for_each_command(self) -> None:
+        overview = self.edsc("--help").stdout
+        commands = re.findall(r"^  ([a-z]+) {4,}\S", overview.partition("Subcommands:")[2], re.MULTILINE)
+        self.assertGreaterEqual(set(commands), {"generate", "check", "dump"})
+        for command in commands:
+            with self.subTest(command=command):
+                result = self.edsc(command, "--help")
+                self.expect(FINE, result, "Examples:", f"  edsc {command} ")
+
+    def test_version(self) -> None:
+        self.assertRegex(self.edsc("--version").stdout, r"^edsc \d+\.\d+\.\d+\n$")
+
+
+class Generate(CommandLine):
+    def test_writes_the_headers_of_one_device(self) -> None:
+        result = self.edsc("generate", GOOD, "-o", self.output)
+        self.expect(FINE, result)
+        self.assertEqual((result.stdout, result.stderr), ("", ""))
+        self.assertEqual(set(snapshot(self.output)), {f"every_type/{header}" for header in HEADERS})
+
+    def test_is_deterministic(self) -> None:
+        self.edsc("generate", GOOD, "-o", self.output)
+        shutil.copy(GOOD, self.folder)
+        self.expect(FINE, self.edsc("generate", GOOD.name, "-o", "again"))
+        first, again = snapshot(self.output), snapshot(self.folder / "again")
+        self.assertEqual({name: content for name, (content, _) in first.items()},
+                         {name: content for name, (content, _) in again.items()})
+
+    def test_does_not_touch_files_that_stay_the_same(self) -> None:
+        self.edsc("generate", GOOD, "-o", self.output)
+        before = snapshot(self.output)
+        self.expect(FINE, self.edsc("generate", GOOD, "-o", self.output))
+        self.assertEqual(snapshot(self.output), before)
+
+    def test_touches_nothing_when_it_fails(self) -> None:
+        sheet = self.write("small.eds", SMALL)
+        depfile = self.output / "small.d"
+        arguments = ("generate", sheet, "-o", self.output, "--depfile", depfile)
+        self.expect(FINE, self.edsc(*arguments))
+        before = snapshot(self.output)
+        for wrong in ("", "[1000]\nDataType=x\n", SMALL.replace("DataType=7", "DataType=99")):
+            sheet.write_text(wrong)
+            self.expect(INPUT_HAS_ERRORS, self.edsc(*arguments))
+            self.assertEqual(snapshot(self.output), before)
+
+    def test_writes_all_or_nothing(self) -> None:
+        (self.output / "every_type/pdo.hpp").mkdir(parents=True)
+        self.expect(WRONG_USAGE, self.edsc("generate", GOOD, "-o", self.output), "pdo.hpp")
+        self.assertEqual(snapshot(self.output), {})
+
+    def test_cannot_write_below_a_file(self) -> None:
+        blocked = self.write("blocked", "")
+        self.expect(WRONG_USAGE, self.edsc("generate", GOOD, "-o", blocked), "blocked")
+
+    def test_verbose_names_the_files(self) -> None:
+        result = self.edsc("generate", GOOD, "-o", "out", "--verbose")
+        self.assertEqual(result.stdout.split(), [f"out/every_type/{header}" for header in HEADERS])
+
+    def test_keep_going_leaves_out_what_is_wrong(self) -> None:
+        result = self.edsc("generate", WRONG, "-o", self.output, "--keep-going", "--name", "wrong")
+        self.expect(FINE, result, "[pdo-size]")
+        self.assertIn("TPDO 1, 1800h and 1A00h: left out", (self.output / "wrong/pdo.hpp").read_text())
+
+    def test_with_a_node_id_has_no_formula(self) -> None:
+        self.edsc("generate", GOOD, "-o", self.output, "--node-id", 5, "--name", "axis")
+        text = (self.output / "axis/dictionary.hpp").read_text()
+        self.assertIn("0x00000085", text)
+        self.assertNotIn("NodeIdRelative", text)
+
+    def test_depfile_names_outputs_and_inputs(self) -> None:
+        folder = self.folder / "a $ b#"
+        folder.mkdir()
+        sheet = folder / "small.eds"
+        sheet.write_text(SMALL)
+        (folder / "small.options.json").write_text("{}")
+        self.expect(FINE, self.edsc("generate", sheet, "-o", "out", "--depfile", "out/small.d"))
+        text = (self.output / "small.d").read_text()
+        escaped = str(folder).replace(" ", "\\ ").replace("$", "$$").replace("#", "\\#")
+        self.assertEqual(text, " ".join(f"out/small/{header}" for header in HEADERS) +
+                         f": \\\n  {escaped}/small.eds \\\n  {escaped}/small.options.json\n")
+
+    def test_templates_of_ones_own_replace_the_built_in_ones(self) -> None:
+        templates = self.folder / "mine"
+        templates.mkdir()
+        (templates / "pdo.hpp.mustache").write_text("// {{namespace}}\n")
+        self.expect(FINE, self.edsc("generate", GOOD, "-o", self.output, "--templates", templates))
+        self.assertEqual((self.output / "every_type/pdo.hpp").read_text(), "// every_type\n")
+        (templates / "pdo.hpp.mustache").write_text("{{#open}}\n")
+        self.expect(WRONG_USAGE, self.edsc("generate", GOOD, "-o", "other", "--templates", templates))
+        self.assertFalse((self.folder / "other").exists())
+
+
+class Check(CommandLine):
+    def test_says_nothing_of_a_good_data_sheet(self) -> None:
+        result = self.edsc("check", GOOD)
+        self.expect(FINE, result)
+        self.assertEqual((result.stdout, result.stderr), ("", ""))
+
+    def test_tells_its_findings_on_standard_output(self) -> None:
+        result = self.edsc("check", WRONG)
+        self.expect(INPUT_HAS_ERRORS, result)
+        self.assertIn("[pdo-size]", result.stdout)
+        self.assertEqual(result.stderr, "")
+
+    def test_generate_and_dump_tell_them_on_standard_error(self) -> None:
+        for arguments in (("generate", WRONG, "-o", self.output), ("dump", WRONG)):
+            result = self.edsc(*arguments)
+            self.expect(INPUT_HAS_ERRORS, result)
+            self.assertIn("[pdo-size]", result.stderr)
+            self.assertEqual(result.stdout, "")
+
+    def test_takes_the_worst_of_several_files(self) -> None:
+        self.expect(INPUT_HAS_ERRORS, self.edsc("check", GOOD, WRONG, GOOD))
+        self.expect(WRONG_USAGE, self.edsc("check", WRONG, "missing.eds", GOOD))
+
+    def test_strict_makes_errors_of_warnings(self) -> None:
+        sheet = self.write("small.eds", SMALL.replace("SubNumber=2", "SubNumber=9"))
+        self.expect(FINE, self.edsc("check", sheet), "warning:")
+        self.expect(INPUT_HAS_ERRORS, self.edsc("check", sheet, "--strict"), "error:", "[sub-number]")
+
+    def test_silence_drops_a_rule(self) -> None:
+        self.expect(FINE, self.edsc("check", WRONG, "--silence", "pdo-size"))
+        self.expect(INPUT_HAS_ERRORS, self.edsc("check", WRONG, "--silence", "pdo-length"))
+
+    def test_json_has_stable_keys(self) -> None:
+        result = self.edsc("check", WRONG, GOOD, "--format", "json")
+        self.expect(INPUT_HAS_ERRORS, result)
+        report = json.loads(result.stdout)
+        self.assertEqual(set(report), {"version", "diagnostics", "suppressed", "errors", "warnings"})
+        self.assertEqual((report["version"], report["errors"], report["warnings"]), (1, 1, 0))
+        (finding,) = report["diagnostics"]
+        self.assertEqual(set(finding), {"file", "line", "column", "length", "severity", "rule", "message", "notes"})
+        self.assertEqual((finding["rule"], finding["severity"], finding["column"]), ("pdo-size", "error", 14))
+
+    def test_json_of_many_findings_counts_the_rest(self) -> None:
+        sheet = self.write("many.eds", SMALL + "stray\n" * 60)
+        report = json.loads(self.edsc("check", sheet, "--format", "json").stdout)
+        self.assertEqual([(row["rule"], row["count"]) for row in report["suppressed"]], [("stray-line", 10)])
+        self.assertEqual(report["warnings"], 60)
+
+    def test_lists_every_rule(self) -> None:
+        result = self.edsc("check", "--list-rules")
+        self.expect(FINE, result, "pdo-size", "number-format")
+
+
+class Dump(CommandLine):
+    def test_is_json_with_the_whole_device(self) -> None:
+        result = self.edsc("dump", GOOD)
+        self.expect(FINE, result)
+        device = json.loads(result.stdout)
+        self.assertEqual(device["schema"], 1)
+        self.assertEqual(device["name"], "every_type")
+        self.assertEqual(device["product_name"], "Every type")
+        objects = {row["index"]: row for row in device["objects"]}
+        self.assertEqual(objects[0x2015]["entries"][0]["default_value"], -(2**63))
+        self.assertEqual(objects[0x201B]["entries"][0]["default_value"], 2**64 - 1)
+        self.assertEqual(objects[0x200A]["entries"][0]["default_value"], "00FF7F")
+        self.assertEqual(objects[0x1014]["entries"][0]["default_value"], "$NODEID+0x80")
+        self.assertEqual([(pdo["direction"], pdo["number"], pdo["bits"]) for pdo in device["pdos"]],
+                         [("receive", 1, 40), ("transmit", 1, 41), ("transmit", 2, 64)])
+
+    def test_with_a_node_id_holds_numbers(self) -> None:
+        device = json.loads(self.edsc("dump", GOOD, "--node-id", 5).stdout)
+        self.assertEqual(device["node_id"], 5)
+        self.assertNotIn("$NODEID", json.dumps(device["objects"]))
+
+    def test_with_cpp_holds_what_the_templates_see(self) -> None:
+        device = json.loads(self.edsc("dump", GOOD, "--cpp").stdout)
+        self.assertEqual(device["cpp"]["namespace"], "every_type")
+
+    def test_of_names_in_other_scripts_is_json(self) -> None:
+        device = json.loads(self.edsc("dump", FIXTURES / "names.eds").stdout)
+        self.assertIn("速度", [row["name"] for row in device["objects"]])
+
+    def test_that_cannot_be_written_is_no_success(self) -> None:
+        if not os.path.exists("/dev/full"):
+            self.skipTest("SKIPPED: no /dev/full")
+        with open("/dev/full", "w") as full:
+            result = subprocess.run([EDSC, "dump", GOOD], stdout=full, stderr=subprocess.PIPE, text=True, timeout=30)
+        self.assertEqual(result.returncode, WRONG_USAGE)
+
+
+class Colour(CommandLine):
+    def test_is_off_when_no_terminal_listens(self) -> None:
+        self.assertNotIn(ESCAPE, self.edsc("check", WRONG).stdout)
+
+    def test_always_and_never(self) -> None:
+        self.assertIn(ESCAPE, self.edsc("check", WRONG, "--color", "always").stdout)
+        self.assertNotIn(ESCAPE, self.edsc("check", WRONG, "--color", "never").stdout)
+
+    def on_a_terminal(self, environment: dict[str, str]) -> str:
+        ours, theirs = os.openpty()
+        try:
+            subprocess.run([EDSC, "check", WRONG], stdout=theirs, timeout=30, env={**os.environ, **environment})
+            return os.read(ours, 65536).decode(errors="replace")
+        finally:
+            os.close(ours)
+            os.close(theirs)
+
+    def test_is_on_at_a_terminal_unless_no_color_says_otherwise(self) -> None:
+        os.environ.pop("NO_COLOR", None)
+        self.assertIn(ESCAPE, self.on_a_terminal({}))
+        self.assertNotIn(ESCAPE, self.on_a_terminal({"NO_COLOR": "1"}))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]], verbosity=1)

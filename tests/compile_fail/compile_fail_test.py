@@ -1,0 +1,61 @@
+#!/usr/bin/env python3
+"""Each mistake here does not compile, and the compiler says which object is wrong.
+
+    compile_fail_test.py SOURCE_DIR GENERATED_DIR [CASE]
+
+A case is a .cpp file. It compiles with GOOD defined and does not without; then the words of its `// expect: regex` stand in
+what the compiler says: `A .*B` wants A and B somewhere in it, for GCC and Clang tell them in different order; `A|B` one of them.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from support.compilers import CLANG, GCC, SKIPPED, Compiler, compile_only, in_parallel, those_installed  # noqa: E402
+
+EXPECTATION = re.compile(r"^// expect: (.+)$", re.MULTILINE)
+UNUSED_IS_FINE = ("-Wno-unused",)
+
+
+def says(output: str, expectation: str) -> bool:
+    return any(all(re.search(part, output) for part in alternative.split(" .*")) for alternative in expectation.split("|"))
+
+
+def run_case(job: tuple[Compiler, Path, tuple[Path, ...]]) -> str:
+    """What is wrong with the case; empty when it does what it shall."""
+    compiler, case, include = job
+    expectation = EXPECTATION.search(case.read_text())
+    if expectation is None:
+        return f"{case.name}: its first line is not `// expect: regex`"
+    good = compile_only(compiler, case, include, ("-DGOOD", *UNUSED_IS_FINE))
+    if good.returncode != 0:
+        return f"{compiler.name}, {case.name}: its good twin does not compile:\n{good.stderr[:2000]}"
+    bad = compile_only(compiler, case, include, UNUSED_IS_FINE)
+    if bad.returncode == 0:
+        return f"{compiler.name}, {case.name}: compiles"
+    if not says(bad.stderr, expectation[1]):
+        return f"{compiler.name}, {case.name}: nothing in its message is `{expectation[1]}`:\n{bad.stderr[:3000]}"
+    return ""
+
+
+def main() -> int:
+    source_dir, generated = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+    name = sys.argv[3] if len(sys.argv) > 3 else "*"
+    cases = sorted((source_dir / "tests/compile_fail").glob(f"{name}.cpp"))
+    compilers = those_installed((GCC, CLANG))
+    include = (generated, source_dir / "runtime/include")
+    jobs = [(compiler, case, include) for compiler in compilers for case in cases]
+    problems = [problem for problem in in_parallel(run_case, jobs) if problem]
+    for problem in problems:
+        print(problem)
+    print(f"{len(jobs) - len(problems)} of {len(jobs)}: {len(cases)} cases, {len(compilers)} compilers")
+    if not compilers:
+        return SKIPPED
+    return 1 if problems or not cases else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,14 @@
+// expect: longer than its 64 bits .*every_type::od::integer64_value
+// A CAN frame carries 64 bits.
+#include <canopen/object_store.hpp>
+#include <every_type/device.hpp>
+
+namespace od = every_type::od;
+
+#ifdef GOOD
+using Mapping = canopen::Tpdo<od::integer56_value, od::unsigned8_value>;
+#else
+using Mapping = canopen::Tpdo<od::integer64_value, od::unsigned8_value>;
+#endif
+
+static_assert(Mapping::entries == 2);

@@ -1,0 +1,14 @@
+// expect: an RPDO may not carry this object .*RpdoEntry<every_type::od::access_ro>
+// What the bus cannot write, an RPDO cannot bring.
+#include <canopen/object_store.hpp>
+#include <every_type/device.hpp>
+
+namespace od = every_type::od;
+
+#ifdef GOOD
+using Mapping = canopen::Rpdo<od::access_wo, od::access_rww, od::access_rw>;
+#else
+using Mapping = canopen::Rpdo<od::access_wo, od::access_ro, od::access_rw>;
+#endif
+
+static_assert(Mapping::entries == 3);

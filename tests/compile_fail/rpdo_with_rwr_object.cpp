@@ -1,0 +1,14 @@
+// expect: an RPDO may not carry this object .*RpdoEntry<every_type::od::access_rwr>
+// Process input (rwr) is what a TPDO carries.
+#include <canopen/object_store.hpp>
+#include <every_type/device.hpp>
+
+namespace od = every_type::od;
+
+#ifdef GOOD
+using Mapping = canopen::Rpdo<od::access_wo, od::access_rww>;
+#else
+using Mapping = canopen::Rpdo<od::access_wo, od::access_rwr>;
+#endif
+
+static_assert(Mapping::entries == 2);

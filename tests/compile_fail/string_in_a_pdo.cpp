@@ -1,0 +1,14 @@
+// expect: no value without a fixed length .*PdoEntry<every_type::od::visible_string_value>
+// A string has no fixed length.
+#include <canopen/object_store.hpp>
+#include <every_type/device.hpp>
+
+namespace od = every_type::od;
+
+#ifdef GOOD
+using Mapping = canopen::PdoLayout<od::access_ro, od::unsigned8_value>;
+#else
+using Mapping = canopen::PdoLayout<od::access_ro, od::visible_string_value>;
+#endif
+
+static_assert(Mapping::entries == 2);

@@ -1,0 +1,14 @@
+// expect: a TPDO may not carry this object .*TpdoEntry<every_type::od::access_rww>
+// Process output (rww) is what an RPDO carries.
+#include <canopen/object_store.hpp>
+#include <every_type/device.hpp>
+
+namespace od = every_type::od;
+
+#ifdef GOOD
+using Mapping = canopen::Tpdo<od::access_ro, od::access_rwr, od::access_rw>;
+#else
+using Mapping = canopen::Tpdo<od::access_ro, od::access_rww, od::access_rw>;
+#endif
+
+static_assert(Mapping::entries == 3);

@@ -1,0 +1,14 @@
+// expect: a TPDO may not carry this object .*TpdoEntry<every_type::od::cob_id_sync>
+// The data sheet says PDOMapping=0.
+#include <canopen/object_store.hpp>
+#include <every_type/device.hpp>
+
+namespace od = every_type::od;
+
+#ifdef GOOD
+using Mapping = canopen::Tpdo<od::access_ro, od::unsigned32_value>;
+#else
+using Mapping = canopen::Tpdo<od::access_ro, od::cob_id_sync>;
+#endif
+
+static_assert(Mapping::entries == 2);
