@@ -1,3 +1,5 @@
+cmake_policy(VERSION 3.25) # the depfile is read as CMake 3.20 and later do
+
 # edsc_add_dictionary(TARGET EDS file [NAMESPACE name] [NODE_ID n] [OPTIONS file] [KEEP_GOING])
 #
 # Makes TARGET an INTERFACE library whose headers are generated at build time from an EDS or DCF:
@@ -32,7 +34,8 @@ function(edsc_add_dictionary target)
   set(headers device.hpp dictionary.hpp pdo.hpp description.hpp)
   list(TRANSFORM headers PREPEND ${output_dir}/${arg_NAMESPACE}/)
 
-  set(arguments ${eds} -o ${output_dir} --name ${arg_NAMESPACE} --depfile ${depfile})
+  set(stamp ${output_dir}/${arg_NAMESPACE}.stamp)
+  set(arguments ${eds} -o ${output_dir} --name ${arg_NAMESPACE} --depfile ${depfile} --depfile-target ${stamp})
   if(arg_NODE_ID)
     list(APPEND arguments --node-id ${arg_NODE_ID})
   endif()
@@ -53,13 +56,13 @@ function(edsc_add_dictionary target)
   endif()
 
   # edsc leaves unchanged headers alone, so that nothing is compiled again in vain; the stamp is what ninja compares.
-  set(stamp ${output_dir}/${arg_NAMESPACE}.stamp)
   add_custom_command(
     OUTPUT ${stamp}
     BYPRODUCTS ${headers}
     COMMAND edsc::edsc generate ${arguments}
     COMMAND ${CMAKE_COMMAND} -E touch ${stamp}
     DEPENDS ${dependencies} edsc::edsc $<TARGET_FILE:edsc::edsc>
+    DEPFILE ${depfile}
     COMMENT "Generating ${arg_NAMESPACE} from ${arg_EDS}"
     VERBATIM)
   add_custom_target(${target}_headers DEPENDS ${stamp})

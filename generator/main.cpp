@@ -15,6 +15,8 @@ int main(int argc, char** argv) {
   edsc::add_generate_command(app, exit_code);
   edsc::add_check_command(app, exit_code);
   edsc::add_dump_command(app, exit_code);
+  edsc::add_format_command(app, exit_code);
+  edsc::add_diff_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& problem) {

@@ -1,10 +1,14 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
 
 #include "commands/commands.hpp"
 #include "commands/load_device.hpp"
 #include "diagnostics/print.hpp"
+#include "diagnostics/sarif.hpp"
 #include "rules/rule.hpp"
 
 namespace edsc {
@@ -13,6 +17,7 @@ namespace {
 constexpr const char* examples = R"(Examples:
   edsc check eds/*.eds                    findings as a compiler shows them; exit code 1 when there are errors
   edsc check drive.eds --format json      the same for a program
+  edsc check eds/*.eds --format sarif     the same for a code review (SARIF 2.1.0)
   edsc check drive.eds --strict           warnings count as errors
   edsc check --list-rules                 every rule with its meaning)";
 
@@ -27,40 +32,85 @@ struct Settings {
   ColorOption color;
 };
 
-int list_rules() {
+int list_rules(const std::string& format) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (const Rule& rule : all_rules()) {
-    fmt::print("{:<24} {:<8} {} ({})\n", rule.id, to_string(rule.severity), rule.meaning, rule.source);
+    if (format == "text") {
+      fmt::print("{:<28} {:<8} {} ({})\n", rule.id, to_string(rule.severity), rule.meaning, rule.source);
+    }
+    rows.push_back(
+        {{"id", rule.id}, {"severity", to_string(rule.severity)}, {"meaning", rule.meaning}, {"source", rule.source}});
   }
+  if (format != "text") fmt::print("{}\n", rows.dump(2));
   return exit_fine;
 }
 
+/// Findings of one file after the other, in one of the formats.
+class Report {
+ public:
+  Report(std::string format, const ColorOption& color) : format_{std::move(format)}, color_{color} {}
+
+  void add(const Diagnostics& diagnostics) {
+    if (format_ == "text") {
+      print_findings(stdout, diagnostics, color_);
+    } else if (format_ == "sarif") {
+      sarif_.add(diagnostics);
+    } else {
+      add_json(print_json(diagnostics));
+    }
+  }
+
+  void finish() const {
+    constexpr auto replace = nlohmann::json::error_handler_t::replace;
+    if (format_ == "json") fmt::print("{}\n", json_.dump(2, ' ', false, replace));
+    if (format_ == "sarif") fmt::print("{}\n", sarif_.document().dump(2, ' ', false, replace));
+  }
+
+ private:
+  static std::vector<SarifRule> sarif_rules() {
+    std::vector<SarifRule> rules;
+    for (const Rule& rule : all_rules()) rules.push_back({rule.id, rule.severity, rule.meaning, rule.source});
+    return rules;
+  }
+
+  void add_json(const nlohmann::json& one) {
+    for (const char* list : {"diagnostics", "suppressed"}) {
+      for (const auto& row : one[list]) json_[list].push_back(row);
+    }
+    for (const char* count : {"errors", "warnings", "notes"}) {
+      json_[count] = json_[count].get<std::size_t>() + one[count].get<std::size_t>();
+    }
+  }
+
+  std::string format_;
+  const ColorOption& color_;
+  SarifLog sarif_{EDSC_VERSION, sarif_rules()};
+  nlohmann::json json_ = {{"version", 1},
+                          {"diagnostics", nlohmann::json::array()},
+                          {"suppressed", nlohmann::json::array()},
+                          {"errors", 0},
+                          {"warnings", 0},
+                          {"notes", 0}};
+};
+
 int check(const Settings& settings) {
-  if (settings.list_rules) return list_rules();
+  if (settings.list_rules) return list_rules(settings.format);
   if (settings.paths.empty()) {
     fmt::print(stderr, "edsc check: FILE is required\n");
     return exit_wrong_usage;
   }
   int exit_code = exit_fine;
-  nlohmann::json all = {{"version", 1}, {"diagnostics", nlohmann::json::array()}, {"suppressed", nlohmann::json::array()},
-                        {"errors", 0}, {"warnings", 0}};
+  Report report{settings.format, settings.color};
   for (const std::string& path : settings.paths) {
     Diagnostics diagnostics;
     if (settings.strict) diagnostics.treat_warnings_as_errors();
     for (const std::string& rule : settings.silence) diagnostics.silence(rule);
     const auto loaded = load_device({path, settings.options_path, "", settings.node_id}, diagnostics);
-    if (settings.format == "text") {
-      print_findings(stdout, diagnostics, settings.color);
-    } else {
-      const nlohmann::json one = print_json(diagnostics);
-      for (const char* list : {"diagnostics", "suppressed"}) {
-        for (const auto& row : one[list]) all[list].push_back(row);
-      }
-      for (const char* count : {"errors", "warnings"}) all[count] = all[count].get<int>() + one[count].get<int>();
-    }
+    report.add(diagnostics);
     if (diagnostics.errors() > 0) exit_code = std::max<int>(exit_code, exit_input_has_errors);
     if (loaded->unreadable) exit_code = exit_wrong_usage;
   }
-  if (settings.format == "json") fmt::print("{}\n", all.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  report.finish();
   return exit_code;
 }
 
@@ -70,15 +120,18 @@ void add_check_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("check", "say what is wrong with data sheets");
   command->footer(examples);
   auto settings = std::make_shared<Settings>();
-  command->add_option("FILE", settings->paths, "EDS or DCF files");
-  command->add_option("--format", settings->format, "text or json")->check(CLI::IsMember({"text", "json"}))->capture_default_str();
-  command->add_option("--options", settings->options_path, "options file (default: FILE's name with .options.json, if there)");
+  command->add_option("FILE", settings->paths, "EDS, DCF, XDD or XDC files");
+  command->add_option("--format", settings->format, "text, json or sarif")
+      ->check(CLI::IsMember({"text", "json", "sarif"}))
+      ->capture_default_str();
+  command->add_option("--options", settings->options_path,
+                      "options file (default: FILE's name with .options.json, if there)");
   add_node_id_option(*command, settings->node_id);
   command->add_option("--silence", settings->silence, "a rule that is not reported; may be given more than once")
       ->check([](const std::string& rule) {
         return find_rule(rule) != nullptr ? std::string{} : "no rule is called \"" + rule + "\" (see --list-rules)";
       });
-  command->add_flag("--strict", settings->strict, "warnings count as errors");
+  command->add_flag("--strict", settings->strict, "warnings count as errors; notes do not");
   command->add_flag("--list-rules", settings->list_rules, "list the rules and end");
   settings->color.add_to(*command);
   command->callback([settings, &exit_code] { exit_code = check(*settings); });

@@ -3,6 +3,8 @@
 #include "commands/commands.hpp"
 #include "commands/load_device.hpp"
 #include "render/view.hpp"
+#include "rules/check_device.hpp"
+#include "rules/pdo_rules.hpp"
 
 namespace edsc {
 namespace {
@@ -19,12 +21,25 @@ struct Settings {
   ColorOption color;
 };
 
+/// What the rules find is for `check` and `generate`. Here they mark the PDOs that are broken, and drop limits that no
+/// value can meet from what the C++ templates see.
+nlohmann::ordered_json view_of(LoadedDevice& loaded) {
+  Diagnostics unheard;
+  check_pdos(*loaded.device, unheard);
+  nlohmann::ordered_json view = device_view(*loaded.device);
+  check_device(*loaded.device, loaded.sheet, loaded.options, unheard);
+  return view;
+}
+
 int dump(const Settings& settings) {
   Diagnostics diagnostics;
-  const auto loaded = load_device(settings.load, diagnostics);
+  diagnostics.drop_notes();
+  LoadSettings load = settings.load;
+  load.check = false;
+  const auto loaded = load_device(load, diagnostics);
   nlohmann::ordered_json view;
   if (loaded->device) {
-    view = device_view(*loaded->device);
+    view = view_of(*loaded);
     if (settings.cpp) view["cpp"] = cpp_view(*loaded->device, loaded->options, diagnostics);
   }
   print_findings(stderr, diagnostics, settings.color);
@@ -42,7 +57,7 @@ void add_dump_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("dump", "the resolved device as JSON");
   command->footer(examples);
   auto settings = std::make_shared<Settings>();
-  command->add_option("FILE", settings->load.path, "EDS or DCF")->required();
+  command->add_option("FILE", settings->load.path, "EDS, DCF, XDD or XDC")->required();
   add_node_id_option(*command, settings->load.node_id);
   command->add_option("--options", settings->load.options_path, "options file (default: FILE's name with .options.json, if there)");
   command->add_flag("--cpp", settings->cpp, "add the view of the C++ templates");

@@ -24,6 +24,7 @@ struct Settings {
   LoadSettings load;
   std::string output;
   std::string depfile;
+  std::string depfile_target;
   std::string templates;
   bool keep_going = false;
   bool verbose = false;
@@ -65,38 +66,46 @@ std::string make_path(std::string_view path) {
   return out;
 }
 
-std::string depfile_text(const std::vector<OutputFile>& outputs, const std::vector<std::string>& inputs) {
-  std::string text;
-  for (const OutputFile& output : outputs) text += (text.empty() ? "" : " ") + make_path(output.path);
+/// A make rule: `target`, or the outputs where that is empty, depend on the inputs.
+std::string depfile_text(const std::string& target, const std::vector<OutputFile>& outputs,
+                         const std::vector<std::string>& inputs) {
+  std::string text = make_path(target);
+  for (const OutputFile& output : outputs) {
+    if (target.empty()) text += fmt::format("{}{}", text.empty() ? "" : " ", make_path(output.path));
+  }
   text += ":";
   for (const std::string& input : inputs) text += " \\\n  " + make_path(input);
   return text + "\n";
 }
 
-std::vector<OutputFile> render_all(const Settings& settings, const LoadedDevice& loaded, Diagnostics& diagnostics) {
+/// Takes sheet and device away as soon as the view is made: large ones take more memory than their files.
+std::vector<OutputFile> render_all(const Settings& settings, LoadedDevice& loaded, Diagnostics& diagnostics) {
   const auto templates = choose_templates(settings.templates);
+  loaded.sheet = {};
   const auto view = cpp_view(*loaded.device, loaded.options, diagnostics);
+  const fs::path folder = fs::path{settings.output} / loaded.device->name;
+  loaded.device.reset();
   std::vector<OutputFile> files;
   std::vector<std::string> inputs{settings.load.path};
   if (loaded.options_source) inputs.push_back(loaded.options_source->name());
   for (const ChosenTemplate& one : templates) {
-    const fs::path path = fs::path{settings.output} / loaded.device->name / one.built_in.file_name;
-    files.push_back({path.string(), render(one.text(), view)});
+    files.push_back({(folder / one.built_in.file_name).string(), render(one.text(), view)});
     if (one.replacement) inputs.push_back(one.replacement->name());
   }
-  if (!settings.depfile.empty()) files.push_back({settings.depfile, depfile_text(files, inputs)});
+  if (!settings.depfile.empty()) files.push_back({settings.depfile, depfile_text(settings.depfile_target, files, inputs)});
   return files;
 }
 
 int generate(const Settings& settings) {
   Diagnostics diagnostics;
+  diagnostics.drop_notes();
   const auto loaded = load_device(settings.load, diagnostics);
   std::vector<OutputFile> files;
-  const bool go_on = loaded->device && (diagnostics.errors() == 0 || settings.keep_going);
-  if (go_on) files = render_all(settings, *loaded, diagnostics);
+  const bool is_device = loaded->device.has_value();
+  if (is_device && (diagnostics.errors() == 0 || settings.keep_going)) files = render_all(settings, *loaded, diagnostics);
   print_findings(stderr, diagnostics, settings.color);
   if (loaded->unreadable) return exit_wrong_usage;
-  if (!loaded->device || (diagnostics.errors() > 0 && !settings.keep_going)) return exit_input_has_errors;
+  if (!is_device || (diagnostics.errors() > 0 && !settings.keep_going)) return exit_input_has_errors;
 
   if (const std::string problem = write_files(files); !problem.empty()) {
     fmt::print(stderr, "edsc: {}\n", problem);
@@ -114,7 +123,7 @@ void add_generate_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("generate", "C++ headers for one device");
   command->footer(examples);
   auto settings = std::make_shared<Settings>();
-  command->add_option("FILE", settings->load.path, "EDS or DCF")->required();
+  command->add_option("FILE", settings->load.path, "EDS, DCF, XDD or XDC")->required();
   command->add_option("-o,--output", settings->output, "folder; the headers go to its subfolder NAME")->required();
   command->add_option("--name", settings->load.name, "C++ namespace (default: the file's name)")
       ->check([](const std::string& name) {
@@ -126,6 +135,7 @@ void add_generate_command(CLI::App& app, int& exit_code) {
   command->add_option("--templates", settings->templates, "folder with templates that replace the built-in ones")
       ->check(CLI::ExistingDirectory);
   command->add_option("--depfile", settings->depfile, "write what the headers depend on, for make and ninja");
+  command->add_option("--depfile-target", settings->depfile_target, "what depends on them there (default: the headers)");
   command->add_flag("--keep-going", settings->keep_going, "generate in spite of errors; what is wrong is left out");
   command->add_flag("-v,--verbose", settings->verbose, "name the files that are written");
   settings->color.add_to(*command);

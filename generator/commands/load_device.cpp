@@ -6,6 +6,7 @@
 #include "rules/check_device.hpp"
 #include "rules/rule.hpp"
 #include "text/ini.hpp"
+#include "xdd/read_xdd.hpp"
 
 namespace edsc {
 namespace {
@@ -52,14 +53,16 @@ std::unique_ptr<LoadedDevice> load_device(const LoadSettings& settings, Diagnost
   if (loaded->unreadable) return loaded;
   read_options_file(options_path_of(settings), *loaded, diagnostics);
   if (loaded->unreadable) return loaded;
-
-  const IniFile ini = parse_ini(*loaded->source, diagnostics);
-  if (ini.sections.empty()) return loaded;
-  loaded->sheet = read_data_sheet(ini, diagnostics);
-  if (loaded->sheet.objects.empty()) return loaded;
-  loaded->device = resolve_device(loaded->sheet, loaded->options, {settings.name, settings.node_id}, diagnostics);
-  check_device(*loaded->device, diagnostics);
+  resolve_and_check(*loaded, settings, diagnostics);
   return loaded;
+}
+
+void resolve_and_check(LoadedDevice& loaded, const LoadSettings& settings, Diagnostics& diagnostics) {
+  loaded.sheet = is_xml(*loaded.source) ? read_xdd(*loaded.source, diagnostics)
+                                         : read_data_sheet(parse_ini(*loaded.source, diagnostics), diagnostics);
+  if (loaded.sheet.objects.empty()) return;
+  loaded.device = resolve_device(loaded.sheet, loaded.options, {settings.name, settings.node_id}, diagnostics);
+  if (settings.check) check_device(*loaded.device, loaded.sheet, loaded.options, diagnostics);
 }
 
 }  // namespace edsc

@@ -18,6 +18,7 @@ struct LoadSettings {
   std::string options_path;             ///< empty: `NAME.options.json` beside the data sheet, if it is there
   std::string name;                     ///< C++ namespace; empty: from the file's name
   std::optional<std::uint8_t> node_id;
+  bool check = true;                    ///< run the rules over the device
 };
 
 /// A device and all that its positions point into.
@@ -30,7 +31,10 @@ struct LoadedDevice {
   bool unreadable = false;       ///< a file could not be read: wrong usage, not wrong input
 };
 
-/// Reads, resolves and checks. Everything that is wrong stands in `diagnostics`; positions there point into the result.
+/// Reads, resolves and, where that is wanted, checks. Everything that is wrong stands in `diagnostics`; positions there point into the result.
 [[nodiscard]] std::unique_ptr<LoadedDevice> load_device(const LoadSettings& settings, Diagnostics& diagnostics);
+
+/// The same from where `loaded` holds the source, and the options, already.
+void resolve_and_check(LoadedDevice& loaded, const LoadSettings& settings, Diagnostics& diagnostics);
 
 }  // namespace edsc

@@ -1,5 +1,6 @@
 #include "device/device.hpp"
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -43,10 +44,10 @@ const Entry* Device::find(std::uint16_t index, std::uint8_t sub_index) const {
 }
 
 std::string entry_label(std::uint16_t index, std::uint8_t sub_index) {
-  return fmt::format("{:04X}h:{:02X}", index, sub_index);
+  return fmt::format(FMT_COMPILE("{:04X}h:{:02X}"), index, sub_index);
 }
 
-std::string index_label(std::uint16_t index) { return fmt::format("{:04X}h", index); }
+std::string index_label(std::uint16_t index) { return fmt::format(FMT_COMPILE("{:04X}h"), index); }
 
 std::string pdo_label(const Pdo& pdo) {
   return fmt::format("{} {}", pdo.direction == PdoDirection::receive ? "RPDO" : "TPDO", pdo.number);

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "device/information.hpp"
 #include "diagnostics/diagnostics.hpp"
 
 namespace edsc {
@@ -45,12 +46,22 @@ struct Entry {
   const canopen::DataTypeRow* type = nullptr;
   canopen::Access access = canopen::Access::rw;
   bool pdo_mapping = false;
+  std::uint32_t obj_flags = 0;  ///< what configuration tools leave alone: bit 0 writing, bit 1 reading
   std::optional<Value> default_value;  ///< of a DCF the ParameterValue, where there is one
   std::optional<Value> low_limit;
   std::optional<Value> high_limit;
   Position position;            ///< the section
   Position access_position;     ///< where a rule about its access points
   Position mapping_position;    ///< where a rule about PDOMapping points
+
+  // What a DCF says besides; the text is the data sheet's.
+  std::string_view denotation;     ///< the user's name
+  std::string_view param_refd;     ///< the parameter of a network variable
+  std::string_view upload_file;    ///< of a DOMAIN: where its value comes from
+  std::string_view download_file;  ///< of a DOMAIN: where its value goes to
+
+  // What some vendors say besides.
+  std::string_view unit, factor, description;
 
   /// In which PDOs it may be mapped.
   [[nodiscard]] canopen::Mappable mappable() const {
@@ -65,6 +76,9 @@ struct Object {
   std::string identifier;        ///< unique in the device
   std::vector<Entry> entries;    ///< ascending by sub-index; of a VAR or DOMAIN exactly one
   Position position;
+  std::string_view denotation;
+  std::uint32_t obj_flags = 0;
+  std::vector<std::uint16_t> links;  ///< objects that belong with it: ObjectLinks
 
   [[nodiscard]] bool has_sub_indices() const { return type == ObjectType::array || type == ObjectType::record; }
   [[nodiscard]] const Entry* find(std::uint8_t sub_index) const;
@@ -96,6 +110,16 @@ struct Pdo {
   [[nodiscard]] unsigned bits() const;
 };
 
+/// A data type of the data sheet's own: DEFTYPE, DEFSTRUCT, or a range of a basic type as CANFestival writes it.
+struct TypeDefinition {
+  std::uint16_t index = 0;
+  std::string name;
+  ObjectType kind = ObjectType::deftype;
+  const canopen::DataTypeRow* type = nullptr;  ///< of a DEFTYPE what it stands for
+  std::optional<Value> low_limit, high_limit;
+  std::vector<const canopen::DataTypeRow*> members;  ///< of a DEFSTRUCT, by sub-index - 1; null where none is known
+  Position position;
+};
 
 struct Device {
   const SourceFile* source = nullptr;
@@ -108,8 +132,9 @@ struct Device {
   std::optional<std::uint8_t> node_id;    ///< fixed at generation
   std::vector<std::uint16_t> dummies;     ///< data type indices that RPDOs may use as dummy entries
   std::vector<Object> objects;            ///< ascending by index
-  std::vector<Object> types;              ///< DEFTYPE and DEFSTRUCT: named by DataType, not part of the dictionary
+  std::vector<TypeDefinition> types;      ///< ascending by index: named by DataType, not part of the dictionary
   std::vector<Pdo> pdos;                  ///< RPDOs, then TPDOs, each ascending by number
+  Information information;                ///< what the data sheet says besides its objects
 
   [[nodiscard]] const Object* find(std::uint16_t index) const;
   [[nodiscard]] const Entry* find(std::uint16_t index, std::uint8_t sub_index) const;

@@ -4,12 +4,23 @@
 #include <array>
 #include <cstdint>
 
+#include "text/utf8.hpp"
+
 namespace edsc {
 namespace {
 
-/// Words that cannot name an object: keywords, alternative tokens, usual macros in lower case, and the members that each
-/// generated object has.
-constexpr std::array reserved_words = {
+/// A list of words, in the order that a binary search needs.
+template <std::size_t N>
+consteval std::array<std::string_view, N> sorted(const char* const (&words)[N]) {
+  std::array<std::string_view, N> list{};
+  std::ranges::copy(words, list.begin());
+  std::ranges::sort(list);
+  return list;
+}
+
+/// Words that cannot name an object: keywords, alternative tokens, usual macros in lower case, and the members that
+/// each generated object has.
+constexpr const char* word_list[] = {
     "alignas",       "alignof",     "and",          "and_eq",        "asm",          "assert",      "auto",
     "bitand",        "bitor",       "bits",         "bool",          "break",        "canopen",     "case",
     "catch",         "char",        "char16_t",     "char32_t",      "char8_t",      "class",       "co_await",
@@ -29,10 +40,11 @@ constexpr std::array reserved_words = {
     "va_arg",        "virtual",     "void",         "volatile",      "wchar_t",      "while",       "xor",
     "xor_eq",        "access",
 };
+constexpr auto reserved_words = sorted(word_list);
 
 /// Words that cannot name a namespace at global scope besides: functions of the C library, and the constants of
 /// canopen::entry that the generated tables are written in.
-constexpr std::array reserved_namespaces = {
+constexpr const char* namespace_list[] = {
     // C library and POSIX.
     "abort",  "abs",    "accept", "access", "acos",   "alarm",  "asin",   "atan",   "atexit",  "bind",   "brk",
     "cbrt",   "ceil",   "clock",  "close",  "connect", "cos",   "daemon", "div",    "drem",    "dup",    "erf",
@@ -48,6 +60,7 @@ constexpr std::array reserved_namespaces = {
     "ro",     "rom",    "rpdo",   "rw",     "string", "time48", "tpdo",   "u8",     "u16",     "u24",    "u32",
     "u40",    "u48",    "u56",    "u64",    "wo",     "writable",
 };
+constexpr auto reserved_namespaces = sorted(namespace_list);
 
 struct Spelling {
   std::uint32_t code_point;
@@ -55,10 +68,10 @@ struct Spelling {
 };
 
 constexpr std::array spellings = {
-    Spelling{0x00B0, "deg"}, Spelling{0x00B2, "2"},  Spelling{0x00B3, "3"},  Spelling{0x00B5, "u"},
-    Spelling{0x00C4, "Ae"},  Spelling{0x00D6, "Oe"}, Spelling{0x00DC, "Ue"}, Spelling{0x00DF, "ss"},
-    Spelling{0x00E0, "a"},   Spelling{0x00E1, "a"},  Spelling{0x00E4, "ae"}, Spelling{0x00E8, "e"},
-    Spelling{0x00E9, "e"},   Spelling{0x00EA, "e"},  Spelling{0x00F1, "n"},  Spelling{0x00F3, "o"},
+    Spelling{0x00B0, "deg"}, Spelling{0x00B2, "2"},  Spelling{0x00B3, "3"},   Spelling{0x00B5, "u"},
+    Spelling{0x00C4, "Ae"},  Spelling{0x00D6, "Oe"}, Spelling{0x00DC, "Ue"},  Spelling{0x00DF, "ss"},
+    Spelling{0x00E0, "a"},   Spelling{0x00E1, "a"},  Spelling{0x00E4, "ae"},  Spelling{0x00E8, "e"},
+    Spelling{0x00E9, "e"},   Spelling{0x00EA, "e"},  Spelling{0x00F1, "n"},   Spelling{0x00F3, "o"},
     Spelling{0x00F6, "oe"},  Spelling{0x00FC, "ue"}, Spelling{0x03A9, "ohm"}, Spelling{0x03BC, "u"},
     Spelling{0x2126, "ohm"},
 };
@@ -70,6 +83,7 @@ constexpr char to_lower(char c) { return is_upper(c) ? static_cast<char>(c - 'A'
 
 /// ASCII letters and digits stay, code points with a usual spelling are written out, all else becomes a blank.
 std::string to_ascii(std::string_view name) {
+  if (is_ascii(name)) return std::string{name};
   std::string out;
   for (std::size_t i = 0; i < name.size();) {
     const auto lead = static_cast<unsigned char>(name[i]);
@@ -89,8 +103,8 @@ std::string to_ascii(std::string_view name) {
   return out;
 }
 
-/// Whether a new word begins at `i`: after a lower-case letter or digit, or where the last capital of a run starts a word
-/// (`RxPDOMapping`: rx, pdo, mapping).
+/// Whether a new word begins at `i`: after a lower-case letter or digit, or where the last capital of a run starts a
+/// word (`RxPDOMapping`: rx, pdo, mapping).
 bool word_begins(std::string_view text, std::size_t i) {
   if (i == 0 || !is_upper(text[i])) return false;
   if (is_lower(text[i - 1])) return true;
@@ -105,6 +119,7 @@ bool word_begins(std::string_view text, std::size_t i) {
 std::string to_snake_case(std::string_view name) {
   const std::string text = to_ascii(name);
   std::string out;
+  out.reserve(text.size() + 4);
   for (std::size_t i = 0; i < text.size(); ++i) {
     const bool letter = is_lower(text[i]) || is_upper(text[i]) || is_digit(text[i]);
     const bool gap = !letter || word_begins(text, i);
@@ -113,7 +128,7 @@ std::string to_snake_case(std::string_view name) {
   }
   while (!out.empty() && out.back() == '_') out.pop_back();
   if (!out.empty() && is_digit(out.front())) out.insert(0, "n_");
-  if (std::ranges::find(reserved_words, out) != reserved_words.end()) out += '_';
+  if (std::ranges::binary_search(reserved_words, out)) out += '_';
   return out;
 }
 
@@ -122,7 +137,7 @@ bool is_identifier(std::string_view name) { return !name.empty() && to_snake_cas
 std::string to_namespace(std::string_view name) {
   std::string out = to_snake_case(name);
   if (out.empty()) return "device";
-  if (std::ranges::find(reserved_namespaces, out) != reserved_namespaces.end()) out += '_';
+  if (std::ranges::binary_search(reserved_namespaces, out)) out += '_';
   return out;
 }
 

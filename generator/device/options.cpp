@@ -28,8 +28,8 @@ std::optional<EntryKey> parse_entry_key(std::string_view text) {
   std::string_view index = text.substr(0, colon);
   const std::string_view sub_index = colon == std::string_view::npos ? "0" : text.substr(colon + 1);
   if (index.ends_with('h')) index.remove_suffix(1);
-  const auto i = parse_unsigned("0x" + std::string{index});
-  const auto s = parse_unsigned("0x" + std::string{sub_index});
+  const auto i = parse_unsigned(fmt::format("0x{}", index));
+  const auto s = parse_unsigned(fmt::format("0x{}", sub_index));
   if (!i || !s || *i > 0xFFFF || *s > 0xFF) return std::nullopt;
   return EntryKey{static_cast<std::uint16_t>(*i), static_cast<std::uint8_t>(*s)};
 }
@@ -66,6 +66,7 @@ class OptionsReader {
     }
     if (name == "settable") return settable(value);
     if (name == "silence") return silence(value);
+    if (name == "connected_modules") return connected_modules(value);
     if (name == "zero_terminated_strings") {
       flag(name, value, options_.zero_terminated_strings);
       return;
@@ -124,6 +125,18 @@ class OptionsReader {
         options_.silence.push_back(item.get<std::string>());
       } else {
         error("silence", "an array of rule ids");
+      }
+    }
+  }
+
+  void connected_modules(const json& value) {
+    constexpr const char* meaning = "an array of numbers of [SupportedModules]";
+    if (!value.is_array()) return error("connected_modules", meaning);
+    for (const json& item : value) {
+      if (item.is_number_unsigned() && item.get<std::uint64_t>() >= 1 && item.get<std::uint64_t>() <= 0xFFFF) {
+        options_.connected_modules.push_back(item.get<std::uint16_t>());
+      } else {
+        error("connected_modules", meaning);
       }
     }
   }

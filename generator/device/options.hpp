@@ -23,6 +23,8 @@ struct Options {
   std::vector<EntryKey> settable;
   /// Rules that are not reported for this device.
   std::vector<std::string> silence;
+  /// What is plugged into a modular device: the numbers of the modules, by place. Empty: what the DCF says.
+  std::vector<std::uint16_t> connected_modules;
   /// VISIBLE_STRINGs go out with a trailing 00h.
   bool zero_terminated_strings = false;
   /// Departures from CiA 301 that the runtime knows: member of canopen::DeviceOptions and its value in C++.

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <string>
 
+#include "diagnostics/quote.hpp"
 #include "eds/number.hpp"
+#include "text/ascii.hpp"
 #include "text/ini.hpp"
 
 namespace edsc {
@@ -17,12 +19,6 @@ using canopen::DataClass;
 using canopen::DataType;
 using canopen::DataTypeRow;
 
-std::string_view trim(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  return text;
-}
-
 bool is_hexadecimal(std::string_view digits) { return digits.starts_with("0x") || digits.starts_with("0X"); }
 
 /// `12LL`, `0xFFu`: C suffixes have no place in an EDS; they are cut.
@@ -31,6 +27,23 @@ std::string_view without_suffix(std::string_view digits) {
     digits.remove_suffix(1);
   }
   return digits;
+}
+
+/// `0.5f`.
+std::string_view without_real_suffix(std::string_view digits) {
+  const bool has_suffix = digits.size() > 1 && std::string_view{"fFlL"}.find(digits.back()) != std::string_view::npos;
+  const char before = has_suffix ? digits[digits.size() - 2] : ' ';
+  return is_digit(before) || before == '.' ? digits.substr(0, digits.size() - 1) : digits;
+}
+
+/// `80h`, `0000 0080h`: as manuals and CiA documents write them.
+std::optional<std::uint64_t> parse_h_suffix(std::string_view text) {
+  if (text.size() < 2 || !is_digit(text.front()) || to_lower(text.back()) != 'h') return std::nullopt;
+  std::string digits{"0x"};
+  for (const char c : text.substr(0, text.size() - 1)) {
+    if (!is_blank(c)) digits += c;
+  }
+  return parse_unsigned(digits);
 }
 
 std::optional<double> parse_real(std::string_view text) {
@@ -45,8 +58,8 @@ std::optional<double> parse_real(std::string_view text) {
 class ValueReader {
  public:
   ValueReader(const Field& field, const DataTypeRow& type, std::optional<std::uint8_t> node_id,
-              Diagnostics& diagnostics)
-      : field_{field}, type_{type}, node_id_{node_id}, diagnostics_{diagnostics} {}
+              std::optional<Limit> limit, Diagnostics& diagnostics)
+      : field_{field}, type_{type}, node_id_{node_id}, limit_{limit}, diagnostics_{diagnostics} {}
 
   std::optional<Value> read() {
     if (!field_.present || trim(field_.text).empty()) return std::nullopt;
@@ -75,18 +88,21 @@ class ValueReader {
   [[nodiscard]] Value value(std::uint64_t bits) const {
     Value result;
     result.bits = bits;
-    result.hexadecimal = field_.text.find("0x") != std::string_view::npos || field_.text.find("0X") != std::string_view::npos;
+    result.hexadecimal =
+        field_.text.find("0x") != std::string_view::npos || field_.text.find("0X") != std::string_view::npos;
     result.position = field_.position;
     return result;
   }
 
-  void error(std::string_view rule, std::string message) { diagnostics_.error(rule, field_.position, std::move(message)); }
+  void error(std::string_view rule, std::string message) {
+    diagnostics_.error(rule, field_.position, std::move(message));
+  }
   void warning(std::string_view rule, std::string message) {
     diagnostics_.warning(rule, field_.position, std::move(message));
   }
 
   std::optional<Value> not_a_number() {
-    error("number-format", fmt::format("\"{}\" is not a value of type {}", field_.text.substr(0, 60), type_.name));
+    error("number-format", fmt::format("{} is not a value of type {}", quote(field_.text), type_.name));
     return std::nullopt;
   }
 
@@ -98,14 +114,14 @@ class ValueReader {
     std::string_view constant = plus == std::string_view::npos ? std::string_view{} : trim(text.substr(plus + 1));
     if (variable.empty() || variable.front() != '$') std::swap(variable, constant);
     if (!is_node_id(variable)) {
-      error("node-id-formula", fmt::format("\"{}\" is not a formula of $NODEID and a number", text.substr(0, 60)));
+      error("node-id-formula", fmt::format("{} is not a formula of $NODEID and a number", quote(text)));
       return std::nullopt;
     }
     std::uint64_t number = 0;
     if (plus != std::string_view::npos) {
       const auto parsed = parse_unsigned(without_suffix(constant));
       if (!parsed) {
-        error("node-id-formula", fmt::format("\"{}\" is not a formula of $NODEID and a number", text.substr(0, 60)));
+        error("node-id-formula", fmt::format("{} is not a formula of $NODEID and a number", quote(text)));
         return std::nullopt;
       }
       number = *parsed;
@@ -123,8 +139,14 @@ class ValueReader {
     return true;
   }
 
-  std::optional<Value> out_of_range() {
-    error("number-range", fmt::format("\"{}\" does not fit into {}", field_.text.substr(0, 60), type_.name));
+  /// `above` or below all values of the type.
+  std::optional<Value> out_of_range(bool above) {
+    if (limit_ == (above ? Limit::high : Limit::low)) {
+      warning("number-range", fmt::format("{} lies beyond the range of {}: it limits nothing and is left out",
+                                          quote(field_.text), type_.name));
+      return std::nullopt;
+    }
+    error("number-range", fmt::format("{} does not fit into {}", quote(field_.text), type_.name));
     return std::nullopt;
   }
 
@@ -146,17 +168,21 @@ class ValueReader {
     const std::string_view digits = negative ? trim(text.substr(1)) : text;
     const std::string_view plain = without_suffix(digits);
     const auto magnitude = parse_unsigned(plain);
-    if (!magnitude) return whole_real(text);
+    if (!magnitude) return unusual_integer(text);
+    if (is_octal(plain)) {
+      warning("number-spelling", fmt::format("a leading 0 makes {} an octal number: {}", quote(text), *magnitude));
+    }
     if (plain.size() != digits.size()) warning("number-spelling", "a C suffix has no place in a data sheet");
     return negative ? negative_integer(*magnitude) : positive_integer(*magnitude, is_hexadecimal(plain));
   }
 
   std::optional<Value> negative_integer(std::uint64_t magnitude) {
     const std::uint64_t lowest = std::uint64_t{1} << (type_.bits - 1);
-    if (magnitude > lowest) return out_of_range();
-    if (type_.kind != DataClass::signed_integer && magnitude != 0) {
-      warning("number-range", fmt::format("a negative value of the unsigned type {}; its two's complement is taken",
-                                          type_.name));
+    const bool is_unsigned = type_.kind != DataClass::signed_integer;
+    if (magnitude > lowest || (limit_ && is_unsigned && magnitude != 0)) return out_of_range(false);
+    if (is_unsigned && magnitude != 0) {
+      warning("number-range",
+              fmt::format("a negative value of the unsigned type {}; its two's complement is taken", type_.name));
       return value((~magnitude + 1) & mask());
     }
     return value(~magnitude + 1);
@@ -164,23 +190,29 @@ class ValueReader {
 
   /// A signed value in hexadecimal may be its two's complement: 0xFFFF is -1 of an INTEGER16.
   std::optional<Value> positive_integer(std::uint64_t magnitude, bool hexadecimal) {
-    if (magnitude > mask()) return out_of_range();
+    if (magnitude > mask()) return out_of_range(true);
     if (type_.kind != DataClass::signed_integer) return value(magnitude);
     const std::uint64_t sign = std::uint64_t{1} << (type_.bits - 1);
     if (magnitude < sign) return value(magnitude);
+    if (!hexadecimal && limit_) return out_of_range(true);
     if (!hexadecimal) {
-      warning("number-range", fmt::format("\"{}\" is over the highest {}; it is read as two's complement",
-                                          field_.text.substr(0, 60), type_.name));
+      warning("number-range",
+              fmt::format("{} is over the highest {}; it is read as two's complement", quote(field_.text), type_.name));
     }
     return value(magnitude | ~mask());
   }
 
-  /// `0.0` or `0089` for an integer: accepted when nothing is lost.
-  std::optional<Value> whole_real(std::string_view text) {
+  /// `80h`, or `0.0` or `0089` for an integer: accepted when nothing is lost.
+  std::optional<Value> unusual_integer(std::string_view text) {
+    if (const auto hexadecimal = parse_h_suffix(text)) {
+      warning("number-spelling", fmt::format("a hexadecimal number is written with 0x, not as {}", quote(text)));
+      return positive_integer(*hexadecimal, true);
+    }
     const auto number = parse_real(text);
     if (!number || std::trunc(*number) != *number || std::abs(*number) > 9e15) return not_a_number();
     if (text.find_first_of(".eE") == std::string_view::npos) {
-      warning("number-spelling", fmt::format("\"{}\" begins like an octal number and is none: it is read as decimal", text));
+      warning("number-spelling",
+              fmt::format("\"{}\" begins like an octal number and is none: it is read as decimal", text));
     } else {
       warning("number-spelling", fmt::format("a value of type {} is written without a decimal point", type_.name));
     }
@@ -193,14 +225,16 @@ class ValueReader {
     if (is_hexadecimal(text)) {
       const auto bits = parse_unsigned(text);
       if (!bits) return not_a_number();
-      if (*bits > mask()) return out_of_range();
+      if (*bits > mask()) return out_of_range(true);
       return value(*bits);
     }
-    const auto number = parse_real(text);
+    const std::string_view plain = without_real_suffix(text);
+    const auto number = parse_real(plain);
     if (!number) return not_a_number();
+    if (plain.size() != text.size()) warning("number-spelling", "a C suffix has no place in a data sheet");
     if (type_.bits == 64) return value(std::bit_cast<std::uint64_t>(*number));
     const auto single = static_cast<float>(*number);
-    if (std::isinf(single) && !std::isinf(*number)) return out_of_range();
+    if (std::isinf(single) && !std::isinf(*number)) return out_of_range(*number > 0);
     return value(std::bit_cast<std::uint32_t>(single));
   }
 
@@ -222,7 +256,11 @@ class ValueReader {
         result.bytes = field_.text;
       }
     } else {
-      result.bytes = field_.text;
+      const std::string_view text = field_.text;
+      if (text.size() >= 2 && text.front() == '"' && text.back() == '"') {
+        warning("string-quotes", "the quotation marks belong to the text: a data sheet puts none around it");
+      }
+      result.bytes = text;
     }
     return result;
   }
@@ -254,6 +292,7 @@ class ValueReader {
   const Field& field_;
   const DataTypeRow& type_;
   std::optional<std::uint8_t> node_id_;
+  std::optional<Limit> limit_;
   Diagnostics& diagnostics_;
 };
 
@@ -261,7 +300,12 @@ class ValueReader {
 
 std::optional<Value> parse_value(const Field& field, const canopen::DataTypeRow& type,
                                  std::optional<std::uint8_t> node_id, Diagnostics& diagnostics) {
-  return ValueReader{field, type, node_id, diagnostics}.read();
+  return ValueReader{field, type, node_id, std::nullopt, diagnostics}.read();
+}
+
+std::optional<Value> parse_limit(const Field& field, Limit which, const canopen::DataTypeRow& type,
+                                 std::optional<std::uint8_t> node_id, Diagnostics& diagnostics) {
+  return ValueReader{field, type, node_id, which, diagnostics}.read();
 }
 
 }  // namespace edsc

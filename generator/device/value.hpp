@@ -10,9 +10,16 @@
 
 namespace edsc {
 
-/// The value of DefaultValue, ParameterValue, LowLimit or HighLimit for an entry of this type. Nothing when the field is
+/// The value of DefaultValue or ParameterValue for an entry of this type. Nothing when the field is
 /// missing or empty, or when it cannot be read, which is then reported. With a node-ID, formulas become numbers.
 [[nodiscard]] std::optional<Value> parse_value(const Field& field, const canopen::DataTypeRow& type,
+                                               std::optional<std::uint8_t> node_id, Diagnostics& diagnostics);
+
+enum class Limit : std::uint8_t { low, high };
+
+/// The same for LowLimit or HighLimit. One that lies beyond the type's own range limits nothing: it is left out, with a
+/// warning.
+[[nodiscard]] std::optional<Value> parse_limit(const Field& field, Limit which, const canopen::DataTypeRow& type,
                                                std::optional<std::uint8_t> node_id, Diagnostics& diagnostics);
 
 }  // namespace edsc

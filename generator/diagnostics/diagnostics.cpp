@@ -24,7 +24,8 @@ std::size_t Diagnostics::KindHash::operator()(const Kind& kind) const {
 }
 
 void Diagnostics::report(Diagnostic diagnostic) {
-  if (is_silenced(diagnostic.rule)) {
+  const bool dropped = drop_notes_ && diagnostic.severity == Severity::note;
+  if (dropped || is_silenced(diagnostic.rule)) {
     return;
   }
   if (strict_ && diagnostic.severity == Severity::warning) {
@@ -55,11 +56,16 @@ void Diagnostics::warning(std::string_view rule, const Position& position, std::
   report({Severity::warning, rule, position, std::move(message), {}});
 }
 
+void Diagnostics::note(std::string_view rule, const Position& position, std::string message) {
+  report({Severity::note, rule, position, std::move(message), {}});
+}
+
 void Diagnostics::silence(std::string rule) { silenced_.push_back(std::move(rule)); }
 
 void Diagnostics::count(Severity severity) {
   errors_ += severity == Severity::error ? 1 : 0;
   warnings_ += severity == Severity::warning ? 1 : 0;
+  notes_ += severity == Severity::note ? 1 : 0;
 }
 
 bool Diagnostics::is_silenced(std::string_view rule) const {

@@ -13,7 +13,7 @@ namespace edsc {
 class SourceFile;
 
 /// A place in a source file. Lines and columns count from 1, columns in bytes of the UTF-8 text; a line of 0 means the
-/// file as a whole.
+/// file as a whole, which is shown as its line 1.
 struct Position {
   const SourceFile* file = nullptr;
   std::uint32_t line = 0;
@@ -44,16 +44,21 @@ class Diagnostics {
   void report(Diagnostic diagnostic);
   void error(std::string_view rule, const Position& position, std::string message);
   void warning(std::string_view rule, const Position& position, std::string message);
+  void note(std::string_view rule, const Position& position, std::string message);
 
   /// Rules whose findings are dropped.
   void silence(std::string rule);
-  /// From here on a warning counts as an error (`--strict`).
+  /// From here on a warning counts as an error (`--strict`). A note stays a note.
   void treat_warnings_as_errors() { strict_ = true; }
 
-  /// The listed findings. `errors()` and `warnings()` count the suppressed ones too.
+  /// From here on notes are dropped: `edsc check` shows them, no other command does.
+  void drop_notes() { drop_notes_ = true; }
+
+  /// The listed findings. `errors()`, `warnings()` and `notes()` count the suppressed ones too.
   [[nodiscard]] const std::vector<Diagnostic>& all() const { return all_; }
   [[nodiscard]] std::size_t errors() const { return errors_; }
   [[nodiscard]] std::size_t warnings() const { return warnings_; }
+  [[nodiscard]] std::size_t notes() const { return notes_; }
   /// How many findings of `rule` in `file` came after the first `most_per_rule` and were counted only.
   struct Suppressed {
     const SourceFile* file;
@@ -93,7 +98,9 @@ class Diagnostics {
   std::vector<std::string> silenced_;
   std::size_t errors_ = 0;
   std::size_t warnings_ = 0;
+  std::size_t notes_ = 0;
   bool strict_ = false;
+  bool drop_notes_ = false;
 };
 
 }  // namespace edsc

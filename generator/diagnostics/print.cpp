@@ -9,36 +9,11 @@
 #include <vector>
 
 #include "diagnostics/excerpt.hpp"
+#include "diagnostics/place.hpp"
 #include "text/source_file.hpp"
-#include "text/utf8.hpp"
 
 namespace edsc {
 namespace {
-
-/// Columns in code points, as an editor counts them.
-struct Place {
-  std::string file;  ///< empty when there is none
-  std::uint32_t line = 0;
-  std::size_t column = 0;
-  std::size_t length = 0;
-};
-
-Place place_of(const Position& position) {
-  Place place;
-  if (position.file == nullptr) {
-    return place;
-  }
-  place.file = position.file->name();
-  if (position.line == 0) {
-    return place;
-  }
-  const std::string_view line = position.file->line(position.line);
-  const std::size_t start = std::min<std::size_t>(position.column == 0 ? 0 : position.column - 1, line.size());
-  place.line = position.line;
-  place.column = count_code_points(line.substr(0, start)) + 1;
-  place.length = std::max<std::size_t>(count_code_points(line.substr(start, position.length)), 1);
-  return place;
-}
 
 /// ANSI escape sequences, or nothing.
 struct Palette {
@@ -67,10 +42,12 @@ struct FileSum {
   const SourceFile* file;
   std::size_t errors = 0;
   std::size_t warnings = 0;
+  std::size_t notes = 0;
 
   void add(Severity severity, std::size_t count) {
     errors += severity == Severity::error ? count : 0;
     warnings += severity == Severity::warning ? count : 0;
+    notes += severity == Severity::note ? count : 0;
   }
 };
 
@@ -107,15 +84,19 @@ class TextPrinter {
   }
 
   void print(const Diagnostics::Suppressed& suppressed) {
-    print_head({suppressed.file}, suppressed.severity, fmt::format("{} more of this kind", suppressed.count),
-               suppressed.rule);
+    print_file(suppressed.file);
+    print_message(suppressed.severity, fmt::format("{} more of this kind", suppressed.count), suppressed.rule);
   }
 
   void print(const FileSum& sum) {
     if (sum.file != nullptr) {
       append("{}: ", file_name(sum.file));
     }
-    append("{}, {}\n", counted(sum.errors, "error"), counted(sum.warnings, "warning"));
+    append("{}, {}", counted(sum.errors, "error"), counted(sum.warnings, "warning"));
+    if (sum.notes > 0) {
+      append(", {}", counted(sum.notes, "note"));
+    }
+    out_ += '\n';
   }
 
  private:
@@ -127,12 +108,18 @@ class TextPrinter {
   void print_head(const Position& position, Severity severity, std::string_view message, std::string_view rule) {
     const Place place = place_of(position);
     if (!place.file.empty()) {
-      append("{}{}:", palette_.place, printable(place.file));
-      if (place.line != 0) {
-        append("{}:{}:", place.line, place.column);
-      }
-      append("{} ", palette_.reset);
+      append("{}{}:{}:{}:{} ", palette_.place, printable(place.file), place.line, place.column, palette_.reset);
     }
+    print_message(severity, message, rule);
+  }
+
+  void print_file(const SourceFile* file) {
+    if (file != nullptr) {
+      append("{}{}:{} ", palette_.place, file_name(file), palette_.reset);
+    }
+  }
+
+  void print_message(Severity severity, std::string_view message, std::string_view rule) {
     append("{}{}:{} {}", palette_.of(severity), to_string(severity), palette_.reset, printable(message));
     if (!rule.empty()) {
       append(" [{}]", rule);
@@ -219,7 +206,8 @@ nlohmann::json print_json(const Diagnostics& diagnostics) {
           {"diagnostics", to_json_array(diagnostics.all())},
           {"suppressed", to_json_array(diagnostics.suppressed())},
           {"errors", diagnostics.errors()},
-          {"warnings", diagnostics.warnings()}};
+          {"warnings", diagnostics.warnings()},
+          {"notes", diagnostics.notes()}};
 }
 
 }  // namespace edsc

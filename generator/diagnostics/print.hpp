@@ -13,7 +13,7 @@ namespace edsc {
 void print_text(std::string& out, const Diagnostics& diagnostics, bool colour);
 void print_text(std::FILE* out, const Diagnostics& diagnostics, bool colour);
 
-/// {"version":1, "diagnostics":[...], "suppressed":[...], "errors":n, "warnings":n}. A file name may hold what is not
+/// {"version":1, "diagnostics":[...], "suppressed":[...], "errors":n, "warnings":n, "notes":n}. A file name may hold what is not
 /// UTF-8: dump it with nlohmann::json::error_handler_t::replace.
 [[nodiscard]] nlohmann::json print_json(const Diagnostics& diagnostics);
 

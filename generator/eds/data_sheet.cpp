@@ -8,15 +8,20 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <unordered_map>
 #include <utility>
 
 #include "diagnostics/quote.hpp"
+#include "eds/comments.hpp"
 #include "eds/duplicates.hpp"
+#include "eds/dynamic_channels.hpp"
 #include "eds/keys.hpp"
+#include "eds/modules.hpp"
 #include "eds/number.hpp"
 #include "eds/object_lists.hpp"
 #include "eds/object_sections.hpp"
 #include "eds/section_name.hpp"
+#include "eds/tools.hpp"
 #include "text/source_file.hpp"
 
 namespace edsc {
@@ -29,12 +34,12 @@ constexpr KeyRow<FileInfo> file_info_rows[] = {
     {"EDSVersion", &FileInfo::eds_version},
     {"Description", &FileInfo::description},
     {"CreatedBy", &FileInfo::created_by},
-    {"CreationTime", nullptr},
-    {"CreationDate", nullptr},
-    {"ModificationTime", nullptr},
-    {"ModificationDate", nullptr},
-    {"ModifiedBy", nullptr},
-    {"LastEDS", nullptr},
+    {"CreationTime", &FileInfo::creation_time},
+    {"CreationDate", &FileInfo::creation_date},
+    {"ModificationTime", &FileInfo::modification_time},
+    {"ModificationDate", &FileInfo::modification_date},
+    {"ModifiedBy", &FileInfo::modified_by},
+    {"LastEDS", &FileInfo::last_eds},
 };
 
 constexpr KeyRow<DeviceInfo> device_info_rows[] = {
@@ -53,10 +58,11 @@ constexpr KeyRow<DeviceInfo> device_info_rows[] = {
     {"NrOfTXPDO", &DeviceInfo::nr_of_tx_pdo},
     {"LSS_Supported", &DeviceInfo::lss_supported},
     {"CompactPDO", &DeviceInfo::compact_pdo},
-    {"LSS_Master", nullptr},
-    {"NG_Slave", nullptr},
-    {"NG_Master", nullptr},
-    {"NrOfNG_MonitoredNodes", nullptr},
+    {"LSS_Master", &DeviceInfo::lss_master},
+    {"NG_Slave", &DeviceInfo::ng_slave},
+    {"NG_Master", &DeviceInfo::ng_master},
+    {"NrOfNG_MonitoredNodes", &DeviceInfo::nr_of_ng_monitored_nodes},
+    {"CANopenSafetySupported", &DeviceInfo::canopen_safety_supported},
 };
 
 constexpr KeyRow<DeviceCommissioning> commissioning_rows[] = {
@@ -67,8 +73,8 @@ constexpr KeyRow<DeviceCommissioning> commissioning_rows[] = {
     {"NetworkName", &DeviceCommissioning::network_name},
     {"CANopenManager", &DeviceCommissioning::canopen_manager},
     {"LSS_SerialNumber", &DeviceCommissioning::lss_serial_number},
-    {"NodeRefd", nullptr},
-    {"NetRefd", nullptr},
+    {"NodeRefd", &DeviceCommissioning::node_refd},
+    {"NetRefd", &DeviceCommissioning::net_refd},
 };
 
 constexpr std::span<const KeyRow<FileInfo>> file_info_keys = file_info_rows;
@@ -81,7 +87,11 @@ constexpr std::size_t dummy_digits = 4;
 constexpr std::uint16_t last_dummy = 0xFF;
 
 constexpr bool is_object_kind(SectionKind kind) {
-  return kind >= SectionKind::object && kind <= SectionKind::compact_denotations;
+  return kind >= SectionKind::object && kind <= SectionKind::object_links;
+}
+
+constexpr bool is_module_kind(SectionKind kind) {
+  return kind >= SectionKind::module_info && kind <= SectionKind::module_sub_extension;
 }
 
 class DataSheetReader {
@@ -97,6 +107,7 @@ class DataSheetReader {
       read_device_info();
       read_commissioning();
       read_dummy_usage();
+      read_others();
       read_objects();
     }
     sheet_.is_dcf = sheet_.commissioning.present || ends_with_ignoring_case(source_.name(), ".dcf");
@@ -110,7 +121,11 @@ class DataSheetReader {
       report_name(section, name);
       if (is_object_kind(name.kind)) {
         object_sections_.push_back({name, &section});
-      } else if (name.kind < SectionKind::object) {
+      } else if (is_module_kind(name.kind)) {
+        module_sections_.push_back({name, &section});
+      } else if (name.kind == SectionKind::tool) {
+        tool_sections_.push_back({name, &section});
+      } else if (name.kind < SectionKind::malformed) {
         place_single(section, name.kind);
       }
     }
@@ -121,9 +136,6 @@ class DataSheetReader {
     if (name.kind == SectionKind::malformed) {
       diagnostics_.error("section-name", position,
                          fmt::format("{} names no object: {}", quote(section.name), name.remark));
-    } else if (name.kind == SectionKind::not_used) {
-      diagnostics_.warning("section-not-used", position,
-                           fmt::format("section {} is not used: {}", quote(section.name), name.remark));
     } else if (name.kind == SectionKind::unknown) {
       diagnostics_.warning("unknown-section", position,
                            fmt::format("CiA 306 knows no section {}; it is left out", quote(section.name)));
@@ -153,6 +165,8 @@ class DataSheetReader {
 
   void read_file_info() {
     const IniSection* const section = single(SectionKind::file_info);
+    sheet_.file_info.present = section != nullptr;
+    sheet_.file_info.position = place_of(section);
     place_fields(file_info_keys, place_of(section), sheet_.file_info);
     if (section != nullptr) {
       read_keys(source_, *section, diagnostics_,
@@ -183,11 +197,12 @@ class DataSheetReader {
       return {};
     }
     std::vector<DeviceInfo::BaudRate>& rates = sheet_.device_info.baud_rates;
-    const auto found = std::find_if(rates.begin(), rates.end(),
-                                    [&](const DeviceInfo::BaudRate& known) { return known.kbit_per_second == *rate; });
     const auto kbit_per_second = static_cast<std::uint16_t>(*rate);
-    return {true, found != rates.end() ? &found->field
-                                       : &rates.emplace_back(DeviceInfo::BaudRate{kbit_per_second, {}}).field};
+    const auto [place, is_new] = baud_rate_places_.try_emplace(kbit_per_second, rates.size());
+    if (is_new) {
+      rates.push_back({kbit_per_second, {}});
+    }
+    return {true, &rates[place->second].field};
   }
 
   void read_commissioning() {
@@ -222,12 +237,25 @@ class DataSheetReader {
     return {true, found != dummies.end() ? &found->field : &dummies.emplace_back(NumberedField{*index, {}}).field};
   }
 
+  void read_others() {
+    if (const IniSection* const section = single(SectionKind::comments)) {
+      sheet_.comments = read_comments(source_, *section, diagnostics_);
+    }
+    sheet_.tools = read_tools(source_, single(SectionKind::tools), tool_sections_, diagnostics_);
+    if (const IniSection* const section = single(SectionKind::dynamic_channels)) {
+      sheet_.dynamic_channels = read_dynamic_channels(source_, *section, diagnostics_);
+    }
+    sheet_.modules = read_modules(
+        source_, {single(SectionKind::supported_modules), single(SectionKind::connected_modules), module_sections_},
+        diagnostics_);
+  }
+
   void read_objects() {
     if (object_sections_.empty()) {
       diagnostics_.error("no-objects", {&source_}, "there is no section of an object in this file, such as [1000]");
       return;
     }
-    sheet_.objects = edsc::read_objects(source_, std::move(object_sections_), diagnostics_);
+    sheet_.objects = edsc::read_objects(source_, std::move(object_sections_), {}, diagnostics_);
     const ObjectListSections lists{single(SectionKind::mandatory_objects), single(SectionKind::optional_objects),
                                    single(SectionKind::manufacturer_objects)};
     sheet_.listed = read_object_lists(source_, lists, diagnostics_);
@@ -238,8 +266,11 @@ class DataSheetReader {
   const SourceFile& source_;
   Diagnostics& diagnostics_;
   DataSheet sheet_;
-  std::array<const IniSection*, static_cast<std::size_t>(SectionKind::object)> single_{};
+  std::array<const IniSection*, static_cast<std::size_t>(SectionKind::malformed)> single_{};
+  std::unordered_map<std::uint16_t, std::size_t> baud_rate_places_;  ///< in the list of those that have a key
   std::vector<ObjectSection> object_sections_;
+  std::vector<NamedSection> tool_sections_;
+  std::vector<NamedSection> module_sections_;
 };
 
 }  // namespace

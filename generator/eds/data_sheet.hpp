@@ -1,8 +1,11 @@
-/// The data sheet: an EDS or DCF as it was written, sorted into the sections of CiA 306-1, nothing resolved yet.
+/// The data sheet: an EDS or DCF as it was written, sorted into the sections of CiA 306-1, nothing resolved yet. An XDD or
+/// XDC of CiA 311 is read into the same.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <deque>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -39,6 +42,8 @@ struct EntryDescription {
   Field obj_flags;
   Field upload_file;
   Field download_file;
+  Field param_refd;
+  Field unit, factor, description;  ///< not of CiA 306, but widely used
 };
 
 struct SubObjectDescription : EntryDescription {
@@ -60,6 +65,7 @@ struct ObjectDescription : EntryDescription {
   std::vector<NumberedField> compact_names;
   std::vector<NumberedField> compact_values;
   std::vector<NumberedField> compact_denotations;
+  std::vector<NumberedField> object_links;
 };
 
 enum class ObjectListKind : std::uint8_t { mandatory, optional, manufacturer };
@@ -72,7 +78,11 @@ struct ListedObject {
 
 /// [FileInfo], clause 4.4.
 struct FileInfo {
+  Position position;
+  bool present = false;
   Field file_name, file_version, file_revision, eds_version, description, created_by;
+  Field creation_time, creation_date, modification_time, modification_date, modified_by;
+  Field last_eds;  ///< of a DCF: the EDS it was made of
 };
 
 /// [DeviceInfo], clause 4.5.
@@ -82,6 +92,7 @@ struct DeviceInfo {
   Field vendor_name, vendor_number, product_name, product_number, revision_number, order_code;
   Field simple_boot_up_master, simple_boot_up_slave, granularity, dynamic_channels_supported, group_messaging;
   Field nr_of_rx_pdo, nr_of_tx_pdo, lss_supported, compact_pdo;
+  Field lss_master, ng_slave, ng_master, nr_of_ng_monitored_nodes, canopen_safety_supported;
   struct BaudRate {
     std::uint16_t kbit_per_second;
     Field field;
@@ -94,18 +105,76 @@ struct DeviceCommissioning {
   bool present = false;
   Position position;
   Field node_id, node_name, baudrate, net_number, network_name, canopen_manager, lss_serial_number;
+  Field node_refd, net_refd;
+};
+
+/// [Comments] and [MxComments], clause 4.7.
+struct Comments {
+  bool present = false;
+  Field lines;
+  std::vector<NumberedField> text;  ///< `LineN`, ascending
+};
+
+/// [ToolX] of the [Tools].
+struct Tool {
+  std::uint16_t number = 0;
+  Field name, command;
+};
+
+/// A segment of the [DynamicChannels], clause 4.8: network variables of a programmable device.
+struct DynamicSegment {
+  std::uint32_t number = 0;
+  Field type, direction, range, process_picture_offset;
+};
+
+struct DynamicChannels {
+  bool present = false;
+  Field nr_of_segments;
+  std::vector<DynamicSegment> segments;  ///< ascending
+};
+
+/// [MxSubExtHHHH]: sub-indices that each module adds to an object, clause 6.
+struct SubExtension : EntryDescription {
+  std::uint16_t index = 0;
+  Field count;          ///< `n`, or `0;m`: m bits of a sub-index that several modules share
+  Field object_extend;  ///< the highest sub-index before the next index is used
+};
+
+/// The sections of module x, clause 6.
+struct ModuleDescription {
+  std::uint16_t number = 0;
+  Position position;
+  Field product_name, product_version, product_revision, order_code;
+  Comments comments;
+  std::vector<NumberedField> fixed_objects;
+  std::vector<ObjectDescription> objects;  ///< [MxFixedHHHH], ascending
+  std::vector<NumberedField> sub_extends;
+  std::vector<SubExtension> sub_extensions;  ///< ascending
+};
+
+/// What may be plugged into a modular device, and what is.
+struct Modules {
+  Field nr_of_entries;
+  std::vector<ModuleDescription> supported;  ///< ascending
+  std::vector<NumberedField> connected;      ///< of a DCF: the number of a module by its place
 };
 
 struct DataSheet {
   const SourceFile* source = nullptr;
-  bool is_dcf = false;  ///< it has [DeviceComissioning], or its name ends in .dcf
+  bool is_dcf = false;  ///< it has [DeviceComissioning], or its name ends in .dcf or .xdc
   FileInfo file_info;
   DeviceInfo device_info;
   DeviceCommissioning commissioning;
+  Comments comments;
+  std::vector<Tool> tools;  ///< ascending
+  DynamicChannels dynamic_channels;
+  Modules modules;
   /// [DummyUsage]: `DummyNNNN=1`, by the data type's index 0001h..00FFh.
   std::vector<NumberedField> dummy_usage;
   std::vector<ListedObject> listed;        ///< in the order of the lists
   std::vector<ObjectDescription> objects;  ///< ascending by index, each index once
+  /// What fields point to that does not stand in the source like that. Copies of the sheet share it.
+  std::shared_ptr<const std::deque<std::string>> texts;
 };
 
 /// Sorts an INI file into a data sheet. Everything that cannot be placed is reported; the first of two sections or keys

@@ -2,12 +2,33 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
+#include <system_error>
+
 #include "diagnostics/quote.hpp"
+#include "text/ascii.hpp"
 
 namespace edsc {
 
 Field make_field(const SourceFile& source, const IniEntry& entry) {
   return {entry.value, value_position(source, entry), true};
+}
+
+Field& numbered_field(std::vector<NumberedField>& fields, std::uint32_t number) {
+  const auto at = std::lower_bound(fields.begin(), fields.end(), number,
+                                   [](const NumberedField& field, std::uint32_t n) { return field.number < n; });
+  return at != fields.end() && at->number == number ? at->field : fields.insert(at, {number, {}})->field;
+}
+
+std::optional<std::uint32_t> number_behind(std::string_view prefix, std::string_view key) {
+  if (!starts_with_ignoring_case(key, prefix) || key.size() == prefix.size() || !is_digit(key[prefix.size()])) {
+    return std::nullopt;
+  }
+  std::uint32_t number = 0;
+  const char* const end = key.data() + key.size();
+  const std::from_chars_result result = std::from_chars(key.data() + prefix.size(), end, number);
+  return result.ec == std::errc() && result.ptr == end ? std::optional{number} : std::nullopt;
 }
 
 void report_unknown_key(const SourceFile& source, const IniSection& section, const IniEntry& entry,

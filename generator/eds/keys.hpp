@@ -1,8 +1,11 @@
 /// Reading the keys of a section into the members of a struct, by a table.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "diagnostics/diagnostics.hpp"
 #include "eds/data_sheet.hpp"
@@ -44,6 +47,12 @@ void place_fields(std::span<const KeyRow<Struct>> table, const Position& positio
 }
 
 [[nodiscard]] Field make_field(const SourceFile& source, const IniEntry& entry);
+
+/// The field of `number`; a new one when there is none yet.
+[[nodiscard]] Field& numbered_field(std::vector<NumberedField>& fields, std::uint32_t number);
+
+/// The number behind `prefix`: 3 in `Line3`. Nothing for any other key.
+[[nodiscard]] std::optional<std::uint32_t> number_behind(std::string_view prefix, std::string_view key);
 
 void report_unknown_key(const SourceFile& source, const IniSection& section, const IniEntry& entry,
                         Diagnostics& diagnostics);

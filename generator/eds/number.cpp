@@ -39,6 +39,13 @@ std::optional<std::uint64_t> parse_unsigned(std::string_view text) {
   return number;
 }
 
+bool is_octal(std::string_view text) {
+  text = trim(text);
+  const auto is_octal_digit = [](char c) { return c >= '0' && c <= '7'; };
+  return text.starts_with('0') && std::all_of(text.begin(), text.end(), is_octal_digit) &&
+         parse_unsigned(text).value_or(0) >= 8;
+}
+
 std::optional<std::uint16_t> parse_hex(std::string_view text, std::size_t most_digits) {
   if (text.empty() || text.size() > most_digits || !std::all_of(text.begin(), text.end(), is_hex_digit)) {
     return std::nullopt;

@@ -12,6 +12,9 @@ namespace edsc {
 /// when any of the text is not part of the number, or when 64 bits do not hold it.
 [[nodiscard]] std::optional<std::uint64_t> parse_unsigned(std::string_view text);
 
+/// Whether a leading 0 makes it another number than its digits: 010 is eight.
+[[nodiscard]] bool is_octal(std::string_view text);
+
 /// Hexadecimal digits without prefix, as section and key names hold them: one to `most_digits`, four at most.
 [[nodiscard]] std::optional<std::uint16_t> parse_hex(std::string_view text, std::size_t most_digits);
 

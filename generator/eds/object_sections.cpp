@@ -16,13 +16,23 @@ namespace {
 
 /// Keys of object and sub-object sections; the frequent ones first.
 constexpr KeyRow<EntryDescription> entry_rows[] = {
-    {"ParameterName", &EntryDescription::parameter_name}, {"ObjectType", &EntryDescription::object_type},
-    {"DataType", &EntryDescription::data_type},           {"AccessType", &EntryDescription::access_type},
-    {"DefaultValue", &EntryDescription::default_value},   {"PDOMapping", &EntryDescription::pdo_mapping},
-    {"LowLimit", &EntryDescription::low_limit},           {"HighLimit", &EntryDescription::high_limit},
-    {"ObjFlags", &EntryDescription::obj_flags},           {"ParameterValue", &EntryDescription::parameter_value},
-    {"Denotation", &EntryDescription::denotation},        {"UploadFile", &EntryDescription::upload_file},
-    {"DownloadFile", &EntryDescription::download_file},   {"ParamRefd", nullptr},
+    {"ParameterName", &EntryDescription::parameter_name},
+    {"ObjectType", &EntryDescription::object_type},
+    {"DataType", &EntryDescription::data_type},
+    {"AccessType", &EntryDescription::access_type},
+    {"DefaultValue", &EntryDescription::default_value},
+    {"PDOMapping", &EntryDescription::pdo_mapping},
+    {"LowLimit", &EntryDescription::low_limit},
+    {"HighLimit", &EntryDescription::high_limit},
+    {"ObjFlags", &EntryDescription::obj_flags},
+    {"ParameterValue", &EntryDescription::parameter_value},
+    {"Denotation", &EntryDescription::denotation},
+    {"UploadFile", &EntryDescription::upload_file},
+    {"DownloadFile", &EntryDescription::download_file},
+    {"ParamRefd", &EntryDescription::param_refd},
+    {"Unit", &EntryDescription::unit},
+    {"Factor", &EntryDescription::factor},
+    {"Description", &EntryDescription::description},
 };
 
 /// Keys of object sections only.
@@ -35,6 +45,7 @@ constexpr std::span<const KeyRow<EntryDescription>> entry_keys = entry_rows;
 constexpr std::span<const KeyRow<ObjectDescription>> object_keys = object_rows;
 
 constexpr CountKey nr_of_entries{"NrOfEntries", {}, "entry-count", false};
+constexpr CountKey object_links{"ObjectLinks", {}, "entry-count", true};
 
 using ObjectSections = std::span<const ObjectSection>;
 
@@ -63,7 +74,8 @@ std::size_t length_of_object(ObjectSections sections) {
 
 class ObjectReader {
  public:
-  ObjectReader(const SourceFile& source, Diagnostics& diagnostics) : source_(source), diagnostics_(diagnostics) {}
+  ObjectReader(const SourceFile& source, std::string_view prefix, Diagnostics& diagnostics)
+      : source_(source), prefix_(prefix), diagnostics_(diagnostics) {}
 
   /// `sections` all have one index and are in order.
   void read(ObjectSections sections, ObjectDescription& object) {
@@ -89,14 +101,14 @@ class ObjectReader {
 
  private:
   static void place(const Position& position, ObjectDescription& object) {
-    object.position = position;
-    place_fields<EntryDescription>(entry_keys, position, object);
+    place_entry(position, object);
     place_fields<ObjectDescription>(object_keys, position, object);
   }
 
   void report_missing_section(const ObjectSection& first, const ObjectDescription& object) {
-    diagnostics_.warning("sub-object-without-object", object.position,
-                         fmt::format("[{}] stands without a section [{:04X}]", first.section->name, object.index));
+    diagnostics_.warning(
+        "sub-object-without-object", object.position,
+        fmt::format("[{}] stands without a section [{}{:04X}]", first.section->name, prefix_, object.index));
   }
 
   void read_section(const ObjectSection& section, ObjectDescription& object) {
@@ -110,22 +122,23 @@ class ObjectReader {
       object.compact_values = read_list(*section.section);
     } else if (section.name.kind == SectionKind::compact_denotations) {
       object.compact_denotations = read_list(*section.section);
+    } else if (section.name.kind == SectionKind::object_links) {
+      object.object_links = read_numbered_section(source_, *section.section, object_links, diagnostics_);
     }
   }
 
   void read_object(const IniSection& section, ObjectDescription& object) {
     read_keys(source_, section, diagnostics_, [&](std::string_view key) {
-      const KeyMatch match = find_key<EntryDescription>(entry_keys, key, object);
+      const KeyMatch match = find_entry_key(key, object);
       return match.is_known ? match : find_key<ObjectDescription>(object_keys, key, object);
     });
   }
 
   void read_sub_object(const ObjectSection& section, SubObjectDescription& sub_object) {
     sub_object.sub_index = section.name.sub_index;
-    sub_object.position = section_position(source_, *section.section);
-    place_fields<EntryDescription>(entry_keys, sub_object.position, sub_object);
+    place_entry(section_position(source_, *section.section), sub_object);
     read_keys(source_, *section.section, diagnostics_,
-              [&](std::string_view key) { return find_key<EntryDescription>(entry_keys, key, sub_object); });
+              [&](std::string_view key) { return find_entry_key(key, sub_object); });
   }
 
   std::vector<NumberedField> read_list(const IniSection& section) {
@@ -133,17 +146,27 @@ class ObjectReader {
   }
 
   const SourceFile& source_;
+  std::string_view prefix_;
   Diagnostics& diagnostics_;
 };
 
 }  // namespace
 
+void place_entry(const Position& position, EntryDescription& entry) {
+  entry.position = position;
+  place_fields<EntryDescription>(entry_keys, position, entry);
+}
+
+KeyMatch find_entry_key(std::string_view key, EntryDescription& entry) {
+  return find_key<EntryDescription>(entry_keys, key, entry);
+}
+
 std::vector<ObjectDescription> read_objects(const SourceFile& source, std::vector<ObjectSection> sections,
-                                            Diagnostics& diagnostics) {
+                                            std::string_view prefix, Diagnostics& diagnostics) {
   sort_sections(sections);
   std::vector<ObjectDescription> objects;
   objects.reserve(count_indices(sections));
-  ObjectReader reader(source, diagnostics);
+  ObjectReader reader(source, prefix, diagnostics);
   for (ObjectSections rest = sections; !rest.empty();) {
     const std::size_t length = length_of_object(rest);
     reader.read(rest.first(length), objects.emplace_back());

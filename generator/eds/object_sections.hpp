@@ -1,11 +1,13 @@
-/// The sections of the objects: [HHHH], [HHHHsubHH], [HHHHName], [HHHHValue], [HHHHDenotation].
+/// The sections of the objects: [HHHH], [HHHHsubHH], [HHHHName], [HHHHValue], [HHHHDenotation], [HHHHObjectLinks].
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "diagnostics/diagnostics.hpp"
 #include "eds/data_sheet.hpp"
+#include "eds/keys.hpp"
 #include "eds/section_name.hpp"
 #include "text/ini.hpp"
 
@@ -22,8 +24,15 @@ struct ObjectSection {
   }
 };
 
-/// Makes objects of their sections, which may come in any order. Ascending by index, each index once.
+/// Makes objects of their sections, which may come in any order. Ascending by index, each index once. `prefix` is what
+/// stands before the index in the names of the sections: nothing, or `M1Fixed`.
 [[nodiscard]] std::vector<ObjectDescription> read_objects(const SourceFile& source, std::vector<ObjectSection> sections,
-                                                          Diagnostics& diagnostics);
+                                                          std::string_view prefix, Diagnostics& diagnostics);
+
+/// Gives an entry and its fields the place of its section.
+void place_entry(const Position& position, EntryDescription& entry);
+
+/// The keys that objects, sub-objects and the extensions of modules share.
+[[nodiscard]] KeyMatch find_entry_key(std::string_view key, EntryDescription& entry);
 
 }  // namespace edsc

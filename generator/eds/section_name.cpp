@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <optional>
+#include <span>
 
 #include "eds/number.hpp"
 #include "text/ascii.hpp"
@@ -26,61 +27,74 @@ constexpr FixedName fixed_names[] = {
     {"MandatoryObjects", SectionKind::mandatory_objects},
     {"OptionalObjects", SectionKind::optional_objects},
     {"ManufacturerObjects", SectionKind::manufacturer_objects},
+    {"Tools", SectionKind::tools},
+    {"DynamicChannels", SectionKind::dynamic_channels},
+    {"SupportedModules", SectionKind::supported_modules},
+    {"ConnectedModules", SectionKind::connected_modules},
 };
 
 /// What may follow the index of an object, other than `sub` and the sub-index.
 struct IndexSuffix {
   std::string_view suffix;
   SectionKind kind;
-  std::string_view remark;
 };
 
 constexpr IndexSuffix index_suffixes[] = {
-    {"Name", SectionKind::compact_names, {}},
-    {"Value", SectionKind::compact_values, {}},
-    {"Denotation", SectionKind::compact_denotations, {}},
-    {"ObjectLinks", SectionKind::not_used, "links between objects, for tools that show them"},
+    {"Name", SectionKind::compact_names},
+    {"Value", SectionKind::compact_values},
+    {"Denotation", SectionKind::compact_denotations},
+    {"ObjectLinks", SectionKind::object_links},
 };
 
-/// A `#` stands for one or more decimal digits, a `*` at the end for anything.
-struct UnusedName {
-  std::string_view pattern;
-  std::string_view remark;
+/// What follows `M` and the number of a module.
+constexpr FixedName module_parts[] = {
+    {"ModuleInfo", SectionKind::module_info},
+    {"Comments", SectionKind::module_comments},
+    {"FixedObjects", SectionKind::module_fixed_objects},
+    {"SubExtends", SectionKind::module_sub_extends},
 };
 
-constexpr std::string_view modules = "modular devices are read without their modules";
-constexpr std::string_view channels = "network variables of programmable devices are not supported";
-constexpr std::string_view tools = "programs of the vendor";
-
-constexpr UnusedName unused_names[] = {
-    {"Tools", tools},
-    {"Tool#", tools},
-    {"DynamicChannels", channels},
-    {"SupportedModules", modules},
-    {"ConnectedModules", modules},
-    {"M#ModuleInfo", modules},
-    {"M#Comments", modules},
-    {"M#Fixed*", modules},
-    {"M#SubExt*", modules},
-};
+constexpr std::string_view tool_prefix = "Tool";
+constexpr std::string_view module_prefix = "M";
+constexpr std::string_view fixed_prefix = "Fixed";
+constexpr std::string_view extension_prefix = "SubExt";
+constexpr std::size_t number_digits = 4;
 
 constexpr std::size_t index_digits = 4;
 constexpr std::size_t sub_index_digits = 2;
 constexpr std::string_view sub = "sub";
 
-bool matches(std::string_view name, std::string_view pattern) {
-  const std::size_t wildcard = std::min(pattern.find_first_of("#*"), pattern.size());
-  if (!starts_with_ignoring_case(name, pattern.substr(0, wildcard))) {
+/// Takes the decimal number off that `text` begins with.
+std::optional<std::uint16_t> take_number(std::string_view& text) {
+  const auto end = std::find_if_not(text.begin(), text.end(), is_digit);
+  const auto digits = static_cast<std::size_t>(end - text.begin());
+  if (digits == 0 || digits > number_digits) {
+    return std::nullopt;
+  }
+  std::uint16_t number = 0;
+  for (const char digit : text.substr(0, digits)) {
+    number = static_cast<std::uint16_t>(number * 10 + (digit - '0'));
+  }
+  text.remove_prefix(digits);
+  return number;
+}
+
+/// Takes a prefix off that `text` begins with, in any letter case.
+bool take_prefix(std::string_view& text, std::string_view prefix) {
+  if (!starts_with_ignoring_case(text, prefix)) {
     return false;
   }
-  name.remove_prefix(wildcard);
-  pattern.remove_prefix(wildcard);
-  if (pattern.empty() || pattern[0] == '*') {
-    return name.empty() || !pattern.empty();
+  text.remove_prefix(prefix.size());
+  return true;
+}
+
+std::optional<SectionKind> find_fixed(std::span<const FixedName> table, std::string_view name) {
+  for (const FixedName& row : table) {
+    if (equal_ignoring_case(name, row.name)) {
+      return row.kind;
+    }
   }
-  const auto digits_end = std::find_if_not(name.begin(), name.end(), is_digit);
-  const auto digits = static_cast<std::size_t>(digits_end - name.begin());
-  return digits > 0 && matches(name.substr(digits), pattern.substr(1));
+  return std::nullopt;
 }
 
 SectionName with_index(SectionKind kind, std::string_view digits, std::uint16_t index) {
@@ -127,12 +141,54 @@ std::optional<SectionName> read_object(std::string_view name) {
     const std::string_view index_text = name.substr(0, name.size() - std::min(name.size(), row.suffix.size()));
     const std::optional<std::uint16_t> index = parse_hex(index_text, index_digits);
     if (index && ends_with_ignoring_case(name, row.suffix)) {
-      SectionName result = with_index(row.kind, index_text, *index);
-      result.remark = row.remark;
-      return result;
+      return with_index(row.kind, index_text, *index);
     }
   }
   return std::nullopt;
+}
+
+/// What stands behind the number of a module.
+std::optional<SectionName> read_module_part(std::string_view rest) {
+  SectionName result;
+  if (const std::optional<SectionKind> kind = find_fixed(module_parts, rest)) {
+    result.kind = *kind;
+    return result;
+  }
+  if (take_prefix(rest, extension_prefix)) {
+    const std::optional<std::uint16_t> index = parse_hex(rest, index_digits);
+    return index ? with_index(SectionKind::module_sub_extension, rest, *index)
+                 : malformed("an index has four hexadecimal digits");
+  }
+  if (take_prefix(rest, fixed_prefix)) {
+    std::optional<SectionName> object = read_object(rest);
+    if (object && object->kind != SectionKind::malformed) {
+      object->part = object->kind;
+      object->kind = SectionKind::module_fixed_object;
+    }
+    return object;
+  }
+  return std::nullopt;
+}
+
+/// `ToolX`, and all that begins with `MX`.
+std::optional<SectionName> read_numbered(std::string_view name) {
+  std::string_view rest = name;
+  if (take_prefix(rest, tool_prefix)) {
+    const std::optional<std::uint16_t> number = take_number(rest);
+    SectionName result;
+    result.kind = SectionKind::tool;
+    result.number = number.value_or(0);
+    return number && rest.empty() ? std::optional{result} : std::nullopt;
+  }
+  if (!take_prefix(rest, module_prefix)) {
+    return std::nullopt;
+  }
+  const std::optional<std::uint16_t> number = take_number(rest);
+  std::optional<SectionName> part = number ? read_module_part(rest) : std::nullopt;
+  if (part) {
+    part->number = *number;
+  }
+  return part;
 }
 
 }  // namespace
@@ -142,20 +198,11 @@ SectionName read_section_name(std::string_view name) {
     return *object;
   }
   SectionName result;
-  for (const FixedName& row : fixed_names) {
-    if (equal_ignoring_case(name, row.name)) {
-      result.kind = row.kind;
-      return result;
-    }
+  if (const std::optional<SectionKind> kind = find_fixed(fixed_names, name)) {
+    result.kind = *kind;
+    return result;
   }
-  for (const UnusedName& row : unused_names) {
-    if (matches(name, row.pattern)) {
-      result.kind = SectionKind::not_used;
-      result.remark = row.remark;
-      return result;
-    }
-  }
-  return result;
+  return read_numbered(name).value_or(result);
 }
 
 }  // namespace edsc

@@ -1,10 +1,12 @@
-/// What the name of a section says (CiA 306-1, clauses 4.4 to 4.8 and 5.3).
+/// What the name of a section says (CiA 306-1, clauses 4.4 to 4.9, 5.3 and 6).
 #pragma once
 
 #include <cstdint>
 #include <string_view>
 
 namespace edsc {
+
+struct IniSection;
 
 enum class SectionKind : std::uint8_t {
   file_info,
@@ -20,8 +22,19 @@ enum class SectionKind : std::uint8_t {
   compact_names,        ///< [1003Name]
   compact_values,       ///< [1003Value]
   compact_denotations,  ///< [1003Denotation]
-  not_used,             ///< known, but nothing is made of it
-  malformed,            ///< meant for an object, but names no index or sub-index
+  object_links,         ///< [1003ObjectLinks]
+  tools,
+  tool,  ///< [Tool1]
+  dynamic_channels,
+  supported_modules,
+  connected_modules,
+  module_info,           ///< [M1ModuleInfo]
+  module_comments,       ///< [M1Comments]
+  module_fixed_objects,  ///< [M1FixedObjects]
+  module_fixed_object,   ///< [M1Fixed6000], [M1Fixed6000sub1] and all else that objects have
+  module_sub_extends,    ///< [M1SubExtends]
+  module_sub_extension,  ///< [M1SubExt6000]
+  malformed,             ///< meant for an object, but names no index or sub-index
   unknown
 };
 
@@ -29,8 +42,15 @@ struct SectionName {
   SectionKind kind = SectionKind::unknown;
   std::uint16_t index = 0;
   std::uint8_t sub_index = 0;
-  bool has_short_index = false;  ///< an index of fewer than four digits
-  std::string_view remark;       ///< for `not_used` what the section is for, for `malformed` what is wrong
+  bool has_short_index = false;             ///< an index of fewer than four digits
+  std::uint16_t number = 0;                 ///< of a tool or module
+  SectionKind part = SectionKind::unknown;  ///< of `module_fixed_object`: which of an object's sections it is
+  std::string_view remark;                  ///< for `malformed` what is wrong
+};
+
+struct NamedSection {
+  SectionName name;
+  const IniSection* section = nullptr;
 };
 
 /// Letter case is ignored.

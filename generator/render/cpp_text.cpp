@@ -6,31 +6,13 @@
 #include <cmath>
 #include <limits>
 
+#include "text/utf8.hpp"
+
 namespace edsc {
 namespace {
 
 using canopen::DataClass;
 using canopen::DataType;
-
-std::u16string to_utf16(std::string_view text) {
-  std::u16string out;
-  for (std::size_t i = 0; i < text.size();) {
-    const auto lead = static_cast<unsigned char>(text[i]);
-    const std::size_t length = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : lead >= 0xC0 ? 2 : 1;
-    std::uint32_t code_point = length == 1 ? lead : lead & (0xFFu >> (length + 1));
-    for (std::size_t k = 1; k < length && i + k < text.size(); ++k) {
-      code_point = (code_point << 6) | (static_cast<unsigned char>(text[i + k]) & 0x3Fu);
-    }
-    if (code_point >= 0x10000) {
-      out += static_cast<char16_t>(0xD800 + ((code_point - 0x10000) >> 10));
-      out += static_cast<char16_t>(0xDC00 + ((code_point - 0x10000) & 0x3FF));
-    } else {
-      out += static_cast<char16_t>(code_point);
-    }
-    i += length;
-  }
-  return out;
-}
 
 template <class Real>
 std::string real_literal(Real value, std::string_view type, std::string_view suffix) {
@@ -73,6 +55,27 @@ std::string utf16_string(std::string_view text) {
     }
   }
   return out + "\"";
+}
+
+/// Characters that change the direction of the text behind them, and the trigraph of the backslash.
+constexpr std::string_view hidden_texts[] = {
+    "\xE2\x80\xAA",
+    "\xE2\x80\xAB",
+    "\xE2\x80\xAC",
+    "\xE2\x80\xAD",
+    "\xE2\x80\xAE",
+    "\xE2\x81\xA6",
+    "\xE2\x81\xA7",
+    "\xE2\x81\xA8",
+    "\xE2\x81\xA9",
+    "??"
+    "/",
+};
+
+void remove_hidden(std::string& text) {
+  for (const std::string_view hidden : hidden_texts) {
+    if (text.ends_with(hidden)) text.resize(text.size() - hidden.size());
+  }
 }
 
 }  // namespace
@@ -121,13 +124,11 @@ std::string cpp_string(std::string_view text) {
 
 std::string cpp_comment(std::string_view text) {
   std::string out;
+  out.reserve(text.size());
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
     out += byte < 0x20 || byte == 0x7F ? ' ' : c == '\\' ? '/' : c;
-  }
-  for (const std::string_view hidden : {"\xE2\x80\xAA", "\xE2\x80\xAB", "\xE2\x80\xAC", "\xE2\x80\xAD", "\xE2\x80\xAE",
-                                        "\xE2\x81\xA6", "\xE2\x81\xA7", "\xE2\x81\xA8", "\xE2\x81\xA9", "??" "/"}) {
-    for (std::size_t at; (at = out.find(hidden)) != std::string::npos;) out.erase(at, hidden.size());
+    if (byte >= 0x80 || c == '/' || c == '\\') remove_hidden(out);
   }
   return out;
 }

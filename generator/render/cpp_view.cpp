@@ -1,9 +1,14 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "render/compiled_format.hpp"
 #include "render/cpp_text.hpp"
+#include "render/json_object.hpp"
 #include "render/memory_layout.hpp"
 #include "render/view.hpp"
 #include "text/source_file.hpp"
+#include "text/utf8.hpp"
 
 namespace edsc {
 namespace {
@@ -26,6 +31,13 @@ std::string_view mappable_enumerator(Mappable mappable) {
   return "no";
 }
 
+/// `text` and the spaces that bring what follows to a common column.
+std::string padded(std::string text, std::size_t column) {
+  if (!is_ascii(text)) return fmt::format("{:<{}}", text, column);  // knows characters of two columns
+  text.resize(std::max(text.size(), column), ' ');
+  return text;
+}
+
 /// Makes the declarations of od:: types.
 class ObjectTypes {
  public:
@@ -35,70 +47,68 @@ class ObjectTypes {
   }
 
   [[nodiscard]] ordered_json view() const {
-    ordered_json rows = ordered_json::array();
+    ordered_json rows = json_array(device_.objects.size());
     for (const Object& object : device_.objects) rows.push_back(object_row(object));
     return rows;
   }
 
  private:
   [[nodiscard]] ordered_json object_row(const Object& object) const {
-    ordered_json row;
-    if (!object.has_sub_indices()) {
-      row["var"] = entry_row(object.entries.front(), fmt::format("0x{:02X}", 0));
-    } else if (describes_uniform_array(object)) {
-      row["array"] = array_row(object);
-    } else {
-      row["record"] = record_row(object);
-    }
-    return row;
+    if (!object.has_sub_indices()) return json_object("var", entry_row(object.entries.front(), hexadecimal(0)));
+    if (describes_uniform_array(object)) return json_object("array", array_row(object));
+    return json_object("record", record_row(object));
   }
 
   [[nodiscard]] ordered_json record_row(const Object& object) const {
-    ordered_json row;
-    row["identifier"] = object.identifier;
-    row["comment"] = fmt::format("{}.  {}", cpp_comment(object.name), index_label(object.index));
-    ordered_json entries = ordered_json::array();
-    for (const Entry& entry : object.entries) entries.push_back(entry_row(entry, fmt::format("0x{:02X}", entry.sub_index)));
-    row["entries"] = std::move(entries);
-    return row;
+    ordered_json entries = json_array(object.entries.size());
+    for (const Entry& entry : object.entries) entries.push_back(entry_row(entry, hexadecimal(entry.sub_index)));
+    return json_object("identifier", object.identifier, "comment",
+                       fmt::format("{}.  {}", cpp_comment(object.name), index_label(object.index)), "entries",
+                       std::move(entries));
   }
 
   [[nodiscard]] ordered_json array_row(const Object& object) const {
-    ordered_json row = entry_row(object.entries[1], "SubIndex");
-    row["identifier"] = object.identifier;
-    row["name"] = cpp_string(object.name);
-    row["length"] = object.entries.size() - 1;
-    row["comment"] = comment(object.entries[1], object.name,
-                             fmt::format("{}:01..{:02X}", index_label(object.index), object.entries.size() - 1));
-    row["count"] = entry_row(object.entries.front(), "0x00");
-    row["count"]["array_identifier"] = object.identifier;
-    return row;
+    const Entry& first = object.entries[1];
+    const std::size_t length = object.entries.size() - 1;
+    const std::string label = fmt::format("{}:01..{:02X}", index_label(object.index), length);
+    ordered_json count = entry_row(object.entries.front(), "0x00");
+    count["array_identifier"] = object.identifier;
+    return json_object("comment", comment(first, object.name, label), "identifier", object.identifier, "name",
+                       cpp_string(object.name), "base", base(first, "SubIndex"), "constants", constants(first),
+                       "length", length, "count", std::move(count));
   }
 
   [[nodiscard]] ordered_json entry_row(const Entry& entry, const std::string& sub_index) const {
-    ordered_json row;
-    row["comment"] = comment(entry, entry.name, entry_label(entry.index, entry.sub_index));
-    row["identifier"] = entry.identifier;
-    row["name"] = cpp_string(entry.name);
-    row["base"] = base(entry, sub_index);
-    ordered_json constants = ordered_json::array();
-    const auto constant = [&](const char* name, const std::optional<Value>& value) {
+    return json_object("comment", comment(entry, entry.name, entry_label(entry.index, entry.sub_index)), "identifier",
+                       entry.identifier, "name", cpp_string(entry.name), "base", base(entry, sub_index), "constants",
+                       constants(entry));
+  }
+
+  [[nodiscard]] static ordered_json constants(const Entry& entry) {
+    ordered_json rows = ordered_json::array();
+    const auto add = [&](const char* name, const std::optional<Value>& value) {
       if (!value || value->plus_node_id) return;
-      constants.push_back({{"name", name}, {"value", cpp_literal(*value, *entry.type)}});
+      rows.push_back(json_object("name", name, "value", cpp_literal(*value, *entry.type)));
     };
-    constant("low_limit", entry.low_limit);
-    constant("high_limit", entry.high_limit);
-    row["constants"] = std::move(constants);
-    return row;
+    add("low_limit", entry.low_limit);
+    add("high_limit", entry.high_limit);
+    return rows;
+  }
+
+  [[nodiscard]] static std::string hexadecimal(std::uint8_t sub_index) {
+    return compiled_format(FMT_COMPILE("0x{:02X}"), sub_index);
   }
 
   [[nodiscard]] std::string base(const Entry& entry, const std::string& sub_index) const {
-    std::string text = fmt::format("canopen::Object<0x{:04X}, {}, {}, canopen::Access::{}", entry.index, sub_index,
-                                   cpp_type(entry, options_), access_enumerator(entry.access));
-    const bool odd_size = (entry.type->kind == DataClass::signed_integer || entry.type->kind == DataClass::unsigned_integer) &&
-                          entry.type->bits % 8 == 0 && (entry.type->bits & (entry.type->bits - 1)) != 0;
+    std::string text =
+        compiled_format(FMT_COMPILE("canopen::Object<0x{:04X}, {}, {}, canopen::Access::{}"), entry.index, sub_index,
+                        cpp_type(entry, options_), access_enumerator(entry.access));
+    const bool odd_size =
+        (entry.type->kind == DataClass::signed_integer || entry.type->kind == DataClass::unsigned_integer) &&
+        entry.type->bits % 8 == 0 && (entry.type->bits & (entry.type->bits - 1)) != 0;
     if (entry.mappable() != Mappable::no || odd_size) {
-      text += fmt::format(", canopen::Mappable::{}", mappable_enumerator(entry.mappable()));
+      text += ", canopen::Mappable::";
+      text += mappable_enumerator(entry.mappable());
     }
     if (odd_size) text += fmt::format(", {}", entry.type->bits);
     return text + ">";
@@ -106,15 +116,15 @@ class ObjectTypes {
 
   /// `Statusword.  6041h:00  UNSIGNED16  ro  TPDO                cpc-tc1.eds:412`
   [[nodiscard]] std::string comment(const Entry& entry, std::string_view name, const std::string& label) const {
-    std::string text = fmt::format("{}.  {}  {}  {}", cpp_comment(name), label, entry.type->name,
-                                   canopen::row_of(entry.access).name);
+    std::string text = compiled_format(FMT_COMPILE("{}.  {}  {}  {}"), cpp_comment(name), label, entry.type->name,
+                                       canopen::row_of(entry.access).name);
     switch (entry.mappable()) {
       case Mappable::no: break;
       case Mappable::tpdo: text += "  TPDO"; break;
       case Mappable::rpdo: text += "  RPDO"; break;
       case Mappable::both: text += "  PDO"; break;
     }
-    return fmt::format("{:<78}  {}:{}", text, file_, entry.position.line);
+    return compiled_format(FMT_COMPILE("{}  {}:{}"), padded(std::move(text), 78), file_, entry.position.line);
   }
 
   const Device& device_;
@@ -124,69 +134,64 @@ class ObjectTypes {
 
 // ---- memory layout ----
 
-/// Spaces that bring a comment to a common column.
-std::string padding(std::size_t length, std::size_t column) { return std::string(length < column ? column - length : 1, ' '); }
-
-ordered_json struct_view(const Struct& s) {
-  ordered_json view;
-  view["type"] = s.type;
-  view["name"] = s.name;
-  view["comment"] = s.comment;
-  ordered_json members = ordered_json::array();
-  for (const Member& m : s.members) {
-    ordered_json row;
-    const std::string declaration = fmt::format("{} {};", m.type, m.name);
-    row["declaration"] = declaration;
-    row["name"] = m.name;
-    row["initializer"] = m.initializer;
-    if (!m.comment.empty()) row["remark"] = padding(declaration.size(), 64) + "///< " + m.comment;
-    members.push_back(std::move(row));
+ordered_json member_view(Member&& member) {
+  std::string declaration = compiled_format(FMT_COMPILE("{} {};"), member.type, member.name);
+  if (member.comment.empty()) {
+    return json_object("declaration", std::move(declaration), "name", std::move(member.name), "initializer",
+                       std::move(member.initializer));
   }
-  view["members"] = std::move(members);
-  return view;
+  const std::string gap(declaration.size() < 63 ? 64 - declaration.size() : 1, ' ');
+  std::string remark = compiled_format(FMT_COMPILE("{}///< {}"), gap, member.comment);
+  return json_object("declaration", std::move(declaration), "name", std::move(member.name), "initializer",
+                     std::move(member.initializer), "remark", std::move(remark));
 }
 
-ordered_json rows_view(const std::vector<TableRow>& rows) {
-  ordered_json view = ordered_json::array();
-  for (const TableRow& row : rows) {
-    ordered_json line;
-    line["text"] = row.text;
-    if (!row.comment.empty()) line["remark"] = "  // " + cpp_comment(row.comment);
-    view.push_back(std::move(line));
-  }
-  return view;
+ordered_json members_view(std::vector<Member>&& members) {
+  ordered_json rows = json_array(members.size());
+  for (Member& member : members) rows.push_back(member_view(std::move(member)));
+  return rows;
+}
+
+ordered_json struct_view(Struct&& s) {
+  return json_object("type", std::move(s.type), "name", std::move(s.name), "comment", std::move(s.comment), "members",
+                     members_view(std::move(s.members)));
+}
+
+/// A part of Values.
+ordered_json section_view(Struct&& s) {
+  const bool preset = s.name.ends_with("preset");
+  const bool communication = s.name.starts_with("communication");
+  return json_object("type", std::move(s.type), "name", std::move(s.name), "comment", std::move(s.comment), "members",
+                     members_view(std::move(s.members)), "preset", preset, "communication", communication);
+}
+
+ordered_json row_view(TableRow&& row) {
+  if (row.comment.empty()) return json_object("text", std::move(row.text));
+  return json_object("text", std::move(row.text), "remark", "  // " + cpp_comment(row.comment));
 }
 
 /// A table for the template: its rows, and whether there are any.
-void add_table(ordered_json& view, const char* name, const std::vector<TableRow>& rows) {
-  view[name] = {{"any", !rows.empty()}, {"rows", rows_view(rows)}};
+ordered_json table_view(std::vector<TableRow>&& rows) {
+  ordered_json view = json_array(rows.size());
+  for (TableRow& row : rows) view.push_back(row_view(std::move(row)));
+  return json_object("any", !rows.empty(), "rows", std::move(view));
 }
 
-ordered_json layout_view(const MemoryLayout& layout) {
-  ordered_json view;
-  view["record_types"] = ordered_json::array();
-  for (const Struct& s : layout.record_types) view["record_types"].push_back(struct_view(s));
-  ordered_json values = ordered_json::array();
-  for (const Struct& s : layout.values) {
-    ordered_json section = struct_view(s);
-    section["preset"] = s.name.ends_with("preset");
-    section["communication"] = s.name.starts_with("communication");
-    values.push_back(std::move(section));
-  }
-  view["values"] = std::move(values);
-  view["any_values"] = !layout.values.empty();
-  view["constants"] = struct_view(layout.constants);
-  view["any_constants"] = !layout.constants.members.empty();
-  add_table(view, "runs", layout.runs);
-  add_table(view, "entries", layout.entries);
-  add_table(view, "groups", layout.groups);
-  add_table(view, "subs", layout.subs);
-  add_table(view, "limits", layout.limits);
-  add_table(view, "wide_limits", layout.wide_limits);
-  add_table(view, "node_id_relative_communication", layout.node_id_relative_communication);
-  add_table(view, "node_id_relative_application", layout.node_id_relative_application);
-  view["longest_download"] = layout.longest_download;
-  return view;
+ordered_json layout_view(MemoryLayout&& layout) {
+  ordered_json record_types = json_array(layout.record_types.size());
+  for (Struct& s : layout.record_types) record_types.push_back(struct_view(std::move(s)));
+  ordered_json values = json_array(layout.values.size());
+  for (Struct& section : layout.values) values.push_back(section_view(std::move(section)));
+  const bool any_values = !values.empty();
+  const bool any_constants = !layout.constants.members.empty();
+  return json_object("record_types", std::move(record_types), "values", std::move(values), "any_values", any_values,
+                     "constants", struct_view(std::move(layout.constants)), "any_constants", any_constants, "runs",
+                     table_view(std::move(layout.runs)), "entries", table_view(std::move(layout.entries)), "groups",
+                     table_view(std::move(layout.groups)), "subs", table_view(std::move(layout.subs)), "limits",
+                     table_view(std::move(layout.limits)), "wide_limits", table_view(std::move(layout.wide_limits)),
+                     "node_id_relative_communication", table_view(std::move(layout.node_id_relative_communication)),
+                     "node_id_relative_application", table_view(std::move(layout.node_id_relative_application)),
+                     "longest_download", layout.longest_download);
 }
 
 // ---- PDOs ----
@@ -228,10 +233,11 @@ ordered_json pdo_rows(const Device& device) {
       if (pdo.broken) break;
       const std::string name = entry.dummy != nullptr ? "(dummy)" : cpp_comment(entry.object->name);
       const auto* type = entry.dummy != nullptr ? entry.dummy : entry.object->type;
-      entries.push_back({{"object", pdo_entry_type(device, entry)},
-                         {"separator", entries.empty() ? "" : ", "},
-                         {"bit_range", fmt::format("{:>2}..{:<2}", at, at + entry.bits - 1)},
-                         {"description", fmt::format("{}  {}  {}", entry_label(entry.index, entry.sub_index), type->name, name)}});
+      entries.push_back(
+          {{"object", pdo_entry_type(device, entry)},
+           {"separator", entries.empty() ? "" : ", "},
+           {"bit_range", fmt::format("{:>2}..{:<2}", at, at + entry.bits - 1)},
+           {"description", fmt::format("{}  {}  {}", entry_label(entry.index, entry.sub_index), type->name, name)}});
       at += entry.bits;
     }
     row["entries"] = std::move(entries);
@@ -266,10 +272,11 @@ std::string to_upper(std::string text) {
 ordered_json description_rows(const Device& device) {
   ordered_json rows = ordered_json::array();
   for (const Object& object : device.objects) {
+    const std::string object_name = cpp_string(object.name);
     for (const Entry& entry : object.entries) {
-      rows.push_back({{"text", fmt::format("{{0x{:04X}, 0x{:02X}, canopen::DataType::{}, {}, {}}}", entry.index, entry.sub_index,
-                                           type_enumerator(*entry.type), cpp_string(object.name),
-                                           object.has_sub_indices() ? cpp_string(entry.name) : "{}")}});
+      rows.push_back(compiled_format(FMT_COMPILE("{{0x{:04X}, 0x{:02X}, canopen::DataType::{}, {}, {}}}"), entry.index,
+                                     entry.sub_index, type_enumerator(*entry.type), object_name,
+                                     object.has_sub_indices() ? cpp_string(entry.name) : "{}"));
     }
   }
   return rows;
@@ -279,24 +286,17 @@ ordered_json description_rows(const Device& device) {
 
 ordered_json cpp_view(const Device& device, const Options& options, Diagnostics& diagnostics) {
   const std::string& path = device.source->name();
-  ordered_json view;
-  view["file"] = cpp_comment(path.substr(path.find_last_of('/') + 1));
-  view["namespace"] = device.name;
-  view["guard"] = to_upper("edsc_" + device.name);
-  view["product_name"] = cpp_string(device.product_name.empty() ? device.name : device.product_name);
-  view["types"] = ObjectTypes{device, options}.view();
-  view["memory"] = layout_view(lay_out(device, options, diagnostics));
-  view["zero_terminated_strings"] = options.zero_terminated_strings;
-  view["pdos"] = pdo_rows(device);
-  view["rpdos"] = served_pdos(device, PdoDirection::receive);
-  view["tpdos"] = served_pdos(device, PdoDirection::transmit);
-  ordered_json runtime = ordered_json::array();
-  for (const auto& [name, value] : options.runtime) runtime.push_back({{"name", name}, {"value", value}});
-  view["options"] = std::move(runtime);
-  view["any_options"] = !options.runtime.empty();
-  view["descriptions"] = description_rows(device);
-  if (device.node_id) view["node_id"] = *device.node_id;
-  return view;
+  ordered_json runtime = json_array(options.runtime.size());
+  for (const auto& [name, value] : options.runtime) runtime.push_back(json_object("name", name, "value", value));
+  return json_object("file", cpp_comment(path.substr(path.find_last_of('/') + 1)), "namespace", device.name, "guard",
+                     to_upper("edsc_" + device.name), "product_name",
+                     cpp_string(device.product_name.empty() ? device.name : device.product_name), "types",
+                     ObjectTypes{device, options}.view(), "memory", layout_view(lay_out(device, options, diagnostics)),
+                     "zero_terminated_strings", options.zero_terminated_strings, "pdos", pdo_rows(device), "rpdos",
+                     served_pdos(device, PdoDirection::receive), "tpdos", served_pdos(device, PdoDirection::transmit),
+                     "options", std::move(runtime), "any_options", !options.runtime.empty(), "descriptions",
+                     description_rows(device), "node_id",
+                     device.node_id ? ordered_json(*device.node_id) : ordered_json(nullptr));
 }
 
 }  // namespace edsc

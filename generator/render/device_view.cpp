@@ -2,6 +2,7 @@
 
 #include <bit>
 
+#include "render/information_view.hpp"
 #include "render/view.hpp"
 #include "text/source_file.hpp"
 
@@ -39,6 +40,11 @@ ordered_json value_view(const Value& value, const canopen::DataTypeRow& type) {
   return fmt::format("$NODEID+0x{:X}", value.bits);
 }
 
+/// A key only where the data sheet has something to say.
+void add_text(const char* key, std::string_view text, ordered_json& view) {
+  if (!text.empty()) view[key] = text;
+}
+
 ordered_json entry_view(const Entry& entry) {
   ordered_json view;
   view["index"] = entry.index;
@@ -52,6 +58,14 @@ ordered_json entry_view(const Entry& entry) {
   if (entry.default_value) view["default_value"] = value_view(*entry.default_value, *entry.type);
   if (entry.low_limit) view["low_limit"] = value_view(*entry.low_limit, *entry.type);
   if (entry.high_limit) view["high_limit"] = value_view(*entry.high_limit, *entry.type);
+  if (entry.obj_flags != 0) view["obj_flags"] = entry.obj_flags;
+  add_text("denotation", entry.denotation, view);
+  add_text("param_refd", entry.param_refd, view);
+  add_text("upload_file", entry.upload_file, view);
+  add_text("download_file", entry.download_file, view);
+  add_text("unit", entry.unit, view);
+  add_text("factor", entry.factor, view);
+  add_text("description", entry.description, view);
   view["line"] = entry.position.line;
   return view;
 }
@@ -80,6 +94,42 @@ ordered_json pdo_view(const Pdo& pdo) {
   return view;
 }
 
+ordered_json type_view(const TypeDefinition& type) {
+  const auto name_of = [](const canopen::DataTypeRow* row) {
+    return row != nullptr ? ordered_json(row->name) : ordered_json(nullptr);
+  };
+  ordered_json view;
+  view["index"] = type.index;
+  view["name"] = type.name;
+  if (type.kind == ObjectType::defstruct) {
+    ordered_json members = ordered_json::array();
+    for (const canopen::DataTypeRow* member : type.members) members.push_back(name_of(member));
+    view["members"] = std::move(members);
+  } else {
+    view["data_type"] = name_of(type.type);
+  }
+  if (type.low_limit) view["low_limit"] = value_view(*type.low_limit, *type.type);
+  if (type.high_limit) view["high_limit"] = value_view(*type.high_limit, *type.type);
+  view["line"] = type.position.line;
+  return view;
+}
+
+ordered_json object_view(const Object& object) {
+  ordered_json view;
+  view["index"] = object.index;
+  view["object_type"] = to_string(object.type);
+  view["name"] = object.name;
+  view["identifier"] = object.identifier;
+  add_text("denotation", object.denotation, view);
+  if (object.obj_flags != 0) view["obj_flags"] = object.obj_flags;
+  if (!object.links.empty()) view["links"] = object.links;
+  view["line"] = object.position.line;
+  ordered_json entries = ordered_json::array();
+  for (const Entry& entry : object.entries) entries.push_back(entry_view(entry));
+  view["entries"] = std::move(entries);
+  return view;
+}
+
 }  // namespace
 
 ordered_json device_view(const Device& device) {
@@ -95,19 +145,12 @@ ordered_json device_view(const Device& device) {
   view["revision_number"] = device.revision_number;
   view["node_id"] = device.node_id ? ordered_json(*device.node_id) : ordered_json(nullptr);
   view["dummies"] = device.dummies;
+  add_information(device.information, view);
+  ordered_json types = ordered_json::array();
+  for (const TypeDefinition& type : device.types) types.push_back(type_view(type));
+  view["types"] = std::move(types);
   ordered_json objects = ordered_json::array();
-  for (const Object& object : device.objects) {
-    ordered_json row;
-    row["index"] = object.index;
-    row["object_type"] = to_string(object.type);
-    row["name"] = object.name;
-    row["identifier"] = object.identifier;
-    row["line"] = object.position.line;
-    ordered_json entries = ordered_json::array();
-    for (const Entry& entry : object.entries) entries.push_back(entry_view(entry));
-    row["entries"] = std::move(entries);
-    objects.push_back(std::move(row));
-  }
+  for (const Object& object : device.objects) objects.push_back(object_view(object));
   view["objects"] = std::move(objects);
   ordered_json pdos = ordered_json::array();
   for (const Pdo& pdo : device.pdos) pdos.push_back(pdo_view(pdo));

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "device/identifier.hpp"
+#include "render/compiled_format.hpp"
 #include "render/cpp_text.hpp"
 
 namespace edsc {
@@ -47,30 +48,47 @@ bool contains(const std::array<IndexRange, N>& ranges, std::uint16_t index) {
 constexpr std::string_view count_member = "highest_sub_index";
 
 /// Types that generated code has beside those of records.
-constexpr std::array taken_type_names = {"Values",  "Constants", "Device", "CommunicationPreset", "CommunicationCleared",
-                                         "ApplicationPreset", "ApplicationCleared"};
+constexpr std::array taken_type_names = {"Values",
+                                         "Constants",
+                                         "Device",
+                                         "CommunicationPreset",
+                                         "CommunicationCleared",
+                                         "ApplicationPreset",
+                                         "ApplicationCleared"};
 
 enum class Place : std::uint8_t { ram, rom, immediate, immediate_plus_node_id };
 
 struct TypeWord {
   DataType type;
-  std::string_view word;     ///< constant of canopen::entry
-  unsigned alignment;        ///< of the C++ type, at most
+  std::string_view word;  ///< constant of canopen::entry
+  unsigned alignment;     ///< of the C++ type, at most
 };
 
 constexpr std::array type_words = {
-    TypeWord{DataType::boolean, "boolean", 1},     TypeWord{DataType::integer8, "i8", 1},
-    TypeWord{DataType::integer16, "i16", 2},       TypeWord{DataType::integer24, "i24", 4},
-    TypeWord{DataType::integer32, "i32", 4},       TypeWord{DataType::integer40, "i40", 8},
-    TypeWord{DataType::integer48, "i48", 8},       TypeWord{DataType::integer56, "i56", 8},
-    TypeWord{DataType::integer64, "i64", 8},       TypeWord{DataType::unsigned8, "u8", 1},
-    TypeWord{DataType::unsigned16, "u16", 2},      TypeWord{DataType::unsigned24, "u24", 4},
-    TypeWord{DataType::unsigned32, "u32", 4},      TypeWord{DataType::unsigned40, "u40", 8},
-    TypeWord{DataType::unsigned48, "u48", 8},      TypeWord{DataType::unsigned56, "u56", 8},
-    TypeWord{DataType::unsigned64, "u64", 8},      TypeWord{DataType::real32, "r32", 4},
-    TypeWord{DataType::real64, "r64", 8},          TypeWord{DataType::time_of_day, "time48", 4},
-    TypeWord{DataType::time_difference, "time48", 4}, TypeWord{DataType::visible_string, "visible_string", 2},
-    TypeWord{DataType::octet_string, "octet_string", 2}, TypeWord{DataType::unicode_string, "octet_string", 2},
+    TypeWord{DataType::boolean, "boolean", 1},
+    TypeWord{DataType::integer8, "i8", 1},
+    TypeWord{DataType::integer16, "i16", 2},
+    TypeWord{DataType::integer24, "i24", 4},
+    TypeWord{DataType::integer32, "i32", 4},
+    TypeWord{DataType::integer40, "i40", 8},
+    TypeWord{DataType::integer48, "i48", 8},
+    TypeWord{DataType::integer56, "i56", 8},
+    TypeWord{DataType::integer64, "i64", 8},
+    TypeWord{DataType::unsigned8, "u8", 1},
+    TypeWord{DataType::unsigned16, "u16", 2},
+    TypeWord{DataType::unsigned24, "u24", 4},
+    TypeWord{DataType::unsigned32, "u32", 4},
+    TypeWord{DataType::unsigned40, "u40", 8},
+    TypeWord{DataType::unsigned48, "u48", 8},
+    TypeWord{DataType::unsigned56, "u56", 8},
+    TypeWord{DataType::unsigned64, "u64", 8},
+    TypeWord{DataType::real32, "r32", 4},
+    TypeWord{DataType::real64, "r64", 8},
+    TypeWord{DataType::time_of_day, "time48", 4},
+    TypeWord{DataType::time_difference, "time48", 4},
+    TypeWord{DataType::visible_string, "visible_string", 2},
+    TypeWord{DataType::octet_string, "octet_string", 2},
+    TypeWord{DataType::unicode_string, "octet_string", 2},
     TypeWord{DataType::domain, "domain", 8},
 };
 
@@ -91,12 +109,47 @@ bool is_zero(const Entry& entry) {
 }
 
 std::uint32_t string_capacity(const Entry& entry, const Options& options) {
-  if (const auto at = options.string_capacity.find({entry.index, entry.sub_index}); at != options.string_capacity.end()) {
+  if (const auto at = options.string_capacity.find({entry.index, entry.sub_index});
+      at != options.string_capacity.end()) {
     return at->second;
   }
   const std::size_t length = entry.default_value ? wire_length(*entry.default_value, *entry.type) : 0;
   if (length > 0) return static_cast<std::uint32_t>(length);
   return entry.access == Access::constant ? 0 : default_string_capacity;
+}
+
+/// Bytes that a string's type has room for: its capacity, and a terminator where the options want one.
+std::uint32_t room(const Entry& entry, const Options& options) {
+  const bool terminated = options.zero_terminated_strings && entry.type->type == DataType::visible_string;
+  return string_capacity(entry, options) + (terminated ? 1 : 0);
+}
+
+/// What the words of the tables can address.
+constexpr std::size_t most_bytes = 0x10000;
+constexpr std::size_t most_rows = 0xFFFF;
+
+/// Of canopen::Domain where pointers have 32 bits; where they have more, the generated code counts for itself.
+constexpr std::size_t domain_size = 12;
+
+std::size_t round_up(std::size_t size, std::size_t alignment) { return (size + alignment - 1) / alignment * alignment; }
+
+/// Bytes of an entry's C++ type.
+std::size_t size_of(const Entry& entry, const Options& options) {
+  if (entry.type->kind == DataClass::domain) return domain_size;
+  if (entry.type->kind != DataClass::string) return stride(entry);
+  constexpr std::size_t length_size = 2;
+  return round_up(length_size + std::max(room(entry, options), 1u), length_size);
+}
+
+/// Where the last of these members ends, the first beginning at `begin`.
+std::size_t end_of(const std::vector<Member>& members, std::size_t begin) {
+  for (const Member& member : members) begin = round_up(begin, member.alignment) + member.size;
+  return begin;
+}
+
+/// Bytes of a struct with these members, of which the first has the widest alignment.
+std::size_t size_of(const std::vector<Member>& members) {
+  return round_up(end_of(members, 0), members.front().alignment);
 }
 
 bool less_key(const TableRow& a, const TableRow& b) { return a.text < b.text; }
@@ -109,8 +162,9 @@ void sort_by_alignment(std::vector<Member>& members) {
 class Builder {
  public:
   Builder(const Device& device, const Options& options, Diagnostics& diagnostics)
-      : device_{device}, options_{options}, diagnostics_{diagnostics} {
+      : device_{device}, options_{options}, diagnostics_{diagnostics}, settable_{options.settable} {
     for (const char* name : taken_type_names) static_cast<void>(type_scope_.take(name, ""));
+    std::ranges::sort(settable_);
   }
 
   MemoryLayout build() {
@@ -137,13 +191,13 @@ class Builder {
       return;
     }
     last_index_ = index;
-    layout_.runs.push_back({fmt::format("{{0x{:04X}, {}}}", index, position), ""});
+    layout_.runs.push_back({compiled_format(FMT_COMPILE("{{0x{:04X}, {}}}"), index, position), ""});
   }
 
   // ---- places ----
 
   [[nodiscard]] bool settable(const Entry& entry) const {
-    return std::ranges::find(options_.settable, EntryKey{entry.index, entry.sub_index}) != options_.settable.end();
+    return std::ranges::binary_search(settable_, EntryKey{entry.index, entry.sub_index});
   }
 
   [[nodiscard]] bool is_constant(const Object& object, const Entry& entry) const {
@@ -184,31 +238,37 @@ class Builder {
   [[nodiscard]] std::string word(const Entry& entry, const std::string& where) {
     const bool constant_mapping = contains(mapping_ranges, entry.index);
     const canopen::AccessRow& row = canopen::row_of(constant_mapping ? Access::ro : entry.access);
-    std::string text = fmt::format("{} | {} | {}", where, type_word(entry).word,
-                                   row.readable && row.writable ? "rw" : row.readable ? "ro" : "wo");
+    std::string text = compiled_format(FMT_COMPILE("{} | {} | {}"), where, type_word(entry).word,
+                                       row.readable && row.writable ? "rw"
+                                       : row.readable               ? "ro"
+                                                                    : "wo");
     if (canopen::allows(entry.mappable(), canopen::Mappable::tpdo)) text += " | tpdo";
     if (canopen::allows(entry.mappable(), canopen::Mappable::rpdo)) text += " | rpdo";
     if (has_limits(entry)) text += " | limited";
     return text;
   }
 
-  /// Limits matter where the bus can write a value; a string's capacity, wherever it can change, stands in the same table.
+  /// Limits matter where the bus can write a value; a string's capacity, wherever it can change, stands in the same
+  /// table.
   [[nodiscard]] bool has_limits(const Entry& entry) const {
     if (entry.type->kind == DataClass::string) return place(*device_.find(entry.index), entry) == Place::ram;
-    return canopen::writable(entry.access) && !contains(mapping_ranges, entry.index) && (entry.low_limit || entry.high_limit);
+    return canopen::writable(entry.access) && !contains(mapping_ranges, entry.index) &&
+           (entry.low_limit || entry.high_limit);
   }
 
   [[nodiscard]] static std::string immediate_text(const Entry& entry, Place where) {
     const std::uint64_t bits = entry.default_value ? entry.default_value->bits : 0;
     const std::uint64_t value = bits & 0xFFFF;
     const bool hexadecimal = (entry.default_value && entry.default_value->hexadecimal) || bits > 0xFFFF;
-    return fmt::format("{} | {}", where == Place::immediate ? "immediate" : "immediate_plus_node_id",
-                       hexadecimal ? fmt::format("0x{:X}", value) : fmt::format("{}", value));
+    return compiled_format(
+        FMT_COMPILE("{} | {}"), where == Place::immediate ? "immediate" : "immediate_plus_node_id",
+        hexadecimal ? compiled_format(FMT_COMPILE("0x{:X}"), value) : compiled_format(FMT_COMPILE("{}"), value));
   }
 
   void add_limits(const Entry& entry) {
     if (!has_limits(entry)) return;
-    const std::string key = fmt::format("canopen::object_key(0x{:04X}, 0x{:02X})", entry.index, entry.sub_index);
+    const std::string key =
+        compiled_format(FMT_COMPILE("canopen::object_key(0x{:04X}, 0x{:02X})"), entry.index, entry.sub_index);
     if (entry.type->kind == DataClass::string) {
       const std::uint32_t capacity = string_capacity(entry, options_);
       layout_.limits.push_back({fmt::format("{{{}, 0, {}}}", key, capacity), entry.name});
@@ -220,7 +280,7 @@ class Builder {
     const std::uint64_t low = (entry.low_limit ? entry.low_limit->bits : lowest(entry)) & mask;
     const std::uint64_t high = (entry.high_limit ? entry.high_limit->bits : highest(entry)) & mask;
     auto& table = bits == 32 ? layout_.limits : layout_.wide_limits;
-    table.push_back({fmt::format("{{{}, 0x{:X}, 0x{:X}}}", key, low, high), range_comment(entry)});
+    table.push_back({compiled_format(FMT_COMPILE("{{{}, 0x{:X}, 0x{:X}}}"), key, low, high), range_comment(entry)});
   }
 
   static std::string range_comment(const Entry& entry) {
@@ -248,36 +308,41 @@ class Builder {
     const Place where = place(object, entry);
     add_limits(entry);
     if (where == Place::rom) {
-      layout_.constants.members.push_back(member(entry, identifier));
-      return fmt::format("rom | offsetof(Constants, {})", identifier);
+      layout_.constants.members.push_back(member(object, entry, identifier));
+      return compiled_format(FMT_COMPILE("rom | offsetof(Constants, {})"), identifier);
     }
     if (where != Place::ram) return immediate_text(entry, where);
-    const std::string section = section_of(entry.index, !is_zero(entry));
-    values_[section].push_back(member(entry, identifier));
-    const std::string path = fmt::format("{}.{}", section, identifier);
-    add_node_id_relative(entry, fmt::format("offsetof(Values, {})", path));
+    const std::string_view section = section_of(entry.index, !is_zero(entry));
+    values_[section].push_back(member(object, entry, identifier));
+    const std::string path = compiled_format(FMT_COMPILE("{}.{}"), section, identifier);
+    add_node_id_relative(entry, compiled_format(FMT_COMPILE("offsetof(Values, {})"), path));
     note_download(entry);
-    return fmt::format("ram | offsetof(Values, {})", path);
+    return compiled_format(FMT_COMPILE("ram | offsetof(Values, {})"), path);
   }
 
-  [[nodiscard]] Member member(const Entry& entry, const std::string& identifier) const {
+  [[nodiscard]] Member member(const Object& object, const Entry& entry, const std::string& identifier) const {
     Member result;
     result.type = cpp_type(entry, options_);
     result.name = identifier;
     result.initializer = initializer(entry);
-    result.comment = fmt::format("{}  {}", entry_label(entry.index, entry.sub_index), cpp_comment(entry.name));
+    result.comment =
+        compiled_format(FMT_COMPILE("{}  {}"), entry_label(entry.index, entry.sub_index), cpp_comment(entry.name));
     result.alignment = type_word(entry).alignment;
+    result.size = size_of(entry, options_);
+    result.object = &object;
     return result;
   }
 
   static std::string initializer(const Entry& entry) {
     if (entry.default_value) return cpp_initializer(*entry.default_value, *entry.type);
-    return entry.type->kind == DataClass::boolean ? "false" : entry.type->bits == 0 || entry.type->kind == DataClass::time ? "{}" : "0";
+    return entry.type->kind == DataClass::boolean                         ? "false"
+           : entry.type->bits == 0 || entry.type->kind == DataClass::time ? "{}"
+                                                                          : "0";
   }
 
-  static std::string section_of(std::uint16_t index, bool preset) {
-    return fmt::format("{}_{}", index <= last_communication_index ? "communication" : "application",
-                       preset ? "preset" : "cleared");
+  static std::string_view section_of(std::uint16_t index, bool preset) {
+    if (index <= last_communication_index) return preset ? "communication_preset" : "communication_cleared";
+    return preset ? "application_preset" : "application_cleared";
   }
 
   void add_node_id_relative(const Entry& entry, const std::string& offset) {
@@ -308,11 +373,13 @@ class Builder {
       subs = add_record(object, ram, rom);
     }
     const std::uint8_t highest = object.entries.back().sub_index;
-    layout_.entries.push_back({fmt::format("{} | {}", array ? "array" : "record", layout_.groups.size()),
-                               fmt::format("{}  {}", index_label(object.index), cpp_comment(object.name))});
-    layout_.groups.push_back({fmt::format("{{.ram = {}, .rom = {}, .subs = {}, .highest = {}, .stride = {}}}", ram, rom,
-                                          shared_subs(subs, object.index), highest, step),
-                              index_label(object.index)});
+    layout_.entries.push_back(
+        {compiled_format(FMT_COMPILE("{} | {}"), array ? "array" : "record", layout_.groups.size()),
+         compiled_format(FMT_COMPILE("{}  {}"), index_label(object.index), cpp_comment(object.name))});
+    layout_.groups.push_back(
+        {compiled_format(FMT_COMPILE("{{.ram = {}, .rom = {}, .subs = {}, .highest = {}, .stride = {}}}"), ram, rom,
+                         shared_subs(subs, object), highest, step),
+         index_label(object.index)});
   }
 
   /// Elements of one numeric type and one set of rights in one kind of memory, without gaps: they share one word.
@@ -338,24 +405,26 @@ class Builder {
     elements.type = fmt::format("std::array<{}, {}>", cpp_type(first, options_), length);
     elements.initializer = element_list(object);
     elements.alignment = type_word(first).alignment;
+    elements.size = stride(first) * length;
+    elements.object = &object;
     elements.comment = fmt::format("{}:01..{:02X}  {}", index_label(object.index), length, cpp_comment(object.name));
     elements.name = object.identifier;
     const std::string element_word = word(first, in_rom ? "rom" : "ram");
     if (in_rom) {
-      rom = fmt::format("offsetof(Constants, {})", object.identifier);
+      rom = compiled_format(FMT_COMPILE("offsetof(Constants, {})"), object.identifier);
       layout_.constants.members.push_back(elements);
       return {{word(count, immediate_text(count, count_place)), ""}, {element_word, ""}};
     }
     const bool preset = std::ranges::any_of(object.entries.begin() + (count_place == Place::ram ? 0 : 1),
                                             object.entries.end(), [](const Entry& e) { return !is_zero(e); });
-    const std::string section = section_of(object.index, preset);
-    std::string path = fmt::format("{}.{}", section, object.identifier);
-    ram = fmt::format("offsetof(Values, {})", path);
+    const std::string_view section = section_of(object.index, preset);
+    std::string path = compiled_format(FMT_COMPILE("{}.{}"), section, object.identifier);
+    ram = compiled_format(FMT_COMPILE("offsetof(Values, {})"), path);
     std::string count_word;
     if (count_place == Place::ram) {
       add_counted_array(object, elements, section);
       path += ".elements";
-      count_word = word(count, fmt::format("ram | offsetof({}, {})", counted_type_, count_member));
+      count_word = word(count, compiled_format(FMT_COMPILE("ram | offsetof({}, {})"), counted_type_, count_member));
     } else {
       values_[section].push_back(elements);
       count_word = word(count, immediate_text(count, count_place));
@@ -363,25 +432,29 @@ class Builder {
     for (const Entry& entry : object.entries) {
       if (entry.sub_index == 0) continue;
       note_download(entry);
-      add_node_id_relative(entry, fmt::format("offsetof(Values, {}) + {}", path, (entry.sub_index - 1) * stride(entry)));
+      add_node_id_relative(entry,
+                           fmt::format("offsetof(Values, {}) + {}", path, (entry.sub_index - 1) * stride(entry)));
     }
     return {{count_word, ""}, {element_word, ""}};
   }
 
   /// An array whose sub-index 0 changes, such as 1003h: elements and count in one struct, elements first.
-  void add_counted_array(const Object& object, const Member& elements, const std::string& section) {
+  void add_counted_array(const Object& object, const Member& elements, std::string_view section) {
     const Entry& count = object.entries.front();
     Struct type;
     Member list = elements;
     list.name = "elements";
-    type.members = {list, member(count, std::string{count_member})};
-    counted_type_ = record_type(object, std::move(type));
+    type.members = {list, member(object, count, std::string{count_member})};
     Member whole;
+    whole.size = size_of(type.members);
+    whole.object = &object;
+    counted_type_ = record_type(object, std::move(type));
     whole.type = counted_type_;
     whole.name = object.identifier;
     whole.alignment = elements.alignment;
-    whole.comment = fmt::format("{}  {}", index_label(object.index), cpp_comment(object.name));
-    whole.initializer = fmt::format("{{.elements = {}, .{} = {}}}", elements.initializer, count_member, initializer(count));
+    whole.comment = compiled_format(FMT_COMPILE("{}  {}"), index_label(object.index), cpp_comment(object.name));
+    whole.initializer =
+        fmt::format("{{.elements = {}, .{} = {}}}", elements.initializer, count_member, initializer(count));
     values_[section].push_back(whole);
   }
 
@@ -402,26 +475,26 @@ class Builder {
     Struct in_rom;
     for (const Entry& entry : object.entries) {
       const Place where = place(object, entry);
-      if (where == Place::ram) in_ram.members.push_back(member(entry, entry.identifier));
-      if (where == Place::rom) in_rom.members.push_back(member(entry, entry.identifier));
+      if (where == Place::ram) in_ram.members.push_back(member(object, entry, entry.identifier));
+      if (where == Place::rom) in_rom.members.push_back(member(object, entry, entry.identifier));
     }
     std::string ram_type;
     std::string rom_type;
     if (!in_ram.members.empty()) {
-      const bool preset = std::ranges::any_of(object.entries, [&](const Entry& e) {
-        return place(object, e) == Place::ram && !is_zero(e);
-      });
-      const std::string section = section_of(object.index, preset);
-      ram = fmt::format("offsetof(Values, {}.{})", section, object.identifier);
+      const bool preset = std::ranges::any_of(
+          object.entries, [&](const Entry& e) { return place(object, e) == Place::ram && !is_zero(e); });
+      const std::string_view section = section_of(object.index, preset);
+      ram = compiled_format(FMT_COMPILE("offsetof(Values, {}.{})"), section, object.identifier);
       values_[section].push_back(whole_record(object, in_ram, ram_type));
       for (const Entry& entry : object.entries) {
         if (place(object, entry) != Place::ram) continue;
         note_download(entry);
-        add_node_id_relative(entry, fmt::format("offsetof(Values, {}.{}.{})", section, object.identifier, entry.identifier));
+        add_node_id_relative(entry, compiled_format(FMT_COMPILE("offsetof(Values, {}.{}.{})"), section,
+                                                    object.identifier, entry.identifier));
       }
     }
     if (!in_rom.members.empty()) {
-      rom = fmt::format("offsetof(Constants, {})", object.identifier);
+      rom = compiled_format(FMT_COMPILE("offsetof(Constants, {})"), object.identifier);
       layout_.constants.members.push_back(whole_record(object, in_rom, rom_type));
     }
     return record_words(object, ram_type, rom_type);
@@ -434,9 +507,11 @@ class Builder {
       const Place where = place(object, entry);
       add_limits(entry);
       if (where == Place::ram) {
-        subs.push_back({word(entry, fmt::format("ram | offsetof({}, {})", ram_type, entry.identifier)), ""});
+        subs.push_back(
+            {word(entry, compiled_format(FMT_COMPILE("ram | offsetof({}, {})"), ram_type, entry.identifier)), ""});
       } else if (where == Place::rom) {
-        subs.push_back({word(entry, fmt::format("rom | offsetof({}, {})", rom_type, entry.identifier)), ""});
+        subs.push_back(
+            {word(entry, compiled_format(FMT_COMPILE("rom | offsetof({}, {})"), rom_type, entry.identifier)), ""});
       } else {
         subs.push_back({word(entry, immediate_text(entry, where)), ""});
       }
@@ -450,10 +525,12 @@ class Builder {
     Member whole;
     whole.name = object.identifier;
     whole.alignment = shape.members.front().alignment;
-    whole.comment = fmt::format("{}  {}", index_label(object.index), cpp_comment(object.name));
+    whole.size = size_of(shape.members);
+    whole.object = &object;
+    whole.comment = compiled_format(FMT_COMPILE("{}  {}"), index_label(object.index), cpp_comment(object.name));
     std::string list;
     for (const Member& m : shape.members) {
-      list += fmt::format("{}.{} = {}", list.empty() ? "" : ", ", m.name, m.initializer);
+      list += compiled_format(FMT_COMPILE("{}.{} = {}"), list.empty() ? "" : ", ", m.name, m.initializer);
     }
     whole.initializer = "{" + list + "}";
     type_name = record_type(object, std::move(shape));
@@ -481,19 +558,47 @@ class Builder {
   }
 
   /// Position of these words in the table of sub-indices; equal ones stand there once.
-  std::size_t shared_subs(const std::vector<TableRow>& rows, std::uint16_t index) {
+  std::size_t shared_subs(const std::vector<TableRow>& rows, const Object& object) {
     std::string key;
     for (const TableRow& row : rows) key += row.text + '\n';
     const auto [at, inserted] = sub_positions_.try_emplace(key, layout_.subs.size());
     if (inserted) {
       for (std::size_t i = 0; i < rows.size(); ++i) {
-        layout_.subs.push_back({rows[i].text, i == 0 ? index_label(index) : ""});
+        layout_.subs.push_back({rows[i].text, i == 0 ? index_label(object.index) : ""});
       }
+      check_rows(object);
     }
     return at->second;
   }
 
   // ---- the end ----
+
+  void check_rows(const Object& object) {
+    if (layout_.subs.size() <= most_rows || found_too_many_rows_) return;
+    found_too_many_rows_ = true;
+    diagnostics_.error("dictionary-size", object.position,
+                       fmt::format("{} \"{}\" does not fit: a dictionary has {} rows of sub-indices that differ",
+                                   index_label(object.index), object.name, most_rows));
+  }
+
+  /// Where a struct ends that begins at `begin`. Its first member that cannot be addressed is reported.
+  std::size_t check_size(const Struct& part, std::size_t begin, std::string_view what) {
+    if (part.members.empty()) return begin;
+    begin = round_up(begin, part.members.front().alignment);
+    const std::size_t end = end_of(part.members, begin);
+    if (begin > most_bytes || end <= most_bytes) return end;
+    for (std::size_t at = begin; const Member& member : part.members) {
+      const std::size_t before = at;
+      at = round_up(at, member.alignment) + member.size;
+      if (at <= most_bytes) continue;
+      diagnostics_.error(
+          "dictionary-size", member.object->position,
+          fmt::format("{} \"{}\" does not fit: a dictionary has 64 KiB for {}, and {} bytes lie before it",
+                      index_label(member.object->index), member.object->name, what, before));
+      break;
+    }
+    return end;
+  }
 
   struct Section {
     std::string_view name;
@@ -509,44 +614,45 @@ class Builder {
 
   void finish() {
     for (const Section& section : sections) {
-      const auto at = values_.find(std::string{section.name});
+      const auto at = values_.find(section.name);
       if (at == values_.end()) continue;
       sort_by_alignment(at->second);
-      layout_.values.push_back({std::string{section.type}, std::string{section.name}, std::string{section.comment},
-                                std::move(at->second)});
+      layout_.values.push_back(
+          {std::string{section.type}, std::string{section.name}, std::string{section.comment}, std::move(at->second)});
     }
     sort_by_alignment(layout_.constants.members);
     std::ranges::sort(layout_.limits, less_key);
     std::ranges::sort(layout_.wide_limits, less_key);
-    if (device_.objects.size() > 0xFFFF || layout_.subs.size() > 0xFFFF || layout_.groups.size() > 0xFFFF) {
-      diagnostics_.error("dictionary-size", Position{device_.source}, "the dictionary's tables are over 65535 rows");
-    }
+    std::size_t end = 0;
+    for (const Struct& section : layout_.values) end = check_size(section, end, "values in RAM");
+    static_cast<void>(check_size(layout_.constants, 0, "constants"));
   }
 
   const Device& device_;
   const Options& options_;
   Diagnostics& diagnostics_;
+  std::vector<EntryKey> settable_;  ///< ascending
   MemoryLayout layout_;
-  std::map<std::string, std::vector<Member>> values_;
+  std::map<std::string_view, std::vector<Member>> values_;
   std::map<std::string, std::string> shapes_;
   std::map<std::string, std::size_t> sub_positions_;
   IdentifierScope type_scope_;
   std::string counted_type_;
   std::size_t next_position_ = 0;
   std::uint32_t last_index_ = 0;
+  bool found_too_many_rows_ = false;
 };
 
 }  // namespace
 
 std::string cpp_type(const Entry& entry, const Options& options) {
   if (entry.type->kind != DataClass::string) return std::string{entry.type->cpp_type};
-  const bool terminated = options.zero_terminated_strings && entry.type->type == DataType::visible_string;
-  const std::uint32_t terminator = terminated ? 1 : 0;
-  return fmt::format("{}<{}>", entry.type->cpp_type, string_capacity(entry, options) + terminator);
+  return fmt::format("{}<{}>", entry.type->cpp_type, room(entry, options));
 }
 
 bool describes_uniform_array(const Object& object) {
-  if (object.type != ObjectType::array || object.entries.size() < 2 || object.entries.front().sub_index != 0) return false;
+  if (object.type != ObjectType::array || object.entries.size() < 2 || object.entries.front().sub_index != 0)
+    return false;
   const Entry& first = object.entries[1];
   if (first.type->bits == 0) return false;
   const auto same = [](const std::optional<Value>& a, const std::optional<Value>& b) {

@@ -2,6 +2,7 @@
 /// them. What it makes are lines of C++ for the templates; the words of the tables are those of canopen/dictionary.hpp.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -18,6 +19,8 @@ struct Member {
   std::string initializer;  ///< empty in structs that start from zero
   std::string comment;
   unsigned alignment = 1;
+  std::size_t size = 0;            ///< bytes
+  const Object* object = nullptr;  ///< whose value it is
 };
 
 struct Struct {

@@ -34,6 +34,15 @@ std::string without_section_lines(std::string_view text) {
   return out;
 }
 
+/// What the library writes to.
+struct Output {
+  std::string text;
+  Output& operator<<(const std::string& part) {
+    text += part;
+    return *this;
+  }
+};
+
 }  // namespace
 
 std::string render(std::string_view text, const nlohmann::ordered_json& view) {
@@ -41,9 +50,10 @@ std::string render(std::string_view text, const nlohmann::ordered_json& view) {
   if (!filler.is_valid()) throw std::runtime_error{filler.error_message()};
   filler.set_custom_escape([](const std::string& plain) { return plain; });
   JsonContext context{view};
-  std::string out = filler.render(context);
+  Output out;
+  filler.render(context, out);
   if (!filler.is_valid()) throw std::runtime_error{filler.error_message()};
-  return out;
+  return std::move(out.text);
 }
 
 }  // namespace edsc

@@ -1,10 +1,13 @@
 #include "render/write_files.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <string_view>
 #include <system_error>
 
 namespace edsc {
@@ -17,13 +20,19 @@ struct CloseFile {
 };
 using File = std::unique_ptr<std::FILE, CloseFile>;
 
-bool has_content(const std::string& path, const std::string& content) {
+bool has_content(const std::string& path, std::string_view content) {
   std::error_code error;
   if (fs::file_size(path, error) != content.size() || error) return false;
   const File file{std::fopen(path.c_str(), "rb")};
   if (!file) return false;
-  std::string found(content.size(), '\0');
-  return std::fread(found.data(), 1, found.size(), file.get()) == found.size() && found == content;
+  std::array<char, 1 << 16> found;
+  while (!content.empty()) {
+    const std::size_t size = std::min(content.size(), found.size());
+    if (std::fread(found.data(), 1, size, file.get()) != size) return false;
+    if (content.substr(0, size) != std::string_view{found.data(), size}) return false;
+    content.remove_prefix(size);
+  }
+  return true;
 }
 
 /// A rename replaces nothing but files; found out before anything changes.

@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <canopen/cob_id.hpp>
+
+#include "rules/pdo_defaults.hpp"
 
 namespace edsc {
 namespace {
@@ -30,11 +31,12 @@ bool is_boolean_in_a_byte(const PdoEntry& entry) {
 
 Finding check_dummy(const Device& device, const Pdo& pdo, const PdoEntry& entry) {
   if (pdo.direction == PdoDirection::transmit) {
-    return {"pdo-dummy", fmt::format("{} maps the dummy {}, which only an RPDO may", pdo_label(pdo), entry.dummy->name)};
+    return {"pdo-dummy",
+            fmt::format("{} maps the dummy {}, which only an RPDO may", pdo_label(pdo), entry.dummy->name)};
   }
   if (std::ranges::find(device.dummies, entry.index) == device.dummies.end()) {
-    return {"pdo-dummy", fmt::format("{} maps the dummy {}, which [DummyUsage] does not allow", pdo_label(pdo),
-                                     entry.dummy->name)};
+    return {"pdo-dummy",
+            fmt::format("{} maps the dummy {}, which [DummyUsage] does not allow", pdo_label(pdo), entry.dummy->name)};
   }
   const unsigned bits = entry.dummy->bits;
   if (entry.bits != bits) {
@@ -52,32 +54,29 @@ Finding check_object(const Device& device, const Pdo& pdo, const PdoEntry& entry
   }
   const Entry& object = *entry.object;
   if (!object.pdo_mapping) {
-    return {"pdo-mappable", fmt::format("{} maps {}, which cannot be mapped (PDOMapping=0)", pdo_label(pdo), quoted_object(entry))};
+    return {"pdo-mappable",
+            fmt::format("{} maps {}, which cannot be mapped (PDOMapping=0)", pdo_label(pdo), quoted_object(entry))};
   }
   const Mappable needed = pdo.direction == PdoDirection::receive ? Mappable::rpdo : Mappable::tpdo;
   if (!canopen::allows(object.mappable(), needed)) {
-    return {"pdo-direction", fmt::format("{} maps {}, which {} may not carry (access {})", pdo_label(pdo), quoted_object(entry),
-                                         pdo.direction == PdoDirection::receive ? "an RPDO" : "a TPDO",
-                                         canopen::row_of(object.access).name)};
+    return {"pdo-direction",
+            fmt::format("{} maps {}, which {} may not carry (access {})", pdo_label(pdo), quoted_object(entry),
+                        pdo.direction == PdoDirection::receive ? "an RPDO" : "a TPDO",
+                        canopen::row_of(object.access).name)};
   }
   if (object.type->bits == 0) {
-    return {"pdo-variable-length", fmt::format("{} maps {}, a {} of no fixed length", pdo_label(pdo), quoted_object(entry), object.type->name)};
+    return {"pdo-variable-length", fmt::format("{} maps {}, a {} of no fixed length", pdo_label(pdo),
+                                               quoted_object(entry), object.type->name)};
   }
   if (is_boolean_in_a_byte(entry)) {
-    return {"pdo-boolean-byte", fmt::format("{} maps {} as 8 bits; a BOOLEAN has 1. The whole byte is used", pdo_label(pdo),
-                                            quoted_object(entry))};
+    return {"pdo-boolean-byte", fmt::format("{} maps {} as 8 bits; a BOOLEAN has 1. The whole byte is used",
+                                            pdo_label(pdo), quoted_object(entry))};
   }
   if (object.type->bits != entry.bits) {
     return {"pdo-length", fmt::format("{} maps {} bits of {}, which is {} and has {}", pdo_label(pdo), entry.bits,
                                       quoted_object(entry), object.type->name, object.type->bits)};
   }
   return {};
-}
-
-/// Whether the PDO is valid after a reset: bit 31 of its COB-ID is 0.
-bool on_by_default(const Pdo& pdo) {
-  const Entry* cob_id = pdo.communication == nullptr ? nullptr : pdo.communication->find(1);
-  return cob_id != nullptr && cob_id->default_value && canopen::CobId{static_cast<std::uint32_t>(cob_id->default_value->bits)}.valid();
 }
 
 /// A PDO that is wrong is an error; one that is off by default harms nobody until it is switched on.
@@ -103,12 +102,16 @@ void check_entry(const Device& device, Pdo& pdo, const PdoEntry& entry, Diagnost
 void check_size(Pdo& pdo, Diagnostics& diagnostics) {
   if (pdo.bits() > most_bits) {
     unsigned sum = 0;
-    const auto over = std::ranges::find_if(pdo.entries, [&](const PdoEntry& entry) { return (sum += entry.bits) > most_bits; });
-    report_broken(pdo, {"pdo-size", fmt::format("{} maps {} bits; its frame carries {}", pdo_label(pdo), pdo.bits(), most_bits)},
-                  over->place, diagnostics);
+    const auto over =
+        std::ranges::find_if(pdo.entries, [&](const PdoEntry& entry) { return (sum += entry.bits) > most_bits; });
+    report_broken(
+        pdo, {"pdo-size", fmt::format("{} maps {} bits; its frame carries {}", pdo_label(pdo), pdo.bits(), most_bits)},
+        over->place, diagnostics);
   }
   if (pdo.entries.size() > most_entries) {
-    report_broken(pdo, {"pdo-entries", fmt::format("{} maps {} objects; {} is the most", pdo_label(pdo), pdo.entries.size(), most_entries)},
+    report_broken(pdo,
+                  {"pdo-entries",
+                   fmt::format("{} maps {} objects; {} is the most", pdo_label(pdo), pdo.entries.size(), most_entries)},
                   pdo.entries[most_entries].place, diagnostics);
   }
 }

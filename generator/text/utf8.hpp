@@ -20,6 +20,9 @@ void append_utf8(std::string& text, char32_t code_point);
 /// True for every byte of a code point but its first.
 [[nodiscard]] constexpr bool is_utf8_continuation(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
 
+/// Code points beyond FFFFh as two surrogates.
+[[nodiscard]] std::u16string to_utf16(std::string_view text);
+
 [[nodiscard]] std::size_t count_code_points(std::string_view text);
 
 }  // namespace edsc

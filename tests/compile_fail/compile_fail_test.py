@@ -3,8 +3,9 @@
 
     compile_fail_test.py SOURCE_DIR GENERATED_DIR [CASE]
 
-A case is a .cpp file. It compiles with GOOD defined and does not without; then the words of its `// expect: regex` stand in
-what the compiler says: `A .*B` wants A and B somewhere in it, for GCC and Clang tell them in different order; `A|B` one of them.
+A case is a .cpp file. It compiles with GOOD defined and does not without; then the words of its `// expect: regex`
+stand in what the compiler says. `A .*B` wants A and B somewhere, for GCC and Clang tell them in different order; `A|B`
+wants one of them.
 """
 
 from __future__ import annotations
@@ -21,7 +22,8 @@ UNUSED_IS_FINE = ("-Wno-unused",)
 
 
 def says(output: str, expectation: str) -> bool:
-    return any(all(re.search(part, output) for part in alternative.split(" .*")) for alternative in expectation.split("|"))
+    return any(all(re.search(part, output) for part in alternative.split(" .*"))
+               for alternative in expectation.split("|"))
 
 
 def run_case(job: tuple[Compiler, Path, tuple[Path, ...]]) -> str:

@@ -3,8 +3,8 @@
 
     corpus_test.py SOURCE_DIR EDSC
 
-The corpus is no part of this repository. It lies in the folder EDSC_CORPUS, or in ../shared/eds-corpus beside the repository:
-a manifest.tsv whose column `path` names the files. Without one the test is skipped.
+The corpus is no part of this repository. It lies in the folder EDSC_CORPUS, or in ../shared/eds-corpus beside the
+repository: a manifest.tsv whose column `path` names the files. Without one the test is skipped.
 """
 
 from __future__ import annotations
@@ -100,8 +100,9 @@ def main() -> int:
         return SKIPPED
     paths = paths_in(corpus)
     with tempfile.TemporaryDirectory() as scratch:
-        outcomes = in_parallel(run_file, [(edsc, path, corpus, Path(scratch) / str(number), source_dir / "runtime/include")
-                                          for number, path in enumerate(paths)])
+        runtime = source_dir / "runtime/include"
+        jobs = [(edsc, path, corpus, Path(scratch) / str(number), runtime) for number, path in enumerate(paths)]
+        outcomes = in_parallel(run_file, jobs)
     for outcome in outcomes:
         if not outcome.fine:
             print(f"{outcome.path}: exit code {outcome.exit_code}: {outcome.problem or outcome.first_error}")

@@ -24,8 +24,8 @@ def contents(root: Path) -> dict[str, bytes]:
 
 
 def excerpt(committed: bytes, made: bytes) -> str:
-    lines = difflib.unified_diff(committed.decode(errors="replace").splitlines(), made.decode(errors="replace").splitlines(),
-                                 "committed", "generated now", lineterm="", n=0)
+    before, after = (text.decode(errors="replace").splitlines() for text in (committed, made))
+    lines = difflib.unified_diff(before, after, "committed", "generated now", lineterm="", n=0)
     return "\n".join("    " + line for _, line in zip(range(DIFFERENCE_LINES), lines))
 
 
@@ -37,7 +37,8 @@ def compare(committed: dict[str, bytes], made: dict[str, bytes], command: str) -
         elif name not in committed:
             problems.append(f"generated/{name}: missing; update with: {command}")
         elif committed[name] != made[name]:
-            problems.append(f"generated/{name}: differs; update with: {command}\n{excerpt(committed[name], made[name])}")
+            difference = excerpt(committed[name], made[name])
+            problems.append(f"generated/{name}: differs; update with: {command}\n{difference}")
     return problems
 
 

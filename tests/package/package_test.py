@@ -62,8 +62,8 @@ unsigned bits_of_the_first_tpdo() { return sensor::Tpdo1::bits; }
 
 def run(*command: object, folder: Path | None = None) -> str:
     """Output of a command that must succeed."""
-    result = subprocess.run([str(word) for word in command], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                            text=True, errors="replace", timeout=600)
+    result = subprocess.run([str(word) for word in command], cwd=folder, stdout=subprocess.PIPE,
+                            stderr=subprocess.STDOUT, text=True, errors="replace", timeout=600)
     if result.returncode != 0:
         raise AssertionError(f"{' '.join(map(str, command))}: exit code {result.returncode}\n{result.stdout[-3000:]}")
     return result.stdout
@@ -149,7 +149,8 @@ class Mistakes(PackageTest):
         consumer = Consumer(self.folder, FROM_PACKAGE, self.install())
         consumer.build()
         before = consumer.dictionary.read_bytes()
-        consumer.sheet.write_text(consumer.sheet.read_text().replace("DefaultValue=0x60200120", "DefaultValue=0x60210120"))
+        text = consumer.sheet.read_text()
+        consumer.sheet.write_text(text.replace("DefaultValue=0x60200120", "DefaultValue=0x60210120"))
         with self.assertRaisesRegex(AssertionError, r"sensor\.eds:\d+:14: error: .*\[pdo-object\]"):
             consumer.build()
         self.assertEqual(consumer.dictionary.read_bytes(), before)

@@ -73,9 +73,7 @@ TEST(CppLiteral, OfATimeIsMillisecondsAndDays) {
   EXPECT_EQ(literal(DataType::time_of_day, (std::uint64_t{3} << 32) | 1000), "{1000, 3}");
 }
 
-TEST(CppLiteral, OfAVisibleStringIsQuoted) {
-  EXPECT_EQ(literal(DataType::visible_string, "hello"), "\"hello\"");
-}
+TEST(CppLiteral, OfAVisibleStringIsQuoted) { EXPECT_EQ(literal(DataType::visible_string, "hello"), "\"hello\""); }
 
 TEST(CppLiteral, OfAnOctetStringIsAListOfBytes) {
   EXPECT_EQ(literal(DataType::octet_string, std::string{"\x00\xFF", 2}), "{0x00, 0xFF}");
@@ -84,7 +82,11 @@ TEST(CppLiteral, OfAnOctetStringIsAListOfBytes) {
 
 TEST(CppLiteral, OfAUnicodeStringIsUtf16) {
   EXPECT_EQ(literal(DataType::unicode_string, "a"), "u\"a\"");
-  EXPECT_EQ(literal(DataType::unicode_string, "\xC3\xB6" "a"), "u\"\\xF6\" u\"a\"") << "no digit behind is drawn in";
+  EXPECT_EQ(literal(DataType::unicode_string,
+                    "\xC3\xB6"
+                    "a"),
+            "u\"\\xF6\" u\"a\"")
+      << "no digit behind is drawn in";
   EXPECT_EQ(literal(DataType::unicode_string, "\xF0\x9F\x9A\x80"), "u\"\\xD83D\" u\"\\xDE80\" u\"\"");
   EXPECT_EQ(literal(DataType::unicode_string, "\"?\\"), "u\"\\x22\" u\"\\x3F\" u\"\\x5C\" u\"\"");
 }
@@ -108,15 +110,20 @@ TEST(CppInitializer, PutsATextInBraces) {
 TEST(CppString, EscapesWhatWouldEndOrChangeIt) {
   EXPECT_EQ(cpp_string("say \"hi\""), R"("say \"hi\"")");
   EXPECT_EQ(cpp_string(R"(C:\new)"), R"("C:\\new")");
-  EXPECT_EQ(cpp_string("what?" "?/"), R"("what\?\?/")") << "no trigraph";
+  EXPECT_EQ(cpp_string("what?"
+                       "?/"),
+            R"("what\?\?/")")
+      << "no trigraph";
   EXPECT_EQ(cpp_string("a\nb\tc\x7F"), R"("a\012b\011c\177")");
 }
 
-TEST(CppString, WritesUtf8AsOctalBytes) { EXPECT_EQ(cpp_string("\xC3\xB6" "7"), R"("\303\2667")"); }
-
-TEST(CppComment, IsOneLine) {
-  EXPECT_EQ(cpp_comment("one\ntwo\rthree\tfour"), "one two three four");
+TEST(CppString, WritesUtf8AsOctalBytes) {
+  EXPECT_EQ(cpp_string("\xC3\xB6"
+                       "7"),
+            R"("\303\2667")");
 }
+
+TEST(CppComment, IsOneLine) { EXPECT_EQ(cpp_comment("one\ntwo\rthree\tfour"), "one two three four"); }
 
 TEST(CppComment, DoesNotEndInABackslash) {
   EXPECT_EQ(cpp_comment("path\\"), "path/");
@@ -124,8 +131,15 @@ TEST(CppComment, DoesNotEndInABackslash) {
 }
 
 TEST(CppComment, HoldsNoTrigraphForABackslash) {
-  const std::string trigraph = "?" "?/";
-  for (const std::string& text : {"what" + trigraph, std::string{"what?" "?\\"}, "?" "?" + trigraph + "/"}) {
+  const std::string trigraph =
+      "?"
+      "?/";
+  for (const std::string& text : {"what" + trigraph,
+                                  std::string{"what?"
+                                              "?\\"},
+                                  "?"
+                                  "?" +
+                                      trigraph + "/"}) {
     EXPECT_EQ(cpp_comment(text).find(trigraph), std::string::npos) << text;
   }
 }

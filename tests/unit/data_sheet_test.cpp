@@ -187,17 +187,45 @@ TEST(DataSheet, AddsNothingToWhatTheIniReaderReported) {
   EXPECT_EQ(findings(Read("").diagnostics), (Findings{error_at(0, 0, "empty-file")}));
 }
 
-TEST(DataSheet, WarnsOfSectionsThatAreNotUsed) {
-  for (const std::string name :
-       {"Tools", "Tool1", "DynamicChannels", "SupportedModules", "ConnectedModules", "M1ModuleInfo", "m12comments",
-        "M1FixedObjects", "M1SubExtends", "M1SubExt6000", "1005ObjectLinks"}) {
+TEST(DataSheet, ReadsTheSectionsOfEveryModule) {
+  const Read read(one_object +
+                  "[SupportedModules]\nNrOfEntries=12\n"
+                  "[m12comments]\nLines=0\n[M12ModuleInfo]\nProductName=Twelve\n[M12Fixed2000]\nDataType=5\n"
+                  "[M12Fixed2000Sub1]\nDataType=6\n[M12SubExt6000]\nCount=0;4\nObjExtend=8\nDataType=5\n");
+  ASSERT_EQ(read.sheet.modules.supported.size(), 1U);
+  const ModuleDescription& module = read.sheet.modules.supported[0];
+  EXPECT_EQ(module.number, 12);
+  EXPECT_EQ(module.position.line, 9U);
+  EXPECT_EQ(module.product_name.text, "Twelve");
+  EXPECT_TRUE(module.comments.present);
+  ASSERT_EQ(module.objects.size(), 1U);
+  EXPECT_EQ(module.objects[0].sub_objects.at(0).data_type.text, "6");
+  ASSERT_EQ(module.sub_extensions.size(), 1U);
+  EXPECT_EQ(module.sub_extensions[0].index, 0x6000);
+  EXPECT_EQ(module.sub_extensions[0].count.text, "0;4") << "; is data here";
+  EXPECT_EQ(module.sub_extensions[0].object_extend.text, "8");
+  EXPECT_EQ(module.sub_extensions[0].data_type.text, "5");
+}
+
+TEST(DataSheet, WarnsOfSectionsOfAModuleThatStandTwice) {
+  const Read read(one_object +
+                  "[SupportedModules]\nNrOfEntries=1\n[M1ModuleInfo]\nProductName=A\n[m1moduleinfo]\nProductName=B\n");
+  EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(11, 2, "duplicate-section")}));
+  EXPECT_EQ(read.sheet.modules.supported[0].product_name.text, "A");
+}
+
+TEST(DataSheet, WarnsOfUnknownKeysInEverySection) {
+  for (const std::string name : {"Tools", "Tool1", "DynamicChannels", "SupportedModules", "ConnectedModules",
+                                 "M1ModuleInfo", "M1Comments", "M1FixedObjects", "M1SubExtends", "M1SubExt6000",
+                                 "1005ObjectLinks", "Comments"}) {
     const Read read(one_object + "[" + name + "]\nAnything=1\n");
-    EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(7, 2, "section-not-used")})) << name;
+    EXPECT_EQ(findings(read.diagnostics, "unknown-key"), (Findings{warning_at(8, 1, "unknown-key")})) << name;
   }
 }
 
 TEST(DataSheet, WarnsOfUnknownSections) {
-  for (const std::string name : {"", "PreDefines", "Toolbox", "ModuleInfo", "0x1000", "1005 sub0", "1005Names"}) {
+  for (const std::string name : {"", "PreDefines", "Toolbox", "ModuleInfo", "0x1000", "1005 sub0", "1005Names",
+                                 "MModuleInfo", "M1", "M1Fixed", "M1Other", "Tool", "Tool1a"}) {
     const Read read(one_object + "[" + name + "]\nAnything=1\n");
     EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(7, 2, "unknown-section")})) << name;
   }
@@ -227,7 +255,7 @@ TEST(DataSheet, RefusesNamesThatAreNoIndexOrSubIndex) {
 
 TEST(DataSheet, WarnsOfUnknownKeys) {
   const Read read(one_object +
-                  "Unit=mm\n[1005sub1]\nSubNumber=1\n[DeviceInfo]\nBaudRate_fast=1\n[FileInfo]\nCustomer=x\n");
+                  "Colour=red\n[1005sub1]\nSubNumber=1\n[DeviceInfo]\nBaudRate_fast=1\n[FileInfo]\nCustomer=x\n");
   EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(13, 1, "unknown-key"), warning_at(11, 1, "unknown-key"),
                                                   warning_at(7, 1, "unknown-key"), warning_at(9, 1, "unknown-key")}));
 }

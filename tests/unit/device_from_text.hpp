@@ -85,10 +85,10 @@ inline std::string var(std::string_view index, std::string_view name, std::strin
 }
 
 /// The section of a RECORD or ARRAY without its sub-objects; `sub_objects` is what SubNumber says.
-inline std::string group(std::string_view index, std::string_view name, std::string_view object_type,
-                         int sub_objects) {
-  return "[" + std::string{index} + "]\nParameterName=" + std::string{name} + "\nObjectType=" +
-         std::string{object_type} + "\nSubNumber=" + std::to_string(sub_objects) + "\n";
+inline std::string group(std::string_view index, std::string_view name, std::string_view object_type, int sub_objects) {
+  std::string text{"["};
+  text.append(index).append("]\nParameterName=").append(name).append("\nObjectType=").append(object_type);
+  return text.append("\nSubNumber=").append(std::to_string(sub_objects)).append("\n");
 }
 
 }  // namespace edsc

@@ -91,12 +91,12 @@ TEST(PrintText, ShowsNotesLikewise) {
             "a.eds: 0 errors, 1 warning\n");
 }
 
-TEST(PrintText, ShowsNoLineForAWholeFile) {
+TEST(PrintText, ShowsAWholeFileAsItsFirstLine) {
   const SourceFile file("a.eds", "");
   Diagnostics diagnostics;
   diagnostics.error("empty-file", {&file}, "nothing in it");
   EXPECT_EQ(printed(diagnostics),
-            "a.eds: error: nothing in it [empty-file]\n"
+            "a.eds:1:1: error: nothing in it [empty-file]\n"
             "a.eds: 1 error, 0 warnings\n");
 }
 
@@ -109,9 +109,9 @@ TEST(PrintText, PutsTheSuppressedBehindTheirRule) {
   diagnostics.error("two", {&file}, "last");
   const std::string text = printed(diagnostics);
   EXPECT_TRUE(
-      text.ends_with("a.eds: warning: again [one]\n"
+      text.ends_with("a.eds:1:1: warning: again [one]\n"
                      "a.eds: warning: 3 more of this kind [one]\n"
-                     "a.eds: error: last [two]\n"
+                     "a.eds:1:1: error: last [two]\n"
                      "a.eds: 1 error, 53 warnings\n"))
       << text;
 }
@@ -203,11 +203,11 @@ TEST(PrintJson, HasAStableShape) {
     "diagnostics": [
       {"file": "a.eds", "line": 2, "column": 2, "length": 4, "severity": "warning", "rule": "twice",
        "message": "second", "notes": [{"file": "a.eds", "line": 1, "column": 2, "length": 4, "message": "first"}]},
-      {"file": "a.eds", "line": 0, "column": 0, "length": 0, "severity": "error", "rule": "empty",
+      {"file": "a.eds", "line": 1, "column": 1, "length": 1, "severity": "error", "rule": "empty",
        "message": "whole", "notes": []}],
     "suppressed": [],
     "errors": 1,
-    "warnings": 1})");
+    "warnings": 1, "notes": 0})");
   EXPECT_EQ(print_json(diagnostics), expected);
 }
 

@@ -58,8 +58,8 @@ TEST(Identifier, IsNoWordOfTheLanguage) {
 }
 
 TEST(Identifier, IsNoUsualMacroAndNoMemberOfAGeneratedObject) {
-  for (const char* name : {"errno", "linux", "unix", "stdin", "assert", "offsetof", "type", "index", "sub_index", "name",
-                           "bits", "access", "mappable", "low_limit", "high_limit", "od", "std", "canopen"}) {
+  for (const char* name : {"errno", "linux", "unix", "stdin", "assert", "offsetof", "type", "index", "sub_index",
+                           "name", "bits", "access", "mappable", "low_limit", "high_limit", "od", "std", "canopen"}) {
     EXPECT_EQ(to_snake_case(name), std::string{name} + "_");
   }
 }

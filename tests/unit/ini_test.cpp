@@ -167,5 +167,14 @@ TEST(EqualIgnoringCase, FoldsAsciiLettersOnly) {
   EXPECT_FALSE(equal_ignoring_case("a", "ab"));
 }
 
+TEST(IniReader, KeepsCommentsAndStrayLinesWithTheirPlaces) {
+  const Read read("; top\n[2000] ; tail\n  # a  \nstray\nDataType=5 ; no remark\n;end");
+  std::vector<std::pair<std::uint32_t, std::string_view>> remarks;
+  for (const IniRemark& remark : read.ini.remarks) remarks.emplace_back(remark.line, remark.text);
+  const std::vector<std::pair<std::uint32_t, std::string_view>> expected = {
+      {1, "; top"}, {2, "; tail"}, {3, "# a"}, {4, "stray"}, {6, ";end"}};
+  EXPECT_EQ(remarks, expected);
+}
+
 }  // namespace
 }  // namespace edsc

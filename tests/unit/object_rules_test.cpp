@@ -46,8 +46,9 @@ TEST(ObjectRules, WarnOfADefaultBeyondItsLimits) {
 TEST(ObjectRules, CompareLimitsAsTheTypeDoes) {
   EXPECT_EQ(rules_of(Checked(var("2000", "V", "4", "rw", "LowLimit=0xFFFFFFFE\nHighLimit=1\n")).diagnostics), Rules{});
   EXPECT_EQ(rules_of(Checked(var("2000", "V", "7", "rw", "LowLimit=1\nHighLimit=0xFFFFFFFE\n")).diagnostics), Rules{});
-  EXPECT_EQ(rules_of(Checked(var("2000", "V", "8", "rw", "LowLimit=-1.5\nHighLimit=-0.5\nDefaultValue=-1\n")).diagnostics),
-            Rules{});
+  EXPECT_EQ(
+      rules_of(Checked(var("2000", "V", "8", "rw", "LowLimit=-1.5\nHighLimit=-0.5\nDefaultValue=-1\n")).diagnostics),
+      Rules{});
   EXPECT_EQ(rules_of(Checked(var("2000", "V", "0x11", "rw", "LowLimit=-2\nHighLimit=1e300\n")).diagnostics), Rules{});
 }
 
@@ -67,7 +68,8 @@ TEST(ObjectRules, DropALimitThatFollowsTheNodeId) {
 }
 
 TEST(ObjectRules, DoNotCompareADefaultThatFollowsTheNodeId) {
-  const Checked checked(var("2000", "Value", "7", "rw", "LowLimit=0x181\nHighLimit=0x1FF\nDefaultValue=$NODEID+0x180\n"));
+  const Checked checked(
+      var("2000", "Value", "7", "rw", "LowLimit=0x181\nHighLimit=0x1FF\nDefaultValue=$NODEID+0x180\n"));
   EXPECT_EQ(rules_of(checked.diagnostics), Rules{});
 }
 

@@ -39,7 +39,10 @@ TEST(OptionsFile, NamesEntriesByIndexAndSubIndex) {
 }
 
 TEST(OptionsFile, TakesNamesThatAreIdentifiersOnly) {
-  for (const char* name : {"", "class", "Speed", "1st", "a b", "a-b", "x;int y", "gr\xC3\xB6\xC3\x9F" "e", "type"}) {
+  for (const char* name : {"", "class", "Speed", "1st", "a b", "a-b", "x;int y",
+                           "gr\xC3\xB6\xC3\x9F"
+                           "e",
+                           "type"}) {
     const Read read("{\n  \"names\": {\n    \"2000h\": \"" + std::string{name} + "\"\n  }\n}\n");
     EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(3, 5, "options")})) << name;
     EXPECT_TRUE(read.options.names.empty()) << name;

@@ -14,15 +14,13 @@ namespace {
 using Rules = std::vector<std::string>;
 
 /// Objects of every right, to be mapped.
-const std::string objects = "[DummyUsage]\nDummy0005=1\nDummy0006=0\n" +
-                            var("2000", "Input", "0x0006", "ro", "PDOMapping=1\n") +
-                            var("2001", "Output", "0x0006", "wo", "PDOMapping=1\n") +
-                            var("2002", "Process output", "0x0006", "rww", "PDOMapping=1\n") +
-                            var("2003", "Process input", "0x0006", "rwr", "PDOMapping=1\n") +
-                            var("2004", "Parameter", "0x0006", "rw", "PDOMapping=0\n") +
-                            var("2005", "Text", "0x0009", "rw", "PDOMapping=1\n") +
-                            var("2006", "Switch", "0x0001", "rw", "PDOMapping=1\n") +
-                            var("2007", "Position", "0x0007", "rw", "PDOMapping=1\n");
+const std::string objects =
+    "[DummyUsage]\nDummy0005=1\nDummy0006=0\n" + var("2000", "Input", "0x0006", "ro", "PDOMapping=1\n") +
+    var("2001", "Output", "0x0006", "wo", "PDOMapping=1\n") +
+    var("2002", "Process output", "0x0006", "rww", "PDOMapping=1\n") +
+    var("2003", "Process input", "0x0006", "rwr", "PDOMapping=1\n") +
+    var("2004", "Parameter", "0x0006", "rw", "PDOMapping=0\n") + var("2005", "Text", "0x0009", "rw", "PDOMapping=1\n") +
+    var("2006", "Switch", "0x0001", "rw", "PDOMapping=1\n") + var("2007", "Position", "0x0007", "rw", "PDOMapping=1\n");
 
 /// PDO 1 of one direction, valid after a reset unless `cob_id` says otherwise, that maps these words.
 std::string pdo(bool receive, const std::vector<std::string>& mapping, std::string_view cob_id = "$NODEID+0x200") {
@@ -94,9 +92,9 @@ TEST(PdoRules, RefuseAnObjectOfTheOtherDirection) {
     const char* word;
     const char* object;
   };
-  for (const Row& row : {Row{true, "0x20000010", "2000h:00 \"Input\""}, Row{true, "0x20030010", "2003h:00 \"Process input\""},
-                         Row{false, "0x20010010", "2001h:00 \"Output\""},
-                         Row{false, "0x20020010", "2002h:00 \"Process output\""}}) {
+  for (const Row& row :
+       {Row{true, "0x20000010", "2000h:00 \"Input\""}, Row{true, "0x20030010", "2003h:00 \"Process input\""},
+        Row{false, "0x20010010", "2001h:00 \"Output\""}, Row{false, "0x20020010", "2002h:00 \"Process output\""}}) {
     const Checked checked(pdo(row.receive, {row.word}));
     expect_one(checked, Severity::error, "pdo-direction", row.word);
     EXPECT_TRUE(message_has(checked, "pdo-direction", row.object)) << row.object;

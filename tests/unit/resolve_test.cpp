@@ -74,6 +74,85 @@ TEST(Resolve, EndsWhenDeftypesNameEachOther) {
   EXPECT_EQ(text.finding("data-type").severity, Severity::error);
 }
 
+TEST(Resolve, TakesTheLimitsOfADeftypeWhereAnEntryHasNone) {
+  const DeviceFromText text(
+      "[0040]\nParameterName=Percent\nObjectType=0x5\nDataType=0x0003\nLowLimit=-100\nHighLimit=100\n" +
+      var("2000", "Load", "0x40") + var("2001", "Torque", "0x40", "rw", "HighLimit=50\n"));
+  EXPECT_EQ(static_cast<std::int64_t>(text.entry(0x2000).low_limit->bits), -100);
+  EXPECT_EQ(text.entry(0x2000).high_limit->bits, 100U);
+  EXPECT_EQ(text.entry(0x2001).high_limit->bits, 50U);
+  EXPECT_EQ(rules_of(text.diagnostics), Rules{});
+}
+
+TEST(Resolve, ReadsARangeTypeAsCanFestivalWritesIt) {
+  const DeviceFromText text(group("00A0", "UNSIGNED16[5-60]", "0x9", 4) + sub("00A0", 0, "Count", "5") +
+                            sub("00A0", 1, "Type", "5", "DefaultValue=6\n") +
+                            sub("00A0", 2, "Minimum Value", "6", "DefaultValue=5\n") +
+                            sub("00A0", 3, "Maximum Value", "6", "DefaultValue=0x3C\n") + var("2000", "Speed", "0x00A0"));
+  EXPECT_EQ(text.entry(0x2000).type->type, DataType::unsigned16);
+  EXPECT_EQ(text.entry(0x2000).low_limit->bits, 5U);
+  EXPECT_EQ(text.entry(0x2000).high_limit->bits, 60U);
+  ASSERT_EQ(text.device.types.size(), 1U);
+  EXPECT_EQ(text.device.types[0].name, "UNSIGNED16[5-60]");
+  EXPECT_EQ(rules_of(text.diagnostics), Rules{});
+}
+
+TEST(Resolve, GivesTheMembersOfADefstructToARecordOfItsType) {
+  const DeviceFromText text(group("0060", "Axis", "0x6", 3) + sub("0060", 0, "Count", "5", "DefaultValue=2\n") +
+                            sub("0060", 1, "Position", "6", "DefaultValue=0x0004\n") +
+                            sub("0060", 2, "Speed", "6", "DefaultValue=0x0003\n") +
+                            group("2000", "X axis", "0x9", 3) + "DataType=0x0060\n" + sub("2000", 0, "Count", "5") +
+                            "[2000sub1]\nParameterName=Position\nAccessType=rw\n"
+                            "[2000sub2]\nParameterName=Speed\nAccessType=rw\n");
+  EXPECT_EQ(text.entry(0x2000, 1).type->type, DataType::integer32);
+  EXPECT_EQ(text.entry(0x2000, 2).type->type, DataType::integer16);
+  EXPECT_EQ(rules_of(text.diagnostics), Rules{});
+}
+
+TEST(Resolve, GivesTheMembersOfAPredefinedRecordToOneOfItsType) {
+  const DeviceFromText text(group("1018", "Identity object", "0x9", 2) + "DataType=0x0023\n" +
+                            sub("1018", 0, "Count", "5") + "[1018sub1]\nParameterName=Vendor-ID\nAccessType=ro\n");
+  EXPECT_EQ(text.entry(0x1018, 1).type->type, DataType::unsigned32);
+  EXPECT_EQ(rules_of(text.diagnostics), Rules{});
+}
+
+TEST(Resolve, TakesTheMembersTypeForASubObjectOfTheRecordsType) {
+  const DeviceFromText text(group("1018", "Identity object", "0x9", 2) + sub("1018", 0, "Count", "5") +
+                            sub("1018", 1, "Vendor-ID", "0x0023"));
+  EXPECT_EQ(text.entry(0x1018, 1).type->type, DataType::unsigned32);
+  EXPECT_EQ(findings(text.diagnostics, "complex-data-type").size(), 1U);
+}
+
+TEST(Resolve, WarnsOfATypeThatStandsForNone) {
+  const DeviceFromText text("[0040]\nParameterName=A\nObjectType=0x5\nDataType=0x0041\n" + var("2000", "V", "5"));
+  EXPECT_EQ(findings(text.diagnostics, "type-definition"), (std::vector{warning_at(4, 10, "type-definition")}));
+}
+
+TEST(Resolve, TakesATypeBeyond1000hForAValue) {
+  const DeviceFromText text("[2000]\nParameterName=A\nObjectType=0x5\nDataType=0x0005\nAccessType=ro\n");
+  EXPECT_EQ(text.device.find(0x2000)->type, ObjectType::var);
+  EXPECT_EQ(findings(text.diagnostics, "object-type"), (std::vector{warning_at(3, 12, "object-type")}));
+}
+
+TEST(Resolve, ReadsAnIndexOfFewerDigitsAndAZeroPaddedSubIndex) {
+  const DeviceFromText text(group("2000", "Group", "0x9", 2) + sub("2000", 0, "Count", "5") +
+                            var("2000Sub01", "One", "6") + "[40]\nParameterName=T\nObjectType=5\nDataType=5\n");
+  EXPECT_EQ(text.entry(0x2000, 1).name, "One");
+  EXPECT_EQ(text.device.types.at(0).index, 0x40);
+  EXPECT_EQ(rules_of(text.diagnostics), Rules{"section-name"});
+}
+
+TEST(Resolve, CutsCommentsBehindNumbersAndKeepsThemInTexts) {
+  const DeviceFromText text(
+      "[2000]\nParameterName=Limit #1; upper\nObjectType=0x07 # VAR\nDataType=0x0006 ; two bytes\n"
+      "AccessType=rw;\nDefaultValue=0x3ED ; homing\nPDOMapping=0 # No\n" +
+      var("2001", "Text", "9", "ro", "DefaultValue=a;b #c\n"));
+  EXPECT_EQ(text.entry(0x2000).name, "Limit #1; upper");
+  EXPECT_EQ(text.entry(0x2000).default_value->bits, 0x3EDU);
+  EXPECT_EQ(text.entry(0x2001).default_value->bytes, "a;b #c");
+  EXPECT_EQ(rules_of(text.diagnostics), Rules{});
+}
+
 TEST(Resolve, TakesADomainByItsObjectTypeWithoutDataType) {
   const DeviceFromText text("[2000]\nParameterName=Program\nObjectType=0x2\nAccessType=rw\n");
   EXPECT_EQ(text.entry(0x2000).type->type, DataType::domain);
@@ -160,6 +239,27 @@ TEST(Resolve, GivesSubIndex0WithoutDefaultTheHighestSubIndex) {
   EXPECT_EQ(text.entry(0x2000, 0).default_value->bits, 4U);
 }
 
+TEST(Resolve, GivesSubIndex0WithoutDefaultWhatItsObjectHoldsAfterAReset) {
+  const DeviceFromText errors(group("1003", "Pre-defined error field", "0x8", 2) + sub("1003", 0, "Count", "5") +
+                              sub("1003", 1, "Error", "7"));
+  EXPECT_EQ(errors.entry(0x1003, 0).default_value->bits, 0U);
+  const DeviceFromText mapping(group("1600", "Mapping", "0x9", 4) + sub("1600", 0, "Count", "5") +
+                               sub("1600", 1, "A", "7", "DefaultValue=0x20000008\n") +
+                               sub("1600", 2, "B", "7", "DefaultValue=0x20000008\n") + sub("1600", 3, "C", "7") +
+                               var("2000", "V", "5"));
+  EXPECT_EQ(mapping.entry(0x1600, 0).default_value->bits, 2U);
+  const DeviceFromText structure(group("2000", "Group", "0x9", 3) + sub("2000", 0, "Count", "5") +
+                                 sub("2000", 1, "A", "7") + var("2000subFF", "Structure", "7"));
+  EXPECT_EQ(structure.entry(0x2000, 0).default_value->bits, 1U);
+}
+
+TEST(Resolve, WarnsOfSubIndicesThatLookDecimal) {
+  const DeviceFromText text(group("2000", "Group", "0x9", 3) + sub("2000", 0, "Count", "5", "DefaultValue=16\n") +
+                            sub("2000", 9, "Nine", "5") + sub("2000", 10, "Ten", "5"));
+  EXPECT_EQ(text.device.find(0x2000)->entries.back().sub_index, 0x10);
+  EXPECT_EQ(text.line_of("sub-index-base"), "[2000sub10]");
+}
+
 TEST(Resolve, CountsTheSubObjects) {
   const DeviceFromText text(group("2000", "Group", "0x9", 7) + sub("2000", 0, "Count", "5") +
                             sub("2000", 1, "One", "5"));
@@ -225,6 +325,43 @@ TEST(Compact, LetsASectionOfItsOwnDescribeAnElement) {
   EXPECT_EQ(text.entry(0x2100, 3).default_value->bits, 7U);
 }
 
+TEST(Compact, HasTheCountInSubIndex0) {
+  const DeviceFromText text(compact);
+  EXPECT_EQ(text.entry(0x2100, 0).name, "NrOfObjects");
+  EXPECT_EQ(text.entry(0x2100, 0).access, Access::ro);
+  const DeviceFromText own(compact + sub("2100", 0, "Channels", "0x0005", "DefaultValue=2\n"));
+  EXPECT_EQ(own.entry(0x2100, 0).name, "Channels");
+  EXPECT_EQ(own.entry(0x2100, 0).default_value->bits, 2U);
+}
+
+TEST(Compact, KeepsSectionsBeyondItsElements) {
+  const DeviceFromText text(compact + sub("2100", 7, "Seventh", "0x0006"));
+  EXPECT_EQ(text.device.find(0x2100)->entries.size(), 5U);
+  EXPECT_EQ(text.entry(0x2100, 7).name, "Seventh");
+}
+
+TEST(Compact, GivesItsListsToSubObjectsWithSectionsToo) {
+  const DeviceFromText text("[DeviceComissioning]\nNodeID=1\n" + group("2100", "Group", "0x9", 2) +
+                            sub("2100", 0, "Count", "5", "DefaultValue=1\n") +
+                            sub("2100", 1, "One", "6", "DefaultValue=1\n") +
+                            "[2100Value]\nNrOfEntries=1\n1=20\n[2100Denotation]\nNrOfEntries=1\n1=mine\n");
+  EXPECT_EQ(text.entry(0x2100, 1).default_value->bits, 20U);
+  EXPECT_EQ(text.entry(0x2100, 1).denotation, "mine");
+  EXPECT_EQ(rules_of(text.diagnostics), Rules{});
+}
+
+TEST(Compact, TakesItsValuesInADcfBeforeTheParameterValueOfAll) {
+  const DeviceFromText text("[DeviceComissioning]\nNodeID=1\n" + compact +
+                            "ParameterValue=5\n[2100Value]\nNrOfEntries=1\n2=20\n");
+  EXPECT_EQ(text.entry(0x2100, 1).default_value->bits, 5U);
+  EXPECT_EQ(text.entry(0x2100, 2).default_value->bits, 20U);
+}
+
+TEST(Compact, WarnsOfListEntriesForNoElement) {
+  const DeviceFromText text(compact + "[2100Name]\nNrOfEntries=1\n4=Fourth\n");
+  EXPECT_EQ(text.line_of("compact-entry"), "4=Fourth");
+}
+
 TEST(Compact, HasAtMost254Elements) {
   const DeviceFromText text(
       "[2100]\nParameterName=Channel\nObjectType=0x8\nDataType=0x0006\nAccessType=rw\nCompactSubObj=300\n");
@@ -262,9 +399,9 @@ TEST(Dcf, GivesTheNodeIdToItsFormulas) {
 }
 
 TEST(Dcf, GivesWayToANodeIdFromTheCommandLine) {
-  const DeviceFromText text("[DeviceComissioning]\nNodeID=3\n" +
-                                var("1014", "COB-ID EMCY", "7", "rw", "DefaultValue=$NODEID+0x80\n"),
-                            {}, {"", std::uint8_t{9}});
+  const DeviceFromText text(
+      "[DeviceComissioning]\nNodeID=3\n" + var("1014", "COB-ID EMCY", "7", "rw", "DefaultValue=$NODEID+0x80\n"), {},
+      {"", std::uint8_t{9}});
   EXPECT_EQ(text.entry(0x1014).default_value->bits, 0x89U);
 }
 
@@ -324,9 +461,7 @@ TEST(Names, ComeFromTheOptionsWhereTheseHaveOne) {
 }
 
 TEST(Names, OfTheDeviceComeFromTheFile) {
-  const auto name_of = [](const char* file) {
-    return DeviceFromText(var("2000", "V", "5"), {}, {}, file).device.name;
-  };
+  const auto name_of = [](const char* file) { return DeviceFromText(var("2000", "V", "5"), {}, {}, file).device.name; };
   EXPECT_EQ(name_of("drives/EZD-1136.eds"), "ezd_1136");
   EXPECT_EQ(name_of("1.eds"), "n_1");
   EXPECT_EQ(name_of("---.eds"), "device");

@@ -24,9 +24,7 @@ struct Parsed {
         value(parse_value(field, *canopen::find_data_type(static_cast<std::uint32_t>(data_type)), node_id,
                           diagnostics)) {}
 
-  [[nodiscard]] std::optional<std::uint64_t> bits() const {
-    return value ? std::optional{value->bits} : std::nullopt;
-  }
+  [[nodiscard]] std::optional<std::uint64_t> bits() const { return value ? std::optional{value->bits} : std::nullopt; }
   [[nodiscard]] std::optional<std::int64_t> number() const {
     return value ? std::optional{static_cast<std::int64_t>(value->bits)} : std::nullopt;
   }
@@ -50,7 +48,7 @@ TEST(IntegerValue, IsDecimalHexadecimalOrOctal) {
     const char* text;
     std::uint64_t number;
   };
-  for (const Row& row : {Row{"0", 0}, Row{"1536", 1536}, Row{"0x600", 1536}, Row{"0X6aB", 0x6AB}, Row{"017", 15},
+  for (const Row& row : {Row{"0", 0}, Row{"1536", 1536}, Row{"0x600", 1536}, Row{"0X6aB", 0x6AB}, Row{"007", 7},
                          Row{"000", 0}, Row{"+5", 5}, Row{" 12 ", 12}, Row{"12 ; seconds", 12}, Row{"0x10#hex", 16}}) {
     const Parsed parsed(DataType::unsigned32, row.text);
     EXPECT_EQ(parsed.bits(), row.number) << row.text;
@@ -79,7 +77,7 @@ TEST(IntegerValue, IsNothingWhenTheKeyIsMissingOrEmpty) {
 }
 
 TEST(IntegerValue, ThatIsNoNumberIsAnError) {
-  for (const char* text : {"abc", "0x", "0xG1", "--5", "1 2", "12h", "1.5", "0b101", "1e40", "nan", "inf"}) {
+  for (const char* text : {"abc", "0x", "0xG1", "--5", "1 2", "1.5", "0b101", "1e40", "nan", "inf"}) {
     const Parsed parsed(DataType::unsigned32, text);
     EXPECT_FALSE(parsed.value) << text;
     EXPECT_EQ(findings(parsed.diagnostics), error_of("number-format")) << text;
@@ -123,7 +121,7 @@ TEST(IntegerValue, ReachesBothEndsOfItsType) {
 }
 
 TEST(IntegerValue, MayBeNegativeInEveryBase) {
-  for (const char* text : {"-16", "- 16", "-0x10", "-020"}) {
+  for (const char* text : {"-16", "- 16", "-0x10", "-0X10"}) {
     const Parsed parsed(DataType::integer16, text);
     EXPECT_EQ(parsed.number(), -16) << text;
     EXPECT_EQ(findings(parsed.diagnostics), none) << text;
@@ -137,6 +135,24 @@ TEST(IntegerValue, InHexadecimalMayBeATwosComplement) {
   EXPECT_EQ(findings(parsed.diagnostics), none);
   EXPECT_EQ(Parsed(DataType::integer24, "0x800000").number(), -8388608);
   EXPECT_EQ(Parsed(DataType::integer64, "0xFFFFFFFFFFFFFFFF").number(), -1);
+}
+
+TEST(IntegerValue, ThatIsOctalSaysSo) {
+  const Parsed parsed(DataType::unsigned32, "017");
+  EXPECT_EQ(parsed.bits(), 15U);
+  EXPECT_EQ(findings(parsed.diagnostics), warning_of("number-spelling"));
+  EXPECT_EQ(Parsed(DataType::integer16, "-020").number(), -16);
+}
+
+TEST(IntegerValue, WithAnHBehindItIsHexadecimalAndSaysSo) {
+  for (const char* text : {"80h", "0000 0080h", "080H"}) {
+    const Parsed parsed(DataType::unsigned32, text);
+    EXPECT_EQ(parsed.bits(), 0x80U) << text;
+    EXPECT_EQ(findings(parsed.diagnostics), warning_of("number-spelling")) << text;
+  }
+  for (const char* text : {"h", "beach", "80h or 90h", "CAN-ID: 80h"}) {
+    EXPECT_EQ(findings(Parsed(DataType::unsigned32, text).diagnostics), error_of("number-format")) << text;
+  }
 }
 
 TEST(IntegerValue, InDecimalOverTheHighestIsTakenForATwosComplementWithAWarning) {
@@ -275,6 +291,14 @@ TEST(RealValue, InHexadecimalIsItsPattern) {
   EXPECT_EQ(findings(Parsed(DataType::real32, "0x13F800000").diagnostics), error_of("number-range"));
 }
 
+TEST(RealValue, WithACSuffixIsReadWithAWarning) {
+  for (const char* text : {"0.5f", ".5F", "0.5L"}) {
+    const Parsed parsed(DataType::real32, text);
+    EXPECT_EQ(parsed.bits(), std::bit_cast<std::uint32_t>(0.5F)) << text;
+    EXPECT_EQ(findings(parsed.diagnostics), warning_of("number-spelling")) << text;
+  }
+}
+
 TEST(RealValue, BeyondItsTypeIsAnError) {
   EXPECT_EQ(findings(Parsed(DataType::real32, "1e39").diagnostics), error_of("number-range"));
   EXPECT_EQ(Parsed(DataType::real64, "1e400").diagnostics.errors(), 1U);
@@ -282,7 +306,7 @@ TEST(RealValue, BeyondItsTypeIsAnError) {
 }
 
 TEST(RealValue, ThatIsNoNumberIsAnError) {
-  for (const char* text : {"fast", "1,5", "1.5f", "0xfoo"}) {
+  for (const char* text : {"fast", "1,5", "1.5ff", "f", "0xfoo"}) {
     EXPECT_EQ(findings(Parsed(DataType::real32, text).diagnostics), error_of("number-format")) << text;
   }
 }
@@ -307,6 +331,15 @@ TEST(StringValue, IsTheTextAsItStands) {
   EXPECT_EQ(Parsed(DataType::unicode_string, "größe").value->bytes, "größe");
 }
 
+TEST(StringValue, KeepsQuotationMarksAndWarnsOfThem) {
+  for (const DataType type : {DataType::visible_string, DataType::unicode_string}) {
+    const Parsed parsed(type, "\"IO\"");
+    EXPECT_EQ(parsed.value->bytes, "\"IO\"");
+    EXPECT_EQ(findings(parsed.diagnostics), warning_of("string-quotes"));
+  }
+  EXPECT_EQ(findings(Parsed(DataType::visible_string, "5\" pipe").diagnostics), none);
+}
+
 TEST(StringValue, OfOctetsIsPairsOfHexadecimalDigits) {
   EXPECT_EQ(Parsed(DataType::octet_string, "01 aF").value->bytes, "\x01\xAF");
   EXPECT_EQ(Parsed(DataType::octet_string, "0x01AF").value->bytes, "\x01\xAF");
@@ -325,6 +358,50 @@ TEST(DomainValue, IsLeftOutWithAWarning) {
   EXPECT_FALSE(parsed.value);
   EXPECT_EQ(findings(parsed.diagnostics), warning_of("domain-value"));
   EXPECT_EQ(findings(Parsed(DataType::domain, "").diagnostics), none);
+}
+
+// ---- limits ----
+
+/// LowLimit or HighLimit of an entry of this type.
+struct ParsedLimit {
+  ParsedLimit(Limit which, DataType data_type, std::string text)
+      : source("value.eds", "[2000]\nDefaultValue=" + text + "\n"),
+        value(parse_limit({source.line(2).substr(std::string_view{"DefaultValue="}.size()), {&source, 2, 14}, true},
+                          which, *canopen::find_data_type(static_cast<std::uint32_t>(data_type)), std::nullopt,
+                          diagnostics)) {}
+
+  SourceFile source;
+  Diagnostics diagnostics;
+  std::optional<Value> value;
+};
+
+TEST(LimitValue, MayBeATwosComplement) {
+  const ParsedLimit low(Limit::low, DataType::integer32, "0x80000000");
+  EXPECT_EQ(static_cast<std::int64_t>(low.value->bits), -2147483648);
+  const ParsedLimit high(Limit::high, DataType::integer8, "0xFF");
+  EXPECT_EQ(static_cast<std::int64_t>(high.value->bits), -1);
+  EXPECT_EQ(findings(low.diagnostics), none);
+  EXPECT_EQ(findings(high.diagnostics), none);
+}
+
+TEST(LimitValue, BeyondItsTypeLimitsNothing) {
+  struct Row {
+    Limit which;
+    DataType type;
+    const char* text;
+  };
+  for (const Row& row : {Row{Limit::low, DataType::unsigned16, "-4096"}, Row{Limit::high, DataType::unsigned8, "0xFFFF"},
+                         Row{Limit::high, DataType::integer32, "4294967295"}, Row{Limit::low, DataType::integer8, "-129"},
+                         Row{Limit::high, DataType::real32, "1e300"}, Row{Limit::low, DataType::real32, "-1e300"}}) {
+    const ParsedLimit parsed(row.which, row.type, row.text);
+    EXPECT_FALSE(parsed.value) << row.text;
+    EXPECT_EQ(findings(parsed.diagnostics), warning_of("number-range")) << row.text;
+  }
+}
+
+TEST(LimitValue, ThatNoValueCanMeetIsAnError) {
+  EXPECT_EQ(findings(ParsedLimit(Limit::low, DataType::unsigned8, "300").diagnostics), error_of("number-range"));
+  EXPECT_EQ(findings(ParsedLimit(Limit::high, DataType::unsigned8, "-1").diagnostics), error_of("number-range"));
 }
 
 }  // namespace

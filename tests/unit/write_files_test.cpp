@@ -73,7 +73,8 @@ TEST_F(WriteFiles, LeavesTheTimeStampOfAnUnchangedFile) {
 TEST_F(WriteFiles, ChangesNothingWhenOneTargetIsAFolder) {
   ASSERT_EQ(write_files({{path("one.hpp"), "before"}}), "");
   fs::create_directories(path("two.hpp"));
-  const std::string problem = write_files({{path("one.hpp"), "after"}, {path("two.hpp"), "2"}, {path("three.hpp"), "3"}});
+  const std::string problem =
+      write_files({{path("one.hpp"), "after"}, {path("two.hpp"), "2"}, {path("three.hpp"), "3"}});
   EXPECT_NE(problem.find("two.hpp"), std::string::npos) << problem;
   EXPECT_EQ(content_of(path("one.hpp")), "before");
   EXPECT_EQ(files(), Names{"one.hpp"});

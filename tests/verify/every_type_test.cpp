@@ -97,7 +97,8 @@ TEST(EveryType, HasNoOtherEntries) {
   for (unsigned index = 0; index <= 0xFFFF; ++index) {
     if (every_type::dictionary.find(static_cast<std::uint16_t>(index), 0) == canopen::Dictionary::no_object) continue;
     for (unsigned sub_index = 0; sub_index <= 0xFF; ++sub_index) {
-      entries += every_type::dictionary.has(static_cast<std::uint16_t>(index), static_cast<std::uint8_t>(sub_index)) ? 1u : 0u;
+      entries +=
+          every_type::dictionary.has(static_cast<std::uint16_t>(index), static_cast<std::uint8_t>(sub_index)) ? 1u : 0u;
     }
   }
   EXPECT_EQ(entries, std::size(expected_values));
@@ -328,9 +329,12 @@ TEST(Limits, AreEnforced) {
   Device device;
   for (const LimitRow& row : rows) {
     const std::string where = label(row.index, row.sub_index);
-    for (const Bytes& bytes : row.fine) EXPECT_EQ(device.check(row.index, row.sub_index, bytes), canopen::ok) << where << " " << hex(bytes);
-    for (const Bytes& bytes : row.too_low) EXPECT_EQ(device.check(row.index, row.sub_index, bytes), AbortCode::value_too_low) << where << " " << hex(bytes);
-    for (const Bytes& bytes : row.too_high) EXPECT_EQ(device.check(row.index, row.sub_index, bytes), AbortCode::value_too_high) << where << " " << hex(bytes);
+    for (const Bytes& bytes : row.fine)
+      EXPECT_EQ(device.check(row.index, row.sub_index, bytes), canopen::ok) << where << " " << hex(bytes);
+    for (const Bytes& bytes : row.too_low)
+      EXPECT_EQ(device.check(row.index, row.sub_index, bytes), AbortCode::value_too_low) << where << " " << hex(bytes);
+    for (const Bytes& bytes : row.too_high)
+      EXPECT_EQ(device.check(row.index, row.sub_index, bytes), AbortCode::value_too_high) << where << " " << hex(bytes);
   }
 }
 

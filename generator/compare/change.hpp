@@ -1,0 +1,95 @@
+/// What may have changed between two versions of a device, and whom that breaks: a table.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "diagnostics/diagnostics.hpp"
+
+namespace edsc {
+
+enum class ChangeId : std::uint8_t {
+  identity,
+  revision_major,
+  revision_minor,
+  device_name,
+  node_id,
+  dummy_removed,
+  dummy_added,
+  object_removed,
+  object_added,
+  object_type,
+  entry_removed,
+  entry_added,
+  identifier,
+  name,
+  data_type,
+  access_reduced,
+  access_extended,
+  access_other,
+  mapping_reduced,
+  mapping_extended,
+  limit_narrowed,
+  limit_widened,
+  limit_read_only,
+  default_value,
+  service_cob_id,
+  heartbeat_slowed,
+  pdo_removed,
+  pdo_added,
+  pdo_disabled,
+  pdo_enabled,
+  pdo_cob_id,
+  pdo_transmission,
+  pdo_timing,
+  pdo_layout,
+  pdo_layout_extended,
+};
+
+struct ChangeKind {
+  ChangeId id;
+  std::string_view name;    ///< as `edsc diff` prints it; stable
+  bool breaks_master;       ///< what accesses the device by SDO, or is compiled against its generated code
+  bool breaks_pdo;          ///< what sends its RPDOs or receives its TPDOs
+  std::string_view what;    ///< is it that changed
+  std::string_view reason;  ///< why it breaks somebody, or why not
+};
+
+[[nodiscard]] std::span<const ChangeKind> all_change_kinds();
+[[nodiscard]] const ChangeKind& kind_of(ChangeId id);
+
+/// One difference. Positions are those of the whole file where one side has nothing to show.
+struct Change {
+  ChangeId id;
+  std::string entry;      ///< `6040h:00`, `1018h`, `TPDO 1` or `device`
+  std::string name;       ///< of the entry; may be empty
+  std::string old_value;  ///< empty where there is none
+  std::string new_value;
+  Position old_position;
+  Position new_position;
+  bool breaks_master = false;
+  bool breaks_pdo = false;
+
+  [[nodiscard]] bool is_breaking() const { return breaks_master || breaks_pdo; }
+};
+
+/// What changed, from what to what, and what that means, in one sentence.
+[[nodiscard]] std::string message_of(const Change& change);
+
+/// Collects changes; who is broken comes from the table, unless the place says otherwise.
+class Changes {
+ public:
+  Change& add(ChangeId id, std::string entry, std::string name, const Position& old_position,
+              const Position& new_position);
+
+  [[nodiscard]] const std::vector<Change>& all() const { return all_; }
+  [[nodiscard]] std::size_t breaking() const;
+
+ private:
+  std::vector<Change> all_;
+};
+
+}  // namespace edsc

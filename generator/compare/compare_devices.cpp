@@ -1,0 +1,147 @@
+#include "compare/compare_devices.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "compare/compare_entries.hpp"
+#include "compare/compare_pdos.hpp"
+
+namespace edsc {
+namespace {
+
+using EntryNumber = std::pair<std::uint16_t, std::uint8_t>;
+
+/// Walks two ascending lists side by side: `one_side(before, after)` gets null for what the other list lacks.
+template <typename List, typename Key, typename Visit>
+void walk(const List& before, const List& after, Key key, Visit visit) {
+  auto a = before.begin();
+  auto b = after.begin();
+  while (a != before.end() || b != after.end()) {
+    const bool take_a = b == after.end() || (a != before.end() && key(*a) <= key(*b));
+    const bool take_b = a == before.end() || (b != after.end() && key(*b) <= key(*a));
+    visit(take_a ? &*a : nullptr, take_b ? &*b : nullptr);
+    if (take_a) ++a;
+    if (take_b) ++b;
+  }
+}
+
+class DeviceComparison {
+ public:
+  DeviceComparison(const Device& before, const Device& after) : before_{before}, after_{after} {
+    for (const Pdo& pdo : before.pdos) {
+      if (pdo.direction != PdoDirection::receive) continue;
+      for (const PdoEntry& entry : pdo.entries) in_rpdo_.emplace(entry.index, entry.sub_index);
+    }
+  }
+
+  Changes compare() {
+    compare_identity();
+    compare_dummies();
+    walk(
+        before_.objects, after_.objects, [](const Object& object) { return object.index; },
+        [&](const Object* a, const Object* b) { compare_objects(a, b); });
+    compare_pdos(before_, after_, changes_);
+    return std::move(changes_);
+  }
+
+ private:
+  Change& add_device_change(ChangeId id, std::string old_value, std::string new_value) {
+    Change& change = changes_.add(id, "device", "", {before_.source}, {after_.source});
+    change.old_value = std::move(old_value);
+    change.new_value = std::move(new_value);
+    return change;
+  }
+
+  void compare_identity() {
+    const auto compare = [&](ChangeId id, std::string_view what, const auto& old_value, const auto& new_value,
+                             std::string_view format) {
+      if (old_value == new_value) return;
+      const auto text = [&](const auto& value) { return fmt::format(fmt::runtime(format), value); };
+      add_device_change(id, fmt::format("{} {}", what, text(old_value)), text(new_value));
+    };
+    compare(ChangeId::device_name, "vendor", before_.vendor_name, after_.vendor_name, "\"{}\"");
+    compare(ChangeId::device_name, "product", before_.product_name, after_.product_name, "\"{}\"");
+    compare(ChangeId::identity, "VendorNumber", before_.vendor_number, after_.vendor_number, "0x{:08X}");
+    compare(ChangeId::identity, "ProductNumber", before_.product_number, after_.product_number, "0x{:08X}");
+    const bool major = before_.revision_number >> 16 != after_.revision_number >> 16;
+    compare(major ? ChangeId::revision_major : ChangeId::revision_minor, "RevisionNumber", before_.revision_number,
+            after_.revision_number, "0x{:08X}");
+    if (before_.node_id != after_.node_id) {
+      const auto text = [](const auto& id) { return id ? fmt::format("{}", *id) : std::string{"none"}; };
+      add_device_change(ChangeId::node_id, text(before_.node_id), text(after_.node_id));
+    }
+  }
+
+  void compare_dummies() {
+    const auto compare = [&](const Device& one, const Device& other, ChangeId id) {
+      for (const std::uint16_t dummy : one.dummies) {
+        if (std::ranges::find(other.dummies, dummy) == other.dummies.end()) {
+          const canopen::DataTypeRow* const type = canopen::find_data_type(dummy);
+          add_device_change(id, type != nullptr ? std::string{type->name} : index_label(dummy), "");
+        }
+      }
+    };
+    compare(before_, after_, ChangeId::dummy_removed);
+    compare(after_, before_, ChangeId::dummy_added);
+  }
+
+  void compare_objects(const Object* a, const Object* b) {
+    if (a == nullptr || b == nullptr) {
+      const Object& there = a != nullptr ? *a : *b;
+      changes_.add(a != nullptr ? ChangeId::object_removed : ChangeId::object_added, index_label(there.index),
+                   there.name, a != nullptr ? a->position : Position{before_.source},
+                   b != nullptr ? b->position : Position{after_.source});
+      return;
+    }
+    compare_names(index_label(b->index), *a, *b);
+    if (a->type != b->type) {
+      Change& change = changes_.add(ChangeId::object_type, index_label(b->index), b->name, a->position, b->position);
+      change.old_value = to_string(a->type);
+      change.new_value = to_string(b->type);
+    }
+    const bool has_sub_indices = a->has_sub_indices() && b->has_sub_indices();
+    walk(
+        a->entries, b->entries, [](const Entry& entry) { return entry.sub_index; },
+        [&](const Entry* old_entry, const Entry* new_entry) {
+          compare_entry(*a, *b, old_entry, new_entry, has_sub_indices);
+        });
+  }
+
+  void compare_entry(const Object& old_object, const Object& new_object, const Entry* a, const Entry* b,
+                     bool has_sub_indices) {
+    if (a == nullptr || b == nullptr) {
+      const Entry& there = a != nullptr ? *a : *b;
+      changes_.add(a != nullptr ? ChangeId::entry_removed : ChangeId::entry_added,
+                   entry_label(there.index, there.sub_index), there.name,
+                   a != nullptr ? a->position : old_object.position, b != nullptr ? b->position : new_object.position);
+      return;
+    }
+    if (has_sub_indices) compare_names(entry_label(b->index, b->sub_index), *a, *b);
+    compare_entries(*a, *b, in_rpdo_.contains({a->index, a->sub_index}), changes_);
+  }
+
+  /// Of objects or entries.
+  template <typename Named>
+  void compare_names(std::string label, const Named& a, const Named& b) {
+    if (a.identifier == b.identifier && a.name == b.name) return;
+    const bool compiles = a.identifier == b.identifier;
+    Change& change = changes_.add(compiles ? ChangeId::name : ChangeId::identifier, std::move(label), b.name,
+                                  a.position, b.position);
+    change.old_value = compiles ? fmt::format("\"{}\"", a.name) : a.identifier;
+    change.new_value = compiles ? fmt::format("\"{}\"", b.name) : b.identifier;
+  }
+
+  const Device& before_;
+  const Device& after_;
+  std::set<EntryNumber> in_rpdo_;  ///< what RPDOs carry by default, before
+  Changes changes_;
+};
+
+}  // namespace
+
+Changes compare_devices(const Device& before, const Device& after) { return DeviceComparison{before, after}.compare(); }
+
+}  // namespace edsc

@@ -1,0 +1,193 @@
+#include "device/entry_resolver.hpp"
+
+#include <fmt/format.h>
+
+#include "device/resolve_information.hpp"
+#include "device/value.hpp"
+#include "diagnostics/quote.hpp"
+#include "eds/number.hpp"
+#include "text/ini.hpp"
+
+namespace edsc {
+namespace {
+
+using canopen::Access;
+using canopen::DataClass;
+using canopen::DataType;
+using canopen::DataTypeRow;
+
+/// Types that go without saying. The first row that fits counts.
+struct ImpliedType {
+  std::uint16_t first, last;  ///< indices
+  bool only_sub_index_0;
+  DataType type;
+  std::string_view what;
+};
+
+constexpr ImpliedType implied_types[] = {
+    {0x0000, 0xFFFF, true, DataType::unsigned8, "sub-index 0"},
+    {0x1600, 0x17FF, false, DataType::unsigned32, "a mapping entry"},
+    {0x1A00, 0x1BFF, false, DataType::unsigned32, "a mapping entry"},
+};
+
+bool has_limits(const DataTypeRow& type) {
+  return type.kind == DataClass::signed_integer || type.kind == DataClass::unsigned_integer ||
+         type.kind == DataClass::real;
+}
+
+}  // namespace
+
+std::optional<Entry> EntryResolver::resolve(const EntryDescription& description, const EntryPlace& place,
+                                            std::string_view name) {
+  if (place.in_object_with_sub_indices && place.sub_index != 0) check_sub_object_type(description);
+  const ValueType type = data_type(description, place);
+  if (type.row == nullptr) return std::nullopt;
+  std::optional<Entry> result{std::in_place};
+  Entry& entry = *result;
+  entry.index = place.index;
+  entry.sub_index = place.sub_index;
+  entry.name = name;
+  entry.position = description.position;
+  entry.access_position = description.access_type.present ? description.access_type.position : description.position;
+  entry.mapping_position = description.pdo_mapping.present ? description.pdo_mapping.position : description.position;
+  entry.type = type.row;
+  entry.access = access(description);
+  entry.pdo_mapping = pdo_mapping(description);
+  entry.obj_flags = obj_flags(description);
+  entry.denotation = description.denotation.text;
+  entry.param_refd = description.param_refd.text;
+  entry.unit = description.unit.text;
+  entry.factor = description.factor.text;
+  entry.description = description.description.text;
+  resolve_default(description, entry);
+  if (has_limits(*entry.type)) resolve_limits(description, type, entry);
+  resolve_files(description, entry);
+  return result;
+}
+
+std::uint32_t EntryResolver::obj_flags(const EntryDescription& description) {
+  return read_number(description.obj_flags, "object-flags", diagnostics_).value_or(0);
+}
+
+void EntryResolver::check_sub_object_type(const EntryDescription& description) {
+  const std::string_view text = strip_inline_comment(description.object_type.text);
+  if (text.empty()) return;
+  const auto type = parse_unsigned(text);
+  if (type == static_cast<std::uint64_t>(ObjectType::var) || type == static_cast<std::uint64_t>(ObjectType::domain)) {
+    return;
+  }
+  diagnostics_.warning("object-type", description.object_type.position,
+                       "a sub-object is a VAR or a DOMAIN: taken for one");
+}
+
+ValueType EntryResolver::data_type(const EntryDescription& description, const EntryPlace& place) {
+  const Field& field = description.data_type;
+  const std::string_view text = strip_inline_comment(field.text);
+  if (!field.present || text.empty()) return missing_data_type(description, place);
+  const auto code = parse_unsigned(text);
+  if (!code) {
+    diagnostics_.error("data-type", field.position, fmt::format("DataType {} is not a number", quote(text)));
+    return {};
+  }
+  const ValueType type = types_.find(*code);
+  if (type.row != nullptr) return type;
+  if (const ValueType member = types_.find_member(*code, place.sub_index);
+      place.in_object_with_sub_indices && member.row != nullptr) {
+    diagnostics_.warning("complex-data-type", field.position,
+                         fmt::format("DataType 0x{:04X} is a RECORD's, not a value's; its sub-index {} is {}", *code,
+                                     place.sub_index, member.row->name));
+    return member;
+  }
+  if (types_.is_complex(*code)) {
+    diagnostics_.warning("complex-data-type", field.position,
+                         fmt::format("DataType 0x{:04X} is a RECORD's, not a value's; the entry is left out", *code));
+  } else {
+    diagnostics_.error(
+        "data-type", field.position,
+        fmt::format("DataType 0x{:04X} is no basic data type of CiA 301, and no DEFTYPE of this file", *code));
+  }
+  return {};
+}
+
+ValueType EntryResolver::missing_data_type(const EntryDescription& description, const EntryPlace& place) {
+  const auto object_type = parse_unsigned(strip_inline_comment(description.object_type.text));
+  if (object_type == static_cast<std::uint64_t>(ObjectType::domain)) {
+    diagnostics_.warning("data-type", description.position, "no DataType: a DOMAIN by its ObjectType");
+    return types_.find(static_cast<std::uint64_t>(DataType::domain));
+  }
+  if (place.record_type) {
+    if (const ValueType member = types_.find_member(*place.record_type, place.sub_index); member.row != nullptr) {
+      return member;
+    }
+  }
+  for (const ImpliedType& row : implied_types) {
+    const bool fits = place.in_object_with_sub_indices && place.index >= row.first && place.index <= row.last &&
+                      (place.sub_index == 0 || !row.only_sub_index_0);
+    if (!fits) continue;
+    const ValueType type = types_.find(static_cast<std::uint64_t>(row.type));
+    diagnostics_.warning("data-type", description.position,
+                         fmt::format("{} without DataType: taken for an {}", row.what, type.row->name));
+    return type;
+  }
+  diagnostics_.error("data-type", description.position, "no DataType");
+  return {};
+}
+
+Access EntryResolver::access(const EntryDescription& description) {
+  const Field& field = description.access_type;
+  const std::string_view text = strip_inline_comment(field.text);
+  for (const canopen::AccessRow& row : canopen::access_rows) {
+    if (equal_ignoring_case(text, row.name)) return row.access;
+  }
+  if (!field.present || text.empty()) {
+    diagnostics_.warning("access-type", description.position, "no AccessType: taken for rw");
+  } else {
+    diagnostics_.error("access-type", field.position,
+                       fmt::format("AccessType {} is none of ro, wo, rw, rwr, rww, const", quote(text)));
+  }
+  return Access::rw;
+}
+
+bool EntryResolver::pdo_mapping(const EntryDescription& description) {
+  const Field& field = description.pdo_mapping;
+  const std::string_view text = strip_inline_comment(field.text);
+  if (!field.present || text.empty()) return false;
+  const auto number = parse_unsigned(text);
+  if (number && *number <= 1) return *number == 1;
+  diagnostics_.warning("pdo-mapping", field.position,
+                       fmt::format("PDOMapping is 0 or 1, not {}; {} is taken", quote(text), number ? 1 : 0));
+  return number.has_value();
+}
+
+/// CiA 306-1, 5: a DCF's ParameterValue is what the device is configured with. In an EDS it says nothing, even where
+/// there is no DefaultValue.
+void EntryResolver::resolve_default(const EntryDescription& description, Entry& entry) {
+  const Field& configured = description.parameter_value;
+  const bool is_configured = configured.present && !configured.empty();
+  if (is_configured && !is_dcf_) {
+    diagnostics_.warning("parameter-value", configured.position,
+                         "ParameterValue belongs into a DCF; in an EDS the DefaultValue counts");
+  }
+  entry.default_value = parse_value(is_configured && is_dcf_ ? configured : description.default_value, *entry.type,
+                                    node_id_, diagnostics_);
+}
+
+void EntryResolver::resolve_limits(const EntryDescription& description, const ValueType& type, Entry& entry) {
+  entry.low_limit = parse_limit(description.low_limit, Limit::low, *entry.type, node_id_, diagnostics_);
+  entry.high_limit = parse_limit(description.high_limit, Limit::high, *entry.type, node_id_, diagnostics_);
+  if (!entry.low_limit && type.low_limit != nullptr) entry.low_limit = *type.low_limit;
+  if (!entry.high_limit && type.high_limit != nullptr) entry.high_limit = *type.high_limit;
+}
+
+void EntryResolver::resolve_files(const EntryDescription& description, Entry& entry) {
+  entry.upload_file = description.upload_file.text;
+  entry.download_file = description.download_file.text;
+  if (entry.type->kind == DataClass::domain) return;
+  for (const Field* field : {&description.upload_file, &description.download_file}) {
+    if (field->present && !field->empty()) {
+      diagnostics_.warning("domain-value", field->position, "only the value of a DOMAIN stands in a file");
+    }
+  }
+}
+
+}  // namespace edsc

@@ -1,0 +1,48 @@
+/// A section of the data sheet -> an entry of the dictionary: type, access, mapping, values.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "device/device.hpp"
+#include "device/type_table.hpp"
+#include "eds/data_sheet.hpp"
+
+namespace edsc {
+
+struct EntryPlace {
+  std::uint16_t index = 0;
+  std::uint8_t sub_index = 0;
+  bool in_object_with_sub_indices = false;
+  std::optional<std::uint64_t> record_type = std::nullopt;  ///< DataType of the RECORD it stands in
+};
+
+class EntryResolver {
+ public:
+  EntryResolver(const TypeTable& types, bool is_dcf, std::optional<std::uint8_t> node_id, Diagnostics& diagnostics)
+      : types_{types}, is_dcf_{is_dcf}, node_id_{node_id}, diagnostics_{diagnostics} {}
+
+  /// Nothing when the entry has no type; that is reported.
+  [[nodiscard]] std::optional<Entry> resolve(const EntryDescription& description, const EntryPlace& place,
+                                             std::string_view name);
+
+  [[nodiscard]] std::uint32_t obj_flags(const EntryDescription& description);
+
+ private:
+  void check_sub_object_type(const EntryDescription& description);
+  ValueType data_type(const EntryDescription& description, const EntryPlace& place);
+  ValueType missing_data_type(const EntryDescription& description, const EntryPlace& place);
+  canopen::Access access(const EntryDescription& description);
+  bool pdo_mapping(const EntryDescription& description);
+  void resolve_default(const EntryDescription& description, Entry& entry);
+  void resolve_limits(const EntryDescription& description, const ValueType& type, Entry& entry);
+  void resolve_files(const EntryDescription& description, Entry& entry);
+
+  const TypeTable& types_;
+  bool is_dcf_;
+  std::optional<std::uint8_t> node_id_;
+  Diagnostics& diagnostics_;
+};
+
+}  // namespace edsc

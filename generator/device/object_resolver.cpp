@@ -1,0 +1,202 @@
+#include "device/object_resolver.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <deque>
+#include <span>
+#include <string>
+
+#include "device/compact_sub_objects.hpp"
+#include "diagnostics/quote.hpp"
+#include "eds/number.hpp"
+
+namespace edsc {
+namespace {
+
+using canopen::DataClass;
+using canopen::DataType;
+
+constexpr std::array object_types = {ObjectType::domain, ObjectType::deftype, ObjectType::defstruct,
+                                     ObjectType::var,    ObjectType::array,   ObjectType::record};
+
+std::optional<std::uint64_t> number(const Field& field) { return parse_unsigned(strip_inline_comment(field.text)); }
+
+bool is_mapping_parameter(std::uint16_t index) {
+  return (index >= 0x1600 && index <= 0x17FF) || (index >= 0x1A00 && index <= 0x1BFF);
+}
+
+Value number_value(std::uint64_t bits, const Position& position) {
+  Value value;
+  value.bits = bits;
+  value.position = position;
+  return value;
+}
+
+/// Sub-index 0 of an object whose data sheet forgot it.
+Entry count_entry(std::uint16_t index, const Position& position) {
+  Entry entry;
+  entry.index = index;
+  entry.name = "Highest sub-index supported";
+  entry.type = canopen::find_data_type(static_cast<std::uint32_t>(DataType::unsigned8));
+  entry.access = canopen::Access::constant;
+  entry.position = entry.access_position = entry.mapping_position = position;
+  return entry;
+}
+
+/// FFh tells the structure of an object and does not count (CiA 301, 7.4.4).
+std::uint8_t highest_sub_index(const Object& object) {
+  constexpr std::uint8_t structure = 0xFF;
+  const auto last = std::find_if(object.entries.rbegin(), object.entries.rend(),
+                                 [](const Entry& entry) { return entry.sub_index != structure; });
+  return last != object.entries.rend() ? last->sub_index : structure;
+}
+
+/// What sub-index 0 holds when the data sheet does not say: the highest sub-index, but no error in the pre-defined
+/// error field (CiA 301, 7.5.2.6), and as many objects as there are in a mapping (7.5.2.36).
+std::uint8_t implied_count(const Object& object) {
+  constexpr std::uint16_t pre_defined_error_field = 0x1003;
+  if (object.index == pre_defined_error_field) return 0;
+  if (!is_mapping_parameter(object.index)) return highest_sub_index(object);
+  std::uint8_t count = 0;
+  for (const Entry& entry : object.entries) {
+    const bool is_next = entry.sub_index == count + 1;
+    if (is_next && entry.default_value && entry.default_value->bits != 0) ++count;
+  }
+  return count;
+}
+
+}  // namespace
+
+std::optional<Object> ObjectResolver::resolve(const ObjectDescription& description) {
+  std::optional<Object> result{std::in_place};
+  Object& object = *result;
+  object.index = description.index;
+  object.position = description.position;
+  object.name = description.parameter_name.text;
+  object.denotation = description.denotation.text;
+  object.type = object_type(description);
+  if (object.name.empty()) {
+    diagnostics_.warning("parameter-name", description.position, "an object without ParameterName");
+  }
+  resolve_links(description, object);
+  if (object.has_sub_indices()) {
+    object.obj_flags = entries_.obj_flags(description);
+    resolve_sub_objects(description, object);
+  } else if (auto entry = entries_.resolve(description, {description.index, 0}, object.name)) {
+    object.obj_flags = entry->obj_flags;
+    object.entries.push_back(std::move(*entry));
+  }
+  if (object.entries.empty()) return std::nullopt;
+  return result;
+}
+
+ObjectType ObjectResolver::object_type(const ObjectDescription& description) {
+  const bool has_subs = !description.sub_objects.empty() || number(description.compact_sub_obj).value_or(0) > 0;
+  const ObjectType fallback = has_subs ? ObjectType::record : ObjectType::var;
+  const Field& field = description.object_type;
+  const std::string_view text = strip_inline_comment(field.text);
+  if (!field.present || text.empty()) {
+    if (has_subs) {
+      diagnostics_.warning("object-type", description.position, "no ObjectType, but sub-objects: taken for a RECORD");
+    }
+    return fallback;
+  }
+  const auto code = parse_unsigned(text);
+  const auto known =
+      std::ranges::find_if(object_types, [&](ObjectType type) { return code == static_cast<std::uint64_t>(type); });
+  if (known == object_types.end()) {
+    diagnostics_.warning(
+        "object-type", field.position,
+        fmt::format("{} is no object code of CiA 301: taken for a {}", quote(text), to_string(fallback)));
+    return fallback;
+  }
+  if (*known == ObjectType::deftype || *known == ObjectType::defstruct) {
+    diagnostics_.warning(
+        "object-type", field.position,
+        fmt::format("a {} has an index below 1000h: taken for a {}", to_string(*known), to_string(fallback)));
+    return fallback;
+  }
+  const bool is_simple = *known == ObjectType::var || *known == ObjectType::domain;
+  if (!is_simple || !has_subs) return *known;
+  diagnostics_.warning("object-type", field.position,
+                       fmt::format("a {} has no sub-objects: taken for a RECORD", to_string(*known)));
+  return ObjectType::record;
+}
+
+void ObjectResolver::resolve_links(const ObjectDescription& description, Object& object) {
+  for (const NumberedField& link : description.object_links) {
+    const auto index = number(link.field);
+    if (index && *index <= 0xFFFF) {
+      object.links.push_back(static_cast<std::uint16_t>(*index));
+    } else {
+      diagnostics_.warning("object-links", link.field.position,
+                           fmt::format("{} is not the index of an object", quote(link.field.text)));
+    }
+  }
+}
+
+void ObjectResolver::resolve_sub_objects(const ObjectDescription& description, Object& object) {
+  if (has_compact_form(description)) {
+    std::deque<std::string> texts;
+    for (const SubObjectDescription& sub : unfold_sub_objects(description, is_dcf_, texts, diagnostics_)) {
+      resolve_sub_object(sub, description, object);
+    }
+  } else {
+    object.entries.reserve(description.sub_objects.size());
+    for (const SubObjectDescription& sub : description.sub_objects) resolve_sub_object(sub, description, object);
+  }
+  if (object.entries.empty()) {
+    diagnostics_.warning(
+        "no-sub-objects", description.position,
+        fmt::format("{} {} has no sub-objects and is left out", to_string(object.type), index_label(object.index)));
+    return;
+  }
+  check_sub_number(description);
+  check_sub_indices(description);
+  supply_sub_index_0(description, object);
+}
+
+void ObjectResolver::resolve_sub_object(const SubObjectDescription& sub, const ObjectDescription& description,
+                                        Object& object) {
+  const EntryPlace place{description.index, sub.sub_index, true, number(description.data_type)};
+  if (auto entry = entries_.resolve(sub, place, sub.parameter_name.text)) object.entries.push_back(std::move(*entry));
+}
+
+void ObjectResolver::check_sub_number(const ObjectDescription& description) {
+  const Field& field = description.sub_number;
+  if (!field.present || number(description.compact_sub_obj).value_or(0) > 0) return;
+  if (number(field) == description.sub_objects.size()) return;
+  diagnostics_.warning("sub-number", field.position,
+                       fmt::format("SubNumber is {}, but {} sub-objects are described; those count",
+                                   strip_inline_comment(field.text), description.sub_objects.size()));
+}
+
+/// Sub-indices are hexadecimal (CiA 306-1, 4.6.2). Where 9 is followed by 10h, someone may have counted in decimal.
+void ObjectResolver::check_sub_indices(const ObjectDescription& description) {
+  for (std::size_t i = 1; i < description.sub_objects.size(); ++i) {
+    const SubObjectDescription& sub = description.sub_objects[i];
+    if (sub.sub_index != 0x10 || description.sub_objects[i - 1].sub_index != 0x09) continue;
+    diagnostics_.warning("sub-index-base", sub.position,
+                         "sub-indices are hexadecimal: this is 10h, sixteen; behind 9h, is ten meant?");
+  }
+}
+
+void ObjectResolver::supply_sub_index_0(const ObjectDescription& description, Object& object) {
+  if (object.entries.front().sub_index != 0) {
+    const std::uint8_t highest = highest_sub_index(object);
+    diagnostics_.warning(
+        "sub-index-0", description.position,
+        fmt::format("{} has no sub-index 0; one with the value {} is supplied", index_label(object.index), highest));
+    object.entries.insert(object.entries.begin(), count_entry(description.index, description.position));
+    object.entries.front().default_value = number_value(highest, description.position);
+    return;
+  }
+  Entry& first = object.entries.front();
+  if (!first.default_value && first.type->kind == DataClass::unsigned_integer && object.entries.size() > 1) {
+    first.default_value = number_value(implied_count(object), first.position);
+  }
+}
+
+}  // namespace edsc

@@ -1,0 +1,35 @@
+/// The sections of one index -> an object with its entries; compact forms are unfolded.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "device/device.hpp"
+#include "device/entry_resolver.hpp"
+#include "eds/data_sheet.hpp"
+
+namespace edsc {
+
+class ObjectResolver {
+ public:
+  ObjectResolver(EntryResolver& entries, bool is_dcf, Diagnostics& diagnostics)
+      : entries_{entries}, is_dcf_{is_dcf}, diagnostics_{diagnostics} {}
+
+  /// Nothing when no entry is left of it; that is reported.
+  [[nodiscard]] std::optional<Object> resolve(const ObjectDescription& description);
+
+ private:
+  ObjectType object_type(const ObjectDescription& description);
+  void resolve_sub_objects(const ObjectDescription& description, Object& object);
+  void resolve_sub_object(const SubObjectDescription& sub, const ObjectDescription& description, Object& object);
+  void resolve_links(const ObjectDescription& description, Object& object);
+  void check_sub_number(const ObjectDescription& description);
+  void check_sub_indices(const ObjectDescription& description);
+  void supply_sub_index_0(const ObjectDescription& description, Object& object);
+
+  EntryResolver& entries_;
+  bool is_dcf_;
+  Diagnostics& diagnostics_;
+};
+
+}  // namespace edsc

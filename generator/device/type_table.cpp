@@ -1,0 +1,183 @@
+#include "device/type_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "device/value.hpp"
+#include "diagnostics/quote.hpp"
+#include "eds/number.hpp"
+
+namespace edsc {
+namespace {
+
+using canopen::DataType;
+using canopen::DataTypeRow;
+
+/// Predefined complex data types (CiA 301, 7.4.7, table 44).
+constexpr std::uint64_t first_complex_type = 0x20;
+constexpr std::uint64_t last_complex_type = 0x3F;
+
+struct ComplexMember {
+  std::uint8_t type;
+  std::uint8_t first, last;  ///< sub-indices
+  DataType member;
+};
+
+constexpr ComplexMember complex_members[] = {
+    // PDO communication parameter
+    {0x20, 1, 1, DataType::unsigned32},
+    {0x20, 2, 2, DataType::unsigned8},
+    {0x20, 3, 3, DataType::unsigned16},
+    {0x20, 4, 4, DataType::unsigned8},
+    {0x20, 5, 5, DataType::unsigned16},
+    {0x20, 6, 6, DataType::unsigned8},
+    // PDO mapping parameter
+    {0x21, 1, 64, DataType::unsigned32},
+    // SDO parameter
+    {0x22, 1, 2, DataType::unsigned32},
+    {0x22, 3, 3, DataType::unsigned8},
+    // Identity
+    {0x23, 1, 4, DataType::unsigned32},
+};
+
+const DataTypeRow* basic_type(std::uint64_t code) {
+  return code > 0xFFFF ? nullptr : canopen::find_data_type(static_cast<std::uint32_t>(code));
+}
+
+const DataTypeRow* basic_type(DataType type) { return canopen::find_data_type(static_cast<std::uint32_t>(type)); }
+
+std::optional<std::uint64_t> number(const Field& field) { return parse_unsigned(strip_inline_comment(field.text)); }
+
+/// Objects are ascending by index.
+const ObjectDescription* find_description(const DataSheet& sheet, std::uint64_t index) {
+  const auto at = std::ranges::lower_bound(sheet.objects, index, {},
+                                           [](const ObjectDescription& object) { return std::uint64_t{object.index}; });
+  return at != sheet.objects.end() && at->index == index ? &*at : nullptr;
+}
+
+const SubObjectDescription* find_sub(const ObjectDescription& object, std::uint8_t sub_index) {
+  const auto at = std::ranges::find(object.sub_objects, sub_index, &SubObjectDescription::sub_index);
+  return at != object.sub_objects.end() ? &*at : nullptr;
+}
+
+class DefinitionReader {
+ public:
+  DefinitionReader(const DataSheet& sheet, std::optional<std::uint8_t> node_id, Diagnostics& diagnostics)
+      : sheet_{sheet}, node_id_{node_id}, diagnostics_{diagnostics} {}
+
+  TypeDefinition read(const ObjectDescription& object) {
+    TypeDefinition definition;
+    definition.index = object.index;
+    definition.name = object.parameter_name.text;
+    definition.position = object.position;
+    const auto object_type = number(object.object_type);
+    if (object_type == static_cast<std::uint64_t>(ObjectType::defstruct)) {
+      read_members(object, definition);
+    } else if (find_sub(object, 1) != nullptr) {
+      read_range(object, definition);
+    } else {
+      read_alias(object, definition);
+    }
+    return definition;
+  }
+
+ private:
+  /// DEFSTRUCT: each sub-index holds the index of a data type (CiA 301, 7.4.7).
+  void read_members(const ObjectDescription& object, TypeDefinition& definition) {
+    definition.kind = ObjectType::defstruct;
+    for (const SubObjectDescription& sub : object.sub_objects) {
+      if (sub.sub_index == 0) continue;
+      definition.members.resize(sub.sub_index);
+      const auto code = number(sub.default_value);
+      definition.members.back() = code ? follow(*code) : nullptr;
+      if (definition.members.back() == nullptr) report(sub.default_value, "is not the index of a data type");
+    }
+  }
+
+  /// A range as CANFestival writes it: a RECORD of the basic type's index, the lowest and the highest value.
+  void read_range(const ObjectDescription& object, TypeDefinition& definition) {
+    const auto code = number(find_sub(object, 1)->default_value);
+    definition.type = code ? follow(*code) : nullptr;
+    if (definition.type == nullptr)
+      return report(find_sub(object, 1)->default_value, "is not the index of a data type");
+    const SubObjectDescription* low = find_sub(object, 2);
+    const SubObjectDescription* high = find_sub(object, 3);
+    if (low != nullptr) definition.low_limit = limit(low->default_value, Limit::low, *definition.type);
+    if (high != nullptr) definition.high_limit = limit(high->default_value, Limit::high, *definition.type);
+  }
+
+  void read_alias(const ObjectDescription& object, TypeDefinition& definition) {
+    const auto code = number(object.data_type);
+    definition.type = code ? follow(*code) : nullptr;
+    if (definition.type == nullptr) return report(object.data_type, "is not the index of a data type");
+    definition.low_limit = limit(object.low_limit, Limit::low, *definition.type);
+    definition.high_limit = limit(object.high_limit, Limit::high, *definition.type);
+  }
+
+  /// From a type to the basic one that it stands for, through any DEFTYPEs between.
+  const DataTypeRow* follow(std::uint64_t code) {
+    constexpr int most_steps = 8;
+    for (int step = 0; step < most_steps; ++step) {
+      if (const DataTypeRow* row = basic_type(code)) return row;
+      const ObjectDescription* object = code < first_communication_index ? find_description(sheet_, code) : nullptr;
+      const auto next = object != nullptr ? number(object->data_type) : std::nullopt;
+      if (!next) return nullptr;
+      code = *next;
+    }
+    return nullptr;
+  }
+
+  std::optional<Value> limit(const Field& field, Limit which, const DataTypeRow& type) {
+    return parse_limit(field, which, type, node_id_, diagnostics_);
+  }
+
+  void report(const Field& field, std::string_view what) {
+    diagnostics_.warning("type-definition", field.position, fmt::format("{} {}", quote(field.text), what));
+  }
+
+  const DataSheet& sheet_;
+  std::optional<std::uint8_t> node_id_;
+  Diagnostics& diagnostics_;
+};
+
+}  // namespace
+
+TypeTable::TypeTable(const DataSheet& sheet, std::optional<std::uint8_t> node_id, Diagnostics& diagnostics) {
+  DefinitionReader reader{sheet, node_id, diagnostics};
+  for (const ObjectDescription& object : sheet.objects) {
+    if (object.index >= first_communication_index) break;
+    definitions_.push_back(reader.read(object));
+  }
+}
+
+const TypeDefinition* TypeTable::definition(std::uint64_t code) const {
+  const auto at = std::ranges::lower_bound(definitions_, code, {},
+                                           [](const TypeDefinition& type) { return std::uint64_t{type.index}; });
+  return at != definitions_.end() && at->index == code ? &*at : nullptr;
+}
+
+ValueType TypeTable::find(std::uint64_t code) const {
+  if (const DataTypeRow* row = basic_type(code)) return {row};
+  const TypeDefinition* own = definition(code);
+  if (own == nullptr || own->type == nullptr) return {};
+  return {own->type, own->low_limit ? &*own->low_limit : nullptr, own->high_limit ? &*own->high_limit : nullptr};
+}
+
+ValueType TypeTable::find_member(std::uint64_t code, std::uint8_t sub_index) const {
+  if (const TypeDefinition* own = definition(code)) {
+    const bool known = sub_index >= 1 && sub_index <= own->members.size();
+    return {known ? own->members[sub_index - 1U] : nullptr};
+  }
+  for (const ComplexMember& row : complex_members) {
+    if (row.type == code && sub_index >= row.first && sub_index <= row.last) return {basic_type(row.member)};
+  }
+  return {};
+}
+
+bool TypeTable::is_complex(std::uint64_t code) const {
+  const TypeDefinition* own = definition(code);
+  return own != nullptr ? own->kind == ObjectType::defstruct : code >= first_complex_type && code <= last_complex_type;
+}
+
+}  // namespace edsc

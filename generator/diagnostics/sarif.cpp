@@ -1,0 +1,96 @@
+#include "diagnostics/sarif.hpp"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+
+#include "diagnostics/place.hpp"
+#include "text/ascii.hpp"
+#include "text/source_file.hpp"
+
+namespace edsc {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+/// A path as a URI reference (RFC 3986): what is not unreserved is percent-encoded, slashes stay. A relative path stays
+/// relative.
+std::string uri_of(std::string_view path) {
+  constexpr std::string_view unreserved = "-._~/";
+  std::string uri = path.starts_with('/') ? "file://" : "";
+  for (const char c : path) {
+    if (is_letter(c) || is_digit(c) || unreserved.find(c) != std::string_view::npos) {
+      uri += c;
+    } else {
+      uri += fmt::format("%{:02X}", static_cast<unsigned>(static_cast<unsigned char>(c)));
+    }
+  }
+  return uri;
+}
+
+json location_of(const Position& position) {
+  const Place place = place_of(position);
+  return {{"physicalLocation",
+           {{"artifactLocation", {{"uri", uri_of(place.file)}}},
+            {"region",
+             {{"startLine", place.line}, {"startColumn", place.column}, {"endColumn", place.column + place.length}}}}}};
+}
+
+json related_locations(const std::vector<Note>& notes) {
+  json related = json::array();
+  for (const Note& note : notes) {
+    if (note.position.file == nullptr) continue;
+    json location = location_of(note.position);
+    location["message"] = {{"text", note.message}};
+    related.push_back(std::move(location));
+  }
+  return related;
+}
+
+}  // namespace
+
+SarifLog::SarifLog(std::string_view version, const std::vector<SarifRule>& rules) {
+  json descriptors = json::array();
+  for (const SarifRule& rule : rules) {
+    rule_index_.emplace(rule.id, rule_index_.size());
+    descriptors.push_back({{"id", rule.id},
+                           {"shortDescription", {{"text", rule.description}}},
+                           {"help", {{"text", rule.source}}},
+                           {"defaultConfiguration", {{"level", to_string(rule.level)}}}});
+  }
+  driver_ = {{"name", "edsc"}, {"version", version}, {"rules", std::move(descriptors)}};
+}
+
+void SarifLog::add(const Diagnostics& diagnostics) {
+  for (const Diagnostic& diagnostic : diagnostics.all()) {
+    json result = {{"ruleId", diagnostic.rule}};
+    if (const auto at = rule_index_.find(diagnostic.rule); at != rule_index_.end()) result["ruleIndex"] = at->second;
+    result["level"] = to_string(diagnostic.severity);
+    result["message"] = {{"text", diagnostic.message}};
+    if (diagnostic.position.file != nullptr) result["locations"] = {location_of(diagnostic.position)};
+    if (json related = related_locations(diagnostic.notes); !related.empty()) {
+      result["relatedLocations"] = std::move(related);
+    }
+    results_.push_back(std::move(result));
+  }
+  for (const Diagnostics::Suppressed& suppressed : diagnostics.suppressed()) {
+    json notification = {
+        {"level", "note"},
+        {"message", {{"text", fmt::format("{} more findings of {}", suppressed.count, suppressed.rule)}}},
+        {"associatedRule", {{"id", suppressed.rule}}}};
+    if (suppressed.file != nullptr) notification["locations"] = {location_of(Position{suppressed.file})};
+    notifications_.push_back(std::move(notification));
+  }
+}
+
+nlohmann::ordered_json SarifLog::document() const {
+  json run = {{"tool", {{"driver", driver_}}}, {"columnKind", "unicodeCodePoints"}};
+  if (!notifications_.empty()) {
+    run["invocations"] = {{{"executionSuccessful", true}, {"toolExecutionNotifications", notifications_}}};
+  }
+  run["results"] = results_;
+  return {{"$schema", "https://json.schemastore.org/sarif-2.1.0.json"}, {"version", "2.1.0"}, {"runs", {run}}};
+}
+
+}  // namespace edsc

@@ -1,0 +1,121 @@
+#include "format/document.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace edsc {
+namespace {
+
+/// Walks the remarks of a file beside its sections and entries.
+class DocumentReader {
+ public:
+  explicit DocumentReader(const IniFile& ini) : ini_(ini) {}
+
+  Document read() {
+    Document document;
+    if (!ini_.sections.empty()) {
+      document.head = take_head(ini_.sections.front().line);
+    }
+    document.sections.reserve(ini_.sections.size());
+    for (const IniSection& section : ini_.sections) {
+      document.sections.push_back(read_section(section));
+    }
+    document.tail = take(ini_.remarks.size());
+    return document;
+  }
+
+ private:
+  /// The remarks up to the last blank line before the first section: they are about the whole file.
+  Remarks take_head(std::uint32_t first_section) {
+    std::size_t end = count_up_to(first_section);
+    std::uint32_t line_behind = first_section;
+    while (end > 0 && ini_.remarks[end - 1].line + 1 >= line_behind) {
+      --end;
+      line_behind = ini_.remarks[end].line;
+    }
+    return take(end);
+  }
+
+  DocumentSection read_section(const IniSection& section) {
+    DocumentSection result;
+    result.remarks = take(count_up_to(section.line));
+    result.kind = read_section_name(section.name);
+    result.title = section.name;
+    result.entries.reserve(section.entries.size());
+    for (const IniEntry& entry : section.entries) {
+      result.entries.push_back({take(count_up_to(entry.line)), std::string{entry.key}, std::string{entry.value}});
+    }
+    return result;
+  }
+
+  /// How many remarks stand before this line, or behind the section's name in it.
+  [[nodiscard]] std::size_t count_up_to(std::uint32_t line) const {
+    std::size_t count = taken_;
+    while (count < ini_.remarks.size() && ini_.remarks[count].line <= line) ++count;
+    return count;
+  }
+
+  Remarks take(std::size_t end) {
+    Remarks remarks;
+    for (; taken_ < end; ++taken_) remarks.push_back(remark_line(ini_.remarks[taken_].text));
+    return remarks;
+  }
+
+  const IniFile& ini_;
+  std::size_t taken_ = 0;
+};
+
+class DocumentWriter {
+ public:
+  std::string write(const Document& document) {
+    put(document.head);
+    for (const DocumentSection& section : document.sections) {
+      separate();
+      put(section.remarks);
+      put("[", section.title, "]");
+      for (const DocumentEntry& entry : section.entries) {
+        put(entry.remarks);
+        put(entry.key, "=", entry.value);
+      }
+    }
+    if (!document.tail.empty()) {
+      separate();
+      put(document.tail);
+    }
+    return std::move(text_);
+  }
+
+ private:
+  void separate() {
+    if (!text_.empty()) text_ += '\n';
+  }
+
+  void put(std::string_view a, std::string_view b, std::string_view c) {
+    text_.append(a).append(b).append(c);
+    text_ += '\n';
+  }
+
+  void put(const Remarks& remarks) {
+    for (const std::string& remark : remarks) put(remark, {}, {});
+  }
+
+  std::string text_;
+};
+
+}  // namespace
+
+Document document_of(const IniFile& ini) { return DocumentReader(ini).read(); }
+
+std::string to_text(const Document& document) { return DocumentWriter().write(document); }
+
+std::string remark_line(std::string_view text) {
+  if (text.starts_with(';')) return std::string{text};
+  if (text.starts_with('#')) return fmt::format(";{}", text.substr(1));
+  return fmt::format("; {}", text);
+}
+
+void append(Remarks& remarks, const Remarks& more) { remarks.insert(remarks.end(), more.begin(), more.end()); }
+
+}  // namespace edsc

@@ -1,0 +1,156 @@
+#include "format/make_dcf.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "device/value.hpp"
+#include "eds/number.hpp"
+#include "format/key_table.hpp"
+#include "format/number_spelling.hpp"
+#include "format/section_order.hpp"
+
+namespace edsc {
+namespace {
+
+DocumentEntry* find_entry(DocumentSection& section, std::string_view key) {
+  const auto at = std::ranges::find(section.entries, key, &DocumentEntry::key);
+  return at != section.entries.end() ? &*at : nullptr;
+}
+
+/// Sets a key's value; a new key goes to the place that CiA 306 has for it.
+void set(DocumentSection& section, std::string_view key, std::string value) {
+  if (DocumentEntry* const entry = find_entry(section, key)) {
+    entry->value = std::move(value);
+    return;
+  }
+  const std::uint32_t order = spell_key(section.kind.kind, key).order;
+  const auto behind = std::ranges::find_if(section.entries, [&](const DocumentEntry& entry) {
+    return spell_key(section.kind.kind, entry.key).order > order;
+  });
+  section.entries.insert(behind, {{}, std::string{key}, std::move(value)});
+}
+
+/// Its comments go to what stands behind it, or to the section.
+void remove(DocumentSection& section, std::string_view key) {
+  DocumentEntry* const entry = find_entry(section, key);
+  if (entry == nullptr) return;
+  const auto at = section.entries.begin() + (entry - section.entries.data());
+  append(std::next(at) != section.entries.end() ? std::next(at)->remarks : section.remarks, entry->remarks);
+  section.entries.erase(at);
+}
+
+class DcfMaker {
+ public:
+  DcfMaker(Document& document, const DataSheet& sheet, const Device& device)
+      : document_(document), sheet_(sheet), device_(device) {}
+
+  void make() {
+    commission();
+    for (DocumentSection& section : document_.sections) {
+      if (section.kind.kind == SectionKind::file_info && !sheet_.is_dcf) set_last_eds(section);
+      if (section.kind.kind == SectionKind::object) configure_object(section);
+      if (section.kind.kind == SectionKind::sub_object) configure(section, section.kind.sub_index);
+      if (section.kind.kind == SectionKind::compact_values) configure_compact_values(section);
+    }
+  }
+
+ private:
+  void commission() {
+    DocumentSection& section = commissioning_section();
+    set(section, "NodeID", fmt::format("{}", device_.node_id.value_or(0)));
+    constexpr std::pair<std::string_view, std::string_view> defaults[] = {
+        {"NodeName", ""}, {"NetNumber", "0"}, {"NetworkName", ""}, {"CANopenManager", "0"}};
+    for (const auto& [key, value] : defaults) {
+      if (find_entry(section, key) == nullptr) set(section, key, std::string{value});
+    }
+    const std::string rate = only_baud_rate();
+    if (find_entry(section, "Baudrate") == nullptr && !rate.empty()) set(section, "Baudrate", rate);
+  }
+
+  DocumentSection& commissioning_section() {
+    constexpr SectionKind kind = SectionKind::device_commissioning;
+    for (DocumentSection& section : document_.sections) {
+      if (section.kind.kind == kind) return section;
+    }
+    const auto behind = std::ranges::find_if(document_.sections,
+                                             [](const DocumentSection& section) { return section.kind.kind > kind; });
+    DocumentSection added;
+    added.kind.kind = kind;
+    added.title = spell_title(added.kind, {});
+    return *document_.sections.insert(behind, std::move(added));
+  }
+
+  /// A device with one bit rate has that one; of several, none is more likely than another.
+  [[nodiscard]] std::string only_baud_rate() const {
+    std::string only;
+    for (const DeviceInfo::BaudRate& rate : sheet_.device_info.baud_rates) {
+      if (parse_unsigned(strip_inline_comment(rate.field.text)).value_or(0) == 0) continue;
+      if (!only.empty()) return {};
+      only = fmt::format("{}", rate.kbit_per_second);
+    }
+    return only;
+  }
+
+  void set_last_eds(DocumentSection& file_info) {
+    const DocumentEntry* const name = find_entry(file_info, "FileName");
+    if (name != nullptr) set(file_info, "LastEDS", std::string{name->value});
+  }
+
+  /// The section of a compact form describes many entries: it takes no value for one.
+  void configure_object(DocumentSection& section) {
+    const Object* const object = device_.find(section.kind.index);
+    if (object == nullptr || object->has_sub_indices()) {
+      drop_meaningless_value(section);
+      return;
+    }
+    configure(section, 0);
+  }
+
+  /// In an EDS a ParameterValue says nothing; in the DCF it would.
+  void drop_meaningless_value(DocumentSection& section) {
+    if (!sheet_.is_dcf) remove(section, "ParameterValue");
+  }
+
+  void configure(DocumentSection& section, std::uint8_t sub_index) {
+    drop_meaningless_value(section);
+    const Entry* const entry = device_.find(section.kind.index, sub_index);
+    if (entry == nullptr || !entry->default_value || !canopen::writable(entry->access)) return;
+    const DocumentEntry* source = find_entry(section, "ParameterValue");
+    if (source == nullptr || source->value.empty()) source = find_entry(section, "DefaultValue");
+    if (source == nullptr || source->value.empty()) return;
+    set(section, "ParameterValue", resolved(source->value, *entry));
+  }
+
+  void configure_compact_values(DocumentSection& section) {
+    for (DocumentEntry& value : section.entries) {
+      const KeySpelling key = spell_key(section.kind.kind, value.key);
+      if (!key.is_known || key.value != ValueKind::typed || key.number > 0xFF) continue;
+      const Entry* const entry = device_.find(section.kind.index, static_cast<std::uint8_t>(key.number));
+      if (entry != nullptr && canopen::writable(entry->access)) value.value = resolved(value.value, *entry);
+    }
+  }
+
+  /// A formula as the number that it gives for this node; other values as they are.
+  [[nodiscard]] std::string resolved(const std::string& value, const Entry& entry) const {
+    if (value.find('$') == std::string::npos || entry.type->kind == canopen::DataClass::string) return value;
+    Diagnostics ignored;
+    const auto number = parse_value({value, {}, true}, *entry.type, device_.node_id, ignored);
+    if (!number) return value;
+    const std::uint64_t mask = entry.type->bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << entry.type->bits) - 1;
+    return fmt::format("0x{:0{}X}", number->bits & mask, hex_digits_of(*entry.type));
+  }
+
+  Document& document_;
+  const DataSheet& sheet_;
+  const Device& device_;
+};
+
+}  // namespace
+
+void make_dcf(Document& document, const DataSheet& sheet, const Device& device) {
+  DcfMaker(document, sheet, device).make();
+}
+
+}  // namespace edsc

@@ -1,0 +1,130 @@
+#include "format/number_spelling.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <canopen/access.hpp>
+#include <charconv>
+#include <optional>
+
+#include "eds/number.hpp"
+#include "text/ascii.hpp"
+#include "text/ini.hpp"
+
+namespace edsc {
+namespace {
+
+using canopen::DataClass;
+
+constexpr std::string_view node_id_spellings[] = {"$NODEID", "$NODE_ID", "$MY_NODE_ID"};
+
+bool is_hexadecimal(std::string_view digits) { return digits.starts_with("0x") || digits.starts_with("0X"); }
+
+bool is_decimal(std::string_view text) { return !text.empty() && std::ranges::all_of(text, is_digit); }
+
+Spelling unchanged(std::string_view text) { return {std::string{text}, {}}; }
+
+/// What stands behind the value, from its `;` or `#` on.
+std::string_view inline_comment(std::string_view text) {
+  const std::size_t start = text.find_first_of(";#");
+  if (start == std::string_view::npos || trim(text.substr(start + 1)).empty()) return {};
+  return trim(text.substr(start));
+}
+
+std::optional<std::string> spell_magnitude(std::string_view digits, unsigned hex_digits) {
+  const auto number = parse_unsigned(digits);
+  if (!number) return std::nullopt;
+  if (digits.starts_with('+')) digits.remove_prefix(1);
+  if (is_hexadecimal(digits)) return fmt::format("0x{:0{}X}", *number, hex_digits);
+  if (digits.starts_with('0') && *number > 7) return fmt::format("0{:o}", *number);
+  return fmt::format("{}", *number);
+}
+
+/// `12LL`: C suffixes are let through by the reader of values.
+std::string_view without_suffix(std::string_view digits) {
+  while (digits.size() > 1 && std::string_view{"uUlL"}.find(digits.back()) != std::string_view::npos) {
+    digits.remove_suffix(1);
+  }
+  return digits;
+}
+
+/// `0089` begins like an octal number and is read as a decimal one.
+std::optional<std::string> spell_decimal(std::string_view digits) {
+  if (!is_decimal(digits)) return std::nullopt;
+  const std::size_t zeros = std::min(digits.find_first_not_of('0'), digits.size() - 1);
+  return std::string{digits.substr(zeros)};
+}
+
+std::optional<std::string> spell_integer(std::string_view text, unsigned hex_digits) {
+  const bool is_negative = text.starts_with('-');
+  const std::string_view digits = is_negative ? trim(text.substr(1)) : text;
+  auto magnitude = spell_magnitude(without_suffix(digits), hex_digits);
+  if (!magnitude) magnitude = spell_decimal(digits);
+  if (!magnitude) return std::nullopt;
+  return (is_negative ? "-" : "") + *magnitude;
+}
+
+/// The bit pattern in hexadecimal, or a decimal number as it stands.
+std::optional<std::string> spell_real(std::string_view text, unsigned hex_digits) {
+  if (is_hexadecimal(text)) return spell_magnitude(text, hex_digits);
+  const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;
+  double ignored = 0;
+  const auto result = std::from_chars(digits.data(), digits.data() + digits.size(), ignored);
+  if (result.ec != std::errc{} || result.ptr != digits.data() + digits.size()) return std::nullopt;
+  return std::string{digits};
+}
+
+bool is_node_id(std::string_view text) {
+  return std::ranges::any_of(node_id_spellings, [&](std::string_view word) { return equal_ignoring_case(text, word); });
+}
+
+std::optional<std::string> spell_formula(std::string_view text) {
+  const std::size_t plus = text.find('+');
+  std::string_view variable = trim(text.substr(0, plus));
+  std::string_view constant = plus == std::string_view::npos ? std::string_view{} : trim(text.substr(plus + 1));
+  if (!variable.starts_with('$')) std::swap(variable, constant);
+  if (!is_node_id(variable)) return std::nullopt;
+  if (plus == std::string_view::npos) return "$NODEID";
+  const auto number = spell_magnitude(without_suffix(constant), 1);
+  if (!number) return std::nullopt;
+  return "$NODEID+" + *number;
+}
+
+std::optional<std::string> spell_by_type(std::string_view text, const canopen::DataTypeRow& type) {
+  const unsigned digits = hex_digits_of(type);
+  switch (type.kind) {
+    case DataClass::unsigned_integer:
+    case DataClass::signed_integer:
+      return text.find('$') != std::string_view::npos ? spell_formula(text) : spell_integer(text, digits);
+    case DataClass::boolean:
+    case DataClass::time: return spell_integer(text, digits);
+    case DataClass::real: return spell_real(text, digits);
+    case DataClass::string:
+    case DataClass::domain: break;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+unsigned hex_digits_of(const canopen::DataTypeRow& type) { return (type.bits + 3U) / 4U; }
+
+Spelling spell_number(std::string_view text, unsigned hex_digits) {
+  const auto number = spell_magnitude(strip_inline_comment(text), hex_digits);
+  return number ? Spelling{*number, inline_comment(text)} : unchanged(text);
+}
+
+Spelling spell_value(std::string_view text, const canopen::DataTypeRow& type) {
+  const auto value = spell_by_type(strip_inline_comment(text), type);
+  return value ? Spelling{*value, inline_comment(text)} : unchanged(text);
+}
+
+Spelling spell_access(std::string_view text) {
+  const std::string_view word = strip_inline_comment(text);
+  for (const canopen::AccessRow& row : canopen::access_rows) {
+    if (equal_ignoring_case(word, row.name)) return {std::string{row.name}, inline_comment(text)};
+  }
+  return unchanged(text);
+}
+
+}  // namespace edsc

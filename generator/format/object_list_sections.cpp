@@ -1,0 +1,110 @@
+#include "format/object_list_sections.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "eds/number.hpp"
+#include "eds/object_lists.hpp"
+#include "format/key_table.hpp"
+#include "format/section_order.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr std::string_view count_key = "SupportedObjects";
+constexpr std::string_view misspelled_count_key = "Supported Objects";
+
+constexpr std::pair<ObjectListKind, SectionKind> lists[] = {
+    {ObjectListKind::mandatory, SectionKind::mandatory_objects},
+    {ObjectListKind::optional, SectionKind::optional_objects},
+    {ObjectListKind::manufacturer, SectionKind::manufacturer_objects},
+};
+
+/// What an old list holds besides the objects.
+struct OldList {
+  Remarks remarks;                     ///< before the count, or before what is no longer listed
+  std::vector<DocumentEntry> unknown;  ///< keys that CiA 306 does not know
+};
+
+class ListWriter {
+ public:
+  ListWriter(Document& document, const DataSheet& sheet) : document_(document), sheet_(sheet) {}
+
+  void write() {
+    for (const ObjectDescription& object : sheet_.objects) {
+      if (const auto list = list_for(object.index, sheet_)) listed_[*list].push_back(object.index);
+    }
+    std::map<SectionKind, OldList> old;
+    for (DocumentSection& section : document_.sections) {
+      if (is_list(section.kind.kind)) old[section.kind.kind] = take_apart(section);
+    }
+    for (const auto& [list, kind] : lists) write_list(list, kind, old[kind]);
+  }
+
+ private:
+  static bool is_list(SectionKind kind) {
+    return std::ranges::any_of(lists, [&](const auto& row) { return row.second == kind; });
+  }
+
+  OldList take_apart(DocumentSection& section) {
+    OldList old;
+    for (DocumentEntry& entry : section.entries) {
+      const KeySpelling key = spell_key(section.kind.kind, entry.key);
+      if (key.value == ValueKind::count || equal_ignoring_case(entry.key, misspelled_count_key)) {
+        append(old.remarks, entry.remarks);
+      } else if (key.is_known) {
+        keep_remarks(entry, old);
+      } else {
+        old.unknown.push_back(std::move(entry));
+      }
+    }
+    section.entries.clear();
+    return old;
+  }
+
+  void keep_remarks(const DocumentEntry& entry, OldList& old) {
+    const auto index = parse_unsigned(strip_inline_comment(entry.value));
+    const bool stays = index && *index <= 0xFFFF &&
+                       find_object(sheet_, static_cast<std::uint16_t>(*index)) != nullptr &&
+                       list_for(static_cast<std::uint16_t>(*index), sheet_);
+    append(stays ? remarks_[static_cast<std::uint16_t>(*index)] : old.remarks, entry.remarks);
+  }
+
+  void write_list(ObjectListKind list, SectionKind kind, OldList& old) {
+    const std::vector<std::uint16_t>& objects = listed_[list];
+    DocumentSection* const section = find_or_add(kind, !objects.empty());
+    if (section == nullptr) return;
+    section->title = section_name(list);
+    section->entries.push_back({std::move(old.remarks), std::string{count_key}, fmt::format("{}", objects.size())});
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+      section->entries.push_back(
+          {std::move(remarks_[objects[i]]), fmt::format("{}", i + 1), fmt::format("0x{:04X}", objects[i])});
+    }
+    for (DocumentEntry& entry : old.unknown) section->entries.push_back(std::move(entry));
+  }
+
+  DocumentSection* find_or_add(SectionKind kind, bool is_needed) {
+    for (DocumentSection& section : document_.sections) {
+      if (section.kind.kind == kind) return &section;
+    }
+    if (!is_needed) return nullptr;
+    DocumentSection& added = document_.sections.emplace_back();
+    added.kind.kind = kind;
+    return &added;
+  }
+
+  Document& document_;
+  const DataSheet& sheet_;
+  std::map<ObjectListKind, std::vector<std::uint16_t>> listed_;
+  std::map<std::uint16_t, Remarks> remarks_;  ///< before an object's entry, in whichever list it stood
+};
+
+}  // namespace
+
+void renew_object_lists(Document& document, const DataSheet& sheet) { ListWriter(document, sheet).write(); }
+
+}  // namespace edsc

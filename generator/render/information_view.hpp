@@ -1,0 +1,13 @@
+/// The part of the JSON view that is not about objects.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "device/information.hpp"
+
+namespace edsc {
+
+/// Adds `file_info`, `device_info`, `commissioning`, `comments`, `tools`, `dynamic_channels` and `modules` to a view.
+void add_information(const Information& information, nlohmann::ordered_json& view);
+
+}  // namespace edsc

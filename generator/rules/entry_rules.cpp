@@ -1,0 +1,72 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "diagnostics/quote.hpp"
+#include "eds/number.hpp"
+#include "rules/rule_groups.hpp"
+#include "text/utf8.hpp"
+
+namespace edsc {
+namespace {
+
+using canopen::Access;
+
+constexpr std::size_t longest_name = 241;
+constexpr std::uint64_t known_flags = 0x3;  ///< no download of a DCF, no upload for a DCF
+
+/// A constant without a value reads as 0 or as an empty text for good.
+void check_constant(const RuleContext& context, const Entry& entry) {
+  if (entry.access != Access::constant || entry.default_value || entry.type->kind == canopen::DataClass::domain) return;
+  const auto& settable = context.options.settable;
+  if (std::ranges::find(settable, EntryKey{entry.index, entry.sub_index}) != settable.end()) return;
+  context.report("const-without-value", entry.position,
+                 fmt::format("{} is const and has no DefaultValue", named(entry)));
+}
+
+void check_mapping(const RuleContext& context, const Entry& entry) {
+  if (entry.pdo_mapping && entry.type->bits == 0) {
+    context.report(
+        "mapping-of-no-length", entry.mapping_position,
+        fmt::format("{} can be mapped (PDOMapping=1), but {} has no fixed length", named(entry), entry.type->name));
+  }
+  if (!entry.pdo_mapping && (entry.access == Access::rwr || entry.access == Access::rww)) {
+    context.report("process-data-not-mappable", entry.access_position,
+                   fmt::format("{} is process data ({}), but cannot be mapped (PDOMapping=0)", named(entry),
+                               canopen::row_of(entry.access).name));
+  }
+}
+
+void check_name_length(const RuleContext& context, const Entry& entry) {
+  if (entry.name.size() <= longest_name || count_code_points(entry.name) <= longest_name) return;
+  context.report("name-length", context.place_of(entry, &EntryDescription::parameter_name),
+                 fmt::format("the name of {} has {} characters; {} are the most",
+                             entry_label(entry.index, entry.sub_index), count_code_points(entry.name), longest_name));
+}
+
+void check_flags(const RuleContext& context, const EntryDescription& description) {
+  const Field& field = description.obj_flags;
+  if (field.empty()) return;
+  const auto flags = parse_unsigned(strip_inline_comment(field.text));
+  if (flags && (*flags & ~known_flags) == 0) return;
+  context.report("object-flags", field.position,
+                 fmt::format("ObjFlags has two bits, 0 and 1; {} has others", quote(field.text)));
+}
+
+}  // namespace
+
+void check_entries(const RuleContext& context) {
+  for (const Object& object : context.device.objects) {
+    for (const Entry& entry : object.entries) {
+      check_constant(context, entry);
+      check_mapping(context, entry);
+      check_name_length(context, entry);
+    }
+  }
+  for (const ObjectDescription& object : context.sheet.objects) {
+    check_flags(context, object);
+    for (const SubObjectDescription& sub_object : object.sub_objects) check_flags(context, sub_object);
+  }
+}
+
+}  // namespace edsc

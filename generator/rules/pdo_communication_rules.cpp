@@ -1,0 +1,108 @@
+#include <fmt/format.h>
+
+#include <canopen/cob_id.hpp>
+#include <canopen/transmission_type.hpp>
+
+#include "rules/pdo_defaults.hpp"
+#include "rules/rule_groups.hpp"
+
+namespace edsc {
+namespace {
+
+using canopen::Transmission;
+
+constexpr std::uint8_t cob_id = 1;
+constexpr std::uint8_t transmission_type = 2;
+constexpr std::uint8_t inhibit_time = 3;
+constexpr std::uint8_t compatibility_entry = 4;
+constexpr std::uint8_t event_timer = 5;
+constexpr std::uint8_t sync_start_value = 6;
+
+Transmission transmission_of(const Pdo& pdo, std::uint64_t type) {
+  const Transmission transmission = canopen::transmission_of(static_cast<std::uint32_t>(type));
+  const bool remote = transmission == Transmission::remote || transmission == Transmission::remote_synchronous;
+  return remote && pdo.direction == PdoDirection::receive ? Transmission::reserved : transmission;
+}
+
+bool is_synchronous(Transmission transmission) {
+  return transmission == Transmission::synchronous || transmission == Transmission::remote_synchronous;
+}
+
+void check_transmission_type(const RuleContext& context, const Pdo& pdo, std::uint64_t type) {
+  const Entry& entry = *pdo.communication->find(transmission_type);
+  const Transmission transmission = transmission_of(pdo, type);
+  if (type > 255 || transmission == Transmission::reserved) {
+    context.report("pdo-transmission-type", default_place(entry),
+                   fmt::format("{}: transmission type {} is reserved", pdo_label(pdo), type));
+  } else if (is_synchronous(transmission) && on_by_default(pdo) && context.device.find(0x1005) == nullptr) {
+    context.report("pdo-sync", default_place(entry),
+                   fmt::format("{} waits for SYNC (transmission type {}), but 1005h is missing", pdo_label(pdo), type));
+  }
+}
+
+/// Bit 30 of a TPDO's COB-ID: no remote frame is answered.
+void check_remote(const RuleContext& context, const Pdo& pdo, std::uint64_t type) {
+  const Transmission transmission = transmission_of(pdo, type);
+  const auto value = communication_default(pdo, cob_id);
+  const bool remote = transmission == Transmission::remote || transmission == Transmission::remote_synchronous;
+  if (!remote || !value || canopen::CobId{static_cast<std::uint32_t>(*value)}.rtr_allowed()) return;
+  context.report("pdo-remote", default_place(*pdo.communication->find(transmission_type)),
+                 fmt::format("{} is sent on request only (transmission type {}), but its COB-ID allows no remote frame",
+                             pdo_label(pdo), type));
+}
+
+/// Inhibit time and event timer are for event-driven PDOs.
+void check_times(const RuleContext& context, const Pdo& pdo, std::uint64_t type) {
+  if (pdo.direction == PdoDirection::receive || !is_synchronous(transmission_of(pdo, type))) return;
+  for (const std::uint8_t sub_index : {inhibit_time, event_timer}) {
+    if (communication_default(pdo, sub_index).value_or(0) == 0) continue;
+    const Entry& entry = *pdo.communication->find(sub_index);
+    context.report("pdo-time-unused", default_place(entry),
+                   fmt::format("{} has no effect: {} is synchronous", named(entry), pdo_label(pdo)));
+  }
+}
+
+void check_compatibility_entry(const RuleContext& context, const Pdo& pdo) {
+  const Entry* entry = pdo.communication->find(compatibility_entry);
+  if (entry == nullptr) return;
+  context.report("pdo-compatibility-entry", entry->position,
+                 fmt::format("{} is reserved and left out by CiA 301", named(*entry)));
+}
+
+void check_sync_start(const RuleContext& context, const Pdo& pdo, std::uint64_t type) {
+  const std::uint64_t start = communication_default(pdo, sync_start_value).value_or(0);
+  if (start == 0) return;
+  const Entry& entry = *pdo.communication->find(sync_start_value);
+  const Entry* overflow = context.device.find(0x1019, 0);
+  const bool counted = overflow != nullptr && overflow->default_value && overflow->default_value->bits != 0;
+  std::string_view why;
+  if (pdo.direction == PdoDirection::receive) {
+    why = "an RPDO has no SYNC start value";
+  } else if (start > 240) {
+    why = "240 is the highest";
+  } else if (type < 1 || type > 240) {
+    why = "its transmission type is not 1..240";
+  } else if (!counted) {
+    why = "SYNC has no counter (1019h)";
+  } else {
+    return;
+  }
+  context.report("pdo-sync-start", default_place(entry), fmt::format("{} is {}: {}", named(entry), start, why));
+}
+
+}  // namespace
+
+void check_pdo_communication(const RuleContext& context) {
+  for (const Pdo& pdo : context.device.pdos) {
+    if (pdo.communication == nullptr) continue;
+    check_compatibility_entry(context, pdo);
+    const auto type = communication_default(pdo, transmission_type);
+    if (!type) continue;
+    check_transmission_type(context, pdo, *type);
+    check_remote(context, pdo, *type);
+    check_times(context, pdo, *type);
+    check_sync_start(context, pdo, *type);
+  }
+}
+
+}  // namespace edsc

@@ -1,0 +1,17 @@
+/// What a PDO's parameters say after a reset.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "device/device.hpp"
+
+namespace edsc {
+
+/// Whether the PDO is valid after a reset: bit 31 of its COB-ID is 0.
+[[nodiscard]] bool on_by_default(const Pdo& pdo);
+
+/// The default of a sub-index of the communication parameter; nothing when there is none.
+[[nodiscard]] std::optional<std::uint64_t> communication_default(const Pdo& pdo, std::uint8_t sub_index);
+
+}  // namespace edsc

@@ -1,0 +1,64 @@
+#include <fmt/format.h>
+
+#include "rules/rule_groups.hpp"
+
+namespace edsc {
+namespace {
+
+/// Objects whose sub-index 0 is not the highest sub-index, but a number that changes: errors, mapped objects.
+struct CountRange {
+  std::uint16_t first, last;
+};
+
+constexpr CountRange count_ranges[] = {{0x1003, 0x1003}, {0x1600, 0x17FF}, {0x1A00, 0x1BFF}};
+
+bool counts(std::uint16_t index) {
+  for (const CountRange& range : count_ranges) {
+    if (index >= range.first && index <= range.last) return true;
+  }
+  return false;
+}
+
+/// Without FFh, which holds the object's structure.
+std::uint8_t highest_sub_index(const Object& object) {
+  for (auto at = object.entries.rbegin(); at != object.entries.rend(); ++at) {
+    if (at->sub_index != 0xFF) return at->sub_index;
+  }
+  return 0;
+}
+
+void check_value(const RuleContext& context, const Object& object, const Entry& count) {
+  if (!count.default_value || counts(object.index)) return;
+  const std::uint64_t value = count.default_value->bits;
+  const std::uint8_t highest = highest_sub_index(object);
+  if (value == highest) return;
+  context.report(
+      "sub-index-0-value", count.default_value->position,
+      fmt::format("{} says that {} is the highest sub-index; {} is described", named(count), value, highest));
+}
+
+void check_count(const RuleContext& context, const Object& object) {
+  const Entry& count = object.entries.front();
+  if (count.sub_index != 0) return;
+  if (count.type->type != canopen::DataType::unsigned8) {
+    context.report("sub-index-0-type", context.place_of(count, &EntryDescription::data_type),
+                   fmt::format("{} is {}; sub-index 0 is UNSIGNED8", named(count), count.type->name));
+  }
+  const bool may_change = counts(object.index);
+  if (!canopen::readable(count.access) || (canopen::writable(count.access) && !may_change)) {
+    context.report("sub-index-0-access", count.access_position,
+                   fmt::format("{} has access {}; {}", named(count), canopen::row_of(count.access).name,
+                               may_change ? "it can be read" : "the highest sub-index is const or ro"));
+  }
+  check_value(context, object, count);
+}
+
+}  // namespace
+
+void check_sub_index_0(const RuleContext& context) {
+  for (const Object& object : context.device.objects) {
+    if (object.has_sub_indices() && !object.entries.empty()) check_count(context, object);
+  }
+}
+
+}  // namespace edsc

@@ -1,0 +1,229 @@
+#include "xdd/application_process.hpp"
+
+#include <fmt/format.h>
+
+#include <string>
+
+#include "diagnostics/quote.hpp"
+#include "text/ini.hpp"
+#include "xdd/attributes.hpp"
+
+namespace edsc {
+namespace {
+
+/// The attribute `access` and the AccessType that says the same. An Input is a process input, which a TPDO carries.
+struct AccessWord {
+  std::string_view word;
+  std::string_view access_type;
+};
+
+constexpr AccessWord access_words[] = {
+    {"const", "const"},         {"read", "ro"}, {"write", "wo"}, {"readWrite", "rw"}, {"readWriteInput", "rwr"},
+    {"readWriteOutput", "rww"},
+};
+
+/// What the schema takes for a parameter that says nothing.
+constexpr std::string_view default_access_type = "ro";
+
+/// Children of a parameter with one field each, whose value is the attribute `value`.
+struct ValueElement {
+  std::string_view name;
+  Field EntryDescription::*field;
+};
+
+constexpr ValueElement value_elements[] = {
+    {"defaultValue", &EntryDescription::default_value},
+    {"actualValue", &EntryDescription::parameter_value},
+};
+
+/// Children of a parameter that say nothing about the dictionary: texts for people, units, what the application does.
+constexpr std::string_view silent_elements[] = {
+    "description", "labelRef",           "descriptionRef", "unit",          "substituteValue",
+    "variableRef", "conditionalSupport", "dataTypeIDRef",  "allowedValues",
+};
+
+/// CANopenEditor's own property: the object is kept in the file, but the device does not have it.
+constexpr std::string_view disabled_property = "CO_disabled";
+
+/// How long a chain of derived types may be.
+constexpr int longest_chain = 16;
+
+bool is_array_or_struct(pugi::xml_node type) { return local_name(type) == "array" || local_name(type) == "struct"; }
+
+/// The label in English when there is one, else the first.
+pugi::xml_node find_label(pugi::xml_node element) {
+  pugi::xml_node label;
+  for_each_element(element, [&](pugi::xml_node child) {
+    if (local_name(child) != "label") return;
+    const bool is_english = std::string_view{find_attribute(child, "lang").value()}.starts_with("en");
+    if (!label || (is_english && !std::string_view{find_attribute(label, "lang").value()}.starts_with("en"))) {
+      label = child;
+    }
+  });
+  return label;
+}
+
+void set_if_missing(Field& field, const Field& value) {
+  if (!field.present) field = value;
+}
+
+}  // namespace
+
+ApplicationProcess::ApplicationProcess(XmlDocument& xml, pugi::xml_node element) : xml_{xml} {
+  for_each_element(element, [&](pugi::xml_node list) {  // dataTypeList, templateList, parameterList, ...
+    for_each_element(list, [&](pugi::xml_node item) {
+      add(item);
+      if (is_array_or_struct(item)) for_each_element(item, [&](pugi::xml_node member) { add(member); });
+    });
+  });
+}
+
+void ApplicationProcess::add(pugi::xml_node element) {
+  const pugi::xml_attribute id = find_attribute(element, "uniqueID");
+  if (!id) return;
+  const auto [first, is_new] = by_unique_id_.try_emplace(id.value(), element);
+  if (!is_new) report_second(xml_, id, xml_.position(first->second));
+}
+
+pugi::xml_node ApplicationProcess::find(std::string_view unique_id) const {
+  const auto at = by_unique_id_.find(unique_id);
+  return at == by_unique_id_.end() ? pugi::xml_node{} : at->second;
+}
+
+/// Follows enums and derived types to the simple type, array or struct behind them.
+ResolvedType ApplicationProcess::resolve_type(pugi::xml_node element) const {
+  ResolvedType result;
+  for (int length = 0; length < longest_chain && element; ++length) {
+    pugi::xml_node next;
+    for_each_element(element, [&](pugi::xml_node child) {
+      if (const SimpleType* simple = find_simple_type(local_name(child))) {
+        if (result.simple == nullptr) result = {simple, xml_.position(child), {}};
+      } else if (local_name(child) == "dataTypeIDRef") {
+        next = find(find_attribute(child, "uniqueIDRef").value());
+      }
+    });
+    if (result.simple != nullptr) return result;
+    if (is_array_or_struct(next)) return {nullptr, xml_.position(element), next};
+    element = next;
+  }
+  return result;
+}
+
+ResolvedType ApplicationProcess::member_type(pugi::xml_node array_or_struct, std::string_view name) const {
+  if (local_name(array_or_struct) == "array") return resolve_type(array_or_struct);
+  const pugi::xml_node member = array_or_struct.find_child([&](pugi::xml_node child) {
+    return local_name(child) == "varDeclaration" && name == find_attribute(child, "name").value();
+  });
+  return resolve_type(member);
+}
+
+Parameter ApplicationProcess::read_parameter(pugi::xml_attribute reference) {
+  Parameter parameter;
+  if (!reference || std::string_view{reference.value()}.empty()) return parameter;
+  const pugi::xml_node element = find(reference.value());
+  if (!element) {
+    xml_.diagnostics().warning(
+        "xml-element", xml_.value(reference).position,
+        fmt::format("nothing in ApplicationProcess has the uniqueID {}", quote(reference.value())));
+    return parameter;
+  }
+  read_part(element, parameter);
+  if (const pugi::xml_attribute id = find_attribute(element, "templateIDRef")) read_part(find(id.value()), parameter);
+
+  EntryDescription& entry = parameter.entry;
+  if (local_name(element) == "parameter" && !entry.access_type.present) {
+    entry.access_type = {default_access_type, xml_.position(element), false};
+  }
+  const bool has_value = entry.default_value.present || entry.parameter_value.present;
+  if (parameter.type.simple != nullptr && parameter.type.simple->name == bit_string && !has_value) {
+    parameter.type.simple = &domain_type();
+  }
+  if (parameter.type.simple != nullptr) {
+    entry.data_type = {parameter.type.simple->data_type, parameter.type.position, true};
+  }
+  return parameter;
+}
+
+/// A parameter or its template: fills in what is missing still.
+void ApplicationProcess::read_part(pugi::xml_node element, Parameter& parameter) {
+  if (!element) return;
+  read_access(element, parameter);
+  if (parameter.type.simple == nullptr && !parameter.type.array_or_struct) parameter.type = resolve_type(element);
+  set_if_missing(parameter.entry.parameter_name, xml_.text(find_label(element)));
+  set_if_missing(parameter.entry.parameter_name, xml_.value(find_attribute(element, "name")));
+  if (const pugi::xml_node allowed = find_child(element, "allowedValues")) read_allowed_values(allowed, parameter);
+  for_each_element(element, [&](pugi::xml_node child) { read_child(child, parameter); });
+}
+
+void ApplicationProcess::read_access(pugi::xml_node element, Parameter& parameter) {
+  const Field word = xml_.value(find_attribute(element, "access"));
+  Field& access_type = parameter.entry.access_type;
+  if (!word.present || access_type.present) return;
+  access_type = word;
+  for (const AccessWord& row : access_words) {
+    if (equal_ignoring_case(row.word, word.text)) access_type.text = row.access_type;
+  }
+  if (equal_ignoring_case(word.text, "noAccess")) {
+    access_type.text = default_access_type;
+    xml_.diagnostics().warning("access-type", word.position,
+                               "noAccess is nothing that a data sheet of CiA 306 says: taken for ro");
+  }
+}
+
+void ApplicationProcess::read_child(pugi::xml_node child, Parameter& parameter) {
+  const std::string_view name = local_name(child);
+  for (const ValueElement& row : value_elements) {
+    if (name != row.name) continue;
+    set_if_missing(parameter.entry.*row.field, xml_.value(find_attribute(child, "value")));
+    return;
+  }
+  for (const std::string_view silent : silent_elements) {
+    if (name == silent) return;
+  }
+  if (name == "property") {
+    read_property(child, parameter);
+  } else if (name == "denotation") {
+    set_if_missing(parameter.entry.denotation, xml_.text(find_label(child)));
+  } else if (name != "label" && find_simple_type(name) == nullptr) {
+    report_unknown_element(xml_, child);
+  }
+}
+
+void ApplicationProcess::read_property(pugi::xml_node property, Parameter& parameter) {
+  const std::string_view name = find_attribute(property, "name").value();
+  if (name == disabled_property) {
+    parameter.is_disabled = equal_ignoring_case(find_attribute(property, "value").value(), "true");
+    return;
+  }
+  xml_.warn_once("xml-element", "property " + std::string{name}, xml_.position(property),
+                 fmt::format("property {} is a tool's own; it is left out, here and wherever it stands", quote(name)));
+}
+
+/// A single range is what LowLimit and HighLimit say. More than that has no place in a data sheet.
+void ApplicationProcess::read_allowed_values(pugi::xml_node element, Parameter& parameter) {
+  if (const pugi::xml_attribute id = find_attribute(element, "templateIDRef")) {
+    if (const pugi::xml_node found = find(id.value())) element = found;
+  }
+  pugi::xml_node range;
+  int others = 0;
+  for_each_element(element, [&](pugi::xml_node child) {
+    if (local_name(child) == "range" && !range) {
+      range = child;
+    } else if (local_name(child) == "range" || local_name(child) == "value") {
+      ++others;
+    }
+  });
+  if (others > 0) {
+    xml_.diagnostics().warning("xml-element", xml_.position(element),
+                               "allowedValues is more than one range; limits cannot say that, and there are none then");
+  } else if (range) {
+    read_range(range, parameter.entry);
+  }
+}
+
+void ApplicationProcess::read_range(pugi::xml_node range, EntryDescription& entry) {
+  set_if_missing(entry.low_limit, xml_.value(find_attribute(find_child(range, "minValue"), "value")));
+  set_if_missing(entry.high_limit, xml_.value(find_attribute(find_child(range, "maxValue"), "value")));
+}
+
+}  // namespace edsc

@@ -1,0 +1,71 @@
+/// Reading the attributes of an element into the members of a struct, by a table.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "eds/data_sheet.hpp"
+#include "text/ini.hpp"
+#include "xdd/xml_document.hpp"
+
+namespace edsc {
+
+/// How CiA 311 spells a value that CiA 306 spells in another way.
+enum class Spelling : std::uint8_t {
+  text,         ///< the same
+  decimal,      ///< `04`, which CiA 306 would take for an octal number
+  hexadecimal,  ///< `0007` for 0x0007
+  identity,     ///< a vendor-ID: decimal, with 0x, or eight hexadecimal digits
+  flag,         ///< `true` for 1
+  baud_rate,    ///< `500 Kbps` for 500
+  date,         ///< `2024-05-31` for 05-31-2024
+  time,         ///< `14:05:00+02:00` for 02:05PM
+};
+
+/// The value as CiA 306 spells it; what cannot be read stays as it is, for the passes behind to complain.
+[[nodiscard]] Field respell(XmlDocument& xml, const Field& field, Spelling spelling);
+
+/// An attribute and where its value goes; null for one that is known but says nothing about the device's function.
+template <typename Struct>
+struct AttributeRow {
+  std::string_view name;
+  Field Struct::*field;
+  Spelling spelling = Spelling::text;
+};
+
+void report_unknown_attribute(XmlDocument& xml, pugi::xml_node element, pugi::xml_attribute attribute);
+void report_unknown_element(XmlDocument& xml, pugi::xml_node element);
+void report_second(XmlDocument& xml, pugi::xml_attribute attribute, const Position& first);
+
+/// Namespaces and schema locations: no attributes of CiA 311.
+[[nodiscard]] bool is_of_xml_itself(pugi::xml_attribute attribute);
+
+/// Gives each field the place where it is missing.
+template <typename Struct>
+void place_attributes(std::span<const AttributeRow<Struct>> rows, const Position& position, Struct& target) {
+  for (const AttributeRow<Struct>& row : rows) {
+    if (row.field != nullptr) (target.*row.field).position = position;
+  }
+}
+
+template <typename Struct>
+void read_attributes(XmlDocument& xml, pugi::xml_node element, std::span<const AttributeRow<Struct>> rows,
+                     Struct& target) {
+  for (const pugi::xml_attribute attribute : element.attributes()) {
+    if (is_of_xml_itself(attribute)) continue;
+    const AttributeRow<Struct>* known = nullptr;
+    for (const AttributeRow<Struct>& row : rows) {
+      if (equal_ignoring_case(row.name, local_name(attribute))) known = &row;
+    }
+    if (known == nullptr) {
+      report_unknown_attribute(xml, element, attribute);
+    } else if (known->field != nullptr && (target.*known->field).present) {
+      report_second(xml, attribute, (target.*known->field).position);
+    } else if (known->field != nullptr) {
+      target.*known->field = respell(xml, xml.value(attribute), known->spelling);
+    }
+  }
+}
+
+}  // namespace edsc

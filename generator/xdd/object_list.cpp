@@ -1,0 +1,261 @@
+#include "xdd/object_list.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <canopen/access.hpp>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+
+#include "diagnostics/quote.hpp"
+#include "eds/number.hpp"
+#include "text/ini.hpp"
+#include "xdd/attributes.hpp"
+
+namespace edsc {
+namespace {
+
+using canopen::Mappable;
+
+/// Attributes of CANopenObject and CANopenSubObject.
+constexpr AttributeRow<EntryDescription> entry_rows[] = {
+    {"index", nullptr},
+    {"subIndex", nullptr},
+    {"subNumber", nullptr},
+    {"uniqueIDRef", nullptr},
+    {"name", &EntryDescription::parameter_name},
+    {"objectType", &EntryDescription::object_type, Spelling::decimal},
+    {"dataType", &EntryDescription::data_type, Spelling::hexadecimal},
+    {"accessType", &EntryDescription::access_type},
+    {"PDOmapping", &EntryDescription::pdo_mapping},
+    {"defaultValue", &EntryDescription::default_value},
+    {"actualValue", &EntryDescription::parameter_value},
+    {"lowLimit", &EntryDescription::low_limit},
+    {"highLimit", &EntryDescription::high_limit},
+    {"denotation", &EntryDescription::denotation},
+    {"objFlags", &EntryDescription::obj_flags, Spelling::hexadecimal},
+};
+
+constexpr std::span<const AttributeRow<EntryDescription>> entry_attributes = entry_rows;
+
+/// What a parameter decides when an object refers to it. An attribute of the object counts where the parameter is
+/// silent.
+constexpr Field EntryDescription::*parameter_fields[] = {
+    &EntryDescription::data_type,  &EntryDescription::access_type,   &EntryDescription::low_limit,
+    &EntryDescription::high_limit, &EntryDescription::default_value, &EntryDescription::parameter_value,
+    &EntryDescription::denotation,
+};
+
+/// Values that a BOOLEAN may spell as true and false.
+constexpr Field EntryDescription::*value_fields[] = {
+    &EntryDescription::default_value,
+    &EntryDescription::parameter_value,
+};
+
+/// PDOmapping, and the PDOs that it allows.
+struct MappingWord {
+  std::string_view word;
+  Mappable mappable;
+};
+
+constexpr MappingWord mapping_words[] = {
+    {"no", Mappable::no},     {"default", Mappable::both}, {"optional", Mappable::both},
+    {"TPDO", Mappable::tpdo}, {"RPDO", Mappable::rpdo},
+};
+
+Mappable common(Mappable a, Mappable b) {
+  return static_cast<Mappable>(static_cast<unsigned>(a) & static_cast<unsigned>(b));
+}
+
+/// An index or sub-index: hexadecimal digits, as a rule without 0x.
+std::optional<std::uint16_t> read_hex(std::string_view text, std::size_t most_digits) {
+  const bool has_prefix = starts_with_ignoring_case(text, "0x");
+  return parse_hex(text.substr(has_prefix ? 2 : 0), most_digits);
+}
+
+using FirstPlaces = std::unordered_map<std::uint16_t, Position>;
+
+class ObjectListReader {
+ public:
+  ObjectListReader(XmlDocument& xml, ApplicationProcess& process) : xml_{xml}, process_{process} {}
+
+  std::vector<ObjectDescription> read(pugi::xml_node list) {
+    std::vector<ObjectDescription> objects;
+    for_each_element(list, [&](pugi::xml_node element) {
+      if (local_name(element) == "CANopenObject") {
+        read_object(element, objects);
+      } else {
+        report_unknown_element(xml_, element);
+      }
+    });
+    std::ranges::sort(objects, {}, &ObjectDescription::index);
+    return objects;
+  }
+
+ private:
+  void read_object(pugi::xml_node element, std::vector<ObjectDescription>& objects) {
+    const std::optional<std::uint16_t> index = read_number(element, "index", 4);
+    if (!index || !is_first(element, *index, first_objects_)) return;
+    first_sub_objects_.clear();
+    ObjectDescription object;
+    object.index = *index;
+    const Parameter parameter = read_entry(element, object);
+    finish(object);
+    if (parameter.is_disabled) {
+      xml_.diagnostics().warning(
+          "xml-element", object.position,
+          fmt::format("{:04X}h is disabled by the property CO_disabled; it is left out", *index));
+      return;
+    }
+    const Field sub_number = xml_.value(find_attribute(element, "subNumber"));
+    object.sub_number = respell(xml_, sub_number, Spelling::decimal);
+    read_sub_objects(element, parameter, object);
+    report_complex_value(parameter, object);
+    objects.push_back(std::move(object));
+  }
+
+  void read_sub_objects(pugi::xml_node element, const Parameter& of_object, ObjectDescription& object) {
+    for_each_element(element, [&](pugi::xml_node child) {
+      if (local_name(child) == "CANopenSubObject") {
+        read_sub_object(child, of_object, object.sub_objects);
+      } else {
+        report_unknown_element(xml_, child);
+      }
+    });
+    std::ranges::sort(object.sub_objects, {}, &SubObjectDescription::sub_index);
+  }
+
+  void read_sub_object(pugi::xml_node element, const Parameter& of_object, std::vector<SubObjectDescription>& list) {
+    const std::optional<std::uint16_t> sub_index = read_number(element, "subIndex", 2);
+    if (!sub_index || !is_first(element, *sub_index, first_sub_objects_)) return;
+    SubObjectDescription sub_object;
+    sub_object.sub_index = static_cast<std::uint8_t>(*sub_index);
+    static_cast<void>(read_entry(element, sub_object));
+    take_from_object(of_object, sub_object);
+    finish(sub_object);
+    list.push_back(std::move(sub_object));
+  }
+
+  std::optional<std::uint16_t> read_number(pugi::xml_node element, std::string_view name, std::size_t most_digits) {
+    const Field field = xml_.value(find_attribute(element, name));
+    const std::optional<std::uint16_t> number = read_hex(field.text, most_digits);
+    if (!number) {
+      xml_.diagnostics().error("number", field.present ? field.position : xml_.position(element),
+                               fmt::format("{} {} is not a number of up to {} hexadecimal digits; this {} is left out",
+                                           name, quote(field.text), most_digits, local_name(element)));
+    }
+    return number;
+  }
+
+  /// The element's attributes, and the parameter that it refers to.
+  Parameter read_entry(pugi::xml_node element, EntryDescription& entry) {
+    entry.position = xml_.position(element);
+    place_attributes(entry_attributes, entry.position, entry);
+    read_attributes(xml_, element, entry_attributes, entry);
+    Parameter parameter = process_.read_parameter(find_attribute(element, "uniqueIDRef"));
+    for (Field EntryDescription::*const field : parameter_fields) {
+      if ((parameter.entry.*field).present) entry.*field = parameter.entry.*field;
+    }
+    take_if_missing(parameter.entry.access_type, entry.access_type);
+    take_if_missing(parameter.entry.parameter_name, entry.parameter_name);
+    return parameter;
+  }
+
+  static void take_if_missing(const Field& from, Field& to) {
+    if (to.present || from.text.empty()) return;
+    to = from;
+    to.present = true;
+  }
+
+  /// A sub-object that says nothing of its type gets it from its object's array or struct.
+  void take_from_object(const Parameter& of_object, SubObjectDescription& sub_object) {
+    const pugi::xml_node type = of_object.type.array_or_struct;
+    const bool is_count_of_array = sub_object.sub_index == 0 && local_name(type) == "array";
+    if (!type || sub_object.data_type.present || is_count_of_array) return;
+    const ResolvedType member = process_.member_type(type, sub_object.parameter_name.text);
+    if (member.simple == nullptr) return;
+    sub_object.data_type = {member.simple->data_type, member.position, true};
+    take_if_missing(of_object.entry.access_type, sub_object.access_type);
+  }
+
+  void report_complex_value(const Parameter& parameter, const ObjectDescription& object) {
+    if (!parameter.type.array_or_struct || !object.sub_objects.empty() || object.data_type.present) return;
+    xml_.diagnostics().warning("xml-element", object.position,
+                               fmt::format("the parameter of {:04X}h is of the type {}, an object of such a type needs "
+                                           "sub-objects",
+                                           object.index, local_name(parameter.type.array_or_struct)));
+  }
+
+  /// Spells as an EDS does what depends on more than one attribute.
+  void finish(EntryDescription& entry) {
+    map_to_access(entry);
+    if (parse_unsigned(entry.data_type.text) != 1) return;
+    for (Field EntryDescription::*const field : value_fields) {
+      entry.*field = respell(xml_, entry.*field, Spelling::flag);
+    }
+  }
+
+  /// CiA 306 has no words for "RPDO only" and "TPDO only" but the access types: an rw object that PDOmapping lets into
+  /// TPDOs only is rwr, one for RPDOs only is rww; the others name one direction already.
+  void map_to_access(EntryDescription& entry) {
+    Field& mapping = entry.pdo_mapping;
+    for (const MappingWord& row : mapping_words) {
+      if (mapping.present && equal_ignoring_case(row.word, mapping.text)) {
+        const bool fits = restrict_access(row.mappable, entry.access_type);
+        if (!fits) report_direction(entry);
+        mapping.text = fits && row.mappable != Mappable::no ? "1" : "0";
+        return;
+      }
+    }
+  }
+
+  /// False when no direction is left.
+  static bool restrict_access(Mappable mappable, Field& access_type) {
+    for (const canopen::AccessRow& row : canopen::access_rows) {
+      if (!equal_ignoring_case(row.name, access_type.text) || mappable == Mappable::no) continue;
+      const Mappable by_access = canopen::mappable_by(row.access);
+      const Mappable left = common(by_access, mappable);
+      if (left == by_access) return true;
+      if (left == Mappable::no) return false;
+      access_type.text = left == Mappable::tpdo ? "rwr" : "rww";
+      return true;
+    }
+    return true;
+  }
+
+  void report_direction(const EntryDescription& entry) {
+    xml_.diagnostics().warning("pdo-mapping", entry.pdo_mapping.position,
+                               fmt::format("PDOmapping is {}, but no such PDO carries an object whose access is {}; it "
+                                           "cannot be mapped",
+                                           entry.pdo_mapping.text, entry.access_type.text));
+  }
+
+  /// Of two objects, or two sub-objects of one object, with the same number the first one wins.
+  bool is_first(pugi::xml_node element, std::uint16_t number, FirstPlaces& first_places) {
+    const auto [first, is_new] = first_places.try_emplace(number, xml_.position(element));
+    if (is_new) return true;
+    xml_.diagnostics().report({Severity::warning,
+                               "duplicate-section",
+                               xml_.position(element),
+                               fmt::format("{:X}h stands twice; the first one counts", number),
+                               {{first->second, "the first one"}}});
+    return false;
+  }
+
+  XmlDocument& xml_;
+  ApplicationProcess& process_;
+  FirstPlaces first_objects_;
+  FirstPlaces first_sub_objects_;  ///< of the object that is being read
+};
+
+}  // namespace
+
+std::vector<ObjectDescription> read_object_list(XmlDocument& xml, pugi::xml_node list, ApplicationProcess& process) {
+  return ObjectListReader{xml, process}.read(list);
+}
+
+}  // namespace edsc

@@ -1,0 +1,16 @@
+/// CANopenObjectList: the objects, and what their parameters say of them.
+#pragma once
+
+#include <vector>
+
+#include "eds/data_sheet.hpp"
+#include "xdd/application_process.hpp"
+#include "xdd/xml_document.hpp"
+
+namespace edsc {
+
+/// Ascending by index, each index once.
+[[nodiscard]] std::vector<ObjectDescription> read_object_list(XmlDocument& xml, pugi::xml_node list,
+                                                              ApplicationProcess& process);
+
+}  // namespace edsc

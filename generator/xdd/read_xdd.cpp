@@ -1,0 +1,206 @@
+#include "xdd/read_xdd.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include "diagnostics/quote.hpp"
+#include "eds/object_lists.hpp"
+#include "text/ini.hpp"
+#include "text/source_file.hpp"
+#include "xdd/application_process.hpp"
+#include "xdd/attributes.hpp"
+#include "xdd/device_info.hpp"
+#include "xdd/object_list.hpp"
+#include "xdd/xml_document.hpp"
+
+namespace edsc {
+namespace {
+
+/// The parts of a profile that are read; null where one is missing.
+struct Parts {
+  pugi::xml_node body;  ///< of the device profile when there is one
+  pugi::xml_node identity, application_process;
+  pugi::xml_node application_layers, object_list, dummy_usage;
+  pugi::xml_node transport_layers, physical_layer, baud_rate;
+  pugi::xml_node network_management, general_features, master_features, commissioning;
+};
+
+/// Where a part stands; null for one that is known but says nothing about the device's function.
+struct PartRow {
+  std::string_view parent;
+  std::string_view name;
+  pugi::xml_node Parts::*part;
+};
+
+constexpr PartRow part_rows[] = {
+    {"ProfileBody", "DeviceIdentity", &Parts::identity},
+    {"ProfileBody", "DeviceManager", nullptr},
+    {"ProfileBody", "DeviceFunction", nullptr},
+    {"ProfileBody", "ApplicationProcess", &Parts::application_process},
+    {"ProfileBody", "ExternalProfileHandle", nullptr},
+    {"ProfileBody", "ApplicationLayers", &Parts::application_layers},
+    {"ApplicationLayers", "CANopenObjectList", &Parts::object_list},
+    {"ApplicationLayers", "dummyUsage", &Parts::dummy_usage},
+    {"ApplicationLayers", "identity", nullptr},
+    {"ProfileBody", "TransportLayers", &Parts::transport_layers},
+    {"TransportLayers", "PhysicalLayer", &Parts::physical_layer},
+    {"PhysicalLayer", "baudRate", &Parts::baud_rate},
+    {"ProfileBody", "NetworkManagement", &Parts::network_management},
+    {"NetworkManagement", "CANopenGeneralFeatures", &Parts::general_features},
+    {"NetworkManagement", "CANopenMasterFeatures", &Parts::master_features},
+    {"NetworkManagement", "deviceCommissioning", &Parts::commissioning},
+};
+
+/// xsi:type of a ProfileBody that belongs to CANopen; the modular ones are longer.
+constexpr std::string_view body_types[] = {
+    "ProfileBody_Device_CANopen",
+    "ProfileBody_CommunicationNetwork_CANopen",
+};
+
+constexpr std::string_view container_name = "ISO15745ProfileContainer";
+constexpr std::string_view profile_name = "ISO15745Profile";
+
+std::string_view body_type(pugi::xml_node body) {
+  const std::string_view type = find_attribute(body, "type").value();
+  return type.substr(type.find(':') + 1);
+}
+
+class XddReader {
+ public:
+  XddReader(const SourceFile& source, Diagnostics& diagnostics) : xml_{source, diagnostics} { sheet_.source = &source; }
+
+  DataSheet read() {
+    if (xml_.root()) find_profiles();
+    if (parts_.object_list) {
+      read_parts();
+    } else if (xml_.root()) {
+      report_no_profile();
+    }
+    sheet_.texts = xml_.kept_texts();
+    return std::move(sheet_);
+  }
+
+ private:
+  void find_profiles() {
+    if (local_name(xml_.root()) == profile_name) read_profile(xml_.root());
+    if (local_name(xml_.root()) != container_name) return;
+    for_each_element(xml_.root(), [&](pugi::xml_node child) {
+      if (local_name(child) == profile_name) {
+        read_profile(child);
+      } else {
+        report_unknown_element(xml_, child);
+      }
+    });
+  }
+
+  void read_profile(pugi::xml_node profile) {
+    for_each_element(profile, [&](pugi::xml_node child) {
+      if (local_name(child) == "ProfileBody" && is_canopen(child)) {
+        read_body(child);
+      } else if (local_name(child) != "ProfileHeader" && local_name(child) != "ProfileBody") {
+        report_unknown_element(xml_, child);
+      }
+    });
+  }
+
+  /// A body without type is taken for what its children say.
+  bool is_canopen(pugi::xml_node body) {
+    const std::string_view type = body_type(body);
+    if (type.empty()) return true;
+    for (const std::string_view known : body_types) {
+      if (type.starts_with(known)) return true;
+    }
+    xml_.diagnostics().warning("xml-element", xml_.position(body),
+                               fmt::format("a profile of the type {} is not CANopen's; it is left out", quote(type)));
+    return false;
+  }
+
+  void read_body(pugi::xml_node body) {
+    const bool is_first = !parts_.identity;
+    find_parts(body);
+    if (!parts_.body || (is_first && parts_.identity)) parts_.body = body;
+  }
+
+  /// The levels below a body are few, and each has its name: no recursion.
+  void find_parts(pugi::xml_node body) {
+    find_parts_in(body);
+    for (pugi::xml_node Parts::*const level :
+         {&Parts::application_layers, &Parts::transport_layers, &Parts::physical_layer, &Parts::network_management}) {
+      if ((parts_.*level).parent() == body || (parts_.*level).parent().parent() == body) find_parts_in(parts_.*level);
+    }
+  }
+
+  void find_parts_in(pugi::xml_node parent) {
+    for_each_element(parent, [&](pugi::xml_node child) {
+      for (const PartRow& row : part_rows) {
+        if (row.parent != local_name(parent) || row.name != local_name(child)) continue;
+        if (row.part != nullptr) take_part(child, parts_.*row.part);
+        return;
+      }
+      report_unknown_element(xml_, child);
+    });
+  }
+
+  void take_part(pugi::xml_node element, pugi::xml_node& part) {
+    if (!part) {
+      part = element;
+      return;
+    }
+    xml_.diagnostics().report({Severity::warning,
+                               "duplicate-section",
+                               xml_.position(element),
+                               fmt::format("{} stands twice; the first one counts", local_name(element)),
+                               {{xml_.position(part), "the first one"}}});
+  }
+
+  void report_no_profile() {
+    const bool is_container = local_name(xml_.root()) == container_name || local_name(xml_.root()) == profile_name;
+    xml_.diagnostics().error("xml-profile", xml_.position(xml_.root()),
+                             is_container
+                                 ? "no profile in this file has a CANopenObjectList: this is no XDD or XDC of CiA 311"
+                                 : fmt::format("an XDD or XDC of CiA 311 begins with {}, not with {}", container_name,
+                                               quote(local_name(xml_.root()))));
+  }
+
+  void read_parts() {
+    read_file_info(xml_, parts_.body, sheet_.file_info);
+    read_device_info(xml_, {parts_.identity, parts_.general_features, parts_.master_features, parts_.baud_rate},
+                     sheet_.device_info);
+    read_commissioning(xml_, parts_.commissioning, sheet_.commissioning);
+    sheet_.is_dcf = sheet_.commissioning.present || ends_with_ignoring_case(xml_.source().name(), ".xdc");
+    sheet_.dummy_usage = read_dummy_usage(xml_, parts_.dummy_usage);
+    ApplicationProcess process{xml_, parts_.application_process};
+    sheet_.objects = read_object_list(xml_, parts_.object_list, process);
+    list_objects();
+    if (sheet_.objects.empty()) {
+      xml_.diagnostics().error("no-objects", xml_.position(parts_.object_list), "there is no object in this list");
+    }
+  }
+
+  /// CiA 311 has no object lists: each object stands in that of CiA 306 where it belongs.
+  void list_objects() {
+    for (const ObjectDescription& object : sheet_.objects) {
+      if (const auto list = list_of(object.index)) sheet_.listed.push_back({*list, object.index, object.position});
+    }
+    std::ranges::stable_sort(sheet_.listed, {}, &ListedObject::list);
+  }
+
+  XmlDocument xml_;
+  Parts parts_;
+  DataSheet sheet_;
+};
+
+}  // namespace
+
+bool is_xml(const SourceFile& source) {
+  const std::string_view text = source.text();
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  return first != std::string_view::npos && text[first] == '<';
+}
+
+DataSheet read_xdd(const SourceFile& source, Diagnostics& diagnostics) { return XddReader{source, diagnostics}.read(); }
+
+}  // namespace edsc

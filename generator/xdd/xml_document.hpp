@@ -1,0 +1,80 @@
+/// An XML file, well-formed or reported, and the places of its elements and attributes.
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <memory>
+#include <pugixml.hpp>
+#include <string>
+#include <string_view>
+#include <unordered_set>
+
+#include "diagnostics/diagnostics.hpp"
+#include "eds/data_sheet.hpp"
+
+namespace edsc {
+
+/// The name without its namespace prefix: `DeviceIdentity` of `q1:DeviceIdentity`. Which prefix a file gives to CiA
+/// 311's namespace, and whether it gives any, is its own choice.
+[[nodiscard]] std::string_view local_name(pugi::xml_node element);
+[[nodiscard]] std::string_view local_name(pugi::xml_attribute attribute);
+
+/// The first child element or the attribute of this local name, letter case ignored; null when there is none.
+[[nodiscard]] pugi::xml_node find_child(pugi::xml_node element, std::string_view name);
+[[nodiscard]] pugi::xml_attribute find_attribute(pugi::xml_node element, std::string_view name);
+
+/// The child elements, one after the other.
+template <typename Use>
+void for_each_element(pugi::xml_node parent, Use use) {
+  for (const pugi::xml_node child : parent.children()) {
+    if (child.type() == pugi::node_element) use(child);
+  }
+}
+
+class XmlDocument {
+ public:
+  /// What is not well-formed is reported; then `root()` is null.
+  XmlDocument(const SourceFile& source, Diagnostics& diagnostics);
+
+  XmlDocument(const XmlDocument&) = delete;
+  XmlDocument& operator=(const XmlDocument&) = delete;
+
+  [[nodiscard]] pugi::xml_node root() const { return root_; }
+  [[nodiscard]] const SourceFile& source() const { return source_; }
+  [[nodiscard]] Diagnostics& diagnostics() const { return diagnostics_; }
+
+  /// Of the element's name; of the file when there is no such element.
+  [[nodiscard]] Position position(pugi::xml_node element) const;
+  [[nodiscard]] Position position(pugi::xml_attribute attribute) const;
+
+  /// An attribute's value, blanks around it cut; not present when the attribute is null.
+  [[nodiscard]] Field value(pugi::xml_attribute attribute);
+  /// The text inside an element, blanks around it cut.
+  [[nodiscard]] Field text(pugi::xml_node element);
+
+  /// A home for text that stands nowhere in the file.
+  [[nodiscard]] std::string_view keep(std::string text);
+  /// All that `keep` was given, and values that hold entities; for the data sheet that points there.
+  [[nodiscard]] std::shared_ptr<const std::deque<std::string>> kept_texts() const { return texts_; }
+
+  /// Warns of something that stands in the file often, the first time only; `what` tells such things apart.
+  void warn_once(std::string_view rule, const std::string& what, const Position& position, const std::string& message);
+
+ private:
+  void parse();
+  void find_root();
+  [[nodiscard]] bool report_unreadable_text();
+  [[nodiscard]] Position position_of(std::size_t offset, std::size_t length) const;
+  [[nodiscard]] Position position_of(std::string_view part) const;
+  [[nodiscard]] std::string_view stored(std::string_view part);
+
+  const SourceFile& source_;
+  Diagnostics& diagnostics_;
+  std::string buffer_;  ///< pugixml parses in place: what it calls a name or value stands where it stands in the file
+  pugi::xml_document document_;
+  pugi::xml_node root_;
+  std::shared_ptr<std::deque<std::string>> texts_ = std::make_shared<std::deque<std::string>>();
+  std::unordered_set<std::string> warned_;
+};
+
+}  // namespace edsc

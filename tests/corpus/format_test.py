@@ -1,0 +1,200 @@
+#!/usr/bin/env python3
+"""`edsc format` keeps what a data sheet says: the laws of the canonical form, over our own data sheets and those of vendors.
+
+    format_test.py SOURCE_DIR EDSC
+
+- The canonical form of the canonical form is itself, and `--check` says so.
+- It is the same device: `edsc dump` differs in lines only.
+- The text of each comment is there, and so are each value that is a text and each line of an unknown section.
+- `--dcf --node-id 5` is the device that `edsc dump --node-id 5` shows of the data sheet.
+
+The vendors' data sheets are no part of this repository; without them (see corpus_test.py) that part is skipped.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+import tempfile
+from collections import Counter
+from dataclasses import dataclass
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from corpus_test import find_corpus, paths_in  # noqa: E402
+from support.compilers import SKIPPED, in_parallel  # noqa: E402
+
+SECONDS = 20
+NODE_ID = "5"
+ERROR = re.compile(r": error: ")
+KNOWN_SECTION = re.compile(
+    r"fileinfo|deviceinfo|dummyusage|comments|devicecomm?issioning|(mandatory|optional|manufacturer)objects"
+    r"|[0-9a-f]{1,4}(sub[0-9a-f]{1,2}|name|value|denotation|objectlinks)?", re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    path: Path
+    refused: str = ""  # the reader's first error
+    problems: tuple[str, ...] = ()
+
+
+def run(edsc: Path, *arguments: object) -> subprocess.CompletedProcess[bytes]:
+    return subprocess.run([edsc, *map(str, arguments), "--color", "never"], capture_output=True, timeout=SECONDS)
+
+
+def ascii_lines(content: bytes) -> list[str]:
+    """Lines without blanks around them; what is not ASCII is left out, since the canonical form has another encoding."""
+    text = content.decode("latin-1").encode("ascii", "ignore").decode("ascii")
+    return [line.strip(" \t\x1a") for line in re.split(r"\r\n|\n|\r", text)]
+
+
+def comments(content: bytes) -> Counter[str]:
+    """The text of each comment."""
+    found = (re.sub(r"^[;#]\s*", "", line, count=1) for line in ascii_lines(content) if line[:1] in (";", "#"))
+    return Counter(text.strip() for text in found)
+
+
+def unknown_lines(content: bytes) -> list[str]:
+    """Title and entries of sections that CiA 306 does not know."""
+    lines, title = [], ""
+    for line in ascii_lines(content):
+        if line.startswith("["):
+            title = line[1:].partition("]")[0].strip(" \t")
+            unknown = KNOWN_SECTION.fullmatch(title) is None
+            lines += [f"[{title}]"] if unknown else []
+        elif title and unknown and "=" in line and line[0] not in ";#=":
+            key, _, value = line.partition("=")
+            lines.append(f"{key.rstrip()}={value.lstrip()}")
+    return lines
+
+
+def texts(content: bytes) -> set[str]:
+    """Entries whose value is neither number nor formula nor a word of CiA 306. Of two of the same name the first counts."""
+    found, titles, keys = set(), set(), set()
+    for line in ascii_lines(content):
+        if line.startswith("["):
+            title = line[1:].partition("]")[0].strip(" \t").lower()
+            keys = set() if title not in titles else None
+            titles.add(title)
+        key, equals, value = line.partition("=")
+        key, value = key.strip().lower(), value.strip(" \t")
+        if keys is None or not equals or line[0] in ";#[=" or key in keys:
+            continue
+        keys.add(key)
+        if re.fullmatch(r"|[-+0-9$].*|.*[;#].*|const|w?o|r[owr]?w?", value, re.IGNORECASE) is None:
+            found.add(f"{key}={value}")
+    return found
+
+
+def without_places(view: object) -> object:
+    if isinstance(view, dict):
+        return {key: without_places(value) for key, value in view.items()
+                if key not in ("line", "column", "source") and not key.endswith("_line")}
+    if isinstance(view, list):
+        return [without_places(element) for element in view]
+    return view
+
+
+def without_commissioning(view: object) -> object:
+    """Without what a DCF has and an EDS has not."""
+    if not isinstance(view, dict):
+        return view
+    file_info = {key: value for key, value in (view.get("file_info") or {}).items() if key != "last_eds"}
+    return {**view, "file_info": file_info, "commissioning": None}
+
+
+def dump(edsc: Path, path: Path, *options: str) -> object:
+    """The device; the first error when there is none."""
+    result = run(edsc, "dump", path, "--keep-going", *options)
+    return without_places(json.loads(result.stdout)) if result.stdout else result.returncode
+
+
+def configured(view: object) -> object:
+    """Without the sections that a DCF has of its own."""
+    if not isinstance(view, dict):
+        return view
+    return {key: value for key, value in view.items() if key not in ("commissioning", "file_info")}
+
+
+def check_canonical(edsc: Path, path: Path, formatted: bytes, folder: Path) -> list[str]:
+    problems = []
+    again = folder / path.name
+    again.write_bytes(formatted)
+    if run(edsc, "format", again).stdout != formatted:
+        problems.append("the canonical form has another canonical form")
+    if run(edsc, "format", again, "--check").returncode != 0:
+        problems.append("--check does not take the canonical form for canonical")
+    if dump(edsc, path) != dump(edsc, again):
+        problems.append("the canonical form is another device")
+    missing = comments(path.read_bytes()) - comments(formatted)
+    if missing:
+        problems.append(f"comments are lost: {list(missing)[:3]}")
+    if gone := texts(path.read_bytes()) - texts(formatted):
+        problems.append(f"texts are lost: {list(gone)[:3]}")
+    lost = Counter(unknown_lines(path.read_bytes())) - Counter(unknown_lines(formatted))
+    if lost:
+        problems.append(f"lines of unknown sections are lost: {list(lost)[:3]}")
+    return problems
+
+
+def check_dcf(edsc: Path, path: Path, folder: Path) -> list[str]:
+    dcf = folder / f"{path.stem}.dcf"
+    made = run(edsc, "format", path, "--dcf", "--node-id", NODE_ID, "-o", dcf)
+    if made.returncode != 0:
+        return [f"--dcf ends with {made.returncode}"]
+    same = configured(dump(edsc, dcf)) == configured(dump(edsc, path, "--node-id", NODE_ID))
+    return [] if same else ["the DCF is another device"]
+
+
+def check_file(job: tuple[Path, Path, Path]) -> Outcome:
+    edsc, path, scratch = job
+    with tempfile.TemporaryDirectory(dir=scratch) as folder:
+        try:
+            result = run(edsc, "format", path)
+            error = next((line for line in result.stderr.decode(errors="replace").splitlines() if ERROR.search(line)), "")
+            if result.returncode == 1 and error and not result.stdout:
+                return Outcome(path, refused=error.rpartition("/")[2])
+            if result.returncode != 0 or error:
+                return Outcome(path, problems=(f"exit code {result.returncode}, {error or 'without an error'}",))
+            problems = check_canonical(edsc, path, result.stdout, Path(folder)) + check_dcf(edsc, path, Path(folder))
+        except subprocess.TimeoutExpired:
+            problems = [f"not done after {SECONDS} s"]
+    return Outcome(path, problems=tuple(problems))
+
+
+def own_data_sheets(source_dir: Path) -> list[Path]:
+    folders = ("eds", "tests/fixtures", "tests/unit/fixture", "examples")
+    return sorted(path for folder in folders for path in (source_dir / folder).rglob("*.eds"))
+
+
+def check_all(edsc: Path, paths: list[Path], scratch: Path) -> int:
+    """How many files break a law."""
+    outcomes = in_parallel(check_file, [(edsc, path, scratch) for path in paths])
+    for outcome in outcomes:
+        for problem in outcome.problems:
+            print(f"{outcome.path}: {problem}")
+        if outcome.refused:
+            print(f"refused: {outcome.refused}")
+    wrong = sum(bool(outcome.problems) for outcome in outcomes)
+    refused = sum(bool(outcome.refused) for outcome in outcomes)
+    print(f"{len(outcomes)} files: {len(outcomes) - wrong - refused} right, {refused} refused, {wrong} wrong")
+    return wrong
+
+
+def main() -> int:
+    source_dir, edsc = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+    with tempfile.TemporaryDirectory() as scratch:
+        wrong = check_all(edsc, own_data_sheets(source_dir), Path(scratch))
+        corpus = find_corpus(source_dir)
+        if corpus is None:
+            print("SKIPPED: no corpus; EDSC_CORPUS names one")
+            return 1 if wrong else SKIPPED
+        wrong += check_all(edsc, [corpus / path for path in paths_in(corpus)], Path(scratch))
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,302 @@
+#!/usr/bin/env python3
+"""Each rule fires on its wrong example, where the example says, and not on its right one; docs/rules.md shows them all.
+
+    rules_test.py SOURCE_DIR EDSC [--write]      --write makes docs/rules.md anew
+
+examples.txt holds for each rule `@ id`, then `@@ bad` and `@@ good`, each followed by what it changes in base.eds:
+- `[section]` names the section that the lines below belong to; a new one is added at the end, and to its object list
+- `Key=value` replaces the line with this key, or adds one; `+line` adds it as it is; `-Key` and `-[section]` take away
+- of a new object, missing keys mean a rw VAR of UNSIGNED8; SubNumber counts the sub-objects unless it is changed itself
+- a line with nothing but `^` says that the finding stands in the line above, in this column; without, in line 1
+Words behind `bad` and `good`: `raw` (the whole file, not a change), `escaped` (Python's escapes, and `x{n}` for n times
+x), `file=NAME`, `column=N` (of the line with the caret), `command=generate|format` (in place of check), `missing` (no
+file). `@@ bad options` is the options file.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass, field
+from pathlib import Path
+
+FINDING = re.compile(r"^(.*?):(\d+):(\d+): (error|warning|note): (.*) \[([a-z0-9-]+)\]$", re.MULTILINE)
+CARET = re.compile(r"^ *\^$")
+OBJECT = re.compile(r"^([0-9A-F]{4})(sub([0-9A-F]{1,2})|Name|Value)?$", re.IGNORECASE)
+NEW_OBJECT_KEYS = {"ParameterName": "Example", "ObjectType": "0x7", "DataType": "0x0005", "AccessType": "rw"}
+
+
+@dataclass
+class Line:
+    text: str
+    column: int | None = None  # where a finding is expected
+
+
+@dataclass
+class Section:
+    header: Line
+    lines: list[Line] = field(default_factory=list)
+
+    @property
+    def name(self) -> str:
+        return self.header.text.strip("[]")
+
+    def find(self, key: str) -> Line | None:
+        return next((line for line in self.lines if line.text.split("=")[0] == key), None)
+
+    def set(self, key: str, value: str, column: int | None = None) -> None:
+        line = self.find(key)
+        if line is None:
+            self.add(line := Line(""))
+        line.text, line.column = f"{key}={value}", column
+
+    def add(self, line: Line) -> None:
+        end = len(self.lines)
+        while end > 0 and not self.lines[end - 1].text:
+            end -= 1
+        self.lines.insert(end, line)
+
+
+@dataclass
+class Block:
+    words: list[str]
+    lines: list[Line] = field(default_factory=list)
+
+    def option(self, name: str, default: str) -> str:
+        return next((word.split("=")[1] for word in self.words if word.startswith(f"{name}=")), default)
+
+
+@dataclass
+class Example:
+    rule: str
+    blocks: dict[str, Block] = field(default_factory=dict)  # "bad", "good", "bad options", "good options"
+
+
+def read_examples(path: Path) -> dict[str, Example]:
+    examples: dict[str, Example] = {}
+    block = Block([])
+    for text in path.read_text(encoding="utf-8").splitlines():
+        if text.startswith("@@ "):
+            words = text[3:].split()
+            name = f"{words[0]} options" if "options" in words else words[0]
+            block = example.blocks[name] = Block(words)
+        elif text.startswith("@ "):
+            example = examples[text[2:]] = Example(text[2:])
+        elif CARET.match(text):
+            block.lines[-1].column = text.index("^") + 1
+        else:
+            block.lines.append(Line(text))
+    for example in examples.values():
+        for block in example.blocks.values():
+            while block.lines and not block.lines[-1].text:
+                block.lines.pop()
+    return examples
+
+
+class Sheet:
+    """The base sheet while a patch is applied."""
+
+    def __init__(self, text: str) -> None:
+        self.head: list[Line] = []
+        self.sections: list[Section] = []
+        for line in map(Line, text.splitlines()):
+            if line.text.startswith("["):
+                self.sections.append(Section(line))
+            else:
+                (self.sections[-1].lines if self.sections else self.head).append(line)
+
+    def find(self, name: str) -> Section | None:
+        return next((section for section in self.sections if section.name == name), None)
+
+    def apply(self, patch: list[Line]) -> None:
+        section, added, touched, own_count = None, [], set(), set()
+        for line in patch:
+            text = line.text
+            if text.startswith("-["):
+                gone = self.find(text[2:-1])
+                assert gone, text
+                self.sections.remove(gone)
+                touched.add(gone.name[:4])
+            elif text.startswith("["):
+                section = self.find(text[1:-1])
+                if section is None:
+                    section = Section(Line(text))
+                    self.sections.append(section)
+                    added.append(section)
+                    touched.add(section.name[:4])
+                section.header.column = line.column
+            elif text.startswith("-"):
+                gone_line = section.find(text[1:])
+                assert gone_line, text
+                section.lines.remove(gone_line)
+            elif text.startswith("+"):
+                section.add(Line(text[1:], line.column and line.column - 1))
+            elif "=" not in text or text.startswith(";"):
+                section.lines.insert(0, line)
+            else:
+                key, value = text.split("=", 1)
+                section.set(key, value, line.column)
+                if key == "SubNumber":
+                    own_count.add(section.name)
+        for section in added:
+            self.complete(section)
+        for name in touched - own_count:
+            self.count(name)
+
+    def complete(self, section: Section) -> None:
+        match = OBJECT.match(section.name)
+        if not match or match[2] and not match[3]:
+            return
+        group = any(line.text in ("ObjectType=0x8", "ObjectType=0x9") for line in section.lines)
+        for key, value in NEW_OBJECT_KEYS.items():
+            of_no_group = group and key in ("DataType", "AccessType") and not section.find("CompactSubObj")
+            if not section.find(key) and not of_no_group:
+                section.set(key, value)
+        if not match[3]:
+            self.list_object(section.name)
+
+    def list_object(self, index: str) -> None:
+        objects = self.find("ManufacturerObjects" if "2" <= index[0] <= "5" else "OptionalObjects")
+        if any(line.text.lower().endswith(f"=0x{index}".lower()) for name in ("OptionalObjects", "ManufacturerObjects")
+               for line in self.find(name).lines):
+            return
+        count = sum(line.text[:1].isdigit() for line in objects.lines) + 1
+        objects.set(str(count), f"0x{index}")
+        objects.set("SupportedObjects", str(count))
+
+    def count(self, index: str) -> None:
+        section = self.find(index)
+        subs = sum(bool(re.match(rf"^{index}sub", s.name)) for s in self.sections)
+        if section and subs and not section.find("CompactSubObj"):
+            section.set("SubNumber", str(subs), (section.find("SubNumber") or Line("")).column)
+
+    def lines(self) -> list[Line]:
+        return self.head + [line for section in self.sections for line in [section.header, *section.lines]]
+
+
+def unescape(text: str) -> str:
+    text = re.sub(r"(\\x..|.)\{(\d+)\}", lambda m: m[1] * int(m[2]), text)
+    return text.encode("latin-1").decode("unicode_escape")
+
+
+def lines_of(block: Block, base: str, file: str) -> list[Line]:
+    lines = [Line(unescape(line.text) if "escaped" in block.words else line.text, line.column) for line in block.lines]
+    if "raw" in block.words:
+        return lines
+    sheet = Sheet(base.replace("FileName=example.eds", f"FileName={file}"))
+    sheet.apply(lines)
+    return sheet.lines()
+
+
+@dataclass(frozen=True)
+class Place:
+    line: int
+    column: int
+
+
+def run(edsc: Path, folder: Path, example: Example, kind: str, base: str) -> tuple[list[tuple[str, Place]], Place]:
+    """What edsc finds in an example, and where its carets point."""
+    block = example.blocks.get(kind, Block([kind]))
+    file = block.option("file", "example.eds")
+    lines = lines_of(block, base, file)
+    if "missing" not in block.words:
+        (folder / file).write_text("".join(f"{line.text}\n" for line in lines), encoding="utf-8")
+    marked = lines
+    if options := example.blocks.get(f"{kind} options"):
+        name = Path(file).with_suffix(".options.json")
+        (folder / name).write_text("".join(f"{line.text}\n" for line in options.lines), encoding="utf-8")
+        if any(line.column for line in options.lines):
+            marked = options.lines
+    command = block.option("command", "check")
+    arguments = {"check": [], "generate": ["-o", "out"], "format": ["-o", "out.eds"]}[command]
+    result = subprocess.run([edsc, command, file, *arguments], cwd=folder, capture_output=True, text=True, timeout=60)
+    column = int(block.option("column", "0"))
+    place = next((Place(n, column or line.column) for n, line in enumerate(marked, 1) if line.column), Place(1, 1))
+    output = result.stdout + result.stderr
+    return [(m[6], Place(int(m[2]), int(m[3]))) for m in FINDING.finditer(output)], place
+
+
+def check_example(edsc: Path, example: Example, base: str) -> list[str]:
+    problems = []
+    for kind in ("bad", "good"):
+        with tempfile.TemporaryDirectory() as folder:
+            found, expected = run(edsc, Path(folder), example, kind, base)
+        places = [place for rule, place in found if rule == example.rule]
+        if kind == "good" and places:
+            problems.append(f"{example.rule}: the right example fires it at {places}")
+        if kind == "bad" and expected not in places:
+            problems.append(f"{example.rule}: the wrong example should fire it at {expected}; found {found}")
+    return problems
+
+
+def code_block(block: Block | None) -> list[str]:
+    if block is None or not block.lines:
+        return []
+    lines = ["```"]
+    for line in block.lines:
+        lines.append(line.text)
+        if line.column:
+            lines.append(" " * (line.column - 1) + "^")
+    return [*lines, "```", ""]
+
+
+INTRODUCTION = """# Rules
+
+What `edsc check` looks for. An error stops `edsc generate`; a warning says what is wrong or was assumed; a note is worth
+knowing, and fails nothing, not even with `--strict`. `--silence RULE` and `silence` in the [options file](options.md) drop a
+rule. `edsc check --list-rules` prints this table.
+
+The examples show what they change in a data sheet without findings: a line replaces the one with its key, a section that
+begins with `-` is taken away, `^` is where the finding stands. Made from `tests/rules/examples.txt`, and tried by
+`tests/rules/rules_test.py`, whose option `--write` makes this page.
+"""
+
+
+def document(rules: list[dict[str, str]], examples: dict[str, Example]) -> str:
+    out = [INTRODUCTION, f"{len(rules)} rules:", "", "| rule | | meaning | source |", "|---|---|---|---|"]
+    for rule in rules:
+        out.append(f"| [{rule['id']}](#{rule['id']}) | {rule['severity']} | {rule['meaning']} | {rule['source']} |")
+    for rule in rules:
+        out += ["", f"## {rule['id']}", "", f"{rule['severity'].capitalize()}: {rule['meaning']} ({rule['source']}).", ""]
+        example = examples[rule["id"]]
+        for kind, word in (("bad", "Wrong"), ("good", "Right")):
+            blocks = [*code_block(example.blocks.get(kind)), *code_block(example.blocks.get(f"{kind} options"))]
+            if blocks:
+                out += [f"{word}:", "", *blocks]
+        while not out[-1]:
+            out.pop()
+    return "\n".join(out) + "\n"
+
+
+def main() -> int:
+    source, edsc = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+    folder = source / "tests" / "rules"
+    base = (folder / "base.eds").read_text(encoding="utf-8")
+    examples = read_examples(folder / "examples.txt")
+    listed = subprocess.run([edsc, "check", "--list-rules", "--format", "json"], check=True, capture_output=True)
+    rules = json.loads(listed.stdout)
+    ids = [rule["id"] for rule in rules]
+    problems = [f"{rule}: no example" for rule in ids if rule not in examples]
+    problems += [f"{rule}: an example, but no rule" for rule in examples if rule not in ids]
+    clean = subprocess.run([edsc, "check", "base.eds", "--silence", "file-name"], cwd=folder, capture_output=True,
+                           text=True)
+    if clean.stdout.strip():
+        problems.append(f"base.eds has findings:\n{clean.stdout}")
+    for example in examples.values():
+        problems += check_example(edsc, example, base)
+    if not any("no example" in problem for problem in problems):
+        page, text = source / "docs" / "rules.md", document(rules, examples)
+        if "--write" in sys.argv:
+            page.write_text(text, encoding="utf-8")
+        elif not page.exists() or page.read_text(encoding="utf-8") != text:
+            problems.append("docs/rules.md is not up to date: run rules_test.py with --write")
+    print("\n".join(problems))
+    print(f"{len(rules)} rules, {len(examples)} examples, {len(problems)} problems")
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
