@@ -3,6 +3,7 @@
 #define EDSC_CAN_2024C_DEVICE_HPP
 
 #include <canopen/device_options.hpp>
+#include <canopen/pdo_list.hpp>
 
 #include "dictionary.hpp"
 #include "pdo.hpp"

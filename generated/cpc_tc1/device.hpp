@@ -3,6 +3,7 @@
 #define EDSC_CPC_TC1_DEVICE_HPP
 
 #include <canopen/device_options.hpp>
+#include <canopen/pdo_list.hpp>
 
 #include "dictionary.hpp"
 #include "pdo.hpp"

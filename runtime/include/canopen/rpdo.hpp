@@ -8,6 +8,7 @@
 #include "canopen/frame.hpp"
 #include "canopen/object_store.hpp"
 #include "canopen/pdo.hpp"
+#include "canopen/pdo_list.hpp"
 #include "canopen/transmission_type.hpp"
 
 namespace canopen {
