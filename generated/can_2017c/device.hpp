@@ -2,6 +2,7 @@
 #ifndef EDSC_CAN_2017C_DEVICE_HPP
 #define EDSC_CAN_2017C_DEVICE_HPP
 
+#include <array>
 #include <canopen/device_options.hpp>
 #include <canopen/pdo_list.hpp>
 
@@ -32,6 +33,13 @@ struct Device {
     departures.pdo_extended_ids = false;
     return departures;
   }();
+
+  /// Whether a new value of an entry sends the event-driven TPDOs that carry it.
+  static constexpr bool triggers_event([[maybe_unused]] std::uint16_t index, [[maybe_unused]] std::uint8_t sub_index) {
+    return true;
+  }
+  /// The manufacturer-specific bytes of an EMCY that the services send by themselves.
+  static constexpr std::array<std::uint8_t, 5> emergency_info([[maybe_unused]] std::uint16_t code) { return {}; }
 
   static constexpr void reset_communication([[maybe_unused]] Values& values) {
     values.communication_preset = can_2017c::communication_preset;

@@ -2,6 +2,7 @@
 #ifndef EDSC_CPC_TC1_DEVICE_HPP
 #define EDSC_CPC_TC1_DEVICE_HPP
 
+#include <array>
 #include <canopen/device_options.hpp>
 #include <canopen/pdo_list.hpp>
 
@@ -38,6 +39,13 @@ struct Device {
     departures.tpdo_remote_frames = false;
     return departures;
   }();
+
+  /// Whether a new value of an entry sends the event-driven TPDOs that carry it.
+  static constexpr bool triggers_event([[maybe_unused]] std::uint16_t index, [[maybe_unused]] std::uint8_t sub_index) {
+    return true;
+  }
+  /// The manufacturer-specific bytes of an EMCY that the services send by themselves.
+  static constexpr std::array<std::uint8_t, 5> emergency_info([[maybe_unused]] std::uint16_t code) { return {}; }
 
   static constexpr void reset_communication([[maybe_unused]] Values& values) {
     values.communication_preset = cpc_tc1::communication_preset;

@@ -18,6 +18,15 @@ struct DeviceOptions {
   /// TPDOs of types 254 and 255 are sent when a mapped object changes and on entering Operational; if not, by their
   /// event timer alone.
   bool event_driven_on_change = true;
+  /// A TPDO of type 0 is sent at the next SYNC after a mapped object has changed; if not, at every SYNC.
+  bool tpdo_acyclic_on_change = true;
+  /// The mapping of a PDO may be written while the PDO is valid, as long as its number of mapped objects is 0. If not:
+  /// 0800 0022h.
+  bool pdo_mapping_writable_while_valid = false;
+  /// The answer to a number of mapped objects that gives no valid mapping.
+  std::uint32_t pdo_mapping_abort_code = 0x0604'0042;
+  /// Multiplex PDOs: 254 and 255 mapped objects.
+  bool mpdo = false;
   /// Expedited uploads tell how many bytes are valid. If not, they answer 42h.
   bool sdo_upload_size_indicated = true;
   /// A segmented transfer in which nothing comes for this many milliseconds is aborted: 0504 0000h. 0: never.
