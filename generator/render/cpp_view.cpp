@@ -269,6 +269,13 @@ std::string to_upper(std::string text) {
   return text;
 }
 
+/// Bit n is set where an RPDO may map data type n as a dummy.
+std::string dummy_mask(const Device& device) {
+  std::uint32_t mask = 0;
+  for (const std::uint16_t dummy : device.dummies) mask |= dummy < 32 ? std::uint32_t{1} << dummy : 0;
+  return fmt::format("0x{:04X}", mask);
+}
+
 ordered_json description_rows(const Device& device) {
   ordered_json rows = ordered_json::array();
   for (const Object& object : device.objects) {
@@ -296,7 +303,8 @@ ordered_json cpp_view(const Device& device, const Options& options, Diagnostics&
                      served_pdos(device, PdoDirection::receive), "tpdos", served_pdos(device, PdoDirection::transmit),
                      "options", std::move(runtime), "any_options", !options.runtime.empty(), "descriptions",
                      description_rows(device), "node_id",
-                     device.node_id ? ordered_json(*device.node_id) : ordered_json(nullptr));
+                     device.node_id ? ordered_json(*device.node_id) : ordered_json(nullptr), "dummies",
+                     dummy_mask(device));
 }
 
 }  // namespace edsc

@@ -9,26 +9,16 @@
 #include "canopen/cob_id.hpp"
 #include "canopen/device_options.hpp"
 #include "canopen/object_store.hpp"
+#include "canopen/pdo_list.hpp"
 #include "canopen/transmission_type.hpp"
 
 namespace canopen {
 
-inline constexpr std::uint16_t rpdo_communication = 0x1400;
-inline constexpr std::uint16_t tpdo_communication = 0x1800;
-
-/// Sub-indices of a PDO communication parameter.
-namespace pdo_parameter {
-inline constexpr std::uint8_t cob_id = 1;
-inline constexpr std::uint8_t transmission_type = 2;
-inline constexpr std::uint8_t inhibit_time = 3;
-inline constexpr std::uint8_t event_timer = 5;
-}  // namespace pdo_parameter
-
 [[nodiscard]] constexpr bool is_rpdo_communication(std::uint16_t index) {
-  return (index & 0xFE00) == rpdo_communication;
+  return (index & 0xFE00) == rpdo_indices.communication;
 }
 [[nodiscard]] constexpr bool is_tpdo_communication(std::uint16_t index) {
-  return (index & 0xFE00) == tpdo_communication;
+  return (index & 0xFE00) == tpdo_indices.communication;
 }
 
 /// Whether a PDO may go from one COB-ID to another. 0609 0030h: its CAN-ID may change only while the PDO is not valid,
@@ -88,6 +78,10 @@ inline constexpr std::uint8_t event_timer = 5;
       const std::uint32_t before = entries.number(entries.dictionary().find(index, sub_index));
       const std::uint32_t after = bytes[0] | static_cast<std::uint32_t>(bytes[1] << 8);
       return cob_id.valid() && before != after ? AbortCode::device_state : ok;
+    }
+    case pdo_parameter::sync_start: {
+      const CobId cob_id{entries.number(entries.dictionary().find(index, pdo_parameter::cob_id))};
+      return tpdo && cob_id.valid() ? AbortCode::device_state : ok;
     }
     default: return ok;
   }

@@ -27,6 +27,10 @@ struct DeviceOptions {
   std::uint32_t pdo_mapping_abort_code = 0x0604'0042;
   /// Multiplex PDOs: 254 and 255 mapped objects.
   bool mpdo = false;
+  /// 1003h keeps the EMCYs that tell the end of an error, too.
+  bool error_history_keeps_resets = false;
+  /// The answer to a write of anything but 0 to 1003h:00.
+  std::uint32_t error_history_abort_code = 0x0609'0030;
   /// Expedited uploads tell how many bytes are valid. If not, they answer 42h.
   bool sdo_upload_size_indicated = true;
   /// A segmented transfer in which nothing comes for this many milliseconds is aborted: 0504 0000h. 0: never.

@@ -220,6 +220,23 @@ struct Dictionary {
     return find(index, sub_index) > no_sub_index;
   }
 
+  /// Calls `visit(index, sub_index, word)` for each entry, in ascending order; words with their offset resolved.
+  template <class Visit>
+  constexpr void for_each_entry(Visit&& visit) const {
+    for (std::size_t run = 0; run + 1 < runs.size(); ++run) {
+      for (std::uint32_t at = runs[run].position; at < runs[run + 1].position; ++at) {
+        const auto index = static_cast<std::uint16_t>(runs[run].first + at - runs[run].position);
+        const entry::Word word = entries[at];
+        const bool var = entry::kind_of(word) == entry::Kind::var;
+        const unsigned highest = var ? 0u : groups[entry::offset_of(word)].highest;
+        for (unsigned sub_index = 0; sub_index <= highest; ++sub_index) {
+          const entry::Word found = find(index, static_cast<std::uint8_t>(sub_index));
+          if (found > no_sub_index) visit(index, static_cast<std::uint8_t>(sub_index), found);
+        }
+      }
+    }
+  }
+
   [[nodiscard]] constexpr const Limits* find_limits(std::uint32_t key) const { return dictionary_detail::find_by_key(limits, key); }
   [[nodiscard]] constexpr const WideLimits* find_wide_limits(std::uint32_t key) const {
     return dictionary_detail::find_by_key(wide_limits, key);

@@ -19,6 +19,7 @@
 #include "canopen/nmt.hpp"
 #include "canopen/object.hpp"
 #include "canopen/pdo.hpp"
+#include "canopen/rpdo.hpp"
 
 namespace canopen {
 
@@ -36,6 +37,16 @@ struct ReadHandler {
 
 template <class F>
 struct StateHandler {
+  [[no_unique_address]] F call;
+};
+
+template <class F>
+struct SyncHandler {
+  [[no_unique_address]] F call;
+};
+
+template <class F>
+struct RpdoHandler {
   [[no_unique_address]] F call;
 };
 
@@ -58,6 +69,19 @@ template <DictionaryObject O, class F>
 /// start and at each reset, when the default values have been taken.
 template <class F>
 [[nodiscard]] constexpr StateHandler<F> on_state(F handler) {
+  return {std::move(handler)};
+}
+
+/// Called at each SYNC in Pre-operational and Operational, when synchronous TPDOs have been sent and synchronous RPDOs
+/// taken over: `handler(counter)` or `handler(node, counter)`. The counter is 0 where the network counts no SYNCs.
+template <class F>
+[[nodiscard]] constexpr SyncHandler<F> on_sync(F handler) {
+  return {std::move(handler)};
+}
+
+/// Called with what happens to an RPDO: `handler(event, number)` or `handler(node, event, number)`.
+template <class F>
+[[nodiscard]] constexpr RpdoHandler<F> on_rpdo(F handler) {
   return {std::move(handler)};
 }
 
@@ -104,6 +128,21 @@ inline constexpr bool is_write_handler_of = false;
 template <class P, class F, class O>
 inline constexpr bool is_write_handler_of<WriteHandler<P, F>, O> = P::index == O::index&& P::sub_index == O::sub_index;
 
+template <class Handler>
+inline constexpr bool is_sync_handler = false;
+template <class F>
+inline constexpr bool is_sync_handler<SyncHandler<F>> = true;
+
+template <class Handler>
+inline constexpr bool is_rpdo_handler = false;
+template <class F>
+inline constexpr bool is_rpdo_handler<RpdoHandler<F>> = true;
+
+template <class Handler>
+inline constexpr std::uint32_t written_key = 0xFFFF'FFFF;
+template <class O, class F>
+inline constexpr std::uint32_t written_key<WriteHandler<O, F>> = object_key(O::index, O::sub_index);
+
 template <class Node, DictionaryObject O, class F>
 AbortCode write(WriteHandler<O, F>& handler, Node& node, const typename O::type& value) {
   using Answer = decltype(call(handler.call, node, value));
@@ -141,6 +180,9 @@ class HandlerSet {
   template <DictionaryObject O>
   static constexpr bool handles_write = (handler_detail::is_write_handler_of<Handlers, O> || ...);
 
+  /// The same for an object known by number.
+  [[nodiscard]] static bool handles(std::uint32_t key) { return ((key == handler_detail::written_key<Handlers>) || ...); }
+
   /// Asks the write handlers of `O`.
   template <DictionaryObject O, class Node>
   AbortCode before_write([[maybe_unused]] Node& node, [[maybe_unused]] const typename O::type& value) {
@@ -167,6 +209,20 @@ class HandlerSet {
     AbortCode code = ok;
     for_each([&](auto& handler) { code = code == ok ? offer_read(handler, node, key) : code; });
     return code;
+  }
+
+  template <class Node>
+  void sync_received(Node& node, std::uint8_t counter) {
+    for_each([&]<class H>(H& handler) {
+      if constexpr (handler_detail::is_sync_handler<H>) handler_detail::call(handler.call, node, counter);
+    });
+  }
+
+  template <class Node>
+  void rpdo_happened(Node& node, RpdoEvent event, std::uint16_t number) {
+    for_each([&]<class H>(H& handler) {
+      if constexpr (handler_detail::is_rpdo_handler<H>) handler_detail::call(handler.call, node, event, number);
+    });
   }
 
   template <class Node>

@@ -31,6 +31,8 @@ enum class NmtCommand : std::uint8_t {
   return state == NmtState::pre_operational || state == NmtState::operational;
 }
 
+[[nodiscard]] constexpr bool serves_emcy(NmtState state) { return serves_sdo(state); }
+
 [[nodiscard]] constexpr bool serves_pdo(NmtState state) { return state == NmtState::operational; }
 
 /// The command that a frame brings to this node: two bytes or more on CAN-ID 0, for this node-ID or for all (0).

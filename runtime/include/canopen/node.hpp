@@ -3,6 +3,8 @@
 /// A node eats frames and time and sends frames; it reads no clock and waits for nothing. It runs in one context.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -12,14 +14,18 @@
 #include "canopen/abort_code.hpp"
 #include "canopen/cob_id.hpp"
 #include "canopen/communication_parameters.hpp"
+#include "canopen/emcy.hpp"
+#include "canopen/error_register.hpp"
 #include "canopen/frame.hpp"
 #include "canopen/handlers.hpp"
 #include "canopen/heartbeat.hpp"
 #include "canopen/nmt.hpp"
 #include "canopen/node_id.hpp"
 #include "canopen/object_store.hpp"
+#include "canopen/pdo_mapping.hpp"
 #include "canopen/rpdo.hpp"
 #include "canopen/sdo_server.hpp"
+#include "canopen/sync.hpp"
 #include "canopen/time.hpp"
 #include "canopen/tpdo.hpp"
 
@@ -56,14 +62,17 @@ class Node {
     now_ = now;
     if (state_ == NmtState::initialisation) return;
     if (attention_) serve();
-    if (frame.remote) return;
     const std::uint32_t cob_id = cob_id_of(frame);
-    if (cob_id == sdo_request_id()) {
+    if (frame.remote) {
+      on_remote(cob_id);
+    } else if (cob_id == sdo_request_id()) {
       on_sdo_request(frame);
     } else if (cob_id == function_code::nmt) {
       on_nmt(frame);
+    } else if (const std::optional<Sync> sync = SyncConsumer<Device>::take(store_, frame)) {
+      on_sync(*sync);
     } else if (serves_pdo(state_)) {
-      on_rpdo(frame);
+      rpdos_.on_frame(store_, frame, now_, RpdoHost{*this});
     }
     if (attention_) serve();
   }
@@ -73,6 +82,7 @@ class Node {
     now_ = now;
     if (state_ == NmtState::initialisation) return;
     sdo_.on_time(now);
+    if constexpr (has_rpdos) rpdos_.on_time(now, RpdoHost{*this});
     serve();
   }
 
@@ -86,7 +96,9 @@ class Node {
       if (other && (!next || *other < *next)) next = other;
     };
     consider(sdo_.next_deadline());
-    if constexpr (TpdoService<Device>::count > 0) consider(tpdos_.next_deadline(now_));
+    if constexpr (has_tpdos) consider(tpdos_.next_deadline(now_));
+    if constexpr (has_rpdos) consider(rpdos_.next_deadline());
+    if (serves_emcy(state_)) consider(emergencies_.next_deadline(now_));
     return next;
   }
 
@@ -121,6 +133,20 @@ class Node {
     entries().write(word, bytes);
     after_write(index, sub_index);
     return ok;
+  }
+
+  /// An error of the application has appeared (CiA 301, 7.2.7.1): its emergency error code, the bits of 1001h that it
+  /// sets (the generic one comes by itself), and the manufacturer's bytes. Sent at once where the bus has room.
+  void emergency(std::uint16_t code, ErrorRegister bits, const EmergencyInfo& info = {}) {
+    emergencies_.appeared(store_, code, bits, info);
+    attention_ = true;
+  }
+
+  /// An error of the application has gone. `bits` of 1001h are cleared: those that no other error of the application
+  /// holds. The EMCY 0000h goes out, with what is left.
+  void emergency_over(ErrorRegister bits) {
+    emergencies_.gone(store_, bits);
+    attention_ = true;
   }
 
   /// Gives a DOMAIN its memory: a download may fill all of it, an upload sends the first `size` bytes.
@@ -159,12 +185,16 @@ class Node {
   using BusMember = std::conditional_t<std::is_empty_v<B>, B, B&>;
 
   static constexpr bool has_heartbeat_time = Device::dictionary.has(0x1017, 0);
+  static constexpr bool has_tpdos = TpdoService<Device>::count > 0;
+  static constexpr bool has_rpdos = RpdoService<Device>::count > 0;
+  static constexpr bool has_dynamic_tpdos = TpdoService<Device>::has_dynamic_mapping;
+  static constexpr bool has_dynamic_rpdos = RpdoService<Device>::has_dynamic_mapping;
 
   struct SdoHooks {
     Node& node;
     [[nodiscard]] EntryAccess entries() { return node.entries(); }
     [[nodiscard]] AbortCode before_read(std::uint16_t index, std::uint8_t sub_index) {
-      return node.handlers_.before_read(node, object_key(index, sub_index));
+      return node.before_read(index, sub_index);
     }
     [[nodiscard]] AbortCode before_write(std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
       return node.before_write(index, sub_index, bytes);
@@ -188,10 +218,17 @@ class Node {
 
   void enter(NmtState next) {
     if (state_ == next && next != NmtState::initialisation) return;
-    if (serves_pdo(state_)) tpdos_.leave_operational();
+    if (serves_pdo(state_)) {
+      tpdos_.leave_operational();
+      rpdos_.leave_operational();
+    }
     state_ = next;
     if (!serves_sdo(next)) sdo_.reset();
-    if (serves_pdo(next)) tpdos_.enter_operational(entries(), now_);
+    if (serves_pdo(next)) {
+      tpdos_.enter_operational(store_, now_);
+      rpdos_.enter_operational(entries(), Watched{*this});
+      tell_rpdo_errors();
+    }
     attention_ = true;
     handlers_.state_entered(*this, next);
   }
@@ -203,6 +240,7 @@ class Node {
 
   void reset_communication() {
     store_.reset_communication(node_id_);
+    emergencies_.reset();
     enter(NmtState::initialisation);
     heartbeat_.boot_up();
     enter(NmtState::pre_operational);
@@ -244,12 +282,33 @@ class Node {
     return true;
   }
 
-  [[nodiscard]] AbortCode before_write(std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
-    if (is_rpdo_communication(index) || is_tpdo_communication(index)) {
-      const AbortCode code = check_pdo_parameter(Device::options, entries(), index, sub_index, bytes);
-      if (code != ok) return code;
+  [[nodiscard]] AbortCode before_read(std::uint16_t index, std::uint8_t sub_index) {
+    if (index == 0x1003) {
+      if (const AbortCode code = check_history_read(entries(), sub_index); code != ok) return code;
     }
+    return handlers_.before_read(*this, object_key(index, sub_index));
+  }
+
+  [[nodiscard]] AbortCode before_write(std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
+    if (const AbortCode code = check_communication(index, sub_index, bytes); code != ok) return code;
     return handlers_.before_write(*this, object_key(index, sub_index), bytes);
+  }
+
+  /// What the services have against a write to 1000h..1FFFh.
+  [[nodiscard]] AbortCode check_communication(std::uint16_t index, std::uint8_t sub_index,
+                                              std::span<std::uint8_t> bytes) {
+    if (is_rpdo_communication(index) || is_tpdo_communication(index)) {
+      return check_pdo_parameter(Device::options, entries(), index, sub_index, bytes);
+    }
+    if constexpr (has_dynamic_rpdos || has_dynamic_tpdos) {
+      if (is_rpdo_mapping(index) || is_tpdo_mapping(index)) {
+        return check_pdo_mapping(Device::options, entries(), Device::dummies, index, sub_index, bytes);
+      }
+    }
+    if (index == 0x1003 && sub_index == 0 && bytes[0] != 0) {
+      return static_cast<AbortCode>(Device::options.error_history_abort_code);
+    }
+    return ok;
   }
 
   /// Tells the services that an object has a new value.
@@ -258,18 +317,112 @@ class Node {
     if constexpr (has_heartbeat_time) {
       if (index == 0x1017) heartbeat_.set_period(heartbeat_period(), now_);
     }
-    if constexpr (TpdoService<Device>::count > 0) {
-      if (!serves_pdo(state_)) return;
-      if (is_tpdo_communication(index)) tpdos_.parameter_changed(entries(), index, sub_index, now_);
-      tpdos_.changed(index, sub_index);
+    if (!serves_pdo(state_)) return;
+    if constexpr (has_tpdos) {
+      if (is_tpdo_communication(index) || is_tpdo_mapping(index)) {
+        tpdos_.parameter_changed(store_, index, sub_index, now_);
+        if (has_dynamic_tpdos && is_tpdo_mapping(index)) rpdos_.watch_again(entries(), Watched{*this});
+      }
+      tpdos_.changed(entries(), index, sub_index);
+    }
+    if constexpr (has_rpdos) {
+      if (is_rpdo_communication(index) || is_rpdo_mapping(index)) {
+        rpdos_.parameter_changed(entries(), index, Watched{*this});
+        tell_rpdo_errors();
+      }
     }
   }
 
   // PDO
 
-  void on_rpdo(const Frame& frame) {
-    RpdoService<Device>::on_frame(
-        store_, frame, [this]<DictionaryObject O>(const typename O::type& value) { this->template take<O>(value); });
+  struct RpdoHost {
+    Node& node;
+    template <DictionaryObject O>
+    void take(const typename O::type& value) {
+      node.template take<O>(value);
+    }
+    void take(std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
+      node.take(index, sub_index, bytes);
+    }
+    void happened(RpdoEvent event, std::uint16_t number) { node.rpdo_happened(event, number); }
+  };
+
+  /// Whether more has to be done with a received value than to store it: it has limits or another size in memory, a
+  /// handler or a service waits for it, or a TPDO carries it.
+  struct Watched {
+    const Node& node;
+    [[nodiscard]] bool operator()(entry::Word word, MappedObject mapped) const {
+      const std::uint8_t size = entry::wire_bytes(word);
+      if ((word & entry::limited) != 0 || entry::is_boolean(word) || (size & (size - 1)) != 0) return true;
+      if (mapped.index() < 0x2000 || HandlerSet<Handlers...>::handles(mapped.key())) return true;
+      return TpdoService<Device>::carries(const_cast<Node&>(node).entries(), mapped.key());
+    }
+  };
+
+  void on_sync(Sync sync) {
+    if (state_ == NmtState::stopped) return;
+    if constexpr (SyncConsumer<Device>::exists) {
+      if (!sync.good) {
+        service_error(ServiceError::sync_length);
+        return;
+      }
+      service_error_over(ServiceError::sync_length);
+      if (serves_pdo(state_)) {
+        if constexpr (has_tpdos) {
+          tpdos_.on_sync(store_, sync);
+          serve();  // with the values as they were at the SYNC
+        }
+        if constexpr (has_rpdos) rpdos_.on_sync(store_, RpdoHost{*this});
+      }
+      handlers_.sync_received(*this, sync.counter);
+    }
+  }
+
+  void on_remote(std::uint32_t cob_id) {
+    if constexpr (has_tpdos && Device::options.tpdo_remote_frames) {
+      if (!serves_pdo(state_)) return;
+      tpdos_.on_remote(entries(), cob_id);
+      attention_ = true;
+    }
+  }
+
+  void rpdo_happened(RpdoEvent event, std::uint16_t number) {
+    switch (event) {
+      case RpdoEvent::taken: break;
+      case RpdoEvent::too_short: service_error(ServiceError::pdo_length); break;
+      case RpdoEvent::timeout: service_error(ServiceError::rpdo_timeout); break;
+      case RpdoEvent::length_right:
+      case RpdoEvent::in_time: tell_rpdo_errors(); break;
+    }
+    handlers_.rpdo_happened(*this, event, number);
+  }
+
+  /// Errors of RPDOs are over when no RPDO has them any more.
+  void tell_rpdo_errors() {
+    if constexpr (has_rpdos) {
+      if (!rpdos_.any(RpdoEvent::too_short)) service_error_over(ServiceError::pdo_length);
+      if (!rpdos_.any(RpdoEvent::timeout)) service_error_over(ServiceError::rpdo_timeout);
+    }
+  }
+
+  void service_error(ServiceError error) {
+    emergencies_.appeared(store_, error);
+    attention_ = true;
+  }
+  void service_error_over(ServiceError error) {
+    if (emergencies_.gone(store_, error)) attention_ = true;
+  }
+
+  /// A value for an object known by number. One that is outside its limits or that its handler refuses is not taken.
+  void take(std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
+    const entry::Word word = Device::dictionary.find(index, sub_index);
+    if (entry::is_boolean(word)) bytes[0] = bytes[0] != 0 ? 1 : 0;
+    if (entries().check(index, sub_index, word, bytes) != ok) return;
+    if (before_write(index, sub_index, bytes) != ok) return;
+    std::array<std::uint8_t, 8> scratch;
+    if (std::ranges::equal(entries().read(word, scratch), bytes)) return;
+    entries().write(word, bytes);
+    after_write(index, sub_index);
   }
 
   /// A value from an RPDO. One that is outside its limits or that its handler refuses is not taken.
@@ -283,8 +436,8 @@ class Node {
   template <DictionaryObject O>
   void changed() {
     if constexpr (O::index < 0x2000) after_write(O::index, O::sub_index);
-    if constexpr (TpdoService<Device>::count > 0) {
-      if (serves_pdo(state_) && tpdos_.template changed<O>()) attention_ = true;
+    if constexpr (has_tpdos) {
+      if (serves_pdo(state_) && tpdos_.template changed<O>(entries())) attention_ = true;
     }
   }
 
@@ -327,7 +480,8 @@ class Node {
     if constexpr (has_heartbeat_time) {
       if (!heartbeat_.serve(bus_, node_id_, state_, heartbeat_period(), now_)) return false;
     }
-    if constexpr (TpdoService<Device>::count > 0) {
+    if (serves_emcy(state_) && !emergencies_.serve(store_, bus_, now_)) return false;
+    if constexpr (has_tpdos) {
       if (serves_pdo(state_)) return tpdos_.serve(store_, bus_, now_);
     }
     return true;
@@ -338,6 +492,8 @@ class Node {
   ObjectStore<Device> store_{};
   SdoServer<Device> sdo_{};
   TpdoService<Device> tpdos_{};
+  RpdoService<Device> rpdos_{};
+  EmergencyProducer<Device> emergencies_{};
   HeartbeatProducer heartbeat_{};
   TimePoint now_{};
   NodeId node_id_{};

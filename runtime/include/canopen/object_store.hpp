@@ -56,6 +56,14 @@ class EntryAccess {
   /// The memory behind a DOMAIN.
   [[nodiscard]] Domain domain(entry::Word word) const { return load<Domain>(ram_ + entry::offset_of(word)); }
 
+  /// Where an entry lies in RAM.
+  [[nodiscard]] std::uint8_t* ram(entry::Word word) const { return ram_ + entry::offset_of(word); }
+
+  /// Where an entry lies among the constants.
+  [[nodiscard]] const std::uint8_t* constant(entry::Word word) const {
+    return static_cast<const std::uint8_t*>(dictionary_.constants) + entry::offset_of(word);
+  }
+
   /// Says how many bytes of a DOMAIN's memory are its value.
   void resize_domain(entry::Word word, std::uint32_t size) const {
     Domain resized = domain(word);
@@ -147,7 +155,7 @@ class EntryAccess {
   [[nodiscard]] const std::uint8_t* address(entry::Word word) const {
     switch (entry::place_of(word)) {
       case entry::Place::ram: return ram_ + entry::offset_of(word);
-      case entry::Place::rom: return static_cast<const std::uint8_t*>(dictionary_.constants) + entry::offset_of(word);
+      case entry::Place::rom: return constant(word);
       case entry::Place::immediate:
       case entry::Place::immediate_plus_node_id: break;
     }
@@ -316,19 +324,9 @@ class ObjectStore {
   /// Calls `visit(offset)` for each DOMAIN of the dictionary.
   template <class Visit>
   static constexpr void for_each_domain(Visit visit) {
-    const Dictionary& dictionary = Device::dictionary;
-    for (std::size_t run = 0; run + 1 < dictionary.runs.size(); ++run) {
-      for (std::uint32_t at = dictionary.runs[run].position; at < dictionary.runs[run + 1].position; ++at) {
-        const auto index = static_cast<std::uint16_t>(dictionary.runs[run].first + at - dictionary.runs[run].position);
-        const entry::Word word = dictionary.entries[at];
-        const bool var = entry::kind_of(word) == entry::Kind::var;
-        const unsigned highest = var ? 0u : dictionary.groups[entry::offset_of(word)].highest;
-        for (unsigned sub_index = 0; sub_index <= highest; ++sub_index) {
-          const entry::Word found = dictionary.find(index, static_cast<std::uint8_t>(sub_index));
-          if (found > Dictionary::no_sub_index && entry::is_domain(found)) visit(entry::offset_of(found));
-        }
-      }
-    }
+    Device::dictionary.for_each_entry([&](std::uint16_t, std::uint8_t, entry::Word word) {
+      if (entry::is_domain(word)) visit(entry::offset_of(word));
+    });
   }
 
   static constexpr std::size_t domain_count = [] {

@@ -1,4 +1,4 @@
-/// The PDOs of a device, by number.
+/// The PDOs of a device, by number, and where their parameters are in its dictionary.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,23 @@
 #include "canopen/pdo.hpp"
 
 namespace canopen {
+
+/// Indices of the parameters of the first PDO of a direction (CiA 301, 7.5.2.35 to 7.5.2.38).
+struct PdoIndices {
+  std::uint16_t communication;
+  std::uint16_t mapping;
+};
+inline constexpr PdoIndices rpdo_indices{0x1400, 0x1600};
+inline constexpr PdoIndices tpdo_indices{0x1800, 0x1A00};
+
+/// Sub-indices of a PDO communication parameter.
+namespace pdo_parameter {
+inline constexpr std::uint8_t cob_id = 1;
+inline constexpr std::uint8_t transmission_type = 2;
+inline constexpr std::uint8_t inhibit_time = 3;
+inline constexpr std::uint8_t event_timer = 5;
+inline constexpr std::uint8_t sync_start = 6;
+}  // namespace pdo_parameter
 
 /// A PDO of a device: its number (from 1) and its layout. The parameters are objects 1400h or 1800h + number - 1.
 template <std::uint16_t Number, class Layout>
@@ -28,25 +45,44 @@ struct PdoList {
   }
 };
 
+/// How many objects the mapping of a PDO can be given by SDO; 0: the mapping is static. It is dynamic where the mapping
+/// parameter lies in RAM: the entries one behind the other, from sub-index 1 on.
+[[nodiscard]] constexpr std::uint8_t mapping_capacity(const Dictionary& dictionary, std::uint16_t mapping) {
+  const auto in_ram = [](entry::Word word) {
+    return word > Dictionary::no_sub_index && entry::place_of(word) == entry::Place::ram;
+  };
+  const entry::Word first = dictionary.find(mapping, 1);
+  if (!in_ram(dictionary.find(mapping, 0)) || !in_ram(first)) return 0;
+  constexpr std::uint8_t most = 64;
+  std::uint8_t capacity = 1;
+  while (capacity < most) {
+    const entry::Word next = dictionary.find(mapping, static_cast<std::uint8_t>(capacity + 1));
+    if (!in_ram(next) || entry::offset_of(next) != entry::offset_of(first) + 4u * capacity) break;
+    ++capacity;
+  }
+  return capacity;
+}
+
 namespace pdo_detail {
 
-template <const Dictionary& D, std::uint16_t FirstParameter, class Taken, class List>
+template <const Dictionary& D, PdoIndices Indices, class Taken, class List>
 struct Served;
-template <const Dictionary& D, std::uint16_t FirstParameter, class... Taken>
-struct Served<D, FirstParameter, PdoList<Taken...>, PdoList<>> {
+template <const Dictionary& D, PdoIndices Indices, class... Taken>
+struct Served<D, Indices, PdoList<Taken...>, PdoList<>> {
   using type = PdoList<Taken...>;
 };
-template <const Dictionary& D, std::uint16_t FirstParameter, class... Taken, class P, class... Rest>
-struct Served<D, FirstParameter, PdoList<Taken...>, PdoList<P, Rest...>> {
-  static constexpr bool serves = P::entries > 0 && D.has(FirstParameter + P::number - 1, 1);
-  using type = typename Served<D, FirstParameter, std::conditional_t<serves, PdoList<Taken..., P>, PdoList<Taken...>>,
+template <const Dictionary& D, PdoIndices Indices, class... Taken, class P, class... Rest>
+struct Served<D, Indices, PdoList<Taken...>, PdoList<P, Rest...>> {
+  static constexpr bool maps = P::entries > 0 || mapping_capacity(D, Indices.mapping + P::number - 1) > 0;
+  static constexpr bool serves = maps && D.has(Indices.communication + P::number - 1, pdo_parameter::cob_id);
+  using type = typename Served<D, Indices, std::conditional_t<serves, PdoList<Taken..., P>, PdoList<Taken...>>,
                                PdoList<Rest...>>::type;
 };
 
 }  // namespace pdo_detail
 
-/// Those PDOs of a list that carry something and whose COB-ID is in the dictionary, at `FirstParameter` + number - 1.
-template <const Dictionary& D, std::uint16_t FirstParameter, class List>
-using ServedPdos = typename pdo_detail::Served<D, FirstParameter, PdoList<>, List>::type;
+/// Those PDOs of a list that carry something, or can be made to, and whose COB-ID is in the dictionary.
+template <const Dictionary& D, PdoIndices Indices, class List>
+using ServedPdos = typename pdo_detail::Served<D, Indices, PdoList<>, List>::type;
 
 }  // namespace canopen

@@ -1,57 +1,305 @@
 /// The PDOs that a device receives (CiA 301, 7.2.2).
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <cstring>
+#include <optional>
+#include <span>
+#include <type_traits>
 
 #include "canopen/cob_id.hpp"
 #include "canopen/communication_parameters.hpp"
 #include "canopen/frame.hpp"
+#include "canopen/mapped_places.hpp"
 #include "canopen/object_store.hpp"
 #include "canopen/pdo.hpp"
 #include "canopen/pdo_list.hpp"
+#include "canopen/sync.hpp"
+#include "canopen/time.hpp"
 #include "canopen/transmission_type.hpp"
 
 namespace canopen {
 
-/// All RPDOs of one device. Those of types 254 and 255 are taken over at once. A frame shorter than the mapping is not
-/// taken; of a longer one the first bytes are.
+/// What happens to an RPDO, by its number from 1.
+enum class RpdoEvent : std::uint8_t {
+  taken,         ///< its values have been taken over
+  too_short,     ///< a frame has fewer bytes than are mapped; nothing was taken
+  timeout,       ///< no frame has come for its event timer
+  length_right,  ///< the first good frame after one that was too short
+  in_time,       ///< the first good frame after a timeout
+};
+
+/// All RPDOs of one device, with the parameters of 1400h and following as they are at the moment. Those of types 254 and
+/// 255 are taken over at once, those of types 0..240 at the next SYNC. Of a frame longer than the mapping the first
+/// bytes are used, a shorter one is not taken. With an event timer (sub-index 5, ms) an RPDO is missed when it stays
+/// away for longer, from its first frame on.
+///
+/// A service asks the node around it (`host`):
+///   take<O>(value)                           a value for an object, where the mapping is static
+///   take(index, sub_index, bytes)            the same for one known by number
+///   happened(event, number)
 template <class Device>
 class RpdoService {
  public:
-  using Pdos = ServedPdos<Device::dictionary, rpdo_communication, typename Device::Rpdos>;
+  using Pdos = ServedPdos<Device::dictionary, rpdo_indices, typename Device::Rpdos>;
+  using Mapped = MappedPlaces<Device, rpdo_indices, Pdos>;
   static constexpr std::size_t count = Pdos::count;
+  static constexpr bool has_dynamic_mapping = Mapped::any;
 
-  /// Gives the values of a frame to `take.template operator()<O>(value)`, object by object, for each RPDO that the
-  /// frame is.
-  template <class Take>
-  static void on_frame(const ObjectStore<Device>& store, const Frame& frame, Take&& take) {
-    Pdos::for_each([&]<class Pdo, std::size_t>() {
-      constexpr std::uint16_t index = rpdo_communication + Pdo::number - 1;
-      const std::uint32_t cob_id = store.template number<index, pdo_parameter::cob_id>();
-      if ((cob_id & ~CobId::no_rtr_bit) != cob_id_of(frame))
-        return;  // an RPDO's bit 30 means nothing; no frame has bit 31
-      if (frame.size < Pdo::size) return;
-      if (event_driven<index>(store)) unpack<Pdo>(frame, take);
-    });
+  /// `watched(word, key)` says of an object whether more has to be done with its value than to store it.
+  template <class Watched>
+  void enter_operational(const EntryAccess& entries, Watched&& watched) {
+    for (std::size_t i = 0; i < count; ++i) activate(i, entries, watched);
   }
 
- private:
-  template <std::uint16_t Index>
-  [[nodiscard]] static bool event_driven([[maybe_unused]] const ObjectStore<Device>& store) {
-    if constexpr (Device::dictionary.has(Index, pdo_parameter::transmission_type)) {
-      return transmission_of(store.template number<Index, pdo_parameter::transmission_type>()) ==
-             Transmission::event_driven;
-    } else {
-      return true;
+  /// Nothing is taken over any more, and nothing missed. What was wrong stays so until a good frame comes.
+  void leave_operational() {
+    for (Slot& slot : slots_) slot.flags &= static_cast<std::uint8_t>(~(buffered | monitored));
+  }
+
+  /// A communication or mapping parameter, 1400h..17FFh, has a new value, which counts at once.
+  template <class Watched>
+  void parameter_changed(const EntryAccess& entries, std::uint16_t index, Watched&& watched) {
+    for (std::size_t i = 0; i < count; ++i) {
+      if (((indices[i] ^ index) & 0x1FF) == 0) activate(i, entries, watched);
     }
   }
 
-  template <class Pdo, class Take>
-  static void unpack(const Frame& frame, Take& take) {
-    Pdo::for_each([&]<class O, std::size_t I>() {
-      if constexpr (!is_dummy<O>) take.template operator()<O>(Pdo::template get<I>(frame.data));
+  /// The mapping of a TPDO has changed: other objects are watched now.
+  template <class Watched>
+  void watch_again([[maybe_unused]] const EntryAccess& entries, [[maybe_unused]] Watched&& watched) {
+    if constexpr (has_dynamic_mapping) {
+      for (std::size_t i = 0; i < count; ++i) {
+        if (Mapped::capacities[i] != 0) slots_[i].size = look_up(i, entries, watched);
+      }
+    }
+  }
+
+  /// Takes a frame for each RPDO that it is.
+  template <class Host>
+  void on_frame(ObjectStore<Device>& store, const Frame& frame, TimePoint now, Host&& host) {
+    const std::uint32_t cob_id = cob_id_of(frame);
+    Pdos::for_each([&]<class Pdo, std::size_t I>() {
+      constexpr std::uint16_t index = rpdo_indices.communication + Pdo::number - 1;
+      const std::uint32_t own = store.template number<index, pdo_parameter::cob_id>();
+      // An RPDO's bit 30 means nothing; no frame has bit 31.
+      if ((own & ~CobId::no_rtr_bit) == cob_id) receive(I, store, frame, now, host);
     });
   }
+
+  /// A SYNC has come: what has been received since the last one counts now.
+  template <class Host>
+  void on_sync(ObjectStore<Device>& store, Host&& host) {
+    for (std::size_t i = 0; i < count; ++i) {
+      if ((slots_[i].flags & buffered) == 0) continue;
+      slots_[i].flags &= static_cast<std::uint8_t>(~buffered);
+      take(i, store, slots_[i].data, host);
+    }
+  }
+
+  /// Tells of those that have stayed away.
+  template <class Host>
+  void on_time([[maybe_unused]] TimePoint now, [[maybe_unused]] Host&& host) {
+    if constexpr (has_event_timer) {
+      for (std::size_t i = 0; i < count; ++i) {
+        if ((slots_[i].flags & monitored) == 0 || now < slots_[i].deadline) continue;
+        slots_[i].flags = static_cast<std::uint8_t>((slots_[i].flags & ~monitored) | missed);
+        host.happened(RpdoEvent::timeout, number_of(i));
+      }
+    }
+  }
+
+  /// When the next one will have stayed away for too long.
+  [[nodiscard]] std::optional<TimePoint> next_deadline() const {
+    std::optional<TimePoint> next;
+    if constexpr (has_event_timer) {
+      for (const Slot& slot : slots_) {
+        if ((slot.flags & monitored) != 0 && (!next || slot.deadline < *next)) next = slot.deadline;
+      }
+    }
+    return next;
+  }
+
+  /// Whether an RPDO is in this condition now: `too_short` or `timeout`.
+  [[nodiscard]] bool any(RpdoEvent condition) const {
+    const std::uint8_t flag = condition == RpdoEvent::too_short ? cut_short : missed;
+    for (const Slot& slot : slots_) {
+      if ((slot.flags & flag) != 0) return true;
+    }
+    return false;
+  }
+
+ private:
+  enum Flag : std::uint8_t {
+    buffered = 1,   ///< data wait for a SYNC
+    cut_short = 2,  ///< the last frame was too short
+    monitored = 4,  ///< deadline counts
+    missed = 8,     ///< the deadline has passed
+  };
+
+  using Data = std::array<std::uint8_t, 8>;
+
+  static constexpr std::array<std::uint16_t, count> indices = [] {
+    std::array<std::uint16_t, count> rows{};
+    Pdos::for_each([&]<class Pdo, std::size_t I>() {
+      rows[I] = static_cast<std::uint16_t>(rpdo_indices.communication + Pdo::number - 1);
+    });
+    return rows;
+  }();
+
+  static constexpr std::array<std::uint8_t, count> sizes = [] {
+    std::array<std::uint8_t, count> rows{};
+    Pdos::for_each([&]<class Pdo, std::size_t I>() { rows[I] = Pdo::size; });
+    return rows;
+  }();
+
+  /// Where the parameters are that a frame needs; 0 or 1 stand for one that does not exist.
+  struct Parameters {
+    entry::Word transmission_type;
+    entry::Word event_timer;
+  };
+  static constexpr std::array<Parameters, count> parameters = [] {
+    std::array<Parameters, count> rows{};
+    for (std::size_t i = 0; i < count; ++i) {
+      rows[i] = {Device::dictionary.find(indices[i], pdo_parameter::transmission_type),
+                 Device::dictionary.find(indices[i], pdo_parameter::event_timer)};
+    }
+    return rows;
+  }();
+  static constexpr bool has_event_timer =
+      std::ranges::any_of(parameters, [](const Parameters& p) { return p.event_timer > Dictionary::no_sub_index; });
+
+  struct NoTime {};
+  struct Slot {
+    alignas(4) Data data;
+    [[no_unique_address]] std::conditional_t<has_event_timer, TimePoint, NoTime> deadline;
+    std::uint8_t flags;
+    std::uint8_t size;  ///< data bytes that are mapped
+  };
+
+  [[nodiscard]] static std::uint16_t number_of(std::size_t i) {
+    return static_cast<std::uint16_t>(indices[i] - rpdo_indices.communication + 1);
+  }
+
+  template <class Watched>
+  void activate(std::size_t i, const EntryAccess& entries, Watched&& watched) {
+    slots_[i] = {};
+    slots_[i].size = look_up(i, entries, watched);
+  }
+
+  template <class Watched>
+  std::uint8_t look_up(std::size_t i, [[maybe_unused]] const EntryAccess& entries, [[maybe_unused]] Watched&& watched) {
+    if constexpr (has_dynamic_mapping) {
+      if (Mapped::capacities[i] != 0) return places_.look_up(i, entries, watched);
+    }
+    return sizes[i];
+  }
+
+  template <class Host>
+  void receive(std::size_t i, ObjectStore<Device>& store, const Frame& frame, TimePoint now, Host& host) {
+    Slot& slot = slots_[i];
+    if (slot.size == 0) return;
+    if (frame.size < slot.size) {
+      const bool first = (slot.flags & cut_short) == 0;
+      slot.flags |= cut_short;
+      if (first) host.happened(RpdoEvent::too_short, number_of(i));
+      return;
+    }
+    end(i, cut_short, RpdoEvent::length_right, host);
+    start_deadline(i, store.entries(), now, host);
+    switch (transmission_type(i, store.entries())) {
+      case Transmission::synchronous:
+        slot.data = frame.data;
+        slot.flags |= buffered;
+        break;
+      case Transmission::event_driven: take(i, store, frame.data, host); break;
+      case Transmission::remote_synchronous:
+      case Transmission::remote:
+      case Transmission::reserved: break;
+    }
+  }
+
+  /// Tells that a condition is over, if it was there.
+  template <class Host>
+  void end(std::size_t i, std::uint8_t condition, RpdoEvent event, Host& host) {
+    if ((slots_[i].flags & condition) == 0) return;
+    slots_[i].flags &= static_cast<std::uint8_t>(~condition);
+    host.happened(event, number_of(i));
+  }
+
+  template <class Host>
+  void start_deadline([[maybe_unused]] std::size_t i, [[maybe_unused]] const EntryAccess& entries,
+                      [[maybe_unused]] TimePoint now, [[maybe_unused]] Host& host) {
+    if constexpr (has_event_timer) {
+      end(i, missed, RpdoEvent::in_time, host);
+      slots_[i].flags &= static_cast<std::uint8_t>(~monitored);
+      if (parameters[i].event_timer <= Dictionary::no_sub_index) return;
+      const Duration timer = from_milliseconds(static_cast<std::uint16_t>(entries.number(parameters[i].event_timer)));
+      if (timer.count() == 0) return;
+      slots_[i].flags |= monitored;
+      slots_[i].deadline = now + timer;
+    }
+  }
+
+  [[nodiscard]] static Transmission transmission_type(std::size_t i, const EntryAccess& entries) {
+    const entry::Word word = parameters[i].transmission_type;
+    return word > Dictionary::no_sub_index ? transmission_of(entries.number(word)) : Transmission::event_driven;
+  }
+
+  template <class Host>
+  void take(std::size_t which, ObjectStore<Device>& store, const Data& data, Host& host) {
+    Pdos::for_each([&]<class Pdo, std::size_t I>() {
+      if constexpr (Mapped::capacities[I] == 0) {
+        if (I == which) take_static<Pdo>(data, host);
+      }
+    });
+    if constexpr (has_dynamic_mapping) {
+      if (Mapped::capacities[which] != 0) take_mapped(which, store.entries(), data, host);
+    }
+    host.happened(RpdoEvent::taken, number_of(which));
+  }
+
+  template <class Pdo, class Host>
+  static void take_static(const Data& data, Host& host) {
+    Pdo::for_each([&]<class O, std::size_t I>() {
+      if constexpr (!is_dummy<O>) host.template take<O>(Pdo::template get<I>(data));
+    });
+  }
+
+  template <class Host>
+  void take_mapped(std::size_t which, const EntryAccess& entries, const Data& data, Host& host) {
+    const MappingParameter mapping = Mapped::parameter(which, entries);
+    unsigned at = 0;
+    for (std::uint8_t i = 0; i < mapping.count(); ++i) {
+      const MappedObject mapped = mapping[i];
+      const unsigned bits = mapped.bits();
+      const auto place = places_.place(which, i);
+      const bool whole_bytes = !Mapped::has_bits || ((at | bits) & 7) == 0;
+      if (place == Mapped::no_place) {
+        // a dummy
+      } else if (whole_bytes && (place & Mapped::mark) == 0) {
+        std::uint8_t* const to = entries.ram(place);
+        for (unsigned byte = 0; byte < bits / 8; ++byte) to[byte] = data[at / 8 + byte];
+      } else {
+        take_watched(mapped, data, at, host);
+      }
+      at += bits;
+    }
+  }
+
+  template <class Host>
+  static void take_watched(MappedObject mapped, const Data& data, unsigned at, Host& host) {
+    const std::uint64_t value = take_bits(data.data(), at, mapped.bits());
+    alignas(8) std::array<std::uint8_t, 8> bytes{};
+    std::memcpy(bytes.data(), &value, sizeof value);
+    host.take(mapped.index(), mapped.sub_index(), std::span{bytes}.first((mapped.bits() + 7u) / 8u));
+  }
+
+  std::array<Slot, count> slots_{};
+  struct Nothing {};
+  [[no_unique_address]] std::conditional_t<has_dynamic_mapping, Mapped, Nothing> places_{};
 };
 
 }  // namespace canopen

@@ -4,32 +4,44 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <type_traits>
 
 #include "canopen/cob_id.hpp"
 #include "canopen/communication_parameters.hpp"
 #include "canopen/frame.hpp"
+#include "canopen/mapped_places.hpp"
 #include "canopen/object_store.hpp"
 #include "canopen/pdo.hpp"
 #include "canopen/pdo_list.hpp"
+#include "canopen/sync.hpp"
 #include "canopen/time.hpp"
 #include "canopen/transmission_type.hpp"
 
 namespace canopen {
 
-/// All TPDOs of one device. Event-driven ones (types 254 and 255) are sent when a mapped object has changed, when the
-/// event timer has run out, and once on entering Operational; never sooner after the last time than the inhibit time
-/// says. Parameters are those of 1800h and following, as they are at the moment.
+/// All TPDOs of one device, with the parameters of 1800h and following as they are at the moment.
+///
+///   type 0         at the SYNC after a mapped object has changed
+///   type 1..240    at every n-th SYNC, counted from the SYNC whose counter is the SYNC start value
+///   type 252       when a remote frame asks, with the data of the last SYNC
+///   type 253       when a remote frame asks
+///   type 254, 255  when a mapped object has changed, when the event timer has run out, and once on entering
+///                  Operational; never sooner after the last time than the inhibit time says
+///
+/// A remote frame is answered by every type where bit 30 of the COB-ID allows it.
 template <class Device>
 class TpdoService {
  public:
-  using Pdos = ServedPdos<Device::dictionary, tpdo_communication, typename Device::Tpdos>;
+  using Pdos = ServedPdos<Device::dictionary, tpdo_indices, typename Device::Tpdos>;
+  using Mapped = MappedPlaces<Device, tpdo_indices, Pdos>;
   static constexpr std::size_t count = Pdos::count;
+  static constexpr bool has_dynamic_mapping = Mapped::any;
 
-  void enter_operational(const EntryAccess& entries, TimePoint now) {
+  void enter_operational(ObjectStore<Device>& store, TimePoint now) {
     for (std::size_t i = 0; i < count; ++i) {
       slots_[i].flags = 0;
-      activate(i, entries, now);
-      if (Device::options.event_driven_on_change) slots_[i].flags |= pending;
+      activate(i, store, now);
+      if (Device::options.event_driven_on_change) slots_[i].flags |= changed_bit;
     }
   }
 
@@ -39,36 +51,84 @@ class TpdoService {
 
   /// `O` has a new value: those that carry it are to be sent. False when none does.
   template <DictionaryObject O>
-  bool changed() {
-    if constexpr (!Device::options.event_driven_on_change) return false;
+  bool changed([[maybe_unused]] const EntryAccess& entries) {
     bool carried = false;
-    Pdos::for_each([&]<class Pdo, std::size_t I>() {
-      if constexpr (Pdo::template maps<O>) {
-        slots_[I].flags |= pending;
+    if constexpr (Device::triggers_event(O::index, O::sub_index)) {
+      Pdos::for_each([&]<class Pdo, std::size_t I>() {
+        if constexpr (Mapped::capacities[I] != 0) {
+          if (!Mapped::carries(I, entries, object_key(O::index, O::sub_index))) return;
+        } else if constexpr (!Pdo::template maps<O>) {
+          return;
+        }
+        slots_[I].flags |= changed_bit;
         carried = true;
-      }
-    });
+      });
+    }
     return carried;
   }
 
   /// The same for an object known by number only.
-  void changed(std::uint16_t index, std::uint8_t sub_index) {
-    if constexpr (!Device::options.event_driven_on_change) return;
+  void changed([[maybe_unused]] const EntryAccess& entries, std::uint16_t index, std::uint8_t sub_index) {
+    if (!Device::triggers_event(index, sub_index)) return;
     const std::uint32_t key = object_key(index, sub_index);
     for (const std::uint32_t row : carriers) {
-      if (row >> 8 == key) slots_[row & 0xFF].flags |= pending;
+      if (row >> 8 == key) slots_[row & 0xFF].flags |= changed_bit;
+    }
+    if constexpr (has_dynamic_mapping) {
+      for (std::size_t i = 0; i < count; ++i) {
+        if (Mapped::carries(i, entries, key)) slots_[i].flags |= changed_bit;
+      }
     }
   }
 
-  /// A communication parameter, 1800h..19FFh, has a new value, which counts at once.
-  void parameter_changed(const EntryAccess& entries, std::uint16_t index, std::uint8_t sub_index, TimePoint now) {
+  /// Whether a TPDO carries an object now, or may be made to, so that `changed` has to hear of it.
+  [[nodiscard]] static bool carries(const EntryAccess& entries, std::uint32_t key) {
+    for (const std::uint32_t row : carriers) {
+      if (row >> 8 == key) return true;
+    }
+    if constexpr (has_dynamic_mapping) {
+      for (std::size_t i = 0; i < count; ++i) {
+        if (Mapped::carries(i, entries, key)) return true;
+      }
+    }
+    return false;
+  }
+
+  /// A communication or mapping parameter, 1800h..1BFFh, has a new value, which counts at once.
+  void parameter_changed(ObjectStore<Device>& store, std::uint16_t index, std::uint8_t sub_index, TimePoint now) {
+    const bool mapping = is_tpdo_mapping(index);
     for (std::size_t i = 0; i < count; ++i) {
-      if (parameters[i].index != index) continue;
-      if (sub_index == pdo_parameter::event_timer) {
-        start_event_timer(i, entries, now);
-      } else if (sub_index != pdo_parameter::inhibit_time) {
+      if ((parameters[i].index ^ index) & 0x1FF) continue;
+      if (!mapping && sub_index == pdo_parameter::inhibit_time) continue;
+      if (!mapping && sub_index == pdo_parameter::event_timer) {
+        start_event_timer(i, store.entries(), now);
+      } else {
         slots_[i].flags &= static_cast<std::uint8_t>(inhibited);
-        activate(i, entries, now);
+        activate(i, store, now);
+      }
+    }
+  }
+
+  /// A SYNC has come: those that wait for it are due, those of type 252 take their data.
+  void on_sync(ObjectStore<Device>& store, Sync sync) {
+    for (std::size_t i = 0; i < count; ++i) {
+      Slot& slot = slots_[i];
+      if ((slot.flags & active) == 0) continue;
+      if (slot.type == 0) {
+        if ((slot.flags & changed_bit) != 0 || !Device::options.tpdo_acyclic_on_change) slot.flags |= due;
+      } else if (slot.type <= last_cyclic) {
+        count_sync(i, store.entries(), sync);
+      } else if (has_samples && slot.type == remote_synchronous) {
+        sample(i, store);
+      }
+    }
+  }
+
+  /// A remote frame asks for the TPDO with this CAN-ID.
+  void on_remote(const EntryAccess& entries, std::uint32_t asked) {
+    if constexpr (Device::options.tpdo_remote_frames) {
+      for (std::size_t i = 0; i < count; ++i) {
+        if ((slots_[i].flags & active) != 0 && entries.number(parameters[i].cob_id) == asked) slots_[i].flags |= due;
       }
     }
   }
@@ -79,8 +139,8 @@ class TpdoService {
     for (std::size_t i = 0; i < count; ++i) {
       Slot& slot = slots_[i];
       if ((slot.flags & inhibited) != 0 && now >= slot.inhibit_end) slot.flags &= static_cast<std::uint8_t>(~inhibited);
-      if ((slot.flags & active) == 0 || (slot.flags & inhibited) != 0) continue;
-      if ((slot.flags & pending) == 0 && !event_timer_expired(slot, now)) continue;
+      if (!wanted(slot) && !event_timer_expired(slot, now)) continue;
+      if ((slot.flags & inhibited) != 0) continue;
       if (!send(i, store, bus)) return false;
       sent(i, store.entries(), now);
     }
@@ -91,37 +151,50 @@ class TpdoService {
   [[nodiscard]] std::optional<TimePoint> next_deadline(TimePoint now) const {
     std::optional<TimePoint> next;
     for (const Slot& slot : slots_) {
-      if ((slot.flags & active) == 0 || (slot.flags & (pending | timed)) == 0) continue;
-      TimePoint due = (slot.flags & pending) != 0 ? now : slot.event_due;
-      if ((slot.flags & inhibited) != 0 && slot.inhibit_end > due) due = slot.inhibit_end;
-      if (!next || due < *next) next = due;
+      if (!wanted(slot) && (slot.flags & timed) == 0) continue;
+      TimePoint at = wanted(slot) ? now : slot.event_due;
+      if ((slot.flags & inhibited) != 0 && slot.inhibit_end > at) at = slot.inhibit_end;
+      if (!next || at < *next) next = at;
     }
     return next;
   }
 
  private:
   enum Flag : std::uint8_t {
-    active = 1,     ///< valid and event-driven
-    pending = 2,    ///< to be sent as soon as the inhibit time allows
-    timed = 4,      ///< event_due counts
-    inhibited = 8,  ///< inhibit_end counts
+    active = 1,           ///< valid, mapped, and the node is Operational
+    changed_bit = 2,      ///< a mapped object has a new value
+    due = 4,              ///< to be sent: a SYNC or a remote frame wants it
+    timed = 8,            ///< event_due counts
+    inhibited = 16,       ///< inhibit_end counts
+    event_driven = 32,    ///< of type 254 or 255
+    before_start = 64,    ///< the SYNC with the start value has not come yet
   };
 
-  struct NoTime {};
+  static constexpr std::uint8_t last_cyclic = 240;
+  static constexpr std::uint8_t remote_synchronous = 252;
+  static constexpr std::uint8_t event_driven_type = 255;  ///< of a TPDO without a transmission type
+
   static constexpr bool has_parameter(std::uint8_t sub_index) {
     bool has = false;
     Pdos::for_each([&]<class Pdo, std::size_t>() {
-      has = has || Device::dictionary.has(tpdo_communication + Pdo::number - 1, sub_index);
+      has = has || Device::dictionary.has(tpdo_indices.communication + Pdo::number - 1, sub_index);
     });
     return has;
   }
   static constexpr bool has_inhibit_time = has_parameter(pdo_parameter::inhibit_time);
   static constexpr bool has_event_timer = has_parameter(pdo_parameter::event_timer);
+  static constexpr bool has_sync_start = has_parameter(pdo_parameter::sync_start);
+  static constexpr bool has_samples = Device::options.tpdo_remote_frames && SyncConsumer<Device>::exists;
+
+  using Data = std::array<std::uint8_t, 8>;
 
   struct Slot {
     TimePoint event_due;
     TimePoint inhibit_end;
     std::uint8_t flags;
+    std::uint8_t type;
+    std::uint8_t syncs;  ///< SYNCs until it is due, of types 1..240
+    std::uint8_t size;   ///< data bytes
   };
 
   /// Where the parameters of a TPDO are; 0 or 1 stand for one that does not exist.
@@ -131,67 +204,112 @@ class TpdoService {
     entry::Word transmission_type;
     entry::Word inhibit_time;
     entry::Word event_timer;
+    entry::Word sync_start;
   };
 
   static constexpr std::array<Parameters, count> parameters = [] {
     std::array<Parameters, count> rows{};
     Pdos::for_each([&]<class Pdo, std::size_t I>() {
-      constexpr std::uint16_t index = tpdo_communication + Pdo::number - 1;
-      const Dictionary& dictionary = Device::dictionary;
-      rows[I] = {index, dictionary.find(index, pdo_parameter::cob_id),
-                 dictionary.find(index, pdo_parameter::transmission_type),
-                 dictionary.find(index, pdo_parameter::inhibit_time),
-                 dictionary.find(index, pdo_parameter::event_timer)};
+      constexpr std::uint16_t index = tpdo_indices.communication + Pdo::number - 1;
+      const auto find = [](std::uint8_t sub_index) { return Device::dictionary.find(index, sub_index); };
+      rows[I] = {index,
+                 find(pdo_parameter::cob_id),
+                 find(pdo_parameter::transmission_type),
+                 find(pdo_parameter::inhibit_time),
+                 find(pdo_parameter::event_timer),
+                 find(pdo_parameter::sync_start)};
     });
+    return rows;
+  }();
+
+  /// Data bytes of those whose mapping is static.
+  static constexpr std::array<std::uint8_t, count> sizes = [] {
+    std::array<std::uint8_t, count> rows{};
+    Pdos::for_each([&]<class Pdo, std::size_t I>() { rows[I] = Pdo::size; });
     return rows;
   }();
 
   static constexpr std::size_t mapped_objects = [] {
     std::size_t sum = 0;
-    Pdos::for_each([&]<class Pdo, std::size_t>() { sum += Pdo::entries; });
+    Pdos::for_each([&]<class Pdo, std::size_t I>() { sum += Mapped::capacities[I] == 0 ? Pdo::entries : 0; });
     return sum;
   }();
 
-  /// index << 16 | sub-index << 8 | position of the TPDO, for each mapped object.
+  /// index << 16 | sub-index << 8 | position of the TPDO, for each object of a static mapping.
   static constexpr std::array<std::uint32_t, mapped_objects> carriers = [] {
     static_assert(count <= 0x100);
     std::array<std::uint32_t, mapped_objects> rows{};
     std::size_t at = 0;
     Pdos::for_each([&]<class Pdo, std::size_t I>() {
-      Pdo::for_each([&]<class O, std::size_t>() {
-        rows[at++] = (object_key(O::index, O::sub_index) << 8) | static_cast<std::uint32_t>(I);
-      });
+      if constexpr (Mapped::capacities[I] == 0) {
+        Pdo::for_each([&]<class O, std::size_t>() {
+          rows[at++] = (object_key(O::index, O::sub_index) << 8) | static_cast<std::uint32_t>(I);
+        });
+      }
     });
     return rows;
   }();
 
-  [[nodiscard]] static std::uint16_t parameter(const EntryAccess& entries, entry::Word word) {
-    return word > Dictionary::no_sub_index ? static_cast<std::uint16_t>(entries.number(word)) : std::uint16_t{0};
+  [[nodiscard]] static std::uint16_t parameter(const EntryAccess& entries, entry::Word word,
+                                               std::uint16_t missing = 0) {
+    return word > Dictionary::no_sub_index ? static_cast<std::uint16_t>(entries.number(word)) : missing;
   }
 
-  void activate(std::size_t i, const EntryAccess& entries, TimePoint now) {
-    if (!CobId{entries.number(parameters[i].cob_id)}.valid()) return;
-    switch (transmission_of(parameter_or_event_driven(entries, parameters[i].transmission_type))) {
+  void activate(std::size_t i, ObjectStore<Device>& store, TimePoint now) {
+    Slot& slot = slots_[i];
+    const EntryAccess entries = store.entries();
+    slot.size = sizes[i];
+    if constexpr (has_dynamic_mapping) {
+      if (Mapped::capacities[i] != 0) slot.size = places_.look_up(i, entries, is_constant);
+    }
+    if (slot.size == 0 || !CobId{entries.number(parameters[i].cob_id)}.valid()) return;
+    slot.type =
+        static_cast<std::uint8_t>(parameter(entries, parameters[i].transmission_type, event_driven_type));
+    slot.flags |= active;
+    switch (transmission_of(slot.type)) {
       case Transmission::event_driven:
-        slots_[i].flags |= active;
+        slot.flags |= event_driven;
         start_event_timer(i, entries, now);
         break;
       case Transmission::synchronous:
-      case Transmission::remote_synchronous:
+        slot.syncs = slot.type;
+        if (has_sync_start && parameter(entries, parameters[i].sync_start) != 0) slot.flags |= before_start;
+        break;
+      case Transmission::remote_synchronous: sample(i, store); break;
       case Transmission::remote:
       case Transmission::reserved: break;
     }
   }
 
-  [[nodiscard]] static std::uint16_t parameter_or_event_driven(const EntryAccess& entries, entry::Word word) {
-    return word > Dictionary::no_sub_index ? static_cast<std::uint16_t>(entries.number(word)) : std::uint16_t{255};
+  [[nodiscard]] static bool is_constant(entry::Word word, MappedObject) {
+    return entry::place_of(word) == entry::Place::rom;
+  }
+
+  void count_sync(std::size_t i, const EntryAccess& entries, Sync sync) {
+    Slot& slot = slots_[i];
+    if (has_sync_start && (slot.flags & before_start) != 0) {
+      if (sync.counter != 0 && sync.counter != parameter(entries, parameters[i].sync_start)) return;
+      slot.flags &= static_cast<std::uint8_t>(~before_start);
+    }
+    if (--slot.syncs != 0) return;
+    slot.syncs = slot.type;
+    slot.flags |= due;
+  }
+
+  /// Whether it is to be sent, but for the event timer.
+  [[nodiscard]] static bool wanted(const Slot& slot) {
+    if ((slot.flags & active) == 0) return false;
+    if ((slot.flags & due) != 0) return true;
+    constexpr std::uint8_t event = event_driven | changed_bit;
+    return Device::options.event_driven_on_change && (slot.flags & event) == event;
   }
 
   void start_event_timer([[maybe_unused]] std::size_t i, [[maybe_unused]] const EntryAccess& entries,
                          [[maybe_unused]] TimePoint from) {
     if constexpr (has_event_timer) {
-      const Duration period = from_milliseconds(parameter(entries, parameters[i].event_timer));
       slots_[i].flags &= static_cast<std::uint8_t>(~timed);
+      if ((slots_[i].flags & event_driven) == 0) return;
+      const Duration period = from_milliseconds(parameter(entries, parameters[i].event_timer));
       if (period.count() != 0) slots_[i].flags |= timed;
       slots_[i].event_due = from + period;
     }
@@ -202,28 +320,75 @@ class TpdoService {
   }
 
   template <Bus B>
-  [[nodiscard]] static bool send(std::size_t which, ObjectStore<Device>& store, B& bus) {
+  [[nodiscard]] bool send(std::size_t which, ObjectStore<Device>& store, B& bus) {
     const CobId cob_id{store.entries().number(parameters[which].cob_id)};
     Frame frame{};
     frame.id = cob_id.can_id();
     frame.extended = cob_id.extended();
-    Pdos::for_each([&]<class Pdo, std::size_t I>() {
-      if (I == which) pack<Pdo>(frame, store);
-    });
+    frame.size = slots_[which].size;
+    if (!take_sample(which, frame.data)) pack(which, store, frame.data);
     return bus.send(frame);
   }
 
+  void sample([[maybe_unused]] std::size_t which, [[maybe_unused]] ObjectStore<Device>& store) {
+    if constexpr (has_samples) {
+      samples_[which] = {};
+      pack(which, store, samples_[which]);
+    }
+  }
+
+  /// The data of the last SYNC; false when this is no TPDO of type 252.
+  [[nodiscard]] bool take_sample([[maybe_unused]] std::size_t which, [[maybe_unused]] Data& data) const {
+    if constexpr (has_samples) {
+      if (slots_[which].type == remote_synchronous) {
+        data = samples_[which];
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// Puts the values of the mapped objects into data bytes that are zero so far.
+  void pack(std::size_t which, ObjectStore<Device>& store, Data& data) const {
+    if constexpr (has_dynamic_mapping) {
+      if (Mapped::capacities[which] != 0) return pack_mapped(which, store.entries(), data);
+    }
+    Pdos::for_each([&]<class Pdo, std::size_t I>() {
+      if constexpr (Mapped::capacities[I] == 0) {
+        if (I == which) pack_static<Pdo>(data, store);
+      }
+    });
+  }
+
   template <class Pdo>
-  static void pack(Frame& frame, const ObjectStore<Device>& store) {
-    frame.size = Pdo::size;
-    Pdo::for_each([&]<class O, std::size_t I>() { Pdo::template put<I>(frame.data, store.template get<O>()); });
+  static void pack_static(Data& data, const ObjectStore<Device>& store) {
+    Pdo::for_each([&]<class O, std::size_t I>() { Pdo::template put<I>(data, store.template get<O>()); });
+  }
+
+  void pack_mapped(std::size_t which, const EntryAccess& entries, Data& data) const {
+    const MappingParameter mapping = Mapped::parameter(which, entries);
+    unsigned at = 0;
+    for (std::uint8_t i = 0; i < mapping.count(); ++i) {
+      const auto place = places_.place(which, i);
+      const std::uint8_t* const from = (place & Mapped::mark) == 0
+                                           ? entries.ram(place)
+                                           : entries.constant(static_cast<entry::Word>(place & ~Mapped::mark));
+      const unsigned bits = mapping[i].bits();
+      if (Mapped::has_bits && ((at | bits) & 7) != 0) {
+        put_bits(data.data(), at, bits, take_bits(from, 0, bits));
+      } else {
+        for (unsigned byte = 0; byte < bits / 8; ++byte) data[at / 8 + byte] = from[byte];
+      }
+      at += bits;
+    }
   }
 
   /// The inhibit time begins, and the event timer starts again: from when it ran out, so that the period does not
   /// drift, or from now.
   void sent(std::size_t i, const EntryAccess& entries, TimePoint now) {
     Slot& slot = slots_[i];
-    slot.flags &= static_cast<std::uint8_t>(~pending);
+    slot.flags &= static_cast<std::uint8_t>(~(changed_bit | due));
+    if ((slot.flags & event_driven) == 0) return;
     if constexpr (has_inhibit_time) {
       const Duration inhibit = from_hundred_microseconds(parameter(entries, parameters[i].inhibit_time));
       if (inhibit.count() != 0) slot.flags |= inhibited;
@@ -235,7 +400,11 @@ class TpdoService {
     }
   }
 
+  struct Nothing {};
+
   std::array<Slot, count> slots_{};
+  [[no_unique_address]] std::conditional_t<has_samples, std::array<Data, count>, Nothing> samples_{};
+  [[no_unique_address]] std::conditional_t<has_dynamic_mapping, Mapped, Nothing> places_{};
 };
 
 }  // namespace canopen

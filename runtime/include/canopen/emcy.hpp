@@ -1,0 +1,185 @@
+/// EMCY producer (CiA 301, 7.2.7): errors that appear and go, the error register 1001h and the history 1003h.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <span>
+
+#include "canopen/abort_code.hpp"
+#include "canopen/cob_id.hpp"
+#include "canopen/error_register.hpp"
+#include "canopen/frame.hpp"
+#include "canopen/object_store.hpp"
+#include "canopen/time.hpp"
+
+namespace canopen {
+
+/// The manufacturer-specific bytes of an EMCY.
+using EmergencyInfo = std::array<std::uint8_t, 5>;
+
+/// Errors that the services find by themselves. All of them are communication errors.
+enum class ServiceError : std::uint8_t { pdo_length, rpdo_timeout, sync_length };
+
+inline constexpr std::uint16_t service_error_codes[] = {
+    emergency_code::pdo_length,
+    emergency_code::rpdo_timeout,
+    emergency_code::sync_length,
+};
+
+/// One device's errors. Each error that appears is sent once, with the register as it is then, and goes into the
+/// history; each one that goes is sent as code 0000h with what is left in the register. Messages wait, in order, while
+/// the bus has no room, the inhibit time 1015h runs or the node is not in a state for them; of more than `depth` that
+/// wait the last one gives way.
+template <class Device>
+class EmergencyProducer {
+ public:
+  static constexpr std::size_t depth = 4;
+
+  /// An error has appeared. `bits` stay set in the register until `gone` names them.
+  void appeared(ObjectStore<Device>& store, std::uint16_t code, ErrorRegister bits, const EmergencyInfo& info) {
+    application_bits_ |= static_cast<std::uint8_t>(bits);
+    note(store, code, info);
+  }
+
+  /// An error has gone, and with it these bits of the register; those that another error holds are not to be named.
+  void gone(ObjectStore<Device>& store, ErrorRegister bits) {
+    application_bits_ &= static_cast<std::uint8_t>(~static_cast<unsigned>(bits));
+    note_reset(store);
+  }
+
+  /// A service has found an error.
+  void appeared(ObjectStore<Device>& store, ServiceError error) {
+    service_errors_ |= bit_of(error);
+    const std::uint16_t code = service_error_codes[static_cast<std::uint8_t>(error)];
+    note(store, code, Device::emergency_info(code));
+  }
+
+  /// What a service has found is over. False: it was not there.
+  bool gone(ObjectStore<Device>& store, ServiceError error) {
+    if ((service_errors_ & bit_of(error)) == 0) return false;
+    service_errors_ &= static_cast<std::uint8_t>(~bit_of(error));
+    note_reset(store);
+    return true;
+  }
+
+  /// No error, and none to be told (CiA 301, 7.2.7.1: what a reset does).
+  void reset() { *this = EmergencyProducer{}; }
+
+  /// Sends what waits. False when the bus had no room: it stays.
+  template <Bus B>
+  bool serve(const ObjectStore<Device>& store, B& bus, TimePoint now) {
+    if constexpr (has_cob_id) {
+      if (inhibited_ && now >= inhibit_end_) inhibited_ = false;
+      while (waiting_ != 0 && !inhibited_) {
+        const CobId cob_id{store.template number<0x1014, 0>()};
+        if (cob_id.valid()) {
+          Frame frame{};
+          frame.id = cob_id.can_id();
+          frame.extended = cob_id.extended();
+          frame.size = 8;
+          frame.data = queue_[0];
+          if (!bus.send(frame)) return false;
+          start_inhibit_time(store, now);
+        }
+        --waiting_;
+        for (std::size_t i = 0; i < waiting_; ++i) queue_[i] = queue_[i + 1];
+      }
+    }
+    return true;
+  }
+
+  /// When the next one is to be sent; a moment not after `now` when one waits already.
+  [[nodiscard]] std::optional<TimePoint> next_deadline(TimePoint now) const {
+    if (waiting_ == 0) return std::nullopt;
+    return inhibited_ ? inhibit_end_ : now;
+  }
+
+ private:
+  static constexpr bool has_register = Device::dictionary.has(0x1001, 0);
+  static constexpr bool has_cob_id = Device::dictionary.has(0x1014, 0);
+  static constexpr bool has_inhibit_time = Device::dictionary.has(0x1015, 0);
+
+  /// The history is served where 1003h lies in RAM, count and elements.
+  static constexpr entry::Word history_count = Device::dictionary.find(0x1003, 0);
+  static constexpr entry::Word history_first = Device::dictionary.find(0x1003, 1);
+  static constexpr bool has_history = history_first > Dictionary::no_sub_index &&
+                                      entry::place_of(history_count) == entry::Place::ram &&
+                                      entry::place_of(history_first) == entry::Place::ram;
+  static constexpr std::uint8_t history_capacity = [] {
+    std::uint8_t capacity = 0;
+    while (has_history && capacity < 254 && Device::dictionary.has(0x1003, static_cast<std::uint8_t>(capacity + 1)))
+      ++capacity;
+    return capacity;
+  }();
+
+  [[nodiscard]] static constexpr std::uint8_t bit_of(ServiceError error) {
+    return static_cast<std::uint8_t>(1u << static_cast<std::uint8_t>(error));
+  }
+
+  /// 1001h as the errors make it: the generic bit is set whenever there is one.
+  [[nodiscard]] std::uint8_t error_register() const {
+    const auto bits = static_cast<std::uint8_t>(
+        application_bits_ | (service_errors_ != 0 ? static_cast<std::uint8_t>(ErrorRegister::communication) : 0));
+    return static_cast<std::uint8_t>(bits != 0 ? bits | static_cast<std::uint8_t>(ErrorRegister::generic) : 0);
+  }
+
+  void note_reset(ObjectStore<Device>& store) { note(store, emergency_code::reset, {}); }
+
+  void note(ObjectStore<Device>& store, std::uint16_t code, const EmergencyInfo& info) {
+    const std::uint8_t bits = error_register();
+    if constexpr (has_register) store_register(store, bits);
+    if (code != emergency_code::reset || Device::options.error_history_keeps_resets) remember(store, code, info);
+    if constexpr (has_cob_id) {
+      if (waiting_ < depth) ++waiting_;
+      std::array<std::uint8_t, 8>& message = queue_[waiting_ - 1u];
+      message = {static_cast<std::uint8_t>(code), static_cast<std::uint8_t>(code >> 8), bits};
+      std::memcpy(&message[3], info.data(), info.size());
+    }
+  }
+
+  static void store_register(ObjectStore<Device>& store, std::uint8_t bits) {
+    constexpr entry::Word word = Device::dictionary.find(0x1001, 0);
+    if constexpr (entry::place_of(word) == entry::Place::ram) *store.entries().ram(word) = bits;
+  }
+
+  /// Puts an error in front of the history: code in the low half, the first two bytes of the information in the high
+  /// one. The oldest one makes room.
+  static void remember([[maybe_unused]] ObjectStore<Device>& store, [[maybe_unused]] std::uint16_t code,
+                       [[maybe_unused]] const EmergencyInfo& info) {
+    if constexpr (has_history) {
+      std::uint8_t* const count = store.entries().ram(history_count);
+      std::uint8_t* const first = store.entries().ram(history_first);
+      const std::uint32_t field = code | static_cast<std::uint32_t>(info[0] << 16) | (std::uint32_t{info[1]} << 24);
+      if (*count < history_capacity) ++*count;
+      std::memmove(first + sizeof field, first, (*count - 1u) * sizeof field);
+      std::memcpy(first, &field, sizeof field);
+    }
+  }
+
+  void start_inhibit_time([[maybe_unused]] const ObjectStore<Device>& store, [[maybe_unused]] TimePoint now) {
+    if constexpr (has_inhibit_time) {
+      const Duration inhibit =
+          from_hundred_microseconds(static_cast<std::uint16_t>(store.template number<0x1015, 0>()));
+      inhibited_ = inhibit.count() != 0;
+      inhibit_end_ = now + inhibit;
+    }
+  }
+
+  std::array<std::array<std::uint8_t, 8>, has_cob_id ? depth : 1> queue_{};
+  TimePoint inhibit_end_{};
+  std::uint8_t waiting_ = 0;
+  std::uint8_t application_bits_ = 0;
+  std::uint8_t service_errors_ = 0;
+  bool inhibited_ = false;
+};
+
+/// What speaks against reading 1003h: an error that is not there (0800 0024h).
+[[nodiscard]] inline AbortCode check_history_read(const EntryAccess& entries, std::uint8_t sub_index) {
+  const entry::Word count = entries.dictionary().find(0x1003, 0);
+  if (count <= Dictionary::no_sub_index) return ok;
+  return sub_index > entries.number(count) ? AbortCode::no_data : ok;
+}
+
+}  // namespace canopen

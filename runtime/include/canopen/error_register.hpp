@@ -1,0 +1,32 @@
+/// The error register 1001h (CiA 301, 7.5.2.2) and the emergency error codes that services send by themselves.
+#pragma once
+
+#include <cstdint>
+
+namespace canopen {
+
+enum class ErrorRegister : std::uint8_t {
+  none = 0x00,
+  generic = 0x01,  ///< set whenever another one is
+  current = 0x02,
+  voltage = 0x04,
+  temperature = 0x08,
+  communication = 0x10,
+  device_profile = 0x20,
+  manufacturer = 0x80,
+};
+
+[[nodiscard]] constexpr ErrorRegister operator|(ErrorRegister a, ErrorRegister b) {
+  return static_cast<ErrorRegister>(static_cast<std::uint8_t>(a) | static_cast<std::uint8_t>(b));
+}
+
+/// Emergency error codes (CiA 301, 7.2.7.1, table 26).
+namespace emergency_code {
+inline constexpr std::uint16_t reset = 0x0000;  ///< an error is gone
+inline constexpr std::uint16_t pdo_length = 0x8210;  ///< a PDO is shorter than its mapping
+inline constexpr std::uint16_t mpdo_destination = 0x8230;  ///< the destination of a DAM-MPDO does not exist
+inline constexpr std::uint16_t sync_length = 0x8240;
+inline constexpr std::uint16_t rpdo_timeout = 0x8250;
+}  // namespace emergency_code
+
+}  // namespace canopen

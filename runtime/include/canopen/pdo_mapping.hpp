@@ -1,0 +1,130 @@
+/// Dynamic mapping: which objects a PDO carries, changed by SDO while the device runs (CiA 301, 7.5.2.36 and 7.5.2.38).
+/// Only devices whose mapping parameters are writable have any of it in their image.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <iterator>
+#include <memory>
+#include <span>
+
+#include "canopen/abort_code.hpp"
+#include "canopen/cob_id.hpp"
+#include "canopen/device_options.hpp"
+#include "canopen/object_store.hpp"
+#include "canopen/pdo_list.hpp"
+
+namespace canopen {
+
+/// One entry of a mapping parameter: index, sub-index and length in bits, from the high byte to the low one.
+class MappedObject {
+ public:
+  constexpr explicit MappedObject(std::uint32_t value) : value_{value} {}
+
+  [[nodiscard]] constexpr std::uint16_t index() const { return static_cast<std::uint16_t>(value_ >> 16); }
+  [[nodiscard]] constexpr std::uint8_t sub_index() const { return static_cast<std::uint8_t>(value_ >> 8); }
+  [[nodiscard]] constexpr std::uint8_t bits() const { return static_cast<std::uint8_t>(value_); }
+  [[nodiscard]] constexpr std::uint32_t key() const { return value_ >> 8; }  ///< as `object_key` makes it
+  [[nodiscard]] constexpr bool empty() const { return value_ == 0; }
+  [[nodiscard]] constexpr bool is_dummy() const { return index() < 0x20; }
+
+ private:
+  std::uint32_t value_;
+};
+
+/// Numbers of mapped objects that make a multiplex PDO of it (CiA 301, 7.2.2.5): in source and in destination addressing
+/// mode.
+inline constexpr std::uint8_t source_multiplexed = 254;
+inline constexpr std::uint8_t destination_multiplexed = 255;
+
+/// Bits of the data types 0001h..0008h, which an RPDO may map as dummies (CiA 301, 7.4.7.1).
+inline constexpr std::uint8_t dummy_bits[] = {0, 1, 8, 16, 32, 8, 16, 32, 32};
+
+[[nodiscard]] constexpr bool is_rpdo_mapping(std::uint16_t index) { return (index & 0xFE00) == rpdo_indices.mapping; }
+[[nodiscard]] constexpr bool is_tpdo_mapping(std::uint16_t index) { return (index & 0xFE00) == tpdo_indices.mapping; }
+
+/// Whether a PDO may carry this: the object exists, may be mapped in this direction, and has this length. A BOOLEAN has
+/// one bit, or eight. `dummies` has bit n set where data type n may be a dummy.
+[[nodiscard]] constexpr bool can_be_mapped(const Dictionary& dictionary, std::uint32_t dummies, bool tpdo,
+                                           MappedObject mapped) {
+  if (mapped.is_dummy()) {
+    const bool allowed = !tpdo && mapped.sub_index() == 0 && ((dummies >> mapped.index()) & 1) != 0;
+    return allowed && mapped.index() < std::size(dummy_bits) && mapped.bits() == dummy_bits[mapped.index()];
+  }
+  const entry::Word word = dictionary.find(mapped.index(), mapped.sub_index());
+  if (word <= Dictionary::no_sub_index || (word & (tpdo ? entry::tpdo : entry::rpdo)) == 0) return false;
+  // An immediate value has no address, and MappedPlaces keeps 15 bits of that of a constant.
+  if (entry::place_of(word) > entry::Place::rom) return false;
+  if (entry::place_of(word) == entry::Place::rom && entry::offset_of(word) >= 0x8000) return false;
+  if (entry::is_boolean(word) && mapped.bits() == 1) return true;
+  return mapped.bits() != 0 && mapped.bits() == entry::wire_bytes(word) * 8;
+}
+
+/// The mapping parameter of one PDO as it stands in RAM.
+class MappingParameter {
+ public:
+  /// `count` and `first`: the words of sub-indices 0 and 1.
+  MappingParameter(const EntryAccess& entries, entry::Word count, entry::Word first)
+      : count_{entries.ram(count)}, first_{entries.ram(first)} {}
+
+  [[nodiscard]] std::uint8_t count() const { return *count_; }
+
+  /// Entry `i`, counted from 0.
+  [[nodiscard]] MappedObject operator[](std::size_t i) const {
+    std::uint32_t value;
+    std::memcpy(&value, std::assume_aligned<alignof(std::uint32_t)>(first_ + sizeof value * i), sizeof value);
+    return MappedObject{value};
+  }
+
+  /// Bits of the first `count` objects together; 0 when they make no PDO: one of them cannot be mapped, or they are
+  /// longer than 64 bits.
+  [[nodiscard]] std::uint8_t bits_of(const Dictionary& dictionary, std::uint32_t dummies, bool tpdo,
+                                     std::uint8_t count) const {
+    unsigned bits = 0;
+    for (std::uint8_t i = 0; i < count; ++i) {
+      const MappedObject mapped = (*this)[i];
+      bits += mapped.bits();
+      if (bits > 64 || !can_be_mapped(dictionary, dummies, tpdo, mapped)) return 0;
+    }
+    return static_cast<std::uint8_t>(bits);
+  }
+
+ private:
+  const std::uint8_t* count_;
+  const std::uint8_t* first_;
+};
+
+/// What speaks against writing these bytes, whose length is right, to a mapping parameter. A PDO is remapped in five
+/// steps: disable it by bit 31 of its COB-ID, set sub-index 0 to 0, write the entries, set sub-index 0 to their number,
+/// enable it.
+///   0800 0022h  the PDO is valid
+///   0601 0000h  sub-index 0 is not 0
+///   0604 0041h  the object does not exist, cannot be mapped, or has another length
+///   0604 0042h  too many objects or bits, or one that cannot be mapped (or what the device answers instead)
+[[nodiscard]] inline AbortCode check_pdo_mapping(const DeviceOptions& options, const EntryAccess& entries,
+                                                 std::uint32_t dummies, std::uint16_t index, std::uint8_t sub_index,
+                                                 std::span<const std::uint8_t> bytes) {
+  const Dictionary& dictionary = entries.dictionary();
+  const bool tpdo = is_tpdo_mapping(index);
+  const auto communication = static_cast<std::uint16_t>(index - (rpdo_indices.mapping - rpdo_indices.communication));
+  const entry::Word cob_id = dictionary.find(communication, pdo_parameter::cob_id);
+  const bool valid = cob_id > Dictionary::no_sub_index && CobId{entries.number(cob_id)}.valid();
+  if (valid && !options.pdo_mapping_writable_while_valid) return AbortCode::device_state;
+
+  const MappingParameter mapping{entries, dictionary.find(index, 0), dictionary.find(index, 1)};
+  if (sub_index == 0) {
+    const std::uint8_t count = bytes[0];
+    if (count == 0) return ok;
+    if (options.mpdo && count >= source_multiplexed) return ok;
+    const bool fits = count <= mapping_capacity(dictionary, index);
+    if (fits && mapping.bits_of(dictionary, dummies, tpdo, count) != 0) return ok;
+    return static_cast<AbortCode>(options.pdo_mapping_abort_code);
+  }
+  if (mapping.count() != 0) return AbortCode::unsupported_access;
+  std::uint32_t value = 0;
+  std::memcpy(&value, bytes.data(), sizeof value);
+  const MappedObject mapped{value};
+  return mapped.empty() || can_be_mapped(dictionary, dummies, tpdo, mapped) ? ok : AbortCode::not_mappable;
+}
+
+}  // namespace canopen
