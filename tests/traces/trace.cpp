@@ -1,5 +1,6 @@
 #include "trace.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <sstream>
@@ -70,10 +71,30 @@ canopen::Duration read_span(std::istringstream& words) {
   throw std::invalid_argument{"a time is a number and us, ms or s"};
 }
 
-/// `1801h:03 0x20F0` or `1008h:00 "text"`.
-void read_object(std::istringstream& words, Line& line) {
+canopen::NodeId read_node_id(std::istringstream& words) {
+  std::string id;
+  words >> id;
+  const canopen::NodeId node_id{static_cast<std::uint8_t>(number_up_to(127, id, 10))};
+  if (!node_id.valid()) throw std::invalid_argument{"a node-ID is 1 to 127"};
+  return node_id;
+}
+
+std::size_t position_of(canopen::NodeId node_id, const Trace& trace) {
+  const auto found = std::ranges::find(trace.nodes, node_id, &NodeOfTrace::node_id);
+  if (found == trace.nodes.end()) throw std::invalid_argument{"no such node on the bus"};
+  return static_cast<std::size_t>(found - trace.nodes.begin());
+}
+
+/// `1801h:03 0x20F0` or `node 2 1008h:00 "text"`.
+void read_object(std::istringstream& words, const Trace& trace, Line& line) {
   std::string object;
   words >> object;
+  if (object == "node") {
+    line.node = position_of(read_node_id(words), trace);
+    words >> object;
+  } else if (trace.nodes.size() != 1) {
+    throw std::invalid_argument{"which node has the object? It is written node 2 1801h:03"};
+  }
   if (object.size() != 8 || object.substr(4, 2) != "h:") throw std::invalid_argument{"an object is written 1801h:03"};
   line.index = static_cast<std::uint16_t>(number_up_to(0xFFFF, object.substr(0, 4), 16));
   line.sub_index = static_cast<std::uint8_t>(number_up_to(0xFF, object.substr(6), 16));
@@ -96,13 +117,18 @@ void read_line(const std::string& text, std::size_t number_of_line, Trace& trace
   line.number = number_of_line;
   if (key == "manual") return;
   if (key == "device") {
-    words >> trace.device;
+    if (!trace.nodes.empty() && !trace.nodes.back().node_id.valid())
+      throw std::invalid_argument{"the device above has no node-ID"};
+    words >> trace.nodes.emplace_back().device;
     return;
   }
   if (key == "node") {
-    std::string id;
-    words >> id;
-    trace.node_id = canopen::NodeId{static_cast<std::uint8_t>(number_up_to(127, id, 10))};
+    const canopen::NodeId node_id = read_node_id(words);
+    if (trace.nodes.empty() || trace.nodes.back().node_id.valid())
+      throw std::invalid_argument{"a node-ID stands below its device"};
+    if (std::ranges::find(trace.nodes, node_id, &NodeOfTrace::node_id) != trace.nodes.end())
+      throw std::invalid_argument{"two nodes have this node-ID"};
+    trace.nodes.back().node_id = node_id;
     return;
   }
   if (key == "power") {
@@ -111,10 +137,10 @@ void read_line(const std::string& text, std::size_t number_of_line, Trace& trace
   }
   if (key == "=") {
     line.step = Step::set;
-    read_object(words, line);
+    read_object(words, trace, line);
   } else if (key == "read") {
     line.step = Step::read;
-    read_object(words, line);
+    read_object(words, trace, line);
   } else if (key == "+") {
     line.step = Step::pass;
     line.span = read_span(words);
@@ -137,20 +163,31 @@ bool Pattern::matches(const canopen::Frame& other) const {
   return expected == other;
 }
 
+std::vector<std::uint8_t> Value::bytes(std::size_t size) const {
+  if (is_text) return {text.begin(), text.end()};
+  std::vector<std::uint8_t> bytes;
+  for (std::size_t i = 0; i < size; ++i) bytes.push_back(static_cast<std::uint8_t>(number >> (8 * i)));
+  return bytes;
+}
+
 Trace read(const std::filesystem::path& file) {
   std::ifstream stream{file};
   if (!stream) throw std::runtime_error{file.string() + ": cannot be read"};
+  return read(stream, file.string());
+}
+
+Trace read(std::istream& text, const std::string& name) {
   Trace trace;
-  trace.file = file.string();
-  std::string text;
-  for (std::size_t number_of_line = 1; std::getline(stream, text); ++number_of_line) {
+  trace.file = name;
+  std::string line;
+  for (std::size_t number_of_line = 1; std::getline(text, line); ++number_of_line) {
     try {
-      read_line(text, number_of_line, trace);
+      read_line(line, number_of_line, trace);
     } catch (const std::logic_error& problem) {
       throw std::runtime_error{trace.file + ":" + std::to_string(number_of_line) + ": " + problem.what()};
     }
   }
-  if (trace.device.empty() || !trace.node_id.valid())
+  if (trace.nodes.empty() || !trace.nodes.back().node_id.valid())
     throw std::runtime_error{trace.file + ": no device or no node-ID"};
   return trace;
 }
@@ -170,5 +207,12 @@ std::string to_text(const Pattern& pattern) {
 }
 
 std::string to_text(const canopen::Frame& frame) { return to_text(Pattern{frame, 0}); }
+
+std::string to_text(const std::vector<std::uint8_t>& bytes) {
+  constexpr auto digits = "0123456789ABCDEF";
+  std::string text;
+  for (const std::uint8_t byte : bytes) text += std::string{digits[byte >> 4], digits[byte & 15], ' '};
+  return text;
+}
 
 }  // namespace trace

@@ -1,15 +1,20 @@
-/// A trace: what a manual shows of a device on the bus, as a text that looks like a candump log.
+/// A trace: what a manual shows of devices on the bus, as a text that looks like a candump log.
 ///
 ///     # comment
 ///     manual  NNN, the place in the manual
 ///     device  NAME                                  eds/NAME.eds
-///     node    N                                     node-ID, decimal
-///     power on                                      the boot-up message is part of the trace
-///     = 6041h:00 0x0231                             the application sets an object: a number, or "text"
+///     node    N                                     its node-ID, decimal; further pairs put further nodes on the bus
+///     power on                                      the boot-up messages are part of the trace
+///     = 6041h:00 0x0231                             the application sets an object: a number, or "text"; lines that
+///                                                   follow each other set their objects at one moment
 ///     + 5 ms                                        time passes (us, ms or s)
-///     > 601  2B 01 18 03 F0 20 00 00                a frame to the device; `> 701 R 1` is a remote frame
-///     < 581  60 01 18 03 -- -- -- --                the device sends exactly this next; `--` may be any byte
+///     > 601  2B 01 18 03 F0 20 00 00                a frame to the bus
+///     > 284  R                                      a remote frame, DLC 0; `R 8` is one with DLC 8
+///     < 581  60 01 18 03 -- -- -- --                a node sends exactly this next; `--` may be any byte
 ///     read 1801h:03 0x20F0                          the object's value is now this
+///
+/// Where there are several nodes, `=` and `read` name theirs: `= node 2 6000h:01 0x34`. Frames need no name: each goes
+/// to all nodes but its sender.
 #pragma once
 
 #include <canopen/frame.hpp>
@@ -17,6 +22,7 @@
 #include <canopen/time.hpp>
 #include <cstdint>
 #include <filesystem>
+#include <istream>
 #include <string>
 #include <vector>
 
@@ -35,6 +41,9 @@ struct Value {
   bool is_text = false;
   std::string text;
   std::uint64_t number = 0;  ///< negative ones as two's complement
+
+  /// The bytes in an entry of this size, lowest first; of texts their characters.
+  [[nodiscard]] std::vector<std::uint8_t> bytes(std::size_t size) const;
 };
 
 enum class Step : std::uint8_t { set, pass, send, expect, read };
@@ -44,15 +53,20 @@ struct Line {
   Step step = Step::pass;
   Pattern pattern;             ///< send, expect
   canopen::Duration span{};    ///< pass
+  std::size_t node = 0;        ///< set, read: position in Trace::nodes
   std::uint16_t index = 0;     ///< set, read
   std::uint8_t sub_index = 0;  ///< set, read
   Value value;                 ///< set, read
 };
 
-struct Trace {
-  std::string file;
+struct NodeOfTrace {
   std::string device;
   canopen::NodeId node_id;
+};
+
+struct Trace {
+  std::string file;
+  std::vector<NodeOfTrace> nodes;
   bool power_on = false;
   std::vector<Line> lines;
 };
@@ -60,7 +74,11 @@ struct Trace {
 /// Throws std::runtime_error with file and line where the text is not a trace.
 [[nodiscard]] Trace read(const std::filesystem::path& file);
 
+/// The same for a text that is not in a file; `name` stands in messages.
+[[nodiscard]] Trace read(std::istream& text, const std::string& name);
+
 [[nodiscard]] std::string to_text(const canopen::Frame& frame);
 [[nodiscard]] std::string to_text(const Pattern& pattern);
+[[nodiscard]] std::string to_text(const std::vector<std::uint8_t>& bytes);
 
 }  // namespace trace

@@ -11,25 +11,28 @@
 #include <cpd/device.hpp>
 #include <ezd_1136/device.hpp>
 #include <filesystem>
+#include <memory>
 #include <rk5c/device.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "player.hpp"
+#include "station.hpp"
 #include "trace.hpp"
 
 namespace {
 
 struct DeviceRow {
-  const char* name;  ///< as a trace names it
-  std::vector<trace::Failure> (*play)(const trace::Trace&);
+  std::string_view name;  ///< as a trace names it
+  std::unique_ptr<trace::Station> (*make)(canopen::NodeId);
 };
 
 constexpr DeviceRow devices[] = {
-    {"can-2017c", trace::play<can_2017c::Device>}, {"can-2024c", trace::play<can_2024c::Device>},
-    {"can-2053c", trace::play<can_2053c::Device>}, {"can-2057c", trace::play<can_2057c::Device>},
-    {"cpc-tc1", trace::play<cpc_tc1::Device>},     {"cpd", trace::play<cpd::Device>},
-    {"ezd-1136", trace::play<ezd_1136::Device>},   {"rk5c", trace::play<rk5c::Device>},
+    {"can-2017c", trace::make_station<can_2017c::Device>}, {"can-2024c", trace::make_station<can_2024c::Device>},
+    {"can-2053c", trace::make_station<can_2053c::Device>}, {"can-2057c", trace::make_station<can_2057c::Device>},
+    {"cpc-tc1", trace::make_station<cpc_tc1::Device>},     {"cpd", trace::make_station<cpd::Device>},
+    {"ezd-1136", trace::make_station<ezd_1136::Device>},   {"rk5c", trace::make_station<rk5c::Device>},
 };
 
 std::vector<std::filesystem::path> trace_files() {
@@ -50,11 +53,15 @@ std::string test_name(const testing::TestParamInfo<std::filesystem::path>& info)
 
 class Traces : public testing::TestWithParam<std::filesystem::path> {};
 
-TEST_P(Traces, AreWhatTheDeviceDoes) {
+TEST_P(Traces, AreWhatTheDevicesDo) {
   const trace::Trace trace = trace::read(GetParam());
-  const auto* device = std::ranges::find_if(devices, [&](const DeviceRow& row) { return trace.device == row.name; });
-  ASSERT_NE(device, std::end(devices)) << trace.file << ": no device is named " << trace.device;
-  for (const trace::Failure& failure : device->play(trace)) {
+  std::vector<std::unique_ptr<trace::Station>> stations;
+  for (const trace::NodeOfTrace& node : trace.nodes) {
+    const auto* device = std::ranges::find(devices, node.device, &DeviceRow::name);
+    ASSERT_NE(device, std::end(devices)) << trace.file << ": no device is named " << node.device;
+    stations.push_back(device->make(node.node_id));
+  }
+  for (const trace::Failure& failure : trace::play(trace, stations)) {
     ADD_FAILURE_AT(trace.file.c_str(), static_cast<int>(failure.line)) << "  " << failure.message;
   }
 }

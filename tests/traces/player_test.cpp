@@ -1,0 +1,121 @@
+/// The player finds what nodes do differently from a trace.
+#include "player.hpp"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+namespace {
+
+/// A node with one object, 2000h:00, of one byte. It sends its value after each change, 100h + node-ID, and takes the
+/// value of any frame with CAN-ID 300h + node-ID. 10 ms after the start, and every 10 ms from then on, it sends 200h +
+/// node-ID.
+class Echo final : public trace::Station {
+ public:
+  explicit Echo(std::uint8_t node_id) : node_id_{node_id} {}
+
+  void start(canopen::TimePoint now) override {
+    due_ = now + period;
+    send_frame(0x700, 0);
+  }
+  void on_frame(const canopen::Frame& frame, canopen::TimePoint) override {
+    if (frame.id == 0x300u + node_id_ && frame.size == 1) change(frame.data[0]);
+  }
+  void on_time(canopen::TimePoint now) override {
+    if (changed_) send_frame(0x100, value_);
+    changed_ = false;
+    if (now < due_) return;
+    send_frame(0x200, value_);
+    due_ = due_ + period;
+  }
+  [[nodiscard]] std::optional<canopen::TimePoint> next_deadline() const override { return due_; }
+  [[nodiscard]] canopen::AbortCode set(std::uint16_t index, std::uint8_t, const trace::Value& value) override {
+    if (index != 0x2000) return canopen::AbortCode::no_object;
+    change(value.bytes(1)[0]);
+    return canopen::ok;
+  }
+  [[nodiscard]] std::optional<std::vector<std::uint8_t>> value(std::uint16_t index, std::uint8_t) override {
+    if (index != 0x2000) return std::nullopt;
+    return std::vector<std::uint8_t>{value_};
+  }
+
+ private:
+  static constexpr canopen::Duration period{10'000};
+
+  void change(std::uint8_t value) {
+    value_ = value;
+    changed_ = true;
+  }
+  void send_frame(std::uint32_t function, std::uint8_t byte) {
+    canopen::Frame frame{};
+    frame.id = function + node_id_;
+    frame.size = 1;
+    frame.data[0] = byte;
+    static_cast<void>(send(frame));
+  }
+
+  std::uint8_t node_id_;
+  std::uint8_t value_ = 0;
+  bool changed_ = false;
+  canopen::TimePoint due_{};
+};
+
+/// `line: message` of each failure; the nodes have the node-IDs 1 and 2.
+std::vector<std::string> failures(const std::string& lines) {
+  std::istringstream text{"device a\nnode 1\ndevice b\nnode 2\n" + lines};
+  const trace::Trace trace = trace::read(text, "example.trace");
+  std::vector<std::unique_ptr<trace::Station>> stations;
+  stations.push_back(std::make_unique<Echo>(std::uint8_t{1}));
+  stations.push_back(std::make_unique<Echo>(std::uint8_t{2}));
+  std::vector<std::string> found;
+  for (const trace::Failure& failure : trace::play(trace, stations))
+    found.push_back(std::to_string(failure.line) + ": " + failure.message);
+  return found;
+}
+
+using Found = std::vector<std::string>;
+
+TEST(TracePlayer, FindsNothingWhereTheNodesDoWhatTheTraceSays) {
+  EXPECT_EQ(failures("= node 2 2000h:00 7\n< 102 07\nread node 2 2000h:00 7\n+ 10 ms\n< 201 00\n< 202 07\n"), Found{});
+}
+
+TEST(TracePlayer, LeavesOutTheBootUpMessagesUnlessTheTraceBeginsWithPowerOn) {
+  EXPECT_EQ(failures("+ 1 ms\n"), Found{});
+  EXPECT_EQ(failures("power on\n< 701 00\n< 702 00\n"), Found{});
+}
+
+TEST(TracePlayer, FindsAFrameThatIsMissing) {
+  EXPECT_EQ(failures("+ 9 ms\n< 201 00\n"), Found{"6: expected: 201  00\n  got:      nothing"});
+}
+
+TEST(TracePlayer, FindsAFrameThatIsTooMuchWhereTheTraceGoesOn) {
+  EXPECT_EQ(failures("= node 1 2000h:00 7\n+ 1 ms\n"), Found{"6: up to here not expected: 101  07"});
+  EXPECT_EQ(failures("= node 1 2000h:00 7\n"), Found{"5: up to here not expected: 101  07"});
+}
+
+TEST(TracePlayer, FindsAnotherFrameAnotherLengthAndAnotherValue) {
+  EXPECT_EQ(failures("= node 1 2000h:00 7\n< 101 08\n"), Found{"6: expected: 101  08\n  got:      101  07"});
+  EXPECT_EQ(failures("= node 1 2000h:00 7\n< 101 07 00\n"), Found{"6: expected: 101  07 00\n  got:      101  07"});
+  EXPECT_EQ(failures("= node 1 2000h:00 7\n< 101 R 1\n"), Found{"6: expected: 101  R 1\n  got:      101  07"});
+  EXPECT_EQ(failures("read node 1 2000h:00 7\n"), Found{"5: expected: 07 \n  got:      00 "});
+}
+
+TEST(TracePlayer, TakesAnyByteWhereTheTraceLeavesItOpen) {
+  EXPECT_EQ(failures("= node 1 2000h:00 7\n< 101 --\n"), Found{});
+}
+
+TEST(TracePlayer, FindsAnObjectThatIsMissing) {
+  EXPECT_EQ(failures("read node 1 2001h:00 7\n"), Found{"5: the device has no such object"});
+  EXPECT_EQ(failures("= node 1 2001h:00 7\n").size(), 1u);
+}
+
+TEST(TracePlayer, SetsTheObjectsOfLinesThatFollowEachOtherAtOneMoment) {
+  EXPECT_EQ(failures("= node 1 2000h:00 7\n# the node sees the last value alone\n= node 1 2000h:00 8\n< 101 08\n"),
+            Found{});
+}
+
+TEST(TracePlayer, BringsAFrameToAllNodes) {
+  EXPECT_EQ(failures("> 301 05\n< 101 05\n> 302 06\n< 102 06\nread node 1 2000h:00 5\n"), Found{});
+}
+
+}  // namespace

@@ -1,0 +1,120 @@
+/// The language of the traces.
+#include "trace.hpp"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+namespace {
+
+trace::Trace read(const std::string& text) {
+  std::istringstream stream{text};
+  return trace::read(stream, "example.trace");
+}
+
+/// What the reader says against a text; nothing when it takes it.
+std::string refusal(const std::string& text) {
+  try {
+    static_cast<void>(read(text));
+    return "";
+  } catch (const std::runtime_error& problem) {
+    return problem.what();
+  }
+}
+
+const std::string one_node = "device cpd\nnode 1\n";
+const std::string two_nodes = "device can-2057c\nnode 1\ndevice can-2053c\nnode 2\n";
+
+TEST(TraceReader, ReadsADataFrame) {
+  const trace::Trace trace = read(one_node + "> 601  2B 01 18 03 F0 20 -- 0a   # a comment\n");
+  ASSERT_EQ(trace.lines.size(), 1u);
+  const trace::Line& line = trace.lines[0];
+  EXPECT_EQ(line.number, 3u);
+  EXPECT_EQ(line.step, trace::Step::send);
+  EXPECT_EQ(trace::to_text(line.pattern), "601  2B 01 18 03 F0 20 -- 0A");
+  EXPECT_EQ(line.pattern.any, 0x40);
+}
+
+TEST(TraceReader, ReadsAFrameWithoutData) {
+  const trace::Trace trace = read(one_node + "> 080\n");
+  EXPECT_EQ(trace.lines.at(0).pattern.frame.id, 0x80u);
+  EXPECT_EQ(trace.lines[0].pattern.frame.size, 0);
+  EXPECT_FALSE(trace.lines[0].pattern.frame.remote);
+}
+
+TEST(TraceReader, ReadsARemoteFrameWithAndWithoutALength) {
+  const trace::Trace trace = read(one_node + "> 284 R\n> 284 R 8\n");
+  ASSERT_EQ(trace.lines.size(), 2u);
+  EXPECT_TRUE(trace.lines[0].pattern.frame.remote);
+  EXPECT_EQ(trace.lines[0].pattern.frame.size, 0);
+  EXPECT_TRUE(trace.lines[1].pattern.frame.remote);
+  EXPECT_EQ(trace.lines[1].pattern.frame.size, 8);
+}
+
+TEST(TraceReader, ReadsAnExtendedIdOfEightDigits) {
+  const trace::Trace trace = read(one_node + "< 00000601  01\n");
+  EXPECT_TRUE(trace.lines.at(0).pattern.frame.extended);
+  EXPECT_EQ(trace.lines[0].pattern.frame.id, 0x601u);
+}
+
+TEST(TraceReader, TakesObjectsToBeThoseOfTheOnlyNode) {
+  const trace::Trace trace = read(one_node + "= 6064h:00 -2\nread 1008h:00 \"a # b\"\n");
+  ASSERT_EQ(trace.nodes.size(), 1u);
+  EXPECT_EQ(trace.nodes[0].device, "cpd");
+  EXPECT_EQ(trace.nodes[0].node_id.value(), 1);
+  ASSERT_EQ(trace.lines.size(), 2u);
+  EXPECT_EQ(trace.lines[0].node, 0u);
+  EXPECT_EQ(trace.lines[0].index, 0x6064);
+  EXPECT_EQ(trace.lines[0].value.bytes(4), (std::vector<std::uint8_t>{0xFE, 0xFF, 0xFF, 0xFF}));
+  EXPECT_EQ(trace.lines[1].value.text, "a # b");
+}
+
+TEST(TraceReader, TakesTheNodeOfAnObjectFromTheLineWhereThereAreSeveral) {
+  const trace::Trace trace = read(two_nodes + "= node 2 6000h:01 0x34\nread node 1 6200h:02 0x12\n");
+  ASSERT_EQ(trace.nodes.size(), 2u);
+  EXPECT_EQ(trace.nodes[1].device, "can-2053c");
+  ASSERT_EQ(trace.lines.size(), 2u);
+  EXPECT_EQ(trace.lines[0].node, 1u);
+  EXPECT_EQ(trace.lines[0].sub_index, 1);
+  EXPECT_EQ(trace.lines[0].value.number, 0x34u);
+  EXPECT_EQ(trace.lines[1].node, 0u);
+}
+
+TEST(TraceReader, ReadsTimes) {
+  const trace::Trace trace = read(one_node + "+ 999 ms\n+ 1 s\n+ 5 us\n");
+  ASSERT_EQ(trace.lines.size(), 3u);
+  EXPECT_EQ(trace.lines[0].span.count(), 999'000);
+  EXPECT_EQ(trace.lines[1].span.count(), 1'000'000);
+  EXPECT_EQ(trace.lines[2].span.count(), 5);
+}
+
+TEST(TraceReader, NamesFileAndLineOfWhatItDoesNotUnderstand) {
+  struct Row {
+    std::string text;
+    std::string refusal;
+  };
+  const Row rows[] = {
+      {one_node + "? 601\n", "example.trace:3: \"?\" begins no line of a trace"},
+      {one_node + "> 801\n", "example.trace:3: \"801\" is too high"},
+      {one_node + "> 601 00 01 02 03 04 05 06 07 08\n", "example.trace:3: a frame has eight bytes at most"},
+      {one_node + "> 601 100\n", "example.trace:3: \"100\" is too high"},
+      {one_node + "> 284 R 9\n", "example.trace:3: \"9\" is too high"},
+      {one_node + "+ 5 min\n", "example.trace:3: a time is a number and us, ms or s"},
+      {one_node + "= 6041:00 1\n", "example.trace:3: an object is written 1801h:03"},
+      {one_node + "= node 3 6000h:01 1\n", "example.trace:3: no such node on the bus"},
+      {two_nodes + "= 6000h:01 1\n", "example.trace:5: which node has the object? It is written node 2 1801h:03"},
+      {"device cpd\nnode 0\n", "example.trace:2: a node-ID is 1 to 127"},
+      {"device cpd\nnode 128\n", "example.trace:2: \"128\" is too high"},
+      {"node 1\n", "example.trace:1: a node-ID stands below its device"},
+      {"device cpd\nnode 1\nnode 2\n", "example.trace:3: a node-ID stands below its device"},
+      {"device cpd\ndevice rk5c\n", "example.trace:2: the device above has no node-ID"},
+      {"device cpd\nnode 1\ndevice rk5c\nnode 1\n", "example.trace:4: two nodes have this node-ID"},
+      {"device cpd\n", "example.trace: no device or no node-ID"},
+      {"", "example.trace: no device or no node-ID"},
+  };
+  for (const Row& row : rows) EXPECT_EQ(refusal(row.text), row.refusal) << row.text;
+}
+
+}  // namespace
