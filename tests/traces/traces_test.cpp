@@ -11,6 +11,8 @@
 #include <cpd/device.hpp>
 #include <ezd_1136/device.hpp>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <rk5c/device.hpp>
 #include <string>
@@ -64,6 +66,12 @@ TEST_P(Traces, AreWhatTheDevicesDo) {
   for (const trace::Failure& failure : trace::play(trace, stations)) {
     ADD_FAILURE_AT(trace.file.c_str(), static_cast<int>(failure.line)) << "  " << failure.message;
   }
+}
+
+TEST_P(Traces, AreListedInTheReadme) {
+  std::ifstream readme{std::filesystem::path{EDSC_TRACES_DIR} / "README.md"};
+  const std::string text{std::istreambuf_iterator<char>{readme}, {}};
+  EXPECT_NE(text.find("`" + GetParam().stem().string() + "`"), std::string::npos);
 }
 
 INSTANTIATE_TEST_SUITE_P(Manuals, Traces, testing::ValuesIn(trace_files()), test_name);
