@@ -9,6 +9,7 @@
 #include <string>
 
 #include "device/compact_sub_objects.hpp"
+#include "device/index_range.hpp"
 #include "diagnostics/quote.hpp"
 #include "eds/number.hpp"
 
@@ -23,26 +24,11 @@ constexpr std::array object_types = {ObjectType::domain, ObjectType::deftype, Ob
 
 std::optional<std::uint64_t> number(const Field& field) { return parse_unsigned(strip_inline_comment(field.text)); }
 
-bool is_mapping_parameter(std::uint16_t index) {
-  return (index >= 0x1600 && index <= 0x17FF) || (index >= 0x1A00 && index <= 0x1BFF);
-}
-
 Value number_value(std::uint64_t bits, const Position& position) {
   Value value;
   value.bits = bits;
   value.position = position;
   return value;
-}
-
-/// Sub-index 0 of an object whose data sheet forgot it.
-Entry count_entry(std::uint16_t index, const Position& position) {
-  Entry entry;
-  entry.index = index;
-  entry.name = "Highest sub-index supported";
-  entry.type = canopen::find_data_type(static_cast<std::uint32_t>(DataType::unsigned8));
-  entry.access = canopen::Access::constant;
-  entry.position = entry.access_position = entry.mapping_position = position;
-  return entry;
 }
 
 /// FFh tells the structure of an object and does not count (CiA 301, 7.4.4).
@@ -58,7 +44,7 @@ std::uint8_t highest_sub_index(const Object& object) {
 std::uint8_t implied_count(const Object& object) {
   constexpr std::uint16_t pre_defined_error_field = 0x1003;
   if (object.index == pre_defined_error_field) return 0;
-  if (!is_mapping_parameter(object.index)) return highest_sub_index(object);
+  if (!contains(mapping_parameters, object.index)) return highest_sub_index(object);
   std::uint8_t count = 0;
   for (const Entry& entry : object.entries) {
     const bool is_next = entry.sub_index == count + 1;
@@ -68,6 +54,17 @@ std::uint8_t implied_count(const Object& object) {
 }
 
 }  // namespace
+
+Entry count_entry(std::uint16_t index, std::uint8_t highest, const Position& position) {
+  Entry entry;
+  entry.index = index;
+  entry.name = "Highest sub-index supported";
+  entry.type = canopen::find_data_type(static_cast<std::uint32_t>(DataType::unsigned8));
+  entry.access = canopen::Access::constant;
+  entry.position = entry.access_position = entry.mapping_position = position;
+  entry.default_value = number_value(highest, position);
+  return entry;
+}
 
 std::optional<Object> ObjectResolver::resolve(const ObjectDescription& description) {
   std::optional<Object> result{std::in_place};
@@ -189,8 +186,7 @@ void ObjectResolver::supply_sub_index_0(const ObjectDescription& description, Ob
     diagnostics_.warning(
         "sub-index-0", description.position,
         fmt::format("{} has no sub-index 0; one with the value {} is supplied", index_label(object.index), highest));
-    object.entries.insert(object.entries.begin(), count_entry(description.index, description.position));
-    object.entries.front().default_value = number_value(highest, description.position);
+    object.entries.insert(object.entries.begin(), count_entry(description.index, highest, description.position));
     return;
   }
   Entry& first = object.entries.front();

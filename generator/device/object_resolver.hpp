@@ -10,6 +10,9 @@
 
 namespace edsc {
 
+/// Sub-index 0 of an object whose data sheet has none: a constant.
+[[nodiscard]] Entry count_entry(std::uint16_t index, std::uint8_t highest, const Position& position);
+
 class ObjectResolver {
  public:
   ObjectResolver(EntryResolver& entries, bool is_dcf, Diagnostics& diagnostics)

@@ -13,8 +13,6 @@
 namespace edsc {
 namespace {
 
-using canopen::DataType;
-
 constexpr std::uint8_t most_sub_objects = 254;
 
 /// How many sub-indices a module adds: whole ones, or a part of one that it shares with its neighbours.
@@ -160,25 +158,14 @@ class ModuleResolver {
       object.type = ObjectType::array;
       object.name = extension.parameter_name.text;
       object.position = extension.position;
-      object.entries.push_back(count_entry(index, extension.position));
+      object.entries.push_back(count_entry(index, 0, extension.position));
       insert(std::move(object));
     }
     Object& object = *std::ranges::lower_bound(device_.objects, index, {}, &Object::index);
     if (!object.entries.front().default_value) {
-      object.entries.front().default_value = count_entry(index, object.position).default_value;
+      object.entries.front().default_value = count_entry(index, 0, object.position).default_value;
     }
     return object;
-  }
-
-  static Entry count_entry(std::uint16_t index, const Position& position) {
-    Entry entry;
-    entry.index = index;
-    entry.name = "Highest sub-index supported";
-    entry.type = canopen::find_data_type(static_cast<std::uint32_t>(DataType::unsigned8));
-    entry.access = canopen::Access::constant;
-    entry.position = entry.access_position = entry.mapping_position = position;
-    entry.default_value.emplace().position = position;
-    return entry;
   }
 
   void insert(Object object) {

@@ -1,23 +1,13 @@
 #include <fmt/format.h>
 
+#include "device/index_range.hpp"
 #include "rules/rule_groups.hpp"
 
 namespace edsc {
 namespace {
 
 /// Objects whose sub-index 0 is not the highest sub-index, but a number that changes: errors, mapped objects.
-struct CountRange {
-  std::uint16_t first, last;
-};
-
-constexpr CountRange count_ranges[] = {{0x1003, 0x1003}, {0x1600, 0x17FF}, {0x1A00, 0x1BFF}};
-
-bool counts(std::uint16_t index) {
-  for (const CountRange& range : count_ranges) {
-    if (index >= range.first && index <= range.last) return true;
-  }
-  return false;
-}
+bool counts(std::uint16_t index) { return index == 0x1003 || contains(mapping_parameters, index); }
 
 /// Without FFh, which holds the object's structure.
 std::uint8_t highest_sub_index(const Object& object) {
