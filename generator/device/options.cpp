@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <canopen/abort_code.hpp>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "device/identifier.hpp"
+#include "device/index_range.hpp"
 #include "eds/number.hpp"
 
 namespace edsc {
@@ -17,21 +20,52 @@ using nlohmann::json;
 
 /// Members of canopen::DeviceOptions, by the type of their value.
 constexpr std::array runtime_flags = {
-    "pdo_extended_ids",       "tpdo_remote_frames",        "inhibit_time_writable_while_valid",
-    "event_driven_on_change", "sdo_upload_size_indicated",
+    "pdo_extended_ids",
+    "tpdo_remote_frames",
+    "inhibit_time_writable_while_valid",
+    "event_driven_on_change",
+    "tpdo_acyclic_on_change",
+    "pdo_mapping_writable_while_valid",
+    "mpdo",
+    "sdo_upload_size_indicated",
 };
 constexpr std::array runtime_masks = {"pdo_cob_id_writable"};
+constexpr std::array runtime_abort_codes = {"pdo_mapping_abort_code"};
+
+/// `1018h` or `1018`: an index.
+std::optional<std::uint16_t> parse_index(std::string_view text) {
+  if (text.ends_with('h')) text.remove_suffix(1);
+  const auto index = parse_unsigned(fmt::format("0x{}", text));
+  return index && *index <= 0xFFFF ? std::optional{static_cast<std::uint16_t>(*index)} : std::nullopt;
+}
+
+/// `6401h:03`, or `6401h` for all of the object.
+std::optional<EntrySelector> parse_entry_selector(std::string_view text) {
+  const std::size_t colon = text.find(':');
+  const auto index = parse_index(text.substr(0, colon));
+  if (!index) return std::nullopt;
+  if (colon == std::string_view::npos) return EntrySelector{*index, std::nullopt};
+  const auto sub_index = parse_unsigned(fmt::format("0x{}", text.substr(colon + 1)));
+  if (!sub_index || *sub_index > 0xFF) return std::nullopt;
+  return EntrySelector{*index, static_cast<std::uint8_t>(*sub_index)};
+}
 
 /// `1018h:04`, `1018:4` or `1018h`: an entry of the dictionary.
 std::optional<EntryKey> parse_entry_key(std::string_view text) {
-  const std::size_t colon = text.find(':');
-  std::string_view index = text.substr(0, colon);
-  const std::string_view sub_index = colon == std::string_view::npos ? "0" : text.substr(colon + 1);
-  if (index.ends_with('h')) index.remove_suffix(1);
-  const auto i = parse_unsigned(fmt::format("0x{}", index));
-  const auto s = parse_unsigned(fmt::format("0x{}", sub_index));
-  if (!i || !s || *i > 0xFFFF || *s > 0xFF) return std::nullopt;
-  return EntryKey{static_cast<std::uint16_t>(*i), static_cast<std::uint8_t>(*s)};
+  const auto entry = parse_entry_selector(text);
+  return entry ? std::optional{EntryKey{entry->index, entry->sub_index.value_or(0)}} : std::nullopt;
+}
+
+/// Ten hexadecimal digits: five bytes.
+std::optional<EmergencyInfo> parse_emergency_info(std::string_view text) {
+  EmergencyInfo bytes{};
+  if (text.size() != 2 * bytes.size()) return std::nullopt;
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    const auto byte = parse_unsigned(fmt::format("0x{}", text.substr(2 * i, 2)));
+    if (!byte) return std::nullopt;
+    bytes[i] = static_cast<std::uint8_t>(*byte);
+  }
+  return bytes;
 }
 
 class OptionsReader {
@@ -67,6 +101,9 @@ class OptionsReader {
     if (name == "settable") return settable(value);
     if (name == "silence") return silence(value);
     if (name == "connected_modules") return connected_modules(value);
+    if (name == "static_mapping") return static_mapping(value);
+    if (name == "no_event") return no_event(value);
+    if (name == "emergency_info") return emergency_info(value);
     if (name == "zero_terminated_strings") {
       flag(name, value, options_.zero_terminated_strings);
       return;
@@ -78,6 +115,9 @@ class OptionsReader {
     }
     for (const char* option : runtime_masks) {
       if (name == option) return mask(name, value);
+    }
+    for (const char* option : runtime_abort_codes) {
+      if (name == option) return abort_code(name, value);
     }
     error(name, "no such option");
   }
@@ -141,6 +181,51 @@ class OptionsReader {
     }
   }
 
+  void static_mapping(const json& value) {
+    constexpr const char* meaning = "true, or an array of mapping parameters such as \"1A00h\"";
+    if (value.is_boolean()) {
+      options_.static_mapping.all = value.get<bool>();
+      return;
+    }
+    if (!value.is_array()) return error("static_mapping", meaning);
+    for (const json& item : value) {
+      const auto index = item.is_string() ? parse_index(item.get<std::string>()) : std::nullopt;
+      if (index && contains(mapping_parameters, *index)) {
+        options_.static_mapping.parameters.push_back(*index);
+      } else {
+        error("static_mapping", meaning);
+      }
+    }
+  }
+
+  void no_event(const json& value) {
+    constexpr const char* meaning = "an array of objects or entries such as \"6401h\" or \"6401h:03\"";
+    if (!value.is_array()) return error("no_event", meaning);
+    for (const json& item : value) {
+      const auto entry = item.is_string() ? parse_entry_selector(item.get<std::string>()) : std::nullopt;
+      if (entry) {
+        options_.no_event.push_back(*entry);
+      } else {
+        error("no_event", meaning);
+      }
+    }
+  }
+
+  void emergency_info(const json& value) {
+    constexpr const char* meaning = "an object with one member for each error code: {\"8210h\": \"0900000000\"}";
+    if (!value.is_object()) return error("emergency_info", meaning);
+    for (const auto& [code, bytes] : value.items()) {
+      const auto number = parse_index(code);
+      const auto info = bytes.is_string() ? parse_emergency_info(bytes.get<std::string>()) : std::nullopt;
+      if (number && info) {
+        options_.emergency_info[*number] = *info;
+      } else {
+        error("emergency_info/" + code,
+              number ? "five bytes as ten hexadecimal digits" : "not a code such as \"8210h\"");
+      }
+    }
+  }
+
   bool flag(const std::string& name, const json& value, bool& target) {
     if (value.is_boolean()) {
       target = value.get<bool>();
@@ -154,6 +239,15 @@ class OptionsReader {
     const auto bits = value.is_string() ? parse_unsigned(value.get<std::string>()) : std::nullopt;
     if (!bits || *bits > 0xFFFF'FFFF) return error(name, "a 32-bit mask such as \"0x80000780\"");
     options_.runtime.emplace_back(name, fmt::format("0x{:08X}", *bits));
+  }
+
+  void abort_code(const std::string& name, const json& value) {
+    const auto code = value.is_string() ? parse_unsigned(value.get<std::string>()) : std::nullopt;
+    const bool known = std::ranges::any_of(canopen::abort_code_texts, [&](const canopen::AbortCodeText& row) {
+      return row.code != canopen::ok && static_cast<std::uint32_t>(row.code) == code;
+    });
+    if (!known) return error(name, "an abort code of CiA 301 such as \"0x06040041\"");
+    options_.runtime.emplace_back(name, fmt::format("0x{:08X}", *code));
   }
 
   /// Where a member's name stands in the text, as well as can be told: its first occurrence in quotes.

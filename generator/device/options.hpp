@@ -1,8 +1,11 @@
 /// The options file `NAME.options.json`: what a device does that an EDS has no words for.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +16,27 @@
 namespace edsc {
 
 using EntryKey = std::pair<std::uint16_t, std::uint8_t>;
+
+/// One entry, or all of an object where no sub-index is given.
+struct EntrySelector {
+  std::uint16_t index = 0;
+  std::optional<std::uint8_t> sub_index;
+
+  friend bool operator==(const EntrySelector&, const EntrySelector&) = default;
+};
+
+/// Mapping parameters that are constants whatever access the data sheet gives them.
+struct StaticMapping {
+  bool all = false;
+  std::vector<std::uint16_t> parameters;  ///< indices
+
+  [[nodiscard]] bool applies_to(std::uint16_t index) const {
+    return all || std::ranges::find(parameters, index) != parameters.end();
+  }
+};
+
+/// The bytes of an EMCY behind error code and error register.
+using EmergencyInfo = std::array<std::uint8_t, 5>;
 
 struct Options {
   /// C++ names to use in place of the one made from ParameterName.
@@ -27,8 +51,17 @@ struct Options {
   std::vector<std::uint16_t> connected_modules;
   /// VISIBLE_STRINGs go out with a trailing 00h.
   bool zero_terminated_strings = false;
+  StaticMapping static_mapping;
+  /// Entries whose new value sends no event-driven TPDO.
+  std::vector<EntrySelector> no_event;
+  /// What the EMCYs that the services send by themselves carry, by emergency error code.
+  std::map<std::uint16_t, EmergencyInfo> emergency_info;
   /// Departures from CiA 301 that the runtime knows: member of canopen::DeviceOptions and its value in C++.
   std::vector<std::pair<std::string, std::string>> runtime;
+
+  [[nodiscard]] bool is_settable(std::uint16_t index, std::uint8_t sub_index) const {
+    return std::ranges::find(settable, EntryKey{index, sub_index}) != settable.end();
+  }
 };
 
 /// Reads an options file. Unknown members and values of a wrong type are errors, with the member's path.

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "diagnostics/quote.hpp"
 #include "eds/number.hpp"
 #include "rules/rule_groups.hpp"
@@ -18,8 +16,7 @@ constexpr std::uint64_t known_flags = 0x3;  ///< no download of a DCF, no upload
 /// A constant without a value reads as 0 or as an empty text for good.
 void check_constant(const RuleContext& context, const Entry& entry) {
   if (entry.access != Access::constant || entry.default_value || entry.type->kind == canopen::DataClass::domain) return;
-  const auto& settable = context.options.settable;
-  if (std::ranges::find(settable, EntryKey{entry.index, entry.sub_index}) != settable.end()) return;
+  if (context.options.is_settable(entry.index, entry.sub_index)) return;
   context.report("const-without-value", entry.position,
                  fmt::format("{} is const and has no DefaultValue", named(entry)));
 }

@@ -79,8 +79,9 @@ TEST(OptionsFile, SaysThatStringsEndWithAZero) {
 }
 
 TEST(OptionsFile, HandsEachDepartureToTheRuntime) {
-  for (const char* flag : {"pdo_extended_ids", "tpdo_remote_frames", "inhibit_time_writable_while_valid",
-                           "event_driven_on_change", "sdo_upload_size_indicated"}) {
+  for (const char* flag :
+       {"pdo_extended_ids", "tpdo_remote_frames", "inhibit_time_writable_while_valid", "event_driven_on_change",
+        "tpdo_acyclic_on_change", "pdo_mapping_writable_while_valid", "mpdo", "sdo_upload_size_indicated"}) {
     for (const char* value : {"true", "false"}) {
       const Read read("{ \"" + std::string{flag} + "\": " + value + " }");
       EXPECT_EQ(findings(read.diagnostics), Findings{}) << flag;
@@ -89,14 +90,79 @@ TEST(OptionsFile, HandsEachDepartureToTheRuntime) {
   }
   EXPECT_EQ(Read(R"({ "pdo_cob_id_writable": "0x80000780" })").options.runtime,
             (Runtime{{"pdo_cob_id_writable", "0x80000780"}}));
+  EXPECT_EQ(Read(R"({ "pdo_mapping_abort_code": "0x6040041" })").options.runtime,
+            (Runtime{{"pdo_mapping_abort_code", "0x06040041"}}));
+}
+
+TEST(OptionsFile, MakesTheMappingOfAllPdosStatic) {
+  EXPECT_TRUE(Read(R"({ "static_mapping": true })").options.static_mapping.applies_to(0x1600));
+  EXPECT_FALSE(Read(R"({ "static_mapping": false })").options.static_mapping.applies_to(0x1600));
+}
+
+TEST(OptionsFile, MakesTheMappingOfSomePdosStatic) {
+  const Read read(R"({ "static_mapping": ["1600h", "17FF", "1A00h", "1bffh"] })");
+  EXPECT_EQ(findings(read.diagnostics), Findings{});
+  EXPECT_EQ(read.options.static_mapping.parameters, (std::vector<std::uint16_t>{0x1600, 0x17FF, 0x1A00, 0x1BFF}));
+  EXPECT_TRUE(read.options.static_mapping.applies_to(0x1A00));
+  EXPECT_FALSE(read.options.static_mapping.applies_to(0x1A01));
+}
+
+TEST(OptionsFile, RefusesAStaticMappingOfWhatIsNoMappingParameter) {
+  for (const char* index : {"15FFh", "1800h", "19FFh", "1C00h", "1600h:01", "", "11600h"}) {
+    const Read read("{\n  \"static_mapping\": [\"" + std::string{index} + "\"] }");
+    EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(2, 3, "options")})) << index;
+    EXPECT_TRUE(read.options.static_mapping.parameters.empty()) << index;
+  }
+}
+
+TEST(OptionsFile, NamesObjectsAndEntriesThatRaiseNoEvent) {
+  const Read read(R"({ "no_event": ["6401h", "6000h:02", "2000h:00"] })");
+  EXPECT_EQ(findings(read.diagnostics), Findings{});
+  EXPECT_EQ(read.options.no_event, (std::vector<EntrySelector>{{0x6401, {}}, {0x6000, 2}, {0x2000, 0}}));
+}
+
+TEST(OptionsFile, GivesEmergenciesTheirBytes) {
+  const Read read(R"({ "emergency_info": { "8210h": "0900000000", "ff00": "0a0B0c0D0e" } })");
+  EXPECT_EQ(findings(read.diagnostics), Findings{});
+  EXPECT_EQ(read.options.emergency_info.at(0x8210), (EmergencyInfo{9, 0, 0, 0, 0}));
+  EXPECT_EQ(read.options.emergency_info.at(0xFF00), (EmergencyInfo{0x0A, 0x0B, 0x0C, 0x0D, 0x0E}));
+}
+
+TEST(OptionsFile, RefusesAnEmergencyWithoutCodeOrFiveBytes) {
+  for (const char* member :
+       {R"("": "0900000000")", R"("10000h": "0900000000")", R"("x": "0900000000")", R"("8210h": "09")",
+        R"("8210h": "090000000000")", R"("8210h": "09000000+1")", R"("8210h": "090000000x")", R"("8210h": 9)"}) {
+    const Read read("{ \"emergency_info\": { " + std::string{member} + " } }");
+    ASSERT_EQ(read.diagnostics.errors(), 1U) << member;
+    EXPECT_EQ(read.diagnostics.all().front().rule, "options") << member;
+    EXPECT_TRUE(read.options.emergency_info.empty()) << member;
+  }
 }
 
 TEST(OptionsFile, RefusesAValueOfTheWrongType) {
-  for (const char* member :
-       {R"("names": [])", R"("names": { "2000h": 1 })", R"("string_capacity": 5)", R"("settable": "1008h:00")",
-        R"("settable": [4104])", R"("silence": {})", R"("silence": [1])", R"("zero_terminated_strings": 1)",
-        R"("pdo_extended_ids": "no")", R"("event_driven_on_change": null)", R"("pdo_cob_id_writable": 5)",
-        R"("pdo_cob_id_writable": "all")", R"("pdo_cob_id_writable": "0x1FFFFFFFF")"}) {
+  for (const char* member : {R"("names": [])",
+                             R"("names": { "2000h": 1 })",
+                             R"("string_capacity": 5)",
+                             R"("settable": "1008h:00")",
+                             R"("settable": [4104])",
+                             R"("silence": {})",
+                             R"("silence": [1])",
+                             R"("zero_terminated_strings": 1)",
+                             R"("pdo_extended_ids": "no")",
+                             R"("event_driven_on_change": null)",
+                             R"("pdo_cob_id_writable": 5)",
+                             R"("pdo_cob_id_writable": "all")",
+                             R"("pdo_cob_id_writable": "0x1FFFFFFFF")",
+                             R"("pdo_mapping_abort_code": 100925505)",
+                             R"("pdo_mapping_abort_code": "0")",
+                             R"("pdo_mapping_abort_code": "0x06040040")",
+                             R"("mpdo": 1)",
+                             R"("static_mapping": "1600h")",
+                             R"("static_mapping": [5632])",
+                             R"("no_event": "6401h")",
+                             R"("no_event": [25601])",
+                             R"("no_event": ["6401h:100"])",
+                             R"("emergency_info": ["8210h"])"}) {
     const Read read("{ " + std::string{member} + " }");
     ASSERT_EQ(read.diagnostics.errors(), 1U) << member;
     EXPECT_EQ(read.diagnostics.all().front().rule, "options") << member;
