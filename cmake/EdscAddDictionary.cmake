@@ -1,20 +1,21 @@
 cmake_policy(VERSION 3.25) # the depfile is read as CMake 3.20 and later do
 
-# edsc_add_dictionary(TARGET EDS file [NAMESPACE name] [NODE_ID n] [OPTIONS file] [KEEP_GOING])
+# edsc_add_dictionary(TARGET EDS file [NAMESPACE name] [NODE_ID n] [OPTIONS file] [STATIC_MAPPING] [KEEP_GOING])
 #
 # Makes TARGET an INTERFACE library whose headers are generated at build time from an EDS or DCF:
 #
 #   edsc_add_dictionary(cpc_tc1 EDS eds/cpc-tc1.eds)
 #   target_link_libraries(drive PRIVATE cpc_tc1)        # #include <cpc_tc1/device.hpp>
 #
-# NAMESPACE  C++ namespace and include folder; TARGET by default.
-# NODE_ID    turns $NODEID formulas into numbers.
-# OPTIONS    options file; NAME.options.json beside the data sheet by default, if it is there.
-# KEEP_GOING generates in spite of errors in a bought device's file and leaves out what is wrong.
+# NAMESPACE      C++ namespace and include folder; TARGET by default.
+# NODE_ID        turns $NODEID formulas into numbers.
+# OPTIONS        options file; NAME.options.json beside the data sheet by default, if it is there.
+# STATIC_MAPPING makes constants of all mapping parameters: no PDO can be mapped over the bus, and the image is smaller.
+# KEEP_GOING     generates in spite of errors in a bought device's file and leaves out what is wrong.
 #
 # The headers are made again when the data sheet, its options file, a template or edsc itself changes.
 function(edsc_add_dictionary target)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "KEEP_GOING" "EDS;NAMESPACE;NODE_ID;OPTIONS" "")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "STATIC_MAPPING;KEEP_GOING" "EDS;NAMESPACE;NODE_ID;OPTIONS" "")
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "edsc_add_dictionary(${target}): unknown arguments: ${arg_UNPARSED_ARGUMENTS}")
   endif()
@@ -38,6 +39,9 @@ function(edsc_add_dictionary target)
   set(arguments ${eds} -o ${output_dir} --name ${arg_NAMESPACE} --depfile ${depfile} --depfile-target ${stamp})
   if(arg_NODE_ID)
     list(APPEND arguments --node-id ${arg_NODE_ID})
+  endif()
+  if(arg_STATIC_MAPPING)
+    list(APPEND arguments --static-mapping)
   endif()
   if(arg_KEEP_GOING)
     list(APPEND arguments --keep-going)

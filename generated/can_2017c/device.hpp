@@ -19,10 +19,28 @@ struct Device {
   static constexpr const canopen::Dictionary& dictionary = can_2017c::dictionary;
 
   /// The PDOs that the runtime serves, by number.
-  using Rpdos = canopen::PdoList<>;
+  using Rpdos = canopen::PdoList<
+      canopen::NumberedPdo<1, canopen::Rpdo<>>,
+      canopen::NumberedPdo<2, canopen::Rpdo<>>,
+      canopen::NumberedPdo<3, canopen::Rpdo<>>,
+      canopen::NumberedPdo<4, canopen::Rpdo<>>,
+      canopen::NumberedPdo<5, canopen::Rpdo<>>,
+      canopen::NumberedPdo<6, canopen::Rpdo<>>,
+      canopen::NumberedPdo<7, canopen::Rpdo<>>,
+      canopen::NumberedPdo<8, canopen::Rpdo<>>,
+      canopen::NumberedPdo<9, canopen::Rpdo<>>,
+      canopen::NumberedPdo<10, canopen::Rpdo<>>>;
   using Tpdos = canopen::PdoList<
+      canopen::NumberedPdo<1, canopen::Tpdo<>>,
       canopen::NumberedPdo<2, Tpdo2>,
-      canopen::NumberedPdo<3, Tpdo3>>;
+      canopen::NumberedPdo<3, Tpdo3>,
+      canopen::NumberedPdo<4, canopen::Tpdo<>>,
+      canopen::NumberedPdo<5, canopen::Tpdo<>>,
+      canopen::NumberedPdo<6, canopen::Tpdo<>>,
+      canopen::NumberedPdo<7, canopen::Tpdo<>>,
+      canopen::NumberedPdo<8, canopen::Tpdo<>>,
+      canopen::NumberedPdo<9, canopen::Tpdo<>>,
+      canopen::NumberedPdo<10, canopen::Tpdo<>>>;
 
   /// Bytes of the longest value that a segmented download may bring.
   static constexpr std::size_t longest_download = 4;
@@ -31,6 +49,7 @@ struct Device {
   static constexpr canopen::DeviceOptions options = [] {
     canopen::DeviceOptions departures;
     departures.pdo_extended_ids = false;
+    departures.pdo_mapping_writable_while_valid = true;
     return departures;
   }();
 
@@ -39,10 +58,18 @@ struct Device {
 
   /// Whether a new value of an entry sends the event-driven TPDOs that carry it.
   static constexpr bool triggers_event([[maybe_unused]] std::uint16_t index, [[maybe_unused]] std::uint8_t sub_index) {
-    return true;
+    return index != 0x6401;
   }
   /// The manufacturer-specific bytes of an EMCY that the services send by themselves.
-  static constexpr std::array<std::uint8_t, 5> emergency_info([[maybe_unused]] std::uint16_t code) { return {}; }
+  static constexpr std::array<std::uint8_t, 5> emergency_info(std::uint16_t code) {
+    switch (code) {
+      case 0x8110: return {{0x04, 0x00, 0x00, 0x00, 0x00}};
+      case 0x8130: return {{0x07, 0x00, 0x00, 0x00, 0x00}};
+      case 0x8140: return {{0x08, 0x00, 0x00, 0x00, 0x00}};
+      case 0x8210: return {{0x09, 0x00, 0x00, 0x00, 0x00}};
+      default: return {};
+    }
+  }
 
   static constexpr void reset_communication([[maybe_unused]] Values& values) {
     values.communication_preset = can_2017c::communication_preset;

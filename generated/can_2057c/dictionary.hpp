@@ -1428,6 +1428,7 @@ struct Values {
     RpdoCommunicationParameter rpdo_communication_parameter_8;      ///< 1407h  RPDO communication parameter 8
     RpdoCommunicationParameter rpdo_communication_parameter_9;      ///< 1408h  RPDO communication parameter 9
     RpdoCommunicationParameter rpdo_communication_parameter_10;     ///< 1409h  RPDO communication parameter 10
+    RpdoMappingParameter rpdo_mapping_parameter_1;                  ///< 1600h  RPDO mapping parameter 1
     TpdoCommunicationParameter tpdo_communication_parameter_1;      ///< 1800h  TPDO communication parameter 1
     TpdoCommunicationParameter tpdo_communication_parameter_2;      ///< 1801h  TPDO communication parameter 2
     TpdoCommunicationParameter tpdo_communication_parameter_3;      ///< 1802h  TPDO communication parameter 3
@@ -1443,6 +1444,25 @@ struct Values {
   /// 1000h..1FFFh that start from zero.
   struct CommunicationCleared {
     PreDefinedErrorField pre_defined_error_field;                   ///< 1003h  Pre-defined error field
+    RpdoMappingParameter rpdo_mapping_parameter_2;                  ///< 1601h  RPDO mapping parameter 2
+    RpdoMappingParameter rpdo_mapping_parameter_3;                  ///< 1602h  RPDO mapping parameter 3
+    RpdoMappingParameter rpdo_mapping_parameter_4;                  ///< 1603h  RPDO mapping parameter 4
+    RpdoMappingParameter rpdo_mapping_parameter_5;                  ///< 1604h  RPDO mapping parameter 5
+    RpdoMappingParameter rpdo_mapping_parameter_6;                  ///< 1605h  RPDO mapping parameter 6
+    RpdoMappingParameter rpdo_mapping_parameter_7;                  ///< 1606h  RPDO mapping parameter 7
+    RpdoMappingParameter rpdo_mapping_parameter_8;                  ///< 1607h  RPDO mapping parameter 8
+    RpdoMappingParameter rpdo_mapping_parameter_9;                  ///< 1608h  RPDO mapping parameter 9
+    RpdoMappingParameter rpdo_mapping_parameter_10;                 ///< 1609h  RPDO mapping parameter 10
+    RpdoMappingParameter tpdo_mapping_parameter_1;                  ///< 1A00h  TPDO mapping parameter 1
+    RpdoMappingParameter tpdo_mapping_parameter_2;                  ///< 1A01h  TPDO mapping parameter 2
+    RpdoMappingParameter tpdo_mapping_parameter_3;                  ///< 1A02h  TPDO mapping parameter 3
+    RpdoMappingParameter tpdo_mapping_parameter_4;                  ///< 1A03h  TPDO mapping parameter 4
+    RpdoMappingParameter tpdo_mapping_parameter_5;                  ///< 1A04h  TPDO mapping parameter 5
+    RpdoMappingParameter tpdo_mapping_parameter_6;                  ///< 1A05h  TPDO mapping parameter 6
+    RpdoMappingParameter tpdo_mapping_parameter_7;                  ///< 1A06h  TPDO mapping parameter 7
+    RpdoMappingParameter tpdo_mapping_parameter_8;                  ///< 1A07h  TPDO mapping parameter 8
+    RpdoMappingParameter tpdo_mapping_parameter_9;                  ///< 1A08h  TPDO mapping parameter 9
+    RpdoMappingParameter tpdo_mapping_parameter_10;                 ///< 1A09h  TPDO mapping parameter 10
     std::uint16_t guard_time;                                       ///< 100Ch:00  Guard time
     std::uint16_t producer_heartbeat_time;                          ///< 1017h:00  Producer heartbeat time
     std::uint8_t error_register;                                    ///< 1001h:00  Error register
@@ -1473,6 +1493,7 @@ inline constexpr Values::CommunicationPreset communication_preset{
     .rpdo_communication_parameter_8 = {.cob_id_used_by_rpdo = 0x80000000, .transmission_type = 0xFF},
     .rpdo_communication_parameter_9 = {.cob_id_used_by_rpdo = 0x80000000, .transmission_type = 0xFF},
     .rpdo_communication_parameter_10 = {.cob_id_used_by_rpdo = 0x80000000, .transmission_type = 0xFF},
+    .rpdo_mapping_parameter_1 = {.mapping_entry_1 = 0x62000108, .mapping_entry_2 = 0x62000208, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 2},
     .tpdo_communication_parameter_1 = {.cob_id_used_by_tpdo = 0x00000180, .inhibit_time = 0, .event_timer = 0, .transmission_type = 0xFF},
     .tpdo_communication_parameter_2 = {.cob_id_used_by_tpdo = 0x00000280, .inhibit_time = 0, .event_timer = 0, .transmission_type = 0xFF},
     .tpdo_communication_parameter_3 = {.cob_id_used_by_tpdo = 0x00000380, .inhibit_time = 0, .event_timer = 0, .transmission_type = 0xFF},
@@ -1495,26 +1516,6 @@ inline constexpr Values::ApplicationPreset application_preset{
 struct Constants {
   std::uint32_t device_type;                                      ///< 1000h:00  Device type
   IdentityObject identity_object;                                 ///< 1018h  Identity object
-  RpdoMappingParameter rpdo_mapping_parameter_1;                  ///< 1600h  RPDO mapping parameter 1
-  RpdoMappingParameter rpdo_mapping_parameter_2;                  ///< 1601h  RPDO mapping parameter 2
-  RpdoMappingParameter rpdo_mapping_parameter_3;                  ///< 1602h  RPDO mapping parameter 3
-  RpdoMappingParameter rpdo_mapping_parameter_4;                  ///< 1603h  RPDO mapping parameter 4
-  RpdoMappingParameter rpdo_mapping_parameter_5;                  ///< 1604h  RPDO mapping parameter 5
-  RpdoMappingParameter rpdo_mapping_parameter_6;                  ///< 1605h  RPDO mapping parameter 6
-  RpdoMappingParameter rpdo_mapping_parameter_7;                  ///< 1606h  RPDO mapping parameter 7
-  RpdoMappingParameter rpdo_mapping_parameter_8;                  ///< 1607h  RPDO mapping parameter 8
-  RpdoMappingParameter rpdo_mapping_parameter_9;                  ///< 1608h  RPDO mapping parameter 9
-  RpdoMappingParameter rpdo_mapping_parameter_10;                 ///< 1609h  RPDO mapping parameter 10
-  RpdoMappingParameter tpdo_mapping_parameter_1;                  ///< 1A00h  TPDO mapping parameter 1
-  RpdoMappingParameter tpdo_mapping_parameter_2;                  ///< 1A01h  TPDO mapping parameter 2
-  RpdoMappingParameter tpdo_mapping_parameter_3;                  ///< 1A02h  TPDO mapping parameter 3
-  RpdoMappingParameter tpdo_mapping_parameter_4;                  ///< 1A03h  TPDO mapping parameter 4
-  RpdoMappingParameter tpdo_mapping_parameter_5;                  ///< 1A04h  TPDO mapping parameter 5
-  RpdoMappingParameter tpdo_mapping_parameter_6;                  ///< 1A05h  TPDO mapping parameter 6
-  RpdoMappingParameter tpdo_mapping_parameter_7;                  ///< 1A06h  TPDO mapping parameter 7
-  RpdoMappingParameter tpdo_mapping_parameter_8;                  ///< 1A07h  TPDO mapping parameter 8
-  RpdoMappingParameter tpdo_mapping_parameter_9;                  ///< 1A08h  TPDO mapping parameter 9
-  RpdoMappingParameter tpdo_mapping_parameter_10;                 ///< 1A09h  TPDO mapping parameter 10
   canopen::VisibleString<6> manufacturer_hardware_version;        ///< 1009h:00  Manufacturer hardware version
   canopen::VisibleString<6> manufacturer_software_version;        ///< 100Ah:00  Manufacturer software version
 };
@@ -1522,26 +1523,6 @@ struct Constants {
 inline constexpr Constants constants{
     .device_type = 0x00020191,
     .identity_object = {.revision_number = 0x00010000},
-    .rpdo_mapping_parameter_1 = {.mapping_entry_1 = 0x62000108, .mapping_entry_2 = 0x62000208, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 2},
-    .rpdo_mapping_parameter_2 = {.mapping_entry_1 = 0x00000000, .mapping_entry_2 = 0x00000000, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 0},
-    .rpdo_mapping_parameter_3 = {.mapping_entry_1 = 0x00000000, .mapping_entry_2 = 0x00000000, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 0},
-    .rpdo_mapping_parameter_4 = {.mapping_entry_1 = 0x00000000, .mapping_entry_2 = 0x00000000, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 0},
-    .rpdo_mapping_parameter_5 = {.mapping_entry_1 = 0x00000000, .mapping_entry_2 = 0x00000000, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 0},
-    .rpdo_mapping_parameter_6 = {.mapping_entry_1 = 0x00000000, .mapping_entry_2 = 0x00000000, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 0},
-    .rpdo_mapping_parameter_7 = {.mapping_entry_1 = 0x00000000, .mapping_entry_2 = 0x00000000, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 0},
-    .rpdo_mapping_parameter_8 = {.mapping_entry_1 = 0x00000000, .mapping_entry_2 = 0x00000000, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 0},
-    .rpdo_mapping_parameter_9 = {.mapping_entry_1 = 0x00000000, .mapping_entry_2 = 0x00000000, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 0},
-    .rpdo_mapping_parameter_10 = {.mapping_entry_1 = 0x00000000, .mapping_entry_2 = 0x00000000, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 0},
-    .tpdo_mapping_parameter_1 = {.mapping_entry_1 = 0x00000000, .mapping_entry_2 = 0x00000000, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 0},
-    .tpdo_mapping_parameter_2 = {.mapping_entry_1 = 0x00000000, .mapping_entry_2 = 0x00000000, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 0},
-    .tpdo_mapping_parameter_3 = {.mapping_entry_1 = 0x00000000, .mapping_entry_2 = 0x00000000, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 0},
-    .tpdo_mapping_parameter_4 = {.mapping_entry_1 = 0x00000000, .mapping_entry_2 = 0x00000000, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 0},
-    .tpdo_mapping_parameter_5 = {.mapping_entry_1 = 0x00000000, .mapping_entry_2 = 0x00000000, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 0},
-    .tpdo_mapping_parameter_6 = {.mapping_entry_1 = 0x00000000, .mapping_entry_2 = 0x00000000, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 0},
-    .tpdo_mapping_parameter_7 = {.mapping_entry_1 = 0x00000000, .mapping_entry_2 = 0x00000000, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 0},
-    .tpdo_mapping_parameter_8 = {.mapping_entry_1 = 0x00000000, .mapping_entry_2 = 0x00000000, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 0},
-    .tpdo_mapping_parameter_9 = {.mapping_entry_1 = 0x00000000, .mapping_entry_2 = 0x00000000, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 0},
-    .tpdo_mapping_parameter_10 = {.mapping_entry_1 = 0x00000000, .mapping_entry_2 = 0x00000000, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 0},
     .manufacturer_hardware_version = {"V1.00"},
     .manufacturer_software_version = {"V1.00"},
 };
@@ -1647,15 +1628,15 @@ inline constexpr canopen::entry::Word subs[] = {
     immediate | 2 | u8 | ro,  // 1400h
     ram | offsetof(RpdoCommunicationParameter, cob_id_used_by_rpdo) | u32 | rw,
     ram | offsetof(RpdoCommunicationParameter, transmission_type) | u8 | rw,
-    rom | offsetof(RpdoMappingParameter, number_of_mapped_objects) | u8 | ro,  // 1600h
-    rom | offsetof(RpdoMappingParameter, mapping_entry_1) | u32 | ro,
-    rom | offsetof(RpdoMappingParameter, mapping_entry_2) | u32 | ro,
-    rom | offsetof(RpdoMappingParameter, mapping_entry_3) | u32 | ro,
-    rom | offsetof(RpdoMappingParameter, mapping_entry_4) | u32 | ro,
-    rom | offsetof(RpdoMappingParameter, mapping_entry_5) | u32 | ro,
-    rom | offsetof(RpdoMappingParameter, mapping_entry_6) | u32 | ro,
-    rom | offsetof(RpdoMappingParameter, mapping_entry_7) | u32 | ro,
-    rom | offsetof(RpdoMappingParameter, mapping_entry_8) | u32 | ro,
+    ram | offsetof(RpdoMappingParameter, number_of_mapped_objects) | u8 | rw,  // 1600h
+    ram | offsetof(RpdoMappingParameter, mapping_entry_1) | u32 | rw,
+    ram | offsetof(RpdoMappingParameter, mapping_entry_2) | u32 | rw,
+    ram | offsetof(RpdoMappingParameter, mapping_entry_3) | u32 | rw,
+    ram | offsetof(RpdoMappingParameter, mapping_entry_4) | u32 | rw,
+    ram | offsetof(RpdoMappingParameter, mapping_entry_5) | u32 | rw,
+    ram | offsetof(RpdoMappingParameter, mapping_entry_6) | u32 | rw,
+    ram | offsetof(RpdoMappingParameter, mapping_entry_7) | u32 | rw,
+    ram | offsetof(RpdoMappingParameter, mapping_entry_8) | u32 | rw,
     immediate | 5 | u8 | ro,  // 1800h
     ram | offsetof(TpdoCommunicationParameter, cob_id_used_by_tpdo) | u32 | rw,
     ram | offsetof(TpdoCommunicationParameter, transmission_type) | u8 | rw,
@@ -1684,16 +1665,16 @@ inline constexpr canopen::Group groups[] = {
     {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_8), .rom = 0, .subs = 12, .highest = 2, .stride = 0},  // 1407h
     {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_9), .rom = 0, .subs = 12, .highest = 2, .stride = 0},  // 1408h
     {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_10), .rom = 0, .subs = 12, .highest = 2, .stride = 0},  // 1409h
-    {.ram = 0, .rom = offsetof(Constants, rpdo_mapping_parameter_1), .subs = 15, .highest = 8, .stride = 0},  // 1600h
-    {.ram = 0, .rom = offsetof(Constants, rpdo_mapping_parameter_2), .subs = 15, .highest = 8, .stride = 0},  // 1601h
-    {.ram = 0, .rom = offsetof(Constants, rpdo_mapping_parameter_3), .subs = 15, .highest = 8, .stride = 0},  // 1602h
-    {.ram = 0, .rom = offsetof(Constants, rpdo_mapping_parameter_4), .subs = 15, .highest = 8, .stride = 0},  // 1603h
-    {.ram = 0, .rom = offsetof(Constants, rpdo_mapping_parameter_5), .subs = 15, .highest = 8, .stride = 0},  // 1604h
-    {.ram = 0, .rom = offsetof(Constants, rpdo_mapping_parameter_6), .subs = 15, .highest = 8, .stride = 0},  // 1605h
-    {.ram = 0, .rom = offsetof(Constants, rpdo_mapping_parameter_7), .subs = 15, .highest = 8, .stride = 0},  // 1606h
-    {.ram = 0, .rom = offsetof(Constants, rpdo_mapping_parameter_8), .subs = 15, .highest = 8, .stride = 0},  // 1607h
-    {.ram = 0, .rom = offsetof(Constants, rpdo_mapping_parameter_9), .subs = 15, .highest = 8, .stride = 0},  // 1608h
-    {.ram = 0, .rom = offsetof(Constants, rpdo_mapping_parameter_10), .subs = 15, .highest = 8, .stride = 0},  // 1609h
+    {.ram = offsetof(Values, communication_preset.rpdo_mapping_parameter_1), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1600h
+    {.ram = offsetof(Values, communication_cleared.rpdo_mapping_parameter_2), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1601h
+    {.ram = offsetof(Values, communication_cleared.rpdo_mapping_parameter_3), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1602h
+    {.ram = offsetof(Values, communication_cleared.rpdo_mapping_parameter_4), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1603h
+    {.ram = offsetof(Values, communication_cleared.rpdo_mapping_parameter_5), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1604h
+    {.ram = offsetof(Values, communication_cleared.rpdo_mapping_parameter_6), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1605h
+    {.ram = offsetof(Values, communication_cleared.rpdo_mapping_parameter_7), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1606h
+    {.ram = offsetof(Values, communication_cleared.rpdo_mapping_parameter_8), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1607h
+    {.ram = offsetof(Values, communication_cleared.rpdo_mapping_parameter_9), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1608h
+    {.ram = offsetof(Values, communication_cleared.rpdo_mapping_parameter_10), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1609h
     {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_1), .rom = 0, .subs = 24, .highest = 5, .stride = 0},  // 1800h
     {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_2), .rom = 0, .subs = 24, .highest = 5, .stride = 0},  // 1801h
     {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_3), .rom = 0, .subs = 24, .highest = 5, .stride = 0},  // 1802h
@@ -1704,16 +1685,16 @@ inline constexpr canopen::Group groups[] = {
     {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_8), .rom = 0, .subs = 24, .highest = 5, .stride = 0},  // 1807h
     {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_9), .rom = 0, .subs = 24, .highest = 5, .stride = 0},  // 1808h
     {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_10), .rom = 0, .subs = 24, .highest = 5, .stride = 0},  // 1809h
-    {.ram = 0, .rom = offsetof(Constants, tpdo_mapping_parameter_1), .subs = 15, .highest = 8, .stride = 0},  // 1A00h
-    {.ram = 0, .rom = offsetof(Constants, tpdo_mapping_parameter_2), .subs = 15, .highest = 8, .stride = 0},  // 1A01h
-    {.ram = 0, .rom = offsetof(Constants, tpdo_mapping_parameter_3), .subs = 15, .highest = 8, .stride = 0},  // 1A02h
-    {.ram = 0, .rom = offsetof(Constants, tpdo_mapping_parameter_4), .subs = 15, .highest = 8, .stride = 0},  // 1A03h
-    {.ram = 0, .rom = offsetof(Constants, tpdo_mapping_parameter_5), .subs = 15, .highest = 8, .stride = 0},  // 1A04h
-    {.ram = 0, .rom = offsetof(Constants, tpdo_mapping_parameter_6), .subs = 15, .highest = 8, .stride = 0},  // 1A05h
-    {.ram = 0, .rom = offsetof(Constants, tpdo_mapping_parameter_7), .subs = 15, .highest = 8, .stride = 0},  // 1A06h
-    {.ram = 0, .rom = offsetof(Constants, tpdo_mapping_parameter_8), .subs = 15, .highest = 8, .stride = 0},  // 1A07h
-    {.ram = 0, .rom = offsetof(Constants, tpdo_mapping_parameter_9), .subs = 15, .highest = 8, .stride = 0},  // 1A08h
-    {.ram = 0, .rom = offsetof(Constants, tpdo_mapping_parameter_10), .subs = 15, .highest = 8, .stride = 0},  // 1A09h
+    {.ram = offsetof(Values, communication_cleared.tpdo_mapping_parameter_1), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1A00h
+    {.ram = offsetof(Values, communication_cleared.tpdo_mapping_parameter_2), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1A01h
+    {.ram = offsetof(Values, communication_cleared.tpdo_mapping_parameter_3), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1A02h
+    {.ram = offsetof(Values, communication_cleared.tpdo_mapping_parameter_4), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1A03h
+    {.ram = offsetof(Values, communication_cleared.tpdo_mapping_parameter_5), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1A04h
+    {.ram = offsetof(Values, communication_cleared.tpdo_mapping_parameter_6), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1A05h
+    {.ram = offsetof(Values, communication_cleared.tpdo_mapping_parameter_7), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1A06h
+    {.ram = offsetof(Values, communication_cleared.tpdo_mapping_parameter_8), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1A07h
+    {.ram = offsetof(Values, communication_cleared.tpdo_mapping_parameter_9), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1A08h
+    {.ram = offsetof(Values, communication_cleared.tpdo_mapping_parameter_10), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1A09h
     {.ram = offsetof(Values, application_cleared.write_output_8_bit), .rom = 0, .subs = 30, .highest = 2, .stride = 1},  // 6200h
     {.ram = offsetof(Values, application_preset.error_mode_output_8_bit), .rom = 0, .subs = 32, .highest = 2, .stride = 1},  // 6206h
     {.ram = offsetof(Values, application_cleared.error_value_output_8_bit), .rom = 0, .subs = 32, .highest = 2, .stride = 1},  // 6207h

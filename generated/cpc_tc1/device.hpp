@@ -22,7 +22,8 @@ struct Device {
   using Rpdos = canopen::PdoList<
       canopen::NumberedPdo<1, Rpdo1>,
       canopen::NumberedPdo<2, Rpdo2>,
-      canopen::NumberedPdo<3, Rpdo3>>;
+      canopen::NumberedPdo<3, Rpdo3>,
+      canopen::NumberedPdo<4, canopen::Rpdo<>>>;
   using Tpdos = canopen::PdoList<
       canopen::NumberedPdo<1, Tpdo1>,
       canopen::NumberedPdo<2, Tpdo2>,
@@ -36,6 +37,8 @@ struct Device {
   static constexpr canopen::DeviceOptions options = [] {
     canopen::DeviceOptions departures;
     departures.pdo_extended_ids = false;
+    departures.pdo_mapping_abort_code = 0x06040041;
+    departures.tpdo_acyclic_on_change = false;
     departures.tpdo_remote_frames = false;
     return departures;
   }();

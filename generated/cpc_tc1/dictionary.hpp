@@ -642,10 +642,17 @@ struct Values {
     RpdoCommunicationParameter rpdo_communication_parameter_2;      ///< 1401h  RPDO communication parameter 2
     RpdoCommunicationParameter rpdo_communication_parameter_3;      ///< 1402h  RPDO communication parameter 3
     RpdoCommunicationParameter rpdo_communication_parameter_4;      ///< 1403h  RPDO communication parameter 4
+    RpdoMappingParameter rpdo_mapping_parameter_1;                  ///< 1600h  RPDO mapping parameter 1
+    RpdoMappingParameter rpdo_mapping_parameter_2;                  ///< 1601h  RPDO mapping parameter 2
+    RpdoMappingParameter rpdo_mapping_parameter_3;                  ///< 1602h  RPDO mapping parameter 3
     TpdoCommunicationParameter tpdo_communication_parameter_1;      ///< 1800h  TPDO communication parameter 1
     TpdoCommunicationParameter tpdo_communication_parameter_2;      ///< 1801h  TPDO communication parameter 2
     TpdoCommunicationParameter tpdo_communication_parameter_3;      ///< 1802h  TPDO communication parameter 3
     TpdoCommunicationParameter tpdo_communication_parameter_4;      ///< 1803h  TPDO communication parameter 4
+    RpdoMappingParameter tpdo_mapping_parameter_1;                  ///< 1A00h  TPDO mapping parameter 1
+    RpdoMappingParameter tpdo_mapping_parameter_2;                  ///< 1A01h  TPDO mapping parameter 2
+    RpdoMappingParameter tpdo_mapping_parameter_3;                  ///< 1A02h  TPDO mapping parameter 3
+    RpdoMappingParameter tpdo_mapping_parameter_4;                  ///< 1A03h  TPDO mapping parameter 4
   } communication_preset;
   /// 1000h..1FFFh that start from zero.
   struct CommunicationCleared {
@@ -656,6 +663,7 @@ struct Values {
     std::uint32_t high_resolution_time_stamp;                       ///< 1013h:00  High resolution time stamp
     std::array<std::uint32_t, 4> consumer_heartbeat_time;           ///< 1016h:01..04  Consumer heartbeat time
     IdentityObject identity_object;                                 ///< 1018h  Identity object
+    RpdoMappingParameter rpdo_mapping_parameter_4;                  ///< 1603h  RPDO mapping parameter 4
     std::uint16_t inhibit_time_emcy;                                ///< 1015h:00  Inhibit time EMCY
     std::uint16_t producer_heartbeat_time;                          ///< 1017h:00  Producer heartbeat time
     std::uint8_t error_register;                                    ///< 1001h:00  Error register
@@ -680,23 +688,22 @@ inline constexpr Values::CommunicationPreset communication_preset{
     .rpdo_communication_parameter_2 = {.cob_id_used_by_rpdo = 0x80000300, .transmission_type = 0xFF},
     .rpdo_communication_parameter_3 = {.cob_id_used_by_rpdo = 0x80000400, .transmission_type = 0xFF},
     .rpdo_communication_parameter_4 = {.cob_id_used_by_rpdo = 0x80000500, .transmission_type = 0xFF},
+    .rpdo_mapping_parameter_1 = {.mapping_entry_1 = 0x60400010, .mapping_entry_2 = 0x00000000, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .number_of_mapped_application_objects = 1},
+    .rpdo_mapping_parameter_2 = {.mapping_entry_1 = 0x60400010, .mapping_entry_2 = 0x607A0020, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .number_of_mapped_application_objects = 2},
+    .rpdo_mapping_parameter_3 = {.mapping_entry_1 = 0x60400010, .mapping_entry_2 = 0x60FF0020, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .number_of_mapped_application_objects = 2},
     .tpdo_communication_parameter_1 = {.cob_id_used_by_tpdo = 0x40000180, .inhibit_time = 0, .event_timer = 100, .transmission_type = 0xFF},
     .tpdo_communication_parameter_2 = {.cob_id_used_by_tpdo = 0x40000280, .inhibit_time = 0, .event_timer = 100, .transmission_type = 0xFF},
     .tpdo_communication_parameter_3 = {.cob_id_used_by_tpdo = 0x40000380, .inhibit_time = 0, .event_timer = 100, .transmission_type = 0xFF},
     .tpdo_communication_parameter_4 = {.cob_id_used_by_tpdo = 0x40000480, .inhibit_time = 0, .event_timer = 100, .transmission_type = 0xFF},
+    .tpdo_mapping_parameter_1 = {.mapping_entry_1 = 0x60410010, .mapping_entry_2 = 0x00000000, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .number_of_mapped_application_objects = 1},
+    .tpdo_mapping_parameter_2 = {.mapping_entry_1 = 0x60410010, .mapping_entry_2 = 0x60640020, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .number_of_mapped_application_objects = 2},
+    .tpdo_mapping_parameter_3 = {.mapping_entry_1 = 0x60410010, .mapping_entry_2 = 0x606C0020, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .number_of_mapped_application_objects = 2},
+    .tpdo_mapping_parameter_4 = {.mapping_entry_1 = 0x60410010, .mapping_entry_2 = 0x606C0020, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .number_of_mapped_application_objects = 2},
 };
 
 /// Constants that do not fit into a word of the tables.
 struct Constants {
   std::uint32_t device_type;                                      ///< 1000h:00  Device type
-  RpdoMappingParameter rpdo_mapping_parameter_1;                  ///< 1600h  RPDO mapping parameter 1
-  RpdoMappingParameter rpdo_mapping_parameter_2;                  ///< 1601h  RPDO mapping parameter 2
-  RpdoMappingParameter rpdo_mapping_parameter_3;                  ///< 1602h  RPDO mapping parameter 3
-  RpdoMappingParameter rpdo_mapping_parameter_4;                  ///< 1603h  RPDO mapping parameter 4
-  RpdoMappingParameter tpdo_mapping_parameter_1;                  ///< 1A00h  TPDO mapping parameter 1
-  RpdoMappingParameter tpdo_mapping_parameter_2;                  ///< 1A01h  TPDO mapping parameter 2
-  RpdoMappingParameter tpdo_mapping_parameter_3;                  ///< 1A02h  TPDO mapping parameter 3
-  RpdoMappingParameter tpdo_mapping_parameter_4;                  ///< 1A03h  TPDO mapping parameter 4
   canopen::VisibleString<9> manufacturer_device_name;             ///< 1008h:00  Manufacturer device name
   canopen::VisibleString<6> manufacturer_hardware_version;        ///< 1009h:00  Manufacturer hardware version
   canopen::VisibleString<6> manufacturer_software_version;        ///< 100Ah:00  Manufacturer software version
@@ -704,14 +711,6 @@ struct Constants {
 
 inline constexpr Constants constants{
     .device_type = 0x00420192,
-    .rpdo_mapping_parameter_1 = {.mapping_entry_1 = 0x60400010, .mapping_entry_2 = 0x00000000, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .number_of_mapped_application_objects = 1},
-    .rpdo_mapping_parameter_2 = {.mapping_entry_1 = 0x60400010, .mapping_entry_2 = 0x607A0020, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .number_of_mapped_application_objects = 2},
-    .rpdo_mapping_parameter_3 = {.mapping_entry_1 = 0x60400010, .mapping_entry_2 = 0x60FF0020, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .number_of_mapped_application_objects = 2},
-    .rpdo_mapping_parameter_4 = {.mapping_entry_1 = 0x00000000, .mapping_entry_2 = 0x00000000, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .number_of_mapped_application_objects = 0},
-    .tpdo_mapping_parameter_1 = {.mapping_entry_1 = 0x60410010, .mapping_entry_2 = 0x00000000, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .number_of_mapped_application_objects = 1},
-    .tpdo_mapping_parameter_2 = {.mapping_entry_1 = 0x60410010, .mapping_entry_2 = 0x60640020, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .number_of_mapped_application_objects = 2},
-    .tpdo_mapping_parameter_3 = {.mapping_entry_1 = 0x60410010, .mapping_entry_2 = 0x606C0020, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .number_of_mapped_application_objects = 2},
-    .tpdo_mapping_parameter_4 = {.mapping_entry_1 = 0x60410010, .mapping_entry_2 = 0x606C0020, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .number_of_mapped_application_objects = 2},
     .manufacturer_device_name = {"TC1-8/230"},
     .manufacturer_hardware_version = {"00.100"},
     .manufacturer_software_version = {"0.7.15"},
@@ -811,11 +810,11 @@ inline constexpr canopen::entry::Word subs[] = {
     immediate | 2 | u8 | ro,  // 1400h
     ram | offsetof(RpdoCommunicationParameter, cob_id_used_by_rpdo) | u32 | rw,
     ram | offsetof(RpdoCommunicationParameter, transmission_type) | u8 | rw,
-    rom | offsetof(RpdoMappingParameter, number_of_mapped_application_objects) | u8 | ro,  // 1600h
-    rom | offsetof(RpdoMappingParameter, mapping_entry_1) | u32 | ro,
-    rom | offsetof(RpdoMappingParameter, mapping_entry_2) | u32 | ro,
-    rom | offsetof(RpdoMappingParameter, mapping_entry_3) | u32 | ro,
-    rom | offsetof(RpdoMappingParameter, mapping_entry_4) | u32 | ro,
+    ram | offsetof(RpdoMappingParameter, number_of_mapped_application_objects) | u8 | rw,  // 1600h
+    ram | offsetof(RpdoMappingParameter, mapping_entry_1) | u32 | rw,
+    ram | offsetof(RpdoMappingParameter, mapping_entry_2) | u32 | rw,
+    ram | offsetof(RpdoMappingParameter, mapping_entry_3) | u32 | rw,
+    ram | offsetof(RpdoMappingParameter, mapping_entry_4) | u32 | rw,
     immediate | 5 | u8 | ro,  // 1800h
     ram | offsetof(TpdoCommunicationParameter, cob_id_used_by_tpdo) | u32 | rw,
     ram | offsetof(TpdoCommunicationParameter, transmission_type) | u8 | rw,
@@ -835,18 +834,18 @@ inline constexpr canopen::Group groups[] = {
     {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_2), .rom = 0, .subs = 19, .highest = 2, .stride = 0},  // 1401h
     {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_3), .rom = 0, .subs = 19, .highest = 2, .stride = 0},  // 1402h
     {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_4), .rom = 0, .subs = 19, .highest = 2, .stride = 0},  // 1403h
-    {.ram = 0, .rom = offsetof(Constants, rpdo_mapping_parameter_1), .subs = 22, .highest = 4, .stride = 0},  // 1600h
-    {.ram = 0, .rom = offsetof(Constants, rpdo_mapping_parameter_2), .subs = 22, .highest = 4, .stride = 0},  // 1601h
-    {.ram = 0, .rom = offsetof(Constants, rpdo_mapping_parameter_3), .subs = 22, .highest = 4, .stride = 0},  // 1602h
-    {.ram = 0, .rom = offsetof(Constants, rpdo_mapping_parameter_4), .subs = 22, .highest = 4, .stride = 0},  // 1603h
+    {.ram = offsetof(Values, communication_preset.rpdo_mapping_parameter_1), .rom = 0, .subs = 22, .highest = 4, .stride = 0},  // 1600h
+    {.ram = offsetof(Values, communication_preset.rpdo_mapping_parameter_2), .rom = 0, .subs = 22, .highest = 4, .stride = 0},  // 1601h
+    {.ram = offsetof(Values, communication_preset.rpdo_mapping_parameter_3), .rom = 0, .subs = 22, .highest = 4, .stride = 0},  // 1602h
+    {.ram = offsetof(Values, communication_cleared.rpdo_mapping_parameter_4), .rom = 0, .subs = 22, .highest = 4, .stride = 0},  // 1603h
     {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_1), .rom = 0, .subs = 27, .highest = 5, .stride = 0},  // 1800h
     {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_2), .rom = 0, .subs = 27, .highest = 5, .stride = 0},  // 1801h
     {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_3), .rom = 0, .subs = 27, .highest = 5, .stride = 0},  // 1802h
     {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_4), .rom = 0, .subs = 27, .highest = 5, .stride = 0},  // 1803h
-    {.ram = 0, .rom = offsetof(Constants, tpdo_mapping_parameter_1), .subs = 22, .highest = 4, .stride = 0},  // 1A00h
-    {.ram = 0, .rom = offsetof(Constants, tpdo_mapping_parameter_2), .subs = 22, .highest = 4, .stride = 0},  // 1A01h
-    {.ram = 0, .rom = offsetof(Constants, tpdo_mapping_parameter_3), .subs = 22, .highest = 4, .stride = 0},  // 1A02h
-    {.ram = 0, .rom = offsetof(Constants, tpdo_mapping_parameter_4), .subs = 22, .highest = 4, .stride = 0},  // 1A03h
+    {.ram = offsetof(Values, communication_preset.tpdo_mapping_parameter_1), .rom = 0, .subs = 22, .highest = 4, .stride = 0},  // 1A00h
+    {.ram = offsetof(Values, communication_preset.tpdo_mapping_parameter_2), .rom = 0, .subs = 22, .highest = 4, .stride = 0},  // 1A01h
+    {.ram = offsetof(Values, communication_preset.tpdo_mapping_parameter_3), .rom = 0, .subs = 22, .highest = 4, .stride = 0},  // 1A02h
+    {.ram = offsetof(Values, communication_preset.tpdo_mapping_parameter_4), .rom = 0, .subs = 22, .highest = 4, .stride = 0},  // 1A03h
 };
 
 inline constexpr canopen::Limits limits[] = {

@@ -1082,6 +1082,8 @@ struct Values {
     PreDefinedErrorField pre_defined_error_field;                   ///< 1003h  Pre-defined error field
     std::array<std::uint32_t, 3> consumer_heartbeat_time;           ///< 1016h:01..03  Consumer heartbeat time
     std::array<std::uint32_t, 2> verify_configuration;              ///< 1020h:01..02  Verify configuration
+    RpdoMappingParameter_1601 rpdo_mapping_parameter_4;             ///< 1603h  RPDO mapping parameter 4
+    RpdoMappingParameter_1601 tpdo_mapping_parameter_4;             ///< 1A03h  TPDO mapping parameter 4
     std::uint16_t guard_time;                                       ///< 100Ch:00  Guard time
     std::uint16_t inhibit_time_emcy;                                ///< 1015h:00  Inhibit time EMCY
     std::uint16_t producer_heartbeat_time;                          ///< 1017h:00  Producer heartbeat time
@@ -1164,11 +1166,9 @@ struct Constants {
   RpdoMappingParameter rpdo_mapping_parameter_1;                  ///< 1600h  RPDO mapping parameter 1
   RpdoMappingParameter_1601 rpdo_mapping_parameter_2;             ///< 1601h  RPDO mapping parameter 2
   RpdoMappingParameter_1601 rpdo_mapping_parameter_3;             ///< 1602h  RPDO mapping parameter 3
-  RpdoMappingParameter_1601 rpdo_mapping_parameter_4;             ///< 1603h  RPDO mapping parameter 4
   RpdoMappingParameter tpdo_mapping_parameter_1;                  ///< 1A00h  TPDO mapping parameter 1
   RpdoMappingParameter_1601 tpdo_mapping_parameter_2;             ///< 1A01h  TPDO mapping parameter 2
   RpdoMappingParameter_1601 tpdo_mapping_parameter_3;             ///< 1A02h  TPDO mapping parameter 3
-  RpdoMappingParameter_1601 tpdo_mapping_parameter_4;             ///< 1A03h  TPDO mapping parameter 4
   canopen::VisibleString<8> manufacturer_device_name;             ///< 1008h:00  Manufacturer device name
   canopen::VisibleString<8> manufacturer_hardware_version;        ///< 1009h:00  Manufacturer hardware version
   canopen::VisibleString<8> manufacturer_software_version;        ///< 100Ah:00  Manufacturer software version
@@ -1180,11 +1180,9 @@ inline constexpr Constants constants{
     .rpdo_mapping_parameter_1 = {.mapping_entry_1 = 0x60400010, .number_of_mapped_objects = 1},
     .rpdo_mapping_parameter_2 = {.mapping_entry_1 = 0x60400010, .mapping_entry_2 = 0x607A0020, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .number_of_mapped_objects = 2},
     .rpdo_mapping_parameter_3 = {.mapping_entry_1 = 0x60400010, .mapping_entry_2 = 0x60FF0020, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .number_of_mapped_objects = 2},
-    .rpdo_mapping_parameter_4 = {.mapping_entry_1 = 0x00000000, .mapping_entry_2 = 0x00000000, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .number_of_mapped_objects = 0},
     .tpdo_mapping_parameter_1 = {.mapping_entry_1 = 0x60410010, .number_of_mapped_objects = 1},
     .tpdo_mapping_parameter_2 = {.mapping_entry_1 = 0x60410010, .mapping_entry_2 = 0x60640020, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .number_of_mapped_objects = 2},
     .tpdo_mapping_parameter_3 = {.mapping_entry_1 = 0x60410010, .mapping_entry_2 = 0x606C0020, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .number_of_mapped_objects = 2},
-    .tpdo_mapping_parameter_4 = {.mapping_entry_1 = 0x00000000, .mapping_entry_2 = 0x00000000, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .number_of_mapped_objects = 0},
     .manufacturer_device_name = {"CPDservo"},
     .manufacturer_hardware_version = {"HW 01.00"},
     .manufacturer_software_version = {"SW 01.01"},
@@ -1353,6 +1351,11 @@ inline constexpr canopen::entry::Word subs[] = {
     rom | offsetof(RpdoMappingParameter_1601, mapping_entry_2) | u32 | ro,
     rom | offsetof(RpdoMappingParameter_1601, mapping_entry_3) | u32 | ro,
     rom | offsetof(RpdoMappingParameter_1601, mapping_entry_4) | u32 | ro,
+    ram | offsetof(RpdoMappingParameter_1601, number_of_mapped_objects) | u8 | rw,  // 1603h
+    ram | offsetof(RpdoMappingParameter_1601, mapping_entry_1) | u32 | rw,
+    ram | offsetof(RpdoMappingParameter_1601, mapping_entry_2) | u32 | rw,
+    ram | offsetof(RpdoMappingParameter_1601, mapping_entry_3) | u32 | rw,
+    ram | offsetof(RpdoMappingParameter_1601, mapping_entry_4) | u32 | rw,
     immediate | 5 | u8 | ro,  // 1800h
     ram | offsetof(TpdoCommunicationParameter, cob_id_used_by_tpdo) | u32 | rw,
     ram | offsetof(TpdoCommunicationParameter, transmission_type) | u8 | rw,
@@ -1496,31 +1499,31 @@ inline constexpr canopen::Group groups[] = {
     {.ram = 0, .rom = offsetof(Constants, rpdo_mapping_parameter_1), .subs = 30, .highest = 1, .stride = 0},  // 1600h
     {.ram = 0, .rom = offsetof(Constants, rpdo_mapping_parameter_2), .subs = 32, .highest = 4, .stride = 0},  // 1601h
     {.ram = 0, .rom = offsetof(Constants, rpdo_mapping_parameter_3), .subs = 32, .highest = 4, .stride = 0},  // 1602h
-    {.ram = 0, .rom = offsetof(Constants, rpdo_mapping_parameter_4), .subs = 32, .highest = 4, .stride = 0},  // 1603h
-    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_1), .rom = 0, .subs = 37, .highest = 5, .stride = 0},  // 1800h
-    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_2), .rom = 0, .subs = 37, .highest = 5, .stride = 0},  // 1801h
-    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_3), .rom = 0, .subs = 37, .highest = 5, .stride = 0},  // 1802h
-    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_4), .rom = 0, .subs = 43, .highest = 5, .stride = 0},  // 1803h
+    {.ram = offsetof(Values, communication_cleared.rpdo_mapping_parameter_4), .rom = 0, .subs = 37, .highest = 4, .stride = 0},  // 1603h
+    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_1), .rom = 0, .subs = 42, .highest = 5, .stride = 0},  // 1800h
+    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_2), .rom = 0, .subs = 42, .highest = 5, .stride = 0},  // 1801h
+    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_3), .rom = 0, .subs = 42, .highest = 5, .stride = 0},  // 1802h
+    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_4), .rom = 0, .subs = 48, .highest = 5, .stride = 0},  // 1803h
     {.ram = 0, .rom = offsetof(Constants, tpdo_mapping_parameter_1), .subs = 30, .highest = 1, .stride = 0},  // 1A00h
     {.ram = 0, .rom = offsetof(Constants, tpdo_mapping_parameter_2), .subs = 32, .highest = 4, .stride = 0},  // 1A01h
     {.ram = 0, .rom = offsetof(Constants, tpdo_mapping_parameter_3), .subs = 32, .highest = 4, .stride = 0},  // 1A02h
-    {.ram = 0, .rom = offsetof(Constants, tpdo_mapping_parameter_4), .subs = 32, .highest = 4, .stride = 0},  // 1A03h
-    {.ram = offsetof(Values, application_cleared.parameter_storage), .rom = 0, .subs = 49, .highest = 8, .stride = 0},  // 3004h
-    {.ram = offsetof(Values, application_cleared.position_interface), .rom = 0, .subs = 58, .highest = 2, .stride = 0},  // 3005h
-    {.ram = offsetof(Values, application_cleared.motion_settings), .rom = 0, .subs = 61, .highest = 18, .stride = 0},  // 3006h
-    {.ram = offsetof(Values, application_cleared.inputs_and_outputs), .rom = 0, .subs = 80, .highest = 1, .stride = 0},  // 3008h
-    {.ram = offsetof(Values, application_cleared.analogue_inputs), .rom = 0, .subs = 82, .highest = 5, .stride = 0},  // 3009h
-    {.ram = offsetof(Values, application_cleared.current_limits), .rom = 0, .subs = 88, .highest = 6, .stride = 0},  // 3011h
-    {.ram = offsetof(Values, application_cleared.operating_mode_settings), .rom = 0, .subs = 95, .highest = 18, .stride = 0},  // 301Bh
-    {.ram = offsetof(Values, application_cleared.monitoring_status), .rom = 0, .subs = 114, .highest = 12, .stride = 0},  // 301Ch
-    {.ram = offsetof(Values, application_cleared.motion_generator), .rom = 0, .subs = 127, .highest = 2, .stride = 0},  // 301Fh
-    {.ram = offsetof(Values, application_cleared.current_control), .rom = 0, .subs = 130, .highest = 4, .stride = 0},  // 3020h
-    {.ram = offsetof(Values, application_cleared.speed_control), .rom = 0, .subs = 135, .highest = 4, .stride = 0},  // 3021h
-    {.ram = offsetof(Values, application_preset.electronic_gear), .rom = 0, .subs = 140, .highest = 4, .stride = 0},  // 3026h
-    {.ram = offsetof(Values, application_cleared.manual_movement), .rom = 0, .subs = 145, .highest = 5, .stride = 0},  // 3029h
-    {.ram = offsetof(Values, application_cleared.error_memory_control), .rom = 0, .subs = 151, .highest = 5, .stride = 0},  // 303Bh
-    {.ram = offsetof(Values, application_cleared.error_memory), .rom = 0, .subs = 157, .highest = 1, .stride = 0},  // 303Ch
-    {.ram = offsetof(Values, application_cleared.software_position_limit), .rom = 0, .subs = 159, .highest = 2, .stride = 4},  // 607Dh
+    {.ram = offsetof(Values, communication_cleared.tpdo_mapping_parameter_4), .rom = 0, .subs = 37, .highest = 4, .stride = 0},  // 1A03h
+    {.ram = offsetof(Values, application_cleared.parameter_storage), .rom = 0, .subs = 54, .highest = 8, .stride = 0},  // 3004h
+    {.ram = offsetof(Values, application_cleared.position_interface), .rom = 0, .subs = 63, .highest = 2, .stride = 0},  // 3005h
+    {.ram = offsetof(Values, application_cleared.motion_settings), .rom = 0, .subs = 66, .highest = 18, .stride = 0},  // 3006h
+    {.ram = offsetof(Values, application_cleared.inputs_and_outputs), .rom = 0, .subs = 85, .highest = 1, .stride = 0},  // 3008h
+    {.ram = offsetof(Values, application_cleared.analogue_inputs), .rom = 0, .subs = 87, .highest = 5, .stride = 0},  // 3009h
+    {.ram = offsetof(Values, application_cleared.current_limits), .rom = 0, .subs = 93, .highest = 6, .stride = 0},  // 3011h
+    {.ram = offsetof(Values, application_cleared.operating_mode_settings), .rom = 0, .subs = 100, .highest = 18, .stride = 0},  // 301Bh
+    {.ram = offsetof(Values, application_cleared.monitoring_status), .rom = 0, .subs = 119, .highest = 12, .stride = 0},  // 301Ch
+    {.ram = offsetof(Values, application_cleared.motion_generator), .rom = 0, .subs = 132, .highest = 2, .stride = 0},  // 301Fh
+    {.ram = offsetof(Values, application_cleared.current_control), .rom = 0, .subs = 135, .highest = 4, .stride = 0},  // 3020h
+    {.ram = offsetof(Values, application_cleared.speed_control), .rom = 0, .subs = 140, .highest = 4, .stride = 0},  // 3021h
+    {.ram = offsetof(Values, application_preset.electronic_gear), .rom = 0, .subs = 145, .highest = 4, .stride = 0},  // 3026h
+    {.ram = offsetof(Values, application_cleared.manual_movement), .rom = 0, .subs = 150, .highest = 5, .stride = 0},  // 3029h
+    {.ram = offsetof(Values, application_cleared.error_memory_control), .rom = 0, .subs = 156, .highest = 5, .stride = 0},  // 303Bh
+    {.ram = offsetof(Values, application_cleared.error_memory), .rom = 0, .subs = 162, .highest = 1, .stride = 0},  // 303Ch
+    {.ram = offsetof(Values, application_cleared.software_position_limit), .rom = 0, .subs = 164, .highest = 2, .stride = 4},  // 607Dh
     {.ram = offsetof(Values, application_cleared.homing_speeds), .rom = 0, .subs = 13, .highest = 2, .stride = 4},  // 6099h
 };
 

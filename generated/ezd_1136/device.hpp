@@ -27,7 +27,8 @@ struct Device {
   using Tpdos = canopen::PdoList<
       canopen::NumberedPdo<1, Tpdo1>,
       canopen::NumberedPdo<2, Tpdo2>,
-      canopen::NumberedPdo<3, Tpdo3>>;
+      canopen::NumberedPdo<3, Tpdo3>,
+      canopen::NumberedPdo<4, canopen::Tpdo<>>>;
 
   /// Bytes of the longest value that a segmented download may bring.
   static constexpr std::size_t longest_download = 4;

@@ -1169,16 +1169,24 @@ struct Values {
     RpdoCommunicationParameter rpdo_communication_parameter_2;      ///< 1401h  RPDO communication parameter 2
     RpdoCommunicationParameter rpdo_communication_parameter_3;      ///< 1402h  RPDO communication parameter 3
     RpdoCommunicationParameter rpdo_communication_parameter_4;      ///< 1403h  RPDO communication parameter 4
+    RpdoMappingParameter rpdo_mapping_parameter_1;                  ///< 1600h  RPDO mapping parameter 1
+    RpdoMappingParameter rpdo_mapping_parameter_2;                  ///< 1601h  RPDO mapping parameter 2
+    RpdoMappingParameter rpdo_mapping_parameter_3;                  ///< 1602h  RPDO mapping parameter 3
+    RpdoMappingParameter rpdo_mapping_parameter_4;                  ///< 1603h  RPDO mapping parameter 4
     TpdoCommunicationParameter tpdo_communication_parameter_1;      ///< 1800h  TPDO communication parameter 1
     TpdoCommunicationParameter tpdo_communication_parameter_2;      ///< 1801h  TPDO communication parameter 2
     TpdoCommunicationParameter tpdo_communication_parameter_3;      ///< 1802h  TPDO communication parameter 3
     TpdoCommunicationParameter tpdo_communication_parameter_4;      ///< 1803h  TPDO communication parameter 4
+    RpdoMappingParameter tpdo_mapping_parameter_1;                  ///< 1A00h  TPDO mapping parameter 1
+    RpdoMappingParameter tpdo_mapping_parameter_2;                  ///< 1A01h  TPDO mapping parameter 2
+    RpdoMappingParameter tpdo_mapping_parameter_3;                  ///< 1A02h  TPDO mapping parameter 3
   } communication_preset;
   /// 1000h..1FFFh that start from zero.
   struct CommunicationCleared {
     PreDefinedErrorField pre_defined_error_field;                   ///< 1003h  Pre-defined error field
     std::uint32_t communication_cycle_period;                       ///< 1006h:00  Communication cycle period
     std::array<std::uint32_t, 1> consumer_heartbeat_time;           ///< 1016h:01..01  Consumer heartbeat time
+    RpdoMappingParameter tpdo_mapping_parameter_4;                  ///< 1A03h  TPDO mapping parameter 4
     std::uint16_t guard_time;                                       ///< 100Ch:00  Guard time
     std::uint16_t producer_heartbeat_time;                          ///< 1017h:00  Producer heartbeat time
     std::uint8_t error_register;                                    ///< 1001h:00  Error register
@@ -1290,10 +1298,17 @@ inline constexpr Values::CommunicationPreset communication_preset{
     .rpdo_communication_parameter_2 = {.cob_id_used_by_rpdo = 0x00000300, .transmission_type = 255},
     .rpdo_communication_parameter_3 = {.cob_id_used_by_rpdo = 0x00000400, .transmission_type = 255},
     .rpdo_communication_parameter_4 = {.cob_id_used_by_rpdo = 0x00000500, .transmission_type = 255},
+    .rpdo_mapping_parameter_1 = {.mapping_entry_1 = 0x60400010, .mapping_entry_2 = 0x60600008, .mapping_entry_3 = 0x60980008, .mapping_entry_4 = 0x607C0020, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 4},
+    .rpdo_mapping_parameter_2 = {.mapping_entry_1 = 0x607A0020, .mapping_entry_2 = 0x60810020, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 2},
+    .rpdo_mapping_parameter_3 = {.mapping_entry_1 = 0x60FF0020, .mapping_entry_2 = 0x60850020, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 2},
+    .rpdo_mapping_parameter_4 = {.mapping_entry_1 = 0x60830020, .mapping_entry_2 = 0x60840020, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 2},
     .tpdo_communication_parameter_1 = {.cob_id_used_by_tpdo = 0x00000180, .inhibit_time = 0, .event_timer = 0, .transmission_type = 255},
     .tpdo_communication_parameter_2 = {.cob_id_used_by_tpdo = 0x00000280, .inhibit_time = 0, .event_timer = 0, .transmission_type = 255},
     .tpdo_communication_parameter_3 = {.cob_id_used_by_tpdo = 0x00000380, .inhibit_time = 0, .event_timer = 0, .transmission_type = 255},
     .tpdo_communication_parameter_4 = {.cob_id_used_by_tpdo = 0x00000480, .inhibit_time = 0, .event_timer = 0, .transmission_type = 255},
+    .tpdo_mapping_parameter_1 = {.mapping_entry_1 = 0x60410010, .mapping_entry_2 = 0x603F0010, .mapping_entry_3 = 0x60610008, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 3},
+    .tpdo_mapping_parameter_2 = {.mapping_entry_1 = 0x60640020, .mapping_entry_2 = 0x606C0020, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 2},
+    .tpdo_mapping_parameter_3 = {.mapping_entry_1 = 0x207C0010, .mapping_entry_2 = 0x60FD0020, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 2},
 };
 
 /// What a reset copies from flash. A value that follows the node-ID stands without it.
@@ -1319,14 +1334,6 @@ inline constexpr Values::ApplicationPreset application_preset{
 struct Constants {
   std::uint32_t device_type;                                      ///< 1000h:00  Device type
   IdentityObject identity_object;                                 ///< 1018h  Identity object
-  RpdoMappingParameter rpdo_mapping_parameter_1;                  ///< 1600h  RPDO mapping parameter 1
-  RpdoMappingParameter rpdo_mapping_parameter_2;                  ///< 1601h  RPDO mapping parameter 2
-  RpdoMappingParameter rpdo_mapping_parameter_3;                  ///< 1602h  RPDO mapping parameter 3
-  RpdoMappingParameter rpdo_mapping_parameter_4;                  ///< 1603h  RPDO mapping parameter 4
-  RpdoMappingParameter tpdo_mapping_parameter_1;                  ///< 1A00h  TPDO mapping parameter 1
-  RpdoMappingParameter tpdo_mapping_parameter_2;                  ///< 1A01h  TPDO mapping parameter 2
-  RpdoMappingParameter tpdo_mapping_parameter_3;                  ///< 1A02h  TPDO mapping parameter 3
-  RpdoMappingParameter tpdo_mapping_parameter_4;                  ///< 1A03h  TPDO mapping parameter 4
   canopen::VisibleString<8> manufacturer_device_name;             ///< 1008h:00  Manufacturer device name
   canopen::VisibleString<3> manufacturer_hardware_version;        ///< 1009h:00  Manufacturer hardware version
   canopen::VisibleString<3> manufacturer_software_version;        ///< 100Ah:00  Manufacturer software version
@@ -1335,14 +1342,6 @@ struct Constants {
 inline constexpr Constants constants{
     .device_type = 0x00040192,
     .identity_object = {.revision_number = 0x00010005},
-    .rpdo_mapping_parameter_1 = {.mapping_entry_1 = 0x60400010, .mapping_entry_2 = 0x60600008, .mapping_entry_3 = 0x60980008, .mapping_entry_4 = 0x607C0020, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 4},
-    .rpdo_mapping_parameter_2 = {.mapping_entry_1 = 0x607A0020, .mapping_entry_2 = 0x60810020, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 2},
-    .rpdo_mapping_parameter_3 = {.mapping_entry_1 = 0x60FF0020, .mapping_entry_2 = 0x60850020, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 2},
-    .rpdo_mapping_parameter_4 = {.mapping_entry_1 = 0x60830020, .mapping_entry_2 = 0x60840020, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 2},
-    .tpdo_mapping_parameter_1 = {.mapping_entry_1 = 0x60410010, .mapping_entry_2 = 0x603F0010, .mapping_entry_3 = 0x60610008, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 3},
-    .tpdo_mapping_parameter_2 = {.mapping_entry_1 = 0x60640020, .mapping_entry_2 = 0x606C0020, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 2},
-    .tpdo_mapping_parameter_3 = {.mapping_entry_1 = 0x207C0010, .mapping_entry_2 = 0x60FD0020, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 2},
-    .tpdo_mapping_parameter_4 = {.mapping_entry_1 = 0x00000000, .mapping_entry_2 = 0x00000000, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .mapping_entry_5 = 0x00000000, .mapping_entry_6 = 0x00000000, .mapping_entry_7 = 0x00000000, .mapping_entry_8 = 0x00000000, .number_of_mapped_objects = 0},
     .manufacturer_device_name = {"EZD-1136"},
     .manufacturer_hardware_version = {"1.0"},
     .manufacturer_software_version = {"1.0"},
@@ -1555,15 +1554,15 @@ inline constexpr canopen::entry::Word subs[] = {
     immediate | 2 | u8 | ro,  // 1400h
     ram | offsetof(RpdoCommunicationParameter, cob_id_used_by_rpdo) | u32 | rw,
     ram | offsetof(RpdoCommunicationParameter, transmission_type) | u8 | rw,
-    rom | offsetof(RpdoMappingParameter, number_of_mapped_objects) | u8 | ro,  // 1600h
-    rom | offsetof(RpdoMappingParameter, mapping_entry_1) | u32 | ro,
-    rom | offsetof(RpdoMappingParameter, mapping_entry_2) | u32 | ro,
-    rom | offsetof(RpdoMappingParameter, mapping_entry_3) | u32 | ro,
-    rom | offsetof(RpdoMappingParameter, mapping_entry_4) | u32 | ro,
-    rom | offsetof(RpdoMappingParameter, mapping_entry_5) | u32 | ro,
-    rom | offsetof(RpdoMappingParameter, mapping_entry_6) | u32 | ro,
-    rom | offsetof(RpdoMappingParameter, mapping_entry_7) | u32 | ro,
-    rom | offsetof(RpdoMappingParameter, mapping_entry_8) | u32 | ro,
+    ram | offsetof(RpdoMappingParameter, number_of_mapped_objects) | u8 | rw,  // 1600h
+    ram | offsetof(RpdoMappingParameter, mapping_entry_1) | u32 | rw,
+    ram | offsetof(RpdoMappingParameter, mapping_entry_2) | u32 | rw,
+    ram | offsetof(RpdoMappingParameter, mapping_entry_3) | u32 | rw,
+    ram | offsetof(RpdoMappingParameter, mapping_entry_4) | u32 | rw,
+    ram | offsetof(RpdoMappingParameter, mapping_entry_5) | u32 | rw,
+    ram | offsetof(RpdoMappingParameter, mapping_entry_6) | u32 | rw,
+    ram | offsetof(RpdoMappingParameter, mapping_entry_7) | u32 | rw,
+    ram | offsetof(RpdoMappingParameter, mapping_entry_8) | u32 | rw,
     immediate | 5 | u8 | ro,  // 1800h
     ram | offsetof(TpdoCommunicationParameter, cob_id_used_by_tpdo) | u32 | rw,
     ram | offsetof(TpdoCommunicationParameter, transmission_type) | u8 | rw,
@@ -1589,18 +1588,18 @@ inline constexpr canopen::Group groups[] = {
     {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_2), .rom = 0, .subs = 12, .highest = 2, .stride = 0},  // 1401h
     {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_3), .rom = 0, .subs = 12, .highest = 2, .stride = 0},  // 1402h
     {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_4), .rom = 0, .subs = 12, .highest = 2, .stride = 0},  // 1403h
-    {.ram = 0, .rom = offsetof(Constants, rpdo_mapping_parameter_1), .subs = 15, .highest = 8, .stride = 0},  // 1600h
-    {.ram = 0, .rom = offsetof(Constants, rpdo_mapping_parameter_2), .subs = 15, .highest = 8, .stride = 0},  // 1601h
-    {.ram = 0, .rom = offsetof(Constants, rpdo_mapping_parameter_3), .subs = 15, .highest = 8, .stride = 0},  // 1602h
-    {.ram = 0, .rom = offsetof(Constants, rpdo_mapping_parameter_4), .subs = 15, .highest = 8, .stride = 0},  // 1603h
+    {.ram = offsetof(Values, communication_preset.rpdo_mapping_parameter_1), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1600h
+    {.ram = offsetof(Values, communication_preset.rpdo_mapping_parameter_2), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1601h
+    {.ram = offsetof(Values, communication_preset.rpdo_mapping_parameter_3), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1602h
+    {.ram = offsetof(Values, communication_preset.rpdo_mapping_parameter_4), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1603h
     {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_1), .rom = 0, .subs = 24, .highest = 5, .stride = 0},  // 1800h
     {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_2), .rom = 0, .subs = 24, .highest = 5, .stride = 0},  // 1801h
     {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_3), .rom = 0, .subs = 24, .highest = 5, .stride = 0},  // 1802h
     {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_4), .rom = 0, .subs = 24, .highest = 5, .stride = 0},  // 1803h
-    {.ram = 0, .rom = offsetof(Constants, tpdo_mapping_parameter_1), .subs = 15, .highest = 8, .stride = 0},  // 1A00h
-    {.ram = 0, .rom = offsetof(Constants, tpdo_mapping_parameter_2), .subs = 15, .highest = 8, .stride = 0},  // 1A01h
-    {.ram = 0, .rom = offsetof(Constants, tpdo_mapping_parameter_3), .subs = 15, .highest = 8, .stride = 0},  // 1A02h
-    {.ram = 0, .rom = offsetof(Constants, tpdo_mapping_parameter_4), .subs = 15, .highest = 8, .stride = 0},  // 1A03h
+    {.ram = offsetof(Values, communication_preset.tpdo_mapping_parameter_1), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1A00h
+    {.ram = offsetof(Values, communication_preset.tpdo_mapping_parameter_2), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1A01h
+    {.ram = offsetof(Values, communication_preset.tpdo_mapping_parameter_3), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1A02h
+    {.ram = offsetof(Values, communication_cleared.tpdo_mapping_parameter_4), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1A03h
     {.ram = offsetof(Values, application_cleared.digital_input_functions), .rom = 0, .subs = 30, .highest = 8, .stride = 2},  // 2190h
     {.ram = offsetof(Values, application_cleared.digital_output_functions), .rom = 0, .subs = 32, .highest = 5, .stride = 2},  // 21A4h
     {.ram = offsetof(Values, application_preset.software_position_limit), .rom = 0, .subs = 34, .highest = 2, .stride = 4},  // 607Dh

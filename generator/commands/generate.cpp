@@ -132,6 +132,8 @@ void add_generate_command(CLI::App& app, int& exit_code) {
       });
   add_node_id_option(*command, settings->load.node_id);
   command->add_option("--options", settings->load.options_path, "options file (default: FILE's name with .options.json, if there)");
+  command->add_flag("--static-mapping", settings->load.static_mapping,
+                    "no PDO can be mapped over the bus: smaller firmware");
   command->add_option("--templates", settings->templates, "folder with templates that replace the built-in ones")
       ->check(CLI::ExistingDirectory);
   command->add_option("--depfile", settings->depfile, "write what the headers depend on, for make and ninja");

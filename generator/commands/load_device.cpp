@@ -53,6 +53,7 @@ std::unique_ptr<LoadedDevice> load_device(const LoadSettings& settings, Diagnost
   if (loaded->unreadable) return loaded;
   read_options_file(options_path_of(settings), *loaded, diagnostics);
   if (loaded->unreadable) return loaded;
+  if (settings.static_mapping) loaded->options.static_mapping.all = true;
   resolve_and_check(*loaded, settings, diagnostics);
   return loaded;
 }

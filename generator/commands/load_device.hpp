@@ -18,6 +18,7 @@ struct LoadSettings {
   std::string options_path;             ///< empty: `NAME.options.json` beside the data sheet, if it is there
   std::string name;                     ///< C++ namespace; empty: from the file's name
   std::optional<std::uint8_t> node_id;
+  bool static_mapping = false;          ///< of all PDOs, whatever the options file says
   bool check = true;                    ///< run the rules over the device
 };
 

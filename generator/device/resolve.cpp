@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "device/compact_pdo.hpp"
 #include "device/entry_resolver.hpp"
 #include "device/identifier.hpp"
+#include "device/index_range.hpp"
 #include "device/name_objects.hpp"
 #include "device/object_resolver.hpp"
 #include "device/resolve_information.hpp"
@@ -43,7 +45,8 @@ class Resolver {
     resolve_objects();
     name_objects(device_, options_);
     check_option_keys();
-    resolve_pdos(device_);
+    resolve_pdos(device_, options_);
+    check_settable_mappings();
     return std::move(device_);
   }
 
@@ -108,6 +111,34 @@ class Resolver {
     for (const auto& [key, name] : options_.names) check(key, "names");
     for (const auto& [key, capacity] : options_.string_capacity) check(key, "string_capacity");
     for (const EntryKey& key : options_.settable) check(key, "settable");
+    for (const EntrySelector& entry : options_.no_event) {
+      if (entry.sub_index) {
+        check({entry.index, *entry.sub_index}, "no_event");
+      } else {
+        check_object(entry.index, "no_event");
+      }
+    }
+    for (const std::uint16_t index : options_.static_mapping.parameters) check_object(index, "static_mapping");
+  }
+
+  void check_object(std::uint16_t index, std::string_view option) {
+    if (device_.find(index) != nullptr) return;
+    diagnostics_.error("options", Position{sheet_.source},
+                       fmt::format("option {} names {}, which is not in the data sheet", option, index_label(index)));
+  }
+
+  /// A mapping parameter lies in RAM as a whole or not at all.
+  void check_settable_mappings() {
+    for (const EntryKey& key : options_.settable) {
+      if (!contains(mapping_parameters, key.first)) continue;
+      const auto pdo = std::ranges::find_if(
+          device_.pdos, [&](const Pdo& one) { return one.mapping != nullptr && one.mapping->index == key.first; });
+      if (pdo == device_.pdos.end() || pdo->dynamic) continue;
+      diagnostics_.error("options", Position{sheet_.source},
+                         fmt::format("option settable names {}, but the mapping of {} is static: all of {} is to be "
+                                     "writable or settable",
+                                     entry_label(key.first, key.second), pdo_label(*pdo), index_label(key.first)));
+    }
   }
 
   const DataSheet& sheet_;

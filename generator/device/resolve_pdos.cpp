@@ -6,6 +6,7 @@ namespace edsc {
 namespace {
 
 constexpr std::uint16_t most_pdos = 512;
+constexpr std::size_t most_mapped_objects = 64;
 
 struct ParameterIndices {
   PdoDirection direction;
@@ -41,9 +42,35 @@ std::vector<PdoEntry> default_mapping(const Device& device, const Object& mappin
   return entries;
 }
 
+bool changes(const Entry& entry, const Options& options) {
+  const canopen::AccessRow& access = canopen::row_of(entry.access);
+  return (access.readable && access.writable) || options.is_settable(entry.index, entry.sub_index);
+}
+
+/// The form in which the runtime can walk through a mapping: a count, and one UNSIGNED32 behind the other.
+bool is_list_of_objects(const Object& mapping) {
+  if (mapping.entries.size() < 2 || mapping.entries.size() > most_mapped_objects + 1) return false;
+  for (std::size_t i = 0; i < mapping.entries.size(); ++i) {
+    const Entry& entry = mapping.entries[i];
+    const auto type = i == 0 ? canopen::DataType::unsigned8 : canopen::DataType::unsigned32;
+    if (entry.sub_index != i || entry.type->type != type) return false;
+  }
+  return true;
+}
+
+/// Whether the mapping may change: all of its parameter may be written, or set by the application. A PDO without a
+/// COB-ID is not served at all.
+bool is_dynamic(const Pdo& pdo, const Options& options) {
+  constexpr std::uint8_t cob_id = 1;
+  if (pdo.communication == nullptr || pdo.communication->find(cob_id) == nullptr) return false;
+  if (pdo.mapping == nullptr || !is_list_of_objects(*pdo.mapping)) return false;
+  if (options.static_mapping.applies_to(pdo.mapping->index)) return false;
+  return std::ranges::all_of(pdo.mapping->entries, [&](const Entry& entry) { return changes(entry, options); });
+}
+
 }  // namespace
 
-void resolve_pdos(Device& device) {
+void resolve_pdos(Device& device, const Options& options) {
   for (const ParameterIndices& indices : parameter_indices) {
     for (std::uint16_t i = 0; i < most_pdos; ++i) {
       const Object* communication = device.find(static_cast<std::uint16_t>(indices.communication + i));
@@ -56,6 +83,7 @@ void resolve_pdos(Device& device) {
       pdo.mapping = mapping;
       pdo.position = communication != nullptr ? communication->position : mapping->position;
       if (mapping != nullptr) pdo.entries = default_mapping(device, *mapping);
+      pdo.dynamic = is_dynamic(pdo, options);
       device.pdos.push_back(std::move(pdo));
     }
   }

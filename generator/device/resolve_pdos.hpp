@@ -2,10 +2,11 @@
 #pragma once
 
 #include "device/device.hpp"
+#include "device/options.hpp"
 
 namespace edsc {
 
 /// Fills `device.pdos`. The device's objects must not move afterwards: PDOs point at them.
-void resolve_pdos(Device& device);
+void resolve_pdos(Device& device, const Options& options);
 
 }  // namespace edsc

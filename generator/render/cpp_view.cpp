@@ -246,14 +246,46 @@ ordered_json pdo_rows(const Device& device) {
   return rows;
 }
 
-/// The PDOs that the runtime serves: those with both parameters and something in them.
+/// The PDOs that the runtime serves: those with both parameters and something in them, now or later.
 ordered_json served_pdos(const Device& device, PdoDirection direction) {
   ordered_json rows = ordered_json::array();
   for (const Pdo& pdo : device.pdos) {
-    if (pdo.direction != direction || pdo.broken || pdo.entries.empty()) continue;
-    if (pdo.communication == nullptr || pdo.mapping == nullptr) continue;
-    rows.push_back({{"number", pdo.number}, {"separator", rows.empty() ? "" : ","}});
+    if (pdo.direction != direction || pdo.communication == nullptr || pdo.mapping == nullptr) continue;
+    const bool empty = pdo.broken || pdo.entries.empty();
+    if (empty && !pdo.dynamic) continue;
+    const std::string_view kind = direction == PdoDirection::receive ? "Rpdo" : "Tpdo";
+    rows.push_back({{"number", pdo.number},
+                    {"layout", empty ? fmt::format("canopen::{}<>", kind) : fmt::format("{}{}", kind, pdo.number)},
+                    {"separator", rows.empty() ? "" : ","}});
   }
+  return rows;
+}
+
+// ---- options ----
+
+/// What is true of the entries that raise an event: none of those that the options name.
+ordered_json event_conditions(const Options& options) {
+  ordered_json rows = json_array(options.no_event.size());
+  for (const EntrySelector& entry : options.no_event) {
+    std::string condition = fmt::format("index != 0x{:04X}", entry.index);
+    if (entry.sub_index) condition = fmt::format("({} || sub_index != 0x{:02X})", condition, *entry.sub_index);
+    rows.push_back(json_object("condition", std::move(condition), "separator", rows.empty() ? "" : " &&\n           "));
+  }
+  return rows;
+}
+
+ordered_json emergency_rows(const Options& options) {
+  ordered_json rows = json_array(options.emergency_info.size());
+  for (const auto& [code, bytes] : options.emergency_info) {
+    rows.push_back(json_object("code", fmt::format("0x{:04X}", code), "bytes",
+                               fmt::format("{{{{0x{:02X}}}}}", fmt::join(bytes, ", 0x"))));
+  }
+  return rows;
+}
+
+ordered_json runtime_rows(const Options& options) {
+  ordered_json rows = json_array(options.runtime.size());
+  for (const auto& [name, value] : options.runtime) rows.push_back(json_object("name", name, "value", value));
   return rows;
 }
 
@@ -293,15 +325,15 @@ ordered_json description_rows(const Device& device) {
 
 ordered_json cpp_view(const Device& device, const Options& options, Diagnostics& diagnostics) {
   const std::string& path = device.source->name();
-  ordered_json runtime = json_array(options.runtime.size());
-  for (const auto& [name, value] : options.runtime) runtime.push_back(json_object("name", name, "value", value));
   return json_object("file", cpp_comment(path.substr(path.find_last_of('/') + 1)), "namespace", device.name, "guard",
                      to_upper("edsc_" + device.name), "product_name",
                      cpp_string(device.product_name.empty() ? device.name : device.product_name), "types",
                      ObjectTypes{device, options}.view(), "memory", layout_view(lay_out(device, options, diagnostics)),
                      "zero_terminated_strings", options.zero_terminated_strings, "pdos", pdo_rows(device), "rpdos",
                      served_pdos(device, PdoDirection::receive), "tpdos", served_pdos(device, PdoDirection::transmit),
-                     "options", std::move(runtime), "any_options", !options.runtime.empty(), "descriptions",
+                     "options", runtime_rows(options), "any_options", !options.runtime.empty(), "event_conditions",
+                     event_conditions(options), "any_event_condition", !options.no_event.empty(), "emergency_info",
+                     emergency_rows(options), "any_emergency_info", !options.emergency_info.empty(), "descriptions",
                      description_rows(device), "node_id",
                      device.node_id ? ordered_json(*device.node_id) : ordered_json(nullptr), "dummies",
                      dummy_mask(device));

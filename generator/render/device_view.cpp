@@ -75,6 +75,7 @@ ordered_json pdo_view(const Pdo& pdo) {
   view["direction"] = pdo.direction == PdoDirection::receive ? "receive" : "transmit";
   view["number"] = pdo.number;
   view["bits"] = pdo.bits();
+  view["dynamic"] = pdo.dynamic;
   view["broken"] = pdo.broken;
   view["line"] = pdo.position.line;
   ordered_json entries = ordered_json::array();

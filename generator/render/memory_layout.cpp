@@ -7,6 +7,7 @@
 #include <map>
 
 #include "device/identifier.hpp"
+#include "device/index_range.hpp"
 #include "render/compiled_format.hpp"
 #include "render/cpp_text.hpp"
 
@@ -22,27 +23,14 @@ constexpr std::uint32_t default_string_capacity = 16;
 
 constexpr std::uint16_t last_communication_index = 0x1FFF;
 
-struct IndexRange {
-  std::uint16_t first;
-  std::uint16_t last;
-};
-
 /// Read-only objects of the communication profile that a device does not change while it runs.
 constexpr std::array constant_ranges = {
     IndexRange{0x1000, 0x1000}, IndexRange{0x1005, 0x100F}, IndexRange{0x1012, 0x1012}, IndexRange{0x1014, 0x1019},
     IndexRange{0x1200, 0x12FF}, IndexRange{0x1400, 0x15FF}, IndexRange{0x1800, 0x19FF},
 };
 
-/// Mapping parameters: the mapping is static, so they are constants whatever access the data sheet gives them.
-constexpr std::array mapping_ranges = {IndexRange{0x1600, 0x17FF}, IndexRange{0x1A00, 0x1BFF}};
-
 /// Store and restore: what is written is a command; what is read says what the device can do.
 constexpr std::array command_ranges = {IndexRange{0x1010, 0x1011}};
-
-template <std::size_t N>
-bool contains(const std::array<IndexRange, N>& ranges, std::uint16_t index) {
-  return std::ranges::any_of(ranges, [&](const IndexRange& r) { return index >= r.first && index <= r.last; });
-}
 
 /// Name of sub-index 0 in the struct of an array whose sub-index 0 changes.
 constexpr std::string_view count_member = "highest_sub_index";
@@ -165,6 +153,11 @@ class Builder {
       : device_{device}, options_{options}, diagnostics_{diagnostics}, settable_{options.settable} {
     for (const char* name : taken_type_names) static_cast<void>(type_scope_.take(name, ""));
     std::ranges::sort(settable_);
+    for (const Pdo& pdo : device.pdos) {
+      if (!pdo.dynamic) continue;
+      dynamic_mappings_.push_back(pdo.mapping->index);  // ascending: RPDOs come first
+      has_dynamic_tpdo_ = has_dynamic_tpdo_ || pdo.direction == PdoDirection::transmit;
+    }
   }
 
   MemoryLayout build() {
@@ -200,9 +193,15 @@ class Builder {
     return std::ranges::binary_search(settable_, EntryKey{entry.index, entry.sub_index});
   }
 
+  /// A mapping parameter of a static PDO: a constant whatever access the data sheet gives it.
+  [[nodiscard]] bool is_static_mapping(std::uint16_t index) const {
+    return contains(mapping_parameters, index) && !std::ranges::binary_search(dynamic_mappings_, index);
+  }
+
   [[nodiscard]] bool is_constant(const Object& object, const Entry& entry) const {
+    if (contains(mapping_parameters, entry.index)) return is_static_mapping(entry.index);
     if (settable(entry)) return false;
-    if (contains(mapping_ranges, entry.index) || contains(command_ranges, entry.index)) return true;
+    if (contains(command_ranges, entry.index)) return true;
     if (entry.access == Access::constant) return true;
     if (entry.access != Access::ro) return false;
     if (object.has_sub_indices() && entry.sub_index == 0) return entry.index != 0x1003;
@@ -211,10 +210,11 @@ class Builder {
 
   [[nodiscard]] Place place(const Object& object, const Entry& entry) const {
     if (!is_constant(object, entry) || entry.type->kind == DataClass::domain) return Place::ram;
-    // All mapping parameters of a device then share one table of words.
-    if (contains(mapping_ranges, entry.index)) return Place::rom;
     const std::uint64_t bits = entry.default_value ? entry.default_value->bits : 0;
     const bool plus_node_id = entry.default_value && entry.default_value->plus_node_id;
+    // All static mapping parameters of a device then share one table of words.
+    if (contains(mapping_parameters, entry.index)) return Place::rom;
+    if (needs_address(entry)) return plus_node_id ? Place::ram : Place::rom;
     switch (entry.type->kind) {
       case DataClass::boolean: return Place::immediate;
       case DataClass::unsigned_integer:
@@ -233,26 +233,31 @@ class Builder {
     return Place::rom;
   }
 
+  /// A TPDO whose mapping may change finds its objects in memory, the constants among them too.
+  [[nodiscard]] bool needs_address(const Entry& entry) const {
+    return has_dynamic_tpdo_ && canopen::allows(entry.mappable(), canopen::Mappable::tpdo);
+  }
+
   // ---- words ----
 
   [[nodiscard]] std::string word(const Entry& entry, const std::string& where) {
-    const bool constant_mapping = contains(mapping_ranges, entry.index);
-    const canopen::AccessRow& row = canopen::row_of(constant_mapping ? Access::ro : entry.access);
+    const canopen::AccessRow& row = canopen::row_of(is_static_mapping(entry.index) ? Access::ro : entry.access);
     std::string text = compiled_format(FMT_COMPILE("{} | {} | {}"), where, type_word(entry).word,
                                        row.readable && row.writable ? "rw"
                                        : row.readable               ? "ro"
                                                                     : "wo");
     if (canopen::allows(entry.mappable(), canopen::Mappable::tpdo)) text += " | tpdo";
-    if (canopen::allows(entry.mappable(), canopen::Mappable::rpdo)) text += " | rpdo";
+    const bool in_rpdo = canopen::allows(entry.mappable(), canopen::Mappable::rpdo);
+    if (in_rpdo && !is_constant(*device_.find(entry.index), entry)) text += " | rpdo";
     if (has_limits(entry)) text += " | limited";
     return text;
   }
 
   /// Limits matter where the bus can write a value; a string's capacity, wherever it can change, stands in the same
-  /// table.
+  /// table. What may be mapped, and how much, is checked against the dictionary instead.
   [[nodiscard]] bool has_limits(const Entry& entry) const {
     if (entry.type->kind == DataClass::string) return place(*device_.find(entry.index), entry) == Place::ram;
-    return canopen::writable(entry.access) && !contains(mapping_ranges, entry.index) &&
+    return canopen::writable(entry.access) && !contains(mapping_parameters, entry.index) &&
            (entry.low_limit || entry.high_limit);
   }
 
@@ -385,9 +390,9 @@ class Builder {
   /// Elements of one numeric type and one set of rights in one kind of memory, without gaps: they share one word.
   [[nodiscard]] bool is_uniform_array(const Object& object) const {
     if (!describes_uniform_array(object)) return false;
-    if (place(object, object.entries[0]) == Place::rom) return false;  // a count of two bytes at most is an immediate
     const Place first = place(object, object.entries[1]);
     if (first != Place::ram && first != Place::rom) return false;
+    if (first == Place::rom && place(object, object.entries[0]) == Place::rom) return false;  // a record holds both
     return std::ranges::all_of(object.entries.begin() + 1, object.entries.end(),
                                [&](const Entry& entry) { return place(object, entry) == first; });
   }
@@ -427,7 +432,7 @@ class Builder {
       count_word = word(count, compiled_format(FMT_COMPILE("ram | offsetof({}, {})"), counted_type_, count_member));
     } else {
       values_[section].push_back(elements);
-      count_word = word(count, immediate_text(count, count_place));
+      count_word = constant_count(object, count, rom);
     }
     for (const Entry& entry : object.entries) {
       if (entry.sub_index == 0) continue;
@@ -436,6 +441,15 @@ class Builder {
                            fmt::format("offsetof(Values, {}) + {}", path, (entry.sub_index - 1) * stride(entry)));
     }
     return {{count_word, ""}, {element_word, ""}};
+  }
+
+  /// The word of a sub-index 0 that does not change, while the elements do.
+  std::string constant_count(const Object& object, const Entry& count, std::string& rom) {
+    const Place where = place(object, count);
+    if (where != Place::rom) return word(count, immediate_text(count, where));
+    layout_.constants.members.push_back(member(object, count, object.identifier));
+    rom = compiled_format(FMT_COMPILE("offsetof(Constants, {})"), object.identifier);
+    return word(count, "rom");
   }
 
   /// An array whose sub-index 0 changes, such as 1003h: elements and count in one struct, elements first.
@@ -631,7 +645,9 @@ class Builder {
   const Device& device_;
   const Options& options_;
   Diagnostics& diagnostics_;
-  std::vector<EntryKey> settable_;  ///< ascending
+  std::vector<EntryKey> settable_;               ///< ascending
+  std::vector<std::uint16_t> dynamic_mappings_;  ///< indices, ascending
+  bool has_dynamic_tpdo_ = false;
   MemoryLayout layout_;
   std::map<std::string_view, std::vector<Member>> values_;
   std::map<std::string, std::string> shapes_;

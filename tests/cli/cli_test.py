@@ -302,6 +302,15 @@ class Generate(CommandLine):
         self.expect(FINE, result, "[pdo-size]")
         self.assertIn("TPDO 1, 1800h and 1A00h: left out", (self.output / "wrong/pdo.hpp").read_text())
 
+    def test_with_static_mapping_keeps_the_mapping_in_flash(self) -> None:
+        sheet = FIXTURES / "dynamic_mapping.eds"
+        for extra in ((), ("--static-mapping",)):
+            self.expect(FINE, self.edsc("generate", sheet, "-o", self.output, *extra))
+            text = (self.output / "dynamic_mapping/dictionary.hpp").read_text()
+            in_ram = text[text.index("struct Values"):text.index("struct Constants")]
+            self.assertEqual("MappingParameter rpdo_mapping_parameter_1;" in in_ram, not extra)
+        self.assertNotIn("canopen::Tpdo<>", (self.output / "dynamic_mapping/device.hpp").read_text())
+
     def test_with_a_node_id_has_no_formula(self) -> None:
         self.edsc("generate", GOOD, "-o", self.output, "--node-id", 5, "--name", "axis")
         text = (self.output / "axis/dictionary.hpp").read_text()

@@ -134,6 +134,18 @@ class Uses(PackageTest):
             Consumer(self.folder, "find_package(edsc 99.0 REQUIRED)", self.install())
 
 
+class Arguments(PackageTest):
+    def test_static_mapping_keeps_the_mapping_in_flash(self) -> None:
+        sheet = f'"{SOURCE_DIR}/eds/cpc-tc1.eds"'
+        calls = f"edsc_add_dictionary(fixed EDS {sheet} STATIC_MAPPING)\nedsc_add_dictionary(mapped EDS {sheet})"
+        consumer = Consumer(self.folder, f"{FROM_PACKAGE}\n{calls}", self.install())
+        run("cmake", "--build", consumer.build_dir, "--target", "fixed_headers", "mapped_headers")
+        word = "{} | offsetof(RpdoMappingParameter, mapping_entry_1)"
+        for name, place in (("fixed", "rom"), ("mapped", "ram")):
+            text = (consumer.build_dir / f"edsc/{name}/{name}/dictionary.hpp").read_text()
+            self.assertIn(word.format(place), text)
+
+
 class Mistakes(PackageTest):
     def test_are_named_when_cmake_runs(self) -> None:
         for call, words in (("edsc_add_dictionary(other)", "EDS is missing"),

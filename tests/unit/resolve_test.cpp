@@ -488,6 +488,20 @@ TEST(Options, MustSpeakOfEntriesThatExist) {
   EXPECT_EQ(text.diagnostics.errors(), 2U);
 }
 
+TEST(Options, MustSpeakOfObjectsThatExist) {
+  Options options;
+  options.no_event = {{0x2000, {}}, {0x2000, 0}, {0x2000, 1}, {0x2001, {}}};
+  options.static_mapping.parameters = {0x1A00};
+  const DeviceFromText text(var("2000", "Value", "5"), options);
+  std::vector<std::string> messages;
+  for (const Diagnostic& finding : text.diagnostics.all()) {
+    if (finding.rule == "options") messages.push_back(finding.message);
+  }
+  EXPECT_EQ(messages, (std::vector<std::string>{"option no_event names 2000h:01, which is not in the data sheet",
+                                                "option no_event names 2001h, which is not in the data sheet",
+                                                "option static_mapping names 1A00h, which is not in the data sheet"}));
+}
+
 // ---- the device ----
 
 TEST(Resolve, ReadsWhoTheDeviceIs) {
