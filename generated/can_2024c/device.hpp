@@ -48,6 +48,7 @@ struct Device {
   /// Where the device departs from CiA 301.
   static constexpr canopen::DeviceOptions options = [] {
     canopen::DeviceOptions departures;
+    departures.error_history_keeps_resets = true;
     departures.pdo_extended_ids = false;
     departures.pdo_mapping_writable_while_valid = true;
     return departures;

@@ -36,6 +36,7 @@ struct Device {
   /// Where the device departs from CiA 301.
   static constexpr canopen::DeviceOptions options = [] {
     canopen::DeviceOptions departures;
+    departures.error_history_abort_code = 0x06090031;
     departures.pdo_extended_ids = false;
     departures.pdo_mapping_abort_code = 0x06040041;
     departures.tpdo_acyclic_on_change = false;

@@ -27,10 +27,11 @@ constexpr std::array runtime_flags = {
     "tpdo_acyclic_on_change",
     "pdo_mapping_writable_while_valid",
     "mpdo",
+    "error_history_keeps_resets",
     "sdo_upload_size_indicated",
 };
 constexpr std::array runtime_masks = {"pdo_cob_id_writable"};
-constexpr std::array runtime_abort_codes = {"pdo_mapping_abort_code"};
+constexpr std::array runtime_abort_codes = {"pdo_mapping_abort_code", "error_history_abort_code"};
 
 /// `1018h` or `1018`: an index.
 std::optional<std::uint16_t> parse_index(std::string_view text) {

@@ -92,6 +92,8 @@ TEST(OptionsFile, HandsEachDepartureToTheRuntime) {
             (Runtime{{"pdo_cob_id_writable", "0x80000780"}}));
   EXPECT_EQ(Read(R"({ "pdo_mapping_abort_code": "0x6040041" })").options.runtime,
             (Runtime{{"pdo_mapping_abort_code", "0x06040041"}}));
+  EXPECT_EQ(Read(R"({ "error_history_abort_code": "0x06090031" })").options.runtime,
+            (Runtime{{"error_history_abort_code", "0x06090031"}}));
 }
 
 TEST(OptionsFile, MakesTheMappingOfAllPdosStatic) {

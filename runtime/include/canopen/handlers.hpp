@@ -181,7 +181,7 @@ class HandlerSet {
   static constexpr bool handles_write = (handler_detail::is_write_handler_of<Handlers, O> || ...);
 
   /// The same for an object known by number.
-  [[nodiscard]] static bool handles(std::uint32_t key) { return ((key == handler_detail::written_key<Handlers>) || ...); }
+  [[nodiscard]] static bool handles([[maybe_unused]] std::uint32_t key) { return ((key == handler_detail::written_key<Handlers>) || ...); }
 
   /// Asks the write handlers of `O`.
   template <DictionaryObject O, class Node>
