@@ -46,6 +46,16 @@ struct SyncHandler {
 };
 
 template <class F>
+struct TimeHandler {
+  [[no_unique_address]] F call;
+};
+
+template <class F>
+struct EmergencyHandler {
+  [[no_unique_address]] F call;
+};
+
+template <class F>
 struct RpdoHandler {
   [[no_unique_address]] F call;
 };
@@ -76,6 +86,18 @@ template <class F>
 /// taken over: `handler(counter)` or `handler(node, counter)`. The counter is 0 where the network counts no SYNCs.
 template <class F>
 [[nodiscard]] constexpr SyncHandler<F> on_sync(F handler) {
+  return {std::move(handler)};
+}
+
+/// Called with the time of day that TIME brings: `handler(TimeOfDay)` or `handler(node, TimeOfDay)`.
+template <class F>
+[[nodiscard]] constexpr TimeHandler<F> on_time_of_day(F handler) {
+  return {std::move(handler)};
+}
+
+/// Called with the EMCYs of 1028h: `handler(ConsumedEmergency)` or `handler(node, ConsumedEmergency)`.
+template <class F>
+[[nodiscard]] constexpr EmergencyHandler<F> on_emergency(F handler) {
   return {std::move(handler)};
 }
 
@@ -128,15 +150,11 @@ inline constexpr bool is_write_handler_of = false;
 template <class P, class F, class O>
 inline constexpr bool is_write_handler_of<WriteHandler<P, F>, O> = P::index == O::index&& P::sub_index == O::sub_index;
 
-template <class Handler>
-inline constexpr bool is_sync_handler = false;
-template <class F>
-inline constexpr bool is_sync_handler<SyncHandler<F>> = true;
-
-template <class Handler>
-inline constexpr bool is_rpdo_handler = false;
-template <class F>
-inline constexpr bool is_rpdo_handler<RpdoHandler<F>> = true;
+/// Whether a handler is of a kind, such as SyncHandler.
+template <class Handler, template <class> class Kind>
+inline constexpr bool is_of = false;
+template <class F, template <class> class Kind>
+inline constexpr bool is_of<Kind<F>, Kind> = true;
 
 template <class Handler>
 inline constexpr std::uint32_t written_key = 0xFFFF'FFFF;
@@ -211,23 +229,12 @@ class HandlerSet {
     return code;
   }
 
-  template <class Node>
-  void sync_received(Node& node, std::uint8_t counter) {
-    for_each([&]<class H>(H& handler) {
-      if constexpr (handler_detail::is_sync_handler<H>) handler_detail::call(handler.call, node, counter);
+  /// Calls all handlers of a kind, such as SyncHandler.
+  template <template <class> class Kind, class Node, class... Arguments>
+  void tell(Node& node, const Arguments&... arguments) {
+    for_each([&]<class H>([[maybe_unused]] H& handler) {
+      if constexpr (handler_detail::is_of<H, Kind>) handler_detail::call(handler.call, node, arguments...);
     });
-  }
-
-  template <class Node>
-  void rpdo_happened(Node& node, RpdoEvent event, std::uint16_t number) {
-    for_each([&]<class H>(H& handler) {
-      if constexpr (handler_detail::is_rpdo_handler<H>) handler_detail::call(handler.call, node, event, number);
-    });
-  }
-
-  template <class Node>
-  void state_entered(Node& node, NmtState state) {
-    for_each([&](auto& handler) { offer_state(handler, node, state); });
   }
 
   /// Whether every handler's object is one of the device's.
@@ -268,13 +275,6 @@ class HandlerSet {
   template <DictionaryObject O, class F, class Node>
   static AbortCode offer_read(ReadHandler<O, F>& handler, Node& node, std::uint32_t key) {
     return key == object_key(O::index, O::sub_index) ? handler_detail::read(handler, node) : ok;
-  }
-
-  template <class Handler, class Node>
-  static void offer_state(Handler&, Node&, NmtState) {}
-  template <class F, class Node>
-  static void offer_state(StateHandler<F>& handler, Node& node, NmtState state) {
-    handler_detail::call(handler.call, node, state);
   }
 
   [[no_unique_address]] std::tuple<Handlers...> handlers_;

@@ -31,6 +31,8 @@ enum class NmtCommand : std::uint8_t {
   return state == NmtState::pre_operational || state == NmtState::operational;
 }
 
+/// SYNC and TIME.
+[[nodiscard]] constexpr bool serves_sync(NmtState state) { return serves_sdo(state); }
 [[nodiscard]] constexpr bool serves_emcy(NmtState state) { return serves_sdo(state); }
 
 [[nodiscard]] constexpr bool serves_pdo(NmtState state) { return state == NmtState::operational; }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <optional>
 #include <span>
 #include <type_traits>
@@ -15,6 +16,7 @@
 #include "canopen/cob_id.hpp"
 #include "canopen/communication_parameters.hpp"
 #include "canopen/emcy.hpp"
+#include "canopen/emcy_consumer.hpp"
 #include "canopen/error_register.hpp"
 #include "canopen/frame.hpp"
 #include "canopen/handlers.hpp"
@@ -27,6 +29,7 @@
 #include "canopen/sdo_server.hpp"
 #include "canopen/sync.hpp"
 #include "canopen/time.hpp"
+#include "canopen/time_stamp.hpp"
 #include "canopen/tpdo.hpp"
 
 namespace canopen {
@@ -71,8 +74,12 @@ class Node {
       on_nmt(frame);
     } else if (const std::optional<Sync> sync = SyncConsumer<Device>::take(store_, frame)) {
       on_sync(*sync);
+    } else if (const std::optional<TimeOfDay> time = TimeStamp<Device>::take(store_, frame)) {
+      if (serves_sync(state_)) handlers_.template tell<TimeHandler>(*this, *time);
+    } else if (const std::optional<ConsumedEmergency> emergency = EmergencyConsumer<Device>::take(entries(), frame)) {
+      if (serves_emcy(state_)) handlers_.template tell<EmergencyHandler>(*this, *emergency);
     } else if (serves_pdo(state_)) {
-      rpdos_.on_frame(store_, frame, now_, RpdoHost{*this});
+      rpdos_.on_frame(store_, frame, sync_window_.over(now_), now_, RpdoHost{*this});
     }
     if (attention_) serve();
   }
@@ -99,6 +106,7 @@ class Node {
     if constexpr (has_tpdos) consider(tpdos_.next_deadline(now_));
     if constexpr (has_rpdos) consider(rpdos_.next_deadline());
     if (serves_emcy(state_)) consider(emergencies_.next_deadline(now_));
+    if constexpr (SyncProducer<Device>::exists) consider(sync_producer_.next_deadline());
     return next;
   }
 
@@ -149,6 +157,10 @@ class Node {
     attention_ = true;
   }
 
+  /// Sends TIME with this time of day. False: 1012h does not have this device produce it, the node is not in a state for
+  /// it, or the bus has no room.
+  bool send_time(TimeOfDay time) { return serves_sync(state_) && TimeStamp<Device>::send(store_, bus_, time); }
+
   /// Gives a DOMAIN its memory: a download may fill all of it, an upload sends the first `size` bytes.
   template <DictionaryObject O>
   void bind(std::span<std::uint8_t> memory, std::size_t size) {
@@ -185,6 +197,9 @@ class Node {
   using BusMember = std::conditional_t<std::is_empty_v<B>, B, B&>;
 
   static constexpr bool has_heartbeat_time = Device::dictionary.has(0x1017, 0);
+  static constexpr entry::Word clock_word = Device::dictionary.find(0x1013, 0);
+  static constexpr bool has_clock =
+      clock_word > Dictionary::no_sub_index && entry::place_of(clock_word) == entry::Place::ram;
   static constexpr bool has_tpdos = TpdoService<Device>::count > 0;
   static constexpr bool has_rpdos = RpdoService<Device>::count > 0;
   static constexpr bool has_dynamic_tpdos = TpdoService<Device>::has_dynamic_mapping;
@@ -222,6 +237,13 @@ class Node {
       tpdos_.leave_operational();
       rpdos_.leave_operational();
     }
+    if constexpr (SyncProducer<Device>::exists) {
+      if (!serves_sync(next)) {
+        sync_producer_.stop();
+      } else if (!serves_sync(state_)) {
+        sync_producer_.start(store_, now_, true);
+      }
+    }
     state_ = next;
     if (!serves_sdo(next)) sdo_.reset();
     if (serves_pdo(next)) {
@@ -230,7 +252,7 @@ class Node {
       tell_rpdo_errors();
     }
     attention_ = true;
-    handlers_.state_entered(*this, next);
+    handlers_.template tell<StateHandler>(*this, next);
   }
 
   void reset_node() {
@@ -305,6 +327,14 @@ class Node {
         return check_pdo_mapping(Device::options, entries(), Device::dummies, index, sub_index, bytes);
       }
     }
+    if constexpr (SyncConsumer<Device>::exists) {
+      if (index == 0x1005 || index == 0x1019) {
+        return check_sync_parameter(Device::options, entries(), SyncProducer<Device>::exists, index, bytes);
+      }
+    }
+    if constexpr (TimeStamp<Device>::exists) {
+      if (index == 0x1012) return check_time_parameter(Device::options, entries(), bytes);
+    }
     if (index == 0x1003 && sub_index == 0 && bytes[0] != 0) {
       return static_cast<AbortCode>(Device::options.error_history_abort_code);
     }
@@ -316,6 +346,12 @@ class Node {
     attention_ = true;
     if constexpr (has_heartbeat_time) {
       if (index == 0x1017) heartbeat_.set_period(heartbeat_period(), now_);
+    }
+    if constexpr (SyncProducer<Device>::exists) {
+      if ((index == 0x1005 || index == 0x1006) && serves_sync(state_)) sync_producer_.start(store_, now_, false);
+    }
+    if constexpr (has_clock) {
+      if (index == 0x1013) clock_offset_ = clock() - now_.since_start().count();
     }
     if (!serves_pdo(state_)) return;
     if constexpr (has_tpdos) {
@@ -360,13 +396,15 @@ class Node {
   };
 
   void on_sync(Sync sync) {
-    if (state_ == NmtState::stopped) return;
+    if (!serves_sync(state_)) return;
     if constexpr (SyncConsumer<Device>::exists) {
       if (!sync.good) {
         service_error(ServiceError::sync_length);
         return;
       }
       service_error_over(ServiceError::sync_length);
+      sync_window_.open(store_, now_);
+      if constexpr (has_clock) set_clock(now_.since_start().count() + clock_offset_);
       if (serves_pdo(state_)) {
         if constexpr (has_tpdos) {
           tpdos_.on_sync(store_, sync);
@@ -374,8 +412,14 @@ class Node {
         }
         if constexpr (has_rpdos) rpdos_.on_sync(store_, RpdoHost{*this});
       }
-      handlers_.sync_received(*this, sync.counter);
+      handlers_.template tell<SyncHandler>(*this, sync.counter);
     }
+  }
+
+  /// 1013h: the time of the last SYNC, in us.
+  [[nodiscard]] std::uint32_t clock() { return entries().number(clock_word); }
+  void set_clock(std::uint32_t microseconds) {
+    std::memcpy(entries().ram(clock_word), &microseconds, sizeof microseconds);
   }
 
   void on_remote(std::uint32_t cob_id) {
@@ -394,7 +438,7 @@ class Node {
       case RpdoEvent::length_right:
       case RpdoEvent::in_time: tell_rpdo_errors(); break;
     }
-    handlers_.rpdo_happened(*this, event, number);
+    handlers_.template tell<RpdoHandler>(*this, event, number);
   }
 
   /// Errors of RPDOs are over when no RPDO has them any more.
@@ -471,6 +515,9 @@ class Node {
   /// Sends what is due, in order of importance; what finds no room stays due.
   void serve() {
     attention_ = false;
+    if constexpr (SyncProducer<Device>::exists) {
+      if (const std::optional<Sync> sync = sync_producer_.serve(store_, bus_, now_)) on_sync(*sync);
+    }
     if (!send_due()) attention_ = true;
   }
 
@@ -482,7 +529,10 @@ class Node {
     }
     if (serves_emcy(state_) && !emergencies_.serve(store_, bus_, now_)) return false;
     if constexpr (has_tpdos) {
-      if (serves_pdo(state_)) return tpdos_.serve(store_, bus_, now_);
+      if (serves_pdo(state_)) {
+        if (SyncWindow<Device>::exists && sync_window_.over(now_)) tpdos_.miss_sync();
+        return tpdos_.serve(store_, bus_, now_);
+      }
     }
     return true;
   }
@@ -495,6 +545,12 @@ class Node {
   RpdoService<Device> rpdos_{};
   EmergencyProducer<Device> emergencies_{};
   HeartbeatProducer heartbeat_{};
+  struct Nothing {};
+  template <bool Exists, class Service>
+  using Present = std::conditional_t<Exists, Service, Nothing>;
+  [[no_unique_address]] SyncWindow<Device> sync_window_{};
+  [[no_unique_address]] Present<SyncProducer<Device>::exists, SyncProducer<Device>> sync_producer_{};
+  [[no_unique_address]] Present<has_clock, std::uint32_t> clock_offset_{};  ///< us from the node's time to 1013h
   TimePoint now_{};
   NodeId node_id_{};
   NmtState state_ = NmtState::initialisation;

@@ -77,15 +77,15 @@ class RpdoService {
     }
   }
 
-  /// Takes a frame for each RPDO that it is.
+  /// Takes a frame for each RPDO that it is. With `window_over` those of types 0..240 come too late.
   template <class Host>
-  void on_frame(ObjectStore<Device>& store, const Frame& frame, TimePoint now, Host&& host) {
+  void on_frame(ObjectStore<Device>& store, const Frame& frame, bool window_over, TimePoint now, Host&& host) {
     const std::uint32_t cob_id = cob_id_of(frame);
     Pdos::for_each([&]<class Pdo, std::size_t I>() {
       constexpr std::uint16_t index = rpdo_indices.communication + Pdo::number - 1;
       const std::uint32_t own = store.template number<index, pdo_parameter::cob_id>();
       // An RPDO's bit 30 means nothing; no frame has bit 31.
-      if ((own & ~CobId::no_rtr_bit) == cob_id) receive(I, store, frame, now, host);
+      if ((own & ~CobId::no_rtr_bit) == cob_id) receive(I, store, frame, window_over, now, host);
     });
   }
 
@@ -198,7 +198,8 @@ class RpdoService {
   }
 
   template <class Host>
-  void receive(std::size_t i, ObjectStore<Device>& store, const Frame& frame, TimePoint now, Host& host) {
+  void receive(std::size_t i, ObjectStore<Device>& store, const Frame& frame, bool window_over, TimePoint now,
+               Host& host) {
     Slot& slot = slots_[i];
     if (slot.size == 0) return;
     if (frame.size < slot.size) {
@@ -211,6 +212,7 @@ class RpdoService {
     start_deadline(i, store.entries(), now, host);
     switch (transmission_type(i, store.entries())) {
       case Transmission::synchronous:
+        if (window_over) break;
         slot.data = frame.data;
         slot.flags |= buffered;
         break;

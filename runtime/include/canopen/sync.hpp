@@ -1,12 +1,18 @@
-/// SYNC consumer (CiA 301, 7.2.5): what synchronous PDOs wait for.
+/// SYNC (CiA 301, 7.2.5): the message that synchronous PDOs wait for, consumed and produced.
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <optional>
+#include <span>
+#include <type_traits>
 
+#include "canopen/abort_code.hpp"
 #include "canopen/cob_id.hpp"
+#include "canopen/device_options.hpp"
 #include "canopen/frame.hpp"
 #include "canopen/object_store.hpp"
+#include "canopen/time.hpp"
 
 namespace canopen {
 
@@ -15,6 +21,8 @@ struct Sync {
   std::uint8_t counter;  ///< 1..240; 0: the network counts no SYNCs
   bool good;             ///< its length is the one that 1019h asks for
 };
+
+inline constexpr std::uint8_t highest_sync_counter = 240;
 
 /// Takes the SYNC of 1005h. With a counter overflow value in 1019h other than 0 it has one data byte, else none.
 template <class Device>
@@ -28,14 +36,135 @@ class SyncConsumer {
     if constexpr (exists) {
       const CobId cob_id{store.template number<0x1005, 0>()};
       if (cob_id_of(frame) != (cob_id.value() & (CobId::extended_bit | 0x1FFF'FFFFu))) return std::nullopt;
-      if constexpr (has_overflow) {
-        const bool counted = store.template number<0x1019, 0>() != 0;
-        return Sync{counted ? frame.data[0] : std::uint8_t{0}, frame.size == (counted ? 1 : 0)};
-      }
-      return Sync{0, true};
+      const std::uint8_t overflow = overflow_of(store);
+      if (!has_overflow) return Sync{0, true};
+      return Sync{overflow != 0 ? frame.data[0] : std::uint8_t{0}, frame.size == (overflow != 0 ? 1 : 0)};
     }
     return std::nullopt;
   }
+
+  /// 1019h; 0: SYNCs are not counted.
+  [[nodiscard]] static std::uint8_t overflow_of([[maybe_unused]] const ObjectStore<Device>& store) {
+    if constexpr (has_overflow) {
+      return static_cast<std::uint8_t>(store.template number<0x1019, 0>());
+    } else {
+      return 0;
+    }
+  }
 };
+
+/// Sends the SYNC of 1005h every 1006h microseconds where bit 30 of 1005h says so, counting up to 1019h.
+template <class Device>
+class SyncProducer {
+ public:
+  static constexpr bool exists =
+      SyncConsumer<Device>::exists && Device::dictionary.has(0x1006, 0) &&
+      (entry::place_of(Device::dictionary.find(0x1005, 0)) == entry::Place::ram ||
+       entry::place_of(Device::dictionary.find(0x1006, 0)) == entry::Place::ram);
+
+  /// 1005h or 1006h has a new value, or the node has entered a state in which SYNCs are sent: the first one comes one
+  /// period later. The counter begins with 1 where `restart` says so (after Stopped and at boot-up) and where producing
+  /// begins.
+  void start(const ObjectStore<Device>& store, TimePoint now, bool restart) {
+    const Duration period = period_of(store);
+    const bool produces = (store.template number<0x1005, 0>() & CobId::no_rtr_bit) != 0 && period.count() != 0;
+    if (restart || !running_) counter_ = 0;
+    running_ = produces;
+    due_ = now + period;
+  }
+
+  void stop() { running_ = false; }
+
+  /// Sends a SYNC that is due, and answers it: a producer consumes its own. Nothing when none is due or the bus has no
+  /// room.
+  template <Bus B>
+  [[nodiscard]] std::optional<Sync> serve(const ObjectStore<Device>& store, B& bus, TimePoint now) {
+    if (!running_ || now < due_) return std::nullopt;
+    const CobId cob_id{store.template number<0x1005, 0>()};
+    const std::uint8_t overflow = SyncConsumer<Device>::overflow_of(store);
+    Frame frame{};
+    frame.id = cob_id.can_id();
+    frame.extended = cob_id.extended();
+    frame.size = overflow != 0 ? 1 : 0;
+    const std::uint8_t counter = counter_ < overflow ? static_cast<std::uint8_t>(counter_ + 1) : std::uint8_t{1};
+    frame.data[0] = overflow != 0 ? counter : std::uint8_t{0};
+    if (!bus.send(frame)) return std::nullopt;
+    counter_ = counter;
+    const Duration period = period_of(store);
+    due_ = due_ + period;
+    if (now >= due_) due_ = now + period;  // served so late that whole periods are missing
+    return Sync{frame.data[0], true};
+  }
+
+  [[nodiscard]] std::optional<TimePoint> next_deadline() const { return running_ ? std::optional{due_} : std::nullopt; }
+
+ private:
+  [[nodiscard]] static Duration period_of(const ObjectStore<Device>& store) {
+    return Duration{store.template number<0x1006, 0>()};
+  }
+
+  TimePoint due_{};
+  std::uint8_t counter_ = 0;  ///< of the last SYNC
+  bool running_ = false;
+};
+
+/// The synchronous window of 1007h: PDOs that a SYNC asks for are sent and taken over in it or not at all.
+template <class Device>
+class SyncWindow {
+ public:
+  static constexpr bool exists = SyncConsumer<Device>::exists && Device::dictionary.has(0x1007, 0);
+
+  void open([[maybe_unused]] const ObjectStore<Device>& store, [[maybe_unused]] TimePoint now) {
+    if constexpr (exists) {
+      const Duration length{store.template number<0x1007, 0>()};
+      window_ = {now + length, length.count() != 0};
+    }
+  }
+
+  /// Whether the last SYNC's window is over. It stays so until the next SYNC, half an hour at most.
+  [[nodiscard]] bool over([[maybe_unused]] TimePoint now) const {
+    if constexpr (exists) {
+      return window_.limited && now > window_.end;
+    } else {
+      return false;
+    }
+  }
+
+ private:
+  struct Window {
+    TimePoint end;
+    bool limited;
+  };
+  struct Nothing {};
+  [[no_unique_address]] std::conditional_t<exists, Window, Nothing> window_{};
+};
+
+/// What speaks against writing these bytes to 1005h, 1006h or 1019h (CiA 301, 7.5.2.5, 7.5.2.6 and 7.5.2.22).
+///   0609 0030h  1005h: the device produces no SYNC; the CAN-ID changes while it does; a restricted CAN-ID.
+///               1019h: 1 or more than 240
+///   0800 0022h  1019h: 1006h is not 0
+[[nodiscard]] inline AbortCode check_sync_parameter(const DeviceOptions& options, const EntryAccess& entries,
+                                                    bool produces, std::uint16_t index,
+                                                    std::span<const std::uint8_t> bytes) {
+  const Dictionary& dictionary = entries.dictionary();
+  if (index == 0x1005) {
+    std::uint32_t after = 0;
+    std::memcpy(&after, bytes.data(), sizeof after);
+    const std::uint32_t before = entries.number(dictionary.find(0x1005, 0));
+    constexpr std::uint32_t identifier = CobId::extended_bit | 0x1FFF'FFFF;
+    const bool generates = (after & CobId::no_rtr_bit) != 0;
+    const bool generated = (before & CobId::no_rtr_bit) != 0;
+    if (generates && !produces) return AbortCode::invalid_value;
+    if (generates && generated && ((before ^ after) & identifier) != 0) return AbortCode::invalid_value;
+    const bool extended = (after & CobId::extended_bit) != 0;
+    if (extended && !options.pdo_extended_ids) return AbortCode::invalid_value;
+    if (!extended && ((after & 0x1FFF'F800) != 0 || is_restricted(after & 0x7FF))) return AbortCode::invalid_value;
+  } else if (index == 0x1019) {
+    if (bytes[0] == 1 || bytes[0] > highest_sync_counter) return AbortCode::invalid_value;
+    const entry::Word period = dictionary.find(0x1006, 0);
+    if (period > Dictionary::no_sub_index && entries.number(period) != 0) return AbortCode::device_state;
+  }
+  return ok;
+}
 
 }  // namespace canopen

@@ -124,6 +124,13 @@ class TpdoService {
     }
   }
 
+  /// The synchronous window is over: what the last SYNC wanted is not sent any more.
+  void miss_sync() {
+    for (Slot& slot : slots_) {
+      if (slot.type <= last_cyclic) slot.flags &= static_cast<std::uint8_t>(~due);
+    }
+  }
+
   /// A remote frame asks for the TPDO with this CAN-ID.
   void on_remote(const EntryAccess& entries, std::uint32_t asked) {
     if constexpr (Device::options.tpdo_remote_frames) {

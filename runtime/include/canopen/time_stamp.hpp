@@ -1,0 +1,74 @@
+/// TIME (CiA 301, 7.2.6): the time of day for all nodes of a network, consumed and produced.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <span>
+
+#include "canopen/abort_code.hpp"
+#include "canopen/cob_id.hpp"
+#include "canopen/device_options.hpp"
+#include "canopen/frame.hpp"
+#include "canopen/object_store.hpp"
+#include "canopen/value.hpp"
+
+namespace canopen {
+
+/// The TIME of 1012h: bit 31 says that this device consumes it, bit 30 that it produces it.
+template <class Device>
+class TimeStamp {
+ public:
+  static constexpr bool exists = Device::dictionary.has(0x1012, 0);
+  static constexpr std::uint8_t size = 6;
+
+  /// The time in a frame; nothing when it is no TIME message for this device, or a shorter one.
+  [[nodiscard]] static std::optional<TimeOfDay> take(const ObjectStore<Device>& store, const Frame& frame) {
+    if constexpr (exists) {
+      const std::uint32_t cob_id = store.template number<0x1012, 0>();
+      const bool consumes = (cob_id & consume_bit) != 0;
+      if (consumes && cob_id_of(frame) == (cob_id & identifier) && frame.size >= size) {
+        TimeOfDay time;
+        std::memcpy(&time.milliseconds, &frame.data[0], sizeof time.milliseconds);
+        std::memcpy(&time.days, &frame.data[4], sizeof time.days);
+        time.milliseconds &= 0x0FFF'FFFF;
+        return time;
+      }
+    }
+    return std::nullopt;
+  }
+
+  /// Sends the time of day. False when this device does not produce TIME, or the bus had no room.
+  template <Bus B>
+  [[nodiscard]] static bool send(const ObjectStore<Device>& store, B& bus, TimeOfDay time) {
+    static_assert(exists, "this device has no 1012h");
+    const std::uint32_t cob_id = store.template number<0x1012, 0>();
+    if ((cob_id & produce_bit) == 0) return false;
+    Frame frame{};
+    frame.id = cob_id & 0x1FFF'FFFF;
+    frame.extended = (cob_id & CobId::extended_bit) != 0;
+    frame.size = size;
+    std::memcpy(&frame.data[0], &time.milliseconds, sizeof time.milliseconds);
+    std::memcpy(&frame.data[4], &time.days, sizeof time.days);
+    return bus.send(frame);
+  }
+
+  static constexpr std::uint32_t consume_bit = 0x8000'0000;
+  static constexpr std::uint32_t produce_bit = 0x4000'0000;
+  static constexpr std::uint32_t identifier = CobId::extended_bit | 0x1FFF'FFFF;
+};
+
+/// What speaks against writing these bytes to 1012h (CiA 301, 7.5.2.15). 0609 0030h: the CAN-ID changes while TIME is
+/// consumed or produced, is a restricted one, or has 29 bits where the device takes 11.
+[[nodiscard]] inline AbortCode check_time_parameter(const DeviceOptions& options, const EntryAccess& entries,
+                                                    std::span<const std::uint8_t> bytes) {
+  constexpr std::uint32_t in_use = 0xC000'0000;
+  std::uint32_t after = 0;
+  std::memcpy(&after, bytes.data(), sizeof after);
+  const std::uint32_t before = entries.number(entries.dictionary().find(0x1012, 0));
+  if ((before & after & in_use) != 0 && ((before ^ after) & ~in_use) != 0) return AbortCode::invalid_value;
+  if ((after & CobId::extended_bit) != 0) return options.pdo_extended_ids ? ok : AbortCode::invalid_value;
+  return (after & 0x1FFF'F800) != 0 || is_restricted(after & 0x7FF) ? AbortCode::invalid_value : ok;
+}
+
+}  // namespace canopen
