@@ -1,7 +1,7 @@
 /// The layout of a generated PDO as data, for people: made from its type.
 #pragma once
 
-#include <canopen/pdo.hpp>
+#include <canopen/pdo_list.hpp>
 #include <cstdint>
 #include <string_view>
 #include <vector>
