@@ -1,0 +1,285 @@
+/// LSS master: finds slaves and gives them node-IDs and a bit rate (CiA 305), one service at a time.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+
+#include "canopen/frame.hpp"
+#include "canopen/lss_protocol.hpp"
+#include "canopen/node_id.hpp"
+#include "canopen/time.hpp"
+
+namespace canopen {
+
+/// How long a master waits for answers. CiA 305 leaves that to it.
+struct LssTimeouts {
+  /// A slave answers from its memory; two frames on a loaded bus take most of this. Identify services wait for it in
+  /// full, as several slaves may answer.
+  Duration answer = from_milliseconds(100);
+  /// Store configuration: a slave may have to erase a page of flash before it answers.
+  Duration store = from_milliseconds(1000);
+  /// Fastscan, each step. Always waited for in full, as several slaves may answer the same question. Long enough for
+  /// both frames at 20 kbit/s and more; 10 kbit/s needs 30 ms.
+  Duration fastscan_step = from_milliseconds(20);
+};
+
+/// What identify remote slave asks for: one product, and ranges that hold their ends. Of the revision number a slave
+/// compares the upper 16 bits.
+struct LssAddressRange {
+  std::uint32_t vendor_id = 0;
+  std::uint32_t product_code = 0;
+  std::uint32_t revision_number_low = 0;
+  std::uint32_t revision_number_high = 0xFFFF'FFFF;
+  std::uint32_t serial_number_low = 0;
+  std::uint32_t serial_number_high = 0xFFFF'FFFF;
+};
+
+enum class LssOutcome : std::uint8_t {
+  done,       ///< answered well, or sent if there is no answer to it
+  refused,    ///< the slave's answer is an error: see `error()`
+  no_answer,  ///< no slave has answered in time, or the bus had no room
+};
+
+/// Begin a service, hand in frames and time until it is no longer `busy()`, then look at `outcome()`. A service that is
+/// begun while busy is not taken: false.
+template <Bus B>
+class LssMaster {
+ public:
+  constexpr explicit LssMaster(B& can_bus, LssTimeouts timeouts = {}) : bus_{can_bus}, timeouts_{timeouts} {}
+
+  /// Puts all slaves into this state. No answer.
+  bool switch_state_global(LssState state, TimePoint now) {
+    return begin(lss::Command::switch_state_global, static_cast<std::uint32_t>(state), lss::Command::none, Duration{0},
+                 now);
+  }
+
+  /// Puts the slave with this address into the configuration state.
+  bool switch_state_selective(const LssAddress& address, TimePoint now) {
+    if (busy()) return false;
+    words_ = {address.vendor_id, address.product_code, address.revision_number, address.serial_number};
+    return begin_sequence(lss::Command::select_vendor_id, lss::Command::select_serial_number, lss::Command::selected,
+                          now);
+  }
+
+  /// To the slave in configuration state: 1..127, or 255 to take its node-ID away.
+  bool configure_node_id(NodeId node_id, TimePoint now) {
+    return begin(lss::Command::configure_node_id, node_id.value(), now);
+  }
+
+  /// To the slave in configuration state. It uses the bit rate after `activate_bit_timing`, or when it is stored and
+  /// the power comes back.
+  bool configure_bit_timing(LssBitTiming bit_timing, TimePoint now) {
+    const std::uint32_t word = bit_timing.table | static_cast<std::uint32_t>(bit_timing.index) << 8;
+    return begin(lss::Command::configure_bit_timing, word, now);
+  }
+
+  /// Makes all slaves in configuration state use their new bit rate. No answer. They go on for one delay, and are
+  /// silent for another one, in which the master's own controller has to change over. Done when both delays are over.
+  bool activate_bit_timing(std::chrono::duration<std::uint16_t, std::milli> switch_delay, TimePoint now) {
+    return begin(lss::Command::activate_bit_timing, switch_delay.count(), lss::Command::none,
+                 Duration{switch_delay.count() * 2000u}, now);
+  }
+
+  /// Makes the slave in configuration state keep its node-ID and bit rate.
+  bool store_configuration(TimePoint now) {
+    return begin(lss::Command::store_configuration, 0, lss::Command::store_configuration, timeouts_.store, now);
+  }
+
+  /// Ask the slave in configuration state; `value()` is the answer.
+  bool inquire_vendor_id(TimePoint now) { return begin(lss::Command::inquire_vendor_id, 0, now); }
+  bool inquire_product_code(TimePoint now) { return begin(lss::Command::inquire_product_code, 0, now); }
+  bool inquire_revision_number(TimePoint now) { return begin(lss::Command::inquire_revision_number, 0, now); }
+  bool inquire_serial_number(TimePoint now) { return begin(lss::Command::inquire_serial_number, 0, now); }
+  bool inquire_node_id(TimePoint now) { return begin(lss::Command::inquire_node_id, 0, now); }
+
+  /// Asks whether there are slaves with such an address, in whatever state. Done: one at least.
+  bool identify_remote_slave(const LssAddressRange& range, TimePoint now) {
+    if (busy()) return false;
+    words_ = {range.vendor_id,         range.product_code,      range.revision_number_low, range.revision_number_high,
+              range.serial_number_low, range.serial_number_high};
+    return begin_sequence(lss::Command::identify_vendor_id, lss::Command::identify_serial_number_high,
+                          lss::Command::identified, now);
+  }
+
+  /// Asks whether there are slaves without node-ID. Done: one at least.
+  bool identify_non_configured_remote_slave(TimePoint now) {
+    return begin(lss::Command::identify_non_configured, 0, lss::Command::identified_non_configured, timeouts_.answer,
+                 now);
+  }
+
+  /// Finds one slave without node-ID and puts it into the configuration state; `address()` is its address. With several
+  /// slaves it finds the one with the lowest numbers. 133 steps.
+  bool fastscan(TimePoint now) { return fastscan({}, 0, now); }
+
+  /// The same among those slaves whose first `known` numbers, 0..4, are those of `address`: 33 steps less for each, one
+  /// more to check it.
+  bool fastscan(const LssAddress& address, std::uint8_t known, TimePoint now) {
+    if (busy() || known > 4) return false;
+    words_ = {address.vendor_id, address.product_code, address.revision_number, address.serial_number};
+    known_ = known;
+    number_ = 0;
+    bit_ = lss::fastscan_reset;
+    start(lss::Command::fastscan, lss::Command::fastscan, lss::Command::identified, timeouts_.fastscan_step, now);
+    return true;
+  }
+
+  /// Takes an answer; other frames are ignored.
+  void on_frame(const Frame& frame, [[maybe_unused]] TimePoint now) {
+    if (!busy() || to_send_ <= last_ || !lss::is_lss(frame, lss::response_id)) return;
+    if (answer_ == lss::Command::none || frame.data[0] != static_cast<std::uint8_t>(answer_)) return;
+    answered_ = true;
+    if (several_may_answer()) return;
+    value_ = lss::word_of(frame);
+    finish(reports_error() && frame.data[1] != 0 ? LssOutcome::refused : LssOutcome::done);
+  }
+
+  /// Sends what found no room, goes on with a fastscan, and ends a service whose answer has not come.
+  void on_time(TimePoint now) {
+    flush(now);
+    if (!busy() || now < deadline_) return;
+    if (to_send_ <= last_) return finish(LssOutcome::no_answer);
+    if (scanning()) return next_step(now);
+    finish(answered_ || answer_ == lss::Command::none ? LssOutcome::done : LssOutcome::no_answer);
+  }
+
+  /// When `on_time` has something to do next.
+  [[nodiscard]] std::optional<TimePoint> next_deadline() const {
+    return busy() ? std::optional{deadline_} : std::nullopt;
+  }
+
+  [[nodiscard]] bool busy() const { return busy_; }
+
+  /// How the last service ended.
+  [[nodiscard]] LssOutcome outcome() const { return outcome_; }
+
+  /// Why the slave has refused.
+  [[nodiscard]] LssError error() const {
+    return {static_cast<std::uint8_t>(value_ & 0xFF), static_cast<std::uint8_t>(value_ >> 8 & 0xFF)};
+  }
+
+  /// What an inquiry that is done has brought.
+  [[nodiscard]] std::uint32_t value() const { return value_; }
+
+  /// The slave that a fastscan has found.
+  [[nodiscard]] LssAddress address() const { return {words_[0], words_[1], words_[2], words_[3]}; }
+
+ private:
+  [[nodiscard]] bool begin(lss::Command command, std::uint32_t word, TimePoint now) {
+    return begin(command, word, command, timeouts_.answer, now);
+  }
+
+  [[nodiscard]] bool begin(lss::Command command, std::uint32_t word, lss::Command answer, Duration wait,
+                           TimePoint now) {
+    if (busy()) return false;
+    words_[0] = word;
+    start(command, command, answer, wait, now);
+    return true;
+  }
+
+  [[nodiscard]] bool begin_sequence(lss::Command first, lss::Command last, lss::Command answer, TimePoint now) {
+    start(first, last, answer, timeouts_.answer, now);
+    return true;
+  }
+
+  /// Sends the commands `first`..`last`, each with a word of its own, then waits.
+  void start(lss::Command first, lss::Command last, lss::Command answer, Duration wait, TimePoint now) {
+    first_ = to_send_ = static_cast<std::uint8_t>(first);
+    last_ = static_cast<std::uint8_t>(last);
+    answer_ = answer;
+    wait_ = wait;
+    value_ = 0;
+    answered_ = false;
+    busy_ = true;
+    deadline_ = now + (wait.count() != 0 ? wait : timeouts_.answer);
+    flush(now);
+  }
+
+  /// The wait begins when the last frame has found room on the bus.
+  void flush(TimePoint now) {
+    if (!busy() || to_send_ > last_) return;
+    for (; to_send_ <= last_; ++to_send_) {
+      if (!bus_.send(request())) return;
+    }
+    deadline_ = now + wait_;
+    if (wait_.count() == 0) finish(LssOutcome::done);
+  }
+
+  [[nodiscard]] Frame request() const {
+    const auto command = static_cast<lss::Command>(to_send_);
+    if (!scanning()) return lss::make_frame(lss::request_id, command, words_[to_send_ - first_]);
+    const bool beginning = bit_ == lss::fastscan_reset;
+    Frame frame = lss::make_frame(lss::request_id, command, beginning ? 0 : words_[number_]);
+    frame.data[5] = bit_;
+    frame.data[6] = number_;
+    frame.data[7] = confirming_ ? (number_ + 1) & 3 : number_;
+    return frame;
+  }
+
+  void finish(LssOutcome outcome) {
+    busy_ = false;
+    confirming_ = false;
+    outcome_ = outcome;
+  }
+
+  [[nodiscard]] bool reports_error() const {
+    return answer_ == lss::Command::configure_node_id || answer_ == lss::Command::configure_bit_timing ||
+           answer_ == lss::Command::store_configuration;
+  }
+
+  /// Whether the time has to pass in full, lest an answer to this question is taken for one to the next.
+  [[nodiscard]] bool several_may_answer() const {
+    return answer_ == lss::Command::identified || answer_ == lss::Command::identified_non_configured;
+  }
+
+  // Fastscan: for each number its bits from the highest on, then the whole number once more.
+
+  [[nodiscard]] bool scanning() const { return last_ == static_cast<std::uint8_t>(lss::Command::fastscan); }
+
+  void next_step(TimePoint now) {
+    if (bit_ == lss::fastscan_reset) {
+      if (!answered_) return finish(LssOutcome::no_answer);
+      begin_number();
+    } else if (confirming_) {
+      if (!answered_) return finish(LssOutcome::no_answer);
+      if (number_ == 3) return finish(LssOutcome::done);
+      ++number_;
+      begin_number();
+    } else {
+      if (!answered_) words_[number_] |= std::uint32_t{1} << bit_;
+      if (bit_ == 0) {
+        confirming_ = true;
+      } else {
+        --bit_;
+      }
+    }
+    start(lss::Command::fastscan, lss::Command::fastscan, lss::Command::identified, timeouts_.fastscan_step, now);
+  }
+
+  void begin_number() {
+    confirming_ = number_ < known_;
+    bit_ = confirming_ ? 0 : 31;
+    if (!confirming_) words_[number_] = 0;
+  }
+
+  B& bus_;
+  LssTimeouts timeouts_;
+  std::array<std::uint32_t, 6> words_{};  ///< of the commands first_..last_; of a fastscan the address
+  std::uint32_t value_ = 0;
+  TimePoint deadline_{};
+  Duration wait_{0};
+  std::uint8_t first_ = 0;
+  std::uint8_t to_send_ = 0;  ///< above last_: all frames have been sent
+  std::uint8_t last_ = 0;
+  lss::Command answer_ = lss::Command::none;
+  LssOutcome outcome_ = LssOutcome::done;
+  std::uint8_t known_ = 0;
+  std::uint8_t number_ = 0;  ///< fastscan: LSSSub
+  std::uint8_t bit_ = 0;     ///< fastscan: BitCheck
+  bool confirming_ = false;
+  bool answered_ = false;
+  bool busy_ = false;
+};
+
+}  // namespace canopen

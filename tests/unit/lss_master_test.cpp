@@ -1,0 +1,474 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <canopen/lss_master.hpp>
+#include <canopen/port/virtual_bus.hpp>
+#include <deque>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "lss_bench.hpp"
+
+namespace {
+
+using canopen::LssAddress;
+using canopen::LssAddressRange;
+using canopen::LssError;
+using canopen::LssMaster;
+using canopen::LssOutcome;
+using canopen::LssState;
+using canopen::NmtState;
+using canopen::NodeId;
+using canopen::TimePoint;
+using canopen::unconfigured_node_id;
+using canopen::VirtualBus;
+using namespace std::chrono_literals;
+
+/// A master on a bus that records; the test plays the slaves.
+struct MasterBench {
+  /// What the master sends because of this answer.
+  std::string hear(const std::string& answer) {
+    master.on_frame(bench::frame(answer), now);
+    return bus.take();
+  }
+
+  /// What it sends while this time passes.
+  std::string pass(canopen::Duration span) {
+    const TimePoint end = now + span;
+    while (const auto deadline = master.next_deadline()) {
+      if (*deadline > end) break;
+      now = *deadline;
+      master.on_time(now);
+    }
+    now = end;
+    master.on_time(now);
+    return bus.take();
+  }
+
+  bench::RecordingBus bus;
+  LssMaster<bench::RecordingBus> master{bus};
+  TimePoint now{};
+};
+
+TEST(LssMaster, SwitchesAllSlavesAndExpectsNoAnswer) {
+  MasterBench bench;
+  EXPECT_TRUE(bench.master.switch_state_global(LssState::configuration, bench.now));
+  EXPECT_EQ(bench.bus.take(), "7E5 04 01 00 00 00 00 00 00");
+  EXPECT_FALSE(bench.master.busy());
+  EXPECT_EQ(bench.master.outcome(), LssOutcome::done);
+  EXPECT_TRUE(bench.master.switch_state_global(LssState::waiting, bench.now));
+  EXPECT_EQ(bench.bus.take(), "7E5 04 00 00 00 00 00 00 00");
+}
+
+TEST(LssMaster, SelectsOneSlaveWithFourFrames) {
+  MasterBench bench;
+  EXPECT_TRUE(bench.master.switch_state_selective(bench::rk5c_address, bench.now));
+  EXPECT_EQ(bench.bus.take(),
+            "7E5 40 93 00 00 00 00 00 00 | 7E5 41 52 4B 35 43 00 00 00 | 7E5 42 01 00 01 00 00 00 00 | "
+            "7E5 43 34 12 01 15 00 00 00");
+  EXPECT_TRUE(bench.master.busy());
+  bench.hear("7E4 44 00 00 00 00 00 00 00");
+  EXPECT_FALSE(bench.master.busy());
+  EXPECT_EQ(bench.master.outcome(), LssOutcome::done);
+}
+
+TEST(LssMaster, ConfiguresANodeId) {
+  MasterBench bench;
+  EXPECT_TRUE(bench.master.configure_node_id(NodeId{0x7E}, bench.now));
+  EXPECT_EQ(bench.bus.take(), "7E5 11 7E 00 00 00 00 00 00");
+  bench.hear("7E4 11 00 00 00 00 00 00 00");
+  EXPECT_EQ(bench.master.outcome(), LssOutcome::done);
+}
+
+TEST(LssMaster, ConfiguresABitRate) {
+  MasterBench bench;
+  EXPECT_TRUE(bench.master.configure_bit_timing({0, 2}, bench.now));
+  EXPECT_EQ(bench.bus.take(), "7E5 13 00 02 00 00 00 00 00");
+  bench.hear("7E4 13 00 00 00 00 00 00 00");
+  EXPECT_EQ(bench.master.outcome(), LssOutcome::done);
+}
+
+TEST(LssMaster, GivesTheErrorOfASlave) {
+  MasterBench bench;
+  bench.master.configure_node_id(NodeId{0x80}, bench.now);
+  bench.hear("7E4 11 01 00 00 00 00 00 00");
+  EXPECT_EQ(bench.master.outcome(), LssOutcome::refused);
+  EXPECT_EQ(bench.master.error(), canopen::lss::node_id_out_of_range);
+  bench.master.configure_bit_timing({0, 5}, bench.now);
+  bench.hear("7E4 13 01 00 00 00 00 00 00");
+  EXPECT_EQ(bench.master.outcome(), LssOutcome::refused);
+  EXPECT_EQ(bench.master.error(), canopen::lss::bit_timing_not_supported);
+  bench.master.store_configuration(bench.now);
+  bench.hear("7E4 17 02 00 00 00 00 00 00");
+  EXPECT_EQ(bench.master.outcome(), LssOutcome::refused);
+  EXPECT_EQ(bench.master.error(), canopen::lss::storage_access_error);
+  bench.master.store_configuration(bench.now);
+  bench.hear("7E4 17 FF 2A 00 00 00 00 00");
+  EXPECT_EQ(bench.master.error(), (LssError{canopen::lss::implementation_specific, 0x2A}));
+}
+
+TEST(LssMaster, IsBusyForBothDelaysOfASwitchOfTheBitRate) {
+  MasterBench bench;
+  EXPECT_TRUE(bench.master.activate_bit_timing(300ms, bench.now));
+  EXPECT_EQ(bench.bus.take(), "7E5 15 2C 01 00 00 00 00 00");
+  bench.pass(599ms);
+  EXPECT_TRUE(bench.master.busy());
+  EXPECT_FALSE(bench.master.switch_state_global(LssState::waiting, bench.now));
+  bench.pass(1ms);
+  EXPECT_FALSE(bench.master.busy());
+  EXPECT_EQ(bench.master.outcome(), LssOutcome::done);
+}
+
+TEST(LssMaster, WaitsLongerForASlaveThatStores) {
+  MasterBench bench;
+  EXPECT_TRUE(bench.master.store_configuration(bench.now));
+  EXPECT_EQ(bench.bus.take(), "7E5 17 00 00 00 00 00 00 00");
+  bench.pass(999ms);
+  EXPECT_TRUE(bench.master.busy());
+  bench.hear("7E4 17 00 00 00 00 00 00 00");
+  EXPECT_EQ(bench.master.outcome(), LssOutcome::done);
+}
+
+TEST(LssMaster, InquiresTheAddressAndTheNodeId) {
+  MasterBench bench;
+  EXPECT_TRUE(bench.master.inquire_vendor_id(bench.now));
+  EXPECT_EQ(bench.bus.take(), "7E5 5A 00 00 00 00 00 00 00");
+  bench.hear("7E4 5A 93 00 00 00 00 00 00");
+  EXPECT_EQ(bench.master.outcome(), LssOutcome::done);
+  EXPECT_EQ(bench.master.value(), 0x93u);
+  EXPECT_TRUE(bench.master.inquire_product_code(bench.now));
+  EXPECT_EQ(bench.bus.take(), "7E5 5B 00 00 00 00 00 00 00");
+  bench.hear("7E4 5B 52 4B 35 43 00 00 00");
+  EXPECT_EQ(bench.master.value(), 0x4335'4B52u);
+  EXPECT_TRUE(bench.master.inquire_revision_number(bench.now));
+  EXPECT_EQ(bench.bus.take(), "7E5 5C 00 00 00 00 00 00 00");
+  bench.hear("7E4 5C 01 00 01 00 00 00 00");
+  EXPECT_EQ(bench.master.value(), 0x0001'0001u);
+  EXPECT_TRUE(bench.master.inquire_serial_number(bench.now));
+  EXPECT_EQ(bench.bus.take(), "7E5 5D 00 00 00 00 00 00 00");
+  bench.hear("7E4 5D 34 12 01 15 00 00 00");
+  EXPECT_EQ(bench.master.value(), 0x1501'1234u);
+  EXPECT_TRUE(bench.master.inquire_node_id(bench.now));
+  EXPECT_EQ(bench.bus.take(), "7E5 5E 00 00 00 00 00 00 00");
+  bench.hear("7E4 5E 7E 00 00 00 00 00 00");
+  EXPECT_EQ(bench.master.value(), 0x7Eu);
+}
+
+TEST(LssMaster, AsksForARangeWithSixFrames) {
+  MasterBench bench;
+  EXPECT_TRUE(bench.master.identify_remote_slave(
+      {0x93, 0x4335'4B52, 0x0001'0000, 0x0001'FFFF, 0x1501'0001, 0x1501'FFFF}, bench.now));
+  EXPECT_EQ(bench.bus.take(),
+            "7E5 46 93 00 00 00 00 00 00 | 7E5 47 52 4B 35 43 00 00 00 | 7E5 48 00 00 01 00 00 00 00 | "
+            "7E5 49 FF FF 01 00 00 00 00 | 7E5 4A 01 00 01 15 00 00 00 | 7E5 4B FF FF 01 15 00 00 00");
+  bench.hear("7E4 4F 00 00 00 00 00 00 00");
+  bench.hear("7E4 4F 00 00 00 00 00 00 00");  // a second slave
+  EXPECT_TRUE(bench.master.busy());
+  bench.pass(100ms);
+  EXPECT_FALSE(bench.master.busy());
+  EXPECT_EQ(bench.master.outcome(), LssOutcome::done);
+}
+
+TEST(LssMaster, AsksForSlavesWithoutNodeId) {
+  MasterBench bench;
+  EXPECT_TRUE(bench.master.identify_non_configured_remote_slave(bench.now));
+  EXPECT_EQ(bench.bus.take(), "7E5 4C 00 00 00 00 00 00 00");
+  bench.hear("7E4 50 00 00 00 00 00 00 00");
+  bench.pass(100ms);
+  EXPECT_EQ(bench.master.outcome(), LssOutcome::done);
+}
+
+TEST(LssMaster, EndsEachServiceWhenNoSlaveAnswers) {
+  using Master = LssMaster<bench::RecordingBus>;
+  struct Row {
+    bool (*begin)(Master&, TimePoint);
+    std::chrono::milliseconds timeout;
+  };
+  const Row rows[] = {
+      {[](Master& m, TimePoint now) { return m.switch_state_selective({}, now); }, 100ms},
+      {[](Master& m, TimePoint now) { return m.configure_node_id(NodeId{1}, now); }, 100ms},
+      {[](Master& m, TimePoint now) { return m.configure_bit_timing({}, now); }, 100ms},
+      {[](Master& m, TimePoint now) { return m.store_configuration(now); }, 1000ms},
+      {[](Master& m, TimePoint now) { return m.inquire_vendor_id(now); }, 100ms},
+      {[](Master& m, TimePoint now) { return m.inquire_product_code(now); }, 100ms},
+      {[](Master& m, TimePoint now) { return m.inquire_revision_number(now); }, 100ms},
+      {[](Master& m, TimePoint now) { return m.inquire_serial_number(now); }, 100ms},
+      {[](Master& m, TimePoint now) { return m.inquire_node_id(now); }, 100ms},
+      {[](Master& m, TimePoint now) { return m.identify_remote_slave({}, now); }, 100ms},
+      {[](Master& m, TimePoint now) { return m.identify_non_configured_remote_slave(now); }, 100ms},
+      {[](Master& m, TimePoint now) { return m.fastscan(now); }, 20ms},
+  };
+  for (const Row& row : rows) {
+    const auto number = &row - rows;
+    MasterBench bench;
+    EXPECT_TRUE(row.begin(bench.master, bench.now)) << number;
+    EXPECT_FALSE(row.begin(bench.master, bench.now)) << number;
+    EXPECT_EQ(bench.master.next_deadline(), TimePoint{row.timeout}) << number;
+    bench.bus.take();
+    EXPECT_EQ(bench.pass(row.timeout - 1us), "") << number;
+    EXPECT_TRUE(bench.master.busy()) << number;
+    EXPECT_EQ(bench.pass(1us), "") << number;
+    EXPECT_FALSE(bench.master.busy()) << number;
+    EXPECT_EQ(bench.master.outcome(), LssOutcome::no_answer) << number;
+    EXPECT_FALSE(bench.master.next_deadline()) << number;
+  }
+}
+
+TEST(LssMaster, IgnoresAnswersToOtherRequestsAndOtherFrames) {
+  MasterBench bench;
+  bench.master.inquire_vendor_id(bench.now);
+  for (const char* frame : {"7E4 5B 93 00 00 00 00 00 00", "7E4 5A 93 00 00 00", "7E5 5A 93 00 00 00 00 00 00",
+                            "000007E4 5A 93 00 00 00 00 00 00", "7E4 R 8", "7E4 00 00 00 00 00 00 00 00"}) {
+    bench.hear(frame);
+    EXPECT_TRUE(bench.master.busy()) << frame;
+  }
+  bench.hear("7E4 5A 93 00 00 00 00 00 00");
+  EXPECT_FALSE(bench.master.busy());
+  bench.hear("7E4 5A 94 00 00 00 00 00 00");
+  EXPECT_EQ(bench.master.value(), 0x93u);
+}
+
+TEST(LssMaster, GoesOnWithASequenceWhenTheBusHasRoomAgain) {
+  MasterBench bench;
+  bench.bus.room = 2;
+  bench.master.switch_state_selective(bench::rk5c_address, bench.now);
+  EXPECT_EQ(bench.bus.take(), "7E5 40 93 00 00 00 00 00 00 | 7E5 41 52 4B 35 43 00 00 00");
+  bench.hear("7E4 44 00 00 00 00 00 00 00");  // nothing that this master has asked for
+  EXPECT_TRUE(bench.master.busy());
+  bench.bus.room = 10;
+  EXPECT_EQ(bench.pass(50ms), "7E5 42 01 00 01 00 00 00 00 | 7E5 43 34 12 01 15 00 00 00");
+  EXPECT_EQ(bench.master.next_deadline(), TimePoint{150ms});
+  bench.hear("7E4 44 00 00 00 00 00 00 00");
+  EXPECT_EQ(bench.master.outcome(), LssOutcome::done);
+}
+
+TEST(LssMaster, GivesUpWhenTheBusHasNoRoom) {
+  MasterBench bench;
+  bench.bus.room = 0;
+  bench.master.switch_state_global(LssState::configuration, bench.now);
+  EXPECT_TRUE(bench.master.busy());
+  bench.pass(100ms);
+  EXPECT_FALSE(bench.master.busy());
+  EXPECT_EQ(bench.master.outcome(), LssOutcome::no_answer);
+  bench.bus.room = 1;
+  EXPECT_EQ(bench.pass(1s), "");
+}
+
+TEST(LssMaster, ScansBitByBit) {
+  MasterBench bench;
+  bench.master.fastscan(bench.now);
+  EXPECT_EQ(bench.bus.take(), "7E5 51 00 00 00 00 80 00 00");
+  bench.hear("7E4 4F 00 00 00 00 00 00 00");
+  EXPECT_EQ(bench.pass(20ms), "7E5 51 00 00 00 00 1F 00 00");
+  EXPECT_EQ(bench.pass(20ms), "7E5 51 00 00 00 80 1E 00 00");  // nobody: bit 31 is 1
+  bench.hear("7E4 4F 00 00 00 00 00 00 00");
+  bench.hear("7E4 4F 00 00 00 00 00 00 00");
+  EXPECT_EQ(bench.pass(20ms), "7E5 51 00 00 00 80 1D 00 00");
+  for (int bit = 28; bit >= 0; --bit) bench.pass(20ms);
+  EXPECT_EQ(bench.pass(20ms), "7E5 51 FF FF FF BF 00 00 01");
+  bench.hear("7E4 4F 00 00 00 00 00 00 00");
+  EXPECT_EQ(bench.pass(20ms), "7E5 51 00 00 00 00 1F 01 01");
+}
+
+TEST(LssMaster, EndsAFastscanWhoseSlaveIsGone) {
+  MasterBench bench;
+  bench.master.fastscan(bench.now);
+  bench.hear("7E4 4F 00 00 00 00 00 00 00");
+  bench.pass(34 * 20ms);  // the reset, 32 bits, and the number as a whole
+  EXPECT_FALSE(bench.master.busy());
+  EXPECT_EQ(bench.master.outcome(), LssOutcome::no_answer);
+}
+
+TEST(LssMaster, ChecksTheNumbersThatAreKnown) {
+  MasterBench bench;
+  EXPECT_FALSE(bench.master.fastscan(bench::rk5c_address, 5, bench.now));
+  bench.master.fastscan(bench::rk5c_address, 4, bench.now);
+  std::string sent = bench.bus.take();
+  for (int step = 0; step < 5; ++step) {
+    bench.hear("7E4 4F 00 00 00 00 00 00 00");
+    sent += " | " + bench.pass(20ms);
+  }
+  EXPECT_EQ(sent,
+            "7E5 51 00 00 00 00 80 00 00 | 7E5 51 93 00 00 00 00 00 01 | 7E5 51 52 4B 35 43 00 01 02 | "
+            "7E5 51 01 00 01 00 00 02 03 | 7E5 51 34 12 01 15 00 03 00 | ");
+  EXPECT_EQ(bench.master.outcome(), LssOutcome::done);
+  EXPECT_EQ(bench.master.address(), bench::rk5c_address);
+}
+
+/// A device on a virtual bus.
+struct BusDevice {
+  BusDevice(VirtualBus& bus, NodeId persistent, const LssAddress& address)
+      : device{persistent, address}, endpoint{bus.attach()} {
+    endpoint.on_frame = [this](const canopen::Frame& frame, TimePoint now) {
+      device.slave.on_frame(frame, bench::LssDevice<>::Hooks{device}, now);
+      EXPECT_TRUE(device.slave.serve(endpoint));
+    };
+    endpoint.on_time = [this](TimePoint now) { device.slave.on_time(bench::LssDevice<>::Hooks{device}, now); };
+    endpoint.next_deadline = [this] { return device.slave.next_deadline(); };
+  }
+
+  bench::LssDevice<> device;
+  VirtualBus::Endpoint& endpoint;
+};
+
+/// A master and devices on one bus of 500 kbit/s.
+struct Network {
+  Network() {
+    VirtualBus::connect(endpoint, master);
+    bus.listen([this](const canopen::Frame& frame, TimePoint) { requests += frame.id == 0x7E5 ? 1 : 0; });
+  }
+
+  /// Lets the service run to its end.
+  LssOutcome finish(bool begun) {
+    EXPECT_TRUE(begun);
+    while (master.busy()) bus.run_for(1ms);
+    return master.outcome();
+  }
+
+  VirtualBus bus{500'000};
+  VirtualBus::Endpoint& endpoint = bus.attach();
+  LssMaster<VirtualBus::Endpoint> master{endpoint};
+  std::deque<BusDevice> devices;
+  int requests = 0;
+};
+
+/// Devices of which some differ in one number or in one bit alone.
+std::vector<LssAddress> random_addresses(std::size_t count, unsigned seed) {
+  std::mt19937 random{seed};
+  const auto number = [&random] { return static_cast<std::uint32_t>(random()); };
+  std::vector<LssAddress> addresses;
+  while (addresses.size() < count) {
+    LssAddress address{number(), number(), number(), number()};
+    if (!addresses.empty() && random() % 2 == 0) {
+      address = addresses[random() % addresses.size()];
+      std::uint32_t* const numbers[] = {&address.vendor_id, &address.product_code, &address.revision_number,
+                                        &address.serial_number};
+      *numbers[random() % 4] ^= std::uint32_t{1} << random() % 32;
+    }
+    if (std::ranges::find(addresses, address) == addresses.end()) addresses.push_back(address);
+  }
+  return addresses;
+}
+
+/// Gives every device a node-ID; each has to be found once.
+void commission(std::size_t count, unsigned seed) {
+  Network network;
+  const std::vector<LssAddress> addresses = random_addresses(count, seed);
+  for (const LssAddress& address : addresses) {
+    network.devices.emplace_back(network.bus, unconfigured_node_id, address);
+  }
+  std::vector<LssAddress> found;
+  for (std::uint8_t node_id = 1; node_id <= count; ++node_id) {
+    network.requests = 0;
+    ASSERT_EQ(network.finish(network.master.fastscan(network.bus.now())), LssOutcome::done) << int{node_id};
+    EXPECT_EQ(network.requests, 133);
+    found.push_back(network.master.address());
+    ASSERT_EQ(network.finish(network.master.inquire_serial_number(network.bus.now())), LssOutcome::done);
+    EXPECT_EQ(network.master.value(), found.back().serial_number);
+    ASSERT_EQ(network.finish(network.master.configure_node_id(NodeId{node_id}, network.bus.now())), LssOutcome::done);
+    ASSERT_EQ(network.finish(network.master.store_configuration(network.bus.now())), LssOutcome::done);
+    network.finish(network.master.switch_state_global(LssState::waiting, network.bus.now()));
+    network.bus.settle();
+  }
+  EXPECT_EQ(network.finish(network.master.fastscan(network.bus.now())), LssOutcome::no_answer);
+  EXPECT_EQ(network.finish(network.master.identify_non_configured_remote_slave(network.bus.now())),
+            LssOutcome::no_answer);
+  ASSERT_EQ(found.size(), addresses.size());
+  for (const BusDevice& one : network.devices) {
+    EXPECT_EQ(std::ranges::count(found, one.device.address), 1);
+    EXPECT_EQ(one.device.state, NmtState::pre_operational);
+    ASSERT_TRUE(one.device.slave.node_id().valid());
+    EXPECT_EQ(found[one.device.slave.node_id().value() - 1u], one.device.address);
+    EXPECT_EQ(one.device.stored_node_id, one.device.slave.node_id());
+  }
+}
+
+TEST(LssNetwork, FastscanFindsOneSlave) {
+  for (unsigned seed = 0; seed < 20; ++seed) commission(1, seed);
+}
+
+TEST(LssNetwork, FastscanFindsEachOfTwoSlavesOnce) {
+  for (unsigned seed = 0; seed < 20; ++seed) commission(2, seed);
+}
+
+TEST(LssNetwork, FastscanFindsEachOfTwentySlavesOnce) {
+  for (unsigned seed = 0; seed < 3; ++seed) commission(20, seed);
+}
+
+TEST(LssNetwork, FastscanFindsAddressesOfZerosAndOfOnes) {
+  Network network;
+  network.devices.emplace_back(network.bus, unconfigured_node_id, LssAddress{~0u, ~0u, ~0u, ~0u});
+  EXPECT_EQ(network.finish(network.master.fastscan(network.bus.now())), LssOutcome::done);
+  EXPECT_EQ(network.master.address(), (LssAddress{~0u, ~0u, ~0u, ~0u}));
+  network.devices.emplace_back(network.bus, unconfigured_node_id, LssAddress{});
+  EXPECT_EQ(network.finish(network.master.fastscan(network.bus.now())), LssOutcome::done);
+  EXPECT_EQ(network.master.address(), LssAddress{});
+}
+
+TEST(LssNetwork, FastscanLooksAmongTheKnownProducts) {
+  Network network;
+  network.devices.emplace_back(network.bus, unconfigured_node_id, LssAddress{1, 2, 3, 4});
+  network.devices.emplace_back(network.bus, unconfigured_node_id, bench::rk5c_address);
+  network.requests = 0;
+  EXPECT_EQ(network.finish(network.master.fastscan({0x93, 0x4335'4B52, 0, 0}, 2, network.bus.now())), LssOutcome::done);
+  EXPECT_EQ(network.master.address(), bench::rk5c_address);
+  EXPECT_EQ(network.requests, 1 + 2 + 2 * 33);
+  EXPECT_EQ(network.finish(network.master.fastscan({0x94, 0, 0, 0}, 1, network.bus.now())), LssOutcome::no_answer);
+}
+
+TEST(LssNetwork, ConfiguredSlavesTakeNoPartInAFastscan) {
+  Network network;
+  network.devices.emplace_back(network.bus, NodeId{5}, bench::rk5c_address);
+  EXPECT_EQ(network.finish(network.master.fastscan(network.bus.now())), LssOutcome::no_answer);
+}
+
+TEST(LssNetwork, OneOfManyIsSelectedAndAnswersAlone) {
+  Network network;
+  const std::vector<LssAddress> addresses = random_addresses(20, 305);
+  for (std::size_t i = 0; i < addresses.size(); ++i) {
+    network.devices.emplace_back(network.bus, NodeId{static_cast<std::uint8_t>(i + 1)}, addresses[i]);
+  }
+  for (std::size_t i = 0; i < addresses.size(); ++i) {
+    ASSERT_EQ(network.finish(network.master.switch_state_selective(addresses[i], network.bus.now())), LssOutcome::done);
+    ASSERT_EQ(network.finish(network.master.inquire_node_id(network.bus.now())), LssOutcome::done);
+    EXPECT_EQ(network.master.value(), i + 1);
+    network.finish(network.master.switch_state_global(LssState::waiting, network.bus.now()));
+    network.bus.settle();
+  }
+}
+
+TEST(LssNetwork, ARangeOfSerialNumbersIsHalvedDownToOneSlave) {
+  Network network;
+  network.devices.emplace_back(network.bus, NodeId{5}, bench::rk5c_address);
+  LssAddressRange range{.vendor_id = 0x93, .product_code = 0x4335'4B52};
+  while (range.serial_number_low < range.serial_number_high) {
+    const std::uint32_t middle = range.serial_number_low + (range.serial_number_high - range.serial_number_low) / 2;
+    LssAddressRange lower = range;
+    lower.serial_number_high = middle;
+    if (network.finish(network.master.identify_remote_slave(lower, network.bus.now())) == LssOutcome::done) {
+      range = lower;
+    } else {
+      range.serial_number_low = middle + 1;
+    }
+  }
+  EXPECT_EQ(range.serial_number_low, bench::rk5c_address.serial_number);
+}
+
+TEST(LssNetwork, AllSlavesSwitchTheBitRateTogether) {
+  Network network;
+  for (std::uint8_t i = 1; i <= 3; ++i) network.devices.emplace_back(network.bus, NodeId{i}, LssAddress{1, 2, 3, i});
+  network.finish(network.master.switch_state_global(LssState::configuration, network.bus.now()));
+  ASSERT_EQ(network.finish(network.master.configure_bit_timing({0, 3}, network.bus.now())), LssOutcome::done);
+  network.bus.settle();
+  const auto begin = network.bus.now();
+  ASSERT_EQ(network.finish(network.master.activate_bit_timing(100ms, network.bus.now())), LssOutcome::done);
+  EXPECT_GE(network.bus.now() - begin, 200ms);
+  network.bus.run_for(1ms);
+  for (const BusDevice& one : network.devices) {
+    ASSERT_EQ(one.device.events.size(), 2u);
+    EXPECT_FALSE(one.device.slave.silent());
+  }
+}
+
+}  // namespace
