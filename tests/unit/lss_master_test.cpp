@@ -278,6 +278,8 @@ TEST(LssMaster, EndsAFastscanWhoseSlaveIsGone) {
   bench.pass(34 * 20ms);  // the reset, 32 bits, and the number as a whole
   EXPECT_FALSE(bench.master.busy());
   EXPECT_EQ(bench.master.outcome(), LssOutcome::no_answer);
+  bench.master.fastscan(bench.now);
+  EXPECT_EQ(bench.bus.take(), "7E5 51 00 00 00 00 80 00 00");
 }
 
 TEST(LssMaster, ChecksTheNumbersThatAreKnown) {

@@ -450,6 +450,14 @@ TEST(LssSlave, KeepsItsAnswerUntilTheBusHasRoom) {
   EXPECT_EQ(device.bus.take(), "");
 }
 
+TEST(LssSlave, ForgetsItsAnswerAtResetCommunication) {
+  ConfiguredDevice device;
+  device.bus.room = 0;
+  device.ask(inquire_node_id);
+  device.reset_communication();
+  EXPECT_FALSE(device.slave.has_reply());
+}
+
 // Fastscan
 
 TEST(LssFastscan, AsksForTheBitsFromBitCheckOn) {
@@ -475,6 +483,21 @@ TEST(LssFastscan, GoesOnToTheNextNumberAndEndsInConfigurationState) {
   EXPECT_EQ(device.ask("7E5 51 34 12 01 15 00 03 00"), identified);
   EXPECT_EQ(device.slave.state(), LssState::configuration);
   EXPECT_EQ(device.ask(fastscan_reset), "");
+}
+
+TEST(LssFastscan, StaysWithANumberWhoseLastBitIsAskedFor) {
+  LssDevice device{unconfigured_node_id};
+  device.ask(fastscan_reset);
+  EXPECT_EQ(device.ask("7E5 51 93 00 00 00 00 00 00"), identified);
+  EXPECT_EQ(device.slave.state(), LssState::waiting);
+  EXPECT_EQ(device.ask("7E5 51 93 00 00 00 00 00 01"), identified);
+}
+
+TEST(LssFastscan, BeginsAgainWithTheVendorIdAfterResetCommunication) {
+  LssDevice device{unconfigured_node_id};
+  device.ask("7E5 51 93 00 00 00 00 00 01");
+  device.reset_communication();
+  EXPECT_EQ(device.ask("7E5 51 93 00 00 00 00 00 01"), identified);
 }
 
 TEST(LssFastscan, TakesNoPartAnyMoreWhenANumberIsAnotherOne) {
