@@ -13,7 +13,7 @@ using canopen::Mappable;
 using Data = std::array<std::uint8_t, 8>;
 namespace od = sample::od;
 
-template <std::uint8_t SubIndex, class T, std::uint16_t Bits>
+template <std::uint8_t SubIndex, class T, std::uint16_t Bits = canopen::wire_bits<T>>
 using Entry = canopen::Object<0x3000, SubIndex, T, Access::rw, Mappable::both, Bits>;
 
 TEST(PdoLayout, PutsTheFirstObjectIntoTheLowestBits) {
@@ -44,7 +44,7 @@ TEST(PdoLayout, TellsWhichObjectsItMaps) {
   static_assert(!sample::Tpdo1::maps<od::controlword>);
 }
 
-TEST(PdoLayout, MayStraddleNineBytesOfShiftedBits) {
+TEST(PdoLayout, MayStraddleAllBytesOfShiftedBits) {
   // 1 bit and 63 bits: the long one touches all eight bytes.
   using Layout = canopen::PdoLayout<Entry<1, bool, 1>, Entry<2, std::uint64_t, 63>>;
   const auto data = Layout::pack(true, 0x4000'0000'0000'0001);
@@ -57,33 +57,6 @@ TEST(PdoLayout, CutsAValueToItsBits) {
   EXPECT_EQ(Layout::pack(0xFF, 0), (Data{0x0F}));
 }
 
-/// Every length at every first bit, signed, against bits counted one by one.
-template <unsigned First, unsigned Length>
-void check_place() {
-  const std::uint64_t value = 0x9E37'79B9'7F4A'7C15u & canopen::pdo_detail::mask(Length);
-  Data data{};
-  canopen::pdo_detail::put<First, Length>(data, value);
-  for (unsigned bit = 0; bit < 64; ++bit) {
-    const bool inside = bit >= First && bit < First + Length;
-    const unsigned expected = inside ? static_cast<unsigned>(value >> (bit - First)) & 1u : 0u;
-    ASSERT_EQ((data.at(bit / 8) >> (bit % 8)) & 1u, expected) << First << " " << Length << " " << bit;
-  }
-  for (auto& byte : data) byte = static_cast<std::uint8_t>(~byte);
-  ASSERT_EQ((canopen::pdo_detail::take<First, Length>(data)), ~value & canopen::pdo_detail::mask(Length));
-}
-
-template <unsigned First, unsigned... Length>
-void check_lengths(std::integer_sequence<unsigned, Length...>) {
-  (check_place<First, Length + 1>(), ...);
-}
-
-TEST(PdoLayout, PutsEveryLengthAtEveryBit) {
-  [&]<unsigned... First>(std::integer_sequence<unsigned, First...>) {
-    (check_lengths<First>(std::make_integer_sequence<unsigned, 64 - First>{}), ...);
-  }
-  (std::make_integer_sequence<unsigned, 64>{});
-}
-
 TEST(PdoLayout, CarriesRealsAndTimes) {
   using Layout = canopen::PdoLayout<Entry<1, float, 32>>;
   EXPECT_EQ(Layout::pack(1.5f), (Data{0x00, 0x00, 0xC0, 0x3F}));
@@ -91,6 +64,102 @@ TEST(PdoLayout, CarriesRealsAndTimes) {
   using Time = canopen::PdoLayout<Entry<1, canopen::TimeOfDay, 48>>;
   EXPECT_EQ(Time::pack({0x0ABCDEF0, 0x1234}), (Data{0xF0, 0xDE, 0xBC, 0x0A, 0x34, 0x12}));
   EXPECT_EQ(Time::get<0>(Data{0xF0, 0xDE, 0xBC, 0x0A, 0x34, 0x12}), (canopen::TimeOfDay{0x0ABCDEF0, 0x1234}));
+}
+
+TEST(PdoLayout, CarriesIntegersOfOddLength) {
+  using Layout = canopen::PdoLayout<Entry<1, std::int32_t, 24>, Entry<2, std::int64_t, 40>>;
+  const auto data = Layout::pack(-2, -3);
+  EXPECT_EQ(data, (Data{0xFE, 0xFF, 0xFF, 0xFD, 0xFF, 0xFF, 0xFF, 0xFF}));
+  EXPECT_EQ(Layout::unpack(data), std::make_tuple(-2, std::int64_t{-3}));
+  using Wide = canopen::PdoLayout<Entry<1, std::uint8_t>, Entry<2, std::uint64_t, 56>>;
+  EXPECT_EQ(Wide::pack(1, 0x0023'4567'89AB'CDEF), (Data{0x01, 0xEF, 0xCD, 0xAB, 0x89, 0x67, 0x45, 0x23}));
+  using Six = canopen::PdoLayout<Entry<1, std::int16_t>, Entry<2, std::int64_t, 48>>;
+  EXPECT_EQ(Six::get<1>(Data{0, 0, 0, 0, 0, 0, 0, 0x80}), -0x8000'0000'0000);
+}
+
+TEST(PdoLayout, CarriesReal64AndTimeDifference) {
+  using Real = canopen::PdoLayout<Entry<1, double>>;
+  EXPECT_EQ(Real::pack(1.5), (Data{0, 0, 0, 0, 0, 0, 0xF8, 0x3F}));
+  EXPECT_EQ(Real::get<0>(Data{0, 0, 0, 0, 0, 0, 0xF8, 0xBF}), -1.5);
+  using Time = canopen::PdoLayout<Entry<1, bool>, Entry<2, canopen::TimeDifference>>;
+  const auto data = Time::pack(true, {0x0ABCDEF0, 0x8001});
+  EXPECT_EQ(data, (Data{0xE1, 0xBD, 0x79, 0x15, 0x02, 0x00, 0x01}));
+  EXPECT_EQ(Time::get<1>(data), (canopen::TimeDifference{0x0ABCDEF0, 0x8001}));
+}
+
+TEST(PdoLayout, CarriesABooleanInAWholeByte) {
+  using Layout = canopen::PdoLayout<canopen::Padded<Entry<1, bool>, 8>, Entry<2, std::uint8_t>>;
+  EXPECT_EQ(Layout::pack(true, 2), (Data{1, 2}));
+  EXPECT_TRUE(Layout::get<0>(Data{0x80}));
+}
+
+using Text = Entry<1, canopen::VisibleString<10>>;
+using Octets = Entry<2, canopen::OctetString<4>>;
+
+TEST(PdoLayout, FillsTextUpWithZeros) {
+  using Layout = canopen::PdoLayout<canopen::FixedString<Text, 8>>;
+  EXPECT_EQ(Layout::pack("abc"), (Data{'a', 'b', 'c'}));
+  EXPECT_EQ(Layout::pack("abcdefghij"), (Data{'a', 'b', 'c', 'd', 'e', 'f', 'g', 'h'}));
+  EXPECT_EQ(Layout::get<0>(Data{'a', 'b', 'c'}).view(), "abc");
+  EXPECT_EQ(Layout::get<0>(Data{'a', 'b', 'c', 'd', 'e', 'f', 'g', 'h'}).view(), "abcdefgh");
+  EXPECT_EQ(Layout::get<0>(Data{}).view(), "");
+}
+
+TEST(PdoLayout, CarriesAsManyOctetsAsTheEntryHas) {
+  using Layout = canopen::PdoLayout<Entry<3, std::uint8_t, 4>, canopen::FixedString<Octets, 3>>;
+  const auto data = Layout::pack(0xF, {0x12, 0x00});
+  EXPECT_EQ(data, (Data{0x2F, 0x01, 0x00, 0x00}));
+  const auto octets = Layout::get<1>(Data{0x2F, 0x01, 0x40, 0x05});
+  ASSERT_EQ(octets.size, 3);
+  EXPECT_EQ(octets.bytes, (std::array<std::uint8_t, 4>{0x12, 0x00, 0x54, 0}));
+}
+
+TEST(PdoLayout, KeepsTheBitsOfADummy) {
+  EXPECT_EQ(sample::Rpdo2::pack(true, true, 0x55, 0x123456), (Data{0x57, 0x59, 0xD1, 0x48}));
+  EXPECT_EQ(sample::Rpdo2::get<2>(Data{0x57, 0x59, 0xD1, 0x48}), 0x55U);
+  using Real = canopen::Rpdo<canopen::Dummy<0x0008, 32>, Entry<1, std::uint8_t>>;
+  EXPECT_EQ(Real::get<1>(Data{0, 0, 0xC0, 0x3F, 0x11}), 0x11);
+}
+
+TEST(PdoLayout, FindsAnEntryByItsObject) {
+  constexpr Data data{0x31, 0x02, 0xFE, 0xFF, 0xFF, 0xFF};
+  EXPECT_EQ(sample::Tpdo1::get<od::position_actual_value>(data), -2);
+  EXPECT_EQ(sample::Tpdo1::get<od::statusword>(data), 0x0231);
+  static_assert(sample::Rpdo2::position_of<od::unsigned24_value> == 3);
+}
+
+TEST(PdoLayout, SetsOneEntryAndNoOther) {
+  Data data{0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF};
+  sample::Tpdo2::set<od::integer40_value>(data, 0);
+  EXPECT_EQ(data, (Data{0x03, 0x00, 0x00, 0x00, 0x00, 0xFC, 0xFF, 0xFF}));
+  sample::Tpdo2::set<od::inputs::input_1>(data, false);
+  EXPECT_EQ(data, (Data{0x02, 0x00, 0x00, 0x00, 0x00, 0xFC, 0xFF, 0xFF}));
+  sample::Tpdo2::set<3>(data, 0x81);
+  EXPECT_EQ(data, (Data{0x02, 0x00, 0x00, 0x00, 0x00, 0x04, 0xFE, 0xFF}));
+}
+
+TEST(PdoLayout, WorksOnAFrameAsOnItsData) {
+  canopen::Frame frame{.id = 0x185, .data = {9, 9, 9, 9, 9, 9, 9, 9}};
+  sample::Tpdo1::pack_into(frame, 0x0231, 0x12345678);
+  EXPECT_EQ(frame.size, 6);
+  EXPECT_EQ(frame.data, (Data{0x31, 0x02, 0x78, 0x56, 0x34, 0x12, 9, 9}));
+  sample::Tpdo1::set<od::statusword>(frame, 0x0637);
+  EXPECT_EQ(sample::Tpdo1::get<0>(frame), 0x0637);
+  EXPECT_EQ(sample::Tpdo1::get<od::position_actual_value>(frame), 0x12345678);
+  EXPECT_EQ(sample::Tpdo1::unpack(frame), std::make_tuple(std::uint16_t{0x0637}, 0x12345678));
+}
+
+TEST(PdoLayout, IsCodedWhileTheProgramIsCompiled) {
+  constexpr Data data = [] {
+    Data bytes = sample::Tpdo2::pack(true, true, -1, 0xFF);
+    sample::Tpdo2::set<od::integer40_value>(bytes, 1);
+    return bytes;
+  }();
+  static_assert(data == Data{0x07, 0x00, 0x00, 0x00, 0x00, 0xFC, 0x03});
+  static_assert(sample::Tpdo2::get<od::error_register>(data) == 0xFF);
+  using Layout = canopen::PdoLayout<canopen::FixedString<Octets, 2>>;
+  static_assert(Layout::pack({1, 2}) == Data{1, 2});
+  static_assert(Layout::get<0>(Data{3, 4}).bytes[1] == 4);
 }
 
 }  // namespace

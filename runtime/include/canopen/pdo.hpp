@@ -2,21 +2,19 @@
 #pragma once
 
 #include <array>
-#include <bit>
-#include <concepts>
+#include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <tuple>
-#include <type_traits>
 #include <utility>
 
 #include "canopen/dictionary.hpp"
 #include "canopen/frame.hpp"
 #include "canopen/object.hpp"
+#include "canopen/pdo_codec.hpp"
 
 namespace canopen {
 
-/// An entry of an RPDO that carries nothing for this device (CiA 301, 7.4.7.1: indices 0001h..0007h).
+/// An entry of an RPDO that carries nothing for this device (CiA 301, 7.4.7.1: indices 0001h..0008h).
 template <std::uint16_t DataTypeIndex, std::uint16_t Bits>
 struct Dummy {
   using type = std::uint64_t;
@@ -32,6 +30,15 @@ template <class O, std::uint16_t Bits>
 struct Padded : O {
   static_assert(Bits >= O::bits);
   static constexpr std::uint16_t bits = Bits;
+};
+
+/// An entry that carries a string in a fixed number of bytes: text is filled up with 00h and ends at the first one,
+/// octets are always as many.
+template <class O, std::uint16_t Bytes>
+struct FixedString : O {
+  static_assert(pdo_detail::StringValue<typename O::type>, "only a string has a length to be fixed");
+  static_assert(Bytes <= O::type::capacity(), "the entry is longer than the string can be");
+  static constexpr std::uint16_t bits = Bytes * 8;
 };
 
 template <class O>
@@ -50,6 +57,18 @@ template <class O>
 concept RpdoMappable = DictionaryObject<O> && allows(O::mappable, Mappable::rpdo);
 
 namespace pdo_detail {
+
+inline constexpr unsigned frame_data_align = 4;
+static_assert(offsetof(Frame, data) % frame_data_align == 0 && alignof(Frame) % frame_data_align == 0);
+
+template <class A, class B>
+inline constexpr bool same_object = A::index == B::index&& A::sub_index == B::sub_index;
+
+template <class Layout, class O>
+struct MappedObject {
+  static_assert(Layout::template maps<O>, "this PDO does not map the object");
+  static constexpr bool found = Layout::template maps<O>;
+};
 
 // One object each, so that the compiler's message names the one that is wrong.
 
@@ -71,95 +90,13 @@ struct RpdoEntry {
   static constexpr bool fits = true;
 };
 
-[[nodiscard]] constexpr std::uint64_t mask(unsigned bits) {
-  return bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
-}
-
-template <class T>
-[[nodiscard]] constexpr std::uint64_t to_bits(const T& value) {
-  if constexpr (std::is_same_v<T, float>) {
-    return std::bit_cast<std::uint32_t>(value);
-  } else if constexpr (std::is_same_v<T, double>) {
-    return std::bit_cast<std::uint64_t>(value);
-  } else if constexpr (std::is_same_v<T, TimeOfDay> || std::is_same_v<T, TimeDifference>) {
-    return value.milliseconds | (static_cast<std::uint64_t>(value.days) << 32);
-  } else {
-    return static_cast<std::uint64_t>(value);
-  }
-}
-
-template <class T, unsigned Bits>
-[[nodiscard]] constexpr T from_bits(std::uint64_t raw) {
-  if constexpr (std::is_same_v<T, float>) {
-    return std::bit_cast<float>(static_cast<std::uint32_t>(raw));
-  } else if constexpr (std::is_same_v<T, double>) {
-    return std::bit_cast<double>(raw);
-  } else if constexpr (std::is_same_v<T, TimeOfDay> || std::is_same_v<T, TimeDifference>) {
-    return T{static_cast<std::uint32_t>(raw), static_cast<std::uint16_t>(raw >> 32)};
-  } else if constexpr (std::is_signed_v<T>) {
-    constexpr unsigned unused = 64 - Bits;
-    return static_cast<T>(static_cast<std::int64_t>(raw << unused) >> unused);
-  } else {
-    return static_cast<T>(raw);
-  }
-}
-
-/// Bytes that `Bits` bits from bit `At` on touch.
-template <unsigned At, unsigned Bits>
-using TouchedBytes = std::make_index_sequence<(At % 8 + Bits + 7) / 8>;
-
-/// Wide enough for `Bits` bits: shifts of 64 bits are dear on small controllers.
-template <unsigned Bits>
-using Raw = std::conditional_t<(Bits <= 32), std::uint32_t, std::uint64_t>;
-
-/// What byte `I` of a value that begins at bit `Shift` of byte 0 holds.
-template <unsigned Shift, std::size_t I, class Value>
-[[nodiscard]] constexpr std::uint8_t byte_of(Value value) {
-  if constexpr (I == 0) {
-    return static_cast<std::uint8_t>(value << Shift);
-  } else {
-    return static_cast<std::uint8_t>(value >> (8 * I - Shift));
-  }
-}
-
-/// The bits of a value that stand in byte `I`, at their place in the value.
-template <class Value, unsigned Shift, std::size_t I>
-[[nodiscard]] constexpr Value bits_of(std::uint8_t byte) {
-  if constexpr (I == 0) {
-    return static_cast<Value>(byte >> Shift);
-  } else {
-    return static_cast<Value>(Value{byte} << (8 * I - Shift));
-  }
-}
-
-/// Puts the low `Bits` bits of `raw` at bit `At` of the data; what stood there is zero. Whole bytes become plain
-/// stores.
-template <unsigned At, unsigned Bits>
-constexpr void put(std::array<std::uint8_t, 8>& data, std::uint64_t raw) {
-  const auto value = static_cast<Raw<Bits>>(raw & mask(Bits));
-  [&]<std::size_t... I>(std::index_sequence<I...>) {
-    if constexpr (At % 8 == 0 && Bits % 8 == 0) {
-      ((data[At / 8 + I] = byte_of<0, I>(value)), ...);
-    } else {
-      ((data[At / 8 + I] = static_cast<std::uint8_t>(data[At / 8 + I] | byte_of<At % 8, I>(value))), ...);
-    }
-  }
-  (TouchedBytes<At, Bits>{});
-}
-
-template <unsigned At, unsigned Bits>
-[[nodiscard]] constexpr std::uint64_t take(const std::array<std::uint8_t, 8>& data) {
-  using Value = Raw<Bits>;
-  return [&]<std::size_t... I>(std::index_sequence<I...>) {
-    return (Value{0} | ... | bits_of<Value, At % 8, I>(data[At / 8 + I]));
-  }
-  (TouchedBytes<At, Bits>{}) & mask(Bits);
-}
-
 }  // namespace pdo_detail
 
 /// The layout of a PDO made of `Objects`, in their order, low bit first. Known without a dictionary: a master or an
 /// analyser uses it as well as the device.
+///
+/// Each function takes the data bytes of a frame, or the frame: that knows how its data are aligned, which spares
+/// instructions where words must be.
 template <DictionaryObject... Objects>
 struct PdoLayout {
   static_assert((true && ... && pdo_detail::PdoEntry<Objects>::fits));
@@ -172,7 +109,7 @@ struct PdoLayout {
   using Data = std::array<std::uint8_t, 8>;
   using Values = std::tuple<typename Objects::type...>;
 
-  /// First bit of each entry.
+  /// First bit of each entry, and the end of the last.
   static constexpr std::array<unsigned, entries + 1> offsets = [] {
     std::array<unsigned, entries + 1> at{};
     unsigned i = 0;
@@ -180,32 +117,97 @@ struct PdoLayout {
     return at;
   }();
 
+  /// The object of entry `I`.
+  template <std::size_t I>
+  using Entry = std::tuple_element_t<I, std::tuple<Objects...>>;
+
   /// Whether an object is among the entries.
   template <class O>
-  static constexpr bool maps = ((O::index == Objects::index && O::sub_index == Objects::sub_index) || ...);
+  static constexpr bool maps = (pdo_detail::same_object<O, Objects> || ...);
+
+  /// Which entry carries an object, from 0; the first one if there are several.
+  template <class O>
+  static constexpr std::size_t position_of = [] {
+    static_assert(pdo_detail::MappedObject<PdoLayout, O>::found);
+    std::size_t position = 0;
+    static_cast<void>(((pdo_detail::same_object<O, Objects> || (++position, false)) || ...));
+    return position;
+  }();
 
   /// The data bytes for these values.
   [[nodiscard]] static constexpr Data pack(const typename Objects::type&... values) {
-    return pack_values(std::index_sequence_for<Objects...>{}, values...);
+    Data data{};
+    pack_aligned<1>(data, values...);
+    return data;
+  }
+
+  /// Puts these values into the first `size` bytes.
+  static constexpr void pack_into(Data& data, const typename Objects::type&... values) {
+    pack_aligned<1>(data, values...);
+  }
+
+  /// The same for a frame, whose length it sets.
+  static constexpr void pack_into(Frame& frame, const typename Objects::type&... values) {
+    frame.size = size;
+    pack_aligned<pdo_detail::frame_data_align>(frame.data, values...);
   }
 
   /// The values in these data bytes.
   [[nodiscard]] static constexpr Values unpack(const Data& data) {
-    return unpack_values(data, std::index_sequence_for<Objects...>{});
+    return unpack_aligned<1>(data, std::index_sequence_for<Objects...>{});
+  }
+  [[nodiscard]] static constexpr Values unpack(const Frame& frame) {
+    return unpack_aligned<pdo_detail::frame_data_align>(frame.data, std::index_sequence_for<Objects...>{});
   }
 
   /// Entry `I` of these data bytes.
   template <std::size_t I>
-  [[nodiscard]] static constexpr auto get(const Data& data) {
-    using O = std::tuple_element_t<I, std::tuple<Objects...>>;
-    return pdo_detail::from_bits<typename O::type, O::bits>(pdo_detail::take<offsets[I], O::bits>(data));
+  [[nodiscard]] static constexpr typename Entry<I>::type get(const Data& data) {
+    return get_aligned<I, 1>(data);
+  }
+  template <std::size_t I>
+  [[nodiscard]] static constexpr typename Entry<I>::type get(const Frame& frame) {
+    return get_aligned<I, pdo_detail::frame_data_align>(frame.data);
+  }
+
+  /// The value of an object in these data bytes.
+  template <DictionaryObject O>
+  [[nodiscard]] static constexpr typename O::type get(const Data& data) {
+    return get_aligned<position_of<O>, 1>(data);
+  }
+  template <DictionaryObject O>
+  [[nodiscard]] static constexpr typename O::type get(const Frame& frame) {
+    return get_aligned<position_of<O>, pdo_detail::frame_data_align>(frame.data);
+  }
+
+  /// Gives entry `I` another value. All other bits stay.
+  template <std::size_t I>
+  static constexpr void set(Data& data, const typename Entry<I>::type& value) {
+    pdo_detail::replace<offsets[I], Entry<I>::bits>(data, value);
+  }
+  template <std::size_t I>
+  static constexpr void set(Frame& frame, const typename Entry<I>::type& value) {
+    pdo_detail::replace<offsets[I], Entry<I>::bits, pdo_detail::frame_data_align>(frame.data, value);
+  }
+
+  /// Gives an object another value. All other bits stay.
+  template <DictionaryObject O>
+  static constexpr void set(Data& data, const typename O::type& value) {
+    set<position_of<O>>(data, value);
+  }
+  template <DictionaryObject O>
+  static constexpr void set(Frame& frame, const typename O::type& value) {
+    set<position_of<O>>(frame, value);
   }
 
   /// Puts the value of entry `I` into data bytes where it is zero so far.
   template <std::size_t I>
-  static constexpr void put(Data& data, const typename std::tuple_element_t<I, std::tuple<Objects...>>::type& value) {
-    using O = std::tuple_element_t<I, std::tuple<Objects...>>;
-    pdo_detail::put<offsets[I], O::bits>(data, pdo_detail::to_bits(value));
+  static constexpr void put(Data& data, const typename Entry<I>::type& value) {
+    pdo_detail::put<offsets[I], Entry<I>::bits>(data, value);
+  }
+  template <std::size_t I>
+  static constexpr void put(Frame& frame, const typename Entry<I>::type& value) {
+    pdo_detail::put<offsets[I], Entry<I>::bits, pdo_detail::frame_data_align>(frame.data, value);
   }
 
   /// Calls `visit.template operator()<O, I>()` for each entry in order.
@@ -216,16 +218,33 @@ struct PdoLayout {
   }
 
  private:
-  template <std::size_t... I>
-  [[nodiscard]] static constexpr Data pack_values(std::index_sequence<I...>, const typename Objects::type&... values) {
-    Data data{};
-    (pdo_detail::put<offsets[I], Objects::bits>(data, pdo_detail::to_bits(values)), ...);
-    return data;
+  template <unsigned Align>
+  static constexpr void pack_aligned([[maybe_unused]] Data& data, const typename Objects::type&... values) {
+    constexpr pdo_detail::Chunks chunks = pdo_detail::chunks_of(offsets);
+    [&]<std::size_t... C>(std::index_sequence<C...>) {
+      (store_chunk<Align, chunks.rows[C].first, chunks.rows[C].bits>(data, std::index_sequence_for<Objects...>{},
+                                                                     values...),
+       ...);
+    }
+    (std::make_index_sequence<chunks.count>{});
   }
 
-  template <std::size_t... I>
-  [[nodiscard]] static constexpr Values unpack_values([[maybe_unused]] const Data& data, std::index_sequence<I...>) {
-    return Values{get<I>(data)...};
+  template <unsigned Align, unsigned First, unsigned Bits, std::size_t... I>
+  static constexpr void store_chunk(Data& data, std::index_sequence<I...>, const typename Objects::type&... values) {
+    pdo_detail::store_bytes<Bits / 8, pdo_detail::alignment_at(Align, First / 8)>(
+        data.data() + First / 8, static_cast<pdo_detail::ChunkWord<Bits>>(
+                                     (pdo_detail::ChunkWord<Bits>{0} | ... |
+                                      pdo_detail::part_of_chunk<offsets[I], Objects::bits, First, Bits>(values))));
+  }
+
+  template <std::size_t I, unsigned Align>
+  [[nodiscard]] static constexpr typename Entry<I>::type get_aligned(const Data& data) {
+    return pdo_detail::value_at<typename Entry<I>::type, offsets[I], Entry<I>::bits, Align>(data);
+  }
+
+  template <unsigned Align, std::size_t... I>
+  [[nodiscard]] static constexpr Values unpack_aligned([[maybe_unused]] const Data& data, std::index_sequence<I...>) {
+    return Values{pdo_detail::value_at<typename Objects::type, offsets[I], Objects::bits, Align, true>(data)...};
   }
 };
 

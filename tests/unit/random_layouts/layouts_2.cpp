@@ -1,0 +1,5 @@
+#include "random_layouts.hpp"
+
+void random_layouts::add_layouts_2(std::vector<Codec>& codecs) {
+  add_codecs<2000>(codecs, std::make_index_sequence<layouts_a_file>{});
+}
