@@ -3,6 +3,7 @@
 #define EDSC_CAN_2017C_PDO_HPP
 
 #include <canopen/pdo.hpp>
+#include <canopen/pdo_check.hpp>
 
 #include "dictionary.hpp"
 
@@ -11,46 +12,68 @@ namespace can_2017c {
 /// RPDO 1, 1400h and 1600h: 0 bits.
 using Rpdo1 = canopen::Rpdo<>;
 static_assert(Rpdo1::bits == 0);
+using CheckedRpdo1 = canopen::CheckedRpdo<dictionary, 1, Rpdo1, canopen::PdoParameters{.cob_id = 0x200, .plus_node_id = true}, 8>;
+static_assert(CheckedRpdo1::holds);
 
 /// RPDO 2, 1401h and 1601h: 0 bits.
 using Rpdo2 = canopen::Rpdo<>;
 static_assert(Rpdo2::bits == 0);
+using CheckedRpdo2 = canopen::CheckedRpdo<dictionary, 2, Rpdo2, canopen::PdoParameters{.cob_id = 0x300, .plus_node_id = true}, 8>;
+static_assert(CheckedRpdo2::holds);
 
 /// RPDO 3, 1402h and 1602h: 0 bits.
 using Rpdo3 = canopen::Rpdo<>;
 static_assert(Rpdo3::bits == 0);
+using CheckedRpdo3 = canopen::CheckedRpdo<dictionary, 3, Rpdo3, canopen::PdoParameters{.cob_id = 0x400, .plus_node_id = true}, 8>;
+static_assert(CheckedRpdo3::holds);
 
 /// RPDO 4, 1403h and 1603h: 0 bits.
 using Rpdo4 = canopen::Rpdo<>;
 static_assert(Rpdo4::bits == 0);
+using CheckedRpdo4 = canopen::CheckedRpdo<dictionary, 4, Rpdo4, canopen::PdoParameters{.cob_id = 0x500, .plus_node_id = true}, 8>;
+static_assert(CheckedRpdo4::holds);
 
 /// RPDO 5, 1404h and 1604h: 0 bits.
 using Rpdo5 = canopen::Rpdo<>;
 static_assert(Rpdo5::bits == 0);
+using CheckedRpdo5 = canopen::CheckedRpdo<dictionary, 5, Rpdo5, canopen::PdoParameters{}, 8>;
+static_assert(CheckedRpdo5::holds);
 
 /// RPDO 6, 1405h and 1605h: 0 bits.
 using Rpdo6 = canopen::Rpdo<>;
 static_assert(Rpdo6::bits == 0);
+using CheckedRpdo6 = canopen::CheckedRpdo<dictionary, 6, Rpdo6, canopen::PdoParameters{}, 8>;
+static_assert(CheckedRpdo6::holds);
 
 /// RPDO 7, 1406h and 1606h: 0 bits.
 using Rpdo7 = canopen::Rpdo<>;
 static_assert(Rpdo7::bits == 0);
+using CheckedRpdo7 = canopen::CheckedRpdo<dictionary, 7, Rpdo7, canopen::PdoParameters{}, 8>;
+static_assert(CheckedRpdo7::holds);
 
 /// RPDO 8, 1407h and 1607h: 0 bits.
 using Rpdo8 = canopen::Rpdo<>;
 static_assert(Rpdo8::bits == 0);
+using CheckedRpdo8 = canopen::CheckedRpdo<dictionary, 8, Rpdo8, canopen::PdoParameters{}, 8>;
+static_assert(CheckedRpdo8::holds);
 
 /// RPDO 9, 1408h and 1608h: 0 bits.
 using Rpdo9 = canopen::Rpdo<>;
 static_assert(Rpdo9::bits == 0);
+using CheckedRpdo9 = canopen::CheckedRpdo<dictionary, 9, Rpdo9, canopen::PdoParameters{}, 8>;
+static_assert(CheckedRpdo9::holds);
 
 /// RPDO 10, 1409h and 1609h: 0 bits.
 using Rpdo10 = canopen::Rpdo<>;
 static_assert(Rpdo10::bits == 0);
+using CheckedRpdo10 = canopen::CheckedRpdo<dictionary, 10, Rpdo10, canopen::PdoParameters{}, 8>;
+static_assert(CheckedRpdo10::holds);
 
 /// TPDO 1, 1800h and 1A00h: 0 bits.
 using Tpdo1 = canopen::Tpdo<>;
 static_assert(Tpdo1::bits == 0);
+using CheckedTpdo1 = canopen::CheckedTpdo<dictionary, 1, Tpdo1, canopen::PdoParameters{.cob_id = 0x180, .plus_node_id = true}, 8>;
+static_assert(CheckedTpdo1::holds);
 
 /// TPDO 2, 1801h and 1A01h: 64 bits.
 ///    0..15  6401h:01  INTEGER16  Analogue input 0
@@ -59,6 +82,8 @@ static_assert(Tpdo1::bits == 0);
 ///   48..63  6401h:04  INTEGER16  Analogue input 3
 using Tpdo2 = canopen::Tpdo<od::read_analogue_input_16_bit<1>, od::read_analogue_input_16_bit<2>, od::read_analogue_input_16_bit<3>, od::read_analogue_input_16_bit<4>>;
 static_assert(Tpdo2::bits == 64);
+using CheckedTpdo2 = canopen::CheckedTpdo<dictionary, 2, Tpdo2, canopen::PdoParameters{.cob_id = 0x280, .plus_node_id = true}, 8>;
+static_assert(CheckedTpdo2::holds);
 
 /// TPDO 3, 1802h and 1A02h: 64 bits.
 ///    0..15  6401h:05  INTEGER16  Analogue input 4
@@ -67,34 +92,53 @@ static_assert(Tpdo2::bits == 64);
 ///   48..63  6401h:08  INTEGER16  Analogue input 7
 using Tpdo3 = canopen::Tpdo<od::read_analogue_input_16_bit<5>, od::read_analogue_input_16_bit<6>, od::read_analogue_input_16_bit<7>, od::read_analogue_input_16_bit<8>>;
 static_assert(Tpdo3::bits == 64);
+using CheckedTpdo3 = canopen::CheckedTpdo<dictionary, 3, Tpdo3, canopen::PdoParameters{.cob_id = 0x380, .plus_node_id = true}, 8>;
+static_assert(CheckedTpdo3::holds);
 
 /// TPDO 4, 1803h and 1A03h: 0 bits.
 using Tpdo4 = canopen::Tpdo<>;
 static_assert(Tpdo4::bits == 0);
+using CheckedTpdo4 = canopen::CheckedTpdo<dictionary, 4, Tpdo4, canopen::PdoParameters{.cob_id = 0x480, .plus_node_id = true}, 8>;
+static_assert(CheckedTpdo4::holds);
 
 /// TPDO 5, 1804h and 1A04h: 0 bits.
 using Tpdo5 = canopen::Tpdo<>;
 static_assert(Tpdo5::bits == 0);
+using CheckedTpdo5 = canopen::CheckedTpdo<dictionary, 5, Tpdo5, canopen::PdoParameters{}, 8>;
+static_assert(CheckedTpdo5::holds);
 
 /// TPDO 6, 1805h and 1A05h: 0 bits.
 using Tpdo6 = canopen::Tpdo<>;
 static_assert(Tpdo6::bits == 0);
+using CheckedTpdo6 = canopen::CheckedTpdo<dictionary, 6, Tpdo6, canopen::PdoParameters{}, 8>;
+static_assert(CheckedTpdo6::holds);
 
 /// TPDO 7, 1806h and 1A06h: 0 bits.
 using Tpdo7 = canopen::Tpdo<>;
 static_assert(Tpdo7::bits == 0);
+using CheckedTpdo7 = canopen::CheckedTpdo<dictionary, 7, Tpdo7, canopen::PdoParameters{}, 8>;
+static_assert(CheckedTpdo7::holds);
 
 /// TPDO 8, 1807h and 1A07h: 0 bits.
 using Tpdo8 = canopen::Tpdo<>;
 static_assert(Tpdo8::bits == 0);
+using CheckedTpdo8 = canopen::CheckedTpdo<dictionary, 8, Tpdo8, canopen::PdoParameters{}, 8>;
+static_assert(CheckedTpdo8::holds);
 
 /// TPDO 9, 1808h and 1A08h: 0 bits.
 using Tpdo9 = canopen::Tpdo<>;
 static_assert(Tpdo9::bits == 0);
+using CheckedTpdo9 = canopen::CheckedTpdo<dictionary, 9, Tpdo9, canopen::PdoParameters{}, 8>;
+static_assert(CheckedTpdo9::holds);
 
 /// TPDO 10, 1809h and 1A09h: 0 bits.
 using Tpdo10 = canopen::Tpdo<>;
 static_assert(Tpdo10::bits == 0);
+using CheckedTpdo10 = canopen::CheckedTpdo<dictionary, 10, Tpdo10, canopen::PdoParameters{}, 8>;
+static_assert(CheckedTpdo10::holds);
+
+/// Each frame has one producer.
+static_assert(canopen::distinct_cob_ids<CheckedRpdo1, CheckedRpdo2, CheckedRpdo3, CheckedRpdo4, CheckedTpdo1, CheckedTpdo2, CheckedTpdo3, CheckedTpdo4>());
 
 }  // namespace can_2017c
 

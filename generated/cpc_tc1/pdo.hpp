@@ -3,6 +3,7 @@
 #define EDSC_CPC_TC1_PDO_HPP
 
 #include <canopen/pdo.hpp>
+#include <canopen/pdo_check.hpp>
 
 #include "dictionary.hpp"
 
@@ -12,45 +13,64 @@ namespace cpc_tc1 {
 ///    0..15  6040h:00  UNSIGNED16  Controlword
 using Rpdo1 = canopen::Rpdo<od::controlword>;
 static_assert(Rpdo1::bits == 16);
+using CheckedRpdo1 = canopen::CheckedRpdo<dictionary, 1, Rpdo1, canopen::PdoParameters{.cob_id = 0x200, .plus_node_id = true}, 8>;
+static_assert(CheckedRpdo1::holds);
 
 /// RPDO 2, 1401h and 1601h: 48 bits.
 ///    0..15  6040h:00  UNSIGNED16  Controlword
 ///   16..47  607Ah:00  INTEGER32  Target position
 using Rpdo2 = canopen::Rpdo<od::controlword, od::target_position>;
 static_assert(Rpdo2::bits == 48);
+using CheckedRpdo2 = canopen::CheckedRpdo<dictionary, 2, Rpdo2, canopen::PdoParameters{.cob_id = 0x80000300, .plus_node_id = true}, 8>;
+static_assert(CheckedRpdo2::holds);
 
 /// RPDO 3, 1402h and 1602h: 48 bits.
 ///    0..15  6040h:00  UNSIGNED16  Controlword
 ///   16..47  60FFh:00  INTEGER32  Target velocity
 using Rpdo3 = canopen::Rpdo<od::controlword, od::target_velocity>;
 static_assert(Rpdo3::bits == 48);
+using CheckedRpdo3 = canopen::CheckedRpdo<dictionary, 3, Rpdo3, canopen::PdoParameters{.cob_id = 0x80000400, .plus_node_id = true}, 8>;
+static_assert(CheckedRpdo3::holds);
 
 /// RPDO 4, 1403h and 1603h: 0 bits.
 using Rpdo4 = canopen::Rpdo<>;
 static_assert(Rpdo4::bits == 0);
+using CheckedRpdo4 = canopen::CheckedRpdo<dictionary, 4, Rpdo4, canopen::PdoParameters{.cob_id = 0x80000500, .plus_node_id = true}, 8>;
+static_assert(CheckedRpdo4::holds);
 
 /// TPDO 1, 1800h and 1A00h: 16 bits.
 ///    0..15  6041h:00  UNSIGNED16  Statusword
 using Tpdo1 = canopen::Tpdo<od::statusword>;
 static_assert(Tpdo1::bits == 16);
+using CheckedTpdo1 = canopen::CheckedTpdo<dictionary, 1, Tpdo1, canopen::PdoParameters{.cob_id = 0x40000180, .plus_node_id = true, .event_timer = 100}, 8>;
+static_assert(CheckedTpdo1::holds);
 
 /// TPDO 2, 1801h and 1A01h: 48 bits.
 ///    0..15  6041h:00  UNSIGNED16  Statusword
 ///   16..47  6064h:00  INTEGER32  Position actual value
 using Tpdo2 = canopen::Tpdo<od::statusword, od::position_actual_value>;
 static_assert(Tpdo2::bits == 48);
+using CheckedTpdo2 = canopen::CheckedTpdo<dictionary, 2, Tpdo2, canopen::PdoParameters{.cob_id = 0x40000280, .plus_node_id = true, .event_timer = 100}, 8>;
+static_assert(CheckedTpdo2::holds);
 
 /// TPDO 3, 1802h and 1A02h: 48 bits.
 ///    0..15  6041h:00  UNSIGNED16  Statusword
 ///   16..47  606Ch:00  INTEGER32  Velocity actual value
 using Tpdo3 = canopen::Tpdo<od::statusword, od::velocity_actual_value>;
 static_assert(Tpdo3::bits == 48);
+using CheckedTpdo3 = canopen::CheckedTpdo<dictionary, 3, Tpdo3, canopen::PdoParameters{.cob_id = 0x40000380, .plus_node_id = true, .event_timer = 100}, 8>;
+static_assert(CheckedTpdo3::holds);
 
 /// TPDO 4, 1803h and 1A03h: 48 bits.
 ///    0..15  6041h:00  UNSIGNED16  Statusword
 ///   16..47  606Ch:00  INTEGER32  Velocity actual value
 using Tpdo4 = canopen::Tpdo<od::statusword, od::velocity_actual_value>;
 static_assert(Tpdo4::bits == 48);
+using CheckedTpdo4 = canopen::CheckedTpdo<dictionary, 4, Tpdo4, canopen::PdoParameters{.cob_id = 0x40000480, .plus_node_id = true, .event_timer = 100}, 8>;
+static_assert(CheckedTpdo4::holds);
+
+/// Each frame has one producer.
+static_assert(canopen::distinct_cob_ids<CheckedRpdo1, CheckedTpdo1, CheckedTpdo2, CheckedTpdo3, CheckedTpdo4>());
 
 }  // namespace cpc_tc1
 

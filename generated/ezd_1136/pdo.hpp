@@ -3,6 +3,7 @@
 #define EDSC_EZD_1136_PDO_HPP
 
 #include <canopen/pdo.hpp>
+#include <canopen/pdo_check.hpp>
 
 #include "dictionary.hpp"
 
@@ -15,24 +16,32 @@ namespace ezd_1136 {
 ///   32..63  607Ch:00  INTEGER32  Home offset
 using Rpdo1 = canopen::Rpdo<od::controlword, od::modes_of_operation, od::homing_method, od::home_offset>;
 static_assert(Rpdo1::bits == 64);
+using CheckedRpdo1 = canopen::CheckedRpdo<dictionary, 1, Rpdo1, canopen::PdoParameters{.cob_id = 0x200, .plus_node_id = true}, 8>;
+static_assert(CheckedRpdo1::holds);
 
 /// RPDO 2, 1401h and 1601h: 64 bits.
 ///    0..31  607Ah:00  INTEGER32  Target position
 ///   32..63  6081h:00  UNSIGNED32  Profile velocity
 using Rpdo2 = canopen::Rpdo<od::target_position, od::profile_velocity>;
 static_assert(Rpdo2::bits == 64);
+using CheckedRpdo2 = canopen::CheckedRpdo<dictionary, 2, Rpdo2, canopen::PdoParameters{.cob_id = 0x300, .plus_node_id = true}, 8>;
+static_assert(CheckedRpdo2::holds);
 
 /// RPDO 3, 1402h and 1602h: 64 bits.
 ///    0..31  60FFh:00  INTEGER32  Target velocity
 ///   32..63  6085h:00  UNSIGNED32  Quick stop deceleration
 using Rpdo3 = canopen::Rpdo<od::target_velocity, od::quick_stop_deceleration>;
 static_assert(Rpdo3::bits == 64);
+using CheckedRpdo3 = canopen::CheckedRpdo<dictionary, 3, Rpdo3, canopen::PdoParameters{.cob_id = 0x400, .plus_node_id = true}, 8>;
+static_assert(CheckedRpdo3::holds);
 
 /// RPDO 4, 1403h and 1603h: 64 bits.
 ///    0..31  6083h:00  UNSIGNED32  Profile acceleration
 ///   32..63  6084h:00  UNSIGNED32  Profile deceleration
 using Rpdo4 = canopen::Rpdo<od::profile_acceleration, od::profile_deceleration>;
 static_assert(Rpdo4::bits == 64);
+using CheckedRpdo4 = canopen::CheckedRpdo<dictionary, 4, Rpdo4, canopen::PdoParameters{.cob_id = 0x500, .plus_node_id = true}, 8>;
+static_assert(CheckedRpdo4::holds);
 
 /// TPDO 1, 1800h and 1A00h: 40 bits.
 ///    0..15  6041h:00  UNSIGNED16  Statusword
@@ -40,22 +49,33 @@ static_assert(Rpdo4::bits == 64);
 ///   32..39  6061h:00  INTEGER8  Modes of operation display
 using Tpdo1 = canopen::Tpdo<od::statusword, od::error_code, od::modes_of_operation_display>;
 static_assert(Tpdo1::bits == 40);
+using CheckedTpdo1 = canopen::CheckedTpdo<dictionary, 1, Tpdo1, canopen::PdoParameters{.cob_id = 0x180, .plus_node_id = true}, 8>;
+static_assert(CheckedTpdo1::holds);
 
 /// TPDO 2, 1801h and 1A01h: 64 bits.
 ///    0..31  6064h:00  INTEGER32  Position actual value
 ///   32..63  606Ch:00  INTEGER32  Velocity actual value
 using Tpdo2 = canopen::Tpdo<od::position_actual_value, od::velocity_actual_value>;
 static_assert(Tpdo2::bits == 64);
+using CheckedTpdo2 = canopen::CheckedTpdo<dictionary, 2, Tpdo2, canopen::PdoParameters{.cob_id = 0x280, .plus_node_id = true}, 8>;
+static_assert(CheckedTpdo2::holds);
 
 /// TPDO 3, 1802h and 1A02h: 48 bits.
 ///    0..15  207Ch:00  UNSIGNED16  Locked rotor detection
 ///   16..47  60FDh:00  UNSIGNED32  Digital inputs
 using Tpdo3 = canopen::Tpdo<od::locked_rotor_detection, od::digital_inputs>;
 static_assert(Tpdo3::bits == 48);
+using CheckedTpdo3 = canopen::CheckedTpdo<dictionary, 3, Tpdo3, canopen::PdoParameters{.cob_id = 0x380, .plus_node_id = true}, 8>;
+static_assert(CheckedTpdo3::holds);
 
 /// TPDO 4, 1803h and 1A03h: 0 bits.
 using Tpdo4 = canopen::Tpdo<>;
 static_assert(Tpdo4::bits == 0);
+using CheckedTpdo4 = canopen::CheckedTpdo<dictionary, 4, Tpdo4, canopen::PdoParameters{.cob_id = 0x480, .plus_node_id = true}, 8>;
+static_assert(CheckedTpdo4::holds);
+
+/// Each frame has one producer.
+static_assert(canopen::distinct_cob_ids<CheckedRpdo1, CheckedRpdo2, CheckedRpdo3, CheckedRpdo4, CheckedTpdo1, CheckedTpdo2, CheckedTpdo3, CheckedTpdo4>());
 
 }  // namespace ezd_1136
 

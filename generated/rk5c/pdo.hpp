@@ -3,6 +3,7 @@
 #define EDSC_RK5C_PDO_HPP
 
 #include <canopen/pdo.hpp>
+#include <canopen/pdo_check.hpp>
 
 #include "dictionary.hpp"
 
@@ -13,6 +14,8 @@ namespace rk5c {
 ///   32..47  6030h:01  INTEGER16  Speed value channel 1
 using Tpdo1 = canopen::Tpdo<od::position_values_for_multi_sensor_devices<1>, od::speed_value<1>>;
 static_assert(Tpdo1::bits == 48);
+using CheckedTpdo1 = canopen::CheckedTpdo<dictionary, 1, Tpdo1, canopen::PdoParameters{.cob_id = 0x180, .plus_node_id = true, .transmission_type = 254, .event_timer = 1}>;
+static_assert(CheckedTpdo1::holds);
 
 }  // namespace rk5c
 

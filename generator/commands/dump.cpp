@@ -25,7 +25,7 @@ struct Settings {
 /// value can meet from what the C++ templates see.
 nlohmann::ordered_json view_of(LoadedDevice& loaded) {
   Diagnostics unheard;
-  check_pdos(*loaded.device, unheard);
+  check_pdos(*loaded.device, loaded.options, unheard);
   nlohmann::ordered_json view = device_view(*loaded.device);
   check_device(*loaded.device, loaded.sheet, loaded.options, unheard);
   return view;

@@ -6,6 +6,7 @@
 #include "render/cpp_text.hpp"
 #include "render/json_object.hpp"
 #include "render/memory_layout.hpp"
+#include "render/pdo_view.hpp"
 #include "render/view.hpp"
 #include "text/source_file.hpp"
 #include "text/utf8.hpp"
@@ -196,56 +197,6 @@ ordered_json layout_view(MemoryLayout&& layout) {
 
 // ---- PDOs ----
 
-/// The type of a mapped object, without regard to its length in the PDO.
-std::string mapped_object(const Device& device, const PdoEntry& entry) {
-  const Object& object = *device.find(entry.index);
-  if (!object.has_sub_indices()) return fmt::format("od::{}", object.identifier);
-  if (describes_uniform_array(object) && entry.sub_index > 0) {
-    return fmt::format("od::{}<{}>", object.identifier, entry.sub_index);
-  }
-  if (describes_uniform_array(object)) return fmt::format("od::{}<0>", object.identifier);
-  return fmt::format("od::{}::{}", object.identifier, entry.object->identifier);
-}
-
-std::string pdo_entry_type(const Device& device, const PdoEntry& entry) {
-  if (entry.dummy != nullptr) return fmt::format("canopen::Dummy<0x{:04X}, {}>", entry.index, entry.bits);
-  const std::string object = mapped_object(device, entry);
-  return entry.bits == entry.object->type->bits ? object : fmt::format("canopen::Padded<{}, {}>", object, entry.bits);
-}
-
-ordered_json pdo_rows(const Device& device) {
-  ordered_json rows = ordered_json::array();
-  for (const Pdo& pdo : device.pdos) {
-    if (pdo.mapping == nullptr) continue;
-    const bool receive = pdo.direction == PdoDirection::receive;
-    const std::uint16_t offset = static_cast<std::uint16_t>(pdo.number - 1);
-    ordered_json row;
-    row["label"] = pdo_label(pdo);
-    row["type"] = fmt::format("{}{}", receive ? "Rpdo" : "Tpdo", pdo.number);
-    row["template"] = receive ? "canopen::Rpdo" : "canopen::Tpdo";
-    row["communication"] = index_label(static_cast<std::uint16_t>((receive ? 0x1400 : 0x1800) + offset));
-    row["mapping"] = index_label(static_cast<std::uint16_t>((receive ? 0x1600 : 0x1A00) + offset));
-    row["broken"] = pdo.broken;
-    row["bits"] = pdo.bits();
-    ordered_json entries = ordered_json::array();
-    unsigned at = 0;
-    for (const PdoEntry& entry : pdo.entries) {
-      if (pdo.broken) break;
-      const std::string name = entry.dummy != nullptr ? "(dummy)" : cpp_comment(entry.object->name);
-      const auto* type = entry.dummy != nullptr ? entry.dummy : entry.object->type;
-      entries.push_back(
-          {{"object", pdo_entry_type(device, entry)},
-           {"separator", entries.empty() ? "" : ", "},
-           {"bit_range", fmt::format("{:>2}..{:<2}", at, at + entry.bits - 1)},
-           {"description", fmt::format("{}  {}  {}", entry_label(entry.index, entry.sub_index), type->name, name)}});
-      at += entry.bits;
-    }
-    row["entries"] = std::move(entries);
-    rows.push_back(std::move(row));
-  }
-  return rows;
-}
-
 /// The PDOs that the runtime serves: those with both parameters and something in them, now or later.
 ordered_json served_pdos(const Device& device, PdoDirection direction) {
   ordered_json rows = ordered_json::array();
@@ -325,11 +276,13 @@ ordered_json description_rows(const Device& device) {
 
 ordered_json cpp_view(const Device& device, const Options& options, Diagnostics& diagnostics) {
   const std::string& path = device.source->name();
+  ordered_json distinct = distinct_pdos(device);
   return json_object("file", cpp_comment(path.substr(path.find_last_of('/') + 1)), "namespace", device.name, "guard",
                      to_upper("edsc_" + device.name), "product_name",
                      cpp_string(device.product_name.empty() ? device.name : device.product_name), "types",
                      ObjectTypes{device, options}.view(), "memory", layout_view(lay_out(device, options, diagnostics)),
-                     "zero_terminated_strings", options.zero_terminated_strings, "pdos", pdo_rows(device), "rpdos",
+                     "zero_terminated_strings", options.zero_terminated_strings, "pdos", pdo_rows(device),
+                     "distinct_pdos", json_object("any", !distinct.empty(), "rows", std::move(distinct)), "rpdos",
                      served_pdos(device, PdoDirection::receive), "tpdos", served_pdos(device, PdoDirection::transmit),
                      "options", runtime_rows(options), "any_options", !options.runtime.empty(), "event_conditions",
                      event_conditions(options), "any_event_condition", !options.no_event.empty(), "emergency_info",

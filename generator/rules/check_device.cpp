@@ -17,7 +17,7 @@ void check_device(Device& device, const DataSheet& sheet, const Options& options
   check_entries(context);
   check_communication_values(context);
   check_cob_ids(context);
-  check_pdos(device, diagnostics);
+  check_pdos(device, options, diagnostics);
   check_pdo_communication(context);
   check_pdo_mapping(context);
   check_profile(context);

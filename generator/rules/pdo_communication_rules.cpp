@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <canopen/cob_id.hpp>
+#include <canopen/pdo_parameters.hpp>
 #include <canopen/transmission_type.hpp>
 
 #include "rules/pdo_defaults.hpp"
@@ -18,10 +20,10 @@ constexpr std::uint8_t compatibility_entry = 4;
 constexpr std::uint8_t event_timer = 5;
 constexpr std::uint8_t sync_start_value = 6;
 
-Transmission transmission_of(const Pdo& pdo, std::uint64_t type) {
-  const Transmission transmission = canopen::transmission_of(static_cast<std::uint32_t>(type));
-  const bool remote = transmission == Transmission::remote || transmission == Transmission::remote_synchronous;
-  return remote && pdo.direction == PdoDirection::receive ? Transmission::reserved : transmission;
+bool is_receive(const Pdo& pdo) { return pdo.direction == PdoDirection::receive; }
+
+Transmission transmission_of(std::uint64_t type) {
+  return canopen::transmission_of(static_cast<std::uint32_t>(std::min<std::uint64_t>(type, 255)));
 }
 
 bool is_synchronous(Transmission transmission) {
@@ -30,8 +32,8 @@ bool is_synchronous(Transmission transmission) {
 
 void check_transmission_type(const RuleContext& context, const Pdo& pdo, std::uint64_t type) {
   const Entry& entry = *pdo.communication->find(transmission_type);
-  const Transmission transmission = transmission_of(pdo, type);
-  if (type > 255 || transmission == Transmission::reserved) {
+  const Transmission transmission = transmission_of(type);
+  if (!canopen::transmission_type_is_legal(is_receive(pdo), static_cast<std::uint32_t>(type))) {
     context.report("pdo-transmission-type", default_place(entry),
                    fmt::format("{}: transmission type {} is reserved", pdo_label(pdo), type));
   } else if (is_synchronous(transmission) && on_by_default(pdo) && context.device.find(0x1005) == nullptr) {
@@ -42,7 +44,8 @@ void check_transmission_type(const RuleContext& context, const Pdo& pdo, std::ui
 
 /// Bit 30 of a TPDO's COB-ID: no remote frame is answered.
 void check_remote(const RuleContext& context, const Pdo& pdo, std::uint64_t type) {
-  const Transmission transmission = transmission_of(pdo, type);
+  if (is_receive(pdo)) return;
+  const Transmission transmission = transmission_of(type);
   const auto value = communication_default(pdo, cob_id);
   const bool remote = transmission == Transmission::remote || transmission == Transmission::remote_synchronous;
   if (!remote || !value || canopen::CobId{static_cast<std::uint32_t>(*value)}.rtr_allowed()) return;
@@ -51,22 +54,28 @@ void check_remote(const RuleContext& context, const Pdo& pdo, std::uint64_t type
                              pdo_label(pdo), type));
 }
 
-/// Inhibit time and event timer are for event-driven PDOs.
+void check_time(const RuleContext& context, const Pdo& pdo, std::uint8_t sub_index, bool used, std::uint64_t type) {
+  if (used || communication_default(pdo, sub_index).value_or(0) == 0) return;
+  const Entry& entry = *pdo.communication->find(sub_index);
+  context.report("pdo-time-unused", default_place(entry),
+                 is_receive(pdo) ? fmt::format("{} has no effect: {} is not sent", named(entry), pdo_label(pdo))
+                                 : fmt::format("{} has no effect: {} is of transmission type {}", named(entry),
+                                               pdo_label(pdo), type));
+}
+
+/// Inhibit time and event timer are for event-driven PDOs; the event timer of an RPDO watches it.
 void check_times(const RuleContext& context, const Pdo& pdo, std::uint64_t type) {
-  if (pdo.direction == PdoDirection::receive || !is_synchronous(transmission_of(pdo, type))) return;
-  for (const std::uint8_t sub_index : {inhibit_time, event_timer}) {
-    if (communication_default(pdo, sub_index).value_or(0) == 0) continue;
-    const Entry& entry = *pdo.communication->find(sub_index);
-    context.report("pdo-time-unused", default_place(entry),
-                   fmt::format("{} has no effect: {} is synchronous", named(entry), pdo_label(pdo)));
-  }
+  const auto number = static_cast<std::uint32_t>(type);
+  if (!canopen::transmission_type_is_legal(is_receive(pdo), number)) return;
+  check_time(context, pdo, inhibit_time, canopen::inhibit_time_is_used(is_receive(pdo), number), type);
+  check_time(context, pdo, event_timer, canopen::event_timer_is_used(is_receive(pdo), number), type);
 }
 
 void check_compatibility_entry(const RuleContext& context, const Pdo& pdo) {
   const Entry* entry = pdo.communication->find(compatibility_entry);
   if (entry == nullptr) return;
   context.report("pdo-compatibility-entry", entry->position,
-                 fmt::format("{} is reserved and left out by CiA 301", named(*entry)));
+                 fmt::format("{} of {} is reserved and left out by CiA 301", named(*entry), pdo_label(pdo)));
 }
 
 void check_sync_start(const RuleContext& context, const Pdo& pdo, std::uint64_t type) {

@@ -15,4 +15,14 @@ bool on_by_default(const Pdo& pdo) {
   return cob_id && canopen::CobId{static_cast<std::uint32_t>(*cob_id)}.valid();
 }
 
+std::optional<std::uint32_t> mapped_string_capacity(const Entry& entry, const Options& options) {
+  if (entry.type->type == canopen::DataType::unicode_string) return std::nullopt;
+  if (const auto at = options.string_capacity.find({entry.index, entry.sub_index});
+      at != options.string_capacity.end()) {
+    return at->second;
+  }
+  if (!entry.default_value || entry.default_value->bytes.empty()) return std::nullopt;
+  return static_cast<std::uint32_t>(entry.default_value->bytes.size());
+}
+
 }  // namespace edsc

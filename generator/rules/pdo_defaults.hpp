@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "device/device.hpp"
+#include "device/options.hpp"
 
 namespace edsc {
 
@@ -13,5 +14,9 @@ namespace edsc {
 
 /// The default of a sub-index of the communication parameter; nothing when there is none.
 [[nodiscard]] std::optional<std::uint64_t> communication_default(const Pdo& pdo, std::uint8_t sub_index);
+
+/// Bytes that a VISIBLE_STRING or OCTET_STRING may take in a PDO: what its options say that it holds, else the length of
+/// its default. Nothing where neither is known.
+[[nodiscard]] std::optional<std::uint32_t> mapped_string_capacity(const Entry& entry, const Options& options);
 
 }  // namespace edsc

@@ -37,7 +37,8 @@ void check_twice(const RuleContext& context, const Pdo& pdo) {
     const auto first = std::ranges::find(pdo.entries.begin(), second, second->object, &PdoEntry::object);
     if (first == second) continue;
     context.report("pdo-object-twice", second->place,
-                   fmt::format("{} maps {} twice", pdo_label(pdo), named(*second->object)),
+                   fmt::format("{} maps {} twice, as entries {} and {}", pdo_label(pdo), named(*second->object),
+                               first->position, second->position),
                    {{first->place, "the first time"}});
   }
 }
@@ -51,6 +52,11 @@ void check_empty(const RuleContext& context, const Pdo& pdo, const Entry& count)
 bool mapping_is_writable(const Pdo& pdo) {
   return pdo.mapping != nullptr &&
          std::ranges::any_of(pdo.mapping->entries, [](const Entry& entry) { return canopen::writable(entry.access); });
+}
+
+/// `6041h:00 "Statusword"`, or a dummy's index.
+std::string mapped_name(const PdoEntry& entry) {
+  return entry.object != nullptr ? named(*entry.object) : entry_label(entry.index, entry.sub_index);
 }
 
 /// Granularity is the unit of mapping in bits; 0 says that no mapping can be changed.
@@ -71,7 +77,8 @@ void check_granularity(const RuleContext& context) {
         std::ranges::find_if(pdo.entries, [&](const PdoEntry& entry) { return entry.bits % *granularity != 0; });
     if (finer == pdo.entries.end()) continue;
     context.report("pdo-granularity", finer->place,
-                   fmt::format("{} maps {} bits, but Granularity is {}", pdo_label(pdo), finer->bits, *granularity),
+                   fmt::format("{} maps, as entry {}, {} bits of {}, but Granularity is {}", pdo_label(pdo),
+                               finer->position, finer->bits, mapped_name(*finer), *granularity),
                    {{field.position, "Granularity"}});
     return;
   }
@@ -88,8 +95,8 @@ void check_both_directions(const RuleContext& context) {
         received.try_emplace(entry.object, &pdo);
       } else if (const auto at = received.find(entry.object); at != received.end()) {
         context.report("pdo-both-directions", entry.place,
-                       fmt::format("{} sends {}, which {} receives", pdo_label(pdo), named(*entry.object),
-                                   pdo_label(*at->second)));
+                       fmt::format("{} sends, as entry {}, {}, which {} receives", pdo_label(pdo), entry.position,
+                                   named(*entry.object), pdo_label(*at->second)));
       }
     }
   }

@@ -24,56 +24,85 @@ std::string quoted_object(const PdoEntry& entry) {
   return fmt::format("{} \"{}\"", entry_label(entry.index, entry.sub_index), entry.object->name);
 }
 
+/// `TPDO 1 maps, as entry 2,`
+std::string maps(const Pdo& pdo, const PdoEntry& entry) {
+  return fmt::format("{} maps, as entry {},", pdo_label(pdo), entry.position);
+}
+
 /// Usual in vendors' files: one byte on the wire for a BOOLEAN.
 bool is_boolean_in_a_byte(const PdoEntry& entry) {
   return entry.object->type->type == canopen::DataType::boolean && entry.bits == 8;
 }
 
 Finding check_dummy(const Device& device, const Pdo& pdo, const PdoEntry& entry) {
+  const std::string dummy = fmt::format("the dummy {} {}", index_label(entry.index), entry.dummy->name);
   if (pdo.direction == PdoDirection::transmit) {
-    return {"pdo-dummy",
-            fmt::format("{} maps the dummy {}, which only an RPDO may", pdo_label(pdo), entry.dummy->name)};
+    return {"pdo-dummy", fmt::format("{} {}, which only an RPDO may", maps(pdo, entry), dummy)};
   }
   if (std::ranges::find(device.dummies, entry.index) == device.dummies.end()) {
-    return {"pdo-dummy",
-            fmt::format("{} maps the dummy {}, which [DummyUsage] does not allow", pdo_label(pdo), entry.dummy->name)};
+    return {"pdo-dummy", fmt::format("{} {}, which [DummyUsage] does not allow", maps(pdo, entry), dummy)};
   }
   const unsigned bits = entry.dummy->bits;
+  if (bits == 0) {
+    return {"pdo-variable-length", fmt::format("{} {}, a type of no fixed length", maps(pdo, entry), dummy)};
+  }
   if (entry.bits != bits) {
-    return {"pdo-length", fmt::format("{} maps {} bits of the dummy {}, which has {}", pdo_label(pdo), entry.bits,
-                                      entry.dummy->name, bits)};
+    return {"pdo-length", fmt::format("{} {} bits of {}, which has {}", maps(pdo, entry), entry.bits, dummy, bits)};
   }
   return {};
 }
 
-Finding check_object(const Device& device, const Pdo& pdo, const PdoEntry& entry) {
-  const std::string label = entry_label(entry.index, entry.sub_index);
+/// A string has a length when its options or its default say how many bytes it holds: it may take as many in a PDO.
+Finding check_string(const Options& options, const Pdo& pdo, const PdoEntry& entry) {
+  const auto capacity = mapped_string_capacity(*entry.object, options);
+  if (!capacity) {
+    return {"pdo-variable-length", fmt::format("{} {}, a {} of no fixed length", maps(pdo, entry), quoted_object(entry),
+                                               entry.object->type->name)};
+  }
+  if (entry.bits % 8 != 0 || entry.bits == 0) {
+    return {"pdo-variable-length", fmt::format("{} {} bits of {}, a {}: these are no whole bytes", maps(pdo, entry),
+                                               entry.bits, quoted_object(entry), entry.object->type->name)};
+  }
+  if (entry.bits / 8u > *capacity) {
+    return {"pdo-length", fmt::format("{} {} bits of {}, which is {} and holds {}", maps(pdo, entry), entry.bits,
+                                      quoted_object(entry), entry.object->type->name, *capacity * 8)};
+  }
+  return {};
+}
+
+Finding check_object(const Device& device, const Options& options, const Pdo& pdo, const PdoEntry& entry) {
   if (entry.object == nullptr) {
-    const char* what = device.find(entry.index) == nullptr ? "object" : "sub-index";
-    return {"pdo-object", fmt::format("{} maps {}: the device has no such {}", pdo_label(pdo), label, what)};
+    const Object* object = device.find(entry.index);
+    const std::string label = entry_label(entry.index, entry.sub_index);
+    if (object == nullptr) {
+      return {"pdo-object", fmt::format("{} {}: the device has no such object", maps(pdo, entry), label)};
+    }
+    return {"pdo-object",
+            fmt::format("{} {} of \"{}\": the device has no such sub-index", maps(pdo, entry), label, object->name)};
   }
   const Entry& object = *entry.object;
   if (!object.pdo_mapping) {
     return {"pdo-mappable",
-            fmt::format("{} maps {}, which cannot be mapped (PDOMapping=0)", pdo_label(pdo), quoted_object(entry))};
+            fmt::format("{} {}, which cannot be mapped (PDOMapping=0)", maps(pdo, entry), quoted_object(entry))};
   }
   const Mappable needed = pdo.direction == PdoDirection::receive ? Mappable::rpdo : Mappable::tpdo;
   if (!canopen::allows(object.mappable(), needed)) {
     return {"pdo-direction",
-            fmt::format("{} maps {}, which {} may not carry (access {})", pdo_label(pdo), quoted_object(entry),
+            fmt::format("{} {}, which {} may not carry (access {})", maps(pdo, entry), quoted_object(entry),
                         pdo.direction == PdoDirection::receive ? "an RPDO" : "a TPDO",
                         canopen::row_of(object.access).name)};
   }
+  if (object.type->kind == canopen::DataClass::string) return check_string(options, pdo, entry);
   if (object.type->bits == 0) {
-    return {"pdo-variable-length", fmt::format("{} maps {}, a {} of no fixed length", pdo_label(pdo),
-                                               quoted_object(entry), object.type->name)};
+    return {"pdo-variable-length",
+            fmt::format("{} {}, a {} of no fixed length", maps(pdo, entry), quoted_object(entry), object.type->name)};
   }
   if (is_boolean_in_a_byte(entry)) {
-    return {"pdo-boolean-byte", fmt::format("{} maps {} as 8 bits; a BOOLEAN has 1. The whole byte is used",
-                                            pdo_label(pdo), quoted_object(entry))};
+    return {"pdo-boolean-byte", fmt::format("{} {} as 8 bits; a BOOLEAN has 1. The whole byte is used",
+                                            maps(pdo, entry), quoted_object(entry))};
   }
   if (object.type->bits != entry.bits) {
-    return {"pdo-length", fmt::format("{} maps {} bits of {}, which is {} and has {}", pdo_label(pdo), entry.bits,
+    return {"pdo-length", fmt::format("{} {} bits of {}, which is {} and has {}", maps(pdo, entry), entry.bits,
                                       quoted_object(entry), object.type->name, object.type->bits)};
   }
   return {};
@@ -89,8 +118,10 @@ void report_broken(Pdo& pdo, Finding finding, const Position& place, Diagnostics
   }
 }
 
-void check_entry(const Device& device, Pdo& pdo, const PdoEntry& entry, Diagnostics& diagnostics) {
-  Finding finding = entry.dummy != nullptr ? check_dummy(device, pdo, entry) : check_object(device, pdo, entry);
+void check_entry(const Device& device, const Options& options, Pdo& pdo, const PdoEntry& entry,
+                 Diagnostics& diagnostics) {
+  Finding finding =
+      entry.dummy != nullptr ? check_dummy(device, pdo, entry) : check_object(device, options, pdo, entry);
   if (finding.rule.empty()) return;
   if (finding.rule == "pdo-boolean-byte") {
     diagnostics.warning(finding.rule, entry.place, std::move(finding.message));
@@ -99,20 +130,29 @@ void check_entry(const Device& device, Pdo& pdo, const PdoEntry& entry, Diagnost
   }
 }
 
+/// `entry 3, 6064h:00 "Position actual value"`
+std::string labelled(const PdoEntry& entry) {
+  const bool known = entry.dummy == nullptr && entry.object != nullptr;
+  return fmt::format("entry {}, {}", entry.position,
+                     known ? quoted_object(entry) : entry_label(entry.index, entry.sub_index));
+}
+
 void check_size(Pdo& pdo, Diagnostics& diagnostics) {
   if (pdo.bits() > most_bits) {
     unsigned sum = 0;
     const auto over =
         std::ranges::find_if(pdo.entries, [&](const PdoEntry& entry) { return (sum += entry.bits) > most_bits; });
-    report_broken(
-        pdo, {"pdo-size", fmt::format("{} maps {} bits; its frame carries {}", pdo_label(pdo), pdo.bits(), most_bits)},
-        over->place, diagnostics);
+    report_broken(pdo,
+                  {"pdo-size", fmt::format("{} maps {} bits; its frame carries {}, which {} exceeds", pdo_label(pdo),
+                                           pdo.bits(), most_bits, labelled(*over))},
+                  over->place, diagnostics);
   }
   if (pdo.entries.size() > most_entries) {
+    const PdoEntry& over = pdo.entries[most_entries];
     report_broken(pdo,
-                  {"pdo-entries",
-                   fmt::format("{} maps {} objects; {} is the most", pdo_label(pdo), pdo.entries.size(), most_entries)},
-                  pdo.entries[most_entries].place, diagnostics);
+                  {"pdo-entries", fmt::format("{} maps {} objects; {} is the most, which {} exceeds", pdo_label(pdo),
+                                              pdo.entries.size(), most_entries, labelled(over))},
+                  over.place, diagnostics);
   }
 }
 
@@ -129,10 +169,10 @@ void check_pair(const Pdo& pdo, Diagnostics& diagnostics) {
 
 }  // namespace
 
-void check_pdos(Device& device, Diagnostics& diagnostics) {
+void check_pdos(Device& device, const Options& options, Diagnostics& diagnostics) {
   for (Pdo& pdo : device.pdos) {
     check_pair(pdo, diagnostics);
-    for (const PdoEntry& entry : pdo.entries) check_entry(device, pdo, entry, diagnostics);
+    for (const PdoEntry& entry : pdo.entries) check_entry(device, options, pdo, entry, diagnostics);
     check_size(pdo, diagnostics);
   }
 }

@@ -163,7 +163,7 @@ constexpr std::array rules = {
     Rule{"pdo-transmission-type", warning, "a reserved transmission type", "CiA 301, 7.5.2.37"},
     Rule{"pdo-sync", warning, "a synchronous PDO, but no 1005h", "CiA 301, 7.5.2.5"},
     Rule{"pdo-remote", warning, "a PDO for remote frames that allows none", "CiA 301, 7.5.2.37"},
-    Rule{"pdo-time-unused", note, "an inhibit time or event timer of a synchronous PDO", "CiA 301, 7.5.2.37"},
+    Rule{"pdo-time-unused", note, "an inhibit time or event timer that the transmission type does not use", "CiA 301, 7.5.2.37"},
     Rule{"pdo-compatibility-entry", note, "sub-index 4 of a PDO communication parameter", "CiA 301, 7.5.2.37"},
     Rule{"pdo-sync-start", warning, "a SYNC start value without effect", "CiA 301, 7.5.2.37"},
     // Device profiles.

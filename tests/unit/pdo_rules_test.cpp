@@ -39,7 +39,7 @@ std::string pdo(bool receive, const std::vector<std::string>& mapping, std::stri
 }
 
 struct Checked : DeviceFromText {
-  explicit Checked(std::string text) : DeviceFromText(std::move(text)) { check_pdos(device, diagnostics); }
+  explicit Checked(std::string text) : DeviceFromText(std::move(text)) { check_pdos(device, options, diagnostics); }
 };
 
 /// Expects one finding of `rule`, and nothing else, at the line of the mapping entry with this word.

@@ -11,6 +11,7 @@
 #include "canopen/frame.hpp"
 #include "canopen/object.hpp"
 #include "canopen/pdo_codec.hpp"
+#include "canopen/pdo_label.hpp"
 
 namespace canopen {
 
@@ -64,31 +65,43 @@ static_assert(offsetof(Frame, data) % frame_data_align == 0 && alignof(Frame) % 
 template <class A, class B>
 inline constexpr bool same_object = A::index == B::index&& A::sub_index == B::sub_index;
 
-template <class Layout, class O>
+template <class Layout, class Label, class O>
 struct MappedObject {
   static_assert(Layout::template maps<O>, "this PDO does not map the object");
   static constexpr bool found = Layout::template maps<O>;
 };
 
-// One object each, so that the compiler's message names the one that is wrong.
+// One entry each, so that the compiler's message names the one that is wrong.
 
-template <class O>
+template <class Number, class Label, class O>
 struct PdoEntry {
-  static_assert(FixedLength<O>, "a PDO carries no value without a fixed length: no strings and no domains");
+  static_assert(FixedLength<O>,
+                "a PDO carries no value without a fixed length: no DOMAIN, and strings as FixedString only");
   static constexpr bool fits = true;
 };
 
-template <class O>
+template <class Number, class Label, class O>
 struct TpdoEntry {
-  static_assert(TpdoMappable<O>, "a TPDO may not carry this object: PDOMapping=0, or access wo or rww");
+  static_assert(O::mappable != Mappable::no, "a TPDO may not carry this object: PDOMapping=0");
+  static_assert(O::mappable == Mappable::no || TpdoMappable<O>,
+                "a TPDO may not carry this object: its access is wo or rww");
   static constexpr bool fits = true;
 };
 
-template <class O>
+template <class Number, class Label, class O>
 struct RpdoEntry {
-  static_assert(RpdoMappable<O>, "an RPDO may not carry this object: PDOMapping=0, or access ro, rwr or const");
+  static_assert(O::mappable != Mappable::no, "an RPDO may not carry this object: PDOMapping=0");
+  static_assert(O::mappable == Mappable::no || RpdoMappable<O>,
+                "an RPDO may not carry this object: its access is ro, rwr or const");
   static constexpr bool fits = true;
 };
+
+/// Whether each object fits by itself.
+template <template <class, class, class> class EntryCheck, class... Objects>
+inline constexpr bool all_fit = []<std::size_t... I>(std::index_sequence<I...>) {
+  return (true && ... && EntryCheck<EntryNumber<I + 1>, LabelOf<Objects>, Objects>::fits);
+}
+(std::index_sequence_for<Objects...>{});
 
 }  // namespace pdo_detail
 
@@ -99,7 +112,7 @@ struct RpdoEntry {
 /// instructions where words must be.
 template <DictionaryObject... Objects>
 struct PdoLayout {
-  static_assert((true && ... && pdo_detail::PdoEntry<Objects>::fits));
+  static_assert(pdo_detail::all_fit<pdo_detail::PdoEntry, Objects...>);
   static constexpr std::size_t entries = sizeof...(Objects);
   static constexpr unsigned bits = (0u + ... + Objects::bits);
   static_assert(entries <= 64, "a PDO maps 64 objects at most (CiA 301, 7.5.2.36)");
@@ -128,7 +141,7 @@ struct PdoLayout {
   /// Which entry carries an object, from 0; the first one if there are several.
   template <class O>
   static constexpr std::size_t position_of = [] {
-    static_assert(pdo_detail::MappedObject<PdoLayout, O>::found);
+    static_assert(pdo_detail::MappedObject<PdoLayout, pdo_detail::LabelOf<O>, O>::found);
     std::size_t position = 0;
     static_cast<void>(((pdo_detail::same_object<O, Objects> || (++position, false)) || ...));
     return position;
@@ -251,13 +264,13 @@ struct PdoLayout {
 /// A PDO that a device sends.
 template <DictionaryObject... Objects>
 struct Tpdo : PdoLayout<Objects...> {
-  static_assert((true && ... && pdo_detail::TpdoEntry<Objects>::fits));
+  static_assert(pdo_detail::all_fit<pdo_detail::TpdoEntry, Objects...>);
 };
 
 /// A PDO that a device receives.
 template <DictionaryObject... Objects>
 struct Rpdo : PdoLayout<Objects...> {
-  static_assert((true && ... && pdo_detail::RpdoEntry<Objects>::fits));
+  static_assert(pdo_detail::all_fit<pdo_detail::RpdoEntry, Objects...>);
 };
 
 }  // namespace canopen
