@@ -95,7 +95,9 @@ class RpdoService {
     for (std::size_t i = 0; i < count; ++i) {
       if ((slots_[i].flags & buffered) == 0) continue;
       slots_[i].flags &= static_cast<std::uint8_t>(~buffered);
-      take(i, store, slots_[i].data, host);
+      Frame frame{};
+      frame.data = slots_[i].data;
+      take(i, store, frame, host);
     }
   }
 
@@ -216,7 +218,7 @@ class RpdoService {
         slot.data = frame.data;
         slot.flags |= buffered;
         break;
-      case Transmission::event_driven: take(i, store, frame.data, host); break;
+      case Transmission::event_driven: take(i, store, frame, host); break;
       case Transmission::remote_synchronous:
       case Transmission::remote:
       case Transmission::reserved: break;
@@ -251,22 +253,22 @@ class RpdoService {
   }
 
   template <class Host>
-  void take(std::size_t which, ObjectStore<Device>& store, const Data& data, Host& host) {
+  void take(std::size_t which, ObjectStore<Device>& store, const Frame& frame, Host& host) {
     Pdos::for_each([&]<class Pdo, std::size_t I>() {
       if constexpr (Mapped::capacities[I] == 0) {
-        if (I == which) take_static<Pdo>(data, host);
+        if (I == which) take_static<Pdo>(frame, host);
       }
     });
     if constexpr (has_dynamic_mapping) {
-      if (Mapped::capacities[which] != 0) take_mapped(which, store.entries(), data, host);
+      if (Mapped::capacities[which] != 0) take_mapped(which, store.entries(), frame.data, host);
     }
     host.happened(RpdoEvent::taken, number_of(which));
   }
 
   template <class Pdo, class Host>
-  static void take_static(const Data& data, Host& host) {
+  static void take_static(const Frame& frame, Host& host) {
     Pdo::for_each([&]<class O, std::size_t I>() {
-      if constexpr (!is_dummy<O>) host.template take<O>(Pdo::template get<I>(data));
+      if constexpr (!is_dummy<O>) host.template take<O>(Pdo::template get<I>(frame));
     });
   }
 

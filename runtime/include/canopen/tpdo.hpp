@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <type_traits>
+#include <utility>
 
 #include "canopen/cob_id.hpp"
 #include "canopen/communication_parameters.hpp"
@@ -333,14 +334,15 @@ class TpdoService {
     frame.id = cob_id.can_id();
     frame.extended = cob_id.extended();
     frame.size = slots_[which].size;
-    if (!take_sample(which, frame.data)) pack(which, store, frame.data);
+    if (!take_sample(which, frame.data)) pack(which, store, frame);
     return bus.send(frame);
   }
 
   void sample([[maybe_unused]] std::size_t which, [[maybe_unused]] ObjectStore<Device>& store) {
     if constexpr (has_samples) {
-      samples_[which] = {};
-      pack(which, store, samples_[which]);
+      Frame frame{};
+      pack(which, store, frame);
+      samples_[which] = frame.data;
     }
   }
 
@@ -355,21 +357,21 @@ class TpdoService {
     return false;
   }
 
-  /// Puts the values of the mapped objects into data bytes that are zero so far.
-  void pack(std::size_t which, ObjectStore<Device>& store, Data& data) const {
+  /// Puts the values of the mapped objects into a frame whose data are zero so far.
+  void pack(std::size_t which, ObjectStore<Device>& store, Frame& frame) const {
     if constexpr (has_dynamic_mapping) {
-      if (Mapped::capacities[which] != 0) return pack_mapped(which, store.entries(), data);
+      if (Mapped::capacities[which] != 0) return pack_mapped(which, store.entries(), frame.data);
     }
     Pdos::for_each([&]<class Pdo, std::size_t I>() {
       if constexpr (Mapped::capacities[I] == 0) {
-        if (I == which) pack_static<Pdo>(data, store);
+        if (I == which) pack_static<Pdo>(frame, store, std::make_index_sequence<Pdo::entries>{});
       }
     });
   }
 
-  template <class Pdo>
-  static void pack_static(Data& data, const ObjectStore<Device>& store) {
-    Pdo::for_each([&]<class O, std::size_t I>() { Pdo::template put<I>(data, store.template get<O>()); });
+  template <class Pdo, std::size_t... I>
+  static void pack_static(Frame& frame, const ObjectStore<Device>& store, std::index_sequence<I...>) {
+    Pdo::pack_into(frame, store.template get<typename Pdo::template Entry<I>>()...);
   }
 
   void pack_mapped(std::size_t which, const EntryAccess& entries, Data& data) const {
