@@ -2,6 +2,7 @@
 
 #include "diagnostics/quote.hpp"
 #include "eds/number.hpp"
+#include "rules/pdo_defaults.hpp"
 #include "rules/rule_groups.hpp"
 #include "text/utf8.hpp"
 
@@ -22,7 +23,10 @@ void check_constant(const RuleContext& context, const Entry& entry) {
 }
 
 void check_mapping(const RuleContext& context, const Entry& entry) {
-  if (entry.pdo_mapping && entry.type->bits == 0) {
+  const bool has_length = entry.type->kind == canopen::DataClass::string
+                              ? mapped_string_capacity(entry, context.options).has_value()
+                              : entry.type->bits > 0;
+  if (entry.pdo_mapping && !has_length) {
     context.report(
         "mapping-of-no-length", entry.mapping_position,
         fmt::format("{} can be mapped (PDOMapping=1), but {} has no fixed length", named(entry), entry.type->name));

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Each mistake here does not compile, and the compiler says which object is wrong.
 
-    compile_fail_test.py SOURCE_DIR GENERATED_DIR [CASE]
+    compile_fail_test.py SOURCE_DIR GENERATED_DIR [CASE]      GENERATED_DIR has a folder for each device
 
-A case is a .cpp file. It compiles with GOOD defined and does not without; then the words of its `// expect: regex`
-stand in what the compiler says. `A .*B` wants A and B somewhere, for GCC and Clang tell them in different order; `A|B`
+A case is a .cpp file. It compiles with GOOD defined and does not without; then the words of each of its lines
+`// expect: regex` stand in what the compiler says. `A .*B` wants A and B somewhere, for GCC and Clang tell them in different order; `A|B`
 wants one of them.
 """
 
@@ -29,8 +29,8 @@ def says(output: str, expectation: str) -> bool:
 def run_case(job: tuple[Compiler, Path, tuple[Path, ...]]) -> str:
     """What is wrong with the case; empty when it does what it shall."""
     compiler, case, include = job
-    expectation = EXPECTATION.search(case.read_text())
-    if expectation is None:
+    expectations = EXPECTATION.findall(case.read_text())
+    if not expectations:
         return f"{case.name}: its first line is not `// expect: regex`"
     good = compile_only(compiler, case, include, ("-DGOOD", *UNUSED_IS_FINE))
     if good.returncode != 0:
@@ -38,8 +38,9 @@ def run_case(job: tuple[Compiler, Path, tuple[Path, ...]]) -> str:
     bad = compile_only(compiler, case, include, UNUSED_IS_FINE)
     if bad.returncode == 0:
         return f"{compiler.name}, {case.name}: compiles"
-    if not says(bad.stderr, expectation[1]):
-        return f"{compiler.name}, {case.name}: nothing in its message is `{expectation[1]}`:\n{bad.stderr[:3000]}"
+    missing = [expectation for expectation in expectations if not says(bad.stderr, expectation)]
+    if missing:
+        return f"{compiler.name}, {case.name}: nothing in its message is `{missing[0]}`:\n{bad.stderr[:3000]}"
     return ""
 
 
@@ -48,7 +49,7 @@ def main() -> int:
     name = sys.argv[3] if len(sys.argv) > 3 else "*"
     cases = sorted((source_dir / "tests/compile_fail").glob(f"{name}.cpp"))
     compilers = those_installed((GCC, CLANG))
-    include = (generated, source_dir / "runtime/include")
+    include = (*(path for path in sorted(generated.iterdir()) if path.is_dir()), source_dir / "runtime/include")
     jobs = [(compiler, case, include) for compiler in compilers for case in cases]
     problems = [problem for problem in in_parallel(run_case, jobs) if problem]
     for problem in problems:

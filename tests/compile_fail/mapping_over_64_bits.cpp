@@ -1,4 +1,7 @@
-// expect: longer than its 64 bits .*every_type::od::integer64_value
+// expect: longer than its 64 bits
+// expect: PdoEntry<canopen::EntryNumber<2>
+// expect: every_type::od::unsigned8_value
+//
 // A CAN frame carries 64 bits.
 #include <canopen/object_store.hpp>
 #include <every_type/device.hpp>

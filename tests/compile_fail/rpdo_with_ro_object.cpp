@@ -1,4 +1,7 @@
-// expect: an RPDO may not carry this object .*RpdoEntry<every_type::od::access_ro>
+// expect: an RPDO may not carry this object: its access is ro
+// expect: RpdoEntry<canopen::EntryNumber<2>, canopen::ObjectAt<'2', '6', '0', '0', 'h', ':', '0', '0'>
+// expect: every_type::od::access_ro
+//
 // What the bus cannot write, an RPDO cannot bring.
 #include <canopen/object_store.hpp>
 #include <every_type/device.hpp>

@@ -1,4 +1,7 @@
-// expect: an RPDO may not carry this object .*RpdoEntry<every_type::od::access_rwr>
+// expect: an RPDO may not carry this object: its access is ro
+// expect: RpdoEntry<canopen::EntryNumber<2>, canopen::ObjectAt<'2', '6', '0', '4', 'h', ':', '0', '0'>
+// expect: every_type::od::access_rwr
+//
 // Process input (rwr) is what a TPDO carries.
 #include <canopen/object_store.hpp>
 #include <every_type/device.hpp>

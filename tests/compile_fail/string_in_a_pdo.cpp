@@ -1,4 +1,7 @@
-// expect: no value without a fixed length .*PdoEntry<every_type::od::visible_string_value>
+// expect: no value without a fixed length
+// expect: PdoEntry<canopen::EntryNumber<2>, canopen::ObjectAt<'2', '0', '0', '9', 'h', ':', '0', '0'>
+// expect: every_type::od::visible_string_value
+//
 // A string has no fixed length.
 #include <canopen/object_store.hpp>
 #include <every_type/device.hpp>

@@ -1,4 +1,7 @@
-// expect: a TPDO may not carry this object .*TpdoEntry<every_type::od::access_rww>
+// expect: a TPDO may not carry this object: its access is wo
+// expect: TpdoEntry<canopen::EntryNumber<2>, canopen::ObjectAt<'2', '6', '0', '3', 'h', ':', '0', '0'>
+// expect: every_type::od::access_rww
+//
 // Process output (rww) is what an RPDO carries.
 #include <canopen/object_store.hpp>
 #include <every_type/device.hpp>

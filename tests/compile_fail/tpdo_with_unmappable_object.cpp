@@ -1,4 +1,7 @@
-// expect: a TPDO may not carry this object .*TpdoEntry<every_type::od::cob_id_sync>
+// expect: a TPDO may not carry this object: PDOMapping=0
+// expect: TpdoEntry<canopen::EntryNumber<2>, canopen::ObjectAt<'1', '0', '0', '5', 'h', ':', '0', '0'>
+// expect: every_type::od::cob_id_sync
+//
 // The data sheet says PDOMapping=0.
 #include <canopen/object_store.hpp>
 #include <every_type/device.hpp>

@@ -20,7 +20,9 @@ const std::string objects =
     var("2002", "Process output", "0x0006", "rww", "PDOMapping=1\n") +
     var("2003", "Process input", "0x0006", "rwr", "PDOMapping=1\n") +
     var("2004", "Parameter", "0x0006", "rw", "PDOMapping=0\n") + var("2005", "Text", "0x0009", "rw", "PDOMapping=1\n") +
-    var("2006", "Switch", "0x0001", "rw", "PDOMapping=1\n") + var("2007", "Position", "0x0007", "rw", "PDOMapping=1\n");
+    var("2008", "Name", "0x0009", "ro", "PDOMapping=1\nDefaultValue=READY\n") +
+    var("2009", "Memory", "0x000F", "rw", "PDOMapping=1\n") + var("2006", "Switch", "0x0001", "rw", "PDOMapping=1\n") +
+    var("2007", "Position", "0x0007", "rw", "PDOMapping=1\n");
 
 /// PDO 1 of one direction, valid after a reset unless `cob_id` says otherwise, that maps these words.
 std::string pdo(bool receive, const std::vector<std::string>& mapping, std::string_view cob_id = "$NODEID+0x200") {
@@ -39,7 +41,9 @@ std::string pdo(bool receive, const std::vector<std::string>& mapping, std::stri
 }
 
 struct Checked : DeviceFromText {
-  explicit Checked(std::string text) : DeviceFromText(std::move(text)) { check_pdos(device, options, diagnostics); }
+  explicit Checked(std::string text, Options given = {}) : DeviceFromText(std::move(text), std::move(given)) {
+    check_pdos(device, options, diagnostics);
+  }
 };
 
 /// Expects one finding of `rule`, and nothing else, at the line of the mapping entry with this word.
@@ -113,6 +117,43 @@ TEST(PdoRules, RefuseAValueOfNoFixedLength) {
   expect_one(checked, Severity::error, "pdo-variable-length", "0x20050010");
   EXPECT_TRUE(message_has(checked, "pdo-variable-length", "2005h:00 \"Text\""));
   EXPECT_TRUE(message_has(checked, "pdo-variable-length", "VISIBLE_STRING"));
+}
+
+TEST(PdoRules, LetAStringTakeAsManyBytesAsItHasRoomFor) {
+  EXPECT_EQ(rules_of(Checked(pdo(false, {"0x20080028"})).diagnostics), Rules{});
+  EXPECT_EQ(rules_of(Checked(pdo(false, {"0x20080018"})).diagnostics), Rules{});
+  const Checked longer(pdo(false, {"0x20080030"}));
+  expect_one(longer, Severity::error, "pdo-length", "0x20080030");
+  EXPECT_TRUE(message_has(longer, "pdo-length", "TPDO 1 maps, as entry 1, 48 bits of 2008h:00 \"Name\""));
+}
+
+TEST(PdoRules, LetTheOptionsSayHowMuchAStringHolds) {
+  Options options;
+  options.string_capacity[{0x2005, 0}] = 4;
+  EXPECT_EQ(rules_of(Checked(pdo(true, {"0x20050020"}), options).diagnostics), Rules{});
+  EXPECT_EQ(rules_of(Checked(pdo(true, {"0x20050028"}), options).diagnostics), Rules{"pdo-length"});
+}
+
+TEST(PdoRules, RefusePartsOfAByteOfAString) {
+  const Checked checked(pdo(false, {"0x2008000C"}));
+  expect_one(checked, Severity::error, "pdo-variable-length", "0x2008000C");
+  EXPECT_TRUE(message_has(checked, "pdo-variable-length", "no whole bytes"));
+}
+
+TEST(PdoRules, RefuseADomain) {
+  expect_one(Checked(pdo(false, {"0x20090020"})), Severity::error, "pdo-variable-length", "0x20090020");
+}
+
+TEST(PdoRules, NameTheEntry) {
+  const Checked checked(pdo(false, {"0x20000010", "0x20020010"}));
+  EXPECT_TRUE(message_has(checked, "pdo-direction",
+                          "TPDO 1 maps, as entry 2, 2002h:00 \"Process output\", which a TPDO may not carry"));
+  const Checked sub_index(pdo(true, {"0x20020110"}));
+  EXPECT_TRUE(message_has(sub_index, "pdo-object", "as entry 1, 2002h:01 of \"Process output\""));
+  const Checked dummy(pdo(true, {"0x00060010"}));
+  EXPECT_TRUE(message_has(dummy, "pdo-dummy", "as entry 1, the dummy 0006h UNSIGNED16"));
+  const Checked size(pdo(false, {"0x20070020", "0x20070020", "0x20000010"}));
+  EXPECT_TRUE(message_has(size, "pdo-size", "which entry 3, 2000h:00 \"Input\" exceeds"));
 }
 
 TEST(PdoRules, LetABooleanTakeAByteWithAWarning) {

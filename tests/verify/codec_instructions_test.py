@@ -25,7 +25,7 @@ MOST_OF_BITS = 1.2
 
 FUNCTION = re.compile(r"^[0-9a-f]+ <(?P<name>.*)>:$")
 INSTRUCTION = re.compile(r"^ +[0-9a-f]+:\t(?P<text>[^\t ]+)")
-PADDING = re.compile(r"nop|cs|data16|xchg|endbr64|\.word|\.short")
+PADDING = re.compile(r"nop[wl]?|nop\.[nw]|cs|data16|xchg|endbr64|\.word|\.short")  # and constants behind a function
 
 
 @dataclass(frozen=True)

@@ -73,10 +73,12 @@ struct MappedObject {
 
 // One entry each, so that the compiler's message names the one that is wrong.
 
-template <class Number, class Label, class O>
+template <class Number, class Label, class O, unsigned Begin>
 struct PdoEntry {
   static_assert(FixedLength<O>,
                 "a PDO carries no value without a fixed length: no DOMAIN, and strings as FixedString only");
+  static_assert(Begin > 64 || Begin + O::bits <= 64,
+                "the objects of this PDO are longer than its 64 bits together (CiA 301, 7.5.2.36)");
   static constexpr bool fits = true;
 };
 
@@ -96,10 +98,26 @@ struct RpdoEntry {
   static constexpr bool fits = true;
 };
 
-/// Whether each object fits by itself.
+/// Whether each object may be in a PDO of this direction.
 template <template <class, class, class> class EntryCheck, class... Objects>
 inline constexpr bool all_fit = []<std::size_t... I>(std::index_sequence<I...>) {
   return (true && ... && EntryCheck<EntryNumber<I + 1>, LabelOf<Objects>, Objects>::fits);
+}
+(std::index_sequence_for<Objects...>{});
+
+/// First bit of each entry, and the end of the last.
+template <class... Objects>
+inline constexpr std::array<unsigned, sizeof...(Objects) + 1> offsets_of = [] {
+  std::array<unsigned, sizeof...(Objects) + 1> at{};
+  unsigned i = 0;
+  ((at[i + 1] = at[i] + Objects::bits, ++i), ...);
+  return at;
+}();
+
+/// Whether each object has a length, and ends within the frame.
+template <class... Objects>
+inline constexpr bool all_have_room = []<std::size_t... I>(std::index_sequence<I...>) {
+  return (true && ... && PdoEntry<EntryNumber<I + 1>, LabelOf<Objects>, Objects, offsets_of<Objects...>[I]>::fits);
 }
 (std::index_sequence_for<Objects...>{});
 
@@ -112,23 +130,17 @@ inline constexpr bool all_fit = []<std::size_t... I>(std::index_sequence<I...>) 
 /// instructions where words must be.
 template <DictionaryObject... Objects>
 struct PdoLayout {
-  static_assert(pdo_detail::all_fit<pdo_detail::PdoEntry, Objects...>);
   static constexpr std::size_t entries = sizeof...(Objects);
-  static constexpr unsigned bits = (0u + ... + Objects::bits);
   static_assert(entries <= 64, "a PDO maps 64 objects at most (CiA 301, 7.5.2.36)");
-  static_assert(bits <= 64, "the objects of this PDO are longer than its 64 bits together (CiA 301, 7.5.2.36)");
+  static_assert(pdo_detail::all_have_room<Objects...>);
+  static constexpr unsigned bits = (0u + ... + Objects::bits);
   static constexpr std::uint8_t size = (bits + 7) / 8;  ///< data bytes of the frame
 
   using Data = std::array<std::uint8_t, 8>;
   using Values = std::tuple<typename Objects::type...>;
 
   /// First bit of each entry, and the end of the last.
-  static constexpr std::array<unsigned, entries + 1> offsets = [] {
-    std::array<unsigned, entries + 1> at{};
-    unsigned i = 0;
-    ((at[i + 1] = at[i] + Objects::bits, ++i), ...);
-    return at;
-  }();
+  static constexpr std::array<unsigned, entries + 1> offsets = pdo_detail::offsets_of<Objects...>;
 
   /// The object of entry `I`.
   template <std::size_t I>

@@ -1,0 +1,18 @@
+// expect: an inhibit time is for TPDOs of transmission types 254 and 255
+// expect: CheckedTimes<canopen::TpdoNumber<1>, 1, 100, 0>
+//
+// A synchronous TPDO goes out at its SYNC.
+#include <canopen/pdo_check.hpp>
+#include <every_type/device.hpp>
+
+namespace od = every_type::od;
+
+#ifdef GOOD
+using Checked = canopen::CheckedTpdo<every_type::dictionary, 1, every_type::Tpdo1,
+                                     canopen::PdoParameters{.transmission_type = 254, .inhibit_time = 100}>;
+#else
+using Checked = canopen::CheckedTpdo<every_type::dictionary, 1, every_type::Tpdo1,
+                                     canopen::PdoParameters{.transmission_type = 1, .inhibit_time = 100}>;
+#endif
+
+static_assert(Checked::holds);

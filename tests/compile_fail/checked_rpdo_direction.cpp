@@ -1,0 +1,25 @@
+// expect: an RPDO carries rw, rww and wo objects
+// expect: canopen::RpdoNumber<1>
+// expect: canopen::EntryNumber<1>
+// expect: ObjectAt<'2', '6', '0', '0', 'h', ':', '0', '0'>
+// expect: other::od::access_ro
+//
+// What the bus cannot write, an RPDO cannot bring.
+#include <canopen/pdo_check.hpp>
+#include <every_type/device.hpp>
+
+namespace od = every_type::od;
+
+namespace other::od {
+struct cob_id_sync : canopen::Object<0x1005, 0x00, std::uint32_t, canopen::Access::rw, canopen::Mappable::both> {};
+struct access_ro : canopen::Object<0x2600, 0x00, std::uint16_t, canopen::Access::rw, canopen::Mappable::both> {};
+struct access_rww : canopen::Object<0x2603, 0x00, std::uint16_t, canopen::Access::rw, canopen::Mappable::both> {};
+}  // namespace other::od
+
+#ifdef GOOD
+using Checked = canopen::CheckedRpdo<every_type::dictionary, 1, canopen::Rpdo<od::access_rw>>;
+#else
+using Checked = canopen::CheckedRpdo<every_type::dictionary, 1, canopen::Rpdo<other::od::access_ro>>;
+#endif
+
+static_assert(Checked::holds);

@@ -1,0 +1,16 @@
+// expect: its transmission type is reserved .*canopen::RpdoNumber<1>, 253>
+// An RPDO cannot be asked for by a remote frame.
+#include <canopen/pdo_check.hpp>
+#include <every_type/device.hpp>
+
+namespace od = every_type::od;
+
+#ifdef GOOD
+using Checked = canopen::CheckedRpdo<every_type::dictionary, 1, every_type::Rpdo1,
+                                     canopen::PdoParameters{.transmission_type = 254}>;
+#else
+using Checked = canopen::CheckedRpdo<every_type::dictionary, 1, every_type::Rpdo1,
+                                     canopen::PdoParameters{.transmission_type = 253}>;
+#endif
+
+static_assert(Checked::holds);

@@ -1,0 +1,12 @@
+// expect: this PDO does not map the object .*ObjectAt<'2', '6', '0', '2', 'h', ':', '0', '0'>
+// .*every_type::od::access_rw TPDO 1 does not carry it.
+#include <canopen/pdo.hpp>
+#include <every_type/device.hpp>
+
+namespace od = every_type::od;
+
+#ifdef GOOD
+auto get(const canopen::Frame& frame) { return every_type::Tpdo1::get<od::access_rwr>(frame); }
+#else
+auto get(const canopen::Frame& frame) { return every_type::Tpdo1::get<od::access_rw>(frame); }
+#endif
