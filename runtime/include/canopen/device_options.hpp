@@ -33,7 +33,9 @@ struct DeviceOptions {
   std::uint32_t error_history_abort_code = 0x0609'0030;
   /// Expedited uploads tell how many bytes are valid. If not, they answer 42h.
   bool sdo_upload_size_indicated = true;
-  /// A segmented transfer in which nothing comes for this many milliseconds is aborted: 0504 0000h. 0: never.
+  /// The SDO server takes block transfers. If not, it answers their initiate with 0504 0001h.
+  bool sdo_block_transfer = false;
+  /// A segmented or block transfer in which nothing comes for this many milliseconds is aborted: 0504 0000h. 0: never.
   std::uint16_t sdo_timeout = 0;
 };
 
