@@ -40,6 +40,32 @@ inline constexpr std::uint8_t toggle = 0x10;          ///< segment: t
 inline constexpr std::uint8_t abort_command = 0x80;
 inline constexpr std::uint32_t segment_bytes = 7;
 
+// Block transfer (CiA 301, 7.2.4.3.9 to 7.2.4.3.16). While a sub-block runs, bit 7 of byte 0 tells the last segment and
+// the bits below hold the sequence number: there is no command then but the abort, whose sequence number would be 0.
+inline constexpr std::uint8_t crc_supported = 0x04;         ///< initiate: cc, sc
+inline constexpr std::uint8_t block_size_indicated = 0x02;  ///< initiate: s
+inline constexpr std::uint8_t last_block_segment = 0x80;    ///< segment: c
+inline constexpr std::uint8_t sequence_mask = 0x7F;
+inline constexpr std::uint8_t largest_block = 127;  ///< segments of a sub-block
+inline constexpr std::uint32_t unknown_size = 0xFFFF'FFFF;
+
+/// What a block upload request is: bits 0..1 of byte 0.
+enum class BlockUpload : std::uint8_t { initiate = 0, end = 1, confirm = 2, start = 3 };
+
+// Byte 0 of the other messages of block transfers.
+inline constexpr std::uint8_t block_upload_initiate = 0xA0;      ///< client
+inline constexpr std::uint8_t block_upload_end_answer = 0xA1;    ///< client
+inline constexpr std::uint8_t block_upload_confirm = 0xA2;       ///< client
+inline constexpr std::uint8_t block_upload_start = 0xA3;         ///< client
+inline constexpr std::uint8_t block_upload_answer = 0xC0;        ///< server
+inline constexpr std::uint8_t block_upload_end = 0xC1;           ///< server
+inline constexpr std::uint8_t block_download_initiate = 0xC0;    ///< client
+inline constexpr std::uint8_t block_download_end = 0xC1;         ///< client
+inline constexpr std::uint8_t block_download_answer = 0xA0;      ///< server
+inline constexpr std::uint8_t block_download_end_answer = 0xA1;  ///< server
+inline constexpr std::uint8_t block_download_confirm = 0xA2;     ///< server
+inline constexpr std::uint8_t block_end_mask = 0xE3;             ///< of an end command: all but n
+
 [[nodiscard]] constexpr ClientCommand client_command(std::uint8_t byte) {
   return static_cast<ClientCommand>(byte >> 5);
 }

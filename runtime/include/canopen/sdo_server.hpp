@@ -1,8 +1,9 @@
-/// SDO server: expedited and segmented upload and download (CiA 301, 7.2.4.3).
+/// SDO server: expedited, segmented and block upload and download (CiA 301, 7.2.4.3).
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <concepts>
 #include <cstdint>
 #include <cstring>
 #include <optional>
@@ -10,9 +11,11 @@
 #include <type_traits>
 
 #include "canopen/abort_code.hpp"
+#include "canopen/crc16.hpp"
 #include "canopen/dictionary.hpp"
 #include "canopen/frame.hpp"
 #include "canopen/object_store.hpp"
+#include "canopen/result.hpp"
 #include "canopen/sdo_protocol.hpp"
 #include "canopen/time.hpp"
 
@@ -31,32 +34,60 @@ concept SdoServerHooks = requires(T hooks, std::uint16_t index, std::uint8_t sub
   hooks.after_write(index, sub_index);
 };
 
-/// One server. It takes requests of eight bytes and leaves at most one answer of eight bytes, which stays until it is
-/// sent.
+/// What it asks besides when the application streams DOMAINs, which then need no memory of their own:
+///   bool streams_upload(index, sub_index);      whether `read_domain` gives the bytes of this entry
+///   Result<std::uint32_t> read_domain(index, sub_index, offset, bytes);
+///       fills `bytes` and says how many there were: fewer than asked for are the last. A lost block asks again.
+///   bool streams_download(index, sub_index);    whether `write_domain` takes the bytes of this entry
+///   AbortCode write_domain(index, sub_index, offset, bytes, last);
+///       each byte once and in order. `last` comes when the transfer is good, its CRC included; a transfer that breaks
+///       off has none, and the next one begins at offset 0 again.
+template <class T>
+concept DomainStreamHooks = SdoServerHooks<T> &&
+    requires(T hooks, std::uint16_t index, std::uint8_t sub_index, std::uint32_t offset, std::span<std::uint8_t> into,
+             std::span<const std::uint8_t> from) {
+  { hooks.streams_upload(index, sub_index) } -> std::same_as<bool>;
+  { hooks.read_domain(index, sub_index, offset, into) } -> std::same_as<Result<std::uint32_t>>;
+  { hooks.streams_download(index, sub_index) } -> std::same_as<bool>;
+  { hooks.write_domain(index, sub_index, offset, from, true) } -> std::same_as<AbortCode>;
+};
+
+/// One server, or one of several of a node: all that a transfer knows is in here. It takes requests of eight bytes and
+/// leaves at most one answer of eight bytes, which stays until it is sent. In a block upload the next segment is ready
+/// as soon as the one before is sent: a node sends answers until there is none, or until its bus is full.
 ///
 /// Strings and DOMAINs are uploaded in place: what the application changes meanwhile is what goes out. Numbers are
 /// taken as they were when the upload began. A download is written when it is complete; only a DOMAIN fills up as it
 /// comes, and is empty until its last byte is there.
+///
+/// Block transfers are compiled in when `Device::options.sdo_block_transfer` says so; their initiate is answered with
+/// 0504 0001h otherwise. A new initiate ends the transfer before, except while the segments of a block download come:
+/// it cannot be told from them.
 template <class Device>
 class SdoServer {
  public:
-  /// Takes a request. A new initiate ends the transfer before; an answer that could not be sent yet is replaced.
+  /// Takes a request. An answer that could not be sent yet is replaced.
   void on_request(const std::array<std::uint8_t, 8>& request, SdoServerHooks auto&& hooks, TimePoint now) {
-    if constexpr (has_timeout) last_request_ = now;
+    if constexpr (has_timeout) last_activity_ = now;
     if (const AbortCode code = handle(request, hooks); code != ok) abort(code);
   }
 
-  /// Aborts a transfer whose client has been silent for too long (0504 0000h).
+  /// Aborts a transfer whose client has been silent for too long (0504 0000h). A sub-block whose end is overdue for
+  /// half of that time is confirmed as far as it has come, so that the client repeats the rest.
   void on_time([[maybe_unused]] TimePoint now) {
     if constexpr (has_timeout) {
-      if (state_ != State::idle && now >= last_request_ + timeout) abort(AbortCode::timeout);
+      if (state_ == State::idle || now < last_activity_ + patience()) return;
+      if constexpr (has_block) {
+        if (sub_block_begun()) return confirm_sub_block();
+      }
+      abort(AbortCode::timeout);
     }
   }
 
   /// When the client will have been silent for too long.
   [[nodiscard]] std::optional<TimePoint> next_deadline() const {
     if constexpr (has_timeout) {
-      if (state_ != State::idle) return last_request_ + timeout;
+      if (state_ != State::idle) return last_activity_ + patience();
     }
     return std::nullopt;
   }
@@ -64,7 +95,22 @@ class SdoServer {
   /// Whether an answer waits to be sent.
   [[nodiscard]] bool has_reply() const { return has_reply_; }
   [[nodiscard]] const std::array<std::uint8_t, 8>& reply() const { return reply_; }
-  void reply_sent() { has_reply_ = false; }
+
+  /// The answer has found its place in the controller: the next segment of a block upload takes its place.
+  void reply_sent(SdoServerHooks auto&& hooks, [[maybe_unused]] TimePoint now) {
+    if constexpr (has_timeout) last_activity_ = now;
+    has_reply_ = false;
+    if constexpr (has_block) {
+      if (state_ != State::block_uploading || block_.sequence == block_.size || block_.last) return;
+      if (const AbortCode code = next_block_segment(hooks); code != ok) abort(code);
+    }
+  }
+
+  /// The same for a device without block transfer.
+  void reply_sent() {
+    static_assert(!has_block, "the next segment of a block upload needs the hooks");
+    has_reply_ = false;
+  }
 
   /// Forgets the transfer and the answer.
   void reset() {
@@ -72,36 +118,66 @@ class SdoServer {
     has_reply_ = false;
   }
 
-  /// The memory behind a DOMAIN is another one now: a transfer from or to the old one ends.
+  /// The memory behind a DOMAIN is another one now, or another server writes it: a transfer from or to it ends.
   void domain_rebound(std::uint16_t index, std::uint8_t sub_index) {
     if (state_ != State::idle && index_ == index && sub_index_ == sub_index) abort(AbortCode::not_stored);
   }
 
  private:
-  enum class State : std::uint8_t { idle, uploading, downloading };
+  enum class State : std::uint8_t {
+    idle,
+    uploading,
+    downloading,
+    block_upload_initiated,  ///< waits for the start
+    block_uploading,         ///< sends a sub-block, then waits until it is confirmed
+    block_upload_ending,     ///< waits for the last word of the client
+    block_downloading,       ///< takes segments
+    block_download_ending,   ///< waits for the CRC
+  };
 
   static constexpr Duration timeout = from_milliseconds(Device::options.sdo_timeout);
   static constexpr bool has_timeout = timeout.count() != 0;
+  static constexpr bool has_block = Device::options.sdo_block_transfer;
   static constexpr std::size_t number_bytes = 8;
   static constexpr std::size_t buffer_bytes = std::max<std::size_t>(number_bytes, Device::longest_download);
 
+  /// Whether a string is longer than the buffer.
+  static constexpr bool buffer_is_short = [] {
+    const Dictionary& dictionary = Device::dictionary;
+    return std::any_of(dictionary.limits.begin(), dictionary.limits.end(), [&](const Limits& row) {
+      const entry::Word word =
+          dictionary.find(static_cast<std::uint16_t>(row.key >> 8), static_cast<std::uint8_t>(row.key & 0xFF));
+      return entry::is_string(word) && (word & entry::writable) != 0 && row.high > buffer_bytes;
+    });
+  }();
+
   [[nodiscard]] AbortCode handle(const std::array<std::uint8_t, 8>& request, auto& hooks) {
+    if constexpr (has_block) {
+      if (state_ == State::block_downloading && request[0] != sdo::abort_command)
+        return take_block_segment(request, hooks);
+    }
     switch (sdo::client_command(request[0])) {
       case sdo::ClientCommand::initiate_upload: begin(request); return initiate_upload(hooks);
       case sdo::ClientCommand::initiate_download: begin(request); return initiate_download(request, hooks);
-      case sdo::ClientCommand::upload_segment: return upload_segment(request[0]);
+      case sdo::ClientCommand::upload_segment: return upload_segment(request[0], hooks);
       case sdo::ClientCommand::download_segment: return download_segment(request, hooks);
       case sdo::ClientCommand::abort: state_ = State::idle; return ok;
       case sdo::ClientCommand::block_upload:
+        if constexpr (has_block) return block_upload(request, hooks);
+        break;
       case sdo::ClientCommand::block_download:
-      case sdo::ClientCommand::reserved: begin(request); break;
+        if constexpr (has_block) return block_download(request, hooks);
+        break;
+      case sdo::ClientCommand::reserved: break;
     }
+    begin(request);
     return AbortCode::command_specifier;
   }
 
   void begin(const std::array<std::uint8_t, 8>& request) {
     state_ = State::idle;
     toggle_ = 0;
+    position_ = 0;
     index_ = sdo::index_of(request);
     sub_index_ = request[3];
   }
@@ -114,112 +190,384 @@ class SdoServer {
     return (word_ & right) != 0 ? ok : refusal;
   }
 
-  [[nodiscard]] AbortCode initiate_upload(auto& hooks) {
+  // Upload
+
+  /// The value to send, as `bytes_` and `size_`: of a streamed one a null pointer and `unknown_size`.
+  template <class Hooks>
+  [[nodiscard]] AbortCode open_upload(Hooks& hooks) {
     if (const AbortCode code = find(entry::readable, AbortCode::write_only); code != ok) return code;
     if (const AbortCode code = hooks.before_read(index_, sub_index_); code != ok) return code;
+    if constexpr (DomainStreamHooks<Hooks>) {
+      bytes_ = nullptr;
+      size_ = sdo::unknown_size;
+      if (entry::is_domain(word_) && hooks.streams_upload(index_, sub_index_)) return ok;
+    }
     const std::span<const std::uint8_t> bytes =
         hooks.entries().read(word_, std::span<std::uint8_t, 8>{buffer_.data(), 8});
     if (bytes.data() == nullptr) return AbortCode::no_data;
-    const std::size_t size = bytes.size();
-    if (size >= 1 && size <= 4) {
-      const auto unused = static_cast<std::uint8_t>((4 - size) << 2);
-      answer(Device::options.sdo_upload_size_indicated ? static_cast<std::uint8_t>(0x43 | unused) : std::uint8_t{0x42});
-      std::memcpy(&reply_[4], bytes.data(), size);
-      return ok;
-    }
-    source_ = bytes.data();
-    if (entry::class_of(word_) != entry::Class::special && source_ != buffer_.data()) {
-      std::memcpy(buffer_.data(), source_, size);
-      source_ = buffer_.data();
-    }
-    left_ = static_cast<std::uint32_t>(size);
-    state_ = State::uploading;
-    answer(0x41);
-    sdo::put_word(reply_, left_);
+    bytes_ = const_cast<std::uint8_t*>(bytes.data());  // an upload only reads
+    size_ = static_cast<std::uint32_t>(bytes.size());
     return ok;
   }
 
-  [[nodiscard]] AbortCode upload_segment(std::uint8_t command) {
+  /// A number goes out in several frames: as it is now.
+  void hold_number() {
+    if (entry::class_of(word_) == entry::Class::special || bytes_ == buffer_.data()) return;
+    std::memcpy(buffer_.data(), bytes_, size_);
+    bytes_ = buffer_.data();
+  }
+
+  template <class Hooks>
+  [[nodiscard]] AbortCode initiate_upload(Hooks& hooks) {
+    if (const AbortCode code = open_upload(hooks); code != ok) return code;
+    answer_upload();
+    return ok;
+  }
+
+  void answer_upload() {
+    if (size_ - 1u < 4u) {
+      const auto unused = static_cast<std::uint8_t>((4 - size_) << 2);
+      answer(Device::options.sdo_upload_size_indicated ? static_cast<std::uint8_t>(0x43 | unused) : std::uint8_t{0x42});
+      std::memcpy(&reply_[4], bytes_, size_);
+      return;
+    }
+    hold_number();
+    state_ = State::uploading;
+    answer_with_size(0x40, sdo::size_indicated);
+  }
+
+  /// An answer that tells the size, where it is known.
+  void answer_with_size(std::uint8_t command, std::uint8_t indicated) {
+    answer(command);
+    if (size_ == sdo::unknown_size) return;
+    reply_[0] |= indicated;
+    sdo::put_word(reply_, size_);
+  }
+
+  /// Puts the next bytes of an upload behind the command byte. Answers how many there were; `last` tells the end.
+  template <class Hooks>
+  [[nodiscard]] AbortCode fetch([[maybe_unused]] Hooks& hooks, std::uint32_t& size, bool& last) {
+    if constexpr (DomainStreamHooks<Hooks>) {
+      if (bytes_ == nullptr) {
+        const Result<std::uint32_t> count = hooks.read_domain(
+            index_, sub_index_, position_, std::span{reply_}.template subspan<1, sdo::segment_bytes>());
+        if (!count) return count.abort_code();
+        size = std::min(*count, sdo::segment_bytes);
+        last = size != sdo::segment_bytes;
+        position_ += size;
+        return ok;
+      }
+    }
+    size = std::min(size_ - position_, sdo::segment_bytes);
+    copy(&reply_[1], bytes_ + position_, size);
+    position_ += size;
+    last = position_ == size_;
+    return ok;
+  }
+
+  template <class Hooks>
+  [[nodiscard]] AbortCode upload_segment(std::uint8_t command, Hooks& hooks) {
     if (state_ != State::uploading) return AbortCode::command_specifier;
     if ((command & sdo::toggle) != toggle_) return AbortCode::toggle_bit;
-    const std::uint32_t size = std::min<std::uint32_t>(left_, sdo::segment_bytes);
-    clear_reply(static_cast<std::uint8_t>(toggle_ | ((sdo::segment_bytes - size) << 1)));
-    if (size != 0) std::memcpy(&reply_[1], source_, size);
-    source_ += size;
-    left_ -= size;
+    clear_reply(toggle_);
+    std::uint32_t size = 0;
+    bool last = false;
+    if (const AbortCode code = fetch(hooks, size, last); code != ok) return code;
+    reply_[0] = static_cast<std::uint8_t>(reply_[0] | ((sdo::segment_bytes - size) << 1));
     toggle_ ^= sdo::toggle;
-    if (left_ == 0) {
+    if (last) {
       reply_[0] |= sdo::last_segment;
       state_ = State::idle;
     }
     return ok;
   }
 
+  // Download
+
   [[nodiscard]] AbortCode initiate_download(const std::array<std::uint8_t, 8>& request, auto& hooks) {
     if (const AbortCode code = find(entry::writable, AbortCode::read_only); code != ok) return code;
-    const EntryAccess entries = hooks.entries();
-    if (entry::is_domain(word_) && entries.domain(word_).data == nullptr) return AbortCode::not_stored;
     size_indicated_ = (request[0] & sdo::size_indicated) != 0;
-
     if ((request[0] & sdo::expedited) != 0) {
-      std::size_t size = 4u - ((request[0] >> 2) & 3u);
+      std::uint32_t size = 4u - ((request[0] >> 2) & 3u);
       if (!size_indicated_)
-        size = entry::wire_bytes(word_) == 0 ? 4u : std::min<std::size_t>(entry::wire_bytes(word_), 4);
-      std::memcpy(buffer_.data(), &request[4], size);
-      if (const AbortCode code = commit({buffer_.data(), size}, hooks); code != ok) return code;
+        size = entry::wire_bytes(word_) == 0 ? 4u : std::min<std::uint32_t>(entry::wire_bytes(word_), 4);
+      size_indicated_ = true;
+      if (const AbortCode code = prepare(size, hooks); code != ok) return code;
+      if (const AbortCode code = store(hooks, &request[4], size, true); code != ok) return code;
+      if (const AbortCode code = finish(hooks); code != ok) return code;
     } else {
-      if (const AbortCode code = prepare(sdo::word_of(request), entries); code != ok) return code;
+      if (const AbortCode code = prepare(sdo::word_of(request), hooks); code != ok) return code;
+      state_ = State::downloading;
     }
     answer(0x60);
     return ok;
   }
 
-  /// Room for a segmented download: `left_` is what may still come.
-  [[nodiscard]] AbortCode prepare(std::uint32_t announced, const EntryAccess& entries) {
-    if (size_indicated_) {
-      if (const AbortCode code = entries.check_length(index_, sub_index_, word_, announced); code != ok) return code;
-      left_ = announced;
-      if (!entry::is_domain(word_) && announced > buffer_bytes) return AbortCode::out_of_memory;
-    } else {
-      left_ = entries.longest(index_, sub_index_, word_);
+  /// Where the bytes go, as `bytes_`: of a streamed DOMAIN a null pointer.
+  template <class Hooks>
+  [[nodiscard]] AbortCode open_download(Hooks& hooks) {
+    bytes_ = buffer_.data();
+    if (!entry::is_domain(word_)) return ok;
+    if constexpr (DomainStreamHooks<Hooks>) {
+      bytes_ = nullptr;
+      if (hooks.streams_download(index_, sub_index_)) return ok;
     }
-    if (entry::is_domain(word_)) entries.resize_domain(word_, 0);
-    received_ = 0;
-    state_ = State::downloading;
+    bytes_ = hooks.entries().domain(word_).data;
+    return bytes_ == nullptr ? AbortCode::not_stored : ok;
+  }
+
+  /// Room for a download: `size_` is what may come.
+  [[nodiscard]] AbortCode prepare(std::uint32_t announced, auto& hooks) {
+    if (const AbortCode code = open_download(hooks); code != ok) return code;
+    size_ = size_indicated_ ? announced : sdo::unknown_size;
+    if (streamed(hooks)) return ok;
+    const EntryAccess entries = hooks.entries();
+    if (size_indicated_) {
+      if (const AbortCode code = entries.check_length(index_, sub_index_, word_, size_); code != ok) return code;
+    } else {
+      size_ = entries.longest(index_, sub_index_, word_);
+    }
+    if (entry::is_domain(word_)) {
+      entries.resize_domain(word_, 0);
+    } else if (buffer_is_short && size_indicated_ && size_ > buffer_bytes) {
+      return AbortCode::out_of_memory;
+    }
+    return ok;
+  }
+
+  /// Whether so many more bytes may come.
+  [[nodiscard]] AbortCode check_room(std::uint32_t size) const {
+    if (size > size_ - position_) return AbortCode::length_too_high;
+    if constexpr (buffer_is_short) {
+      if (!entry::is_domain(word_) && position_ + size > buffer_bytes) return AbortCode::out_of_memory;
+    }
+    return ok;
+  }
+
+  /// Takes the next bytes of a download.
+  template <class Hooks>
+  [[nodiscard]] AbortCode store([[maybe_unused]] Hooks& hooks, const std::uint8_t* from, std::uint32_t size,
+                                [[maybe_unused]] bool last) {
+    if (const AbortCode code = check_room(size); code != ok) return code;
+    if constexpr (DomainStreamHooks<Hooks>) {
+      if (bytes_ == nullptr) {
+        if (last && size_indicated_ && position_ + size != size_) return AbortCode::length_mismatch;
+        const AbortCode code = hooks.write_domain(index_, sub_index_, position_, {from, size}, last);
+        position_ += size;
+        return code;
+      }
+    }
+    if (from != bytes_ + position_) copy(bytes_ + position_, from, size);
+    position_ += size;
     return ok;
   }
 
   [[nodiscard]] AbortCode download_segment(const std::array<std::uint8_t, 8>& request, auto& hooks) {
     if (state_ != State::downloading) return AbortCode::command_specifier;
     if ((request[0] & sdo::toggle) != toggle_) return AbortCode::toggle_bit;
+    const bool last = (request[0] & sdo::last_segment) != 0;
     const std::uint32_t size = sdo::segment_bytes - ((request[0] >> 1) & 7u);
-    if (size > left_) return AbortCode::length_too_high;
-    std::uint8_t* target = buffer_.data();
-    if (entry::is_domain(word_)) {
-      target = hooks.entries().domain(word_).data;
-    } else if (received_ + size > buffer_bytes) {
-      return AbortCode::out_of_memory;
-    }
-    if (size != 0) std::memcpy(target + received_, &request[1], size);
-    received_ += size;
-    left_ -= size;
-    if ((request[0] & sdo::last_segment) != 0) {
-      if (size_indicated_ && left_ != 0) return AbortCode::length_mismatch;
-      state_ = State::idle;
-      if (const AbortCode code = commit({target, received_}, hooks); code != ok) return code;
+    if (const AbortCode code = store(hooks, &request[1], size, last); code != ok) return code;
+    if (last) {
+      if (const AbortCode code = finish(hooks); code != ok) return code;
     }
     clear_reply(static_cast<std::uint8_t>(0x20 | toggle_));
     toggle_ ^= sdo::toggle;
     return ok;
   }
 
-  [[nodiscard]] AbortCode commit(std::span<std::uint8_t> bytes, auto& hooks) {
-    const EntryAccess entries = hooks.entries();
-    if (const AbortCode code = entries.check(index_, sub_index_, word_, bytes); code != ok) return code;
-    if (const AbortCode code = hooks.before_write(index_, sub_index_, bytes); code != ok) return code;
-    entries.write(word_, bytes);
+  /// All bytes of a download are there.
+  template <class Hooks>
+  [[nodiscard]] AbortCode finish(Hooks& hooks) {
+    state_ = State::idle;
+    if (size_indicated_ && position_ != size_) return AbortCode::length_mismatch;
+    if (!streamed(hooks)) {
+      const EntryAccess entries = hooks.entries();
+      const std::span<std::uint8_t> bytes{bytes_, position_};
+      if (const AbortCode code = entries.check(index_, sub_index_, word_, bytes); code != ok) return code;
+      if (const AbortCode code = hooks.before_write(index_, sub_index_, bytes); code != ok) return code;
+      entries.write(word_, bytes);
+    }
     hooks.after_write(index_, sub_index_);
     return ok;
+  }
+
+  /// Whether the application gives or takes the bytes of this transfer.
+  template <class Hooks>
+  [[nodiscard]] bool streamed([[maybe_unused]] const Hooks& hooks) const {
+    if constexpr (DomainStreamHooks<Hooks>) return bytes_ == nullptr;
+    return false;
+  }
+
+  // Block upload
+
+  [[nodiscard]] AbortCode block_upload(const std::array<std::uint8_t, 8>& request, auto& hooks) {
+    switch (static_cast<sdo::BlockUpload>(request[0] & 3)) {
+      case sdo::BlockUpload::initiate: begin(request); return initiate_block_upload(request, hooks);
+      case sdo::BlockUpload::start:
+        if (state_ != State::block_upload_initiated) break;
+        state_ = State::block_uploading;
+        return next_block_segment(hooks);
+      case sdo::BlockUpload::confirm:
+        if (state_ != State::block_uploading) break;
+        return sub_block_confirmed(request, hooks);
+      case sdo::BlockUpload::end:
+        if (state_ != State::block_upload_ending) break;
+        state_ = State::idle;
+        return ok;
+    }
+    return AbortCode::command_specifier;
+  }
+
+  [[nodiscard]] AbortCode initiate_block_upload(const std::array<std::uint8_t, 8>& request, auto& hooks) {
+    if (!set_block_size(request[4])) return AbortCode::block_size;
+    if (const AbortCode code = open_upload(hooks); code != ok) return code;
+    if (size_ <= request[5] && request[5] != 0) {  // the protocol switch threshold: 0 wants no other protocol
+      answer_upload();
+      return ok;
+    }
+    hold_number();
+    begin_blocks(request[0]);
+    state_ = State::block_upload_initiated;
+    answer_with_size(sdo::block_upload_answer | sdo::crc_supported, sdo::block_size_indicated);
+    return ok;
+  }
+
+  [[nodiscard]] bool set_block_size(std::uint8_t size) {
+    block_.size = size;
+    return size - 1u < sdo::largest_block;
+  }
+
+  void begin_blocks(std::uint8_t command) {
+    block_.crc = 0;
+    block_.checked = (command & sdo::crc_supported) != 0;
+    block_.sequence = 0;
+    block_.repeated = 0;
+    block_.unused = 0;
+    block_.last = false;
+  }
+
+  [[nodiscard]] AbortCode next_block_segment(auto& hooks) {
+    clear_reply(++block_.sequence);
+    std::uint32_t size = 0;
+    if (const AbortCode code = fetch(hooks, size, block_.last); code != ok) return code;
+    if (block_.last) {
+      reply_[0] |= sdo::last_block_segment;
+      block_.unused = static_cast<std::uint8_t>(sdo::segment_bytes - size);
+    }
+    if (block_.repeated != 0) {
+      --block_.repeated;
+    } else {
+      add_to_crc(&reply_[1], size);
+    }
+    return ok;
+  }
+
+  void add_to_crc(const std::uint8_t* bytes, std::uint32_t size) {
+    std::uint16_t crc = block_.crc;
+    for (const std::uint8_t* const end = bytes + size; bytes != end; ++bytes) crc = crc16(crc, *bytes);
+    block_.crc = crc;
+  }
+
+  /// The client has taken the first segments of the sub-block. What is missing goes out again, in the next one.
+  [[nodiscard]] AbortCode sub_block_confirmed(const std::array<std::uint8_t, 8>& request, auto& hooks) {
+    if (request[1] > block_.sequence) return AbortCode::sequence_number;
+    const auto lost = static_cast<std::uint8_t>(block_.sequence - request[1]);
+    if (lost == 0 && block_.last) {
+      state_ = State::block_upload_ending;
+      clear_reply(static_cast<std::uint8_t>(sdo::block_upload_end | (block_.unused << 2)));
+      if (block_.checked) std::memcpy(&reply_[1], &block_.crc, sizeof block_.crc);
+      return ok;
+    }
+    if (!set_block_size(request[2])) return AbortCode::block_size;
+    if (lost != 0) {
+      position_ += block_.unused;
+      position_ -= lost * sdo::segment_bytes;
+      block_.repeated = static_cast<std::uint8_t>(block_.repeated + lost);
+      block_.unused = 0;
+      block_.last = false;
+    }
+    block_.sequence = 0;
+    return next_block_segment(hooks);
+  }
+
+  // Block download
+
+  [[nodiscard]] AbortCode block_download(const std::array<std::uint8_t, 8>& request, auto& hooks) {
+    if ((request[0] & 1) != 0) return end_block_download(request, hooks);
+    begin(request);
+    if (const AbortCode code = find(entry::writable, AbortCode::read_only); code != ok) return code;
+    size_indicated_ = (request[0] & sdo::block_size_indicated) != 0;
+    if (const AbortCode code = prepare(sdo::word_of(request), hooks); code != ok) return code;
+    begin_blocks(request[0]);
+    state_ = State::block_downloading;
+    answer(sdo::block_download_answer | sdo::crc_supported);
+    reply_[4] = sdo::largest_block;
+    return ok;
+  }
+
+  /// A segment in its order is taken, another one is only looked at for the end of its sub-block. How much of the last
+  /// one counts is not known before the end: it is laid down where it belongs, and counts then.
+  [[nodiscard]] AbortCode take_block_segment(const std::array<std::uint8_t, 8>& request, auto& hooks) {
+    const auto sequence = static_cast<std::uint8_t>(request[0] & sdo::sequence_mask);
+    const bool last = (request[0] & sdo::last_block_segment) != 0;
+    if (sequence == 0) return AbortCode::sequence_number;
+    if (sequence == block_.sequence + 1) {
+      block_.sequence = sequence;
+      if (last) {
+        std::uint32_t size = sdo::segment_bytes;
+        while (check_room(size) != ok) --size;
+        copy(last_segment(), &request[1], size);
+        state_ = State::block_download_ending;
+      } else {
+        if (const AbortCode code = store(hooks, &request[1], sdo::segment_bytes, false); code != ok) return code;
+        add_to_crc(&request[1], sdo::segment_bytes);
+      }
+    }
+    if (last || sequence == sdo::largest_block) confirm_sub_block();
+    return ok;
+  }
+
+  [[nodiscard]] std::uint8_t* last_segment() { return bytes_ == nullptr ? buffer_.data() : bytes_ + position_; }
+
+  void confirm_sub_block() {
+    clear_reply(sdo::block_download_confirm);
+    reply_[1] = block_.sequence;
+    reply_[2] = sdo::largest_block;
+    block_.sequence = 0;
+  }
+
+  [[nodiscard]] AbortCode end_block_download(const std::array<std::uint8_t, 8>& request, auto& hooks) {
+    if (state_ != State::block_download_ending) return AbortCode::command_specifier;
+    const std::uint32_t size = sdo::segment_bytes - ((request[0] >> 2) & 7u);
+    if (const AbortCode code = check_room(size); code != ok) return code;
+    add_to_crc(last_segment(), size);
+    if (block_.checked && std::memcmp(&request[1], &block_.crc, sizeof block_.crc) != 0) return AbortCode::crc;
+    if (const AbortCode code = store(hooks, last_segment(), size, true); code != ok) return code;
+    if (const AbortCode code = finish(hooks); code != ok) return code;
+    clear_reply(sdo::block_download_end_answer);
+    return ok;
+  }
+
+  /// Whether part of a sub-block has come and its end has not.
+  [[nodiscard]] bool sub_block_begun() const { return state_ == State::block_downloading && block_.sequence != 0; }
+
+  [[nodiscard]] Duration patience() const {
+    if constexpr (has_block) {
+      if (sub_block_begun()) return timeout / 2;
+    }
+    return timeout;
+  }
+
+  // Answers
+
+  /// Seven bytes, the usual number, need no call of memcpy.
+  static void copy(std::uint8_t* to, const std::uint8_t* from, std::uint32_t size) {
+    if (size == sdo::segment_bytes) {
+      std::memcpy(to, from, sdo::segment_bytes);
+    } else if (size != 0) {
+      std::memcpy(to, from, size);
+    }
   }
 
   void clear_reply(std::uint8_t command) {
@@ -240,15 +588,26 @@ class SdoServer {
     sdo::put_word(reply_, static_cast<std::uint32_t>(code));
   }
 
-  struct NoTime {};
+  struct Nothing {};
+
+  struct Block {
+    std::uint16_t crc = 0;
+    std::uint8_t size = 0;      ///< upload: segments of this sub-block
+    std::uint8_t sequence = 0;  ///< of the last segment
+    std::uint8_t repeated = 0;  ///< upload: segments to come that the CRC counts already
+    std::uint8_t unused = 0;    ///< upload: bytes of the last segment that hold no data
+    bool last = false;          ///< upload: the last segment has been made
+    bool checked = false;       ///< the client uses the CRC
+  };
 
   alignas(4) std::array<std::uint8_t, 8> reply_{};
   alignas(4) std::array<std::uint8_t, buffer_bytes> buffer_{};
-  const std::uint8_t* source_ = nullptr;  ///< upload: the next byte
-  std::uint32_t left_ = 0;                ///< upload: bytes to send; download: bytes that may still come
-  std::uint32_t received_ = 0;
+  std::uint8_t* bytes_ = nullptr;  ///< where the value begins; null: the application streams it
+  std::uint32_t size_ = 0;         ///< upload: bytes of the value; download: bytes that may come
+  std::uint32_t position_ = 0;     ///< the next byte
   entry::Word word_ = 0;
-  [[no_unique_address]] std::conditional_t<has_timeout, TimePoint, NoTime> last_request_{};
+  [[no_unique_address]] std::conditional_t<has_timeout, TimePoint, Nothing> last_activity_{};
+  [[no_unique_address]] std::conditional_t<has_block, Block, Nothing> block_{};
   std::uint16_t index_ = 0;
   std::uint8_t sub_index_ = 0;
   State state_ = State::idle;

@@ -1,0 +1,49 @@
+/// A value, or the SDO abort code that says why there is none.
+#pragma once
+
+#include <utility>
+
+#include "canopen/abort_code.hpp"
+
+namespace canopen {
+
+///     if (const auto speed = drive.read<od::velocity_actual_value>()) use(*speed); else
+///     log(to_text(speed.abort_code()));
+template <class T>
+class [[nodiscard]] Result {
+ public:
+  constexpr Result(T value) : value_{std::move(value)} {}  // NOLINT(google-explicit-constructor): a value is a result
+  /// `code` is not `ok`.
+  constexpr Result(AbortCode code) : abort_code_{code} {}  // NOLINT(google-explicit-constructor): so is a refusal
+
+  [[nodiscard]] constexpr bool has_value() const { return abort_code_ == ok; }
+  constexpr explicit operator bool() const { return has_value(); }
+
+  /// The value; one made by its default constructor where there is none.
+  [[nodiscard]] constexpr const T& value() const { return value_; }
+  constexpr const T& operator*() const { return value_; }
+  constexpr const T* operator->() const { return &value_; }
+
+  /// Why there is no value; `ok` when there is one.
+  [[nodiscard]] constexpr AbortCode abort_code() const { return abort_code_; }
+
+ private:
+  T value_{};
+  AbortCode abort_code_ = ok;
+};
+
+/// What a write comes to: done, or an abort code.
+template <>
+class [[nodiscard]] Result<void> {
+ public:
+  constexpr Result() = default;
+  constexpr Result(AbortCode code) : abort_code_{code} {}  // NOLINT(google-explicit-constructor): `ok` included
+
+  constexpr explicit operator bool() const { return abort_code_ == ok; }
+  [[nodiscard]] constexpr AbortCode abort_code() const { return abort_code_; }
+
+ private:
+  AbortCode abort_code_ = ok;
+};
+
+}  // namespace canopen
