@@ -1,8 +1,9 @@
-/// SDO client: expedited and segmented upload and download (CiA 301, 7.2.4.3), one transfer at a time.
+/// SDO client: expedited, segmented and block upload and download (CiA 301, 7.2.4.3), one transfer at a time.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <cstring>
 #include <optional>
@@ -11,34 +12,107 @@
 
 #include "canopen/abort_code.hpp"
 #include "canopen/cob_id.hpp"
+#include "canopen/crc16.hpp"
 #include "canopen/frame.hpp"
 #include "canopen/handlers.hpp"
 #include "canopen/node_id.hpp"
 #include "canopen/object.hpp"
+#include "canopen/result.hpp"
 #include "canopen/sdo_protocol.hpp"
 #include "canopen/time.hpp"
 
 namespace canopen {
 
-/// Reads and writes the dictionary of one remote node through its default SDO server. Begin a transfer, hand in frames
+/// The two COB-IDs of an SDO, as 1200h or 1280h hold them.
+struct SdoChannel {
+  CobId request;   ///< client to server
+  CobId response;  ///< server to client
+};
+
+/// The default SDO of a node.
+[[nodiscard]] constexpr SdoChannel default_sdo(NodeId server) {
+  return {CobId{std::uint32_t{function_code::sdo_request} + server.value()},
+          CobId{std::uint32_t{function_code::sdo_response} + server.value()}};
+}
+
+struct SdoClientOptions {
+  /// A server that is silent for this long ends the transfer with 0504 0000h, which it is told. Half a second is longer
+  /// than the erasure of a page of flash, which some servers answer after.
+  Duration timeout = std::chrono::milliseconds{500};
+  /// Longer values are transferred in blocks; by segments, from then on, when the server has no block transfer.
+  bool block_transfer = false;
+  /// Bytes up to which a value is not worth a block transfer.
+  std::uint8_t block_threshold = 28;
+  /// Segments of a sub-block of an upload, 1..127.
+  std::uint8_t block_size = sdo::largest_block;
+  /// Sub-blocks in a row of which nothing comes through before the transfer ends with 0504 0003h.
+  std::uint8_t block_retries = 3;
+  /// Block transfers have a CRC when the server supports it.
+  bool crc = true;
+};
+
+/// Where the bytes of an upload go that no memory holds whole: each once and in order. The last piece of a block upload
+/// comes when its CRC is right. An AbortCode other than `ok` ends the transfer.
+struct SdoSink {
+  AbortCode (*take)(void* context, std::uint32_t offset, std::span<const std::uint8_t> bytes, bool last) = nullptr;
+  void* context = nullptr;
+};
+
+/// Where the bytes of a download come from that no memory holds whole: fills the bytes and answers how many there were.
+/// Fewer than asked for are the last. A piece that was lost on the bus is asked for again.
+struct SdoSource {
+  Result<std::uint32_t> (*give)(void* context, std::uint32_t offset, std::span<std::uint8_t> bytes) = nullptr;
+  void* context = nullptr;
+  std::uint32_t size = sdo::unknown_size;  ///< bytes, if known
+};
+
+/// A sink that calls `callable(offset, bytes, last)`, which must stay until the transfer is over.
+template <class F>
+[[nodiscard]] SdoSink sink_of(F& callable) {
+  return {[](void* context, std::uint32_t offset, std::span<const std::uint8_t> bytes, bool last) -> AbortCode {
+            return (*static_cast<F*>(context))(offset, bytes, last);
+          },
+          &callable};
+}
+
+/// A source that calls `callable(offset, bytes)`, which must stay until the transfer is over.
+template <class F>
+[[nodiscard]] SdoSource source_of(F& callable, std::uint32_t size = sdo::unknown_size) {
+  return {[](void* context, std::uint32_t offset, std::span<std::uint8_t> bytes) -> Result<std::uint32_t> {
+            return (*static_cast<F*>(context))(offset, bytes);
+          },
+          &callable, size};
+}
+
+/// Reads and writes the dictionary of one remote node through one of its SDO servers. Begin a transfer, hand in frames
 /// and time until it is no longer `busy()`, then look at `result()` and, after an upload, at `data()`.
 ///
 /// An upload fills, and a download reads, memory of the caller's that must stay until the transfer is over.
 template <Bus B>
 class SdoClient {
  public:
-  /// A server that is silent for `timeout` ends the transfer with 0504 0000h, which the server is told.
+  constexpr SdoClient(B& can_bus, SdoChannel channel, SdoClientOptions options = {})
+      : bus_{can_bus}, options_{options}, channel_{channel} {}
+  constexpr SdoClient(B& can_bus, NodeId server, SdoClientOptions options = {})
+      : SdoClient{can_bus, default_sdo(server), options} {}
   constexpr SdoClient(B& can_bus, NodeId server, Duration timeout)
-      : bus_{can_bus}, timeout_{timeout}, server_{server} {}
+      : SdoClient{can_bus, server, SdoClientOptions{.timeout = timeout}} {}
 
   /// Begins to read an entry into `memory`. 0504 0005h: the value is longer than that. False while busy.
   bool upload(std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> memory, TimePoint now) {
     if (busy()) return false;
     memory_ = memory;
-    begin(index, sub_index, State::initiating_upload);
-    request(0x40, now);
-    sdo::put_multiplexer(request_, index, sub_index);
-    (void)flush();
+    sink_ = {};
+    begin_upload(index, sub_index, memory.size() > options_.block_threshold, now);
+    return true;
+  }
+
+  /// Begins to read an entry piece by piece.
+  bool upload(std::uint16_t index, std::uint8_t sub_index, SdoSink sink, TimePoint now) {
+    if (busy()) return false;
+    memory_ = {};
+    sink_ = sink;
+    begin_upload(index, sub_index, true, now);
     return true;
   }
 
@@ -46,18 +120,17 @@ class SdoClient {
   bool download(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> bytes, TimePoint now) {
     if (busy()) return false;
     bytes_ = bytes;
-    begin(index, sub_index, State::initiating_download);
-    const auto size = static_cast<std::uint32_t>(bytes.size());
-    if (size >= 1 && size <= 4) {
-      request(static_cast<std::uint8_t>(0x23 | ((4 - size) << 2)), now);
-      std::memcpy(&request_[4], bytes.data(), size);
-      position_ = size;
-    } else {
-      request(0x21, now);
-      sdo::put_word(request_, size);
-    }
-    sdo::put_multiplexer(request_, index, sub_index);
-    (void)flush();
+    source_ = {};
+    begin_download(index, sub_index, static_cast<std::uint32_t>(bytes.size()), now);
+    return true;
+  }
+
+  /// Begins to write an entry piece by piece.
+  bool download(std::uint16_t index, std::uint8_t sub_index, SdoSource source, TimePoint now) {
+    if (busy()) return false;
+    bytes_ = {};
+    source_ = source;
+    begin_download(index, sub_index, source.size, now);
     return true;
   }
 
@@ -69,190 +142,504 @@ class SdoClient {
   template <DictionaryObject O>
   requires(O::bits > 0) [[nodiscard]] std::optional<typename O::type> value() {
     if (busy() || result_ != ok) return std::nullopt;
-    if (position_ < (O::bits + 7u) / 8u) {
+    constexpr std::uint32_t size = (O::bits + 7u) / 8u;
+    if (position_ != size && (size_ != sdo::unknown_size || position_ < size)) {
       result_ = AbortCode::length_mismatch;
       return std::nullopt;
     }
-    return handler_detail::value_from<O>(std::span{number_}.first(position_));
+    return handler_detail::value_from<O>(std::span{number_}.first(size));
   }
 
   /// Begins to write an object of a generated dictionary.
   template <DictionaryObject O>
   requires(O::bits > 0) bool write(const typename O::type& value, TimePoint now) {
+    if (busy()) return false;
     const std::uint64_t raw = pdo_detail::to_bits(value);
     std::memcpy(number_.data(), &raw, sizeof raw);
     return download(O::index, O::sub_index, std::span{number_}.first((O::bits + 7u) / 8u), now);
   }
 
+  /// Ends the transfer and tells the server why.
+  void cancel(AbortCode code, TimePoint now) {
+    now_ = now;
+    if (state_ != State::idle) abort(code);
+    flush();
+  }
+
   /// Takes an answer of the server; other frames are ignored.
   void on_frame(const Frame& frame, TimePoint now) {
-    if (!busy() || frame.remote || frame.size != 8) return;
-    if (cob_id_of(frame) != function_code::sdo_response + std::uint32_t{server_.value()}) return;
-    handle(frame.data, now);
-    (void)flush();
+    now_ = now;
+    if (state_ == State::idle || frame.remote || frame.size != 8) return;
+    if (frame.extended != channel_.response.extended() || frame.id != channel_.response.can_id()) return;
+    handle(frame.data);
+    flush();
   }
 
-  /// Sends what found no room, and ends a transfer whose server is silent.
+  /// Sends what found no room, and ends a transfer whose server is silent. To be called at `next_deadline()`, and when
+  /// the bus has room again.
   void on_time(TimePoint now) {
-    (void)flush();
-    if (busy() && now >= deadline_) {
+    now_ = now;
+    flush();
+    if (state_ == State::idle || now < deadline_) return;
+    if (state_ == State::block_uploading && sequence_ != 0) {
+      confirm_sub_block();  // what is lost comes again
+    } else {
       abort(AbortCode::timeout);
-      (void)flush();
     }
+    flush();
   }
 
+  /// When `on_time` has something to do: not later than the last time told while a frame waits for room on the bus.
   [[nodiscard]] std::optional<TimePoint> next_deadline() const {
-    return busy() ? std::optional{deadline_} : std::nullopt;
+    if (has_request_) return now_;
+    return state_ == State::idle ? std::nullopt : std::optional{deadline_};
   }
 
-  /// Whether a transfer runs.
-  [[nodiscard]] bool busy() const { return state_ != State::idle; }
+  /// Whether a transfer runs, or its abort waits for room on the bus.
+  [[nodiscard]] bool busy() const { return state_ != State::idle || has_request_; }
 
   /// How the last transfer ended: `ok`, or the abort code of either side.
   [[nodiscard]] AbortCode result() const { return result_; }
 
-  /// What an upload that ended well has brought.
-  [[nodiscard]] std::span<const std::uint8_t> data() const { return memory_.first(position_); }
-
- private:
-  enum class State : std::uint8_t { idle, initiating_upload, uploading, initiating_download, downloading };
-
-  void begin(std::uint16_t index, std::uint8_t sub_index, State state) {
-    index_ = index;
-    sub_index_ = sub_index;
-    state_ = state;
-    position_ = 0;
-    announced_.reset();
-    toggle_ = 0;
-    result_ = ok;
+  /// What an upload that ended well has brought into memory.
+  [[nodiscard]] std::span<const std::uint8_t> data() const {
+    return memory_.first(sink_.take == nullptr ? position_ : 0);
   }
 
-  void handle(const sdo::Data& answer, TimePoint now) {
-    const sdo::ServerCommand command = sdo::server_command(answer[0]);
-    if (command == sdo::ServerCommand::abort) {
-      if (names_entry(answer)) finish(static_cast<AbortCode>(sdo::word_of(answer)));
-      return;
+ private:
+  enum class State : std::uint8_t {
+    idle,
+    initiating_upload,
+    uploading,
+    initiating_download,
+    downloading,
+    initiating_block_upload,
+    block_uploading,      ///< takes segments
+    block_upload_ending,  ///< waits for the CRC
+    initiating_block_download,
+    block_downloading,      ///< sends a sub-block, then waits until it is confirmed
+    block_download_ending,  ///< waits for the last word of the server
+  };
+
+  void begin(std::uint16_t index, std::uint8_t sub_index) {
+    index_ = index;
+    sub_index_ = sub_index;
+    result_ = ok;
+    restart();
+  }
+
+  void restart() {
+    position_ = 0;
+    toggle_ = 0;
+    crc_ = 0;
+    sequence_ = 0;
+    repeated_ = 0;
+    unused_ = 0;
+    failures_ = 0;
+    last_ = false;
+  }
+
+  void begin_upload(std::uint16_t index, std::uint8_t sub_index, bool long_enough, TimePoint now) {
+    now_ = now;
+    begin(index, sub_index);
+    size_ = sdo::unknown_size;
+    if (options_.block_transfer && long_enough && !block_refused_) {
+      initiate_block_upload();
+    } else {
+      initiate_upload();
     }
+    flush();
+  }
+
+  void begin_download(std::uint16_t index, std::uint8_t sub_index, std::uint32_t size, TimePoint now) {
+    now_ = now;
+    begin(index, sub_index);
+    size_ = size;
+    if (options_.block_transfer && size > options_.block_threshold && !block_refused_) {
+      initiate_block_download();
+    } else {
+      initiate_download();
+    }
+    flush();
+  }
+
+  void handle(const sdo::Data& answer) {
+    if (state_ == State::block_uploading && answer[0] != sdo::abort_command) return take_block_segment(answer);
+    const sdo::ServerCommand command = sdo::server_command(answer[0]);
+    if (command == sdo::ServerCommand::abort) return aborted(answer);
     switch (state_) {
       case State::initiating_upload:
-        if (command != sdo::ServerCommand::initiate_upload) return abort(AbortCode::command_specifier);
-        if (names_entry(answer)) upload_initiated(answer, now);
-        return;
+        if (command != sdo::ServerCommand::initiate_upload) break;
+        return upload_initiated(answer);
       case State::uploading:
-        if (command != sdo::ServerCommand::upload_segment) return abort(AbortCode::command_specifier);
-        return segment_uploaded(answer, now);
+        if (command != sdo::ServerCommand::upload_segment) break;
+        return segment_uploaded(answer);
       case State::initiating_download:
-        if (command != sdo::ServerCommand::initiate_download) return abort(AbortCode::command_specifier);
-        if (!names_entry(answer)) return;
-        if (position_ == bytes_.size() && position_ != 0) return finish(ok);
-        state_ = State::downloading;
-        return send_segment(now);
+        if (command != sdo::ServerCommand::initiate_download) break;
+        return download_initiated(answer);
       case State::downloading:
-        if (command != sdo::ServerCommand::download_segment) return abort(AbortCode::command_specifier);
-        if ((answer[0] & sdo::toggle) != toggle_) return abort(AbortCode::toggle_bit);
-        if (last_sent_) return finish(ok);
-        toggle_ ^= sdo::toggle;
-        return send_segment(now);
+        if (command != sdo::ServerCommand::download_segment) break;
+        return segment_downloaded(answer);
+      case State::initiating_block_upload:
+        if (command == sdo::ServerCommand::initiate_upload) return upload_initiated(answer);  // a short value
+        if (command != sdo::ServerCommand::block_upload || (answer[0] & 1) != 0) break;
+        return block_upload_initiated(answer);
+      case State::block_upload_ending:
+        if ((answer[0] & sdo::block_end_mask) != sdo::block_upload_end) break;
+        return block_upload_ended(answer);
+      case State::initiating_block_download:
+        if (command != sdo::ServerCommand::block_download || (answer[0] & 3) != 0) break;
+        return block_download_initiated(answer);
+      case State::block_downloading:
+        if (answer[0] != sdo::block_download_confirm) break;
+        return sub_block_confirmed(answer);
+      case State::block_download_ending:
+        if (answer[0] != sdo::block_download_end_answer) break;
+        return finish(ok);
+      case State::block_uploading:
       case State::idle: return;
     }
+    abort(AbortCode::command_specifier);
   }
 
   [[nodiscard]] bool names_entry(const sdo::Data& answer) const {
     return sdo::index_of(answer) == index_ && answer[3] == sub_index_;
   }
 
-  void upload_initiated(const sdo::Data& answer, TimePoint now) {
+  void aborted(const sdo::Data& answer) {
+    if (!names_entry(answer)) return;
+    const auto code = static_cast<AbortCode>(sdo::word_of(answer));
+    const bool refused = code == AbortCode::command_specifier || code == AbortCode::general;
+    if (refused && state_ == State::initiating_block_upload) {
+      fall_back(code);
+      initiate_upload();
+    } else if (refused && state_ == State::initiating_block_download) {
+      fall_back(code);
+      initiate_download();
+    } else {
+      finish(code == ok ? AbortCode::general : code);
+    }
+  }
+
+  /// The server has no block transfer, or none for this entry.
+  void fall_back(AbortCode code) {
+    block_refused_ = code == AbortCode::command_specifier;
+    restart();
+  }
+
+  // Upload
+
+  void initiate_upload() {
+    state_ = State::initiating_upload;
+    request(0x40);
+    sdo::put_multiplexer(request_, index_, sub_index_);
+  }
+
+  void upload_initiated(const sdo::Data& answer) {
+    if (!names_entry(answer)) return;
     const bool size_indicated = (answer[0] & sdo::size_indicated) != 0;
     if ((answer[0] & sdo::expedited) != 0) {
       std::uint32_t size = size_indicated ? 4u - ((answer[0] >> 2) & 3u) : 4u;
-      if (!size_indicated) size = std::min<std::uint32_t>(size, static_cast<std::uint32_t>(memory_.size()));
-      if (take(&answer[4], size)) finish(ok);
+      if (!size_indicated && sink_.take == nullptr)
+        size = std::min<std::uint32_t>(size, static_cast<std::uint32_t>(memory_.size()));
+      if (size_indicated) size_ = size;
+      if (take(&answer[4], size, true)) finish(ok);
       return;
     }
-    if (size_indicated) {
-      announced_ = sdo::word_of(answer);
-      if (*announced_ > memory_.size()) return abort(AbortCode::out_of_memory);
-    }
+    if (!room_for(size_indicated, answer)) return;
     state_ = State::uploading;
-    request(0x60, now);
+    request(0x60);
   }
 
-  void segment_uploaded(const sdo::Data& answer, TimePoint now) {
+  /// Looks at the size that the server announces.
+  [[nodiscard]] bool room_for(bool size_indicated, const sdo::Data& answer) {
+    if (!size_indicated) return true;
+    size_ = sdo::word_of(answer);
+    if (sink_.take != nullptr || size_ <= memory_.size()) return true;
+    abort(AbortCode::out_of_memory);
+    return false;
+  }
+
+  void segment_uploaded(const sdo::Data& answer) {
     if ((answer[0] & sdo::toggle) != toggle_) return abort(AbortCode::toggle_bit);
-    if (!take(&answer[1], sdo::segment_bytes - ((answer[0] >> 1) & 7u))) return;
-    if ((answer[0] & sdo::last_segment) != 0) {
-      if (announced_ && *announced_ != position_) return abort(AbortCode::length_mismatch);
-      return finish(ok);
-    }
+    const bool last = (answer[0] & sdo::last_segment) != 0;
+    if (!take(&answer[1], sdo::segment_bytes - ((answer[0] >> 1) & 7u), last)) return;
+    if (last) return finish(ok);
     toggle_ ^= sdo::toggle;
-    request(static_cast<std::uint8_t>(0x60 | toggle_), now);
+    request(static_cast<std::uint8_t>(0x60 | toggle_));
   }
 
-  [[nodiscard]] bool take(const std::uint8_t* from, std::uint32_t size) {
-    if (size > memory_.size() - position_) {
-      abort(AbortCode::out_of_memory);
+  [[nodiscard]] bool take(const std::uint8_t* from, std::uint32_t size, bool last) {
+    AbortCode code = ok;
+    if (last && size_ != sdo::unknown_size && position_ + size != size_) {
+      code = AbortCode::length_mismatch;
+    } else if (sink_.take != nullptr) {
+      code = sink_.take(sink_.context, position_, {from, size}, last);
+    } else if (size > memory_.size() - position_) {
+      code = AbortCode::out_of_memory;
+    } else if (size != 0) {
+      std::memcpy(&memory_[position_], from, size);
+    }
+    if (code != ok) {
+      abort(code);
       return false;
     }
-    if (size != 0) std::memcpy(&memory_[position_], from, size);
     position_ += size;
     return true;
   }
 
-  void send_segment(TimePoint now) {
-    const auto size = static_cast<std::uint32_t>(std::min<std::size_t>(bytes_.size() - position_, sdo::segment_bytes));
-    last_sent_ = position_ + size == bytes_.size();
-    request(static_cast<std::uint8_t>(toggle_ | ((sdo::segment_bytes - size) << 1) | (last_sent_ ? 1 : 0)), now);
-    if (size != 0) std::memcpy(&request_[1], &bytes_[position_], size);
-    position_ += size;
+  // Download
+
+  void initiate_download() {
+    state_ = State::initiating_download;
+    if (source_.give == nullptr && size_ >= 1 && size_ <= 4) {
+      request(static_cast<std::uint8_t>(0x23 | ((4 - size_) << 2)));
+      std::memcpy(&request_[4], bytes_.data(), size_);
+      last_ = true;
+    } else if (size_ == sdo::unknown_size) {
+      request(0x20);
+    } else {
+      request(0x21);
+      sdo::put_word(request_, size_);
+    }
+    sdo::put_multiplexer(request_, index_, sub_index_);
   }
+
+  void download_initiated(const sdo::Data& answer) {
+    if (!names_entry(answer)) return;
+    if (last_) return finish(ok);
+    state_ = State::downloading;
+    send_segment();
+  }
+
+  void segment_downloaded(const sdo::Data& answer) {
+    if ((answer[0] & sdo::toggle) != toggle_) return abort(AbortCode::toggle_bit);
+    if (last_) return finish(ok);
+    toggle_ ^= sdo::toggle;
+    send_segment();
+  }
+
+  void send_segment() {
+    request(toggle_);
+    const std::optional<std::uint32_t> size = fetch();
+    if (!size) return;
+    request_[0] = static_cast<std::uint8_t>(toggle_ | ((sdo::segment_bytes - *size) << 1) | (last_ ? 1 : 0));
+  }
+
+  /// Puts the next bytes of a download behind the command byte; nothing when the source has ended the transfer.
+  [[nodiscard]] std::optional<std::uint32_t> fetch() {
+    std::uint32_t size = std::min(size_ - position_, sdo::segment_bytes);
+    if (source_.give != nullptr) {
+      const Result<std::uint32_t> count =
+          source_.give(source_.context, position_, std::span{request_}.subspan(1, size));
+      const bool sized = size_ != sdo::unknown_size;
+      if (!count || *count > size || (sized && *count != size)) {
+        abort(count ? AbortCode::no_data : count.abort_code());
+        return std::nullopt;
+      }
+      last_ = sized ? position_ + size == size_ : *count != size;
+      size = *count;
+    } else {
+      if (size != 0) std::memcpy(&request_[1], &bytes_[position_], size);
+      last_ = position_ + size == size_;
+    }
+    position_ += size;
+    return size;
+  }
+
+  // Block upload
+
+  void initiate_block_upload() {
+    state_ = State::initiating_block_upload;
+    request(static_cast<std::uint8_t>(sdo::block_upload_initiate | (options_.crc ? sdo::crc_supported : 0)));
+    sdo::put_multiplexer(request_, index_, sub_index_);
+    request_[4] = options_.block_size;
+    request_[5] = options_.block_threshold;
+  }
+
+  void block_upload_initiated(const sdo::Data& answer) {
+    if (!names_entry(answer)) return;
+    checked_ = options_.crc && (answer[0] & sdo::crc_supported) != 0;
+    if (!room_for((answer[0] & sdo::block_size_indicated) != 0, answer)) return;
+    state_ = State::block_uploading;
+    request(sdo::block_upload_start);
+  }
+
+  /// A segment in its order is taken, another one is only looked at for the end of its sub-block. The last one waits
+  /// until the end tells how much of it counts.
+  void take_block_segment(const sdo::Data& answer) {
+    const auto sequence = static_cast<std::uint8_t>(answer[0] & sdo::sequence_mask);
+    const bool last = (answer[0] & sdo::last_block_segment) != 0;
+    if (sequence == 0 || sequence > options_.block_size) return abort(AbortCode::sequence_number);
+    deadline_ = now_ + options_.timeout;
+    if (sequence == sequence_ + 1) {
+      if (last) {
+        std::memcpy(last_segment_.data(), &answer[1], last_segment_.size());
+        state_ = State::block_upload_ending;
+      } else {
+        if (!take(&answer[1], sdo::segment_bytes, false)) return;
+        add_to_crc(&answer[1], sdo::segment_bytes);
+      }
+      sequence_ = sequence;
+    }
+    if (last || sequence == options_.block_size) confirm_sub_block();
+  }
+
+  void confirm_sub_block() {
+    if (!progress(sequence_ != 0)) return;
+    request(sdo::block_upload_confirm);
+    request_[1] = sequence_;
+    request_[2] = options_.block_size;
+    sequence_ = 0;
+  }
+
+  /// Counts the sub-blocks in a row of which nothing has come through.
+  [[nodiscard]] bool progress(bool some) {
+    failures_ = some ? std::uint8_t{0} : static_cast<std::uint8_t>(failures_ + 1);
+    if (failures_ <= options_.block_retries) return true;
+    abort(AbortCode::sequence_number);
+    return false;
+  }
+
+  void block_upload_ended(const sdo::Data& answer) {
+    const std::uint32_t size = sdo::segment_bytes - ((answer[0] >> 2) & 7u);
+    add_to_crc(last_segment_.data(), size);
+    if (checked_ && std::memcmp(&answer[1], &crc_, sizeof crc_) != 0) return abort(AbortCode::crc);
+    if (!take(last_segment_.data(), size, true)) return;
+    finish(ok);
+    request(sdo::block_upload_end_answer);
+  }
+
+  void add_to_crc(const std::uint8_t* bytes, std::uint32_t size) {
+    for (std::uint32_t i = 0; i < size; ++i) crc_ = crc16(crc_, bytes[i]);
+  }
+
+  // Block download
+
+  void initiate_block_download() {
+    state_ = State::initiating_block_download;
+    const bool sized = size_ != sdo::unknown_size;
+    request(static_cast<std::uint8_t>(sdo::block_download_initiate | (options_.crc ? sdo::crc_supported : 0) |
+                                      (sized ? sdo::block_size_indicated : 0)));
+    sdo::put_multiplexer(request_, index_, sub_index_);
+    if (sized) sdo::put_word(request_, size_);
+  }
+
+  void block_download_initiated(const sdo::Data& answer) {
+    if (!names_entry(answer)) return;
+    checked_ = options_.crc && (answer[0] & sdo::crc_supported) != 0;
+    state_ = State::block_downloading;
+    begin_sub_block(answer[4]);
+  }
+
+  void begin_sub_block(std::uint8_t size) {
+    if (size == 0 || size > sdo::largest_block) return abort(AbortCode::block_size);
+    block_size_ = size;
+    sequence_ = 0;
+    send_block_segment();
+  }
+
+  void send_block_segment() {
+    request(++sequence_);
+    const std::optional<std::uint32_t> size = fetch();
+    if (!size) return;
+    if (last_) {
+      request_[0] |= sdo::last_block_segment;
+      unused_ = static_cast<std::uint8_t>(sdo::segment_bytes - *size);
+    }
+    if (repeated_ != 0) {
+      --repeated_;
+    } else {
+      add_to_crc(&request_[1], *size);
+    }
+  }
+
+  /// The server has taken the first segments of the sub-block. What is missing goes out again, in the next one.
+  void sub_block_confirmed(const sdo::Data& answer) {
+    if (answer[1] > sequence_) return abort(AbortCode::sequence_number);
+    const auto lost = static_cast<std::uint8_t>(sequence_ - answer[1]);
+    if (lost == 0 && last_) {
+      state_ = State::block_download_ending;
+      request(static_cast<std::uint8_t>(sdo::block_download_end | (unused_ << 2)));
+      if (checked_) std::memcpy(&request_[1], &crc_, sizeof crc_);
+      return;
+    }
+    if (!progress(answer[1] != 0)) return;
+    if (lost != 0) {
+      position_ += unused_;
+      position_ -= lost * sdo::segment_bytes;
+      repeated_ = static_cast<std::uint8_t>(repeated_ + lost);
+      unused_ = 0;
+      last_ = false;
+    }
+    begin_sub_block(answer[2]);
+  }
+
+  // Requests
 
   void abort(AbortCode code) {
     finish(code);
-    request_ = {};
-    request_[0] = sdo::abort_command;
+    request(sdo::abort_command);
     sdo::put_multiplexer(request_, index_, sub_index_);
     sdo::put_word(request_, static_cast<std::uint32_t>(code));
-    has_request_ = true;
   }
 
   void finish(AbortCode code) {
     result_ = code;
     state_ = State::idle;
+    has_request_ = false;
   }
 
-  void request(std::uint8_t command, TimePoint now) {
+  void request(std::uint8_t command) {
     request_ = {};
     request_[0] = command;
     has_request_ = true;
-    deadline_ = now + timeout_;
+    deadline_ = now_ + options_.timeout;
   }
 
-  bool flush() {
-    if (!has_request_) return true;
-    Frame frame{};
-    frame.id = function_code::sdo_request + std::uint32_t{server_.value()};
-    frame.size = 8;
-    frame.data = request_;
-    has_request_ = !bus_.send(frame);
-    return !has_request_;
+  /// Sends the request that waits, and of a block download as many segments as there is room for.
+  void flush() {
+    while (has_request_) {
+      Frame frame{};
+      frame.id = channel_.request.can_id();
+      frame.extended = channel_.request.extended();
+      frame.size = 8;
+      frame.data = request_;
+      if (!bus_.send(frame)) return;
+      has_request_ = false;
+      deadline_ = now_ + options_.timeout;
+      if (state_ == State::block_downloading && !last_ && sequence_ != block_size_) send_block_segment();
+    }
   }
 
   B& bus_;
-  Duration timeout_;
+  SdoClientOptions options_;
+  SdoChannel channel_;
   std::span<std::uint8_t> memory_{};       ///< upload: where to
   std::span<const std::uint8_t> bytes_{};  ///< download: where from
+  SdoSink sink_{};
+  SdoSource source_{};
   alignas(8) std::array<std::uint8_t, 8> number_{};
-  sdo::Data request_{};
-  std::optional<std::uint32_t> announced_{};
+  alignas(4) sdo::Data request_{};
+  std::array<std::uint8_t, sdo::segment_bytes> last_segment_{};  ///< block upload: until its end tells how much counts
+  std::uint32_t size_ = sdo::unknown_size;                       ///< of the value, as far as it is known
   std::uint32_t position_ = 0;
+  TimePoint now_{};
   TimePoint deadline_{};
   AbortCode result_ = ok;
   std::uint16_t index_ = 0;
+  std::uint16_t crc_ = 0;
   std::uint8_t sub_index_ = 0;
-  NodeId server_;
   State state_ = State::idle;
   std::uint8_t toggle_ = 0;
-  bool last_sent_ = false;
+  std::uint8_t block_size_ = 0;  ///< download: segments of this sub-block
+  std::uint8_t sequence_ = 0;    ///< of the last segment
+  std::uint8_t repeated_ = 0;    ///< download: segments to come that the CRC counts already
+  std::uint8_t unused_ = 0;      ///< download: bytes of the last segment that hold no data
+  std::uint8_t failures_ = 0;
+  bool last_ = false;     ///< download: the last bytes are on their way
+  bool checked_ = false;  ///< the CRC counts
+  bool block_refused_ = false;
   bool has_request_ = false;
 };
 
