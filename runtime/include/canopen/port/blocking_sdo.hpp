@@ -1,0 +1,180 @@
+/// SDO that waits for its answer, for programs on a host:
+///
+///     canopen::SocketCan bus{"can0"};
+///     canopen::BlockingSdo master{bus};
+///     auto drive = master.remote<cpc_tc1::Device>(canopen::NodeId{5});
+///     const auto mode = drive.read<od::modes_of_operation_display>();
+///     if (const auto done = drive.write<od::profile_velocity>(4'000); !done) log(to_text(done.abort_code()));
+#pragma once
+
+#include <algorithm>
+#include <concepts>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "canopen/abort_code.hpp"
+#include "canopen/frame.hpp"
+#include "canopen/node_id.hpp"
+#include "canopen/remote.hpp"
+#include "canopen/result.hpp"
+#include "canopen/sdo_client.hpp"
+#include "canopen/time.hpp"
+
+namespace canopen {
+
+/// A bus that frames can be awaited on: SocketCan, VirtualBusPort.
+template <class T>
+concept BlockingBus = Bus<T> && requires(T& bus, Duration timeout) {
+  { bus.receive(timeout) } -> std::same_as<std::optional<Frame>>;
+  { bus.now() } -> std::same_as<TimePoint>;
+};
+
+template <class Device, BlockingBus B>
+class BlockingRemoteNode;
+
+/// Transfers by index and sub-index. What `receive` of the bus throws comes through.
+template <BlockingBus B>
+class BlockingSdo {
+ public:
+  static constexpr std::size_t longest_upload = 16 * 1024 * 1024;
+
+  explicit BlockingSdo(B& can_bus, SdoClientOptions options = {}) : bus_{can_bus}, options_{options} {}
+
+  /// Called with every frame that comes while a transfer waits: heartbeats, PDOs, emergencies.
+  std::function<void(const Frame&, TimePoint now)> on_frame;
+
+  /// The value of an entry. 0504 0005h: it is longer than `most` bytes.
+  [[nodiscard]] Result<std::vector<std::uint8_t>> upload(NodeId node, std::uint16_t index, std::uint8_t sub_index,
+                                                         std::size_t most = longest_upload) {
+    std::vector<std::uint8_t> value;
+    auto take = [&](std::uint32_t /*offset*/, std::span<const std::uint8_t> bytes, bool /*last*/) {
+      if (bytes.size() > most - value.size()) return AbortCode::out_of_memory;
+      value.insert(value.end(), bytes.begin(), bytes.end());
+      return ok;
+    };
+    SdoClient client{bus_, node, options_};
+    client.upload(index, sub_index, sink_of(take), bus_.now());
+    if (const AbortCode code = run(client); code != ok) return code;
+    return value;
+  }
+
+  Result<void> download(NodeId node, std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> bytes) {
+    SdoClient client{bus_, node, options_};
+    client.download(index, sub_index, bytes, bus_.now());
+    return run(client);
+  }
+
+  /// A node by the types of its device. It must not outlive this.
+  template <class Device>
+  [[nodiscard]] BlockingRemoteNode<Device, B> remote(NodeId node) {
+    return {*this, node};
+  }
+
+  /// Waits until a transfer is over. `client` is an SdoClient or RemoteNode on this bus.
+  template <class Client>
+  AbortCode run(Client& client) {
+    constexpr Duration try_again{1'000};  // the bus had no room for a frame
+    while (client.busy()) {
+      const TimePoint present = bus_.now();
+      const std::optional<TimePoint> deadline = client.next_deadline();
+      const Duration wait = deadline && *deadline > present ? *deadline - present : try_again;
+      if (const std::optional<Frame> frame = bus_.receive(wait)) {
+        client.on_frame(*frame, bus_.now());
+        if (on_frame) on_frame(*frame, bus_.now());
+      }
+      client.on_time(bus_.now());
+    }
+    if constexpr (std::same_as<decltype(client.result()), AbortCode>) {
+      return client.result();
+    } else {
+      return client.result().abort_code();
+    }
+  }
+
+  [[nodiscard]] B& bus() { return bus_; }
+  [[nodiscard]] const SdoClientOptions& options() const { return options_; }
+
+ private:
+  B& bus_;
+  SdoClientOptions options_;
+};
+
+/// A device on the bus by its generated types. What does not compile for a RemoteNode does not compile here.
+template <class Device, BlockingBus B>
+class BlockingRemoteNode {
+ public:
+  BlockingRemoteNode(BlockingSdo<B>& sdo, NodeId node) : sdo_{sdo}, node_{node} {}
+
+  /// The value of a number.
+  template <NumberObject O>
+  requires ObjectOf<O, Device> && RemoteReadable<O>
+  [[nodiscard]] Result<typename O::type> read() {
+    RemoteNode<Device, B> remote{sdo_.bus(), node_, sdo_.options()};
+    if (const Result<void> begun = remote.template read<O>(sdo_.bus().now()); !begun) return begun.abort_code();
+    (void)sdo_.run(remote);
+    return remote.template value<O>();
+  }
+
+  /// The value of a string. 0607 0012h: it is longer than the data sheet says.
+  template <StringObject O>
+  requires ObjectOf<O, Device> && RemoteReadable<O>
+  [[nodiscard]] Result<typename O::type> read() {
+    const Result<std::vector<std::uint8_t>> bytes = sdo_.upload(node_, O::index, O::sub_index);
+    if (!bytes) return bytes.abort_code();
+    typename O::type text{};
+    std::size_t size = bytes->size();
+    constexpr bool terminated =
+        Device::dictionary.zero_terminated_strings && std::is_convertible_v<decltype(text.view()), std::string_view>;
+    if (terminated && size != 0 && bytes->back() == 0) --size;
+    if (size > text.capacity()) return AbortCode::length_too_high;
+    std::copy_n(bytes->begin(), size, text.bytes.begin());
+    text.size = static_cast<std::uint16_t>(size);
+    return text;
+  }
+
+  /// The bytes of a DOMAIN.
+  template <DomainObject O>
+  requires ObjectOf<O, Device> && RemoteReadable<O>
+  [[nodiscard]] Result<std::vector<std::uint8_t>> read() { return sdo_.upload(node_, O::index, O::sub_index); }
+
+  /// Writes a number. A value outside the limits is refused without a frame.
+  template <NumberObject O, ValueFor<O> V>
+  requires ObjectOf<O, Device> && RemoteWritable<O> Result<void> write(V value) {
+    RemoteNode<Device, B> remote{sdo_.bus(), node_, sdo_.options()};
+    if (const Result<void> begun = remote.template write<O>(value, sdo_.bus().now()); !begun) return begun;
+    return sdo_.run(remote);
+  }
+
+  /// Writes a constant, whose limits the compiler checks.
+  template <NumberObject O, auto Value>
+  requires ObjectOf<O, Device> && RemoteWritable<O> && ValueFor<decltype(Value), O> Result<void> write() {
+    RemoteNode<Device, B> remote{sdo_.bus(), node_, sdo_.options()};
+    if (const Result<void> begun = remote.template write<O, Value>(sdo_.bus().now()); !begun) return begun;
+    return sdo_.run(remote);
+  }
+
+  /// Writes a string or DOMAIN. 0607 0012h: the string is longer than the object holds.
+  template <DictionaryObject O>
+  requires ObjectOf<O, Device> && RemoteWritable<O> &&
+      (StringObject<O> || DomainObject<O>)Result<void> write(std::span<const std::uint8_t> bytes) {
+    RemoteNode<Device, B> remote{sdo_.bus(), node_, sdo_.options()};
+    if (const Result<void> begun = remote.template write<O>(bytes, sdo_.bus().now()); !begun) return begun;
+    return sdo_.run(remote);
+  }
+  template <StringObject O>
+  requires ObjectOf<O, Device> && RemoteWritable<O> Result<void> write(std::string_view text) {
+    return write<O>(std::span{reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  }
+
+ private:
+  BlockingSdo<B>& sdo_;
+  NodeId node_;
+};
+
+}  // namespace canopen
