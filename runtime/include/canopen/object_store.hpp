@@ -49,8 +49,8 @@ class EntryAccess {
     const std::uint8_t* const where = address(word);
     if (where == nullptr) return static_cast<std::uint32_t>(immediate_value(word));
     if (entry::size_of(word) == 1) return *where;
-    if (entry::size_of(word) == 2) return load<std::uint16_t>(std::assume_aligned<alignof(std::uint16_t)>(where));
-    return load<std::uint32_t>(std::assume_aligned<alignof(std::uint32_t)>(where));
+    if (entry::size_of(word) == 2) return load<std::uint16_t>(where);
+    return load<std::uint32_t>(where);
   }
 
   /// The memory behind a DOMAIN.
@@ -68,13 +68,19 @@ class EntryAccess {
   void resize_domain(entry::Word word, std::uint32_t size) const {
     Domain resized = domain(word);
     resized.size = size;
-    std::memcpy(ram_ + entry::offset_of(word), &resized, sizeof resized);
+    store(ram_ + entry::offset_of(word), resized);
   }
 
   /// What speaks against writing these bytes: their length, then their value. CiA 301, 7.2.4.3.17.
   [[nodiscard]] AbortCode check(std::uint16_t index, std::uint8_t sub_index, entry::Word word,
                                 std::span<const std::uint8_t> bytes) const {
     if (const AbortCode length = check_length(index, sub_index, word, bytes.size()); length != ok) return length;
+    return check_value(index, sub_index, word, bytes);
+  }
+
+  /// The same for bytes whose length fits.
+  [[nodiscard]] AbortCode check_value(std::uint16_t index, std::uint8_t sub_index, entry::Word word,
+                                      std::span<const std::uint8_t> bytes) const {
     if (entry::place_of(word) != entry::Place::ram) return AbortCode::not_stored;  // a command, such as 1010h's, of no service
     if (entry::is_boolean(word)) return bytes[0] > 1 ? AbortCode::invalid_value : ok;
     if ((word & entry::limited) == 0 || entry::class_of(word) == entry::Class::special) return ok;
@@ -84,8 +90,10 @@ class EntryAccess {
   /// Whether a value of this length fits the entry.
   [[nodiscard]] AbortCode check_length(std::uint16_t index, std::uint8_t sub_index, entry::Word word,
                                        std::size_t length) const {
-    if (length > longest(index, sub_index, word)) return AbortCode::length_too_high;
-    return length < entry::wire_bytes(word) ? AbortCode::length_too_low : ok;
+    const std::size_t fixed = entry::wire_bytes(word);
+    if (fixed != 0 && length < fixed) return AbortCode::length_too_low;
+    const std::size_t most = fixed != 0 ? fixed : longest(index, sub_index, word);
+    return length > most ? AbortCode::length_too_high : ok;
   }
 
   /// Bytes of the longest value that the entry takes.
@@ -96,18 +104,20 @@ class EntryAccess {
 
   /// Stores bytes that `check` let pass into an entry in RAM.
   void write(entry::Word word, std::span<const std::uint8_t> bytes) const {
-    std::uint8_t* const where = ram_ + entry::offset_of(word);
+    std::uint8_t* where = ram_ + entry::offset_of(word);
+    const std::size_t size = bytes.size();
     if (entry::is_string(word)) {
-      const auto size = static_cast<std::uint16_t>(bytes.size());
-      std::memcpy(where, &size, sizeof size);
-      copy(where + string_header, bytes);
-      if (is_terminated(word)) where[string_header + bytes.size()] = 0;
+      store(where, static_cast<std::uint16_t>(size));
+      where += string_header;
+      if (is_terminated(word)) where[size] = 0;
     } else if (entry::is_domain(word)) {
-      copy(domain(word).data, bytes);
-      resize_domain(word, static_cast<std::uint32_t>(bytes.size()));
-    } else {
-      store_number(word, where, bytes);
+      resize_domain(word, static_cast<std::uint32_t>(size));
+      where = domain(word).data;
+    } else if ((size & (size - 1)) != 0) {
+      return widen(word, where, bytes, size == 3 ? 4 : 8);  // such numbers lie in the next wider type
     }
+    // A download in several frames has put a DOMAIN's bytes in place already.
+    if (size != 0 && where != bytes.data()) std::memcpy(where, bytes.data(), size);
   }
 
   /// Bytes that a string entry can hold.
@@ -124,25 +134,19 @@ class EntryAccess {
     return dictionary_.zero_terminated_strings && entry::type_of(word) == entry::visible_string;
   }
 
+  /// A value that lies in memory as its C++ type: at an address that is one of it.
   template <class T>
   [[nodiscard]] static T load(const std::uint8_t* where) {
     T value;
-    std::memcpy(&value, where, sizeof value);
+    std::memcpy(&value, std::assume_aligned<alignof(T)>(where), sizeof value);
     return value;
   }
-
-  /// A segmented download has put a DOMAIN's bytes in place already.
-  static void copy(std::uint8_t* to, std::span<const std::uint8_t> bytes) {
-    if (!bytes.empty() && bytes.data() != to) std::memcpy(to, bytes.data(), bytes.size());
+  template <class T>
+  static void store(std::uint8_t* where, const T& value) {
+    std::memcpy(std::assume_aligned<alignof(T)>(where), &value, sizeof value);
   }
 
-  /// Numbers of 3, 5, 6 and 7 bytes lie in the next wider type, sign extended.
-  static void store_number(entry::Word word, std::uint8_t* where, std::span<const std::uint8_t> bytes) {
-    const std::size_t size = bytes.size();
-    const std::size_t wider = size > 4 ? 8 : 4;
-    widen(word, where, bytes, size <= 2 ? size : wider);
-  }
-
+  /// Sign extended.
   static void widen(entry::Word word, std::uint8_t* where, std::span<const std::uint8_t> bytes, std::size_t to) {
     const bool negative = entry::class_of(word) == entry::Class::signed_integer && (bytes.back() & 0x80) != 0;
     for (std::size_t i = 0; i < to; ++i) {
@@ -192,7 +196,7 @@ class EntryAccess {
       low = sortable(word, row->low);
       high = sortable(word, row->high);
     }
-    const auto raw = load<std::uint64_t>(std::assume_aligned<alignof(std::uint64_t)>(wide));
+    const auto raw = load<std::uint64_t>(wide);
     if (entry::class_of(word) == entry::Class::real && not_a_number(word, raw)) return AbortCode::invalid_value;
     const std::uint64_t value = sortable(word, raw);
     if (value > high) return AbortCode::value_too_high;
