@@ -293,7 +293,12 @@ class SdoServer {
         size = entry::wire_bytes(word_) == 0 ? 4u : std::min<std::uint32_t>(entry::wire_bytes(word_), 4);
       size_indicated_ = true;
       if (const AbortCode code = prepare(size, hooks); code != ok) return code;
-      if (const AbortCode code = store(hooks, &request[4], size, true); code != ok) return code;
+      if (entry::is_domain(word_)) {
+        if (const AbortCode code = store(hooks, &request[4], size, true); code != ok) return code;
+      } else {
+        std::memcpy(buffer_.data(), &request[4], 4);
+        position_ = size;
+      }
       if (const AbortCode code = finish(hooks); code != ok) return code;
     } else {
       if (const AbortCode code = prepare(sdo::word_of(request), hooks); code != ok) return code;
@@ -303,45 +308,41 @@ class SdoServer {
     return ok;
   }
 
-  /// Where the bytes go, as `bytes_`: of a streamed DOMAIN a null pointer.
+  /// Where the bytes of a download go, as `bytes_`, and how many may come, as `size_`: of a streamed DOMAIN a null
+  /// pointer.
   template <class Hooks>
-  [[nodiscard]] AbortCode open_download(Hooks& hooks) {
-    bytes_ = buffer_.data();
-    if (!entry::is_domain(word_)) return ok;
+  [[nodiscard]] AbortCode prepare(std::uint32_t announced, Hooks& hooks) {
+    size_ = size_indicated_ ? announced : sdo::unknown_size;
+    const bool domain = entry::is_domain(word_);
     if constexpr (DomainStreamHooks<Hooks>) {
       bytes_ = nullptr;
-      if (hooks.streams_download(index_, sub_index_)) return ok;
+      if (domain && hooks.streams_download(index_, sub_index_)) return ok;
     }
-    bytes_ = hooks.entries().domain(word_).data;
-    return bytes_ == nullptr ? AbortCode::not_stored : ok;
-  }
-
-  /// Room for a download: `size_` is what may come.
-  [[nodiscard]] AbortCode prepare(std::uint32_t announced, auto& hooks) {
-    if (const AbortCode code = open_download(hooks); code != ok) return code;
-    size_ = size_indicated_ ? announced : sdo::unknown_size;
-    if (streamed(hooks)) return ok;
+    bytes_ = buffer_.data();
+    std::uint32_t room = buffer_bytes;
     const EntryAccess entries = hooks.entries();
+    if (domain) {
+      const Domain memory = entries.domain(word_);
+      if (memory.data == nullptr) return AbortCode::not_stored;
+      bytes_ = memory.data;
+      room = memory.capacity;
+    }
     if (size_indicated_) {
       if (const AbortCode code = entries.check_length(index_, sub_index_, word_, size_); code != ok) return code;
+      if (buffer_is_short && size_ > room) return AbortCode::out_of_memory;
     } else {
-      size_ = entries.longest(index_, sub_index_, word_);
+      size_ = room;
     }
-    if (entry::is_domain(word_)) {
-      entries.resize_domain(word_, 0);
-    } else if (buffer_is_short && size_indicated_ && size_ > buffer_bytes) {
-      return AbortCode::out_of_memory;
-    }
+    if (domain) entries.resize_domain(word_, 0);
     return ok;
   }
 
   /// Whether so many more bytes may come.
   [[nodiscard]] AbortCode check_room(std::uint32_t size) const {
-    if (size > size_ - position_) return AbortCode::length_too_high;
-    if constexpr (buffer_is_short) {
-      if (!entry::is_domain(word_) && position_ + size > buffer_bytes) return AbortCode::out_of_memory;
-    }
-    return ok;
+    if (size <= size_ - position_) return ok;
+    if (buffer_is_short && size_ == buffer_bytes && !size_indicated_ && !entry::is_domain(word_))
+      return AbortCode::out_of_memory;
+    return AbortCode::length_too_high;
   }
 
   /// Takes the next bytes of a download.
@@ -384,12 +385,18 @@ class SdoServer {
     if (!streamed(hooks)) {
       const EntryAccess entries = hooks.entries();
       const std::span<std::uint8_t> bytes{bytes_, position_};
-      if (const AbortCode code = entries.check(index_, sub_index_, word_, bytes); code != ok) return code;
+      if (const AbortCode code = check_length(entries); code != ok) return code;
+      if (const AbortCode code = entries.check_value(index_, sub_index_, word_, bytes); code != ok) return code;
       if (const AbortCode code = hooks.before_write(index_, sub_index_, bytes); code != ok) return code;
       entries.write(word_, bytes);
     }
     hooks.after_write(index_, sub_index_);
     return ok;
+  }
+
+  /// Of an announced size the length has been looked at already.
+  [[nodiscard]] AbortCode check_length(const EntryAccess& entries) const {
+    return size_indicated_ ? ok : entries.check_length(index_, sub_index_, word_, position_);
   }
 
   /// Whether the application gives or takes the bytes of this transfer.
@@ -600,20 +607,21 @@ class SdoServer {
     bool checked = false;       ///< the client uses the CRC
   };
 
-  alignas(4) std::array<std::uint8_t, 8> reply_{};
-  alignas(4) std::array<std::uint8_t, buffer_bytes> buffer_{};
+  // Bytes first: a Cortex-M0+ reaches those at offsets up to 31 in one instruction.
+  State state_ = State::idle;
+  bool has_reply_ = false;
+  std::uint8_t toggle_ = 0;
+  bool size_indicated_ = false;
+  std::uint8_t sub_index_ = 0;
+  [[no_unique_address]] std::conditional_t<has_block, Block, Nothing> block_{};
+  std::uint16_t index_ = 0;
+  entry::Word word_ = 0;
   std::uint8_t* bytes_ = nullptr;  ///< where the value begins; null: the application streams it
   std::uint32_t size_ = 0;         ///< upload: bytes of the value; download: bytes that may come
   std::uint32_t position_ = 0;     ///< the next byte
-  entry::Word word_ = 0;
   [[no_unique_address]] std::conditional_t<has_timeout, TimePoint, Nothing> last_activity_{};
-  [[no_unique_address]] std::conditional_t<has_block, Block, Nothing> block_{};
-  std::uint16_t index_ = 0;
-  std::uint8_t sub_index_ = 0;
-  State state_ = State::idle;
-  std::uint8_t toggle_ = 0;
-  bool size_indicated_ = false;
-  bool has_reply_ = false;
+  alignas(4) std::array<std::uint8_t, 8> reply_{};
+  alignas(4) std::array<std::uint8_t, buffer_bytes> buffer_{};
 };
 
 }  // namespace canopen
