@@ -15,11 +15,11 @@ using namespace std::chrono_literals;
 
 TEST(Crc16, IsThatOfCia301) {
   std::uint16_t crc = 0;
-  for (const char digit : std::string{"123456789"}) crc = canopen::crc16(crc, static_cast<std::uint8_t>(digit));
+  for (const char digit : std::string{"123456789"}) crc = canopen::crc16_ccitt(crc, static_cast<std::uint8_t>(digit));
   EXPECT_EQ(crc, 0x31C3);
-  static_assert(canopen::crc16(0, 0) == 0);
-  static_assert(canopen::crc16(0, 1) == 0x1021);
-  static_assert(canopen::crc16(0, 0x80) == 0x9188);
+  static_assert(canopen::crc16_ccitt(0, 0) == 0);
+  static_assert(canopen::crc16_ccitt(0, 1) == 0x1021);
+  static_assert(canopen::crc16_ccitt(0, 0x80) == 0x9188);
 }
 
 /// The bytes 1, 2, 3 ...
@@ -32,7 +32,7 @@ std::array<std::uint8_t, Size> counting() {
 
 std::string crc_text(std::span<const std::uint8_t> bytes) {
   std::uint16_t crc = 0;
-  for (const std::uint8_t byte : bytes) crc = canopen::crc16(crc, byte);
+  for (const std::uint8_t byte : bytes) crc = canopen::crc16_ccitt(crc, byte);
   return bench::text_of({static_cast<std::uint8_t>(crc & 0xFF), static_cast<std::uint8_t>(crc >> 8)}).substr(0, 5);
 }
 

@@ -1,15 +1,22 @@
-/// CRC of an SDO block transfer: x^16 + x^12 + x^5 + 1, start value 0, high bit first (CiA 301, 7.2.4.3.16).
+/// CRC-16 of CCITT: x^16 + x^12 + x^5 + 1, high bit first. SDO block transfer begins with 0 (CiA 301, 7.2.4.3.16).
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 namespace canopen {
 
 /// The CRC of some bytes and one more. No table: a byte takes a few shifts and exclusive ors.
-[[nodiscard]] constexpr std::uint16_t crc16(std::uint16_t crc, std::uint8_t byte) {
+[[nodiscard]] constexpr std::uint16_t crc16_ccitt(std::uint16_t crc, std::uint8_t byte) {
   std::uint32_t high = (std::uint32_t{crc} >> 8) ^ byte;
   high ^= high >> 4;
   return static_cast<std::uint16_t>((std::uint32_t{crc} << 8) ^ (high << 12) ^ (high << 5) ^ high);
+}
+
+/// The same for any number of bytes.
+[[nodiscard]] constexpr std::uint16_t crc16_ccitt(std::uint16_t crc, std::span<const std::uint8_t> bytes) {
+  for (const std::uint8_t byte : bytes) crc = crc16_ccitt(crc, byte);
+  return crc;
 }
 
 }  // namespace canopen

@@ -511,7 +511,7 @@ class SdoClient {
   }
 
   void add_to_crc(const std::uint8_t* bytes, std::uint32_t size) {
-    for (std::uint32_t i = 0; i < size; ++i) crc_ = crc16(crc_, bytes[i]);
+    for (std::uint32_t i = 0; i < size; ++i) crc_ = crc16_ccitt(crc_, bytes[i]);
   }
 
   // Block download

@@ -472,7 +472,7 @@ class SdoServer {
 
   void add_to_crc(const std::uint8_t* bytes, std::uint32_t size) {
     std::uint16_t crc = block_.crc;
-    for (const std::uint8_t* const end = bytes + size; bytes != end; ++bytes) crc = crc16(crc, *bytes);
+    for (const std::uint8_t* const end = bytes + size; bytes != end; ++bytes) crc = crc16_ccitt(crc, *bytes);
     block_.crc = crc;
   }
 
