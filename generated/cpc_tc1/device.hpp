@@ -39,6 +39,7 @@ struct Device {
     departures.error_history_abort_code = 0x06090031;
     departures.pdo_extended_ids = false;
     departures.pdo_mapping_abort_code = 0x06040041;
+    departures.storage_signature_abort_code = 0x08000022;
     departures.tpdo_acyclic_on_change = false;
     departures.tpdo_remote_frames = false;
     return departures;

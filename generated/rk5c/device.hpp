@@ -31,6 +31,7 @@ struct Device {
     canopen::DeviceOptions departures;
     departures.event_driven_on_change = false;
     departures.pdo_extended_ids = false;
+    departures.restore_needs_power_cycle = true;
     departures.sdo_upload_size_indicated = false;
     return departures;
   }();
@@ -44,6 +45,15 @@ struct Device {
   }
   /// The manufacturer-specific bytes of an EMCY that the services send by themselves.
   static constexpr std::array<std::uint8_t, 5> emergency_info([[maybe_unused]] std::uint16_t code) { return {}; }
+
+  /// What 1010h stores otherwise than the access of its entries says.
+  static constexpr canopen::Storing storing(std::uint16_t index, [[maybe_unused]] std::uint8_t sub_index) {
+    if (index == 0x1005) return canopen::Storing::with_node_id;
+    if (index == 0x1014) return canopen::Storing::with_node_id;
+    if (index == 0x1800 && sub_index == 0x01) return canopen::Storing::with_node_id;
+    if (index == 0x6010 && sub_index == 0x01) return canopen::Storing::never;
+    return canopen::Storing::by_access;
+  }
 
   static constexpr void reset_communication([[maybe_unused]] Values& values) {
     values.communication_preset = rk5c::communication_preset;

@@ -29,9 +29,14 @@ constexpr std::array runtime_flags = {
     "mpdo",
     "error_history_keeps_resets",
     "sdo_upload_size_indicated",
+    "restore_needs_power_cycle",
 };
 constexpr std::array runtime_masks = {"pdo_cob_id_writable"};
-constexpr std::array runtime_abort_codes = {"pdo_mapping_abort_code", "error_history_abort_code"};
+constexpr std::array runtime_abort_codes = {"pdo_mapping_abort_code", "error_history_abort_code",
+                                            "storage_signature_abort_code"};
+
+/// Enumerators of canopen::Storing that depart from an entry's access.
+constexpr std::array storing_names = {"always", "never", "with_node_id"};
 
 /// `1018h` or `1018`: an index.
 std::optional<std::uint16_t> parse_index(std::string_view text) {
@@ -105,6 +110,7 @@ class OptionsReader {
     if (name == "static_mapping") return static_mapping(value);
     if (name == "no_event") return no_event(value);
     if (name == "emergency_info") return emergency_info(value);
+    if (name == "storing") return storing(value);
     if (name == "zero_terminated_strings") {
       flag(name, value, options_.zero_terminated_strings);
       return;
@@ -223,6 +229,25 @@ class OptionsReader {
       } else {
         error("emergency_info/" + code,
               number ? "five bytes as ten hexadecimal digits" : "not a code such as \"8210h\"");
+      }
+    }
+  }
+
+  void storing(const json& value) {
+    constexpr const char* meaning = "an object with one member for each object or entry: {\"6010h:01\": \"never\"}";
+    if (!value.is_object()) return error("storing", meaning);
+    for (const auto& [text, how] : value.items()) {
+      const auto entry = parse_entry_selector(text);
+      const bool known =
+          how.is_string() && std::ranges::find(storing_names, how.get<std::string>()) != storing_names.end();
+      const bool with_node_id = how == "with_node_id";
+      if (entry && with_node_id && (entry->index < 0x1000 || entry->index > 0x1FFF)) {
+        error("storing/" + text, "with_node_id is for objects 1000h..1FFFh");
+      } else if (entry && known) {
+        options_.storing.emplace_back(*entry, how.get<std::string>());
+      } else {
+        error("storing/" + text,
+              entry ? "always, never or with_node_id" : "not an object or entry such as \"6010h:01\"");
       }
     }
   }

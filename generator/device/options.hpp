@@ -56,6 +56,8 @@ struct Options {
   std::vector<EntrySelector> no_event;
   /// What the EMCYs that the services send by themselves carry, by emergency error code.
   std::map<std::uint16_t, EmergencyInfo> emergency_info;
+  /// Entries that 1010h stores otherwise than their access says, by enumerator of canopen::Storing.
+  std::vector<std::pair<EntrySelector, std::string>> storing;
   /// Departures from CiA 301 that the runtime knows: member of canopen::DeviceOptions and its value in C++.
   std::vector<std::pair<std::string, std::string>> runtime;
 

@@ -214,6 +214,16 @@ ordered_json served_pdos(const Device& device, PdoDirection direction) {
 
 // ---- options ----
 
+ordered_json storing_rows(const Options& options) {
+  ordered_json rows = json_array(options.storing.size());
+  for (const auto& [entry, how] : options.storing) {
+    std::string condition = fmt::format("index == 0x{:04X}", entry.index);
+    if (entry.sub_index) condition += fmt::format(" && sub_index == 0x{:02X}", *entry.sub_index);
+    rows.push_back(json_object("condition", std::move(condition), "storing", how));
+  }
+  return rows;
+}
+
 /// What is true of the entries that raise an event: none of those that the options name.
 ordered_json event_conditions(const Options& options) {
   ordered_json rows = json_array(options.no_event.size());
@@ -289,7 +299,7 @@ ordered_json cpp_view(const Device& device, const Options& options, Diagnostics&
                      emergency_rows(options), "any_emergency_info", !options.emergency_info.empty(), "descriptions",
                      description_rows(device), "node_id",
                      device.node_id ? ordered_json(*device.node_id) : ordered_json(nullptr), "dummies",
-                     dummy_mask(device));
+                     dummy_mask(device), "storing", storing_rows(options), "any_storing", !options.storing.empty());
 }
 
 }  // namespace edsc

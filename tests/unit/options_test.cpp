@@ -79,9 +79,9 @@ TEST(OptionsFile, SaysThatStringsEndWithAZero) {
 }
 
 TEST(OptionsFile, HandsEachDepartureToTheRuntime) {
-  for (const char* flag :
-       {"pdo_extended_ids", "tpdo_remote_frames", "inhibit_time_writable_while_valid", "event_driven_on_change",
-        "tpdo_acyclic_on_change", "pdo_mapping_writable_while_valid", "mpdo", "sdo_upload_size_indicated"}) {
+  for (const char* flag : {"pdo_extended_ids", "tpdo_remote_frames", "inhibit_time_writable_while_valid",
+                           "event_driven_on_change", "tpdo_acyclic_on_change", "pdo_mapping_writable_while_valid",
+                           "mpdo", "sdo_upload_size_indicated", "restore_needs_power_cycle"}) {
     for (const char* value : {"true", "false"}) {
       const Read read("{ \"" + std::string{flag} + "\": " + value + " }");
       EXPECT_EQ(findings(read.diagnostics), Findings{}) << flag;
@@ -94,6 +94,8 @@ TEST(OptionsFile, HandsEachDepartureToTheRuntime) {
             (Runtime{{"pdo_mapping_abort_code", "0x06040041"}}));
   EXPECT_EQ(Read(R"({ "error_history_abort_code": "0x06090031" })").options.runtime,
             (Runtime{{"error_history_abort_code", "0x06090031"}}));
+  EXPECT_EQ(Read(R"({ "storage_signature_abort_code": "0x08000022" })").options.runtime,
+            (Runtime{{"storage_signature_abort_code", "0x08000022"}}));
 }
 
 TEST(OptionsFile, MakesTheMappingOfAllPdosStatic) {
@@ -121,6 +123,23 @@ TEST(OptionsFile, NamesObjectsAndEntriesThatRaiseNoEvent) {
   const Read read(R"({ "no_event": ["6401h", "6000h:02", "2000h:00"] })");
   EXPECT_EQ(findings(read.diagnostics), Findings{});
   EXPECT_EQ(read.options.no_event, (std::vector<EntrySelector>{{0x6401, {}}, {0x6000, 2}, {0x2000, 0}}));
+}
+
+TEST(OptionsFile, SaysWhatIsStored) {
+  const Read read(R"({ "storing": { "1005h": "with_node_id", "6010:01": "never", "6081h:00": "always" } })");
+  EXPECT_EQ(findings(read.diagnostics), Findings{});
+  using Row = std::pair<EntrySelector, std::string>;
+  EXPECT_EQ(read.options.storing,
+            (std::vector<Row>{{{0x1005, {}}, "with_node_id"}, {{0x6010, 1}, "never"}, {{0x6081, 0}, "always"}}));
+}
+
+TEST(OptionsFile, RefusesAnotherWayToStore) {
+  for (const char* member :
+       {R"("6010h": "by_access")", R"("6010h": true)", R"("6010h:100": "never")", R"("2000h": "with_node_id")"}) {
+    const Read read("{\n\"storing\": { " + std::string{member} + " } }");
+    EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(2, 14, "options")})) << member;
+    EXPECT_TRUE(read.options.storing.empty()) << member;
+  }
 }
 
 TEST(OptionsFile, GivesEmergenciesTheirBytes) {

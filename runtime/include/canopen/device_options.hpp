@@ -5,6 +5,14 @@
 
 namespace canopen {
 
+/// Whether 1010h stores the value of an entry.
+enum class Storing : std::uint8_t {
+  by_access,  ///< parameters are, process data are not
+  always,
+  never,
+  with_node_id,  ///< it is, and the value counts for the node-ID that it was stored with; "load" leaves it
+};
+
 struct DeviceOptions {
   /// Bits of 1400h..15FFh:01 and 1800h..19FFh:01 that a write changes; the others keep their value silently.
   std::uint32_t pdo_cob_id_writable = 0xFFFF'FFFF;
@@ -37,6 +45,10 @@ struct DeviceOptions {
   bool sdo_block_transfer = false;
   /// A segmented or block transfer in which nothing comes for this many milliseconds is aborted: 0504 0000h. 0: never.
   std::uint16_t sdo_timeout = 0;
+  /// The answer to a write of anything but "save" to 1010h or "load" to 1011h.
+  std::uint32_t storage_signature_abort_code = 0x0800'0020;
+  /// After "load" the values in use stay over NMT resets: the defaults come with the next power-on.
+  bool restore_needs_power_cycle = false;
 };
 
 }  // namespace canopen
