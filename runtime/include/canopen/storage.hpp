@@ -11,8 +11,8 @@ namespace canopen {
 /// What a storage holds when it is opened. Damaged: there was an image, and it cannot be read or its checksum is wrong.
 enum class StorageState : std::uint8_t { empty, whole, damaged };
 
-/// `begin`, `write` and `commit` make a new image. Whatever fails or whenever power is lost, the old image counts until
-/// `commit` has answered true; until then `size` and `read` mean the old one. False is an error of the medium.
+/// `begin`, `write` and `commit` make a new image. Whenever power is lost there is the old image or the new one; until
+/// `commit` `size` and `read` mean the old one. False is an error of the medium.
 template <class T>
 concept Storage = requires(T& storage, std::uint32_t number, std::span<std::uint8_t> to,
                            std::span<const std::uint8_t> from) {

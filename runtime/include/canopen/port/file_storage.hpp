@@ -63,7 +63,7 @@ class FileStorage {
       return false;
     }
     image_ = std::move(fresh_);
-    return sync_folder();
+    return sync_folder();  // false: the new file stands, and a loss of power may bring the old one back
   }
 
   /// Why the last `open` or `commit` has failed. Without one where the file was read and its checksum is wrong.
