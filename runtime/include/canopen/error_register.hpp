@@ -23,6 +23,7 @@ enum class ErrorRegister : std::uint8_t {
 /// Emergency error codes (CiA 301, 7.2.7.1, table 26).
 namespace emergency_code {
 inline constexpr std::uint16_t reset = 0x0000;  ///< an error is gone
+inline constexpr std::uint16_t data_set = 0x6300;  ///< stored parameters are lost
 inline constexpr std::uint16_t pdo_length = 0x8210;  ///< a PDO is shorter than its mapping
 inline constexpr std::uint16_t mpdo_destination = 0x8230;  ///< the destination of a DAM-MPDO does not exist
 inline constexpr std::uint16_t sync_length = 0x8240;

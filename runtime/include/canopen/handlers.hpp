@@ -20,6 +20,7 @@
 #include "canopen/object.hpp"
 #include "canopen/pdo.hpp"
 #include "canopen/rpdo.hpp"
+#include "canopen/storage.hpp"
 
 namespace canopen {
 
@@ -227,6 +228,19 @@ class HandlerSet {
     AbortCode code = ok;
     for_each([&](auto& handler) { code = code == ok ? offer_read(handler, node, key) : code; });
     return code;
+  }
+
+  /// Whether the node has a storage.
+  static constexpr bool has_storage = (storage_detail::is_stored_in<Handlers> || ...);
+
+  [[nodiscard]] auto& storage() requires has_storage {
+    constexpr std::size_t position = [] {
+      constexpr bool stored_in[] = {storage_detail::is_stored_in<Handlers>...};
+      std::size_t i = 0;
+      while (!stored_in[i]) ++i;
+      return i;
+    }();
+    return *std::get<position>(handlers_).storage;
   }
 
   /// Calls all handlers of a kind, such as SyncHandler.

@@ -24,9 +24,11 @@
 #include "canopen/nmt.hpp"
 #include "canopen/node_id.hpp"
 #include "canopen/object_store.hpp"
+#include "canopen/parameter_storage.hpp"
 #include "canopen/pdo_mapping.hpp"
 #include "canopen/rpdo.hpp"
 #include "canopen/sdo_server.hpp"
+#include "canopen/storage.hpp"
 #include "canopen/sync.hpp"
 #include "canopen/time.hpp"
 #include "canopen/time_stamp.hpp"
@@ -47,9 +49,10 @@ class Node {
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
 
-  /// Power-on: default values, boot-up message, Pre-operational (CiA 301, 7.3.2.1).
+  /// Power-on: default values and over them what is stored, boot-up message, Pre-operational (CiA 301, 7.3.2.1).
   void start(TimePoint now) {
     now_ = now;
+    if constexpr (has_storage) parameters_.open(handlers_.storage());
     reset_node();
     serve();
   }
@@ -161,6 +164,21 @@ class Node {
   /// it, or the bus has no room.
   bool send_time(TimeOfDay time) { return serves_sync(state_) && TimeStamp<Device>::send(store_, bus_, time); }
 
+  /// Stores parameters as "save" to this sub-index of 1010h does: 1 all, 2 those of 1000h..1FFFh, 3 of 6000h..9FFFh,
+  /// 4 of 2000h..5FFFh. hardware: the storage has failed, or the range is not one of these.
+  AbortCode save(std::uint8_t sub_index = 1) requires(HandlerSet<Handlers...>::has_storage) {
+    const SectionSet sections = sections_of(sub_index);
+    const bool saved = sections != 0 && parameters_.save(handlers_.storage(), sections, store_);
+    return saved ? ok : AbortCode::hardware;
+  }
+
+  /// Gives up stored parameters as "load" to this sub-index of 1011h does: the next reset brings their defaults.
+  AbortCode restore(std::uint8_t sub_index = 1) requires(HandlerSet<Handlers...>::has_storage) {
+    const SectionSet sections = sections_of(sub_index);
+    const bool restored = sections != 0 && parameters_.restore(handlers_.storage(), sections, store_);
+    return restored ? ok : AbortCode::hardware;
+  }
+
   /// Gives a DOMAIN its memory: a download may fill all of it, an upload sends the first `size` bytes.
   template <DictionaryObject O>
   void bind(std::span<std::uint8_t> memory, std::size_t size) {
@@ -196,6 +214,9 @@ class Node {
  private:
   using BusMember = std::conditional_t<std::is_empty_v<B>, B, B&>;
 
+  static constexpr bool has_storage = HandlerSet<Handlers...>::has_storage;
+  using Parameters = std::conditional_t<has_storage, ParameterStorage<Device>, NoStorage>;
+
   static constexpr bool has_heartbeat_time = Device::dictionary.has(0x1017, 0);
   static constexpr entry::Word clock_word = Device::dictionary.find(0x1013, 0);
   static constexpr bool has_clock =
@@ -212,9 +233,16 @@ class Node {
       return node.before_read(index, sub_index);
     }
     [[nodiscard]] AbortCode before_write(std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
-      return node.before_write(index, sub_index, bytes);
+      const AbortCode code = node.before_write(index, sub_index, bytes);
+      if constexpr (has_storage) {
+        if (code == ok) Parameters::before_write(node.store_, index, sub_index, bytes);
+      }
+      return code;
     }
     void after_write(std::uint16_t index, std::uint8_t sub_index) { node.after_write(index, sub_index); }
+    [[nodiscard]] AbortCode command(std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
+      return node.command(index, sub_index, bytes);
+    }
   };
 
   // Network management
@@ -256,16 +284,31 @@ class Node {
   }
 
   void reset_node() {
-    store_.reset_application(node_id_);
+    if constexpr (has_storage) {
+      parameters_.reset_application(handlers_.storage(), store_, node_id_);
+    } else {
+      store_.reset_application(node_id_);
+    }
     reset_communication();
   }
 
   void reset_communication() {
-    store_.reset_communication(node_id_);
+    if constexpr (has_storage) {
+      parameters_.reset_communication(handlers_.storage(), store_, node_id_);
+    } else {
+      store_.reset_communication(node_id_);
+    }
     emergencies_.reset();
+    if constexpr (has_storage) {
+      if (parameters_.damaged()) data_set_error();
+    }
     enter(NmtState::initialisation);
     heartbeat_.boot_up();
     enter(NmtState::pre_operational);
+  }
+
+  void data_set_error() {
+    emergency(emergency_code::data_set, ErrorRegister::generic, Device::emergency_info(emergency_code::data_set));
   }
 
   // SDO
@@ -314,6 +357,22 @@ class Node {
   [[nodiscard]] AbortCode before_write(std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
     if (const AbortCode code = check_communication(index, sub_index, bytes); code != ok) return code;
     return handlers_.before_write(*this, object_key(index, sub_index), bytes);
+  }
+
+  /// A write to an entry that is no variable: "save" and "load". Sub-indices of 1010h and 1011h that CiA 301 gives no
+  /// range are what their write handlers make of them.
+  [[nodiscard]] AbortCode command([[maybe_unused]] std::uint16_t index, [[maybe_unused]] std::uint8_t sub_index,
+                                  [[maybe_unused]] std::span<std::uint8_t> bytes) {
+    if constexpr (has_storage) {
+      if (index == store_parameters || index == restore_parameters) {
+        const std::uint32_t key = object_key(index, sub_index);
+        AbortCode code = check_storage_command(Device::options, entries(), index, sub_index, bytes);
+        if (code == ok) code = handlers_.before_write(*this, key, bytes);
+        if (code != ok || (sections_of(sub_index) == 0 && handlers_.handles(key))) return code;
+        return index == store_parameters ? save(sub_index) : restore(sub_index);
+      }
+    }
+    return AbortCode::not_stored;
   }
 
   /// What the services have against a write to 1000h..1FFFh.
@@ -540,6 +599,7 @@ class Node {
   [[no_unique_address]] BusMember bus_;
   [[no_unique_address]] HandlerSet<Handlers...> handlers_;
   ObjectStore<Device> store_{};
+  [[no_unique_address]] Parameters parameters_{};
   SdoServer<Device> sdo_{};
   TpdoService<Device> tpdos_{};
   RpdoService<Device> rpdos_{};

@@ -26,12 +26,14 @@ namespace canopen {
 ///   AbortCode before_read(index, sub_index);            may refresh the value, or refuse
 ///   AbortCode before_write(index, sub_index, bytes);    the bytes fit the entry; may refuse, or change them
 ///   void after_write(index, sub_index);
+///   AbortCode command(index, sub_index, bytes);         a write to an entry that is no variable, such as 1010h
 template <class T>
 concept SdoServerHooks = requires(T hooks, std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
   { hooks.entries() } -> std::same_as<EntryAccess>;
   { hooks.before_read(index, sub_index) } -> std::same_as<AbortCode>;
   { hooks.before_write(index, sub_index, bytes) } -> std::same_as<AbortCode>;
   hooks.after_write(index, sub_index);
+  { hooks.command(index, sub_index, bytes) } -> std::same_as<AbortCode>;
 };
 
 /// What it asks besides when the application streams DOMAINs, which then need no memory of their own:
@@ -386,6 +388,7 @@ class SdoServer {
       const EntryAccess entries = hooks.entries();
       const std::span<std::uint8_t> bytes{bytes_, position_};
       if (const AbortCode code = check_length(entries); code != ok) return code;
+      if (entry::place_of(word_) != entry::Place::ram) return hooks.command(index_, sub_index_, bytes);
       if (const AbortCode code = entries.check_value(index_, sub_index_, word_, bytes); code != ok) return code;
       if (const AbortCode code = hooks.before_write(index_, sub_index_, bytes); code != ok) return code;
       entries.write(word_, bytes);

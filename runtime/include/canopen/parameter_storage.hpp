@@ -1,0 +1,291 @@
+/// Store parameters 1010h, restore default parameters 1011h, verify configuration 1020h (CiA 301, 7.5.2.13, 7.5.2.14
+/// and 7.5.2.23).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <type_traits>
+
+#include "canopen/abort_code.hpp"
+#include "canopen/dictionary.hpp"
+#include "canopen/node_id.hpp"
+#include "canopen/object_store.hpp"
+#include "canopen/parameter_layout.hpp"
+#include "canopen/storage.hpp"
+
+namespace canopen {
+
+inline constexpr std::uint16_t store_parameters = 0x1010;
+inline constexpr std::uint16_t restore_parameters = 0x1011;
+inline constexpr std::uint16_t verify_configuration = 0x1020;
+
+inline constexpr std::uint32_t save_signature = 0x6576'6173;  ///< "save"
+inline constexpr std::uint32_t load_signature = 0x6461'6F6C;  ///< "load"
+
+/// What speaks against a command to 1010h or 1011h: another signature, or that the data sheet's value has not bit 0
+/// set, "on command" (0800 0020h).
+[[nodiscard]] inline AbortCode check_storage_command(const DeviceOptions& options, const EntryAccess& entries,
+                                                     std::uint16_t index, std::uint8_t sub_index,
+                                                     std::span<const std::uint8_t> bytes) {
+  std::uint32_t signature = 0;
+  std::memcpy(&signature, bytes.data(), std::min(bytes.size(), sizeof signature));
+  if (signature != (index == store_parameters ? save_signature : load_signature)) {
+    return static_cast<AbortCode>(options.storage_signature_abort_code);
+  }
+  const bool on_command = (entries.number(entries.dictionary().find(index, sub_index)) & 1u) != 0;
+  return on_command ? ok : AbortCode::not_stored;
+}
+
+/// The stored values of one device. An image holds one record for each section that is stored: a header, then the bytes
+/// of its values in the order of the layout. Records of another layout are passed over, and are gone with the next
+/// "save" or "load".
+template <class Device>
+class ParameterStorage {
+ public:
+  using Layout = ParameterLayout<Device>;
+
+  /// Power-on.
+  template <Storage S>
+  void open(S& storage) {
+    damaged_ = storage.open() == StorageState::damaged;
+    restored_ = false;
+  }
+
+  /// Whether stored values were lost since power-on.
+  [[nodiscard]] bool damaged() const { return damaged_; }
+
+  /// Default values for 2000h..FFFFh, and over them what is stored.
+  template <Storage S>
+  void reset_application(S& storage, ObjectStore<Device>& store, NodeId node_id) {
+    store.reset_application(node_id);
+    if (load(storage, all_sections & ~communication_sections, Device::node_id_relative_application(), store)) return;
+    damaged_ = true;
+    store.reset_application(node_id);
+  }
+
+  /// The same for 1000h..1FFFh.
+  template <Storage S>
+  void reset_communication(S& storage, ObjectStore<Device>& store, NodeId node_id) {
+    store.reset_communication(node_id);
+    if (load(storage, communication_sections, Device::node_id_relative_communication(), store)) return;
+    damaged_ = true;
+    store.reset_communication(node_id);
+  }
+
+  /// Stores the values of some sections, and 1020h with them. What else is stored stays. False: nothing has changed in
+  /// storage.
+  template <Storage S>
+  [[nodiscard]] bool save(S& storage, SectionSet sections, ObjectStore<Device>& store) {
+    const auto written = static_cast<SectionSet>(sections | set_of(ParameterSection::configuration));
+    Records records{};
+    return find(storage, records) && rewrite(storage, records, written, ram_of(store), store.node_id());
+  }
+
+  /// Gives some sections up, so that the next reset or, by the options, the next power-on brings their defaults. 1020h
+  /// is no longer true then: it goes too, and is 0 from now on. False: nothing has changed in storage.
+  template <Storage S>
+  [[nodiscard]] bool restore(S& storage, SectionSet sections, ObjectStore<Device>& store) {
+    Records records{};
+    if (!find(storage, records)) return false;
+    const unsigned given_up =
+        (sections & ~set_of(ParameterSection::with_node_id)) | set_of(ParameterSection::configuration);
+    bool any = false;
+    for (std::size_t i = 0; i < parameter_sections; ++i) {
+      if (!is_in(given_up, i) || records[i].position == 0) continue;
+      any = true;
+      if constexpr (Device::options.restore_needs_power_cycle) {
+        records[i].given_up = 1;
+      } else {
+        records[i].position = 0;
+      }
+    }
+    if (any && !rewrite(storage, records, 0, ram_of(store), store.node_id())) return false;
+    clear_configuration(store);
+    restored_ = true;
+    return true;
+  }
+
+  /// A configuration tool is about to write these bytes. 1020h tells that the configuration is the one it names:
+  /// another value of a stored parameter makes it 0.
+  static void before_write([[maybe_unused]] ObjectStore<Device>& store, [[maybe_unused]] std::uint16_t index,
+                           [[maybe_unused]] std::uint8_t sub_index,
+                           [[maybe_unused]] std::span<const std::uint8_t> bytes) {
+    if constexpr (has_configuration) {
+      if (index == verify_configuration) return;
+      const entry::Word word = Device::dictionary.find(index, sub_index);
+      if (!Layout::stores(word)) return;
+      std::array<std::uint8_t, 8> scratch;
+      if (!std::ranges::equal(store.entries().read(word, scratch), bytes)) clear_configuration(store);
+    }
+  }
+
+ private:
+  /// What stands before the values of a section. A signature counts together with the size.
+  struct Header {
+    std::uint32_t signature;
+    std::uint16_t size;     ///< bytes of the values
+    std::uint8_t node_id;   ///< what it was when they were stored
+    std::uint8_t given_up;  ///< 1: it counts until the next power-on
+  };
+  static_assert(sizeof(Header) == 8);
+
+  /// A section of this device in storage.
+  struct Record {
+    std::uint32_t position = 0;  ///< of its values; 0: it is not there
+    std::uint8_t node_id = 0;
+    std::uint8_t given_up = 0;
+  };
+  using Records = std::array<Record, parameter_sections>;
+
+  static constexpr bool has_configuration =
+      Layout::stores(verify_configuration, 1) && Layout::stores(verify_configuration, 2);
+
+  [[nodiscard]] static constexpr bool is_in(unsigned sections, std::size_t i) { return ((sections >> i) & 1u) != 0; }
+
+  [[nodiscard]] static std::uint8_t* ram_of(ObjectStore<Device>& store) {
+    return reinterpret_cast<std::uint8_t*>(&store.values());
+  }
+
+  static void clear_configuration([[maybe_unused]] ObjectStore<Device>& store) {
+    if constexpr (has_configuration) {
+      for (const std::uint8_t sub_index : {std::uint8_t{1}, std::uint8_t{2}}) {
+        const entry::Word word = Device::dictionary.find(verify_configuration, sub_index);
+        std::memset(store.entries().ram(word), 0, entry::wire_bytes(word));
+      }
+    }
+  }
+
+  /// The records whose layout is this device's. False: storage could not be read.
+  template <Storage S>
+  [[nodiscard]] bool find(S& storage, Records& records) const {
+    const std::uint32_t end = storage.size();
+    for (std::uint32_t at = 0; at + sizeof(Header) <= end;) {
+      Header header;
+      if (!storage.read(at, {reinterpret_cast<std::uint8_t*>(&header), sizeof header})) return false;
+      at += static_cast<std::uint32_t>(sizeof header);
+      for (std::size_t i = 0; i < parameter_sections; ++i) {
+        if (header.signature != Layout::signatures[i] || header.size != Layout::sizes[i]) continue;
+        if (header.given_up == 0 || restored_) records[i] = {at, header.node_id, header.given_up};
+      }
+      at += header.size;
+    }
+    return true;
+  }
+
+  /// Makes a new image: of the sections in `written` with the values as they are now, of others with what `records`
+  /// says.
+  template <Storage S>
+  [[nodiscard]] static bool rewrite(S& storage, const Records& records, SectionSet written, const std::uint8_t* ram,
+                                    NodeId node_id) {
+    std::uint32_t size = 0;
+    for (std::size_t i = 0; i < parameter_sections; ++i) {
+      if (Layout::sizes[i] != 0 && (is_in(written, i) || records[i].position != 0))
+        size += static_cast<std::uint32_t>(sizeof(Header)) + Layout::sizes[i];
+    }
+    if (!storage.begin(size)) return false;
+    for (std::size_t i = 0; i < parameter_sections; ++i) {
+      if (Layout::sizes[i] == 0) continue;
+      if (is_in(written, i)) {
+        if (!write_header(storage, i, {.node_id = node_id.value()}) || !write_values(storage, i, ram)) return false;
+      } else if (records[i].position != 0) {
+        if (!write_header(storage, i, records[i]) || !copy_values(storage, i, records[i])) return false;
+      }
+    }
+    return storage.commit();
+  }
+
+  template <Storage S>
+  [[nodiscard]] static bool write_header(S& storage, std::size_t section, const Record& record) {
+    const Header header{Layout::signatures[section], Layout::sizes[section], record.node_id, record.given_up};
+    return storage.write({reinterpret_cast<const std::uint8_t*>(&header), sizeof header});
+  }
+
+  template <Storage S>
+  [[nodiscard]] static bool write_values(S& storage, std::size_t section, const std::uint8_t* ram) {
+    for (std::size_t i = Layout::firsts[section]; i < Layout::firsts[section + 1]; ++i) {
+      if (!storage.write({ram + Layout::runs[i].offset, Layout::runs[i].size})) return false;
+    }
+    return true;
+  }
+
+  template <Storage S>
+  [[nodiscard]] static bool copy_values(S& storage, std::size_t section, Record record) {
+    std::array<std::uint8_t, 16> bytes;
+    for (std::uint32_t done = 0; done < Layout::sizes[section];) {
+      const std::uint32_t size = std::min<std::uint32_t>(bytes.size(), Layout::sizes[section] - done);
+      const std::span<std::uint8_t> piece{bytes.data(), size};
+      if (!storage.read(record.position + done, piece) || !storage.write(piece)) return false;
+      done += size;
+    }
+    return true;
+  }
+
+  // Loading
+
+  /// Wide enough for each value whose default follows the node-ID.
+  static constexpr bool has_wide_relative = [] {
+    bool wide = false;
+    for (const NodeIdRelative& row : Device::node_id_relative_communication()) wide = wide || row.size > 4;
+    for (const NodeIdRelative& row : Device::node_id_relative_application()) wide = wide || row.size > 4;
+    return wide;
+  }();
+  using Relative = std::conditional_t<has_wide_relative, std::uint64_t, std::uint32_t>;
+  static constexpr std::size_t most_relative =
+      std::max(Device::node_id_relative_communication().size(), Device::node_id_relative_application().size());
+
+  [[nodiscard]] static Relative relative_value(const std::uint8_t* ram, const NodeIdRelative& row) {
+    Relative value = 0;
+    std::memcpy(&value, ram + row.offset, row.size);
+    return value;
+  }
+
+  /// Puts what is stored in the place of the defaults. False: storage could not be read, and some values are not what
+  /// they should be.
+  template <Storage S>
+  [[nodiscard]] bool load(S& storage, unsigned sections, std::span<const NodeIdRelative> relative,
+                          ObjectStore<Device>& store) const {
+    Records records{};
+    if (!find(storage, records)) return false;
+    for (std::size_t i = 0; i < parameter_sections; ++i) {
+      if (!is_in(sections, i) || records[i].position == 0) continue;
+      if (!load_section(storage, i, records[i], relative, store)) return false;
+    }
+    return true;
+  }
+
+  /// A value that was the default of another node-ID is the default of this one: a COB-ID that follows the node-ID goes
+  /// on to follow it (CiA 305).
+  template <Storage S>
+  [[nodiscard]] static bool load_section(S& storage, std::size_t section, Record record,
+                                         std::span<const NodeIdRelative> relative, ObjectStore<Device>& store) {
+    const bool same_node_id = record.node_id == store.node_id().value();
+    if (!same_node_id && section == static_cast<std::size_t>(ParameterSection::with_node_id)) return true;
+    std::uint8_t* const ram = ram_of(store);
+    std::array<Relative, most_relative> defaults;
+    for (std::size_t i = 0; i < relative.size(); ++i) defaults[i] = relative_value(ram, relative[i]);
+    if (!read_values(storage, section, record.position, ram)) return false;
+    for (std::size_t i = 0; !same_node_id && i < relative.size(); ++i) {
+      const Relative stored = relative_value(ram, relative[i]);
+      if (stored + store.node_id().value() == defaults[i] + record.node_id)
+        std::memcpy(ram + relative[i].offset, &defaults[i], relative[i].size);
+    }
+    return true;
+  }
+
+  template <Storage S>
+  [[nodiscard]] static bool read_values(S& storage, std::size_t section, std::uint32_t position, std::uint8_t* ram) {
+    for (std::size_t i = Layout::firsts[section]; i < Layout::firsts[section + 1]; ++i) {
+      if (!storage.read(position, {ram + Layout::runs[i].offset, Layout::runs[i].size})) return false;
+      position += Layout::runs[i].size;
+    }
+    return true;
+  }
+
+  bool damaged_ = false;
+  bool restored_ = false;  ///< since power-on
+};
+
+}  // namespace canopen
