@@ -491,6 +491,20 @@ TEST(SdoServer, GivesStringsAndDomainsToTheirHandlers) {
   EXPECT_EQ(bytes, 3u);
 }
 
+TEST(SdoServer, LeavesADomainAsItsHandlerBindsIt) {
+  std::array<std::uint8_t, 9> first{};
+  std::array<std::uint8_t, 2> second{0xEE, 0xEE};
+  auto device = bench::with(canopen::on_write<od::parameter_file>(
+      [&](auto& node, canopen::Domain) { node.template bind<od::parameter_file>(second, 0); }));
+  device.node.bind<od::parameter_file>(first, 0);
+  device.ask("605 21 12 20 00 09 00 00 00");
+  device.ask("605 00 01 02 03 04 05 06 07");
+  EXPECT_EQ(device.ask("605 1B 08 09 00 00 00 00 00"), "585 30 00 00 00 00 00 00 00");
+  EXPECT_EQ(first, (std::array<std::uint8_t, 9>{1, 2, 3, 4, 5, 6, 7, 8, 9}));
+  EXPECT_EQ(second, (std::array<std::uint8_t, 2>{0xEE, 0xEE}));
+  EXPECT_EQ(device.node.get<od::parameter_file>().size, 0u);
+}
+
 TEST(SdoServer, LetsTheReadHandlerRefreshTheValue) {
   auto device =
       bench::with(canopen::on_read<od::position_actual_value>([] { return std::int32_t{77}; }),

@@ -295,10 +295,10 @@ class SdoServer {
         size = entry::wire_bytes(word_) == 0 ? 4u : std::min<std::uint32_t>(entry::wire_bytes(word_), 4);
       size_indicated_ = true;
       if (const AbortCode code = prepare(size, hooks); code != ok) return code;
+      std::memcpy(buffer_.data(), &request[4], 4);
       if (entry::is_domain(word_)) {
-        if (const AbortCode code = store(hooks, &request[4], size, true); code != ok) return code;
+        if (const AbortCode code = store(hooks, buffer_.data(), size, true); code != ok) return code;
       } else {
-        std::memcpy(buffer_.data(), &request[4], 4);
         position_ = size;
       }
       if (const AbortCode code = finish(hooks); code != ok) return code;
@@ -391,7 +391,8 @@ class SdoServer {
       if (entry::place_of(word_) != entry::Place::ram) return hooks.command(index_, sub_index_, bytes);
       if (const AbortCode code = entries.check_value(index_, sub_index_, word_, bytes); code != ok) return code;
       if (const AbortCode code = hooks.before_write(index_, sub_index_, bytes); code != ok) return code;
-      entries.write(word_, bytes);
+      // A handler may have bound a DOMAIN to other memory: the application has taken the bytes then.
+      if (!entry::is_domain(word_) || entries.domain(word_).data == bytes_) entries.write(word_, bytes);
     }
     hooks.after_write(index_, sub_index_);
     return ok;
