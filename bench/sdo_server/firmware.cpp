@@ -42,6 +42,9 @@ struct Hooks {
   static canopen::AbortCode before_read(std::uint16_t, std::uint8_t) { return canopen::ok; }
   static canopen::AbortCode before_write(std::uint16_t, std::uint8_t, std::span<std::uint8_t>) { return canopen::ok; }
   static void after_write(std::uint16_t, std::uint8_t) {}
+  static canopen::AbortCode command(std::uint16_t, std::uint8_t, std::span<const std::uint8_t>) {
+    return canopen::AbortCode::not_stored;
+  }
 };
 
 [[gnu::noinline]] void ask(const Bytes& request) { server.on_request(request, Hooks{}, canopen::TimePoint{}); }

@@ -57,6 +57,9 @@ class Application {
       return application.answer;
     }
     void after_write(std::uint16_t, std::uint8_t) const {}
+    static canopen::AbortCode command(std::uint16_t, std::uint8_t, std::span<const std::uint8_t>) {
+      return canopen::AbortCode::not_stored;
+    }
     [[nodiscard]] bool streams_upload(std::uint16_t index, std::uint8_t) const { return index == 0x201A; }
     [[nodiscard]] bool streams_download(std::uint16_t index, std::uint8_t) const {
       return index == 0x2012 && application.streams;

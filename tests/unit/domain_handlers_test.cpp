@@ -28,6 +28,9 @@ class StreamBench {
       return canopen::ok;
     }
     void after_write(std::uint16_t, std::uint8_t) const { ++bench.written; }
+    static canopen::AbortCode command(std::uint16_t, std::uint8_t, std::span<const std::uint8_t>) {
+      return canopen::AbortCode::not_stored;
+    }
     [[nodiscard]] bool streams_upload(std::uint16_t index, std::uint8_t sub_index) const {
       return Set::streams_upload(canopen::object_key(index, sub_index));
     }

@@ -49,6 +49,9 @@ struct PlainHooks {
     return refuse ? refuse(index, sub_index) : canopen::ok;
   }
   void after_write(std::uint16_t /*index*/, std::uint8_t /*sub_index*/) const {}
+  [[nodiscard]] static canopen::AbortCode command(std::uint16_t, std::uint8_t, std::span<const std::uint8_t>) {
+    return canopen::AbortCode::not_stored;
+  }
 };
 
 template <class Device = WithBlock>
