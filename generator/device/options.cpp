@@ -29,6 +29,7 @@ constexpr std::array runtime_flags = {
     "mpdo",
     "error_history_keeps_resets",
     "sdo_upload_size_indicated",
+    "sdo_block_transfer",
     "restore_needs_power_cycle",
 };
 constexpr std::array runtime_masks = {"pdo_cob_id_writable"};

@@ -243,6 +243,8 @@ class HandlerSet {
     return *std::get<position>(handlers_).storage;
   }
 
+  [[nodiscard]] std::tuple<Handlers...>& all() { return handlers_; }
+
   /// Calls all handlers of a kind, such as SyncHandler.
   template <template <class> class Kind, class Node, class... Arguments>
   void tell(Node& node, const Arguments&... arguments) {

@@ -15,6 +15,7 @@
 #include "canopen/abort_code.hpp"
 #include "canopen/cob_id.hpp"
 #include "canopen/communication_parameters.hpp"
+#include "canopen/domain_handlers.hpp"
 #include "canopen/emcy.hpp"
 #include "canopen/emcy_consumer.hpp"
 #include "canopen/error_register.hpp"
@@ -27,7 +28,7 @@
 #include "canopen/parameter_storage.hpp"
 #include "canopen/pdo_mapping.hpp"
 #include "canopen/rpdo.hpp"
-#include "canopen/sdo_server.hpp"
+#include "canopen/sdo_servers.hpp"
 #include "canopen/storage.hpp"
 #include "canopen/sync.hpp"
 #include "canopen/time.hpp"
@@ -71,8 +72,8 @@ class Node {
     const std::uint32_t cob_id = cob_id_of(frame);
     if (frame.remote) {
       on_remote(cob_id);
-    } else if (cob_id == sdo_request_id()) {
-      on_sdo_request(frame);
+    } else if (serves_sdo(state_) && sdo_.on_frame(store_, frame, SdoHooks{*this}, now_)) {
+      attention_ = true;
     } else if (cob_id == function_code::nmt) {
       on_nmt(frame);
     } else if (const std::optional<Sync> sync = SyncConsumer<Device>::take(store_, frame)) {
@@ -243,6 +244,23 @@ class Node {
     [[nodiscard]] AbortCode command(std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
       return node.command(index, sub_index, bytes);
     }
+
+    // DOMAINs that the application streams
+    using Streams = DomainHandlerSet<Handlers...>;
+    [[nodiscard]] bool streams_upload(std::uint16_t index, std::uint8_t sub_index) const requires(Streams::any) {
+      return Streams::streams_upload(object_key(index, sub_index));
+    }
+    [[nodiscard]] Result<std::uint32_t> read_domain(std::uint16_t index, std::uint8_t sub_index, std::uint32_t offset,
+                                                    std::span<std::uint8_t> bytes) requires(Streams::any) {
+      return Streams::read(node.handlers_.all(), node, object_key(index, sub_index), offset, bytes);
+    }
+    [[nodiscard]] bool streams_download(std::uint16_t index, std::uint8_t sub_index) const requires(Streams::any) {
+      return Streams::streams_download(object_key(index, sub_index));
+    }
+    [[nodiscard]] AbortCode write_domain(std::uint16_t index, std::uint8_t sub_index, std::uint32_t offset,
+                                         std::span<const std::uint8_t> bytes, bool last) requires(Streams::any) {
+      return Streams::write(node.handlers_.all(), node, object_key(index, sub_index), offset, bytes, last);
+    }
   };
 
   // Network management
@@ -313,40 +331,6 @@ class Node {
 
   // SDO
 
-  [[nodiscard]] std::uint32_t sdo_request_id() const {
-    if constexpr (Device::dictionary.has(0x1200, 1)) {
-      return store_.template number<0x1200, 1>();
-    } else {
-      return std::uint32_t{function_code::sdo_request} + node_id_.value();
-    }
-  }
-
-  [[nodiscard]] CobId sdo_response_id() const {
-    if constexpr (Device::dictionary.has(0x1200, 2)) {
-      return CobId{store_.template number<0x1200, 2>()};
-    } else {
-      return CobId{std::uint32_t{function_code::sdo_response} + node_id_.value()};
-    }
-  }
-
-  void on_sdo_request(const Frame& frame) {
-    if (!serves_sdo(state_) || frame.size != 8) return;
-    sdo_.on_request(frame.data, SdoHooks{*this}, now_);
-    if (attention_ || !send_sdo_reply()) attention_ = true;
-  }
-
-  [[nodiscard]] bool send_sdo_reply() {
-    if (!sdo_.has_reply()) return true;
-    Frame frame{};
-    frame.id = sdo_response_id().can_id();
-    frame.extended = sdo_response_id().extended();
-    frame.size = 8;
-    frame.data = sdo_.reply();
-    if (!bus_.send(frame)) return false;
-    sdo_.reply_sent();
-    return true;
-  }
-
   [[nodiscard]] AbortCode before_read(std::uint16_t index, std::uint8_t sub_index) {
     if (index == 0x1003) {
       if (const AbortCode code = check_history_read(entries(), sub_index); code != ok) return code;
@@ -385,6 +369,9 @@ class Node {
       if (is_rpdo_mapping(index) || is_tpdo_mapping(index)) {
         return check_pdo_mapping(Device::options, entries(), Device::dummies, index, sub_index, bytes);
       }
+    }
+    if (index >= sdo_server_parameter && index <= last_sdo_server_parameter) {
+      return check_sdo_cob_id(entries(), index, sub_index, bytes);
     }
     if constexpr (SyncConsumer<Device>::exists) {
       if (index == 0x1005 || index == 0x1019) {
@@ -582,7 +569,7 @@ class Node {
 
   [[nodiscard]] bool send_due() {
     if (!heartbeat_.serve_boot_up(bus_, node_id_, heartbeat_period(), now_)) return false;
-    if (!send_sdo_reply()) return false;
+    if (!sdo_.serve(store_, bus_, SdoHooks{*this}, now_)) return false;
     if constexpr (has_heartbeat_time) {
       if (!heartbeat_.serve(bus_, node_id_, state_, heartbeat_period(), now_)) return false;
     }
@@ -600,7 +587,7 @@ class Node {
   [[no_unique_address]] HandlerSet<Handlers...> handlers_;
   ObjectStore<Device> store_{};
   [[no_unique_address]] Parameters parameters_{};
-  SdoServer<Device> sdo_{};
+  SdoServers<Device> sdo_{};
   TpdoService<Device> tpdos_{};
   RpdoService<Device> rpdos_{};
   EmergencyProducer<Device> emergencies_{};

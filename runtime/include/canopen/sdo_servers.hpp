@@ -1,0 +1,157 @@
+/// The SDO servers of a device, one for each of 1200h..127Fh (CiA 301, 7.5.2.33).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <span>
+
+#include "canopen/abort_code.hpp"
+#include "canopen/cob_id.hpp"
+#include "canopen/communication_parameters.hpp"
+#include "canopen/frame.hpp"
+#include "canopen/object_store.hpp"
+#include "canopen/sdo_protocol.hpp"
+#include "canopen/sdo_server.hpp"
+#include "canopen/time.hpp"
+
+namespace canopen {
+
+inline constexpr std::uint16_t sdo_server_parameter = 0x1200;
+inline constexpr std::uint16_t last_sdo_server_parameter = 0x127F;
+
+/// The first server always exists, with the COB-IDs of the pre-defined connection set where 1200h does not stand in the
+/// dictionary. Servers share no state; a DOMAIN that one of them begins to write is taken from the others.
+template <class Device>
+class SdoServers {
+ public:
+  static constexpr std::size_t count = [] {
+    std::size_t servers = 1;
+    for (std::uint32_t index = sdo_server_parameter + 1; index <= last_sdo_server_parameter; ++index) {
+      if (Device::dictionary.has(static_cast<std::uint16_t>(index), 1)) ++servers;
+    }
+    return servers;
+  }();
+
+  /// Takes a frame that is a request to one of the servers; false when it is none. A request of another length than
+  /// eight bytes is ignored.
+  template <class Hooks>
+  bool on_frame(ObjectStore<Device>& store, const Frame& frame, Hooks&& hooks, TimePoint now) {
+    const std::uint32_t cob_id = cob_id_of(frame);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (cob_id_of_server(i, request_sub_index, store) != cob_id) continue;
+      if (frame.size != 8) return true;
+      if constexpr (count > 1) take_domain_from_others(i, frame.data);
+      servers_[i].on_request(frame.data, hooks, now);
+      return true;
+    }
+    return false;
+  }
+
+  void on_time(TimePoint now) {
+    for (SdoServer<Device>& server : servers_) server.on_time(now);
+  }
+
+  /// Sends the answers that wait. False when the bus had no room: they stay.
+  template <Bus B, class Hooks>
+  [[nodiscard]] bool serve(ObjectStore<Device>& store, B& bus, Hooks&& hooks, TimePoint now) {
+    for (std::size_t i = 0; i < count; ++i) {
+      while (servers_[i].has_reply()) {
+        const CobId cob_id{cob_id_of_server(i, response_sub_index, store)};
+        Frame frame{};
+        frame.id = cob_id.can_id();
+        frame.extended = cob_id.extended();
+        frame.size = 8;
+        frame.data = servers_[i].reply();
+        if (!bus.send(frame)) return false;
+        servers_[i].reply_sent(hooks, now);
+      }
+    }
+    return true;
+  }
+
+  [[nodiscard]] bool has_reply() const {
+    for (const SdoServer<Device>& server : servers_) {
+      if (server.has_reply()) return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] std::optional<TimePoint> next_deadline() const {
+    std::optional<TimePoint> next;
+    for (const SdoServer<Device>& server : servers_) {
+      const std::optional<TimePoint> own = server.next_deadline();
+      if (own && (!next || *own < *next)) next = own;
+    }
+    return next;
+  }
+
+  void reset() {
+    for (SdoServer<Device>& server : servers_) server.reset();
+  }
+
+  void domain_rebound(std::uint16_t index, std::uint8_t sub_index) {
+    for (SdoServer<Device>& server : servers_) server.domain_rebound(index, sub_index);
+  }
+
+ private:
+  static constexpr std::uint8_t request_sub_index = 1;
+  static constexpr std::uint8_t response_sub_index = 2;
+
+  static constexpr std::array<std::uint16_t, count> indices = [] {
+    std::array<std::uint16_t, count> rows{sdo_server_parameter};
+    std::size_t at = 1;
+    for (std::uint32_t index = sdo_server_parameter + 1; index <= last_sdo_server_parameter; ++index) {
+      if (Device::dictionary.has(static_cast<std::uint16_t>(index), 1)) rows[at++] = static_cast<std::uint16_t>(index);
+    }
+    return rows;
+  }();
+
+  /// With bit 31 set: this server does not exist now, and no frame is for it.
+  [[nodiscard]] static std::uint32_t cob_id_of_server(std::size_t i, std::uint8_t sub_index, ObjectStore<Device>& store) {
+    if (i == 0) {
+      return sub_index == request_sub_index ? first_cob_id<request_sub_index>(store)
+                                            : first_cob_id<response_sub_index>(store);
+    }
+    const entry::Word word = Device::dictionary.find(indices[i], sub_index);
+    return word > Dictionary::no_sub_index ? store.entries().number(word) : CobId::invalid_bit;
+  }
+
+  template <std::uint8_t SubIndex>
+  [[nodiscard]] static std::uint32_t first_cob_id(const ObjectStore<Device>& store) {
+    if constexpr (Device::dictionary.has(sdo_server_parameter, SubIndex)) {
+      return store.template number<sdo_server_parameter, SubIndex>();
+    } else {
+      constexpr std::uint16_t base =
+          SubIndex == request_sub_index ? function_code::sdo_request : function_code::sdo_response;
+      return std::uint32_t{base} + store.node_id().value();
+    }
+  }
+
+  void take_domain_from_others(std::size_t server, const std::array<std::uint8_t, 8>& request) {
+    const sdo::ClientCommand command = sdo::client_command(request[0]);
+    if (command != sdo::ClientCommand::initiate_download && command != sdo::ClientCommand::block_download) return;
+    const std::uint16_t index = sdo::index_of(request);
+    const entry::Word word = Device::dictionary.find(index, request[3]);
+    if (word <= Dictionary::no_sub_index || !entry::is_domain(word)) return;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i != server) servers_[i].domain_rebound(index, request[3]);
+    }
+  }
+
+  std::array<SdoServer<Device>, count> servers_{};
+};
+
+/// What speaks against writing these bytes to a COB-ID of 1200h..12FFh. 0609 0030h: its CAN-ID changes while the channel
+/// is valid, or is a restricted one.
+[[nodiscard]] inline AbortCode check_sdo_cob_id(const EntryAccess& entries, std::uint16_t index, std::uint8_t sub_index,
+                                                std::span<const std::uint8_t> bytes) {
+  if (sub_index != 1 && sub_index != 2) return ok;
+  std::uint32_t after = 0;
+  std::memcpy(&after, bytes.data(), sizeof after);
+  const CobId before{entries.number(entries.dictionary().find(index, sub_index))};
+  return check_pdo_cob_id(before, CobId{after});
+}
+
+}  // namespace canopen
