@@ -20,12 +20,13 @@ namespace canopen {
 using EmergencyInfo = std::array<std::uint8_t, 5>;
 
 /// Errors that the services find by themselves. All of them are communication errors.
-enum class ServiceError : std::uint8_t { pdo_length, rpdo_timeout, sync_length };
+enum class ServiceError : std::uint8_t { pdo_length, rpdo_timeout, sync_length, mpdo_destination };
 
 inline constexpr std::uint16_t service_error_codes[] = {
     emergency_code::pdo_length,
     emergency_code::rpdo_timeout,
     emergency_code::sync_length,
+    emergency_code::mpdo_destination,
 };
 
 /// One device's errors. Each error that appears is sent once, with the register as it is then, and goes into the

@@ -22,6 +22,7 @@
 #include "canopen/frame.hpp"
 #include "canopen/handlers.hpp"
 #include "canopen/heartbeat.hpp"
+#include "canopen/mpdo.hpp"
 #include "canopen/nmt.hpp"
 #include "canopen/node_id.hpp"
 #include "canopen/object_store.hpp"
@@ -84,6 +85,7 @@ class Node {
       if (serves_emcy(state_)) handlers_.template tell<EmergencyHandler>(*this, *emergency);
     } else if (serves_pdo(state_)) {
       rpdos_.on_frame(store_, frame, sync_window_.over(now_), now_, RpdoHost{*this});
+      mpdos_.on_frame(entries(), frame, node_id_, RpdoHost{*this});
     }
     if (attention_) serve();
   }
@@ -109,6 +111,7 @@ class Node {
     consider(sdo_.next_deadline());
     if constexpr (has_tpdos) consider(tpdos_.next_deadline(now_));
     if constexpr (has_rpdos) consider(rpdos_.next_deadline());
+    if (serves_pdo(state_)) consider(mpdos_.next_deadline(now_));
     if (serves_emcy(state_)) consider(emergencies_.next_deadline(now_));
     if constexpr (SyncProducer<Device>::exists) consider(sync_producer_.next_deadline());
     return next;
@@ -178,6 +181,22 @@ class Node {
     const SectionSet sections = sections_of(sub_index);
     const bool restored = sections != 0 && parameters_.restore(handlers_.storage(), sections, store_);
     return restored ? ok : AbortCode::hardware;
+  }
+
+  /// Sends a value to an object of another node, or of all nodes, as a DAM-MPDO (CiA 301, 7.2.2.5), with the next
+  /// `on_time` or `on_frame`. False: the node is not Operational, it has no valid DAM-TPDO, or as many wait as can.
+  [[nodiscard]] bool send_mpdo(const MpdoDestination& to, std::uint32_t value) {
+    if (!serves_pdo(state_) || !mpdos_.put(entries(), to, value)) return false;
+    attention_ = true;
+    return true;
+  }
+
+  /// The same with the value of an object.
+  template <DictionaryObject O>
+  [[nodiscard]] bool send_mpdo(const MpdoDestination& to) {
+    static_assert(O::bits >= 1 && O::bits <= 32, "a multiplex PDO carries a value of 32 bits at most");
+    constexpr std::uint32_t mask = 0xFFFF'FFFF >> (32 - O::bits);
+    return send_mpdo(to, static_cast<std::uint32_t>(pdo_detail::to_bits(get<O>())) & mask);
   }
 
   /// Gives a DOMAIN its memory: a download may fill all of it, an upload sends the first `size` bytes.
@@ -295,6 +314,7 @@ class Node {
     if (serves_pdo(next)) {
       tpdos_.enter_operational(store_, now_);
       rpdos_.enter_operational(entries(), Watched{*this});
+      mpdos_.enter_operational();
       tell_rpdo_errors();
     }
     attention_ = true;
@@ -362,6 +382,9 @@ class Node {
   /// What the services have against a write to 1000h..1FFFh.
   [[nodiscard]] AbortCode check_communication(std::uint16_t index, std::uint8_t sub_index,
                                               std::span<std::uint8_t> bytes) {
+    if constexpr (MpdoService<Device>::exists) {
+      if (const AbortCode code = mpdos_.check(entries(), index, sub_index, bytes); code != ok) return code;
+    }
     if (is_rpdo_communication(index) || is_tpdo_communication(index)) {
       return check_pdo_parameter(Device::options, entries(), index, sub_index, bytes);
     }
@@ -407,6 +430,7 @@ class Node {
       }
       tpdos_.changed(entries(), index, sub_index);
     }
+    mpdos_.changed(entries(), index, sub_index);
     if constexpr (has_rpdos) {
       if (is_rpdo_communication(index) || is_rpdo_mapping(index)) {
         rpdos_.parameter_changed(entries(), index, Watched{*this});
@@ -427,6 +451,9 @@ class Node {
       node.take(index, sub_index, bytes);
     }
     void happened(RpdoEvent event, std::uint16_t number) { node.rpdo_happened(event, number); }
+    void destination_missing(bool missing) {
+      missing ? node.service_error(ServiceError::mpdo_destination) : node.tell_rpdo_errors();
+    }
   };
 
   /// Whether more has to be done with a received value than to store it: it has limits or another size in memory, a
@@ -437,6 +464,7 @@ class Node {
       const std::uint8_t size = entry::wire_bytes(word);
       if ((word & entry::limited) != 0 || entry::is_boolean(word) || (size & (size - 1)) != 0) return true;
       if (mapped.index() < 0x2000 || HandlerSet<Handlers...>::handles(mapped.key())) return true;
+      if (MpdoService<Device>::sends_source && (word & entry::tpdo) != 0) return true;
       return TpdoService<Device>::carries(const_cast<Node&>(node).entries(), mapped.key());
     }
   };
@@ -489,9 +517,14 @@ class Node {
 
   /// Errors of RPDOs are over when no RPDO has them any more.
   void tell_rpdo_errors() {
+    if constexpr (has_rpdos || MpdoService<Device>::receives) {
+      if (!rpdos_.any(RpdoEvent::too_short) && !mpdos_.too_short()) service_error_over(ServiceError::pdo_length);
+    }
     if constexpr (has_rpdos) {
-      if (!rpdos_.any(RpdoEvent::too_short)) service_error_over(ServiceError::pdo_length);
       if (!rpdos_.any(RpdoEvent::timeout)) service_error_over(ServiceError::rpdo_timeout);
+    }
+    if constexpr (MpdoService<Device>::receives) {
+      if (!mpdos_.destination_missing()) service_error_over(ServiceError::mpdo_destination);
     }
   }
 
@@ -529,6 +562,7 @@ class Node {
     if constexpr (has_tpdos) {
       if (serves_pdo(state_) && tpdos_.template changed<O>(entries())) attention_ = true;
     }
+    if (serves_pdo(state_) && mpdos_.changed(entries(), O::index, O::sub_index)) attention_ = true;
   }
 
   template <DictionaryObject O>
@@ -575,12 +609,10 @@ class Node {
     }
     if (serves_emcy(state_) && !emergencies_.serve(store_, bus_, now_)) return false;
     if constexpr (has_tpdos) {
-      if (serves_pdo(state_)) {
-        if (SyncWindow<Device>::exists && sync_window_.over(now_)) tpdos_.miss_sync();
-        return tpdos_.serve(store_, bus_, now_);
-      }
+      if (SyncWindow<Device>::exists && sync_window_.over(now_)) tpdos_.miss_sync();
+      if (serves_pdo(state_) && !tpdos_.serve(store_, bus_, now_)) return false;
     }
-    return true;
+    return !serves_pdo(state_) || mpdos_.serve(entries(), node_id_, bus_, now_);
   }
 
   [[no_unique_address]] BusMember bus_;
@@ -590,6 +622,7 @@ class Node {
   SdoServers<Device> sdo_{};
   TpdoService<Device> tpdos_{};
   RpdoService<Device> rpdos_{};
+  [[no_unique_address]] MpdoService<Device> mpdos_{};
   EmergencyProducer<Device> emergencies_{};
   HeartbeatProducer heartbeat_{};
   struct Nothing {};
