@@ -1,6 +1,7 @@
 #include "device/resolve_pdos.hpp"
 
 #include <algorithm>
+#include <canopen/pdo_mapping.hpp>
 
 namespace edsc {
 namespace {
@@ -25,6 +26,7 @@ std::uint64_t default_of(const Entry* entry) { return entry != nullptr && entry-
 std::vector<PdoEntry> default_mapping(const Device& device, const Object& mapping) {
   std::vector<PdoEntry> entries;
   const std::uint64_t count = default_of(mapping.find(0));
+  if (count >= canopen::source_multiplexed) return entries;
   for (const Entry& parameter : mapping.entries) {
     if (parameter.sub_index == 0 || parameter.sub_index > count) continue;
     const auto value = static_cast<std::uint32_t>(default_of(&parameter));
@@ -83,6 +85,7 @@ void resolve_pdos(Device& device, const Options& options) {
       pdo.mapping = mapping;
       pdo.position = communication != nullptr ? communication->position : mapping->position;
       if (mapping != nullptr) pdo.entries = default_mapping(device, *mapping);
+      pdo.multiplexed = mapping != nullptr && default_of(mapping->find(0)) >= canopen::source_multiplexed;
       pdo.dynamic = is_dynamic(pdo, options);
       device.pdos.push_back(std::move(pdo));
     }

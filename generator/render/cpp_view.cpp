@@ -203,7 +203,7 @@ ordered_json served_pdos(const Device& device, PdoDirection direction) {
   for (const Pdo& pdo : device.pdos) {
     if (pdo.direction != direction || pdo.communication == nullptr || pdo.mapping == nullptr) continue;
     const bool empty = pdo.broken || pdo.entries.empty();
-    if (empty && !pdo.dynamic) continue;
+    if (empty && !pdo.dynamic && !pdo.multiplexed) continue;
     const std::string_view kind = direction == PdoDirection::receive ? "Rpdo" : "Tpdo";
     rows.push_back({{"number", pdo.number},
                     {"layout", empty ? fmt::format("canopen::{}<>", kind) : fmt::format("{}{}", kind, pdo.number)},

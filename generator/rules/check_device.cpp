@@ -20,6 +20,7 @@ void check_device(Device& device, const DataSheet& sheet, const Options& options
   check_pdos(device, options, diagnostics);
   check_pdo_communication(context);
   check_pdo_mapping(context);
+  check_mpdos(context);
   check_profile(context);
   check_names(context);
 }

@@ -10,8 +10,6 @@
 namespace edsc {
 namespace {
 
-constexpr std::uint64_t first_mpdo_count = 0xFE;  ///< FEh and FFh in sub-index 0: a multiplexed PDO, no count
-
 /// The first of the sub-indices 1..count that is not there or maps nothing.
 void check_gaps(const RuleContext& context, const Pdo& pdo, const Entry& count) {
   const std::uint64_t entries = count.default_value->bits;
@@ -107,7 +105,7 @@ void check_both_directions(const RuleContext& context) {
 void check_pdo_mapping(const RuleContext& context) {
   for (const Pdo& pdo : context.device.pdos) {
     const Entry* count = pdo.mapping == nullptr ? nullptr : pdo.mapping->find(0);
-    if (count == nullptr || !count->default_value || count->default_value->bits >= first_mpdo_count) continue;
+    if (count == nullptr || !count->default_value || pdo.multiplexed) continue;
     check_gaps(context, pdo, *count);
     check_twice(context, pdo);
     check_empty(context, pdo, *count);

@@ -166,6 +166,12 @@ constexpr std::array rules = {
     Rule{"pdo-time-unused", note, "an inhibit time or event timer that the transmission type does not use", "CiA 301, 7.5.2.37"},
     Rule{"pdo-compatibility-entry", note, "sub-index 4 of a PDO communication parameter", "CiA 301, 7.5.2.37"},
     Rule{"pdo-sync-start", warning, "a SYNC start value without effect", "CiA 301, 7.5.2.37"},
+    // Multiplex PDOs.
+    Rule{"mpdo-option", warning, "a multiplex PDO, but the option mpdo is off", "CiA 301, 7.2.2.5"},
+    Rule{"mpdo-transmission-type", warning, "a multiplex PDO whose transmission type is not 254 or 255", "CiA 301, 7.2.2.5"},
+    Rule{"mpdo-list", warning, "a PDO in source addressing mode, but no list of its objects", "CiA 301, 7.2.2.5"},
+    Rule{"mpdo-list-object", warning, "a scanner or dispatching list names what an MPDO cannot carry", "CiA 301, 7.2.2.5"},
+    Rule{"mpdo-second-producer", warning, "two TPDOs in source addressing mode", "CiA 301, 7.2.2.5"},
     // Device profiles.
     Rule{"device-type", note, "1000h without default", "CiA 301, 7.5.2.1"},
     Rule{"io-kinds", warning, "1000h names other inputs and outputs than there are", "CiA 401-1, 5.2"},

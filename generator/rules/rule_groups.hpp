@@ -25,6 +25,8 @@ void check_cob_ids(const RuleContext& context);
 void check_pdo_communication(const RuleContext& context);
 /// PDO mapping parameters as a whole; single entries are checked by check_pdos().
 void check_pdo_mapping(const RuleContext& context);
+/// Multiplex PDOs and their lists.
+void check_mpdos(const RuleContext& context);
 /// What the device profile of 1000h asks for.
 void check_profile(const RuleContext& context);
 /// Names as C++ identifiers.
