@@ -111,7 +111,9 @@ class Node {
     consider(sdo_.next_deadline());
     if constexpr (has_tpdos) consider(tpdos_.next_deadline(now_));
     if constexpr (has_rpdos) consider(rpdos_.next_deadline());
-    if (serves_pdo(state_)) consider(mpdos_.next_deadline(now_));
+    if constexpr (MpdoService<Device>::sends_destination) {
+      if (serves_pdo(state_)) consider(mpdos_.next_deadline(now_));
+    }
     if (serves_emcy(state_)) consider(emergencies_.next_deadline(now_));
     if constexpr (SyncProducer<Device>::exists) consider(sync_producer_.next_deadline());
     return next;
@@ -612,7 +614,10 @@ class Node {
       if (SyncWindow<Device>::exists && sync_window_.over(now_)) tpdos_.miss_sync();
       if (serves_pdo(state_) && !tpdos_.serve(store_, bus_, now_)) return false;
     }
-    return !serves_pdo(state_) || mpdos_.serve(entries(), node_id_, bus_, now_);
+    if constexpr (MpdoService<Device>::sends_destination) {
+      if (serves_pdo(state_)) return mpdos_.serve(entries(), node_id_, bus_, now_);
+    }
+    return true;
   }
 
   [[no_unique_address]] BusMember bus_;
