@@ -1,0 +1,167 @@
+/// Heartbeat consumer (CiA 301, 7.2.8.3.2.2): watches the nodes that 1016h names.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "canopen/abort_code.hpp"
+#include "canopen/dictionary.hpp"
+#include "canopen/error_control.hpp"
+#include "canopen/nmt.hpp"
+#include "canopen/node_id.hpp"
+#include "canopen/object_store.hpp"
+#include "canopen/time.hpp"
+
+namespace canopen {
+
+/// What happens to a watched node.
+enum class HeartbeatEvent : std::uint8_t {
+  started,        ///< its first heartbeat: it is watched from now on
+  state_changed,  ///< a heartbeat tells another NMT state than the last one
+  boot_up,        ///< its boot-up message
+  lost,           ///< no heartbeat for its time: the heartbeat event of CiA 301, EMCY 8130h
+  back,           ///< the first heartbeat after it was lost
+};
+
+/// An entry of 1016h (CiA 301, 7.5.2.14): node-ID in bits 23..16, time in ms in bits 15..0.
+class ConsumerHeartbeatTime {
+ public:
+  constexpr ConsumerHeartbeatTime() = default;
+  constexpr explicit ConsumerHeartbeatTime(std::uint32_t value) : value_{value} {}
+  constexpr ConsumerHeartbeatTime(NodeId node_id, std::uint16_t milliseconds)
+      : value_{(std::uint32_t{node_id.value()} << 16) | milliseconds} {}
+
+  [[nodiscard]] constexpr std::uint32_t value() const { return value_; }
+  [[nodiscard]] constexpr NodeId node_id() const { return NodeId{static_cast<std::uint8_t>(value_ >> 16)}; }
+  [[nodiscard]] constexpr std::uint16_t milliseconds() const { return static_cast<std::uint16_t>(value_); }
+
+  /// Whether it watches a node: its time is not 0, its node-ID 1..127.
+  [[nodiscard]] constexpr bool used() const { return milliseconds() != 0 && node_id().valid(); }
+
+ private:
+  std::uint32_t value_ = 0;
+};
+
+/// How many nodes a device's 1016h can name.
+[[nodiscard]] constexpr std::size_t consumer_heartbeat_times(const Dictionary& dictionary) {
+  std::size_t count = 0;
+  while (count < 127 && dictionary.has(0x1016, static_cast<std::uint8_t>(count + 1))) ++count;
+  return count;
+}
+
+/// Watches up to `Count` nodes, with eight bytes of RAM for each. A node is watched from its first heartbeat on; a
+/// boot-up message alone does not start that, as a node sends one with its heartbeat off, too. While the node is
+/// watched a boot-up message counts as a heartbeat.
+///
+/// Events go to the node around it: `host.happened(HeartbeatEvent, NodeId, NmtState)`, with the state last told.
+template <std::size_t Count>
+class HeartbeatConsumer {
+ public:
+  /// What speaks against writing an entry, counted from 0. 0604 0043h: another one watches the same node.
+  [[nodiscard]] AbortCode check(std::size_t entry, ConsumerHeartbeatTime time) const {
+    if (!time.used()) return ok;
+    for (std::size_t i = 0; i < Count; ++i) {
+      if (i != entry && entries_[i].node_id == time.node_id()) return AbortCode::parameter_incompatible;
+    }
+    return ok;
+  }
+
+  /// An entry, counted from 0, has a new value: its node is unknown until its next heartbeat.
+  void configure(std::size_t entry, ConsumerHeartbeatTime time) {
+    entries_[entry] = Entry{};
+    if (!time.used()) return;
+    entries_[entry].node_id = time.node_id();
+    entries_[entry].milliseconds = time.milliseconds();
+  }
+
+  /// The same for all entries, from 1016h.
+  void configure(const EntryAccess& entries) {
+    for (std::size_t i = 0; i < Count; ++i) {
+      const entry::Word word = entries.dictionary().find(0x1016, static_cast<std::uint8_t>(i + 1));
+      configure(i, ConsumerHeartbeatTime{entries.number(word)});
+    }
+  }
+
+  /// Takes a message of any node. Answers to guarding requests that have bit 7 set are no heartbeats.
+  template <class Host>
+  void on_message(const ErrorControlMessage& message, TimePoint now, Host&& host) {
+    if (message.toggle) return;
+    Entry* const entry = find(message.node_id);
+    if (entry == nullptr) return;
+    const std::optional<HeartbeatEvent> event = event_of(*entry, message.state);
+    if (event != HeartbeatEvent::boot_up || entry->watched()) {
+      entry->status = static_cast<std::uint8_t>(message.state);
+      entry->deadline = now + from_milliseconds(entry->milliseconds);
+    }
+    if (event) host.happened(*event, message.node_id, message.state);
+  }
+
+  /// Tells of the nodes whose time is over.
+  template <class Host>
+  void on_time(TimePoint now, Host&& host) {
+    for (Entry& entry : entries_) {
+      if (!entry.watched() || now < entry.deadline) continue;
+      const auto state = static_cast<NmtState>(entry.status);
+      entry.status |= lost;
+      host.happened(HeartbeatEvent::lost, entry.node_id, state);
+    }
+  }
+
+  [[nodiscard]] std::optional<TimePoint> next_deadline() const {
+    std::optional<TimePoint> next;
+    for (const Entry& entry : entries_) {
+      if (entry.watched() && (!next || entry.deadline < *next)) next = entry.deadline;
+    }
+    return next;
+  }
+
+  /// Whether a node is lost and has not come back.
+  [[nodiscard]] bool any_lost() const {
+    for (const Entry& entry : entries_) {
+      if ((entry.status & lost) != 0) return true;
+    }
+    return false;
+  }
+
+  /// The state that a watched node told last; nothing before its first heartbeat and while it is lost.
+  [[nodiscard]] std::optional<NmtState> state_of(NodeId node_id) const {
+    for (const Entry& entry : entries_) {
+      if (entry.node_id == node_id && entry.watched()) return static_cast<NmtState>(entry.status);
+    }
+    return std::nullopt;
+  }
+
+ private:
+  static constexpr std::uint8_t lost = 0x80;     ///< beside the state told last
+  static constexpr std::uint8_t unknown = 0x01;  ///< no state: no heartbeat yet
+
+  struct Entry {
+    TimePoint deadline{};
+    std::uint16_t milliseconds = 0;
+    NodeId node_id{};  ///< 0: not used
+    std::uint8_t status = unknown;
+
+    [[nodiscard]] bool watched() const { return (status & lost) == 0 && status != unknown; }
+  };
+
+  [[nodiscard]] Entry* find(NodeId node_id) {
+    for (Entry& entry : entries_) {
+      if (entry.node_id == node_id) return &entry;
+    }
+    return nullptr;
+  }
+
+  [[nodiscard]] static std::optional<HeartbeatEvent> event_of(const Entry& entry, NmtState state) {
+    if (state == NmtState::initialisation) return HeartbeatEvent::boot_up;
+    if (entry.status == unknown) return HeartbeatEvent::started;
+    if ((entry.status & lost) != 0) return HeartbeatEvent::back;
+    if (entry.status != static_cast<std::uint8_t>(state)) return HeartbeatEvent::state_changed;
+    return std::nullopt;
+  }
+
+  std::array<Entry, Count> entries_{};
+};
+
+}  // namespace canopen

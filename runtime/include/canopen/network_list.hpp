@@ -1,0 +1,104 @@
+/// The NMT slaves that an NMT master looks after: what 1F80h to 1F89h tell (CiA 302-2).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "canopen/dictionary.hpp"
+#include "canopen/heartbeat_consumer.hpp"
+#include "canopen/node_id.hpp"
+#include "canopen/object_store.hpp"
+#include "canopen/time.hpp"
+
+namespace canopen {
+
+/// Bits of NMT start-up 1F80h.
+namespace nmt_start_up {
+inline constexpr std::uint32_t master = 0x01;          ///< this device is the NMT master
+inline constexpr std::uint32_t start_all = 0x02;       ///< slaves are started by one command to all, not one by one
+inline constexpr std::uint32_t no_self_start = 0x04;   ///< the master's own device is not started with the network
+inline constexpr std::uint32_t no_slave_start = 0x08;  ///< slaves are not started: the application does it
+inline constexpr std::uint32_t reset_all = 0x10;       ///< a mandatory slave that is lost: all nodes are reset
+inline constexpr std::uint32_t flying_master = 0x20;
+inline constexpr std::uint32_t stop_all = 0x40;  ///< a mandatory slave that is lost: all nodes are stopped
+}  // namespace nmt_start_up
+
+/// Bits of NMT slave assignment 1F81h. Bits 15..8 are the life time factor, bits 31..16 the guard time in ms.
+namespace slave_assignment {
+inline constexpr std::uint32_t listed = 0x01;      ///< the node is a slave of this master
+inline constexpr std::uint32_t boot = 0x04;        ///< it is started, and booted again whenever it boots up
+inline constexpr std::uint32_t mandatory = 0x08;   ///< the network starts only with it
+inline constexpr std::uint32_t keep_alive = 0x10;  ///< no reset when it is Operational already
+}  // namespace slave_assignment
+
+/// One slave. A number of its identity that is 0 is not compared.
+struct NmtSlave {
+  NodeId node_id;
+  std::uint32_t assignment = 0;       ///< 1F81h
+  std::uint32_t device_type = 0;      ///< 1F84h, compared with 1000h
+  std::uint32_t vendor_id = 0;        ///< 1F85h, compared with 1018h:01
+  std::uint32_t product_code = 0;     ///< 1F86h, compared with 1018h:02
+  std::uint32_t revision_number = 0;  ///< 1F87h, compared with 1018h:03
+  std::uint32_t serial_number = 0;    ///< 1F88h, compared with 1018h:04
+  std::uint16_t heartbeat_time = 0;   ///< ms, as 1016h has it; 0: guarded with the times of `assignment`
+
+  [[nodiscard]] constexpr bool has(std::uint32_t bit) const { return (assignment & bit) != 0; }
+  [[nodiscard]] constexpr std::uint8_t life_time_factor() const { return static_cast<std::uint8_t>(assignment >> 8); }
+  [[nodiscard]] constexpr std::uint16_t guard_time() const { return static_cast<std::uint16_t>(assignment >> 16); }
+};
+
+/// What counts for all of them.
+struct NmtStartUp {
+  std::uint32_t bits = 0;  ///< 1F80h
+  Duration boot_time{0};   ///< 1F89h: what the mandatory slaves have to boot up, up to half an hour; 0: for ever
+
+  [[nodiscard]] constexpr bool has(std::uint32_t bit) const { return (bits & bit) != 0; }
+};
+
+namespace network_list_detail {
+
+/// An entry of up to 32 bits; 0 where the dictionary has none.
+[[nodiscard]] inline std::uint32_t number_or_zero(const EntryAccess& entries, std::uint16_t index,
+                                                  std::uint8_t sub_index) {
+  const entry::Word word = entries.dictionary().find(index, sub_index);
+  return word > Dictionary::no_sub_index ? entries.number(word) : 0;
+}
+
+}  // namespace network_list_detail
+
+/// 1F80h and 1F89h of a dictionary. A boot time above half an hour counts as half an hour.
+[[nodiscard]] inline NmtStartUp read_start_up(const EntryAccess& entries) {
+  using network_list_detail::number_or_zero;
+  constexpr std::uint32_t half_hour = 30 * 60 * 1000;
+  const std::uint32_t milliseconds = number_or_zero(entries, 0x1F89, 0);
+  return {number_or_zero(entries, 0x1F80, 0), Duration{(milliseconds < half_hour ? milliseconds : half_hour) * 1000u}};
+}
+
+/// Fills `slaves` with the nodes that 1F81h lists, in ascending order, and says how many there are: more than fit is a
+/// list that is too small.
+inline std::size_t read_network_list(const EntryAccess& entries, std::span<NmtSlave> slaves) {
+  using network_list_detail::number_or_zero;
+  std::size_t count = 0;
+  for (std::uint8_t node_id = 1; node_id <= 127; ++node_id) {
+    const std::uint32_t assignment = number_or_zero(entries, 0x1F81, node_id);
+    if ((assignment & slave_assignment::listed) == 0) continue;
+    if (count < slaves.size()) {
+      NmtSlave& slave = slaves[count];
+      slave = {NodeId{node_id}, assignment};
+      slave.device_type = number_or_zero(entries, 0x1F84, node_id);
+      slave.vendor_id = number_or_zero(entries, 0x1F85, node_id);
+      slave.product_code = number_or_zero(entries, 0x1F86, node_id);
+      slave.revision_number = number_or_zero(entries, 0x1F87, node_id);
+      slave.serial_number = number_or_zero(entries, 0x1F88, node_id);
+      for (std::size_t i = 1; i <= consumer_heartbeat_times(entries.dictionary()); ++i) {
+        const ConsumerHeartbeatTime time{number_or_zero(entries, 0x1016, static_cast<std::uint8_t>(i))};
+        if (time.used() && time.node_id() == slave.node_id) slave.heartbeat_time = time.milliseconds();
+      }
+    }
+    ++count;
+  }
+  return count;
+}
+
+}  // namespace canopen

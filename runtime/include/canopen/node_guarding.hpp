@@ -1,0 +1,227 @@
+/// Node guarding and life guarding (CiA 301, 7.2.8.3.2.1): the node that is guarded, and the NMT master that guards it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "canopen/cob_id.hpp"
+#include "canopen/error_control.hpp"
+#include "canopen/frame.hpp"
+#include "canopen/nmt.hpp"
+#include "canopen/node_id.hpp"
+#include "canopen/time.hpp"
+
+namespace canopen {
+
+/// Whether a frame is a guarding request for this node: a remote frame on 700h + node-ID, of whatever length.
+[[nodiscard]] constexpr bool is_guarding_request(const Frame& frame, NodeId node_id) {
+  return frame.remote && !frame.extended && frame.id == function_code::error_control + std::uint32_t{node_id.value()};
+}
+
+/// The slave's side: answers the requests with state and toggle bit, and watches that they come. The first one starts
+/// life guarding; when none comes for the guard time 100Ch times the life time factor 100Dh, both not 0, there is a
+/// life guarding event: EMCY 8130h. It is over with the next request.
+///
+/// A node guards or beats, never both: while 1017h is not 0 requests are not handed in here and find no answer.
+class NodeGuardingSlave {
+ public:
+  /// Communication has been reset, or 1017h says heartbeat now: nothing is answered or watched, the toggle bit is 0.
+  void reset() { *this = NodeGuardingSlave{}; }
+
+  /// Takes a request. The answer goes out with `serve`, one for requests that come before it could.
+  void on_request(std::uint16_t guard_time, std::uint8_t life_time_factor, TimePoint now) {
+    answer_due_ = true;
+    failed_ = false;
+    left_ = guard_time != 0 ? life_time_factor : std::uint8_t{0};
+    deadline_ = now + from_milliseconds(guard_time);
+  }
+
+  /// 100Ch or 100Dh has been written. With a 0 life guarding ends, and with it its event; other values count from the
+  /// next request or guard time on.
+  void configure(std::uint16_t guard_time, std::uint8_t life_time_factor) {
+    if (guard_time != 0 && life_time_factor != 0) return;
+    left_ = 0;
+    failed_ = false;
+  }
+
+  /// Sends the answer when one is due. False when the bus had no room: it stays due.
+  template <Bus B>
+  bool serve(B& bus, NodeId node_id, NmtState state) {
+    if (!answer_due_) return true;
+    Frame frame{};
+    frame.id = function_code::error_control + std::uint32_t{node_id.value()};
+    frame.size = 1;
+    frame.data[0] = static_cast<std::uint8_t>(static_cast<std::uint8_t>(state) | (toggle_ ? 0x80 : 0));
+    if (!bus.send(frame)) return false;
+    answer_due_ = false;
+    toggle_ = !toggle_;
+    return true;
+  }
+
+  /// True: the life time has just elapsed. It is counted in guard times, as it may be longer than `TimePoint` can tell.
+  [[nodiscard]] bool on_time(std::uint16_t guard_time, TimePoint now) {
+    while (left_ != 0 && now >= deadline_) {
+      deadline_ = deadline_ + from_milliseconds(guard_time);
+      if (--left_ == 0) failed_ = true;
+      if (failed_) return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] std::optional<TimePoint> next_deadline() const {
+    return left_ != 0 ? std::optional{deadline_} : std::nullopt;
+  }
+
+  /// Whether an answer waits to be sent.
+  [[nodiscard]] bool has_answer() const { return answer_due_; }
+
+  /// Whether the life time has elapsed and no request has come since.
+  [[nodiscard]] bool failed() const { return failed_; }
+
+ private:
+  TimePoint deadline_{};   ///< end of the present guard time
+  std::uint8_t left_ = 0;  ///< guard times until the life time is over, the present one included; 0: not watched
+  bool toggle_ = false;
+  bool answer_due_ = false;
+  bool failed_ = false;
+};
+
+/// What happens to a guarded node.
+enum class GuardingEvent : std::uint8_t {
+  started,           ///< its first answer
+  state_changed,     ///< an answer tells another NMT state than the last one
+  boot_up,           ///< its boot-up message
+  toggle_error,      ///< an answer with the toggle bit of the one before: it counts as not received
+  unexpected_state,  ///< node guarding event: the state is not the one that the master has commanded
+  lost,              ///< node guarding event: no answer for the life time
+  back,              ///< the first answer after it was lost
+};
+
+/// The master's side, for one node: a request every guard time. The node is lost when `life_time_factor` requests in a
+/// row are not answered, which is the life time after the first of them; it is asked on. A factor of 0 counts as 1.
+///
+/// Events go to the master around it: `host.happened(GuardingEvent, NodeId, NmtState)`, with the state last told.
+class NodeGuardingMaster {
+ public:
+  /// Begins to guard: the first request is due at once. The guard time is in ms, 1..65535.
+  void start(NodeId node_id, std::uint16_t guard_time, std::uint8_t life_time_factor, TimePoint now) {
+    *this = NodeGuardingMaster{};
+    node_id_ = node_id;
+    guard_time_ = guard_time;
+    life_time_factor_ = life_time_factor != 0 ? life_time_factor : std::uint8_t{1};
+    running_ = true;
+    due_ = now;
+  }
+
+  /// No requests any more.
+  void stop() { running_ = false; }
+
+  /// The node has been commanded to be in this state: answers to later requests are compared with it.
+  void expect(NmtState state) {
+    expected_ = static_cast<std::uint8_t>(state);
+    comparable_ = false;
+    unexpected_ = false;
+  }
+
+  /// Takes a message of any node.
+  template <class Host>
+  void on_message(const ErrorControlMessage& message, Host&& host) {
+    if (!running_ || message.node_id != node_id_) return;
+    if (message.state == NmtState::initialisation) return booted(host);
+    if (toggle_known_ && message.toggle != toggle_) return tell(GuardingEvent::toggle_error, host);
+    toggle_known_ = true;
+    toggle_ = !message.toggle;
+    awaiting_ = false;
+    missed_ = 0;
+    take_state(message.state, host);
+  }
+
+  /// Tells of a request without an answer, and sends the next one, when it is due. False when the bus had no room: it
+  /// stays due.
+  template <Bus B, class Host>
+  bool serve(B& bus, TimePoint now, Host&& host) {
+    if (!running_ || now < due_) return true;
+    if (awaiting_) miss(host);
+    if (!running_) return true;  // what the host made of a lost node
+    Frame frame{};
+    frame.id = function_code::error_control + std::uint32_t{node_id_.value()};
+    frame.size = 1;
+    frame.remote = true;
+    if (!bus.send(frame)) return false;
+    awaiting_ = true;
+    comparable_ = true;
+    due_ = due_ + from_milliseconds(guard_time_);
+    if (now >= due_) due_ = now + from_milliseconds(guard_time_);  // served so late that whole guard times are missing
+    return true;
+  }
+
+  [[nodiscard]] std::optional<TimePoint> next_deadline() const { return running_ ? std::optional{due_} : std::nullopt; }
+
+  /// The state that the node told last; nothing before its first answer and while it is lost.
+  [[nodiscard]] std::optional<NmtState> state() const {
+    if (!running_ || lost_ || state_ == unknown) return std::nullopt;
+    return static_cast<NmtState>(state_);
+  }
+
+ private:
+  static constexpr std::uint8_t unknown = 0xFF;
+
+  template <class Host>
+  void tell(GuardingEvent event, Host&& host) const {
+    host.happened(event, node_id_, static_cast<NmtState>(state_));
+  }
+
+  /// The toggle bit begins with 0 again (CiA 301: it is reset with the communication).
+  template <class Host>
+  void booted(Host&& host) {
+    toggle_known_ = true;
+    toggle_ = false;
+    state_ = static_cast<std::uint8_t>(NmtState::initialisation);
+    expected_ = unknown;
+    tell(GuardingEvent::boot_up, host);
+  }
+
+  template <class Host>
+  void take_state(NmtState state, Host&& host) {
+    const std::uint8_t before = state_;
+    state_ = static_cast<std::uint8_t>(state);
+    if (lost_) {
+      lost_ = false;
+      tell(GuardingEvent::back, host);
+    } else if (before == unknown) {
+      tell(GuardingEvent::started, host);
+    } else if (before != state_) {
+      tell(GuardingEvent::state_changed, host);
+    }
+    const bool unexpected = expected_ != unknown && comparable_ && state_ != expected_;
+    if (unexpected && !unexpected_) tell(GuardingEvent::unexpected_state, host);
+    unexpected_ = unexpected;
+  }
+
+  template <class Host>
+  void miss(Host&& host) {
+    awaiting_ = false;
+    if (lost_ || ++missed_ < life_time_factor_) return;
+    lost_ = true;
+    toggle_known_ = false;
+    if (state_ == unknown) state_ = static_cast<std::uint8_t>(NmtState::initialisation);
+    tell(GuardingEvent::lost, host);
+  }
+
+  TimePoint due_{};  ///< when the next request is sent
+  std::uint16_t guard_time_ = 0;
+  NodeId node_id_{};
+  std::uint8_t life_time_factor_ = 1;
+  std::uint8_t missed_ = 0;  ///< requests without an answer since the last answer
+  std::uint8_t state_ = unknown;
+  std::uint8_t expected_ = unknown;
+  bool running_ = false;
+  bool awaiting_ = false;
+  bool toggle_ = false;  ///< what the next answer has to have
+  bool toggle_known_ = false;
+  bool comparable_ = false;  ///< the present request is later than the command
+  bool unexpected_ = false;
+  bool lost_ = false;
+};
+
+}  // namespace canopen
