@@ -380,6 +380,7 @@ class NmtMaster {
     const std::optional<std::size_t> i = find(node_id);
     if (!i) return;
     if (entries_[*i].step == Step::starting_error_control) {
+      guards_[*i].stop();
       entries_[*i].deadline = now_;
       return;
     }
@@ -473,6 +474,7 @@ class NmtMaster {
   // Sending
 
   void serve() {
+    send_commands();
     serve_identity();
     for (std::size_t i = 0; i < slaves_.size(); ++i) {
       if (entries_[i].step == Step::waiting && now_ >= entries_[i].deadline) identify(i);
