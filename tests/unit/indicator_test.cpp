@@ -64,8 +64,9 @@ TEST(Indicator, PeriodsDivideTheCycle) {
 }
 
 TEST(Indicator, ChangesAtTheMicrosecond) {
-  const canopen::IndicatorTiming& flash = timing_of(cia_303_3_timings, IndicatorPattern::double_flash);
-  const auto lit = [&flash](canopen::Duration phase) { return canopen::indicator_step(flash, phase).lit; };
+  const auto lit = [](canopen::Duration phase) {
+    return canopen::indicator_step(timing_of(cia_303_3_timings, IndicatorPattern::double_flash), phase).lit;
+  };
   EXPECT_TRUE(lit(199'999us));
   EXPECT_FALSE(lit(200ms));
   EXPECT_FALSE(lit(399'999us));
@@ -112,7 +113,8 @@ TEST(Indicator, ErrShowsTheMostSevereError) {
 }
 
 /// What both show in steps of 50 ms: '.' dark, 'g' RUN, 'r' ERR, '!' both.
-std::string strip(const Indicators& indicators, int steps) {
+template <const canopen::IndicatorTimings& Timings>
+std::string strip(const Indicators<Timings>& indicators, int steps) {
   std::string text;
   for (int i = 0; i < steps; ++i) {
     const TimePoint now{canopen::Duration{static_cast<std::uint32_t>(i) * 50'000}};
@@ -225,7 +227,7 @@ TEST(Indicator, ErrShowsWhatManual003Tells) {
 }
 
 TEST(Indicators, MayBlinkTwicePerSecondAsManual003Tells) {
-  Indicators indicators{twice_per_second};
+  Indicators<twice_per_second> indicators;
   indicators.show(run_pattern(NmtState::pre_operational, IndicatorActivity::none), IndicatorPattern::off);
   EXPECT_EQ(strip(indicators, 20), "ggggg.....ggggg.....");
   EXPECT_EQ(canopen::indicator_cycle.count() %

@@ -35,4 +35,27 @@ struct ErrorControlMessage {
   return std::nullopt;
 }
 
+/// The state that a node has told last, in a byte that is 0 while it has told none: services that have one for each
+/// node begin as zeroes.
+class LastState {
+ public:
+  constexpr LastState() = default;
+  constexpr explicit LastState(NmtState state)
+      : code_{state == NmtState::initialisation ? boot_up : static_cast<std::uint8_t>(state)} {}
+
+  [[nodiscard]] constexpr bool known() const { return code_ != 0; }
+
+  /// Initialisation while none is known.
+  [[nodiscard]] constexpr NmtState state() const {
+    return code_ <= boot_up ? NmtState::initialisation : static_cast<NmtState>(code_);
+  }
+
+  friend constexpr bool operator==(LastState, LastState) = default;
+
+ private:
+  static constexpr std::uint8_t boot_up = 1;  ///< no state has this code
+
+  std::uint8_t code_ = 0;
+};
+
 }  // namespace canopen

@@ -63,7 +63,7 @@ class HeartbeatConsumer {
   [[nodiscard]] AbortCode check(std::size_t entry, ConsumerHeartbeatTime time) const {
     if (!time.used()) return ok;
     for (std::size_t i = 0; i < Count; ++i) {
-      if (i != entry && entries_[i].node_id == time.node_id()) return AbortCode::parameter_incompatible;
+      if (i != entry && entries_[i].node_id == time.node_id().value()) return AbortCode::parameter_incompatible;
     }
     return ok;
   }
@@ -72,7 +72,7 @@ class HeartbeatConsumer {
   void configure(std::size_t entry, ConsumerHeartbeatTime time) {
     entries_[entry] = Entry{};
     if (!time.used()) return;
-    entries_[entry].node_id = time.node_id();
+    entries_[entry].node_id = time.node_id().value() & 0x7F;
     entries_[entry].milliseconds = time.milliseconds();
   }
 
@@ -92,7 +92,8 @@ class HeartbeatConsumer {
     if (entry == nullptr) return;
     const std::optional<HeartbeatEvent> event = event_of(*entry, message.state);
     if (event != HeartbeatEvent::boot_up || entry->watched()) {
-      entry->status = static_cast<std::uint8_t>(message.state);
+      entry->last = LastState{message.state};
+      entry->lost = false;
       entry->deadline = now + from_milliseconds(entry->milliseconds);
     }
     if (event) host.happened(*event, message.node_id, message.state);
@@ -103,9 +104,8 @@ class HeartbeatConsumer {
   void on_time(TimePoint now, Host&& host) {
     for (Entry& entry : entries_) {
       if (!entry.watched() || now < entry.deadline) continue;
-      const auto state = static_cast<NmtState>(entry.status);
-      entry.status |= lost;
-      host.happened(HeartbeatEvent::lost, entry.node_id, state);
+      entry.lost = true;
+      host.happened(HeartbeatEvent::lost, NodeId{entry.node_id}, entry.last.state());
     }
   }
 
@@ -120,7 +120,7 @@ class HeartbeatConsumer {
   /// Whether a node is lost and has not come back.
   [[nodiscard]] bool any_lost() const {
     for (const Entry& entry : entries_) {
-      if ((entry.status & lost) != 0) return true;
+      if (entry.lost) return true;
     }
     return false;
   }
@@ -128,36 +128,34 @@ class HeartbeatConsumer {
   /// The state that a watched node told last; nothing before its first heartbeat and while it is lost.
   [[nodiscard]] std::optional<NmtState> state_of(NodeId node_id) const {
     for (const Entry& entry : entries_) {
-      if (entry.node_id == node_id && entry.watched()) return static_cast<NmtState>(entry.status);
+      if (entry.node_id == node_id.value() && entry.watched()) return entry.last.state();
     }
     return std::nullopt;
   }
 
  private:
-  static constexpr std::uint8_t lost = 0x80;     ///< beside the state told last
-  static constexpr std::uint8_t unknown = 0x01;  ///< no state: no heartbeat yet
-
   struct Entry {
     TimePoint deadline{};
     std::uint16_t milliseconds = 0;
-    NodeId node_id{};  ///< 0: not used
-    std::uint8_t status = unknown;
+    std::uint8_t node_id : 7 = 0;  ///< 0: not used
+    bool lost : 1 = false;
+    LastState last{};
 
-    [[nodiscard]] bool watched() const { return (status & lost) == 0 && status != unknown; }
+    [[nodiscard]] bool watched() const { return !lost && last.known(); }
   };
 
   [[nodiscard]] Entry* find(NodeId node_id) {
     for (Entry& entry : entries_) {
-      if (entry.node_id == node_id) return &entry;
+      if (entry.node_id == node_id.value()) return &entry;
     }
     return nullptr;
   }
 
   [[nodiscard]] static std::optional<HeartbeatEvent> event_of(const Entry& entry, NmtState state) {
     if (state == NmtState::initialisation) return HeartbeatEvent::boot_up;
-    if (entry.status == unknown) return HeartbeatEvent::started;
-    if ((entry.status & lost) != 0) return HeartbeatEvent::back;
-    if (entry.status != static_cast<std::uint8_t>(state)) return HeartbeatEvent::state_changed;
+    if (!entry.last.known()) return HeartbeatEvent::started;
+    if (entry.lost) return HeartbeatEvent::back;
+    if (entry.last != LastState{state}) return HeartbeatEvent::state_changed;
     return std::nullopt;
   }
 

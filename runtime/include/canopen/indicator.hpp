@@ -148,11 +148,9 @@ enum class IndicatorColour : std::uint8_t { dark, green, red };
 /// off beside a lit RUN is the one place where both are, and one of two colours shows red then.
 ///
 /// `on_time` is to be called at least every half hour.
+template <const IndicatorTimings& Timings = cia_303_3_timings>
 class Indicators {
  public:
-  /// The timings must outlive the indicators.
-  constexpr explicit Indicators(const IndicatorTimings& timings = cia_303_3_timings) : timings_{&timings} {}
-
   /// The patterns to be shown from now on.
   void show(IndicatorPattern run, IndicatorPattern error) {
     run_ = run;
@@ -186,14 +184,13 @@ class Indicators {
 
  private:
   [[nodiscard]] IndicatorStep run_step(TimePoint now) const {
-    return indicator_step(timing_of(*timings_, run_), now - begin_);
+    return indicator_step(timing_of(Timings, run_), now - begin_);
   }
   [[nodiscard]] IndicatorStep error_step(TimePoint now) const {
-    const IndicatorTiming& timing = timing_of(*timings_, error_);
+    const IndicatorTiming& timing = timing_of(Timings, error_);
     return indicator_step(timing, now - begin_ + period_of(timing) - from_milliseconds(timing.flash));
   }
 
-  const IndicatorTimings* timings_;
   TimePoint begin_{};  ///< of the raster
   IndicatorPattern run_ = IndicatorPattern::off;
   IndicatorPattern error_ = IndicatorPattern::off;

@@ -118,7 +118,7 @@ class NodeGuardingMaster {
 
   /// The node has been commanded to be in this state: answers to later requests are compared with it.
   void expect(NmtState state) {
-    expected_ = static_cast<std::uint8_t>(state);
+    expected_ = LastState{state};
     comparable_ = false;
     unexpected_ = false;
   }
@@ -159,16 +159,14 @@ class NodeGuardingMaster {
 
   /// The state that the node told last; nothing before its first answer and while it is lost.
   [[nodiscard]] std::optional<NmtState> state() const {
-    if (!running_ || lost_ || state_ == unknown) return std::nullopt;
-    return static_cast<NmtState>(state_);
+    if (!running_ || lost_ || !last_.known()) return std::nullopt;
+    return last_.state();
   }
 
  private:
-  static constexpr std::uint8_t unknown = 0xFF;
-
   template <class Host>
   void tell(GuardingEvent event, Host&& host) const {
-    host.happened(event, node_id_, static_cast<NmtState>(state_));
+    host.happened(event, node_id_, last_.state());
   }
 
   /// The toggle bit begins with 0 again (CiA 301: it is reset with the communication).
@@ -176,24 +174,24 @@ class NodeGuardingMaster {
   void booted(Host&& host) {
     toggle_known_ = true;
     toggle_ = false;
-    state_ = static_cast<std::uint8_t>(NmtState::initialisation);
-    expected_ = unknown;
+    last_ = LastState{NmtState::initialisation};
+    expected_ = LastState{};
     tell(GuardingEvent::boot_up, host);
   }
 
   template <class Host>
   void take_state(NmtState state, Host&& host) {
-    const std::uint8_t before = state_;
-    state_ = static_cast<std::uint8_t>(state);
+    const LastState before = last_;
+    last_ = LastState{state};
     if (lost_) {
       lost_ = false;
       tell(GuardingEvent::back, host);
-    } else if (before == unknown) {
+    } else if (!before.known()) {
       tell(GuardingEvent::started, host);
-    } else if (before != state_) {
+    } else if (before != last_) {
       tell(GuardingEvent::state_changed, host);
     }
-    const bool unexpected = expected_ != unknown && comparable_ && state_ != expected_;
+    const bool unexpected = expected_.known() && comparable_ && last_ != expected_;
     if (unexpected && !unexpected_) tell(GuardingEvent::unexpected_state, host);
     unexpected_ = unexpected;
   }
@@ -204,17 +202,16 @@ class NodeGuardingMaster {
     if (lost_ || ++missed_ < life_time_factor_) return;
     lost_ = true;
     toggle_known_ = false;
-    if (state_ == unknown) state_ = static_cast<std::uint8_t>(NmtState::initialisation);
     tell(GuardingEvent::lost, host);
   }
 
   TimePoint due_{};  ///< when the next request is sent
   std::uint16_t guard_time_ = 0;
   NodeId node_id_{};
-  std::uint8_t life_time_factor_ = 1;
+  std::uint8_t life_time_factor_ = 0;
   std::uint8_t missed_ = 0;  ///< requests without an answer since the last answer
-  std::uint8_t state_ = unknown;
-  std::uint8_t expected_ = unknown;
+  LastState last_{};
+  LastState expected_{};
   bool running_ = false;
   bool awaiting_ = false;
   bool toggle_ = false;  ///< what the next answer has to have
