@@ -182,7 +182,11 @@ struct Dictionary {
 
   /// The entry's word with its offset resolved, or `no_object`, or `no_sub_index`.
   [[nodiscard]] constexpr entry::Word find(std::uint16_t index, std::uint8_t sub_index) const {
-    const entry::Word word = find_index(index);
+    return sub_word(find_index(index), sub_index);
+  }
+
+  /// The same for an index whose word is known.
+  [[nodiscard]] constexpr entry::Word sub_word(entry::Word word, std::uint8_t sub_index) const {
     const entry::Kind kind = entry::kind_of(word);
     if (kind == entry::Kind::none) return no_object;
     if (kind == entry::Kind::var) return sub_index == 0 ? word : no_sub_index;
@@ -230,7 +234,7 @@ struct Dictionary {
         const bool var = entry::kind_of(word) == entry::Kind::var;
         const unsigned highest = var ? 0u : groups[entry::offset_of(word)].highest;
         for (unsigned sub_index = 0; sub_index <= highest; ++sub_index) {
-          const entry::Word found = find(index, static_cast<std::uint8_t>(sub_index));
+          const entry::Word found = sub_word(word, static_cast<std::uint8_t>(sub_index));
           if (found > no_sub_index) visit(index, static_cast<std::uint8_t>(sub_index), found);
         }
       }

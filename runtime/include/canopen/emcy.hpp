@@ -20,13 +20,26 @@ namespace canopen {
 using EmergencyInfo = std::array<std::uint8_t, 5>;
 
 /// Errors that the services find by themselves. All of them are communication errors.
-enum class ServiceError : std::uint8_t { pdo_length, rpdo_timeout, sync_length, mpdo_destination };
+enum class ServiceError : std::uint8_t {
+  pdo_length,
+  rpdo_timeout,
+  sync_length,
+  mpdo_destination,
+  error_control,
+  overrun,
+  bus_passive,
+  bus_off,
+};
 
 inline constexpr std::uint16_t service_error_codes[] = {
     emergency_code::pdo_length,
     emergency_code::rpdo_timeout,
     emergency_code::sync_length,
     emergency_code::mpdo_destination,
+    emergency_code::error_control,
+    emergency_code::overrun,
+    emergency_code::bus_passive,
+    emergency_code::bus_off,
 };
 
 /// One device's errors. Each error that appears is sent once, with the register as it is then, and goes into the

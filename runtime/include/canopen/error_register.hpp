@@ -24,6 +24,10 @@ enum class ErrorRegister : std::uint8_t {
 namespace emergency_code {
 inline constexpr std::uint16_t reset = 0x0000;  ///< an error is gone
 inline constexpr std::uint16_t data_set = 0x6300;  ///< stored parameters are lost
+inline constexpr std::uint16_t overrun = 0x8110;  ///< frames have been lost
+inline constexpr std::uint16_t bus_passive = 0x8120;
+inline constexpr std::uint16_t error_control = 0x8130;  ///< a node that is watched, or the one that guards, is lost
+inline constexpr std::uint16_t bus_off = 0x8140;  ///< recovered from bus-off
 inline constexpr std::uint16_t pdo_length = 0x8210;  ///< a PDO is shorter than its mapping
 inline constexpr std::uint16_t mpdo_destination = 0x8230;  ///< the destination of a DAM-MPDO does not exist
 inline constexpr std::uint16_t sync_length = 0x8240;

@@ -52,6 +52,16 @@ struct TimeHandler {
 };
 
 template <class F>
+struct HeartbeatHandler {
+  [[no_unique_address]] F call;
+};
+
+template <class F>
+struct LifeGuardingHandler {
+  [[no_unique_address]] F call;
+};
+
+template <class F>
 struct EmergencyHandler {
   [[no_unique_address]] F call;
 };
@@ -93,6 +103,19 @@ template <class F>
 /// Called with the time of day that TIME brings: `handler(TimeOfDay)` or `handler(node, TimeOfDay)`.
 template <class F>
 [[nodiscard]] constexpr TimeHandler<F> on_time_of_day(F handler) {
+  return {std::move(handler)};
+}
+
+/// Called with what happens to the nodes of 1016h: `handler(HeartbeatEvent, NodeId, NmtState)`, or with the node before.
+template <class F>
+[[nodiscard]] constexpr HeartbeatHandler<F> on_heartbeat(F handler) {
+  return {std::move(handler)};
+}
+
+/// Called when the life time of node guarding has elapsed (true) and when a request has come again (false):
+/// `handler(bool)` or `handler(node, bool)`.
+template <class F>
+[[nodiscard]] constexpr LifeGuardingHandler<F> on_life_guarding(F handler) {
   return {std::move(handler)};
 }
 

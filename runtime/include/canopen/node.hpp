@@ -13,17 +13,23 @@
 #include <utility>
 
 #include "canopen/abort_code.hpp"
+#include "canopen/bus_status.hpp"
 #include "canopen/cob_id.hpp"
 #include "canopen/communication_parameters.hpp"
 #include "canopen/domain_handlers.hpp"
 #include "canopen/emcy.hpp"
 #include "canopen/emcy_consumer.hpp"
+#include "canopen/error_behavior.hpp"
+#include "canopen/error_control.hpp"
 #include "canopen/error_register.hpp"
 #include "canopen/frame.hpp"
 #include "canopen/handlers.hpp"
 #include "canopen/heartbeat.hpp"
+#include "canopen/heartbeat_consumer.hpp"
+#include "canopen/lss_handler.hpp"
 #include "canopen/mpdo.hpp"
 #include "canopen/nmt.hpp"
+#include "canopen/node_guarding.hpp"
 #include "canopen/node_id.hpp"
 #include "canopen/object_store.hpp"
 #include "canopen/parameter_storage.hpp"
@@ -55,6 +61,7 @@ class Node {
   void start(TimePoint now) {
     now_ = now;
     if constexpr (has_storage) parameters_.open(handlers_.storage());
+    if constexpr (has_lss) lss_.start(node_id_, lss_handler().port->bit_timing());
     reset_node();
     serve();
   }
@@ -68,11 +75,12 @@ class Node {
   /// Takes a frame from the bus. Frames that are not for this node are ignored.
   void on_frame(const Frame& frame, TimePoint now) {
     now_ = now;
-    if (state_ == NmtState::initialisation) return;
+    if constexpr (has_lss) lss_.on_frame(frame, LssHooks{*this}, now);
+    if (state_ == NmtState::initialisation) return serve_lss();
     if (attention_) serve();
     const std::uint32_t cob_id = cob_id_of(frame);
     if (frame.remote) {
-      on_remote(cob_id);
+      on_remote(frame);
     } else if (serves_sdo(state_) && sdo_.on_frame(store_, frame, SdoHooks{*this}, now_)) {
       attention_ = true;
     } else if (cob_id == function_code::nmt) {
@@ -83,6 +91,8 @@ class Node {
       if (serves_sync(state_)) handlers_.template tell<TimeHandler>(*this, *time);
     } else if (const std::optional<ConsumedEmergency> emergency = EmergencyConsumer<Device>::take(entries(), frame)) {
       if (serves_emcy(state_)) handlers_.template tell<EmergencyHandler>(*this, *emergency);
+    } else if (on_error_control(frame)) {
+      // a message of another node
     } else if (serves_pdo(state_)) {
       rpdos_.on_frame(store_, frame, sync_window_.over(now_), now_, RpdoHost{*this});
       mpdos_.on_frame(entries(), frame, node_id_, RpdoHost{*this});
@@ -93,8 +103,13 @@ class Node {
   /// Lets time pass. To be called at `next_deadline()`, when the bus has room again, and at least every half hour.
   void on_time(TimePoint now) {
     now_ = now;
-    if (state_ == NmtState::initialisation) return;
+    if constexpr (has_lss) lss_.on_time(LssHooks{*this}, now);
+    if (state_ == NmtState::initialisation) return serve_lss();
     sdo_.on_time(now);
+    if constexpr (has_heartbeat_consumer) heartbeats_.on_time(now, HeartbeatHost{*this});
+    if constexpr (has_guarding) {
+      if (guarding_.on_time(guard_time(), now)) life_guarding(true);
+    }
     if constexpr (has_rpdos) rpdos_.on_time(now, RpdoHost{*this});
     serve();
   }
@@ -102,13 +117,20 @@ class Node {
   /// When `on_time` has something to do next: not later than the last time told when it has already. Nothing: only a
   /// frame or the application makes this node send.
   [[nodiscard]] std::optional<TimePoint> next_deadline() const {
-    if (state_ == NmtState::initialisation) return std::nullopt;
+    if (state_ == NmtState::initialisation) return lss_deadline();
+    if (lss_deadline() == now_) return now_;
     if (heartbeat_.boot_up_due() || sdo_.has_reply()) return now_;
     std::optional<TimePoint> next = heartbeat_.next_deadline();
     const auto consider = [&next](std::optional<TimePoint> other) {
       if (other && (!next || *other < *next)) next = other;
     };
+    consider(lss_deadline());
     consider(sdo_.next_deadline());
+    if constexpr (has_heartbeat_consumer) consider(heartbeats_.next_deadline());
+    if constexpr (has_guarding) {
+      if (guarding_.has_answer()) return now_;
+      consider(guarding_.next_deadline());
+    }
     if constexpr (has_tpdos) consider(tpdos_.next_deadline(now_));
     if constexpr (has_rpdos) consider(rpdos_.next_deadline());
     if constexpr (MpdoService<Device>::sends_destination) {
@@ -164,6 +186,28 @@ class Node {
   void emergency_over(ErrorRegister bits) {
     emergencies_.gone(store_, bits);
     attention_ = true;
+  }
+
+  /// The CAN controller's state has changed, or it has lost frames.
+  void on_bus_status(const BusStatus& status, TimePoint now) {
+    now_ = now;
+    const auto report = [this](ServiceError error, bool there, bool was_there) {
+      if (there && !was_there) service_error(error);
+      if (!there) service_error_over(error);
+    };
+    const bool off = status.state == BusState::off;
+    const bool was_off = bus_status_.state == BusState::off;
+    report(ServiceError::overrun, status.overrun, bus_status_.overrun);
+    report(ServiceError::bus_passive, status.state == BusState::passive, bus_status_.state == BusState::passive);
+    report(ServiceError::bus_off, off, was_off);
+    bus_status_ = status;
+    if (off && !was_off) communication_failed();
+    if (attention_) serve();
+  }
+
+  /// The NMT state that a node of 1016h has told last; nothing while it is unknown or lost.
+  [[nodiscard]] std::optional<NmtState> state_of(NodeId other) const requires(consumer_heartbeat_times(Device::dictionary) > 0) {
+    return heartbeats_.state_of(other);
   }
 
   /// Sends TIME with this time of day. False: 1012h does not have this device produce it, the node is not in a state for
@@ -239,6 +283,11 @@ class Node {
   static constexpr bool has_storage = HandlerSet<Handlers...>::has_storage;
   using Parameters = std::conditional_t<has_storage, ParameterStorage<Device>, NoStorage>;
 
+  using Lss = typename lss_detail::Find<Handlers...>::type;
+  static constexpr bool has_lss = !std::is_void_v<Lss>;
+  static constexpr std::size_t watched_nodes = consumer_heartbeat_times(Device::dictionary);
+  static constexpr bool has_heartbeat_consumer = watched_nodes > 0;
+  static constexpr bool has_guarding = Device::dictionary.has(0x100C, 0) && Device::dictionary.has(0x100D, 0);
   static constexpr bool has_heartbeat_time = Device::dictionary.has(0x1017, 0);
   static constexpr entry::Word clock_word = Device::dictionary.find(0x1013, 0);
   static constexpr bool has_clock =
@@ -247,6 +296,11 @@ class Node {
   static constexpr bool has_rpdos = RpdoService<Device>::count > 0;
   static constexpr bool has_dynamic_tpdos = TpdoService<Device>::has_dynamic_mapping;
   static constexpr bool has_dynamic_rpdos = RpdoService<Device>::has_dynamic_mapping;
+
+  struct Nothing {};
+  template <bool Exists, class Service>
+  using Present = std::conditional_t<Exists, Service, Nothing>;
+  using HeartbeatConsumers = Present<has_heartbeat_consumer, HeartbeatConsumer<watched_nodes>>;
 
   struct SdoHooks {
     Node& node;
@@ -312,6 +366,7 @@ class Node {
       }
     }
     state_ = next;
+    if constexpr (has_lss) lss_.enter(next);
     if (!serves_sdo(next)) sdo_.reset();
     if (serves_pdo(next)) {
       tpdos_.enter_operational(store_, now_);
@@ -324,6 +379,7 @@ class Node {
   }
 
   void reset_node() {
+    if constexpr (has_lss) lss_.reset_application();
     if constexpr (has_storage) {
       parameters_.reset_application(handlers_.storage(), store_, node_id_);
     } else {
@@ -333,6 +389,7 @@ class Node {
   }
 
   void reset_communication() {
+    if constexpr (has_lss) node_id_ = lss_.reset_communication();
     if constexpr (has_storage) {
       parameters_.reset_communication(handlers_.storage(), store_, node_id_);
     } else {
@@ -342,13 +399,122 @@ class Node {
     if constexpr (has_storage) {
       if (parameters_.damaged()) data_set_error();
     }
+    if constexpr (has_heartbeat_consumer) heartbeats_.configure(entries());
+    if constexpr (has_guarding) guarding_.reset();
     enter(NmtState::initialisation);
+    if (!node_id_.valid()) return;
     heartbeat_.boot_up();
     enter(NmtState::pre_operational);
   }
 
   void data_set_error() {
     emergency(emergency_code::data_set, ErrorRegister::generic, Device::emergency_info(emergency_code::data_set));
+  }
+
+  // Error control
+
+  struct HeartbeatHost {
+    Node& node;
+    void happened(HeartbeatEvent event, NodeId other, NmtState state) { node.heartbeat_happened(event, other, state); }
+  };
+
+  /// False when the frame is no message of error control that this device looks at.
+  bool on_error_control([[maybe_unused]] const Frame& frame) {
+    if constexpr (has_heartbeat_consumer) {
+      if (const std::optional<ErrorControlMessage> message = error_control_message(frame)) {
+        heartbeats_.on_message(*message, now_, HeartbeatHost{*this});
+        return true;
+      }
+    }
+    return false;
+  }
+
+  void heartbeat_happened(HeartbeatEvent event, NodeId other, NmtState state) {
+    if (event == HeartbeatEvent::lost) error_control_failed();
+    if (event == HeartbeatEvent::back || event == HeartbeatEvent::boot_up) tell_error_control_over();
+    handlers_.template tell<HeartbeatHandler>(*this, event, other, state);
+  }
+
+  void life_guarding(bool lost) {
+    if (lost) {
+      error_control_failed();
+    } else {
+      tell_error_control_over();
+    }
+    handlers_.template tell<LifeGuardingHandler>(*this, lost);
+  }
+
+  void error_control_failed() {
+    service_error(ServiceError::error_control);
+    communication_failed();
+  }
+
+  void tell_error_control_over() {
+    bool failed = false;
+    if constexpr (has_heartbeat_consumer) failed = heartbeats_.any_lost();
+    if constexpr (has_guarding) failed = failed || guarding_.failed();
+    if (!failed) service_error_over(ServiceError::error_control);
+  }
+
+  /// What 1029h:01 asks for, after the EMCY.
+  void communication_failed() {
+    serve();
+    std::uint8_t behavior = 0;
+    if constexpr (Device::dictionary.has(0x1029, 1)) {
+      behavior = static_cast<std::uint8_t>(store_.template number<0x1029, 1>());
+    }
+    if (const NmtState next = state_after_error(state_, behavior); next != state_) enter(next);
+  }
+
+  [[nodiscard]] std::uint16_t guard_time() const {
+    return static_cast<std::uint16_t>(store_.template number<0x100C, 0>());
+  }
+  [[nodiscard]] std::uint8_t life_time_factor() const {
+    return static_cast<std::uint8_t>(store_.template number<0x100D, 0>());
+  }
+
+  void on_guarding_request() {
+    if (heartbeat_period().count() != 0) return;
+    const bool was_lost = guarding_.failed();
+    guarding_.on_request(guard_time(), life_time_factor(), now_);
+    if (was_lost) life_guarding(false);
+    attention_ = true;
+  }
+
+  // LSS
+
+  struct LssHooks {
+    Node& node;
+    [[nodiscard]] std::uint32_t identity(std::uint8_t sub_index) {
+      const entry::Word word = Device::dictionary.find(0x1018, sub_index);
+      return word > Dictionary::no_sub_index ? node.entries().number(word) : 0;
+    }
+    [[nodiscard]] LssError accept(NodeId node_id) { return node.lss_handler().port->accept(node_id); }
+    [[nodiscard]] LssError accept(LssBitTiming timing) { return node.lss_handler().port->accept(timing); }
+    [[nodiscard]] LssError store(NodeId node_id, LssBitTiming timing) {
+      return node.lss_handler().port->store(node_id, timing);
+    }
+    void reset_communication() { node.reset_communication(); }
+    void stop_communication() { node.lss_handler().port->stop_communication(); }
+    void start_communication(LssBitTiming timing) { node.lss_handler().port->start_communication(timing); }
+  };
+
+  [[nodiscard]] auto& lss_handler() { return std::get<Lss>(handlers_.all()); }
+
+  /// All that a node without node-ID does.
+  void serve_lss() {
+    if constexpr (has_lss) {
+      attention_ = !lss_.serve(bus_);
+      if (state_ != NmtState::initialisation) serve();
+    }
+  }
+
+  [[nodiscard]] std::optional<TimePoint> lss_deadline() const {
+    if constexpr (has_lss) {
+      return lss_.has_reply() && !lss_.silent() ? now_ : lss_.next_deadline();
+    } else {
+      return std::nullopt;
+    }
   }
 
   // SDO
@@ -406,6 +572,14 @@ class Node {
     if constexpr (TimeStamp<Device>::exists) {
       if (index == 0x1012) return check_time_parameter(Device::options, entries(), bytes);
     }
+    if constexpr (has_heartbeat_consumer) {
+      if (index == 0x1016 && sub_index != 0) {
+        std::uint32_t value = 0;
+        std::memcpy(&value, bytes.data(), sizeof value);
+        return heartbeats_.check(sub_index - 1u, ConsumerHeartbeatTime{value});
+      }
+    }
+    if (index == 0x1029 && sub_index != 0) return check_error_behavior(bytes[0]);
     if (index == 0x1003 && sub_index == 0 && bytes[0] != 0) {
       return static_cast<AbortCode>(Device::options.error_history_abort_code);
     }
@@ -416,7 +590,25 @@ class Node {
   void after_write(std::uint16_t index, std::uint8_t sub_index) {
     attention_ = true;
     if constexpr (has_heartbeat_time) {
-      if (index == 0x1017) heartbeat_.set_period(heartbeat_period(), now_);
+      if (index == 0x1017) {
+        heartbeat_.set_period(heartbeat_period(), now_);
+        if constexpr (has_guarding) {
+          if (heartbeat_period().count() != 0) guarding_.reset();
+        }
+      }
+    }
+    if constexpr (has_heartbeat_consumer) {
+      if (index == 0x1016 && sub_index != 0) {
+        const std::uint32_t value = entries().number(Device::dictionary.find(index, sub_index));
+        heartbeats_.configure(sub_index - 1u, ConsumerHeartbeatTime{value});
+        tell_error_control_over();
+      }
+    }
+    if constexpr (has_guarding) {
+      if (index == 0x100C || index == 0x100D) {
+        guarding_.configure(guard_time(), life_time_factor());
+        tell_error_control_over();
+      }
     }
     if constexpr (SyncProducer<Device>::exists) {
       if ((index == 0x1005 || index == 0x1006) && serves_sync(state_)) sync_producer_.start(store_, now_, false);
@@ -498,10 +690,13 @@ class Node {
     std::memcpy(entries().ram(clock_word), &microseconds, sizeof microseconds);
   }
 
-  void on_remote(std::uint32_t cob_id) {
+  void on_remote(const Frame& frame) {
+    if constexpr (has_guarding) {
+      if (is_guarding_request(frame, node_id_)) return on_guarding_request();
+    }
     if constexpr (has_tpdos && Device::options.tpdo_remote_frames) {
       if (!serves_pdo(state_)) return;
-      tpdos_.on_remote(entries(), cob_id);
+      tpdos_.on_remote(entries(), cob_id_of(frame));
       attention_ = true;
     }
   }
@@ -597,6 +792,9 @@ class Node {
   /// Sends what is due, in order of importance; what finds no room stays due.
   void serve() {
     attention_ = false;
+    if constexpr (has_lss) {
+      if (lss_.silent()) return;
+    }
     if constexpr (SyncProducer<Device>::exists) {
       if (const std::optional<Sync> sync = sync_producer_.serve(store_, bus_, now_)) on_sync(*sync);
     }
@@ -605,6 +803,12 @@ class Node {
 
   [[nodiscard]] bool send_due() {
     if (!heartbeat_.serve_boot_up(bus_, node_id_, heartbeat_period(), now_)) return false;
+    if constexpr (has_lss) {
+      if (!lss_.serve(bus_)) return false;
+    }
+    if constexpr (has_guarding) {
+      if (!guarding_.serve(bus_, node_id_, state_)) return false;
+    }
     if (!sdo_.serve(store_, bus_, SdoHooks{*this}, now_)) return false;
     if constexpr (has_heartbeat_time) {
       if (!heartbeat_.serve(bus_, node_id_, state_, heartbeat_period(), now_)) return false;
@@ -630,13 +834,14 @@ class Node {
   [[no_unique_address]] MpdoService<Device> mpdos_{};
   EmergencyProducer<Device> emergencies_{};
   HeartbeatProducer heartbeat_{};
-  struct Nothing {};
-  template <bool Exists, class Service>
-  using Present = std::conditional_t<Exists, Service, Nothing>;
+  [[no_unique_address]] HeartbeatConsumers heartbeats_{};
+  [[no_unique_address]] Present<has_guarding, NodeGuardingSlave> guarding_{};
+  [[no_unique_address]] typename lss_detail::SlaveOf<Lss>::type lss_{};
   [[no_unique_address]] SyncWindow<Device> sync_window_{};
   [[no_unique_address]] Present<SyncProducer<Device>::exists, SyncProducer<Device>> sync_producer_{};
   [[no_unique_address]] Present<has_clock, std::uint32_t> clock_offset_{};  ///< us from the node's time to 1013h
   TimePoint now_{};
+  BusStatus bus_status_{};
   NodeId node_id_{};
   NmtState state_ = NmtState::initialisation;
   bool attention_ = false;  ///< something may have become due since it was last looked after

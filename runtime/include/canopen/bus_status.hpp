@@ -1,0 +1,21 @@
+/// What a CAN controller tells about itself (ISO 11898-1), as a port reports it to its node.
+#pragma once
+
+#include <cstdint>
+
+namespace canopen {
+
+enum class BusState : std::uint8_t {
+  active,   ///< error active
+  passive,  ///< error passive: EMCY 8120h
+  off,      ///< bus-off: EMCY 8140h when it has recovered
+};
+
+struct BusStatus {
+  BusState state = BusState::active;
+  bool overrun = false;  ///< frames have been lost since the last report: EMCY 8110h
+
+  friend constexpr bool operator==(const BusStatus&, const BusStatus&) = default;
+};
+
+}  // namespace canopen
