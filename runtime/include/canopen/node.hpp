@@ -75,7 +75,10 @@ class Node {
   /// Takes a frame from the bus. Frames that are not for this node are ignored.
   void on_frame(const Frame& frame, TimePoint now) {
     now_ = now;
-    if constexpr (has_lss) lss_.on_frame(frame, LssHooks{*this}, now);
+    if constexpr (has_lss) {
+      lss_.on_frame(frame, LssHooks{*this}, now);
+      if (lss_.has_reply()) attention_ = true;
+    }
     if (state_ == NmtState::initialisation) return serve_lss();
     if (attention_) serve();
     const std::uint32_t cob_id = cob_id_of(frame);
