@@ -193,7 +193,7 @@ ordered_json distinct_pdos(const Device& device) {
     if (!canopen::CobId{parameters.cob_id}.valid()) continue;
     names.push_back(type_name(pdo));
     cob_ids.push_back({is_receive(pdo), parameters.cob_id, parameters.plus_node_id});
-    if (!canopen::find_cob_id_clash(cob_ids).found) continue;
+    if (!canopen::find_cob_id_clash(cob_ids.data(), cob_ids.size()).found) continue;
     names.pop_back();
     cob_ids.pop_back();
   }

@@ -1,5 +1,5 @@
 // expect: an inhibit time is for TPDOs of transmission types 254 and 255
-// expect: CheckedTimes<canopen::TpdoNumber<1>, 1, 100, 0>
+// expect: canopen::TpdoNumber<1>.*false, 1, 100, 0, false}
 //
 // A synchronous TPDO goes out at its SYNC.
 #include <canopen/pdo_check.hpp>

@@ -1,4 +1,4 @@
-// expect: its transmission type is reserved .*canopen::RpdoNumber<1>, 253>
+// expect: its transmission type is reserved .*canopen::RpdoNumber<1>.*false, 253, 0, 0, false}
 // An RPDO cannot be asked for by a remote frame.
 #include <canopen/pdo_check.hpp>
 #include <every_type/device.hpp>

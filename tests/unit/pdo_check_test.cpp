@@ -54,11 +54,11 @@ constexpr std::array<canopen::PdoCobId, 1024> many = [] {
 }();
 
 TEST(CheckedPdos, MayBeAsManyAsADeviceCanHave) {
-  static_assert(!canopen::find_cob_id_clash(many).found, "within the limits of the compilers");
+  static_assert(!canopen::find_cob_id_clash(many.data(), many.size()).found, "within the limits of the compilers");
   constexpr canopen::CobIdClash clash = [] {
     auto pdos = many;
     pdos[1022].cob_id = pdos[4].cob_id;
-    return canopen::find_cob_id_clash(pdos);
+    return canopen::find_cob_id_clash(pdos.data(), pdos.size());
   }();
   static_assert(clash.found && clash.first == 4 && clash.second == 1022);
 }

@@ -65,12 +65,14 @@ constexpr PdoCobId tpdo(std::uint32_t cob_id, bool plus_node_id = true) { return
 constexpr PdoCobId rpdo(std::uint32_t cob_id, bool plus_node_id = true) { return {true, cob_id, plus_node_id}; }
 
 void expect_clash(const std::vector<PdoCobId>& pdos, std::size_t first, std::size_t second) {
-  const canopen::CobIdClash clash = canopen::find_cob_id_clash(pdos);
+  const canopen::CobIdClash clash = canopen::find_cob_id_clash(pdos.data(), pdos.size());
   EXPECT_TRUE(clash.found);
   EXPECT_EQ(clash.first, first);
   EXPECT_EQ(clash.second, second);
 }
-void expect_none(const std::vector<PdoCobId>& pdos) { EXPECT_FALSE(canopen::find_cob_id_clash(pdos).found); }
+void expect_none(const std::vector<PdoCobId>& pdos) {
+  EXPECT_FALSE(canopen::find_cob_id_clash(pdos.data(), pdos.size()).found);
+}
 
 TEST(CobIdsOfPdos, AreDistinctInThePredefinedConnectionSet) {
   expect_none({rpdo(0x200), rpdo(0x300), tpdo(0x180), tpdo(0x280)});

@@ -1,9 +1,9 @@
 /// CAN-IDs and COB-IDs: the pre-defined connection set, the flag bits, and the identifiers that may not be configured.
 #pragma once
 
+#include <array>  // std::size: <iterator> would bring streams with it
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
 
 #include "canopen/node_id.hpp"
 

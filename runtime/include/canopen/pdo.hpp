@@ -99,11 +99,12 @@ struct RpdoEntry {
 };
 
 /// Whether each object may be in a PDO of this direction.
-template <template <class, class, class> class EntryCheck, class... Objects>
-inline constexpr bool all_fit = []<std::size_t... I>(std::index_sequence<I...>) {
-  return (true && ... && EntryCheck<EntryNumber<I + 1>, LabelOf<Objects>, Objects>::fits);
-}
-(std::index_sequence_for<Objects...>{});
+template <template <class, class, class> class EntryCheck, class Positions, class... Objects>
+struct Direction;
+template <template <class, class, class> class EntryCheck, std::size_t... I, class... Objects>
+struct Direction<EntryCheck, std::index_sequence<I...>, Objects...> {
+  static constexpr bool fits = (true && ... && EntryCheck<EntryNumber<I + 1>, LabelOf<Objects>, Objects>::fits);
+};
 
 /// First bit of each entry, and the end of the last.
 template <class... Objects>
@@ -115,11 +116,13 @@ inline constexpr std::array<unsigned, sizeof...(Objects) + 1> offsets_of = [] {
 }();
 
 /// Whether each object has a length, and ends within the frame.
-template <class... Objects>
-inline constexpr bool all_have_room = []<std::size_t... I>(std::index_sequence<I...>) {
-  return (true && ... && PdoEntry<EntryNumber<I + 1>, LabelOf<Objects>, Objects, offsets_of<Objects...>[I]>::fits);
-}
-(std::index_sequence_for<Objects...>{});
+template <class Positions, class... Objects>
+struct Room;
+template <std::size_t... I, class... Objects>
+struct Room<std::index_sequence<I...>, Objects...> {
+  static constexpr bool suffices =
+      (true && ... && PdoEntry<EntryNumber<I + 1>, LabelOf<Objects>, Objects, offsets_of<Objects...>[I]>::fits);
+};
 
 }  // namespace pdo_detail
 
@@ -132,7 +135,7 @@ template <DictionaryObject... Objects>
 struct PdoLayout {
   static constexpr std::size_t entries = sizeof...(Objects);
   static_assert(entries <= 64, "a PDO maps 64 objects at most (CiA 301, 7.5.2.36)");
-  static_assert(pdo_detail::all_have_room<Objects...>);
+  static_assert(pdo_detail::Room<std::index_sequence_for<Objects...>, Objects...>::suffices);
   static constexpr unsigned bits = (0u + ... + Objects::bits);
   static constexpr std::uint8_t size = (bits + 7) / 8;  ///< data bytes of the frame
 
@@ -276,13 +279,13 @@ struct PdoLayout {
 /// A PDO that a device sends.
 template <DictionaryObject... Objects>
 struct Tpdo : PdoLayout<Objects...> {
-  static_assert(pdo_detail::all_fit<pdo_detail::TpdoEntry, Objects...>);
+  static_assert(pdo_detail::Direction<pdo_detail::TpdoEntry, std::index_sequence_for<Objects...>, Objects...>::fits);
 };
 
 /// A PDO that a device receives.
 template <DictionaryObject... Objects>
 struct Rpdo : PdoLayout<Objects...> {
-  static_assert(pdo_detail::all_fit<pdo_detail::RpdoEntry, Objects...>);
+  static_assert(pdo_detail::Direction<pdo_detail::RpdoEntry, std::index_sequence_for<Objects...>, Objects...>::fits);
 };
 
 }  // namespace canopen

@@ -6,13 +6,11 @@
 /// The compiler's message names the PDO, the entry, the object and the reason.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <tuple>
 #include <utility>
 
-#include "canopen/data_type.hpp"
 #include "canopen/dictionary.hpp"
 #include "canopen/pdo.hpp"
 #include "canopen/pdo_label.hpp"
@@ -21,6 +19,9 @@
 namespace canopen {
 
 namespace pdo_detail {
+
+/// Bits of the dummies 0001h to 0008h (CiA 301, 7.4.7.1).
+inline constexpr std::uint8_t dummy_bits[] = {0, 1, 8, 16, 32, 8, 16, 32, 32};
 
 /// Whether an entry of a mapping is as long as the object that the dictionary holds: a BOOLEAN may take a byte, a
 /// string as many bytes as it has room for.
@@ -66,50 +67,13 @@ struct CheckedEntry {
 template <const Dictionary& D, class Pdo, class Number, class Label, class O, unsigned End, unsigned Granularity>
 requires is_dummy<O>
 struct CheckedEntry<D, Pdo, Number, Label, O, End, Granularity> {
-  static constexpr const DataTypeRow* type = find_data_type(O::index);
-  static constexpr bool has_length = type != nullptr && type->bits > 0;
   static_assert(Pdo::receive, "PDO mapping: only an RPDO has dummies");
-  static_assert(has_length, "PDO mapping: a dummy is a data type of fixed length");
-  static_assert(!has_length || type->bits == O::bits, "PDO mapping: the dummy has another length than its data type");
+  static_assert(O::index > 0x0008 || O::bits == dummy_bits[O::index > 0x0008 ? 0 : O::index],
+                "PDO mapping: the dummy has another length than its data type");
   static_assert(O::bits % Granularity == 0,
                 "PDO mapping: the entry's length is no multiple of the device's Granularity");
   static_assert(End <= 64, "PDO mapping: the entry ends beyond the 64 bits of a PDO");
   static constexpr bool holds = true;
-};
-
-template <const Dictionary& D, class Pdo>
-struct CheckedParameterObject {
-  static constexpr std::uint16_t index = (Pdo::receive ? 0x1400 : 0x1800) + Pdo::number - 1;
-  static_assert(Pdo::number >= 1 && Pdo::number <= 512, "PDO: its number is 1 to 512");
-  static_assert(D.has(index, 1), "PDO: the device has no communication parameter for it");
-};
-
-template <class Pdo, class Id, bool Legal>
-struct CheckedCobId {
-  static_assert(Legal, "PDO: its COB-ID is restricted, or has more than 11 bits, for some node-ID (CiA 301, 7.3.5)");
-};
-
-template <class Pdo, unsigned TransmissionType>
-struct CheckedTransmissionType {
-  static_assert(transmission_type_is_legal(Pdo::receive, TransmissionType), "PDO: its transmission type is reserved");
-};
-
-template <class Pdo, unsigned TransmissionType, unsigned InhibitTime, unsigned EventTimer>
-struct CheckedTimes {
-  static_assert(InhibitTime == 0 || inhibit_time_is_used(Pdo::receive, TransmissionType),
-                "PDO: an inhibit time is for TPDOs of transmission types 254 and 255");
-  static_assert(EventTimer == 0 || event_timer_is_used(Pdo::receive, TransmissionType),
-                "PDO: an event timer is for RPDOs, and for TPDOs of transmission types 254 and 255");
-};
-
-template <class Pdo, bool HasCompatibilityEntry>
-struct CheckedCompatibilityEntry {
-  static_assert(!HasCompatibilityEntry, "PDO: sub-index 4 of its communication parameter is reserved");
-};
-
-template <class Pdo, std::size_t Entries>
-struct CheckedEntryCount {
-  static_assert(Entries <= 64, "PDO mapping: a PDO maps 64 objects at most");
 };
 
 /// The CAN-ID that a message shows: where the node-ID is added, that of node 1.
@@ -117,27 +81,44 @@ struct CheckedEntryCount {
   return (parameters.cob_id & 0x1FFF'FFFF) + (parameters.plus_node_id ? 1 : 0);
 }
 
+template <class Pdo, class Id, bool Legal>
+struct CheckedCobId {
+  static_assert(Legal, "PDO: its COB-ID is restricted, or has more than 11 bits, for some node-ID (CiA 301, 7.3.5)");
+  static constexpr bool is_legal = true;
+};
+
+template <const Dictionary& D, class Pdo, unsigned Granularity, class Positions, class... O>
+struct CheckedEntries;
+template <const Dictionary& D, class Pdo, unsigned Granularity, std::size_t... I, class... O>
+struct CheckedEntries<D, Pdo, Granularity, std::index_sequence<I...>, O...> {
+  static constexpr bool hold =
+      (true && ... &&
+       CheckedEntry<D, Pdo, EntryNumber<I + 1>, LabelOf<O>, O, offsets_of<O...>[I + 1], Granularity>::holds);
+};
+
 template <const Dictionary& D, class Pdo, unsigned Granularity, class... O>
-[[nodiscard]] constexpr bool entries_hold(const PdoLayout<O...>* /*layout*/) {
-  using Layout = PdoLayout<O...>;
-  return []<std::size_t... I>(std::index_sequence<I...>) {
-    return (true && ... &&
-            CheckedEntry<D, Pdo, EntryNumber<I + 1>, LabelOf<O>, O, Layout::offsets[I + 1], Granularity>::holds);
-  }
-  (std::index_sequence_for<O...>{});
-}
+CheckedEntries<D, Pdo, Granularity, std::index_sequence_for<O...>, O...> checked_entries(const PdoLayout<O...>*);
 
 template <const Dictionary& D, class Pdo, class Layout, PdoParameters P, unsigned Granularity>
-struct CheckedPdo
-    : CheckedParameterObject<D, Pdo>,
-      CheckedCobId<Pdo, CanIdLabel<shown_can_id(P)>, cob_id_is_legal(P)>,
-      CheckedTransmissionType<Pdo, P.transmission_type>,
-      CheckedTimes<Pdo, P.transmission_type, P.inhibit_time, P.event_timer>,
-      CheckedCompatibilityEntry<Pdo, !P.compatibility_entry && D.has(CheckedParameterObject<D, Pdo>::index, 4)>,
-      CheckedEntryCount<Pdo, Layout::entries> {
+struct CheckedPdo {
   using Label = Pdo;
+  static constexpr std::uint16_t index = (Pdo::receive ? 0x1400 : 0x1800) + Pdo::number - 1;
   static constexpr PdoCobId cob_id{Pdo::receive, P.cob_id, P.plus_node_id};
-  static constexpr bool holds = entries_hold<D, Pdo, Granularity>(static_cast<const Layout*>(nullptr));
+
+  static_assert(Pdo::number >= 1 && Pdo::number <= 512, "PDO: its number is 1 to 512");
+  static_assert(D.has(index, 1), "PDO: the device has no communication parameter for it");
+  static_assert(P.compatibility_entry || !D.has(index, 4),
+                "PDO: sub-index 4 of its communication parameter is reserved");
+  static_assert(CheckedCobId<Pdo, CanIdLabel<shown_can_id(P)>, cob_id_is_legal(P)>::is_legal);
+  static_assert(transmission_type_is_legal(Pdo::receive, P.transmission_type),
+                "PDO: its transmission type is reserved");
+  static_assert(P.inhibit_time == 0 || inhibit_time_is_used(Pdo::receive, P.transmission_type),
+                "PDO: an inhibit time is for TPDOs of transmission types 254 and 255");
+  static_assert(P.event_timer == 0 || event_timer_is_used(Pdo::receive, P.transmission_type),
+                "PDO: an event timer is for RPDOs, and for TPDOs of transmission types 254 and 255");
+  static_assert(Layout::entries <= 64, "PDO mapping: a PDO maps 64 objects at most");
+  static constexpr bool holds =
+      decltype(checked_entries<D, Pdo, Granularity>(static_cast<const Layout*>(nullptr)))::hold;
 };
 
 template <class First, class Second, class Id, bool Clash>
@@ -148,8 +129,8 @@ struct DistinctCobIds {
 
 template <class... Checked>
 inline constexpr CobIdClash clash_of = [] {
-  const std::array<PdoCobId, sizeof...(Checked)> cob_ids{Checked::cob_id...};
-  return find_cob_id_clash(cob_ids);
+  const PdoCobId cob_ids[] = {Checked::cob_id...};
+  return find_cob_id_clash(cob_ids, sizeof...(Checked));
 }();
 
 template <std::size_t I, class... Checked>

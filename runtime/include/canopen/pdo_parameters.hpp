@@ -2,11 +2,8 @@
 /// 7.5.2.37). The generator and the checks of pdo_check.hpp share it.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
-#include <span>
 
 #include "canopen/cob_id.hpp"
 #include "canopen/node_id.hpp"
@@ -88,7 +85,7 @@ class TpdoCanIds {
     const std::uint32_t base = CobId{pdo.cob_id}.can_id();
     if (pdo.plus_node_id) {
       if (with_node_id_[base] != 0) return with_node_id_[base];
-      for (std::uint32_t id = 1; plain_count_ > 0 && id <= highest_node_id && base + id < plain_.size(); ++id) {
+      for (std::uint32_t id = 1; plain_count_ > 0 && id <= highest_node_id && base + id < can_ids; ++id) {
         if (plain_[base + id] != 0) return plain_[base + id];
       }
       return 0;
@@ -107,13 +104,15 @@ class TpdoCanIds {
   }
 
  private:
-  std::array<std::uint16_t, 0x800> plain_{};
-  std::array<std::uint16_t, 0x800> with_node_id_{};
+  static constexpr std::size_t can_ids = 0x800;
+
+  std::uint16_t plain_[can_ids] = {};
+  std::uint16_t with_node_id_[can_ids] = {};
   unsigned plain_count_ = 0;
 };
 
-[[nodiscard]] constexpr CobIdClash find_extended_clash(std::span<const PdoCobId> pdos, std::size_t second) {
-  for (std::size_t first = 0; first < pdos.size(); ++first) {
+[[nodiscard]] constexpr CobIdClash find_extended_clash(const PdoCobId* pdos, std::size_t count, std::size_t second) {
+  for (std::size_t first = 0; first < count; ++first) {
     const PdoCobId& a = pdos[first];
     const PdoCobId& b = pdos[second];
     const bool may_share = a.receive && b.receive;  // several RPDOs may take one frame
@@ -127,16 +126,16 @@ class TpdoCanIds {
 
 }  // namespace pdo_detail
 
-/// The first two PDOs of a device that have the same CAN-ID: each frame has one producer. Several RPDOs may take the
-/// same frame. PDOs that are not valid have none.
-[[nodiscard]] constexpr CobIdClash find_cob_id_clash(std::span<const PdoCobId> pdos) {
+/// The first two of `count` PDOs of a device that have the same CAN-ID: each frame has one producer. Several RPDOs may
+/// take the same frame. PDOs that are not valid have none.
+[[nodiscard]] constexpr CobIdClash find_cob_id_clash(const PdoCobId* pdos, std::size_t count) {
   pdo_detail::TpdoCanIds tpdos;
   for (const bool receive : {false, true}) {
-    for (std::size_t i = 0; i < pdos.size(); ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
       const CobId cob_id{pdos[i].cob_id};
       if (pdos[i].receive != receive || !cob_id.valid()) continue;
       if (cob_id.extended()) {
-        if (const CobIdClash clash = pdo_detail::find_extended_clash(pdos, i); clash.found) return clash;
+        if (const CobIdClash clash = pdo_detail::find_extended_clash(pdos, count, i); clash.found) return clash;
         continue;
       }
       if (const std::size_t user = tpdos.user_of(pdos[i]); user != 0) {
