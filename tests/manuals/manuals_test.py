@@ -1,0 +1,212 @@
+#!/usr/bin/env python3
+"""Each behaviour that a manual describes is shown by a test, or it is said why not; docs/manuals.md lists them all.
+
+    manuals_test.py SOURCE_DIR [--write]      --write makes docs/manuals.md anew
+
+NNN.md holds what manual NNN describes, one item a line: `- [NNN.n] text`.
+- A test that shows items says so in the lines right above it: `// shows 003.47, 004.58..004.66` above a TEST of
+  GoogleTest, `# shows ...` in a trace, or above a function or the first statement of a Python test.
+- `// open ...` stands above a test that does not pass yet and is named DISABLED_ for that.
+- out_of_reach.tsv: numbers, one of KINDS, reason.
+- readings.tsv: numbers, and which reading was taken where a manual is not clear or contradicts itself.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+
+MANUALS = ("000", "001", "002", "003", "004")
+KINDS = {
+    "out of reach": "no stack can show it: it is hardware, a tool of the vendor or the manual's own text",
+    "later": "it belongs to the application of the device, to its profile or to the firmware around the node",
+    "open": "it is not done yet, or not as the manual says",
+}
+NUMBER = re.compile(r"(\d{3})\.(\d+)(?:\.\.\1\.(\d+))?")
+ITEM = re.compile(r"- \[(\d{3}\.\d+)\] (.+)")
+HEADING = re.compile(r"#+ (.+)")
+ANNOTATION = re.compile(r"\s*(?://|#) (shows|open) (\d{3}\.\d.*)")
+CPP_TEST = re.compile(r"(?:TYPED_)?TEST(?:_[FP])?\((\w+), (\w+)\)")
+PYTHON_TEST = re.compile(r"def (\w+)\(")
+
+
+@dataclass
+class Item:
+    number: str
+    text: str
+    heading: str
+    tests: list[str] = field(default_factory=list)
+    kind: str = ""
+    reason: str = ""
+    reading: str = ""
+
+    @property
+    def state(self) -> str:
+        return self.kind or ("shown" if self.tests else "missing")
+
+
+def numbers_in(text: str) -> list[str]:
+    """`003.1, 003.4..003.6` as single numbers."""
+    if not re.fullmatch(rf"{NUMBER.pattern}(?:, (?:\d{{3}}\.\d+)(?:\.\.\d{{3}}\.\d+)?)*", text):
+        raise ValueError(f"'{text}' is no list of numbers")
+    return [f"{m[1]}.{n}" for m in NUMBER.finditer(text) for n in range(int(m[2]), int(m[3] or m[2]) + 1)]
+
+
+def read_items(folder: Path, problems: list[str]) -> dict[str, Item]:
+    items: dict[str, Item] = {}
+    for manual in MANUALS:
+        heading = ""
+        for line in (folder / f"{manual}.md").read_text(encoding="utf-8").splitlines():
+            if match := ITEM.fullmatch(line):
+                if match[1] in items:
+                    problems.append(f"[{match[1]}] exists twice")
+                if not match[1].startswith(manual):
+                    problems.append(f"{manual}.md: [{match[1]}] is of another manual")
+                items[match[1]] = Item(match[1], match[2], heading)
+            elif match := HEADING.fullmatch(line):
+                heading = match[1]
+            elif line.startswith("- "):
+                problems.append(f"{manual}.md: no number: {line}")
+    return items
+
+
+def read_rows(path: Path, columns: int, items: dict[str, Item], problems: list[str]) -> list[tuple[Item, list[str]]]:
+    rows = []
+    for count, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        cells = line.split("\t")
+        if len(cells) != columns:
+            problems.append(f"{path.name}:{count}: {len(cells)} columns")
+            continue
+        for number in numbers_in(cells[0]):
+            if number in items:
+                rows.append((items[number], cells[1:]))
+            else:
+                problems.append(f"{path.name}:{count}: there is no [{number}]")
+    return rows
+
+
+def test_below(path: Path, lines: list[str], at: int) -> str | None:
+    """The test that an annotation in line `at` belongs to."""
+    if path.suffix == ".trace":
+        return f"{path.stem} (trace)"
+    while at < len(lines) and lines[at].lstrip().startswith(("//", "#")):
+        at += 1
+    if at == len(lines):
+        return None
+    if path.suffix == ".cpp":
+        match = CPP_TEST.match(lines[at])
+        return f"{match[1]}.{match[2]}" if match else None
+    match = PYTHON_TEST.match(lines[at])
+    return f"{path.name}, {match[1]}" if match else None
+
+
+def read_tests(tests: Path, items: dict[str, Item], problems: list[str]) -> None:
+    built = "".join(path.read_text(encoding="utf-8") for path in tests.rglob("CMakeLists.txt"))
+    for path in sorted(tests.rglob("*")):
+        if path.suffix not in (".cpp", ".py", ".trace") or path == Path(__file__).resolve():
+            continue
+        lines = path.read_text(encoding="utf-8").splitlines()
+        for at, line in enumerate(lines):
+            match = ANNOTATION.fullmatch(line)
+            if not match:
+                continue
+            place = f"{path.relative_to(tests)}:{at + 1}"
+            test = test_below(path, lines, at)
+            if test is None:
+                problems.append(f"{place}: no test stands below")
+                continue
+            if path.suffix != ".trace" and path.name not in built:
+                problems.append(f"{place}: no CMakeLists.txt names {path.name}")
+            disabled = ".DISABLED_" in test
+            if disabled != (match[1] == "open"):
+                problems.append(f"{place}: {test} is{'' if disabled else ' not'} disabled, but `{match[1]}`")
+            for number in numbers_in(match[2]):
+                item = items.get(number)
+                if item is None:
+                    problems.append(f"{place}: there is no [{number}]")
+                elif test not in item.tests:
+                    item.tests.append(test)
+                    if disabled and item.kind != "open":
+                        problems.append(f"{place}: [{number}] is not open in out_of_reach.tsv")
+                    if not disabled and item.kind:
+                        problems.append(f"{place}: [{number}] is shown, but out_of_reach.tsv has it as {item.kind}")
+
+
+INTRODUCTION = """# Manuals
+
+What the manuals of the five reference devices say, item by item, and the test that shows it with the device that edsc
+generates. Made from `tests/manuals`, where the items, the readings and the reasons stand, and from the annotations of the
+tests, by `tests/manuals/manuals_test.py`, whose option `--write` makes this page.
+"""
+
+
+def cell(text: str) -> str:
+    return re.sub(r"([|<>])", r"\\\1", text)
+
+
+def describe(item: Item) -> str:
+    tests = ", ".join(f"`{test}`" for test in item.tests)
+    parts = [f"{item.kind}: {cell(item.reason)}"] if item.kind else []
+    parts += [tests] if tests else []
+    parts += [f"Reading: {cell(item.reading)}"] if item.reading else []
+    return ". ".join(part.rstrip(".") for part in parts)
+
+
+def count(items: list[Item], state: str) -> int:
+    return sum(item.state == state for item in items)
+
+
+def document(folder: Path, items: dict[str, Item]) -> str:
+    states = ["shown", *KINDS]
+    out = [INTRODUCTION, f"| manual | items | {' | '.join(states)} |", "|---" * (len(states) + 2) + "|"]
+    for manual in [*MANUALS, ""]:
+        own = [item for item in items.values() if item.number.startswith(manual)]
+        name = manual or "all"
+        out.append(f"| {name} | {len(own)} | {' | '.join(str(count(own, state)) for state in states)} |")
+    out.append("")
+    out += [f"- {kind}: {meaning}." for kind, meaning in KINDS.items()]
+    for manual in MANUALS:
+        title = (folder / f"{manual}.md").read_text(encoding="utf-8").splitlines()[0].removeprefix("# ")
+        out += ["", f"## {title}"]
+        heading = ""
+        for item in (item for item in items.values() if item.number.startswith(manual)):
+            if item.heading != heading:
+                heading = item.heading
+                out += ["", f"### {heading}", "", "| number | what the manual says | shown by, or why not |", "|---|---|---|"]
+            out.append(f"| {item.number} | {cell(item.text)} | {describe(item)} |")
+    return "\n".join(out) + "\n"
+
+
+def main() -> int:
+    source = Path(sys.argv[1]).resolve()
+    folder = source / "tests" / "manuals"
+    problems: list[str] = []
+    items = read_items(folder, problems)
+    for item, (kind, reason) in read_rows(folder / "out_of_reach.tsv", 3, items, problems):
+        if item.kind:
+            problems.append(f"out_of_reach.tsv has [{item.number}] twice")
+        if kind not in KINDS or not reason:
+            problems.append(f"out_of_reach.tsv: [{item.number}] is '{kind}', because '{reason}'")
+        item.kind, item.reason = kind, reason
+    for item, (reading,) in read_rows(folder / "readings.tsv", 2, items, problems):
+        item.reading = reading
+    read_tests(source / "tests", items, problems)
+    problems += [f"[{item.number}] has neither a test nor a reason: {item.text}" for item in items.values()
+                 if item.state == "missing"]
+    page, text = source / "docs" / "manuals.md", document(folder, items)
+    if "--write" in sys.argv:
+        page.write_text(text, encoding="utf-8")
+    elif not page.exists() or page.read_text(encoding="utf-8") != text:
+        problems.append("docs/manuals.md is not up to date: run manuals_test.py with --write")
+    print("\n".join(problems))
+    for manual in [*MANUALS, ""]:
+        own = [item for item in items.values() if item.number.startswith(manual)]
+        states = ", ".join(f"{count(own, state)} {state}" for state in ("shown", *KINDS, "missing"))
+        print(f"{manual or 'all'}: {len(own)} items: {states}")
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
