@@ -57,6 +57,7 @@ struct StoredHeartbeat : sample::Device {
   }
 };
 
+// shows 000.41, 002.61
 TEST(Heartbeat, TheBootUpMessageIsTheFirstOne) {
   bench::RecordingBus bus;
   auto node = canopen::make_node<StoredHeartbeat>(bus, canopen::NodeId{5});

@@ -39,6 +39,7 @@ TEST(SdoServer, UploadsABooleanAsOneByte) {
   EXPECT_EQ(device.ask("605 40 00 20 00 00 00 00 00"), "585 4F 00 20 00 01 00 00 00");
 }
 
+// shows 000.25
 TEST(SdoServer, UploadsReal32) {
   Bench device;
   device.node.set<od::real32_value>(1.5f);
@@ -106,6 +107,7 @@ TEST(SdoServer, ANumberIsUploadedAsItWasAtTheBeginning) {
   EXPECT_EQ(device.ask("605 60 00 00 00 00 00 00 00"), "585 00 08 07 06 05 04 03 02");
 }
 
+// shows 000.27
 TEST(SdoServer, UploadsTimeOfDay) {
   Bench device;
   device.node.set<od::time_of_day_value>({0x0ABCDEF0, 0x1234});
@@ -320,6 +322,7 @@ struct SmallBuffer : sample::Device {
   static constexpr std::size_t longest_download = 0;
 };
 
+// shows 000.64, 002.16, 004.32
 TEST(SdoServer, IsOutOfMemoryForAStringLongerThanItsBuffer) {
   Bench<SmallBuffer> device;
   EXPECT_EQ(device.ask("605 21 0C 20 00 09 00 00 00"), "585 80 0C 20 00 05 00 04 05");
@@ -340,6 +343,7 @@ TEST(SdoServer, RefusesWhatDoesNotExist) {
   EXPECT_EQ(device.ask("605 2F 00 18 04 00 00 00 00"), "585 80 00 18 04 11 00 09 06");
 }
 
+// shows 000.60, 002.18
 TEST(SdoServer, RefusesToReadWhatIsWriteOnly) {
   Bench device;
   EXPECT_EQ(device.ask("605 40 14 20 00 00 00 00 00"), "585 80 14 20 00 01 00 01 06");
@@ -450,6 +454,7 @@ struct WithTimeout : sample::Device {
   static constexpr canopen::DeviceOptions options{.sdo_timeout = 1000};
 };
 
+// shows 000.64, 002.14
 TEST(SdoServer, AnOptionAbortsATransferWhoseClientIsSilent) {
   Bench<WithTimeout> device;
   device.ask("605 40 08 10 00 00 00 00 00");

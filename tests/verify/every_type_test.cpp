@@ -167,6 +167,7 @@ TEST(TypedAccess, ReadsAndWritesUnsigneds) {
   expect_round_trip<od::unsigned64_value>(~std::uint64_t{0}, 1, wire(1, 8));
 }
 
+// shows 000.25
 TEST(TypedAccess, ReadsAndWritesReals) {
   expect_round_trip<od::real32_value>(-1.5F, 0.25F, wire(0.25F));
   expect_round_trip<od::real64_value>(0.1, -0.25, wire(-0.25));
