@@ -21,7 +21,7 @@ from pathlib import Path
 MANUALS = ("000", "001", "002", "003", "004")
 KINDS = {
     "out of reach": "no stack can show it: it is hardware, a tool of the vendor or the manual's own text",
-    "later": "it belongs to the application of the device, to its profile or to the firmware around the node",
+    "later": "it belongs to the device's application or profile, or to the firmware around the node",
     "open": "it is not done yet, or not as the manual says",
 }
 NUMBER = re.compile(r"(\d{3})\.(\d+)(?:\.\.\1\.(\d+))?")
@@ -49,7 +49,7 @@ class Item:
 
 def numbers_in(text: str) -> list[str]:
     """`003.1, 003.4..003.6` as single numbers."""
-    if not re.fullmatch(rf"{NUMBER.pattern}(?:, (?:\d{{3}}\.\d+)(?:\.\.\d{{3}}\.\d+)?)*", text):
+    if not all(NUMBER.fullmatch(part) for part in text.split(", ")):
         raise ValueError(f"'{text}' is no list of numbers")
     return [f"{m[1]}.{n}" for m in NUMBER.finditer(text) for n in range(int(m[2]), int(m[3] or m[2]) + 1)]
 
@@ -130,15 +130,15 @@ def read_tests(tests: Path, items: dict[str, Item], problems: list[str]) -> None
                     item.tests.append(test)
                     if disabled and item.kind != "open":
                         problems.append(f"{place}: [{number}] is not open in out_of_reach.tsv")
-                    if not disabled and item.kind:
+                    elif not disabled and item.kind:
                         problems.append(f"{place}: [{number}] is shown, but out_of_reach.tsv has it as {item.kind}")
 
 
 INTRODUCTION = """# Manuals
 
 What the manuals of the five reference devices say, item by item, and the test that shows it with the device that edsc
-generates. Made from `tests/manuals`, where the items, the readings and the reasons stand, and from the annotations of the
-tests, by `tests/manuals/manuals_test.py`, whose option `--write` makes this page.
+generates. Made from `tests/manuals`, where the items, the readings and the reasons stand, and from the annotations of
+the tests, by `tests/manuals/manuals_test.py`, whose option `--write` makes this page.
 """
 
 
@@ -174,7 +174,8 @@ def document(folder: Path, items: dict[str, Item]) -> str:
         for item in (item for item in items.values() if item.number.startswith(manual)):
             if item.heading != heading:
                 heading = item.heading
-                out += ["", f"### {heading}", "", "| number | what the manual says | shown by, or why not |", "|---|---|---|"]
+                out += ["", f"### {heading}", "", "| number | what the manual says | shown by, or why not |"]
+                out.append("|---|---|---|")
             out.append(f"| {item.number} | {cell(item.text)} | {describe(item)} |")
     return "\n".join(out) + "\n"
 

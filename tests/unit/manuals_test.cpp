@@ -74,7 +74,7 @@ constexpr State states[] = {
 
 constexpr auto read_device_type = "605 40 00 10 00 00 00 00 00";
 
-// shows 000.29, 000.33, 000.43, 000.101, 001.14, 002.45, 003.4, 004.104, 004.106
+// shows 000.29, 000.33, 000.43, 000.101, 001.14, 002.45, 002.194, 003.4, 004.104, 004.106
 TYPED_TEST(EveryDevice, SendsTheBootUpMessageAndEntersPreOperationalByItself) {
   bench::RecordingBus bus;
   canopen::Node<typename TestFixture::Device, bench::RecordingBus> node{bus, canopen::NodeId{5}};
