@@ -382,7 +382,10 @@ class Node {
   }
 
   void reset_node() {
-    if constexpr (has_lss) lss_.reset_application();
+    if constexpr (has_lss) {
+      lss_.reset_application();
+      node_id_ = lss_.pending_node_id();  // what reset communication makes active
+    }
     if constexpr (has_storage) {
       parameters_.reset_application(handlers_.storage(), store_, node_id_);
     } else {
@@ -832,8 +835,8 @@ class Node {
   ObjectStore<Device> store_{};
   [[no_unique_address]] Parameters parameters_{};
   SdoServers<Device> sdo_{};
-  TpdoService<Device> tpdos_{};
-  RpdoService<Device> rpdos_{};
+  [[no_unique_address]] TpdoService<Device> tpdos_{};
+  [[no_unique_address]] RpdoService<Device> rpdos_{};
   [[no_unique_address]] MpdoService<Device> mpdos_{};
   EmergencyProducer<Device> emergencies_{};
   HeartbeatProducer heartbeat_{};
