@@ -183,4 +183,23 @@ TEST(NodeWithLss, ResetNodeBringsTheStoredNodeIdBack) {
   EXPECT_EQ(device.ask("000 81 05"), "705 00");
 }
 
+TEST(NodeWithLss, SleepsWhileTheBitRateIsSwitched) {
+  Sensor device{NodeId{5}};
+  device.bus.take();
+  device.ask("7E5 04 01 00 00 00 00 00 00");
+  EXPECT_EQ(device.ask("7E5 13 00 04 00 00 00 00 00"), "7E4 13 00 00 00 00 00 00 00");  // 125 kbit/s
+  device.ask("7E5 15 64 00 00 00 00 00 00");                                            // in 100 ms
+  const canopen::TimePoint begin = device.now;
+  device.now = begin + 100ms;
+  device.node.on_time(device.now);
+  device.node.emergency(0x1000, canopen::ErrorRegister::generic);
+  EXPECT_EQ(device.node.next_deadline(), begin + 200ms);
+  device.node.on_time(device.now);
+  EXPECT_EQ(device.bus.take(), "");
+  device.now = begin + 200ms;
+  device.node.on_time(device.now);
+  EXPECT_EQ(device.port.restarts, 1);
+  EXPECT_EQ(device.bus.take(), "085 00 10 01 00 00 00 00 00");
+}
+
 }  // namespace

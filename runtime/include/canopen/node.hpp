@@ -120,8 +120,7 @@ class Node {
   /// When `on_time` has something to do next: not later than the last time told when it has already. Nothing: only a
   /// frame or the application makes this node send.
   [[nodiscard]] std::optional<TimePoint> next_deadline() const {
-    if (state_ == NmtState::initialisation) return lss_deadline();
-    if (lss_deadline() == now_) return now_;
+    if (state_ == NmtState::initialisation || silent()) return lss_deadline();
     if (heartbeat_.boot_up_due() || sdo_.has_reply()) return now_;
     std::optional<TimePoint> next = heartbeat_.next_deadline();
     const auto consider = [&next](std::optional<TimePoint> other) {
@@ -515,6 +514,15 @@ class Node {
     }
   }
 
+  /// The bit rate is being switched: nothing is sent.
+  [[nodiscard]] bool silent() const {
+    if constexpr (has_lss) {
+      return lss_.silent();
+    } else {
+      return false;
+    }
+  }
+
   [[nodiscard]] std::optional<TimePoint> lss_deadline() const {
     if constexpr (has_lss) {
       return lss_.has_reply() && !lss_.silent() ? now_ : lss_.next_deadline();
@@ -798,9 +806,7 @@ class Node {
   /// Sends what is due, in order of importance; what finds no room stays due.
   void serve() {
     attention_ = false;
-    if constexpr (has_lss) {
-      if (lss_.silent()) return;
-    }
+    if (silent()) return;
     if constexpr (SyncProducer<Device>::exists) {
       if (const std::optional<Sync> sync = sync_producer_.serve(store_, bus_, now_)) on_sync(*sync);
     }
