@@ -57,6 +57,19 @@ TEST(Emcy, HistoryIsClearedByZeroOnly) {
   EXPECT_EQ(device.ask("605 40 03 10 01 00 00 00 00"), "585 80 03 10 01 24 00 00 08");
 }
 
+TEST(Emcy, HistoryStaysInItsMemoryWhateverTheApplicationSets) {
+  Bench device;
+  device.node.set<od::pre_defined_error_field<0>>(200);
+  device.node.set<od::inhibit_time_emcy>(5);
+  device.node.set<od::byte>(9);
+  device.node.emergency(0x4210, ErrorRegister::temperature);
+  device.pass(0s);
+  EXPECT_EQ(device.ask("605 40 03 10 00 00 00 00 00"), "585 4F 03 10 00 03 00 00 00");
+  EXPECT_EQ(device.ask("605 40 03 10 01 00 00 00 00"), "585 43 03 10 01 10 42 00 00");
+  EXPECT_EQ(device.node.get<od::inhibit_time_emcy>(), 5);
+  EXPECT_EQ(device.node.get<od::byte>(), 9);
+}
+
 TEST(Emcy, KeepsTheInhibitTime) {
   Bench device;
   device.ask("605 2B 15 10 00 64 00 00 00");  // 10 ms

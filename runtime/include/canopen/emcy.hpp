@@ -1,6 +1,7 @@
 /// EMCY producer (CiA 301, 7.2.7): errors that appear and go, the error register 1001h and the history 1003h.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -166,8 +167,9 @@ class EmergencyProducer {
       std::uint8_t* const count = store.entries().ram(history_count);
       std::uint8_t* const first = store.entries().ram(history_first);
       const std::uint32_t field = code | static_cast<std::uint32_t>(info[0] << 16) | (std::uint32_t{info[1]} << 24);
-      if (*count < history_capacity) ++*count;
-      std::memmove(first + sizeof field, first, (*count - 1u) * sizeof field);
+      const unsigned kept = std::min<unsigned>(*count, history_capacity - 1u);  // the application may set any number
+      std::memmove(first + sizeof field, first, kept * sizeof field);
+      *count = static_cast<std::uint8_t>(kept + 1);
       std::memcpy(first, &field, sizeof field);
     }
   }
