@@ -89,6 +89,30 @@ TEST(SyncProducer, DoesNotDriftWhenServedLate) {
   EXPECT_EQ(device.pass(1us), "080");
 }
 
+TEST(SyncProducer, HasAPeriodOf35MinutesAtMost) {
+  Bench device;
+  write(device, "605 23 05 10 00 80 00 00 40");
+  EXPECT_EQ(write(device, "605 23 06 10 00 00 00 00 80"), "585 80 06 10 00 31 00 09 06");
+  EXPECT_EQ(write(device, "605 23 06 10 00 FF FF FF 7F"), ok);
+  EXPECT_EQ(device.pass(20min), "");
+  EXPECT_EQ(device.pass(16min), "080");
+  // A longer one that the application sets is none.
+  device.node.set<od::communication_cycle_period>(0x8000'0000);
+  EXPECT_EQ(device.pass(1s), "");
+  EXPECT_EQ(device.node.next_deadline(), std::nullopt);
+}
+
+TEST(SyncWindow, OfMoreThan35MinutesIsNone) {
+  Bench device;
+  write(device, "605 23 07 10 00 00 00 00 80");
+  device.ask(bench::start);
+  device.ask("080");
+  device.pass(1ms);
+  device.ask("205 07");
+  device.ask("080");
+  EXPECT_EQ(device.node.get<od::output>(), 7);
+}
+
 TEST(SyncParameter, IdentifierStaysWhileSyncIsProduced) {
   Bench device;
   write(device, "605 23 05 10 00 80 00 00 40");

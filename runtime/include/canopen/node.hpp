@@ -579,7 +579,7 @@ class Node {
       return check_sdo_cob_id(entries(), index, sub_index, bytes);
     }
     if constexpr (SyncConsumer<Device>::exists) {
-      if (index == 0x1005 || index == 0x1019) {
+      if (index == 0x1005 || index == 0x1006 || index == 0x1019) {
         return check_sync_parameter(Device::options, entries(), SyncProducer<Device>::exists, index, bytes);
       }
     }

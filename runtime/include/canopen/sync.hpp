@@ -24,6 +24,9 @@ struct Sync {
 
 inline constexpr std::uint8_t highest_sync_counter = 240;
 
+/// Whether 1006h or 1007h holds a time: not 0, which is off, and not longer than moments can be apart.
+[[nodiscard]] constexpr bool is_span(Duration span) { return span.count() - 1u < longest_span.count(); }
+
 /// Takes the SYNC of 1005h. With a counter overflow value in 1019h other than 0 it has one data byte, else none.
 template <class Device>
 class SyncConsumer {
@@ -67,7 +70,7 @@ class SyncProducer {
   /// begins.
   void start(const ObjectStore<Device>& store, TimePoint now, bool restart) {
     const Duration period = period_of(store);
-    const bool produces = (store.template number<0x1005, 0>() & CobId::no_rtr_bit) != 0 && period.count() != 0;
+    const bool produces = (store.template number<0x1005, 0>() & CobId::no_rtr_bit) != 0 && is_span(period);
     if (restart || !running_) counter_ = 0;
     running_ = produces;
     due_ = now + period;
@@ -117,7 +120,7 @@ class SyncWindow {
   void open([[maybe_unused]] const ObjectStore<Device>& store, [[maybe_unused]] TimePoint now) {
     if constexpr (exists) {
       const Duration length{store.template number<0x1007, 0>()};
-      window_ = {now + length, length.count() != 0};
+      window_ = {now + length, is_span(length)};
     }
   }
 
@@ -142,6 +145,7 @@ class SyncWindow {
 /// What speaks against writing these bytes to 1005h, 1006h or 1019h (CiA 301, 7.5.2.5, 7.5.2.6 and 7.5.2.22).
 ///   0609 0030h  1005h: the device produces no SYNC; the CAN-ID changes while it does; a restricted CAN-ID.
 ///               1019h: 1 or more than 240
+///   0609 0031h  1006h: more than 35 minutes
 ///   0800 0022h  1019h: 1006h is not 0
 [[nodiscard]] inline AbortCode check_sync_parameter(const DeviceOptions& options, const EntryAccess& entries,
                                                     bool produces, std::uint16_t index,
@@ -159,6 +163,10 @@ class SyncWindow {
     const bool extended = (after & CobId::extended_bit) != 0;
     if (extended && !options.pdo_extended_ids) return AbortCode::invalid_value;
     if (!extended && ((after & 0x1FFF'F800) != 0 || is_restricted(after & 0x7FF))) return AbortCode::invalid_value;
+  } else if (index == 0x1006) {
+    std::uint32_t period = 0;
+    std::memcpy(&period, bytes.data(), sizeof period);
+    if (period > longest_span.count()) return AbortCode::value_too_high;
   } else if (index == 0x1019) {
     if (bytes[0] == 1 || bytes[0] > highest_sync_counter) return AbortCode::invalid_value;
     const entry::Word period = dictionary.find(0x1006, 0);

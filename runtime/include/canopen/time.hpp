@@ -39,6 +39,9 @@ class TimePoint {
   std::uint32_t microseconds_ = 0;
 };
 
+/// The longest time that may pass until a moment that others are compared with: 35 minutes.
+inline constexpr Duration longest_span{0x7FFF'FFFF};
+
 /// A time as 1017h or 1800h:05 hold it.
 [[nodiscard]] constexpr Duration from_milliseconds(std::uint16_t count) { return Duration{count * 1000u}; }
 
