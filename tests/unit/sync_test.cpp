@@ -157,6 +157,15 @@ TEST(SyncWindow, DropsWhatCouldNotBeSentInIt) {
   EXPECT_EQ(device.ask("080"), "185 00");
 }
 
+TEST(SyncWindow, LimitsWhatASyncWantsNotWhatARemoteFrameAsksFor) {
+  Bench device;
+  write(device, "605 23 07 10 00 64 00 00 00");
+  device.ask(bench::start);
+  EXPECT_EQ(device.ask("080"), "185 00");
+  device.now = device.now + 101us;
+  EXPECT_EQ(device.ask("185 R 1"), "185 00");
+}
+
 TEST(SyncWindow, LetsRpdosInUntilItsEnd) {
   Bench device;
   write(device, "605 23 07 10 00 64 00 00 00");

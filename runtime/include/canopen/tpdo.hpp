@@ -133,10 +133,10 @@ class TpdoService {
   }
 
   /// A remote frame asks for the TPDO with this CAN-ID.
-  void on_remote(const EntryAccess& entries, std::uint32_t asked) {
+  void on_remote(const EntryAccess& entries, std::uint32_t can_id) {
     if constexpr (Device::options.tpdo_remote_frames) {
       for (std::size_t i = 0; i < count; ++i) {
-        if ((slots_[i].flags & active) != 0 && entries.number(parameters[i].cob_id) == asked) slots_[i].flags |= due;
+        if ((slots_[i].flags & active) != 0 && entries.number(parameters[i].cob_id) == can_id) slots_[i].flags |= asked;
       }
     }
   }
@@ -171,11 +171,12 @@ class TpdoService {
   enum Flag : std::uint8_t {
     active = 1,           ///< valid, mapped, and the node is Operational
     changed_bit = 2,      ///< a mapped object has a new value
-    due = 4,              ///< to be sent: a SYNC or a remote frame wants it
+    due = 4,              ///< a SYNC wants it
     timed = 8,            ///< event_due counts
     inhibited = 16,       ///< inhibit_end counts
     event_driven = 32,    ///< of type 254 or 255
     before_start = 64,    ///< the SYNC with the start value has not come yet
+    asked = 128,          ///< a remote frame wants it
   };
 
   static constexpr std::uint8_t last_cyclic = 240;
@@ -307,7 +308,7 @@ class TpdoService {
   /// Whether it is to be sent, but for the event timer.
   [[nodiscard]] static bool wanted(const Slot& slot) {
     if ((slot.flags & active) == 0) return false;
-    if ((slot.flags & due) != 0) return true;
+    if ((slot.flags & (due | asked)) != 0) return true;
     constexpr std::uint8_t event = event_driven | changed_bit;
     return Device::options.event_driven_on_change && (slot.flags & event) == event;
   }
@@ -396,7 +397,7 @@ class TpdoService {
   /// drift, or from now.
   void sent(std::size_t i, const EntryAccess& entries, TimePoint now) {
     Slot& slot = slots_[i];
-    slot.flags &= static_cast<std::uint8_t>(~(changed_bit | due));
+    slot.flags &= static_cast<std::uint8_t>(~(changed_bit | due | asked));
     if ((slot.flags & event_driven) == 0) return;
     if constexpr (has_inhibit_time) {
       const Duration inhibit = from_hundred_microseconds(parameter(entries, parameters[i].inhibit_time));
