@@ -311,6 +311,19 @@ TEST(DamProducer, KeepsTheInhibitTime) {
   EXPECT_EQ(device.pass(1us), "285 86 00 20 00 02 00 00 00");
 }
 
+TEST(DamProducer, SendsAtOnceHoweverLongAgoTheInhibitTimeEnded) {
+  Bench device;
+  device.ask("605 23 01 18 01 85 02 00 80");
+  device.ask("605 2B 01 18 03 64 00 00 00");
+  device.ask("605 23 01 18 01 85 02 00 00");
+  device.ask(bench::start);
+  EXPECT_TRUE(device.node.send_mpdo({NodeId{6}, 0x2000, 0}, 1));
+  EXPECT_EQ(device.pass(0s), "285 86 00 20 00 01 00 00 00");
+  for (int i = 0; i < 4; ++i) device.pass(10min);
+  EXPECT_TRUE(device.node.send_mpdo({NodeId{6}, 0x2000, 0}, 2));
+  EXPECT_EQ(device.pass(0s), "285 86 00 20 00 02 00 00 00");
+}
+
 TEST(DamProducer, RefusesWhatItCannotSend) {
   Bench device;
   const MpdoDestination to{NodeId{6}, 0x2000, 0};

@@ -379,11 +379,13 @@ class MpdoService {
   template <Bus B>
   bool serve([[maybe_unused]] const EntryAccess& entries, [[maybe_unused]] NodeId own, [[maybe_unused]] B& bus,
              [[maybe_unused]] TimePoint now) {
+    // Inhibit times end here, whether anything waits or not: later their ends would seem to lie ahead again.
     if constexpr (sends_destination) {
-      if (destination_.waiting != 0 && !serve_destination(entries, bus, now)) return false;
+      if (destination_.inhibit.over(now) && destination_.waiting != 0 && !serve_destination(entries, bus, now))
+        return false;
     }
     if constexpr (sends_source) {
-      if (any_pending() && !serve_source(entries, own, bus, now)) return false;
+      if (source_.inhibit.over(now) && any_pending() && !serve_source(entries, own, bus, now)) return false;
     }
     return true;
   }
