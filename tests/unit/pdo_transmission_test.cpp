@@ -95,6 +95,14 @@ TEST(TpdoStartValue, MeansNothingWithoutASyncCounter) {
 TEST(TpdoStartValue, CannotChangeWhileTheTpdoIsValid) {
   Bench device;
   EXPECT_EQ(device.ask("605 2F 02 18 06 03 00 00 00"), "585 80 02 18 06 22 00 00 08");
+  EXPECT_EQ(device.ask("605 2F 02 18 06 00 00 00 00"), "585 60 02 18 06 00 00 00 00");  // as it is
+}
+
+TEST(TpdoStartValue, IsACounterOfASync) {
+  Bench device;
+  device.ask("605 23 02 18 01 85 03 00 80");
+  EXPECT_EQ(device.ask("605 2F 02 18 06 F0 00 00 00"), "585 60 02 18 06 00 00 00 00");
+  EXPECT_EQ(device.ask("605 2F 02 18 06 F1 00 00 00"), "585 80 02 18 06 30 00 09 06");
 }
 
 TEST(TpdoSync, CarriesTheValuesOfTheSyncNotThoseThatItBrings) {

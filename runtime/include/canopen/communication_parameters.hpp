@@ -10,6 +10,7 @@
 #include "canopen/device_options.hpp"
 #include "canopen/object_store.hpp"
 #include "canopen/pdo_list.hpp"
+#include "canopen/sync.hpp"
 #include "canopen/transmission_type.hpp"
 
 namespace canopen {
@@ -80,8 +81,11 @@ namespace canopen {
       return cob_id.valid() && before != after ? AbortCode::device_state : ok;
     }
     case pdo_parameter::sync_start: {
+      if (!tpdo) return ok;
+      if (bytes[0] > highest_sync_counter) return AbortCode::invalid_value;
       const CobId cob_id{entries.number(entries.dictionary().find(index, pdo_parameter::cob_id))};
-      return tpdo && cob_id.valid() ? AbortCode::device_state : ok;
+      const std::uint32_t before = entries.number(entries.dictionary().find(index, sub_index));
+      return cob_id.valid() && before != bytes[0] ? AbortCode::device_state : ok;
     }
     default: return ok;
   }
