@@ -192,6 +192,39 @@ TEST(TpdoRemote, WaitsForTheInhibitTime) {
   EXPECT_EQ(device.pass(1us), "185 00 00 00 00 00 00");
 }
 
+/// TPDO1 has an inhibit time of 10 ms, which begins now.
+struct Inhibited : Bench {
+  Inhibited() {
+    ask("605 23 00 18 01 85 01 00 80");
+    ask("605 2B 00 18 03 64 00 00 00");
+    ask("605 23 00 18 01 85 01 00 40");
+    ask(bench::start);
+  }
+};
+
+TEST(TpdoTransmissionType, KeepsAChangeThatWaitsWhenItIsWritten) {
+  Inhibited device;
+  device.node.set<od::input_word>(7);
+  EXPECT_EQ(device.ask("605 2F 00 18 02 FE 00 00 00"), "585 60 00 18 02 00 00 00 00");
+  EXPECT_EQ(device.pass(9999us), "");
+  EXPECT_EQ(device.pass(1us), "185 07 00 00 00 00 00");
+}
+
+TEST(TpdoTransmissionType, SynchronousDoesNotWaitForTheInhibitTime) {
+  Inhibited device;
+  device.ask("605 2F 00 18 02 01 00 00 00");
+  EXPECT_EQ(device.ask(sync), "185 00 00 00 00 00 00 | 285 00 | 385 00 00");
+}
+
+TEST(TpdoInhibitTime, GoesOnWhileTheTpdoIsNotValid) {
+  Inhibited device;
+  device.ask("605 23 00 18 01 85 01 00 C0");
+  device.ask("605 23 00 18 01 85 01 00 40");
+  device.node.set<od::input_word>(7);
+  EXPECT_EQ(device.pass(9999us), "");
+  EXPECT_EQ(device.pass(1us), "185 07 00 00 00 00 00");
+}
+
 // RPDOs: RPDO1 is event-driven, RPDO2 has type 1.
 
 TEST(RpdoType1, IsTakenOverAtTheNextSync) {
@@ -240,6 +273,46 @@ TEST(RpdoDeadline, IsMissedAfterTheEventTimer) {
   EXPECT_EQ(device.pass(1s), "");
   EXPECT_EQ(device.ask("205 02 00 00 00 00 00"), "085 00 00 00 00 00 00 00 00");
   EXPECT_EQ(log, "01 01 -1 ?1 01 ");
+}
+
+TEST(RpdoDeadline, IsNotMissedOutsideOperational) {
+  Bench device;
+  device.ask("605 2B 00 14 05 0A 00 00 00");
+  device.ask(bench::start);
+  device.ask("205 01 00 00 00 00 00");
+  device.ask(bench::enter_pre_operational);
+  EXPECT_EQ(device.pass(1s), "");
+}
+
+TEST(RpdoDeadline, EndsWhenTheEventTimerIsSetTo0) {
+  Running device;
+  device.ask("605 2B 00 14 05 0A 00 00 00");
+  device.ask("205 01 00 00 00 00 00");
+  device.ask("605 2B 00 14 05 00 00 00 00");
+  EXPECT_EQ(device.pass(1s), "");
+}
+
+TEST(RpdoCobId, Bit30HasNoMeaning) {
+  Running device;
+  device.ask("605 23 00 14 01 05 02 00 80");
+  device.ask("605 23 00 14 01 05 02 00 40");
+  device.ask("205 01 02 00 00 00 00");
+  EXPECT_EQ(device.node.get<od::output_word>(), 0x0201);
+}
+
+TEST(RpdoCobId, EndsTheErrorOfAShortFrameWhenItIsWritten) {
+  Running device;
+  EXPECT_EQ(device.ask("205 01"), "085 10 82 11 00 00 00 00 00");
+  EXPECT_EQ(device.ask("605 23 00 14 01 05 02 00 80"), "585 60 00 14 01 00 00 00 00 | 085 00 00 00 00 00 00 00 00");
+}
+
+TEST(RpdoType1, IsForgottenWhenItsParameterIsWritten) {
+  Running device;
+  device.ask("305 11");
+  device.ask("605 23 01 14 01 05 03 00 80");
+  device.ask("605 23 01 14 01 05 03 00 00");
+  device.ask(sync);
+  EXPECT_EQ(device.node.get<od::byte>(), 0);
 }
 
 TEST(RpdoLength, TooShortIsNotTakenAndTold) {

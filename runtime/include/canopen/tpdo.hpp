@@ -104,7 +104,8 @@ class TpdoService {
       if (!mapping && sub_index == pdo_parameter::event_timer) {
         start_event_timer(i, store.entries(), now);
       } else {
-        slots_[i].flags &= static_cast<std::uint8_t>(inhibited);
+        const bool sends_changes = (slots_[i].flags & event_driven) != 0;
+        slots_[i].flags &= static_cast<std::uint8_t>(sends_changes ? inhibited | changed_bit : inhibited);
         activate(i, store, now);
       }
     }
@@ -169,14 +170,14 @@ class TpdoService {
 
  private:
   enum Flag : std::uint8_t {
-    active = 1,           ///< valid, mapped, and the node is Operational
-    changed_bit = 2,      ///< a mapped object has a new value
-    due = 4,              ///< a SYNC wants it
-    timed = 8,            ///< event_due counts
-    inhibited = 16,       ///< inhibit_end counts
-    event_driven = 32,    ///< of type 254 or 255
-    before_start = 64,    ///< the SYNC with the start value has not come yet
-    asked = 128,          ///< a remote frame wants it
+    active = 1,         ///< valid, mapped, and the node is Operational
+    changed_bit = 2,    ///< a mapped object has a new value
+    due = 4,            ///< a SYNC wants it
+    timed = 8,          ///< event_due counts
+    inhibited = 16,     ///< inhibit_end counts
+    event_driven = 32,  ///< of type 254 or 255
+    before_start = 64,  ///< the SYNC with the start value has not come yet
+    asked = 128,        ///< a remote frame wants it
   };
 
   static constexpr std::uint8_t last_cyclic = 240;
@@ -275,7 +276,9 @@ class TpdoService {
     slot.type =
         static_cast<std::uint8_t>(parameter(entries, parameters[i].transmission_type, event_driven_type));
     slot.flags |= active;
-    switch (transmission_of(slot.type)) {
+    const Transmission transmission = transmission_of(slot.type);
+    if (transmission != Transmission::event_driven) slot.flags &= static_cast<std::uint8_t>(~inhibited);
+    switch (transmission) {
       case Transmission::event_driven:
         slot.flags |= event_driven;
         start_event_timer(i, entries, now);
