@@ -60,13 +60,20 @@ bool is_list_of_objects(const Object& mapping) {
   return true;
 }
 
+/// What is mapped over the bus has the length of its type. A string has the one of its entry.
+bool carries_a_string(const Pdo& pdo) {
+  return std::ranges::any_of(pdo.entries, [](const PdoEntry& entry) {
+    return entry.object != nullptr && entry.object->type->kind == canopen::DataClass::string;
+  });
+}
+
 /// Whether the mapping may change: all of its parameter may be written, or set by the application. A PDO without a
 /// COB-ID is not served at all.
 bool is_dynamic(const Pdo& pdo, const Options& options) {
   constexpr std::uint8_t cob_id = 1;
   if (pdo.communication == nullptr || pdo.communication->find(cob_id) == nullptr) return false;
   if (pdo.mapping == nullptr || !is_list_of_objects(*pdo.mapping)) return false;
-  if (options.static_mapping.applies_to(pdo.mapping->index)) return false;
+  if (options.static_mapping.applies_to(pdo.mapping->index) || carries_a_string(pdo)) return false;
   return std::ranges::all_of(pdo.mapping->entries, [&](const Entry& entry) { return changes(entry, options); });
 }
 

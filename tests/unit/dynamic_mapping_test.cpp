@@ -87,6 +87,15 @@ TEST(DynamicMapping, NeedsACobId) {
   EXPECT_FALSE(first_is_dynamic(DeviceFromText{without_cob_id + mapping("1A00")}));
 }
 
+TEST(DynamicMapping, CarriesNoString) {
+  const auto dynamic = [](std::string_view data_type) {
+    return first_is_dynamic(DeviceFromText{communication("1800") + mapping("1A00") +
+                                           var("2000", "Input", data_type, "ro", "PDOMapping=1\nDefaultValue=R\n")});
+  };
+  EXPECT_TRUE(dynamic("5"));
+  EXPECT_FALSE(dynamic("9"));
+}
+
 TEST(DynamicMapping, NeedsEntriesOf32BitsWithoutAGap) {
   const auto dynamic = [](const std::string& subs) {
     return first_is_dynamic(DeviceFromText{communication("1400") + group("1600", "Mapping", "9", 3) +
