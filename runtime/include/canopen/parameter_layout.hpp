@@ -193,11 +193,18 @@ class ParameterLayout {
     if (entry::is_string(word)) {
       const bool terminated =
           Device::dictionary.zero_terminated_strings && entry::type_of(word) == entry::visible_string;
-      const Limits* row = Device::dictionary.find_limits(object_key(index, sub_index));
-      return sizeof(std::uint16_t) + (row == nullptr ? 0 : row->high) + (terminated ? 1 : 0);
+      return sizeof(std::uint16_t) + string_capacity(object_key(index, sub_index)) + (terminated ? 1 : 0);
     }
     const std::size_t size = entry::wire_bytes(word);
     return size <= 2 ? size : size <= 4 ? 4 : 8;
+  }
+
+  /// Row by row: with UBSan g++ 12 takes no pointer to a row of the table for a constant.
+  [[nodiscard]] static constexpr std::size_t string_capacity(std::uint32_t key) {
+    for (const Limits& row : Device::dictionary.limits) {
+      if (row.key == key) return row.high;
+    }
+    return 0;
   }
 
   /// Calls `visit(index, sub_index, word)` for each entry in RAM.
