@@ -141,9 +141,9 @@ struct NodeIdRelative {
 
 namespace dictionary_detail {
 
-/// The row with this key in a table sorted by key; null when there is none.
+/// Where the row with this key stands in a table sorted by key; at its end when there is none.
 template <class Row>
-[[nodiscard]] constexpr const Row* find_by_key(std::span<const Row> rows, std::uint32_t key) {
+[[nodiscard]] constexpr std::size_t position_of_key(std::span<const Row> rows, std::uint32_t key) {
   std::size_t low = 0;
   std::size_t high = rows.size();
   while (low < high) {
@@ -154,7 +154,14 @@ template <class Row>
       high = middle;
     }
   }
-  return low < rows.size() && rows[low].key == key ? &rows[low] : nullptr;
+  return low < rows.size() && rows[low].key == key ? low : rows.size();
+}
+
+/// The row with this key; null when there is none.
+template <class Row>
+[[nodiscard]] constexpr const Row* find_by_key(std::span<const Row> rows, std::uint32_t key) {
+  const std::size_t position = position_of_key(rows, key);
+  return position < rows.size() ? &rows[position] : nullptr;
 }
 
 template <class Row>

@@ -112,9 +112,14 @@ inline constexpr IndexRange no_parameters[] = {
                                                  std::uint8_t sub_index) {
   const bool array = entry::kind_of(dictionary.find_index(index)) == entry::Kind::array;
   const std::uint32_t key = object_key(index, array && sub_index > 1 ? std::uint8_t{1} : sub_index);
-  if (const Limits* row = dictionary.find_limits(key); row != nullptr) hash = mix(mix(hash, row->low), row->high);
-  if (const WideLimits* row = dictionary.find_wide_limits(key); row != nullptr) {
-    for (const std::uint64_t limit : {row->low, row->high}) {
+  // By position: with UBSan g++ 12 takes no pointer to a row of a table for a constant.
+  const std::size_t narrow = dictionary_detail::position_of_key(dictionary.limits, key);
+  if (narrow < dictionary.limits.size()) {
+    hash = mix(mix(hash, dictionary.limits[narrow].low), dictionary.limits[narrow].high);
+  }
+  const std::size_t wide = dictionary_detail::position_of_key(dictionary.wide_limits, key);
+  if (wide < dictionary.wide_limits.size()) {
+    for (const std::uint64_t limit : {dictionary.wide_limits[wide].low, dictionary.wide_limits[wide].high}) {
       hash = mix(mix(hash, static_cast<std::uint32_t>(limit)), static_cast<std::uint32_t>(limit >> 32));
     }
   }
@@ -199,12 +204,10 @@ class ParameterLayout {
     return size <= 2 ? size : size <= 4 ? 4 : 8;
   }
 
-  /// Row by row: with UBSan g++ 12 takes no pointer to a row of the table for a constant.
   [[nodiscard]] static constexpr std::size_t string_capacity(std::uint32_t key) {
-    for (const Limits& row : Device::dictionary.limits) {
-      if (row.key == key) return row.high;
-    }
-    return 0;
+    const std::span<const Limits> rows = Device::dictionary.limits;
+    const std::size_t position = dictionary_detail::position_of_key(rows, key);
+    return position < rows.size() ? rows[position].high : 0;
   }
 
   /// Calls `visit(index, sub_index, word)` for each entry in RAM.
