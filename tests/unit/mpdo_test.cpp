@@ -339,6 +339,21 @@ TEST(DamProducer, RefusesWhatItCannotSend) {
   EXPECT_EQ(device.pass(1s), "");
 }
 
+TEST(SamProducer, ForgetsWhatWaitsWhenItsTpdoIsMadeInvalid) {
+  Bench device;
+  device.ask("605 23 00 18 01 85 01 00 80");
+  device.ask("605 2B 00 18 03 64 00 00 00");  // 10 ms
+  device.ask("605 23 00 18 01 85 01 00 00");
+  device.ask(bench::start);
+  device.node.set<od::word>(1);
+  EXPECT_NE(device.pass(0s), "");
+  device.node.set<od::word>(2);
+  device.ask("605 23 00 18 01 85 01 00 80");
+  EXPECT_EQ(device.pass(1s), "");
+  device.ask("605 23 00 18 01 85 01 00 00");
+  EXPECT_EQ(device.pass(1s), "");
+}
+
 // Made an MPDO by SDO
 
 TEST(DynamicMpdo, ConsumesInEitherMode) {

@@ -93,6 +93,28 @@ TEST(DynamicMapping, PlacesBits) {
   EXPECT_FALSE(device.node.get<od::switches<1>>());
 }
 
+TEST(DynamicMapping, LeavesAnObjectAloneWhoseEntryIsADummyNow) {
+  Bench device;
+  device.ask(bench::start);
+  remap(device, 0x1602, {0x20000008});
+  cob_id(device, 0x1402, 0x222);
+  device.ask("222 11");
+  cob_id(device, 0x1402, 0x80000222);
+  EXPECT_EQ(remap(device, 0x1602, {0x00050008}), "ok");
+  cob_id(device, 0x1402, 0x222);
+  device.ask("222 22");
+  EXPECT_EQ(device.node.get<od::byte>(), 0x11);
+}
+
+TEST(DynamicMapping, TakesAnyValueOfAByteAsABoolean) {
+  Bench device;
+  device.ask(bench::start);
+  EXPECT_EQ(remap(device, 0x1602, {0x20040108}), "ok");
+  cob_id(device, 0x1402, 0x222);
+  device.ask("222 FE");
+  EXPECT_EQ(device.ask("605 40 04 20 01 00 00 00 00"), "585 4F 04 20 01 01 00 00 00");
+}
+
 TEST(DynamicMapping, KeepsTheLimitsOfAnObject) {
   Bench device;
   device.ask(bench::start);

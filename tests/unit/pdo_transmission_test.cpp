@@ -172,6 +172,14 @@ TEST(TpdoType252, SendsTheDataOfTheLastSyncWhenAsked) {
   EXPECT_EQ(device.ask("385 R 2"), "385 34 12");
 }
 
+TEST(TpdoType252, SendsTheDataOfItsBeginningBeforeTheFirstSync) {
+  Running device;
+  device.node.set<od::input_word>(0x1234);
+  device.pass(0s);  // TPDO1
+  device.ask("605 2F 02 18 02 FC 00 00 00");
+  EXPECT_EQ(device.ask("385 R 2"), "385 34 12");
+}
+
 TEST(TpdoType253, SendsTheDataOfNowWhenAsked) {
   Running device;
   device.ask("605 2F 02 18 02 FD 00 00 00");
@@ -214,6 +222,13 @@ TEST(TpdoTransmissionType, SynchronousDoesNotWaitForTheInhibitTime) {
   Inhibited device;
   device.ask("605 2F 00 18 02 01 00 00 00");
   EXPECT_EQ(device.ask(sync), "185 00 00 00 00 00 00 | 285 00 | 385 00 00");
+}
+
+TEST(TpdoInhibitTime, IsNotForSynchronousTpdos) {
+  Inhibited device;
+  device.ask("605 2F 00 18 02 01 00 00 00");
+  device.ask(sync);
+  EXPECT_EQ(device.ask(sync), "185 00 00 00 00 00 00 | 385 00 00");
 }
 
 TEST(TpdoInhibitTime, GoesOnWhileTheTpdoIsNotValid) {

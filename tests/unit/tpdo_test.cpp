@@ -106,6 +106,22 @@ TEST(Tpdo, IsSentEachTimeTheEventTimerRunsOut) {
   EXPECT_EQ(device.pass(20ms), std::string{zeros} + " | " + zeros);
 }
 
+TEST(Tpdo, ItsEventTimerDoesNotDriftWhenServedLate) {
+  Bench device;
+  device.node.set<od::tpdo_communication_parameter_1::event_timer>(10);
+  device.ask(bench::start);
+  device.now = device.now + 13ms;
+  device.node.on_time(device.now);
+  EXPECT_EQ(device.bus.take(), zeros);
+  EXPECT_EQ(device.pass(6999us), "");
+  EXPECT_EQ(device.pass(1us), zeros);
+  device.now = device.now + 25ms;  // two periods are missing: one is sent
+  device.node.on_time(device.now);
+  EXPECT_EQ(device.bus.take(), zeros);
+  EXPECT_EQ(device.pass(9999us), "");
+  EXPECT_EQ(device.pass(1us), zeros);
+}
+
 TEST(Tpdo, EveryTransmissionRestartsTheEventTimer) {
   Bench device;
   device.node.set<od::tpdo_communication_parameter_1::event_timer>(10);
