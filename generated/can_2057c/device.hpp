@@ -49,8 +49,11 @@ struct Device {
   static constexpr canopen::DeviceOptions options = [] {
     canopen::DeviceOptions departures;
     departures.error_history_keeps_resets = true;
+    departures.inhibit_time_unit = 1000;
     departures.pdo_extended_ids = false;
     departures.pdo_mapping_writable_while_valid = true;
+    departures.pdo_reserved_can_ids = {0x080, 0x100};
+    departures.reset_emergency = 0xFF00;
     return departures;
   }();
 
@@ -68,6 +71,7 @@ struct Device {
       case 0x8130: return {{0x07, 0x00, 0x00, 0x00, 0x00}};
       case 0x8140: return {{0x08, 0x00, 0x00, 0x00, 0x00}};
       case 0x8210: return {{0x09, 0x00, 0x00, 0x00, 0x00}};
+      case 0xFF00: return {{0x0A, 0x00, 0x00, 0x00, 0x00}};
       default: return {};
     }
   }

@@ -36,6 +36,7 @@ struct Device {
   /// Where the device departs from CiA 301.
   static constexpr canopen::DeviceOptions options = [] {
     canopen::DeviceOptions departures;
+    departures.emcy_stopped_keeps_last = true;
     departures.error_history_abort_code = 0x06090031;
     departures.pdo_extended_ids = false;
     departures.pdo_mapping_abort_code = 0x06040041;
@@ -46,7 +47,7 @@ struct Device {
   }();
 
   /// Bit n is set where an RPDO may map data type n as a dummy.
-  static constexpr std::uint32_t dummies = 0x00FC;
+  static constexpr std::uint32_t dummies = 0x01FC;
 
   /// Whether a new value of an entry sends the event-driven TPDOs that carry it.
   static constexpr bool triggers_event([[maybe_unused]] std::uint16_t index, [[maybe_unused]] std::uint8_t sub_index) {

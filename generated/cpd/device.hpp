@@ -36,7 +36,10 @@ struct Device {
   /// Where the device departs from CiA 301.
   static constexpr canopen::DeviceOptions options = [] {
     canopen::DeviceOptions departures;
+    departures.emcy_cob_id_writable = 0x00000780;
+    departures.emcy_cob_id_writable_while_valid = true;
     departures.pdo_cob_id_writable = 0x80000780;
+    departures.sync_cob_id_writable = 0x000007FF;
     return departures;
   }();
 

@@ -37,7 +37,9 @@ struct Device {
   static constexpr canopen::DeviceOptions options = [] {
     canopen::DeviceOptions departures;
     departures.inhibit_time_writable_while_valid = true;
+    departures.pdo_cob_id_writable = 0xFFFFFF80;
     departures.pdo_extended_ids = false;
+    departures.tpdo_remote_types = false;
     return departures;
   }();
 

@@ -29,10 +29,13 @@ struct Device {
   /// Where the device departs from CiA 301.
   static constexpr canopen::DeviceOptions options = [] {
     canopen::DeviceOptions departures;
+    departures.emcy_inhibit_time_step = 10;
     departures.event_driven_on_change = false;
     departures.pdo_extended_ids = false;
     departures.restore_needs_power_cycle = true;
+    departures.sdo_length_codes = false;
     departures.sdo_upload_size_indicated = false;
+    departures.tpdo_remote_frames_can_be_disabled = false;
     return departures;
   }();
 

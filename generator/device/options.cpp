@@ -22,19 +22,36 @@ using nlohmann::json;
 constexpr std::array runtime_flags = {
     "pdo_extended_ids",
     "tpdo_remote_frames",
+    "tpdo_remote_frames_can_be_disabled",
+    "tpdo_remote_types",
     "inhibit_time_writable_while_valid",
     "event_driven_on_change",
     "tpdo_acyclic_on_change",
     "pdo_mapping_writable_while_valid",
     "mpdo",
+    "emcy_cob_id_writable_while_valid",
+    "emcy_stopped_keeps_last",
     "error_history_keeps_resets",
     "sdo_upload_size_indicated",
+    "sdo_length_codes",
     "sdo_block_transfer",
     "restore_needs_power_cycle",
 };
-constexpr std::array runtime_masks = {"pdo_cob_id_writable"};
+constexpr std::array runtime_masks = {"pdo_cob_id_writable", "sync_cob_id_writable", "emcy_cob_id_writable"};
 constexpr std::array runtime_abort_codes = {"pdo_mapping_abort_code", "error_history_abort_code",
                                             "storage_signature_abort_code"};
+
+struct NumberOption {
+  const char* name;
+  std::uint16_t low;
+  std::uint16_t high;
+};
+
+/// The longest inhibit time is less than half of the time after which canopen::TimePoint wraps.
+constexpr std::array runtime_numbers = {
+    NumberOption{"inhibit_time_unit", 1, 32767},
+    NumberOption{"emcy_inhibit_time_step", 1, 65535},
+};
 
 /// Enumerators of canopen::Storing that depart from an entry's access.
 constexpr std::array storing_names = {"always", "never", "with_node_id"};
@@ -127,6 +144,11 @@ class OptionsReader {
     for (const char* option : runtime_abort_codes) {
       if (name == option) return abort_code(name, value);
     }
+    for (const NumberOption& option : runtime_numbers) {
+      if (name == option.name) return number(option, value);
+    }
+    if (name == "pdo_reserved_can_ids") return pdo_reserved_can_ids(value);
+    if (name == "reset_emergency") return reset_emergency(value);
     error(name, "no such option");
   }
 
@@ -275,6 +297,33 @@ class OptionsReader {
     });
     if (!known) return error(name, "an abort code of CiA 301 such as \"0x06040041\"");
     options_.runtime.emplace_back(name, fmt::format("0x{:08X}", *code));
+  }
+
+  void number(const NumberOption& option, const json& value) {
+    const std::uint64_t count = value.is_number_unsigned() ? value.get<std::uint64_t>() : 0;
+    if (count < option.low || count > option.high) {
+      return error(option.name, fmt::format("a number from {} to {}", option.low, option.high));
+    }
+    options_.runtime.emplace_back(option.name, fmt::format("{}", count));
+  }
+
+  void pdo_reserved_can_ids(const json& value) {
+    const auto can_id = [&](std::size_t at) {
+      const bool there = value.is_array() && value.size() == 2 && value[at].is_string();
+      return there ? parse_unsigned(value[at].get<std::string>()) : std::nullopt;
+    };
+    const auto first = can_id(0);
+    const auto last = can_id(1);
+    if (!first || !last || *first > *last || *last > 0x7FF) {
+      return error("pdo_reserved_can_ids", "the first and the last of a range of CAN-IDs: [\"0x080\", \"0x100\"]");
+    }
+    options_.runtime.emplace_back("pdo_reserved_can_ids", fmt::format("{{0x{:03X}, 0x{:03X}}}", *first, *last));
+  }
+
+  void reset_emergency(const json& value) {
+    const auto code = value.is_string() ? parse_index(value.get<std::string>()) : std::nullopt;
+    if (!code || *code == 0) return error("reset_emergency", "an emergency error code such as \"FF00h\"");
+    options_.runtime.emplace_back("reset_emergency", fmt::format("0x{:04X}", *code));
   }
 
   /// Where a member's name stands in the text, as well as can be told: its first occurrence in quotes.

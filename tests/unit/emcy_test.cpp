@@ -99,6 +99,35 @@ TEST(Emcy, IsNotSentWhileItsCobIdIsInvalid) {
   EXPECT_EQ(device.ask("605 40 03 10 01 00 00 00 00"), "585 43 03 10 01 00 10 00 00");
 }
 
+TEST(Emcy, KeepsItsCanIdWhileItIsValid) {
+  Bench device;
+  EXPECT_EQ(device.ask("605 23 14 10 00 86 00 00 00"), "585 80 14 10 00 30 00 09 06");
+  EXPECT_EQ(device.ask("605 23 14 10 00 85 00 00 00"), "585 60 14 10 00 00 00 00 00");
+  EXPECT_EQ(device.ask("605 23 14 10 00 86 00 00 80"), "585 60 14 10 00 00 00 00 00");
+  EXPECT_EQ(device.ask("605 23 14 10 00 87 00 00 00"), "585 60 14 10 00 00 00 00 00");
+  device.node.emergency(0x1000, ErrorRegister::generic);
+  EXPECT_EQ(device.pass(0s), "087 00 10 01 00 00 00 00 00");
+}
+
+TEST(Emcy, HasNoRestrictedCanId) {
+  Bench device;
+  device.ask("605 23 14 10 00 85 00 00 80");
+  EXPECT_EQ(device.ask("605 23 14 10 00 01 07 00 00"), "585 80 14 10 00 30 00 09 06");
+  EXPECT_EQ(device.ask("605 23 14 10 00 00 08 00 00"), "585 80 14 10 00 30 00 09 06");
+  EXPECT_EQ(device.ask("605 23 14 10 00 00 00 00 80"), "585 60 14 10 00 00 00 00 00");
+  EXPECT_EQ(device.ask("605 23 14 10 00 00 00 00 00"), "585 80 14 10 00 30 00 09 06");
+  EXPECT_EQ(device.ask("605 23 14 10 00 00 07 00 00"), "585 60 14 10 00 00 00 00 00");
+}
+
+TEST(Emcy, MayHaveA29BitCanIdButNotBit30) {
+  Bench device;
+  device.ask("605 23 14 10 00 85 00 00 80");
+  EXPECT_EQ(device.ask("605 23 14 10 00 85 00 00 40"), "585 80 14 10 00 30 00 09 06");
+  EXPECT_EQ(device.ask("605 23 14 10 00 01 00 00 20"), "585 60 14 10 00 00 00 00 00");
+  device.node.emergency(0x1000, ErrorRegister::generic);
+  EXPECT_EQ(device.pass(0s), "00000001 00 10 01 00 00 00 00 00");
+}
+
 TEST(Emcy, OfManyThatWaitTheLastOneStays) {
   Bench device;
   device.bus.room = 0;

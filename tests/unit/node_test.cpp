@@ -90,6 +90,31 @@ TEST(Node, SendsConstantBytesAsADomain) {
   EXPECT_EQ(device.ask("605 40 1A 20 00 00 00 00 00"), "585 47 1A 20 00 01 02 03 00");
 }
 
+// shows 000.32
+TEST(Node, ChangesItsStateWhenTheApplicationAsks) {
+  Bench device;
+  device.node.request(canopen::NmtCommand::start, device.now);
+  EXPECT_EQ(device.node.state(), canopen::NmtState::operational);
+  EXPECT_EQ(device.bus.take(), "185 00 00 00 00 00 00");
+  device.node.request(canopen::NmtCommand::stop, device.now);
+  EXPECT_EQ(device.ask("605 40 00 10 00 00 00 00 00"), "");
+  device.node.request(canopen::NmtCommand::enter_pre_operational, device.now);
+  EXPECT_EQ(device.ask("605 2B 17 10 00 64 00 00 00"), "585 60 17 10 00 00 00 00 00 | 705 7F");
+  device.node.request(canopen::NmtCommand::reset_communication, device.now);
+  EXPECT_EQ(device.bus.take(), "705 00");
+  EXPECT_EQ(device.ask("605 40 17 10 00 00 00 00 00"), "585 4B 17 10 00 00 00 00 00");
+  device.node.request(canopen::NmtCommand::reset_node, device.now);
+  EXPECT_EQ(device.bus.take(), "705 00");
+}
+
+TEST(Node, StaysAsItIsBeforeItHasPower) {
+  bench::RecordingBus bus;
+  canopen::Node<sample::Device, bench::RecordingBus> node{bus, canopen::NodeId{5}};
+  node.request(canopen::NmtCommand::start, {});
+  EXPECT_EQ(node.state(), canopen::NmtState::initialisation);
+  EXPECT_EQ(bus.take(), "");
+}
+
 TEST(Node, TellsTheNearestDeadline) {
   Bench device;
   EXPECT_FALSE(device.node.next_deadline());

@@ -81,15 +81,23 @@ TEST(OptionsFile, SaysThatStringsEndWithAZero) {
 TEST(OptionsFile, HandsEachDepartureToTheRuntime) {
   for (const char* flag : {"pdo_extended_ids", "tpdo_remote_frames", "inhibit_time_writable_while_valid",
                            "event_driven_on_change", "tpdo_acyclic_on_change", "pdo_mapping_writable_while_valid",
-                           "mpdo", "sdo_upload_size_indicated", "restore_needs_power_cycle"}) {
+                           "mpdo", "sdo_upload_size_indicated", "restore_needs_power_cycle",
+                           "tpdo_remote_frames_can_be_disabled", "tpdo_remote_types",
+                           "emcy_cob_id_writable_while_valid", "emcy_stopped_keeps_last", "sdo_length_codes"}) {
     for (const char* value : {"true", "false"}) {
       const Read read("{ \"" + std::string{flag} + "\": " + value + " }");
       EXPECT_EQ(findings(read.diagnostics), Findings{}) << flag;
       EXPECT_EQ(read.options.runtime, (Runtime{{flag, value}}));
     }
   }
-  EXPECT_EQ(Read(R"({ "pdo_cob_id_writable": "0x80000780" })").options.runtime,
-            (Runtime{{"pdo_cob_id_writable", "0x80000780"}}));
+  for (const std::string mask : {"pdo_cob_id_writable", "sync_cob_id_writable", "emcy_cob_id_writable"}) {
+    EXPECT_EQ(Read("{ \"" + mask + "\": \"0x80000780\" }").options.runtime, (Runtime{{mask, "0x80000780"}}));
+  }
+  EXPECT_EQ(Read(R"({ "inhibit_time_unit": 1000 })").options.runtime, (Runtime{{"inhibit_time_unit", "1000"}}));
+  EXPECT_EQ(Read(R"({ "emcy_inhibit_time_step": 10 })").options.runtime, (Runtime{{"emcy_inhibit_time_step", "10"}}));
+  EXPECT_EQ(Read(R"({ "pdo_reserved_can_ids": ["0x80", "0x100"] })").options.runtime,
+            (Runtime{{"pdo_reserved_can_ids", "{0x080, 0x100}"}}));
+  EXPECT_EQ(Read(R"({ "reset_emergency": "ff00h" })").options.runtime, (Runtime{{"reset_emergency", "0xFF00"}}));
   EXPECT_EQ(Read(R"({ "pdo_mapping_abort_code": "0x6040041" })").options.runtime,
             (Runtime{{"pdo_mapping_abort_code", "0x06040041"}}));
   EXPECT_EQ(Read(R"({ "error_history_abort_code": "0x06090031" })").options.runtime,
@@ -178,6 +186,22 @@ TEST(OptionsFile, RefusesAValueOfTheWrongType) {
                              R"("pdo_mapping_abort_code": "0")",
                              R"("pdo_mapping_abort_code": "0x06040040")",
                              R"("mpdo": 1)",
+                             R"("sync_cob_id_writable": true)",
+                             R"("inhibit_time_unit": 0)",
+                             R"("inhibit_time_unit": 32768)",
+                             R"("inhibit_time_unit": "100")",
+                             R"("emcy_inhibit_time_step": 0)",
+                             R"("emcy_inhibit_time_step": 65536)",
+                             R"("emcy_inhibit_time_step": -1)",
+                             R"("pdo_reserved_can_ids": "0x080")",
+                             R"("pdo_reserved_can_ids": ["0x080"])",
+                             R"("pdo_reserved_can_ids": ["0x100", "0x080"])",
+                             R"("pdo_reserved_can_ids": ["0x080", "0x800"])",
+                             R"("pdo_reserved_can_ids": ["x", "0x100"])",
+                             R"("pdo_reserved_can_ids": [128, 256])",
+                             R"("reset_emergency": 65280)",
+                             R"("reset_emergency": "0000h")",
+                             R"("reset_emergency": "x")",
                              R"("static_mapping": "1600h")",
                              R"("static_mapping": [5632])",
                              R"("no_event": "6401h")",

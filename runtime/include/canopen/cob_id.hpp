@@ -4,6 +4,8 @@
 #include <array>  // std::size: <iterator> would bring streams with it
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <span>
 
 #include "canopen/node_id.hpp"
 
@@ -49,6 +51,16 @@ class CobId {
  private:
   std::uint32_t value_ = invalid_bit;
 };
+
+/// What a COB-ID becomes when these four bytes are written and the bits outside of `writable` keep their value. `bytes`
+/// is made so.
+[[nodiscard]] inline CobId written_cob_id(CobId before, std::uint32_t writable, std::span<std::uint8_t> bytes) {
+  std::uint32_t after = 0;
+  std::memcpy(&after, bytes.data(), sizeof after);
+  after = (after & writable) | (before.value() & ~writable);
+  std::memcpy(bytes.data(), &after, sizeof after);
+  return CobId{after};
+}
 
 /// A range of CAN-IDs that no configurable object may use (CiA 301, 7.3.5, table 41).
 struct RestrictedCanIds {

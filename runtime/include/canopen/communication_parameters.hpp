@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <cstring>
 #include <span>
 
 #include "canopen/abort_code.hpp"
@@ -11,6 +10,7 @@
 #include "canopen/object_store.hpp"
 #include "canopen/pdo_list.hpp"
 #include "canopen/sync.hpp"
+#include "canopen/time.hpp"
 #include "canopen/transmission_type.hpp"
 
 namespace canopen {
@@ -20,6 +20,11 @@ namespace canopen {
 }
 [[nodiscard]] constexpr bool is_tpdo_communication(std::uint16_t index) {
   return (index & 0xFE00) == tpdo_indices.communication;
+}
+
+/// An inhibit time as 1800h..19FFh:03 hold it.
+[[nodiscard]] constexpr Duration inhibit_duration(const DeviceOptions& options, std::uint16_t count) {
+  return Duration{std::uint32_t{count} * options.inhibit_time_unit};
 }
 
 /// Whether a PDO may go from one COB-ID to another. 0609 0030h: its CAN-ID may change only while the PDO is not valid,
@@ -37,7 +42,12 @@ namespace canopen {
 /// 0609 0030h where the device has not what the COB-ID asks for.
 [[nodiscard]] constexpr AbortCode check_pdo_features(const DeviceOptions& options, bool tpdo, CobId cob_id) {
   if (!options.pdo_extended_ids && cob_id.extended()) return AbortCode::invalid_value;
-  if (tpdo && !options.tpdo_remote_frames && cob_id.valid() && cob_id.rtr_allowed()) return AbortCode::invalid_value;
+  const auto [first, last] = options.pdo_reserved_can_ids;
+  const bool reserved = !cob_id.extended() && cob_id.can_id() >= first && cob_id.can_id() <= last;
+  if (cob_id.valid() && reserved) return AbortCode::invalid_value;
+  if (!tpdo) return ok;
+  if (!options.tpdo_remote_frames && cob_id.valid() && cob_id.rtr_allowed()) return AbortCode::invalid_value;
+  if (!options.tpdo_remote_frames_can_be_disabled && !cob_id.rtr_allowed()) return AbortCode::invalid_value;
   return ok;
 }
 
@@ -47,7 +57,8 @@ namespace canopen {
     case Transmission::synchronous:
     case Transmission::event_driven: return ok;
     case Transmission::remote_synchronous:
-    case Transmission::remote: return tpdo && options.tpdo_remote_frames ? ok : AbortCode::invalid_value;
+    case Transmission::remote:
+      return tpdo && options.tpdo_remote_frames && options.tpdo_remote_types ? ok : AbortCode::invalid_value;
     case Transmission::reserved: break;
   }
   return AbortCode::invalid_value;
@@ -63,13 +74,10 @@ namespace canopen {
   switch (sub_index) {
     case pdo_parameter::cob_id: {
       if (bytes.size() != sizeof(std::uint32_t)) return AbortCode::internal_incompatibility;
-      const std::uint32_t before = entries.number(entries.dictionary().find(index, sub_index));
-      std::uint32_t after = 0;
-      std::memcpy(&after, bytes.data(), sizeof after);
-      after = (after & options.pdo_cob_id_writable) | (before & ~options.pdo_cob_id_writable);
-      std::memcpy(bytes.data(), &after, sizeof after);
-      const AbortCode code = check_pdo_cob_id(CobId{before}, CobId{after});
-      return code != ok ? code : check_pdo_features(options, tpdo, CobId{after});
+      const CobId before{entries.number(entries.dictionary().find(index, sub_index))};
+      const CobId after = written_cob_id(before, options.pdo_cob_id_writable, bytes);
+      const AbortCode code = check_pdo_cob_id(before, after);
+      return code != ok ? code : check_pdo_features(options, tpdo, after);
     }
     case pdo_parameter::transmission_type: return check_transmission_type(options, tpdo, bytes[0]);
     case pdo_parameter::inhibit_time: {

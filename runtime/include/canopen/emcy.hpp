@@ -10,6 +10,7 @@
 
 #include "canopen/abort_code.hpp"
 #include "canopen/cob_id.hpp"
+#include "canopen/device_options.hpp"
 #include "canopen/error_register.hpp"
 #include "canopen/frame.hpp"
 #include "canopen/object_store.hpp"
@@ -79,8 +80,55 @@ class EmergencyProducer {
     return true;
   }
 
+  /// Whether the bus can write 1014h or 1015h.
+  static constexpr bool has_parameters = (Device::dictionary.find(0x1014, 0) & entry::writable) != 0 ||
+                                         (Device::dictionary.find(0x1015, 0) & entry::writable) != 0;
+
+  /// What speaks against writing these bytes to 1014h or 1015h (CiA 301, 7.5.2.17 and 7.5.2.18). Bits of 1014h that the
+  /// device does not let change are put back into `bytes`.
+  ///   0609 0030h  1014h: the CAN-ID changes while EMCY is valid, is a restricted one, or has 29 bits where the device
+  ///               takes 11; bit 30 is 1. 1015h: no multiple of what the device counts in
+  ///   0604 0047h  the data sheet gives the object another type than CiA 301
+  [[nodiscard]] static AbortCode check(const EntryAccess& entries, std::uint16_t index, std::span<std::uint8_t> bytes) {
+    if (index == 0x1015) {
+      if constexpr (Device::options.emcy_inhibit_time_step != 1) {
+        if (bytes.size() != sizeof(std::uint16_t)) return AbortCode::internal_incompatibility;
+        const std::uint32_t time = bytes[0] | std::uint32_t{bytes[1]} << 8;
+        if (time % Device::options.emcy_inhibit_time_step != 0) return AbortCode::invalid_value;
+      }
+      return ok;
+    }
+    if (bytes.size() != sizeof(std::uint32_t)) return AbortCode::internal_incompatibility;
+    const CobId before{entries.number(Device::dictionary.find(0x1014, 0))};
+    const CobId after = written_cob_id(before, Device::options.emcy_cob_id_writable, bytes);
+    constexpr std::uint32_t reserved_bit = 0x4000'0000;
+    const bool in_use = before.valid() && after.valid() && !Device::options.emcy_cob_id_writable_while_valid;
+    if ((after.value() & reserved_bit) != 0 || (in_use && before != after)) return AbortCode::invalid_value;
+    if (after.extended()) return Device::options.pdo_extended_ids ? ok : AbortCode::invalid_value;
+    if ((after.value() & 0x1FFF'F800) != 0) return AbortCode::invalid_value;
+    return after.valid() && is_restricted(after.can_id()) ? AbortCode::invalid_value : ok;
+  }
+
   /// No error, and none to be told (CiA 301, 7.2.7.1: what a reset does).
   void reset() { *this = EmergencyProducer{}; }
+
+  /// A reset is asked for: its EMCY, where the device has one. It is lost when the bus has no room.
+  template <Bus B>
+  void announce_reset([[maybe_unused]] const ObjectStore<Device>& store, [[maybe_unused]] B& bus) const {
+    if constexpr (has_cob_id && Device::options.reset_emergency != 0) {
+      constexpr std::uint16_t code = Device::options.reset_emergency;
+      const auto bits =
+          static_cast<std::uint8_t>(error_register() | static_cast<std::uint8_t>(ErrorRegister::manufacturer));
+      (void)send(store, bus, message_of(code, bits, Device::emergency_info(code)));
+    }
+  }
+
+  /// Only the last message that waits is to be sent.
+  void keep_last() {
+    if (waiting_ == 0) return;
+    queue_[0] = queue_[waiting_ - 1u];
+    waiting_ = 1;
+  }
 
   /// Sends what waits. False when the bus had no room: it stays.
   template <Bus B>
@@ -88,14 +136,8 @@ class EmergencyProducer {
     if constexpr (has_cob_id) {
       if (inhibited_ && now >= inhibit_end_) inhibited_ = false;
       while (waiting_ != 0 && !inhibited_) {
-        const CobId cob_id{store.template number<0x1014, 0>()};
-        if (cob_id.valid()) {
-          Frame frame{};
-          frame.id = cob_id.can_id();
-          frame.extended = cob_id.extended();
-          frame.size = 8;
-          frame.data = queue_[0];
-          if (!bus.send(frame)) return false;
+        if (CobId{store.template number<0x1014, 0>()}.valid()) {
+          if (!send(store, bus, queue_[0])) return false;
           start_inhibit_time(store, now);
         }
         --waiting_;
@@ -112,6 +154,8 @@ class EmergencyProducer {
   }
 
  private:
+  using Message = std::array<std::uint8_t, 8>;
+
   static constexpr bool has_register = Device::dictionary.has(0x1001, 0);
   static constexpr bool has_cob_id = Device::dictionary.has(0x1014, 0);
   static constexpr bool has_inhibit_time = Device::dictionary.has(0x1015, 0);
@@ -148,10 +192,26 @@ class EmergencyProducer {
     if (code != emergency_code::reset || Device::options.error_history_keeps_resets) remember(store, code, info);
     if constexpr (has_cob_id) {
       if (waiting_ < depth) ++waiting_;
-      std::array<std::uint8_t, 8>& message = queue_[waiting_ - 1u];
-      message = {static_cast<std::uint8_t>(code), static_cast<std::uint8_t>(code >> 8), bits};
-      std::memcpy(&message[3], info.data(), info.size());
+      queue_[waiting_ - 1u] = message_of(code, bits, info);
     }
+  }
+
+  [[nodiscard]] static Message message_of(std::uint16_t code, std::uint8_t bits, const EmergencyInfo& info) {
+    Message message{static_cast<std::uint8_t>(code), static_cast<std::uint8_t>(code >> 8), bits};
+    std::memcpy(&message[3], info.data(), info.size());
+    return message;
+  }
+
+  template <Bus B>
+  [[nodiscard]] static bool send(const ObjectStore<Device>& store, B& bus, const Message& message) {
+    const CobId cob_id{store.template number<0x1014, 0>()};
+    if (!cob_id.valid()) return true;
+    Frame frame{};
+    frame.id = cob_id.can_id();
+    frame.extended = cob_id.extended();
+    frame.size = 8;
+    frame.data = message;
+    return bus.send(frame);
   }
 
   static void store_register(ObjectStore<Device>& store, std::uint8_t bits) {
@@ -183,7 +243,7 @@ class EmergencyProducer {
     }
   }
 
-  std::array<std::array<std::uint8_t, 8>, has_cob_id ? depth : 1> queue_{};
+  std::array<Message, has_cob_id ? depth : 1> queue_{};
   TimePoint inhibit_end_{};
   std::uint8_t waiting_ = 0;
   std::uint8_t application_bits_ = 0;

@@ -441,7 +441,7 @@ class MpdoService {
     }
     void start(const EntryAccess& entries, entry::Word word, TimePoint now) {
       if (word <= Dictionary::no_sub_index) return;
-      const Duration time = from_hundred_microseconds(static_cast<std::uint16_t>(entries.number(word)));
+      const Duration time = inhibit_duration(Device::options, static_cast<std::uint16_t>(entries.number(word)));
       runs = time.count() != 0;
       end = now + time;
     }

@@ -146,6 +146,15 @@ class Node {
   [[nodiscard]] NmtState state() const { return state_; }
   [[nodiscard]] NodeId node_id() const { return node_id_; }
 
+  /// Does what an NMT master could command (CiA 301, 7.3.2: by local control). Nothing before `start`, or without a
+  /// node-ID. Not to be called by handlers that refuse or take a value.
+  void request(NmtCommand command, TimePoint now) {
+    now_ = now;
+    if (state_ == NmtState::initialisation) return;
+    carry_out(command);
+    serve();
+  }
+
   /// The value of an object, whatever its access on the bus.
   template <DictionaryObject O>
   [[nodiscard]] typename O::type get() const {
@@ -343,15 +352,27 @@ class Node {
   // Network management
 
   void on_nmt(const Frame& frame) {
-    const std::optional<NmtCommand> command = nmt_command(frame, node_id_);
-    if (!command) return;
-    switch (*command) {
+    if (const std::optional<NmtCommand> command = nmt_command(frame, node_id_)) carry_out(*command);
+  }
+
+  void carry_out(NmtCommand command) {
+    switch (command) {
       case NmtCommand::start: enter(NmtState::operational); break;
       case NmtCommand::stop: enter(NmtState::stopped); break;
       case NmtCommand::enter_pre_operational: enter(NmtState::pre_operational); break;
-      case NmtCommand::reset_node: reset_node(); break;
-      case NmtCommand::reset_communication: reset_communication(); break;
+      case NmtCommand::reset_node:
+        announce_reset();
+        reset_node();
+        break;
+      case NmtCommand::reset_communication:
+        announce_reset();
+        reset_communication();
+        break;
     }
+  }
+
+  void announce_reset() {
+    if (serves_emcy(state_)) emergencies_.announce_reset(store_, bus_);
   }
 
   void enter(NmtState next) {
@@ -366,6 +387,9 @@ class Node {
       } else if (!serves_sync(state_)) {
         sync_producer_.start(store_, now_, true);
       }
+    }
+    if constexpr (Device::options.emcy_stopped_keeps_last) {
+      if (state_ == NmtState::stopped) emergencies_.keep_last();
     }
     state_ = next;
     if constexpr (has_lss) lss_.enter(next);
@@ -582,6 +606,9 @@ class Node {
       if (index == 0x1005 || index == 0x1006 || index == 0x1019) {
         return check_sync_parameter(Device::options, entries(), SyncProducer<Device>::exists, index, bytes);
       }
+    }
+    if constexpr (EmergencyProducer<Device>::has_parameters) {
+      if (index == 0x1014 || index == 0x1015) return emergencies_.check(entries(), index, bytes);
     }
     if constexpr (TimeStamp<Device>::exists) {
       if (index == 0x1012) return check_time_parameter(Device::options, entries(), bytes);

@@ -594,6 +594,9 @@ class SdoServer {
   }
 
   void abort(AbortCode code) {
+    if constexpr (!Device::options.sdo_length_codes) {
+      if (code == AbortCode::length_too_high || code == AbortCode::length_too_low) code = AbortCode::length_mismatch;
+    }
     state_ = State::idle;
     answer(sdo::abort_command);
     sdo::put_word(reply_, static_cast<std::uint32_t>(code));

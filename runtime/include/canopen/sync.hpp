@@ -142,19 +142,21 @@ class SyncWindow {
   [[no_unique_address]] std::conditional_t<exists, Window, Nothing> window_{};
 };
 
-/// What speaks against writing these bytes to 1005h, 1006h or 1019h (CiA 301, 7.5.2.5, 7.5.2.6 and 7.5.2.22).
+/// What speaks against writing these bytes to 1005h, 1006h or 1019h (CiA 301, 7.5.2.5, 7.5.2.6 and 7.5.2.22). Bits of
+/// 1005h that the device does not let change are put back into `bytes`.
 ///   0609 0030h  1005h: the device produces no SYNC; the CAN-ID changes while it does; a restricted CAN-ID.
 ///               1019h: 1 or more than 240
 ///   0609 0031h  1006h: more than 35 minutes
+///   0604 0047h  1005h: the data sheet gives it another type than CiA 301
 ///   0800 0022h  1019h: 1006h is not 0
 [[nodiscard]] inline AbortCode check_sync_parameter(const DeviceOptions& options, const EntryAccess& entries,
                                                     bool produces, std::uint16_t index,
-                                                    std::span<const std::uint8_t> bytes) {
+                                                    std::span<std::uint8_t> bytes) {
   const Dictionary& dictionary = entries.dictionary();
   if (index == 0x1005) {
-    std::uint32_t after = 0;
-    std::memcpy(&after, bytes.data(), sizeof after);
+    if (bytes.size() != sizeof(std::uint32_t)) return AbortCode::internal_incompatibility;
     const std::uint32_t before = entries.number(dictionary.find(0x1005, 0));
+    const std::uint32_t after = written_cob_id(CobId{before}, options.sync_cob_id_writable, bytes).value();
     constexpr std::uint32_t identifier = CobId::extended_bit | 0x1FFF'FFFF;
     const bool generates = (after & CobId::no_rtr_bit) != 0;
     const bool generated = (before & CobId::no_rtr_bit) != 0;

@@ -45,7 +45,7 @@ inline constexpr Duration longest_span{0x7FFF'FFFF};
 /// A time as 1017h or 1800h:05 hold it.
 [[nodiscard]] constexpr Duration from_milliseconds(std::uint16_t count) { return Duration{count * 1000u}; }
 
-/// A time as 1015h or 1800h:03 hold it: in units of 100 us.
+/// A time as 1015h holds it, and 1800h:03 by default: in units of 100 us.
 [[nodiscard]] constexpr Duration from_hundred_microseconds(std::uint16_t count) { return Duration{count * 100u}; }
 
 }  // namespace canopen

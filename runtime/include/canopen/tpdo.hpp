@@ -403,7 +403,7 @@ class TpdoService {
     slot.flags &= static_cast<std::uint8_t>(~(changed_bit | due | asked));
     if ((slot.flags & event_driven) == 0) return;
     if constexpr (has_inhibit_time) {
-      const Duration inhibit = from_hundred_microseconds(parameter(entries, parameters[i].inhibit_time));
+      const Duration inhibit = inhibit_duration(Device::options, parameter(entries, parameters[i].inhibit_time));
       if (inhibit.count() != 0) slot.flags |= inhibited;
       slot.inhibit_end = now + inhibit;
     }
