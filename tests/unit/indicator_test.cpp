@@ -192,6 +192,7 @@ constexpr canopen::IndicatorTimings twice_per_second = [] {
   return timings;
 }();
 
+// shows 003.16
 TEST(Indicator, RunShowsWhatManual003Tells) {
   struct Row {
     int line;
@@ -209,6 +210,7 @@ TEST(Indicator, RunShowsWhatManual003Tells) {
   }
 }
 
+// shows 003.17
 TEST(Indicator, ErrShowsWhatManual003Tells) {
   struct Row {
     int line;
@@ -226,6 +228,7 @@ TEST(Indicator, ErrShowsWhatManual003Tells) {
   for (const Row& row : rows) EXPECT_EQ(error_pattern(row.errors), row.pattern) << "manual 003, line " << row.line;
 }
 
+// shows 003.16
 TEST(Indicators, MayBlinkTwicePerSecondAsManual003Tells) {
   Indicators<twice_per_second> indicators;
   indicators.show(run_pattern(NmtState::pre_operational, IndicatorActivity::none), IndicatorPattern::off);

@@ -70,6 +70,7 @@ TEST(LssRk5c, Figure12SelectsTheDevice) {
   EXPECT_EQ(device.slave.state(), LssState::configuration);
 }
 
+// shows 004.114
 TEST(LssRk5c, Figure12AsPrintedIsForAnotherProduct) {
   Rk5c device;
   replay(device, {
@@ -141,6 +142,7 @@ TEST(LssRk5c, Figure15ActivatesTheBitRateAfterTwoDelays) {
   EXPECT_EQ(device.stored_bit_timing, (canopen::LssBitTiming{0, 4}));  // L335
 }
 
+// shows 004.19
 TEST(LssRk5c, Figure16Stores) {
   Rk5c device;
   replay(device, {configuration_state, {369, "7E5 17 00 00 00 00 00 00 00", "7E4 17 00 00 00 00 00 00 00"}});

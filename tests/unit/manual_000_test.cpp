@@ -530,10 +530,11 @@ TEST(Manual000, MapsDummiesOf2To7) {
   }
 }
 
-// open 000.95
-TEST(Manual000, DISABLED_MapsTheDummyReal32) {
+// shows 000.95
+TEST(Manual000, MapsTheDummyReal32) {
   Remapping drive;
   EXPECT_EQ(write(drive, 0x1600, 1, 4, 0x0008'0020), taken(0x1600, 1));
+  EXPECT_EQ(write(drive, 0x1600, 1, 4, 0x0009'0020), refused(0x1600, 1, not_mappable));
 }
 
 // shows 000.5
@@ -555,7 +556,57 @@ TEST(Manual000, MapsOf1xxxhOnly1013h) {
   EXPECT_EQ(write(drive, 0x1A00, 1, 4, 0x1013'0020), taken(0x1A00, 1));
 }
 
+// Error control
+
+// shows 000.44, 000.132
+TEST(Manual000, WatchesANodeFromItsFirstHeartbeatOn) {
+  Drive drive;
+  EXPECT_EQ(drive.ask("605 23 16 10 01 64 00 07 00"), "585 60 16 10 01 00 00 00 00");  // node 7, 100 ms
+  EXPECT_EQ(drive.pass(10s), "");
+  EXPECT_EQ(drive.node.state_of(canopen::NodeId{7}), std::nullopt);
+  EXPECT_EQ(drive.ask("707 05"), "");
+  EXPECT_EQ(drive.node.state_of(canopen::NodeId{7}), canopen::NmtState::operational);
+  EXPECT_EQ(drive.pass(99'999us), "");
+  EXPECT_EQ(drive.pass(1us), "085 30 81 11 00 00 00 00 00");
+}
+
+// shows 000.133
+TEST(Manual000, DoesNotUseAnEntryOf1016hWithoutTimeOrNode) {
+  struct Row {
+    std::uint32_t entry;
+    const char* heartbeat;
+  };
+  constexpr Row rows[] = {{0x0007'0000, "707 05"}, {0x0000'0064, "700 05"}, {0x0080'0064, "780 05"}};
+  for (const auto& [entry, heartbeat] : rows) {
+    Drive drive;
+    EXPECT_EQ(write(drive, 0x1016, 1, 4, entry), taken(0x1016, 1)) << entry;
+    drive.ask(heartbeat);
+    EXPECT_EQ(drive.pass(10s), "") << entry;
+  }
+}
+
+// shows 000.134
+TEST(Manual000, RefusesASecondTimeForANode) {
+  Drive drive;
+  write(drive, 0x1016, 1, 4, 0x0007'0064);
+  EXPECT_EQ(write(drive, 0x1016, 2, 4, 0x0007'00C8), refused(0x1016, 2, 0x0604'0043));
+  EXPECT_EQ(write(drive, 0x1016, 2, 4, 0x0007'0000), taken(0x1016, 2));
+  EXPECT_EQ(write(drive, 0x1016, 2, 4, 0x0008'00C8), taken(0x1016, 2));
+}
+
 // EMCY
+
+// shows 000.38
+TEST(Manual000, SendsTheLastErrorOfStopped) {
+  Drive drive;
+  drive.ask(bench::stop);
+  drive.node.emergency(0x2310, ErrorRegister::current);
+  drive.node.emergency(0x3210, ErrorRegister::voltage);
+  EXPECT_EQ(drive.pass(1s), "");
+  EXPECT_EQ(drive.ask(bench::enter_pre_operational), "085 10 32 07 00 00 00 00 00");
+  EXPECT_EQ(drive.pass(1s), "");
+  EXPECT_EQ(drive.ask("605 40 03 10 02 00 00 00 00"), "585 43 03 10 02 10 23 00 00");
+}
 
 // shows 000.39, 000.154
 TEST(Manual000, RecordsErrorsOfStopped) {

@@ -134,8 +134,8 @@ TEST(Manual001, APdoIsValidWhileBit31Is0) {
   EXPECT_EQ(drive.node.get<od::controlword>(), 0x0F);
 }
 
-// open 001.28
-TEST(Manual001, DISABLED_KeepsItsNodeIdInTheCobIdsOfPdos) {
+// shows 001.28
+TEST(Manual001, KeepsItsNodeIdInTheCobIdsOfPdos) {
   Drive drive;
   write(drive, 0x1800, 1, 4, 0x8000'0185);
   write(drive, 0x1800, 1, 4, 0x0000'0286);
@@ -159,8 +159,8 @@ TEST(Manual001, TakesTransmissionTypes254And255) {
   }
 }
 
-// open 001.33
-TEST(Manual001, DISABLED_RefusesTransmissionTypes252And253) {
+// shows 001.33
+TEST(Manual001, RefusesTransmissionTypes252And253) {
   Drive drive;
   EXPECT_EQ(write(drive, 0x1800, 2, 1, 252), refused(0x1800, 2, invalid_value));
   EXPECT_EQ(write(drive, 0x1800, 2, 1, 253), refused(0x1800, 2, invalid_value));
@@ -295,6 +295,60 @@ TEST(Manual001, AnInhibitTimeOf300Is30Milliseconds) {
   drive.node.set<od::statusword>(1);
   EXPECT_EQ(drive.pass(29'999us), "");
   EXPECT_EQ(drive.pass(1us), "185 01 00 00 00 01");
+}
+
+// Error control
+
+// shows 001.18, 001.84
+TEST(Manual001, AnswersEachGuardingRequestWithItsStateAndAToggleBit) {
+  Drive drive;
+  EXPECT_EQ(drive.ask("705 R 1"), "705 7F");
+  EXPECT_EQ(drive.ask("705 R 1"), "705 FF");
+  drive.ask(bench::start);
+  EXPECT_EQ(drive.ask("705 R 1"), "705 05");
+  drive.ask(bench::stop);
+  EXPECT_EQ(drive.ask("705 R 1"), "705 84");
+  EXPECT_EQ(drive.ask(bench::reset_communication), "705 00");
+  EXPECT_EQ(drive.ask("705 R 1"), "705 7F");
+}
+
+// shows 001.19, 001.20
+TEST(Manual001, MissesTheMasterAfterTheLifeTime) {
+  Drive drive;
+  write(drive, 0x100C, 0, 2, 100);
+  write(drive, 0x100D, 0, 1, 3);
+  EXPECT_EQ(drive.pass(10s), "");
+  EXPECT_EQ(drive.ask("705 R 1"), "705 7F");
+  EXPECT_EQ(drive.pass(299'999us), "");
+  EXPECT_EQ(drive.pass(1us), "085 30 81 11 00 00 00 00 00");
+  for (const auto& [guard_time, factor] : {std::pair{0u, 3u}, std::pair{100u, 0u}}) {
+    Drive unguarded;
+    write(unguarded, 0x100C, 0, 2, guard_time);
+    write(unguarded, 0x100D, 0, 1, factor);
+    EXPECT_EQ(unguarded.ask("705 R 1"), "705 7F");
+    EXPECT_EQ(unguarded.pass(10s), "");
+  }
+}
+
+// shows 001.21
+TEST(Manual001, IsNotGuardedWhileItHasAHeartbeat) {
+  Drive drive;
+  EXPECT_EQ(drive.ask("605 2B 17 10 00 E8 03 00 00"), "585 60 17 10 00 00 00 00 00 | 705 7F");
+  EXPECT_EQ(drive.ask("705 R 1"), "");
+  EXPECT_EQ(drive.ask("605 2B 17 10 00 00 00 00 00"), "585 60 17 10 00 00 00 00 00");
+  EXPECT_EQ(drive.ask("705 R 1"), "705 7F");
+}
+
+// shows 001.24, 001.83
+TEST(Manual001, WatchesANodeFromItsFirstHeartbeatOn) {
+  Drive drive;
+  write(drive, 0x1016, 1, 4, 0x0001'00C8);  // node 1, 200 ms
+  EXPECT_EQ(drive.pass(10s), "");
+  EXPECT_EQ(drive.ask("701 05"), "");
+  EXPECT_EQ(drive.pass(199ms), "");
+  EXPECT_EQ(drive.ask("701 05"), "");
+  EXPECT_EQ(drive.pass(199'999us), "");
+  EXPECT_EQ(drive.pass(1us), "085 30 81 11 00 00 00 00 00");
 }
 
 // SYNC and EMCY

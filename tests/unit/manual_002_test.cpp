@@ -10,6 +10,7 @@
 namespace {
 
 using canopen::ErrorRegister;
+using canopen::NmtState;
 using manual::refused;
 using manual::ro;
 using manual::rw;
@@ -99,14 +100,22 @@ TEST(Manual002, HasNotWhatIsOnlyNamed) {
   }
 }
 
-// shows 002.58, 002.140
+// shows 002.58
 TEST(Manual002, TakesGuardTimesAndErrorBehaviour) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 2B 0C 10 00 E8 03 00 00"), "585 60 0C 10 00 00 00 00 00");
   EXPECT_EQ(drive.ask("605 40 0C 10 00 00 00 00 00"), "585 4B 0C 10 00 E8 03 00 00");
   EXPECT_EQ(drive.ask("605 2F 0D 10 00 03 00 00 00"), "585 60 0D 10 00 00 00 00 00");
   EXPECT_EQ(drive.ask("605 40 0D 10 00 00 00 00 00"), "585 4F 0D 10 00 03 00 00 00");
-  for (const std::uint32_t value : {0u, 1u, 2u, 255u}) EXPECT_EQ(write(drive, 0x1029, 1, 1, value), taken(0x1029, 1));
+}
+
+// shows 002.140
+TEST(Manual002, TakesErrorBehaviour0To2AndTheManufacturers) {
+  Drive drive;
+  for (std::uint32_t value = 0; value <= 255; ++value) {
+    const bool reserved = value > 2 && value < 128;
+    EXPECT_EQ(write(drive, 0x1029, 1, 1, value), reserved ? refused(0x1029, 1, 0x0609'0030) : taken(0x1029, 1));
+  }
 }
 
 // SDO
@@ -157,21 +166,34 @@ TEST(Manual002, RefusesValuesOutsideTheirRange) {
   EXPECT_EQ(drive.ask("605 2F 00 14 02 F1 00 00 00"), "585 80 00 14 02 30 00 09 06");
 }
 
+// shows 002.70
+TEST(Manual002, HasASecondSdoServer) {
+  Drive drive;
+  EXPECT_EQ(drive.ask("641 40 00 10 00 00 00 00 00"), "");
+  EXPECT_EQ(drive.ask("605 23 01 12 01 41 06 00 00"), "585 80 01 12 01 30 00 09 06");  // restricted
+  EXPECT_EQ(drive.ask("605 23 01 12 01 41 05 00 00"), "585 60 01 12 01 00 00 00 00");
+  EXPECT_EQ(drive.ask("605 23 01 12 02 C1 04 00 00"), "585 60 01 12 02 00 00 00 00");
+  EXPECT_EQ(drive.ask("605 2F 01 12 03 7F 00 00 00"), "585 60 01 12 03 00 00 00 00");
+  EXPECT_EQ(drive.ask("541 40 01 12 03 00 00 00 00"), "4C1 4F 01 12 03 7F 00 00 00");
+  EXPECT_EQ(drive.ask("605 40 01 12 01 00 00 00 00"), "585 43 01 12 01 41 05 00 00");
+}
+
 // COB-IDs
 
 // shows 002.40, 002.41, 002.124
 TEST(Manual002, ConsumesSyncAtTheCobIdOf1005h) {
   Drive drive;
   write(drive, 0x1800, 2, 1, 1);
-  EXPECT_EQ(drive.ask("605 23 05 10 00 80 00 00 40"), "585 80 05 10 00 30 00 09 06");
+  EXPECT_EQ(drive.ask("605 23 05 10 00 80 00 00 40"), "585 60 05 10 00 00 00 00 00");
+  EXPECT_EQ(drive.ask("605 40 05 10 00 00 00 00 00"), "585 43 05 10 00 80 00 00 80");
   EXPECT_EQ(drive.ask("605 23 05 10 00 A0 00 00 80"), "585 60 05 10 00 00 00 00 00");
   drive.ask(bench::start);
   EXPECT_EQ(drive.ask("080"), "");
   EXPECT_EQ(drive.ask("0A0"), "185 00 00");
 }
 
-// open 002.42
-TEST(Manual002, DISABLED_KeepsTheUpperBitsOf1005h) {
+// shows 002.42
+TEST(Manual002, KeepsTheUpperBitsOf1005h) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 23 05 10 00 A0 00 00 00"), "585 60 05 10 00 00 00 00 00");
   EXPECT_EQ(drive.ask("605 40 05 10 00 00 00 00 00"), "585 43 05 10 00 A0 00 00 80");
@@ -185,8 +207,8 @@ TEST(Manual002, SendsEmcyWithTheFunctionCodeOf1014h) {
   EXPECT_EQ(drive.pass(0s), "685 10 23 03 00 00 00 00 00");
 }
 
-// open 002.43
-TEST(Manual002, DISABLED_KeepsTheNodeIdAndTheUpperBitsOf1014h) {
+// shows 002.43
+TEST(Manual002, KeepsTheNodeIdAndTheUpperBitsOf1014h) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 23 14 10 00 86 06 00 80"), "585 60 14 10 00 00 00 00 00");
   EXPECT_EQ(drive.ask("605 40 14 10 00 00 00 00 00"), "585 43 14 10 00 85 06 00 00");
@@ -383,6 +405,100 @@ TEST(Manual002, HasFixedTransmissionTypesOfPdo4) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 2F 03 14 02 FF 00 00 00"), "585 80 03 14 02 02 00 01 06");
   EXPECT_EQ(drive.ask("605 2F 03 18 02 FE 00 00 00"), "585 80 03 18 02 02 00 01 06");
+}
+
+// Error control
+
+// shows 002.54, 002.55, 002.199
+TEST(Manual002, AnswersEachGuardingRequestWithItsStateAndAToggleBit) {
+  Drive drive;
+  EXPECT_EQ(drive.ask("705 R 1"), "705 7F");
+  EXPECT_EQ(drive.pass(10s), "");
+  EXPECT_EQ(drive.ask("705 R 1"), "705 FF");
+  drive.ask(bench::start);
+  EXPECT_EQ(drive.ask("705 R 1"), "705 05");
+  drive.ask(bench::stop);
+  EXPECT_EQ(drive.ask("705 R 1"), "705 84");
+  EXPECT_EQ(drive.ask("705 R 1"), "705 04");
+  drive.ask(bench::reset_communication);
+  EXPECT_EQ(drive.ask("705 R 1"), "705 7F");
+}
+
+// shows 002.56, 002.57, 002.197
+TEST(Manual002, TellsThatTheMasterIsMissing) {
+  Drive drive;
+  write(drive, 0x100C, 0, 2, 200);
+  write(drive, 0x100D, 0, 1, 2);
+  drive.ask(bench::start);
+  EXPECT_EQ(drive.ask("705 R 1"), "705 05");
+  EXPECT_EQ(drive.pass(399'999us), "");
+  EXPECT_EQ(drive.pass(1us), "085 30 81 11 00 00 00 00 00");
+  EXPECT_EQ(drive.node.state(), NmtState::pre_operational);
+  EXPECT_EQ(drive.ask("605 40 01 10 00 00 00 00 00"), "585 4F 01 10 00 11 00 00 00");
+  write(drive, 0x100D, 0, 1, 0);
+  drive.pass(0s);
+  drive.ask("705 R 1");
+  EXPECT_EQ(drive.pass(10s), "");
+}
+
+// shows 002.98
+TEST(Manual002, IsNotGuardedDuringItsInitialisation) {
+  bench::RecordingBus bus;
+  canopen::Node<cpd::Device, bench::RecordingBus> node{bus, canopen::NodeId{5}};
+  node.on_frame(bench::frame("705 R 1"), {});
+  EXPECT_EQ(bus.take(), "");
+  node.start({});
+  EXPECT_EQ(bus.take(), "705 00");
+  node.on_frame(bench::frame("705 R 1"), {});
+  EXPECT_EQ(bus.take(), "705 7F");
+}
+
+// shows 002.62
+TEST(Manual002, IsNotGuardedWhileItHasAHeartbeat) {
+  Drive drive;
+  EXPECT_EQ(drive.ask("605 2B 17 10 00 E8 03 00 00"), "585 60 17 10 00 00 00 00 00 | 705 7F");
+  EXPECT_EQ(drive.ask("705 R 1"), "");
+  EXPECT_EQ(drive.pass(1s), "705 7F");
+}
+
+// shows 002.63, 002.64, 002.137
+TEST(Manual002, WatchesTheHeartbeatOfTheNodeIn1016h) {
+  Drive drive;
+  write(drive, 0x1016, 1, 4, 0x0001'00C8);  // node 1, 200 ms
+  EXPECT_EQ(drive.ask("701 05"), "");
+  EXPECT_EQ(drive.pass(199ms), "");
+  EXPECT_EQ(drive.ask("701 05"), "");
+  EXPECT_EQ(drive.pass(199'999us), "");
+  EXPECT_EQ(drive.pass(1us), "085 30 81 11 00 00 00 00 00");
+  Drive unused;
+  write(unused, 0x1016, 1, 4, 0x0001'0000);
+  EXPECT_EQ(unused.ask("701 05"), "");
+  EXPECT_EQ(unused.pass(10s), "");
+}
+
+// shows 002.65
+TEST(Manual002, GoesWhere1029hSaysWhenErrorControlFails) {
+  struct Row {
+    std::uint32_t behaviour;
+    const char* command;
+    NmtState after;
+  };
+  constexpr Row rows[] = {
+      {0, bench::start, NmtState::pre_operational},
+      {0, bench::stop, NmtState::stopped},
+      {1, bench::start, NmtState::operational},
+      {2, bench::start, NmtState::stopped},
+      {2, bench::enter_pre_operational, NmtState::stopped},
+  };
+  for (const auto& [behaviour, command, after] : rows) {
+    Drive drive;
+    if (behaviour != 0) write(drive, 0x1029, 1, 1, behaviour);
+    write(drive, 0x1016, 1, 4, 0x0001'00C8);
+    drive.ask(command);
+    drive.ask("701 05");
+    drive.pass(200ms);
+    EXPECT_EQ(drive.node.state(), after) << behaviour << ", " << command;
+  }
 }
 
 // EMCY

@@ -190,8 +190,8 @@ TEST(Manual003, RefusesTheCanIdsThatCiA301Reserves) {
   }
 }
 
-// open 003.35
-TEST(Manual003, DISABLED_RefusesTheCanIdsOfSyncEmcyAndTimeForPdos) {
+// shows 003.35
+TEST(Manual003, RefusesTheCanIdsOfSyncEmcyAndTimeForPdos) {
   DigitalOutputs module;
   for (const std::uint32_t can_id : {0x080u, 0x081u, 0x0FFu, 0x100u}) {
     EXPECT_EQ(write(module, 0x1404, 1, 4, can_id), refused(0x1404, 1, invalid_value)) << can_id;
@@ -358,8 +358,8 @@ TEST(Manual003, SendsTypes254And255AtAChangeByTheirTimerAndWhenAsked) {
   }
 }
 
-// open 003.48
-TEST(Manual003, DISABLED_CountsTheInhibitTimeInMilliseconds) {
+// shows 003.48
+TEST(Manual003, CountsTheInhibitTimeInMilliseconds) {
   DigitalInputs module;
   write(module, 0x1800, 1, 4, 0x8000'0185);
   EXPECT_EQ(module.ask("605 2B 00 18 03 0A 00 00 00"), "585 60 00 18 03 00 00 00 00");
@@ -407,6 +407,64 @@ TEST(Manual003, OneSyncActsOnRpdoAndTpdo) {
   EXPECT_EQ(outputs.ask("080"), "");
   EXPECT_EQ(inputs.ask("080"), "185 00 00");
   EXPECT_EQ(outputs.node.get<Output>(), 0x12);
+}
+
+// Error control
+
+// shows 003.76, 003.84..003.86
+TYPED_TEST(EveryModule, MissesTheMasterAfterTheNodeLifeTime) {
+  EXPECT_EQ(this->module.ask("605 40 0C 10 00 00 00 00 00"), "585 4B 0C 10 00 00 00 00 00");
+  EXPECT_EQ(this->module.ask("605 40 0D 10 00 00 00 00 00"), "585 4F 0D 10 00 00 00 00 00");
+  EXPECT_EQ(this->module.ask("605 2B 0C 10 00 FA 00 00 00"), "585 60 0C 10 00 00 00 00 00");  // 250 ms
+  EXPECT_EQ(this->module.ask("605 2F 0D 10 00 04 00 00 00"), "585 60 0D 10 00 00 00 00 00");
+  EXPECT_EQ(this->module.pass(10s), "");
+  EXPECT_EQ(this->module.ask("705 R 1"), "705 7F");
+  EXPECT_EQ(this->module.ask("705 R 1"), "705 FF");
+  this->module.ask(bench::stop);
+  EXPECT_EQ(this->module.ask("705 R 1"), "705 04");
+  this->module.ask(bench::enter_pre_operational);
+  EXPECT_EQ(this->module.ask("705 R 1"), "705 FF");
+  EXPECT_EQ(this->module.pass(999'999us), "");
+  EXPECT_EQ(this->module.pass(1us), "085 30 81 11 07 00 00 00 00");
+}
+
+// shows 003.86
+TEST(Manual003, TellsItsStateToTheGuard) {
+  DigitalOutputs module;
+  module.ask(bench::start);
+  EXPECT_EQ(module.ask("705 R 1"), "705 05");
+  EXPECT_EQ(module.ask("705 R 1"), "705 85");
+}
+
+// shows 003.87
+TEST(Manual003, TakesItsErrorValuesWhenTheMasterIsMissing) {
+  namespace od = can_2057c::od;
+  auto module = bench::with<can_2057c::Device>(canopen::on_life_guarding([](auto& node, bool lost) {
+    const std::uint8_t mode = node.template get<od::error_mode_output_8_bit<1>>();
+    const std::uint8_t value = node.template get<od::error_value_output_8_bit<1>>();
+    const std::uint8_t output = node.template get<Output>();
+    if (lost) (void)node.template set<Output>(static_cast<std::uint8_t>((output & ~mode) | (value & mode)));
+  }));
+  write(module, 0x100C, 0, 2, 250);
+  write(module, 0x100D, 0, 1, 4);
+  write(module, 0x6206, 1, 1, 0x0F);
+  write(module, 0x6207, 1, 1, 0xA5);
+  module.ask(bench::start);
+  module.ask("205 F0 00");
+  module.ask("705 R 1");
+  EXPECT_EQ(module.pass(1s).substr(0, 27), "085 30 81 11 07 00 00 00 00");
+  EXPECT_EQ(module.node.get<Output>(), 0xF5);
+}
+
+// shows 003.91
+TEST(Manual003, IsNotGuardedWhileItHasAHeartbeat) {
+  DigitalOutputs module;
+  write(module, 0x100C, 0, 2, 250);
+  write(module, 0x100D, 0, 1, 4);
+  EXPECT_EQ(module.ask("705 R 1"), "705 7F");
+  EXPECT_EQ(module.ask("605 2B 17 10 00 F4 01 00 00"), "585 60 17 10 00 00 00 00 00 | 705 7F");
+  EXPECT_EQ(module.ask("705 R 1"), "");
+  EXPECT_EQ(module.pass(2s), "705 7F | 705 7F | 705 7F | 705 7F");
 }
 
 // SYNC and EMCY
@@ -472,8 +530,8 @@ TEST(Manual003, SendsTheEmergenciesThatItsFirmwareFinds) {
   }
 }
 
-// open 003.79
-TEST(Manual003, DISABLED_TellsThatItHasBeenAskedToReset) {
+// shows 003.79
+TEST(Manual003, TellsThatItHasBeenAskedToReset) {
   DigitalOutputs node_reset;
   EXPECT_EQ(node_reset.ask(bench::reset_node), "085 00 FF 80 0A 00 00 00 00 | 705 00");
   DigitalOutputs communication_reset;
