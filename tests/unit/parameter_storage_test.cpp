@@ -484,6 +484,7 @@ TEST(StoreParameters, MayCountForOneNodeIdOnly) {
   MemoryStorage storage;
   auto device = powered<BoundToNodeId>(storage);
   device.ask("605 23 05 10 00 81 00 00 00");
+  device.ask("605 23 14 10 00 85 00 00 80");  // not valid while its CAN-ID changes
   device.ask("605 23 14 10 00 A0 00 00 00");
   device.ask("605 2B 17 10 00 00 08 00 00");
   device.ask(save_all);
