@@ -96,14 +96,14 @@ TEST(DynamicMapping, PlacesBits) {
 TEST(DynamicMapping, LeavesAnObjectAloneWhoseEntryIsADummyNow) {
   Bench device;
   device.ask(bench::start);
-  remap(device, 0x1602, {0x20000008});
+  remap(device, 0x1602, {0x20010010});
   cob_id(device, 0x1402, 0x222);
-  device.ask("222 11");
+  device.ask("222 11 11");
   cob_id(device, 0x1402, 0x80000222);
   EXPECT_EQ(remap(device, 0x1602, {0x00050008}), "ok");
   cob_id(device, 0x1402, 0x222);
   device.ask("222 22");
-  EXPECT_EQ(device.node.get<od::byte>(), 0x11);
+  EXPECT_EQ(device.node.get<od::output_word>(), 0x1111);
 }
 
 TEST(DynamicMapping, TakesAnyValueOfAByteAsABoolean) {
