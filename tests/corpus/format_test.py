@@ -106,10 +106,16 @@ def without_commissioning(view: object) -> object:
     return {**view, "file_info": file_info, "commissioning": None}
 
 
-def dump(edsc: Path, path: Path, *options: str) -> object:
+def dump(edsc: Path, path: Path, *options: str | Path) -> object:
     """The device; the first error when there is none."""
     result = run(edsc, "dump", path, "--keep-going", *options)
     return without_places(json.loads(result.stdout)) if result.stdout else result.returncode
+
+
+def options_of(path: Path) -> tuple[str | Path, ...]:
+    """What a copy of a data sheet needs to be the same device: the options file beside the data sheet, if there."""
+    options = path.with_suffix(".options.json")
+    return ("--options", options) if options.exists() else ()
 
 
 def configured(view: object) -> object:
@@ -127,7 +133,7 @@ def check_canonical(edsc: Path, path: Path, formatted: bytes, folder: Path) -> l
         problems.append("the canonical form has another canonical form")
     if run(edsc, "format", again, "--check").returncode != 0:
         problems.append("--check does not take the canonical form for canonical")
-    if dump(edsc, path) != dump(edsc, again):
+    if dump(edsc, path) != dump(edsc, again, *options_of(path)):
         problems.append("the canonical form is another device")
     missing = comments(path.read_bytes()) - comments(formatted)
     if missing:
@@ -145,7 +151,7 @@ def check_dcf(edsc: Path, path: Path, folder: Path) -> list[str]:
     made = run(edsc, "format", path, "--dcf", "--node-id", NODE_ID, "-o", dcf)
     if made.returncode != 0:
         return [f"--dcf ends with {made.returncode}"]
-    same = configured(dump(edsc, dcf)) == configured(dump(edsc, path, "--node-id", NODE_ID))
+    same = configured(dump(edsc, dcf, *options_of(path))) == configured(dump(edsc, path, "--node-id", NODE_ID))
     return [] if same else ["the DCF is another device"]
 
 
