@@ -74,6 +74,21 @@ TEST(VirtualBus, FramesSentDuringDeliveryWaitTheirTurn) {
   EXPECT_EQ(bus.settle(), 6u);
 }
 
+TEST(VirtualBus, AnEndpointThatWaitsForRoomLetsTimePass) {
+  VirtualBus bus{1'000'000};
+  auto& sender = bus.attach();
+  sender.queue_limit = 1;
+  int left = 3;
+  const auto send = [&] {
+    while (left != 0 && sender.send(frame("100"))) --left;
+  };
+  sender.next_deadline = [&] { return left != 0 ? std::optional{bus.now()} : std::nullopt; };
+  sender.on_time = [&](TimePoint) { send(); };
+  Log log{bus};
+  bus.run_for(1ms);
+  EXPECT_EQ(log.lines, (Lines{"47: 100", "94: 100", "141: 100"}));
+}
+
 TEST(VirtualBus, AFrameTakesItsTimeOnTheWire) {
   VirtualBus bus{500'000};
   Log log{bus};

@@ -112,7 +112,6 @@ class VirtualBus {
     std::optional<TimePoint> next = earliest_deadline();
     if (on_wire_ && (!next || wire_free_ <= *next)) next = wire_free_;
     if (!next || *next > end) return false;
-    if (*next <= now_ && !on_wire_) return false;  // an endpoint that wants to be called again at once: let time pass
     now_ = std::max(now_, *next);
     if (on_wire_ && wire_free_ <= now_) end_frame();
     return true;
@@ -126,12 +125,13 @@ class VirtualBus {
     }
   }
 
+  /// Of those to come: an endpoint that wants to be called again at once has to let time pass.
   [[nodiscard]] std::optional<TimePoint> earliest_deadline() const {
     std::optional<TimePoint> earliest;
     for (const auto& endpoint : endpoints_) {
       if (!endpoint->next_deadline) continue;
       const auto deadline = endpoint->next_deadline();
-      if (deadline && (!earliest || *deadline < *earliest)) earliest = deadline;
+      if (deadline && *deadline > now_ && (!earliest || *deadline < *earliest)) earliest = deadline;
     }
     return earliest;
   }
