@@ -32,11 +32,7 @@ using canopen::TimePoint;
 using canopen::VirtualBus;
 using namespace std::chrono_literals;
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr Duration bus_time = 12min;
-#else
 constexpr Duration bus_time = 60min;
-#endif
 /// TimePoint begins at 0 again in the middle.
 constexpr Duration begin{0u - bus_time.count() / 2};
 
