@@ -26,6 +26,17 @@ TEST(Heartbeat, StartsAtOnceWhenThePeriodIsWritten) {
   EXPECT_EQ(device.pass(300ms), "705 7F | 705 7F | 705 7F");
 }
 
+TEST(Heartbeat, ComesWhenABusWithoutRoomForLongerThanMomentsCompareHasRoomAgain) {
+  Bench device;
+  device.ask(write_100_ms);
+  device.bus.room = 0;
+  device.pass(20min);
+  device.pass(20min);
+  device.bus.room = 100;
+  EXPECT_EQ(device.pass(0s), "705 7F");
+  EXPECT_EQ(device.pass(100ms), "705 7F");
+}
+
 TEST(Heartbeat, EndsWhenZeroIsWritten) {
   Bench device;
   device.ask(write_100_ms);

@@ -89,6 +89,18 @@ TEST(SyncProducer, DoesNotDriftWhenServedLate) {
   EXPECT_EQ(device.pass(1us), "080");
 }
 
+TEST(SyncProducer, GoesOnWhenABusWithoutRoomForLongerThanMomentsCompareHasRoomAgain) {
+  Bench device;
+  write(device, "605 23 06 10 00 40 42 0F 00");  // 1 s
+  write(device, "605 23 05 10 00 80 00 00 40");
+  device.bus.room = 0;
+  device.pass(20min);
+  device.pass(20min);
+  device.bus.room = 100;
+  EXPECT_EQ(device.pass(0s), "080");
+  EXPECT_EQ(device.pass(1s), "080");
+}
+
 TEST(SyncProducer, HasAPeriodOf35MinutesAtMost) {
   Bench device;
   write(device, "605 23 05 10 00 80 00 00 40");

@@ -41,7 +41,7 @@ class HeartbeatProducer {
   /// Sends a heartbeat when it is due. False when the bus had no room: it stays due.
   template <Bus B>
   bool serve(B& bus, NodeId node_id, NmtState state, Duration period, TimePoint now) {
-    if (!running_ || now < due_) return true;
+    if (!running_ || is_within(due_, period, now)) return true;
     if (!send(bus, node_id, state)) return false;
     due_ = due_ + period;
     if (now >= due_) due_ = now + period;  // served so late that whole periods are missing

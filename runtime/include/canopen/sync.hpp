@@ -82,7 +82,7 @@ class SyncProducer {
   /// room.
   template <Bus B>
   [[nodiscard]] std::optional<Sync> serve(const ObjectStore<Device>& store, B& bus, TimePoint now) {
-    if (!running_ || now < due_) return std::nullopt;
+    if (!running_ || is_within(due_, period_of(store), now)) return std::nullopt;
     const CobId cob_id{store.template number<0x1005, 0>()};
     const std::uint8_t overflow = SyncConsumer<Device>::overflow_of(store);
     Frame frame{};

@@ -39,6 +39,12 @@ class TimePoint {
   std::uint32_t microseconds_ = 0;
 };
 
+/// Whether a moment that is one period ahead at most is yet to come. It may be over for longer than moments compare, as
+/// what is due waits for room on the bus.
+[[nodiscard]] constexpr bool is_within(TimePoint due, Duration period, TimePoint now) {
+  return (due - now).count() - 1u < period.count();
+}
+
 /// The longest time that may pass until a moment that others are compared with: 35 minutes.
 inline constexpr Duration longest_span{0x7FFF'FFFF};
 
