@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "text/code_page.hpp"
+#include "text/gzip.hpp"
 #include "text/utf8.hpp"
 
 namespace edsc {
@@ -207,8 +208,12 @@ std::string_view SourceFile::line(std::uint32_t number) const {
 std::unique_ptr<SourceFile> read_source_file(const std::string& path, std::string& error) {
   const bool is_standard_input = path == "-";
   std::string bytes;
-  const std::string why = is_standard_input ? read_all(stdin, bytes) : read_file(path, bytes);
+  std::string why = is_standard_input ? read_all(stdin, bytes) : read_file(path, bytes);
   const std::string name = is_standard_input ? "<stdin>" : path;
+  if (why.empty() && is_gzip(bytes)) {
+    const std::string file = std::move(bytes);
+    why = gunzip(file, SourceFile::max_bytes, bytes);
+  }
   if (!why.empty()) {
     error = "cannot read " + name + ": " + why;
     return nullptr;

@@ -47,7 +47,7 @@ class SourceFile {
   std::vector<std::uint32_t> starts_;  ///< where each line begins; one more for the end
 };
 
-/// Reads a whole file, "-" is standard input. Returns null when it cannot be read (missing, a folder, no permission,
+/// Reads a whole file, "-" is standard input; one that is a gzip file is unpacked. Returns null when it cannot be read (missing, a folder, no permission,
 /// too large); `error` then holds a sentence with path and reason.
 [[nodiscard]] std::unique_ptr<SourceFile> read_source_file(const std::string& path, std::string& error);
 

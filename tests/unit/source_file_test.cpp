@@ -7,6 +7,8 @@
 #include <fstream>
 #include <string>
 
+#include "text/gzip.hpp"
+
 namespace edsc {
 namespace {
 
@@ -151,6 +153,17 @@ TEST_F(ReadSourceFile, ReadsAnEmptyFile) {
   const auto file = read_source_file(path("a.eds"), error);
   ASSERT_NE(file, nullptr) << error;
   EXPECT_EQ(file->text(), "");
+}
+
+TEST_F(ReadSourceFile, UnpacksAGzipFile) {
+  std::ofstream(path("a.eds.gz"), std::ios::binary) << gzip("[1000]\r\n");
+  std::string error;
+  const auto file = read_source_file(path("a.eds.gz"), error);
+  ASSERT_NE(file, nullptr) << error;
+  EXPECT_EQ(file->text(), "[1000]\r\n");
+  std::ofstream(path("cut.gz"), std::ios::binary) << gzip("[1000]\r\n").substr(0, 20);
+  EXPECT_EQ(read_source_file(path("cut.gz"), error), nullptr);
+  EXPECT_EQ(error, "cannot read " + path("cut.gz") + ": not a whole gzip file");
 }
 
 TEST_F(ReadSourceFile, SaysThatAFileIsMissing) {

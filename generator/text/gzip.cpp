@@ -1,0 +1,65 @@
+#include "text/gzip.hpp"
+
+#include <zlib.h>
+
+#include <new>
+
+namespace edsc {
+namespace {
+
+constexpr int window_bits = 15;
+constexpr int gzip_header = 16;  ///< added to the window's bits: gzip around the data, not zlib
+constexpr int memory_level = 9;
+constexpr int unknown_system = 255;
+constexpr std::size_t most_at_once = std::size_t{1} << 16;
+
+/// The library takes bytes through pointers that it does not write to.
+Bytef* input_of(std::string_view bytes) { return reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data())); }
+Bytef* output_of(std::string& bytes, std::size_t at) { return reinterpret_cast<Bytef*>(&bytes[at]); }
+
+}  // namespace
+
+bool is_gzip(std::string_view bytes) { return bytes.starts_with("\x1F\x8B"); }
+
+std::string gzip(std::string_view bytes) {
+  z_stream stream{};
+  if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, window_bits + gzip_header, memory_level,
+                   Z_DEFAULT_STRATEGY) != Z_OK) {
+    throw std::bad_alloc{};
+  }
+  gz_header header{};
+  header.os = unknown_system;
+  deflateSetHeader(&stream, &header);
+  std::string file(deflateBound(&stream, static_cast<uLong>(bytes.size())), '\0');
+  stream.next_in = input_of(bytes);
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  stream.next_out = output_of(file, 0);
+  stream.avail_out = static_cast<uInt>(file.size());
+  deflate(&stream, Z_FINISH);
+  file.resize(stream.total_out);
+  deflateEnd(&stream);
+  return file;
+}
+
+std::string gunzip(std::string_view bytes, std::size_t most, std::string& content) {
+  z_stream stream{};
+  if (inflateInit2(&stream, window_bits + gzip_header) != Z_OK) throw std::bad_alloc{};
+  stream.next_in = input_of(bytes);
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  content.clear();
+  int result = Z_OK;
+  while (result == Z_OK && content.size() <= most) {
+    const std::size_t size = content.size();
+    content.resize(size + most_at_once);
+    stream.next_out = output_of(content, size);
+    stream.avail_out = static_cast<uInt>(most_at_once);
+    result = inflate(&stream, Z_NO_FLUSH);
+    content.resize(size + most_at_once - stream.avail_out);
+  }
+  const bool whole = result == Z_STREAM_END && stream.avail_in == 0;
+  inflateEnd(&stream);
+  if (content.size() > most) return "too large when it is unpacked";
+  return whole ? "" : "not a whole gzip file";
+}
+
+}  // namespace edsc
