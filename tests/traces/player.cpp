@@ -13,8 +13,7 @@ class Player {
       : trace_{trace}, stations_{stations} {}
 
   std::vector<Failure> play() {
-    for (const auto& station : stations_) station->start(now_);
-    exchange();
+    power_on();
     if (!trace_.power_on) heard_.clear();
     for (std::size_t i = 0; i < trace_.lines.size(); ++i) {
       const Line& line = trace_.lines[i];
@@ -24,9 +23,24 @@ class Player {
           set(line);
           if (i + 1 == trace_.lines.size() || trace_.lines[i + 1].step != Step::set) let_all_act();
           break;
+        case Step::emergency:
+          expect_silence(line);
+          stations_[line.node]->emergency(line.emergency);
+          let_all_act();
+          break;
+        case Step::emergency_over:
+          expect_silence(line);
+          stations_[line.node]->emergency_over(line.emergency.bits);
+          let_all_act();
+          break;
+        case Step::power_off:
+          expect_silence(line);
+          for (const auto& station : stations_) station->power_off();
+          break;
+        case Step::power_on: power_on(); break;
         case Step::pass:
           expect_silence(line);
-          pass(line.span);
+          pass(line);
           break;
         case Step::send:
           expect_silence(line);
@@ -41,6 +55,8 @@ class Player {
   }
 
  private:
+  static constexpr int most_rounds = 100;  ///< calls of all nodes at one moment
+
   void fail(const Line& line, std::string message) { failures_.push_back({line.number, std::move(message)}); }
 
   /// All frames that the nodes have sent must have been in the trace.
@@ -49,16 +65,27 @@ class Player {
     heard_.clear();
   }
 
+  void power_on() {
+    for (const auto& station : stations_) station->power_on(now_);
+    exchange();
+  }
+
   void send(const Line& line) {
     for (const auto& station : stations_) station->on_frame(line.pattern.frame, now_);
     let_all_act();
   }
 
-  void pass(canopen::Duration span) {
-    const canopen::TimePoint end = now_ + span;
+  void pass(const Line& line) {
+    const canopen::TimePoint end = now_ + line.span;
+    int rounds = 0;
     while (const auto deadline = next_deadline()) {
       if (*deadline > end) break;
-      if (*deadline > now_) now_ = *deadline;
+      if (*deadline > now_) {
+        now_ = *deadline;
+        rounds = 0;
+      } else if (++rounds == most_rounds) {
+        return fail(line, "a node has something to do and does not do it");
+      }
       let_all_act();
     }
     now_ = end;

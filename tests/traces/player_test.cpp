@@ -8,15 +8,19 @@
 namespace {
 
 /// A node with one object, 2000h:00, of one byte. It sends its value after each change, 100h + node-ID, and takes the
-/// value of any frame with CAN-ID 300h + node-ID. 10 ms after the start, and every 10 ms from then on, it sends 200h +
-/// node-ID.
+/// value of any frame with CAN-ID 300h + node-ID. 10 ms after power-on, and every 10 ms from then on, it sends 200h +
+/// node-ID. Of an error it sends the first byte of the manufacturer, 080h + node-ID, and the bits when it is over.
 class Echo final : public trace::Station {
  public:
   explicit Echo(std::uint8_t node_id) : node_id_{node_id} {}
 
-  void start(canopen::TimePoint now) override {
+  void power_on(canopen::TimePoint now) override {
     due_ = now + period;
     send_frame(0x700, 0);
+  }
+  void power_off() override {
+    value_ = 0;
+    due_.reset();
   }
   void on_frame(const canopen::Frame& frame, canopen::TimePoint) override {
     if (frame.id == 0x300u + node_id_ && frame.size == 1) change(frame.data[0]);
@@ -24,9 +28,9 @@ class Echo final : public trace::Station {
   void on_time(canopen::TimePoint now) override {
     if (changed_) send_frame(0x100, value_);
     changed_ = false;
-    if (now < due_) return;
+    if (!due_ || now < *due_) return;
     send_frame(0x200, value_);
-    due_ = due_ + period;
+    due_ = *due_ + period;
   }
   [[nodiscard]] std::optional<canopen::TimePoint> next_deadline() const override { return due_; }
   [[nodiscard]] canopen::AbortCode set(std::uint16_t index, std::uint8_t, const trace::Value& value) override {
@@ -34,6 +38,8 @@ class Echo final : public trace::Station {
     change(value.bytes(1)[0]);
     return canopen::ok;
   }
+  void emergency(const trace::Emergency& error) override { send_frame(0x080, error.info[0]); }
+  void emergency_over(canopen::ErrorRegister bits) override { send_frame(0x080, static_cast<std::uint8_t>(bits)); }
   [[nodiscard]] std::optional<std::vector<std::uint8_t>> value(std::uint16_t index, std::uint8_t) override {
     if (index != 0x2000) return std::nullopt;
     return std::vector<std::uint8_t>{value_};
@@ -57,7 +63,7 @@ class Echo final : public trace::Station {
   std::uint8_t node_id_;
   std::uint8_t value_ = 0;
   bool changed_ = false;
-  canopen::TimePoint due_{};
+  std::optional<canopen::TimePoint> due_;  ///< nothing: it has no power
 };
 
 /// `line: message` of each failure; the nodes have the node-IDs 1 and 2.
@@ -116,6 +122,17 @@ TEST(TracePlayer, SetsTheObjectsOfLinesThatFollowEachOtherAtOneMoment) {
 
 TEST(TracePlayer, BringsAFrameToAllNodes) {
   EXPECT_EQ(failures("> 301 05\n< 101 05\n> 302 06\n< 102 06\nread node 1 2000h:00 5\n"), Found{});
+}
+
+TEST(TracePlayer, RaisesErrorsAndTakesThemBack) {
+  EXPECT_EQ(failures("emergency node 2 0x1000 0x81 05\n< 082 05\nemergency node 2 over 0x81\n< 082 81\n"), Found{});
+}
+
+TEST(TracePlayer, TakesThePowerAwayFromAllNodes) {
+  EXPECT_EQ(failures("= node 1 2000h:00 7\n< 101 07\npower off\n+ 30 ms\npower on\n< 701 00\n< 702 00\n"
+                     "read node 1 2000h:00 0\n+ 10 ms\n< 201 00\n< 202 00\n"),
+            Found{});
+  EXPECT_EQ(failures("= node 1 2000h:00 7\npower off\n"), Found{"6: up to here not expected: 101  07"});
 }
 
 }  // namespace

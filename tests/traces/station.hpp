@@ -7,9 +7,12 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "trace.hpp"
+#include "unit/memory_storage.hpp"
 
 namespace trace {
 
@@ -17,11 +20,15 @@ class Station {
  public:
   virtual ~Station() = default;
 
-  virtual void start(canopen::TimePoint now) = 0;
+  virtual void power_on(canopen::TimePoint now) = 0;
+  /// What is not stored is lost; until power-on nothing but time comes.
+  virtual void power_off() = 0;
   virtual void on_frame(const canopen::Frame& frame, canopen::TimePoint now) = 0;
   virtual void on_time(canopen::TimePoint now) = 0;
   [[nodiscard]] virtual std::optional<canopen::TimePoint> next_deadline() const = 0;
   [[nodiscard]] virtual canopen::AbortCode set(std::uint16_t index, std::uint8_t sub_index, const Value& value) = 0;
+  virtual void emergency(const Emergency& error) = 0;
+  virtual void emergency_over(canopen::ErrorRegister bits) = 0;
   /// The bytes of an object's value. Nothing when the device has no such object.
   [[nodiscard]] virtual std::optional<std::vector<std::uint8_t>> value(std::uint16_t index, std::uint8_t sub_index) = 0;
 
@@ -43,32 +50,97 @@ class Station {
   std::deque<canopen::Frame> sent_;
 };
 
-/// A station that runs a generated device.
-template <class Device>
-class DeviceStation final : public Station {
- public:
-  explicit DeviceStation(canopen::NodeId node_id) : node_{*this, node_id} {}
+/// What LSS configures. The bus of a trace has no bit rate: all nodes keep to it but one that is switching.
+struct LssMemory {
+  canopen::NodeId node_id;
+  canopen::LssBitTiming timing;
+  bool on_bus = true;
 
-  void start(canopen::TimePoint now) override { node_.start(now); }
-  void on_frame(const canopen::Frame& frame, canopen::TimePoint now) override { node_.on_frame(frame, now); }
-  void on_time(canopen::TimePoint now) override { node_.on_time(now); }
-  [[nodiscard]] std::optional<canopen::TimePoint> next_deadline() const override { return node_.next_deadline(); }
+  [[nodiscard]] canopen::LssError accept(canopen::NodeId) { return canopen::lss::success; }
+  [[nodiscard]] canopen::LssError accept(canopen::LssBitTiming) { return canopen::lss::success; }
+  [[nodiscard]] canopen::LssError store(canopen::NodeId new_node_id, canopen::LssBitTiming new_timing) {
+    node_id = new_node_id;
+    timing = new_timing;
+    return canopen::lss::success;
+  }
+  [[nodiscard]] canopen::LssBitTiming bit_timing() const { return timing; }
+  void stop_communication() { on_bus = false; }
+  void start_communication(canopen::LssBitTiming) { on_bus = true; }
+};
+
+/// What outlives power-off.
+struct Memory {
+  LssMemory lss;
+  bench::MemoryStorage storage;
+};
+
+/// The handlers that a device has its parameters stored with and is configured with, where it does either.
+template <class Device>
+[[nodiscard]] auto handlers_of(Memory& memory) {
+  const auto storage = [&memory] {
+    if constexpr (Device::dictionary.has(0x1010, 1)) {
+      return std::tuple{canopen::stored_in(memory.storage)};
+    } else {
+      return std::tuple{};
+    }
+  };
+  const auto lss = [&memory] {
+    if constexpr (requires { Device::lss_options; }) {
+      return std::tuple{canopen::configured_by_lss<Device::lss_options>(memory.lss)};
+    } else {
+      return std::tuple{};
+    }
+  };
+  return std::tuple_cat(storage(), lss());
+}
+
+/// A station that runs a generated device.
+template <class Device, class Handlers = decltype(handlers_of<Device>(std::declval<Memory&>()))>
+class DeviceStation;
+
+template <class Device, class... Handlers>
+class DeviceStation<Device, std::tuple<Handlers...>> final : public Station {
+ public:
+  explicit DeviceStation(canopen::NodeId node_id) { memory_.lss.node_id = node_id; }
+
+  void power_on(canopen::TimePoint now) override {
+    std::apply([this](Handlers... handlers) { node_.emplace(*this, memory_.lss.node_id, handlers...); },
+               handlers_of<Device>(memory_));
+    node_->start(now);
+  }
+  void power_off() override {
+    node_.reset();
+    memory_.lss.on_bus = true;
+  }
+  void on_frame(const canopen::Frame& frame, canopen::TimePoint now) override {
+    if (memory_.lss.on_bus) node_->on_frame(frame, now);
+  }
+  void on_time(canopen::TimePoint now) override {
+    if (node_) node_->on_time(now);
+  }
+  [[nodiscard]] std::optional<canopen::TimePoint> next_deadline() const override {
+    return node_ ? node_->next_deadline() : std::nullopt;
+  }
 
   [[nodiscard]] canopen::AbortCode set(std::uint16_t index, std::uint8_t sub_index, const Value& value) override {
     const canopen::entry::Word word = Device::dictionary.find(index, sub_index);
-    return node_.set(index, sub_index, value.bytes(canopen::entry::wire_bytes(word)));
+    return node_->set(index, sub_index, value.bytes(canopen::entry::wire_bytes(word)));
   }
+
+  void emergency(const Emergency& error) override { node_->emergency(error.code, error.bits, error.info); }
+  void emergency_over(canopen::ErrorRegister bits) override { node_->emergency_over(bits); }
 
   [[nodiscard]] std::optional<std::vector<std::uint8_t>> value(std::uint16_t index, std::uint8_t sub_index) override {
     const canopen::entry::Word word = Device::dictionary.find(index, sub_index);
     if (word <= canopen::Dictionary::no_sub_index) return std::nullopt;
     std::array<std::uint8_t, 8> scratch{};
-    const std::span<const std::uint8_t> bytes = node_.entries().read(word, scratch);
+    const std::span<const std::uint8_t> bytes = node_->entries().read(word, scratch);
     return std::vector<std::uint8_t>{bytes.begin(), bytes.end()};
   }
 
  private:
-  canopen::Node<Device, Station> node_;
+  Memory memory_;
+  std::optional<canopen::Node<Device, Station, Handlers...>> node_;  ///< nothing: it has no power
 };
 
 template <class Device>

@@ -1,6 +1,7 @@
 #include "trace.hpp"
 
 #include <algorithm>
+#include <canopen/lss_protocol.hpp>
 #include <cstdio>
 #include <fstream>
 #include <sstream>
@@ -71,11 +72,14 @@ canopen::Duration read_span(std::istringstream& words) {
   throw std::invalid_argument{"a time is a number and us, ms or s"};
 }
 
+/// Whether a trace has said a device's node-ID, be it that it has none yet.
+bool is_given(canopen::NodeId node_id) { return node_id.valid() || node_id == canopen::unconfigured_node_id; }
+
 canopen::NodeId read_node_id(std::istringstream& words) {
   std::string id;
   words >> id;
-  const canopen::NodeId node_id{static_cast<std::uint8_t>(number_up_to(127, id, 10))};
-  if (!node_id.valid()) throw std::invalid_argument{"a node-ID is 1 to 127"};
+  const canopen::NodeId node_id{static_cast<std::uint8_t>(number_up_to(255, id, 10))};
+  if (!is_given(node_id)) throw std::invalid_argument{"a node-ID is 1 to 127, or 255"};
   return node_id;
 }
 
@@ -85,16 +89,22 @@ std::size_t position_of(canopen::NodeId node_id, const Trace& trace) {
   return static_cast<std::size_t>(found - trace.nodes.begin());
 }
 
+/// The first word behind `node 2`, which may be missing where there is one node only.
+std::string word_behind_node(std::istringstream& words, const Trace& trace, Line& line) {
+  std::string word;
+  words >> word;
+  if (word == "node") {
+    line.node = position_of(read_node_id(words), trace);
+    words >> word;
+  } else if (trace.nodes.size() != 1) {
+    throw std::invalid_argument{"which node? It is written before the rest: node 2"};
+  }
+  return word;
+}
+
 /// `1801h:03 0x20F0` or `node 2 1008h:00 "text"`.
 void read_object(std::istringstream& words, const Trace& trace, Line& line) {
-  std::string object;
-  words >> object;
-  if (object == "node") {
-    line.node = position_of(read_node_id(words), trace);
-    words >> object;
-  } else if (trace.nodes.size() != 1) {
-    throw std::invalid_argument{"which node has the object? It is written node 2 1801h:03"};
-  }
+  const std::string object = word_behind_node(words, trace, line);
   if (object.size() != 8 || object.substr(4, 2) != "h:") throw std::invalid_argument{"an object is written 1801h:03"};
   line.index = static_cast<std::uint16_t>(number_up_to(0xFFFF, object.substr(0, 4), 16));
   line.sub_index = static_cast<std::uint8_t>(number_up_to(0xFF, object.substr(6), 16));
@@ -109,6 +119,43 @@ void read_object(std::istringstream& words, const Trace& trace, Line& line) {
   }
 }
 
+/// `0x8611 0x20 09 00 00 00 00` or `over 0x20`.
+void read_emergency(std::istringstream& words, const Trace& trace, Line& line) {
+  std::string word = word_behind_node(words, trace, line);
+  line.step = word == "over" ? Step::emergency_over : Step::emergency;
+  if (line.step == Step::emergency) line.emergency.code = static_cast<std::uint16_t>(number_up_to(0xFFFF, word, 16));
+  words >> word;
+  line.emergency.bits = static_cast<canopen::ErrorRegister>(number_up_to(0xFF, word, 16));
+  std::size_t count = 0;
+  while (words >> word) {
+    if (line.step == Step::emergency_over || count == line.emergency.info.size())
+      throw std::invalid_argument{"an error has five bytes of the manufacturer, and one that is over has none"};
+    line.emergency.info.at(count++) = static_cast<std::uint8_t>(number_up_to(0xFF, word, 16));
+  }
+}
+
+/// Whether only time can pass.
+bool is_without_power(const Trace& trace) {
+  const auto last = std::ranges::find_if(trace.lines.rbegin(), trace.lines.rend(), [](const Line& line) {
+    return line.step == Step::power_off || line.step == Step::power_on;
+  });
+  return last != trace.lines.rend() && last->step == Step::power_off;
+}
+
+/// `on` or `off`, each once the other has been.
+void read_power(std::istringstream& words, Trace& trace, Line& line) {
+  std::string state;
+  words >> state;
+  if (state == "on" && trace.lines.empty() && !trace.power_on) {
+    trace.power_on = true;
+    return;
+  }
+  line.step = state == "on" ? Step::power_on : Step::power_off;
+  if (state != (is_without_power(trace) ? "on" : "off"))
+    throw std::invalid_argument{"power goes on where it is off, and off where it is on"};
+  trace.lines.push_back(line);
+}
+
 void read_line(const std::string& text, std::size_t number_of_line, Trace& trace) {
   std::istringstream words{without_comment(text)};
   std::string key;
@@ -117,30 +164,30 @@ void read_line(const std::string& text, std::size_t number_of_line, Trace& trace
   line.number = number_of_line;
   if (key == "manual") return;
   if (key == "device") {
-    if (!trace.nodes.empty() && !trace.nodes.back().node_id.valid())
+    if (!trace.nodes.empty() && !is_given(trace.nodes.back().node_id))
       throw std::invalid_argument{"the device above has no node-ID"};
     words >> trace.nodes.emplace_back().device;
     return;
   }
   if (key == "node") {
     const canopen::NodeId node_id = read_node_id(words);
-    if (trace.nodes.empty() || trace.nodes.back().node_id.valid())
+    if (trace.nodes.empty() || is_given(trace.nodes.back().node_id))
       throw std::invalid_argument{"a node-ID stands below its device"};
     if (std::ranges::find(trace.nodes, node_id, &NodeOfTrace::node_id) != trace.nodes.end())
       throw std::invalid_argument{"two nodes have this node-ID"};
     trace.nodes.back().node_id = node_id;
     return;
   }
-  if (key == "power") {
-    trace.power_on = true;
-    return;
-  }
+  if (key == "power") return read_power(words, trace, line);
+  if (is_without_power(trace) && key != "+") throw std::invalid_argument{"the power is off"};
   if (key == "=") {
     line.step = Step::set;
     read_object(words, trace, line);
   } else if (key == "read") {
     line.step = Step::read;
     read_object(words, trace, line);
+  } else if (key == "emergency") {
+    read_emergency(words, trace, line);
   } else if (key == "+") {
     line.step = Step::pass;
     line.span = read_span(words);
@@ -187,7 +234,7 @@ Trace read(std::istream& text, const std::string& name) {
       throw std::runtime_error{trace.file + ":" + std::to_string(number_of_line) + ": " + problem.what()};
     }
   }
-  if (trace.nodes.empty() || !trace.nodes.back().node_id.valid())
+  if (trace.nodes.empty() || !is_given(trace.nodes.back().node_id))
     throw std::runtime_error{trace.file + ": no device or no node-ID"};
   return trace;
 }

@@ -3,20 +3,28 @@
 ///     # comment
 ///     manual  NNN, the place in the manual
 ///     device  NAME                                  eds/NAME.eds
-///     node    N                                     its node-ID, decimal; further pairs put further nodes on the bus
-///     power on                                      the boot-up messages are part of the trace
+///     node    N                                     its node-ID, decimal, 255 for none yet; further pairs put further
+///                                                   nodes on the bus
+///     power on                                      as the first line: the boot-up messages are part of the trace
+///     power off                                     later on: all nodes lose what they have not stored; only time
+///                                                   passes until `power on`
 ///     = 6041h:00 0x0231                             the application sets an object: a number, or "text"; lines that
 ///                                                   follow each other set their objects at one moment
+///     emergency 0x8611 0x20 09 00 00 00 00          the application has an error: its code, the bits of 1001h, and the
+///                                                   manufacturer-specific bytes, zeroes where they are missing
+///     emergency over 0x20                           it has gone, and these bits with it
 ///     + 5 ms                                        time passes (us, ms or s)
 ///     > 601  2B 01 18 03 F0 20 00 00                a frame to the bus
 ///     > 284  R                                      a remote frame, DLC 0; `R 8` is one with DLC 8
 ///     < 581  60 01 18 03 -- -- -- --                a node sends exactly this next; `--` may be any byte
 ///     read 1801h:03 0x20F0                          the object's value is now this
 ///
-/// Where there are several nodes, `=` and `read` name theirs: `= node 2 6000h:01 0x34`. Frames need no name: each goes
-/// to all nodes but its sender.
+/// Where there are several nodes, `=`, `read` and `emergency` name theirs: `= node 2 6000h:01 0x34`. Frames need no
+/// name: each goes to all nodes but its sender.
 #pragma once
 
+#include <canopen/emcy.hpp>
+#include <canopen/error_register.hpp>
 #include <canopen/frame.hpp>
 #include <canopen/node_id.hpp>
 #include <canopen/time.hpp>
@@ -46,17 +54,25 @@ struct Value {
   [[nodiscard]] std::vector<std::uint8_t> bytes(std::size_t size) const;
 };
 
-enum class Step : std::uint8_t { set, pass, send, expect, read };
+enum class Step : std::uint8_t { set, emergency, emergency_over, power_off, power_on, pass, send, expect, read };
+
+/// An error of the application.
+struct Emergency {
+  std::uint16_t code = 0;
+  canopen::ErrorRegister bits{};
+  canopen::EmergencyInfo info{};
+};
 
 struct Line {
   std::size_t number = 0;  ///< from 1
   Step step = Step::pass;
   Pattern pattern;             ///< send, expect
   canopen::Duration span{};    ///< pass
-  std::size_t node = 0;        ///< set, read: position in Trace::nodes
+  std::size_t node = 0;        ///< set, read, emergency: position in Trace::nodes
   std::uint16_t index = 0;     ///< set, read
   std::uint8_t sub_index = 0;  ///< set, read
   Value value;                 ///< set, read
+  Emergency emergency;         ///< emergency; of one that is over its bits
 };
 
 struct NodeOfTrace {
@@ -67,7 +83,7 @@ struct NodeOfTrace {
 struct Trace {
   std::string file;
   std::vector<NodeOfTrace> nodes;
-  bool power_on = false;
+  bool power_on = false;  ///< it begins with the boot-up messages
   std::vector<Line> lines;
 };
 

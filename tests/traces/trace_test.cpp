@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <canopen/lss_protocol.hpp>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -90,6 +91,32 @@ TEST(TraceReader, ReadsTimes) {
   EXPECT_EQ(trace.lines[2].span.count(), 5);
 }
 
+TEST(TraceReader, ReadsAnErrorOfTheApplication) {
+  const trace::Trace trace = read(two_nodes + "emergency node 2 0x8611 0x20 09 0a\nemergency node 1 over 0x81\n");
+  ASSERT_EQ(trace.lines.size(), 2u);
+  EXPECT_EQ(trace.lines[0].step, trace::Step::emergency);
+  EXPECT_EQ(trace.lines[0].node, 1u);
+  EXPECT_EQ(trace.lines[0].emergency.code, 0x8611);
+  EXPECT_EQ(trace.lines[0].emergency.bits, canopen::ErrorRegister::device_profile);
+  EXPECT_EQ(trace.lines[0].emergency.info, (canopen::EmergencyInfo{0x09, 0x0A, 0, 0, 0}));
+  EXPECT_EQ(trace.lines[1].step, trace::Step::emergency_over);
+  EXPECT_EQ(trace.lines[1].node, 0u);
+  EXPECT_EQ(trace.lines[1].emergency.bits, canopen::ErrorRegister::generic | canopen::ErrorRegister::manufacturer);
+}
+
+TEST(TraceReader, ReadsWherePowerGoes) {
+  const trace::Trace trace = read(one_node + "power on\n< 701 00\npower off\n+ 1 s\npower on\n< 701 00\n");
+  EXPECT_TRUE(trace.power_on);
+  ASSERT_EQ(trace.lines.size(), 5u);
+  EXPECT_EQ(trace.lines[1].step, trace::Step::power_off);
+  EXPECT_EQ(trace.lines[3].step, trace::Step::power_on);
+  EXPECT_FALSE(read(one_node + "> 080\npower off\npower on\n").power_on);
+}
+
+TEST(TraceReader, Takes255ForADeviceWithoutNodeId) {
+  EXPECT_EQ(read("device rk5c\nnode 255\n").nodes.at(0).node_id, canopen::unconfigured_node_id);
+}
+
 TEST(TraceReader, NamesFileAndLineOfWhatItDoesNotUnderstand) {
   struct Row {
     std::string text;
@@ -104,13 +131,23 @@ TEST(TraceReader, NamesFileAndLineOfWhatItDoesNotUnderstand) {
       {one_node + "+ 5 min\n", "example.trace:3: a time is a number and us, ms or s"},
       {one_node + "= 6041:00 1\n", "example.trace:3: an object is written 1801h:03"},
       {one_node + "= node 3 6000h:01 1\n", "example.trace:3: no such node on the bus"},
-      {two_nodes + "= 6000h:01 1\n", "example.trace:5: which node has the object? It is written node 2 1801h:03"},
-      {"device cpd\nnode 0\n", "example.trace:2: a node-ID is 1 to 127"},
-      {"device cpd\nnode 128\n", "example.trace:2: \"128\" is too high"},
+      {two_nodes + "= 6000h:01 1\n", "example.trace:5: which node? It is written before the rest: node 2"},
+      {"device cpd\nnode 0\n", "example.trace:2: a node-ID is 1 to 127, or 255"},
+      {"device cpd\nnode 128\n", "example.trace:2: a node-ID is 1 to 127, or 255"},
+      {"device cpd\nnode 256\n", "example.trace:2: \"256\" is too high"},
       {"node 1\n", "example.trace:1: a node-ID stands below its device"},
       {"device cpd\nnode 1\nnode 2\n", "example.trace:3: a node-ID stands below its device"},
       {"device cpd\ndevice rk5c\n", "example.trace:2: the device above has no node-ID"},
       {"device cpd\nnode 1\ndevice rk5c\nnode 1\n", "example.trace:4: two nodes have this node-ID"},
+      {one_node + "emergency 0x10000 0x01\n", "example.trace:3: \"0x10000\" is too high"},
+      {one_node + "emergency 0x1000 0x01 0 0 0 0 0 0\n",
+       "example.trace:3: an error has five bytes of the manufacturer, and one that is over has none"},
+      {one_node + "emergency over 0x01 00\n",
+       "example.trace:3: an error has five bytes of the manufacturer, and one that is over has none"},
+      {two_nodes + "emergency 0x1000 0x01\n", "example.trace:5: which node? It is written before the rest: node 2"},
+      {one_node + "power on\npower on\n", "example.trace:4: power goes on where it is off, and off where it is on"},
+      {one_node + "power off\npower off\n", "example.trace:4: power goes on where it is off, and off where it is on"},
+      {one_node + "power off\n> 080\n", "example.trace:4: the power is off"},
       {"device cpd\n", "example.trace: no device or no node-ID"},
       {"", "example.trace: no device or no node-ID"},
   };
