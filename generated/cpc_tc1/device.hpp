@@ -4,6 +4,7 @@
 
 #include <array>
 #include <canopen/device_options.hpp>
+#include <canopen/lss_options.hpp>
 #include <canopen/pdo_list.hpp>
 
 #include "dictionary.hpp"
@@ -45,6 +46,10 @@ struct Device {
     departures.tpdo_remote_frames = false;
     return departures;
   }();
+
+  /// How LSS configures the device: canopen::configured_by_lss<Device::lss_options>(port).
+  static constexpr canopen::LssOptions lss_options{
+      .bit_rates = 0x01DF};
 
   /// Bit n is set where an RPDO may map data type n as a dummy.
   static constexpr std::uint32_t dummies = 0x01FC;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <canopen/device_options.hpp>
+#include <canopen/lss_options.hpp>
 #include <canopen/pdo_list.hpp>
 
 #include "dictionary.hpp"
@@ -38,6 +39,14 @@ struct Device {
     departures.tpdo_remote_frames_can_be_disabled = false;
     return departures;
   }();
+
+  /// How LSS configures the device: canopen::configured_by_lss<Device::lss_options>(port).
+  static constexpr canopen::LssOptions lss_options{
+      .bit_rates = 0x01DF,
+      .unconfigurable = false,
+      .fastscan = false,
+      .served_in_stopped = false,
+      .served_in_operational = true};
 
   /// Bit n is set where an RPDO may map data type n as a dummy.
   static constexpr std::uint32_t dummies = 0x0000;

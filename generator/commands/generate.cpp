@@ -20,6 +20,9 @@ constexpr const char* examples = R"(Examples:
   edsc generate drive.eds -o out --name axis1 --node-id 5  a second one, with its node-ID fixed
   edsc generate vendor.eds -o out --keep-going             leave out what is wrong in a bought device's file)";
 
+/// Only a device that keeps its data sheet has this one.
+constexpr std::string_view stored_eds_header = "stored_eds.hpp";
+
 struct Settings {
   LoadSettings load;
   std::string output;
@@ -89,6 +92,7 @@ std::vector<OutputFile> render_all(const Settings& settings, LoadedDevice& loade
   std::vector<std::string> inputs{settings.load.path};
   if (loaded.options_source) inputs.push_back(loaded.options_source->name());
   for (const ChosenTemplate& one : templates) {
+    if (one.built_in.file_name == stored_eds_header && view["stored_eds"].is_null()) continue;
     files.push_back({(folder / one.built_in.file_name).string(), render(one.text(), view)});
     if (one.replacement) inputs.push_back(one.replacement->name());
   }

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <canopen/abort_code.hpp>
+#include <canopen/lss_options.hpp>
 #include <functional>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -129,6 +131,8 @@ class OptionsReader {
     if (name == "no_event") return no_event(value);
     if (name == "emergency_info") return emergency_info(value);
     if (name == "storing") return storing(value);
+    if (name == "lss") return lss(value);
+    if (name == "stored_eds") return stored_eds(value);
     if (name == "zero_terminated_strings") {
       flag(name, value, options_.zero_terminated_strings);
       return;
@@ -272,6 +276,56 @@ class OptionsReader {
         error("storing/" + text,
               entry ? "always, never or with_node_id" : "not an object or entry such as \"6010h:01\"");
       }
+    }
+  }
+
+  void lss(const json& value) {
+    if (!value.is_object()) return error("lss", "an object: {\"bit_rates\": [125, 500], \"fastscan\": false}");
+    LssSettings& settings = options_.lss.emplace();
+    for (const auto& [name, v] : value.items()) {
+      const std::string path = "lss/" + name;
+      if (name == "bit_rates") {
+        settings.bit_rates = lss_bit_rates(path, v);
+      } else if (std::ranges::find(lss_flags, name) == lss_flags.end()) {
+        error(path, "no such option");
+      } else if (bool on = false; flag(path, v, on)) {
+        settings.flags[name] = on;
+      }
+    }
+  }
+
+  /// One bit for each index of table 0 of CiA 305; none for a fixed bit rate.
+  std::optional<std::uint16_t> lss_bit_rates(const std::string& path, const json& value) {
+    constexpr const char* meaning = "\"fixed\", or an array of bit rates of CiA 301 in kbit/s, such as [125, 500], and \"auto\"";
+    if (value == "fixed") return std::uint16_t{0};
+    unsigned mask = 0;
+    bool valid = value.is_array() && !value.empty();
+    for (const json& item : valid ? value : json::array()) {
+      const auto bit = lss_bit_rate(item);
+      valid = valid && bit.has_value();
+      mask |= 1u << bit.value_or(0);
+    }
+    if (valid) return static_cast<std::uint16_t>(mask);
+    error(path, meaning);
+    return std::nullopt;
+  }
+
+  /// The index of table 0.
+  static std::optional<std::size_t> lss_bit_rate(const json& value) {
+    if (value == "auto") return canopen::lss::automatic_bit_rate;
+    if (!value.is_number_unsigned() || value == 0) return std::nullopt;
+    const auto* const at = std::ranges::find(canopen::lss::bit_rates, value.get<std::uint64_t>());
+    if (at == std::end(canopen::lss::bit_rates)) return std::nullopt;
+    return static_cast<std::size_t>(at - std::begin(canopen::lss::bit_rates));
+  }
+
+  void stored_eds(const json& value) {
+    if (value.is_boolean()) {
+      options_.stored_eds = value.get<bool>() ? StoredEds::text : StoredEds::of_application;
+    } else if (value == "compressed") {
+      options_.stored_eds = StoredEds::compressed;
+    } else {
+      error("stored_eds", "true, false or \"compressed\"");
     }
   }
 

@@ -38,6 +38,21 @@ struct StaticMapping {
 /// The bytes of an EMCY behind error code and error register.
 using EmergencyInfo = std::array<std::uint8_t, 5>;
 
+/// Members of canopen::LssOptions that are true or false, in its order.
+inline constexpr std::array lss_flags = {"manufacturer_bit_timing", "unconfigurable", "fastscan", "served_in_stopped",
+                                         "served_in_operational"};
+
+/// How a device is configured by LSS, as far as the options say; what they do not is the default of CiA 305.
+struct LssSettings {
+  std::optional<std::uint16_t> bit_rates;  ///< canopen::LssOptions::bit_rates; else those of the data sheet
+  std::map<std::string, bool> flags;       ///< by member
+
+  friend bool operator==(const LssSettings&, const LssSettings&) = default;
+};
+
+/// What 1021h holds: what the application binds to it, the data sheet's text, or the same as a gzip file.
+enum class StoredEds : std::uint8_t { of_application, text, compressed };
+
 struct Options {
   /// C++ names to use in place of the one made from ParameterName.
   std::map<EntryKey, std::string> names;
@@ -58,6 +73,9 @@ struct Options {
   std::map<std::uint16_t, EmergencyInfo> emergency_info;
   /// Entries that 1010h stores otherwise than their access says, by enumerator of canopen::Storing.
   std::vector<std::pair<EntrySelector, std::string>> storing;
+  /// Set where the options speak of LSS: the device has it then, whatever the data sheet says.
+  std::optional<LssSettings> lss;
+  StoredEds stored_eds = StoredEds::of_application;
   /// Departures from CiA 301 that the runtime knows: member of canopen::DeviceOptions and its value in C++.
   std::vector<std::pair<std::string, std::string>> runtime;
 

@@ -14,6 +14,7 @@
 #include "device/resolve_information.hpp"
 #include "device/resolve_modules.hpp"
 #include "device/resolve_pdos.hpp"
+#include "device/stored_eds.hpp"
 #include "device/type_table.hpp"
 #include "diagnostics/quote.hpp"
 #include "eds/number.hpp"
@@ -46,6 +47,7 @@ class Resolver {
     name_objects(device_, options_);
     check_option_keys();
     resolve_pdos(device_, options_);
+    resolve_stored_eds(device_, options_, diagnostics_);
     check_settable_mappings();
     return std::move(device_);
   }

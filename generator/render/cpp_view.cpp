@@ -1,7 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <canopen/lss_options.hpp>
+#include <iterator>
+#include <utility>
 
+#include "device/stored_eds.hpp"
 #include "render/compiled_format.hpp"
 #include "render/cpp_text.hpp"
 #include "render/json_object.hpp"
@@ -250,6 +254,47 @@ ordered_json runtime_rows(const Options& options) {
   return rows;
 }
 
+/// Bit rates of the data sheet as canopen::LssOptions::bit_rates has them.
+std::uint16_t lss_bit_rates(const Capabilities& capabilities) {
+  unsigned mask = 0;
+  for (std::size_t i = 0; i < std::size(canopen::lss::bit_rates); ++i) {
+    const std::uint16_t rate = canopen::lss::bit_rates[i];
+    if (rate != 0 && std::ranges::find(capabilities.baud_rates, rate) != capabilities.baud_rates.end()) mask |= 1u << i;
+  }
+  return static_cast<std::uint16_t>(mask);
+}
+
+/// The members of canopen::LssOptions in its order, of a device that has LSS; else null.
+ordered_json lss_view(const Device& device, const Options& options) {
+  const Capabilities& capabilities = device.information.capabilities;
+  if (!options.lss && !capabilities.lss_supported.value_or(false)) return nullptr;
+  const LssSettings settings = options.lss.value_or(LssSettings{});
+  std::string members =
+      fmt::format(".bit_rates = 0x{:04X}", settings.bit_rates.value_or(lss_bit_rates(capabilities)));
+  for (const char* flag : lss_flags) {
+    if (const auto at = settings.flags.find(flag); at != settings.flags.end()) {
+      members += fmt::format(",\n      .{} = {}", flag, at->second);
+    }
+  }
+  return json_object("members", std::move(members));
+}
+
+/// The data sheet's bytes in lines of C++, where the device keeps it; else null.
+ordered_json stored_eds_view(const Device& device, const Options& options) {
+  constexpr std::size_t bytes_in_a_line = 24;
+  const std::string bytes = stored_eds(device, options);
+  if (bytes.empty()) return nullptr;
+  ordered_json lines = json_array(bytes.size() / bytes_in_a_line + 1);
+  std::string line;
+  for (const char byte : bytes) {
+    if (line.size() >= bytes_in_a_line * 5) lines.push_back(std::exchange(line, {}));
+    line += compiled_format(FMT_COMPILE("0x{:02X},"), static_cast<unsigned char>(byte));
+  }
+  lines.push_back(std::move(line));
+  const bool compressed = options.stored_eds == StoredEds::compressed;
+  return json_object("lines", std::move(lines), "what", compressed ? "as a gzip file" : "as text in UTF-8");
+}
+
 /// The enumerator of canopen::DataType: its name in lower case.
 std::string type_enumerator(const canopen::DataTypeRow& type) {
   std::string out{type.name};
@@ -299,7 +344,8 @@ ordered_json cpp_view(const Device& device, const Options& options, Diagnostics&
                      emergency_rows(options), "any_emergency_info", !options.emergency_info.empty(), "descriptions",
                      description_rows(device), "node_id",
                      device.node_id ? ordered_json(*device.node_id) : ordered_json(nullptr), "dummies",
-                     dummy_mask(device), "storing", storing_rows(options), "any_storing", !options.storing.empty());
+                     dummy_mask(device), "lss", lss_view(device, options), "stored_eds",
+                     stored_eds_view(device, options), "storing", storing_rows(options), "any_storing", !options.storing.empty());
 }
 
 }  // namespace edsc

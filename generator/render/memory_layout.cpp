@@ -8,6 +8,7 @@
 
 #include "device/identifier.hpp"
 #include "device/index_range.hpp"
+#include "device/stored_eds.hpp"
 #include "render/compiled_format.hpp"
 #include "render/cpp_text.hpp"
 
@@ -202,6 +203,7 @@ class Builder {
     if (contains(mapping_parameters, entry.index)) return is_static_mapping(entry.index);
     if (settable(entry)) return false;
     if (contains(command_ranges, entry.index)) return true;
+    if (entry.index == store_format && options_.stored_eds != StoredEds::of_application) return true;
     if (entry.access == Access::constant) return true;
     if (entry.access != Access::ro) return false;
     if (object.has_sub_indices() && entry.sub_index == 0) return entry.index != 0x1003;

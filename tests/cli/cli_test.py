@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import gzip
 import json
 import os
 import re
@@ -258,6 +259,31 @@ class Generate(CommandLine):
         self.expect(FINE, result)
         self.assertEqual((result.stdout, result.stderr), ("", ""))
         self.assertEqual(set(snapshot(self.output)), {f"rk5c/{header}" for header in HEADERS})
+
+    def test_keeps_the_data_sheet_in_the_device(self) -> None:
+        sheet = FIXTURES / "stored_eds.eds"
+        for options, name in (("stored_eds", "as_text"), ("compressed_eds", "as_gzip")):
+            self.expect(FINE, self.edsc("generate", sheet, "-o", self.output, "--name", name,
+                                        "--options", FIXTURES / f"{options}.options.json"))
+        text, packed = (bytes(int(byte, 16) for byte in re.findall(r"0x([0-9A-F]{2}),", header.read_text()))
+                        for header in (self.output / "as_text/stored_eds.hpp", self.output / "as_gzip/stored_eds.hpp"))
+        self.assertEqual(text, sheet.read_bytes())
+        self.assertEqual(gzip.decompress(packed), sheet.read_bytes())
+        uploaded = self.folder / "uploaded.gz"
+        uploaded.write_bytes(packed)
+        self.assertEqual(self.edsc("format", uploaded).stdout, self.edsc("format", sheet).stdout)
+        uploaded.write_bytes(packed[:-1])
+        self.expect(WRONG_USAGE, self.edsc("format", uploaded), "not a whole gzip file")
+
+    def test_keeps_no_xdd_in_the_device(self) -> None:
+        xdd = self.write("device.xdd", "<ISO15745ProfileContainer xmlns:xsi='x'><ISO15745Profile><ProfileBody "
+                         "xsi:type='ProfileBody_CommunicationNetwork_CANopen'><ApplicationLayers><CANopenObjectList>"
+                         "<CANopenObject index='1021' name='Store EDS' objectType='7' dataType='000F' accessType='ro'/>"
+                         "</CANopenObjectList></ApplicationLayers></ProfileBody></ISO15745Profile>"
+                         "</ISO15745ProfileContainer>\n")
+        options = self.write("options.json", '{ "stored_eds": true }')
+        self.expect(INPUT_HAS_ERRORS, self.edsc("generate", xdd, "-o", self.output, "--options", options),
+                    "1021h holds an EDS, which this is not")
 
     def test_is_deterministic(self) -> None:
         self.edsc("generate", GOOD, "-o", self.output)

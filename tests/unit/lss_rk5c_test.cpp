@@ -2,6 +2,7 @@
 /// the manual's text.
 #include <gtest/gtest.h>
 
+#include <rk5c/device.hpp>
 #include <string>
 #include <vector>
 
@@ -9,7 +10,6 @@
 
 namespace {
 
-using canopen::LssOptions;
 using canopen::LssState;
 using canopen::NmtState;
 using canopen::NodeId;
@@ -17,12 +17,8 @@ using canopen::unconfigured_node_id;
 using namespace std::chrono_literals;
 
 /// Node-ID 1..127 only (L280); Operational has all communication objects, Stopped none (L1371..L1379); the bit rates of
-/// Table 2.
-constexpr LssOptions rk5c{.bit_rates = canopen::lss::all_bit_rates,
-                          .unconfigurable = false,
-                          .served_in_stopped = false,
-                          .served_in_operational = true};
-using Rk5c = bench::LssDevice<rk5c>;
+/// Table 2; no Fastscan.
+using Rk5c = bench::LssDevice<rk5c::Device::lss_options>;
 
 struct Row {
   int line;  ///< of the request

@@ -106,6 +106,37 @@ TEST(OptionsFile, HandsEachDepartureToTheRuntime) {
             (Runtime{{"storage_signature_abort_code", "0x08000022"}}));
 }
 
+TEST(OptionsFile, SaysHowLssConfiguresTheDevice) {
+  EXPECT_FALSE(Read("{}").options.lss.has_value());
+  EXPECT_EQ(Read(R"({ "lss": {} })").options.lss, LssSettings{});
+  EXPECT_EQ(Read(R"({ "lss": { "bit_rates": "fixed" } })").options.lss->bit_rates, 0);
+  EXPECT_EQ(Read(R"({ "lss": { "bit_rates": [10, 125, 1000] } })").options.lss->bit_rates, 0x0111);
+  EXPECT_EQ(Read(R"({ "lss": { "bit_rates": [500, "auto"] } })").options.lss->bit_rates, 0x0204);
+  const Read read(R"({ "lss": { "unconfigurable": false, "served_in_operational": true } })");
+  EXPECT_EQ(findings(read.diagnostics), Findings{});
+  EXPECT_EQ(read.options.lss->flags,
+            (std::map<std::string, bool>{{"served_in_operational", true}, {"unconfigurable", false}}));
+}
+
+TEST(OptionsFile, RefusesWhatLssDoesNotHave) {
+  for (const char* lss : {"true", "[125]", R"({ "bit_rates": [] })", R"({ "bit_rates": 125 })",
+                          R"({ "bit_rates": [100] })", R"({ "bit_rates": [0] })", R"({ "bit_rates": ["fixed"] })",
+                          R"({ "bit_rates": [125, true] })", R"({ "fastscan": 1 })", R"({ "fast_scan": true })"}) {
+    const Read read("{ \"lss\": " + std::string{lss} + " }");
+    EXPECT_EQ(read.diagnostics.errors(), 1u) << lss;
+  }
+}
+
+TEST(OptionsFile, SaysWhatTheDeviceKeepsOfItsDataSheet) {
+  EXPECT_EQ(Read(R"({ "stored_eds": false })").options.stored_eds, StoredEds::of_application);
+  EXPECT_EQ(Read(R"({ "stored_eds": true })").options.stored_eds, StoredEds::text);
+  EXPECT_EQ(Read(R"({ "stored_eds": "compressed" })").options.stored_eds, StoredEds::compressed);
+  for (const char* value : {"1", "\"gzip\"", "null", "[]"}) {
+    const Read read("{ \"stored_eds\": " + std::string{value} + " }");
+    EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(1, 3, "options")})) << value;
+  }
+}
+
 TEST(OptionsFile, MakesTheMappingOfAllPdosStatic) {
   EXPECT_TRUE(Read(R"({ "static_mapping": true })").options.static_mapping.applies_to(0x1600));
   EXPECT_FALSE(Read(R"({ "static_mapping": false })").options.static_mapping.applies_to(0x1600));

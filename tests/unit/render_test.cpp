@@ -57,7 +57,8 @@ TEST(Render, ThrowsWhenATemplateIsWrong) {
 TEST(Render, HasATemplateForEachGeneratedHeader) {
   std::vector<std::string_view> names;
   for (const Template& one : built_in_templates()) names.push_back(one.file_name);
-  EXPECT_EQ(names, (std::vector<std::string_view>{"dictionary.hpp", "pdo.hpp", "device.hpp", "description.hpp"}));
+  EXPECT_EQ(names, (std::vector<std::string_view>{"dictionary.hpp", "pdo.hpp", "device.hpp", "description.hpp",
+                                                  "stored_eds.hpp"}));
 }
 
 }  // namespace

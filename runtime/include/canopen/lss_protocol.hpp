@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "canopen/frame.hpp"
+#include "canopen/lss_options.hpp"
 #include "canopen/node_id.hpp"
 
 namespace canopen {
@@ -86,13 +87,6 @@ inline constexpr std::uint8_t implementation_specific = 255;
 
 /// Fastscan: the value of BitCheck at which all slaves without node-ID answer and a scan begins.
 inline constexpr std::uint8_t fastscan_reset = 0x80;
-
-/// Bit rates in kbit/s by the index of table 0; 0: reserved.
-inline constexpr std::uint16_t bit_rates[] = {1000, 800, 500, 250, 125, 0, 50, 20, 10};
-/// The index of table 0 that makes a device find out the bit rate.
-inline constexpr std::uint8_t automatic_bit_rate = 9;
-/// All of `bit_rates`, one bit an index.
-inline constexpr std::uint16_t all_bit_rates = 0x01DF;
 
 /// Bytes 1..4 as a number.
 [[nodiscard]] inline std::uint32_t word_of(const Frame& frame) {

@@ -7,26 +7,13 @@
 #include <type_traits>
 
 #include "canopen/frame.hpp"
+#include "canopen/lss_options.hpp"
 #include "canopen/lss_protocol.hpp"
 #include "canopen/nmt.hpp"
 #include "canopen/node_id.hpp"
 #include "canopen/time.hpp"
 
 namespace canopen {
-
-/// What differs from device to device. The defaults are those of CiA 305.
-struct LssOptions {
-  /// Bit rates of table 0 that the device has, one bit an index; bit 9 is automatic detection. 0: its bit rate is
-  /// fixed.
-  std::uint16_t bit_rates = lss::all_bit_rates;
-  /// Bit rates of the manufacturer's own, tables 128..255, are put before the node.
-  bool manufacturer_bit_timing = false;
-  /// Configure node-ID accepts 255, which takes the node-ID away.
-  bool unconfigurable = true;
-  bool fastscan = true;
-  bool served_in_stopped = true;
-  bool served_in_operational = false;
-};
 
 /// What a slave asks of the node around it:
 ///   std::uint32_t identity(sub_index);      1018h:01..04

@@ -62,6 +62,7 @@ class Node {
     now_ = now;
     if constexpr (has_storage) parameters_.open(handlers_.storage());
     if constexpr (has_lss) lss_.start(node_id_, lss_handler().port->bit_timing());
+    if constexpr (requires { Device::stored_eds; }) bind_constant<StoreEds>(Device::stored_eds);
     reset_node();
     serve();
   }
@@ -307,6 +308,9 @@ class Node {
   static constexpr bool has_rpdos = RpdoService<Device>::count > 0;
   static constexpr bool has_dynamic_tpdos = TpdoService<Device>::has_dynamic_mapping;
   static constexpr bool has_dynamic_rpdos = RpdoService<Device>::has_dynamic_mapping;
+
+  /// 1021h, which a device whose data sheet is generated into it binds by itself.
+  using StoreEds = Object<0x1021, 0x00, Domain, Access::ro>;
 
   struct Nothing {};
   template <bool Exists, class Service>
