@@ -67,13 +67,19 @@ bool carries_a_string(const Pdo& pdo) {
   });
 }
 
+/// Sub-index 0 counts entries that map nothing, or more of them than there are: the layout without them is what the PDO
+/// carries, and no mapping that could be changed is the same.
+bool has_gaps(const Pdo& pdo) {
+  return !pdo.multiplexed && pdo.entries.size() != default_of(pdo.mapping->find(0));
+}
+
 /// Whether the mapping may change: all of its parameter may be written, or set by the application. A PDO without a
 /// COB-ID is not served at all.
 bool is_dynamic(const Pdo& pdo, const Options& options) {
   constexpr std::uint8_t cob_id = 1;
   if (pdo.communication == nullptr || pdo.communication->find(cob_id) == nullptr) return false;
   if (pdo.mapping == nullptr || !is_list_of_objects(*pdo.mapping)) return false;
-  if (options.static_mapping.applies_to(pdo.mapping->index) || carries_a_string(pdo)) return false;
+  if (options.static_mapping.applies_to(pdo.mapping->index) || carries_a_string(pdo) || has_gaps(pdo)) return false;
   return std::ranges::all_of(pdo.mapping->entries, [&](const Entry& entry) { return changes(entry, options); });
 }
 

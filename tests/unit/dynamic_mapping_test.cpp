@@ -249,6 +249,15 @@ TEST(DynamicMapping, IsServedFromAnEmptyLayoutToo) {
   EXPECT_EQ(served(fixed, "tpdos"), (std::vector<std::string>{"1 Tpdo1"}));
 }
 
+TEST(DynamicMapping, IsStaticWhereItsDefaultCountsWhatMapsNothing) {
+  const std::string input = var("2000", "Input", "5", "ro", "PDOMapping=1\n");
+  const std::string gap = communication("1800") + group("1A00", "Mapping", "9", 3) + sub("1A00", 0, "5", "rw", "2") +
+                          sub("1A00", 1, "7", "rw", "0") + sub("1A00", 2, "7", "rw", "0x20000008");
+  DeviceFromText text{gap + input};
+  EXPECT_FALSE(text.device.pdos.at(0).dynamic);
+  EXPECT_EQ(served(text, "tpdos"), (std::vector<std::string>{"1 Tpdo1"}));
+}
+
 TEST(DynamicMapping, IsServedFromAnEmptyLayoutWhereItsDefaultIsWrong) {
   const std::string wrong = communication("1400") + mapping("1600");  // an input in an RPDO
   DeviceFromText dynamic{wrong + var("2000", "Input", "5", "ro", "PDOMapping=1\n")};

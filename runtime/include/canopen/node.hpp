@@ -173,8 +173,9 @@ class Node {
     return ok;
   }
 
-  /// Sets an object known by number only, in the bytes that SDO would bring. Its access on the bus does not count, and
-  /// handlers are not called. Refused as a download would be; read_only: it is a constant of the data sheet.
+  /// Sets an object known by number only, in the bytes that SDO would bring. Its access on the bus does not count,
+  /// handlers are not called, and services do not ask whether a parameter of theirs may change now; they take it over.
+  /// Refused for its length and its limits as a download would be; read_only: it is a constant of the data sheet.
   AbortCode set(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> bytes) {
     const entry::Word word = Device::dictionary.find(index, sub_index);
     if (word == Dictionary::no_object) return AbortCode::no_object;
@@ -282,7 +283,8 @@ class Node {
     attention_ = true;
   }
 
-  /// The values as they lie in RAM. What is changed here sends no TPDO and restarts no timer.
+  /// The values as they lie in RAM. What is changed here sends no TPDO and restarts no timer. Mapping parameters are not
+  /// to be changed here: services keep what follows from them.
   [[nodiscard]] typename Device::Values& values() { return store_.values(); }
   [[nodiscard]] const typename Device::Values& values() const { return store_.values(); }
 

@@ -54,7 +54,8 @@ class RpdoService {
     for (std::size_t i = 0; i < count; ++i) activate(i, entries, watched);
   }
 
-  /// Nothing is taken over any more, and nothing missed. What was wrong stays so until a good frame comes.
+  /// Nothing is taken over any more, and nothing missed. What was wrong stays so until a good frame comes, or Operational
+  /// is entered again.
   void leave_operational() {
     for (Slot& slot : slots_) slot.flags &= static_cast<std::uint8_t>(~(buffered | monitored));
   }
