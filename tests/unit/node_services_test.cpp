@@ -5,6 +5,8 @@
 #include <cpc_tc1/device.hpp>
 #include <rk5c/device.hpp>
 
+#include <cstring>
+
 #include "bench.hpp"
 
 namespace {
@@ -46,10 +48,9 @@ TEST(WatchedNode, HasOneEntryOnly) {
 
 TEST(WatchedNode, TellsTheApplication) {
   std::string log;
-  auto device = bench::with<cpc_tc1::Device>(
-      canopen::on_heartbeat([&](HeartbeatEvent event, NodeId node_id, NmtState) {
-        log += "s~u-+"[static_cast<int>(event)] + std::to_string(node_id.value()) + " ";
-      }));
+  auto device = bench::with<cpc_tc1::Device>(canopen::on_heartbeat([&](HeartbeatEvent event, NodeId node_id, NmtState) {
+    log += "s~u-+"[static_cast<int>(event)] + std::to_string(node_id.value()) + " ";
+  }));
   device.ask("605 23 16 10 01 64 00 07 00");
   device.ask("707 7F");
   device.ask("707 05");
@@ -73,8 +74,8 @@ TEST(GuardedNode, AnswersWithAnAlternatingToggleBit) {
 
 TEST(GuardedNode, TellsThatItsGuardIsLostAndBack) {
   std::string log;
-  auto device = bench::with<can_2057c::Device>(
-      canopen::on_life_guarding([&](bool lost) { log += lost ? "lost " : "back "; }));
+  auto device =
+      bench::with<can_2057c::Device>(canopen::on_life_guarding([&](bool lost) { log += lost ? "lost " : "back "; }));
   device.ask("605 2B 0C 10 00 FA 00 00 00");  // 250 ms
   device.ask("605 2F 0D 10 00 04 00 00 00");  // four times
   device.ask(bench::start);
@@ -181,6 +182,27 @@ TEST(NodeWithLss, ResetNodeBringsTheStoredNodeIdBack) {
   device.ask("7E5 11 20 00 00 00 00 00 00");
   device.ask("7E5 04 00 00 00 00 00 00 00");
   EXPECT_EQ(device.ask("000 81 05"), "705 00");
+}
+
+TEST(NodeWithLss, WithoutNodeIdSendsNoHeartbeatThatIsDue) {
+  Sensor device{NodeId{5}};
+  device.ask("605 2B 17 10 00 0A 00 00 00");  // every 10 ms
+  device.ask("7E5 04 01 00 00 00 00 00 00");
+  EXPECT_EQ(device.ask("7E5 11 FF 00 00 00 00 00 00"), "7E4 11 00 00 00 00 00 00 00");
+  device.now = device.now + 20ms;
+  EXPECT_EQ(device.ask("000 82 05"), "");
+  EXPECT_EQ(device.node.state(), NmtState::initialisation);
+}
+
+TEST(NodeWithLss, TellsItsIdentityAndTakesABitRate) {
+  Sensor device{NodeId{5}};
+  device.bus.take();
+  device.ask("7E5 04 01 00 00 00 00 00 00");
+  const std::uint32_t vendor_id = device.node.entries().number(rk5c::Device::dictionary.find(0x1018, 1));
+  canopen::Frame answer{.id = 0x7E4, .size = 8, .data = {0x5A}};
+  std::memcpy(&answer.data[1], &vendor_id, sizeof vendor_id);
+  EXPECT_EQ(device.ask("7E5 5A 00 00 00 00 00 00 00"), bench::text(answer));
+  EXPECT_EQ(device.ask("7E5 13 00 02 00 00 00 00 00"), "7E4 13 00 00 00 00 00 00 00");  // 500 kbit/s
 }
 
 TEST(NodeWithLss, SleepsWhileTheBitRateIsSwitched) {

@@ -437,6 +437,7 @@ class Node {
     if constexpr (has_heartbeat_consumer) heartbeats_.configure(entries());
     if constexpr (has_guarding) guarding_.reset();
     enter(NmtState::initialisation);
+    heartbeat_ = {};
     if (!node_id_.valid()) return;
     heartbeat_.boot_up();
     enter(NmtState::pre_operational);
