@@ -230,6 +230,13 @@ TEST(Time, IsSentByAProducer) {
   EXPECT_FALSE(device.node.send_time({1000, 10}));
 }
 
+TEST(Time, HasACanIdOf11BitsWhateverTheApplicationSets) {
+  Bench device;
+  device.node.set<od::cob_id_time>(0x4000'0900);
+  EXPECT_TRUE(device.node.send_time({1000, 10}));
+  EXPECT_EQ(device.pass(0s), "100 E8 03 00 00 0A 00");
+}
+
 TEST(Time, IdentifierStaysWhileItIsInUse) {
   Bench device;
   EXPECT_EQ(write(device, "605 23 12 10 00 FF 00 00 80"), "585 80 12 10 00 30 00 09 06");

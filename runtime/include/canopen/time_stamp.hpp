@@ -42,11 +42,11 @@ class TimeStamp {
   template <Bus B>
   [[nodiscard]] static bool send(const ObjectStore<Device>& store, B& bus, TimeOfDay time) {
     static_assert(exists, "this device has no 1012h");
-    const std::uint32_t cob_id = store.template number<0x1012, 0>();
-    if ((cob_id & produce_bit) == 0) return false;
+    const CobId cob_id{store.template number<0x1012, 0>()};
+    if ((cob_id.value() & produce_bit) == 0) return false;
     Frame frame{};
-    frame.id = cob_id & 0x1FFF'FFFF;
-    frame.extended = (cob_id & CobId::extended_bit) != 0;
+    frame.id = cob_id.can_id();
+    frame.extended = cob_id.extended();
     frame.size = size;
     std::memcpy(&frame.data[0], &time.milliseconds, sizeof time.milliseconds);
     std::memcpy(&frame.data[4], &time.days, sizeof time.days);
