@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "device/limits.hpp"
 #include "device/resolve_information.hpp"
 
 namespace edsc {
@@ -14,8 +15,6 @@ namespace {
 using canopen::Access;
 using canopen::DataType;
 
-constexpr std::uint32_t most_pdos = 512;
-constexpr std::uint8_t most_mapped_objects = 64;
 constexpr std::uint32_t known_bits = 0x3F;
 /// PDOs with a COB-ID of the pre-defined connection set (CiA 301, 7.3.5); the others are off.
 constexpr std::uint32_t predefined_pdos = 4;
@@ -170,7 +169,7 @@ void add_compact_pdos(const DeviceInfo& info, Device& device, Diagnostics& diagn
       diagnostics.warning("compact-pdo", (info.*direction.count).position,
                           "a device has 512 PDOs of a direction at most");
     }
-    compact.add(direction, std::min(count, most_pdos));
+    compact.add(direction, std::min<std::uint32_t>(count, most_pdos));
   }
   compact.finish();
 }

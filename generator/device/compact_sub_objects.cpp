@@ -4,13 +4,12 @@
 
 #include <algorithm>
 
+#include "device/limits.hpp"
 #include "diagnostics/quote.hpp"
 #include "eds/number.hpp"
 
 namespace edsc {
 namespace {
-
-constexpr std::uint64_t most_sub_objects = 254;
 
 Field text_field(std::string text, const Position& position, std::deque<std::string>& texts) {
   return {texts.emplace_back(std::move(text)), position, true};
@@ -77,7 +76,7 @@ std::uint8_t compact_count(const ObjectDescription& description, Diagnostics& di
   if (*count > most_sub_objects) {
     diagnostics.warning("compact-sub-obj", field.position, "CompactSubObj is 254 at most: 254 is taken");
   }
-  return static_cast<std::uint8_t>(std::min(*count, most_sub_objects));
+  return static_cast<std::uint8_t>(std::min<std::uint64_t>(*count, most_sub_objects));
 }
 
 bool has_compact_form(const ObjectDescription& description) {

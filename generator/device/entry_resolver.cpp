@@ -110,7 +110,7 @@ ValueType EntryResolver::data_type(const EntryDescription& description, const En
 }
 
 ValueType EntryResolver::missing_data_type(const EntryDescription& description, const EntryPlace& place) {
-  const auto object_type = parse_unsigned(strip_inline_comment(description.object_type.text));
+  const auto object_type = number_of(description.object_type);
   if (object_type == static_cast<std::uint64_t>(ObjectType::domain)) {
     diagnostics_.warning("data-type", description.position, "no DataType: a DOMAIN by its ObjectType");
     return types_.find(static_cast<std::uint64_t>(DataType::domain));

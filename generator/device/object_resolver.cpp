@@ -22,8 +22,6 @@ using canopen::DataType;
 constexpr std::array object_types = {ObjectType::domain, ObjectType::deftype, ObjectType::defstruct,
                                      ObjectType::var,    ObjectType::array,   ObjectType::record};
 
-std::optional<std::uint64_t> number(const Field& field) { return parse_unsigned(strip_inline_comment(field.text)); }
-
 Value number_value(std::uint64_t bits, const Position& position) {
   Value value;
   value.bits = bits;
@@ -90,7 +88,7 @@ std::optional<Object> ObjectResolver::resolve(const ObjectDescription& descripti
 }
 
 ObjectType ObjectResolver::object_type(const ObjectDescription& description) {
-  const bool has_subs = !description.sub_objects.empty() || number(description.compact_sub_obj).value_or(0) > 0;
+  const bool has_subs = !description.sub_objects.empty() || number_of(description.compact_sub_obj).value_or(0) > 0;
   const ObjectType fallback = has_subs ? ObjectType::record : ObjectType::var;
   const Field& field = description.object_type;
   const std::string_view text = strip_inline_comment(field.text);
@@ -124,7 +122,7 @@ ObjectType ObjectResolver::object_type(const ObjectDescription& description) {
 
 void ObjectResolver::resolve_links(const ObjectDescription& description, Object& object) {
   for (const NumberedField& link : description.object_links) {
-    const auto index = number(link.field);
+    const auto index = number_of(link.field);
     if (index && *index <= 0xFFFF) {
       object.links.push_back(static_cast<std::uint16_t>(*index));
     } else {
@@ -157,14 +155,14 @@ void ObjectResolver::resolve_sub_objects(const ObjectDescription& description, O
 
 void ObjectResolver::resolve_sub_object(const SubObjectDescription& sub, const ObjectDescription& description,
                                         Object& object) {
-  const EntryPlace place{description.index, sub.sub_index, true, number(description.data_type)};
+  const EntryPlace place{description.index, sub.sub_index, true, number_of(description.data_type)};
   if (auto entry = entries_.resolve(sub, place, sub.parameter_name.text)) object.entries.push_back(std::move(*entry));
 }
 
 void ObjectResolver::check_sub_number(const ObjectDescription& description) {
   const Field& field = description.sub_number;
-  if (!field.present || number(description.compact_sub_obj).value_or(0) > 0) return;
-  if (number(field) == description.sub_objects.size()) return;
+  if (!field.present || number_of(description.compact_sub_obj).value_or(0) > 0) return;
+  if (number_of(field) == description.sub_objects.size()) return;
   diagnostics_.warning("sub-number", field.position,
                        fmt::format("SubNumber is {}, but {} sub-objects are described; those count",
                                    strip_inline_comment(field.text), description.sub_objects.size()));

@@ -39,7 +39,7 @@ class Resolver {
     device_.information = resolve_information(sheet_, options_, diagnostics_);
     resolve_identity();
     for (const NumberedField& dummy : sheet_.dummy_usage) {
-      if (parse_unsigned(strip_inline_comment(dummy.field.text)).value_or(0) != 0) {
+      if (number_of(dummy.field).value_or(0) != 0) {
         device_.dummies.push_back(static_cast<std::uint16_t>(dummy.number));
       }
     }

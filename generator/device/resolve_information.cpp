@@ -89,7 +89,7 @@ class InformationReader {
 
   /// What is neither 0 nor 1 is a matter of the rules.
   static std::optional<bool> flag(const Field& field) {
-    const auto value = parse_unsigned(strip_inline_comment(field.text));
+    const auto value = number_of(field);
     return field.present && value ? std::optional{*value != 0} : std::nullopt;
   }
 

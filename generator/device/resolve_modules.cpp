@@ -6,14 +6,13 @@
 #include <map>
 #include <set>
 
+#include "device/limits.hpp"
 #include "device/resolve_information.hpp"
 #include "diagnostics/quote.hpp"
 #include "eds/number.hpp"
 
 namespace edsc {
 namespace {
-
-constexpr std::uint8_t most_sub_objects = 254;
 
 /// How many sub-indices a module adds: whole ones, or a part of one that it shares with its neighbours.
 struct Count {
@@ -22,7 +21,7 @@ struct Count {
 };
 
 std::optional<std::uint16_t> index_of(const Field& field) {
-  const auto index = parse_unsigned(strip_inline_comment(field.text));
+  const auto index = number_of(field);
   return index && *index <= 0xFFFF ? std::optional{static_cast<std::uint16_t>(*index)} : std::nullopt;
 }
 

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <canopen/pdo_mapping.hpp>
 
+#include "device/limits.hpp"
+
 namespace edsc {
 namespace {
-
-constexpr std::uint16_t most_pdos = 512;
-constexpr std::size_t most_mapped_objects = 64;
 
 struct ParameterIndices {
   PdoDirection direction;

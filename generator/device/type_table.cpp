@@ -47,8 +47,6 @@ const DataTypeRow* basic_type(std::uint64_t code) {
 
 const DataTypeRow* basic_type(DataType type) { return canopen::find_data_type(static_cast<std::uint32_t>(type)); }
 
-std::optional<std::uint64_t> number(const Field& field) { return parse_unsigned(strip_inline_comment(field.text)); }
-
 /// Objects are ascending by index.
 const ObjectDescription* find_description(const DataSheet& sheet, std::uint64_t index) {
   const auto at = std::ranges::lower_bound(sheet.objects, index, {},
@@ -71,7 +69,7 @@ class DefinitionReader {
     definition.index = object.index;
     definition.name = object.parameter_name.text;
     definition.position = object.position;
-    const auto object_type = number(object.object_type);
+    const auto object_type = number_of(object.object_type);
     if (object_type == static_cast<std::uint64_t>(ObjectType::defstruct)) {
       read_members(object, definition);
     } else if (find_sub(object, 1) != nullptr) {
@@ -89,7 +87,7 @@ class DefinitionReader {
     for (const SubObjectDescription& sub : object.sub_objects) {
       if (sub.sub_index == 0) continue;
       definition.members.resize(sub.sub_index);
-      const auto code = number(sub.default_value);
+      const auto code = number_of(sub.default_value);
       definition.members.back() = code ? follow(*code) : nullptr;
       if (definition.members.back() == nullptr) report(sub.default_value, "is not the index of a data type");
     }
@@ -97,7 +95,7 @@ class DefinitionReader {
 
   /// A range as CANFestival writes it: a RECORD of the basic type's index, the lowest and the highest value.
   void read_range(const ObjectDescription& object, TypeDefinition& definition) {
-    const auto code = number(find_sub(object, 1)->default_value);
+    const auto code = number_of(find_sub(object, 1)->default_value);
     definition.type = code ? follow(*code) : nullptr;
     if (definition.type == nullptr)
       return report(find_sub(object, 1)->default_value, "is not the index of a data type");
@@ -108,7 +106,7 @@ class DefinitionReader {
   }
 
   void read_alias(const ObjectDescription& object, TypeDefinition& definition) {
-    const auto code = number(object.data_type);
+    const auto code = number_of(object.data_type);
     definition.type = code ? follow(*code) : nullptr;
     if (definition.type == nullptr) return report(object.data_type, "is not the index of a data type");
     definition.low_limit = limit(object.low_limit, Limit::low, *definition.type);
@@ -121,7 +119,7 @@ class DefinitionReader {
     for (int step = 0; step < most_steps; ++step) {
       if (const DataTypeRow* row = basic_type(code)) return row;
       const ObjectDescription* object = code < first_communication_index ? find_description(sheet_, code) : nullptr;
-      const auto next = object != nullptr ? number(object->data_type) : std::nullopt;
+      const auto next = object != nullptr ? number_of(object->data_type) : std::nullopt;
       if (!next) return nullptr;
       code = *next;
     }

@@ -20,7 +20,7 @@ void check_count(const SourceFile& source, const IniSection& section, const Comm
                         fmt::format("{} is missing in [{}]", count_key, section.name));
     return;
   }
-  const std::optional<std::uint64_t> count = parse_unsigned(strip_inline_comment(comments.lines.text));
+  const std::optional<std::uint64_t> count = number_of(comments.lines);
   const bool counts_up = comments.text.empty() || comments.text.back().number == comments.text.size();
   if (!count || *count != comments.text.size() || !counts_up) {
     diagnostics.warning("comments", comments.lines.position,

@@ -11,7 +11,7 @@
 namespace edsc {
 namespace {
 
-constexpr std::string_view count_key = "NrOfSeg";
+constexpr std::string_view segment_count_key = "NrOfSeg";
 
 /// What stands before the number of a segment.
 constexpr KeyRow<DynamicSegment> segment_rows[] = {
@@ -49,14 +49,14 @@ DynamicChannels read_dynamic_channels(const SourceFile& source, const IniSection
   channels.present = true;
   channels.nr_of_segments.position = section_position(source, section);
   read_keys(source, section, diagnostics, [&](std::string_view key) {
-    return equal_ignoring_case(key, count_key) ? KeyMatch{true, &channels.nr_of_segments}
+    return equal_ignoring_case(key, segment_count_key) ? KeyMatch{true, &channels.nr_of_segments}
                                                : find_segment_key(key, channels);
   });
   const std::string_view text = strip_inline_comment(channels.nr_of_segments.text);
   const std::optional<std::uint64_t> count = text.empty() ? std::optional<std::uint64_t>{0} : parse_unsigned(text);
   if (!count || *count != channels.segments.size()) {
     diagnostics.warning("dynamic-segment", channels.nr_of_segments.position,
-                        fmt::format("{} says how many segments there are: {}", count_key, channels.segments.size()));
+                        fmt::format("{} says how many segments there are: {}", segment_count_key, channels.segments.size()));
   }
   return channels;
 }

@@ -32,8 +32,8 @@ constexpr KeyRow<SubExtension> extension_rows[] = {
 constexpr std::span<const KeyRow<ModuleDescription>> info_keys = info_rows;
 constexpr std::span<const KeyRow<SubExtension>> extension_keys = extension_rows;
 
-constexpr CountKey nr_of_entries{"NrOfEntries", {}, "entry-count", true};
-constexpr std::string_view count_key = "NrOfEntries";
+constexpr CountKey nr_of_extensions{"NrOfEntries", {}, "entry-count", true};
+constexpr std::string_view module_count_key = "NrOfEntries";
 
 /// The sections of one module, read in the order in which they stand.
 class ModuleReader {
@@ -83,9 +83,9 @@ class ModuleReader {
     } else if (section.name.kind == SectionKind::module_comments) {
       module_.comments = read_comments(source_, keys, diagnostics_);
     } else if (section.name.kind == SectionKind::module_fixed_objects) {
-      module_.fixed_objects = read_numbered_section(source_, keys, nr_of_entries, diagnostics_);
+      module_.fixed_objects = read_numbered_section(source_, keys, nr_of_extensions, diagnostics_);
     } else if (section.name.kind == SectionKind::module_sub_extends) {
-      module_.sub_extends = read_numbered_section(source_, keys, nr_of_entries, diagnostics_);
+      module_.sub_extends = read_numbered_section(source_, keys, nr_of_extensions, diagnostics_);
     } else if (section.name.kind == SectionKind::module_sub_extension) {
       read_extension(section.name.index, keys);
     }
@@ -145,12 +145,12 @@ Modules read_modules(const SourceFile& source, const ModuleSections& sections, D
   }
   if (sections.supported != nullptr) {
     read_keys(source, *sections.supported, diagnostics, [&](std::string_view key) {
-      return equal_ignoring_case(key, count_key) ? KeyMatch{true, &modules.nr_of_entries} : KeyMatch{};
+      return equal_ignoring_case(key, module_count_key) ? KeyMatch{true, &modules.nr_of_entries} : KeyMatch{};
     });
   }
   check_count(source, sections.supported, modules, diagnostics);
   if (sections.connected != nullptr) {
-    modules.connected = read_numbered_section(source, *sections.connected, nr_of_entries, diagnostics);
+    modules.connected = read_numbered_section(source, *sections.connected, nr_of_extensions, diagnostics);
   }
   return modules;
 }

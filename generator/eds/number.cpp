@@ -4,6 +4,7 @@
 #include <charconv>
 #include <system_error>
 
+#include "eds/data_sheet.hpp"
 #include "text/ascii.hpp"
 
 namespace edsc {
@@ -56,5 +57,7 @@ std::optional<std::uint16_t> parse_hex(std::string_view text, std::size_t most_d
 }
 
 std::string_view strip_inline_comment(std::string_view text) { return trim(text.substr(0, text.find_first_of(";#"))); }
+
+std::optional<std::uint64_t> number_of(const Field& field) { return parse_unsigned(strip_inline_comment(field.text)); }
 
 }  // namespace edsc

@@ -8,6 +8,8 @@
 
 namespace edsc {
 
+struct Field;
+
 /// A decimal, hexadecimal (0x) or octal (leading 0) number, blanks around it cut, a `+` before it let through. Nothing
 /// when any of the text is not part of the number, or when 64 bits do not hold it.
 [[nodiscard]] std::optional<std::uint64_t> parse_unsigned(std::string_view text);
@@ -20,5 +22,8 @@ namespace edsc {
 
 /// Cuts what follows a `;` or `#`, and the blanks before that. Only for values that hold neither: numbers and codes.
 [[nodiscard]] std::string_view strip_inline_comment(std::string_view text);
+
+/// The number that a key holds, with what follows a `;` or `#` cut.
+[[nodiscard]] std::optional<std::uint64_t> number_of(const Field& field);
 
 }  // namespace edsc

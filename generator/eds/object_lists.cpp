@@ -38,7 +38,7 @@ class ObjectListReader {
       return;
     }
     for (const NumberedField& entry : read_numbered_section(source_, *section, supported_objects, diagnostics_)) {
-      const std::optional<std::uint64_t> index = parse_unsigned(strip_inline_comment(entry.field.text));
+      const std::optional<std::uint64_t> index = number_of(entry.field);
       if (index && *index >= 0x0001 && *index <= 0xFFFF) {
         add({list, static_cast<std::uint16_t>(*index), entry.field.position});
       } else {

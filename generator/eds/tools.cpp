@@ -15,17 +15,17 @@ namespace {
 
 constexpr KeyRow<Tool> tool_rows[] = {{"Name", &Tool::name}, {"Command", &Tool::command}};
 constexpr std::span<const KeyRow<Tool>> tool_keys = tool_rows;
-constexpr std::string_view count_key = "Items";
+constexpr std::string_view tool_count_key = "Items";
 
 void check_count(const SourceFile& source, const IniSection& list, std::size_t tools, Diagnostics& diagnostics) {
   Field items;
   read_keys(source, list, diagnostics, [&](std::string_view key) {
-    return equal_ignoring_case(key, count_key) ? KeyMatch{true, &items} : KeyMatch{};
+    return equal_ignoring_case(key, tool_count_key) ? KeyMatch{true, &items} : KeyMatch{};
   });
-  const std::optional<std::uint64_t> count = parse_unsigned(strip_inline_comment(items.text));
+  const std::optional<std::uint64_t> count = number_of(items);
   if (!count || *count != tools) {
     diagnostics.warning("tools", items.present ? items.position : section_position(source, list),
-                        fmt::format("{} says how many sections [ToolX] there are: {}", count_key, tools));
+                        fmt::format("{} says how many sections [ToolX] there are: {}", tool_count_key, tools));
   }
 }
 

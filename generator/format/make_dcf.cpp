@@ -86,7 +86,7 @@ class DcfMaker {
   [[nodiscard]] std::string only_baud_rate() const {
     std::string only;
     for (const DeviceInfo::BaudRate& rate : sheet_.device_info.baud_rates) {
-      if (parse_unsigned(strip_inline_comment(rate.field.text)).value_or(0) == 0) continue;
+      if (number_of(rate.field).value_or(0) == 0) continue;
       if (!only.empty()) return {};
       only = fmt::format("{}", rate.kbit_per_second);
     }

@@ -75,7 +75,7 @@ class SectionSpeller {
   [[nodiscard]] Spelling sub_number(const std::string& value) const {
     Spelling spelling = spell_number(value, 1);
     const ObjectDescription* const object = find_object(sheet_, section_.kind.index);
-    if (object == nullptr || parse_unsigned(strip_inline_comment(object->compact_sub_obj.text)).value_or(0) > 0) {
+    if (object == nullptr || number_of(object->compact_sub_obj).value_or(0) > 0) {
       return spelling;
     }
     const bool is_hexadecimal = spelling.text.starts_with("0x");

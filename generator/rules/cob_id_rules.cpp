@@ -45,7 +45,6 @@ constexpr Predefined predefined[] = {
     {0x1803, 1, canopen::function_code::tpdo4},
 };
 
-constexpr std::uint32_t last_node_id = 127;
 
 /// A COB-ID that the device has after a reset.
 struct CobIdUse {

@@ -7,8 +7,6 @@
 namespace edsc {
 namespace {
 
-constexpr std::uint64_t last_node_id = 127;
-
 std::uint64_t default_of(const RuleContext& context, std::uint16_t index) {
   const Entry* entry = context.device.find(index, 0);
   return entry != nullptr && entry->default_value ? entry->default_value->bits : 0;

@@ -5,13 +5,13 @@
 
 #include "diagnostics/quote.hpp"
 #include "eds/number.hpp"
+#include "rules/baud_rates.hpp"
 #include "rules/rule_groups.hpp"
 
 namespace edsc {
 namespace {
 
 constexpr std::uint64_t most_granularity = 64;
-constexpr std::uint16_t standard_baud_rates[] = {10, 20, 50, 125, 250, 500, 800, 1000};
 
 struct Flag {
   std::string_view key;
@@ -25,8 +25,6 @@ constexpr Flag flags[] = {
     {"GroupMessaging", &DeviceInfo::group_messaging},
     {"LSS_Supported", &DeviceInfo::lss_supported},
 };
-
-std::optional<std::uint64_t> number_of(const Field& field) { return parse_unsigned(strip_inline_comment(field.text)); }
 
 void check_flag(const RuleContext& context, std::string_view key, const Field& field) {
   if (field.empty() || number_of(field).value_or(2) <= 1) return;

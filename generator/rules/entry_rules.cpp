@@ -48,7 +48,7 @@ void check_name_length(const RuleContext& context, const Entry& entry) {
 void check_flags(const RuleContext& context, const EntryDescription& description) {
   const Field& field = description.obj_flags;
   if (field.empty()) return;
-  const auto flags = parse_unsigned(strip_inline_comment(field.text));
+  const auto flags = number_of(field);
   if (flags && (*flags & ~known_flags) == 0) return;
   context.report("object-flags", field.position,
                  fmt::format("ObjFlags has two bits, 0 and 1; {} has others", quote(field.text)));

@@ -6,6 +6,7 @@
 
 #include "diagnostics/quote.hpp"
 #include "eds/number.hpp"
+#include "rules/baud_rates.hpp"
 #include "rules/rule_groups.hpp"
 #include "text/ascii.hpp"
 #include "text/ini.hpp"
@@ -16,7 +17,6 @@ namespace edsc {
 namespace {
 
 constexpr std::size_t longest_line = 255;
-constexpr std::uint16_t standard_baud_rates[] = {10, 20, 50, 125, 250, 500, 800, 1000};
 
 /// Whether `text` is like `pattern`, where `0` stands for a digit and each other character for itself.
 bool has_form(std::string_view text, std::string_view pattern) {
@@ -119,7 +119,7 @@ void check_dummy_usage(const RuleContext& context) {
 
 void check_commissioned_baud_rate(const RuleContext& context) {
   const Field& field = context.sheet.commissioning.baudrate;
-  const auto rate = parse_unsigned(strip_inline_comment(field.text));
+  const auto rate = number_of(field);
   if (field.empty() || rate == 0) return;
   if (!rate || std::ranges::find(standard_baud_rates, *rate) == std::end(standard_baud_rates)) {
     context.report("commissioned-baud-rate", field.position,
@@ -127,7 +127,7 @@ void check_commissioned_baud_rate(const RuleContext& context) {
     return;
   }
   for (const DeviceInfo::BaudRate& row : context.sheet.device_info.baud_rates) {
-    if (row.kbit_per_second != *rate || parse_unsigned(strip_inline_comment(row.field.text)) != 0) continue;
+    if (row.kbit_per_second != *rate || number_of(row.field) != 0) continue;
     context.diagnostics.report({Severity::warning,
                                 "commissioned-baud-rate",
                                 field.position,

@@ -10,8 +10,7 @@
 namespace edsc {
 namespace {
 
-constexpr std::uint8_t transmission_type = 2;
-constexpr unsigned most_bits = 32;
+constexpr unsigned most_mpdo_bits = 32;
 
 bool served(const Options& options) {
   return std::ranges::find(options.runtime, std::pair<std::string, std::string>{"mpdo", "true"}) !=
@@ -32,12 +31,12 @@ void check_option(const RuleContext& context, const Pdo& pdo) {
 }
 
 void check_type(const RuleContext& context, const Pdo& pdo) {
-  const auto type = communication_default(pdo, transmission_type);
+  const auto type = communication_default(pdo, transmission_type_sub_index);
   if (!type || canopen::transmission_of(static_cast<std::uint32_t>(*type)) == canopen::Transmission::event_driven) {
     return;
   }
   context.report(
-      "mpdo-transmission-type", default_place(*pdo.communication->find(transmission_type)),
+      "mpdo-transmission-type", default_place(*pdo.communication->find(transmission_type_sub_index)),
       fmt::format("{} is a multiplex PDO: its transmission type is 254 or 255, not {}", pdo_label(pdo), *type));
 }
 
@@ -60,7 +59,7 @@ std::string_view obstacle(const Device& device, std::uint16_t index, unsigned su
   const Entry* object = sub_index > 0xFF ? nullptr : device.find(index, static_cast<std::uint8_t>(sub_index));
   if (object == nullptr) return "does not exist";
   if (!canopen::allows(object->mappable(), direction)) return "cannot be mapped";
-  return object->type->bits == 0 || object->type->bits > most_bits ? "has no length of 1 to 32 bits" : "";
+  return object->type->bits == 0 || object->type->bits > most_mpdo_bits ? "has no length of 1 to 32 bits" : "";
 }
 
 /// The elements that the defaults of a list name.

@@ -14,7 +14,6 @@ namespace {
 using canopen::Transmission;
 
 constexpr std::uint8_t cob_id = 1;
-constexpr std::uint8_t transmission_type = 2;
 constexpr std::uint8_t inhibit_time = 3;
 constexpr std::uint8_t compatibility_entry = 4;
 constexpr std::uint8_t event_timer = 5;
@@ -31,7 +30,7 @@ bool is_synchronous(Transmission transmission) {
 }
 
 void check_transmission_type(const RuleContext& context, const Pdo& pdo, std::uint64_t type) {
-  const Entry& entry = *pdo.communication->find(transmission_type);
+  const Entry& entry = *pdo.communication->find(transmission_type_sub_index);
   const Transmission transmission = transmission_of(type);
   if (!canopen::transmission_type_is_legal(is_receive(pdo), static_cast<std::uint32_t>(type))) {
     context.report("pdo-transmission-type", default_place(entry),
@@ -49,7 +48,7 @@ void check_remote(const RuleContext& context, const Pdo& pdo, std::uint64_t type
   const auto value = communication_default(pdo, cob_id);
   const bool remote = transmission == Transmission::remote || transmission == Transmission::remote_synchronous;
   if (!remote || !value || canopen::CobId{static_cast<std::uint32_t>(*value)}.rtr_allowed()) return;
-  context.report("pdo-remote", default_place(*pdo.communication->find(transmission_type)),
+  context.report("pdo-remote", default_place(*pdo.communication->find(transmission_type_sub_index)),
                  fmt::format("{} is sent on request only (transmission type {}), but its COB-ID allows no remote frame",
                              pdo_label(pdo), type));
 }
@@ -105,7 +104,7 @@ void check_pdo_communication(const RuleContext& context) {
   for (const Pdo& pdo : context.device.pdos) {
     if (pdo.communication == nullptr) continue;
     check_compatibility_entry(context, pdo);
-    const auto type = communication_default(pdo, transmission_type);
+    const auto type = communication_default(pdo, transmission_type_sub_index);
     if (!type) continue;
     check_transmission_type(context, pdo, *type);
     check_remote(context, pdo, *type);

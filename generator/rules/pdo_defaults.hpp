@@ -9,6 +9,9 @@
 
 namespace edsc {
 
+/// Where a communication parameter holds the transmission type (CiA 301, 7.5.2.35).
+inline constexpr std::uint8_t transmission_type_sub_index = 2;
+
 /// Whether the PDO is valid after a reset: bit 31 of its COB-ID is 0.
 [[nodiscard]] bool on_by_default(const Pdo& pdo);
 

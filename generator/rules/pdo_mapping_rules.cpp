@@ -58,9 +58,9 @@ std::string mapped_name(const PdoEntry& entry) {
 }
 
 /// Granularity is the unit of mapping in bits; 0 says that no mapping can be changed.
-void check_granularity(const RuleContext& context) {
+void check_granularity_of_mappings(const RuleContext& context) {
   const Field& field = context.sheet.device_info.granularity;
-  const auto granularity = parse_unsigned(strip_inline_comment(field.text));
+  const auto granularity = number_of(field);
   if (field.empty() || !granularity) return;
   for (const Pdo& pdo : context.device.pdos) {
     if (*granularity == 0) {
@@ -110,7 +110,7 @@ void check_pdo_mapping(const RuleContext& context) {
     check_twice(context, pdo);
     check_empty(context, pdo, *count);
   }
-  check_granularity(context);
+  check_granularity_of_mappings(context);
   check_both_directions(context);
 }
 

@@ -13,6 +13,8 @@
 
 namespace edsc {
 
+inline constexpr std::uint8_t last_node_id = 127;
+
 struct RuleContext {
   Device& device;
   const DataSheet& sheet;

@@ -10,8 +10,8 @@
 namespace edsc {
 namespace {
 
-struct Read {
-  explicit Read(std::string text, std::string name = "test.eds")
+struct ReadSheet {
+  explicit ReadSheet(std::string text, std::string name = "test.eds")
       : source(std::move(name), std::move(text)), sheet(read_data_sheet(parse_ini(source, diagnostics), diagnostics)) {}
 
   SourceFile source;
@@ -31,7 +31,7 @@ const std::string one_object =
     "DataType=0x0007\n";
 
 TEST(DataSheet, PlacesTheKeysOfAnObject) {
-  const Read read(
+  const ReadSheet read(
       one_object +
       "ObjectType=0x7\nAccessType=rw\nLowLimit=1\nHighLimit=9\nDefaultValue=0x80 ; sync\nPDOMapping=0\n"
       "ObjFlags=1\nParameterValue=5\nDenotation=mine\nUploadFile=a.bin\nDownloadFile=b.bin\nParamRefd=X1\n");
@@ -60,7 +60,7 @@ TEST(DataSheet, PlacesTheKeysOfAnObject) {
 }
 
 TEST(DataSheet, PointsToTheSectionWhereAKeyIsMissing) {
-  const Read read(one_object);
+  const ReadSheet read(one_object);
   const Field& missing = read.sheet.objects.at(0).access_type;
   EXPECT_FALSE(missing.present);
   EXPECT_EQ(missing.position.file, &read.source);
@@ -68,13 +68,13 @@ TEST(DataSheet, PointsToTheSectionWhereAKeyIsMissing) {
 }
 
 TEST(DataSheet, TellsAnEmptyValueFromAMissingKey) {
-  const Read read(one_object + "DefaultValue=\n");
+  const ReadSheet read(one_object + "DefaultValue=\n");
   EXPECT_TRUE(read.sheet.objects.at(0).default_value.present);
   EXPECT_TRUE(read.sheet.objects.at(0).default_value.empty());
 }
 
 TEST(DataSheet, ReadsSectionAndKeyNamesInAnyLetterCase) {
-  const Read read(
+  const ReadSheet read(
       "[OPTIONALOBJECTS]\nsupportedobjects=1\n1=0x1a00\n"
       "[1a00]\nparametername=x\nSUBNUMBER=1\n[1A00Sub0a]\nDATATYPE=5\n");
   EXPECT_EQ(findings(read.diagnostics), Findings{});
@@ -87,7 +87,7 @@ TEST(DataSheet, ReadsSectionAndKeyNamesInAnyLetterCase) {
 }
 
 TEST(DataSheet, SortsObjectsAndSubObjects) {
-  const Read read("[2000sub10]\n[2000sub2]\n[2000]\n[1005]\n[2000subFF]\n[2000sub0]\n");
+  const ReadSheet read("[2000sub10]\n[2000sub2]\n[2000]\n[1005]\n[2000subFF]\n[2000sub0]\n");
   ASSERT_EQ(read.sheet.objects.size(), 2U);
   EXPECT_EQ(read.sheet.objects[0].index, 0x1005);
   EXPECT_EQ(read.sheet.objects[1].index, 0x2000);
@@ -99,7 +99,7 @@ TEST(DataSheet, SortsObjectsAndSubObjects) {
 }
 
 TEST(DataSheet, ReadsFileInfo) {
-  const Read read(
+  const ReadSheet read(
       one_object +
       "[FileInfo]\nFileName=a.eds\nFileVersion=1\nFileRevision=2\nEDSVersion=4.0\nDescription=d\nCreatedBy=c\n"
       "CreationTime=09:00AM\nCreationDate=01-02-2020\nModificationTime=x\nModificationDate=y\nModifiedBy=z\n");
@@ -113,7 +113,7 @@ TEST(DataSheet, ReadsFileInfo) {
 }
 
 TEST(DataSheet, ReadsDeviceInfoWithItsBaudRates) {
-  const Read read(one_object + "[DeviceInfo]\nVendorNumber=0x1\nBaudRate_10=0\nbaudrate_1000=1\nNrOfRXPDO=4\n");
+  const ReadSheet read(one_object + "[DeviceInfo]\nVendorNumber=0x1\nBaudRate_10=0\nbaudrate_1000=1\nNrOfRXPDO=4\n");
   EXPECT_EQ(findings(read.diagnostics), Findings{});
   const DeviceInfo& info = read.sheet.device_info;
   EXPECT_TRUE(info.present);
@@ -129,7 +129,7 @@ TEST(DataSheet, ReadsDeviceInfoWithItsBaudRates) {
 }
 
 TEST(DataSheet, PointsToTheFileWhereASectionIsMissing) {
-  const Read read(one_object);
+  const ReadSheet read(one_object);
   EXPECT_FALSE(read.sheet.device_info.present);
   EXPECT_EQ(read.sheet.device_info.vendor_name.position.file, &read.source);
   EXPECT_EQ(read.sheet.device_info.vendor_name.position.line, 0U);
@@ -137,7 +137,7 @@ TEST(DataSheet, PointsToTheFileWhereASectionIsMissing) {
 
 TEST(DataSheet, ReadsDeviceCommissioningInBothSpellings) {
   for (const std::string name : {"DeviceComissioning", "DeviceCommissioning"}) {
-    const Read read(one_object + "[" + name + "]\nNodeId=0x0A\nBaudRate=500\nNodeRefd=x\n");
+    const ReadSheet read(one_object + "[" + name + "]\nNodeId=0x0A\nBaudRate=500\nNodeRefd=x\n");
     EXPECT_EQ(findings(read.diagnostics), Findings{});
     EXPECT_TRUE(read.sheet.commissioning.present);
     EXPECT_TRUE(read.sheet.is_dcf);
@@ -147,12 +147,12 @@ TEST(DataSheet, ReadsDeviceCommissioningInBothSpellings) {
 }
 
 TEST(DataSheet, KnowsADcfByItsNameToo) {
-  EXPECT_FALSE(Read(one_object).sheet.is_dcf);
-  EXPECT_TRUE(Read(one_object, "x.DCF").sheet.is_dcf);
+  EXPECT_FALSE(ReadSheet(one_object).sheet.is_dcf);
+  EXPECT_TRUE(ReadSheet(one_object, "x.DCF").sheet.is_dcf);
 }
 
 TEST(DataSheet, ReadsDummyUsage) {
-  const Read read(one_object + "[DummyUsage]\nDummy0005=1\nDummy001B=0\nDummy0100=1\nDummy5=1\n");
+  const ReadSheet read(one_object + "[DummyUsage]\nDummy0005=1\nDummy001B=0\nDummy0100=1\nDummy5=1\n");
   EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(10, 1, "unknown-key"), warning_at(11, 1, "unknown-key")}));
   ASSERT_EQ(read.sheet.dummy_usage.size(), 2U);
   EXPECT_EQ(read.sheet.dummy_usage[0].number, 0x05U);
@@ -161,7 +161,7 @@ TEST(DataSheet, ReadsDummyUsage) {
 }
 
 TEST(DataSheet, ReadsTheListsOfACompactForm) {
-  const Read read(one_object +
+  const ReadSheet read(one_object +
                   "CompactSubObj=3\n[1005Name]\nNrOfEntries=2\n1=One\n3=Three\n[1005value]\nNrOfEntries=1\n2=0x20\n"
                   "[1005Denotation]\nNrOfEntries=1\n1=Mine\n");
   EXPECT_EQ(findings(read.diagnostics), Findings{});
@@ -175,20 +175,20 @@ TEST(DataSheet, ReadsTheListsOfACompactForm) {
 }
 
 TEST(DataSheet, WarnsOfAWrongNumberOfEntries) {
-  const Read read(one_object + "[1005Name]\nNrOfEntries=2\n1=One\n");
+  const ReadSheet read(one_object + "[1005Name]\nNrOfEntries=2\n1=One\n");
   EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(8, 13, "entry-count")}));
 }
 
 TEST(DataSheet, ReportsAFileWithoutObjects) {
-  EXPECT_EQ(findings(Read("[FileInfo]\n").diagnostics), (Findings{error_at(0, 0, "no-objects")}));
+  EXPECT_EQ(findings(ReadSheet("[FileInfo]\n").diagnostics), (Findings{error_at(0, 0, "no-objects")}));
 }
 
 TEST(DataSheet, AddsNothingToWhatTheIniReaderReported) {
-  EXPECT_EQ(findings(Read("").diagnostics), (Findings{error_at(0, 0, "empty-file")}));
+  EXPECT_EQ(findings(ReadSheet("").diagnostics), (Findings{error_at(0, 0, "empty-file")}));
 }
 
 TEST(DataSheet, ReadsTheSectionsOfEveryModule) {
-  const Read read(one_object +
+  const ReadSheet read(one_object +
                   "[SupportedModules]\nNrOfEntries=12\n"
                   "[m12comments]\nLines=0\n[M12ModuleInfo]\nProductName=Twelve\n[M12Fixed2000]\nDataType=5\n"
                   "[M12Fixed2000Sub1]\nDataType=6\n[M12SubExt6000]\nCount=0;4\nObjExtend=8\nDataType=5\n");
@@ -208,7 +208,7 @@ TEST(DataSheet, ReadsTheSectionsOfEveryModule) {
 }
 
 TEST(DataSheet, WarnsOfSectionsOfAModuleThatStandTwice) {
-  const Read read(one_object +
+  const ReadSheet read(one_object +
                   "[SupportedModules]\nNrOfEntries=1\n[M1ModuleInfo]\nProductName=A\n[m1moduleinfo]\nProductName=B\n");
   EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(11, 2, "duplicate-section")}));
   EXPECT_EQ(read.sheet.modules.supported[0].product_name.text, "A");
@@ -218,7 +218,7 @@ TEST(DataSheet, WarnsOfUnknownKeysInEverySection) {
   for (const std::string name : {"Tools", "Tool1", "DynamicChannels", "SupportedModules", "ConnectedModules",
                                  "M1ModuleInfo", "M1Comments", "M1FixedObjects", "M1SubExtends", "M1SubExt6000",
                                  "1005ObjectLinks", "Comments"}) {
-    const Read read(one_object + "[" + name + "]\nAnything=1\n");
+    const ReadSheet read(one_object + "[" + name + "]\nAnything=1\n");
     EXPECT_EQ(findings(read.diagnostics, "unknown-key"), (Findings{warning_at(8, 1, "unknown-key")})) << name;
   }
 }
@@ -226,13 +226,13 @@ TEST(DataSheet, WarnsOfUnknownKeysInEverySection) {
 TEST(DataSheet, WarnsOfUnknownSections) {
   for (const std::string name : {"", "PreDefines", "Toolbox", "ModuleInfo", "0x1000", "1005 sub0", "1005Names",
                                  "MModuleInfo", "M1", "M1Fixed", "M1Other", "Tool", "Tool1a"}) {
-    const Read read(one_object + "[" + name + "]\nAnything=1\n");
+    const ReadSheet read(one_object + "[" + name + "]\nAnything=1\n");
     EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(7, 2, "unknown-section")})) << name;
   }
 }
 
 TEST(DataSheet, WarnsOfAShortIndex) {
-  const Read read(one_object + "[40]\n[40sub1]\n");
+  const ReadSheet read(one_object + "[40]\n[40sub1]\n");
   EXPECT_EQ(findings(read.diagnostics, "section-name"),
             (Findings{warning_at(7, 2, "section-name"), warning_at(8, 2, "section-name")}));
   EXPECT_EQ(read.sheet.objects.at(0).index, 0x40);
@@ -240,7 +240,7 @@ TEST(DataSheet, WarnsOfAShortIndex) {
 }
 
 TEST(DataSheet, TakesASubIndexOfOneOrTwoDigits) {
-  const Read read(one_object + "[1005sub0]\n[1005sub01]\n[1005sub2]\n");
+  const ReadSheet read(one_object + "[1005sub0]\n[1005sub01]\n[1005sub2]\n");
   EXPECT_EQ(findings(read.diagnostics), Findings{});
   EXPECT_EQ(read.sheet.objects.at(0).sub_objects.size(), 3U);
 }
@@ -248,20 +248,20 @@ TEST(DataSheet, TakesASubIndexOfOneOrTwoDigits) {
 TEST(DataSheet, RefusesNamesThatAreNoIndexOrSubIndex) {
   for (const std::string name :
        {"10000", "10000sub1", "1005sub", "1005sub100", "1005sub001", "1005subG", "1005sub1x"}) {
-    const Read read(one_object + "[" + name + "]\n");
+    const ReadSheet read(one_object + "[" + name + "]\n");
     EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(7, 2, "section-name")})) << name;
   }
 }
 
 TEST(DataSheet, WarnsOfUnknownKeys) {
-  const Read read(one_object +
+  const ReadSheet read(one_object +
                   "Colour=red\n[1005sub1]\nSubNumber=1\n[DeviceInfo]\nBaudRate_fast=1\n[FileInfo]\nCustomer=x\n");
   EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(13, 1, "unknown-key"), warning_at(11, 1, "unknown-key"),
                                                   warning_at(7, 1, "unknown-key"), warning_at(9, 1, "unknown-key")}));
 }
 
 TEST(DataSheet, TakesTheFirstOfTwoKeys) {
-  const Read read(one_object + "AccessType=ro\naccesstype=rw\n");
+  const ReadSheet read(one_object + "AccessType=ro\naccesstype=rw\n");
   EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(8, 1, "duplicate-key")}));
   ASSERT_EQ(read.diagnostics.all()[0].notes.size(), 1U);
   EXPECT_EQ(read.diagnostics.all()[0].notes[0].position.line, 7U);
@@ -269,7 +269,7 @@ TEST(DataSheet, TakesTheFirstOfTwoKeys) {
 }
 
 TEST(DataSheet, TakesTheFirstOfTwoSections) {
-  const Read read(one_object + "[1005]\nParameterName=Other\n");
+  const ReadSheet read(one_object + "[1005]\nParameterName=Other\n");
   EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(7, 2, "duplicate-section")}));
   const Diagnostic& diagnostic = read.diagnostics.all()[0];
   EXPECT_NE(diagnostic.message.find("different content"), std::string::npos);
@@ -280,7 +280,7 @@ TEST(DataSheet, TakesTheFirstOfTwoSections) {
 }
 
 TEST(DataSheet, SaysWhenTheSecondSectionIsTheSame) {
-  const Read read(one_object + "[1005sub1]\nDataType=5\n[1005SUB01]\ndatatype=5\n[FileInfo]\n[fileinfo]\n");
+  const ReadSheet read(one_object + "[1005sub1]\nDataType=5\n[1005SUB01]\ndatatype=5\n[FileInfo]\n[fileinfo]\n");
   EXPECT_EQ(findings(read.diagnostics),
             (Findings{warning_at(12, 2, "duplicate-section"), warning_at(9, 2, "duplicate-section")}));
   EXPECT_NE(read.diagnostics.all()[0].message.find("the same content"), std::string::npos);
@@ -288,7 +288,7 @@ TEST(DataSheet, SaysWhenTheSecondSectionIsTheSame) {
 }
 
 TEST(DataSheet, MakesTheObjectOfSubObjectsThatHaveNone) {
-  const Read read("[ManufacturerObjects]\nSupportedObjects=1\n1=0x2022\n[2022sub0]\n[2022sub1]\n");
+  const ReadSheet read("[ManufacturerObjects]\nSupportedObjects=1\n1=0x2022\n[2022sub0]\n[2022sub1]\n");
   EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(4, 2, "sub-object-without-object")}));
   ASSERT_EQ(read.sheet.objects.size(), 1U);
   EXPECT_FALSE(read.sheet.objects[0].has_section);
@@ -297,7 +297,7 @@ TEST(DataSheet, MakesTheObjectOfSubObjectsThatHaveNone) {
 }
 
 TEST(ObjectLists, KeepTheirOrderAndPlaces) {
-  const Read read(
+  const ReadSheet read(
       "[OptionalObjects]\nSupportedObjects=0x2\n1=0x1017 ; heartbeat\n2=4101\n[MandatoryObjects]\nSupportedObjects=1\n"
       "1= 0x1000\n[1000]\n[1005]\n[1017]\n");
   EXPECT_EQ(findings(read.diagnostics), Findings{});
@@ -312,7 +312,7 @@ TEST(ObjectLists, KeepTheirOrderAndPlaces) {
 }
 
 TEST(ObjectLists, RefuseWhatIsNoIndex) {
-  const Read read("[OptionalObjects]\nSupportedObjects=x\n1=heartbeat\n2=0x10000\n3=\n4=0\n5=0x1005\n[1005]\n");
+  const ReadSheet read("[OptionalObjects]\nSupportedObjects=x\n1=heartbeat\n2=0x10000\n3=\n4=0\n5=0x1005\n[1005]\n");
   EXPECT_EQ(findings(read.diagnostics),
             (Findings{error_at(2, 18, "number"), error_at(3, 3, "number"), error_at(4, 3, "number"),
                       error_at(5, 3, "number"), error_at(6, 3, "number")}));
@@ -320,32 +320,32 @@ TEST(ObjectLists, RefuseWhatIsNoIndex) {
 }
 
 TEST(ObjectLists, AreCounted) {
-  EXPECT_EQ(findings(Read("[OptionalObjects]\nSupportedObjects=2\n1=0x1005\n[1005]\n").diagnostics),
+  EXPECT_EQ(findings(ReadSheet("[OptionalObjects]\nSupportedObjects=2\n1=0x1005\n[1005]\n").diagnostics),
             (Findings{warning_at(2, 18, "object-list-count")}));
-  EXPECT_EQ(findings(Read("[OptionalObjects]\n1=0x1005\n[1005]\n").diagnostics),
+  EXPECT_EQ(findings(ReadSheet("[OptionalObjects]\n1=0x1005\n[1005]\n").diagnostics),
             (Findings{warning_at(1, 2, "object-list-count")}));
-  EXPECT_EQ(findings(Read("[OptionalObjects]\nSupportedObjects=1\n2=0x1005\n[1005]\n").diagnostics),
+  EXPECT_EQ(findings(ReadSheet("[OptionalObjects]\nSupportedObjects=1\n2=0x1005\n[1005]\n").diagnostics),
             (Findings{warning_at(3, 1, "object-list-count")}));
 }
 
 TEST(ObjectLists, TakeABlankInSupportedObjects) {
-  const Read read("[OptionalObjects]\nSupported Objects=1\n1=0x1005\n[1005]\n");
+  const ReadSheet read("[OptionalObjects]\nSupported Objects=1\n1=0x1005\n[1005]\n");
   EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(2, 1, "key-spelling")}));
 }
 
 TEST(ObjectLists, HaveNoOtherKeys) {
-  const Read read("[OptionalObjects]\nSupportedObjects=1\n1=0x1005\nx=1\n[1005]\n");
+  const ReadSheet read("[OptionalObjects]\nSupportedObjects=1\n1=0x1005\nx=1\n[1005]\n");
   EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(4, 1, "unknown-key")}));
 }
 
 TEST(ObjectLists, TakeTheFirstOfTwoNumbers) {
-  const Read read("[OptionalObjects]\nSupportedObjects=1\n1=0x1005\n01=0x1006\n[1005]\n");
+  const ReadSheet read("[OptionalObjects]\nSupportedObjects=1\n1=0x1005\n01=0x1006\n[1005]\n");
   EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(4, 1, "duplicate-key")}));
   EXPECT_EQ(read.diagnostics.all()[0].notes.at(0).position.line, 3U);
 }
 
 TEST(ObjectLists, HoldAnObjectOnce) {
-  const Read read(
+  const ReadSheet read(
       "[MandatoryObjects]\nSupportedObjects=1\n1=0x1001\n[OptionalObjects]\nSupportedObjects=1\n1=0x1001\n[1001]\n");
   EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(6, 3, "object-list")}));
   EXPECT_EQ(read.diagnostics.all()[0].notes.at(0).position.line, 3U);
@@ -362,7 +362,7 @@ class ListOfAnObject : public testing::TestWithParam<ListCase> {};
 
 TEST_P(ListOfAnObject, IsGivenByItsIndex) {
   const std::string index = GetParam().index;
-  const Read read("[" + std::string(GetParam().list) + "]\nSupportedObjects=1\n1=0x" + index + "\n[" + index + "]\n");
+  const ReadSheet read("[" + std::string(GetParam().list) + "]\nSupportedObjects=1\n1=0x" + index + "\n[" + index + "]\n");
   const Findings wrong{warning_at(3, 3, "object-list")};
   EXPECT_EQ(findings(read.diagnostics), GetParam().is_right ? Findings{} : wrong);
 }
@@ -380,12 +380,12 @@ INSTANTIATE_TEST_SUITE_P(
                     ListCase{"ManufacturerObjects", "0040", true}));
 
 TEST(ObjectLists, WarnOfAnObjectWithoutSection) {
-  const Read read("[OptionalObjects]\nSupportedObjects=2\n1=0x1005\n2=0x1006\n[1005]\n");
+  const ReadSheet read("[OptionalObjects]\nSupportedObjects=2\n1=0x1005\n2=0x1006\n[1005]\n");
   EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(4, 3, "object-without-section")}));
 }
 
 TEST(ObjectLists, WarnOfASectionInNoList) {
-  const Read read(one_object + "[1006]\n");
+  const ReadSheet read(one_object + "[1006]\n");
   EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(7, 2, "object-not-listed")}));
 }
 

@@ -15,7 +15,7 @@
 namespace edsc {
 namespace {
 
-std::string sub(std::string_view index, int sub_index, std::string_view data_type, std::string_view access,
+std::string sub_object(std::string_view index, int sub_index, std::string_view data_type, std::string_view access,
                 std::string_view value) {
   return fmt::format("[{}sub{:X}]\nParameterName={}\nDataType={}\nAccessType={}\nDefaultValue={}\n", index, sub_index,
                      sub_index == 0 ? "Count" : fmt::format("Entry {}", sub_index), data_type, access, value);
@@ -23,14 +23,14 @@ std::string sub(std::string_view index, int sub_index, std::string_view data_typ
 
 /// A communication parameter with a COB-ID.
 std::string communication(std::string_view index) {
-  return group(index, fmt::format("Communication {}", index), "9", 2) + sub(index, 0, "5", "const", "1") +
-         sub(index, 1, "7", "rw", "$NODEID+0x180");
+  return group(index, fmt::format("Communication {}", index), "9", 2) + sub_object(index, 0, "5", "const", "1") +
+         sub_object(index, 1, "7", "rw", "$NODEID+0x180");
 }
 
 /// A mapping parameter of two entries, of which the first maps 2000h.
 std::string mapping(std::string_view index, std::string_view access = "rw", std::string_view count_access = "rw") {
-  return group(index, fmt::format("Mapping {}", index), "9", 3) + sub(index, 0, "5", count_access, "1") +
-         sub(index, 1, "7", access, "0x20000008") + sub(index, 2, "7", access, "0");
+  return group(index, fmt::format("Mapping {}", index), "9", 3) + sub_object(index, 0, "5", count_access, "1") +
+         sub_object(index, 1, "7", access, "0x20000008") + sub_object(index, 2, "7", access, "0");
 }
 
 std::string tpdo(std::string_view access = "rw", std::string_view count_access = "rw") {
@@ -83,7 +83,7 @@ TEST(DynamicMapping, IsTurnedOffForAllPdosOrForOne) {
 
 TEST(DynamicMapping, NeedsACobId) {
   EXPECT_FALSE(first_is_dynamic(DeviceFromText{mapping("1A00")}));
-  const std::string without_cob_id = group("1800", "Communication", "9", 1) + sub("1800", 0, "5", "const", "2");
+  const std::string without_cob_id = group("1800", "Communication", "9", 1) + sub_object("1800", 0, "5", "const", "2");
   EXPECT_FALSE(first_is_dynamic(DeviceFromText{without_cob_id + mapping("1A00")}));
 }
 
@@ -99,20 +99,20 @@ TEST(DynamicMapping, CarriesNoString) {
 TEST(DynamicMapping, NeedsEntriesOf32BitsWithoutAGap) {
   const auto dynamic = [](const std::string& subs) {
     return first_is_dynamic(DeviceFromText{communication("1400") + group("1600", "Mapping", "9", 3) +
-                                           sub("1600", 0, "5", "rw", "0") + subs});
+                                           sub_object("1600", 0, "5", "rw", "0") + subs});
   };
-  EXPECT_TRUE(dynamic(sub("1600", 1, "7", "rw", "0") + sub("1600", 2, "7", "rw", "0")));
-  EXPECT_FALSE(dynamic(sub("1600", 1, "7", "rw", "0") + sub("1600", 3, "7", "rw", "0")));
-  EXPECT_FALSE(dynamic(sub("1600", 2, "7", "rw", "0") + sub("1600", 3, "7", "rw", "0")));
-  EXPECT_FALSE(dynamic(sub("1600", 1, "7", "rw", "0") + sub("1600", 2, "6", "rw", "0")));
+  EXPECT_TRUE(dynamic(sub_object("1600", 1, "7", "rw", "0") + sub_object("1600", 2, "7", "rw", "0")));
+  EXPECT_FALSE(dynamic(sub_object("1600", 1, "7", "rw", "0") + sub_object("1600", 3, "7", "rw", "0")));
+  EXPECT_FALSE(dynamic(sub_object("1600", 2, "7", "rw", "0") + sub_object("1600", 3, "7", "rw", "0")));
+  EXPECT_FALSE(dynamic(sub_object("1600", 1, "7", "rw", "0") + sub_object("1600", 2, "6", "rw", "0")));
   EXPECT_FALSE(dynamic(""));
 }
 
 TEST(DynamicMapping, HasRoomFor64Objects) {
   for (const int entries : {64, 65}) {
     std::string text =
-        communication("1400") + group("1600", "Mapping", "9", entries + 1) + sub("1600", 0, "5", "rw", "0");
-    for (int i = 1; i <= entries; ++i) text += sub("1600", i, "7", "rw", "0");
+        communication("1400") + group("1600", "Mapping", "9", entries + 1) + sub_object("1600", 0, "5", "rw", "0");
+    for (int i = 1; i <= entries; ++i) text += sub_object("1600", i, "7", "rw", "0");
     EXPECT_EQ(first_is_dynamic(DeviceFromText{text}), entries == 64) << entries;
   }
 }
@@ -171,8 +171,8 @@ TEST(DynamicMapping, SharesItsWordsWithAllOfItsShape) {
 }
 
 TEST(DynamicMapping, LeavesTheLimitsToThePdoService) {
-  DeviceFromText text{communication("1800") + group("1A00", "Mapping", "9", 2) + sub("1A00", 0, "5", "rw", "0") +
-                      "LowLimit=0\nHighLimit=8\n" + sub("1A00", 1, "7", "rw", "0")};
+  DeviceFromText text{communication("1800") + group("1A00", "Mapping", "9", 2) + sub_object("1A00", 0, "5", "rw", "0") +
+                      "LowLimit=0\nHighLimit=8\n" + sub_object("1A00", 1, "7", "rw", "0")};
   EXPECT_TRUE(first_is_dynamic(text));
   EXPECT_TRUE(layout_of(text).limits.empty());
 }
@@ -208,8 +208,8 @@ TEST(StaticMapping, LeavesSmallConstantsInTheTable) {
 
 TEST(DynamicMapping, GivesTheCountOfAnArrayAnAddressBesideItsElements) {
   DeviceFromText text{tpdo() + "[2006]\nParameterName=Inputs\nObjectType=8\nSubNumber=3\n" +
-                      sub("2006", 0, "5", "const", "2") + "PDOMapping=1\n" + sub("2006", 1, "5", "ro", "0") +
-                      sub("2006", 2, "5", "ro", "0")};
+                      sub_object("2006", 0, "5", "const", "2") + "PDOMapping=1\n" + sub_object("2006", 1, "5", "ro", "0") +
+                      sub_object("2006", 2, "5", "ro", "0")};
   EXPECT_TRUE(word_of(text, "2006h").starts_with("array"));
   const auto words = subs_of(text);
   ASSERT_GE(words.size(), 2U);
@@ -222,8 +222,8 @@ TEST(DynamicMapping, GivesTheCountOfAnArrayAnAddressBesideItsElements) {
 }
 
 TEST(DynamicMapping, OffersNoConstantToAnRpdo) {
-  DeviceFromText text{group("1010", "Store", "8", 2) + sub("1010", 0, "5", "const", "1") +
-                      sub("1010", 1, "7", "rw", "1") + "PDOMapping=1\n"};
+  DeviceFromText text{group("1010", "Store", "8", 2) + sub_object("1010", 0, "5", "const", "1") +
+                      sub_object("1010", 1, "7", "rw", "1") + "PDOMapping=1\n"};
   EXPECT_EQ(subs_of(text).back(), "immediate | 1 | u32 | rw | tpdo");
 }
 
@@ -241,7 +241,7 @@ std::vector<std::string> served(DeviceFromText& text, const char* list) {
 
 TEST(DynamicMapping, IsServedFromAnEmptyLayoutToo) {
   const std::string empty =
-      group("1A01", "Mapping", "9", 2) + sub("1A01", 0, "5", "rw", "0") + sub("1A01", 1, "7", "rw", "0");
+      group("1A01", "Mapping", "9", 2) + sub_object("1A01", 0, "5", "rw", "0") + sub_object("1A01", 1, "7", "rw", "0");
   const std::string text = tpdo() + communication("1801") + empty;
   DeviceFromText dynamic{text};
   EXPECT_EQ(served(dynamic, "tpdos"), (std::vector<std::string>{"1 Tpdo1", "2 canopen::Tpdo<>"}));
@@ -251,8 +251,8 @@ TEST(DynamicMapping, IsServedFromAnEmptyLayoutToo) {
 
 TEST(DynamicMapping, IsStaticWhereItsDefaultCountsWhatMapsNothing) {
   const std::string input = var("2000", "Input", "5", "ro", "PDOMapping=1\n");
-  const std::string gap = communication("1800") + group("1A00", "Mapping", "9", 3) + sub("1A00", 0, "5", "rw", "2") +
-                          sub("1A00", 1, "7", "rw", "0") + sub("1A00", 2, "7", "rw", "0x20000008");
+  const std::string gap = communication("1800") + group("1A00", "Mapping", "9", 3) + sub_object("1A00", 0, "5", "rw", "2") +
+                          sub_object("1A00", 1, "7", "rw", "0") + sub_object("1A00", 2, "7", "rw", "0x20000008");
   DeviceFromText text{gap + input};
   EXPECT_FALSE(text.device.pdos.at(0).dynamic);
   EXPECT_EQ(served(text, "tpdos"), (std::vector<std::string>{"1 Tpdo1"}));

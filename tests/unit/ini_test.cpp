@@ -13,8 +13,8 @@ namespace {
 
 using std::string_literals::operator""s;
 
-struct Read {
-  explicit Read(std::string text) : source("test.eds", std::move(text)), ini(parse_ini(source, diagnostics)) {}
+struct ReadLines {
+  explicit ReadLines(std::string text) : source("test.eds", std::move(text)), ini(parse_ini(source, diagnostics)) {}
 
   SourceFile source;
   Diagnostics diagnostics;
@@ -24,7 +24,7 @@ struct Read {
 using Findings = std::vector<Finding>;
 
 TEST(IniReader, ReadsSectionsAndTheirEntries) {
-  const Read read("[FileInfo]\nFileName=a.eds\n\n[1000]\nParameterName=Device type\nObjectType=0x7\n");
+  const ReadLines read("[FileInfo]\nFileName=a.eds\n\n[1000]\nParameterName=Device type\nObjectType=0x7\n");
   EXPECT_EQ(findings(read.diagnostics), Findings{});
   ASSERT_EQ(read.ini.sections.size(), 2U);
   EXPECT_EQ(read.ini.sections[0].name, "FileInfo");
@@ -35,7 +35,7 @@ TEST(IniReader, ReadsSectionsAndTheirEntries) {
 }
 
 TEST(IniReader, KnowsTheirPlaces) {
-  const Read read(" [ 1000 ]\n  DataType =  0x7 \nDefaultValue=\n");
+  const ReadLines read(" [ 1000 ]\n  DataType =  0x7 \nDefaultValue=\n");
   const IniSection& section = read.ini.sections.at(0);
   EXPECT_EQ(section.name, "1000");
   EXPECT_EQ(section_position(read.source, section).line, 1U);
@@ -51,44 +51,44 @@ TEST(IniReader, KnowsTheirPlaces) {
 }
 
 TEST(IniReader, TakesAHeaderAsAWholeLine) {
-  const Read read("[2000]\nParameterName=Filter time [ms]\n");
+  const ReadLines read("[2000]\nParameterName=Filter time [ms]\n");
   ASSERT_EQ(read.ini.sections.size(), 1U);
   EXPECT_EQ(read.ini.sections[0].entries.at(0).value, "Filter time [ms]");
 }
 
 TEST(IniReader, SplitsAnEntryAtTheFirstEqualsSign) {
-  const Read read("[2000]\nParameterName=Mask [Bit0=a]\n");
+  const ReadLines read("[2000]\nParameterName=Mask [Bit0=a]\n");
   EXPECT_EQ(read.ini.sections.at(0).entries.at(0).key, "ParameterName");
   EXPECT_EQ(read.ini.sections.at(0).entries.at(0).value, "Mask [Bit0=a]");
 }
 
 TEST(IniReader, LeavesQuotesAndCommentMarksInValues) {
-  const Read read("[2000]\nDefaultValue=\"a b\"\nParameterName=Sensor #1; left\n");
+  const ReadLines read("[2000]\nDefaultValue=\"a b\"\nParameterName=Sensor #1; left\n");
   EXPECT_EQ(read.ini.sections.at(0).entries.at(0).value, "\"a b\"");
   EXPECT_EQ(read.ini.sections.at(0).entries.at(1).value, "Sensor #1; left");
   EXPECT_EQ(findings(read.diagnostics), Findings{});
 }
 
 TEST(IniReader, SkipsCommentsAndBlankLines) {
-  const Read read("; first\n \t\n[1000] ; device type\n  ;DefaultValue=1\n");
+  const ReadLines read("; first\n \t\n[1000] ; device type\n  ;DefaultValue=1\n");
   EXPECT_EQ(findings(read.diagnostics), Findings{});
   EXPECT_TRUE(read.ini.sections.at(0).entries.empty());
 }
 
 TEST(IniReader, WarnsOnceOfHashComments) {
-  const Read read("[1000]\n # one\n#two=2\n");
+  const ReadLines read("[1000]\n # one\n#two=2\n");
   EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(2, 2, "hash-comment")}));
   EXPECT_TRUE(read.ini.sections.at(0).entries.empty());
 }
 
 TEST(IniReader, WarnsOfTextBehindAHeader) {
-  const Read read("[1000] device type\n[1001] # comment\n");
+  const ReadLines read("[1000] device type\n[1001] # comment\n");
   EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(1, 8, "text-after-section")}));
   EXPECT_EQ(read.ini.sections.size(), 2U);
 }
 
 TEST(IniReader, LeavesOutTheEntriesOfAHeaderWithoutEnd) {
-  const Read read("[1000]\nA=1\n  [1001\nB=2\n[1002]\nC=3\n");
+  const ReadLines read("[1000]\nA=1\n  [1001\nB=2\n[1002]\nC=3\n");
   EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(3, 3, "unterminated-section")}));
   ASSERT_EQ(read.ini.sections.size(), 2U);
   EXPECT_EQ(read.ini.sections[0].entries.size(), 1U);
@@ -96,46 +96,46 @@ TEST(IniReader, LeavesOutTheEntriesOfAHeaderWithoutEnd) {
 }
 
 TEST(IniReader, WarnsOfAStrayLine) {
-  const Read read("[1000]\nno entry\n =5\nA=1\n");
+  const ReadLines read("[1000]\nno entry\n =5\nA=1\n");
   EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(2, 1, "stray-line"), warning_at(3, 2, "stray-line")}));
   EXPECT_EQ(read.ini.sections.at(0).entries.size(), 1U);
 }
 
 TEST(IniReader, ReportsTheFirstEntryOutsideOfSections) {
-  const Read read("; comment\n FileName=a.eds\nFileVersion=1\n[1000]\n");
+  const ReadLines read("; comment\n FileName=a.eds\nFileVersion=1\n[1000]\n");
   EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(2, 2, "entry-outside-section")}));
   EXPECT_EQ(read.ini.sections.size(), 1U);
 }
 
 TEST(IniReader, RefusesABinaryFile) {
-  const Read read("[1000]\nA=\0\n[1001]\n"s);
+  const ReadLines read("[1000]\nA=\0\n[1001]\n"s);
   EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(2, 3, "binary-file")}));
   EXPECT_TRUE(read.ini.sections.empty());
-  EXPECT_EQ(findings(Read("[1000]\r\n\x1B[31m\r\n").diagnostics), (Findings{error_at(2, 1, "binary-file")}));
-  EXPECT_EQ(findings(Read("[1000]\n\x1A\nA=1\n").diagnostics), (Findings{error_at(2, 1, "binary-file")}));
+  EXPECT_EQ(findings(ReadLines("[1000]\r\n\x1B[31m\r\n").diagnostics), (Findings{error_at(2, 1, "binary-file")}));
+  EXPECT_EQ(findings(ReadLines("[1000]\n\x1A\nA=1\n").diagnostics), (Findings{error_at(2, 1, "binary-file")}));
 }
 
 TEST(IniReader, LetsACtrlZEndTheText) {
-  const Read read("[1000]\nA=1\x1A");
+  const ReadLines read("[1000]\nA=1\x1A");
   EXPECT_EQ(findings(read.diagnostics), Findings{});
   EXPECT_EQ(read.ini.sections.at(0).entries.at(0).value, "1");
-  EXPECT_EQ(findings(Read("[1000]\r\n\x1A\x1A\r\n").diagnostics), Findings{});
+  EXPECT_EQ(findings(ReadLines("[1000]\r\n\x1A\x1A\r\n").diagnostics), Findings{});
 }
 
 TEST(IniReader, ReportsAFileWithoutSections) {
   const Findings empty{error_at(0, 0, "empty-file")};
-  EXPECT_EQ(findings(Read("").diagnostics), empty);
-  EXPECT_EQ(findings(Read("\n \n; comment\n").diagnostics), empty);
-  EXPECT_EQ(findings(Read("junk\n").diagnostics, "empty-file"), empty);
+  EXPECT_EQ(findings(ReadLines("").diagnostics), empty);
+  EXPECT_EQ(findings(ReadLines("\n \n; comment\n").diagnostics), empty);
+  EXPECT_EQ(findings(ReadLines("junk\n").diagnostics, "empty-file"), empty);
 }
 
 TEST(IniReader, SaysThatXmlIsNoEds) {
-  const Read read("\n<?xml version=\"1.0\"?>\n<a b=\"c\"/>\n");
+  const ReadLines read("\n<?xml version=\"1.0\"?>\n<a b=\"c\"/>\n");
   EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(0, 0, "xml-file")}));
 }
 
 TEST(IniReader, FindsAKeyInAnyLetterCase) {
-  const Read read("[1000]\nDATATYPE=7\ndatatype=8\n");
+  const ReadLines read("[1000]\nDATATYPE=7\ndatatype=8\n");
   const IniSection& section = read.ini.sections.at(0);
   ASSERT_NE(section.find("DataType"), nullptr);
   EXPECT_EQ(section.find("DataType")->value, "7");
@@ -148,14 +148,14 @@ TEST(IniReader, ReadsAMillionStrayLinesInNoTime) {
     text += "junk\n";
   }
   const auto start = std::chrono::steady_clock::now();
-  const Read read(std::move(text));
+  const ReadLines read(std::move(text));
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));  // with sanitizers; 0.1 s without
   EXPECT_EQ(read.diagnostics.warnings(), 1'000'000U);
   EXPECT_EQ(read.diagnostics.all().size(), Diagnostics::most_per_rule);
 }
 
 TEST(IniReader, ReportsAHugeUnterminatedHeaderInAWord) {
-  const Read read(std::string(10'000'000, '['));
+  const ReadLines read(std::string(10'000'000, '['));
   EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(1, 1, "unterminated-section")}));
   EXPECT_LT(read.diagnostics.all().at(0).message.size(), 200U);
 }
@@ -168,7 +168,7 @@ TEST(EqualIgnoringCase, FoldsAsciiLettersOnly) {
 }
 
 TEST(IniReader, KeepsCommentsAndStrayLinesWithTheirPlaces) {
-  const Read read("; top\n[2000] ; tail\n  # a  \nstray\nDataType=5 ; no remark\n;end");
+  const ReadLines read("; top\n[2000] ; tail\n  # a  \nstray\nDataType=5 ; no remark\n;end");
   std::vector<std::pair<std::uint32_t, std::string_view>> remarks;
   for (const IniRemark& remark : read.ini.remarks) remarks.emplace_back(remark.line, remark.text);
   const std::vector<std::pair<std::uint32_t, std::string_view>> expected = {

@@ -12,12 +12,12 @@ namespace {
 
 using Rules = std::vector<std::string>;
 
-struct Checked : DeviceFromText {
-  explicit Checked(std::string text) : DeviceFromText(std::move(text)) { check_objects(device, diagnostics); }
+struct CheckedObjects : DeviceFromText {
+  explicit CheckedObjects(std::string text) : DeviceFromText(std::move(text)) { check_objects(device, diagnostics); }
 };
 
 TEST(ObjectRules, WarnOfEachMandatoryObjectThatIsMissing) {
-  const Checked checked(var("1001", "Error register", "5", "ro"));
+  const CheckedObjects checked(var("1001", "Error register", "5", "ro"));
   std::vector<std::string> messages;
   for (const Diagnostic& diagnostic : checked.diagnostics.all()) {
     if (diagnostic.rule == "mandatory-object") messages.push_back(diagnostic.message.substr(0, 5));
@@ -28,32 +28,32 @@ TEST(ObjectRules, WarnOfEachMandatoryObjectThatIsMissing) {
 
 TEST(ObjectRules, AreSilentOnADefaultAtItsLimits) {
   for (const char* value : {"-5", "0", "10"}) {
-    const Checked checked(
+    const CheckedObjects checked(
         var("2000", "Value", "3", "rw", std::string{"LowLimit=-5\nHighLimit=10\nDefaultValue="} + value + "\n"));
     EXPECT_EQ(rules_of(checked.diagnostics), Rules{}) << value;
   }
 }
 
 TEST(ObjectRules, WarnOfADefaultBeyondItsLimits) {
-  const Checked below(var("2000", "Value", "3", "rw", "LowLimit=-5\nHighLimit=10\nDefaultValue=-6\n"));
+  const CheckedObjects below(var("2000", "Value", "3", "rw", "LowLimit=-5\nHighLimit=10\nDefaultValue=-6\n"));
   EXPECT_EQ(findings(below.diagnostics, "default-outside-limits"),
             (std::vector{warning_at(8, 14, "default-outside-limits")}));
   EXPECT_NE(below.finding("default-outside-limits").message.find("2000h:00 \"Value\" is below"), std::string::npos);
-  const Checked above(var("2000", "Value", "3", "rw", "HighLimit=10\nDefaultValue=11\n"));
+  const CheckedObjects above(var("2000", "Value", "3", "rw", "HighLimit=10\nDefaultValue=11\n"));
   EXPECT_NE(above.finding("default-outside-limits").message.find("above"), std::string::npos);
 }
 
 TEST(ObjectRules, CompareLimitsAsTheTypeDoes) {
-  EXPECT_EQ(rules_of(Checked(var("2000", "V", "4", "rw", "LowLimit=0xFFFFFFFE\nHighLimit=1\n")).diagnostics), Rules{});
-  EXPECT_EQ(rules_of(Checked(var("2000", "V", "7", "rw", "LowLimit=1\nHighLimit=0xFFFFFFFE\n")).diagnostics), Rules{});
+  EXPECT_EQ(rules_of(CheckedObjects(var("2000", "V", "4", "rw", "LowLimit=0xFFFFFFFE\nHighLimit=1\n")).diagnostics), Rules{});
+  EXPECT_EQ(rules_of(CheckedObjects(var("2000", "V", "7", "rw", "LowLimit=1\nHighLimit=0xFFFFFFFE\n")).diagnostics), Rules{});
   EXPECT_EQ(
-      rules_of(Checked(var("2000", "V", "8", "rw", "LowLimit=-1.5\nHighLimit=-0.5\nDefaultValue=-1\n")).diagnostics),
+      rules_of(CheckedObjects(var("2000", "V", "8", "rw", "LowLimit=-1.5\nHighLimit=-0.5\nDefaultValue=-1\n")).diagnostics),
       Rules{});
-  EXPECT_EQ(rules_of(Checked(var("2000", "V", "0x11", "rw", "LowLimit=-2\nHighLimit=1e300\n")).diagnostics), Rules{});
+  EXPECT_EQ(rules_of(CheckedObjects(var("2000", "V", "0x11", "rw", "LowLimit=-2\nHighLimit=1e300\n")).diagnostics), Rules{});
 }
 
 TEST(ObjectRules, DropLimitsInTheWrongOrder) {
-  const Checked checked(var("2000", "Value", "3", "rw", "LowLimit=10\nHighLimit=-5\nDefaultValue=0\n"));
+  const CheckedObjects checked(var("2000", "Value", "3", "rw", "LowLimit=10\nHighLimit=-5\nDefaultValue=0\n"));
   EXPECT_EQ(findings(checked.diagnostics, "limits-order"), (std::vector{warning_at(6, 10, "limits-order")}));
   EXPECT_FALSE(checked.entry(0x2000).low_limit);
   EXPECT_FALSE(checked.entry(0x2000).high_limit);
@@ -61,14 +61,14 @@ TEST(ObjectRules, DropLimitsInTheWrongOrder) {
 }
 
 TEST(ObjectRules, DropALimitThatFollowsTheNodeId) {
-  const Checked checked(var("2000", "Value", "7", "rw", "LowLimit=1\nHighLimit=$NODEID+0x100\n"));
+  const CheckedObjects checked(var("2000", "Value", "7", "rw", "LowLimit=1\nHighLimit=$NODEID+0x100\n"));
   EXPECT_EQ(findings(checked.diagnostics, "limit-formula"), (std::vector{warning_at(7, 11, "limit-formula")}));
   EXPECT_TRUE(checked.entry(0x2000).low_limit);
   EXPECT_FALSE(checked.entry(0x2000).high_limit);
 }
 
 TEST(ObjectRules, DoNotCompareADefaultThatFollowsTheNodeId) {
-  const Checked checked(
+  const CheckedObjects checked(
       var("2000", "Value", "7", "rw", "LowLimit=0x181\nHighLimit=0x1FF\nDefaultValue=$NODEID+0x180\n"));
   EXPECT_EQ(rules_of(checked.diagnostics), Rules{});
 }

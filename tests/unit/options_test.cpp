@@ -14,8 +14,8 @@ namespace {
 using Findings = std::vector<Finding>;
 using Runtime = std::vector<std::pair<std::string, std::string>>;
 
-struct Read {
-  explicit Read(std::string text)
+struct ReadOptions {
+  explicit ReadOptions(std::string text)
       : source("test.options.json", std::move(text)), options(read_options(source, diagnostics)) {}
 
   SourceFile source;
@@ -24,14 +24,14 @@ struct Read {
 };
 
 TEST(OptionsFile, MayBeEmpty) {
-  const Read read(R"({ "$schema": "options.schema.json" })");
+  const ReadOptions read(R"({ "$schema": "options.schema.json" })");
   EXPECT_EQ(findings(read.diagnostics), Findings{});
   EXPECT_FALSE(read.options.zero_terminated_strings);
   EXPECT_EQ(read.options.runtime, Runtime{});
 }
 
 TEST(OptionsFile, NamesEntriesByIndexAndSubIndex) {
-  const Read read(R"({ "names": { "1018h:04": "serial", "2000": "speed", "2A:fF": "last" } })");
+  const ReadOptions read(R"({ "names": { "1018h:04": "serial", "2000": "speed", "2A:fF": "last" } })");
   EXPECT_EQ(findings(read.diagnostics), Findings{});
   EXPECT_EQ(read.options.names.at({0x1018, 4}), "serial");
   EXPECT_EQ(read.options.names.at({0x2000, 0}), "speed");
@@ -43,14 +43,14 @@ TEST(OptionsFile, TakesNamesThatAreIdentifiersOnly) {
                            "gr\xC3\xB6\xC3\x9F"
                            "e",
                            "type"}) {
-    const Read read("{\n  \"names\": {\n    \"2000h\": \"" + std::string{name} + "\"\n  }\n}\n");
+    const ReadOptions read("{\n  \"names\": {\n    \"2000h\": \"" + std::string{name} + "\"\n  }\n}\n");
     EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(3, 5, "options")})) << name;
     EXPECT_TRUE(read.options.names.empty()) << name;
   }
 }
 
 TEST(OptionsFile, GivesStringsTheirCapacity) {
-  const Read read(R"({ "string_capacity": { "1008h:00": 15, "2000h": 0, "2001h": 65535 } })");
+  const ReadOptions read(R"({ "string_capacity": { "1008h:00": 15, "2000h": 0, "2001h": 65535 } })");
   EXPECT_EQ(findings(read.diagnostics), Findings{});
   EXPECT_EQ(read.options.string_capacity.at({0x1008, 0}), 15);
   EXPECT_EQ(read.options.string_capacity.at({0x2001, 0}), 65535);
@@ -58,24 +58,24 @@ TEST(OptionsFile, GivesStringsTheirCapacity) {
 
 TEST(OptionsFile, RefusesACapacityOutside0To65535) {
   for (const char* value : {"-1", "65536", "1.5", "\"15\"", "null"}) {
-    const Read read("{\n\"string_capacity\": { \"1008h\": " + std::string{value} + " } }");
+    const ReadOptions read("{\n\"string_capacity\": { \"1008h\": " + std::string{value} + " } }");
     EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(2, 22, "options")})) << value;
   }
 }
 
 TEST(OptionsFile, ListsWhatTheApplicationSets) {
-  const Read read(R"({ "settable": ["1008h:00", "1018h:04"] })");
+  const ReadOptions read(R"({ "settable": ["1008h:00", "1018h:04"] })");
   EXPECT_EQ(read.options.settable, (std::vector<EntryKey>{{0x1008, 0}, {0x1018, 4}}));
 }
 
 TEST(OptionsFile, ListsRulesToSilence) {
-  const Read read(R"({ "silence": ["sub-number", "object-type"] })");
+  const ReadOptions read(R"({ "silence": ["sub-number", "object-type"] })");
   EXPECT_EQ(read.options.silence, (std::vector<std::string>{"sub-number", "object-type"}));
 }
 
 TEST(OptionsFile, SaysThatStringsEndWithAZero) {
-  EXPECT_TRUE(Read(R"({ "zero_terminated_strings": true })").options.zero_terminated_strings);
-  EXPECT_FALSE(Read(R"({ "zero_terminated_strings": false })").options.zero_terminated_strings);
+  EXPECT_TRUE(ReadOptions(R"({ "zero_terminated_strings": true })").options.zero_terminated_strings);
+  EXPECT_FALSE(ReadOptions(R"({ "zero_terminated_strings": false })").options.zero_terminated_strings);
 }
 
 TEST(OptionsFile, HandsEachDepartureToTheRuntime) {
@@ -85,34 +85,34 @@ TEST(OptionsFile, HandsEachDepartureToTheRuntime) {
                            "tpdo_remote_frames_can_be_disabled", "tpdo_remote_types",
                            "emcy_cob_id_writable_while_valid", "emcy_stopped_keeps_last", "sdo_length_codes"}) {
     for (const char* value : {"true", "false"}) {
-      const Read read("{ \"" + std::string{flag} + "\": " + value + " }");
+      const ReadOptions read("{ \"" + std::string{flag} + "\": " + value + " }");
       EXPECT_EQ(findings(read.diagnostics), Findings{}) << flag;
       EXPECT_EQ(read.options.runtime, (Runtime{{flag, value}}));
     }
   }
   for (const std::string mask : {"pdo_cob_id_writable", "sync_cob_id_writable", "emcy_cob_id_writable"}) {
-    EXPECT_EQ(Read("{ \"" + mask + "\": \"0x80000780\" }").options.runtime, (Runtime{{mask, "0x80000780"}}));
+    EXPECT_EQ(ReadOptions("{ \"" + mask + "\": \"0x80000780\" }").options.runtime, (Runtime{{mask, "0x80000780"}}));
   }
-  EXPECT_EQ(Read(R"({ "inhibit_time_unit": 1000 })").options.runtime, (Runtime{{"inhibit_time_unit", "1000"}}));
-  EXPECT_EQ(Read(R"({ "emcy_inhibit_time_step": 10 })").options.runtime, (Runtime{{"emcy_inhibit_time_step", "10"}}));
-  EXPECT_EQ(Read(R"({ "pdo_reserved_can_ids": ["0x80", "0x100"] })").options.runtime,
+  EXPECT_EQ(ReadOptions(R"({ "inhibit_time_unit": 1000 })").options.runtime, (Runtime{{"inhibit_time_unit", "1000"}}));
+  EXPECT_EQ(ReadOptions(R"({ "emcy_inhibit_time_step": 10 })").options.runtime, (Runtime{{"emcy_inhibit_time_step", "10"}}));
+  EXPECT_EQ(ReadOptions(R"({ "pdo_reserved_can_ids": ["0x80", "0x100"] })").options.runtime,
             (Runtime{{"pdo_reserved_can_ids", "{0x080, 0x100}"}}));
-  EXPECT_EQ(Read(R"({ "reset_emergency": "ff00h" })").options.runtime, (Runtime{{"reset_emergency", "0xFF00"}}));
-  EXPECT_EQ(Read(R"({ "pdo_mapping_abort_code": "0x6040041" })").options.runtime,
+  EXPECT_EQ(ReadOptions(R"({ "reset_emergency": "ff00h" })").options.runtime, (Runtime{{"reset_emergency", "0xFF00"}}));
+  EXPECT_EQ(ReadOptions(R"({ "pdo_mapping_abort_code": "0x6040041" })").options.runtime,
             (Runtime{{"pdo_mapping_abort_code", "0x06040041"}}));
-  EXPECT_EQ(Read(R"({ "error_history_abort_code": "0x06090031" })").options.runtime,
+  EXPECT_EQ(ReadOptions(R"({ "error_history_abort_code": "0x06090031" })").options.runtime,
             (Runtime{{"error_history_abort_code", "0x06090031"}}));
-  EXPECT_EQ(Read(R"({ "storage_signature_abort_code": "0x08000022" })").options.runtime,
+  EXPECT_EQ(ReadOptions(R"({ "storage_signature_abort_code": "0x08000022" })").options.runtime,
             (Runtime{{"storage_signature_abort_code", "0x08000022"}}));
 }
 
 TEST(OptionsFile, SaysHowLssConfiguresTheDevice) {
-  EXPECT_FALSE(Read("{}").options.lss.has_value());
-  EXPECT_EQ(Read(R"({ "lss": {} })").options.lss, LssSettings{});
-  EXPECT_EQ(Read(R"({ "lss": { "bit_rates": "fixed" } })").options.lss->bit_rates, 0);
-  EXPECT_EQ(Read(R"({ "lss": { "bit_rates": [10, 125, 1000] } })").options.lss->bit_rates, 0x0111);
-  EXPECT_EQ(Read(R"({ "lss": { "bit_rates": [500, "auto"] } })").options.lss->bit_rates, 0x0204);
-  const Read read(R"({ "lss": { "unconfigurable": false, "served_in_operational": true } })");
+  EXPECT_FALSE(ReadOptions("{}").options.lss.has_value());
+  EXPECT_EQ(ReadOptions(R"({ "lss": {} })").options.lss, LssSettings{});
+  EXPECT_EQ(ReadOptions(R"({ "lss": { "bit_rates": "fixed" } })").options.lss->bit_rates, 0);
+  EXPECT_EQ(ReadOptions(R"({ "lss": { "bit_rates": [10, 125, 1000] } })").options.lss->bit_rates, 0x0111);
+  EXPECT_EQ(ReadOptions(R"({ "lss": { "bit_rates": [500, "auto"] } })").options.lss->bit_rates, 0x0204);
+  const ReadOptions read(R"({ "lss": { "unconfigurable": false, "served_in_operational": true } })");
   EXPECT_EQ(findings(read.diagnostics), Findings{});
   EXPECT_EQ(read.options.lss->flags,
             (std::map<std::string, bool>{{"served_in_operational", true}, {"unconfigurable", false}}));
@@ -122,28 +122,28 @@ TEST(OptionsFile, RefusesWhatLssDoesNotHave) {
   for (const char* lss : {"true", "[125]", R"({ "bit_rates": [] })", R"({ "bit_rates": 125 })",
                           R"({ "bit_rates": [100] })", R"({ "bit_rates": [0] })", R"({ "bit_rates": ["fixed"] })",
                           R"({ "bit_rates": [125, true] })", R"({ "fastscan": 1 })", R"({ "fast_scan": true })"}) {
-    const Read read("{ \"lss\": " + std::string{lss} + " }");
+    const ReadOptions read("{ \"lss\": " + std::string{lss} + " }");
     EXPECT_EQ(read.diagnostics.errors(), 1u) << lss;
   }
 }
 
 TEST(OptionsFile, SaysWhatTheDeviceKeepsOfItsDataSheet) {
-  EXPECT_EQ(Read(R"({ "stored_eds": false })").options.stored_eds, StoredEds::of_application);
-  EXPECT_EQ(Read(R"({ "stored_eds": true })").options.stored_eds, StoredEds::text);
-  EXPECT_EQ(Read(R"({ "stored_eds": "compressed" })").options.stored_eds, StoredEds::compressed);
+  EXPECT_EQ(ReadOptions(R"({ "stored_eds": false })").options.stored_eds, StoredEds::of_application);
+  EXPECT_EQ(ReadOptions(R"({ "stored_eds": true })").options.stored_eds, StoredEds::text);
+  EXPECT_EQ(ReadOptions(R"({ "stored_eds": "compressed" })").options.stored_eds, StoredEds::compressed);
   for (const char* value : {"1", "\"gzip\"", "null", "[]"}) {
-    const Read read("{ \"stored_eds\": " + std::string{value} + " }");
+    const ReadOptions read("{ \"stored_eds\": " + std::string{value} + " }");
     EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(1, 3, "options")})) << value;
   }
 }
 
 TEST(OptionsFile, MakesTheMappingOfAllPdosStatic) {
-  EXPECT_TRUE(Read(R"({ "static_mapping": true })").options.static_mapping.applies_to(0x1600));
-  EXPECT_FALSE(Read(R"({ "static_mapping": false })").options.static_mapping.applies_to(0x1600));
+  EXPECT_TRUE(ReadOptions(R"({ "static_mapping": true })").options.static_mapping.applies_to(0x1600));
+  EXPECT_FALSE(ReadOptions(R"({ "static_mapping": false })").options.static_mapping.applies_to(0x1600));
 }
 
 TEST(OptionsFile, MakesTheMappingOfSomePdosStatic) {
-  const Read read(R"({ "static_mapping": ["1600h", "17FF", "1A00h", "1bffh"] })");
+  const ReadOptions read(R"({ "static_mapping": ["1600h", "17FF", "1A00h", "1bffh"] })");
   EXPECT_EQ(findings(read.diagnostics), Findings{});
   EXPECT_EQ(read.options.static_mapping.parameters, (std::vector<std::uint16_t>{0x1600, 0x17FF, 0x1A00, 0x1BFF}));
   EXPECT_TRUE(read.options.static_mapping.applies_to(0x1A00));
@@ -152,20 +152,20 @@ TEST(OptionsFile, MakesTheMappingOfSomePdosStatic) {
 
 TEST(OptionsFile, RefusesAStaticMappingOfWhatIsNoMappingParameter) {
   for (const char* index : {"15FFh", "1800h", "19FFh", "1C00h", "1600h:01", "", "11600h"}) {
-    const Read read("{\n  \"static_mapping\": [\"" + std::string{index} + "\"] }");
+    const ReadOptions read("{\n  \"static_mapping\": [\"" + std::string{index} + "\"] }");
     EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(2, 3, "options")})) << index;
     EXPECT_TRUE(read.options.static_mapping.parameters.empty()) << index;
   }
 }
 
 TEST(OptionsFile, NamesObjectsAndEntriesThatRaiseNoEvent) {
-  const Read read(R"({ "no_event": ["6401h", "6000h:02", "2000h:00"] })");
+  const ReadOptions read(R"({ "no_event": ["6401h", "6000h:02", "2000h:00"] })");
   EXPECT_EQ(findings(read.diagnostics), Findings{});
   EXPECT_EQ(read.options.no_event, (std::vector<EntrySelector>{{0x6401, {}}, {0x6000, 2}, {0x2000, 0}}));
 }
 
 TEST(OptionsFile, SaysWhatIsStored) {
-  const Read read(R"({ "storing": { "1005h": "with_node_id", "6010:01": "never", "6081h:00": "always" } })");
+  const ReadOptions read(R"({ "storing": { "1005h": "with_node_id", "6010:01": "never", "6081h:00": "always" } })");
   EXPECT_EQ(findings(read.diagnostics), Findings{});
   using Row = std::pair<EntrySelector, std::string>;
   EXPECT_EQ(read.options.storing,
@@ -175,14 +175,14 @@ TEST(OptionsFile, SaysWhatIsStored) {
 TEST(OptionsFile, RefusesAnotherWayToStore) {
   for (const char* member :
        {R"("6010h": "by_access")", R"("6010h": true)", R"("6010h:100": "never")", R"("2000h": "with_node_id")"}) {
-    const Read read("{\n\"storing\": { " + std::string{member} + " } }");
+    const ReadOptions read("{\n\"storing\": { " + std::string{member} + " } }");
     EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(2, 14, "options")})) << member;
     EXPECT_TRUE(read.options.storing.empty()) << member;
   }
 }
 
 TEST(OptionsFile, GivesEmergenciesTheirBytes) {
-  const Read read(R"({ "emergency_info": { "8210h": "0900000000", "ff00": "0a0B0c0D0e" } })");
+  const ReadOptions read(R"({ "emergency_info": { "8210h": "0900000000", "ff00": "0a0B0c0D0e" } })");
   EXPECT_EQ(findings(read.diagnostics), Findings{});
   EXPECT_EQ(read.options.emergency_info.at(0x8210), (EmergencyInfo{9, 0, 0, 0, 0}));
   EXPECT_EQ(read.options.emergency_info.at(0xFF00), (EmergencyInfo{0x0A, 0x0B, 0x0C, 0x0D, 0x0E}));
@@ -192,7 +192,7 @@ TEST(OptionsFile, RefusesAnEmergencyWithoutCodeOrFiveBytes) {
   for (const char* member :
        {R"("": "0900000000")", R"("10000h": "0900000000")", R"("x": "0900000000")", R"("8210h": "09")",
         R"("8210h": "090000000000")", R"("8210h": "09000000+1")", R"("8210h": "090000000x")", R"("8210h": 9)"}) {
-    const Read read("{ \"emergency_info\": { " + std::string{member} + " } }");
+    const ReadOptions read("{ \"emergency_info\": { " + std::string{member} + " } }");
     ASSERT_EQ(read.diagnostics.errors(), 1U) << member;
     EXPECT_EQ(read.diagnostics.all().front().rule, "options") << member;
     EXPECT_TRUE(read.options.emergency_info.empty()) << member;
@@ -239,7 +239,7 @@ TEST(OptionsFile, RefusesAValueOfTheWrongType) {
                              R"("no_event": [25601])",
                              R"("no_event": ["6401h:100"])",
                              R"("emergency_info": ["8210h"])"}) {
-    const Read read("{ " + std::string{member} + " }");
+    const ReadOptions read("{ " + std::string{member} + " }");
     ASSERT_EQ(read.diagnostics.errors(), 1U) << member;
     EXPECT_EQ(read.diagnostics.all().front().rule, "options") << member;
     EXPECT_EQ(read.options.runtime, Runtime{}) << member;
@@ -248,36 +248,36 @@ TEST(OptionsFile, RefusesAValueOfTheWrongType) {
 
 TEST(OptionsFile, RefusesEntriesThatAreNone) {
   for (const char* entry : {"", "h", "G000", "1018h:", "1018h:100", "10000h", "1018h:4:5", "-1"}) {
-    const Read read("{ \"settable\": [\"" + std::string{entry} + "\"] }");
+    const ReadOptions read("{ \"settable\": [\"" + std::string{entry} + "\"] }");
     EXPECT_EQ(read.diagnostics.errors(), 1U) << entry;
     EXPECT_TRUE(read.options.settable.empty()) << entry;
   }
 }
 
 TEST(OptionsFile, RefusesAnUnknownMemberWhereItStands) {
-  const Read read("{\n  \"zero_terminated_strings\": true,\n  \"colour\": 1\n}\n");
+  const ReadOptions read("{\n  \"zero_terminated_strings\": true,\n  \"colour\": 1\n}\n");
   EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(3, 3, "options")}));
   EXPECT_NE(read.diagnostics.all().front().message.find("colour"), std::string::npos);
 }
 
 TEST(OptionsFile, NamesThePathOfTheMemberThatIsWrong) {
-  const Read read("{ \"string_capacity\": { \"1008h\": true } }");
+  const ReadOptions read("{ \"string_capacity\": { \"1008h\": true } }");
   EXPECT_NE(read.diagnostics.all().front().message.find("string_capacity/1008h"), std::string::npos);
 }
 
 TEST(OptionsFile, ThatIsNoJsonIsAnErrorWhereItBreaks) {
-  EXPECT_EQ(findings(Read("{\n  \"settable\": [,]\n}\n").diagnostics), (Findings{error_at(2, 16, "options-syntax")}));
-  EXPECT_EQ(Read("").diagnostics.all().front().rule, "options-syntax");
-  EXPECT_EQ(Read("{").diagnostics.all().front().rule, "options-syntax");
+  EXPECT_EQ(findings(ReadOptions("{\n  \"settable\": [,]\n}\n").diagnostics), (Findings{error_at(2, 16, "options-syntax")}));
+  EXPECT_EQ(ReadOptions("").diagnostics.all().front().rule, "options-syntax");
+  EXPECT_EQ(ReadOptions("{").diagnostics.all().front().rule, "options-syntax");
 }
 
 TEST(OptionsFile, WithANumberThatNothingHoldsIsAnError) {
-  EXPECT_EQ(Read(R"({ "string_capacity": { "1008h": 1e999 } })").diagnostics.errors(), 1U);
+  EXPECT_EQ(ReadOptions(R"({ "string_capacity": { "1008h": 1e999 } })").diagnostics.errors(), 1U);
 }
 
 TEST(OptionsFile, HoldsOneObject) {
   for (const char* text : {"[]", "1", "\"names\"", "null"}) {
-    const Read read(text);
+    const ReadOptions read(text);
     ASSERT_EQ(read.diagnostics.errors(), 1U) << text;
     EXPECT_EQ(read.diagnostics.all().front().rule, "options") << text;
   }

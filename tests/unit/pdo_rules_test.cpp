@@ -40,28 +40,28 @@ std::string pdo(bool receive, const std::vector<std::string>& mapping, std::stri
   return objects + text;
 }
 
-struct Checked : DeviceFromText {
-  explicit Checked(std::string text, Options given = {}) : DeviceFromText(std::move(text), std::move(given)) {
+struct CheckedPdos : DeviceFromText {
+  explicit CheckedPdos(std::string text, Options given = {}) : DeviceFromText(std::move(text), std::move(given)) {
     check_pdos(device, options, diagnostics);
   }
 };
 
 /// Expects one finding of `rule`, and nothing else, at the line of the mapping entry with this word.
-void expect_one(const Checked& checked, Severity severity, const std::string& rule, const std::string& word) {
+void expect_one(const CheckedPdos& checked, Severity severity, const std::string& rule, const std::string& word) {
   ASSERT_EQ(rules_of(checked.diagnostics), Rules{rule});
   EXPECT_EQ(checked.finding(rule).severity, severity);
   EXPECT_EQ(checked.line_of(rule), "DefaultValue=" + word);
   EXPECT_EQ(checked.finding(rule).position.column, 14U);
 }
 
-bool message_has(const Checked& checked, const std::string& rule, const std::string& text) {
+bool message_has(const CheckedPdos& checked, const std::string& rule, const std::string& text) {
   return checked.finding(rule).message.find(text) != std::string::npos;
 }
 
 TEST(PdoRules, AreSilentOnAGoodMapping) {
   for (const bool receive : {true, false}) {
     const std::string first = receive ? "0x20020010" : "0x20000010";
-    const Checked checked(pdo(receive, {first, "0x20070020", "0x20060001"}));
+    const CheckedPdos checked(pdo(receive, {first, "0x20070020", "0x20060001"}));
     EXPECT_EQ(rules_of(checked.diagnostics), Rules{});
     EXPECT_FALSE(checked.device.pdos.front().broken);
     EXPECT_EQ(checked.device.pdos.front().bits(), 49U);
@@ -69,7 +69,7 @@ TEST(PdoRules, AreSilentOnAGoodMapping) {
 }
 
 TEST(PdoRules, RefuseAnObjectThatTheDeviceDoesNotHave) {
-  const Checked checked(pdo(false, {"0x21000010"}));
+  const CheckedPdos checked(pdo(false, {"0x21000010"}));
   expect_one(checked, Severity::error, "pdo-object", "0x21000010");
   EXPECT_TRUE(message_has(checked, "pdo-object", "TPDO 1"));
   EXPECT_TRUE(message_has(checked, "pdo-object", "2100h:00"));
@@ -78,14 +78,14 @@ TEST(PdoRules, RefuseAnObjectThatTheDeviceDoesNotHave) {
 }
 
 TEST(PdoRules, RefuseASubIndexThatTheObjectDoesNotHave) {
-  const Checked checked(pdo(true, {"0x20020110"}));
+  const CheckedPdos checked(pdo(true, {"0x20020110"}));
   expect_one(checked, Severity::error, "pdo-object", "0x20020110");
   EXPECT_TRUE(message_has(checked, "pdo-object", "2002h:01"));
   EXPECT_TRUE(message_has(checked, "pdo-object", "no such sub-index"));
 }
 
 TEST(PdoRules, RefuseAnObjectThatCannotBeMapped) {
-  const Checked checked(pdo(false, {"0x20000010", "0x20040010"}));
+  const CheckedPdos checked(pdo(false, {"0x20000010", "0x20040010"}));
   expect_one(checked, Severity::error, "pdo-mappable", "0x20040010");
   EXPECT_TRUE(message_has(checked, "pdo-mappable", "2004h:00 \"Parameter\""));
 }
@@ -99,30 +99,30 @@ TEST(PdoRules, RefuseAnObjectOfTheOtherDirection) {
   for (const Row& row :
        {Row{true, "0x20000010", "2000h:00 \"Input\""}, Row{true, "0x20030010", "2003h:00 \"Process input\""},
         Row{false, "0x20010010", "2001h:00 \"Output\""}, Row{false, "0x20020010", "2002h:00 \"Process output\""}}) {
-    const Checked checked(pdo(row.receive, {row.word}));
+    const CheckedPdos checked(pdo(row.receive, {row.word}));
     expect_one(checked, Severity::error, "pdo-direction", row.word);
     EXPECT_TRUE(message_has(checked, "pdo-direction", row.object)) << row.object;
   }
 }
 
 TEST(PdoRules, RefuseAnotherLengthThanTheObjectHas) {
-  const Checked checked(pdo(false, {"0x20000008"}));
+  const CheckedPdos checked(pdo(false, {"0x20000008"}));
   expect_one(checked, Severity::error, "pdo-length", "0x20000008");
   EXPECT_TRUE(message_has(checked, "pdo-length", "2000h:00 \"Input\""));
   EXPECT_TRUE(message_has(checked, "pdo-length", "UNSIGNED16"));
 }
 
 TEST(PdoRules, RefuseAValueOfNoFixedLength) {
-  const Checked checked(pdo(false, {"0x20050010"}));
+  const CheckedPdos checked(pdo(false, {"0x20050010"}));
   expect_one(checked, Severity::error, "pdo-variable-length", "0x20050010");
   EXPECT_TRUE(message_has(checked, "pdo-variable-length", "2005h:00 \"Text\""));
   EXPECT_TRUE(message_has(checked, "pdo-variable-length", "VISIBLE_STRING"));
 }
 
 TEST(PdoRules, LetAStringTakeAsManyBytesAsItHasRoomFor) {
-  EXPECT_EQ(rules_of(Checked(pdo(false, {"0x20080028"})).diagnostics), Rules{});
-  EXPECT_EQ(rules_of(Checked(pdo(false, {"0x20080018"})).diagnostics), Rules{});
-  const Checked longer(pdo(false, {"0x20080030"}));
+  EXPECT_EQ(rules_of(CheckedPdos(pdo(false, {"0x20080028"})).diagnostics), Rules{});
+  EXPECT_EQ(rules_of(CheckedPdos(pdo(false, {"0x20080018"})).diagnostics), Rules{});
+  const CheckedPdos longer(pdo(false, {"0x20080030"}));
   expect_one(longer, Severity::error, "pdo-length", "0x20080030");
   EXPECT_TRUE(message_has(longer, "pdo-length", "TPDO 1 maps, as entry 1, 48 bits of 2008h:00 \"Name\""));
 }
@@ -130,94 +130,94 @@ TEST(PdoRules, LetAStringTakeAsManyBytesAsItHasRoomFor) {
 TEST(PdoRules, LetTheOptionsSayHowMuchAStringHolds) {
   Options options;
   options.string_capacity[{0x2005, 0}] = 4;
-  EXPECT_EQ(rules_of(Checked(pdo(true, {"0x20050020"}), options).diagnostics), Rules{});
-  EXPECT_EQ(rules_of(Checked(pdo(true, {"0x20050028"}), options).diagnostics), Rules{"pdo-length"});
+  EXPECT_EQ(rules_of(CheckedPdos(pdo(true, {"0x20050020"}), options).diagnostics), Rules{});
+  EXPECT_EQ(rules_of(CheckedPdos(pdo(true, {"0x20050028"}), options).diagnostics), Rules{"pdo-length"});
 }
 
 TEST(PdoRules, RefusePartsOfAByteOfAString) {
-  const Checked checked(pdo(false, {"0x2008000C"}));
+  const CheckedPdos checked(pdo(false, {"0x2008000C"}));
   expect_one(checked, Severity::error, "pdo-variable-length", "0x2008000C");
   EXPECT_TRUE(message_has(checked, "pdo-variable-length", "no whole bytes"));
 }
 
 TEST(PdoRules, RefuseADomain) {
-  expect_one(Checked(pdo(false, {"0x20090020"})), Severity::error, "pdo-variable-length", "0x20090020");
+  expect_one(CheckedPdos(pdo(false, {"0x20090020"})), Severity::error, "pdo-variable-length", "0x20090020");
 }
 
 TEST(PdoRules, NameTheEntry) {
-  const Checked checked(pdo(false, {"0x20000010", "0x20020010"}));
+  const CheckedPdos checked(pdo(false, {"0x20000010", "0x20020010"}));
   EXPECT_TRUE(message_has(checked, "pdo-direction",
                           "TPDO 1 maps, as entry 2, 2002h:00 \"Process output\", which a TPDO may not carry"));
-  const Checked sub_index(pdo(true, {"0x20020110"}));
+  const CheckedPdos sub_index(pdo(true, {"0x20020110"}));
   EXPECT_TRUE(message_has(sub_index, "pdo-object", "as entry 1, 2002h:01 of \"Process output\""));
-  const Checked dummy(pdo(true, {"0x00060010"}));
+  const CheckedPdos dummy(pdo(true, {"0x00060010"}));
   EXPECT_TRUE(message_has(dummy, "pdo-dummy", "as entry 1, the dummy 0006h UNSIGNED16"));
-  const Checked size(pdo(false, {"0x20070020", "0x20070020", "0x20000010"}));
+  const CheckedPdos size(pdo(false, {"0x20070020", "0x20070020", "0x20000010"}));
   EXPECT_TRUE(message_has(size, "pdo-size", "which entry 3, 2000h:00 \"Input\" exceeds"));
 }
 
 TEST(PdoRules, LetABooleanTakeAByteWithAWarning) {
-  const Checked checked(pdo(false, {"0x20060008"}));
+  const CheckedPdos checked(pdo(false, {"0x20060008"}));
   expect_one(checked, Severity::warning, "pdo-boolean-byte", "0x20060008");
   EXPECT_TRUE(message_has(checked, "pdo-boolean-byte", "2006h:00 \"Switch\""));
   EXPECT_FALSE(checked.device.pdos.front().broken);
 }
 
 TEST(PdoRules, RefuseMoreThan64BitsAtTheEntryThatIsTooMuch) {
-  const Checked checked(pdo(false, {"0x20070020", "0x20070020", "0x20000010"}));
+  const CheckedPdos checked(pdo(false, {"0x20070020", "0x20070020", "0x20000010"}));
   expect_one(checked, Severity::error, "pdo-size", "0x20000010");
   EXPECT_TRUE(message_has(checked, "pdo-size", "80 bits"));
-  EXPECT_FALSE(Checked(pdo(false, {"0x20070020", "0x20070020"})).device.pdos.front().broken);
+  EXPECT_FALSE(CheckedPdos(pdo(false, {"0x20070020", "0x20070020"})).device.pdos.front().broken);
 }
 
 TEST(PdoRules, RefuseMoreThan64Objects) {
-  const Checked checked(pdo(false, std::vector<std::string>(65, "0x20060001")));
+  const CheckedPdos checked(pdo(false, std::vector<std::string>(65, "0x20060001")));
   EXPECT_EQ(rules_of(checked.diagnostics), (Rules{"pdo-size", "pdo-entries"}));
-  EXPECT_EQ(rules_of(Checked(pdo(false, std::vector<std::string>(64, "0x20060001"))).diagnostics), Rules{});
+  EXPECT_EQ(rules_of(CheckedPdos(pdo(false, std::vector<std::string>(64, "0x20060001"))).diagnostics), Rules{});
 }
 
 TEST(PdoRules, LetAnRpdoMapADummyThatTheDeviceAllows) {
-  const Checked checked(pdo(true, {"0x00050008", "0x20020010"}));
+  const CheckedPdos checked(pdo(true, {"0x00050008", "0x20020010"}));
   EXPECT_EQ(rules_of(checked.diagnostics), Rules{});
   EXPECT_EQ(checked.device.pdos.front().bits(), 24U);
 }
 
 TEST(PdoRules, RefuseADummyThatTheDeviceDoesNotAllow) {
-  const Checked checked(pdo(true, {"0x00060010"}));
+  const CheckedPdos checked(pdo(true, {"0x00060010"}));
   expect_one(checked, Severity::error, "pdo-dummy", "0x00060010");
   EXPECT_TRUE(message_has(checked, "pdo-dummy", "UNSIGNED16"));
 }
 
 TEST(PdoRules, RefuseADummyInATpdo) {
-  expect_one(Checked(pdo(false, {"0x00050008"})), Severity::error, "pdo-dummy", "0x00050008");
+  expect_one(CheckedPdos(pdo(false, {"0x00050008"})), Severity::error, "pdo-dummy", "0x00050008");
 }
 
 TEST(PdoRules, RefuseADummyOfAnotherLength) {
-  expect_one(Checked(pdo(true, {"0x00050010"})), Severity::error, "pdo-length", "0x00050010");
+  expect_one(CheckedPdos(pdo(true, {"0x00050010"})), Severity::error, "pdo-length", "0x00050010");
 }
 
 TEST(PdoRules, WarnOnlyWhenThePdoIsOffByDefault) {
-  const Checked checked(pdo(false, {"0x20040010"}, "$NODEID+0x80000180"));
+  const CheckedPdos checked(pdo(false, {"0x20040010"}, "$NODEID+0x80000180"));
   expect_one(checked, Severity::warning, "pdo-mappable", "0x20040010");
   EXPECT_TRUE(message_has(checked, "pdo-mappable", "off by default"));
   EXPECT_TRUE(checked.device.pdos.front().broken) << "no layout can be made of it all the same";
 }
 
 TEST(PdoRules, WarnOfAPdoThatLacksOneOfItsParameters) {
-  const Checked communication(objects + group("1801", "Communication", "0x9", 2) +
+  const CheckedPdos communication(objects + group("1801", "Communication", "0x9", 2) +
                               var("1801sub0", "Count", "5", "ro", "DefaultValue=1\n") + var("1801sub1", "COB-ID", "7"));
   ASSERT_EQ(rules_of(communication.diagnostics), Rules{"pdo-pair"});
   EXPECT_EQ(communication.line_of("pdo-pair"), "[1801]");
   EXPECT_TRUE(message_has(communication, "pdo-pair", "TPDO 2 has no mapping parameter 1A01h"));
 
-  const Checked mapping(objects + group("1603", "Mapping", "0x9", 1) +
+  const CheckedPdos mapping(objects + group("1603", "Mapping", "0x9", 1) +
                         var("1603sub0", "Count", "5", "ro", "DefaultValue=0\n"));
   ASSERT_EQ(rules_of(mapping.diagnostics), Rules{"pdo-pair"});
   EXPECT_TRUE(message_has(mapping, "pdo-pair", "RPDO 4 has no communication parameter 1403h"));
 }
 
 TEST(PdoRules, ReportEachWrongEntry) {
-  const Checked checked(pdo(false, {"0x20040010", "0x21000010", "0x20010010"}));
+  const CheckedPdos checked(pdo(false, {"0x20040010", "0x21000010", "0x20010010"}));
   EXPECT_EQ(rules_of(checked.diagnostics), (Rules{"pdo-mappable", "pdo-object", "pdo-direction"}));
 }
 

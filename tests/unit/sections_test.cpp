@@ -11,32 +11,32 @@ namespace {
 using Rules = std::vector<std::string>;
 
 /// A section with its keys, and a device around it.
-struct Read : DeviceFromText {
-  explicit Read(const std::string& text, std::string file = "test.eds")
+struct ReadSections : DeviceFromText {
+  explicit ReadSections(const std::string& text, std::string file = "test.eds")
       : DeviceFromText(text + var("2000", "Speed", "6"), {}, {}, std::move(file)) {}
 };
 
 // ---- [Comments] ----
 
 TEST(CommentsSection, HoldsLinesByTheirNumber) {
-  const Read read("[Comments]\nLines=2\nLine2=second\nline1=first; with a semicolon\n");
+  const ReadSections read("[Comments]\nLines=2\nLine2=second\nline1=first; with a semicolon\n");
   EXPECT_EQ(read.device.information.comments, (std::vector<std::string_view>{"first; with a semicolon", "second"}));
   EXPECT_EQ(rules_of(read.diagnostics), Rules{});
 }
 
 TEST(CommentsSection, CountsItsLines) {
-  EXPECT_EQ(findings(Read("[Comments]\nLines=3\nLine1=a\n").diagnostics, "comments"),
+  EXPECT_EQ(findings(ReadSections("[Comments]\nLines=3\nLine1=a\n").diagnostics, "comments"),
             (std::vector{warning_at(2, 7, "comments")}));
-  EXPECT_EQ(findings(Read("[Comments]\nLines=1\nLine2=a\n").diagnostics, "comments"),
+  EXPECT_EQ(findings(ReadSections("[Comments]\nLines=1\nLine2=a\n").diagnostics, "comments"),
             (std::vector{warning_at(2, 7, "comments")}));
-  EXPECT_EQ(findings(Read("[Comments]\nLine1=a\n").diagnostics, "comments"),
+  EXPECT_EQ(findings(ReadSections("[Comments]\nLine1=a\n").diagnostics, "comments"),
             (std::vector{warning_at(1, 2, "comments")}));
 }
 
 // ---- [FileInfo] and [DeviceInfo] ----
 
 TEST(FileInfoSection, KeepsDatesAsTheyAreWritten) {
-  const Read read("[FileInfo]\nCreationDate=2016-03-25\nCreationTime=17:24:43\nFileVersion=-\nLastEDS=drive.eds\n");
+  const ReadSections read("[FileInfo]\nCreationDate=2016-03-25\nCreationTime=17:24:43\nFileVersion=-\nLastEDS=drive.eds\n");
   const FileInformation& file = read.device.information.file;
   EXPECT_EQ(file.creation_date, "2016-03-25");
   EXPECT_EQ(file.creation_time, "17:24:43");
@@ -46,7 +46,7 @@ TEST(FileInfoSection, KeepsDatesAsTheyAreWritten) {
 }
 
 TEST(DeviceInfoSection, SaysWhatTheDeviceCanDo) {
-  const Read read(
+  const ReadSections read(
       "[DeviceInfo]\nOrderCode=A-1\nBaudRate_500=1\nBaudrate_125=1\nBaudRate_10=0\nGranularity=0x08\n"
       "SimpleBootUpSlave=1\nNrOfRXPDO=2\nLSS_Supported=0\n");
   const Capabilities& capabilities = read.device.information.capabilities;
@@ -61,7 +61,7 @@ TEST(DeviceInfoSection, SaysWhatTheDeviceCanDo) {
 }
 
 TEST(DeviceInfoSection, MayLeaveNumbersEmptyAndSpellThemInOctal) {
-  const Read read("[DeviceInfo]\nVendorNumber=001\nProductNumber=\nRevisionNumber=010\n");
+  const ReadSections read("[DeviceInfo]\nVendorNumber=001\nProductNumber=\nRevisionNumber=010\n");
   EXPECT_EQ(read.device.vendor_number, 1U);
   EXPECT_EQ(read.device.product_number, 0U);
   EXPECT_EQ(read.device.revision_number, 8U);
@@ -72,7 +72,7 @@ TEST(DeviceInfoSection, MayLeaveNumbersEmptyAndSpellThemInOctal) {
 // ---- [DeviceComissioning] ----
 
 TEST(CommissioningSection, SaysHowTheNodeIsConfigured) {
-  const Read read(
+  const ReadSections read(
       "[DeviceCommissioning]\nNodeId=0x05\nNODENAME=Lift\nBaudRate=250\nNetNumber=1\nNetworkName=Line\n"
       "CANopenManager=1\nLSS_SerialNumber=0x10\nNodeRefd=N1\nNetRefd=L1\n");
   ASSERT_TRUE(read.device.information.commissioning);
@@ -90,16 +90,16 @@ TEST(CommissioningSection, SaysHowTheNodeIsConfigured) {
 }
 
 TEST(CommissioningSection, WarnsOfNumbersThatAreNone) {
-  EXPECT_EQ(findings(Read("[DeviceComissioning]\nNetNumber=one\n").diagnostics, "commissioning"),
+  EXPECT_EQ(findings(ReadSections("[DeviceComissioning]\nNetNumber=one\n").diagnostics, "commissioning"),
             (std::vector{warning_at(2, 11, "commissioning")}));
 }
 
-TEST(CommissioningSection, IsMissingInAnEds) { EXPECT_FALSE(Read("").device.information.commissioning); }
+TEST(CommissioningSection, IsMissingInAnEds) { EXPECT_FALSE(ReadSections("").device.information.commissioning); }
 
 // ---- [Tools] ----
 
 TEST(ToolsSection, NamesProgramsAndTheirCommands) {
-  const Read read("[Tool2]\nName=Scope\nCommand=scope.exe\n[Tools]\nItems=2\n[Tool1]\nName=Setup\nCommand=a b\n");
+  const ReadSections read("[Tool2]\nName=Scope\nCommand=scope.exe\n[Tools]\nItems=2\n[Tool1]\nName=Setup\nCommand=a b\n");
   ASSERT_EQ(read.device.information.tools.size(), 2U);
   EXPECT_EQ(read.device.information.tools[0].name, "Setup");
   EXPECT_EQ(read.device.information.tools[0].command, "a b");
@@ -108,15 +108,15 @@ TEST(ToolsSection, NamesProgramsAndTheirCommands) {
 }
 
 TEST(ToolsSection, CountsItsTools) {
-  EXPECT_EQ(findings(Read("[Tools]\nItems=2\n[Tool1]\nName=A\n").diagnostics, "tools"),
+  EXPECT_EQ(findings(ReadSections("[Tools]\nItems=2\n[Tool1]\nName=A\n").diagnostics, "tools"),
             (std::vector{warning_at(2, 7, "tools")}));
-  EXPECT_EQ(findings(Read("[Tool1]\nName=A\n").diagnostics, "tools"), (std::vector{warning_at(1, 2, "tools")}));
+  EXPECT_EQ(findings(ReadSections("[Tool1]\nName=A\n").diagnostics, "tools"), (std::vector{warning_at(1, 2, "tools")}));
 }
 
 // ---- [DynamicChannels] ----
 
 TEST(DynamicChannelsSection, HoldsSegments) {
-  const Read read("[DynamicChannels]\nNrOfSeg=1\nType1=0x0007\nDir1=ro\nRange1=0xA080-0xA0BF\nPPOffset1=4\n");
+  const ReadSections read("[DynamicChannels]\nNrOfSeg=1\nType1=0x0007\nDir1=ro\nRange1=0xA080-0xA0BF\nPPOffset1=4\n");
   ASSERT_EQ(read.device.information.dynamic_channels.size(), 1U);
   const DynamicChannel& channel = read.device.information.dynamic_channels[0];
   EXPECT_EQ(channel.data_type, 7U);
@@ -127,11 +127,11 @@ TEST(DynamicChannelsSection, HoldsSegments) {
   EXPECT_EQ(rules_of(read.diagnostics), Rules{});
 }
 
-TEST(DynamicChannelsSection, MayBeEmpty) { EXPECT_EQ(rules_of(Read("[DynamicChannels]\n").diagnostics), Rules{}); }
+TEST(DynamicChannelsSection, MayBeEmpty) { EXPECT_EQ(rules_of(ReadSections("[DynamicChannels]\n").diagnostics), Rules{}); }
 
 TEST(DynamicChannelsSection, WarnsOfRangesThatAreNone) {
   for (const char* range : {"A080", "0xA0BF-0xA080", "0xA080..0xA0BF", "0x1A080"}) {
-    const Read read("[DynamicChannels]\nNrOfSeg=1\nType1=7\nDir1=ro\nRange1=" + std::string{range} + "\nPPOffset1=0\n");
+    const ReadSections read("[DynamicChannels]\nNrOfSeg=1\nType1=7\nDir1=ro\nRange1=" + std::string{range} + "\nPPOffset1=0\n");
     EXPECT_EQ(findings(read.diagnostics, "dynamic-segment"), (std::vector{warning_at(5, 8, "dynamic-segment")}))
         << range;
   }
@@ -140,13 +140,13 @@ TEST(DynamicChannelsSection, WarnsOfRangesThatAreNone) {
 // ---- [HHHHObjectLinks] and keys that say more ----
 
 TEST(ObjectLinks, NameObjectsThatBelongTogether) {
-  const Read read("[2000ObjectLinks]\nObjectLinks=2\n1=0x2001\n2=4096\n");
+  const ReadSections read("[2000ObjectLinks]\nObjectLinks=2\n1=0x2001\n2=4096\n");
   EXPECT_EQ(read.device.find(0x2000)->links, (std::vector<std::uint16_t>{0x2001, 0x1000}));
   EXPECT_EQ(rules_of(read.diagnostics), Rules{});
 }
 
 TEST(ObjectLinks, WarnOfWhatIsNoIndex) {
-  EXPECT_EQ(findings(Read("[2000ObjectLinks]\nObjectLinks=1\n1=Speed\n").diagnostics, "object-links"),
+  EXPECT_EQ(findings(ReadSections("[2000ObjectLinks]\nObjectLinks=1\n1=Speed\n").diagnostics, "object-links"),
             (std::vector{warning_at(3, 3, "object-links")}));
 }
 

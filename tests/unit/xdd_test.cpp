@@ -43,10 +43,10 @@ struct Profile {
 /// Where the first of `Profile::objects` stands.
 constexpr std::uint32_t first_line = 4;
 
-struct Read {
-  explicit Read(std::string text, std::string name = "test.xdd")
+struct ReadXdd {
+  explicit ReadXdd(std::string text, std::string name = "test.xdd")
       : source(std::move(name), std::move(text)), sheet(read_xdd(source, diagnostics)) {}
-  explicit Read(const Profile& profile, std::string name = "test.xdd") : Read(profile.text(), std::move(name)) {}
+  explicit ReadXdd(const Profile& profile, std::string name = "test.xdd") : ReadXdd(profile.text(), std::move(name)) {}
 
   [[nodiscard]] const ObjectDescription& object(std::size_t at = 0) const { return sheet.objects.at(at); }
 
@@ -70,7 +70,7 @@ TEST(Xdd, IsToldFromIniByItsFirstCharacter) {
 }
 
 TEST(Xdd, PlacesTheAttributesOfAnObject) {
-  const Read read(Profile{
+  const ReadXdd read(Profile{
       "<CANopenObject index='1005' name='COB-ID SYNC' objectType='7' dataType='0007' accessType='rw' lowLimit='1'\n"
       " highLimit='9' defaultValue='0x80' PDOmapping='no' objFlags='0001' actualValue='5' denotation='mine'/>",
       "", "", ""});
@@ -96,14 +96,14 @@ TEST(Xdd, PlacesTheAttributesOfAnObject) {
 }
 
 TEST(Xdd, PointsToTheElementWhereAnAttributeIsMissing) {
-  const Read read(Profile{"<CANopenObject index='1005'/>", "", "", ""});
+  const ReadXdd read(Profile{"<CANopenObject index='1005'/>", "", "", ""});
   EXPECT_FALSE(read.object().data_type.present);
   EXPECT_EQ(read.object().data_type.position.line, first_line);
   EXPECT_EQ(read.object().data_type.position.column, 2U);
 }
 
 TEST(Xdd, SortsObjectsAndSubObjectsAndKeepsTheFirstOfTwo) {
-  const Read read(
+  const ReadXdd read(
       Profile{"<CANopenObject index='2001' subNumber='03'><CANopenSubObject subIndex='0A' name='ten'/>"
               "<CANopenSubObject subIndex='00'/><CANopenSubObject subIndex='0a'/></CANopenObject>\n"
               "<CANopenObject index='2000' name='first'/>\n<CANopenObject index='2000' name='second'/>",
@@ -119,7 +119,7 @@ TEST(Xdd, SortsObjectsAndSubObjectsAndKeepsTheFirstOfTwo) {
 }
 
 TEST(Xdd, LeavesOutAnObjectWithoutIndex) {
-  const Read read(
+  const ReadXdd read(
       Profile{"<CANopenObject index='10005'/>\n<CANopenObject/>\n<CANopenObject index='0x1000'/>", "", "", ""});
   EXPECT_EQ(findings(read.diagnostics),
             (Findings{error_at(first_line, 23, "number"), error_at(first_line + 1, 2, "number")}));
@@ -127,7 +127,7 @@ TEST(Xdd, LeavesOutAnObjectWithoutIndex) {
 }
 
 TEST(Xdd, ReadsAnyNamespacePrefix) {
-  const Read read(
+  const ReadXdd read(
       "<c:ISO15745ProfileContainer xmlns:c='x'><c:ISO15745Profile><c:ProfileBody "
       "i:type='q:ProfileBody_CommunicationNetwork_CANopen'><q:ApplicationLayers><q:CANopenObjectList>"
       "<q:CANopenObject index='1000'/></q:CANopenObjectList></q:ApplicationLayers></c:ProfileBody></c:ISO15745Profile>"
@@ -137,10 +137,10 @@ TEST(Xdd, ReadsAnyNamespacePrefix) {
 }
 
 TEST(Xdd, ReadsTheTextInUtf8WhateverItsDeclarationSays) {
-  const Read read("<?xml version='1.0' encoding='UTF-16'?>" +
+  const ReadXdd read("<?xml version='1.0' encoding='UTF-16'?>" +
                   Profile{"<CANopenObject index='2000' name='W\xC3\xA4rme'/>", "", "", ""}.text());
   EXPECT_EQ(read.object().parameter_name.text, "W\xC3\xA4rme");
-  const Read windows("<?xml version='1.0' encoding='utf-8'?>" +
+  const ReadXdd windows("<?xml version='1.0' encoding='utf-8'?>" +
                      Profile{"<CANopenObject index='2000' name='W\xE4rme'/>", "", "", ""}.text());
   EXPECT_EQ(windows.object().parameter_name.text, "W\xC3\xA4rme");
 }
@@ -148,7 +148,7 @@ TEST(Xdd, ReadsTheTextInUtf8WhateverItsDeclarationSays) {
 TEST(Xdd, ReadsUtf16) {
   std::string wide = "\xFF\xFE";
   for (const char c : Profile{"<CANopenObject index='2000' name='x'/>", "", "", ""}.text()) wide += {c, '\0'};
-  EXPECT_EQ(Read(wide).object().parameter_name.text, "x");
+  EXPECT_EQ(ReadXdd(wide).object().parameter_name.text, "x");
 }
 
 TEST(Xdd, KeepsTextThatDoesNotStandInTheFileLikeThat) {
@@ -170,7 +170,7 @@ TEST(Xdd, KeepsTextThatDoesNotStandInTheFileLikeThat) {
 // ---- the parameters that objects refer to ----
 
 TEST(XddParameter, GivesTypeAccessValuesAndLimits) {
-  const Read read(
+  const ReadXdd read(
       Profile{referring_object,
               parameter("<label lang='de'>Drehzahl</label><label "
                         "lang='en'>Speed</label><UINT/><denotation><label>axis</label></denotation>"
@@ -192,14 +192,14 @@ TEST(XddParameter, GivesTypeAccessValuesAndLimits) {
 }
 
 TEST(XddParameter, NamesAnObjectWithoutName) {
-  const Read read(Profile{"<CANopenObject index='2000' uniqueIDRef='p'/>",
+  const ReadXdd read(Profile{"<CANopenObject index='2000' uniqueIDRef='p'/>",
                           parameter("<label lang='de'>Drehzahl</label><label lang='en'>Speed</label>"), "", ""});
   EXPECT_EQ(read.object().parameter_name.text, "Speed");
 }
 
 TEST(XddParameter, IsReadOnlyWhenNeitherItNorTheObjectSaysMore) {
-  EXPECT_EQ(Read(Profile{referring_object, parameter("<UINT/>"), "", ""}).object().access_type.text, "ro");
-  const Read own(
+  EXPECT_EQ(ReadXdd(Profile{referring_object, parameter("<UINT/>"), "", ""}).object().access_type.text, "ro");
+  const ReadXdd own(
       Profile{"<CANopenObject index='2000' accessType='rw' uniqueIDRef='p'/>", parameter("<UINT/>"), "", ""});
   EXPECT_EQ(own.object().access_type.text, "rw");
 }
@@ -214,10 +214,10 @@ TEST(XddParameter, SpellsTheAccessAsAnEdsDoes) {
                                   {"write", "wo"},           {"readWrite", "rw"},
                                   {"readWriteInput", "rwr"}, {"readWriteOutput", "rww"}};
   for (const AccessCase& one : cases) {
-    const Read read(Profile{referring_object, parameter("<INT/>", "access='" + std::string{one.word} + "'"), "", ""});
+    const ReadXdd read(Profile{referring_object, parameter("<INT/>", "access='" + std::string{one.word} + "'"), "", ""});
     EXPECT_EQ(read.object().access_type.text, one.access_type);
   }
-  const Read none(Profile{referring_object, parameter("<INT/>", "access='noAccess'"), "", ""});
+  const ReadXdd none(Profile{referring_object, parameter("<INT/>", "access='noAccess'"), "", ""});
   EXPECT_EQ(none.object().access_type.text, "ro");
   EXPECT_EQ(findings(none.diagnostics).size(), 1U);
 }
@@ -234,26 +234,26 @@ TEST(XddParameter, TakesTheTypesOfIec61131ForThoseOfCanopen) {
                                 {"LWORD", "0x001B"},  {"REAL", "0x0008"},  {"LREAL", "0x0011"}, {"STRING", "0x0009"},
                                 {"WSTRING", "0x000B"}};
   for (const TypeCase& one : cases) {
-    const Read read(Profile{referring_object, parameter("<" + std::string{one.name} + "/>"), "", ""});
+    const ReadXdd read(Profile{referring_object, parameter("<" + std::string{one.name} + "/>"), "", ""});
     EXPECT_EQ(read.object().data_type.text, one.data_type) << one.name;
   }
 }
 
 TEST(XddParameter, TakesABitStringWithoutValueForADomain) {
-  EXPECT_EQ(Read(Profile{referring_object, parameter("<BITSTRING/>"), "", ""}).object().data_type.text, "0x000F");
-  const Read bytes(Profile{referring_object, parameter("<BITSTRING/><defaultValue value='01 FF'/>"), "", ""});
+  EXPECT_EQ(ReadXdd(Profile{referring_object, parameter("<BITSTRING/>"), "", ""}).object().data_type.text, "0x000F");
+  const ReadXdd bytes(Profile{referring_object, parameter("<BITSTRING/><defaultValue value='01 FF'/>"), "", ""});
   EXPECT_EQ(bytes.object().data_type.text, "0x000A");
 }
 
 TEST(XddParameter, SpellsTruthAsANumber) {
-  const Read read(Profile{referring_object + "<CANopenObject index='2001' dataType='01' defaultValue='false'/>",
+  const ReadXdd read(Profile{referring_object + "<CANopenObject index='2001' dataType='01' defaultValue='false'/>",
                           parameter("<BOOL/><defaultValue value='true'/>"), "", ""});
   EXPECT_EQ(read.object(0).default_value.text, "1");
   EXPECT_EQ(read.object(1).default_value.text, "0");
 }
 
 TEST(XddParameter, FollowsEnumsAndDerivedTypes) {
-  const Read read(Profile{referring_object,
+  const ReadXdd read(Profile{referring_object,
                           "<dataTypeList><derived uniqueID='d'><dataTypeIDRef uniqueIDRef='e'/></derived>"
                           "<enum uniqueID='e'><USINT/><enumValue value='0'/></enum></dataTypeList>" +
                               parameter("<dataTypeIDRef uniqueIDRef='d'/>"),
@@ -263,7 +263,7 @@ TEST(XddParameter, FollowsEnumsAndDerivedTypes) {
 }
 
 TEST(XddParameter, EndsAtATypeThatIsDerivedFromItself) {
-  const Read read(
+  const ReadXdd read(
       Profile{referring_object,
               "<dataTypeList><derived uniqueID='d'><dataTypeIDRef uniqueIDRef='d'/></derived></dataTypeList>" +
                   parameter("<dataTypeIDRef uniqueIDRef='d'/>"),
@@ -272,7 +272,7 @@ TEST(XddParameter, EndsAtATypeThatIsDerivedFromItself) {
 }
 
 TEST(XddParameter, GivesSubObjectsTheTypesOfItsArrayOrStruct) {
-  const Read read(
+  const ReadXdd read(
       Profile{"<CANopenObject index='2000' objectType='8' uniqueIDRef='p'><CANopenSubObject subIndex='00' "
               "dataType='0005' accessType='const'/>"
               "<CANopenSubObject subIndex='01' PDOmapping='RPDO'/></CANopenObject>"
@@ -295,7 +295,7 @@ TEST(XddParameter, GivesSubObjectsTheTypesOfItsArrayOrStruct) {
 }
 
 TEST(XddParameter, LeavesToItsTemplateWhatItDoesNotSay) {
-  const Read read(
+  const ReadXdd read(
       Profile{referring_object,
               "<templateList><parameterTemplate uniqueID='t' access='readWrite'><UINT/><defaultValue value='1'/>"
               "</parameterTemplate></templateList>" +
@@ -307,7 +307,7 @@ TEST(XddParameter, LeavesToItsTemplateWhatItDoesNotSay) {
 }
 
 TEST(XddParameter, WarnsOfAllowedValuesThatAreNoRange) {
-  const Read read(Profile{referring_object,
+  const ReadXdd read(Profile{referring_object,
                           parameter("<UINT/><allowedValues><value value='1'/><value value='5'/></allowedValues>"), "",
                           ""});
   EXPECT_EQ(findings(read.diagnostics, "xml-element").size(), 1U);
@@ -315,12 +315,12 @@ TEST(XddParameter, WarnsOfAllowedValuesThatAreNoRange) {
 }
 
 TEST(XddParameter, WarnsOfAReferenceToNothing) {
-  const Read read(Profile{referring_object, "", "", ""});
+  const ReadXdd read(Profile{referring_object, "", "", ""});
   EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(first_line, 66, "xml-element")}));
 }
 
 TEST(XddParameter, LeavesOutAnObjectThatCanopenEditorHasDisabled) {
-  const Read read(Profile{referring_object + "<CANopenObject index='2001'/>",
+  const ReadXdd read(Profile{referring_object + "<CANopenObject index='2001'/>",
                           parameter("<UINT/><property name='CO_disabled' value='true'/>"), "", ""});
   EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(first_line, 2, "xml-element")}));
   ASSERT_EQ(read.sheet.objects.size(), 1U);
@@ -342,7 +342,7 @@ TEST(XddMapping, RestrictsTheDirectionByTheAccess) {
       {"wo", "RPDO", "wo", "1", 0},  {"rww", "RPDO", "rww", "1", 0},   {"const", "TPDO", "const", "1", 0},
       {"ro", "RPDO", "ro", "0", 1},  {"wo", "TPDO", "wo", "0", 1},     {"rwr", "RPDO", "rwr", "0", 1}};
   for (const MappingCase& one : cases) {
-    const Read read(Profile{"<CANopenObject index='2000' accessType='" + std::string{one.access} + "' PDOmapping='" +
+    const ReadXdd read(Profile{"<CANopenObject index='2000' accessType='" + std::string{one.access} + "' PDOmapping='" +
                                 std::string{one.mapping} + "'/>",
                             "", "", ""});
     EXPECT_EQ(read.object().access_type.text, one.eds_access) << one.access << " " << one.mapping;
@@ -353,11 +353,11 @@ TEST(XddMapping, RestrictsTheDirectionByTheAccess) {
 
 // ---- the device as a whole ----
 
-const std::string one_object = "<CANopenObject index='1000'/>";
+const std::string one_xdd_object = "<CANopenObject index='1000'/>";
 
 TEST(XddDevice, ReadsIdentityAndFeatures) {
-  const Read read(Profile{
-      one_object, "",
+  const ReadXdd read(Profile{
+      one_xdd_object, "",
       "<vendorName>Maker</vendorName><vendorID>00000319</vendorID><productName>Pump</productName><productID>17</"
       "productID>"
       "<orderNumber>P-17</orderNumber><version versionType='FW'>1.2</version>",
@@ -389,14 +389,14 @@ TEST(XddDevice, ReadsIdentityAndFeatures) {
 }
 
 TEST(XddDevice, ReadsTheInformationOnTheFile) {
-  const Read read(
+  const ReadXdd read(
       "<ISO15745Profile><ProfileBody fileName='pump.xdd' fileVersion='1' fileCreator='me' "
       "fileCreationDate='2024-05-31' "
       "fileCreationTime='00:05:59Z' fileModificationDate='soon' fileModificationTime='14:07:00+02:00' "
       "fileModifiedBy='you'>"
       "<DeviceIdentity><productText><description lang='en'>A pump</description></productText></DeviceIdentity>"
       "<ApplicationLayers><CANopenObjectList>" +
-      one_object + "</CANopenObjectList></ApplicationLayers></ProfileBody></ISO15745Profile>");
+      one_xdd_object + "</CANopenObjectList></ApplicationLayers></ProfileBody></ISO15745Profile>");
   EXPECT_EQ(findings(read.diagnostics), Findings{});
   const FileInfo& info = read.sheet.file_info;
   EXPECT_EQ(info.file_name.text, "pump.xdd");
@@ -411,8 +411,8 @@ TEST(XddDevice, ReadsTheInformationOnTheFile) {
 }
 
 TEST(XddDevice, IsAConfigurationWhenItIsCommissioned) {
-  const Read read(
-      Profile{one_object, "", "",
+  const ReadXdd read(
+      Profile{one_xdd_object, "", "",
               "<NetworkManagement><deviceCommissioning NodeID='005' nodeName='left' actualBaudRate='500 Kbps' "
               "networkNumber='1' networkName='line' CANopenManager='true'/></NetworkManagement>"});
   EXPECT_EQ(findings(read.diagnostics), Findings{});
@@ -425,14 +425,14 @@ TEST(XddDevice, IsAConfigurationWhenItIsCommissioned) {
   EXPECT_EQ(commissioning.net_number.text, "1");
   EXPECT_EQ(commissioning.network_name.text, "line");
   EXPECT_EQ(commissioning.canopen_manager.text, "1");
-  EXPECT_TRUE(Read(Profile{one_object, "", "", ""}, "pump.XDC").sheet.is_dcf);
+  EXPECT_TRUE(ReadXdd(Profile{one_xdd_object, "", "", ""}, "pump.XDC").sheet.is_dcf);
 }
 
 TEST(XddDevice, ReadsDummyUsage) {
-  const Read read(
+  const ReadXdd read(
       "<ISO15745Profile><ProfileBody fileName='pump.xdd'><ApplicationLayers><dummyUsage><dummy entry='Dummy0005=1'/>"
       "<dummy entry='Dummy0006=0'/>\n<dummy entry='Dummy'/></dummyUsage><CANopenObjectList>" +
-      one_object + "</CANopenObjectList></ApplicationLayers></ProfileBody></ISO15745Profile>");
+      one_xdd_object + "</CANopenObjectList></ApplicationLayers></ProfileBody></ISO15745Profile>");
   EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(2, 2, "xml-element")}));
   ASSERT_EQ(read.sheet.dummy_usage.size(), 2U);
   EXPECT_EQ(read.sheet.dummy_usage[0].number, 5U);
@@ -444,27 +444,27 @@ TEST(XddDevice, ReadsDummyUsage) {
 // ---- what is wrong ----
 
 TEST(XddErrors, ReportsWhatIsNotWellFormed) {
-  EXPECT_EQ(findings(Read("<a>\n  <b></c>\n</a>").diagnostics), (Findings{error_at(2, 8, "xml-syntax")}));
-  EXPECT_EQ(findings(Read("<a>\n<b>").diagnostics).size(), 1U);
-  EXPECT_EQ(findings(Read("<").diagnostics).size(), 1U);
-  EXPECT_EQ(findings(Read("<a>\n \x01</a>").diagnostics), (Findings{error_at(2, 2, "xml-syntax")}));
-  EXPECT_TRUE(Read("<a><b>").sheet.objects.empty());
+  EXPECT_EQ(findings(ReadXdd("<a>\n  <b></c>\n</a>").diagnostics), (Findings{error_at(2, 8, "xml-syntax")}));
+  EXPECT_EQ(findings(ReadXdd("<a>\n<b>").diagnostics).size(), 1U);
+  EXPECT_EQ(findings(ReadXdd("<").diagnostics).size(), 1U);
+  EXPECT_EQ(findings(ReadXdd("<a>\n \x01</a>").diagnostics), (Findings{error_at(2, 2, "xml-syntax")}));
+  EXPECT_TRUE(ReadXdd("<a><b>").sheet.objects.empty());
 }
 
 TEST(XddErrors, ReportsXmlThatIsNoProfile) {
-  EXPECT_EQ(findings(Read("<html/>").diagnostics), (Findings{error_at(1, 2, "xml-profile")}));
-  EXPECT_EQ(findings(Read("<ISO15745ProfileContainer/>").diagnostics), (Findings{error_at(1, 2, "xml-profile")}));
-  const Read other(
+  EXPECT_EQ(findings(ReadXdd("<html/>").diagnostics), (Findings{error_at(1, 2, "xml-profile")}));
+  EXPECT_EQ(findings(ReadXdd("<ISO15745ProfileContainer/>").diagnostics), (Findings{error_at(1, 2, "xml-profile")}));
+  const ReadXdd other(
       "<ISO15745ProfileContainer><ISO15745Profile><ProfileBody xsi:type='ProfileBody_Device_Powerlink'/>"
       "</ISO15745Profile></ISO15745ProfileContainer>");
   EXPECT_EQ(findings(other.diagnostics, "xml-profile").size(), 1U);
   EXPECT_EQ(findings(other.diagnostics, "xml-element").size(), 1U);
 }
 
-TEST(XddErrors, ReportsAnEmptyObjectList) { EXPECT_EQ(findings(Read(Profile{}).diagnostics, "no-objects").size(), 1U); }
+TEST(XddErrors, ReportsAnEmptyObjectList) { EXPECT_EQ(findings(ReadXdd(Profile{}).diagnostics, "no-objects").size(), 1U); }
 
 TEST(XddErrors, WarnsOnceOfWhatItDoesNotKnow) {
-  const Read read(
+  const ReadXdd read(
       Profile{"<CANopenObject index='1000' colour='red'/>\n<CANopenObject index='1001' colour='red'/>"
               "<Gadget/><Gadget/>",
               parameter("<UINT/>"), "<shoeSize/>", "<moduleManagement/>"});
@@ -473,7 +473,7 @@ TEST(XddErrors, WarnsOnceOfWhatItDoesNotKnow) {
 }
 
 TEST(XddErrors, KeepsTheFirstOfTwoAttributes) {
-  const Read read(Profile{"<CANopenObject index='1000' name='a' name='b'/>", "", "", ""});
+  const ReadXdd read(Profile{"<CANopenObject index='1000' name='a' name='b'/>", "", "", ""});
   EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(first_line, 38, "duplicate-key")}));
   EXPECT_EQ(read.object().parameter_name.text, "a");
 }
@@ -481,10 +481,10 @@ TEST(XddErrors, KeepsTheFirstOfTwoAttributes) {
 TEST(XddErrors, SurvivesAnyDepth) {
   std::string deep;
   for (int i = 0; i < 300'000; ++i) deep += "<a>";
-  EXPECT_EQ(findings(Read(deep).diagnostics, "xml-syntax").size(), 1U);
+  EXPECT_EQ(findings(ReadXdd(deep).diagnostics, "xml-syntax").size(), 1U);
   std::string closed = deep;
   for (int i = 0; i < 300'000; ++i) closed += "</a>";
-  EXPECT_EQ(findings(Read(closed).diagnostics, "xml-profile").size(), 1U);
+  EXPECT_EQ(findings(ReadXdd(closed).diagnostics, "xml-profile").size(), 1U);
 }
 
 // ---- the same device in both languages ----
@@ -564,7 +564,7 @@ nlohmann::ordered_json view_of(const DataSheet& sheet, Diagnostics& diagnostics)
 }
 
 /// The rules that have fired, but for the one that speaks of a section that XML does not have.
-std::set<std::string> rules_of(const Diagnostics& diagnostics) {
+std::set<std::string> rule_set_of(const Diagnostics& diagnostics) {
   std::set<std::string> rules;
   for (const Diagnostic& diagnostic : diagnostics.all()) rules.emplace(diagnostic.rule);
   rules.erase("file-info");
@@ -583,7 +583,7 @@ TEST(Xdd, GivesTheDeviceAndTheFindingsThatAnEdsOfItGives) {
   EXPECT_EQ(from_eds.dump(1), from_xdd.dump(1));
   EXPECT_EQ(from_xdd["/pdos/0/bits"], 24);
   EXPECT_EQ(of_xdd.errors(), 0U);
-  EXPECT_EQ(rules_of(of_eds), rules_of(of_xdd));
+  EXPECT_EQ(rule_set_of(of_eds), rule_set_of(of_xdd));
 }
 
 TEST(Xdd, GivesTheConfiguredValuesOfAnXdc) {
