@@ -1,16 +1,23 @@
 /// Linux SocketCAN: a raw CAN socket as a bus, and a loop that runs a node on it. Host side.
+///
+///     canopen::SocketCan bus{"can0"};
+///     auto drive = canopen::make_node<cpc_tc1::Device>(bus, canopen::NodeId{5});
+///     bus.run(drive, stop);
+///
+/// In a poll loop of the application's own: `node.start(bus.now())`, then `bus.serve(node)` once, and again whenever
+/// `bus.file_descriptor()` can be read.
 #pragma once
 
-#include <fcntl.h>
 #include <linux/can.h>
+#include <linux/can/error.h>
 #include <linux/can/raw.h>
 #include <net/if.h>
-#include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <time.h>
-#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstdint>
@@ -18,134 +25,412 @@
 #include <optional>
 #include <string>
 #include <system_error>
-#include <utility>
+#include <vector>
 
+#include "canopen/accepted_frames.hpp"
+#include "canopen/bus_status.hpp"
 #include "canopen/frame.hpp"
+#include "canopen/port/event_descriptor.hpp"
+#include "canopen/port/host_loop.hpp"
+#include "canopen/send_queue.hpp"
 #include "canopen/time.hpp"
 
 namespace canopen {
 
-/// One CAN interface. Its own frames do not come back, error frames are filtered out.
+/// One CAN interface, for one node or for an application that calls `receive`. Its own frames do not come back. Frames
+/// that the socket has no room for wait, the most urgent one in front. While the controller is bus-off, or the
+/// interface is down or gone, frames are refused and those that wait are lost; an interface that comes back, also as a
+/// new one of the same name, is used again.
 class SocketCan {
  public:
+  static constexpr std::size_t queue_capacity = 64;
+
   /// Throws std::system_error when the interface does not exist or cannot be opened.
-  explicit SocketCan(const std::string& interface)
-      : socket_{::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW)} {
-    if (socket_ < 0) fail("socket");
-    try {
-      open(interface);
-    } catch (...) {
-      ::close(socket_);
-      throw;
-    }
-  }
-  SocketCan(SocketCan&& other) noexcept : socket_{std::exchange(other.socket_, -1)}, congested_{other.congested_} {}
-  SocketCan& operator=(SocketCan&& other) noexcept {
-    std::swap(socket_, other.socket_);
-    std::swap(congested_, other.congested_);
-    return *this;
-  }
-  SocketCan(const SocketCan&) = delete;
-  SocketCan& operator=(const SocketCan&) = delete;
-  ~SocketCan() {
-    if (socket_ >= 0) ::close(socket_);
+  explicit SocketCan(const std::string& interface) : interface_{interface} { open(); }
+
+  /// False when the frame is not taken: as many wait as can, or the bus is off or down.
+  [[nodiscard]] bool send(const Frame& frame) {
+    congested_ = down_ || status_.state == BusState::off;
+    if (congested_) return false;
+    if (queue_.empty() && write(frame)) return true;
+    if (!down_ && queue_.full()) flush();
+    congested_ = down_ || !queue_.push(frame);
+    return !congested_;
   }
 
-  /// False when the interface has no room now, or is down.
-  [[nodiscard]] bool send(const Frame& frame) {
+  /// The next frame, or nothing when none comes within this time. Throws std::system_error when the socket is broken.
+  [[nodiscard]] std::optional<Frame> receive(Duration timeout) {
+    accept_all();
+    return host_loop::receive(*this, timeout);
+  }
+
+  /// When the last frame that `receive` gave has come, by the kernel's clock.
+  [[nodiscard]] TimePoint received_at() const { return last_; }
+
+  /// Starts a node and runs it until `stop` is true, which is looked at after each frame and deadline, and ten times a
+  /// second.
+  template <class Node>
+  void run(Node& node, const std::atomic<bool>& stop) {
+    host_loop::run(*this, node, stop);
+  }
+
+  /// Does what there is to do for a node that has been started, without waiting.
+  template <class Node>
+  void serve(Node& node) {
+    host_loop::serve(*this, node);
+  }
+
+  [[nodiscard]] static TimePoint now() { return monotonic_now(); }
+
+  /// Readable when there is something to do, for a poll loop of the application's own.
+  [[nodiscard]] int file_descriptor() const { return events_.number(); }
+
+  /// The CAN controller as its error frames tell of it.
+  [[nodiscard]] const BusStatus& status() const { return status_; }
+
+  // For host_loop.hpp.
+
+  /// Has the kernel keep back what the node ignores.
+  template <class Device, Bus B, class... Handlers>
+  void listen_for(Node<Device, B, Handlers...>& node) {
+    constexpr std::size_t most = most_accepted_frames<Device>;
+    if constexpr (most <= CAN_RAW_FILTER_MAX) {
+      std::array<can_filter, most> filters;
+      std::size_t count = 0;
+      for_each_accepted_frame(node, [&](const AcceptedFrame& frame) { filters[count++] = filter_of(frame); });
+      accept(filters.data(), count);
+    }
+  }
+
+  [[nodiscard]] std::optional<PortEvent> take() {
+    if (down_) reopen();
+    if (!down_ && !queue_.empty()) flush();
+    for (;;) {
+      if (read_ == received_count_ && !read_batch()) break;
+      const can_frame& raw = received_[read_];
+      advance(times_[read_]);
+      if ((raw.can_id & CAN_ERR_FLAG) != 0) {
+        note_error(raw);
+        ++read_;
+      } else if (status_.state == BusState::off) {
+        status_.state = BusState::active;  // a controller that hears frames is on the bus
+      } else if (status_ == told_) {
+        ++read_;
+        return PortEvent{frame_of(raw), last_, status_};
+      }
+      if (const auto changed = status_event()) return changed;
+    }
+    if (status_.overrun && pass_time() >= overrun_end_) status_.overrun = false;
+    return status_event();
+  }
+
+  [[nodiscard]] std::optional<TimePoint> next_deadline() const {
+    std::optional<TimePoint> next;
+    const auto consider = [&next](bool counts, TimePoint time) {
+      if (counts && (!next || time < *next)) next = time;
+    };
+    consider(down_, reopen_at_);
+    consider(retry_, retry_at_);
+    consider(status_.overrun, overrun_end_);
+    return next;
+  }
+
+  [[nodiscard]] Duration hold_off() const {
+    if (!congested_) return Duration{0};
+    return down_ || status_.state == BusState::off ? host_loop::look_again : host_loop::try_again;
+  }
+  [[nodiscard]] bool has_more() const { return read_ < received_count_; }
+  [[nodiscard]] TimePoint pass_time() {
+    advance(now());
+    return last_;
+  }
+  [[nodiscard]] EventDescriptor& events() { return events_; }
+
+ private:
+  static constexpr std::size_t batch = 16;
+  static constexpr Duration overrun_span{1'000'000};  ///< so long after frames were lost they still are
+  static constexpr int receive_buffer = 1 << 20;      ///< bytes; the kernel may give less
+
+  // The interface
+
+  void open() {
+    const unsigned index = ::if_nametoindex(interface_.c_str());
+    if (index == 0) throw_errno("CAN interface \"" + interface_ + "\"");
+    Descriptor fresh{::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW), "socket"};
+    const can_err_mask_t errors = CAN_ERR_CRTL | CAN_ERR_BUSOFF | CAN_ERR_RESTARTED;
+    set_option(fresh, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, errors);
+    set_option(fresh, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, int{0});
+    set_option(fresh, SOL_SOCKET, SO_TIMESTAMPNS, int{1});
+    set_option(fresh, SOL_SOCKET, SO_RXQ_OVFL, int{1});
+    set_option(fresh, SOL_SOCKET, SO_RCVBUF, receive_buffer);
+    // Few frames of one socket wait in the kernel, where no other one overtakes them.
+    set_option(fresh, SOL_SOCKET, SO_SNDBUF, int{0});
+    if (!filters_.empty()) set_filters(fresh);
+    sockaddr_can address{};
+    address.can_family = AF_CAN;
+    address.can_ifindex = static_cast<int>(index);
+    if (::bind(fresh.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+      throw_errno("bind to \"" + interface_ + "\"");
+    }
+    events_.add(fresh.number());
+    socket_ = std::move(fresh);
+    index_ = index;
+    lost_ = 0;
+  }
+
+  void go_down() {
+    down_ = true;
+    drop_queue();
+    reopen_at_ = now() + host_loop::look_again;
+  }
+
+  /// Looks whether the interface is there and up. A new one of the same name needs a new socket.
+  void reopen() {
+    const TimePoint present = now();
+    if (present < reopen_at_) return;
+    reopen_at_ = present + host_loop::look_again;
+    const unsigned index = ::if_nametoindex(interface_.c_str());
+    if (index == 0) return;
+    if (index != index_) {
+      try {
+        open();
+      } catch (const std::system_error&) {
+        return;  // it has gone again
+      }
+    }
+    ifreq request{};
+    interface_.copy(request.ifr_name, sizeof request.ifr_name - 1);
+    if (::ioctl(socket_.number(), SIOCGIFFLAGS, &request) != 0 || (request.ifr_flags & IFF_UP) == 0) return;
+    down_ = false;
+    congested_ = false;
+    status_.state = BusState::active;
+  }
+
+  template <class Value>
+  static void set_option(const Descriptor& socket, int level, int name, const Value& value) {
+    if (::setsockopt(socket.number(), level, name, &value, sizeof value) != 0) throw_errno("CAN socket option");
+  }
+
+  // Filters
+
+  [[nodiscard]] static can_filter filter_of(const AcceptedFrame& frame) {
+    can_filter filter{};
+    filter.can_id = frame.id | (frame.extended ? CAN_EFF_FLAG : 0u) | (frame.remote ? CAN_RTR_FLAG : 0u);
+    filter.can_mask = (frame.extended ? CAN_EFF_MASK : CAN_SFF_MASK) | CAN_EFF_FLAG | CAN_RTR_FLAG;
+    return filter;
+  }
+
+  /// They change seldom: the kernel is told when they do.
+  void accept(const can_filter* filters, std::size_t count) {
+    const auto same = [](const can_filter& a, const can_filter& b) {
+      return a.can_id == b.can_id && a.can_mask == b.can_mask;
+    };
+    if (std::equal(filters, filters + count, filters_.begin(), filters_.end(), same)) return;
+    filters_.assign(filters, filters + count);
+    set_filters(socket_);
+  }
+
+  void accept_all() {
+    if (!filters_.empty()) accept(&every_frame, 1);
+  }
+
+  void set_filters(const Descriptor& socket) const {
+    const auto size = static_cast<socklen_t>(filters_.size() * sizeof(can_filter));
+    if (::setsockopt(socket.number(), SOL_CAN_RAW, CAN_RAW_FILTER, filters_.data(), size) != 0) {
+      throw_errno("CAN_RAW_FILTER");
+    }
+  }
+
+  // Sending
+
+  /// False when the socket has no room, or the interface is down.
+  [[nodiscard]] bool write(const Frame& frame) {
     can_frame raw{};
     raw.can_id = frame.id | (frame.extended ? CAN_EFF_FLAG : 0u) | (frame.remote ? CAN_RTR_FLAG : 0u);
     raw.can_dlc = frame.size;
     std::memcpy(raw.data, frame.data.data(), frame.data.size());
     ssize_t written = 0;
     do {
-      written = ::write(socket_, &raw, sizeof raw);
+      written = ::write(socket_.number(), &raw, sizeof raw);
     } while (written < 0 && errno == EINTR);
-    congested_ = written != static_cast<ssize_t>(sizeof raw);
-    return !congested_;
+    if (written == static_cast<ssize_t>(sizeof raw)) return true;
+    switch (errno) {
+      case EAGAIN: events_.wait_for_room(socket_.number(), true); break;
+      case ENOBUFS:  // the queue of the interface is full: no descriptor tells when it is not
+        retry_ = true;
+        retry_at_ = now() + host_loop::try_again;
+        break;
+      case ENETDOWN:
+      case ENXIO:
+      case ENODEV: go_down(); break;
+      default: throw_errno("write to \"" + interface_ + "\"");
+    }
+    return false;
   }
 
-  /// The next frame, or nothing when none comes within this time. Throws std::system_error when the socket is broken.
-  [[nodiscard]] std::optional<Frame> receive(Duration timeout) {
-    pollfd waiting{socket_, POLLIN, 0};
-    const timespec span = to_timespec(timeout);
-    const int ready = ::ppoll(&waiting, 1, &span, nullptr);
-    if (ready < 0 && errno != EINTR) fail("poll");
-    return ready > 0 ? take() : std::nullopt;
+  void drop_queue() {
+    queue_.clear();
+    retry_ = false;
+    events_.wait_for_room(socket_.number(), false);
   }
 
-  /// Runs a node until `stop` is true, which is looked at after each frame and deadline, and ten times a second.
-  template <class Node>
-  void run(Node& node, const std::atomic<bool>& stop) {
-    constexpr Duration look_at_stop{100'000};
-    constexpr Duration try_again{1'000};
-    node.start(now());
-    while (!stop) {
-      Duration wait = look_at_stop;
-      if (const auto deadline = node.next_deadline()) {
-        const TimePoint present = now();
-        wait = *deadline > present ? std::min(wait, *deadline - present) : Duration{0};
-      }
-      if (congested_) wait = std::clamp(wait, try_again, look_at_stop);
-      if (const auto frame = receive(wait)) node.on_frame(*frame, now());
-      node.on_time(now());
+  void flush() {
+    if (retry_ && now() < retry_at_) return;
+    retry_ = false;
+    while (!queue_.empty() && write(queue_.front())) queue_.pop();
+    if (queue_.empty()) events_.wait_for_room(socket_.number(), false);
+  }
+
+  // Receiving
+
+  /// Reads what is there; false when that is nothing.
+  [[nodiscard]] bool read_batch() {
+    read_ = received_count_ = 0;
+    std::array<iovec, batch> parts;
+    std::array<Control, batch> control;
+    std::array<mmsghdr, batch> headers;
+    for (std::size_t i = 0; i < batch; ++i) {
+      parts[i] = {&received_[i], sizeof received_[i]};
+      headers[i] = {};
+      headers[i].msg_hdr.msg_iov = &parts[i];
+      headers[i].msg_hdr.msg_iovlen = 1;
+      headers[i].msg_hdr.msg_control = control[i].bytes;
+      headers[i].msg_hdr.msg_controllen = sizeof control[i].bytes;
+    }
+    const int count = ::recvmmsg(socket_.number(), headers.data(), batch, 0, nullptr);
+    if (count <= 0) {
+      if (count < 0) read_failed();
+      return false;
+    }
+    received_count_ = static_cast<std::size_t>(count);
+    const Clocks clocks = read_clocks();
+    for (std::size_t i = 0; i < received_count_; ++i) times_[i] = time_of(headers[i].msg_hdr, clocks);
+    return true;
+  }
+
+  void read_failed() {
+    switch (errno) {
+      case EAGAIN:
+      case EINTR: return;
+      case ENETDOWN:
+      case ENXIO:
+      case ENODEV: return go_down();
+      default: throw_errno("read from \"" + interface_ + "\"");
     }
   }
 
-  /// CLOCK_MONOTONIC, cut to what a TimePoint holds.
-  [[nodiscard]] static TimePoint now() {
-    timespec time{};
-    ::clock_gettime(CLOCK_MONOTONIC, &time);
-    const auto microseconds =
-        static_cast<std::uint64_t>(time.tv_sec) * 1'000'000 + static_cast<std::uint64_t>(time.tv_nsec) / 1'000;
-    return TimePoint{Duration{static_cast<std::uint32_t>(microseconds)}};
+  [[nodiscard]] static std::int64_t nanoseconds(const timespec& time) {
+    return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
   }
 
-  /// For a poll loop of the application's own.
-  [[nodiscard]] int file_descriptor() const { return socket_; }
-
- private:
-  [[noreturn]] static void fail(const std::string& what) {
-    throw std::system_error{errno, std::generic_category(), what};
+  /// One moment by two clocks.
+  struct Clocks {
+    std::int64_t real;  ///< CLOCK_REALTIME in ns
+    TimePoint monotonic;
+  };
+  [[nodiscard]] static Clocks read_clocks() {
+    timespec clock{};
+    ::clock_gettime(CLOCK_REALTIME, &clock);
+    return {nanoseconds(clock), now()};
   }
 
-  void open(const std::string& interface) {
-    const unsigned index = ::if_nametoindex(interface.c_str());
-    if (index == 0) fail("CAN interface \"" + interface + "\"");
-    const can_err_mask_t no_errors = 0;
-    if (::setsockopt(socket_, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &no_errors, sizeof no_errors) != 0)
-      fail("CAN_RAW_ERR_FILTER");
-    const int off = 0;
-    if (::setsockopt(socket_, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, &off, sizeof off) != 0) fail("CAN_RAW_RECV_OWN_MSGS");
-    sockaddr_can address{};
-    address.can_family = AF_CAN;
-    address.can_ifindex = static_cast<int>(index);
-    if (::bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
-      fail("bind to \"" + interface + "\"");
+  /// When a frame has come: the kernel's time stamp, brought to the clock of `now`. Counts frames that were lost before
+  /// it.
+  [[nodiscard]] TimePoint time_of(msghdr& message, const Clocks& clocks) {
+    constexpr std::int64_t most = 1'000'000'000;  // older ones tell that the clock was set
+    TimePoint time = clocks.monotonic;
+    for (cmsghdr* part = CMSG_FIRSTHDR(&message); part != nullptr; part = CMSG_NXTHDR(&message, part)) {
+      if (part->cmsg_level != SOL_SOCKET) continue;
+      if (part->cmsg_type == SCM_TIMESTAMPNS) {
+        timespec stamp{};
+        std::memcpy(&stamp, CMSG_DATA(part), sizeof stamp);
+        const std::int64_t age = clocks.real - nanoseconds(stamp);
+        const bool plausible = age > 0 && age < most;
+        if (plausible) time = TimePoint{time.since_start() - Duration{static_cast<std::uint32_t>(age / 1'000)}};
+      } else if (part->cmsg_type == SO_RXQ_OVFL) {
+        std::uint32_t lost = 0;
+        std::memcpy(&lost, CMSG_DATA(part), sizeof lost);
+        if (lost != lost_) note_overrun(clocks.monotonic);
+        lost_ = lost;
+      }
+    }
+    return time;
   }
 
-  [[nodiscard]] std::optional<Frame> take() {
-    can_frame raw{};
-    const ssize_t size = ::read(socket_, &raw, sizeof raw);
-    if (size < 0 && errno != EAGAIN && errno != EINTR && errno != ENETDOWN) fail("read");
-    if (size != static_cast<ssize_t>(sizeof raw) || raw.can_dlc > 8) return std::nullopt;
+  [[nodiscard]] static Frame frame_of(const can_frame& raw) {
     Frame frame{};
     frame.extended = (raw.can_id & CAN_EFF_FLAG) != 0;
     frame.remote = (raw.can_id & CAN_RTR_FLAG) != 0;
     frame.id = raw.can_id & (frame.extended ? CAN_EFF_MASK : CAN_SFF_MASK);
-    frame.size = raw.can_dlc;
+    frame.size = std::min<std::uint8_t>(raw.can_dlc, 8);
     std::memcpy(frame.data.data(), raw.data, frame.data.size());
     return frame;
   }
 
-  [[nodiscard]] static timespec to_timespec(Duration span) {
-    timespec result{};
-    result.tv_sec = static_cast<time_t>(span.count() / 1'000'000);
-    result.tv_nsec = static_cast<long>(span.count() % 1'000'000) * 1'000;
-    return result;
+  // Status
+
+  /// What an error frame says of the controller (linux/can/error.h).
+  void note_error(const can_frame& raw) {
+    constexpr std::uint8_t passive = CAN_ERR_CRTL_RX_PASSIVE | CAN_ERR_CRTL_TX_PASSIVE;
+    constexpr std::uint8_t not_passive = CAN_ERR_CRTL_ACTIVE | CAN_ERR_CRTL_RX_WARNING | CAN_ERR_CRTL_TX_WARNING;
+    if ((raw.can_id & CAN_ERR_RESTARTED) != 0) status_.state = BusState::active;
+    if ((raw.can_id & CAN_ERR_CRTL) != 0) {
+      if ((raw.data[1] & CAN_ERR_CRTL_RX_OVERFLOW) != 0) note_overrun(last_);
+      if (status_.state != BusState::off && (raw.data[1] & passive) != 0) {
+        status_.state = BusState::passive;
+      } else if (status_.state != BusState::off && (raw.data[1] & not_passive) != 0) {
+        status_.state = BusState::active;
+      }
+    }
+    if ((raw.can_id & CAN_ERR_BUSOFF) != 0) status_.state = BusState::off;
   }
 
-  int socket_;
+  void note_overrun(TimePoint time) {
+    status_.overrun = true;
+    overrun_end_ = time + overrun_span;
+  }
+
+  /// Time does not go back: a frame may have come before the moment that the node was told last.
+  void advance(TimePoint time) {
+    constexpr Duration most{2'000'000};
+    if (last_ - time > most) last_ = time;
+  }
+
+  /// Tells a status that has not been told yet.
+  [[nodiscard]] std::optional<PortEvent> status_event() {
+    if (status_ == told_) return std::nullopt;
+    if (status_.state == BusState::off) drop_queue();
+    told_ = status_;
+    return PortEvent{std::nullopt, last_, status_};
+  }
+
+  struct Control {
+    alignas(cmsghdr) char bytes[CMSG_SPACE(sizeof(timespec)) + CMSG_SPACE(sizeof(std::uint32_t))];
+  };
+
+  static constexpr can_filter every_frame{0, 0};
+
+  std::string interface_;
+  EventDescriptor events_;
+  Descriptor socket_;
+  unsigned index_ = 0;               ///< of the interface that the socket is bound to
+  std::vector<can_filter> filters_;  ///< none: every frame
+  SendQueue<queue_capacity> queue_;
+
+  std::array<can_frame, batch> received_{};
+  std::array<TimePoint, batch> times_{};
+  std::size_t received_count_ = 0;
+  std::size_t read_ = 0;    ///< of them have been handed on
+  TimePoint last_ = now();  ///< of the last frame
+  std::uint32_t lost_ = 0;  ///< frames that found the socket full, as the kernel counts them
+
+  BusStatus status_{};
+  BusStatus told_{};
+  TimePoint overrun_end_{};
+  TimePoint reopen_at_{};
+  TimePoint retry_at_{};
+  bool retry_ = false;  ///< the interface had no room: not before retry_at_
+  bool down_ = false;
   bool congested_ = false;  ///< the last frame found no room
 };
 

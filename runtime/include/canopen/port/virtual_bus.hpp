@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "canopen/arbitration.hpp"
 #include "canopen/frame.hpp"
 #include "canopen/time.hpp"
 
@@ -136,21 +137,13 @@ class VirtualBus {
     return earliest;
   }
 
-  /// What arbitration compares, the most dominant one lowest: a base frame wins over an extended one with the same
-  /// first 11 bits, a data frame over a remote one.
-  [[nodiscard]] static std::uint64_t priority(const Frame& frame) {
-    const std::uint64_t base = frame.extended ? frame.id >> 18 : frame.id;
-    const std::uint64_t rest = frame.extended ? frame.id & 0x3FFFF : 0;
-    return (base << 21) | (std::uint64_t{frame.extended} << 20) | (rest << 1) | std::uint64_t{frame.remote};
-  }
-
   /// Arbitration: the frame with the lowest CAN-ID takes the wire if it is free.
   bool begin_frame() {
     if (on_wire_) return true;
     Endpoint* winner = nullptr;
     for (const auto& endpoint : endpoints_) {
       if (endpoint->waiting_.empty()) continue;
-      if (winner == nullptr || priority(endpoint->waiting_.front()) < priority(winner->waiting_.front())) {
+      if (winner == nullptr || arbitration_value(endpoint->waiting_.front()) < arbitration_value(winner->waiting_.front())) {
         winner = endpoint.get();
       }
     }

@@ -1,0 +1,143 @@
+/// The frames that a node looks at, for the acceptance filters of a CAN controller or a socket. An image that does not
+/// ask for them has nothing of it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+
+#include "canopen/cob_id.hpp"
+#include "canopen/dictionary.hpp"
+#include "canopen/frame.hpp"
+#include "canopen/heartbeat_consumer.hpp"
+#include "canopen/lss_handler.hpp"
+#include "canopen/lss_protocol.hpp"
+#include "canopen/node_id.hpp"
+#include "canopen/object_store.hpp"
+
+namespace canopen {
+
+template <class Device, Bus B, class... Handlers>
+class Node;
+
+/// Frames of one CAN-ID, data or remote ones.
+struct AcceptedFrame {
+  std::uint32_t id = 0;
+  bool extended = false;
+  bool remote = false;
+
+  friend constexpr bool operator==(const AcceptedFrame&, const AcceptedFrame&) = default;
+};
+
+namespace accepted_detail {
+
+enum class Source : std::uint8_t { sdo_request, sync, time, emergency, heartbeat, rpdo, tpdo };
+
+/// An entry of the dictionary that says which frames are accepted.
+struct Entry {
+  Source source;
+  entry::Word word;
+};
+
+/// The objects that tell of frames to be received (CiA 301, 7.5.2), by index and sub-index.
+struct Rule {
+  std::uint16_t first;
+  std::uint16_t last;
+  std::uint8_t first_sub_index;
+  std::uint8_t last_sub_index;
+  Source source;
+};
+inline constexpr Rule rules[] = {
+    {0x1005, 0x1005, 0, 0, Source::sync},        {0x1012, 0x1012, 0, 0, Source::time},
+    {0x1016, 0x1016, 1, 127, Source::heartbeat}, {0x1028, 0x1028, 1, 127, Source::emergency},
+    {0x1200, 0x127F, 1, 1, Source::sdo_request}, {0x1400, 0x15FF, 1, 1, Source::rpdo},
+    {0x1800, 0x19FF, 1, 1, Source::tpdo},
+};
+
+template <class Visit>
+constexpr void for_each_source(const Dictionary& dictionary, Visit&& visit) {
+  dictionary.for_each_entry([&](std::uint16_t index, std::uint8_t sub_index, entry::Word word) {
+    for (const Rule& rule : rules) {
+      const bool fits = index >= rule.first && index <= rule.last && sub_index >= rule.first_sub_index &&
+                        sub_index <= rule.last_sub_index;
+      if (fits && entry::wire_bytes(word) == sizeof(std::uint32_t)) visit(Entry{rule.source, word});
+    }
+  });
+}
+
+/// Calls `visit` with the frames that a number in an entry of this kind means, if any.
+template <class Visit>
+void accept(Source source, std::uint32_t value, bool remote_frames, Visit&& visit) {
+  constexpr std::uint32_t identifier = CobId::extended_bit | 0x1FFF'FFFF;
+  const auto frames = [&](std::uint32_t cob_id, bool remote) {
+    visit(AcceptedFrame{CobId{cob_id & identifier}.can_id(), (cob_id & CobId::extended_bit) != 0, remote});
+  };
+  const CobId cob_id{value};
+  switch (source) {
+    case Source::sync: return frames(value, false);
+    case Source::time:
+      if (!cob_id.valid()) frames(value, false);  // here bit 31 says that TIME is consumed
+      return;
+    case Source::emergency:
+    case Source::sdo_request:
+    case Source::rpdo:
+      if (cob_id.valid()) frames(value, false);
+      return;
+    case Source::tpdo:
+      if (remote_frames && cob_id.valid() && cob_id.rtr_allowed()) frames(value, true);
+      return;
+    case Source::heartbeat:
+      if (const ConsumerHeartbeatTime time{value}; time.used()) {
+        frames(function_code::error_control + std::uint32_t{time.node_id().value()}, false);
+      }
+      return;
+  }
+}
+
+template <class Device>
+inline constexpr std::size_t source_count = [] {
+  std::size_t count = 0;
+  for_each_source(Device::dictionary, [&](const Entry&) { ++count; });
+  return count;
+}();
+
+template <class Device>
+inline constexpr std::array<Entry, source_count<Device>> sources = [] {
+  std::array<Entry, source_count<Device>> rows{};
+  std::size_t at = 0;
+  for_each_source(Device::dictionary, [&](const Entry& row) { rows[at++] = row; });
+  return rows;
+}();
+
+}  // namespace accepted_detail
+
+/// Calls `visit(AcceptedFrame)` for all frames that this node does not ignore, some of them more than once, with its
+/// COB-IDs as they are now: they change with SDO writes, resets, LSS and the application. A node without node-ID
+/// listens to LSS alone.
+template <class Device, Bus B, class... Handlers, class Visit>
+void for_each_accepted_frame(Node<Device, B, Handlers...>& node, Visit&& visit) {
+  if constexpr (!std::is_void_v<typename lss_detail::Find<Handlers...>::type>) {
+    visit(AcceptedFrame{lss::request_id, false, false});
+  }
+  const NodeId node_id = node.node_id();
+  if (!node_id.valid()) return;
+  visit(AcceptedFrame{function_code::nmt, false, false});
+  if constexpr (!Device::dictionary.has(0x1200, 1)) {
+    visit(AcceptedFrame{function_code::sdo_request + std::uint32_t{node_id.value()}, false, false});
+  }
+  if constexpr (Device::dictionary.has(0x100C, 0) && Device::dictionary.has(0x100D, 0)) {
+    visit(AcceptedFrame{function_code::error_control + std::uint32_t{node_id.value()}, false, true});
+  }
+  const EntryAccess entries = node.entries();
+  for (const accepted_detail::Entry& row : accepted_detail::sources<Device>) {
+    accepted_detail::accept(row.source, entries.number(row.word), Device::options.tpdo_remote_frames, visit);
+  }
+}
+
+/// The most frames that it visits for a node of this device.
+template <class Device>
+inline constexpr std::size_t most_accepted_frames = accepted_detail::source_count<Device> + 4;
+
+}  // namespace canopen

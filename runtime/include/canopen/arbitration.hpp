@@ -1,0 +1,18 @@
+/// Which of two frames goes first on a CAN bus.
+#pragma once
+
+#include <cstdint>
+
+#include "canopen/frame.hpp"
+
+namespace canopen {
+
+/// What arbitration compares (ISO 11898-1), the most dominant one lowest: a base frame wins over an extended one with
+/// the same first 11 bits, a data frame over a remote one.
+[[nodiscard]] constexpr std::uint64_t arbitration_value(const Frame& frame) {
+  const std::uint64_t base = frame.extended ? frame.id >> 18 : frame.id;
+  const std::uint64_t rest = frame.extended ? frame.id & 0x3FFFF : 0;
+  return (base << 21) | (std::uint64_t{frame.extended} << 20) | (rest << 1) | std::uint64_t{frame.remote};
+}
+
+}  // namespace canopen

@@ -1,0 +1,125 @@
+/// One descriptor of the operating system that becomes readable when others have something to do, or at a moment: what
+/// a port gives to the poll loop of an application. Linux, host side.
+#pragma once
+
+#include <poll.h>
+#include <sys/epoll.h>
+#include <sys/timerfd.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "canopen/time.hpp"
+
+namespace canopen {
+
+/// CLOCK_MONOTONIC, cut to what a TimePoint holds.
+[[nodiscard]] inline TimePoint monotonic_now() {
+  timespec time{};
+  ::clock_gettime(CLOCK_MONOTONIC, &time);
+  const auto microseconds =
+      static_cast<std::uint64_t>(time.tv_sec) * 1'000'000 + static_cast<std::uint64_t>(time.tv_nsec) / 1'000;
+  return TimePoint{Duration{static_cast<std::uint32_t>(microseconds)}};
+}
+
+[[nodiscard]] inline timespec to_timespec(Duration span) {
+  timespec result{};
+  result.tv_sec = static_cast<time_t>(span.count() / 1'000'000);
+  result.tv_nsec = static_cast<long>(span.count() % 1'000'000) * 1'000;
+  return result;
+}
+
+/// Throws what the last system call has said.
+[[noreturn]] inline void throw_errno(const std::string& what) {
+  throw std::system_error{errno, std::generic_category(), what};
+}
+
+/// A file descriptor that is closed in the end.
+class Descriptor {
+ public:
+  Descriptor() = default;
+  /// Throws when the call that opened it has failed.
+  Descriptor(int number, const std::string& what) : number_{number} {
+    if (number < 0) throw_errno(what);
+  }
+  Descriptor(Descriptor&& other) noexcept : number_{std::exchange(other.number_, -1)} {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(number_, other.number_);
+    return *this;
+  }
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+
+  [[nodiscard]] int number() const { return number_; }
+
+ private:
+  int number_ = -1;
+};
+
+class EventDescriptor {
+ public:
+  EventDescriptor()
+      : epoll_{::epoll_create1(EPOLL_CLOEXEC), "epoll_create1"},
+        timer_{::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC), "timerfd_create"} {
+    control(EPOLL_CTL_ADD, timer_.number(), EPOLLIN);
+  }
+
+  /// Readable when there is something to do.
+  [[nodiscard]] int number() const { return epoll_.number(); }
+
+  /// From now on `descriptor` counts when it can be read. One that is closed counts no more.
+  void add(int descriptor) {
+    control(EPOLL_CTL_ADD, descriptor, EPOLLIN);
+    waits_for_room_ = false;
+  }
+
+  /// Whether it counts as well when it can be written.
+  void wait_for_room(int descriptor, bool wanted) {
+    if (wanted == waits_for_room_) return;
+    control(EPOLL_CTL_MOD, descriptor, wanted ? EPOLLIN | EPOLLOUT : EPOLLIN);
+    waits_for_room_ = wanted;
+  }
+
+  /// Readable from this moment on, until the next call. One that comes too early is not put off.
+  void set_alarm(std::optional<TimePoint> at, TimePoint now) {
+    const bool ringing = alarm_ && *alarm_ <= now;
+    if (!at && !ringing) return;
+    if (at && alarm_ && !ringing && *alarm_ <= *at) return;
+    if (at && ringing && *at <= now) return;
+    itimerspec setting{};
+    if (at) setting.it_value = to_timespec(*at > now ? *at - now : Duration{0});
+    if (at && setting.it_value.tv_sec == 0 && setting.it_value.tv_nsec == 0) setting.it_value.tv_nsec = 1;
+    if (::timerfd_settime(timer_.number(), 0, &setting, nullptr) != 0) throw_errno("timerfd_settime");
+    alarm_ = at;
+  }
+
+  /// Waits until there is something to do, for this time at most. An alarm that has rung does not count.
+  void wait(Duration timeout) {
+    if (alarm_) set_alarm(std::nullopt, monotonic_now());
+    pollfd waiting{epoll_.number(), POLLIN, 0};
+    const timespec span = to_timespec(timeout);
+    if (::ppoll(&waiting, 1, &span, nullptr) < 0 && errno != EINTR) throw_errno("poll");
+  }
+
+ private:
+  void control(int operation, int descriptor, std::uint32_t events) const {
+    epoll_event event{};
+    event.events = events;
+    if (::epoll_ctl(epoll_.number(), operation, descriptor, &event) != 0) throw_errno("epoll_ctl");
+  }
+
+  Descriptor epoll_;
+  Descriptor timer_;
+  std::optional<TimePoint> alarm_;
+  bool waits_for_room_ = false;
+};
+
+}  // namespace canopen

@@ -1,0 +1,108 @@
+/// How a node runs on a port of a host: the same for all of them. A port gives, besides `send`,
+///
+///     std::optional<PortEvent> take();                     // what has come, without waiting
+///     std::optional<TimePoint> next_deadline();            // when `take` has something to do by itself
+///     Duration hold_off();                                 // how long to wait with a frame that found no room; 0: it
+///     did bool has_more();                                     // frames that no descriptor tells of wait for `take`
+///     TimePoint pass_time();                               // now, which no frame is before any more
+///     EventDescriptor& events();
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <concepts>
+#include <cstddef>
+#include <optional>
+
+#include "canopen/accepted_frames.hpp"
+#include "canopen/bus_status.hpp"
+#include "canopen/frame.hpp"
+#include "canopen/port/event_descriptor.hpp"
+#include "canopen/time.hpp"
+
+namespace canopen {
+
+/// A frame that has been received, or another state of the bus.
+struct PortEvent {
+  std::optional<Frame> frame;  ///< nothing: the status has changed
+  TimePoint time;
+  BusStatus status;
+};
+
+namespace host_loop {
+
+inline constexpr Duration look_at_stop{100'000};
+inline constexpr Duration try_again{1'000};     ///< after a frame that found no room
+inline constexpr Duration look_again{100'000};  ///< whether a bus that is off or down is back
+inline constexpr std::size_t burst = 64;        ///< frames between two looks at the deadlines
+
+/// Hands over what has come, and lets time pass.
+template <class Port, class Node>
+void serve_once(Port& port, Node& node) {
+  if constexpr (requires { port.listen_for(node); }) port.listen_for(node);
+  for (std::size_t i = 0; i < burst; ++i) {
+    const std::optional<PortEvent> event = port.take();
+    if (!event) break;
+    if (event->frame) {
+      node.on_frame(*event->frame, event->time);
+    } else if constexpr (requires { node.on_bus_status(event->status, event->time); }) {
+      node.on_bus_status(event->status, event->time);
+    }
+  }
+  node.on_time(port.pass_time());
+}
+
+/// When there is something to do that no descriptor tells of.
+template <class Port, class Node>
+[[nodiscard]] std::optional<TimePoint> next_deadline(const Port& port, const Node& node, TimePoint now) {
+  std::optional<TimePoint> next = node.next_deadline();
+  if (next) next = std::max(*next, now + port.hold_off());
+  const std::optional<TimePoint> own = port.next_deadline();
+  if (own && (!next || *own < *next)) next = own;
+  return next;
+}
+
+[[nodiscard]] inline Duration until(std::optional<TimePoint> deadline, TimePoint now, Duration most) {
+  if (!deadline) return most;
+  return *deadline > now ? std::min(*deadline - now, most) : Duration{0};
+}
+
+template <class Port, class Node>
+void serve(Port& port, Node& node) {
+  serve_once(port, node);
+  const TimePoint now = monotonic_now();
+  port.events().set_alarm(next_deadline(port, node, now), now);
+}
+
+template <class Port, class Node>
+void run(Port& port, Node& node, const std::atomic<bool>& stop) {
+  node.start(monotonic_now());
+  while (!stop) {
+    serve_once(port, node);
+    const TimePoint now = monotonic_now();
+    port.events().wait(until(next_deadline(port, node, now), now, look_at_stop));
+  }
+}
+
+/// The next frame; nothing when none comes within this time. The port's descriptor can be read while more are there.
+template <class Port>
+[[nodiscard]] std::optional<Frame> receive(Port& port, Duration timeout) {
+  const TimePoint end = monotonic_now() + timeout;
+  for (;;) {
+    while (const std::optional<PortEvent> event = port.take()) {
+      if (!event->frame) continue;
+      if (port.has_more()) port.events().set_alarm(event->time, monotonic_now());
+      return event->frame;
+    }
+    const TimePoint now = monotonic_now();
+    if (now >= end) {
+      port.events().set_alarm(port.next_deadline(), now);
+      return std::nullopt;
+    }
+    port.events().wait(until(port.next_deadline(), now, end - now));
+  }
+}
+
+}  // namespace host_loop
+
+}  // namespace canopen
