@@ -9,43 +9,12 @@ Uses the kernel's own sockets and nothing of edsc: what it sees is what any othe
 from __future__ import annotations
 
 import signal
-import socket
-import struct
 import subprocess
 import sys
-import time
 
-FRAME = struct.Struct("=IB3x8s")
+from can_bus import Bus, expect
+
 NODE = 5
-
-
-class Bus:
-    def __init__(self, interface: str) -> None:
-        self.socket = socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW)
-        self.socket.bind((interface,))
-
-    def send(self, can_id: int, data: str) -> None:
-        payload = bytes.fromhex(data)
-        self.socket.send(FRAME.pack(can_id, len(payload), payload.ljust(8, b"\0")))
-
-    def receive(self, can_id: int, seconds: float = 5.0) -> str:
-        """The next frame with this CAN-ID as hexadecimal digits; others are passed over."""
-        end = time.monotonic() + seconds
-        while (left := end - time.monotonic()) > 0:
-            self.socket.settimeout(left)
-            try:
-                found, size, payload = FRAME.unpack(self.socket.recv(FRAME.size))
-            except TimeoutError:
-                break
-            if found == can_id:
-                return payload[:size].hex(" ").upper()
-        return "nothing"
-
-
-def expect(what: str, got: str, wanted: str) -> None:
-    print(f"{'ok  ' if got == wanted else 'FAIL'} {what}: {got}")
-    if got != wanted:
-        sys.exit(f"{what}: wanted {wanted}")
 
 
 def dialogue(bus: Bus) -> None:

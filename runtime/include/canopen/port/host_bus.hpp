@@ -41,10 +41,22 @@ class HostBus {
     std::visit([&](auto& port) { port.run(node, stop); }, port_);
   }
 
-  /// CLOCK_MONOTONIC, cut to what a TimePoint holds.
-  [[nodiscard]] static TimePoint now() { return SocketCan::now(); }
+  /// Does what there is to do for a node that has been started, without waiting: to be called once after `node.start` and
+  /// whenever `file_descriptor` can be read.
+  template <class Node>
+  void serve(Node& node) {
+    std::visit([&](auto& port) { port.serve(node); }, port_);
+  }
 
-  /// Readable when there is a frame, for a poll loop of the application's own.
+  /// When the last frame that `receive` gave has come.
+  [[nodiscard]] TimePoint received_at() const {
+    return std::visit([](const auto& port) { return port.received_at(); }, port_);
+  }
+
+  /// CLOCK_MONOTONIC, cut to what a TimePoint holds.
+  [[nodiscard]] static TimePoint now() { return monotonic_now(); }
+
+  /// Readable when there is something to do, for a poll loop of the application's own.
   [[nodiscard]] int file_descriptor() const {
     return std::visit([](const auto& port) { return port.file_descriptor(); }, port_);
   }

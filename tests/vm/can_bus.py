@@ -1,0 +1,98 @@
+"""A raw CAN socket of the kernel, and what the tests in the virtual machine share. Nothing of edsc."""
+
+from __future__ import annotations
+
+import errno
+import os
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import time
+
+FRAME = struct.Struct("=IB3x8s")
+
+
+class Bus:
+    def __init__(self, interface: str) -> None:
+        self.socket = socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW)
+        self.socket.bind((interface,))
+
+    def close(self) -> None:
+        self.socket.close()
+
+    def send(self, can_id: int, data: str = "") -> None:
+        payload = bytes.fromhex(data)
+        self.socket.send(FRAME.pack(can_id, len(payload), payload.ljust(8, b"\0")))
+
+    def drain(self) -> None:
+        """Forgets what has come until now."""
+        self.socket.setblocking(False)
+        try:
+            while self.socket.recv(FRAME.size):
+                pass
+        except OSError as problem:
+            if problem.errno not in (errno.EAGAIN, errno.ENETDOWN):
+                raise
+
+    def ask(self, can_id: int, data: str, answer: int, seconds: float = 5.0) -> str:
+        """The first frame with the CAN-ID `answer` after this one has been sent."""
+        self.drain()
+        self.send(can_id, data)
+        return self.receive(answer, seconds)
+
+    def receive(self, can_id: int, seconds: float = 5.0) -> str:
+        """The next frame with this CAN-ID as hexadecimal digits; others are passed over."""
+        end = time.monotonic() + seconds
+        while (left := end - time.monotonic()) > 0:
+            self.socket.settimeout(left)
+            try:
+                found, size, payload = FRAME.unpack(self.socket.recv(FRAME.size))
+            except TimeoutError:
+                break
+            except OSError as problem:
+                if problem.errno != errno.ENETDOWN:  # told once, of an interface that has been down
+                    raise
+                continue
+            if found == can_id:
+                return payload[:size].hex(" ").upper()
+        return "nothing"
+
+
+def expect(what: str, got: object, wanted: object) -> None:
+    print(f"{'ok  ' if got == wanted else 'FAIL'} {what}: {got}")
+    if got != wanted:
+        sys.exit(f"{what}: wanted {wanted}")
+
+
+def run(command: str) -> str:
+    """What a command prints. It must end well."""
+    result = subprocess.run(command.split(), capture_output=True, text=True, check=False)
+    if result.returncode != 0:
+        sys.exit(f"{command}: ended with {result.returncode}: {result.stdout}{result.stderr}")
+    return result.stdout
+
+
+class Program:
+    """A program that runs until it is stopped, and the CPU time that it took."""
+
+    def __init__(self, *arguments: str) -> None:
+        self.process = subprocess.Popen(arguments)
+
+    def __enter__(self) -> Program:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self.process.returncode is None:
+            self.process.kill()
+
+    def cpu_seconds(self) -> float:
+        """User and system time until now."""
+        with open(f"/proc/{self.process.pid}/stat", encoding="ascii") as file:
+            fields = file.read().rsplit(")", 1)[1].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def stop(self) -> int:
+        self.process.send_signal(signal.SIGTERM)
+        return self.process.wait(timeout=10)
