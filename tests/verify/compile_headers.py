@@ -18,7 +18,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from support.compilers import ARM_GCC, CLANG, GCC, Compiler, compile_only, in_parallel, those_installed  # noqa: E402
 
 PARTS_OF_A_DEVICE = ("/dictionary.hpp", "/pdo.hpp")  # a device.hpp includes them: all compilers see them there
-HOSTED_ONLY = ("port/file_storage.hpp", "port/socketcan.hpp")  # for an operating system, whose errors they throw
+# For an operating system, whose errors they throw.
+HOSTED_ONLY = ("port/event_descriptor.hpp", "port/file_storage.hpp", "port/host_bus.hpp", "port/host_loop.hpp", "port/slcan.hpp",
+               "port/socketcan.hpp", "port/socketcand.hpp", "port/stream_port.hpp")
 
 
 @dataclass(frozen=True)

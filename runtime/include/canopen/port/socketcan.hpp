@@ -88,6 +88,9 @@ class SocketCan {
   /// The CAN controller as its error frames tell of it.
   [[nodiscard]] const BusStatus& status() const { return status_; }
 
+  /// Frames that wait for room.
+  [[nodiscard]] std::size_t waiting() const { return queue_.size(); }
+
   // For host_loop.hpp.
 
   /// Has the kernel keep back what the node ignores.
