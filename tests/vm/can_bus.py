@@ -61,7 +61,7 @@ class Bus:
 
 
 def expect(what: str, got: object, wanted: object) -> None:
-    print(f"{'ok  ' if got == wanted else 'FAIL'} {what}: {got}")
+    print(f"{'ok  ' if got == wanted else 'FAIL'} {what}: {got}", flush=True)
     if got != wanted:
         sys.exit(f"{what}: wanted {wanted}")
 
@@ -77,8 +77,8 @@ def run(command: str) -> str:
 class Program:
     """A program that runs until it is stopped, and the CPU time that it took."""
 
-    def __init__(self, *arguments: str) -> None:
-        self.process = subprocess.Popen(arguments)
+    def __init__(self, *arguments: str, piped: bool = False) -> None:
+        self.process = subprocess.Popen(arguments, stdout=subprocess.PIPE if piped else None, text=True)
 
     def __enter__(self) -> Program:
         return self
@@ -86,6 +86,10 @@ class Program:
     def __exit__(self, *_: object) -> None:
         if self.process.returncode is None:
             self.process.kill()
+
+    def line(self) -> str:
+        """The next line that it prints, where that is piped."""
+        return self.process.stdout.readline().strip()
 
     def cpu_seconds(self) -> float:
         """User and system time until now."""

@@ -75,16 +75,17 @@ class EventDescriptor {
   /// Readable when there is something to do.
   [[nodiscard]] int number() const { return epoll_.number(); }
 
-  /// From now on `descriptor` counts when it can be read. One that is closed counts no more.
-  void add(int descriptor) {
+  /// From now on `descriptor` counts when it can be read, instead of the one before, which has been closed or will be.
+  void watch(int descriptor) {
     control(EPOLL_CTL_ADD, descriptor, EPOLLIN);
+    watched_ = descriptor;
     waits_for_room_ = false;
   }
 
   /// Whether it counts as well when it can be written.
-  void wait_for_room(int descriptor, bool wanted) {
+  void wait_for_room(bool wanted) {
     if (wanted == waits_for_room_) return;
-    control(EPOLL_CTL_MOD, descriptor, wanted ? EPOLLIN | EPOLLOUT : EPOLLIN);
+    control(EPOLL_CTL_MOD, watched_, wanted ? EPOLLIN | EPOLLOUT : EPOLLIN);
     waits_for_room_ = wanted;
   }
 
@@ -101,10 +102,9 @@ class EventDescriptor {
     alarm_ = at;
   }
 
-  /// Waits until there is something to do, for this time at most. An alarm that has rung does not count.
-  void wait(Duration timeout) {
-    if (alarm_) set_alarm(std::nullopt, monotonic_now());
-    pollfd waiting{epoll_.number(), POLLIN, 0};
+  /// Waits until there is something to do with the descriptor, for this time at most.
+  void wait(Duration timeout) const {
+    pollfd waiting{watched_, static_cast<short>(waits_for_room_ ? POLLIN | POLLOUT : POLLIN), 0};
     const timespec span = to_timespec(timeout);
     if (::ppoll(&waiting, 1, &span, nullptr) < 0 && errno != EINTR) throw_errno("poll");
   }
@@ -119,6 +119,7 @@ class EventDescriptor {
   Descriptor epoll_;
   Descriptor timer_;
   std::optional<TimePoint> alarm_;
+  int watched_ = -1;
   bool waits_for_room_ = false;
 };
 

@@ -36,9 +36,9 @@ inline constexpr Duration try_again{1'000};     ///< after a frame that found no
 inline constexpr Duration look_again{100'000};  ///< whether a bus that is off or down is back
 inline constexpr std::size_t burst = 64;        ///< frames between two looks at the deadlines
 
-/// Hands over what has come, and lets time pass.
+/// Hands over what has come, and lets time pass: until the moment that it tells.
 template <class Port, class Node>
-void serve_once(Port& port, Node& node) {
+TimePoint serve_once(Port& port, Node& node) {
   if constexpr (requires { port.listen_for(node); }) port.listen_for(node);
   for (std::size_t i = 0; i < burst; ++i) {
     const std::optional<PortEvent> event = port.take();
@@ -49,7 +49,9 @@ void serve_once(Port& port, Node& node) {
       node.on_bus_status(event->status, event->time);
     }
   }
-  node.on_time(port.pass_time());
+  const TimePoint now = port.pass_time();
+  node.on_time(now);
+  return now;
 }
 
 /// When there is something to do that no descriptor tells of.
@@ -69,8 +71,7 @@ template <class Port, class Node>
 
 template <class Port, class Node>
 void serve(Port& port, Node& node) {
-  serve_once(port, node);
-  const TimePoint now = monotonic_now();
+  const TimePoint now = serve_once(port, node);
   port.events().set_alarm(next_deadline(port, node, now), now);
 }
 
@@ -78,8 +79,7 @@ template <class Port, class Node>
 void run(Port& port, Node& node, const std::atomic<bool>& stop) {
   node.start(monotonic_now());
   while (!stop) {
-    serve_once(port, node);
-    const TimePoint now = monotonic_now();
+    const TimePoint now = serve_once(port, node);
     port.events().wait(until(next_deadline(port, node, now), now, look_at_stop));
   }
 }

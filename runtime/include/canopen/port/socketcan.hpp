@@ -25,6 +25,7 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "canopen/accepted_frames.hpp"
@@ -109,7 +110,7 @@ class SocketCan {
     if (down_) reopen();
     if (!down_ && !queue_.empty()) flush();
     for (;;) {
-      if (read_ == received_count_ && !read_batch()) break;
+      if (read_ == received_count_ && (std::exchange(drained_, false) || !read_batch())) break;
       const can_frame& raw = received_[read_];
       advance(times_[read_]);
       if ((raw.can_id & CAN_ERR_FLAG) != 0) {
@@ -175,7 +176,7 @@ class SocketCan {
     if (::bind(fresh.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
       throw_errno("bind to \"" + interface_ + "\"");
     }
-    events_.add(fresh.number());
+    events_.watch(fresh.number());
     socket_ = std::move(fresh);
     index_ = index;
     lost_ = 0;
@@ -258,7 +259,7 @@ class SocketCan {
     } while (written < 0 && errno == EINTR);
     if (written == static_cast<ssize_t>(sizeof raw)) return true;
     switch (errno) {
-      case EAGAIN: events_.wait_for_room(socket_.number(), true); break;
+      case EAGAIN: events_.wait_for_room(true); break;
       case ENOBUFS:  // the queue of the interface is full: no descriptor tells when it is not
         retry_ = true;
         retry_at_ = now() + host_loop::try_again;
@@ -274,14 +275,14 @@ class SocketCan {
   void drop_queue() {
     queue_.clear();
     retry_ = false;
-    events_.wait_for_room(socket_.number(), false);
+    events_.wait_for_room(false);
   }
 
   void flush() {
     if (retry_ && now() < retry_at_) return;
     retry_ = false;
     while (!queue_.empty() && write(queue_.front())) queue_.pop();
-    if (queue_.empty()) events_.wait_for_room(socket_.number(), false);
+    if (queue_.empty()) events_.wait_for_room(false);
   }
 
   // Receiving
@@ -306,6 +307,7 @@ class SocketCan {
       return false;
     }
     received_count_ = static_cast<std::size_t>(count);
+    drained_ = received_count_ < batch;
     const Clocks clocks = read_clocks();
     for (std::size_t i = 0; i < received_count_; ++i) times_[i] = time_of(headers[i].msg_hdr, clocks);
     return true;
@@ -425,6 +427,7 @@ class SocketCan {
   std::size_t received_count_ = 0;
   std::size_t read_ = 0;    ///< of them have been handed on
   TimePoint last_ = now();  ///< of the last frame
+  bool drained_ = false;    ///< the last ones of a batch that was not full: no more are there
   std::uint32_t lost_ = 0;  ///< frames that found the socket full, as the kernel counts them
 
   BusStatus status_{};

@@ -108,7 +108,7 @@ class StreamPort {
   /// `stream` does not block. `name` is for messages.
   StreamPort(Descriptor stream, std::string stream_name)
       : stream_{std::move(stream)}, is_socket_{is_socket(stream_)}, name_{std::move(stream_name)} {
-    events_.add(stream_.number());
+    events_.watch(stream_.number());
   }
 
   /// Waits until the protocol, which has been started, has opened the bus. Throws std::system_error when it does not
@@ -150,10 +150,10 @@ class StreamPort {
   /// Writes what waits, as far as the stream has room.
   void flush() {
     for (;;) {
-      if (pending_.empty() && !next_message()) return events_.wait_for_room(stream_.number(), false);
+      if (pending_.empty() && !next_message()) return events_.wait_for_room(false);
       const ssize_t count = write(pending_);
       if (count < 0 && errno == EINTR) continue;
-      if (count < 0 && errno == EAGAIN) return events_.wait_for_room(stream_.number(), true);
+      if (count < 0 && errno == EAGAIN) return events_.wait_for_room(true);
       if (count < 0) throw_errno("write to " + name_);
       pending_.erase(0, static_cast<std::size_t>(count));
     }
