@@ -1,0 +1,80 @@
+/// A line that simulates an input of a node, such as `digital 1 0x55`: a word and what belongs to it.
+#pragma once
+
+#include <canopen/bus_status.hpp>
+#include <charconv>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace nodes {
+
+class InputLine {
+ public:
+  explicit InputLine(std::string_view line) {
+    std::istringstream text{std::string{line}};
+    for (std::string word; text >> word;) words_.push_back(std::move(word));
+  }
+
+  [[nodiscard]] bool empty() const { return words_.empty(); }
+  /// Whether the line begins with this word and has so many after it.
+  [[nodiscard]] bool is(std::string_view name, std::size_t arguments) const {
+    return words_.size() == arguments + 1 && words_[0] == name;
+  }
+  /// A word after the first one, from 1 on.
+  [[nodiscard]] std::string_view word(std::size_t position) const { return words_[position]; }
+
+  /// The same as a whole number, decimal or 0x; nothing when it is none or outside the range.
+  template <class T>
+  [[nodiscard]] std::optional<T> number(std::size_t position, T lowest = std::numeric_limits<T>::min(),
+                                        T highest = std::numeric_limits<T>::max()) const {
+    std::string_view text = words_[position];
+    const bool negative = text.starts_with('-');
+    if (negative) text.remove_prefix(1);
+    const bool hex = text.starts_with("0x") || text.starts_with("0X");
+    if (hex) text.remove_prefix(2);
+    std::int64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, hex ? 16 : 10);
+    if (error != std::errc{} || end != text.data() + text.size() || value < 0) return std::nullopt;
+    if (negative) value = -value;
+    if (value < std::int64_t{lowest} || value > std::int64_t{highest}) return std::nullopt;
+    return static_cast<T>(value);
+  }
+
+  /// The same as a number with a fraction.
+  [[nodiscard]] std::optional<double> real(std::size_t position) const {
+    const std::string& text = words_[position];
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    return end == text.c_str() + text.size() ? std::optional{value} : std::nullopt;
+  }
+
+  /// The same as `on` or `off`.
+  [[nodiscard]] std::optional<bool> on_or_off(std::size_t position) const {
+    if (words_[position] == "on") return true;
+    if (words_[position] == "off") return false;
+    return std::nullopt;
+  }
+
+ private:
+  std::vector<std::string> words_;
+};
+
+/// `can active`, `can passive`, `can off`, `can overrun`: what the CAN controller tells its node.
+[[nodiscard]] inline std::optional<canopen::BusStatus> bus_status_of(const InputLine& line) {
+  if (!line.is("can", 1)) return std::nullopt;
+  if (line.word(1) == "active") return canopen::BusStatus{};
+  if (line.word(1) == "passive") return canopen::BusStatus{canopen::BusState::passive};
+  if (line.word(1) == "off") return canopen::BusStatus{canopen::BusState::off};
+  if (line.word(1) == "overrun") return canopen::BusStatus{canopen::BusState::active, true};
+  return std::nullopt;
+}
+
+}  // namespace nodes

@@ -1,0 +1,55 @@
+/// What a node keeps without power: in a file, or without one as long as the process runs.
+#pragma once
+
+#include <canopen/port/file_storage.hpp>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace nodes {
+
+class NodeStorage {
+ public:
+  /// An empty path: no file.
+  explicit NodeStorage(const std::string& path = {}) {
+    if (!path.empty()) file_.emplace(path);
+  }
+
+  [[nodiscard]] canopen::StorageState open() {
+    if (file_) return file_->open();
+    return image_.empty() ? canopen::StorageState::empty : canopen::StorageState::whole;
+  }
+  [[nodiscard]] std::uint32_t size() const { return file_ ? file_->size() : static_cast<std::uint32_t>(image_.size()); }
+  [[nodiscard]] bool read(std::uint32_t position, std::span<std::uint8_t> to) const {
+    if (file_) return file_->read(position, to);
+    if (position > image_.size() || to.size() > image_.size() - position) return false;
+    if (!to.empty()) std::memcpy(to.data(), image_.data() + position, to.size());
+    return true;
+  }
+  [[nodiscard]] bool begin(std::uint32_t size) {
+    if (file_) return file_->begin(size);
+    fresh_.clear();
+    return true;
+  }
+  [[nodiscard]] bool write(std::span<const std::uint8_t> bytes) {
+    if (file_) return file_->write(bytes);
+    fresh_.insert(fresh_.end(), bytes.begin(), bytes.end());
+    return true;
+  }
+  [[nodiscard]] bool commit() {
+    if (file_) return file_->commit();
+    image_ = std::move(fresh_);
+    return true;
+  }
+
+ private:
+  std::optional<canopen::FileStorage> file_;
+  std::vector<std::uint8_t> image_;  ///< without a file
+  std::vector<std::uint8_t> fresh_;  ///< the next one
+};
+
+}  // namespace nodes
