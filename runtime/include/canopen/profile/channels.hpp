@@ -1,0 +1,64 @@
+/// The channels of an I/O device: arrays of the dictionary whose elements belong to each other by their sub-index.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <span>
+
+#include "canopen/abort_code.hpp"
+#include "canopen/dictionary.hpp"
+#include "canopen/object_store.hpp"
+
+namespace canopen {
+
+/// The value of a BOOLEAN.
+[[nodiscard]] inline bool is_true(const EntryAccess& entries, entry::Word word) {
+  std::array<std::uint8_t, 8> scratch;
+  return entries.read(word, scratch)[0] != 0;
+}
+
+/// An object with one element a channel, found while it compiles. A device that has not got it pays nothing for it.
+template <class Device, std::uint16_t Index>
+struct ChannelObject {
+  /// Sub-indices from 1 on that exist.
+  static constexpr std::uint8_t count = [] {
+    std::uint8_t channels = 0;
+    while (channels < 254 && Device::dictionary.has(Index, static_cast<std::uint8_t>(channels + 1))) ++channels;
+    return channels;
+  }();
+  static constexpr bool exists = count > 0;
+
+  static constexpr std::array<entry::Word, count> words = [] {
+    std::array<entry::Word, count> result{};
+    for (std::uint8_t i = 0; i < count; ++i) {
+      result[i] = Device::dictionary.find(Index, static_cast<std::uint8_t>(i + 1));
+    }
+    return result;
+  }();
+
+  /// The value of a channel, counted from 0; `missing` where the device has no such object or no such element.
+  template <class T>
+  [[nodiscard]] static T get([[maybe_unused]] const EntryAccess& entries, [[maybe_unused]] std::uint8_t channel,
+                             T missing) {
+    if constexpr (exists) {
+      if (channel < count) return static_cast<T>(entries.number(words[channel]));
+    }
+    return missing;
+  }
+
+  /// Sets a channel. `silently`: without the event that sends TPDOs.
+  template <class Node, class T>
+  static void set(Node& node, std::uint8_t channel, T value, bool silently = false) {
+    static_assert(exists, "this device has no such object");
+    std::array<std::uint8_t, sizeof(T)> bytes;
+    std::memcpy(bytes.data(), &value, sizeof value);
+    if (silently) {
+      node.entries().write(words[channel], bytes);
+    } else {
+      static_cast<void>(node.set(Index, static_cast<std::uint8_t>(channel + 1), bytes));
+    }
+  }
+};
+
+}  // namespace canopen
