@@ -20,9 +20,11 @@ class NodeStorage {
   }
 
   [[nodiscard]] canopen::StorageState open() {
-    if (file_) return file_->open();
-    return image_.empty() ? canopen::StorageState::empty : canopen::StorageState::whole;
+    if (file_) return state_ = file_->open();
+    return state_ = image_.empty() ? canopen::StorageState::empty : canopen::StorageState::whole;
   }
+  /// What was found when it was opened last.
+  [[nodiscard]] canopen::StorageState state() const { return state_; }
   [[nodiscard]] std::uint32_t size() const { return file_ ? file_->size() : static_cast<std::uint32_t>(image_.size()); }
   [[nodiscard]] bool read(std::uint32_t position, std::span<std::uint8_t> to) const {
     if (file_) return file_->read(position, to);
@@ -48,6 +50,7 @@ class NodeStorage {
 
  private:
   std::optional<canopen::FileStorage> file_;
+  canopen::StorageState state_ = canopen::StorageState::empty;
   std::vector<std::uint8_t> image_;  ///< without a file
   std::vector<std::uint8_t> fresh_;  ///< the next one
 };

@@ -37,18 +37,11 @@
 #include <string_view>
 #include <utility>
 
+#include "description.hpp"
 #include "input_line.hpp"
 #include "surroundings.hpp"
 
 namespace nodes {
-
-/// What `--help` says of a node.
-struct Description {
-  const char* program;  ///< its name
-  const char* device;   ///< one line
-  const char* node_id;  ///< which one it has without --node-id
-  const char* inputs;   ///< the lines that it takes on standard input, with two spaces before each
-};
 
 namespace exit_code {
 inline constexpr int fine = 0;

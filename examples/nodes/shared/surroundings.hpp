@@ -4,6 +4,8 @@
 #include <canopen/node_id.hpp>
 #include <cstdint>
 #include <functional>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,22 +20,43 @@ class Surroundings {
  public:
   using Log = std::function<void(std::string_view line)>;
 
-  /// `store` is the path of the file that parameters are stored in, FILE.lss beside it that of LSS; empty: no files.
-  Surroundings(std::optional<canopen::NodeId> chosen_node_id, std::uint32_t serial, const std::string& store,
-               Log log_to)
+  /// `store` is the path of the file that parameters are stored in; what else is stored stands in FILE.lss and
+  /// FILE.application beside it. Empty: no files.
+  Surroundings(std::optional<canopen::NodeId> chosen_node_id, std::uint32_t serial, std::string store, Log log_to)
       : node_id{chosen_node_id},
         serial_number{serial},
         parameters{store},
-        lss{store.empty() ? store : store + ".lss"},
-        log{std::move(log_to)} {}
-  explicit Surroundings(canopen::NodeId chosen_node_id)
+        lss{with_suffix(store, "lss")},
+        application{with_suffix(store, "application")},
+        log{std::move(log_to)},
+        store_{std::move(store)} {}
+  explicit Surroundings(std::optional<canopen::NodeId> chosen_node_id = std::nullopt)
       : Surroundings{chosen_node_id, 1, {}, [](std::string_view) {}} {}
+
+  /// Those of one node among several, by its name: it logs with its name before each line and stores in FILE.NAME.
+  [[nodiscard]] Surroundings& part(const std::string& name) {
+    std::unique_ptr<Surroundings>& found = parts_[name];
+    if (!found) {
+      const auto log_with_name = [this, name](std::string_view line) { log(name + ": " + std::string{line}); };
+      found = std::make_unique<Surroundings>(std::nullopt, serial_number, with_suffix(store_, name), log_with_name);
+    }
+    return *found;
+  }
 
   std::optional<canopen::NodeId> node_id;  ///< what the switches say; nothing: the device's own
   std::uint32_t serial_number;             ///< 1018h:04, where the device has it settable
   NodeStorage parameters;                  ///< for 1010h and 1011h
   NodeStorage lss;                         ///< node-ID and bit rate
+  NodeStorage application;                 ///< what no object holds
   Log log;
+
+ private:
+  [[nodiscard]] static std::string with_suffix(const std::string& store, const std::string& name) {
+    return store.empty() ? store : store + "." + name;
+  }
+
+  std::string store_;
+  std::map<std::string, std::unique_ptr<Surroundings>> parts_;
 };
 
 }  // namespace nodes

@@ -47,13 +47,15 @@ class DigitalInputs {
   /// counts when two calls find it alike. A change sends TPDOs when 6005h and the masks 6006h to 6008h say so; a device
   /// without them sends all.
   template <class Node>
-  void sample(Node& node, std::uint8_t block, std::uint8_t levels) {
-    if (block >= blocks) return;
-    const EntryAccess entries = node.entries();
-    const std::uint8_t before = Value::template get<std::uint8_t>(entries, block, 0);
-    const auto after = static_cast<std::uint8_t>(settled(entries, block, levels) ^
-                                                 Polarity::template get<std::uint8_t>(entries, block, 0));
-    if (after != before) Value::set(node, block, after, !tells(entries, block, before, after));
+  void sample([[maybe_unused]] Node& node, [[maybe_unused]] std::uint8_t block, [[maybe_unused]] std::uint8_t levels) {
+    if constexpr (blocks > 0) {
+      if (block >= blocks) return;
+      const EntryAccess entries = node.entries();
+      const std::uint8_t before = Value::template get<std::uint8_t>(entries, block, 0);
+      const auto after = static_cast<std::uint8_t>(settled(entries, block, levels) ^
+                                                   Polarity::template get<std::uint8_t>(entries, block, 0));
+      if (after != before) Value::set(node, block, after, !tells(entries, block, before, after));
+    }
   }
 
  private:
@@ -111,7 +113,7 @@ class DigitalOutputs {
   /// change. Channels without their bit in 6208h stay as they are. To be called when the node has taken a frame or
   /// time.
   template <class Node, class Drive>
-  void update(Node& node, Drive&& drive) {
+  void update([[maybe_unused]] Node& node, [[maybe_unused]] Drive&& drive) {
     const EntryAccess entries = node.entries();
     for (std::uint8_t block = 0; block < blocks; ++block) {
       const unsigned value =
@@ -127,8 +129,8 @@ class DigitalOutputs {
   /// Channels whose bit in 6206h is 1 take their value of 6207h, and keep it until another one is written. A device
   /// with neither object keeps its outputs.
   template <class Node>
-  void fail(Node& node) {
-    if constexpr (ErrorMode::exists || ErrorValue::exists) {
+  void fail([[maybe_unused]] Node& node) {
+    if constexpr (Value::exists && (ErrorMode::exists || ErrorValue::exists)) {
       for (std::uint8_t block = 0; block < blocks; ++block) {
         const EntryAccess entries = node.entries();
         const unsigned mode = ErrorMode::template get<unsigned>(entries, block, 0xFF);
@@ -164,15 +166,17 @@ class AnalogueInputs {
   /// Limits and deltas are numbers of the scale of 6401h. Where both kinds are asked for both have to hold. A device
   /// without these objects sends all.
   template <class Node>
-  void sample(Node& node, std::uint8_t channel, std::int16_t value) {
-    if (channel >= channels) return;
-    const EntryAccess entries = node.entries();
-    if (value == Value::template get<std::int16_t>(entries, channel, 0)) return;
-    const bool told = tells(entries, channel, value);
-    if constexpr (has_delta) {
-      if (told) told_[channel] = value;
+  void sample([[maybe_unused]] Node& node, [[maybe_unused]] std::uint8_t channel, [[maybe_unused]] std::int16_t value) {
+    if constexpr (channels > 0) {
+      if (channel >= channels) return;
+      const EntryAccess entries = node.entries();
+      if (value == Value::template get<std::int16_t>(entries, channel, 0)) return;
+      const bool told = tells(entries, channel, value);
+      if constexpr (has_delta) {
+        if (told) told_[channel] = value;
+      }
+      Value::set(node, channel, value, !told);
     }
-    Value::set(node, channel, value, !told);
   }
 
  private:
@@ -240,7 +244,7 @@ class AnalogueOutputs {
   /// Brings 6411h to the terminals, which begin at 0: `drive(channel, value)` is called for each channel that changes.
   /// To be called when the node has taken a frame or time.
   template <class Node, class Drive>
-  void update(Node& node, Drive&& drive) {
+  void update([[maybe_unused]] Node& node, [[maybe_unused]] Drive&& drive) {
     const EntryAccess entries = node.entries();
     for (std::uint8_t channel = 0; channel < channels; ++channel) {
       const auto value = Value::template get<std::int16_t>(entries, channel, 0);
@@ -253,8 +257,8 @@ class AnalogueOutputs {
   /// Channels whose 6443h is 1 take their value of 6444h, and keep it until another one is written. A device with
   /// neither object keeps its outputs.
   template <class Node>
-  void fail(Node& node) {
-    if constexpr (ErrorMode::exists || ErrorValue::exists) {
+  void fail([[maybe_unused]] Node& node) {
+    if constexpr (Value::exists && (ErrorMode::exists || ErrorValue::exists)) {
       for (std::uint8_t channel = 0; channel < channels; ++channel) {
         const EntryAccess entries = node.entries();
         if (ErrorMode::template get<std::uint8_t>(entries, channel, 1) == 0) continue;

@@ -1,0 +1,20 @@
+/// A digital output module, 16 channels in two blocks.
+#pragma once
+
+#include <can_2057c/device.hpp>
+#include <canopen/frame.hpp>
+#include <canopen/node_id.hpp>
+
+#include "shared/description.hpp"
+#include "shared/io_module.hpp"
+
+template <canopen::Bus B>
+class Can2057c : public nodes::IoModule<can_2057c::Device, B> {
+ public:
+  static constexpr nodes::Description description{
+      "can_2057c", "A digital output module, 16 channels in two blocks.", "1",
+      "  fault NAME | fault over          can-controller, eeprom, rx-buffer or tx-buffer: its EMCY\n"};
+
+  Can2057c(B& bus, nodes::Surroundings& around)
+      : nodes::IoModule<can_2057c::Device, B>{bus, around, canopen::NodeId{1}} {}
+};
