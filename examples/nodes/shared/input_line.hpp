@@ -28,6 +28,16 @@ class InputLine {
   [[nodiscard]] bool is(std::string_view name, std::size_t arguments) const {
     return words_.size() == arguments + 1 && words_[0] == name;
   }
+  /// Whether it begins with this word and has at least so many after it.
+  [[nodiscard]] bool begins_with(std::string_view name, std::size_t arguments) const {
+    return words_.size() > arguments && words_[0] == name;
+  }
+  /// What follows so many words.
+  [[nodiscard]] InputLine after(std::size_t count) const {
+    InputLine rest{""};
+    rest.words_.assign(words_.begin() + static_cast<std::ptrdiff_t>(count), words_.end());
+    return rest;
+  }
   /// A word after the first one, from 1 on.
   [[nodiscard]] std::string_view word(std::size_t position) const { return words_[position]; }
 

@@ -1,0 +1,223 @@
+/// The four I/O modules, wired to each other: the worked example of manual 003 against the runnable nodes.
+#include "plant/plant.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <canopen/port/virtual_bus.hpp>
+#include <cctype>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "node_bench.hpp"
+#include "traces/player.hpp"
+#include "traces/station.hpp"
+#include "traces/trace.hpp"
+
+namespace {
+
+using namespace std::chrono_literals;
+
+// The worked example, by the trace player
+
+/// A runnable module among the stations of a trace.
+template <template <class Bus> class Module>
+class ModuleStation final : public trace::Station {
+ public:
+  explicit ModuleStation(canopen::NodeId node_id) : around_{node_id} { module.emplace(*this, around_); }
+
+  void power_on(canopen::TimePoint now) override { module->start(now); }
+  void power_off() override { FAIL() << "the modules of a plant stay on"; }
+  void on_frame(const canopen::Frame& frame, canopen::TimePoint now) override { module->on_frame(frame, now); }
+  void on_time(canopen::TimePoint now) override { module->on_time(now); }
+  [[nodiscard]] std::optional<canopen::TimePoint> next_deadline() const override { return module->next_deadline(); }
+
+  /// What an input measures, whatever its wire brings.
+  [[nodiscard]] canopen::AbortCode set(std::uint16_t index, std::uint8_t sub_index,
+                                       const trace::Value& value) override {
+    const auto channel = static_cast<std::uint8_t>(sub_index - 1);
+    if (index != 0x6401) return canopen::AbortCode::no_object;
+    module->set_analogue(channel, static_cast<std::int16_t>(value.number));
+    return canopen::ok;
+  }
+  void emergency(const trace::Emergency& error) override {
+    module->node().emergency(error.code, error.bits, error.info);
+  }
+  void emergency_over(canopen::ErrorRegister bits) override { module->node().emergency_over(bits); }
+  [[nodiscard]] std::optional<std::vector<std::uint8_t>> value(std::uint16_t index, std::uint8_t sub_index) override {
+    const canopen::entry::Word word = module->node().entries().dictionary().find(index, sub_index);
+    if (word <= canopen::Dictionary::no_sub_index) return std::nullopt;
+    std::array<std::uint8_t, 8> scratch{};
+    const std::span<const std::uint8_t> bytes = module->node().entries().read(word, scratch);
+    return std::vector<std::uint8_t>{bytes.begin(), bytes.end()};
+  }
+
+  std::optional<Module<trace::Station>> module;
+
+ private:
+  nodes::Surroundings around_;
+};
+
+std::vector<std::filesystem::path> traces() {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator{EDSC_PLANT_TRACES_DIR}) files.push_back(entry.path());
+  std::ranges::sort(files);
+  return files;
+}
+
+std::string test_name(const testing::TestParamInfo<std::filesystem::path>& info) {
+  std::string name = info.param.stem().string();
+  std::ranges::replace_if(
+      name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+  return name;
+}
+
+class PlantTraces : public testing::TestWithParam<std::filesystem::path> {};
+
+TEST_P(PlantTraces, AreWhatTheModulesDo) {
+  const trace::Trace trace = trace::read(GetParam());
+  const std::vector<std::string> expected = {"can-2057c 1", "can-2053c 2", "can-2024c 3", "can-2017c 4"};
+  std::vector<std::string> named;
+  for (const trace::NodeOfTrace& node : trace.nodes) {
+    named.push_back(node.device + " " + std::to_string(node.node_id.value()));
+  }
+  ASSERT_EQ(named, expected);
+  auto digital_out = std::make_unique<ModuleStation<Can2057c>>(canopen::NodeId{1});
+  auto digital_in = std::make_unique<ModuleStation<Can2053c>>(canopen::NodeId{2});
+  auto analogue_out = std::make_unique<ModuleStation<Can2024c>>(canopen::NodeId{3});
+  auto analogue_in = std::make_unique<ModuleStation<Can2017c>>(canopen::NodeId{4});
+  wire(*digital_out->module, *digital_in->module, *analogue_out->module, *analogue_in->module);
+  std::vector<std::unique_ptr<trace::Station>> stations;
+  stations.push_back(std::move(digital_out));
+  stations.push_back(std::move(digital_in));
+  stations.push_back(std::move(analogue_out));
+  stations.push_back(std::move(analogue_in));
+  for (const trace::Failure& failure : trace::play(trace, stations)) {
+    ADD_FAILURE_AT(trace.file.c_str(), static_cast<int>(failure.line)) << "  " << failure.message;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Manual003, PlantTraces, testing::ValuesIn(traces()), test_name);
+
+// In one process on one bus
+
+/// The plant and what goes over its bus.
+struct PlantOnABus : testing::Test {
+  PlantOnABus() {
+    canopen::VirtualBus::connect(port, plant);
+    bus.listen([this](const canopen::Frame& frame, canopen::TimePoint) {
+      log += (log.empty() ? "" : " | ") + bench::text(frame);
+    });
+    plant.start(bus.now());
+    bus.settle();
+  }
+  std::string take() {
+    bus.settle();
+    return std::exchange(log, {});
+  }
+  std::string send(const std::string& frame) {
+    master.send(bench::frame(frame));
+    return take();
+  }
+  std::string input(const char* line) {
+    EXPECT_TRUE(plant.input(nodes::InputLine{line}, bus.now())) << line;
+    return take();
+  }
+  std::string log;
+  canopen::VirtualBus bus;
+  canopen::VirtualBus::Endpoint& port = bus.attach();
+  canopen::VirtualBus::Endpoint& master = bus.attach();
+  nodes::Surroundings around;
+  Plant<canopen::VirtualBus::Endpoint> plant{port, around};
+};
+
+TEST_F(PlantOnABus, BringsOutputsToInputs) {
+  EXPECT_EQ(take(), "701 00 | 702 00 | 703 00 | 704 00");
+  EXPECT_EQ(send("000 01 00"), "000 01 00 | 182 00 00 | 284 00 00 00 00 00 00 00 00 | 384 00 00 00 00 00 00 00 00");
+  EXPECT_EQ(send("201 34 12"), "201 34 12 | 182 34 12");
+  EXPECT_EQ(send("303 FF 3F 00 80 00 00 01 00"), "303 FF 3F 00 80 00 00 01 00");  // analogue inputs send no change
+  EXPECT_EQ(send("284 R 8"), "284 R 8 | 284 FF 3F 00 80 00 00 01 00");
+  EXPECT_EQ(send("384 R 8"), "384 R 8 | 384 00 00 01 00 00 00 00 00");
+}
+
+TEST_F(PlantOnABus, TakesLinesForEachModule) {
+  send("000 01 00");
+  EXPECT_EQ(input("node 2 digital 1 0xF0"), "182 F0 00");
+  EXPECT_EQ(input("node 4 analogue 7 -10"), "");
+  EXPECT_EQ(send("384 R 8"), "384 R 8 | 384 00 00 00 00 00 80 00 00");
+  EXPECT_EQ(input("node 1 fault eeprom"), "081 00 50 81 02 00 00 00 00");
+  EXPECT_EQ(input("node 1 fault over"), "081 00 00 00 00 00 00 00 00");
+  EXPECT_FALSE(plant.input(nodes::InputLine{"node 5 fault eeprom"}, bus.now()));
+  EXPECT_FALSE(plant.input(nodes::InputLine{"node 1 digital 1 0"}, bus.now()));  // it has no digital input
+}
+
+TEST_F(PlantOnABus, SetsItsOutputsToTheirErrorValuesInStopped) {
+  send("000 01 00");
+  send("201 FF FF");
+  EXPECT_EQ(send("000 02 01"), "000 02 01 | 182 00 00");
+}
+
+// A module on its own
+
+// shows 003.65
+TEST(ModuleNode, ScalesItsAnalogueChannels) {
+  EXPECT_EQ(nodes::raw_from_volts(5), 0x3FFF);
+  EXPECT_EQ(nodes::raw_from_volts(0), 0);
+  EXPECT_EQ(nodes::raw_from_volts(-10), -32768);
+  EXPECT_EQ(nodes::raw_from_volts(10), 32767);
+  EXPECT_EQ(nodes::raw_from_volts(11), 32767);
+  EXPECT_NEAR(nodes::volts_from_raw(0x4006), 5.002, 0.0005);
+  bench::NodeBench<Can2017c> inputs;
+  inputs.input("analogue 1 5.0");
+  EXPECT_EQ(inputs.ask("605 40 01 64 01 00 00 00 00"), "585 4B 01 64 01 FF 3F 00 00");
+  bench::NodeBench<Can2024c> outputs;
+  outputs.ask("605 2B 11 64 01 06 40 00 00");
+  EXPECT_TRUE(outputs.logged("analogue 1 5.002 V"));
+}
+
+TEST(ModuleNode, ShowsItsStateAndItsErrorsWithItsIndicators) {
+  bench::NodeBench<Can2057c> module;
+  EXPECT_TRUE(module.logged("RUN blinking"));
+  module.ask(bench::start);
+  EXPECT_TRUE(module.logged("RUN on"));
+  module.app->on_bus_status({canopen::BusState::passive}, module.now);
+  EXPECT_TRUE(module.logged("ERR single flash"));
+  module.app->on_bus_status({canopen::BusState::off}, module.now);
+  EXPECT_TRUE(module.logged("ERR on"));
+  module.app->on_bus_status({}, module.now);
+  EXPECT_TRUE(module.logged("ERR off"));
+  module.ask("605 2B 0C 10 00 64 00 00 00");
+  module.ask("605 2F 0D 10 00 01 00 00 00");
+  module.ask("705 R 1");
+  module.pass(100ms);
+  EXPECT_TRUE(module.logged("ERR double flash"));
+  module.ask("705 R 1");
+  EXPECT_TRUE(module.logged("ERR off"));
+  module.ask(bench::stop);
+  EXPECT_TRUE(module.logged("RUN single flash"));
+}
+
+TEST(ModuleNode, KeepsItsParametersBeyondPowerOffWhenTheyAreSaved) {
+  bench::NodeBench<Can2057c> module;
+  module.ask("605 2F 07 62 01 A5 00 00 00");
+  EXPECT_EQ(module.ask("605 23 10 10 01 73 61 76 65"), "585 60 10 10 01 00 00 00 00");
+  module.ask("605 2F 07 62 01 00 00 00 00");
+  EXPECT_EQ(module.power_cycle(), "705 00");
+  EXPECT_EQ(module.ask("605 40 07 62 01 00 00 00 00"), "585 4F 07 62 01 A5 00 00 00");
+}
+
+TEST(ModuleNode, ReadsItsInputsAgainAfterAReset) {
+  bench::NodeBench<Can2053c> module;
+  module.input("digital 1 0x55");
+  module.ask(bench::reset_node);
+  EXPECT_EQ(module.ask("605 40 00 60 01 00 00 00 00"), "585 4F 00 60 01 55 00 00 00");
+  EXPECT_EQ(module.input("digital 3 0"), "?");
+}
+
+}  // namespace
