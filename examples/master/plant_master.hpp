@@ -1,0 +1,199 @@
+/// The master of the plant: boots its four modules, configures them, counts on its digital outputs, ramps its analogue
+/// ones, compares what the inputs tell, and stops the outputs when a module is lost until it is back.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <can_2017c/device.hpp>
+#include <can_2024c/device.hpp>
+#include <can_2053c/device.hpp>
+#include <can_2057c/device.hpp>
+#include <canopen/port/master.hpp>
+#include <cstdint>
+#include <cstdio>
+#include <functional>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+template <canopen::BlockingBus B>
+class PlantMaster {
+ public:
+  using Log = std::function<void(std::string_view line)>;
+
+  static constexpr canopen::Duration cycle = std::chrono::milliseconds{100};
+
+  PlantMaster(B& bus, Log log) : log_{std::move(log)}, master_{bus, slaves(), {canopen::nmt_start_up::no_slave_start}} {
+    master_.on_booted = [this](canopen::NodeId node_id, canopen::BootStatus status) { booted(node_id, status); };
+    master_.on_event = [this](canopen::NmtMasterEvent event, canopen::NodeId node_id, canopen::NmtState) {
+      if (event == canopen::NmtMasterEvent::lost) lost(node_id);
+    };
+    master_.on_emergency = [this](canopen::NodeId node_id, const canopen::EmergencyMessage& message) {
+      log_(name(node_id) + " tells EMCY " + hex(message.code, 4));
+    };
+  }
+
+  void start() { master_.start(); }
+
+  /// One cycle: to be called again and again.
+  void run_cycle() {
+    master_.poll(cycle);
+    if (!running_) return;
+    compare();
+    write_outputs();
+  }
+
+  [[nodiscard]] bool running() const { return running_; }
+  /// Cycles in which the inputs were what the outputs had been set to, and in which they were not.
+  [[nodiscard]] unsigned agreed() const { return agreed_; }
+  [[nodiscard]] unsigned differed() const { return differed_; }
+
+ private:
+  static constexpr std::uint16_t guard_time = 100;  ///< ms
+  static constexpr std::uint8_t life_time_factor = 3;
+  static constexpr std::size_t nodes = 4;
+
+  [[nodiscard]] static std::vector<canopen::NmtSlave> slaves() {
+    using namespace canopen::slave_assignment;
+    constexpr std::uint32_t assignment =
+        listed | boot | mandatory | std::uint32_t{life_time_factor} << 8 | std::uint32_t{guard_time} << 16;
+    std::vector<canopen::NmtSlave> list;
+    for (std::uint8_t i = 1; i <= nodes; ++i) list.push_back({canopen::NodeId{i}, assignment});
+    list[0].device_type = default_of<can_2057c::Device>();
+    list[1].device_type = default_of<can_2053c::Device>();
+    list[2].device_type = default_of<can_2024c::Device>();
+    list[3].device_type = default_of<can_2017c::Device>();
+    return list;
+  }
+  /// 1000h is a constant of the data sheet.
+  template <class Device>
+  [[nodiscard]] static std::uint32_t default_of() {
+    typename Device::Values values{};
+    const canopen::EntryAccess entries{Device::dictionary, reinterpret_cast<std::uint8_t*>(&values),
+                                       canopen::NodeId{1}};
+    return entries.number(Device::dictionary.find(0x1000, 0));
+  }
+
+  // Booting
+
+  void booted(canopen::NodeId node_id, canopen::BootStatus status) {
+    log_(name(node_id) + ": " + std::string{canopen::to_text(status)});
+    if (status != canopen::BootStatus::booted) return;
+    const canopen::Result<void> configured = configure(node_id);
+    if (!configured) {
+      log_(name(node_id) + " cannot be configured: " + std::string{canopen::to_text(configured.abort_code())});
+      return;
+    }
+    ready_[node_id.value() - 1u] = true;
+    if (std::ranges::find(ready_, false) != ready_.end()) return;
+    if (!listening_) listen();
+    static_cast<void>(master_.command(canopen::NmtCommand::start, canopen::NodeId{0}));
+    log_("all nodes are configured: started");
+    running_ = true;
+    written_.reset();
+  }
+
+  /// Outputs that the master is lost to are set to 0 by the modules themselves; inputs tell themselves.
+  [[nodiscard]] canopen::Result<void> configure(canopen::NodeId node_id) {
+    switch (node_id.value()) {
+      case 1:
+        return all({guarded<can_2057c::Device, can_2057c::od::guard_time, can_2057c::od::life_time_factor>(outputs_),
+                    outputs_.template write<can_2057c::od::error_mode_output_8_bit<1>>(0xFF),
+                    outputs_.template write<can_2057c::od::error_mode_output_8_bit<2>>(0xFF)});
+      case 2: return inputs_.template write<can_2053c::od::tpdo_communication_parameter_1::event_timer>(500);
+      case 3:
+        return guarded<can_2024c::Device, can_2024c::od::guard_time, can_2024c::od::life_time_factor>(
+            analogue_outputs_);
+      case 4: return analogue_inputs_.template write<can_2017c::od::tpdo_communication_parameter_2::event_timer>(50);
+      default: return canopen::ok;
+    }
+  }
+  template <class Device, class GuardTime, class LifeTimeFactor>
+  [[nodiscard]] static canopen::Result<void> guarded(canopen::MasterRemote<Device, B>& node) {
+    return all({node.template write<GuardTime>(guard_time), node.template write<LifeTimeFactor>(life_time_factor)});
+  }
+  /// The first failure of several transfers.
+  [[nodiscard]] static canopen::Result<void> all(std::initializer_list<canopen::Result<void>> results) {
+    for (const canopen::Result<void>& result : results) {
+      if (!result) return result;
+    }
+    return canopen::ok;
+  }
+
+  void listen() {
+    listening_ = static_cast<bool>(all({
+        inputs_.template on_pdo<can_2053c::Tpdo1>([this](std::uint8_t low, std::uint8_t high) {
+          read_.digital = static_cast<std::uint16_t>(low | high << 8);
+        }),
+        analogue_inputs_.template on_pdo<can_2017c::Tpdo2>(
+            [this](std::int16_t first, std::int16_t, std::int16_t, std::int16_t) { read_.analogue = first; }),
+    }));
+    if (!listening_) log_("the PDOs of the inputs cannot be read");
+  }
+
+  /// Outputs stop; their modules bring them to their error values.
+  void lost(canopen::NodeId node_id) {
+    log_(name(node_id) + " is lost: outputs stop");
+    running_ = false;
+    ready_[node_id.value() - 1u] = false;
+    for (const canopen::NodeId with_outputs : {outputs_.node_id(), analogue_outputs_.node_id()}) {
+      static_cast<void>(master_.command(canopen::NmtCommand::stop, with_outputs));
+    }
+  }
+
+  // Running
+
+  struct Channels {
+    std::uint16_t digital = 0;
+    std::int16_t analogue = 0;
+    friend bool operator==(const Channels&, const Channels&) = default;
+  };
+
+  void write_outputs() {
+    Channels next = written_.value_or(Channels{});
+    next.digital = static_cast<std::uint16_t>(next.digital + 1);
+    next.analogue = static_cast<std::int16_t>(next.analogue >= 16'000 ? -16'000 : next.analogue + 1'000);
+    const auto sent = all({
+        outputs_.template send<can_2057c::Rpdo1>(static_cast<std::uint8_t>(next.digital),
+                                                 static_cast<std::uint8_t>(next.digital >> 8)),
+        analogue_outputs_.template send<can_2024c::Rpdo2>(next.analogue, std::int16_t{0}, std::int16_t{0},
+                                                          std::int16_t{0}),
+    });
+    if (sent) written_ = next;
+  }
+
+  void compare() {
+    if (!written_) return;
+    if (read_ == *written_) {
+      ++agreed_;
+      return;
+    }
+    ++differed_;
+    log_("inputs " + hex(read_.digital, 4) + ", " + std::to_string(read_.analogue) + " but outputs " +
+         hex(written_->digital, 4) + ", " + std::to_string(written_->analogue));
+  }
+
+  [[nodiscard]] static std::string name(canopen::NodeId node_id) { return "node " + std::to_string(node_id.value()); }
+  [[nodiscard]] static std::string hex(unsigned value, int digits) {
+    char text[16];
+    std::snprintf(text, sizeof text, "%0*Xh", digits, value);
+    return text;
+  }
+
+  Log log_;
+  canopen::Master<B> master_;
+  canopen::MasterRemote<can_2057c::Device, B> outputs_{master_, canopen::NodeId{1}};
+  canopen::MasterRemote<can_2053c::Device, B> inputs_{master_, canopen::NodeId{2}};
+  canopen::MasterRemote<can_2024c::Device, B> analogue_outputs_{master_, canopen::NodeId{3}};
+  canopen::MasterRemote<can_2017c::Device, B> analogue_inputs_{master_, canopen::NodeId{4}};
+  std::array<bool, nodes> ready_{};
+  bool listening_ = false;
+  bool running_ = false;
+  std::optional<Channels> written_;
+  Channels read_;
+  unsigned agreed_ = 0;
+  unsigned differed_ = 0;
+};
