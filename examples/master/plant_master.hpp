@@ -134,12 +134,14 @@ class PlantMaster {
     if (!listening_) log_("the PDOs of the inputs cannot be read");
   }
 
-  /// Outputs stop; their modules bring them to their error values.
+  /// Outputs stop; their modules bring them to their error values. A module that is lost itself is being reset already,
+  /// and would not boot in Stopped.
   void lost(canopen::NodeId node_id) {
     log_(name(node_id) + " is lost: outputs stop");
     running_ = false;
     ready_[node_id.value() - 1u] = false;
     for (const canopen::NodeId with_outputs : {outputs_.node_id(), analogue_outputs_.node_id()}) {
+      if (!master_.state(with_outputs)) continue;
       static_cast<void>(master_.command(canopen::NmtCommand::stop, with_outputs));
     }
   }

@@ -97,6 +97,19 @@ TEST_F(MasterAndPlant, StopTheOutputsWhileANodeIsLostAndGoOnWithIt) {
   EXPECT_GT(master.agreed(), agreed);
 }
 
+TEST_F(MasterAndPlant, GoOnWhenAllNodesAreLostAndBack) {
+  run(20);
+  end.on_frame = nullptr;
+  run(20);
+  EXPECT_TRUE(logged("node 1 is lost: outputs stop"));
+  EXPECT_TRUE(logged("node 4 is lost: outputs stop"));
+  log.clear();
+  end.on_frame = [this](const canopen::Frame& frame, canopen::TimePoint now) { plant.on_frame(frame, now); };
+  run(100);
+  EXPECT_TRUE(logged("all nodes are configured: started"));
+  EXPECT_TRUE(master.running());
+}
+
 TEST_F(MasterAndPlant, BringTheOutputsToTheirErrorValuesWhenTheMasterIsLost) {
   run(20);
   EXPECT_NE(plant.digital_out().node().get<can_2057c::od::write_output_8_bit<1>>(), 0);

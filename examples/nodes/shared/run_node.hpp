@@ -18,13 +18,10 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <atomic>
-#include <canopen/frame.hpp>
 #include <canopen/node_id.hpp>
 #include <canopen/port/host_bus.hpp>
-#include <canopen/time.hpp>
 #include <cerrno>
 #include <charconv>
 #include <csignal>
@@ -152,12 +149,11 @@ namespace run_detail {
 
 inline std::atomic<bool> stop{false};
 
-/// Waits for a frame, a line or the deadline.
-inline void wait_for_input(const canopen::HostBus& bus, const StandardInput& input, canopen::Duration span) {
+/// Waits for the bus or a line, for a while.
+inline void wait_for_either(const canopen::HostBus& bus, const StandardInput& input) {
+  constexpr int look_at_stop = 100;  // ms
   std::array<pollfd, 2> waiting{{{bus.file_descriptor(), POLLIN, 0}, {input.file_descriptor(), POLLIN, 0}}};
-  const timespec time{static_cast<time_t>(span.count() / 1'000'000),
-                      static_cast<long>(span.count() % 1'000'000) * 1'000};
-  static_cast<void>(::ppoll(waiting.data(), waiting.size(), &time, nullptr));
+  static_cast<void>(::poll(waiting.data(), waiting.size(), look_at_stop));
 }
 
 [[nodiscard]] inline bool readable(int descriptor) {
@@ -165,24 +161,14 @@ inline void wait_for_input(const canopen::HostBus& bus, const StandardInput& inp
   return descriptor >= 0 && ::poll(&waiting, 1, 0) > 0;
 }
 
-/// One context for the bus, the time and the inputs. `run` is called with an application until it asks for a power
-/// cycle; false: it was stopped.
+/// One context for the bus, the time and the inputs. True: a line asks for a power cycle; false: it was stopped.
 template <class Application>
 [[nodiscard]] bool run_until_power_cycle(canopen::HostBus& bus, Application& application, StandardInput& input,
                                          Surroundings& around) {
-  constexpr canopen::Duration look_at_stop{100'000};
-  constexpr canopen::Duration shortest{500};  // frames may wait for room on the bus
   application.start(bus.now());
   while (!stop) {
-    canopen::Duration wait = look_at_stop;
-    if (const auto deadline = application.next_deadline()) {
-      const canopen::TimePoint now = bus.now();
-      wait = *deadline > now ? std::min(wait, *deadline - now) : shortest;
-    }
-    wait_for_input(bus, input, wait);
-    while (const std::optional<canopen::Frame> frame = bus.receive(canopen::Duration{0})) {
-      application.on_frame(*frame, bus.now());
-    }
+    bus.serve(application);
+    wait_for_either(bus, input);
     if (readable(input.file_descriptor())) input.read();
     while (const std::optional<std::string> text = input.next_line()) {
       const InputLine line{*text};
@@ -193,7 +179,6 @@ template <class Application>
         around.log("not understood: " + *text);
       }
     }
-    application.on_time(bus.now());
   }
   return false;
 }
