@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
   edsc::add_dump_command(app, exit_code);
   edsc::add_format_command(app, exit_code);
   edsc::add_diff_command(app, exit_code);
+  edsc::add_bus_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& problem) {

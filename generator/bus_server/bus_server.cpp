@@ -1,0 +1,188 @@
+#include "bus_server/bus_server.hpp"
+
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+namespace edsc {
+namespace {
+
+/// How much one client may say before the next one is heard.
+constexpr std::size_t bytes_a_turn = 4096;
+
+[[noreturn]] void fail(const std::string& what) { throw std::system_error{errno, std::generic_category(), what}; }
+
+canopen::socketcand::TimeStamp present() {
+  timespec time{};
+  ::clock_gettime(CLOCK_REALTIME, &time);
+  return {time.tv_sec, static_cast<std::int32_t>(time.tv_nsec / 1000)};
+}
+
+void set_option(int socket, int level, int option) {
+  const int on = 1;
+  static_cast<void>(::setsockopt(socket, level, option, &on, sizeof on));
+}
+
+ListenAddress address_of(const sockaddr_storage& address, socklen_t size) {
+  std::array<char, NI_MAXHOST> host{};
+  std::array<char, NI_MAXSERV> port{};
+  if (::getnameinfo(reinterpret_cast<const sockaddr*>(&address), size, host.data(), host.size(), port.data(),
+                    port.size(), NI_NUMERICHOST | NI_NUMERICSERV) != 0)
+    return {"?", 0};
+  return {host.data(), static_cast<std::uint16_t>(std::stoul(port.data()))};
+}
+
+}  // namespace
+
+BusServer::BusServer(const ListenAddress& address, std::vector<std::string> buses, BusLimits limits, BusEvents events)
+    : address_{address}, buses_{std::move(buses)}, limits_{limits}, events_{std::move(events)} {
+  try {
+    listen();
+  } catch (...) {
+    if (listener_ >= 0) ::close(listener_);
+    throw;
+  }
+}
+
+BusServer::~BusServer() { ::close(listener_); }
+
+void BusServer::listen() {
+  addrinfo hints{};
+  hints.ai_socktype = SOCK_STREAM;
+  hints.ai_flags = AI_PASSIVE | AI_NUMERICSERV;
+  addrinfo* found = nullptr;
+  const std::string where = "listening at " + to_text(address_);
+  if (const int error = ::getaddrinfo(address_.host.c_str(), std::to_string(address_.port).c_str(), &hints, &found);
+      error != 0)
+    throw std::runtime_error{where + ": " + ::gai_strerror(error)};
+  const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> first{found, &::freeaddrinfo};
+  listener_ = ::socket(first->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  if (listener_ < 0) fail(where);
+  set_option(listener_, SOL_SOCKET, SO_REUSEADDR);
+  if (::bind(listener_, first->ai_addr, first->ai_addrlen) != 0 || ::listen(listener_, SOMAXCONN) != 0) fail(where);
+  sockaddr_storage bound{};
+  socklen_t size = sizeof bound;
+  if (::getsockname(listener_, reinterpret_cast<sockaddr*>(&bound), &size) != 0) fail(where);
+  address_.port = address_of(bound, size).port;
+}
+
+void BusServer::turn(std::chrono::milliseconds wait, const sigset_t* signals) {
+  std::vector<pollfd> ready{{listener_, POLLIN, 0}};
+  for (const auto& client : clients_) {
+    const bool congested = waits(*client);
+    if (congested) wait = std::min(wait, limits_.patience / 4);
+    ready.push_back(
+        {client->socket(), static_cast<short>((congested ? 0 : POLLIN) | (client->backlog() > 0 ? POLLOUT : 0)), 0});
+  }
+  const timespec span{wait.count() / 1000, wait.count() % 1000 * 1'000'000};
+  const int count = ::ppoll(ready.data(), ready.size(), &span, signals);
+  if (count < 0 && errno != EINTR) fail("poll");
+  if (count < 0) return;
+  std::vector<std::unique_ptr<BusClient>> leaving;
+  for (std::size_t i = 1; i < ready.size(); ++i) {
+    auto& client = clients_[i - 1];
+    const bool heard = (ready[i].revents & (POLLIN | POLLHUP | POLLERR)) != 0;
+    if (!heard || hear(*client)) continue;
+    static_cast<void>(client->flush(Clock::now()));
+    leaving.push_back(std::move(client));
+  }
+  std::erase(clients_, nullptr);
+  if (ready[0].revents != 0) welcome();
+  flush();
+}
+
+void BusServer::welcome() {
+  sockaddr_storage from{};
+  socklen_t size = sizeof from;
+  const int socket = ::accept4(listener_, reinterpret_cast<sockaddr*>(&from), &size, SOCK_NONBLOCK | SOCK_CLOEXEC);
+  if (socket < 0 && (errno == EAGAIN || errno == EINTR || errno == ECONNABORTED)) return;
+  if (socket < 0) fail("accept");
+  set_option(socket, IPPROTO_TCP, TCP_NODELAY);
+  auto client = std::make_unique<BusClient>(socket, to_text(address_of(from, size)));
+  if (clients_.size() < limits_.clients) {
+    client->put("< hi >");
+    clients_.push_back(std::move(client));
+    return;
+  }
+  client->refuse("too many clients");
+  static_cast<void>(client->flush(Clock::now()));
+  say(*client, "too many clients");
+}
+
+/// Takes what the client says. False when it is to leave.
+bool BusServer::hear(BusClient& client) {
+  std::array<char, bytes_a_turn> bytes{};
+  const ssize_t size = ::recv(client.socket(), bytes.data(), bytes.size(), 0);
+  if (size < 0) return errno == EAGAIN || errno == EINTR;
+  set_option(client.socket(), IPPROTO_TCP, TCP_QUICKACK);  // else a client without TCP_NODELAY waits for it
+  for (ssize_t i = 0; i < size; ++i) {
+    if (!answer(client, client.take(bytes[static_cast<std::size_t>(i)]))) return false;
+  }
+  return size > 0;
+}
+
+bool BusServer::answer(BusClient& client, ClientRequest request) {
+  switch (request) {
+    case ClientRequest::nothing: return true;
+    case ClientRequest::open_bus: return open_bus(client);
+    case ClientRequest::send_frame: deliver(client); return true;
+    case ClientRequest::leave: say(client, client.leaves_because()); return false;
+  }
+  return true;
+}
+
+bool BusServer::open_bus(BusClient& client) {
+  const auto found = std::find(buses_.begin(), buses_.end(), client.wanted_bus());
+  if (found == buses_.end()) {
+    client.refuse("could not open bus");
+    say(client, "there is no bus \"" + client.wanted_bus() + "\"");
+    return false;
+  }
+  client.opened(static_cast<std::size_t>(found - buses_.begin()));
+  return true;
+}
+
+void BusServer::deliver(const BusClient& sender) {
+  const auto time = present();
+  const auto text = canopen::socketcand::received_text(sender.frame(), time);
+  for (const auto& client : clients_) {
+    if (client && client.get() != &sender && client->listens() && client->bus() == sender.bus())
+      client->put(text.view());
+  }
+  events_.on_frame(sender.frame(), buses_[*sender.bus()], time);
+}
+
+/// Sends what is on its way; clients that are lost, or have read nothing for too long, leave.
+void BusServer::flush() {
+  const auto now = Clock::now();
+  std::erase_if(clients_, [&](const std::unique_ptr<BusClient>& client) {
+    if (!client->flush(now)) return true;
+    if (client->backlog() <= limits_.backlog || client->stalled(now) < limits_.patience) return false;
+    say(*client, "it does not read");
+    return true;
+  });
+}
+
+/// True while the client's bus waits until one of its clients has read what is on its way.
+bool BusServer::waits(const BusClient& client) const {
+  return client.bus() && std::any_of(clients_.begin(), clients_.end(), [&](const auto& other) {
+           return other->bus() == client.bus() && other->backlog() > limits_.backlog;
+         });
+}
+
+void BusServer::say(const BusClient& client, const std::string& message) const {
+  events_.on_trouble("client " + client.name() + " is sent away: " + message);
+}
+
+}  // namespace edsc

@@ -1,0 +1,71 @@
+/// CAN buses of this process, served over TCP with the socketcand protocol.
+#pragma once
+
+#include <signal.h>
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bus_server/bus_client.hpp"
+#include "bus_server/listen_address.hpp"
+#include "canopen/frame.hpp"
+#include "canopen/port/socketcand_protocol.hpp"
+
+namespace edsc {
+
+struct BusLimits {
+  std::size_t clients = 64;
+  std::size_t backlog = std::size_t{1} << 20;  ///< bytes on their way to one client, beyond which its bus waits for it
+  std::chrono::milliseconds patience{1000};    ///< how long a bus waits for a client that reads nothing
+};
+
+/// What the server tells of; none of them may be empty.
+struct BusEvents {
+  std::function<void(const canopen::Frame&, const std::string& bus, canopen::socketcand::TimeStamp)> on_frame;
+  std::function<void(const std::string& message)> on_trouble;  ///< a client is sent away
+};
+
+/// Each bus hands every frame to all its clients but the sender, to all in the same order.
+class BusServer {
+ public:
+  /// Listens. Throws std::system_error when it cannot.
+  BusServer(const ListenAddress& address, std::vector<std::string> buses, BusLimits limits, BusEvents events);
+  BusServer(const BusServer&) = delete;
+  BusServer& operator=(const BusServer&) = delete;
+  ~BusServer();
+
+  /// Where it listens, with the port that it has got.
+  [[nodiscard]] const ListenAddress& address() const { return address_; }
+  [[nodiscard]] std::size_t clients() const { return clients_.size(); }
+
+  /// Waits until a client wants something, or for this time at most, and serves all that do. `signals` is the mask
+  /// while it waits; a signal ends the turn.
+  void turn(std::chrono::milliseconds wait, const sigset_t* signals = nullptr);
+
+ private:
+  using Clock = BusClient::Clock;
+
+  void listen();
+  void welcome();
+  [[nodiscard]] bool hear(BusClient& client);
+  [[nodiscard]] bool answer(BusClient& client, ClientRequest request);
+  [[nodiscard]] bool open_bus(BusClient& client);
+  void deliver(const BusClient& sender);
+  void flush();
+  [[nodiscard]] bool waits(const BusClient& client) const;
+  void say(const BusClient& client, const std::string& message) const;
+
+  ListenAddress address_;
+  std::vector<std::string> buses_;
+  BusLimits limits_;
+  BusEvents events_;
+  int listener_ = -1;
+  std::vector<std::unique_ptr<BusClient>> clients_;
+};
+
+}  // namespace edsc
