@@ -1,0 +1,102 @@
+"""What a walk has checked, and the exceptions that it knows: a row of exceptions.tsv for each thing that a device does
+otherwise than CiA 301 and its data sheet say, or that must not be tried."""
+
+from __future__ import annotations
+
+import fnmatch
+import re
+from collections import Counter
+from dataclasses import dataclass
+from pathlib import Path
+
+SKIP, ANY = "skip", "any"
+
+
+@dataclass
+class Exception_:
+    device: str   # a pattern of names, such as can_20*
+    entries: str  # "1010h:01", "1400h-15FFh:01", "1003h:01-10" or "6040h:*", several with commas
+    checks: str   # several with commas
+    outcome: str  # "skip", "any", or what comes instead, such as "abort 06010002"
+    reason: str
+    line: int
+    used: bool = False    # some walk came to it
+    needed: bool = False  # and would have failed without it
+
+    def covers(self, device: str, entry: str, check: str) -> bool:
+        return (any(fnmatch.fnmatch(device, one) for one in self.device.split(",")) and check in self.checks.split(",")
+                and any(self.names(one, entry) for one in self.entries.split(",")))
+
+    @staticmethod
+    def names(pattern: str, entry: str) -> bool:
+        if pattern == entry:
+            return True
+        place, match = re.fullmatch(r"([0-9A-F]{4})h:([0-9A-F]{2})", entry), re.fullmatch(
+            r"([0-9A-F]{4})h(?:-([0-9A-F]{4})h)?:(?:\*|([0-9A-F]{2})(?:-([0-9A-F]{2}))?)", pattern)
+        if not place or not match:
+            return False
+        first, last, low, high = (int(text, 16) if text else None for text in match.groups())
+        in_range = first <= int(place[1], 16) <= (last or first)
+        return in_range and (low is None or low <= int(place[2], 16) <= (low if high is None else high))
+
+
+def read_exceptions(path: Path) -> list[Exception_]:
+    rows = []
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        if line and not line.startswith("#"):
+            rows.append(Exception_(*line.split("\t"), line=number))
+    return rows
+
+
+class Report:
+    """The checks of one device. Only what fails is printed."""
+
+    def __init__(self, device: str, exceptions: list[Exception_]) -> None:
+        self.device, self.exceptions = device, exceptions
+        self.passed: Counter[str] = Counter()
+        self.failed: Counter[str] = Counter()
+        self.excepted: Counter[str] = Counter()
+
+    def exception(self, entry: str, check: str) -> Exception_ | None:
+        for row in self.exceptions:
+            if row.covers(self.device, entry, check):
+                row.used = True
+                return row
+        return None
+
+    def skips(self, entry: str, check: str) -> bool:
+        row = self.exception(entry, check)
+        if row is None or row.outcome != SKIP:
+            return False
+        row.needed = True
+        self.excepted[check] += 1
+        return True
+
+    def check(self, check: str, entry: str, got: str, wanted: str) -> bool:
+        """True when it came as wanted, or as an exception says."""
+        row = self.exception(entry, check)
+        if row is not None and got != wanted:
+            row.needed = True
+            self.excepted[check] += row.outcome in (ANY, got)
+        good = got == wanted if row is None else row.outcome in (ANY, got)
+        if row is not None and row.outcome == wanted:
+            good = got == wanted
+        (self.passed if good else self.failed)[check] += 1
+        if not good:
+            expected = wanted if row is None else f"{row.outcome} (exceptions.tsv:{row.line})"
+            print(f"{self.device}: {check} {entry}: {got}, wanted {expected}", flush=True)
+        return good
+
+    def summary(self) -> str:
+        kinds = sorted(set(self.passed) | set(self.failed) | set(self.excepted))
+        parts = [f"{kind} {self.passed[kind]}" + (f" ({self.failed[kind]} FAILED)" if self.failed[kind] else "")
+                 for kind in kinds]
+        return (f"{self.device}: {sum(self.passed.values())} checks ok, {sum(self.failed.values())} failed, "
+                f"{sum(self.excepted.values())} by exception: {', '.join(parts)}")
+
+
+def stale(exceptions: list[Exception_]) -> list[str]:
+    """Rows that no walk needed."""
+    return [f"exceptions.tsv:{row.line}: {row.device} {row.entries} {row.checks}: " +
+            ("no device differs here any more" if row.used else "there is no such entry") for row in exceptions
+            if not row.needed]

@@ -1,0 +1,68 @@
+"""A CAN bus by its address, over python-can: frames that nobody has asked for yet wait until somebody does."""
+
+from __future__ import annotations
+
+import logging
+import re
+import time
+from collections import deque
+
+import can
+
+SOCKETCAND = re.compile(r"socketcand:([^/]+):(\d+)/(\w+)")
+
+
+class Wire:
+    def __init__(self, address: str) -> None:
+        if match := SOCKETCAND.fullmatch(address):
+            options = {"interface": "socketcand", "host": match[1], "port": int(match[2]), "channel": match[3]}
+            logging.getLogger("can.interfaces.socketcand").setLevel(logging.ERROR)
+        else:
+            options = {"interface": "socketcan", "channel": address.removeprefix("socketcan:")}
+        self.socketcand = options["interface"] == "socketcand"
+        self.bus = can.Bus(**options)
+        self.waiting: deque[tuple[float, int, bytes]] = deque(maxlen=10000)
+
+    def close(self) -> None:
+        self.bus.shutdown()
+
+    def send(self, can_id: int, data: bytes = b"") -> None:
+        self.bus.send(can.Message(arbitration_id=can_id, data=data, is_extended_id=False))
+
+    def request(self, can_id: int, size: int) -> None:
+        """A remote frame. python-can's socketcand interface has no words for it."""
+        if self.socketcand:
+            self.bus._tcp_send(f"< sendrtr {can_id:X} {size} >")
+        else:
+            self.bus.send(can.Message(arbitration_id=can_id, dlc=size, is_remote_frame=True, is_extended_id=False))
+
+    def receive(self, can_id: int, seconds: float) -> bytes | None:
+        found = self.receive_timed(can_id, seconds)
+        return found[1] if found else None
+
+    def receive_timed(self, can_id: int, seconds: float) -> tuple[float, bytes] | None:
+        """The next data frame with this CAN-ID, and when it came; nothing when none comes in this time."""
+        for i, (at, found, data) in enumerate(self.waiting):
+            if found == can_id:
+                del self.waiting[i]
+                return at, data
+        end = time.monotonic() + seconds
+        while True:
+            message = self.bus.recv(max(0.0, end - time.monotonic()))
+            now = time.monotonic()
+            if message is not None and not message.is_remote_frame and not message.is_error_frame:
+                if message.arbitration_id == can_id:
+                    return now, bytes(message.data)
+                self.waiting.append((now, message.arbitration_id, bytes(message.data)))
+            if now >= end:
+                return None
+
+    def forget(self, can_id: int | None = None) -> None:
+        """What has come by now and nobody has asked for."""
+        while (message := self.bus.recv(0)) is not None:
+            if can_id is not None and not message.is_remote_frame and message.arbitration_id != can_id:
+                self.waiting.append((time.monotonic(), message.arbitration_id, bytes(message.data)))
+        if can_id is None:
+            self.waiting.clear()
+        else:
+            self.waiting = deque((one for one in self.waiting if one[1] != can_id), maxlen=self.waiting.maxlen)
