@@ -1,70 +1,148 @@
 #!/usr/bin/env python3
-"""Masters with none of edsc's code walk over the eight reference nodes.
+"""A master with none of edsc's code walks over the eight reference nodes, which run all at once on one bus.
 
-    masters_test.py --nodes DIR --eds DIR (--edsc EDSC | --bus ADDRESS) [--only NAME]
+    masters_test.py --nodes DIR [--edsc EDSC | --bus ADDRESS] [--node-canopen WORK_DIR] [--only NAME]
 
-Starts the nodes, on a bus of `edsc bus` or the one of ADDRESS, and walks over them with python-can.
+The bus is one of `edsc bus`, or the one at ADDRESS, such as socketcan:vcan0. The master is python-can with the walk beside
+this file, or node-canopen, which npm installs in WORK_DIR. What fails is printed, and a line for each device. Exit code 77:
+skipped.
 """
 
 from __future__ import annotations
 
 import argparse
+import importlib.util
+import shutil
 import subprocess
 import sys
 import time
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
+DATA_SHEETS = HERE.parent.parent / "eds"
+EXCEPTIONS = HERE / "exceptions.tsv"
 sys.path.insert(0, str(HERE))
 
-from data_sheet import DataSheet  # noqa: E402
-from report import Report, read_exceptions, stale  # noqa: E402
-from walk import Walk  # noqa: E402
-from wire import Wire  # noqa: E402
-
-# Name of the node's program and its data sheet, and its node-ID here.
+# The node's program, and its node-ID here.
 NODES = {"can_2017c": 1, "can_2024c": 2, "can_2053c": 3, "can_2057c": 4, "cpc_tc1": 5, "cpd": 6, "ezd_1136": 7, "rk5c": 8}
+SKIPPED = 77
+
+
+def data_sheet_of(node: str) -> Path:
+    return DATA_SHEETS / f"{node.replace('_', '-')}.eds"
+
+
+class Skipped(Exception):
+    pass
+
+
+class Plant:
+    """A bus and the nodes on it."""
+
+    def __init__(self, arguments: argparse.Namespace) -> None:
+        self.programs: list[subprocess.Popen[str]] = []
+        self.nodes: dict[str, subprocess.Popen[str]] = {}
+        self.names = [name for name in NODES if arguments.only in (None, name)]
+        self.directory = arguments.nodes
+        self.address = arguments.bus or self.serve(arguments.edsc)
+
+    def __enter__(self) -> Plant:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for program in self.programs:
+            program.kill()
+        for program in self.programs:
+            program.wait()
+
+    def serve(self, edsc: Path) -> str:
+        bus = subprocess.Popen([edsc, "bus", "--listen", "127.0.0.1:0"], stdout=subprocess.PIPE, text=True)
+        self.programs.append(bus)
+        return bus.stdout.readline().strip()
+
+    def power_on(self) -> None:
+        for name in self.names:
+            node = subprocess.Popen([self.directory / name, self.address, "--node-id", str(NODES[name])],
+                                    stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
+            self.programs.append(node)
+            self.nodes[name] = node
+
+    def tell(self, name: str, line: str) -> None:
+        """An input of a node, on its standard input."""
+        self.nodes[name].stdin.write(line + "\n")
+        self.nodes[name].stdin.flush()
+
+
+def with_python_can(plant: Plant) -> int:
+    """The number of failures, and of exceptions that no device needs any more."""
+    if importlib.util.find_spec("can") is None:
+        raise Skipped("python3-can is not installed")
+    from data_sheet import DataSheet
+    from report import Report, read_exceptions, stale
+    from walk import Walk
+    from wire import Wire
+
+    exceptions = read_exceptions(EXCEPTIONS)
+    wire = Wire(plant.address)
+    failed = 0
+    plant.power_on()
+    reports = {name: Report(name, exceptions) for name in plant.names}
+    for name in plant.names:
+        reports[name].check("boot-up", "power-on", str(wire.receive(0x700 + NODES[name], 10)), str(b"\0"))
+    for name in plant.names:
+        begin = time.monotonic()
+        Walk(wire, DataSheet(data_sheet_of(name), NODES[name]), reports[name],
+             lambda line, name=name: plant.tell(name, line)).run()
+        print(f"{reports[name].summary()} ({time.monotonic() - begin:.1f} s)", flush=True)
+        failed += sum(reports[name].failed.values())
+    wire.close()
+    unneeded = stale(exceptions) if len(plant.names) == len(NODES) else []
+    print("\n".join(unneeded), end="\n" if unneeded else "")
+    return failed + len(unneeded)
+
+
+def install_node_canopen(work: Path) -> Path:
+    """Its program, with the packages of the lock file installed beside it."""
+    for program in ("node", "npm"):
+        if shutil.which(program) is None:
+            raise Skipped(f"there is no {program}")
+    source = HERE / "node_canopen"
+    lock, installed = source / "package-lock.json", work / "installed.json"
+    shutil.copytree(source, work, dirs_exist_ok=True)
+    if not installed.exists() or installed.read_bytes() != lock.read_bytes():
+        npm = subprocess.run(["npm", "ci", "--ignore-scripts", "--no-audit", "--no-fund", "--fetch-retries=1"], cwd=work,
+                             capture_output=True, text=True, check=False)
+        if npm.returncode != 0:
+            raise Skipped(f"npm cannot install canopen:\n{npm.stderr}")
+        installed.write_bytes(lock.read_bytes())
+    return work / "master.js"
+
+
+def with_node_canopen(plant: Plant, work: Path) -> int:
+    """The exit code of its program."""
+    master = install_node_canopen(work)
+    plant.power_on()
+    nodes = [f"{name}={NODES[name]}" for name in plant.names]
+    return subprocess.run(["node", master, plant.address, DATA_SHEETS, EXCEPTIONS, *nodes], check=False).returncode
 
 
 def main() -> int:
     parser = argparse.ArgumentParser()
     parser.add_argument("--nodes", type=Path, required=True)
-    parser.add_argument("--eds", type=Path, required=True)
     parser.add_argument("--edsc", type=Path)
     parser.add_argument("--bus")
-    parser.add_argument("--only")
+    parser.add_argument("--node-canopen", type=Path)
+    parser.add_argument("--only", choices=NODES)
     arguments = parser.parse_args()
     begin = time.monotonic()
-    running: list[subprocess.Popen[str]] = []
-    address = arguments.bus
-    if address is None:
-        bus = subprocess.Popen([arguments.edsc, "bus", "--listen", "127.0.0.1:0"], stdout=subprocess.PIPE, text=True)
-        running.append(bus)
-        address = bus.stdout.readline().strip()
-    exceptions = read_exceptions(HERE / "exceptions.tsv")
-    wire = Wire(address)
-    failed = 0
     try:
-        for name, node_id in NODES.items():
-            if arguments.only not in (None, name):
-                continue
-            started = time.monotonic()
-            node = subprocess.Popen([arguments.nodes / name, address.split(":")[2].split("/")[0], str(node_id)],
-                                    stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
-            running.append(node)
-            report = Report(name, exceptions)
-            boot_up = wire.receive(0x700 + node_id, 5)
-            report.check("boot-up", "power-on", str(boot_up), str(b"\0"))
-            Walk(wire, DataSheet(arguments.eds / f"{name.replace('_', '-')}.eds", node_id), report).run()
-            print(report.summary(), f"({time.monotonic() - started:.1f} s)", flush=True)
-            failed += sum(report.failed.values())
-    finally:
-        for program in running:
-            program.kill()
-    unneeded = stale(exceptions) if arguments.only is None else []
-    print("\n".join(unneeded))
+        with Plant(arguments) as plant:
+            failures = with_node_canopen(plant, arguments.node_canopen) if arguments.node_canopen else with_python_can(plant)
+    except Skipped as reason:
+        print(f"skipped: {reason}")
+        return SKIPPED
     print(f"{time.monotonic() - begin:.1f} s")
-    return 1 if failed or unneeded else 0
+    return 1 if failures else 0
 
 
 if __name__ == "__main__":

@@ -12,9 +12,19 @@ from pathlib import Path
 SKIP, ANY = "skip", "any"
 
 
+def fits(patterns: str, device: str) -> bool:
+    return any(fnmatch.fnmatch(device, one) for one in patterns.split(","))
+
+
+def read_rows(path: Path) -> list[tuple[int, list[str]]]:
+    """The rows of a table, with their lines."""
+    lines = enumerate(path.read_text(encoding="utf-8").splitlines(), 1)
+    return [(number, line.split("\t")) for number, line in lines if line and not line.startswith("#")]
+
+
 @dataclass
 class Exception_:
-    device: str   # a pattern of names, such as can_20*
+    device: str   # patterns of names, such as can_20*, several with commas
     entries: str  # "1010h:01", "1400h-15FFh:01", "1003h:01-10" or "6040h:*", several with commas
     checks: str   # several with commas
     outcome: str  # "skip", "any", or what comes instead, such as "abort 06010002"
@@ -24,7 +34,7 @@ class Exception_:
     needed: bool = False  # and would have failed without it
 
     def covers(self, device: str, entry: str, check: str) -> bool:
-        return (any(fnmatch.fnmatch(device, one) for one in self.device.split(",")) and check in self.checks.split(",")
+        return (fits(self.device, device) and check in self.checks.split(",")
                 and any(self.names(one, entry) for one in self.entries.split(",")))
 
     @staticmethod
@@ -41,11 +51,7 @@ class Exception_:
 
 
 def read_exceptions(path: Path) -> list[Exception_]:
-    rows = []
-    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
-        if line and not line.startswith("#"):
-            rows.append(Exception_(*line.split("\t"), line=number))
-    return rows
+    return [Exception_(*columns, line=number) for number, columns in read_rows(path)]
 
 
 class Report:
