@@ -1,0 +1,218 @@
+/// A motor with an encoder and switches, simulated: what canopen::cia402::Drive moves.
+#pragma once
+
+#include <algorithm>
+#include <canopen/profile/cia402_axis.hpp>
+#include <canopen/time.hpp>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+namespace nodes {
+
+/// The motor, and what a 1 in the objects of its drive stands for. Positions are increments.
+struct AxisData {
+  double increments_per_turn;
+  double velocity_unit;         ///< increments per second
+  double acceleration_unit;     ///< increments per second squared
+  double highest_velocity;      ///< increments per second
+  double highest_acceleration;  ///< increments per second squared; where a ramp is 0
+};
+
+/// The trajectory is one step ahead of the motor. Without power it coasts to a stop.
+class SimulatedAxis {
+ public:
+  explicit SimulatedAxis(const AxisData& data) : data_{data} {}
+
+  // canopen::cia402::Axis
+
+  void enable(bool on) {
+    if (on == enabled_) return;
+    enabled_ = on;
+    demand_ = position_;
+    course_ = Course::stop;
+    deceleration_ = data_.highest_acceleration;
+  }
+  void move_to(std::int32_t position, const canopen::cia402::Profile& profile) {
+    course_ = Course::position;
+    target_ = position;
+    take(profile);
+    wanted_ = std::min(profile.velocity * data_.velocity_unit, data_.highest_velocity);
+  }
+  void run_at(std::int32_t velocity, const canopen::cia402::Profile& profile) {
+    course_ = Course::velocity;
+    take(profile);
+    wanted_ = std::clamp(velocity * data_.velocity_unit, -data_.highest_velocity, data_.highest_velocity);
+  }
+  void stop(std::uint32_t deceleration) {
+    course_ = Course::stop;
+    deceleration_ = ramp(deceleration);
+  }
+  void follow(std::int32_t position) {
+    course_ = Course::follow;
+    target_ = position;
+  }
+  /// What the motor is on its way to moves with it.
+  void set_position(std::int32_t position) {
+    const double shift = position - position_;
+    position_ += shift;
+    demand_ += shift;
+    target_ += shift;
+    machine_ -= shift;
+    turns_ = turns();
+  }
+
+  void step(canopen::Duration span) {
+    const double seconds = span.count() / 1e6;
+    const double before = position_;
+    if (!blocked_) {
+      position_ = demand_;
+      velocity_ = demand_velocity_;
+    } else {
+      velocity_ = 0;
+    }
+    if (enabled_) {
+      advance(seconds);
+    } else {
+      demand_velocity_ = blocked_ ? 0 : towards(demand_velocity_, 0, coasting * seconds);
+      demand_ = position_ + demand_velocity_ * seconds;
+    }
+    const std::int64_t turns_now = turns();
+    if (turns_now != turns_ && position_ != before) index_pulse_ = true;
+    turns_ = turns_now;
+  }
+
+  [[nodiscard]] bool moving() const {
+    const bool on_its_way = course_ == Course::position || (course_ == Course::velocity && wanted_ != 0);
+    return (enabled_ && on_its_way) || demand_velocity_ != 0 || velocity_ != 0;
+  }
+  [[nodiscard]] std::int32_t position() const { return rounded(position_); }
+  [[nodiscard]] std::int32_t velocity() const { return rounded(velocity_ / data_.velocity_unit); }
+  [[nodiscard]] std::int32_t position_demand() const { return rounded(demand_); }
+  [[nodiscard]] std::int32_t velocity_demand() const {
+    const double units = demand_velocity_ / data_.velocity_unit;
+    return rounded(units > 0 ? std::ceil(units) : std::floor(units));
+  }
+  [[nodiscard]] std::uint32_t inputs() const {
+    namespace input = canopen::cia402::input;
+    const double place = position_ + machine_;
+    std::uint32_t bits = held_;
+    if (negative_limit && place <= *negative_limit) bits |= input::negative_limit;
+    if (positive_limit && place >= *positive_limit) bits |= input::positive_limit;
+    if (home_switch && place >= *home_switch) bits |= input::home_switch;
+    return bits;
+  }
+  [[nodiscard]] bool index_pulse() {
+    const bool passed = index_pulse_;
+    index_pulse_ = false;
+    return passed;
+  }
+
+  // The machine around it
+
+  std::optional<double> negative_limit;  ///< where the switches are, in increments from where it stood at power-on
+  std::optional<double> positive_limit;
+  std::optional<double> home_switch;  ///< active from here on
+
+  /// The shaft is turned by hand: only without power.
+  bool turn_to(std::int32_t position) {
+    if (enabled_) return false;
+    position_ = demand_ = position;
+    turns_ = turns();
+    return true;
+  }
+  /// Something keeps the shaft from turning.
+  void block(bool blocked) { blocked_ = blocked; }
+  /// A switch is held down, or let go.
+  void hold(std::uint32_t inputs, bool down) { held_ = down ? held_ | inputs : held_ & ~inputs; }
+
+  [[nodiscard]] double increments_per_turn() const { return data_.increments_per_turn; }
+
+ private:
+  enum class Course : std::uint8_t { stop, position, velocity, follow };
+
+  static constexpr double coasting = 50'000;  ///< increments per second squared
+
+  [[nodiscard]] static std::int32_t rounded(double number) {
+    return static_cast<std::int32_t>(std::clamp(std::round(number), double{std::numeric_limits<std::int32_t>::min()},
+                                                double{std::numeric_limits<std::int32_t>::max()}));
+  }
+  [[nodiscard]] static double towards(double from, double to, double most) {
+    return from < to ? std::min(from + most, to) : std::max(from - most, to);
+  }
+  [[nodiscard]] double ramp(std::uint32_t value) const {
+    const double wanted = value * data_.acceleration_unit;
+    return value == 0 ? data_.highest_acceleration : std::min(wanted, data_.highest_acceleration);
+  }
+  void take(const canopen::cia402::Profile& profile) {
+    acceleration_ = ramp(profile.acceleration);
+    deceleration_ = ramp(profile.deceleration);
+  }
+  [[nodiscard]] std::int64_t turns() const {
+    return static_cast<std::int64_t>(std::floor((position_ + machine_) / data_.increments_per_turn));
+  }
+
+  /// From one velocity to another: faster with the acceleration, slower with the deceleration.
+  [[nodiscard]] double ramped(double from, double to, double seconds) const {
+    const bool faster = std::abs(to) > std::abs(from) && from * to >= 0;
+    return towards(from, to, (faster ? acceleration_ : deceleration_) * seconds);
+  }
+
+  void advance(double seconds) {
+    switch (course_) {
+      case Course::stop: demand_velocity_ = towards(demand_velocity_, 0, deceleration_ * seconds); break;
+      case Course::velocity:
+        demand_velocity_ = ramped(demand_velocity_, wanted_, seconds);
+        if (wanted_ == 0 && demand_velocity_ == 0) course_ = Course::stop;
+        break;
+      case Course::position: return advance_to_target(seconds);
+      case Course::follow: {
+        const double furthest = data_.highest_velocity * seconds;
+        const double way = std::clamp(target_ - demand_, -furthest, furthest);
+        demand_velocity_ = way / seconds;
+        break;
+      }
+    }
+    demand_ += demand_velocity_ * seconds;
+  }
+
+  /// As fast as it may be to stop at the target, at most as fast as the profile.
+  void advance_to_target(double seconds) {
+    const double way = target_ - demand_;
+    const double step = deceleration_ * seconds;
+    const double can_stop = step * (std::sqrt(0.25 + 2 * std::abs(way) / (step * seconds)) - 0.5);
+    demand_velocity_ = ramped(demand_velocity_, std::copysign(std::min(wanted_, can_stop), way), seconds);
+    const double ahead = demand_velocity_ * seconds;
+    if (std::abs(way) <= std::abs(ahead) + arrived && std::abs(demand_velocity_) <= 2 * step && wanted_ != 0) {
+      demand_ = target_;
+      demand_velocity_ = 0;
+      course_ = Course::stop;
+    } else {
+      demand_ += ahead;
+    }
+  }
+
+  static constexpr double arrived = 1e-3;  ///< increments
+
+  AxisData data_;
+  bool enabled_ = false;
+  bool blocked_ = false;
+  bool index_pulse_ = false;
+  std::uint32_t held_ = 0;
+  Course course_ = Course::stop;
+  double machine_ = 0;  ///< from the position to the place on the machine
+  double position_ = 0;
+  double velocity_ = 0;
+  double demand_ = 0;
+  double demand_velocity_ = 0;
+  double target_ = 0;
+  double wanted_ = 0;  ///< velocity
+  double acceleration_ = 0;
+  double deceleration_ = 0;
+  std::int64_t turns_ = 0;
+};
+
+static_assert(canopen::cia402::Axis<SimulatedAxis>);
+
+}  // namespace nodes

@@ -1,0 +1,54 @@
+/// The objects of CiA 402 that the profile reads and writes, whatever a data sheet names them.
+#pragma once
+
+#include <cstdint>
+
+#include "canopen/access.hpp"
+#include "canopen/object.hpp"
+
+namespace canopen::cia402::object {
+
+template <std::uint16_t Index, class T, std::uint8_t SubIndex = 0>
+using Entry = Object<Index, SubIndex, T, Access::rw>;
+
+using ErrorCode = Entry<0x603F, std::uint16_t>;
+using Controlword = Entry<0x6040, std::uint16_t>;
+using Statusword = Entry<0x6041, std::uint16_t>;
+using QuickStopOptionCode = Entry<0x605A, std::int16_t>;
+using ShutdownOptionCode = Entry<0x605B, std::int16_t>;
+using DisableOperationOptionCode = Entry<0x605C, std::int16_t>;
+using HaltOptionCode = Entry<0x605D, std::int16_t>;
+using FaultReactionOptionCode = Entry<0x605E, std::int16_t>;
+using ModesOfOperation = Entry<0x6060, std::int8_t>;
+using ModesOfOperationDisplay = Entry<0x6061, std::int8_t>;
+using PositionDemandValue = Entry<0x6062, std::int32_t>;
+using PositionActualValue = Entry<0x6064, std::int32_t>;
+using FollowingErrorWindow = Entry<0x6065, std::uint32_t>;
+using FollowingErrorTimeOut = Entry<0x6066, std::uint16_t>;
+using PositionWindow = Entry<0x6067, std::uint32_t>;
+using PositionWindowTime = Entry<0x6068, std::uint16_t>;
+using VelocityDemandValue = Entry<0x606B, std::int32_t>;
+using VelocityActualValue = Entry<0x606C, std::int32_t>;
+using VelocityWindow = Entry<0x606D, std::uint16_t>;
+using VelocityWindowTime = Entry<0x606E, std::uint16_t>;
+using VelocityThreshold = Entry<0x606F, std::uint16_t>;
+using VelocityThresholdTime = Entry<0x6070, std::uint16_t>;
+using TargetPosition = Entry<0x607A, std::int32_t>;
+using HomeOffset = Entry<0x607C, std::int32_t>;
+using MinPositionLimit = Entry<0x607D, std::int32_t, 1>;
+using MaxPositionLimit = Entry<0x607D, std::int32_t, 2>;
+using MaxProfileVelocity = Entry<0x607F, std::uint32_t>;
+using ProfileVelocity = Entry<0x6081, std::uint32_t>;
+using ProfileAcceleration = Entry<0x6083, std::uint32_t>;
+using ProfileDeceleration = Entry<0x6084, std::uint32_t>;
+using QuickStopDeceleration = Entry<0x6085, std::uint32_t>;
+using HomingMethodCode = Entry<0x6098, std::int8_t>;
+using SpeedToSwitch = Entry<0x6099, std::uint32_t, 1>;
+using SpeedToZero = Entry<0x6099, std::uint32_t, 2>;
+using HomingAcceleration = Entry<0x609A, std::uint32_t>;
+using PositionOffset = Entry<0x60B0, std::int32_t>;
+using FollowingErrorActualValue = Entry<0x60F4, std::int32_t>;
+using DigitalInputs = Entry<0x60FD, std::uint32_t>;
+using TargetVelocity = Entry<0x60FF, std::int32_t>;
+
+}  // namespace canopen::cia402::object

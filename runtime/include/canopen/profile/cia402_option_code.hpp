@@ -1,0 +1,41 @@
+/// What the option codes 605Ah to 605Eh make a drive do (CiA 402-2, 8.5.1 to 8.5.5).
+#pragma once
+
+#include <cstdint>
+
+namespace canopen::cia402 {
+
+enum class Braking : std::uint8_t {
+  none,             ///< the power goes off, the motor coasts
+  slow_down_ramp,   ///< with the profile deceleration 6084h
+  quick_stop_ramp,  ///< with the quick stop deceleration 6085h
+  hardest,          ///< at the limit of current or voltage
+};
+
+namespace option_code {
+
+// Without the object.
+inline constexpr std::int16_t quick_stop = 2;
+inline constexpr std::int16_t shutdown = 0;
+inline constexpr std::int16_t disable_operation = 1;
+inline constexpr std::int16_t halt = 1;
+inline constexpr std::int16_t fault_reaction = 2;
+
+/// 605Ah: after a quick stop with these the drive stays in Quick Stop Active.
+[[nodiscard]] constexpr bool stays_in_quick_stop(std::int16_t code) { return code >= 5 && code <= 8; }
+
+}  // namespace option_code
+
+/// How any of them brakes. Codes of the manufacturer brake as hard as can be.
+[[nodiscard]] constexpr Braking braking_of(std::int16_t code) {
+  switch (code) {
+    case 0: return Braking::none;
+    case 1:
+    case 5: return Braking::slow_down_ramp;
+    case 2:
+    case 6: return Braking::quick_stop_ramp;
+    default: return Braking::hardest;
+  }
+}
+
+}  // namespace canopen::cia402

@@ -1,0 +1,51 @@
+/// Modes of operation, and what a drive does otherwise than CiA 402-2 says or leaves open.
+#pragma once
+
+#include <cstdint>
+
+#include "canopen/profile/cia402_axis.hpp"
+
+namespace canopen::cia402 {
+
+/// Values of 6060h. Negative ones are the manufacturer's.
+namespace mode {
+inline constexpr std::int8_t none = 0;
+inline constexpr std::int8_t profile_position = 1;
+inline constexpr std::int8_t profile_velocity = 3;
+inline constexpr std::int8_t homing = 6;
+inline constexpr std::int8_t cyclic_synchronous_position = 8;
+}  // namespace mode
+
+/// The bit of a mode in 6502h.
+[[nodiscard]] constexpr std::uint32_t bit_of_mode(std::int8_t mode) {
+  return mode >= 1 && mode <= 16 ? 1u << (mode - 1) : 0;
+}
+
+struct Options {
+  /// The modes that the drive has, as bits of 6502h. What is not among them is not in the image.
+  std::uint32_t modes = bit_of_mode(mode::profile_position) | bit_of_mode(mode::profile_velocity) |
+                        bit_of_mode(mode::homing) | bit_of_mode(mode::cyclic_synchronous_position);
+  /// The manufacturer's modes: from this one to -1. 0: none.
+  std::int8_t lowest_mode = 0;
+  /// The mode of a drive without 6060h.
+  std::int8_t initial_mode = mode::none;
+  /// The drive goes from Switch On Disabled to Ready To Switch On by itself.
+  bool ready_without_shutdown = false;
+  /// Bit 10 of the statusword keeps its value until the motion of a new set-point begins. If not, it falls with the
+  /// acknowledgement.
+  bool target_reached_until_motion = false;
+  /// Bit 12 of the statusword tells in profile velocity that the speed is zero.
+  bool tells_speed_is_zero = true;
+  /// Bit 11 of the statusword tells of software limits, too. If not, of limit switches alone.
+  bool tells_software_limits = true;
+  /// Time between two steps of the axis, in us.
+  std::uint32_t step = 1'000;
+  /// How often actual values are set while the axis moves, in us. When it has come to rest they always are.
+  std::uint32_t actual_values = 1'000;
+  /// For a drive without 6081h, 6083h, 6084h.
+  Profile profile{};
+  /// For a drive without 609Ah.
+  std::uint32_t homing_acceleration = 0;
+};
+
+}  // namespace canopen::cia402
