@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """A master with none of edsc's code walks over the eight reference nodes, which run all at once on one bus.
 
-    masters_test.py --nodes DIR [--edsc EDSC | --bus ADDRESS] [--node-canopen WORK_DIR] [--only NAME]
+    masters_test.py --nodes DIR [--edsc EDSC | --bus ADDRESS] [--node-canopen WORK_DIR] [--short] [--only NAME]
 
 The bus is one of `edsc bus`, or the one at ADDRESS, such as socketcan:vcan0. The master is python-can with the walk beside
-this file, or node-canopen, which npm installs in WORK_DIR. What fails is printed, and a line for each device. Exit code 77:
+this file, or node-canopen, which npm installs in WORK_DIR. --short leaves out the long lists of SDO transfers. What fails is printed, and a line for each device. Exit code 77:
 skipped.
 """
 
@@ -50,9 +50,8 @@ class Plant:
         return self
 
     def __exit__(self, *_: object) -> None:
-        for program in self.programs:
+        for program in reversed(self.programs):  # the bus last
             program.kill()
-        for program in self.programs:
             program.wait()
 
     def serve(self, edsc: Path) -> str:
@@ -67,13 +66,23 @@ class Plant:
             self.programs.append(node)
             self.nodes[name] = node
 
+    def power_off(self) -> int:
+        """How many nodes did not end well."""
+        failed = 0
+        for name, node in self.nodes.items():
+            node.terminate()
+            if (code := node.wait(timeout=10)) != 0:
+                print(f"{name}: ended with {code} after SIGTERM")
+                failed += 1
+        return failed
+
     def tell(self, name: str, line: str) -> None:
         """An input of a node, on its standard input."""
         self.nodes[name].stdin.write(line + "\n")
         self.nodes[name].stdin.flush()
 
 
-def with_python_can(plant: Plant) -> int:
+def with_python_can(plant: Plant, short: bool) -> int:
     """The number of failures, and of exceptions that no device needs any more."""
     if importlib.util.find_spec("can") is None:
         raise Skipped("python3-can is not installed")
@@ -92,11 +101,11 @@ def with_python_can(plant: Plant) -> int:
     for name in plant.names:
         begin = time.monotonic()
         Walk(wire, DataSheet(data_sheet_of(name), NODES[name]), reports[name],
-             lambda line, name=name: plant.tell(name, line)).run()
+             lambda line, name=name: plant.tell(name, line), short).run()
         print(f"{reports[name].summary()} ({time.monotonic() - begin:.1f} s)", flush=True)
         failed += sum(reports[name].failed.values())
     wire.close()
-    unneeded = stale(exceptions) if len(plant.names) == len(NODES) else []
+    unneeded = stale(exceptions) if len(plant.names) == len(NODES) and not short else []
     print("\n".join(unneeded), end="\n" if unneeded else "")
     return failed + len(unneeded)
 
@@ -132,12 +141,17 @@ def main() -> int:
     parser.add_argument("--edsc", type=Path)
     parser.add_argument("--bus")
     parser.add_argument("--node-canopen", type=Path)
+    parser.add_argument("--short", action="store_true")
     parser.add_argument("--only", choices=NODES)
     arguments = parser.parse_args()
     begin = time.monotonic()
     try:
         with Plant(arguments) as plant:
-            failures = with_node_canopen(plant, arguments.node_canopen) if arguments.node_canopen else with_python_can(plant)
+            if arguments.node_canopen:
+                failures = with_node_canopen(plant, arguments.node_canopen)
+            else:
+                failures = with_python_can(plant, arguments.short)
+            failures += plant.power_off()
     except Skipped as reason:
         print(f"skipped: {reason}")
         return SKIPPED

@@ -41,7 +41,7 @@ class Wire:
         return found[1] if found else None
 
     def receive_timed(self, can_id: int, seconds: float) -> tuple[float, bytes] | None:
-        """The next data frame with this CAN-ID, and when it came; nothing when none comes in this time."""
+        """The next data frame with this CAN-ID, and when the bus had it; nothing when none comes in this time."""
         for i, (at, found, data) in enumerate(self.waiting):
             if found == can_id:
                 del self.waiting[i]
@@ -49,19 +49,18 @@ class Wire:
         end = time.monotonic() + seconds
         while True:
             message = self.bus.recv(max(0.0, end - time.monotonic()))
-            now = time.monotonic()
             if message is not None and not message.is_remote_frame and not message.is_error_frame:
                 if message.arbitration_id == can_id:
-                    return now, bytes(message.data)
-                self.waiting.append((now, message.arbitration_id, bytes(message.data)))
-            if now >= end:
+                    return message.timestamp, bytes(message.data)
+                self.waiting.append((message.timestamp, message.arbitration_id, bytes(message.data)))
+            if time.monotonic() >= end:
                 return None
 
     def forget(self, can_id: int | None = None) -> None:
         """What has come by now and nobody has asked for."""
         while (message := self.bus.recv(0)) is not None:
             if can_id is not None and not message.is_remote_frame and message.arbitration_id != can_id:
-                self.waiting.append((time.monotonic(), message.arbitration_id, bytes(message.data)))
+                self.waiting.append((message.timestamp, message.arbitration_id, bytes(message.data)))
         if can_id is None:
             self.waiting.clear()
         else:

@@ -79,7 +79,8 @@ class Walk {
   }
 
   async reset() {
-    const bootUp = this.frame(0x700 + this.nodeId);
+    const bootUp = this.event(this.channel, 'message',
+      ({ id, data }) => id === 0x700 + this.nodeId && data[0] === STATE.bootUp ? bytes(data) : undefined);
     this.device.nmt.resetNode(this.nodeId);
     this.report.check('boot-up', 'reset', await bootUp, '00');
   }
@@ -303,12 +304,9 @@ class Walk {
     const consumer = this.sheet.getEntry(0x1016);
     if (!consumer || consumer.at(1).accessType !== 'rw') return;
     await this.write(0x1016, 1, MASTER * 0x10000 + 100, DataType.UNSIGNED32);
-    const first = this.frame(0x580 + this.nodeId);
-    this.device.eds.setHeartbeatProducerTime(30);
-    await this.upload(0x1000, 0);
-    await first;
     const lost = this.emcy();
-    setTimeout(() => this.device.eds.setHeartbeatProducerTime(0), 60);
+    this.device.eds.setHeartbeatProducerTime(30);
+    setTimeout(() => this.device.eds.setHeartbeatProducerTime(0), 100);
     this.checkEmcy(await lost, '8130');
   }
 }
