@@ -10,8 +10,6 @@
 namespace edsc {
 namespace {
 
-namespace socketcand = canopen::socketcand;
-
 using Command = BusClient::Command;
 
 /// The commands of the protocol that the server knows.

@@ -8,8 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "bus_server/socketcand_text.hpp"
 #include "canopen/frame.hpp"
-#include "canopen/port/socketcand_protocol.hpp"
 
 namespace edsc {
 
@@ -69,7 +69,7 @@ class BusClient {
 
   int socket_;
   std::string name_;
-  canopen::socketcand::ElementReader reader_;
+  socketcand::ElementReader reader_;
   std::optional<std::size_t> bus_;
   bool raw_ = false;
   std::string wanted_bus_;

@@ -23,7 +23,7 @@ constexpr std::size_t bytes_a_turn = 4096;
 
 [[noreturn]] void fail(const std::string& what) { throw std::system_error{errno, std::generic_category(), what}; }
 
-canopen::socketcand::TimeStamp present() {
+socketcand::TimeStamp present() {
   timespec time{};
   ::clock_gettime(CLOCK_REALTIME, &time);
   return {time.tv_sec, static_cast<std::int32_t>(time.tv_nsec / 1000)};
@@ -155,7 +155,7 @@ bool BusServer::open_bus(BusClient& client) {
 
 void BusServer::deliver(const BusClient& sender) {
   const auto time = present();
-  const auto text = canopen::socketcand::received_text(sender.frame(), time);
+  const auto text = socketcand::received_text(sender.frame(), time);
   for (const auto& client : clients_) {
     if (client && client.get() != &sender && client->listens() && client->bus() == sender.bus())
       client->put(text.view());

@@ -13,8 +13,8 @@
 
 #include "bus_server/bus_client.hpp"
 #include "bus_server/listen_address.hpp"
+#include "bus_server/socketcand_text.hpp"
 #include "canopen/frame.hpp"
-#include "canopen/port/socketcand_protocol.hpp"
 
 namespace edsc {
 
@@ -26,7 +26,7 @@ struct BusLimits {
 
 /// What the server tells of; none of them may be empty.
 struct BusEvents {
-  std::function<void(const canopen::Frame&, const std::string& bus, canopen::socketcand::TimeStamp)> on_frame;
+  std::function<void(const canopen::Frame&, const std::string& bus, socketcand::TimeStamp)> on_frame;
   std::function<void(const std::string& message)> on_trouble;  ///< a client is sent away
 };
 

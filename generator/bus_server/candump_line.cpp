@@ -2,10 +2,10 @@
 
 namespace edsc {
 
-std::string candump_line(const canopen::Frame& frame, std::string_view bus, canopen::socketcand::TimeStamp time) {
-  canopen::socketcand::ElementText stamp;
+std::string candump_line(const canopen::Frame& frame, std::string_view bus, socketcand::TimeStamp time) {
+  socketcand::ElementText stamp;
   stamp.add_time(time);
-  canopen::socketcand::ElementText text;
+  socketcand::ElementText text;
   text.add_id(frame);
   text.add('#');
   if (frame.remote) text.add('R');

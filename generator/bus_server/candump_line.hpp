@@ -4,13 +4,12 @@
 #include <string>
 #include <string_view>
 
+#include "bus_server/socketcand_text.hpp"
 #include "canopen/frame.hpp"
-#include "canopen/port/socketcand_protocol.hpp"
 
 namespace edsc {
 
 /// "(1700000000.000000) vcan0 123#1122", without a line end; a remote frame is "123#R2".
-[[nodiscard]] std::string candump_line(const canopen::Frame& frame, std::string_view bus,
-                                       canopen::socketcand::TimeStamp time);
+[[nodiscard]] std::string candump_line(const canopen::Frame& frame, std::string_view bus, socketcand::TimeStamp time);
 
 }  // namespace edsc

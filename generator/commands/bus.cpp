@@ -60,8 +60,7 @@ int serve(const Settings& settings) {
   const ListenAddress address = parse_listen_address(settings.listen);
   const EndingSignals signals;
   BusEvents events;
-  events.on_frame = [&settings](const canopen::Frame& frame, const std::string& bus,
-                                canopen::socketcand::TimeStamp time) {
+  events.on_frame = [&settings](const canopen::Frame& frame, const std::string& bus, socketcand::TimeStamp time) {
     if (settings.log) fmt::print("{}\n", candump_line(frame, bus, time));
   };
   events.on_trouble = [](const std::string& message) { fmt::print(stderr, "edsc bus: {}\n", message); };

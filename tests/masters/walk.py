@@ -308,8 +308,9 @@ class Walk:
             self.remote_tpdo(index, name, cob_id, entries)
             self.timed_tpdo(index, name, cob_id, entries)
             self.nmt(STOP)
-            while self.wire.receive(can_id, SHORT) is not None:  # what was on its way
-                pass
+            for _ in range(100):
+                if self.wire.receive(can_id, SHORT) is None:  # what was on its way has come
+                    break
             self.wire.send(0x080)
             self.check("tpdo", f"{name} in Stopped", self.wire.receive(can_id, SHORT), None)
             self.reset()

@@ -272,7 +272,7 @@ TEST(BusServer, SendsAClientAwayWhoseElementHasNoEnd) {
   Bench bench;
   Client client{bench}, other{bench};
   other.open_raw();
-  client.say("< open " + std::string(canopen::socketcand::longest_element, 'x'));
+  client.say("< open " + std::string(socketcand::longest_element, 'x'));
   EXPECT_EQ(client.hear_up_to("long >"), "< hi >< error element too long >");
   EXPECT_TRUE(client.closed());
   EXPECT_EQ(bench.trouble.size(), 1u);

@@ -1,8 +1,5 @@
-/// The socketcand protocol as text: elements such as "< send 123 2 11 22 >", one frame each. Client and server share
-/// it.
-///
-/// Remote frames: "< sendrtr ID DLC >" from a client, "< rtr ID SECONDS.MICROSECONDS DLC >" to it, as the protocol's
-/// description has them; programs that do not know them pass them over.
+/// The server's side of the socketcand protocol as text: elements such as "< send 123 2 11 22 >", one frame each. The
+/// client's side is canopen/port/socketcand_codec.hpp.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +12,7 @@
 
 #include "canopen/frame.hpp"
 
-namespace canopen::socketcand {
+namespace edsc::socketcand {
 
 /// Bytes between "<" and ">". The longest element of the raw mode has some 60.
 inline constexpr std::size_t longest_element = 200;
@@ -92,7 +89,7 @@ namespace detail {
 }
 
 /// Eight digits make a CAN-ID of 29 bits; so does a value that 11 bits do not hold.
-[[nodiscard]] inline bool read_id(std::string_view word, Frame& frame) {
+[[nodiscard]] inline bool read_id(std::string_view word, canopen::Frame& frame) {
   const auto id = number(word, 16, 0x1FFF'FFFF);
   if (!id || word.size() > 8) return false;
   frame.id = *id;
@@ -100,41 +97,19 @@ namespace detail {
   return true;
 }
 
-[[nodiscard]] inline bool read_size(std::string_view word, Frame& frame) {
+[[nodiscard]] inline bool read_size(std::string_view word, canopen::Frame& frame) {
   const auto size = number(word, 10, 8);
   frame.size = static_cast<std::uint8_t>(size.value_or(0));
   return size.has_value();
 }
 
-[[nodiscard]] inline bool read_time(std::string_view word) {
-  const std::size_t point = word.find('.');
-  const auto digits = [](std::string_view part) {
-    return !part.empty() && part.find_first_not_of("0123456789") == std::string_view::npos;
-  };
-  return digits(word.substr(0, point)) && (point == std::string_view::npos || digits(word.substr(point + 1)));
-}
-
-/// The data of a received frame: two digits a byte, with or without blanks between the bytes.
-[[nodiscard]] inline bool read_received_data(Words& words, Frame& frame) {
-  while (!words.at_end()) {
-    std::string_view word = words.next();
-    if (word.size() % 2 != 0) return false;
-    for (; !word.empty(); word.remove_prefix(2)) {
-      const auto byte = number(word.substr(0, 2), 16, 0xFF);
-      if (!byte || frame.size == frame.data.size()) return false;
-      frame.data[frame.size++] = static_cast<std::uint8_t>(*byte);
-    }
-  }
-  return true;
-}
-
 }  // namespace detail
 
 /// The frame of a client's "send ID DLC BYTE..." or "sendrtr ID DLC"; nothing when the element is no such one.
-[[nodiscard]] inline std::optional<Frame> parse_send(std::string_view element) {
+[[nodiscard]] inline std::optional<canopen::Frame> parse_send(std::string_view element) {
   Words words{element};
   const std::string_view command = words.next();
-  Frame frame;
+  canopen::Frame frame;
   frame.remote = command == "sendrtr";
   if (command != "send" && !frame.remote) return std::nullopt;
   if (!detail::read_id(words.next(), frame) || !detail::read_size(words.next(), frame)) return std::nullopt;
@@ -145,18 +120,6 @@ namespace detail {
     frame.data[i] = static_cast<std::uint8_t>(*byte);
   }
   return words.at_end() ? std::optional{frame} : std::nullopt;
-}
-
-/// The frame of a server's "frame ID TIME DATA" or "rtr ID TIME DLC"; nothing when the element is no such one.
-[[nodiscard]] inline std::optional<Frame> parse_received(std::string_view element) {
-  Words words{element};
-  const std::string_view kind = words.next();
-  Frame frame;
-  frame.remote = kind == "rtr";
-  if (kind != "frame" && !frame.remote) return std::nullopt;
-  if (!detail::read_id(words.next(), frame) || !detail::read_time(words.next())) return std::nullopt;
-  const bool read = frame.remote ? detail::read_size(words.next(), frame) : detail::read_received_data(words, frame);
-  return read && words.at_end() ? std::optional{frame} : std::nullopt;
 }
 
 /// The text of one frame, in place.
@@ -173,7 +136,7 @@ class ElementText {
   void add_hex(std::uint32_t value, unsigned digits) {
     while (digits-- > 0) add("0123456789ABCDEF"[value >> (4 * digits) & 0xF]);
   }
-  void add_id(const Frame& frame) { add_hex(frame.id, frame.extended ? 8 : 3); }
+  void add_id(const canopen::Frame& frame) { add_hex(frame.id, frame.extended ? 8 : 3); }
   void add_time(TimeStamp time) {
     const auto end = std::to_chars(text_.data() + size_, text_.data() + text_.size(), time.seconds).ptr;
     size_ = static_cast<std::size_t>(end - text_.data());
@@ -186,23 +149,8 @@ class ElementText {
   std::size_t size_ = 0;
 };
 
-/// What a client sends for a frame: "< send 123 2 11 22 >" or "< sendrtr 123 2 >".
-[[nodiscard]] inline ElementText send_text(const Frame& frame) {
-  ElementText text;
-  text.add(frame.remote ? "< sendrtr " : "< send ");
-  text.add_id(frame);
-  text.add(' ');
-  text.add_hex(frame.size, 1);
-  for (std::size_t i = 0; !frame.remote && i < frame.size; ++i) {
-    text.add(' ');
-    text.add_hex(frame.data[i], 2);
-  }
-  text.add(" >");
-  return text;
-}
-
-/// What a server sends for a frame: "< frame 123 23.424242 1122 >" or "< rtr 123 23.424242 2 >".
-[[nodiscard]] inline ElementText received_text(const Frame& frame, TimeStamp time) {
+/// What the server sends for a frame: "< frame 123 23.424242 1122 >" or "< rtr 123 23.424242 2 >".
+[[nodiscard]] inline ElementText received_text(const canopen::Frame& frame, TimeStamp time) {
   ElementText text;
   text.add(frame.remote ? "< rtr " : "< frame ");
   text.add_id(frame);
@@ -215,4 +163,4 @@ class ElementText {
   return text;
 }
 
-}  // namespace canopen::socketcand
+}  // namespace edsc::socketcand
