@@ -1,5 +1,6 @@
 #include "player.hpp"
 
+#include <algorithm>
 #include <deque>
 #include <optional>
 
@@ -22,6 +23,11 @@ class Player {
           expect_silence(line);
           set(line);
           if (i + 1 == trace_.lines.size() || trace_.lines[i + 1].step != Step::set) let_all_act();
+          break;
+        case Step::input:
+          expect_silence(line);
+          if (!stations_[line.node]->input(line.input, now_)) fail(line, "the application knows no such line");
+          let_all_act();
           break;
         case Step::emergency:
           expect_silence(line);
@@ -47,6 +53,7 @@ class Player {
           send(line);
           break;
         case Step::expect: expect(line); break;
+        case Step::disregard: disregarded_.push_back(line.pattern.frame.id); break;
         case Step::read: read(line); break;
       }
     }
@@ -61,7 +68,9 @@ class Player {
 
   /// All frames that the nodes have sent must have been in the trace.
   void expect_silence(const Line& before) {
-    for (const canopen::Frame& frame : heard_) fail(before, "up to here not expected: " + to_text(frame));
+    for (const canopen::Frame& frame : heard_) {
+      if (!is_disregarded(frame)) fail(before, "up to here not expected: " + to_text(frame));
+    }
     heard_.clear();
   }
 
@@ -124,7 +133,14 @@ class Player {
     }
   }
 
+  [[nodiscard]] bool is_disregarded(const canopen::Frame& frame) const {
+    return std::ranges::find(disregarded_, frame.id) != disregarded_.end();
+  }
+
   void expect(const Line& line) {
+    while (!heard_.empty() && is_disregarded(heard_.front()) && !line.pattern.matches(heard_.front())) {
+      heard_.pop_front();
+    }
     if (heard_.empty()) return fail(line, "expected: " + to_text(line.pattern) + "\n  got:      nothing");
     const canopen::Frame got = heard_.front();
     heard_.pop_front();
@@ -146,7 +162,8 @@ class Player {
   const Trace& trace_;
   const std::vector<std::unique_ptr<Station>>& stations_;
   canopen::TimePoint now_{};
-  std::deque<canopen::Frame> heard_;  ///< what the nodes have sent and the trace has not yet asked for
+  std::deque<canopen::Frame> heard_;        ///< what the nodes have sent and the trace has not yet asked for
+  std::vector<std::uint32_t> disregarded_;  ///< CAN-IDs
   std::vector<Failure> failures_;
 };
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -28,6 +29,11 @@ class Station {
   [[nodiscard]] virtual std::optional<canopen::TimePoint> next_deadline() const = 0;
   [[nodiscard]] virtual canopen::AbortCode set(std::uint16_t index, std::uint8_t sub_index, const Value& value) = 0;
   virtual void emergency(const Emergency& error) = 0;
+  /// A line of input of the application. False: it knows no such line, or there is no application.
+  [[nodiscard]] virtual bool input([[maybe_unused]] const std::string& line,
+                                   [[maybe_unused]] canopen::TimePoint now) {
+    return false;
+  }
   virtual void emergency_over(canopen::ErrorRegister bits) = 0;
   /// The bytes of an object's value. Nothing when the device has no such object.
   [[nodiscard]] virtual std::optional<std::vector<std::uint8_t>> value(std::uint16_t index, std::uint8_t sub_index) = 0;

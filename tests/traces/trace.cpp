@@ -119,6 +119,14 @@ void read_object(std::istringstream& words, const Trace& trace, Line& line) {
   }
 }
 
+/// `limit negative on` or `node 2 limit negative on`.
+void read_input(std::istringstream& words, const Trace& trace, Line& line) {
+  line.step = Step::input;
+  line.input = word_behind_node(words, trace, line);
+  for (std::string word; words >> word;) line.input += " " + word;
+  if (!trace.nodes[line.node].has_application) throw std::invalid_argument{"the device runs no application"};
+}
+
 /// `0x8611 0x20 09 00 00 00 00` or `over 0x20`.
 void read_emergency(std::istringstream& words, const Trace& trace, Line& line) {
   std::string word = word_behind_node(words, trace, line);
@@ -163,10 +171,11 @@ void read_line(const std::string& text, std::size_t number_of_line, Trace& trace
   Line line;
   line.number = number_of_line;
   if (key == "manual") return;
-  if (key == "device") {
+  if (key == "device" || key == "application") {
     if (!trace.nodes.empty() && !is_given(trace.nodes.back().node_id))
       throw std::invalid_argument{"the device above has no node-ID"};
     words >> trace.nodes.emplace_back().device;
+    trace.nodes.back().has_application = key == "application";
     return;
   }
   if (key == "node") {
@@ -183,6 +192,8 @@ void read_line(const std::string& text, std::size_t number_of_line, Trace& trace
   if (key == "=") {
     line.step = Step::set;
     read_object(words, trace, line);
+  } else if (key == "!") {
+    read_input(words, trace, line);
   } else if (key == "read") {
     line.step = Step::read;
     read_object(words, trace, line);
@@ -191,8 +202,8 @@ void read_line(const std::string& text, std::size_t number_of_line, Trace& trace
   } else if (key == "+") {
     line.step = Step::pass;
     line.span = read_span(words);
-  } else if (key == ">" || key == "<") {
-    line.step = key == ">" ? Step::send : Step::expect;
+  } else if (key == ">" || key == "<" || key == "~") {
+    line.step = key == ">" ? Step::send : key == "<" ? Step::expect : Step::disregard;
     line.pattern = read_pattern(words);
   } else {
     throw std::invalid_argument{"\"" + key + "\" begins no line of a trace"};

@@ -3,6 +3,7 @@
 ///     # comment
 ///     manual  NNN, the place in the manual
 ///     device  NAME                                  eds/NAME.eds
+///     application NAME                              the same with its application, examples/nodes/NAME
 ///     node    N                                     its node-ID, decimal, 255 for none yet; further pairs put further
 ///                                                   nodes on the bus
 ///     power on                                      as the first line: the boot-up messages are part of the trace
@@ -13,14 +14,18 @@
 ///     emergency 0x8611 0x20 09 00 00 00 00          the application has an error: its code, the bits of 1001h, and the
 ///                                                   manufacturer-specific bytes, zeroes where they are missing
 ///     emergency over 0x20                           it has gone, and these bits with it
+///     ! limit negative on                           a line of input of the application
+///     ~ 481                                         from here on frames with this CAN-ID may come at any time, as
+///     often as
+///                                                   they like; those that a line expects have to come
 ///     + 5 ms                                        time passes (us, ms or s)
 ///     > 601  2B 01 18 03 F0 20 00 00                a frame to the bus
 ///     > 284  R                                      a remote frame, DLC 0; `R 8` is one with DLC 8
 ///     < 581  60 01 18 03 -- -- -- --                a node sends exactly this next; `--` may be any byte
 ///     read 1801h:03 0x20F0                          the object's value is now this
 ///
-/// Where there are several nodes, `=`, `read` and `emergency` name theirs: `= node 2 6000h:01 0x34`. Frames need no
-/// name: each goes to all nodes but its sender.
+/// Where there are several nodes, `=`, `!`, `read` and `emergency` name theirs: `= node 2 6000h:01 0x34`. Frames need
+/// no name: each goes to all nodes but its sender.
 #pragma once
 
 #include <canopen/emcy.hpp>
@@ -54,7 +59,19 @@ struct Value {
   [[nodiscard]] std::vector<std::uint8_t> bytes(std::size_t size) const;
 };
 
-enum class Step : std::uint8_t { set, emergency, emergency_over, power_off, power_on, pass, send, expect, read };
+enum class Step : std::uint8_t {
+  set,
+  input,
+  emergency,
+  emergency_over,
+  power_off,
+  power_on,
+  pass,
+  send,
+  expect,
+  disregard,
+  read
+};
 
 /// An error of the application.
 struct Emergency {
@@ -66,17 +83,19 @@ struct Emergency {
 struct Line {
   std::size_t number = 0;  ///< from 1
   Step step = Step::pass;
-  Pattern pattern;             ///< send, expect
+  Pattern pattern;             ///< send, expect; of disregard the CAN-ID
   canopen::Duration span{};    ///< pass
-  std::size_t node = 0;        ///< set, read, emergency: position in Trace::nodes
+  std::size_t node = 0;        ///< set, input, read, emergency: position in Trace::nodes
   std::uint16_t index = 0;     ///< set, read
   std::uint8_t sub_index = 0;  ///< set, read
   Value value;                 ///< set, read
+  std::string input;           ///< of the application
   Emergency emergency;         ///< emergency; of one that is over its bits
 };
 
 struct NodeOfTrace {
   std::string device;
+  bool has_application = false;
   canopen::NodeId node_id;
 };
 

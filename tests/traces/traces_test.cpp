@@ -19,6 +19,7 @@
 #include <string_view>
 #include <vector>
 
+#include "application_station.hpp"
 #include "player.hpp"
 #include "station.hpp"
 #include "trace.hpp"
@@ -59,6 +60,11 @@ TEST_P(Traces, AreWhatTheDevicesDo) {
   const trace::Trace trace = trace::read(GetParam());
   std::vector<std::unique_ptr<trace::Station>> stations;
   for (const trace::NodeOfTrace& node : trace.nodes) {
+    if (node.has_application) {
+      stations.push_back(trace::make_application(node.device, node.node_id));
+      ASSERT_NE(stations.back(), nullptr) << trace.file << ": no application is named " << node.device;
+      continue;
+    }
     const auto* device = std::ranges::find(devices, node.device, &DeviceRow::name);
     ASSERT_NE(device, std::end(devices)) << trace.file << ": no device is named " << node.device;
     stations.push_back(device->make(node.node_id));

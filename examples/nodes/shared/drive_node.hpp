@@ -100,6 +100,7 @@ class DriveNode {
   }
 
   [[nodiscard]] SimulatedAxis& axis() { return axis_; }
+  [[nodiscard]] const SimulatedAxis& axis() const { return axis_; }
   [[nodiscard]] const Panel& panel() const { return panel_; }
   [[nodiscard]] const auto& drive() const { return drive_; }
   [[nodiscard]] auto& node() { return node_; }

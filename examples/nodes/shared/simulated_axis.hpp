@@ -127,7 +127,8 @@ class SimulatedAxis {
   /// A switch is held down, or let go.
   void hold(std::uint32_t inputs, bool down) { held_ = down ? held_ | inputs : held_ & ~inputs; }
 
-  [[nodiscard]] double increments_per_turn() const { return data_.increments_per_turn; }
+  /// Where it is on the machine, in increments from where it stood at power-on.
+  [[nodiscard]] std::int32_t machine_position() const { return rounded(position_ + machine_); }
 
  private:
   enum class Course : std::uint8_t { stop, position, velocity, follow };

@@ -240,7 +240,7 @@ class Drive {
   void leave_operation() {
     set_points_.clear();
     if (homing_.running()) homing_.interrupt();
-    halted_ = leaving_ = changing_ = false;
+    halted_ = leaving_ = changing_ = homing_starts_ = false;
   }
 
   void enter(State next) {
@@ -327,6 +327,7 @@ class Drive {
     } else {
       resume();
     }
+    watch_windows(node, Duration{0});
   }
 
   template <class Node, class Application>
@@ -367,6 +368,9 @@ class Drive {
     }
     if constexpr (has_mode(mode::cyclic_synchronous_position)) {
       if (mode_ == mode::cyclic_synchronous_position) return follow_target(node);
+    }
+    if constexpr (has_mode(mode::homing)) {
+      if (homing_starts_) return start_homing(node);
     }
     if constexpr (requires { application.operate(mode_); }) {
       if (mode_ < 0) application.operate(mode_);
@@ -434,15 +438,27 @@ class Drive {
   template <class Node>
   void take_homing_bits(Node& node, std::uint16_t rising) {
     if ((rising & controlword::start_homing) != 0 && !halted_ && (controlword_ & controlword::halt) == 0) {
-      const std::uint32_t acceleration = value<object::ProfileAcceleration>(node, options.homing_acceleration);
-      homing_.start(axis_, {value<object::HomingMethodCode>(node, 0), value<object::SpeedToSwitch>(node, 0),
-                            value<object::SpeedToZero>(node, 0), value<object::HomingAcceleration>(node, acceleration),
-                            value<object::HomeOffset>(node, 0)});
-      if constexpr (!options.target_reached_until_motion) reached_ = false;
+      if constexpr (options.target_reached_until_motion) {
+        homing_starts_ = true;
+      } else {
+        start_homing(node);
+        reached_ = false;
+      }
     } else if ((controlword_ & controlword::start_homing) == 0 && homing_.running()) {
       homing_.interrupt();
       axis_.stop(profile(node).deceleration);
     }
+  }
+
+  template <class Node>
+  void start_homing(const Node& node) {
+    const std::uint32_t acceleration = value<object::ProfileAcceleration>(node, options.homing_acceleration);
+    homing_.start(axis_, {.method = value<object::HomingMethodCode>(node, 0),
+                          .fast = value<object::SpeedToSwitch>(node, 0),
+                          .slow = value<object::SpeedToZero>(node, 0),
+                          .acceleration = value<object::HomingAcceleration>(node, acceleration),
+                          .home_offset = value<object::HomeOffset>(node, 0)});
+    homing_starts_ = false;
   }
 
   // Limits and windows
@@ -591,8 +607,9 @@ class Drive {
   bool warning_ = false;
   bool remote_ = false;
   bool halted_ = false;
-  bool leaving_ = false;   ///< brakes to leave Operation Enabled
-  bool changing_ = false;  ///< brakes for another mode
+  bool leaving_ = false;        ///< brakes to leave Operation Enabled
+  bool changing_ = false;       ///< brakes for another mode
+  bool homing_starts_ = false;  ///< with the next step
   bool reached_ = true;
   bool resting_ = true;
   bool following_error_ = false;

@@ -31,8 +31,8 @@ struct Options {
   std::int8_t initial_mode = mode::none;
   /// The drive goes from Switch On Disabled to Ready To Switch On by itself.
   bool ready_without_shutdown = false;
-  /// Bit 10 of the statusword keeps its value until the motion of a new set-point begins. If not, it falls with the
-  /// acknowledgement.
+  /// Bit 10 of the statusword keeps its value until the motion of a new set-point or of a homing begins, with the next
+  /// step. If not, it falls with the command.
   bool target_reached_until_motion = false;
   /// Bit 12 of the statusword tells in profile velocity that the speed is zero.
   bool tells_speed_is_zero = true;
