@@ -67,8 +67,8 @@ class Echo final : public trace::Station {
 };
 
 /// `line: message` of each failure; the nodes have the node-IDs 1 and 2.
-std::vector<std::string> failures(const std::string& lines) {
-  std::istringstream text{"device a\nnode 1\ndevice b\nnode 2\n" + lines};
+std::vector<std::string> failures(const std::string& lines, const std::string& kind = "device") {
+  std::istringstream text{kind + " a\nnode 1\n" + kind + " b\nnode 2\n" + lines};
   const trace::Trace trace = trace::read(text, "example.trace");
   std::vector<std::unique_ptr<trace::Station>> stations;
   stations.push_back(std::make_unique<Echo>(std::uint8_t{1}));
@@ -122,6 +122,16 @@ TEST(TracePlayer, SetsTheObjectsOfLinesThatFollowEachOtherAtOneMoment) {
 
 TEST(TracePlayer, BringsAFrameToAllNodes) {
   EXPECT_EQ(failures("> 301 05\n< 101 05\n> 302 06\n< 102 06\nread node 1 2000h:00 5\n"), Found{});
+}
+
+TEST(TracePlayer, LooksAtFramesThatComeAtAnyTimeOnlyWhereTheyAreExpected) {
+  EXPECT_EQ(failures("~ 201\n~ 202\n+ 1 s\n= node 1 2000h:00 7\n< 101 07\n"), Found{});
+  EXPECT_EQ(failures("~ 201\n~ 202\n+ 20 ms\n= node 1 2000h:00 7\n< 101 07\n+ 10 ms\n< 201 07\n"), Found{});
+  EXPECT_EQ(failures("~ 201\n~ 202\n+ 20 ms\n< 201 09\n"), Found{"8: expected: 201  09\n  got:      nothing"});
+}
+
+TEST(TracePlayer, TellsALineOfInputThatNoApplicationTakes) {
+  EXPECT_EQ(failures("! node 2 word\n", "application"), Found{"5: the application knows no such line"});
 }
 
 TEST(TracePlayer, RaisesErrorsAndTakesThemBack) {

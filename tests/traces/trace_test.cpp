@@ -83,6 +83,19 @@ TEST(TraceReader, TakesTheNodeOfAnObjectFromTheLineWhereThereAreSeveral) {
   EXPECT_EQ(trace.lines[1].node, 0u);
 }
 
+TEST(TraceReader, ReadsLinesOfInputOfAnApplication) {
+  const std::string head = "application cpd\nnode 1\n";
+  const trace::Trace trace = read(head + "! limit negative  on  # a switch\n~ 481\n");
+  ASSERT_EQ(trace.nodes.size(), 1u);
+  EXPECT_TRUE(trace.nodes[0].has_application);
+  ASSERT_EQ(trace.lines.size(), 2u);
+  EXPECT_EQ(trace.lines[0].step, trace::Step::input);
+  EXPECT_EQ(trace.lines[0].input, "limit negative on");
+  EXPECT_EQ(trace.lines[1].step, trace::Step::disregard);
+  EXPECT_EQ(trace.lines[1].pattern.frame.id, 0x481u);
+  EXPECT_THROW(read(one_node + "! limit negative on\n"), std::runtime_error);
+}
+
 TEST(TraceReader, ReadsTimes) {
   const trace::Trace trace = read(one_node + "+ 999 ms\n+ 1 s\n+ 5 us\n");
   ASSERT_EQ(trace.lines.size(), 3u);

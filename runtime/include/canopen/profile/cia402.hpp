@@ -479,13 +479,12 @@ class Drive {
     return position;
   }
 
-  /// Whether the demand is at the software limit that lies this way.
+  /// Whether the demand is at the software limit that lies this way, or beyond it.
   template <class Node>
   [[nodiscard]] bool software_limit_blocks(const Node& node, std::int32_t direction) const {
     const std::int32_t demand = axis_.position_demand();
-    const std::int32_t one_further = demand + (direction > 0 && demand != most_positive ? 1 : 0) -
-                                     (direction < 0 && demand != most_negative ? 1 : 0);
-    return within_software_limits(node, one_further) != one_further;
+    return (direction > 0 && within_software_limits(node, most_positive) <= demand && demand != most_positive) ||
+           (direction < 0 && within_software_limits(node, most_negative) >= demand && demand != most_negative);
   }
 
   /// Stops an axis that runs into a limit.

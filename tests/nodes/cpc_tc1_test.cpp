@@ -1,0 +1,114 @@
+/// The runnable servo drive without modes of operation: what manual 000 says of its application.
+#include "cpc_tc1/cpc_tc1.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "node_bench.hpp"
+
+namespace {
+
+using namespace std::chrono_literals;
+using canopen::cia402::State;
+namespace od = cpc_tc1::od;
+
+/// Operational, what TPDO1 to TPDO4 have told by then taken away. RPDO2 and RPDO3 are valid.
+struct Servo : bench::NodeBench<cpc_tc1_node::CpcTc1> {
+  Servo() {
+    ask("605 23 01 14 01 05 03 00 00");
+    ask("605 23 02 14 01 05 04 00 00");
+    ask(bench::start);
+  }
+  void enable() {
+    for (const char* frame : {"205 06 00", "205 07 00", "205 0F 00"}) ask(frame);
+    EXPECT_EQ(app->drive().state(), State::operation_enabled);
+  }
+  [[nodiscard]] std::uint32_t status() { return app->node().template get<od::manufacturer_status_register>(); }
+  [[nodiscard]] std::uint16_t statusword() { return app->node().template get<od::statusword>(); }
+};
+
+TEST(CpcTc1Node, TellsItsStatewordInTpdo1) {
+  Servo drive;
+  EXPECT_EQ(drive.ask("205 06 00").substr(0, 9), "185 31 02");
+  EXPECT_EQ(drive.ask("205 07 00").substr(0, 9), "185 33 02");
+  EXPECT_EQ(drive.ask("205 0F 00").substr(0, 9), "185 37 06");
+}
+
+// shows 000.148
+TEST(CpcTc1Node, HasItsStatuswordAndMoreIn1002h) {
+  Servo drive;
+  EXPECT_EQ(drive.status(), 0x0101'0250u);  // 16: external enable, 24: stationary
+  drive.enable();
+  EXPECT_EQ(drive.ask("605 40 02 10 00 00 00 00 00"), "585 43 02 10 00 37 06 07 01");  // 17, 18: motor on, phase found
+  drive.ask("305 1F 00 00 00 01 00");
+  drive.pass(100ms);
+  EXPECT_EQ(drive.status(), 0x0007'1237u);  // it turns
+  drive.pass(2s);
+  EXPECT_EQ(drive.status() & 0xFFFF, drive.statusword());
+  EXPECT_EQ(drive.status(), 0x0107'1637u);
+  drive.ask("205 06 00");
+  EXPECT_EQ(drive.status(), 0x0105'0231u);
+  drive.input("enable off");
+  EXPECT_EQ(drive.status(), 0x0104'0231u);
+}
+
+TEST(CpcTc1Node, PositionsRunsAndFollowsInTheModeThatIsSelected) {
+  Servo drive;
+  drive.enable();
+  drive.ask("305 1F 00 10 27 00 00");
+  drive.pass(2s);
+  EXPECT_EQ(drive.app->axis().position(), 10'000);
+  drive.input("mode 3");
+  drive.ask("405 0F 00 E8 03 00 00");
+  drive.pass(1s);
+  EXPECT_EQ(drive.app->axis().velocity(), 1'000);
+  EXPECT_EQ(drive.input("mode 6"), "?");  // it has no 6098h
+}
+
+TEST(CpcTc1Node, StopsWhenItsEnableInputFalls) {
+  Servo drive;
+  drive.input("mode 3");
+  drive.enable();
+  drive.ask("405 0F 00 00 00 01 00");
+  drive.pass(1s);
+  drive.input("enable off");
+  EXPECT_EQ(drive.app->drive().state(), State::quick_stop_active);
+  drive.pass(1s);
+  EXPECT_EQ(drive.app->drive().state(), State::switch_on_disabled);
+  EXPECT_EQ(drive.app->axis().velocity(), 0);
+}
+
+// shows 000.20
+TEST(CpcTc1Node, StoresAndRestoresNothingWhileTheMotorIsOn) {
+  Servo drive;
+  drive.enable();
+  EXPECT_EQ(drive.ask("605 23 10 10 01 73 61 76 65"), "585 80 10 10 01 22 00 00 08");
+  EXPECT_EQ(drive.ask("605 23 11 10 01 6C 6F 61 64"), "585 80 11 10 01 22 00 00 08");
+  drive.ask("205 06 00");
+  EXPECT_EQ(drive.ask("605 23 10 10 01 73 61 76 65"), "585 60 10 10 01 00 00 00 00");
+}
+
+TEST(CpcTc1Node, KeepsWhatIsStoredOverAPowerCycle) {
+  Servo drive;
+  drive.ask("605 2B 17 10 00 F4 01 00 00");
+  drive.ask("605 23 10 10 01 73 61 76 65");
+  drive.power_cycle();
+  EXPECT_EQ(drive.ask("605 40 17 10 00 00 00 00 00"), "585 4B 17 10 00 F4 01 00 00");
+  drive.ask("605 23 11 10 01 6C 6F 61 64");
+  drive.power_cycle();
+  EXPECT_EQ(drive.ask("605 40 17 10 00 00 00 00 00"), "585 4B 17 10 00 00 00 00 00");
+  EXPECT_EQ(drive.ask("605 40 18 10 04 00 00 00 00"), "585 43 18 10 04 34 12 01 15");  // its serial number
+}
+
+TEST(CpcTc1Node, ReportsAFaultAndForgetsItWithAReset) {
+  Servo drive;
+  drive.enable();
+  EXPECT_EQ(drive.input("fault 0x3210 0x04").substr(0, 27), "085 10 32 05 00 00 00 00 00");
+  EXPECT_EQ(drive.app->drive().state(), State::fault);
+  drive.ask(bench::reset_node);
+  EXPECT_EQ(drive.app->drive().state(), State::switch_on_disabled);
+  EXPECT_EQ(drive.ask("605 40 01 10 00 00 00 00 00"), "585 4F 01 10 00 00 00 00 00");
+}
+
+}  // namespace

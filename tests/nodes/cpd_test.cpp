@@ -1,0 +1,272 @@
+/// The runnable servo drive with modes of its own: what manual 002 says of its application.
+#include "cpd/cpd.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "node_bench.hpp"
+
+namespace {
+
+using namespace std::chrono_literals;
+using canopen::cia402::State;
+namespace od = cpd::od;
+
+constexpr auto next_error = "605 40 3C 30 01 00 00 00 00";
+constexpr auto oldest_error = "605 2B 3B 30 05 01 00 00 00";
+
+/// Operational: T_PDO1 with the statusword.
+struct Servo : bench::NodeBench<cpd_node::Cpd> {
+  explicit Servo(const std::string& store = {}) : NodeBench{canopen::NodeId{5}, store} { ask(bench::start); }
+
+  void enable(int mode) {
+    set<od::modes_of_operation>(static_cast<std::int8_t>(mode));
+    ask("205 0F 00");
+    EXPECT_EQ(app->drive().state(), State::operation_enabled);
+  }
+  template <class O>
+  void set(typename O::type value) {
+    EXPECT_EQ(app->node().template set<O>(value), canopen::ok);
+    app->on_time(now);
+    bus.take();
+  }
+  template <class O>
+  [[nodiscard]] typename O::type get() {
+    return app->node().template get<O>();
+  }
+  [[nodiscard]] State state() const { return app->drive().state(); }
+  [[nodiscard]] std::uint16_t statusword() { return get<od::statusword>(); }
+};
+
+std::string error_number(unsigned code) {
+  return bench::text(
+      {.id = 0x585,
+       .size = 8,
+       .data = {0x4B, 0x3C, 0x30, 0x01, static_cast<std::uint8_t>(code), static_cast<std::uint8_t>(code >> 8)}});
+}
+
+// shows 002.103
+TEST(CpdNode, IsReadyToSwitchOnByItself) {
+  bench::NodeBench<cpd_node::Cpd> drive;
+  EXPECT_EQ(drive.ask(bench::start), "185 31 66");
+  EXPECT_EQ(drive.ask("205 00 00"), "");
+  EXPECT_EQ(drive.ask("205 06 00"), "");
+  EXPECT_EQ(drive.ask("205 0F 00"), "185 37 46");
+}
+
+// shows 002.104
+TEST(CpdNode, HasItsModes) {
+  Servo drive;
+  const auto mode = [](int number, const char* answer) {
+    return bench::text({.id = answer[0] == 'r' ? 0x605u : 0x585u,
+                        .size = 8,
+                        .data = {static_cast<std::uint8_t>(answer[0] == 'r' ? 0x2F : 0x4F),
+                                 static_cast<std::uint8_t>(answer[0] == 'r' ? 0x60 : 0x61), 0x60, 0x00,
+                                 static_cast<std::uint8_t>(number)}});
+  };
+  for (const int number : {1, 3, 6, -1, -2, -3, -4}) {
+    EXPECT_EQ(drive.ask(mode(number, "request")), "585 60 60 60 00 00 00 00 00");
+    EXPECT_EQ(drive.ask("605 40 61 60 00 00 00 00 00"), mode(number, "shown"));
+  }
+  EXPECT_EQ(drive.ask(mode(8, "request")), "585 80 60 60 00 30 00 09 06");
+  EXPECT_EQ(drive.ask(mode(-5, "request")), "585 80 60 60 00 30 00 09 06");
+}
+
+// shows 002.35, 002.39, 002.116, 002.188
+TEST(CpdNode, SendsAnEmcyForAnErrorAndGoesToFault) {
+  Servo drive;
+  drive.enable(1);
+  EXPECT_EQ(drive.input("fault 0x2212 0x02"), "085 12 22 03 00 00 00 00 00 | 185 38 66");
+  EXPECT_EQ(drive.ask("605 40 3F 60 00 00 00 00 00"), "585 4B 3F 60 00 12 22 00 00");
+  EXPECT_EQ(drive.ask("605 40 41 20 00 00 00 00 00"), "585 4B 41 20 00 20 00 00 00");  // bit 5
+  EXPECT_EQ(drive.ask("205 80 00"), "085 00 00 00 00 00 00 00 00 | 185 31 66");
+  EXPECT_EQ(drive.ask("605 40 41 20 00 00 00 00 00"), "585 4B 41 20 00 00 00 00 00");
+  EXPECT_EQ(drive.get<od::error_code>(), 0x2212);  // of the last one
+}
+
+// shows 002.38
+TEST(CpdNode, KeepsTheLast20ErrorsAndReadsThemFromTheOldestOn) {
+  const std::string store = testing::TempDir() + "cpd_error_memory";
+  for (const char* suffix : {"", ".application", ".lss"}) std::filesystem::remove(store + suffix);
+  {
+    Servo drive{store};
+    EXPECT_EQ(drive.ask(next_error), error_number(0));
+    for (int i = 1; i <= 22; ++i) drive.input("fault " + std::to_string(0x1000 + i));
+    EXPECT_EQ(drive.ask(next_error), error_number(0x1003));
+    EXPECT_EQ(drive.ask(next_error), error_number(0x1004));
+    EXPECT_EQ(drive.ask(oldest_error), "585 60 3B 30 05 00 00 00 00");
+    EXPECT_EQ(drive.ask(next_error), error_number(0x1003));
+  }
+  Servo again{store};  // the process has been started anew
+  for (unsigned code = 0x1003; code <= 0x1016; ++code) EXPECT_EQ(again.ask(next_error), error_number(code));
+  EXPECT_EQ(again.ask(next_error), error_number(0));
+  for (const char* suffix : {"", ".application", ".lss"}) std::filesystem::remove(store + suffix);
+}
+
+// shows 002.99, 002.181
+TEST(CpdNode, SavesAndResetsItsSettingsBy3004h) {
+  Servo drive;
+  drive.ask("605 2B 29 30 04 64 00 00 00");
+  EXPECT_EQ(drive.ask("605 2B 04 30 01 01 00 00 00"), "585 60 04 30 01 00 00 00 00");  // PAReeprSave
+  drive.power_cycle();
+  EXPECT_EQ(drive.ask("605 40 29 30 04 00 00 00 00"), "585 4B 29 30 04 64 00 00 00");
+  EXPECT_EQ(drive.ask("605 40 04 30 04 00 00 00 00"), "585 80 04 30 04 11 00 09 06");
+  EXPECT_EQ(drive.ask("605 2B 04 30 08 01 00 00 00"), "585 60 04 30 08 00 00 00 00");  // PARusrReset
+  drive.ask(bench::reset_node);
+  EXPECT_EQ(drive.ask("605 40 29 30 04 00 00 00 00"), "585 4B 29 30 04 00 00 00 00");
+  EXPECT_EQ(drive.ask("605 2B 04 30 08 02 00 00 00"), "585 80 04 30 08 30 00 09 06");
+}
+
+// shows 002.111
+TEST(CpdNode, BrakesInHaltAndGoesOnWithTheMovement) {
+  Servo drive;
+  drive.ask("605 23 01 14 01 05 03 00 00");  // R_PDO2
+  drive.set<od::profile_velocity>(1'000);
+  drive.set<od::profile_acceleration>(2'000);
+  drive.set<od::profile_deceleration>(2'000);
+  drive.enable(1);
+  drive.ask("305 5F 00 A0 86 01 00");  // relative 100'000
+  drive.pass(200ms);
+  EXPECT_EQ(drive.app->axis().velocity(), 398);  // 2'000 rpm/s, a step behind
+  drive.ask("205 5F 01");
+  drive.pass(1s);
+  EXPECT_EQ(drive.app->axis().velocity(), 0);
+  EXPECT_LT(drive.app->axis().position(), 100'000);
+  drive.ask("205 5F 00");
+  drive.pass(2s);
+  EXPECT_EQ(drive.app->axis().position(), 100'000);
+}
+
+// shows 002.112
+TEST(CpdNode, TellsStandstillWhenItHasStayedInTheWindow) {
+  Servo drive;
+  drive.set<od::position_window>(10);
+  drive.set<od::position_window_time>(200);
+  drive.set<od::profile_velocity>(1'000);
+  drive.enable(1);
+  drive.pass(1s);
+  drive.set<od::target_position>(1'000);
+  drive.ask("205 1F 00");
+  drive.pass(150ms);
+  EXPECT_EQ(drive.app->axis().position(), 1'000);
+  EXPECT_EQ(drive.statusword() & 0x0400, 0);
+  drive.pass(200ms);
+  EXPECT_EQ(drive.statusword() & 0x0400, 0x0400);
+}
+
+// shows 002.113, 002.184
+TEST(CpdNode, LosesItsReferenceBeyondTheRangeOfTheAxis) {
+  Servo drive;
+  drive.set<od::homing_method>(35);
+  drive.enable(6);
+  drive.ask("205 1F 00");
+  drive.pass(10ms);
+  EXPECT_EQ(drive.statusword(), 0xD637);  // bit 15
+  drive.ask("205 00 00");
+  EXPECT_NE(drive.input("position 0x10000000"), "?");
+  EXPECT_EQ(drive.statusword() & 0x8000, 0x8000);
+  EXPECT_NE(drive.input("position 0x10000001"), "?");
+  EXPECT_EQ(drive.statusword() & 0x8000, 0);
+}
+
+// shows 002.114
+TEST(CpdNode, LatchesItsLimitsIn301Ch) {
+  Servo drive;
+  drive.set<od::target_velocity>(100);
+  drive.enable(3);
+  drive.pass(100ms);
+  drive.input("limit positive on");
+  EXPECT_EQ(drive.bus.take(), "");
+  EXPECT_EQ(drive.ask("605 40 1C 30 08 00 00 00 00"), "585 4B 1C 30 08 02 00 00 00");
+  drive.input("limit positive off");
+  EXPECT_EQ(drive.ask("605 40 1C 30 07 00 00 00 00"), "585 4B 1C 30 07 00 00 00 00");
+  EXPECT_EQ(drive.ask("605 40 1C 30 08 00 00 00 00"), "585 4B 1C 30 08 02 00 00 00");
+  EXPECT_EQ(drive.ask("605 40 41 20 00 00 00 00 00"), "585 4B 41 20 00 40 00 00 00");  // an external error
+  drive.pass(1s);
+  drive.ask("205 80 00");
+  EXPECT_EQ(drive.ask("605 40 1C 30 08 00 00 00 00"), "585 4B 1C 30 08 00 00 00 00");
+  drive.set<od::software_position_limit<1>>(-1'000);
+  drive.set<od::software_position_limit<2>>(1'000);
+  drive.set<od::profile_velocity>(1'000);
+  drive.set<od::target_position>(20'000);
+  drive.enable(1);
+  drive.ask("205 1F 00");
+  drive.pass(1s);
+  EXPECT_EQ(drive.app->axis().position(), 1'000);
+  EXPECT_EQ(drive.ask("605 40 1C 30 08 00 00 00 00"), "585 4B 1C 30 08 04 00 00 00");
+}
+
+// shows 002.35, 002.115
+TEST(CpdNode, ReportsAFollowingErrorBeyond6065h) {
+  Servo drive;
+  drive.set<od::following_error_window>(500);
+  drive.set<od::target_velocity>(100);
+  drive.enable(3);
+  drive.pass(100ms);
+  drive.input("block on");
+  EXPECT_NE(drive.pass(100ms).find("085 11 86 21 11 86 65 60 00"), std::string::npos);
+  EXPECT_EQ(drive.state(), State::fault);
+}
+
+// shows 002.108
+TEST(CpdNode, MovesByHandInEitherDirectionSlowAndFast) {
+  Servo drive;
+  drive.set<od::manual_movement::slow_speed>(100);
+  drive.set<od::manual_movement::fast_speed>(250);
+  drive.enable(-1);
+  struct Row {
+    std::uint16_t activation;
+    std::int32_t velocity;
+  };
+  for (const auto& [activation, velocity] : {Row{1, 100}, Row{5, 250}, Row{2, -100}, Row{6, -250}, Row{0, 0}}) {
+    drive.set<od::operating_mode_settings::manual_movement_activation>(activation);
+    drive.pass(1s);
+    EXPECT_EQ(drive.app->axis().velocity(), velocity);
+  }
+}
+
+// shows 002.109
+TEST(CpdNode, TakesCurrentAndSpeedFromParametersWhenTheyAreSelected) {
+  Servo drive;
+  drive.set<od::current_control::current_setpoint>(1'000);
+  drive.enable(-3);
+  drive.pass(100ms);
+  EXPECT_EQ(drive.app->axis().velocity(), 0);
+  drive.set<od::operating_mode_settings::current_setpoint_specification>(2);
+  drive.pass(101ms);
+  EXPECT_EQ(drive.app->axis().velocity(), 2'000);  // 20'000 rpm/s
+  drive.set<od::current_control::current_setpoint>(0);
+  drive.pass(1s);
+  drive.set<od::modes_of_operation>(-4);
+  drive.set<od::speed_control::speed_setpoint>(-300);
+  drive.pass(100ms);
+  EXPECT_EQ(drive.app->axis().velocity(), 0);
+  drive.set<od::operating_mode_settings::speed_setpoint_specification>(2);
+  drive.pass(100ms);
+  EXPECT_EQ(drive.app->axis().velocity(), -300);
+}
+
+// shows 002.110
+TEST(CpdNode, FollowsPulsesByItsGear) {
+  Servo drive;
+  drive.set<od::electronic_gear::gear_numerator>(2);
+  drive.set<od::electronic_gear::gear_denominator>(3);
+  drive.enable(-2);
+  drive.input("pulses 300");
+  drive.pass(100ms);
+  EXPECT_EQ(drive.app->axis().position(), 0);  // neither selected nor switched on
+  drive.set<od::position_interface::signal_selection>(1);
+  drive.set<od::operating_mode_settings::gear_activation>(1);
+  drive.pass(10ms);
+  drive.input("pulses 300");
+  drive.pass(100ms);
+  EXPECT_EQ(drive.app->axis().position(), 200);
+  drive.input("pulses -600");
+  drive.pass(100ms);
+  EXPECT_EQ(drive.app->axis().position(), -200);
+}
+
+}  // namespace
