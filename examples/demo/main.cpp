@@ -22,7 +22,9 @@
 #include <ezd_1136/device.hpp>
 #include <rk5c/description.hpp>
 #include <rk5c/device.hpp>
+#include <string_view>
 
+#include "candump_log.hpp"
 #include "layout_table.hpp"
 #include "master.hpp"
 #include "trace.hpp"
@@ -118,7 +120,7 @@ void print_all_layouts() {
   print(rk5c::Device{}, rk5c::descriptions);
 }
 
-int run_demo() {
+int run_demo(demo::CandumpLog& log) {
   canopen::VirtualBus bus{500'000};
   demo::Trace trace;
   add_to_trace<ezd_1136::Device>(trace, stepper_id, "stepper", ezd_1136::descriptions);
@@ -126,7 +128,10 @@ int run_demo() {
   add_to_trace<cpc_tc1::Device>(trace, drive_id, "drive", cpc_tc1::descriptions);
   add_to_trace<can_2053c::Device>(trace, inputs_id, "inputs", can_2053c::descriptions);
   add_to_trace<rk5c::Device>(trace, sensor_id, "sensor", rk5c::descriptions);
-  bus.listen([&trace](const canopen::Frame& frame, canopen::TimePoint now) { trace.print(frame, now); });
+  bus.listen([&](const canopen::Frame& frame, canopen::TimePoint now) {
+    trace.print(frame, now);
+    log.write(frame, now);
+  });
   demo::Master master{bus};
 
   auto& stepper_port = bus.attach();
@@ -203,4 +208,20 @@ int run_demo() {
 
 }  // namespace
 
-int main() { return run_demo(); }
+/// demo [--log FILE]: with a candump log of all frames.
+int main(int argc, char** argv) {
+  demo::CandumpLog log;
+  const bool logs = argc == 3 && std::string_view{argv[1]} == "--log";
+  if (argc != 1 && !logs) {
+    fmt::print(stderr, "usage: demo [--log FILE]\n");
+    return 2;
+  }
+  if (logs && !log.open(argv[2])) {
+    fmt::print(stderr, "demo: {} cannot be written\n", argv[2]);
+    return 2;
+  }
+  const int result = run_demo(log);
+  if (log.close()) return result;
+  fmt::print(stderr, "demo: {} could not be written to the end\n", argv[2]);
+  return 2;
+}

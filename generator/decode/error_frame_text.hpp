@@ -1,0 +1,12 @@
+/// Error frames of SocketCAN in words: what the controller, not the bus, has to tell (linux/can/error.h).
+#pragma once
+
+#include <canopen/frame.hpp>
+#include <string>
+
+namespace edsc {
+
+/// `frame.id` holds the error classes.
+void append_error_frame_text(std::string& text, const canopen::Frame& frame);
+
+}  // namespace edsc

@@ -1,0 +1,43 @@
+/// A line of a candump log, in any of the forms that candump writes:
+///
+///   (1436509052.249713) vcan0 123#DEADBEEF                    -L, also with R or T behind
+///    vcan0  123   [4]  DE AD BE EF                            on the screen, also with -a and -x
+///    (1436509052.249713)  vcan0  123   [4]  DE AD BE EF       -t a, d, z
+///    (2015-07-10 08:17:32.249713)  vcan0  123   [4]  DE ...   -t A
+///
+/// 123#R8 and `remote request` are remote frames, CAN-IDs of eight digits are extended or flags of an error frame, ##
+/// and lengths of two digits are CAN FD. A frame alone, 123#DEADBEEF, is a line, too.
+#pragma once
+
+#include <canopen/frame.hpp>
+#include <cstdint>
+#include <string_view>
+
+namespace edsc {
+
+enum class LogLineKind : std::uint8_t {
+  blank,
+  frame,
+  error_frame,  ///< the CAN-ID holds flags of linux/can/error.h
+  remark,       ///< what candump -e writes below an error frame
+  can_fd,
+  broken,
+};
+
+/// Texts are views of the line.
+struct LogLine {
+  LogLineKind kind = LogLineKind::blank;
+  bool has_time = false;
+  std::int64_t microseconds = 0;  ///< since whatever the log counts from
+  std::string_view time;          ///< as it is written, without parentheses
+  std::string_view interface;
+  canopen::Frame frame;
+  std::string_view problem;  ///< of a broken line: what is wrong, as part of a sentence
+};
+
+/// Bit 29 of an eight-digit CAN-ID: an error frame.
+inline constexpr std::uint32_t log_error_flag = 0x2000'0000;
+
+[[nodiscard]] LogLine parse_log_line(std::string_view text);
+
+}  // namespace edsc

@@ -1,0 +1,33 @@
+/// Which frames are shown: `node=5,service=sdo`.
+#pragma once
+
+#include <bitset>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "decode/log_line.hpp"
+#include "decode/message.hpp"
+
+namespace edsc {
+
+/// What is not named is not looked at; of what is named more than once one has to fit.
+class MessageFilter {
+ public:
+  /// Adds the conditions of a text: `node=5`, `service=sdo` (`pdo` for both directions), `id=185h`, `problem=yes`, with
+  /// commas between them. Gives a sentence on what is wrong, or nothing.
+  [[nodiscard]] std::string add(std::string_view text);
+
+  [[nodiscard]] bool passes(const LogLine& line, const Message& message) const;
+
+ private:
+  [[nodiscard]] std::string add_condition(std::string_view key, std::string_view value);
+
+  std::bitset<128> nodes_;
+  std::bitset<service_count> services_;
+  std::vector<std::uint32_t> can_ids_;
+  bool problems_only_ = false;
+};
+
+}  // namespace edsc

@@ -1,0 +1,154 @@
+#include "decode/summary.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <canopen/abort_code.hpp>
+#include <iterator>
+
+#include "decode/print_message.hpp"
+
+namespace edsc {
+namespace {
+
+std::string abort_text(std::uint32_t code) {
+  return fmt::format("{:04X} {:04X}h {}", code >> 16, code & 0xFFFF,
+                     canopen::to_text(static_cast<canopen::AbortCode>(code)));
+}
+
+}  // namespace
+
+void Summary::count_code(Codes& codes, std::uint8_t node_id, std::uint32_t code) {
+  const auto at = codes.find({node_id, code});
+  if (at != codes.end()) {
+    ++at->second;
+  } else if (codes.size() < most_codes) {
+    codes.emplace(std::pair{node_id, code}, 1);
+  }
+}
+
+void Summary::add(const LogLine& line, const Message& message) {
+  ++frames_in_all_;
+  ++frames_[message.node_id % node_ids][static_cast<std::size_t>(message.service)];
+  if (message.problem) ++problems_;
+  if (line.has_time) {
+    first_us_ = has_time_ ? std::min(first_us_, line.microseconds) : line.microseconds;
+    last_us_ = has_time_ ? std::max(last_us_, line.microseconds) : line.microseconds;
+    has_time_ = true;
+  }
+  if (message.service == Service::emcy) count_code(emergencies_, message.node_id, message.error_code);
+  Transfers& transfers = transfers_[message.node_id % node_ids];
+  if (message.step == TransferStep::aborted) {
+    ++transfers.aborted;
+    count_code(aborts_, message.node_id, message.abort_code);
+  } else if (message.step == TransferStep::finished) {
+    ++transfers.finished;
+    if (message.duration_us < 0) return;
+    const auto duration = static_cast<std::uint64_t>(message.duration_us);
+    ++transfers.timed;
+    transfers.sum_us += duration;
+    transfers.longest_us = std::max(transfers.longest_us, duration);
+  }
+}
+
+std::size_t Summary::total(std::size_t service) const {
+  std::size_t sum = 0;
+  for (const auto& node : frames_) sum += node[service];
+  return sum;
+}
+
+double Summary::seconds() const { return static_cast<double>(last_us_ - first_us_) / 1e6; }
+
+std::string Summary::text() const {
+  std::string out;
+  const auto put = std::back_inserter(out);
+  fmt::format_to(put, "{} frames", frames_in_all_);
+  if (has_time_) fmt::format_to(put, " in {:.6f} s", seconds());
+  if (has_time_ && seconds() > 0)
+    fmt::format_to(put, ", {:.0f} per second", static_cast<double>(frames_in_all_) / seconds());
+  out += '\n';
+  const auto services_of = [&](const auto& count_of) {
+    for (const ServiceRow& row : services) {
+      const std::size_t count = count_of(static_cast<std::size_t>(row.service));
+      if (count > 0) fmt::format_to(put, "  {} {}", row.service == Service::unknown ? "unknown" : row.label, count);
+    }
+    out += '\n';
+  };
+  fmt::format_to(put, "{:<9}", "all");
+  services_of([&](std::size_t service) { return total(service); });
+  for (std::size_t id = 1; id < node_ids; ++id) {
+    if (std::ranges::all_of(frames_[id], [](std::size_t count) { return count == 0; })) continue;
+    fmt::format_to(put, "node {:<4}", id);
+    services_of([&](std::size_t service) { return frames_[id][service]; });
+  }
+  for (std::size_t id = 0; id < node_ids; ++id) {
+    const Transfers& one = transfers_[id];
+    if (one.finished + one.aborted == 0) continue;
+    fmt::format_to(put, "node {:<4}  {} SDO transfers, {} aborted", id, one.finished + one.aborted, one.aborted);
+    if (one.timed > 0) {
+      fmt::format_to(put, ", {:.3f} ms on average, {:.3f} ms the longest",
+                     static_cast<double>(one.sum_us) / 1e3 / static_cast<double>(one.timed),
+                     static_cast<double>(one.longest_us) / 1e3);
+    }
+    out += '\n';
+  }
+  for (const auto& [key, count] : aborts_)
+    fmt::format_to(put, "node {:<4}  abort {}: {}\n", key.first, abort_text(key.second), count);
+  for (const auto& [key, count] : emergencies_)
+    fmt::format_to(put, "node {:<4}  EMCY {:04X}h: {}\n", key.first, key.second, count);
+  if (open_transfers_ > 0) fmt::format_to(put, "{} SDO transfers not finished\n", open_transfers_);
+  if (can_fd_frames_ > 0) fmt::format_to(put, "{} CAN FD frames passed over\n", can_fd_frames_);
+  if (broken_lines_ > 0) fmt::format_to(put, "{} lines skipped\n", broken_lines_);
+  return out;
+}
+
+std::string Summary::json() const {
+  std::string out;
+  const auto put = std::back_inserter(out);
+  fmt::format_to(
+      put,
+      "{{\"summary\":{{\"frames\":{},\"problems\":{},\"open_transfers\":{},\"can_fd_frames\":{},\"broken_lines\":{}",
+      frames_in_all_, problems_, open_transfers_, can_fd_frames_, broken_lines_);
+  if (has_time_) fmt::format_to(put, ",\"seconds\":{:.6f}", seconds());
+  out += ",\"services\":{";
+  const auto counts = [&](const auto& count_of) {
+    const char* separator = "";
+    for (const ServiceRow& row : services) {
+      const std::size_t count = count_of(static_cast<std::size_t>(row.service));
+      if (count == 0) continue;
+      fmt::format_to(put, "{}\"{}\":{}", separator, row.name, count);
+      separator = ",";
+    }
+    out += '}';
+  };
+  counts([&](std::size_t service) { return total(service); });
+  out += ",\"nodes\":[";
+  const char* separator = "";
+  for (std::size_t id = 1; id < node_ids; ++id) {
+    if (std::ranges::all_of(frames_[id], [](std::size_t count) { return count == 0; })) continue;
+    const Transfers& one = transfers_[id];
+    fmt::format_to(put, "{}{{\"node\":{},\"transfers\":{},\"aborted\":{}", separator, id, one.finished + one.aborted,
+                   one.aborted);
+    if (one.timed > 0)
+      fmt::format_to(put, ",\"average_microseconds\":{},\"longest_microseconds\":{}", one.sum_us / one.timed,
+                     one.longest_us);
+    out += ",\"services\":{";
+    counts([&](std::size_t service) { return frames_[id][service]; });
+    out += '}';
+    separator = ",";
+  }
+  const auto codes = [&](std::string_view name, const Codes& rows) {
+    fmt::format_to(put, "],\"{}\":[", name);
+    const char* between = "";
+    for (const auto& [key, count] : rows) {
+      fmt::format_to(put, "{}{{\"node\":{},\"code\":{},\"count\":{}}}", between, key.first, key.second, count);
+      between = ",";
+    }
+  };
+  codes("aborts", aborts_);
+  codes("emergencies", emergencies_);
+  out += "]}}\n";
+  return out;
+}
+
+}  // namespace edsc
