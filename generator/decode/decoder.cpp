@@ -395,7 +395,7 @@ void Decoder::decode_pdo(const Frame& frame, const std::vector<Route>& routes, M
     message.text += "nothing is mapped";
     message.problem = frame.size > 0;
   } else if (bits < pdo.bits) {
-    fmt::format_to(std::back_inserter(message.text), "{}too short: {} bytes of {}", separator, frame.size,
+    fmt::format_to(std::back_inserter(message.text), "{}too short: {} of {} bytes", separator, frame.size,
                    (pdo.bits + 7) / 8);
     message.problem = true;
   } else if (frame.size > (pdo.bits + 7) / 8) {
@@ -438,8 +438,8 @@ void Decoder::decode_mpdo(const Frame& frame, const NodeModel& node, Message& me
   } else {
     fmt::format_to(std::back_inserter(message.text), "node {}, ", node_id);
   }
-  append_entry_label(message.text, field.index, field.sub_index);
-  message.text += ' ';
+  field.name = field.name.empty() ? entry_label(field.index, field.sub_index)
+                                  : entry_label(field.index, field.sub_index) + " " + field.name;
   append_field(message.text, field, word_of(frame), message);
   message.values.back().name = field.entry != nullptr ? std::string_view{field.entry->name} : std::string_view{};
 }

@@ -5,9 +5,20 @@
 #include <iterator>
 #include <utility>
 
-#include "diagnostics/quote.hpp"
+#include "decode/value_text.hpp"
 
 namespace edsc {
+namespace {
+
+std::string broken_line_text(const LogLine& line, std::string_view text) {
+  constexpr std::size_t most_shown = 60;
+  std::string sentence = fmt::format("skipped, {}: ", line.problem);
+  append_quoted(sentence, text.substr(0, most_shown));
+  if (text.size() > most_shown) sentence += "...";
+  return sentence;
+}
+
+}  // namespace
 
 LogDecoder::LogDecoder(const std::vector<KnownNode>& nodes, NodeLabels labels, LogDecoderSettings settings)
     : settings_{std::move(settings)}, labels_{std::move(labels)}, decoder_{nodes} {}
@@ -44,7 +55,7 @@ void LogDecoder::decode(std::string_view text, std::size_t line_number, std::str
     case LogLineKind::broken:
       ++broken_lines_;
       summary_.add_broken_line();
-      return complain(line_number, fmt::format("skipped, {}: {}", line.problem, quote(text.substr(0, 80))), complaints);
+      return complain(line_number, broken_line_text(line, text), complaints);
     case LogLineKind::frame:
       count_time(line);
       decoder_.decode({line.frame, line.has_time, line.microseconds}, message_);

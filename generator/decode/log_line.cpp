@@ -62,7 +62,9 @@ bool parse_number(std::string_view text, int& number) {
 /// `2015-07-10 08:17:32.249713`
 bool parse_date(std::string_view text, std::int64_t& microseconds) {
   int year = 0, month = 0, day = 0, hour = 0, minute = 0;
-  if (text.size() < 19 || text[4] != '-' || text[7] != '-' || text[13] != ':' || text[16] != ':') return false;
+  if (text.size() < 19 || text[4] != '-' || text[7] != '-' || (text[10] != ' ' && text[10] != 'T') || text[13] != ':' ||
+      text[16] != ':')
+    return false;
   const bool numbers = parse_number(text.substr(0, 4), year) && parse_number(text.substr(5, 2), month) &&
                        parse_number(text.substr(8, 2), day) && parse_number(text.substr(11, 2), hour) &&
                        parse_number(text.substr(14, 2), minute);
@@ -189,6 +191,9 @@ LogLine parse_log_line(std::string_view text) {
   }
   std::string_view word = take_word(rest);
   if (word.find('#') != std::string_view::npos) return parse_compact(word, line);
+  for (const char c : word) {
+    if (c <= ' ' || c == '\x7F') return broken(line, "there is no name of an interface");
+  }
   line.interface = word;
   word = take_word(rest);
   if (word.find('#') != std::string_view::npos) return parse_compact(word, line);

@@ -68,17 +68,13 @@ constexpr LssRow rows[] = {
     {Command::fastscan, true, Content::fastscan, "fastscan: "},
 };
 
-/// kbit/s by table index (CiA 305, table 1); 0 where there is none.
-constexpr unsigned bit_rates[] = {1000, 800, 500, 250, 125, 0, 50, 20, 10};
-constexpr std::uint8_t automatic_bit_rate = 9;
-
 constexpr std::string_view address_parts[] = {"vendor-ID", "product code", "revision number", "serial number"};
 
 void append_bit_timing(std::string& text, std::uint8_t table, std::uint8_t index) {
-  if (table == 0 && index < std::size(bit_rates) && bit_rates[index] != 0) {
-    append_decimal(text, bit_rates[index]);
+  if (table == 0 && index < std::size(canopen::lss::bit_rates) && canopen::lss::bit_rates[index] != 0) {
+    append_decimal(text, canopen::lss::bit_rates[index]);
     text += " kbit/s";
-  } else if (table == 0 && index == automatic_bit_rate) {
+  } else if (table == 0 && index == canopen::lss::automatic_bit_rate) {
     text += "automatic bit rate detection";
   } else {
     fmt::format_to(std::back_inserter(text), "index {} of table {}", index, table);

@@ -132,6 +132,11 @@ PdoField NodeModel::field(std::uint32_t mapping) const {
   return field;
 }
 
+std::string NodeModel::mapped_name(std::uint32_t mapping) const {
+  const PdoField mapped = field(mapping);
+  return mapped.name + ", " + std::to_string(mapped.bits) + (mapped.bits == 1 ? " bit" : " bits");
+}
+
 void NodeModel::lay_out(std::size_t at) {
   const Pdo& pdo = device_->pdos[at];
   PdoLayout layout;

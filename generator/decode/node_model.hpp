@@ -62,6 +62,9 @@ class NodeModel {
   /// The servers from 1201h on; the default SDO is every node's.
   [[nodiscard]] std::vector<SdoServerIds> further_sdo_servers() const;
 
+  /// `Statusword, 16 bits`: what a value of a mapping parameter names.
+  [[nodiscard]] std::string mapped_name(std::uint32_t mapping) const;
+
   /// An SDO has written or read a value, low byte first. True: CAN-IDs or layouts are others now.
   [[nodiscard]] bool learn(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> value,
                            bool written);

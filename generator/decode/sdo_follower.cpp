@@ -70,11 +70,22 @@ void SdoFollower::put_duration(const TimedFrame& frame, Message& message) const 
 }
 
 void SdoFollower::put_value(Message& message) const {
-  MessageValue value{index_, sub_index_, name_, type_, unit_, 0, 0, kept_, message.text.size(), 0};
-  if (drive_word_ != DriveWord::none && kept_.size() == 2) {
+  MessageValue value;
+  value.index = index_;
+  value.sub_index = sub_index_;
+  value.name = name_;
+  value.type = entry_ != nullptr ? entry_->type : nullptr;
+  value.unit = entry_ != nullptr ? entry_->unit : std::string_view{};
+  value.bytes = kept_;
+  value.text_begin = message.text.size();
+  const std::uint32_t mapping = mapped_object();
+  if (mapping != 0) {
+    append_hex(message.text, mapping, 8);
+    message.text += "h " + model_->mapped_name(mapping);
+  } else if (drive_word_ != DriveWord::none && kept_.size() == 2) {
     append_drive_word(message.text, drive_word_, static_cast<std::uint16_t>(kept_[0] | kept_[1] << 8));
-  } else if (type_ != nullptr) {
-    append_value(message.text, *type_, kept_, unit_);
+  } else if (entry_ != nullptr) {
+    append_value(message.text, *entry_, kept_);
   } else {
     append_untyped(message.text, kept_);
   }
@@ -89,13 +100,19 @@ void SdoFollower::put_part(std::uint32_t offset, std::uint32_t bytes, bool last,
   if (bytes == 0) {
     message.text += ", no bytes";
   } else {
-    message.text += ", bytes ";
+    message.text += bytes == 1 ? ", byte " : ", bytes ";
     append_decimal(message.text, offset);
-    message.text += "..";
-    append_decimal(message.text, offset + bytes - 1);
+    if (bytes > 1) message.text += "..";
+    if (bytes > 1) append_decimal(message.text, offset + bytes - 1);
   }
   if (last) message.text += ", the last";
   put_transfer(TransferStep::part, message);
+}
+
+std::uint32_t SdoFollower::mapped_object() const {
+  const bool rpdo = index_ >= 0x1600 && index_ <= 0x17FF, tpdo = index_ >= 0x1A00 && index_ <= 0x1BFF;
+  if (model_ == nullptr || (!rpdo && !tpdo) || sub_index_ == 0 || kept_.size() != 4) return 0;
+  return kept_[0] | std::uint32_t{kept_[1]} << 8 | std::uint32_t{kept_[2]} << 16 | std::uint32_t{kept_[3]} << 24;
 }
 
 void SdoFollower::stray(std::string_view what, Message& message) {
@@ -134,11 +151,10 @@ void SdoFollower::begin(const TimedFrame& frame, const NodeModel* model, bool do
   seen_.reset();
   highest_ = 0;
   const Object* object = model != nullptr ? model->device().find(index_) : nullptr;
-  const Entry* entry = object != nullptr ? object->find(sub_index_) : nullptr;
-  type_ = entry != nullptr ? entry->type : nullptr;
-  unit_ = entry != nullptr ? entry->unit : std::string_view{};
+  entry_ = object != nullptr ? object->find(sub_index_) : nullptr;
+  model_ = model;
   drive_word_ = model != nullptr && model->profile() == 402 ? drive_word_at(index_, sub_index_) : DriveWord::none;
-  name_ = entry != nullptr ? display_name(*object, *entry) : object != nullptr ? object->name : "";
+  name_ = entry_ != nullptr ? display_name(*object, *entry_) : object != nullptr ? object->name : "";
   label_.clear();
   append_entry_label(label_, index_, sub_index_);
   if (!name_.empty()) label_ += " " + name_;
@@ -193,6 +209,17 @@ void SdoFollower::abort(const TimedFrame& frame, Message& message) {
 
 // Expedited and segmented transfer
 
+/// Where the frame does not say how long the value is, its type does.
+std::span<const std::uint8_t> SdoFollower::expedited_value(const Data& data) const {
+  std::size_t bytes = 4;
+  if ((data[0] & canopen::sdo::size_indicated) != 0) {
+    bytes -= data[0] >> 2 & 3U;
+  } else if (entry_ != nullptr && entry_->type->bits != 0) {
+    bytes = std::min<std::size_t>(bytes, (entry_->type->bits + 7U) / 8U);
+  }
+  return std::span{data}.subspan(4, bytes);
+}
+
 void SdoFollower::initiate_download(const TimedFrame& frame, const NodeModel* model, Message& message) {
   begin(frame, model, true, false, message);
   const Data& data = frame.frame.data;
@@ -203,9 +230,7 @@ void SdoFollower::initiate_download(const TimedFrame& frame, const NodeModel* mo
     if (announced_) fmt::format_to(std::back_inserter(message.text), ", {} bytes follow", *announced_);
     return;
   }
-  std::size_t bytes = sized ? 4U - (data[0] >> 2 & 3U) : 4U;
-  if (!sized && type_ != nullptr && type_->bits != 0) bytes = std::min<std::size_t>(bytes, (type_->bits + 7U) / 8U);
-  append(std::span{data}.subspan(4, bytes));
+  append(expedited_value(data));
   message.size = total_;
   message.text += " = ";
   put_value(message);
@@ -224,9 +249,7 @@ void SdoFollower::upload_answer(const TimedFrame& frame, Message& message) {
   const bool sized = (data[0] & canopen::sdo::size_indicated) != 0;
   expedited_ = (data[0] & canopen::sdo::expedited) != 0;
   if (expedited_) {
-    std::size_t bytes = sized ? 4U - (data[0] >> 2 & 3U) : 4U;
-    if (!sized && type_ != nullptr && type_->bits != 0) bytes = std::min<std::size_t>(bytes, (type_->bits + 7U) / 8U);
-    append(std::span{data}.subspan(4, bytes));
+    append(expedited_value(data));
     return finish(frame, message);
   }
   phase_ = Phase::segments;
@@ -322,7 +345,7 @@ void SdoFollower::block_confirmed(const Data& data, Message& message) {
     if (!seen_.test(sequence)) complete_ = false;
   }
   message.text += verb(download_) + label_;
-  fmt::format_to(std::back_inserter(message.text), ", {} segments taken", taken);
+  fmt::format_to(std::back_inserter(message.text), ", taken up to segment {}", taken);
   if (taken < highest_) {
     fmt::format_to(std::back_inserter(message.text), " of {}: the others come again", highest_);
     message.problem = true;

@@ -64,6 +64,9 @@ class SdoFollower {
   void stray(std::string_view what, Message& message);
 
   void append(std::span<const std::uint8_t> bytes);
+  [[nodiscard]] std::span<const std::uint8_t> expedited_value(const canopen::sdo::Data& data) const;
+  /// The value of a mapping parameter; 0 where the transfer is about another object.
+  [[nodiscard]] std::uint32_t mapped_object() const;
   void flush_held(std::size_t bytes);
   void put_value(Message& message) const;
   void put_part(std::uint32_t offset, std::uint32_t bytes, bool last, Message& message) const;
@@ -84,8 +87,8 @@ class SdoFollower {
   std::optional<std::uint32_t> announced_;
   std::uint32_t total_ = 0;
   std::uint16_t crc_ = 0;
-  const canopen::DataTypeRow* type_ = nullptr;
-  std::string_view unit_;
+  const NodeModel* model_ = nullptr;
+  const Entry* entry_ = nullptr;  ///< null where no data sheet knows it
   DriveWord drive_word_ = DriveWord::none;
   std::string name_;   ///< `Manufacturer device name`
   std::string label_;  ///< `1008h:00 Manufacturer device name`

@@ -65,28 +65,6 @@ void append_hex_bytes(std::string& text, Bytes bytes) {
   }
 }
 
-/// In quotation marks; `text` is UTF-8 or bytes that are none.
-void append_quoted(std::string& out, std::string_view text) {
-  out += '"';
-  for (std::size_t at = 0; at < text.size();) {
-    const auto c = static_cast<unsigned char>(text[at]);
-    const std::size_t length = utf8_sequence_length(text.substr(at));
-    if (c == '"' || c == '\\') {
-      out += '\\';
-      out += static_cast<char>(c);
-      ++at;
-    } else if (c < 0x20 || c == 0x7F || length == 0) {
-      out += "\\x";
-      append_hex_byte(out, c);
-      ++at;
-    } else {
-      out += text.substr(at, length);
-      at += length;
-    }
-  }
-  out += '"';
-}
-
 /// UTF-16, low byte first; half a surrogate pair and a last odd byte become U+FFFD.
 std::string utf8_of(Bytes bytes) {
   std::string text;
@@ -373,6 +351,27 @@ void append_time_of_day(std::string& text, std::uint32_t days, std::uint32_t mil
   append_clock(text, milliseconds);
 }
 
+void append_quoted(std::string& out, std::string_view text) {
+  out += '"';
+  for (std::size_t at = 0; at < text.size();) {
+    const auto c = static_cast<unsigned char>(text[at]);
+    const std::size_t length = utf8_sequence_length(text.substr(at));
+    if (c == '"' || c == '\\') {
+      out += '\\';
+      out += static_cast<char>(c);
+      ++at;
+    } else if (c < 0x20 || c == 0x7F || length == 0) {
+      out += "\\x";
+      append_hex_byte(out, c);
+      ++at;
+    } else {
+      out += text.substr(at, length);
+      at += length;
+    }
+  }
+  out += '"';
+}
+
 void append_number(std::string& text, const DataTypeRow& type, std::uint64_t number, unsigned bits,
                    std::string_view unit) {
   number &= mask_of(bits);
@@ -445,9 +444,20 @@ std::string value_text(const DataTypeRow& type, std::span<const std::uint8_t> by
   return text;
 }
 
+void append_value(std::string& text, const Entry& entry, std::span<const std::uint8_t> bytes) {
+  constexpr std::uint16_t cycle_period = 0x1006, window_length = 0x1007;  // in us
+  const bool communication =
+      entry.index >= 0x1000 && entry.index < 0x2000 && entry.index != cycle_period && entry.index != window_length;
+  if (!communication || entry.type->type != DataType::unsigned32 || bytes.size() != sizeof(std::uint32_t)) {
+    return append_value(text, *entry.type, bytes, entry.unit);
+  }
+  append_hex(text, number_of(bytes), 8);
+  text += 'h';
+}
+
 std::string value_text(const Entry& entry, std::span<const std::uint8_t> bytes) {
   std::string text;
-  append_value(text, *entry.type, bytes, entry.unit);
+  append_value(text, entry, bytes);
   return text;
 }
 

@@ -33,9 +33,15 @@ void append_number(std::string& text, const canopen::DataTypeRow& type, std::uin
 void append_value(std::string& text, const canopen::DataTypeRow& type, std::span<const std::uint8_t> bytes,
                   std::string_view unit = {});
 
+/// With the entry's unit. The UNSIGNED32 of communication parameters are COB-IDs, mappings and their like: as
+/// hexadecimal digits alone.
+void append_value(std::string& text, const Entry& entry, std::span<const std::uint8_t> bytes);
+
+/// `"a \"b\" \x0D"`: in quotation marks, what cannot be printed as its code.
+void append_quoted(std::string& out, std::string_view text);
+
 /// The same as a text of its own.
 [[nodiscard]] std::string value_text(const canopen::DataTypeRow& type, std::span<const std::uint8_t> bytes);
-/// With the entry's unit.
 [[nodiscard]] std::string value_text(const Entry& entry, std::span<const std::uint8_t> bytes);
 
 /// `0..3000 rpm`: the limits of the data sheet, empty where it has none.
