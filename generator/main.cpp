@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   edsc::add_diff_command(app, exit_code);
   edsc::add_bus_command(app, exit_code);
   edsc::add_decode_command(app, exit_code);
+  edsc::add_completion_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& problem) {

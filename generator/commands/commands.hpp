@@ -26,6 +26,8 @@ void add_format_command(CLI::App& app, int& exit_code);
 void add_diff_command(CLI::App& app, int& exit_code);
 void add_bus_command(CLI::App& app, int& exit_code);
 void add_decode_command(CLI::App& app, int& exit_code);
+/// Describes all subcommands of `app`, also those that are added later.
+void add_completion_command(CLI::App& app, int& exit_code);
 
 /// `--color auto|always|never`, and what it comes to on this stream.
 struct ColorOption {

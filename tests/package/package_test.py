@@ -123,6 +123,11 @@ class Uses(PackageTest):
     def test_an_installed_package(self) -> None:
         self.check(FROM_PACKAGE, self.install())
 
+    def test_an_installed_edsc_brings_completions_and_its_manual_page(self) -> None:
+        self.install()
+        for path in ("bash-completion/completions/edsc", "zsh/site-functions/_edsc", "man/man1/edsc.1"):
+            self.assertIn("edsc", (self.folder / "prefix/share" / path).read_text())
+
     def test_a_subdirectory(self) -> None:
         self.check(FROM_SUBDIRECTORY)
 

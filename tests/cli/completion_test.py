@@ -1,0 +1,163 @@
+#!/usr/bin/env python3
+"""Completions and manual page name what the commands have: each command, each option, each word that an option takes.
+
+    completion_test.py SOURCE_DIR EDSC [unittest arguments]
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+EDSC = Path(sys.argv[2]).resolve()
+KINDS = ("bash", "zsh", "man")
+
+
+def run(*arguments: str) -> str:
+    return subprocess.run([EDSC, *arguments], capture_output=True, text=True, check=True, timeout=30).stdout
+
+
+def options_of(text: str) -> set[str]:
+    """The options that a help lists, `-o,--output TEXT REQUIRED  what it is`."""
+    found = set()
+    for line in text.splitlines():
+        if match := re.match(r"  (-[\w-]+(?:,-[\w-]+)*)", line):
+            found |= set(match[1].split(","))
+    return found
+
+
+def commands_of(text: str) -> list[str]:
+    behind = text.split("Subcommands:\n")
+    return re.findall(r"^  (\w[\w-]*)", behind[1], re.MULTILINE) if len(behind) == 2 else []
+
+
+def all_commands(path: tuple[str, ...] = ()) -> dict[tuple[str, ...], str]:
+    """The help of each command, by its words."""
+    text = run(*path, "--help")
+    found = {path: text}
+    for command in commands_of(text):
+        found |= all_commands((*path, command))
+    return found
+
+
+HELP = all_commands()
+
+
+@unittest.skipUnless(shutil.which("bash"), "SKIPPED: there is no bash")
+class Bash(unittest.TestCase):
+    def complete(self, *words: str, folder: str = ".") -> set[str]:
+        """What bash offers behind these words, the last of which is not finished."""
+        quoted = " ".join("'" + word + "'" for word in words)
+        script = f"""{run("completion", "bash")}
+compopt() {{ :; }}
+COMP_WORDS=(edsc {quoted}); COMP_CWORD={len(words)}; _edsc
+printf '%s\\n' "${{COMPREPLY[@]}}"
+"""
+        result = subprocess.run(["bash", "--norc", "-u"], input=script, capture_output=True, text=True, timeout=30, check=True,
+                                cwd=folder)
+        self.assertEqual(result.stderr, "")
+        return set(result.stdout.split())
+
+    def test_offers_each_command(self) -> None:
+        self.assertGreater(len(HELP), 7)
+        for path, text in HELP.items():
+            if commands_of(text):
+                self.assertEqual(self.complete(*path, ""), set(commands_of(text)))
+        self.assertIn("decode", self.complete("dec"))
+
+    def test_offers_each_option(self) -> None:
+        for path, text in HELP.items():
+            with self.subTest(command=path):
+                options = options_of(text)
+                self.assertIn("--help", options)
+                self.assertEqual(self.complete(*path, "-"), options)
+
+    def test_offers_the_words_that_an_option_takes(self) -> None:
+        self.assertEqual(self.complete("check", "--format", ""), {"text", "json", "sarif"})
+        self.assertEqual(self.complete("check", "--format", "="), {"text", "json", "sarif"})
+        self.assertEqual(self.complete("check", "--format", "=", "j"), {"json"})
+        self.assertEqual(self.complete("diff", "--format", ""), {"text", "json"})
+        self.assertEqual(self.complete("generate", "--node-id", ""), set())
+        self.assertEqual(self.complete("completion", ""), set(KINDS))
+
+    def test_offers_files(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "drive.eds").touch()
+            (Path(folder) / "logs").mkdir()
+            self.assertEqual(self.complete("check", "dr", folder=folder), {"drive.eds"})
+            self.assertEqual(self.complete("decode", "--node", "5", "=", "dr", folder=folder), {"drive.eds"})
+            self.assertEqual(self.complete("generate", "--templates", "", folder=folder), {"logs"})
+
+
+class Zsh(unittest.TestCase):
+    def test_names_each_option(self) -> None:
+        text = run("completion", "zsh")
+        self.assertTrue(text.startswith("#compdef edsc\n"))
+        for path, help_text in HELP.items():
+            name = "_".join(("_edsc", *path))
+            function = re.search(rf"^{name}\(\) {{\n(.*?)^}}", text, re.MULTILINE | re.DOTALL)
+            self.assertIsNotNone(function, name)
+            self.assertEqual(set(re.findall(r"'\*?(-[\w-]+)\[", function[1])), options_of(help_text))
+            for command in commands_of(help_text):
+                self.assertIn(f"'{command}:", function[1])
+
+    @unittest.skipUnless(shutil.which("zsh"), "SKIPPED: there is no zsh")
+    def test_is_what_zsh_understands(self) -> None:
+        """Loaded as compinit would, with an _arguments that checks what it is given."""
+        script = f"""
+_arguments() {{ for spec in "$@"; do print -r -- "$spec"; done; }}
+_describe() {{ :; }}
+_files() {{ :; }}
+_edsc_whole() {{
+{run("completion", "zsh")}
+}}
+_edsc_whole
+_edsc_decode
+"""
+        result = subprocess.run(["zsh", "-f"], input=script, capture_output=True, text=True, timeout=30, check=False)
+        self.assertEqual(result.stderr, "")
+        self.assertIn("--format[text or json, an object on each line]:text|json:(text json)\n", result.stdout)
+
+
+class ManPage(unittest.TestCase):
+    page = run("completion", "man")
+
+    def test_names_each_command_and_option(self) -> None:
+        plain = self.page.replace("\\-", "-")
+        for path, help_text in HELP.items():
+            if commands_of(help_text):
+                continue
+            title = " ".join(("edsc", *path))
+            section = re.search(rf"^\.SS {title}\n(.*?)(?=^\.S[SH] )", plain, re.MULTILINE | re.DOTALL)
+            self.assertIsNotNone(section, title)
+            self.assertEqual(set(re.findall(r"\\fB(-[\w-]+)\\fR", section[1])), options_of(help_text), title)
+            self.assertIn(f".B {title}\n", plain)
+
+    @unittest.skipUnless(shutil.which("groff"), "SKIPPED: there is no groff")
+    def test_is_clean_for_groff(self) -> None:
+        result = subprocess.run(["groff", "-man", "-ww", "-Tutf8"], input=self.page, capture_output=True, text=True, timeout=30,
+                                check=True)
+        self.assertEqual(result.stderr, "")
+        self.assertIn("EXIT STATUS", re.sub(".\b", "", result.stdout))
+
+    @unittest.skipUnless(shutil.which("mandoc"), "SKIPPED: there is no mandoc")
+    def test_is_clean_for_mandoc(self) -> None:
+        result = subprocess.run(["mandoc", "-Tlint", "-W", "warning"], input=self.page, capture_output=True, text=True, timeout=30,
+                                check=False)
+        without_date = [line for line in result.stdout.splitlines() if "missing date" not in line]  # the output has no dates
+        self.assertEqual(without_date, [])
+
+
+class Build(unittest.TestCase):
+    def test_leaves_the_files_beside_the_program(self) -> None:
+        for kind in KINDS:
+            self.assertEqual((EDSC.parent / "shell" / f"edsc.{kind}").read_text(), run("completion", kind))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
