@@ -258,25 +258,28 @@ void append_json(std::string& out, const LogLine& line, std::size_t line_number,
 }
 
 void append_json_string(std::string& out, std::string_view text) {
+  const auto plain = [](char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\'; };
   out += '"';
   for (std::size_t at = 0; at < text.size();) {
+    std::size_t end = at;
+    while (end < text.size() && plain(text[end])) ++end;
+    out.append(text, at, end - at);
+    at = end;
+    if (at == text.size()) break;
     const char c = text[at];
     const std::size_t length = utf8_sequence_length(text.substr(at));
     if (c == '"' || c == '\\') {
       out += '\\';
       out += c;
-      ++at;
     } else if (static_cast<unsigned char>(c) < 0x20) {
       out += "\\u00";
       append_hex_byte(out, static_cast<std::uint8_t>(c));
-      ++at;
     } else if (length == 0) {
       out += "\\uFFFD";
-      ++at;
     } else {
-      out += text.substr(at, length);
-      at += length;
+      out.append(text, at, length);
     }
+    at += std::max<std::size_t>(length, 1);
   }
   out += '"';
 }
