@@ -1,5 +1,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -137,14 +138,37 @@ void write_all(int descriptor, std::string& text) {
   text.clear();
 }
 
-/// The first interrupt ends the log, so that the summary is shown; the second one ends the program.
-void take_interrupts() {
-  struct sigaction action {};
-  action.sa_handler = [](int) {};
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  sigaction(SIGINT, &action, nullptr);
-  std::signal(SIGPIPE, SIG_IGN);
-}
+volatile std::sig_atomic_t interrupted = 0;
+
+/// An interrupt ends the log, so that the summary is shown. It is let through only while there is nothing to do but to
+/// wait for the log.
+class Interrupts {
+ public:
+  Interrupts() {
+    struct sigaction action {};
+    action.sa_handler = [](int) { interrupted = 1; };
+    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    sigaction(SIGINT, &action, nullptr);
+    std::signal(SIGPIPE, SIG_IGN);
+    sigset_t blocked;
+    sigemptyset(&blocked);
+    sigaddset(&blocked, SIGINT);
+    sigprocmask(SIG_BLOCK, &blocked, &while_waiting_);
+    sigdelset(&while_waiting_, SIGINT);
+  }
+
+  /// Waits until there is something to read. False: an interrupt has come.
+  [[nodiscard]] bool wait_for(int descriptor) const {
+    pollfd input{descriptor, POLLIN, 0};
+    while (ppoll(&input, 1, nullptr, &while_waiting_) < 0 && errno == EINTR) {
+      if (interrupted != 0) return false;
+    }
+    return true;
+  }
+
+ private:
+  sigset_t while_waiting_{};
+};
 
 int decode_log(const Settings& settings, const Nodes& nodes) {
   constexpr std::size_t output_bytes = std::size_t{64} * 1024;
@@ -164,8 +188,11 @@ int decode_log(const Settings& settings, const Nodes& nodes) {
     write_all(STDOUT_FILENO, out);
     write_all(STDERR_FILENO, complaints);
   };
-  take_interrupts();
-  LogReader reader{input.descriptor(), flush};
+  const Interrupts interrupts;
+  LogReader reader{input.descriptor(), [&] {
+                     flush();
+                     return interrupts.wait_for(input.descriptor());
+                   }};
   std::string_view line;
   while (reader.next(line)) {
     decoder.decode(line, reader.line_number(), out, complaints);

@@ -8,8 +8,8 @@
 
 namespace edsc {
 
-LogReader::LogReader(int file_descriptor, std::function<void()> before_waiting)
-    : file_descriptor_{file_descriptor}, before_waiting_{std::move(before_waiting)}, buffer_(2 * longest_line, '\0') {}
+LogReader::LogReader(int file_descriptor, std::function<bool()> before_reading)
+    : file_descriptor_{file_descriptor}, before_reading_{std::move(before_reading)}, buffer_(2 * longest_line, '\0') {}
 
 /// More bytes behind those that are there, which are less than a line. False when there are none.
 bool LogReader::fill() {
@@ -17,9 +17,13 @@ bool LogReader::fill() {
   std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
   end_ -= begin_;
   begin_ = 0;
-  before_waiting_();
-  const ssize_t count = ::read(file_descriptor_, buffer_.data() + end_, buffer_.size() - end_);
-  if (count < 0 && errno != EINTR) error_ = errno;
+  at_end_ = !before_reading_();
+  if (at_end_) return false;
+  ssize_t count = 0;
+  do {
+    count = ::read(file_descriptor_, buffer_.data() + end_, buffer_.size() - end_);
+  } while (count < 0 && errno == EINTR);
+  if (count < 0) error_ = errno;
   at_end_ = count <= 0;
   if (!at_end_) end_ += static_cast<std::size_t>(count);
   return !at_end_;

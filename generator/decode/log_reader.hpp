@@ -12,11 +12,12 @@ class LogReader {
  public:
   static constexpr std::size_t longest_line = std::size_t{64} * 1024;
 
-  /// `before_waiting` is called when no whole line is left, before more is read: now is the time to show what there is.
-  LogReader(int file_descriptor, std::function<void()> before_waiting);
+  /// `before_reading` is called when no whole line is left: now is the time to show what there is. False: the log is to
+  /// end here.
+  LogReader(int file_descriptor, std::function<bool()> before_reading);
 
   /// The next line without its line end; it stands until the next call. What is longer than `longest_line` is cut.
-  /// False at the end, and when reading fails or is interrupted.
+  /// False at the end, and when reading fails.
   [[nodiscard]] bool next(std::string_view& line);
 
   /// Number of the line, from 1.
@@ -28,7 +29,7 @@ class LogReader {
   [[nodiscard]] bool fill();
 
   int file_descriptor_;
-  std::function<void()> before_waiting_;
+  std::function<bool()> before_reading_;
   std::string buffer_;
   std::size_t begin_ = 0;  ///< of what has not been handed out
   std::size_t end_ = 0;
