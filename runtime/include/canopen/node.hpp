@@ -54,6 +54,8 @@ class Node {
 
   constexpr Node(B& can_bus, NodeId node_id, Handlers... handlers)
       : bus_{can_bus}, handlers_{std::move(handlers)...}, node_id_{node_id} {}
+  /// `start` brings the node-ID. With a bus by value such a node is all zeroes: none of it is kept in flash.
+  constexpr explicit Node(B& can_bus, Handlers... handlers) : bus_{can_bus}, handlers_{std::move(handlers)...} {}
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
 
@@ -898,6 +900,12 @@ class Node {
 template <class Device, Bus B, class... Handlers>
 [[nodiscard]] constexpr Node<Device, B, Handlers...> make_node(B& bus, NodeId node_id, Handlers... handlers) {
   return Node<Device, B, Handlers...>{bus, node_id, std::move(handlers)...};
+}
+
+/// The same for a node whose node-ID comes with `start`.
+template <class Device, Bus B, class... Handlers>
+[[nodiscard]] constexpr Node<Device, B, Handlers...> make_node(B& bus, Handlers... handlers) {
+  return Node<Device, B, Handlers...>{bus, std::move(handlers)...};
 }
 
 }  // namespace canopen

@@ -1,4 +1,9 @@
-/// An SDO server alone on a Cortex-M: for its size, and to count its instructions under QEMU (machine mps2-an386).
+/// The SDO server alone: for its size, and with COUNT for its instructions.
+#include "../cortex_m/startup.hpp"
+#ifdef COUNT
+#include "../cortex_m/count.hpp"
+#endif
+
 #include <array>
 #include <canopen/object_store.hpp>
 #include <canopen/sdo_server.hpp>
@@ -7,35 +12,12 @@
 #include <device/device.hpp>
 #include <span>
 
-extern "C" {
-extern std::uint32_t edsc_stack_top;
-extern std::uint32_t __bss_start__;
-extern std::uint32_t __bss_end__;
-extern std::uint32_t __data_start__;
-extern std::uint32_t __data_end__;
-extern std::uint32_t __data_load__;
-[[noreturn]] void reset();
-[[gnu::section(".vectors"), gnu::used]] const void* const vectors[] = {&edsc_stack_top,
-                                                                       reinterpret_cast<const void*>(reset)};
-}
-
 namespace {
 
 using Bytes = std::array<std::uint8_t, 8>;
 
-#ifdef WITH_SERVER
-struct Device : device::Device {
-  static constexpr canopen::DeviceOptions options = [] {
-    canopen::DeviceOptions options;
-#ifdef WITH_BLOCK
-    options.sdo_block_transfer = true;
-#endif
-    return options;
-  }();
-};
-
-constinit canopen::ObjectStore<Device> store;
-constinit canopen::SdoServer<Device> server;
+constinit canopen::ObjectStore<device::Device> store;
+constinit canopen::SdoServer<device::Device> server;
 
 struct Hooks {
   static canopen::EntryAccess entries() { return store.entries(); }
@@ -48,7 +30,6 @@ struct Hooks {
 };
 
 [[gnu::noinline]] void ask(const Bytes& request) { server.on_request(request, Hooks{}, canopen::TimePoint{}); }
-#endif
 
 /// Where the frames come from and go to.
 struct Mailbox {
@@ -63,53 +44,11 @@ Mailbox mailbox;
   return bytes;
 }
 
-[[maybe_unused, gnu::noinline]] void transmit(const Bytes& bytes) {
+[[gnu::noinline]] void transmit(const Bytes& bytes) {
   std::uint32_t words[2];
   std::memcpy(words, bytes.data(), sizeof words);
   mailbox.words[0] = words[0];
   mailbox.words[1] = words[1];
-}
-
-#ifdef COUNT
-constexpr std::uint32_t instructions_per_tick = 40;  // SysTick runs at 25 MHz, an instruction takes 1 ns
-volatile std::uint32_t& systick(std::uint32_t offset) {
-  return *reinterpret_cast<volatile std::uint32_t*>(0xE000'E010u + offset);
-}
-
-std::uint32_t semihosting(std::uint32_t operation, const void* argument) {
-  register std::uint32_t r0 asm("r0") = operation;
-  register const void* r1 asm("r1") = argument;
-  asm volatile("bkpt 0xAB" : "+r"(r0) : "r"(r1) : "memory");
-  return r0;
-}
-constexpr std::uint32_t write_text = 0x04;
-constexpr std::uint32_t exit_program = 0x18;
-
-void print(const char* name, std::uint32_t instructions, std::uint32_t units) {
-  char line[64];
-  std::size_t at = 0;
-  while (*name != 0) line[at++] = *name++;
-  line[at++] = ' ';
-  char digits[12];
-  std::size_t count = 0;
-  for (std::uint32_t tenths = static_cast<std::uint32_t>(std::uint64_t{instructions} * 10 / units);
-       count < 2 || tenths != 0; tenths /= 10) {
-    digits[count++] = static_cast<char>('0' + tenths % 10);
-    if (count == 1) digits[count++] = '.';
-  }
-  if (digits[count - 1] == '.') digits[count++] = '0';
-  while (count != 0) line[at++] = digits[--count];
-  line[at++] = '\n';
-  line[at] = 0;
-  semihosting(write_text, line);
-}
-
-/// Instructions of `run`.
-template <class F>
-std::uint32_t count(F run) {
-  const std::uint32_t before = systick(8);
-  run();
-  return ((before - systick(8)) & 0xFF'FFFF) * instructions_per_tick;
 }
 
 void exchange(const Bytes& request) {
@@ -120,7 +59,7 @@ void exchange(const Bytes& request) {
   }
 }
 
-constexpr std::uint32_t repeats = 1000;
+#ifdef COUNT
 constexpr std::uint32_t domain_bytes = 8192;
 std::uint8_t memory[domain_bytes];
 
@@ -153,7 +92,6 @@ void download_segments() {
   }
 }
 
-#ifdef WITH_BLOCK
 void upload_blocks() {
   exchange(with_index(0xA4, device::od::blob_8k::index, 127));
   exchange({0xA3});
@@ -175,46 +113,25 @@ void download_blocks() {
 }
 #endif
 
-void measure() {
-  systick(4) = 0xFF'FFFF;
-  systick(8) = 0;
-  systick(0) = 5;
+}  // namespace
+
+void program() {
+#ifdef COUNT
+  start_counter();
   store.reset_application(canopen::NodeId{5});
   store.reset_communication(canopen::NodeId{5});
   bind_domain();
-  const auto repeat = [&](const Bytes& request) {
-    return count([&] {
-      for (std::uint32_t i = 0; i < repeats; ++i) exchange(request);
-    });
-  };
-  print("expedited-upload", repeat({0x40, 0x17, 0x10, 0, 0, 0, 0, 0}), repeats);
-  print("expedited-download", repeat({0x2B, 0x17, 0x10, 0, 0xE8, 3, 0, 0}), repeats);
+  print_mean("expedited-upload", [](std::uint32_t) { exchange({0x40, 0x17, 0x10, 0, 0, 0, 0, 0}); });
+  print_mean("expedited-download", [](std::uint32_t) { exchange({0x2B, 0x17, 0x10, 0, 0xE8, 3, 0, 0}); });
   print("segmented-upload-per-byte", count(upload_segments), domain_bytes);
   print("segmented-download-per-byte", count(download_segments), domain_bytes);
-#ifdef WITH_BLOCK
-  print("block-upload-per-byte", count(upload_blocks), domain_bytes);
-  bind_domain();
-  print("block-download-per-byte", count(download_blocks), domain_bytes);
-#endif
-  semihosting(exit_program, reinterpret_cast<const void*>(0x20026));
-}
-#endif
-
-}  // namespace
-
-extern "C" void reset() {
-  for (std::uint32_t *from = &__data_load__, *to = &__data_start__; to != &__data_end__;) *to++ = *from++;
-  for (std::uint32_t* to = &__bss_start__; to != &__bss_end__;) *to++ = 0;
-#ifdef COUNT
-  measure();
-#endif
-  for (;;) {
-#ifdef WITH_SERVER
-    ask(receive());
-    if (server.has_reply()) {
-      transmit(server.reply());
-      server.reply_sent(Hooks{}, canopen::TimePoint{});
-    }
-#endif
+  if constexpr (device::Device::options.sdo_block_transfer) {
+    print("block-upload-per-byte", count(upload_blocks), domain_bytes);
+    bind_domain();
+    print("block-download-per-byte", count(download_blocks), domain_bytes);
   }
+  end_program();
+#else
+  for (;;) exchange(receive());
+#endif
 }

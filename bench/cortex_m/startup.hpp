@@ -1,0 +1,24 @@
+/// What a program of this folder begins with on a Cortex-M: vectors, and memory as C++ expects it. `program` is its own.
+#pragma once
+
+#include <cstdint>
+
+extern "C" {
+extern std::uint32_t edsc_stack_top;
+extern std::uint32_t __bss_start__;
+extern std::uint32_t __bss_end__;
+extern std::uint32_t __data_start__;
+extern std::uint32_t __data_end__;
+extern std::uint32_t __data_load__;
+[[noreturn]] void reset();
+[[gnu::section(".vectors"), gnu::used]] const void* const vectors[] = {&edsc_stack_top,
+                                                                       reinterpret_cast<const void*>(reset)};
+}
+
+[[noreturn]] void program();
+
+extern "C" void reset() {
+  for (std::uint32_t *from = &__data_load__, *to = &__data_start__; to != &__data_end__;) *to++ = *from++;
+  for (std::uint32_t* to = &__bss_start__; to != &__bss_end__;) *to++ = 0;
+  program();
+}

@@ -1,0 +1,7 @@
+/// Nothing: what is taken off every other image.
+#include "../cortex_m/startup.hpp"
+
+void program() {
+  for (;;) {
+  }
+}

@@ -1,0 +1,59 @@
+/// A whole node as firmware has it, with one mailbox for each direction.
+#include "../cortex_m/startup.hpp"
+
+#include <canopen/node.hpp>
+#include <cstdint>
+#include <cstring>
+#include <device/device.hpp>
+
+namespace {
+
+/// A CAN controller with a mailbox to send from and one to receive into.
+struct Mailbox {
+  volatile std::uint32_t status;  ///< 1: the one to send from is full, 2: the one to receive into is full
+  volatile std::uint32_t id;
+  volatile std::uint32_t size;
+  volatile std::uint32_t data[2];
+};
+constexpr std::uintptr_t controller = 0x4000'6400;
+constexpr std::uintptr_t timer = 0x4000'0024;
+
+Mailbox& transmit() { return *reinterpret_cast<Mailbox*>(controller); }
+Mailbox& receive() { return *reinterpret_cast<Mailbox*>(controller + sizeof(Mailbox)); }
+
+struct Can {
+  static bool send(const canopen::Frame& frame) {
+    Mailbox& box = transmit();
+    if ((box.status & 1) != 0) return false;
+    std::uint32_t words[2];
+    std::memcpy(words, frame.data.data(), sizeof words);
+    box.id = frame.id;
+    box.data[0] = words[0];
+    box.data[1] = words[1];
+    box.size = frame.size;
+    return true;
+  }
+};
+Can can;
+
+constinit auto node = canopen::make_node<device::Device>(can);
+
+canopen::TimePoint now() { return canopen::TimePoint{canopen::Duration{*reinterpret_cast<volatile std::uint32_t*>(timer)}}; }
+
+}  // namespace
+
+void program() {
+  node.start(canopen::NodeId{5}, now());
+  for (;;) {
+    Mailbox& box = receive();
+    if ((box.status & 2) != 0) {
+      canopen::Frame frame;
+      frame.id = box.id;
+      frame.size = static_cast<std::uint8_t>(box.size);
+      const std::uint32_t words[2] = {box.data[0], box.data[1]};
+      std::memcpy(frame.data.data(), words, sizeof words);
+      node.on_frame(frame, now());
+    }
+    node.on_time(now());
+  }
+}
