@@ -2,6 +2,7 @@
 #include "../cortex_m/startup.hpp"
 #include "../cortex_m/count.hpp"
 
+#include <canopen/object_store.hpp>
 #include <cstdint>
 #include <device/device.hpp>
 
@@ -14,6 +15,8 @@ struct Place {
 constexpr std::uint32_t places = 256;
 Place some[places];
 volatile std::uint32_t found;
+
+using Entries = canopen::EntryAccess<device::Device>;
 
 /// Every entry has the same chance.
 void choose() {
@@ -29,15 +32,12 @@ void choose() {
   }
 }
 
-[[gnu::noinline]] std::uint32_t look_up(std::uint16_t index, std::uint8_t sub_index) {
-  return device::dictionary.find(index, sub_index);
-}
 
 }  // namespace
 
 void program() {
   start_counter();
   choose();
-  print_mean("look-up", [](std::uint32_t i) { found = look_up(some[i % places].index, some[i % places].sub_index); });
+  print_mean("look-up", [](std::uint32_t i) { found = Entries::find(some[i % places].index, some[i % places].sub_index); });
   end_program();
 }

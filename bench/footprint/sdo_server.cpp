@@ -20,7 +20,7 @@ constinit canopen::ObjectStore<device::Device> store;
 constinit canopen::SdoServer<device::Device> server;
 
 struct Hooks {
-  static canopen::EntryAccess entries() { return store.entries(); }
+  static auto entries() { return store.entries(); }
   static canopen::AbortCode before_read(std::uint16_t, std::uint8_t) { return canopen::ok; }
   static canopen::AbortCode before_write(std::uint16_t, std::uint8_t, std::span<std::uint8_t>) { return canopen::ok; }
   static void after_write(std::uint16_t, std::uint8_t) {}

@@ -344,7 +344,7 @@ ordered_json cpp_view(const Device& device, const Options& options, Diagnostics&
                      emergency_rows(options), "any_emergency_info", !options.emergency_info.empty(), "descriptions",
                      description_rows(device), "node_id",
                      device.node_id ? ordered_json(*device.node_id) : ordered_json(nullptr), "dummies",
-                     dummy_mask(device), "lss", lss_view(device, options), "stored_eds",
+                     dummy_mask(device), "granularity", device.information.capabilities.granularity.value_or(1), "lss", lss_view(device, options), "stored_eds",
                      stored_eds_view(device, options), "storing", storing_rows(options), "any_storing", !options.storing.empty());
 }
 

@@ -51,7 +51,7 @@ class Application {
   struct Hooks {
     Application& application;
     std::uint32_t& expected;  ///< where the next piece of this server's download begins
-    [[nodiscard]] canopen::EntryAccess entries() const { return application.store.entries(); }
+    [[nodiscard]] auto entries() const { return application.store.entries(); }
     [[nodiscard]] AbortCode before_read(std::uint16_t, std::uint8_t) const { return application.answer; }
     [[nodiscard]] AbortCode before_write(std::uint16_t, std::uint8_t, std::span<std::uint8_t>) const {
       return application.answer;

@@ -22,7 +22,7 @@ class StreamBench {
 
   struct Hooks {
     StreamBench& bench;
-    [[nodiscard]] canopen::EntryAccess entries() const { return bench.store.entries(); }
+    [[nodiscard]] auto entries() const { return bench.store.entries(); }
     [[nodiscard]] AbortCode before_read(std::uint16_t, std::uint8_t) const { return canopen::ok; }
     [[nodiscard]] AbortCode before_write(std::uint16_t, std::uint8_t, std::span<std::uint8_t>) const {
       return canopen::ok;
@@ -47,7 +47,7 @@ class StreamBench {
       return Set::write(bench.handlers_, bench, canopen::object_key(index, sub_index), offset, bytes, last);
     }
   };
-  static_assert(canopen::DomainStreamHooks<Hooks>);
+  static_assert(canopen::DomainStreamHooks<Hooks, bench::WithBlock>);
 
   std::string ask(const std::string& request) {
     server.on_request(bench::bytes_of(request), Hooks{*this}, {});

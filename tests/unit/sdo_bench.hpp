@@ -40,7 +40,7 @@ struct PlainHooks {
   canopen::ObjectStore<Device>& store;
   std::function<canopen::AbortCode(std::uint16_t, std::uint8_t)>& refuse;
 
-  [[nodiscard]] canopen::EntryAccess entries() const { return store.entries(); }
+  [[nodiscard]] auto entries() const { return store.entries(); }
   [[nodiscard]] canopen::AbortCode before_read(std::uint16_t index, std::uint8_t sub_index) const {
     return refuse ? refuse(index, sub_index) : canopen::ok;
   }

@@ -43,8 +43,8 @@ namespace canopen {
 [[nodiscard]] constexpr AbortCode check_pdo_features(const DeviceOptions& options, bool tpdo, CobId cob_id) {
   if (!options.pdo_extended_ids && cob_id.extended()) return AbortCode::invalid_value;
   const auto [first, last] = options.pdo_reserved_can_ids;
-  const bool reserved = !cob_id.extended() && cob_id.can_id() >= first && cob_id.can_id() <= last;
-  if (cob_id.valid() && reserved) return AbortCode::invalid_value;
+  if (first <= last && cob_id.valid() && !cob_id.extended() && cob_id.can_id() >= first && cob_id.can_id() <= last)
+    return AbortCode::invalid_value;
   if (!tpdo) return ok;
   if (!options.tpdo_remote_frames && cob_id.valid() && cob_id.rtr_allowed()) return AbortCode::invalid_value;
   if (!options.tpdo_remote_frames_can_be_disabled && !cob_id.rtr_allowed()) return AbortCode::invalid_value;
@@ -67,36 +67,32 @@ namespace canopen {
 /// What speaks against writing these bytes, whose length is right, to 1400h..15FFh or 1800h..19FFh. Bits of a COB-ID
 /// that the device does not let change are put back into `bytes`. 0604 0047h: the data sheet gives the parameter another
 /// type than CiA 301.
-[[nodiscard]] inline AbortCode check_pdo_parameter(const DeviceOptions& options, const EntryAccess& entries,
-                                                   std::uint16_t index, std::uint8_t sub_index,
-                                                   std::span<std::uint8_t> bytes) {
+template <class Device>
+[[nodiscard]] AbortCode check_pdo_parameter(EntryAccess<Device> entries, std::uint16_t index, std::uint8_t sub_index,
+                                            std::span<std::uint8_t> bytes) {
   const bool tpdo = is_tpdo_communication(index);
+  const CobId cob_id{entries.number(entries.find(index, pdo_parameter::cob_id))};
+  std::uint32_t after = bytes[0];
   switch (sub_index) {
     case pdo_parameter::cob_id: {
       if (bytes.size() != sizeof(std::uint32_t)) return AbortCode::internal_incompatibility;
-      const CobId before{entries.number(entries.dictionary().find(index, sub_index))};
-      const CobId after = written_cob_id(before, options.pdo_cob_id_writable, bytes);
-      const AbortCode code = check_pdo_cob_id(before, after);
-      return code != ok ? code : check_pdo_features(options, tpdo, after);
+      const CobId written = written_cob_id(cob_id, Device::options.pdo_cob_id_writable, bytes);
+      const AbortCode code = check_pdo_cob_id(cob_id, written);
+      return code != ok ? code : check_pdo_features(Device::options, tpdo, written);
     }
-    case pdo_parameter::transmission_type: return check_transmission_type(options, tpdo, bytes[0]);
-    case pdo_parameter::inhibit_time: {
-      if (!tpdo || options.inhibit_time_writable_while_valid) return ok;
+    case pdo_parameter::transmission_type: return check_transmission_type(Device::options, tpdo, bytes[0]);
+    case pdo_parameter::inhibit_time:
+      if (!tpdo || Device::options.inhibit_time_writable_while_valid) return ok;
       if (bytes.size() != sizeof(std::uint16_t)) return AbortCode::internal_incompatibility;
-      const CobId cob_id{entries.number(entries.dictionary().find(index, pdo_parameter::cob_id))};
-      const std::uint32_t before = entries.number(entries.dictionary().find(index, sub_index));
-      const std::uint32_t after = bytes[0] | static_cast<std::uint32_t>(bytes[1] << 8);
-      return cob_id.valid() && before != after ? AbortCode::device_state : ok;
-    }
-    case pdo_parameter::sync_start: {
+      after |= static_cast<std::uint32_t>(bytes[1] << 8);
+      break;
+    case pdo_parameter::sync_start:
       if (!tpdo) return ok;
-      if (bytes[0] > highest_sync_counter) return AbortCode::invalid_value;
-      const CobId cob_id{entries.number(entries.dictionary().find(index, pdo_parameter::cob_id))};
-      const std::uint32_t before = entries.number(entries.dictionary().find(index, sub_index));
-      return cob_id.valid() && before != bytes[0] ? AbortCode::device_state : ok;
-    }
+      if (after > highest_sync_counter) return AbortCode::invalid_value;
+      break;
     default: return ok;
   }
+  return cob_id.valid() && entries.number(entries.find(index, sub_index)) != after ? AbortCode::device_state : ok;
 }
 
 }  // namespace canopen

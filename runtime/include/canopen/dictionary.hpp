@@ -104,7 +104,7 @@ struct Run {
 };
 
 /// An ARRAY or RECORD: where its values are and where the words of its sub-indices begin. The words' offsets count from
-/// `ram` or `rom`. Of an array the second word serves all elements, `stride` bytes apart.
+/// `ram` or `rom`. Of an array the second word serves all elements, `stride` bytes apart; of a record `stride` is 0.
 struct Group {
   std::uint16_t ram;
   std::uint16_t rom;
@@ -195,35 +195,35 @@ struct Dictionary {
   /// The same for an index whose word is known.
   [[nodiscard]] constexpr entry::Word sub_word(entry::Word word, std::uint8_t sub_index) const {
     const entry::Kind kind = entry::kind_of(word);
-    if (kind == entry::Kind::none) return no_object;
-    if (kind == entry::Kind::var) return sub_index == 0 ? word : no_sub_index;
+    if (kind <= entry::Kind::var) return sub_index == 0 || word == no_object ? word : no_sub_index;
 
     const Group& group = groups[entry::offset_of(word)];
     if (sub_index > group.highest) return no_sub_index;
-    const bool element = kind == entry::Kind::array && sub_index > 0;
-    const entry::Word sub = subs[group.subs + (element ? 1u : sub_index)];
+    const unsigned of_array = sub_index != 0 ? 1 : 0;
+    const entry::Word sub = subs[group.subs + (kind == entry::Kind::array ? of_array : sub_index)];
     if (sub == entry::gap) return no_sub_index;
     const entry::Place place = entry::place_of(sub);
-    if (place != entry::Place::ram && place != entry::Place::rom) return sub;
+    if (place > entry::Place::rom) return sub;
     const std::uint32_t base = place == entry::Place::ram ? group.ram : group.rom;
-    return sub + base + (element ? (sub_index - 1u) * group.stride : 0u);
+    return sub + base + (sub_index - of_array) * group.stride;
   }
 
   /// The word of an index as it stands in the table; `no_object` where there is none.
   [[nodiscard]] constexpr entry::Word find_index(std::uint16_t index) const {
-    std::size_t low = 0;
-    std::size_t high = runs.size() - 1;  // the last run is the end mark
-    while (low < high) {
-      const std::size_t middle = (low + high) / 2;
-      if (runs[middle].first <= index) {
-        low = middle + 1;
-      } else {
-        high = middle;
-      }
+    const Run* run = runs.data();
+    for (std::size_t left = runs.size() - 1; left > 1;) {  // the last run is the end mark
+      const std::size_t half = left / 2;
+      if (run[half].first <= index) run += half;
+      left -= half;
     }
-    if (low == 0) return no_object;
-    const std::uint32_t position = runs[low - 1].position + static_cast<std::uint32_t>(index - runs[low - 1].first);
-    return position < runs[low].position ? entries[position] : no_object;
+    return word_in(*run, index);
+  }
+
+  /// The word of an index that stands in this run or nowhere.
+  [[nodiscard]] constexpr entry::Word word_in(const Run& run, std::uint16_t index) const {
+    // An index before the first run is far behind its end.
+    const std::uint32_t position = run.position + static_cast<std::uint32_t>(index) - run.first;
+    return position < (&run + 1)->position ? entries[position] : no_object;
   }
 
   /// Whether an entry exists.

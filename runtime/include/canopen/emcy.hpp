@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -89,7 +90,7 @@ class EmergencyProducer {
   ///   0609 0030h  1014h: the CAN-ID changes while EMCY is valid, is a restricted one, or has 29 bits where the device
   ///               takes 11; bit 30 is 1. 1015h: no multiple of what the device counts in
   ///   0604 0047h  the data sheet gives the object another type than CiA 301
-  [[nodiscard]] static AbortCode check(const EntryAccess& entries, std::uint16_t index, std::span<std::uint8_t> bytes) {
+  [[nodiscard]] static AbortCode check(EntryAccess<Device> entries, std::uint16_t index, std::span<std::uint8_t> bytes) {
     if (index == 0x1015) {
       if constexpr (Device::options.emcy_inhibit_time_step != 1) {
         if (bytes.size() != sizeof(std::uint16_t)) return AbortCode::internal_incompatibility;
@@ -99,7 +100,7 @@ class EmergencyProducer {
       return ok;
     }
     if (bytes.size() != sizeof(std::uint32_t)) return AbortCode::internal_incompatibility;
-    const CobId before{entries.number(Device::dictionary.find(0x1014, 0))};
+    const CobId before{entries.template number<0x1014, 0>()};
     const CobId after = written_cob_id(before, Device::options.emcy_cob_id_writable, bytes);
     constexpr std::uint32_t reserved_bit = 0x4000'0000;
     const bool in_use = before.valid() && after.valid() && !Device::options.emcy_cob_id_writable_while_valid;
@@ -224,13 +225,17 @@ class EmergencyProducer {
   static void remember([[maybe_unused]] ObjectStore<Device>& store, [[maybe_unused]] std::uint16_t code,
                        [[maybe_unused]] const EmergencyInfo& info) {
     if constexpr (has_history) {
-      std::uint8_t* const count = store.entries().ram(history_count);
-      std::uint8_t* const first = store.entries().ram(history_first);
-      const std::uint32_t field = code | static_cast<std::uint32_t>(info[0] << 16) | (std::uint32_t{info[1]} << 24);
-      const unsigned kept = std::min<unsigned>(*count, history_capacity - 1u);  // the application may set any number
-      std::memmove(first + sizeof field, first, kept * sizeof field);
-      *count = static_cast<std::uint8_t>(kept + 1);
-      std::memcpy(first, &field, sizeof field);
+      std::uint8_t& count = *store.entries().ram(history_count);
+      std::uint8_t* field = store.entries().ram(history_first);
+      if (count >= history_capacity) count = history_capacity - 1;  // the application may set any number
+      std::uint32_t next = code | static_cast<std::uint32_t>(info[0] << 16) | (std::uint32_t{info[1]} << 24);
+      for (unsigned i = 0; i <= count; ++i, field += sizeof next) {
+        std::uint32_t older;
+        std::memcpy(&older, std::assume_aligned<alignof(std::uint32_t)>(field), sizeof older);
+        std::memcpy(std::assume_aligned<alignof(std::uint32_t)>(field), &next, sizeof next);
+        next = older;
+      }
+      ++count;
     }
   }
 
@@ -252,8 +257,9 @@ class EmergencyProducer {
 };
 
 /// What speaks against reading 1003h: an error that is not there (0800 0024h).
-[[nodiscard]] inline AbortCode check_history_read(const EntryAccess& entries, std::uint8_t sub_index) {
-  const entry::Word count = entries.dictionary().find(0x1003, 0);
+template <class Device>
+[[nodiscard]] AbortCode check_history_read(EntryAccess<Device> entries, std::uint8_t sub_index) {
+  constexpr entry::Word count = Device::dictionary.find(0x1003, 0);
   if (count <= Dictionary::no_sub_index) return ok;
   return sub_index > entries.number(count) ? AbortCode::no_data : ok;
 }

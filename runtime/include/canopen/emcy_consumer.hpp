@@ -44,12 +44,12 @@ class EmergencyConsumer {
  public:
   static constexpr bool exists = Device::dictionary.has(0x1028, 1);
 
-  [[nodiscard]] static std::optional<ConsumedEmergency> take([[maybe_unused]] const EntryAccess& entries,
+  [[nodiscard]] static std::optional<ConsumedEmergency> take([[maybe_unused]] EntryAccess<Device> entries,
                                                              [[maybe_unused]] const Frame& frame) {
     if constexpr (exists) {
       const std::uint32_t cob_id = cob_id_of(frame);
       for (std::uint8_t sub_index = 1; sub_index <= highest; ++sub_index) {
-        const entry::Word word = Device::dictionary.find(0x1028, sub_index);
+        const entry::Word word = entries.find(0x1028, sub_index);
         if (word == Dictionary::no_sub_index || entries.number(word) != cob_id) continue;
         if (const auto message = emergency_message(frame)) return ConsumedEmergency{sub_index, *message};
       }

@@ -77,9 +77,10 @@ class HeartbeatConsumer {
   }
 
   /// The same for all entries, from 1016h.
-  void configure(const EntryAccess& entries) {
+  template <class Device>
+  void configure(EntryAccess<Device> entries) {
     for (std::size_t i = 0; i < Count; ++i) {
-      const entry::Word word = entries.dictionary().find(0x1016, static_cast<std::uint8_t>(i + 1));
+      const entry::Word word = entries.find(0x1016, static_cast<std::uint8_t>(i + 1));
       configure(i, ConsumerHeartbeatTime{entries.number(word)});
     }
   }

@@ -36,29 +36,31 @@ class MappedPlaces {
   /// Looks up the objects of a PDO. Answers the data bytes of its frame; 0 when it carries nothing.
   /// `marked(word, mapped)` says of each object whether it is one for `is_marked`.
   template <class Marked>
-  std::uint8_t look_up(std::size_t pdo, const EntryAccess& entries, Marked&& marked) {
+  std::uint8_t look_up(std::size_t pdo, EntryAccess<Device> entries, Marked&& marked) {
+    constexpr bool tpdo = Indices.mapping == tpdo_indices.mapping;
     const MappingParameter mapping = parameter(pdo, entries);
-    const Dictionary& dictionary = entries.dictionary();
-    if (mapping.count() > capacities[pdo]) return 0;
-    const std::uint8_t bits =
-        mapping.bits_of(dictionary, Device::dummies, Indices.mapping == tpdo_indices.mapping, mapping.count());
-    for (std::uint8_t i = 0; bits != 0 && i < mapping.count(); ++i) {
-      Place& place = places_[firsts[pdo] + i];
-      place = no_place;
-      if (mapping[i].is_dummy()) continue;
-      const entry::Word word = dictionary.find(mapping[i].index(), mapping[i].sub_index());
-      place = static_cast<Place>(entry::offset_of(word) | (marked(word, mapping[i]) ? mark : 0u));
+    const std::uint8_t objects = mapping.count();
+    if (objects > capacities[pdo]) return 0;
+    const std::uint8_t bits = mapping.template bits_of<Device>(tpdo, objects);
+    if (bits == 0) return 0;
+    for (std::uint8_t i = 0; i < objects; ++i) {
+      const entry::Word word = can_be_mapped<Device>(tpdo, mapping[i]);
+      Place place = no_place;
+      if (word != mapped_dummy) {
+        place = static_cast<Place>(entry::offset_of(word) | (marked(word, mapping[i]) ? mark : 0u));
+      }
+      places_[firsts[pdo] + i] = place;
     }
     return static_cast<std::uint8_t>((bits + 7) / 8);
   }
 
   /// The mapping parameter of a PDO.
-  [[nodiscard]] static MappingParameter parameter(std::size_t pdo, const EntryAccess& entries) {
+  [[nodiscard]] static MappingParameter parameter(std::size_t pdo, EntryAccess<Device> entries) {
     return {entries, words[pdo].count, words[pdo].first};
   }
 
   /// Whether a PDO carries an object.
-  [[nodiscard]] static bool carries(std::size_t pdo, const EntryAccess& entries, std::uint32_t key) {
+  [[nodiscard]] static bool carries(std::size_t pdo, EntryAccess<Device> entries, std::uint32_t key) {
     const MappingParameter mapping = parameter(pdo, entries);
     for (std::uint8_t i = 0; i < mapping.count() && i < capacities[pdo]; ++i) {
       if (mapping[i].key() == key) return true;

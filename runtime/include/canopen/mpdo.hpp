@@ -111,7 +111,7 @@ struct DispatchedObjects {
 };
 
 /// All lists of one kind, `ScannedObjects` or `DispatchedObjects`, that a dictionary has.
-template <const Dictionary& D, class Element>
+template <class Device, class Element>
 class MpdoLists {
  public:
   [[nodiscard]] static constexpr bool contain(std::uint16_t index) {
@@ -120,11 +120,11 @@ class MpdoLists {
 
   /// Elements that an object of this kind has room for; 0: none, or of another type than CiA 301 says.
   [[nodiscard]] static constexpr std::uint8_t capacity(std::uint16_t index) {
-    const entry::Word count = D.find(index, 0);
+    const entry::Word count = Device::dictionary.find(index, 0);
     if (count <= Dictionary::no_sub_index || entry::wire_bytes(count) != 1) return 0;
     std::uint8_t capacity = 0;
     while (capacity < 254) {
-      const entry::Word next = D.find(index, static_cast<std::uint8_t>(capacity + 1));
+      const entry::Word next = Device::dictionary.find(index, static_cast<std::uint8_t>(capacity + 1));
       if (next <= Dictionary::no_sub_index || entry::wire_bytes(next) != sizeof(typename Element::Value)) break;
       ++capacity;
     }
@@ -142,7 +142,7 @@ class MpdoLists {
   /// Calls `visit(element, index, sub_index)`, with the place in the list, for each element that is not empty, as far
   /// as sub-index 0 of its list says.
   template <class Visit>
-  static void for_each(const EntryAccess& entries, Visit&& visit) {
+  static void for_each(EntryAccess<Device> entries, Visit&& visit) {
     for (const List& list : lists) {
       const std::uint32_t used = entries.number(list.count);
       for (std::uint32_t i = 0; i < used && list.begin + i < list.end; ++i) {
@@ -178,7 +178,7 @@ class MpdoLists {
       const auto index = static_cast<std::uint16_t>(at);
       const std::size_t end = begin + capacity(index);
       if (end == begin) continue;
-      rows[i++] = {D.find(index, 0), index, static_cast<std::uint16_t>(begin), static_cast<std::uint16_t>(end)};
+      rows[i++] = {Device::dictionary.find(index, 0), index, static_cast<std::uint16_t>(begin), static_cast<std::uint16_t>(end)};
       begin = end;
     }
     return rows;
@@ -188,7 +188,7 @@ class MpdoLists {
     std::array<entry::Word, room> rows{};
     for (const List& list : lists) {
       for (std::size_t i = list.begin; i < list.end; ++i) {
-        rows[i] = D.find(list.index, static_cast<std::uint8_t>(i - list.begin + 1));
+        rows[i] = Device::dictionary.find(list.index, static_cast<std::uint8_t>(i - list.begin + 1));
       }
     }
     return rows;
@@ -248,17 +248,17 @@ class MultiplexedPdos {
   }
 
   /// `source_multiplexed`, `destination_multiplexed`, or a number of mapped objects.
-  [[nodiscard]] static std::uint32_t mode(const EntryAccess& entries, const Parameters& row) {
+  [[nodiscard]] static std::uint32_t mode(EntryAccess<Device> entries, const Parameters& row) {
     return entries.number(row.mapped_objects);
   }
 
-  [[nodiscard]] static bool event_driven(const EntryAccess& entries, const Parameters& row) {
+  [[nodiscard]] static bool event_driven(EntryAccess<Device> entries, const Parameters& row) {
     return row.transmission_type <= Dictionary::no_sub_index ||
            transmission_of(entries.number(row.transmission_type)) == Transmission::event_driven;
   }
 
   /// The first valid one of this mode; null when there is none.
-  [[nodiscard]] static const Parameters* find(const EntryAccess& entries, std::uint8_t wanted) {
+  [[nodiscard]] static const Parameters* find(EntryAccess<Device> entries, std::uint8_t wanted) {
     for (const Parameters& row : rows) {
       if (mode(entries, row) == wanted && CobId{entries.number(row.cob_id)}.valid() && event_driven(entries, row)) {
         return &row;
@@ -285,8 +285,8 @@ template <class Device>
 class MpdoService {
   using Rpdos = MultiplexedPdos<Device, rpdo_indices, typename Device::Rpdos>;
   using Tpdos = MultiplexedPdos<Device, tpdo_indices, typename Device::Tpdos>;
-  using Scanned = MpdoLists<Device::dictionary, ScannedObjects>;
-  using Dispatched = MpdoLists<Device::dictionary, DispatchedObjects>;
+  using Scanned = MpdoLists<Device, ScannedObjects>;
+  using Dispatched = MpdoLists<Device, DispatchedObjects>;
 
   [[nodiscard]] static constexpr bool carries(entry::Word word, entry::Word direction) {
     const std::uint8_t bytes = entry::wire_bytes(word);
@@ -318,7 +318,7 @@ class MpdoService {
 
   /// Takes a frame for each MPDO that it is.
   template <class Host>
-  void on_frame([[maybe_unused]] const EntryAccess& entries, [[maybe_unused]] const Frame& frame,
+  void on_frame([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] const Frame& frame,
                 [[maybe_unused]] NodeId own, [[maybe_unused]] Host&& host) {
     if constexpr (receives) {
       for (const auto& row : Rpdos::rows) {
@@ -349,7 +349,7 @@ class MpdoService {
   // Producers
 
   /// An object has a new value. True when it is to be sent.
-  bool changed([[maybe_unused]] const EntryAccess& entries, [[maybe_unused]] std::uint16_t index,
+  bool changed([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] std::uint16_t index,
                [[maybe_unused]] std::uint8_t sub_index) {
     if constexpr (sends_source) {
       if (Scanned::contain(index)) source_.pending = {};  // the places of the objects have changed
@@ -368,7 +368,7 @@ class MpdoService {
   }
 
   /// Gives a DAM-MPDO to be sent. False: this device has no valid DAM-TPDO now, or `depth` of them wait.
-  [[nodiscard]] bool put(const EntryAccess& entries, const MpdoDestination& to, std::uint32_t value) {
+  [[nodiscard]] bool put(EntryAccess<Device> entries, const MpdoDestination& to, std::uint32_t value) {
     static_assert(sends_destination, "no TPDO of this device is a multiplex PDO or can be made one");
     if (destination_.waiting == depth || Tpdos::find(entries, destination_multiplexed) == nullptr) return false;
     destination_.queue[destination_.waiting++] = Mpdo::destination(to, value);
@@ -377,7 +377,7 @@ class MpdoService {
 
   /// Sends what waits. False when the bus had no room: it stays.
   template <Bus B>
-  bool serve([[maybe_unused]] const EntryAccess& entries, [[maybe_unused]] NodeId own, [[maybe_unused]] B& bus,
+  bool serve([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] NodeId own, [[maybe_unused]] B& bus,
              [[maybe_unused]] TimePoint now) {
     // Inhibit times end here, whether anything waits or not: later their ends would seem to lie ahead again.
     if constexpr (sends_destination) {
@@ -410,7 +410,7 @@ class MpdoService {
   ///               producer (or what the device answers instead); a scanner list with more objects than there are
   ///   0609 0030h  another transmission type for an MPDO, more elements than a list has
   ///   0604 0041h  an element of a list names what does not exist, cannot be mapped or has more than 32 bits
-  [[nodiscard]] static AbortCode check(const EntryAccess& entries, std::uint16_t index, std::uint8_t sub_index,
+  [[nodiscard]] static AbortCode check(EntryAccess<Device> entries, std::uint16_t index, std::uint8_t sub_index,
                                        std::span<const std::uint8_t> bytes) {
     if (is_rpdo_communication(index) || is_rpdo_mapping(index)) {
       return check_pdo<Rpdos>(entries, index, sub_index, bytes[0]);
@@ -439,7 +439,7 @@ class MpdoService {
       if (runs && now >= end) runs = false;
       return !runs;
     }
-    void start(const EntryAccess& entries, entry::Word word, TimePoint now) {
+    void start(EntryAccess<Device> entries, entry::Word word, TimePoint now) {
       if (word <= Dictionary::no_sub_index) return;
       const Duration time = inhibit_duration(Device::options, static_cast<std::uint16_t>(entries.number(word)));
       runs = time.count() != 0;
@@ -475,7 +475,7 @@ class MpdoService {
   }
 
   template <class Host>
-  bool take_destination(const EntryAccess& entries, const Mpdo& mpdo, NodeId own, Host& host) {
+  bool take_destination(EntryAccess<Device> entries, const Mpdo& mpdo, NodeId own, Host& host) {
     if (mpdo.node_id() != 0 && mpdo.node_id() != own.value()) return false;
     const bool found = take(entries, mpdo.index(), mpdo.sub_index(), mpdo.value(), host);
     if (found == consumer_.destination_missing) {
@@ -486,7 +486,7 @@ class MpdoService {
   }
 
   template <class Host>
-  static bool take_source(const EntryAccess& entries, const Mpdo& mpdo, Host& host) {
+  static bool take_source(EntryAccess<Device> entries, const Mpdo& mpdo, Host& host) {
     bool taken = false;
     if constexpr (Dispatched::room > 0) {
       Dispatched::for_each(entries, [&](const DispatchedObjects& block, std::uint16_t, std::uint8_t) {
@@ -500,9 +500,9 @@ class MpdoService {
 
   /// False when there is no such object that an MPDO may bring.
   template <class Host>
-  static bool take(const EntryAccess& entries, std::uint16_t index, std::uint8_t sub_index, const std::uint8_t* value,
+  static bool take(EntryAccess<Device> entries, std::uint16_t index, std::uint8_t sub_index, const std::uint8_t* value,
                    Host& host) {
-    const entry::Word word = entries.dictionary().find(index, sub_index);
+    const entry::Word word = entries.find(index, sub_index);
     if (!carries(word, entry::rpdo)) return false;
     alignas(4) std::array<std::uint8_t, 4> bytes;
     std::memcpy(bytes.data(), value, bytes.size());
@@ -513,7 +513,7 @@ class MpdoService {
   // Producers
 
   template <Bus B>
-  [[nodiscard]] static bool send(const EntryAccess& entries, const typename Tpdos::Parameters& tpdo,
+  [[nodiscard]] static bool send(EntryAccess<Device> entries, const typename Tpdos::Parameters& tpdo,
                                  const Mpdo::Data& data, B& bus) {
     const CobId cob_id{entries.number(tpdo.cob_id)};
     Frame frame{};
@@ -525,7 +525,7 @@ class MpdoService {
   }
 
   template <Bus B>
-  bool serve_destination(const EntryAccess& entries, B& bus, TimePoint now) {
+  bool serve_destination(EntryAccess<Device> entries, B& bus, TimePoint now) {
     const auto* const tpdo = Tpdos::find(entries, destination_multiplexed);
     if (tpdo == nullptr) destination_.waiting = 0;
     while (destination_.waiting != 0 && destination_.inhibit.over(now)) {
@@ -538,13 +538,13 @@ class MpdoService {
   }
 
   template <Bus B>
-  bool serve_source(const EntryAccess& entries, NodeId own, B& bus, TimePoint now) {
+  bool serve_source(EntryAccess<Device> entries, NodeId own, B& bus, TimePoint now) {
     const auto* const tpdo = Tpdos::find(entries, source_multiplexed);
     if (tpdo == nullptr) source_.pending = {};
     while (any_pending() && source_.inhibit.over(now)) {
       const std::size_t place = next_pending();
       const ScannedObjects object = scanned_at(entries, place);
-      const entry::Word word = entries.dictionary().find(object.index(), object.sub_index());
+      const entry::Word word = entries.find(object.index(), object.sub_index());
       if (carries(word, entry::tpdo)) {
         std::array<std::uint8_t, 8> scratch;
         const auto data = Mpdo::source(own, object.index(), object.sub_index(), entries.read(word, scratch));
@@ -580,7 +580,7 @@ class MpdoService {
   }
 
   /// The object at a place in the scanner lists, as a block of one.
-  [[nodiscard]] static ScannedObjects scanned_at(const EntryAccess& entries, std::size_t place) {
+  [[nodiscard]] static ScannedObjects scanned_at(EntryAccess<Device> entries, std::size_t place) {
     ScannedObjects object{};
     std::size_t first = 0;
     Scanned::for_each(entries, [&](ScannedObjects block, std::uint16_t, std::uint8_t) {
@@ -595,7 +595,7 @@ class MpdoService {
   // Parameters
 
   template <class Pdos>
-  [[nodiscard]] static AbortCode check_pdo(const EntryAccess& entries, std::uint16_t index, std::uint8_t sub_index,
+  [[nodiscard]] static AbortCode check_pdo(EntryAccess<Device> entries, std::uint16_t index, std::uint8_t sub_index,
                                            std::uint8_t value) {
     const auto* const row = Pdos::with_parameter(index);
     if (row == nullptr) return ok;
@@ -613,7 +613,7 @@ class MpdoService {
 
   /// Whether a PDO can become a SAM-MPDO.
   template <class Pdos>
-  [[nodiscard]] static bool check_source(const EntryAccess& entries, const typename Pdos::Parameters& wanted) {
+  [[nodiscard]] static bool check_source(EntryAccess<Device> entries, const typename Pdos::Parameters& wanted) {
     if constexpr (std::is_same_v<Pdos, Rpdos>) return Dispatched::room > 0;
     for (const auto& row : Pdos::rows) {
       if (row.number != wanted.number && Pdos::mode(entries, row) == source_multiplexed) return false;
@@ -638,7 +638,7 @@ class MpdoService {
     return ok;
   }
 
-  [[nodiscard]] static AbortCode check_scanned(const EntryAccess& entries, std::uint16_t index, std::uint8_t sub_index,
+  [[nodiscard]] static AbortCode check_scanned(EntryAccess<Device> entries, std::uint16_t index, std::uint8_t sub_index,
                                                std::span<const std::uint8_t> bytes) {
     const AbortCode code = check_list<Scanned, ScannedObjects>(index, sub_index, bytes, entry::tpdo);
     if (code != ok || sub_index == 0 || sub_index > Scanned::capacity(index)) return code;

@@ -59,16 +59,18 @@ struct NmtStartUp {
 namespace network_list_detail {
 
 /// An entry of up to 32 bits; 0 where the dictionary has none.
-[[nodiscard]] inline std::uint32_t number_or_zero(const EntryAccess& entries, std::uint16_t index,
+template <class Device>
+[[nodiscard]] std::uint32_t number_or_zero(EntryAccess<Device> entries, std::uint16_t index,
                                                   std::uint8_t sub_index) {
-  const entry::Word word = entries.dictionary().find(index, sub_index);
+  const entry::Word word = entries.find(index, sub_index);
   return word > Dictionary::no_sub_index ? entries.number(word) : 0;
 }
 
 }  // namespace network_list_detail
 
 /// 1F80h and 1F89h of a dictionary. A boot time above half an hour counts as half an hour.
-[[nodiscard]] inline NmtStartUp read_start_up(const EntryAccess& entries) {
+template <class Device>
+[[nodiscard]] NmtStartUp read_start_up(EntryAccess<Device> entries) {
   using network_list_detail::number_or_zero;
   constexpr std::uint32_t half_hour = 30 * 60 * 1000;
   const std::uint32_t milliseconds = number_or_zero(entries, 0x1F89, 0);
@@ -77,7 +79,8 @@ namespace network_list_detail {
 
 /// Fills `slaves` with the nodes that 1F81h lists, in ascending order, and says how many there are: more than fit is a
 /// list that is too small.
-inline std::size_t read_network_list(const EntryAccess& entries, std::span<NmtSlave> slaves) {
+template <class Device>
+std::size_t read_network_list(EntryAccess<Device> entries, std::span<NmtSlave> slaves) {
   using network_list_detail::number_or_zero;
   std::size_t count = 0;
   for (std::uint8_t node_id = 1; node_id <= 127; ++node_id) {

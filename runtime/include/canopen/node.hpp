@@ -179,7 +179,7 @@ class Node {
   /// handlers are not called, and services do not ask whether a parameter of theirs may change now; they take it over.
   /// Refused for its length and its limits as a download would be; read_only: it is a constant of the data sheet.
   AbortCode set(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> bytes) {
-    const entry::Word word = Device::dictionary.find(index, sub_index);
+    const entry::Word word = EntryAccess<Device>::find(index, sub_index);
     if (word == Dictionary::no_object) return AbortCode::no_object;
     if (word == Dictionary::no_sub_index) return AbortCode::no_sub_index;
     if (entry::place_of(word) != entry::Place::ram) return AbortCode::read_only;
@@ -291,7 +291,7 @@ class Node {
   [[nodiscard]] const typename Device::Values& values() const { return store_.values(); }
 
   /// The dictionary by number, for tools.
-  [[nodiscard]] EntryAccess entries() { return store_.entries(); }
+  [[nodiscard]] EntryAccess<Device> entries() { return store_.entries(); }
 
  private:
   using BusMember = std::conditional_t<std::is_empty_v<B>, B, B&>;
@@ -323,7 +323,7 @@ class Node {
 
   struct SdoHooks {
     Node& node;
-    [[nodiscard]] EntryAccess entries() { return node.entries(); }
+    [[nodiscard]] EntryAccess<Device> entries() { return node.entries(); }
     [[nodiscard]] AbortCode before_read(std::uint16_t index, std::uint8_t sub_index) {
       return node.before_read(index, sub_index);
     }
@@ -585,7 +585,7 @@ class Node {
     if constexpr (has_storage) {
       if (index == store_parameters || index == restore_parameters) {
         const std::uint32_t key = object_key(index, sub_index);
-        AbortCode code = check_storage_command(Device::options, entries(), index, sub_index, bytes);
+        AbortCode code = check_storage_command(entries(), index, sub_index, bytes);
         if (code == ok) code = handlers_.before_write(*this, key, bytes);
         if (code != ok || (sections_of(sub_index) == 0 && handlers_.handles(key))) return code;
         return index == store_parameters ? save(sub_index) : restore(sub_index);
@@ -601,11 +601,11 @@ class Node {
       if (const AbortCode code = mpdos_.check(entries(), index, sub_index, bytes); code != ok) return code;
     }
     if (is_rpdo_communication(index) || is_tpdo_communication(index)) {
-      return check_pdo_parameter(Device::options, entries(), index, sub_index, bytes);
+      return check_pdo_parameter(entries(), index, sub_index, bytes);
     }
     if constexpr (has_dynamic_rpdos || has_dynamic_tpdos) {
       if (is_rpdo_mapping(index) || is_tpdo_mapping(index)) {
-        return check_pdo_mapping(Device::options, entries(), Device::dummies, index, sub_index, bytes);
+        return check_pdo_mapping(entries(), index, sub_index, bytes);
       }
     }
     if (index >= sdo_server_parameter && index <= last_sdo_server_parameter) {
@@ -613,14 +613,14 @@ class Node {
     }
     if constexpr (SyncConsumer<Device>::exists) {
       if (index == 0x1005 || index == 0x1006 || index == 0x1019) {
-        return check_sync_parameter(Device::options, entries(), SyncProducer<Device>::exists, index, bytes);
+        return check_sync_parameter(entries(), index, bytes);
       }
     }
     if constexpr (EmergencyProducer<Device>::has_parameters) {
       if (index == 0x1014 || index == 0x1015) return emergencies_.check(entries(), index, bytes);
     }
     if constexpr (TimeStamp<Device>::exists) {
-      if (index == 0x1012) return check_time_parameter(Device::options, entries(), bytes);
+      if (index == 0x1012) return check_time_parameter(entries(), bytes);
     }
     if constexpr (has_heartbeat_consumer) {
       if (index == 0x1016 && sub_index != 0) {
@@ -649,7 +649,7 @@ class Node {
     }
     if constexpr (has_heartbeat_consumer) {
       if (index == 0x1016 && sub_index != 0) {
-        const std::uint32_t value = entries().number(Device::dictionary.find(index, sub_index));
+        const std::uint32_t value = entries().number(EntryAccess<Device>::find(index, sub_index));
         heartbeats_.configure(sub_index - 1u, ConsumerHeartbeatTime{value});
         tell_error_control_over();
       }
@@ -785,7 +785,7 @@ class Node {
 
   /// A value for an object known by number. One that is outside its limits or that its handler refuses is not taken.
   void take(std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
-    const entry::Word word = Device::dictionary.find(index, sub_index);
+    const entry::Word word = EntryAccess<Device>::find(index, sub_index);
     if (entry::is_boolean(word)) bytes[0] = bytes[0] != 0 ? 1 : 0;
     if (entries().check(index, sub_index, word, bytes) != ok) return;
     if (before_write(index, sub_index, bytes) != ok) return;

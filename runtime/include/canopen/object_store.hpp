@@ -17,58 +17,111 @@ namespace canopen {
 static_assert(std::endian::native == std::endian::little,
               "values lie in memory as CiA 301, 7.1 sends them: low byte first");
 
-/// Memory and tables behind one node's entries, whatever its device: what an SDO server works on.
+template <class Device>
+class ObjectStore;
+
+namespace entry {
+
+/// Which kinds of entries a dictionary has: code for others is left out of an image.
+struct Kinds {
+  bool strings_in_ram = false;
+  bool domains = false;
+  bool booleans = false;
+  bool padded = false;  ///< numbers of 24, 40, 48 or 56 bits in RAM, in the next wider type
+  bool constants = false;
+  bool negative_immediates = false;
+};
+
+[[nodiscard]] constexpr Kinds kinds_of(const Dictionary& dictionary) {
+  Kinds kinds;
+  dictionary.for_each_entry([&](std::uint16_t, std::uint8_t, Word word) {
+    const bool in_ram = place_of(word) == Place::ram;
+    const std::uint8_t size = wire_bytes(word);
+    if (is_string(word) && in_ram) kinds.strings_in_ram = true;
+    if (is_domain(word)) kinds.domains = true;
+    if (is_boolean(word)) kinds.booleans = true;
+    if ((size & (size - 1)) != 0 && in_ram) kinds.padded = true;
+    if (place_of(word) == Place::rom) kinds.constants = true;
+    if (place_of(word) == Place::immediate && class_of(word) == Class::signed_integer) kinds.negative_immediates = true;
+  });
+  return kinds;
+}
+
+}  // namespace entry
+
+/// The entries of one node by number: what an SDO server works on. A reference to an ObjectStore, to be copied freely.
+template <class Device>
 class EntryAccess {
  public:
-  constexpr EntryAccess(const Dictionary& dictionary, std::uint8_t* ram, NodeId node_id)
-      : dictionary_{dictionary}, ram_{ram}, node_id_{node_id} {}
+  static constexpr entry::Kinds kinds = entry::kinds_of(Device::dictionary);
 
-  [[nodiscard]] constexpr const Dictionary& dictionary() const { return dictionary_; }
+  constexpr explicit EntryAccess(ObjectStore<Device>& store) : store_{&store} {}
+
+  [[nodiscard]] static constexpr const Dictionary& dictionary() { return Device::dictionary; }
+
+  /// As Dictionary::find, whose code is in the image once.
+  [[nodiscard, gnu::noinline]] static entry::Word find(std::uint16_t index, std::uint8_t sub_index) {
+    constexpr const Dictionary& table = Device::dictionary;
+    const Run& run = last_run<table.runs.size() - 1>(table.runs.data(), index);
+    return table.sub_word(table.word_in(run, index), sub_index);
+  }
 
   /// The bytes of an entry as SDO sends them. Immediate values are put into `scratch`, others are seen in place.
   /// Of an unbound domain: no bytes, and a null pointer.
   [[nodiscard]] std::span<const std::uint8_t> read(entry::Word word, std::span<std::uint8_t, 8> scratch) const {
-    const std::uint8_t* const where = address(word);
-    if (where == nullptr) {
-      const std::uint64_t value = immediate_value(word);
+    if (is_immediate(word)) {
+      const std::uint32_t value = immediate_value(word);
       std::memcpy(scratch.data(), &value, sizeof value);
-      return {scratch.data(), entry::wire_bytes(word)};
+      if (entry::size_of(word) > sizeof value) {
+        const std::uint32_t high = is_negative(word) ? 0xFFFF'FFFF : 0;
+        std::memcpy(scratch.data() + sizeof value, &high, sizeof high);
+      }
+      return {scratch.data(), bytes_of(word)};
     }
+    const std::uint8_t* const where = address(word);
     if (entry::is_string(word)) {
       return {where + string_header, load<std::uint16_t>(where) + (is_terminated(word) ? 1u : 0u)};
     }
-    if (entry::is_domain(word)) {
+    if (is_domain(word)) {
       const Domain memory = domain(word);
       return {memory.data, memory.size};
     }
-    return {where, entry::wire_bytes(word)};
+    return {where, bytes_of(word)};
   }
 
   /// An unsigned value of up to 32 bits.
   [[nodiscard]] std::uint32_t number(entry::Word word) const {
+    if (is_immediate(word)) return immediate_value(word);
     const std::uint8_t* const where = address(word);
-    if (where == nullptr) return static_cast<std::uint32_t>(immediate_value(word));
     if (entry::size_of(word) == 1) return *where;
     if (entry::size_of(word) == 2) return load<std::uint16_t>(where);
     return load<std::uint32_t>(where);
   }
 
+  /// The same for an entry that is known at compile time.
+  template <std::uint16_t Index, std::uint8_t SubIndex>
+  [[nodiscard]] std::uint32_t number() const {
+    return store_->template number<Index, SubIndex>();
+  }
+
   /// The memory behind a DOMAIN.
-  [[nodiscard]] Domain domain(entry::Word word) const { return load<Domain>(ram_ + entry::offset_of(word)); }
+  [[nodiscard]] Domain domain(entry::Word word) const { return load<Domain>(ram(word)); }
 
   /// Where an entry lies in RAM.
-  [[nodiscard]] std::uint8_t* ram(entry::Word word) const { return ram_ + entry::offset_of(word); }
+  [[nodiscard]] std::uint8_t* ram(entry::Word word) const {
+    return reinterpret_cast<std::uint8_t*>(store_) + entry::offset_of(word);
+  }
 
   /// Where an entry lies among the constants.
-  [[nodiscard]] const std::uint8_t* constant(entry::Word word) const {
-    return static_cast<const std::uint8_t*>(dictionary_.constants) + entry::offset_of(word);
+  [[nodiscard]] static const std::uint8_t* constant(entry::Word word) {
+    return static_cast<const std::uint8_t*>(Device::dictionary.constants) + entry::offset_of(word);
   }
 
   /// Says how many bytes of a DOMAIN's memory are its value.
   void resize_domain(entry::Word word, std::uint32_t size) const {
     Domain resized = domain(word);
     resized.size = size;
-    store(ram_ + entry::offset_of(word), resized);
+    store(ram(word), resized);
   }
 
   /// What speaks against writing these bytes: their length, then their value. CiA 301, 7.2.4.3.17.
@@ -79,59 +132,88 @@ class EntryAccess {
   }
 
   /// The same for bytes whose length fits.
-  [[nodiscard]] AbortCode check_value(std::uint16_t index, std::uint8_t sub_index, entry::Word word,
-                                      std::span<const std::uint8_t> bytes) const {
+  [[nodiscard]] static AbortCode check_value([[maybe_unused]] std::uint16_t index,
+                                             [[maybe_unused]] std::uint8_t sub_index, entry::Word word,
+                                             [[maybe_unused]] std::span<const std::uint8_t> bytes) {
     if (entry::place_of(word) != entry::Place::ram) return AbortCode::not_stored;  // a command, such as 1010h's, of no service
-    if (entry::is_boolean(word)) return bytes[0] > 1 ? AbortCode::invalid_value : ok;
-    if ((word & entry::limited) == 0 || entry::class_of(word) == entry::Class::special) return ok;
-    return check_limits(object_key(index, limits_sub_index(index, sub_index)), word, bytes);
+    if constexpr (kinds.booleans) {
+      if (entry::is_boolean(word)) return bytes[0] > 1 ? AbortCode::invalid_value : ok;
+    }
+    if constexpr (has_limits) {
+      if ((word & entry::limited) != 0 && entry::class_of(word) != entry::Class::special)
+        return check_limits(object_key(index, limits_sub_index(index, sub_index)), word, bytes.data());
+    }
+    return ok;
   }
 
   /// Whether a value of this length fits the entry.
   [[nodiscard]] AbortCode check_length(std::uint16_t index, std::uint8_t sub_index, entry::Word word,
                                        std::size_t length) const {
-    const std::size_t fixed = entry::wire_bytes(word);
-    if (fixed != 0 && length < fixed) return AbortCode::length_too_low;
-    const std::size_t most = fixed != 0 ? fixed : longest(index, sub_index, word);
-    return length > most ? AbortCode::length_too_high : ok;
+    const std::size_t fixed = bytes_of(word);
+    if (length < fixed) return AbortCode::length_too_low;
+    return length > longest(index, sub_index, word) ? AbortCode::length_too_high : ok;
   }
 
   /// Bytes of the longest value that the entry takes.
-  [[nodiscard]] std::uint32_t longest(std::uint16_t index, std::uint8_t sub_index, entry::Word word) const {
-    if (entry::is_string(word)) return capacity(index, sub_index);
-    return entry::is_domain(word) ? domain(word).capacity : entry::wire_bytes(word);
+  [[nodiscard]] std::uint32_t longest([[maybe_unused]] std::uint16_t index, [[maybe_unused]] std::uint8_t sub_index,
+                                      entry::Word word) const {
+    if constexpr (kinds.strings_in_ram) {
+      if (entry::is_string(word)) return capacity(index, sub_index);
+    }
+    return is_domain(word) ? domain(word).capacity : bytes_of(word);
   }
 
   /// Stores bytes that `check` let pass into an entry in RAM.
   void write(entry::Word word, std::span<const std::uint8_t> bytes) const {
-    std::uint8_t* where = ram_ + entry::offset_of(word);
+    std::uint8_t* where = ram(word);
     const std::size_t size = bytes.size();
-    if (entry::is_string(word)) {
+    if (kinds.strings_in_ram && entry::is_string(word)) {
       store(where, static_cast<std::uint16_t>(size));
       where += string_header;
       if (is_terminated(word)) where[size] = 0;
-    } else if (entry::is_domain(word)) {
+    } else if (is_domain(word)) {
       resize_domain(word, static_cast<std::uint32_t>(size));
       where = domain(word).data;
-    } else if ((size & (size - 1)) != 0) {
-      return widen(word, where, bytes, size == 3 ? 4 : 8);  // such numbers lie in the next wider type
+    } else if (kinds.padded && (size & (size - 1)) != 0) {
+      return extend(word, where, bytes, size == 3 ? 4 : 8);  // such numbers lie in the next wider type
     }
     // A download in several frames has put a DOMAIN's bytes in place already.
     if (size != 0 && where != bytes.data()) std::memcpy(where, bytes.data(), size);
   }
 
   /// Bytes that a string entry can hold.
-  [[nodiscard]] std::uint32_t capacity(std::uint16_t index, std::uint8_t sub_index) const {
-    const Limits* row = dictionary_.find_limits(object_key(index, limits_sub_index(index, sub_index)));
+  [[nodiscard]] static std::uint32_t capacity(std::uint16_t index, std::uint8_t sub_index) {
+    const Limits* row = Device::dictionary.find_limits(object_key(index, limits_sub_index(index, sub_index)));
     return row == nullptr ? 0 : row->high;
   }
 
+  /// Bytes of a value as SDO carries it; 0 where that varies.
+  [[nodiscard]] static constexpr std::uint8_t bytes_of(entry::Word word) {
+    if constexpr (kinds.booleans) return entry::wire_bytes(word);
+    return entry::class_of(word) != entry::Class::special ? entry::size_of(word) : std::uint8_t{0};
+  }
+
+  /// Whether an entry is a DOMAIN.
+  [[nodiscard]] static constexpr bool is_domain(entry::Word word) { return kinds.domains && entry::is_domain(word); }
+
  private:
+  static constexpr bool has_limits = !Device::dictionary.limits.empty() || !Device::dictionary.wide_limits.empty();
   static constexpr std::size_t string_header = sizeof(std::uint16_t);
 
+  /// The last of `Count` runs that does not begin behind an index: as many steps for each.
+  template <std::size_t Count>
+  [[nodiscard]] static const Run& last_run(const Run* runs, std::uint16_t index) {
+    if constexpr (Count > 1) {
+      if (runs[Count / 2].first <= index) runs += Count / 2;
+      return last_run<Count - Count / 2>(runs, index);
+    } else {
+      return *runs;
+    }
+  }
+
   /// Whether a 00h follows the text: there is room for it behind the capacity then.
-  [[nodiscard]] bool is_terminated(entry::Word word) const {
-    return dictionary_.zero_terminated_strings && entry::type_of(word) == entry::visible_string;
+  [[nodiscard]] static bool is_terminated(entry::Word word) {
+    return Device::dictionary.zero_terminated_strings && entry::type_of(word) == entry::visible_string;
   }
 
   /// A value that lies in memory as its C++ type: at an address that is one of it.
@@ -147,7 +229,7 @@ class EntryAccess {
   }
 
   /// Sign extended.
-  static void widen(entry::Word word, std::uint8_t* where, std::span<const std::uint8_t> bytes, std::size_t to) {
+  static void extend(entry::Word word, std::uint8_t* where, std::span<const std::uint8_t> bytes, std::size_t to) {
     const bool negative = entry::class_of(word) == entry::Class::signed_integer && (bytes.back() & 0x80) != 0;
     for (std::size_t i = 0; i < to; ++i) {
       const auto sign = static_cast<std::uint8_t>(negative ? 0xFF : 0);
@@ -155,82 +237,77 @@ class EntryAccess {
     }
   }
 
-  /// Null for immediate values.
+  [[nodiscard]] static bool is_immediate(entry::Word word) {
+    static_assert(static_cast<unsigned>(entry::Place::immediate) == 2);
+    return (word & (entry::Word{2} << entry::place_shift)) != 0;
+  }
+
+  /// Of one that is not immediate.
   [[nodiscard]] const std::uint8_t* address(entry::Word word) const {
-    switch (entry::place_of(word)) {
-      case entry::Place::ram: return ram_ + entry::offset_of(word);
-      case entry::Place::rom: return constant(word);
-      case entry::Place::immediate:
-      case entry::Place::immediate_plus_node_id: break;
-    }
-    return nullptr;
+    if (kinds.constants && entry::place_of(word) == entry::Place::rom) return constant(word);
+    return ram(word);
   }
 
-  [[nodiscard]] std::uint64_t immediate_value(entry::Word word) const {
-    const std::uint16_t value = entry::offset_of(word);
-    if (entry::place_of(word) == entry::Place::immediate_plus_node_id) return std::uint32_t{value} + node_id_.value();
-    if (entry::class_of(word) == entry::Class::signed_integer) {
-      return static_cast<std::uint64_t>(std::int64_t{static_cast<std::int16_t>(value)});
-    }
-    return value;
+  [[nodiscard]] static bool is_negative(entry::Word word) {
+    return kinds.negative_immediates && entry::class_of(word) == entry::Class::signed_integer && (word & 0x8000) != 0 &&
+           entry::place_of(word) == entry::Place::immediate;
   }
 
-  [[nodiscard]] std::uint8_t limits_sub_index(std::uint16_t index, std::uint8_t sub_index) const {
-    const bool array = entry::kind_of(dictionary_.find_index(index)) == entry::Kind::array;
+  [[nodiscard]] std::uint32_t immediate_value(entry::Word word) const {
+    const std::uint32_t value = entry::offset_of(word);
+    if (entry::place_of(word) == entry::Place::immediate_plus_node_id) return value + store_->node_id().value();
+    return is_negative(word) ? value | 0xFFFF'0000 : value;
+  }
+
+  [[nodiscard]] static std::uint8_t limits_sub_index(std::uint16_t index, std::uint8_t sub_index) {
+    const bool array = entry::kind_of(Device::dictionary.find_index(index)) == entry::Kind::array;
     return array && sub_index > 1 ? std::uint8_t{1} : sub_index;
   }
 
-  [[nodiscard]] AbortCode check_limits(std::uint32_t key, entry::Word word, std::span<const std::uint8_t> bytes) const {
-    alignas(8) std::uint8_t wide[8] = {};
-    widen(word, wide, bytes, bytes.size() > 4 ? 8 : 4);
-    std::uint64_t low = 0;
-    std::uint64_t high = 0;
-    if (entry::size_of(word) <= 4) {
-      const Limits* row = dictionary_.find_limits(key);
-      if (row == nullptr) return ok;
-      low = sortable(word, row->low);
-      high = sortable(word, row->high);
-    } else {
-      const WideLimits* row = dictionary_.find_wide_limits(key);
-      if (row == nullptr) return ok;
-      low = sortable(word, row->low);
-      high = sortable(word, row->high);
+  [[nodiscard]] static AbortCode check_limits(std::uint32_t key, entry::Word word, const std::uint8_t* bytes) {
+    if constexpr (!Device::dictionary.wide_limits.empty()) {
+      if (entry::size_of(word) > 4)
+        return check_against(dictionary_detail::find_by_key(Device::dictionary.wide_limits, key), word, bytes);
     }
-    const auto raw = load<std::uint64_t>(wide);
-    if (entry::class_of(word) == entry::Class::real && not_a_number(word, raw)) return AbortCode::invalid_value;
-    const std::uint64_t value = sortable(word, raw);
-    if (value > high) return AbortCode::value_too_high;
-    return value < low ? AbortCode::value_too_low : ok;
+    return check_against(Device::dictionary.find_limits(key), word, bytes);
   }
 
-  /// A value of up to 32 bits stands in the upper half, so that its sign is bit 63.
-  [[nodiscard]] static std::uint64_t left_aligned(entry::Word word, std::uint64_t raw) {
-    return entry::size_of(word) <= 4 ? raw << 32 : raw;
+  /// `Row` is Limits or WideLimits.
+  template <class Row>
+  [[nodiscard]] static AbortCode check_against(const Row* row, entry::Word word, const std::uint8_t* bytes) {
+    using Raw = decltype(Row::high);
+    if (row == nullptr) return ok;
+    alignas(Raw) std::uint8_t wide[sizeof(Raw)];
+    extend(word, wide, {bytes, entry::size_of(word)}, sizeof wide);
+    const auto raw = load<Raw>(wide);
+    if (entry::class_of(word) == entry::Class::real && not_a_number(raw)) return AbortCode::invalid_value;
+    const Raw value = sortable(word, raw);
+    if (value > sortable(word, row->high)) return AbortCode::value_too_high;
+    return value < sortable(word, row->low) ? AbortCode::value_too_low : ok;
   }
 
   /// A number that sorts among unsigned ones as the value does among its like: no floating-point library is needed.
-  [[nodiscard]] static std::uint64_t sortable(entry::Word word, std::uint64_t raw) {
-    constexpr std::uint64_t sign = std::uint64_t{1} << 63;
-    const std::uint64_t aligned = left_aligned(word, raw);
+  template <class Raw>
+  [[nodiscard]] static Raw sortable(entry::Word word, Raw raw) {
+    constexpr Raw sign = Raw{1} << (sizeof(Raw) * 8 - 1);
     switch (entry::class_of(word)) {
-      case entry::Class::signed_integer: return aligned ^ sign;
+      case entry::Class::signed_integer: return raw ^ sign;
       case entry::Class::real:
-        if ((aligned & ~sign) == 0) return sign;  // -0 equals +0
-        return (aligned & sign) != 0 ? ~aligned : aligned | sign;
+        if ((raw & ~sign) == 0) return sign;  // -0 equals +0
+        return (raw & sign) != 0 ? ~raw : raw | sign;
       case entry::Class::unsigned_integer:
       case entry::Class::special: break;
     }
-    return aligned;
+    return raw;
   }
 
-  [[nodiscard]] static bool not_a_number(entry::Word word, std::uint64_t raw) {
-    const std::uint64_t infinity = entry::size_of(word) == 4 ? 0xFF00'0000'0000'0000 : 0xFFE0'0000'0000'0000;
-    return (left_aligned(word, raw) << 1) > infinity;
+  template <class Raw>
+  [[nodiscard]] static bool not_a_number(Raw raw) {
+    constexpr Raw infinity = sizeof(Raw) == 4 ? Raw{0xFF00'0000} : static_cast<Raw>(0xFFE0'0000'0000'0000);
+    return static_cast<Raw>(raw << 1) > infinity;
   }
 
-  const Dictionary& dictionary_;
-  std::uint8_t* ram_;
-  NodeId node_id_;
+  ObjectStore<Device>* store_;
 };
 
 /// The values of one device, and typed access to them. `Device` is what edsc generates.
@@ -306,7 +383,7 @@ class ObjectStore {
   }
 
   [[nodiscard]] NodeId node_id() const { return node_id_; }
-  [[nodiscard]] EntryAccess entries() { return {Device::dictionary, ram(), node_id_}; }
+  [[nodiscard]] EntryAccess<Device> entries() { return EntryAccess<Device>{*this}; }
   [[nodiscard]] typename Device::Values& values() { return values_; }
   [[nodiscard]] const typename Device::Values& values() const { return values_; }
 
@@ -368,7 +445,7 @@ class ObjectStore {
     }
   }
 
-  typename Device::Values values_{};
+  typename Device::Values values_{};  ///< first: offsets count from here
   NodeId node_id_{};
 };
 

@@ -27,15 +27,16 @@ inline constexpr std::uint32_t load_signature = 0x6461'6F6C;  ///< "load"
 
 /// What speaks against a command to 1010h or 1011h: another signature, or that the data sheet's value has not bit 0
 /// set, "on command" (0800 0020h).
-[[nodiscard]] inline AbortCode check_storage_command(const DeviceOptions& options, const EntryAccess& entries,
+template <class Device>
+[[nodiscard]] AbortCode check_storage_command(EntryAccess<Device> entries,
                                                      std::uint16_t index, std::uint8_t sub_index,
                                                      std::span<const std::uint8_t> bytes) {
   std::uint32_t signature = 0;
   std::memcpy(&signature, bytes.data(), std::min(bytes.size(), sizeof signature));
   if (signature != (index == store_parameters ? save_signature : load_signature)) {
-    return static_cast<AbortCode>(options.storage_signature_abort_code);
+    return static_cast<AbortCode>(Device::options.storage_signature_abort_code);
   }
-  const bool on_command = (entries.number(entries.dictionary().find(index, sub_index)) & 1u) != 0;
+  const bool on_command = (entries.number(entries.find(index, sub_index)) & 1u) != 0;
   return on_command ? ok : AbortCode::not_stored;
 }
 

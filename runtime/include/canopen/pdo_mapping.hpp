@@ -43,28 +43,40 @@ inline constexpr std::uint8_t dummy_bits[] = {0, 1, 8, 16, 32, 8, 16, 32, 32};
 [[nodiscard]] constexpr bool is_rpdo_mapping(std::uint16_t index) { return (index & 0xFE00) == rpdo_indices.mapping; }
 [[nodiscard]] constexpr bool is_tpdo_mapping(std::uint16_t index) { return (index & 0xFE00) == tpdo_indices.mapping; }
 
-/// Whether a PDO may carry this: the object exists, may be mapped in this direction, and has this length. A BOOLEAN has
-/// one bit, or eight. `dummies` has bit n set where data type n may be a dummy.
-[[nodiscard]] constexpr bool can_be_mapped(const Dictionary& dictionary, std::uint32_t dummies, bool tpdo,
-                                           MappedObject mapped) {
-  if (mapped.is_dummy()) {
-    const bool allowed = !tpdo && mapped.sub_index() == 0 && ((dummies >> mapped.index()) & 1) != 0;
-    return allowed && mapped.index() < std::size(dummy_bits) && mapped.bits() == dummy_bits[mapped.index()];
+inline constexpr entry::Word not_mappable = 0;
+inline constexpr entry::Word mapped_dummy = 1;
+
+/// The word of an object that a PDO may carry: it exists, may be mapped in this direction, and has this length, a
+/// multiple of what the data sheet maps by (Granularity). A BOOLEAN has one bit, or eight. `mapped_dummy` for a dummy,
+/// `not_mappable` for all others.
+template <class Device>
+[[nodiscard, gnu::noinline]] entry::Word can_be_mapped(bool tpdo, MappedObject mapped) {
+  const unsigned bits = mapped.bits();
+  if constexpr (Device::granularity > 1) {
+    if (bits % Device::granularity != 0) return not_mappable;
   }
-  const entry::Word word = dictionary.find(mapped.index(), mapped.sub_index());
-  if (word <= Dictionary::no_sub_index || (word & (tpdo ? entry::tpdo : entry::rpdo)) == 0) return false;
+  if (mapped.is_dummy()) {
+    if constexpr (Device::dummies != 0) {
+      const bool allowed = !tpdo && mapped.sub_index() == 0 && ((Device::dummies >> mapped.index()) & 1) != 0;
+      if (allowed && mapped.index() < std::size(dummy_bits) && bits == dummy_bits[mapped.index()]) return mapped_dummy;
+    }
+    return not_mappable;
+  }
+  const entry::Word word = EntryAccess<Device>::find(mapped.index(), mapped.sub_index());
+  if ((word & (tpdo ? entry::tpdo : entry::rpdo)) == 0) return not_mappable;  // so are those that do not exist
   // An immediate value has no address, and MappedPlaces keeps 15 bits of that of a constant.
-  if (entry::place_of(word) > entry::Place::rom) return false;
-  if (entry::place_of(word) == entry::Place::rom && entry::offset_of(word) >= 0x8000) return false;
-  if (entry::is_boolean(word) && mapped.bits() == 1) return true;
-  return mapped.bits() != 0 && mapped.bits() == entry::wire_bytes(word) * 8;
+  if (entry::place_of(word) > entry::Place::rom) return not_mappable;
+  if (entry::place_of(word) == entry::Place::rom && entry::offset_of(word) >= 0x8000) return not_mappable;
+  if (EntryAccess<Device>::kinds.booleans && entry::is_boolean(word) && bits == 1) return word;
+  return bits != 0 && bits == EntryAccess<Device>::bytes_of(word) * 8u ? word : not_mappable;
 }
 
 /// The mapping parameter of one PDO as it stands in RAM.
 class MappingParameter {
  public:
   /// `count` and `first`: the words of sub-indices 0 and 1.
-  MappingParameter(const EntryAccess& entries, entry::Word count, entry::Word first)
+  template <class Device>
+  MappingParameter(EntryAccess<Device> entries, entry::Word count, entry::Word first)
       : count_{entries.ram(count)}, first_{entries.ram(first)} {}
 
   [[nodiscard]] std::uint8_t count() const { return *count_; }
@@ -78,13 +90,13 @@ class MappingParameter {
 
   /// Bits of the first `count` objects together; 0 when they make no PDO: one of them cannot be mapped, or they are
   /// longer than 64 bits.
-  [[nodiscard]] std::uint8_t bits_of(const Dictionary& dictionary, std::uint32_t dummies, bool tpdo,
-                                     std::uint8_t count) const {
+  template <class Device>
+  [[nodiscard]] std::uint8_t bits_of(bool tpdo, std::uint8_t count) const {
     unsigned bits = 0;
     for (std::uint8_t i = 0; i < count; ++i) {
       const MappedObject mapped = (*this)[i];
       bits += mapped.bits();
-      if (bits > 64 || !can_be_mapped(dictionary, dummies, tpdo, mapped)) return 0;
+      if (bits > 64 || can_be_mapped<Device>(tpdo, mapped) == not_mappable) return 0;
     }
     return static_cast<std::uint8_t>(bits);
   }
@@ -101,30 +113,29 @@ class MappingParameter {
 ///   0601 0000h  sub-index 0 is not 0
 ///   0604 0041h  the object does not exist, cannot be mapped, or has another length
 ///   0604 0042h  too many objects or bits, or one that cannot be mapped (or what the device answers instead)
-[[nodiscard]] inline AbortCode check_pdo_mapping(const DeviceOptions& options, const EntryAccess& entries,
-                                                 std::uint32_t dummies, std::uint16_t index, std::uint8_t sub_index,
-                                                 std::span<const std::uint8_t> bytes) {
-  const Dictionary& dictionary = entries.dictionary();
+template <class Device>
+[[nodiscard]] AbortCode check_pdo_mapping(EntryAccess<Device> entries, std::uint16_t index, std::uint8_t sub_index,
+                                          std::span<const std::uint8_t> bytes) {
   const bool tpdo = is_tpdo_mapping(index);
-  const auto communication = static_cast<std::uint16_t>(index - (rpdo_indices.mapping - rpdo_indices.communication));
-  const entry::Word cob_id = dictionary.find(communication, pdo_parameter::cob_id);
-  const bool valid = cob_id > Dictionary::no_sub_index && CobId{entries.number(cob_id)}.valid();
-  if (valid && !options.pdo_mapping_writable_while_valid) return AbortCode::device_state;
-
-  const MappingParameter mapping{entries, dictionary.find(index, 0), dictionary.find(index, 1)};
+  if constexpr (!Device::options.pdo_mapping_writable_while_valid) {
+    const auto communication = static_cast<std::uint16_t>(index - (rpdo_indices.mapping - rpdo_indices.communication));
+    const entry::Word cob_id = entries.find(communication, pdo_parameter::cob_id);
+    if (cob_id > Dictionary::no_sub_index && CobId{entries.number(cob_id)}.valid()) return AbortCode::device_state;
+  }
+  const MappingParameter mapping{entries, entries.find(index, 0), entries.find(index, 1)};
   if (sub_index == 0) {
     const std::uint8_t count = bytes[0];
     if (count == 0) return ok;
-    if (options.mpdo && count >= source_multiplexed) return ok;
-    const bool fits = count <= mapping_capacity(dictionary, index);
-    if (fits && mapping.bits_of(dictionary, dummies, tpdo, count) != 0) return ok;
-    return static_cast<AbortCode>(options.pdo_mapping_abort_code);
+    if (Device::options.mpdo && count >= source_multiplexed) return ok;
+    const bool fits = count <= mapping_capacity(Device::dictionary, index);
+    if (fits && mapping.bits_of<Device>(tpdo, count) != 0) return ok;
+    return static_cast<AbortCode>(Device::options.pdo_mapping_abort_code);
   }
   if (mapping.count() != 0) return AbortCode::unsupported_access;
   std::uint32_t value = 0;
   std::memcpy(&value, bytes.data(), sizeof value);
   const MappedObject mapped{value};
-  return mapped.empty() || can_be_mapped(dictionary, dummies, tpdo, mapped) ? ok : AbortCode::not_mappable;
+  return mapped.empty() || can_be_mapped<Device>(tpdo, mapped) != not_mappable ? ok : AbortCode::not_mappable;
 }
 
 }  // namespace canopen

@@ -50,7 +50,7 @@ class RpdoService {
 
   /// `watched(word, key)` says of an object whether more has to be done with its value than to store it.
   template <class Watched>
-  void enter_operational(const EntryAccess& entries, Watched&& watched) {
+  void enter_operational(EntryAccess<Device> entries, Watched&& watched) {
     for (std::size_t i = 0; i < count; ++i) activate(i, entries, watched);
   }
 
@@ -62,7 +62,7 @@ class RpdoService {
 
   /// A communication or mapping parameter, 1400h..17FFh, has a new value, which counts at once.
   template <class Watched>
-  void parameter_changed(const EntryAccess& entries, std::uint16_t index, Watched&& watched) {
+  void parameter_changed(EntryAccess<Device> entries, std::uint16_t index, Watched&& watched) {
     for (std::size_t i = 0; i < count; ++i) {
       if (((indices[i] ^ index) & 0x1FF) == 0) activate(i, entries, watched);
     }
@@ -70,7 +70,7 @@ class RpdoService {
 
   /// The mapping of a TPDO has changed: other objects are watched now.
   template <class Watched>
-  void watch_again([[maybe_unused]] const EntryAccess& entries, [[maybe_unused]] Watched&& watched) {
+  void watch_again([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] Watched&& watched) {
     if constexpr (has_dynamic_mapping) {
       for (std::size_t i = 0; i < count; ++i) {
         if (Mapped::capacities[i] != 0) slots_[i].size = look_up(i, entries, watched);
@@ -187,13 +187,13 @@ class RpdoService {
   }
 
   template <class Watched>
-  void activate(std::size_t i, const EntryAccess& entries, Watched&& watched) {
+  void activate(std::size_t i, EntryAccess<Device> entries, Watched&& watched) {
     slots_[i] = {};
     slots_[i].size = look_up(i, entries, watched);
   }
 
   template <class Watched>
-  std::uint8_t look_up(std::size_t i, [[maybe_unused]] const EntryAccess& entries, [[maybe_unused]] Watched&& watched) {
+  std::uint8_t look_up(std::size_t i, [[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] Watched&& watched) {
     if constexpr (has_dynamic_mapping) {
       if (Mapped::capacities[i] != 0) return places_.look_up(i, entries, watched);
     }
@@ -235,7 +235,7 @@ class RpdoService {
   }
 
   template <class Host>
-  void start_deadline([[maybe_unused]] std::size_t i, [[maybe_unused]] const EntryAccess& entries,
+  void start_deadline([[maybe_unused]] std::size_t i, [[maybe_unused]] EntryAccess<Device> entries,
                       [[maybe_unused]] TimePoint now, [[maybe_unused]] Host& host) {
     if constexpr (has_event_timer) {
       end(i, missed, RpdoEvent::in_time, host);
@@ -248,7 +248,7 @@ class RpdoService {
     }
   }
 
-  [[nodiscard]] static Transmission transmission_type(std::size_t i, const EntryAccess& entries) {
+  [[nodiscard]] static Transmission transmission_type(std::size_t i, EntryAccess<Device> entries) {
     const entry::Word word = parameters[i].transmission_type;
     return word > Dictionary::no_sub_index ? transmission_of(entries.number(word)) : Transmission::event_driven;
   }
@@ -274,7 +274,7 @@ class RpdoService {
   }
 
   template <class Host>
-  void take_mapped(std::size_t which, const EntryAccess& entries, const Data& data, Host& host) {
+  void take_mapped(std::size_t which, EntryAccess<Device> entries, const Data& data, Host& host) {
     const MappingParameter mapping = Mapped::parameter(which, entries);
     unsigned at = 0;
     for (std::uint8_t i = 0; i < mapping.count(); ++i) {

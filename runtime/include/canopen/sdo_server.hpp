@@ -22,14 +22,14 @@
 namespace canopen {
 
 /// What a server asks of the node around it:
-///   EntryAccess entries();
+///   EntryAccess<Device> entries();
 ///   AbortCode before_read(index, sub_index);            may refresh the value, or refuse
 ///   AbortCode before_write(index, sub_index, bytes);    the bytes fit the entry; may refuse, or change them
 ///   void after_write(index, sub_index);
 ///   AbortCode command(index, sub_index, bytes);         a write to an entry that is no variable, such as 1010h
-template <class T>
+template <class T, class Device>
 concept SdoServerHooks = requires(T hooks, std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
-  { hooks.entries() } -> std::same_as<EntryAccess>;
+  { hooks.entries() } -> std::same_as<EntryAccess<Device>>;
   { hooks.before_read(index, sub_index) } -> std::same_as<AbortCode>;
   { hooks.before_write(index, sub_index, bytes) } -> std::same_as<AbortCode>;
   hooks.after_write(index, sub_index);
@@ -44,8 +44,8 @@ concept SdoServerHooks = requires(T hooks, std::uint16_t index, std::uint8_t sub
 ///   AbortCode write_domain(index, sub_index, offset, bytes, last);
 ///       each byte once and in order. `last` comes when the transfer is good, its CRC included; a transfer that breaks
 ///       off has none, and the next one begins at offset 0 again.
-template <class T>
-concept DomainStreamHooks = SdoServerHooks<T> &&
+template <class T, class Device>
+concept DomainStreamHooks = SdoServerHooks<T, Device> &&
     requires(T hooks, std::uint16_t index, std::uint8_t sub_index, std::uint32_t offset, std::span<std::uint8_t> into,
              std::span<const std::uint8_t> from) {
   { hooks.streams_upload(index, sub_index) } -> std::same_as<bool>;
@@ -69,7 +69,7 @@ template <class Device>
 class SdoServer {
  public:
   /// Takes a request. An answer that could not be sent yet is replaced.
-  void on_request(const std::array<std::uint8_t, 8>& request, SdoServerHooks auto&& hooks, TimePoint now) {
+  void on_request(const std::array<std::uint8_t, 8>& request, SdoServerHooks<Device> auto&& hooks, TimePoint now) {
     if constexpr (has_timeout) last_activity_ = now;
     if (const AbortCode code = handle(request, hooks); code != ok) abort(code);
   }
@@ -99,7 +99,7 @@ class SdoServer {
   [[nodiscard]] const std::array<std::uint8_t, 8>& reply() const { return reply_; }
 
   /// The answer has found its place in the controller: the next segment of a block upload takes its place.
-  void reply_sent(SdoServerHooks auto&& hooks, [[maybe_unused]] TimePoint now) {
+  void reply_sent(SdoServerHooks<Device> auto&& hooks, [[maybe_unused]] TimePoint now) {
     if constexpr (has_timeout) last_activity_ = now;
     has_reply_ = false;
     if constexpr (has_block) {
@@ -186,7 +186,7 @@ class SdoServer {
 
   /// Finds the entry and its right; `refusal` answers where the right is missing.
   [[nodiscard]] AbortCode find(entry::Word right, AbortCode refusal) {
-    word_ = Device::dictionary.find(index_, sub_index_);
+    word_ = EntryAccess<Device>::find(index_, sub_index_);
     if (word_ == Dictionary::no_object) return AbortCode::no_object;
     if (word_ == Dictionary::no_sub_index) return AbortCode::no_sub_index;
     return (word_ & right) != 0 ? ok : refusal;
@@ -199,7 +199,7 @@ class SdoServer {
   [[nodiscard]] AbortCode open_upload(Hooks& hooks) {
     if (const AbortCode code = find(entry::readable, AbortCode::write_only); code != ok) return code;
     if (const AbortCode code = hooks.before_read(index_, sub_index_); code != ok) return code;
-    if constexpr (DomainStreamHooks<Hooks>) {
+    if constexpr (DomainStreamHooks<Hooks, Device>) {
       bytes_ = nullptr;
       size_ = sdo::unknown_size;
       if (entry::is_domain(word_) && hooks.streams_upload(index_, sub_index_)) return ok;
@@ -249,7 +249,7 @@ class SdoServer {
   /// Puts the next bytes of an upload behind the command byte. Answers how many there were; `last` tells the end.
   template <class Hooks>
   [[nodiscard]] AbortCode fetch([[maybe_unused]] Hooks& hooks, std::uint32_t& size, bool& last) {
-    if constexpr (DomainStreamHooks<Hooks>) {
+    if constexpr (DomainStreamHooks<Hooks, Device>) {
       if (bytes_ == nullptr) {
         const Result<std::uint32_t> count = hooks.read_domain(
             index_, sub_index_, position_, std::span{reply_}.template subspan<1, sdo::segment_bytes>());
@@ -316,13 +316,13 @@ class SdoServer {
   [[nodiscard]] AbortCode prepare(std::uint32_t announced, Hooks& hooks) {
     size_ = size_indicated_ ? announced : sdo::unknown_size;
     const bool domain = entry::is_domain(word_);
-    if constexpr (DomainStreamHooks<Hooks>) {
+    if constexpr (DomainStreamHooks<Hooks, Device>) {
       bytes_ = nullptr;
       if (domain && hooks.streams_download(index_, sub_index_)) return ok;
     }
     bytes_ = buffer_.data();
     std::uint32_t room = buffer_bytes;
-    const EntryAccess entries = hooks.entries();
+    const EntryAccess<Device> entries = hooks.entries();
     if (domain) {
       const Domain memory = entries.domain(word_);
       if (memory.data == nullptr) return AbortCode::not_stored;
@@ -352,7 +352,7 @@ class SdoServer {
   [[nodiscard]] AbortCode store([[maybe_unused]] Hooks& hooks, const std::uint8_t* from, std::uint32_t size,
                                 [[maybe_unused]] bool last) {
     if (const AbortCode code = check_room(size); code != ok) return code;
-    if constexpr (DomainStreamHooks<Hooks>) {
+    if constexpr (DomainStreamHooks<Hooks, Device>) {
       if (bytes_ == nullptr) {
         if (last && size_indicated_ && position_ + size != size_) return AbortCode::length_mismatch;
         const AbortCode code = hooks.write_domain(index_, sub_index_, position_, {from, size}, last);
@@ -385,7 +385,7 @@ class SdoServer {
     state_ = State::idle;
     if (size_indicated_ && position_ != size_) return AbortCode::length_mismatch;
     if (!streamed(hooks)) {
-      const EntryAccess entries = hooks.entries();
+      const EntryAccess<Device> entries = hooks.entries();
       const std::span<std::uint8_t> bytes{bytes_, position_};
       if (const AbortCode code = check_length(entries); code != ok) return code;
       if (entry::place_of(word_) != entry::Place::ram) return hooks.command(index_, sub_index_, bytes);
@@ -399,14 +399,14 @@ class SdoServer {
   }
 
   /// Of an announced size the length has been looked at already.
-  [[nodiscard]] AbortCode check_length(const EntryAccess& entries) const {
+  [[nodiscard]] AbortCode check_length(EntryAccess<Device> entries) const {
     return size_indicated_ ? ok : entries.check_length(index_, sub_index_, word_, position_);
   }
 
   /// Whether the application gives or takes the bytes of this transfer.
   template <class Hooks>
   [[nodiscard]] bool streamed([[maybe_unused]] const Hooks& hooks) const {
-    if constexpr (DomainStreamHooks<Hooks>) return bytes_ == nullptr;
+    if constexpr (DomainStreamHooks<Hooks, Device>) return bytes_ == nullptr;
     return false;
   }
 

@@ -114,7 +114,7 @@ class SdoServers {
       return sub_index == request_sub_index ? first_cob_id<request_sub_index>(store)
                                             : first_cob_id<response_sub_index>(store);
     }
-    const entry::Word word = Device::dictionary.find(indices[i], sub_index);
+    const entry::Word word = EntryAccess<Device>::find(indices[i], sub_index);
     return word > Dictionary::no_sub_index ? store.entries().number(word) : CobId::invalid_bit;
   }
 
@@ -133,7 +133,7 @@ class SdoServers {
     const sdo::ClientCommand command = sdo::client_command(request[0]);
     if (command != sdo::ClientCommand::initiate_download && command != sdo::ClientCommand::block_download) return;
     const std::uint16_t index = sdo::index_of(request);
-    const entry::Word word = Device::dictionary.find(index, request[3]);
+    const entry::Word word = EntryAccess<Device>::find(index, request[3]);
     if (word <= Dictionary::no_sub_index || !entry::is_domain(word)) return;
     for (std::size_t i = 0; i < count; ++i) {
       if (i != server) servers_[i].domain_rebound(index, request[3]);
@@ -145,12 +145,13 @@ class SdoServers {
 
 /// What speaks against writing these bytes to a COB-ID of 1200h..12FFh. 0609 0030h: its CAN-ID changes while the channel
 /// is valid, or is a restricted one.
-[[nodiscard]] inline AbortCode check_sdo_cob_id(const EntryAccess& entries, std::uint16_t index, std::uint8_t sub_index,
+template <class Device>
+[[nodiscard]] AbortCode check_sdo_cob_id(EntryAccess<Device> entries, std::uint16_t index, std::uint8_t sub_index,
                                                 std::span<const std::uint8_t> bytes) {
   if (sub_index != 1 && sub_index != 2) return ok;
   std::uint32_t after = 0;
   std::memcpy(&after, bytes.data(), sizeof after);
-  const CobId before{entries.number(entries.dictionary().find(index, sub_index))};
+  const CobId before{entries.number(entries.find(index, sub_index))};
   return check_pdo_cob_id(before, CobId{after});
 }
 

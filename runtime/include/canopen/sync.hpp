@@ -149,21 +149,20 @@ class SyncWindow {
 ///   0609 0031h  1006h: more than 35 minutes
 ///   0604 0047h  1005h: the data sheet gives it another type than CiA 301
 ///   0800 0022h  1019h: 1006h is not 0
-[[nodiscard]] inline AbortCode check_sync_parameter(const DeviceOptions& options, const EntryAccess& entries,
-                                                    bool produces, std::uint16_t index,
-                                                    std::span<std::uint8_t> bytes) {
-  const Dictionary& dictionary = entries.dictionary();
+template <class Device>
+[[nodiscard]] AbortCode check_sync_parameter(EntryAccess<Device> entries, std::uint16_t index,
+                                             std::span<std::uint8_t> bytes) {
   if (index == 0x1005) {
     if (bytes.size() != sizeof(std::uint32_t)) return AbortCode::internal_incompatibility;
-    const std::uint32_t before = entries.number(dictionary.find(0x1005, 0));
-    const std::uint32_t after = written_cob_id(CobId{before}, options.sync_cob_id_writable, bytes).value();
+    const std::uint32_t before = entries.template number<0x1005, 0>();
+    const std::uint32_t after = written_cob_id(CobId{before}, Device::options.sync_cob_id_writable, bytes).value();
     constexpr std::uint32_t identifier = CobId::extended_bit | 0x1FFF'FFFF;
     const bool generates = (after & CobId::no_rtr_bit) != 0;
     const bool generated = (before & CobId::no_rtr_bit) != 0;
-    if (generates && !produces) return AbortCode::invalid_value;
+    if (generates && !SyncProducer<Device>::exists) return AbortCode::invalid_value;
     if (generates && generated && ((before ^ after) & identifier) != 0) return AbortCode::invalid_value;
     const bool extended = (after & CobId::extended_bit) != 0;
-    if (extended && !options.pdo_extended_ids) return AbortCode::invalid_value;
+    if (extended && !Device::options.pdo_extended_ids) return AbortCode::invalid_value;
     if (!extended && ((after & 0x1FFF'F800) != 0 || is_restricted(after & 0x7FF))) return AbortCode::invalid_value;
   } else if (index == 0x1006) {
     std::uint32_t period = 0;
@@ -171,7 +170,7 @@ class SyncWindow {
     if (period > longest_span.count()) return AbortCode::value_too_high;
   } else if (index == 0x1019) {
     if (bytes[0] == 1 || bytes[0] > highest_sync_counter) return AbortCode::invalid_value;
-    const entry::Word period = dictionary.find(0x1006, 0);
+    constexpr entry::Word period = Device::dictionary.find(0x1006, 0);
     if (period > Dictionary::no_sub_index && entries.number(period) != 0) return AbortCode::device_state;
   }
   return ok;

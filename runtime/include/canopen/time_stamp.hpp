@@ -60,14 +60,15 @@ class TimeStamp {
 
 /// What speaks against writing these bytes to 1012h (CiA 301, 7.5.2.15). 0609 0030h: the CAN-ID changes while TIME is
 /// consumed or produced, is a restricted one, or has 29 bits where the device takes 11.
-[[nodiscard]] inline AbortCode check_time_parameter(const DeviceOptions& options, const EntryAccess& entries,
+template <class Device>
+[[nodiscard]] AbortCode check_time_parameter(EntryAccess<Device> entries,
                                                     std::span<const std::uint8_t> bytes) {
   constexpr std::uint32_t in_use = 0xC000'0000;
   std::uint32_t after = 0;
   std::memcpy(&after, bytes.data(), sizeof after);
-  const std::uint32_t before = entries.number(entries.dictionary().find(0x1012, 0));
+  const std::uint32_t before = entries.template number<0x1012, 0>();
   if ((before & after & in_use) != 0 && ((before ^ after) & ~in_use) != 0) return AbortCode::invalid_value;
-  if ((after & CobId::extended_bit) != 0) return options.pdo_extended_ids ? ok : AbortCode::invalid_value;
+  if ((after & CobId::extended_bit) != 0) return Device::options.pdo_extended_ids ? ok : AbortCode::invalid_value;
   return (after & 0x1FFF'F800) != 0 || is_restricted(after & 0x7FF) ? AbortCode::invalid_value : ok;
 }
 

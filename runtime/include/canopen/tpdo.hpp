@@ -52,7 +52,7 @@ class TpdoService {
 
   /// `O` has a new value: those that carry it are to be sent. False when none does.
   template <DictionaryObject O>
-  bool changed([[maybe_unused]] const EntryAccess& entries) {
+  bool changed([[maybe_unused]] EntryAccess<Device> entries) {
     bool carried = false;
     if constexpr (Device::triggers_event(O::index, O::sub_index)) {
       Pdos::for_each([&]<class Pdo, std::size_t I>() {
@@ -69,7 +69,7 @@ class TpdoService {
   }
 
   /// The same for an object known by number only.
-  void changed([[maybe_unused]] const EntryAccess& entries, std::uint16_t index, std::uint8_t sub_index) {
+  void changed([[maybe_unused]] EntryAccess<Device> entries, std::uint16_t index, std::uint8_t sub_index) {
     if (!Device::triggers_event(index, sub_index)) return;
     const std::uint32_t key = object_key(index, sub_index);
     for (const std::uint32_t row : carriers) {
@@ -83,7 +83,7 @@ class TpdoService {
   }
 
   /// Whether a TPDO carries an object now, or may be made to, so that `changed` has to hear of it.
-  [[nodiscard]] static bool carries(const EntryAccess& entries, std::uint32_t key) {
+  [[nodiscard]] static bool carries(EntryAccess<Device> entries, std::uint32_t key) {
     for (const std::uint32_t row : carriers) {
       if (row >> 8 == key) return true;
     }
@@ -134,7 +134,7 @@ class TpdoService {
   }
 
   /// A remote frame asks for the TPDO with this CAN-ID.
-  void on_remote(const EntryAccess& entries, std::uint32_t can_id) {
+  void on_remote(EntryAccess<Device> entries, std::uint32_t can_id) {
     if constexpr (Device::options.tpdo_remote_frames) {
       for (std::size_t i = 0; i < count; ++i) {
         if ((slots_[i].flags & active) != 0 && entries.number(parameters[i].cob_id) == can_id) slots_[i].flags |= asked;
@@ -260,14 +260,14 @@ class TpdoService {
     return rows;
   }();
 
-  [[nodiscard]] static std::uint16_t parameter(const EntryAccess& entries, entry::Word word,
+  [[nodiscard]] static std::uint16_t parameter(EntryAccess<Device> entries, entry::Word word,
                                                std::uint16_t missing = 0) {
     return word > Dictionary::no_sub_index ? static_cast<std::uint16_t>(entries.number(word)) : missing;
   }
 
   void activate(std::size_t i, ObjectStore<Device>& store, TimePoint now) {
     Slot& slot = slots_[i];
-    const EntryAccess entries = store.entries();
+    const EntryAccess<Device> entries = store.entries();
     slot.size = sizes[i];
     if constexpr (has_dynamic_mapping) {
       if (Mapped::capacities[i] != 0) slot.size = places_.look_up(i, entries, is_constant);
@@ -297,7 +297,7 @@ class TpdoService {
     return entry::place_of(word) == entry::Place::rom;
   }
 
-  void count_sync(std::size_t i, const EntryAccess& entries, Sync sync) {
+  void count_sync(std::size_t i, EntryAccess<Device> entries, Sync sync) {
     Slot& slot = slots_[i];
     if (has_sync_start && (slot.flags & before_start) != 0) {
       if (sync.counter != 0 && sync.counter != parameter(entries, parameters[i].sync_start)) return;
@@ -316,7 +316,7 @@ class TpdoService {
     return Device::options.event_driven_on_change && (slot.flags & event) == event;
   }
 
-  void start_event_timer([[maybe_unused]] std::size_t i, [[maybe_unused]] const EntryAccess& entries,
+  void start_event_timer([[maybe_unused]] std::size_t i, [[maybe_unused]] EntryAccess<Device> entries,
                          [[maybe_unused]] TimePoint from) {
     if constexpr (has_event_timer) {
       slots_[i].flags &= static_cast<std::uint8_t>(~timed);
@@ -378,7 +378,7 @@ class TpdoService {
     Pdo::pack_into(frame, store.template get<typename Pdo::template Entry<I>>()...);
   }
 
-  void pack_mapped(std::size_t which, const EntryAccess& entries, Data& data) const {
+  void pack_mapped(std::size_t which, EntryAccess<Device> entries, Data& data) const {
     const MappingParameter mapping = Mapped::parameter(which, entries);
     unsigned at = 0;
     for (std::uint8_t i = 0; i < mapping.count(); ++i) {
@@ -398,7 +398,7 @@ class TpdoService {
 
   /// The inhibit time begins, and the event timer starts again: from when it ran out, so that the period does not
   /// drift, or from now.
-  void sent(std::size_t i, const EntryAccess& entries, TimePoint now) {
+  void sent(std::size_t i, EntryAccess<Device> entries, TimePoint now) {
     Slot& slot = slots_[i];
     slot.flags &= static_cast<std::uint8_t>(~(changed_bit | due | asked));
     if ((slot.flags & event_driven) == 0) return;
