@@ -52,13 +52,21 @@ class CobId {
   std::uint32_t value_ = invalid_bit;
 };
 
+/// The number in up to four bytes, low byte first.
+[[nodiscard, gnu::noinline]] inline std::uint32_t number_in(std::span<const std::uint8_t> bytes) {
+  std::uint32_t value = 0;
+  for (std::size_t i = bytes.size(); i-- != 0;) value = value << 8 | bytes[i];
+  return value;
+}
+
 /// What a COB-ID becomes when these four bytes are written and the bits outside of `writable` keep their value. `bytes`
 /// is made so.
 [[nodiscard]] inline CobId written_cob_id(CobId before, std::uint32_t writable, std::span<std::uint8_t> bytes) {
-  std::uint32_t after = 0;
-  std::memcpy(&after, bytes.data(), sizeof after);
-  after = (after & writable) | (before.value() & ~writable);
-  std::memcpy(bytes.data(), &after, sizeof after);
+  std::uint32_t after = number_in(bytes);
+  if (writable != 0xFFFF'FFFF) {
+    after = (after & writable) | (before.value() & ~writable);
+    std::memcpy(bytes.data(), &after, sizeof after);
+  }
   return CobId{after};
 }
 
@@ -85,6 +93,14 @@ inline constexpr const char* restricted_can_id_reasons[] = {
     if (can_id >= range.first && can_id <= range.last) return true;
   }
   return false;
+}
+
+/// Whether a COB-ID may be written for its CAN-ID: 29 bits where the device takes them, or 11, and where it is in use
+/// none that other services need.
+[[nodiscard, gnu::noinline]] constexpr bool may_be_written(CobId cob_id, bool in_use, bool extended_ids) {
+  if (cob_id.extended()) return extended_ids;
+  if ((cob_id.value() & 0x1FFF'F800) != 0) return false;
+  return !in_use || !is_restricted(cob_id.can_id());
 }
 
 /// Why an 11-bit CAN-ID may not be used by a configurable object; null when it may.

@@ -27,21 +27,18 @@ namespace canopen {
   return Duration{std::uint32_t{count} * options.inhibit_time_unit};
 }
 
-/// Whether a PDO may go from one COB-ID to another. 0609 0030h: its CAN-ID may change only while the PDO is not valid,
-/// is of 11 or 29 bits, and one that other services need cannot be made valid.
-[[nodiscard]] constexpr AbortCode check_pdo_cob_id(CobId before, CobId after) {
+/// Whether a PDO or an SDO server may go from one COB-ID to another. 0609 0030h: its CAN-ID may change only while it is
+/// not valid, is of 11 or 29 bits, and one that other services need cannot be made valid.
+[[nodiscard, gnu::noinline]] constexpr AbortCode check_pdo_cob_id(CobId before, CobId after, bool extended_ids) {
   constexpr std::uint32_t identifier = 0x3FFF'FFFF;
   const bool changed = ((before.value() ^ after.value()) & identifier) != 0;
   if (before.valid() && after.valid() && changed) return AbortCode::invalid_value;
-  if (!after.extended() && (after.value() & 0x1FFF'F800) != 0) return AbortCode::invalid_value;
   const bool made_valid = !before.valid() && after.valid();
-  if (made_valid && !after.extended() && is_restricted(after.can_id())) return AbortCode::invalid_value;
-  return ok;
+  return may_be_written(after, made_valid, extended_ids) ? ok : AbortCode::invalid_value;
 }
 
-/// 0609 0030h where the device has not what the COB-ID asks for.
+/// 0609 0030h where the device has not what the COB-ID of a PDO asks for.
 [[nodiscard]] constexpr AbortCode check_pdo_features(const DeviceOptions& options, bool tpdo, CobId cob_id) {
-  if (!options.pdo_extended_ids && cob_id.extended()) return AbortCode::invalid_value;
   const auto [first, last] = options.pdo_reserved_can_ids;
   if (first <= last && cob_id.valid() && !cob_id.extended() && cob_id.can_id() >= first && cob_id.can_id() <= last)
     return AbortCode::invalid_value;
@@ -53,15 +50,10 @@ namespace canopen {
 
 /// 0609 0030h for reserved transmission types.
 [[nodiscard]] constexpr AbortCode check_transmission_type(const DeviceOptions& options, bool tpdo, std::uint8_t type) {
-  switch (transmission_of(type)) {
-    case Transmission::synchronous:
-    case Transmission::event_driven: return ok;
-    case Transmission::remote_synchronous:
-    case Transmission::remote:
-      return tpdo && options.tpdo_remote_frames && options.tpdo_remote_types ? ok : AbortCode::invalid_value;
-    case Transmission::reserved: break;
-  }
-  return AbortCode::invalid_value;
+  const Transmission transmission = transmission_of(type);
+  if (transmission == Transmission::synchronous || transmission == Transmission::event_driven) return ok;
+  const bool remote = tpdo && options.tpdo_remote_frames && options.tpdo_remote_types;
+  return remote && transmission != Transmission::reserved ? ok : AbortCode::invalid_value;
 }
 
 /// What speaks against writing these bytes, whose length is right, to 1400h..15FFh or 1800h..19FFh. Bits of a COB-ID
@@ -72,27 +64,26 @@ template <class Device>
                                             std::span<std::uint8_t> bytes) {
   const bool tpdo = is_tpdo_communication(index);
   const CobId cob_id{entries.number(entries.find(index, pdo_parameter::cob_id))};
-  std::uint32_t after = bytes[0];
   switch (sub_index) {
     case pdo_parameter::cob_id: {
       if (bytes.size() != sizeof(std::uint32_t)) return AbortCode::internal_incompatibility;
-      const CobId written = written_cob_id(cob_id, Device::options.pdo_cob_id_writable, bytes);
-      const AbortCode code = check_pdo_cob_id(cob_id, written);
-      return code != ok ? code : check_pdo_features(Device::options, tpdo, written);
+      const CobId after = written_cob_id(cob_id, Device::options.pdo_cob_id_writable, bytes);
+      const AbortCode code = check_pdo_cob_id(cob_id, after, Device::options.pdo_extended_ids);
+      return code != ok ? code : check_pdo_features(Device::options, tpdo, after);
     }
     case pdo_parameter::transmission_type: return check_transmission_type(Device::options, tpdo, bytes[0]);
     case pdo_parameter::inhibit_time:
       if (!tpdo || Device::options.inhibit_time_writable_while_valid) return ok;
       if (bytes.size() != sizeof(std::uint16_t)) return AbortCode::internal_incompatibility;
-      after |= static_cast<std::uint32_t>(bytes[1] << 8);
       break;
     case pdo_parameter::sync_start:
       if (!tpdo) return ok;
-      if (after > highest_sync_counter) return AbortCode::invalid_value;
+      if (bytes[0] > highest_sync_counter) return AbortCode::invalid_value;
       break;
     default: return ok;
   }
-  return cob_id.valid() && entries.number(entries.find(index, sub_index)) != after ? AbortCode::device_state : ok;
+  const bool changed = entries.number(entries.find(index, sub_index)) != number_in(bytes);
+  return cob_id.valid() && changed ? AbortCode::device_state : ok;
 }
 
 }  // namespace canopen

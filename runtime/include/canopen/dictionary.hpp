@@ -231,6 +231,20 @@ struct Dictionary {
     return find(index, sub_index) > no_sub_index;
   }
 
+  /// Whether the bus can write an entry of these indices.
+  [[nodiscard]] constexpr bool takes_writes(std::uint16_t first, std::uint16_t last) const {
+    for (unsigned index = first; index <= last; ++index) {
+      const entry::Word word = find_index(static_cast<std::uint16_t>(index));
+      if (word == no_object) continue;
+      const bool var = entry::kind_of(word) == entry::Kind::var;
+      const unsigned highest = var ? 0u : groups[entry::offset_of(word)].highest;
+      for (unsigned sub_index = 0; sub_index <= highest; ++sub_index) {
+        if ((sub_word(word, static_cast<std::uint8_t>(sub_index)) & entry::writable) != 0) return true;
+      }
+    }
+    return false;
+  }
+
   /// Calls `visit(index, sub_index, word)` for each entry, in ascending order; words with their offset resolved.
   template <class Visit>
   constexpr void for_each_entry(Visit&& visit) const {

@@ -94,8 +94,7 @@ class EmergencyProducer {
     if (index == 0x1015) {
       if constexpr (Device::options.emcy_inhibit_time_step != 1) {
         if (bytes.size() != sizeof(std::uint16_t)) return AbortCode::internal_incompatibility;
-        const std::uint32_t time = bytes[0] | std::uint32_t{bytes[1]} << 8;
-        if (time % Device::options.emcy_inhibit_time_step != 0) return AbortCode::invalid_value;
+        if (number_in(bytes) % Device::options.emcy_inhibit_time_step != 0) return AbortCode::invalid_value;
       }
       return ok;
     }
@@ -105,9 +104,7 @@ class EmergencyProducer {
     constexpr std::uint32_t reserved_bit = 0x4000'0000;
     const bool in_use = before.valid() && after.valid() && !Device::options.emcy_cob_id_writable_while_valid;
     if ((after.value() & reserved_bit) != 0 || (in_use && before != after)) return AbortCode::invalid_value;
-    if (after.extended()) return Device::options.pdo_extended_ids ? ok : AbortCode::invalid_value;
-    if ((after.value() & 0x1FFF'F800) != 0) return AbortCode::invalid_value;
-    return after.valid() && is_restricted(after.can_id()) ? AbortCode::invalid_value : ok;
+    return may_be_written(after, after.valid(), Device::options.pdo_extended_ids) ? ok : AbortCode::invalid_value;
   }
 
   /// No error, and none to be told (CiA 301, 7.2.7.1: what a reset does).
@@ -135,7 +132,7 @@ class EmergencyProducer {
   template <Bus B>
   bool serve(const ObjectStore<Device>& store, B& bus, TimePoint now) {
     if constexpr (has_cob_id) {
-      if (inhibited_ && now >= inhibit_end_) inhibited_ = false;
+      if (inhibited_ && !is_ahead(inhibit_end_, inhibit_unit, now)) inhibited_ = false;
       while (waiting_ != 0 && !inhibited_) {
         if (CobId{store.template number<0x1014, 0>()}.valid()) {
           if (!send(store, bus, queue_[0])) return false;
@@ -151,12 +148,15 @@ class EmergencyProducer {
   /// When the next one is to be sent; a moment not after `now` when one waits already.
   [[nodiscard]] std::optional<TimePoint> next_deadline(TimePoint now) const {
     if (waiting_ == 0) return std::nullopt;
-    return inhibited_ ? inhibit_end_ : now;
+    return inhibited_ && is_ahead(inhibit_end_, inhibit_unit, now) ? inhibit_end_ : now;
   }
 
  private:
-  using Message = std::array<std::uint8_t, 8>;
+  struct Message {
+    alignas(4) std::array<std::uint8_t, 8> bytes;
+  };
 
+  static constexpr std::uint32_t inhibit_unit = from_hundred_microseconds(1).count();
   static constexpr bool has_register = Device::dictionary.has(0x1001, 0);
   static constexpr bool has_cob_id = Device::dictionary.has(0x1014, 0);
   static constexpr bool has_inhibit_time = Device::dictionary.has(0x1015, 0);
@@ -198,8 +198,8 @@ class EmergencyProducer {
   }
 
   [[nodiscard]] static Message message_of(std::uint16_t code, std::uint8_t bits, const EmergencyInfo& info) {
-    Message message{static_cast<std::uint8_t>(code), static_cast<std::uint8_t>(code >> 8), bits};
-    std::memcpy(&message[3], info.data(), info.size());
+    Message message{{static_cast<std::uint8_t>(code), static_cast<std::uint8_t>(code >> 8), bits}};
+    std::memcpy(&message.bytes[3], info.data(), info.size());
     return message;
   }
 
@@ -207,12 +207,7 @@ class EmergencyProducer {
   [[nodiscard]] static bool send(const ObjectStore<Device>& store, B& bus, const Message& message) {
     const CobId cob_id{store.template number<0x1014, 0>()};
     if (!cob_id.valid()) return true;
-    Frame frame{};
-    frame.id = cob_id.can_id();
-    frame.extended = cob_id.extended();
-    frame.size = 8;
-    frame.data = message;
-    return bus.send(frame);
+    return send_data(bus, cob_id.value(), 8, message.bytes.data());
   }
 
   static void store_register(ObjectStore<Device>& store, std::uint8_t bits) {
@@ -255,13 +250,5 @@ class EmergencyProducer {
   std::uint8_t service_errors_ = 0;
   bool inhibited_ = false;
 };
-
-/// What speaks against reading 1003h: an error that is not there (0800 0024h).
-template <class Device>
-[[nodiscard]] AbortCode check_history_read(EntryAccess<Device> entries, std::uint8_t sub_index) {
-  constexpr entry::Word count = Device::dictionary.find(0x1003, 0);
-  if (count <= Dictionary::no_sub_index) return ok;
-  return sub_index > entries.number(count) ? AbortCode::no_data : ok;
-}
 
 }  // namespace canopen

@@ -4,6 +4,8 @@
 #include <array>
 #include <concepts>
 #include <cstdint>
+#include <cstring>
+#include <memory>
 
 namespace canopen {
 
@@ -34,5 +36,16 @@ template <class T>
 concept Bus = requires(T& bus, const Frame& frame) {
   { bus.send(frame) } -> std::same_as<bool>;
 };
+
+/// Sends the first of eight data bytes, whose address is a multiple of four, under a COB-ID as a parameter holds it.
+template <Bus B>
+[[nodiscard, gnu::noinline]] bool send_data(B& bus, std::uint32_t cob_id, std::uint8_t size, const std::uint8_t* data) {
+  Frame frame;
+  frame.extended = (cob_id & 0x2000'0000) != 0;
+  frame.id = cob_id & (frame.extended ? 0x1FFF'FFFFu : 0x7FFu);
+  frame.size = size;
+  std::memcpy(frame.data.data(), std::assume_aligned<4>(data), sizeof frame.data);
+  return bus.send(frame);
+}
 
 }  // namespace canopen

@@ -57,11 +57,8 @@ class HeartbeatProducer {
  private:
   template <Bus B>
   [[nodiscard]] static bool send(B& bus, NodeId node_id, NmtState state) {
-    Frame frame{};
-    frame.id = function_code::error_control + std::uint32_t{node_id.value()};
-    frame.size = 1;
-    frame.data[0] = static_cast<std::uint8_t>(state);
-    return bus.send(frame);
+    alignas(4) const std::uint8_t data[8] = {static_cast<std::uint8_t>(state)};
+    return send_data(bus, function_code::error_control + std::uint32_t{node_id.value()}, 1, data);
   }
 
   TimePoint due_{};

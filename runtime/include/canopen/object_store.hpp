@@ -90,7 +90,7 @@ class EntryAccess {
   }
 
   /// An unsigned value of up to 32 bits.
-  [[nodiscard]] std::uint32_t number(entry::Word word) const {
+  [[nodiscard, gnu::noinline]] std::uint32_t number(entry::Word word) const {
     if (is_immediate(word)) return immediate_value(word);
     const std::uint8_t* const where = address(word);
     if (entry::size_of(word) == 1) return *where;
@@ -102,6 +102,19 @@ class EntryAccess {
   template <std::uint16_t Index, std::uint8_t SubIndex>
   [[nodiscard]] std::uint32_t number() const {
     return store_->template number<Index, SubIndex>();
+  }
+
+  /// An unsigned value of `Size` bytes at an offset in RAM.
+  template <std::uint8_t Size>
+  [[nodiscard]] std::uint32_t number_at(std::size_t offset) const {
+    const std::uint8_t* const where = reinterpret_cast<const std::uint8_t*>(store_) + offset;
+    if constexpr (Size == 1) {
+      return *where;
+    } else if constexpr (Size == 2) {
+      return load<std::uint16_t>(where);
+    } else {
+      return load<std::uint32_t>(where);
+    }
   }
 
   /// The memory behind a DOMAIN.

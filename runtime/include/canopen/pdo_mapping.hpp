@@ -132,9 +132,7 @@ template <class Device>
     return static_cast<AbortCode>(Device::options.pdo_mapping_abort_code);
   }
   if (mapping.count() != 0) return AbortCode::unsupported_access;
-  std::uint32_t value = 0;
-  std::memcpy(&value, bytes.data(), sizeof value);
-  const MappedObject mapped{value};
+  const MappedObject mapped{number_in(bytes)};
   return mapped.empty() || can_be_mapped<Device>(tpdo, mapped) != not_mappable ? ok : AbortCode::not_mappable;
 }
 

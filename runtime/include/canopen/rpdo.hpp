@@ -14,6 +14,7 @@
 #include "canopen/frame.hpp"
 #include "canopen/mapped_places.hpp"
 #include "canopen/object_store.hpp"
+#include "canopen/parameter_column.hpp"
 #include "canopen/pdo.hpp"
 #include "canopen/pdo_list.hpp"
 #include "canopen/sync.hpp"
@@ -82,12 +83,11 @@ class RpdoService {
   template <class Host>
   void on_frame(ObjectStore<Device>& store, const Frame& frame, bool window_over, TimePoint now, Host&& host) {
     const std::uint32_t cob_id = cob_id_of(frame);
-    Pdos::for_each([&]<class Pdo, std::size_t I>() {
-      constexpr std::uint16_t index = rpdo_indices.communication + Pdo::number - 1;
-      const std::uint32_t own = store.template number<index, pdo_parameter::cob_id>();
+    for (std::size_t i = 0; i < count; ++i) {
       // An RPDO's bit 30 means nothing; no frame has bit 31.
-      if ((own & ~CobId::no_rtr_bit) == cob_id) receive(I, store, frame, window_over, now, host);
-    });
+      const std::uint32_t own = Column<pdo_parameter::cob_id>::get(store.entries(), i, CobId::invalid_bit);
+      if ((own & ~CobId::no_rtr_bit) == cob_id) receive(i, store, frame, window_over, now, host);
+    }
   }
 
   /// A SYNC has come: what has been received since the last one counts now.
@@ -106,11 +106,7 @@ class RpdoService {
   template <class Host>
   void on_time([[maybe_unused]] TimePoint now, [[maybe_unused]] Host&& host) {
     if constexpr (has_event_timer) {
-      for (std::size_t i = 0; i < count; ++i) {
-        if ((slots_[i].flags & monitored) == 0 || now < slots_[i].deadline) continue;
-        slots_[i].flags = static_cast<std::uint8_t>((slots_[i].flags & ~monitored) | missed);
-        host.happened(RpdoEvent::timeout, number_of(i));
-      }
+      for (std::size_t i = 0; i < count; ++i) check_deadline(i, now, host);
     }
   }
 
@@ -158,21 +154,10 @@ class RpdoService {
     return rows;
   }();
 
-  /// Where the parameters are that a frame needs; 0 or 1 stand for one that does not exist.
-  struct Parameters {
-    entry::Word transmission_type;
-    entry::Word event_timer;
-  };
-  static constexpr std::array<Parameters, count> parameters = [] {
-    std::array<Parameters, count> rows{};
-    for (std::size_t i = 0; i < count; ++i) {
-      rows[i] = {Device::dictionary.find(indices[i], pdo_parameter::transmission_type),
-                 Device::dictionary.find(indices[i], pdo_parameter::event_timer)};
-    }
-    return rows;
-  }();
-  static constexpr bool has_event_timer =
-      std::ranges::any_of(parameters, [](const Parameters& p) { return p.event_timer > Dictionary::no_sub_index; });
+  template <std::uint8_t SubIndex>
+  using Column = ParameterColumn<Device, Pdos, rpdo_indices.communication, SubIndex>;
+  static constexpr bool has_event_timer = Column<pdo_parameter::event_timer>::exists;
+  static constexpr std::uint32_t event_unit = from_milliseconds(1).count();
 
   struct NoTime {};
   struct Slot {
@@ -234,23 +219,31 @@ class RpdoService {
     host.happened(event, number_of(i));
   }
 
+  /// Tells of one that has stayed away.
+  template <class Host>
+  void check_deadline(std::size_t i, TimePoint now, Host& host) {
+    if ((slots_[i].flags & monitored) == 0 || is_ahead(slots_[i].deadline, event_unit, now)) return;
+    slots_[i].flags = static_cast<std::uint8_t>((slots_[i].flags & ~monitored) | missed);
+    host.happened(RpdoEvent::timeout, number_of(i));
+  }
+
   template <class Host>
   void start_deadline([[maybe_unused]] std::size_t i, [[maybe_unused]] EntryAccess<Device> entries,
                       [[maybe_unused]] TimePoint now, [[maybe_unused]] Host& host) {
     if constexpr (has_event_timer) {
+      check_deadline(i, now, host);
       end(i, missed, RpdoEvent::in_time, host);
       slots_[i].flags &= static_cast<std::uint8_t>(~monitored);
-      if (parameters[i].event_timer <= Dictionary::no_sub_index) return;
-      const Duration timer = from_milliseconds(static_cast<std::uint16_t>(entries.number(parameters[i].event_timer)));
-      if (timer.count() == 0) return;
+      const auto time = static_cast<std::uint16_t>(Column<pdo_parameter::event_timer>::get(entries, i, 0));
+      if (time == 0) return;
       slots_[i].flags |= monitored;
-      slots_[i].deadline = now + timer;
+      slots_[i].deadline = now + from_milliseconds(time);
     }
   }
 
   [[nodiscard]] static Transmission transmission_type(std::size_t i, EntryAccess<Device> entries) {
-    const entry::Word word = parameters[i].transmission_type;
-    return word > Dictionary::no_sub_index ? transmission_of(entries.number(word)) : Transmission::event_driven;
+    constexpr std::uint32_t event_driven = 255;
+    return transmission_of(Column<pdo_parameter::transmission_type>::get(entries, i, event_driven));
   }
 
   template <class Host>

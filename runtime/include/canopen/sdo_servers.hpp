@@ -58,13 +58,7 @@ class SdoServers {
   [[nodiscard]] bool serve(ObjectStore<Device>& store, B& bus, Hooks&& hooks, TimePoint now) {
     for (std::size_t i = 0; i < count; ++i) {
       while (servers_[i].has_reply()) {
-        const CobId cob_id{cob_id_of_server(i, response_sub_index, store)};
-        Frame frame{};
-        frame.id = cob_id.can_id();
-        frame.extended = cob_id.extended();
-        frame.size = 8;
-        frame.data = servers_[i].reply();
-        if (!bus.send(frame)) return false;
+        if (!send_data(bus, cob_id_of_server(i, response_sub_index, store), 8, servers_[i].reply().data())) return false;
         servers_[i].reply_sent(hooks, now);
       }
     }
@@ -149,10 +143,8 @@ template <class Device>
 [[nodiscard]] AbortCode check_sdo_cob_id(EntryAccess<Device> entries, std::uint16_t index, std::uint8_t sub_index,
                                                 std::span<const std::uint8_t> bytes) {
   if (sub_index != 1 && sub_index != 2) return ok;
-  std::uint32_t after = 0;
-  std::memcpy(&after, bytes.data(), sizeof after);
   const CobId before{entries.number(entries.find(index, sub_index))};
-  return check_pdo_cob_id(before, CobId{after});
+  return check_pdo_cob_id(before, CobId{number_in(bytes)}, true);
 }
 
 }  // namespace canopen

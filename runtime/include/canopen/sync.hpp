@@ -83,20 +83,15 @@ class SyncProducer {
   template <Bus B>
   [[nodiscard]] std::optional<Sync> serve(const ObjectStore<Device>& store, B& bus, TimePoint now) {
     if (!running_ || is_within(due_, period_of(store), now)) return std::nullopt;
-    const CobId cob_id{store.template number<0x1005, 0>()};
     const std::uint8_t overflow = SyncConsumer<Device>::overflow_of(store);
-    Frame frame{};
-    frame.id = cob_id.can_id();
-    frame.extended = cob_id.extended();
-    frame.size = overflow != 0 ? 1 : 0;
     const std::uint8_t counter = counter_ < overflow ? static_cast<std::uint8_t>(counter_ + 1) : std::uint8_t{1};
-    frame.data[0] = overflow != 0 ? counter : std::uint8_t{0};
-    if (!bus.send(frame)) return std::nullopt;
+    alignas(4) const std::uint8_t data[8] = {overflow != 0 ? counter : std::uint8_t{0}};
+    if (!send_data(bus, store.template number<0x1005, 0>(), overflow != 0 ? 1 : 0, data)) return std::nullopt;
     counter_ = counter;
     const Duration period = period_of(store);
     due_ = due_ + period;
     if (now >= due_) due_ = now + period;  // served so late that whole periods are missing
-    return Sync{frame.data[0], true};
+    return Sync{data[0], true};
   }
 
   [[nodiscard]] std::optional<TimePoint> next_deadline() const { return running_ ? std::optional{due_} : std::nullopt; }
@@ -154,24 +149,22 @@ template <class Device>
                                              std::span<std::uint8_t> bytes) {
   if (index == 0x1005) {
     if (bytes.size() != sizeof(std::uint32_t)) return AbortCode::internal_incompatibility;
-    const std::uint32_t before = entries.template number<0x1005, 0>();
-    const std::uint32_t after = written_cob_id(CobId{before}, Device::options.sync_cob_id_writable, bytes).value();
+    const CobId before{entries.template number<0x1005, 0>()};
+    const CobId after = written_cob_id(before, Device::options.sync_cob_id_writable, bytes);
     constexpr std::uint32_t identifier = CobId::extended_bit | 0x1FFF'FFFF;
-    const bool generates = (after & CobId::no_rtr_bit) != 0;
-    const bool generated = (before & CobId::no_rtr_bit) != 0;
+    const bool generates = (after.value() & CobId::no_rtr_bit) != 0;
     if (generates && !SyncProducer<Device>::exists) return AbortCode::invalid_value;
-    if (generates && generated && ((before ^ after) & identifier) != 0) return AbortCode::invalid_value;
-    const bool extended = (after & CobId::extended_bit) != 0;
-    if (extended && !Device::options.pdo_extended_ids) return AbortCode::invalid_value;
-    if (!extended && ((after & 0x1FFF'F800) != 0 || is_restricted(after & 0x7FF))) return AbortCode::invalid_value;
-  } else if (index == 0x1006) {
-    std::uint32_t period = 0;
-    std::memcpy(&period, bytes.data(), sizeof period);
-    if (period > longest_span.count()) return AbortCode::value_too_high;
-  } else if (index == 0x1019) {
+    const bool generated = (before.value() & CobId::no_rtr_bit) != 0;
+    const bool changed = ((before.value() ^ after.value()) & identifier) != 0;
+    if (generates && generated && changed) return AbortCode::invalid_value;
+    return may_be_written(after, true, Device::options.pdo_extended_ids) ? ok : AbortCode::invalid_value;
+  }
+  if (index == 0x1006) return number_in(bytes) > longest_span.count() ? AbortCode::value_too_high : ok;
+  if constexpr (SyncConsumer<Device>::has_overflow) {
     if (bytes[0] == 1 || bytes[0] > highest_sync_counter) return AbortCode::invalid_value;
-    constexpr entry::Word period = Device::dictionary.find(0x1006, 0);
-    if (period > Dictionary::no_sub_index && entries.number(period) != 0) return AbortCode::device_state;
+    if constexpr (Device::dictionary.has(0x1006, 0)) {
+      if (entries.template number<0x1006, 0>() != 0) return AbortCode::device_state;
+    }
   }
   return ok;
 }

@@ -48,6 +48,11 @@ class TimePoint {
 /// The longest time that may pass until a moment that others are compared with: 35 minutes.
 inline constexpr Duration longest_span{0x7FFF'FFFF};
 
+/// Whether a moment that is one event or inhibit time ahead at most is yet to come: of 65,535 units of so many us.
+[[nodiscard]] constexpr bool is_ahead(TimePoint due, std::uint32_t unit, TimePoint now) {
+  return is_within(due, Duration{0xFFFF * unit}, now);
+}
+
 /// A time as 1017h or 1800h:05 hold it.
 [[nodiscard]] constexpr Duration from_milliseconds(std::uint16_t count) { return Duration{count * 1000u}; }
 

@@ -64,12 +64,10 @@ template <class Device>
 [[nodiscard]] AbortCode check_time_parameter(EntryAccess<Device> entries,
                                                     std::span<const std::uint8_t> bytes) {
   constexpr std::uint32_t in_use = 0xC000'0000;
-  std::uint32_t after = 0;
-  std::memcpy(&after, bytes.data(), sizeof after);
+  const std::uint32_t after = number_in(bytes);
   const std::uint32_t before = entries.template number<0x1012, 0>();
   if ((before & after & in_use) != 0 && ((before ^ after) & ~in_use) != 0) return AbortCode::invalid_value;
-  if ((after & CobId::extended_bit) != 0) return Device::options.pdo_extended_ids ? ok : AbortCode::invalid_value;
-  return (after & 0x1FFF'F800) != 0 || is_restricted(after & 0x7FF) ? AbortCode::invalid_value : ok;
+  return may_be_written(CobId{after}, true, Device::options.pdo_extended_ids) ? ok : AbortCode::invalid_value;
 }
 
 }  // namespace canopen

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <optional>
 #include <type_traits>
@@ -12,6 +13,7 @@
 #include "canopen/frame.hpp"
 #include "canopen/mapped_places.hpp"
 #include "canopen/object_store.hpp"
+#include "canopen/parameter_column.hpp"
 #include "canopen/pdo.hpp"
 #include "canopen/pdo_list.hpp"
 #include "canopen/sync.hpp"
@@ -99,7 +101,7 @@ class TpdoService {
   void parameter_changed(ObjectStore<Device>& store, std::uint16_t index, std::uint8_t sub_index, TimePoint now) {
     const bool mapping = is_tpdo_mapping(index);
     for (std::size_t i = 0; i < count; ++i) {
-      if ((parameters[i].index ^ index) & 0x1FF) continue;
+      if ((indices[i] ^ index) & 0x1FF) continue;
       if (!mapping && sub_index == pdo_parameter::inhibit_time) continue;
       if (!mapping && sub_index == pdo_parameter::event_timer) {
         start_event_timer(i, store.entries(), now);
@@ -137,7 +139,7 @@ class TpdoService {
   void on_remote(EntryAccess<Device> entries, std::uint32_t can_id) {
     if constexpr (Device::options.tpdo_remote_frames) {
       for (std::size_t i = 0; i < count; ++i) {
-        if ((slots_[i].flags & active) != 0 && entries.number(parameters[i].cob_id) == can_id) slots_[i].flags |= asked;
+        if ((slots_[i].flags & active) != 0 && cob_id_of(i, entries) == can_id) slots_[i].flags |= asked;
       }
     }
   }
@@ -147,9 +149,8 @@ class TpdoService {
   bool serve(ObjectStore<Device>& store, B& bus, TimePoint now) {
     for (std::size_t i = 0; i < count; ++i) {
       Slot& slot = slots_[i];
-      if ((slot.flags & inhibited) != 0 && now >= slot.inhibit_end) slot.flags &= static_cast<std::uint8_t>(~inhibited);
       if (!wanted(slot) && !event_timer_expired(slot, now)) continue;
-      if ((slot.flags & inhibited) != 0) continue;
+      if (is_inhibited(slot, now)) continue;
       if (!send(i, store, bus)) return false;
       sent(i, store.entries(), now);
     }
@@ -161,8 +162,9 @@ class TpdoService {
     std::optional<TimePoint> next;
     for (const Slot& slot : slots_) {
       if (!wanted(slot) && (slot.flags & timed) == 0) continue;
-      TimePoint at = wanted(slot) ? now : slot.event_due;
-      if ((slot.flags & inhibited) != 0 && slot.inhibit_end > at) at = slot.inhibit_end;
+      TimePoint at = wanted(slot) || event_timer_expired(slot, now) ? now : slot.times.event_due;
+      if ((slot.flags & inhibited) != 0 && is_ahead(slot.times.inhibit_end, inhibit_unit, now) && slot.times.inhibit_end > at)
+        at = slot.times.inhibit_end;
       if (!next || at < *next) next = at;
     }
     return next;
@@ -184,50 +186,36 @@ class TpdoService {
   static constexpr std::uint8_t remote_synchronous = 252;
   static constexpr std::uint8_t event_driven_type = 255;  ///< of a TPDO without a transmission type
 
-  static constexpr bool has_parameter(std::uint8_t sub_index) {
-    bool has = false;
-    Pdos::for_each([&]<class Pdo, std::size_t>() {
-      has = has || Device::dictionary.has(tpdo_indices.communication + Pdo::number - 1, sub_index);
-    });
-    return has;
-  }
-  static constexpr bool has_inhibit_time = has_parameter(pdo_parameter::inhibit_time);
-  static constexpr bool has_event_timer = has_parameter(pdo_parameter::event_timer);
-  static constexpr bool has_sync_start = has_parameter(pdo_parameter::sync_start);
+  template <std::uint8_t SubIndex>
+  using Column = ParameterColumn<Device, Pdos, tpdo_indices.communication, SubIndex>;
+  static constexpr bool has_inhibit_time = Column<pdo_parameter::inhibit_time>::exists;
+  static constexpr bool has_event_timer = Column<pdo_parameter::event_timer>::exists;
+  static constexpr bool has_sync_start = Column<pdo_parameter::sync_start>::exists;
   static constexpr bool has_samples = Device::options.tpdo_remote_frames && SyncConsumer<Device>::exists;
+
+  static constexpr std::uint32_t event_unit = from_milliseconds(1).count();
+  static constexpr std::uint32_t inhibit_unit = Device::options.inhibit_time_unit;
 
   using Data = std::array<std::uint8_t, 8>;
 
-  struct Slot {
+  struct Times {
     TimePoint event_due;
     TimePoint inhibit_end;
+  };
+
+  struct Slot {
+    Times times;  ///< of type 252, which has none, the data of the last SYNC
     std::uint8_t flags;
     std::uint8_t type;
     std::uint8_t syncs;  ///< SYNCs until it is due, of types 1..240
     std::uint8_t size;   ///< data bytes
   };
 
-  /// Where the parameters of a TPDO are; 0 or 1 stand for one that does not exist.
-  struct Parameters {
-    std::uint16_t index;
-    entry::Word cob_id;
-    entry::Word transmission_type;
-    entry::Word inhibit_time;
-    entry::Word event_timer;
-    entry::Word sync_start;
-  };
-
-  static constexpr std::array<Parameters, count> parameters = [] {
-    std::array<Parameters, count> rows{};
+  /// Of the communication parameters.
+  static constexpr std::array<std::uint16_t, count> indices = [] {
+    std::array<std::uint16_t, count> rows{};
     Pdos::for_each([&]<class Pdo, std::size_t I>() {
-      constexpr std::uint16_t index = tpdo_indices.communication + Pdo::number - 1;
-      const auto find = [](std::uint8_t sub_index) { return Device::dictionary.find(index, sub_index); };
-      rows[I] = {index,
-                 find(pdo_parameter::cob_id),
-                 find(pdo_parameter::transmission_type),
-                 find(pdo_parameter::inhibit_time),
-                 find(pdo_parameter::event_timer),
-                 find(pdo_parameter::sync_start)};
+      rows[I] = static_cast<std::uint16_t>(tpdo_indices.communication + Pdo::number - 1);
     });
     return rows;
   }();
@@ -260,9 +248,14 @@ class TpdoService {
     return rows;
   }();
 
-  [[nodiscard]] static std::uint16_t parameter(EntryAccess<Device> entries, entry::Word word,
-                                               std::uint16_t missing = 0) {
-    return word > Dictionary::no_sub_index ? static_cast<std::uint16_t>(entries.number(word)) : missing;
+  [[nodiscard]] static std::uint32_t cob_id_of(std::size_t i, EntryAccess<Device> entries) {
+    return Column<pdo_parameter::cob_id>::get(entries, i, CobId::invalid_bit);
+  }
+
+  /// One of the other parameters; 0 where there is none.
+  template <std::uint8_t SubIndex>
+  [[nodiscard]] static std::uint16_t parameter(std::size_t i, EntryAccess<Device> entries) {
+    return static_cast<std::uint16_t>(Column<SubIndex>::get(entries, i, 0));
   }
 
   void activate(std::size_t i, ObjectStore<Device>& store, TimePoint now) {
@@ -272,9 +265,8 @@ class TpdoService {
     if constexpr (has_dynamic_mapping) {
       if (Mapped::capacities[i] != 0) slot.size = places_.look_up(i, entries, is_constant);
     }
-    if (slot.size == 0 || !CobId{entries.number(parameters[i].cob_id)}.valid()) return;
-    slot.type =
-        static_cast<std::uint8_t>(parameter(entries, parameters[i].transmission_type, event_driven_type));
+    if (slot.size == 0 || !CobId{cob_id_of(i, entries)}.valid()) return;
+    slot.type = static_cast<std::uint8_t>(Column<pdo_parameter::transmission_type>::get(entries, i, event_driven_type));
     slot.flags |= active;
     const Transmission transmission = transmission_of(slot.type);
     if (transmission != Transmission::event_driven) slot.flags &= static_cast<std::uint8_t>(~inhibited);
@@ -285,7 +277,7 @@ class TpdoService {
         break;
       case Transmission::synchronous:
         slot.syncs = slot.type;
-        if (has_sync_start && parameter(entries, parameters[i].sync_start) != 0) slot.flags |= before_start;
+        if (has_sync_start && parameter<pdo_parameter::sync_start>(i, entries) != 0) slot.flags |= before_start;
         break;
       case Transmission::remote_synchronous: sample(i, store); break;
       case Transmission::remote:
@@ -300,7 +292,7 @@ class TpdoService {
   void count_sync(std::size_t i, EntryAccess<Device> entries, Sync sync) {
     Slot& slot = slots_[i];
     if (has_sync_start && (slot.flags & before_start) != 0) {
-      if (sync.counter != 0 && sync.counter != parameter(entries, parameters[i].sync_start)) return;
+      if (sync.counter != 0 && sync.counter != parameter<pdo_parameter::sync_start>(i, entries)) return;
       slot.flags &= static_cast<std::uint8_t>(~before_start);
     }
     if (--slot.syncs != 0) return;
@@ -321,19 +313,27 @@ class TpdoService {
     if constexpr (has_event_timer) {
       slots_[i].flags &= static_cast<std::uint8_t>(~timed);
       if ((slots_[i].flags & event_driven) == 0) return;
-      const Duration period = from_milliseconds(parameter(entries, parameters[i].event_timer));
+      const Duration period = from_milliseconds(parameter<pdo_parameter::event_timer>(i, entries));
       if (period.count() != 0) slots_[i].flags |= timed;
-      slots_[i].event_due = from + period;
+      slots_[i].times.event_due = from + period;
     }
   }
 
   [[nodiscard]] static bool event_timer_expired(const Slot& slot, TimePoint now) {
-    return has_event_timer && (slot.flags & timed) != 0 && now >= slot.event_due;
+    return has_event_timer && (slot.flags & timed) != 0 && !is_ahead(slot.times.event_due, event_unit, now);
+  }
+
+  /// Forgets an inhibit time that is over.
+  [[nodiscard]] static bool is_inhibited(Slot& slot, TimePoint now) {
+    if ((slot.flags & inhibited) == 0) return false;
+    if (is_ahead(slot.times.inhibit_end, inhibit_unit, now)) return true;
+    slot.flags &= static_cast<std::uint8_t>(~inhibited);
+    return false;
   }
 
   template <Bus B>
   [[nodiscard]] bool send(std::size_t which, ObjectStore<Device>& store, B& bus) {
-    const CobId cob_id{store.entries().number(parameters[which].cob_id)};
+    const CobId cob_id{cob_id_of(which, store.entries())};
     Frame frame{};
     frame.id = cob_id.can_id();
     frame.extended = cob_id.extended();
@@ -346,7 +346,7 @@ class TpdoService {
     if constexpr (has_samples) {
       Frame frame{};
       pack(which, store, frame);
-      samples_[which] = frame.data;
+      slots_[which].times = std::bit_cast<Times>(frame.data);
     }
   }
 
@@ -354,7 +354,7 @@ class TpdoService {
   [[nodiscard]] bool take_sample([[maybe_unused]] std::size_t which, [[maybe_unused]] Data& data) const {
     if constexpr (has_samples) {
       if (slots_[which].type == remote_synchronous) {
-        data = samples_[which];
+        data = std::bit_cast<Data>(slots_[which].times);
         return true;
       }
     }
@@ -403,12 +403,12 @@ class TpdoService {
     slot.flags &= static_cast<std::uint8_t>(~(changed_bit | due | asked));
     if ((slot.flags & event_driven) == 0) return;
     if constexpr (has_inhibit_time) {
-      const Duration inhibit = inhibit_duration(Device::options, parameter(entries, parameters[i].inhibit_time));
+      const Duration inhibit = inhibit_duration(Device::options, parameter<pdo_parameter::inhibit_time>(i, entries));
       if (inhibit.count() != 0) slot.flags |= inhibited;
-      slot.inhibit_end = now + inhibit;
+      slot.times.inhibit_end = now + inhibit;
     }
     if constexpr (has_event_timer) {
-      start_event_timer(i, entries, event_timer_expired(slot, now) ? slot.event_due : now);
+      start_event_timer(i, entries, event_timer_expired(slot, now) ? slot.times.event_due : now);
       if (event_timer_expired(slot, now)) start_event_timer(i, entries, now);
     }
   }
@@ -416,7 +416,6 @@ class TpdoService {
   struct Nothing {};
 
   std::array<Slot, count> slots_{};
-  [[no_unique_address]] std::conditional_t<has_samples, std::array<Data, count>, Nothing> samples_{};
   [[no_unique_address]] std::conditional_t<has_dynamic_mapping, Mapped, Nothing> places_{};
 };
 

@@ -1,0 +1,62 @@
+/// One sub-index of the communication parameters of all PDOs of a direction: most devices have them in records that lie
+/// one behind the other.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "canopen/dictionary.hpp"
+#include "canopen/object_store.hpp"
+#include "canopen/pdo_list.hpp"
+
+namespace canopen {
+
+/// `Pdos` is a PdoList, `First` the index of the parameter of PDO 1: 1400h or 1800h.
+template <class Device, class Pdos, std::uint16_t First, std::uint8_t SubIndex>
+class ParameterColumn {
+ public:
+  static constexpr std::size_t count = Pdos::count;
+
+  static constexpr std::array<entry::Word, count> words = [] {
+    std::array<entry::Word, count> rows{};
+    Pdos::for_each([&]<class Pdo, std::size_t I>() {
+      rows[I] = Device::dictionary.find(static_cast<std::uint16_t>(First + Pdo::number - 1), SubIndex);
+    });
+    return rows;
+  }();
+
+  [[nodiscard]] static constexpr bool is_there(entry::Word word) { return word > Dictionary::no_sub_index; }
+
+  /// Whether any PDO has it.
+  static constexpr bool exists = std::ranges::any_of(words, is_there);
+
+  /// The unsigned value for PDO `i` of the list; `missing` where that has none.
+  [[nodiscard]] static std::uint32_t get(EntryAccess<Device> entries, std::size_t i, std::uint32_t missing) {
+    if constexpr (!exists) {
+      return missing;
+    } else if constexpr (is_regular) {
+      return entries.template number_at<entry::size_of(words[0])>(entry::offset_of(words[0]) + stride * i);
+    } else {
+      return is_there(words[i]) ? entries.number(words[i]) : missing;
+    }
+  }
+
+ private:
+  static constexpr unsigned stride = [] {
+    if constexpr (count < 2) return 0u;
+    else return static_cast<unsigned>(words[1] - words[0]);
+  }();
+
+  /// Whether all are values of one type in RAM, in equal distance.
+  static constexpr bool is_regular = [] {
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!is_there(words[i]) || entry::place_of(words[i]) != entry::Place::ram) return false;
+      if (words[i] != words[0] + stride * i) return false;
+    }
+    return true;
+  }();
+};
+
+}  // namespace canopen
