@@ -22,7 +22,7 @@ class StreamBench {
 
   struct Hooks {
     StreamBench& bench;
-    [[nodiscard]] auto entries() const { return bench.store.entries(); }
+    [[nodiscard]] canopen::EntryAccess<bench::WithBlock> entries() const { return bench.store.entries(); }
     [[nodiscard]] AbortCode before_read(std::uint16_t, std::uint8_t) const { return canopen::ok; }
     [[nodiscard]] AbortCode before_write(std::uint16_t, std::uint8_t, std::span<std::uint8_t>) const {
       return canopen::ok;

@@ -27,9 +27,8 @@ enum class NmtCommand : std::uint8_t {
   reset_communication = 130,
 };
 
-[[nodiscard]] constexpr bool serves_sdo(NmtState state) {
-  return state == NmtState::pre_operational || state == NmtState::operational;
-}
+/// Pre-operational and Operational: their codes are the odd ones.
+[[nodiscard]] constexpr bool serves_sdo(NmtState state) { return (static_cast<unsigned>(state) & 1) != 0; }
 
 /// SYNC and TIME.
 [[nodiscard]] constexpr bool serves_sync(NmtState state) { return serves_sdo(state); }

@@ -451,10 +451,12 @@ class ObjectStore {
 
   void add_node_id(std::span<const NodeIdRelative> rows) {
     for (const NodeIdRelative& row : rows) {
-      std::uint64_t value = 0;
-      std::memcpy(&value, ram() + row.offset, row.size);
-      value += node_id_.value();
-      std::memcpy(ram() + row.offset, &value, row.size);
+      unsigned carry = node_id_.value();
+      for (std::uint8_t *byte = ram() + row.offset, *const end = byte + row.size; byte != end; ++byte) {
+        carry += *byte;
+        *byte = static_cast<std::uint8_t>(carry);
+        carry >>= 8;
+      }
     }
   }
 

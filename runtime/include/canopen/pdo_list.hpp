@@ -1,6 +1,7 @@
 /// The PDOs of a device, by number, and where their parameters are in its dictionary.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <type_traits>
 #include <utility>
@@ -79,7 +80,45 @@ struct Served<D, Indices, PdoList<Taken...>, PdoList<P, Rest...>> {
                                PdoList<Rest...>>::type;
 };
 
+/// Whether the PDOs of a list are those from 1 on.
+template <class Pdos>
+inline constexpr bool counts_from_one = [] {
+  bool counts = true;
+  Pdos::for_each([&]<class Pdo, std::size_t I>() { counts = counts && Pdo::number == I + 1; });
+  return counts;
+}();
+
+template <class Pdos>
+inline constexpr std::array<std::uint16_t, Pdos::count> numbers_of = [] {
+  std::array<std::uint16_t, Pdos::count> numbers{};
+  Pdos::for_each([&]<class Pdo, std::size_t I>() { numbers[I] = Pdo::number; });
+  return numbers;
+}();
+
 }  // namespace pdo_detail
+
+/// Number of the PDO at a place in a list.
+template <class Pdos>
+[[nodiscard]] constexpr std::uint16_t number_of_pdo(std::size_t place) {
+  if constexpr (pdo_detail::counts_from_one<Pdos>) {
+    return static_cast<std::uint16_t>(place + 1);
+  } else {
+    return pdo_detail::numbers_of<Pdos>[place];
+  }
+}
+
+/// Place in a list of the PDO whose communication or mapping parameter has this index; `Pdos::count` when there is none.
+template <class Pdos>
+[[nodiscard]] constexpr std::size_t place_of_pdo(std::uint16_t index) {
+  const std::size_t place = index & 0x1FFu;
+  if constexpr (pdo_detail::counts_from_one<Pdos>) {
+    return place < Pdos::count ? place : Pdos::count;
+  } else {
+    std::size_t i = 0;
+    while (i < Pdos::count && pdo_detail::numbers_of<Pdos>[i] != place + 1) ++i;
+    return i;
+  }
+}
 
 /// Those PDOs of a list that carry something, or can be made to, and whose COB-ID is in the dictionary.
 template <const Dictionary& D, PdoIndices Indices, class List>

@@ -64,9 +64,8 @@ class RpdoService {
   /// A communication or mapping parameter, 1400h..17FFh, has a new value, which counts at once.
   template <class Watched>
   void parameter_changed(EntryAccess<Device> entries, std::uint16_t index, Watched&& watched) {
-    for (std::size_t i = 0; i < count; ++i) {
-      if (((indices[i] ^ index) & 0x1FF) == 0) activate(i, entries, watched);
-    }
+    const std::size_t i = place_of_pdo<Pdos>(index);
+    if (i != count) activate(i, entries, watched);
   }
 
   /// The mapping of a TPDO has changed: other objects are watched now.
@@ -140,14 +139,6 @@ class RpdoService {
 
   using Data = std::array<std::uint8_t, 8>;
 
-  static constexpr std::array<std::uint16_t, count> indices = [] {
-    std::array<std::uint16_t, count> rows{};
-    Pdos::for_each([&]<class Pdo, std::size_t I>() {
-      rows[I] = static_cast<std::uint16_t>(rpdo_indices.communication + Pdo::number - 1);
-    });
-    return rows;
-  }();
-
   static constexpr std::array<std::uint8_t, count> sizes = [] {
     std::array<std::uint8_t, count> rows{};
     Pdos::for_each([&]<class Pdo, std::size_t I>() { rows[I] = Pdo::size; });
@@ -167,9 +158,7 @@ class RpdoService {
     std::uint8_t size;  ///< data bytes that are mapped
   };
 
-  [[nodiscard]] static std::uint16_t number_of(std::size_t i) {
-    return static_cast<std::uint16_t>(indices[i] - rpdo_indices.communication + 1);
-  }
+  [[nodiscard]] static std::uint16_t number_of(std::size_t i) { return number_of_pdo<Pdos>(i); }
 
   template <class Watched>
   void activate(std::size_t i, EntryAccess<Device> entries, Watched&& watched) {

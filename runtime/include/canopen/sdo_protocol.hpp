@@ -77,6 +77,12 @@ inline constexpr std::uint8_t block_end_mask = 0xE3;             ///< of an end 
   return static_cast<std::uint16_t>(data[1] | (data[2] << 8));
 }
 
+/// Index and sub-index where they stand in bytes 1..3 of a frame.
+[[nodiscard]] constexpr std::uint32_t multiplexer(std::uint16_t index, std::uint8_t sub_index) {
+  return std::uint32_t{index} << 8 | std::uint32_t{sub_index} << 24;
+}
+[[nodiscard]] constexpr std::uint32_t multiplexer_of(const Data& data) { return multiplexer(index_of(data), data[3]); }
+
 constexpr void put_multiplexer(Data& data, std::uint16_t index, std::uint8_t sub_index) {
   data[1] = static_cast<std::uint8_t>(index & 0xFF);
   data[2] = static_cast<std::uint8_t>(index >> 8);

@@ -6,6 +6,7 @@
 #include <concepts>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <span>
 #include <type_traits>
@@ -122,7 +123,7 @@ class SdoServer {
 
   /// The memory behind a DOMAIN is another one now, or another server writes it: a transfer from or to it ends.
   void domain_rebound(std::uint16_t index, std::uint8_t sub_index) {
-    if (state_ != State::idle && index_ == index && sub_index_ == sub_index) abort(AbortCode::not_stored);
+    if (state_ != State::idle && multiplexer_ == sdo::multiplexer(index, sub_index)) abort(AbortCode::not_stored);
   }
 
  private:
@@ -158,21 +159,26 @@ class SdoServer {
       if (state_ == State::block_downloading && request[0] != sdo::abort_command)
         return take_block_segment(request, hooks);
     }
-    switch (sdo::client_command(request[0])) {
-      case sdo::ClientCommand::initiate_upload: begin(request); return initiate_upload(hooks);
-      case sdo::ClientCommand::initiate_download: begin(request); return initiate_download(request, hooks);
-      case sdo::ClientCommand::upload_segment: return upload_segment(request[0], hooks);
-      case sdo::ClientCommand::download_segment: return download_segment(request, hooks);
-      case sdo::ClientCommand::abort: state_ = State::idle; return ok;
-      case sdo::ClientCommand::block_upload:
-        if constexpr (has_block) return block_upload(request, hooks);
-        break;
-      case sdo::ClientCommand::block_download:
-        if constexpr (has_block) return block_download(request, hooks);
-        break;
-      case sdo::ClientCommand::reserved: break;
+    const sdo::ClientCommand command = sdo::client_command(request[0]);
+    if (command == sdo::ClientCommand::upload_segment) return upload_segment(request[0], hooks);
+    if (command == sdo::ClientCommand::download_segment) return download_segment(request, hooks);
+    if (command == sdo::ClientCommand::abort) {
+      state_ = State::idle;
+      return ok;
+    }
+    if constexpr (has_block) {
+      if (command == sdo::ClientCommand::block_upload && static_cast<sdo::BlockUpload>(request[0] & 3) != sdo::BlockUpload::initiate)
+        return block_upload(request, hooks);
+      if (command == sdo::ClientCommand::block_download && (request[0] & 1) != 0)
+        return end_block_download(request, hooks);
     }
     begin(request);
+    if (command == sdo::ClientCommand::initiate_upload) return initiate_upload(hooks);
+    if (command == sdo::ClientCommand::initiate_download) return initiate_download(request, hooks);
+    if constexpr (has_block) {
+      if (command == sdo::ClientCommand::block_upload) return initiate_block_upload(request, hooks);
+      if (command == sdo::ClientCommand::block_download) return initiate_block_download(request, hooks);
+    }
     return AbortCode::command_specifier;
   }
 
@@ -180,17 +186,21 @@ class SdoServer {
     state_ = State::idle;
     toggle_ = 0;
     position_ = 0;
-    index_ = sdo::index_of(request);
-    sub_index_ = request[3];
+    multiplexer_ = sdo::multiplexer_of(request);
   }
+
+  [[nodiscard]] std::uint16_t index() const { return static_cast<std::uint16_t>(multiplexer_ >> 8); }
+  [[nodiscard]] std::uint8_t sub_index() const { return static_cast<std::uint8_t>(multiplexer_ >> 24); }
 
   /// Finds the entry and its right; `refusal` answers where the right is missing.
   [[nodiscard]] AbortCode find(entry::Word right, AbortCode refusal) {
-    word_ = EntryAccess<Device>::find(index_, sub_index_);
+    word_ = EntryAccess<Device>::find(index(), sub_index());
     if (word_ == Dictionary::no_object) return AbortCode::no_object;
     if (word_ == Dictionary::no_sub_index) return AbortCode::no_sub_index;
     return (word_ & right) != 0 ? ok : refusal;
   }
+
+  [[nodiscard]] bool is_domain() const { return EntryAccess<Device>::is_domain(word_); }
 
   // Upload
 
@@ -198,11 +208,11 @@ class SdoServer {
   template <class Hooks>
   [[nodiscard]] AbortCode open_upload(Hooks& hooks) {
     if (const AbortCode code = find(entry::readable, AbortCode::write_only); code != ok) return code;
-    if (const AbortCode code = hooks.before_read(index_, sub_index_); code != ok) return code;
+    if (const AbortCode code = hooks.before_read(index(), sub_index()); code != ok) return code;
     if constexpr (DomainStreamHooks<Hooks, Device>) {
       bytes_ = nullptr;
       size_ = sdo::unknown_size;
-      if (entry::is_domain(word_) && hooks.streams_upload(index_, sub_index_)) return ok;
+      if (is_domain() && hooks.streams_upload(index(), sub_index())) return ok;
     }
     const std::span<const std::uint8_t> bytes =
         hooks.entries().read(word_, std::span<std::uint8_t, 8>{buffer_.data(), 8});
@@ -228,8 +238,8 @@ class SdoServer {
 
   void answer_upload() {
     if (size_ - 1u < 4u) {
-      const auto unused = static_cast<std::uint8_t>((4 - size_) << 2);
-      answer(Device::options.sdo_upload_size_indicated ? static_cast<std::uint8_t>(0x43 | unused) : std::uint8_t{0x42});
+      const unsigned unused = (4 - size_) << 2;
+      answer(Device::options.sdo_upload_size_indicated ? 0x43u | unused : 0x42u);
       std::memcpy(&reply_[4], bytes_, size_);
       return;
     }
@@ -239,11 +249,9 @@ class SdoServer {
   }
 
   /// An answer that tells the size, where it is known.
-  void answer_with_size(std::uint8_t command, std::uint8_t indicated) {
-    answer(command);
-    if (size_ == sdo::unknown_size) return;
-    reply_[0] |= indicated;
-    sdo::put_word(reply_, size_);
+  void answer_with_size(unsigned command, unsigned indicated) {
+    if (size_ == sdo::unknown_size) return answer(command);
+    answer(command | indicated, size_);
   }
 
   /// Puts the next bytes of an upload behind the command byte. Answers how many there were; `last` tells the end.
@@ -252,7 +260,7 @@ class SdoServer {
     if constexpr (DomainStreamHooks<Hooks, Device>) {
       if (bytes_ == nullptr) {
         const Result<std::uint32_t> count = hooks.read_domain(
-            index_, sub_index_, position_, std::span{reply_}.template subspan<1, sdo::segment_bytes>());
+            index(), sub_index(), position_, std::span{reply_}.template subspan<1, sdo::segment_bytes>());
         if (!count) return count.abort_code();
         size = std::min(*count, sdo::segment_bytes);
         last = size != sdo::segment_bytes;
@@ -292,11 +300,11 @@ class SdoServer {
     if ((request[0] & sdo::expedited) != 0) {
       std::uint32_t size = 4u - ((request[0] >> 2) & 3u);
       if (!size_indicated_)
-        size = entry::wire_bytes(word_) == 0 ? 4u : std::min<std::uint32_t>(entry::wire_bytes(word_), 4);
+        size = size_unless_told();
       size_indicated_ = true;
       if (const AbortCode code = prepare(size, hooks); code != ok) return code;
       std::memcpy(buffer_.data(), &request[4], 4);
-      if (entry::is_domain(word_)) {
+      if (is_domain()) {
         if (const AbortCode code = store(hooks, buffer_.data(), size, true); code != ok) return code;
       } else {
         position_ = size;
@@ -310,39 +318,44 @@ class SdoServer {
     return ok;
   }
 
+  /// Of an expedited download that does not tell: the entry's, and four bytes where that varies.
+  [[nodiscard]] std::uint32_t size_unless_told() const {
+    const std::uint32_t size = EntryAccess<Device>::bytes_of(word_);
+    return size - 1u < 4u ? size : 4u;
+  }
+
   /// Where the bytes of a download go, as `bytes_`, and how many may come, as `size_`: of a streamed DOMAIN a null
   /// pointer.
   template <class Hooks>
   [[nodiscard]] AbortCode prepare(std::uint32_t announced, Hooks& hooks) {
     size_ = size_indicated_ ? announced : sdo::unknown_size;
-    const bool domain = entry::is_domain(word_);
     if constexpr (DomainStreamHooks<Hooks, Device>) {
       bytes_ = nullptr;
-      if (domain && hooks.streams_download(index_, sub_index_)) return ok;
+      if (is_domain() && hooks.streams_download(index(), sub_index())) return ok;
     }
     bytes_ = buffer_.data();
     std::uint32_t room = buffer_bytes;
     const EntryAccess<Device> entries = hooks.entries();
-    if (domain) {
+    if (is_domain()) {
       const Domain memory = entries.domain(word_);
       if (memory.data == nullptr) return AbortCode::not_stored;
       bytes_ = memory.data;
       room = memory.capacity;
     }
     if (size_indicated_) {
-      if (const AbortCode code = entries.check_length(index_, sub_index_, word_, size_); code != ok) return code;
+      if (const AbortCode code = entries.check_length(index(), sub_index(), word_, size_); code != ok) return code;
       if (buffer_is_short && size_ > room) return AbortCode::out_of_memory;
     } else {
       size_ = room;
     }
-    if (domain) entries.resize_domain(word_, 0);
+    if (is_domain()) entries.resize_domain(word_, 0);
     return ok;
   }
 
   /// Whether so many more bytes may come.
   [[nodiscard]] AbortCode check_room(std::uint32_t size) const {
     if (size <= size_ - position_) return ok;
-    if (buffer_is_short && size_ == buffer_bytes && !size_indicated_ && !entry::is_domain(word_))
+    if (buffer_is_short && size_ == buffer_bytes && !size_indicated_ && !is_domain())
       return AbortCode::out_of_memory;
     return AbortCode::length_too_high;
   }
@@ -355,7 +368,7 @@ class SdoServer {
     if constexpr (DomainStreamHooks<Hooks, Device>) {
       if (bytes_ == nullptr) {
         if (last && size_indicated_ && position_ + size != size_) return AbortCode::length_mismatch;
-        const AbortCode code = hooks.write_domain(index_, sub_index_, position_, {from, size}, last);
+        const AbortCode code = hooks.write_domain(index(), sub_index(), position_, {from, size}, last);
         position_ += size;
         return code;
       }
@@ -388,19 +401,19 @@ class SdoServer {
       const EntryAccess<Device> entries = hooks.entries();
       const std::span<std::uint8_t> bytes{bytes_, position_};
       if (const AbortCode code = check_length(entries); code != ok) return code;
-      if (entry::place_of(word_) != entry::Place::ram) return hooks.command(index_, sub_index_, bytes);
-      if (const AbortCode code = entries.check_value(index_, sub_index_, word_, bytes); code != ok) return code;
-      if (const AbortCode code = hooks.before_write(index_, sub_index_, bytes); code != ok) return code;
+      if (entry::place_of(word_) != entry::Place::ram) return hooks.command(index(), sub_index(), bytes);
+      if (const AbortCode code = entries.check_value(index(), sub_index(), word_, bytes); code != ok) return code;
+      if (const AbortCode code = hooks.before_write(index(), sub_index(), bytes); code != ok) return code;
       // A handler may have bound a DOMAIN to other memory: the application has taken the bytes then.
-      if (!entry::is_domain(word_) || entries.domain(word_).data == bytes_) entries.write(word_, bytes);
+      if (!is_domain() || entries.domain(word_).data == bytes_) entries.write(word_, bytes);
     }
-    hooks.after_write(index_, sub_index_);
+    hooks.after_write(index(), sub_index());
     return ok;
   }
 
   /// Of an announced size the length has been looked at already.
   [[nodiscard]] AbortCode check_length(EntryAccess<Device> entries) const {
-    return size_indicated_ ? ok : entries.check_length(index_, sub_index_, word_, position_);
+    return size_indicated_ ? ok : entries.check_length(index(), sub_index(), word_, position_);
   }
 
   /// Whether the application gives or takes the bytes of this transfer.
@@ -414,7 +427,7 @@ class SdoServer {
 
   [[nodiscard]] AbortCode block_upload(const std::array<std::uint8_t, 8>& request, auto& hooks) {
     switch (static_cast<sdo::BlockUpload>(request[0] & 3)) {
-      case sdo::BlockUpload::initiate: begin(request); return initiate_block_upload(request, hooks);
+      case sdo::BlockUpload::initiate: break;
       case sdo::BlockUpload::start:
         if (state_ != State::block_upload_initiated) break;
         state_ = State::block_uploading;
@@ -504,16 +517,13 @@ class SdoServer {
 
   // Block download
 
-  [[nodiscard]] AbortCode block_download(const std::array<std::uint8_t, 8>& request, auto& hooks) {
-    if ((request[0] & 1) != 0) return end_block_download(request, hooks);
-    begin(request);
+  [[nodiscard]] AbortCode initiate_block_download(const std::array<std::uint8_t, 8>& request, auto& hooks) {
     if (const AbortCode code = find(entry::writable, AbortCode::read_only); code != ok) return code;
     size_indicated_ = (request[0] & sdo::block_size_indicated) != 0;
     if (const AbortCode code = prepare(sdo::word_of(request), hooks); code != ok) return code;
     begin_blocks(request[0]);
     state_ = State::block_downloading;
-    answer(sdo::block_download_answer | sdo::crc_supported);
-    reply_[4] = sdo::largest_block;
+    answer(sdo::block_download_answer | sdo::crc_supported, sdo::largest_block);
     return ok;
   }
 
@@ -581,25 +591,23 @@ class SdoServer {
     }
   }
 
-  void clear_reply(std::uint8_t command) {
-    reply_ = {};
-    reply_[0] = command;
+  void put_reply(std::uint32_t low, std::uint32_t high) {
+    std::memcpy(std::assume_aligned<4>(reply_.data()), &low, sizeof low);
+    std::memcpy(std::assume_aligned<4>(reply_.data() + 4), &high, sizeof high);
     has_reply_ = true;
   }
 
-  /// An answer that names the entry.
-  void answer(std::uint8_t command) {
-    clear_reply(command);
-    sdo::put_multiplexer(reply_, index_, sub_index_);
-  }
+  void clear_reply(std::uint8_t command) { put_reply(command, 0); }
+
+  /// An answer that names the entry, and four more bytes.
+  void answer(unsigned command, std::uint32_t word = 0) { put_reply(multiplexer_ | command, word); }
 
   void abort(AbortCode code) {
     if constexpr (!Device::options.sdo_length_codes) {
       if (code == AbortCode::length_too_high || code == AbortCode::length_too_low) code = AbortCode::length_mismatch;
     }
     state_ = State::idle;
-    answer(sdo::abort_command);
-    sdo::put_word(reply_, static_cast<std::uint32_t>(code));
+    answer(sdo::abort_command, static_cast<std::uint32_t>(code));
   }
 
   struct Nothing {};
@@ -619,9 +627,8 @@ class SdoServer {
   bool has_reply_ = false;
   std::uint8_t toggle_ = 0;
   bool size_indicated_ = false;
-  std::uint8_t sub_index_ = 0;
   [[no_unique_address]] std::conditional_t<has_block, Block, Nothing> block_{};
-  std::uint16_t index_ = 0;
+  std::uint32_t multiplexer_ = 0;  ///< index and sub-index, where they stand in a frame
   entry::Word word_ = 0;
   std::uint8_t* bytes_ = nullptr;  ///< where the value begins; null: the application streams it
   std::uint32_t size_ = 0;         ///< upload: bytes of the value; download: bytes that may come

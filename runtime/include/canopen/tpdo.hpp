@@ -99,18 +99,15 @@ class TpdoService {
 
   /// A communication or mapping parameter, 1800h..1BFFh, has a new value, which counts at once.
   void parameter_changed(ObjectStore<Device>& store, std::uint16_t index, std::uint8_t sub_index, TimePoint now) {
-    const bool mapping = is_tpdo_mapping(index);
-    for (std::size_t i = 0; i < count; ++i) {
-      if ((indices[i] ^ index) & 0x1FF) continue;
-      if (!mapping && sub_index == pdo_parameter::inhibit_time) continue;
-      if (!mapping && sub_index == pdo_parameter::event_timer) {
-        start_event_timer(i, store.entries(), now);
-      } else {
-        const bool sends_changes = (slots_[i].flags & event_driven) != 0;
-        slots_[i].flags &= static_cast<std::uint8_t>(sends_changes ? inhibited | changed_bit : inhibited);
-        activate(i, store, now);
-      }
+    const std::size_t i = place_of_pdo<Pdos>(index);
+    if (i == count) return;
+    if (!is_tpdo_mapping(index)) {
+      if (sub_index == pdo_parameter::inhibit_time) return;
+      if (sub_index == pdo_parameter::event_timer) return start_event_timer(i, store.entries(), now);
     }
+    const bool sends_changes = (slots_[i].flags & event_driven) != 0;
+    slots_[i].flags &= static_cast<std::uint8_t>(sends_changes ? inhibited | changed_bit : inhibited);
+    activate(i, store, now);
   }
 
   /// A SYNC has come: those that wait for it are due, those of type 252 take their data.
@@ -210,15 +207,6 @@ class TpdoService {
     std::uint8_t syncs;  ///< SYNCs until it is due, of types 1..240
     std::uint8_t size;   ///< data bytes
   };
-
-  /// Of the communication parameters.
-  static constexpr std::array<std::uint16_t, count> indices = [] {
-    std::array<std::uint16_t, count> rows{};
-    Pdos::for_each([&]<class Pdo, std::size_t I>() {
-      rows[I] = static_cast<std::uint16_t>(tpdo_indices.communication + Pdo::number - 1);
-    });
-    return rows;
-  }();
 
   /// Data bytes of those whose mapping is static.
   static constexpr std::array<std::uint8_t, count> sizes = [] {
