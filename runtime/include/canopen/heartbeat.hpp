@@ -27,22 +27,19 @@ class HeartbeatProducer {
     due_ = now;
   }
 
-  /// Sends the boot-up message when it is due. False when the bus had no room: it stays due.
-  template <Bus B>
-  bool serve_boot_up(B& bus, NodeId node_id, Duration period, TimePoint now) {
-    if (!boot_up_due_) return true;
-    if (!send(bus, node_id, NmtState::initialisation)) return false;
-    boot_up_due_ = false;
-    running_ = period.count() != 0;
-    due_ = now + period;
-    return true;
-  }
-
-  /// Sends a heartbeat when it is due. False when the bus had no room: it stays due.
+  /// Sends the boot-up message or a heartbeat when it is due. False when the bus had no room: it stays due.
   template <Bus B>
   bool serve(B& bus, NodeId node_id, NmtState state, Duration period, TimePoint now) {
-    if (!running_ || is_within(due_, period, now)) return true;
-    if (!send(bus, node_id, state)) return false;
+    if (boot_up_due_) {
+      state = NmtState::initialisation;
+      due_ = now;
+    } else if (!running_ || is_within(due_, period, now)) {
+      return true;
+    }
+    alignas(4) const std::uint8_t data[8] = {static_cast<std::uint8_t>(state)};
+    if (!send_data(bus, function_code::error_control + std::uint32_t{node_id.value()}, 1, data)) return false;
+    boot_up_due_ = false;
+    running_ = period.count() != 0;
     due_ = due_ + period;
     if (now >= due_) due_ = now + period;  // served so late that whole periods are missing
     return true;
@@ -55,12 +52,6 @@ class HeartbeatProducer {
   [[nodiscard]] std::optional<TimePoint> next_deadline() const { return running_ ? std::optional{due_} : std::nullopt; }
 
  private:
-  template <Bus B>
-  [[nodiscard]] static bool send(B& bus, NodeId node_id, NmtState state) {
-    alignas(4) const std::uint8_t data[8] = {static_cast<std::uint8_t>(state)};
-    return send_data(bus, function_code::error_control + std::uint32_t{node_id.value()}, 1, data);
-  }
-
   TimePoint due_{};
   bool boot_up_due_ = false;
   bool running_ = false;

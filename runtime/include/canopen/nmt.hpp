@@ -36,11 +36,16 @@ enum class NmtCommand : std::uint8_t {
 
 [[nodiscard]] constexpr bool serves_pdo(NmtState state) { return state == NmtState::operational; }
 
+/// Whether a frame brings a command to this node, which may be none of the five.
+[[nodiscard]] constexpr bool is_nmt_command(const Frame& frame, NodeId node_id) {
+  if (frame.id != function_code::nmt || frame.extended || frame.remote || frame.size < 2) return false;
+  return frame.data[1] == 0 || frame.data[1] == node_id.value();
+}
+
 /// The command that a frame brings to this node: two bytes or more on CAN-ID 0, for this node-ID or for all (0).
 /// Nothing when it is for another node, shorter, or not one of the five commands.
 [[nodiscard]] constexpr std::optional<NmtCommand> nmt_command(const Frame& frame, NodeId node_id) {
-  if (frame.id != function_code::nmt || frame.extended || frame.remote || frame.size < 2) return std::nullopt;
-  if (frame.data[1] != 0 && frame.data[1] != node_id.value()) return std::nullopt;
+  if (!is_nmt_command(frame, node_id)) return std::nullopt;
   const auto command = static_cast<NmtCommand>(frame.data[0]);
   switch (command) {
     case NmtCommand::start:

@@ -91,8 +91,8 @@ class Node {
       attention_ = true;
     } else if (cob_id == function_code::nmt) {
       on_nmt(frame);
-    } else if (const std::optional<Sync> sync = SyncConsumer<Device>::take(store_, frame)) {
-      on_sync(*sync);
+    } else if (SyncConsumer<Device>::takes(store_, cob_id)) {
+      on_sync(SyncConsumer<Device>::sync_of(store_, frame));
     } else if (const std::optional<TimeOfDay> time = TimeStamp<Device>::take(store_, frame)) {
       if (serves_sync(state_)) handlers_.template tell<TimeHandler>(*this, *time);
     } else if (const std::optional<ConsumedEmergency> emergency = EmergencyConsumer<Device>::take(entries(), frame)) {
@@ -100,7 +100,7 @@ class Node {
     } else if (on_error_control(frame)) {
       // a message of another node
     } else if (serves_pdo(state_)) {
-      rpdos_.on_frame(store_, frame, sync_window_.over(now_), now_, RpdoHost{*this});
+      rpdos_.on_frame(frame, RpdoHost{*this});
       mpdos_.on_frame(entries(), frame, node_id_, RpdoHost{*this});
     }
     if (attention_) serve();
@@ -116,7 +116,7 @@ class Node {
     if constexpr (has_guarding) {
       if (guarding_.on_time(guard_time(), now)) life_guarding(true);
     }
-    if constexpr (has_rpdos) rpdos_.on_time(now, RpdoHost{*this});
+    if constexpr (has_rpdos) rpdos_.on_time(RpdoHost{*this});
     serve();
   }
 
@@ -136,10 +136,10 @@ class Node {
       if (guarding_.has_answer()) return now_;
       consider(guarding_.next_deadline());
     }
-    if constexpr (has_tpdos) consider(tpdos_.next_deadline(now_));
-    if constexpr (has_rpdos) consider(rpdos_.next_deadline());
-    if constexpr (MpdoService<Device>::sends_destination) {
-      if (serves_pdo(state_)) consider(mpdos_.next_deadline(now_));
+    if (serves_pdo(state_)) {
+      if constexpr (has_tpdos) consider(tpdos_.next_deadline(now_));
+      if constexpr (has_rpdos) consider(rpdos_.next_deadline());
+      if constexpr (MpdoService<Device>::sends_destination) consider(mpdos_.next_deadline(now_));
     }
     if (serves_emcy(state_)) consider(emergencies_.next_deadline(now_));
     if constexpr (SyncProducer<Device>::exists) consider(sync_producer_.next_deadline());
@@ -360,10 +360,11 @@ class Node {
   // Network management
 
   void on_nmt(const Frame& frame) {
-    if (const std::optional<NmtCommand> command = nmt_command(frame, node_id_)) carry_out(*command);
+    if (is_nmt_command(frame, node_id_)) carry_out(static_cast<NmtCommand>(frame.data[0]));
   }
 
-  void carry_out(NmtCommand command) {
+  /// Nothing for a code that is none.
+  [[gnu::noinline]] void carry_out(NmtCommand command) {
     switch (command) {
       case NmtCommand::start: enter(NmtState::operational); break;
       case NmtCommand::stop: enter(NmtState::stopped); break;
@@ -385,10 +386,6 @@ class Node {
 
   void enter(NmtState next) {
     if (state_ == next && next != NmtState::initialisation) return;
-    if (serves_pdo(state_)) {
-      tpdos_.leave_operational();
-      rpdos_.leave_operational();
-    }
     if constexpr (SyncProducer<Device>::exists) {
       if (!serves_sync(next)) {
         sync_producer_.stop();
@@ -692,6 +689,10 @@ class Node {
 
   struct RpdoHost {
     Node& node;
+    [[nodiscard]] EntryAccess<Device> entries() const { return node.entries(); }
+    [[nodiscard]] TimePoint now() const { return node.now_; }
+    [[nodiscard]] bool operational() const { return serves_pdo(node.state_); }
+    [[nodiscard]] bool window_over() const { return node.sync_window_.over(node.now_); }
     template <DictionaryObject O>
     void take(const typename O::type& value) {
       node.template take<O>(value);
@@ -718,7 +719,7 @@ class Node {
     }
   };
 
-  void on_sync(Sync sync) {
+  [[gnu::noinline]] void on_sync(Sync sync) {
     if (!serves_sync(state_)) return;
     if constexpr (SyncConsumer<Device>::exists) {
       if (!sync.good) {
@@ -733,7 +734,7 @@ class Node {
           tpdos_.on_sync(store_, sync);
           serve();  // with the values as they were at the SYNC
         }
-        if constexpr (has_rpdos) rpdos_.on_sync(store_, RpdoHost{*this});
+        if constexpr (has_rpdos) rpdos_.on_sync(RpdoHost{*this});
       }
       handlers_.template tell<SyncHandler>(*this, sync.counter);
     }
@@ -745,7 +746,7 @@ class Node {
     std::memcpy(entries().ram(clock_word), &microseconds, sizeof microseconds);
   }
 
-  void on_remote(const Frame& frame) {
+  [[gnu::noinline]] void on_remote(const Frame& frame) {
     if constexpr (has_guarding) {
       if (is_guarding_request(frame, node_id_)) return on_guarding_request();
     }
@@ -845,7 +846,7 @@ class Node {
   }
 
   /// Sends what is due, in order of importance; what finds no room stays due.
-  void serve() {
+  [[gnu::noinline]] void serve() {
     attention_ = false;
     if (silent()) return;
     if constexpr (SyncProducer<Device>::exists) {
@@ -854,8 +855,13 @@ class Node {
     if (!send_due()) attention_ = true;
   }
 
+  /// The boot-up message, or a heartbeat.
+  [[nodiscard, gnu::noinline]] bool serve_heartbeat() {
+    return heartbeat_.serve(bus_, node_id_, state_, heartbeat_period(), now_);
+  }
+
   [[nodiscard]] bool send_due() {
-    if (!heartbeat_.serve_boot_up(bus_, node_id_, heartbeat_period(), now_)) return false;
+    if (heartbeat_.boot_up_due() && !serve_heartbeat()) return false;
     if constexpr (has_lss) {
       if (!lss_.serve(bus_)) return false;
     }
@@ -864,7 +870,7 @@ class Node {
     }
     if (!sdo_.serve(store_, bus_, SdoHooks{*this}, now_)) return false;
     if constexpr (has_heartbeat_time) {
-      if (!heartbeat_.serve(bus_, node_id_, state_, heartbeat_period(), now_)) return false;
+      if (!serve_heartbeat()) return false;
     }
     if (serves_emcy(state_) && !emergencies_.serve(store_, bus_, now_)) return false;
     if constexpr (has_tpdos) {

@@ -41,8 +41,13 @@ struct PdoList {
   /// Calls `visit.template operator()<Pdo, I>()` for each PDO in order.
   template <class Visit>
   static constexpr void for_each([[maybe_unused]] Visit&& visit) {
-    [&]<std::size_t... I>(std::index_sequence<I...>) { (visit.template operator()<Pdos, I>(), ...); }
-    (std::index_sequence_for<Pdos...>{});
+    visit_all(visit, std::index_sequence_for<Pdos...>{});
+  }
+
+ private:
+  template <class Visit, std::size_t... I>
+  [[gnu::always_inline]] static constexpr void visit_all([[maybe_unused]] Visit& visit, std::index_sequence<I...>) {
+    (visit.template operator()<Pdos, I>(), ...);
   }
 };
 

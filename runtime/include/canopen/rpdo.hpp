@@ -37,7 +37,10 @@ enum class RpdoEvent : std::uint8_t {
 /// bytes are used, a shorter one is not taken. With an event timer (sub-index 5, ms) an RPDO is missed when it stays
 /// away for longer, from its first frame on.
 ///
-/// A service asks the node around it (`host`):
+/// A service asks the node around it (`host`, a reference to it that is copied freely):
+///   entries(), now()
+///   operational()                            a handler may end that
+///   window_over()                            whether those of types 0..240 come too late
 ///   take<O>(value)                           a value for an object, where the mapping is static
 ///   take(index, sub_index, bytes)            the same for one known by number
 ///   happened(event, number)
@@ -53,12 +56,6 @@ class RpdoService {
   template <class Watched>
   void enter_operational(EntryAccess<Device> entries, Watched&& watched) {
     for (std::size_t i = 0; i < count; ++i) activate(i, entries, watched);
-  }
-
-  /// Nothing is taken over any more, and nothing missed. What was wrong stays so until a good frame comes, or Operational
-  /// is entered again.
-  void leave_operational() {
-    for (Slot& slot : slots_) slot.flags &= static_cast<std::uint8_t>(~(buffered | monitored));
   }
 
   /// A communication or mapping parameter, 1400h..17FFh, has a new value, which counts at once.
@@ -78,34 +75,34 @@ class RpdoService {
     }
   }
 
-  /// Takes a frame for each RPDO that it is. With `window_over` those of types 0..240 come too late.
+  /// Takes a frame for each RPDO that it is.
   template <class Host>
-  void on_frame(ObjectStore<Device>& store, const Frame& frame, bool window_over, TimePoint now, Host&& host) {
+  void on_frame(const Frame& frame, Host host) {
     const std::uint32_t cob_id = cob_id_of(frame);
     for (std::size_t i = 0; i < count; ++i) {
       // An RPDO's bit 30 means nothing; no frame has bit 31.
-      const std::uint32_t own = Column<pdo_parameter::cob_id>::get(store.entries(), i, CobId::invalid_bit);
-      if ((own & ~CobId::no_rtr_bit) == cob_id) receive(i, store, frame, window_over, now, host);
+      const std::uint32_t own = Column<pdo_parameter::cob_id>::get(host.entries(), i, CobId::invalid_bit);
+      if ((own & ~CobId::no_rtr_bit) == cob_id) receive(i, frame, host);
     }
   }
 
   /// A SYNC has come: what has been received since the last one counts now.
   template <class Host>
-  void on_sync(ObjectStore<Device>& store, Host&& host) {
-    for (std::size_t i = 0; i < count; ++i) {
+  void on_sync(Host host) {
+    for (std::size_t i = 0; i < count && host.operational(); ++i) {
       if ((slots_[i].flags & buffered) == 0) continue;
       slots_[i].flags &= static_cast<std::uint8_t>(~buffered);
-      Frame frame{};
+      Frame frame;
       frame.data = slots_[i].data;
-      take(i, store, frame, host);
+      take(i, frame, host);
     }
   }
 
   /// Tells of those that have stayed away.
   template <class Host>
-  void on_time([[maybe_unused]] TimePoint now, [[maybe_unused]] Host&& host) {
+  void on_time([[maybe_unused]] Host host) {
     if constexpr (has_event_timer) {
-      for (std::size_t i = 0; i < count; ++i) check_deadline(i, now, host);
+      for (std::size_t i = 0; i < count && host.operational(); ++i) check_deadline(i, host);
     }
   }
 
@@ -175,8 +172,7 @@ class RpdoService {
   }
 
   template <class Host>
-  void receive(std::size_t i, ObjectStore<Device>& store, const Frame& frame, bool window_over, TimePoint now,
-               Host& host) {
+  [[gnu::noinline]] void receive(std::size_t i, const Frame& frame, Host host) {
     Slot& slot = slots_[i];
     if (slot.size == 0) return;
     if (frame.size < slot.size) {
@@ -186,23 +182,18 @@ class RpdoService {
       return;
     }
     end(i, cut_short, RpdoEvent::length_right, host);
-    start_deadline(i, store.entries(), now, host);
-    switch (transmission_type(i, store.entries())) {
-      case Transmission::synchronous:
-        if (window_over) break;
-        slot.data = frame.data;
-        slot.flags |= buffered;
-        break;
-      case Transmission::event_driven: take(i, store, frame, host); break;
-      case Transmission::remote_synchronous:
-      case Transmission::remote:
-      case Transmission::reserved: break;
+    start_deadline(i, host);
+    const Transmission transmission = transmission_type(i, host.entries());
+    if (transmission == Transmission::synchronous && !host.window_over()) {
+      slot.data = frame.data;
+      slot.flags |= buffered;
     }
+    if (transmission == Transmission::event_driven) take(i, frame, host);
   }
 
   /// Tells that a condition is over, if it was there.
   template <class Host>
-  void end(std::size_t i, std::uint8_t condition, RpdoEvent event, Host& host) {
+  void end(std::size_t i, std::uint8_t condition, RpdoEvent event, Host host) {
     if ((slots_[i].flags & condition) == 0) return;
     slots_[i].flags &= static_cast<std::uint8_t>(~condition);
     host.happened(event, number_of(i));
@@ -210,23 +201,22 @@ class RpdoService {
 
   /// Tells of one that has stayed away.
   template <class Host>
-  void check_deadline(std::size_t i, TimePoint now, Host& host) {
-    if ((slots_[i].flags & monitored) == 0 || is_ahead(slots_[i].deadline, event_unit, now)) return;
+  void check_deadline(std::size_t i, Host host) {
+    if ((slots_[i].flags & monitored) == 0 || is_ahead(slots_[i].deadline, event_unit, host.now())) return;
     slots_[i].flags = static_cast<std::uint8_t>((slots_[i].flags & ~monitored) | missed);
     host.happened(RpdoEvent::timeout, number_of(i));
   }
 
   template <class Host>
-  void start_deadline([[maybe_unused]] std::size_t i, [[maybe_unused]] EntryAccess<Device> entries,
-                      [[maybe_unused]] TimePoint now, [[maybe_unused]] Host& host) {
+  void start_deadline([[maybe_unused]] std::size_t i, [[maybe_unused]] Host host) {
     if constexpr (has_event_timer) {
-      check_deadline(i, now, host);
+      check_deadline(i, host);
       end(i, missed, RpdoEvent::in_time, host);
       slots_[i].flags &= static_cast<std::uint8_t>(~monitored);
-      const auto time = static_cast<std::uint16_t>(Column<pdo_parameter::event_timer>::get(entries, i, 0));
+      const auto time = static_cast<std::uint16_t>(Column<pdo_parameter::event_timer>::get(host.entries(), i, 0));
       if (time == 0) return;
       slots_[i].flags |= monitored;
-      slots_[i].deadline = now + from_milliseconds(time);
+      slots_[i].deadline = host.now() + from_milliseconds(time);
     }
   }
 
@@ -236,27 +226,28 @@ class RpdoService {
   }
 
   template <class Host>
-  void take(std::size_t which, ObjectStore<Device>& store, const Frame& frame, Host& host) {
+  void take(std::size_t which, const Frame& frame, Host host) {
     Pdos::for_each([&]<class Pdo, std::size_t I>() {
       if constexpr (Mapped::capacities[I] == 0) {
         if (I == which) take_static<Pdo>(frame, host);
       }
     });
     if constexpr (has_dynamic_mapping) {
-      if (Mapped::capacities[which] != 0) take_mapped(which, store.entries(), frame.data, host);
+      if (Mapped::capacities[which] != 0) take_mapped(which, frame.data, host);
     }
     host.happened(RpdoEvent::taken, number_of(which));
   }
 
   template <class Pdo, class Host>
-  static void take_static(const Frame& frame, Host& host) {
+  static void take_static(const Frame& frame, Host host) {
     Pdo::for_each([&]<class O, std::size_t I>() {
       if constexpr (!is_dummy<O>) host.template take<O>(Pdo::template get<I>(frame));
     });
   }
 
   template <class Host>
-  void take_mapped(std::size_t which, EntryAccess<Device> entries, const Data& data, Host& host) {
+  void take_mapped(std::size_t which, const Data& data, Host host) {
+    const EntryAccess<Device> entries = host.entries();
     const MappingParameter mapping = Mapped::parameter(which, entries);
     unsigned at = 0;
     for (std::uint8_t i = 0; i < mapping.count(); ++i) {
@@ -277,7 +268,7 @@ class RpdoService {
   }
 
   template <class Host>
-  static void take_watched(MappedObject mapped, const Data& data, unsigned at, Host& host) {
+  static void take_watched(MappedObject mapped, const Data& data, unsigned at, Host host) {
     const std::uint64_t value = take_bits(data.data(), at, mapped.bits());
     alignas(8) std::array<std::uint8_t, 8> bytes{};
     std::memcpy(bytes.data(), &value, sizeof value);

@@ -34,16 +34,22 @@ class SyncConsumer {
   static constexpr bool exists = Device::dictionary.has(0x1005, 0);
   static constexpr bool has_overflow = Device::dictionary.has(0x1019, 0);
 
-  /// Nothing when the frame is no SYNC of this device. A device without 1019h does not look at the length.
-  [[nodiscard]] static std::optional<Sync> take(const ObjectStore<Device>& store, const Frame& frame) {
+  /// Whether a frame with this CAN-ID is the SYNC of this device.
+  [[nodiscard]] static bool takes([[maybe_unused]] const ObjectStore<Device>& store,
+                                  [[maybe_unused]] std::uint32_t cob_id) {
     if constexpr (exists) {
-      const CobId cob_id{store.template number<0x1005, 0>()};
-      if (cob_id_of(frame) != (cob_id.value() & (CobId::extended_bit | 0x1FFF'FFFFu))) return std::nullopt;
-      const std::uint8_t overflow = overflow_of(store);
-      if (!has_overflow) return Sync{0, true};
-      return Sync{overflow != 0 ? frame.data[0] : std::uint8_t{0}, frame.size == (overflow != 0 ? 1 : 0)};
+      // Bits 30 and 31 of 1005h are not of the CAN-ID.
+      return (store.template number<0x1005, 0>() ^ cob_id) << 2 == 0;
+    } else {
+      return false;
     }
-    return std::nullopt;
+  }
+
+  /// What a SYNC brings. A device without 1019h does not look at the length.
+  [[nodiscard]] static Sync sync_of(const ObjectStore<Device>& store, const Frame& frame) {
+    const std::uint8_t overflow = overflow_of(store);
+    if (!has_overflow) return Sync{0, true};
+    return Sync{overflow != 0 ? frame.data[0] : std::uint8_t{0}, frame.size == (overflow != 0 ? 1 : 0)};
   }
 
   /// 1019h; 0: SYNCs are not counted.

@@ -48,10 +48,6 @@ class TpdoService {
     }
   }
 
-  void leave_operational() {
-    for (Slot& slot : slots_) slot.flags = 0;
-  }
-
   /// `O` has a new value: those that carry it are to be sent. False when none does.
   template <DictionaryObject O>
   bool changed([[maybe_unused]] EntryAccess<Device> entries) {
@@ -296,14 +292,24 @@ class TpdoService {
     return Device::options.event_driven_on_change && (slot.flags & event) == event;
   }
 
-  void start_event_timer([[maybe_unused]] std::size_t i, [[maybe_unused]] EntryAccess<Device> entries,
-                         [[maybe_unused]] TimePoint from) {
+  void start_event_timer(std::size_t i, EntryAccess<Device> entries, TimePoint now) {
+    slots_[i].flags &= static_cast<std::uint8_t>(~timed);
+    if ((slots_[i].flags & event_driven) != 0) go_on_with_event_timer(i, entries, now);
+  }
+
+  /// The next time is one period after the last one, so that it does not drift: where that is over, or there was none,
+  /// one period from now.
+  [[gnu::noinline]] void go_on_with_event_timer([[maybe_unused]] std::size_t i,
+                                                [[maybe_unused]] EntryAccess<Device> entries,
+                                                [[maybe_unused]] TimePoint now) {
     if constexpr (has_event_timer) {
-      slots_[i].flags &= static_cast<std::uint8_t>(~timed);
-      if ((slots_[i].flags & event_driven) == 0) return;
+      Slot& slot = slots_[i];
       const Duration period = from_milliseconds(parameter<pdo_parameter::event_timer>(i, entries));
-      if (period.count() != 0) slots_[i].flags |= timed;
-      slots_[i].times.event_due = from + period;
+      TimePoint next = slot.times.event_due + period;
+      if ((slot.flags & timed) == 0 || !is_within(next, period, now)) next = now + period;
+      slot.times.event_due = next;
+      slot.flags &= static_cast<std::uint8_t>(~timed);
+      if (period.count() != 0) slot.flags |= timed;
     }
   }
 
@@ -350,7 +356,7 @@ class TpdoService {
   }
 
   /// Puts the values of the mapped objects into a frame whose data are zero so far.
-  void pack(std::size_t which, ObjectStore<Device>& store, Frame& frame) const {
+  [[gnu::noinline]] void pack(std::size_t which, ObjectStore<Device>& store, Frame& frame) const {
     if constexpr (has_dynamic_mapping) {
       if (Mapped::capacities[which] != 0) return pack_mapped(which, store.entries(), frame.data);
     }
@@ -395,10 +401,7 @@ class TpdoService {
       if (inhibit.count() != 0) slot.flags |= inhibited;
       slot.times.inhibit_end = now + inhibit;
     }
-    if constexpr (has_event_timer) {
-      start_event_timer(i, entries, event_timer_expired(slot, now) ? slot.times.event_due : now);
-      if (event_timer_expired(slot, now)) start_event_timer(i, entries, now);
-    }
+    go_on_with_event_timer(i, entries, now);
   }
 
   struct Nothing {};
