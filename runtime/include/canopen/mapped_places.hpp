@@ -12,10 +12,22 @@
 #include "canopen/dictionary.hpp"
 #include "canopen/frame.hpp"
 #include "canopen/object_store.hpp"
+#include "canopen/parameter_column.hpp"
+#include "canopen/pdo_codec.hpp"
 #include "canopen/pdo_list.hpp"
 #include "canopen/pdo_mapping.hpp"
 
 namespace canopen {
+
+/// Copies the 1..8 bytes of a value to or from a frame: in words where the processor has them at any address.
+inline void copy_value(std::uint8_t* to, const std::uint8_t* from, unsigned bytes) {
+  if (pdo_detail::unaligned_words) {
+    if (bytes == 4) return static_cast<void>(std::memcpy(to, from, 4));
+    if (bytes == 2) return static_cast<void>(std::memcpy(to, from, 2));
+  }
+  do *to++ = *from++;
+  while (--bytes != 0);
+}
 
 /// The mappings of all PDOs of one direction. `Pdos` is a PdoList; those whose mapping is static have no part in it.
 template <class Device, PdoIndices Indices, class Pdos>
@@ -33,30 +45,36 @@ class MappedPlaces {
   }();
   static constexpr bool any = std::ranges::any_of(capacities, [](std::uint8_t capacity) { return capacity != 0; });
 
-  /// Looks up the objects of a PDO. Answers the data bytes of its frame; 0 when it carries nothing.
-  /// `marked(word, mapped)` says of each object whether it is one for `is_marked`.
-  template <class Marked>
-  std::uint8_t look_up(std::size_t pdo, EntryAccess<Device> entries, Marked&& marked) {
-    constexpr bool tpdo = Indices.mapping == tpdo_indices.mapping;
-    const MappingParameter mapping = parameter(pdo, entries);
-    const std::uint8_t objects = mapping.count();
-    if (objects > capacities[pdo]) return 0;
-    const std::uint8_t bits = mapping.template bits_of<Device>(tpdo, objects);
-    if (bits == 0) return 0;
-    for (std::uint8_t i = 0; i < objects; ++i) {
-      const entry::Word word = can_be_mapped<Device>(tpdo, mapping[i]);
-      Place place = no_place;
-      if (word != mapped_dummy) {
-        place = static_cast<Place>(entry::offset_of(word) | (marked(word, mapping[i]) ? mark : 0u));
-      }
-      places_[firsts[pdo] + i] = place;
+  /// The same for the PDO with this mapping parameter.
+  [[nodiscard]] static constexpr std::uint8_t capacity_of(std::uint16_t index) {
+    const std::size_t place = place_of_pdo<Pdos>(index);
+    return place < count ? capacities[place] : std::uint8_t{0};
+  }
+
+  using Place = std::conditional_t<(sizeof(typename Device::Values) < 0x8000), std::uint16_t, std::uint32_t>;
+  static constexpr Place mark = static_cast<Place>(Place{1} << (sizeof(Place) * 8 - 1));
+  static constexpr Place no_place = static_cast<Place>(~Place{0});
+
+  /// Looks up the objects of a PDO; those that are constants are marked. Answers the data bytes of its frame; 0 when it
+  /// carries nothing.
+  std::uint8_t look_up(std::size_t pdo, EntryAccess<Device> entries) {
+    if constexpr (count != 0) {
+      const MappingParameter mapping = parameter(pdo, entries);
+      if (mapping.count() <= capacities[pdo])
+        return mapping.template look_up<Device>(Indices.mapping == tpdo_indices.mapping, of(pdo));
     }
-    return static_cast<std::uint8_t>((bits + 7) / 8);
+    return 0;
   }
 
   /// The mapping parameter of a PDO.
   [[nodiscard]] static MappingParameter parameter(std::size_t pdo, EntryAccess<Device> entries) {
-    return {entries, words[pdo].count, words[pdo].first};
+    if constexpr (Count::is_regular && First::is_regular) {
+      const std::uint8_t* const base = entries.ram(0);
+      return {base + entry::offset_of(Count::words[0]) + Count::stride * pdo,
+              base + entry::offset_of(First::words[0]) + First::stride * pdo};
+    } else {
+      return {entries.ram(Count::words[pdo]), entries.ram(First::words[pdo])};
+    }
   }
 
   /// Whether a PDO carries an object.
@@ -68,11 +86,9 @@ class MappedPlaces {
     return false;
   }
 
-  using Place = std::conditional_t<(sizeof(typename Device::Values) < 0x8000), std::uint16_t, std::uint32_t>;
-  static constexpr Place mark = static_cast<Place>(Place{1} << (sizeof(Place) * 8 - 1));
-  static constexpr Place no_place = static_cast<Place>(~Place{0});
-
-  [[nodiscard]] Place place(std::size_t pdo, std::size_t i) const { return places_[firsts[pdo] + i]; }
+  /// The places of a PDO, one for each object.
+  [[nodiscard]] const Place* of(std::size_t pdo) const { return &places_[firsts[pdo]]; }
+  [[nodiscard]] Place* of(std::size_t pdo) { return &places_[firsts[pdo]]; }
 
   /// Whether an object of this device can stand at another place than a whole byte.
   static constexpr bool has_bits = [] {
@@ -84,19 +100,8 @@ class MappedPlaces {
   }();
 
  private:
-  struct Words {
-    entry::Word count;
-    entry::Word first;
-  };
-
-  static constexpr std::array<Words, count> words = [] {
-    std::array<Words, count> rows{};
-    Pdos::for_each([&]<class Pdo, std::size_t I>() {
-      constexpr std::uint16_t index = Indices.mapping + Pdo::number - 1;
-      rows[I] = {Device::dictionary.find(index, 0), Device::dictionary.find(index, 1)};
-    });
-    return rows;
-  }();
+  using Count = ParameterColumn<Device, Pdos, Indices.mapping, 0>;
+  using First = ParameterColumn<Device, Pdos, Indices.mapping, 1>;
 
   /// Where the places of each PDO begin.
   static constexpr std::array<std::uint16_t, count + 1> firsts = [] {

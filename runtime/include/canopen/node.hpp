@@ -308,6 +308,7 @@ class Node {
   static constexpr entry::Word clock_word = Device::dictionary.find(0x1013, 0);
   static constexpr bool has_clock =
       clock_word > Dictionary::no_sub_index && entry::place_of(clock_word) == entry::Place::ram;
+  static constexpr entry::Kinds kinds = EntryAccess<Device>::kinds;
   static constexpr bool has_tpdos = TpdoService<Device>::count > 0;
   static constexpr bool has_rpdos = RpdoService<Device>::count > 0;
   static constexpr bool has_dynamic_tpdos = TpdoService<Device>::has_dynamic_mapping;
@@ -604,7 +605,9 @@ class Node {
     }
     if constexpr (has_dynamic_rpdos || has_dynamic_tpdos) {
       if (is_rpdo_mapping(index) || is_tpdo_mapping(index)) {
-        return check_pdo_mapping(entries(), index, sub_index, bytes);
+        const std::uint8_t capacity = is_tpdo_mapping(index) ? TpdoService<Device>::Mapped::capacity_of(index)
+                                                             : RpdoService<Device>::Mapped::capacity_of(index);
+        return check_pdo_mapping(entries(), capacity, index, sub_index, bytes);
       }
     }
     if constexpr (Device::dictionary.takes_writes(sdo_server_parameter, last_sdo_server_parameter)) {
@@ -710,9 +713,11 @@ class Node {
   /// handler or a service waits for it, or a TPDO carries it.
   struct Watched {
     const Node& node;
-    [[nodiscard]] bool operator()(entry::Word word, MappedObject mapped) const {
-      const std::uint8_t size = entry::wire_bytes(word);
-      if ((word & entry::limited) != 0 || entry::is_boolean(word) || (size & (size - 1)) != 0) return true;
+    [[nodiscard]] bool operator()(MappedObject mapped) const {
+      if (mapped.is_dummy()) return false;  // is marked already
+      const entry::Word word = EntryAccess<Device>::find(mapped.index(), mapped.sub_index());
+      const std::uint8_t size = EntryAccess<Device>::bytes_of(word);
+      if ((word & entry::limited) != 0 || (kinds.booleans && entry::is_boolean(word)) || (kinds.padded && (size & (size - 1)) != 0)) return true;
       if (mapped.index() < 0x2000 || HandlerSet<Handlers...>::handles(mapped.key())) return true;
       if (MpdoService<Device>::sends_source && (word & entry::tpdo) != 0) return true;
       return TpdoService<Device>::carries(const_cast<Node&>(node).entries(), mapped.key());
@@ -792,11 +797,10 @@ class Node {
   /// A value for an object known by number. One that is outside its limits or that its handler refuses is not taken.
   void take(std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
     const entry::Word word = EntryAccess<Device>::find(index, sub_index);
-    if (entry::is_boolean(word)) bytes[0] = bytes[0] != 0 ? 1 : 0;
+    if (kinds.booleans && entry::is_boolean(word)) bytes[0] = bytes[0] != 0 ? 1 : 0;
     if (entries().check(index, sub_index, word, bytes) != ok) return;
     if (before_write(index, sub_index, bytes) != ok) return;
-    std::array<std::uint8_t, 8> scratch;
-    if (std::ranges::equal(entries().read(word, scratch), bytes)) return;
+    if (entries().holds(word, bytes)) return;
     entries().write(word, bytes);
     after_write(index, sub_index);
   }

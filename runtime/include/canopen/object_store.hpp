@@ -176,6 +176,15 @@ class EntryAccess {
     return is_domain(word) ? domain(word).capacity : bytes_of(word);
   }
 
+  /// Whether a number in RAM has these bytes.
+  [[nodiscard]] bool holds(entry::Word word, std::span<const std::uint8_t> bytes) const {
+    const std::uint8_t* own = ram(word);
+    for (const std::uint8_t byte : bytes) {
+      if (byte != *own++) return false;
+    }
+    return true;
+  }
+
   /// Stores bytes that `check` let pass into an entry in RAM.
   void write(entry::Word word, std::span<const std::uint8_t> bytes) const {
     std::uint8_t* where = ram(word);

@@ -32,21 +32,13 @@ class ParameterColumn {
   /// Whether any PDO has it.
   static constexpr bool exists = std::ranges::any_of(words, is_there);
 
-  /// The unsigned value for PDO `i` of the list; `missing` where that has none.
-  [[nodiscard]] static std::uint32_t get(EntryAccess<Device> entries, std::size_t i, std::uint32_t missing) {
-    if constexpr (!exists) {
-      return missing;
-    } else if constexpr (is_regular) {
-      return entries.template number_at<entry::size_of(words[0])>(entry::offset_of(words[0]) + stride * i);
-    } else {
-      return is_there(words[i]) ? entries.number(words[i]) : missing;
-    }
-  }
-
- private:
+  /// Bytes from one to the next.
   static constexpr unsigned stride = [] {
-    if constexpr (count < 2) return 0u;
-    else return static_cast<unsigned>(words[1] - words[0]);
+    if constexpr (count > 1) {
+      return static_cast<unsigned>(words[1] - words[0]);
+    } else {
+      return 0u;
+    }
   }();
 
   /// Whether all are values of one type in RAM, in equal distance.
@@ -57,6 +49,17 @@ class ParameterColumn {
     }
     return true;
   }();
+
+  /// The unsigned value for PDO `i` of the list; `missing` where that has none.
+  [[nodiscard]] static std::uint32_t get(EntryAccess<Device> entries, std::size_t i, std::uint32_t missing) {
+    if constexpr (!exists) {
+      return missing;
+    } else if constexpr (is_regular) {
+      return entries.template number_at<entry::size_of(words[0])>(entry::offset_of(words[0]) + stride * i);
+    } else {
+      return is_there(words[i]) ? entries.number(words[i]) : missing;
+    }
+  }
 };
 
 }  // namespace canopen

@@ -74,12 +74,13 @@ template <class Device>
 /// The mapping parameter of one PDO as it stands in RAM.
 class MappingParameter {
  public:
-  /// `count` and `first`: the words of sub-indices 0 and 1.
-  template <class Device>
-  MappingParameter(EntryAccess<Device> entries, entry::Word count, entry::Word first)
-      : count_{entries.ram(count)}, first_{entries.ram(first)} {}
+  /// Where sub-indices 0 and 1 lie.
+  MappingParameter(const std::uint8_t* count, const std::uint8_t* first) : count_{count}, first_{first} {}
 
   [[nodiscard]] std::uint8_t count() const { return *count_; }
+
+  /// Length of entry `i`, counted from 0.
+  [[nodiscard]] unsigned bits(std::size_t i) const { return first_[sizeof(std::uint32_t) * i]; }
 
   /// Entry `i`, counted from 0.
   [[nodiscard]] MappedObject operator[](std::size_t i) const {
@@ -91,7 +92,7 @@ class MappingParameter {
   /// Bits of the first `count` objects together; 0 when they make no PDO: one of them cannot be mapped, or they are
   /// longer than 64 bits.
   template <class Device>
-  [[nodiscard]] std::uint8_t bits_of(bool tpdo, std::uint8_t count) const {
+  [[nodiscard, gnu::noinline]] std::uint8_t bits_of(bool tpdo, std::uint8_t count) const {
     unsigned bits = 0;
     for (std::uint8_t i = 0; i < count; ++i) {
       const MappedObject mapped = (*this)[i];
@@ -101,12 +102,29 @@ class MappingParameter {
     return static_cast<std::uint8_t>(bits);
   }
 
+  /// Puts down where the objects lie, all bits set for a dummy, with the highest bit set for those among the constants.
+  /// Answers the data bytes that they take; 0 when they make no PDO.
+  template <class Device, class Place>
+  [[gnu::noinline]] std::uint8_t look_up(bool tpdo, Place* places) const {
+    const std::uint8_t bits = bits_of<Device>(tpdo, count());
+    if (bits == 0) return 0;
+    for (std::uint8_t i = 0; i < count(); ++i) {
+      const entry::Word word = can_be_mapped<Device>(tpdo, (*this)[i]);
+      constexpr Place mark = static_cast<Place>(Place{1} << (sizeof(Place) * 8 - 1));
+      Place place = static_cast<Place>(entry::offset_of(word));
+      if (entry::place_of(word) == entry::Place::rom) place = static_cast<Place>(place | mark);
+      places[i] = word == mapped_dummy ? static_cast<Place>(~Place{0}) : place;
+    }
+    return static_cast<std::uint8_t>((bits + 7) / 8);
+  }
+
  private:
   const std::uint8_t* count_;
   const std::uint8_t* first_;
 };
 
-/// What speaks against writing these bytes, whose length is right, to a mapping parameter. A PDO is remapped in five
+/// What speaks against writing these bytes, whose length is right, to a mapping parameter, which has room for `capacity`
+/// objects. A PDO is remapped in five
 /// steps: disable it by bit 31 of its COB-ID, set sub-index 0 to 0, write the entries, set sub-index 0 to their number,
 /// enable it.
 ///   0800 0022h  the PDO is valid
@@ -114,21 +132,20 @@ class MappingParameter {
 ///   0604 0041h  the object does not exist, cannot be mapped, or has another length
 ///   0604 0042h  too many objects or bits, or one that cannot be mapped (or what the device answers instead)
 template <class Device>
-[[nodiscard]] AbortCode check_pdo_mapping(EntryAccess<Device> entries, std::uint16_t index, std::uint8_t sub_index,
-                                          std::span<const std::uint8_t> bytes) {
+[[nodiscard]] AbortCode check_pdo_mapping(EntryAccess<Device> entries, std::uint8_t capacity, std::uint16_t index,
+                                          std::uint8_t sub_index, std::span<const std::uint8_t> bytes) {
   const bool tpdo = is_tpdo_mapping(index);
   if constexpr (!Device::options.pdo_mapping_writable_while_valid) {
     const auto communication = static_cast<std::uint16_t>(index - (rpdo_indices.mapping - rpdo_indices.communication));
     const entry::Word cob_id = entries.find(communication, pdo_parameter::cob_id);
     if (cob_id > Dictionary::no_sub_index && CobId{entries.number(cob_id)}.valid()) return AbortCode::device_state;
   }
-  const MappingParameter mapping{entries, entries.find(index, 0), entries.find(index, 1)};
+  const MappingParameter mapping{entries.ram(entries.find(index, 0)), entries.ram(entries.find(index, 1))};
   if (sub_index == 0) {
     const std::uint8_t count = bytes[0];
     if (count == 0) return ok;
     if (Device::options.mpdo && count >= source_multiplexed) return ok;
-    const bool fits = count <= mapping_capacity(Device::dictionary, index);
-    if (fits && mapping.bits_of<Device>(tpdo, count) != 0) return ok;
+    if (count <= capacity && mapping.bits_of<Device>(tpdo, count) != 0) return ok;
     return static_cast<AbortCode>(Device::options.pdo_mapping_abort_code);
   }
   if (mapping.count() != 0) return AbortCode::unsupported_access;

@@ -52,22 +52,22 @@ class RpdoService {
   static constexpr std::size_t count = Pdos::count;
   static constexpr bool has_dynamic_mapping = Mapped::any;
 
-  /// `watched(word, key)` says of an object whether more has to be done with its value than to store it.
+  /// `watched(mapped)` says of an object whether more has to be done with its value than to store it.
   template <class Watched>
-  void enter_operational(EntryAccess<Device> entries, Watched&& watched) {
+  void enter_operational(EntryAccess<Device> entries, Watched watched) {
     for (std::size_t i = 0; i < count; ++i) activate(i, entries, watched);
   }
 
   /// A communication or mapping parameter, 1400h..17FFh, has a new value, which counts at once.
   template <class Watched>
-  void parameter_changed(EntryAccess<Device> entries, std::uint16_t index, Watched&& watched) {
+  void parameter_changed(EntryAccess<Device> entries, std::uint16_t index, Watched watched) {
     const std::size_t i = place_of_pdo<Pdos>(index);
     if (i != count) activate(i, entries, watched);
   }
 
   /// The mapping of a TPDO has changed: other objects are watched now.
   template <class Watched>
-  void watch_again([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] Watched&& watched) {
+  void watch_again([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] Watched watched) {
     if constexpr (has_dynamic_mapping) {
       for (std::size_t i = 0; i < count; ++i) {
         if (Mapped::capacities[i] != 0) slots_[i].size = look_up(i, entries, watched);
@@ -158,30 +158,39 @@ class RpdoService {
   [[nodiscard]] static std::uint16_t number_of(std::size_t i) { return number_of_pdo<Pdos>(i); }
 
   template <class Watched>
-  void activate(std::size_t i, EntryAccess<Device> entries, Watched&& watched) {
+  void activate(std::size_t i, EntryAccess<Device> entries, Watched watched) {
     slots_[i] = {};
     slots_[i].size = look_up(i, entries, watched);
   }
 
   template <class Watched>
-  std::uint8_t look_up(std::size_t i, [[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] Watched&& watched) {
+  std::uint8_t look_up(std::size_t i, [[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] Watched watched) {
     if constexpr (has_dynamic_mapping) {
-      if (Mapped::capacities[i] != 0) return places_.look_up(i, entries, watched);
+      if (Mapped::capacities[i] != 0) {
+        const std::uint8_t size = places_.look_up(i, entries);
+        if (size != 0) mark_watched(i, entries, watched);
+        return size;
+      }
     }
     return sizes[i];
+  }
+
+  /// Marks those objects for which more is to be done than to store a value.
+  template <class Watched>
+  [[gnu::noinline]] void mark_watched(std::size_t i, EntryAccess<Device> entries, Watched watched) {
+    const MappingParameter mapping = Mapped::parameter(i, entries);
+    auto* const places = places_.of(i);
+    for (std::size_t object = 0; object < mapping.count(); ++object) {
+      if (watched(mapping[object])) places[object] = static_cast<typename Mapped::Place>(places[object] | Mapped::mark);
+    }
   }
 
   template <class Host>
   [[gnu::noinline]] void receive(std::size_t i, const Frame& frame, Host host) {
     Slot& slot = slots_[i];
     if (slot.size == 0) return;
-    if (frame.size < slot.size) {
-      const bool first = (slot.flags & cut_short) == 0;
-      slot.flags |= cut_short;
-      if (first) host.happened(RpdoEvent::too_short, number_of(i));
-      return;
-    }
-    end(i, cut_short, RpdoEvent::length_right, host);
+    if (frame.size < slot.size) return cut(i, host);
+    if ((slot.flags & (cut_short | monitored | missed)) != 0) settle(i, host);
     start_deadline(i, host);
     const Transmission transmission = transmission_type(i, host.entries());
     if (transmission == Transmission::synchronous && !host.window_over()) {
@@ -189,6 +198,23 @@ class RpdoService {
       slot.flags |= buffered;
     }
     if (transmission == Transmission::event_driven) take(i, frame, host);
+  }
+
+  /// A frame is too short.
+  template <class Host>
+  void cut(std::size_t i, Host host) {
+    const bool first = (slots_[i].flags & cut_short) == 0;
+    slots_[i].flags |= cut_short;
+    if (first) host.happened(RpdoEvent::too_short, number_of(i));
+  }
+
+  /// A good frame ends what was wrong, and the time that it has taken.
+  template <class Host>
+  void settle(std::size_t i, Host host) {
+    end(i, cut_short, RpdoEvent::length_right, host);
+    check_deadline(i, host);
+    end(i, missed, RpdoEvent::in_time, host);
+    slots_[i].flags &= static_cast<std::uint8_t>(~monitored);
   }
 
   /// Tells that a condition is over, if it was there.
@@ -201,18 +227,17 @@ class RpdoService {
 
   /// Tells of one that has stayed away.
   template <class Host>
-  void check_deadline(std::size_t i, Host host) {
-    if ((slots_[i].flags & monitored) == 0 || is_ahead(slots_[i].deadline, event_unit, host.now())) return;
-    slots_[i].flags = static_cast<std::uint8_t>((slots_[i].flags & ~monitored) | missed);
-    host.happened(RpdoEvent::timeout, number_of(i));
+  void check_deadline([[maybe_unused]] std::size_t i, [[maybe_unused]] Host host) {
+    if constexpr (has_event_timer) {
+      if ((slots_[i].flags & monitored) == 0 || is_ahead(slots_[i].deadline, event_unit, host.now())) return;
+      slots_[i].flags = static_cast<std::uint8_t>((slots_[i].flags & ~monitored) | missed);
+      host.happened(RpdoEvent::timeout, number_of(i));
+    }
   }
 
   template <class Host>
   void start_deadline([[maybe_unused]] std::size_t i, [[maybe_unused]] Host host) {
     if constexpr (has_event_timer) {
-      check_deadline(i, host);
-      end(i, missed, RpdoEvent::in_time, host);
-      slots_[i].flags &= static_cast<std::uint8_t>(~monitored);
       const auto time = static_cast<std::uint16_t>(Column<pdo_parameter::event_timer>::get(host.entries(), i, 0));
       if (time == 0) return;
       slots_[i].flags |= monitored;
@@ -249,29 +274,31 @@ class RpdoService {
   void take_mapped(std::size_t which, const Data& data, Host host) {
     const EntryAccess<Device> entries = host.entries();
     const MappingParameter mapping = Mapped::parameter(which, entries);
+    const auto* const places = places_.of(which);
+    const std::size_t objects = mapping.count();
     unsigned at = 0;
-    for (std::uint8_t i = 0; i < mapping.count(); ++i) {
-      const MappedObject mapped = mapping[i];
-      const unsigned bits = mapped.bits();
-      const auto place = places_.place(which, i);
+    for (std::size_t i = 0; i < objects; ++i) {
+      const unsigned bits = mapping.bits(i);
+      const auto place = places[i];
       const bool whole_bytes = !Mapped::has_bits || ((at | bits) & 7) == 0;
-      if (place == Mapped::no_place) {
-        // a dummy
-      } else if (whole_bytes && (place & Mapped::mark) == 0) {
-        std::uint8_t* const to = entries.ram(place);
-        for (unsigned byte = 0; byte < bits / 8; ++byte) to[byte] = data[at / 8 + byte];
-      } else {
-        take_watched(mapped, data, at, host);
+      if (whole_bytes && (place & Mapped::mark) == 0) {
+        copy_value(entries.ram(place), data.data() + at / 8, bits / 8);
+      } else if (place != Mapped::no_place) {  // no dummy
+        take_watched(mapping[i], data, at, host);
       }
       at += bits;
     }
   }
 
   template <class Host>
-  static void take_watched(MappedObject mapped, const Data& data, unsigned at, Host host) {
-    const std::uint64_t value = take_bits(data.data(), at, mapped.bits());
-    alignas(8) std::array<std::uint8_t, 8> bytes{};
-    std::memcpy(bytes.data(), &value, sizeof value);
+  [[gnu::noinline]] static void take_watched(MappedObject mapped, const Data& data, unsigned at, Host host) {
+    alignas(8) std::array<std::uint8_t, 8> bytes;
+    if constexpr (Mapped::has_bits) {
+      const std::uint64_t value = take_bits(data.data(), at, mapped.bits());
+      std::memcpy(bytes.data(), &value, sizeof value);
+    } else {
+      copy_value(bytes.data(), data.data() + at / 8, mapped.bits() / 8u);
+    }
     host.take(mapped.index(), mapped.sub_index(), std::span{bytes}.first((mapped.bits() + 7u) / 8u));
   }
 

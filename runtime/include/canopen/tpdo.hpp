@@ -247,7 +247,7 @@ class TpdoService {
     const EntryAccess<Device> entries = store.entries();
     slot.size = sizes[i];
     if constexpr (has_dynamic_mapping) {
-      if (Mapped::capacities[i] != 0) slot.size = places_.look_up(i, entries, is_constant);
+      if (Mapped::capacities[i] != 0) slot.size = places_.look_up(i, entries);
     }
     if (slot.size == 0 || !CobId{cob_id_of(i, entries)}.valid()) return;
     slot.type = static_cast<std::uint8_t>(Column<pdo_parameter::transmission_type>::get(entries, i, event_driven_type));
@@ -267,10 +267,6 @@ class TpdoService {
       case Transmission::remote:
       case Transmission::reserved: break;
     }
-  }
-
-  [[nodiscard]] static bool is_constant(entry::Word word, MappedObject) {
-    return entry::place_of(word) == entry::Place::rom;
   }
 
   void count_sync(std::size_t i, EntryAccess<Device> entries, Sync sync) {
@@ -374,17 +370,19 @@ class TpdoService {
 
   void pack_mapped(std::size_t which, EntryAccess<Device> entries, Data& data) const {
     const MappingParameter mapping = Mapped::parameter(which, entries);
+    const auto* const places = places_.of(which);
+    const std::size_t objects = mapping.count();
     unsigned at = 0;
-    for (std::uint8_t i = 0; i < mapping.count(); ++i) {
-      const auto place = places_.place(which, i);
+    for (std::size_t i = 0; i < objects; ++i) {
+      const auto place = places[i];
       const std::uint8_t* const from = (place & Mapped::mark) == 0
                                            ? entries.ram(place)
                                            : entries.constant(static_cast<entry::Word>(place & ~Mapped::mark));
-      const unsigned bits = mapping[i].bits();
+      const unsigned bits = mapping.bits(i);
       if (Mapped::has_bits && ((at | bits) & 7) != 0) {
         put_bits(data.data(), at, bits, take_bits(from, 0, bits));
       } else {
-        for (unsigned byte = 0; byte < bits / 8; ++byte) data[at / 8 + byte] = from[byte];
+        copy_value(data.data() + at / 8, from, bits / 8);
       }
       at += bits;
     }
