@@ -54,6 +54,23 @@ TEST(SdoServers, ADomainThatOneWritesIsTakenFromTheOther) {
             "585 60 00 20 00 00 00 00 00 | 4C0 80 00 20 00 20 00 00 08");  // 0800 0020h
 }
 
+TEST(SdoServers, ASegmentOfABlockTakesNoDomainWhateverItLooksLike) {
+  std::array<std::uint8_t, 300> memory{};
+  Bench device;
+  device.node.bind<od::firmware>(memory);
+  device.node.bind_constant<od::log>(std::span<const std::uint8_t>{memory});
+  enable_second_server(device);
+  EXPECT_EQ(device.ask("540 40 01 20 00 00 00 00 00"), "4C0 41 01 20 00 2C 01 00 00");
+  EXPECT_EQ(device.ask("605 C2 00 20 00 2C 01 00 00"), "585 A4 00 20 00 7F 00 00 00");
+  for (int sequence = 1; sequence <= 32; ++sequence) {
+    char segment[40];
+    std::snprintf(segment, sizeof segment, "605 %02X 00 00 00 00 00 00 00", static_cast<unsigned>(sequence));
+    EXPECT_EQ(device.ask(segment), "");
+  }
+  EXPECT_EQ(device.ask("605 21 01 20 00 00 00 00 00"), "");  // the 33rd: no download of 2001h
+  EXPECT_EQ(device.ask("540 60 00 00 00 00 00 00 00"), "4C0 00 00 00 00 00 00 00 00");
+}
+
 TEST(SdoServers, CobIdsStayWhileTheChannelIsValid) {
   Bench device;
   enable_second_server(device);

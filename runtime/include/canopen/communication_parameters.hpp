@@ -63,7 +63,7 @@ template <class Device>
 [[nodiscard]] AbortCode check_pdo_parameter(EntryAccess<Device> entries, std::uint16_t index, std::uint8_t sub_index,
                                             std::span<std::uint8_t> bytes) {
   const bool tpdo = is_tpdo_communication(index);
-  const CobId cob_id{entries.number(entries.find(index, pdo_parameter::cob_id))};
+  const CobId cob_id{entries.number(index, pdo_parameter::cob_id)};
   switch (sub_index) {
     case pdo_parameter::cob_id: {
       if (bytes.size() != sizeof(std::uint32_t)) return AbortCode::internal_incompatibility;
@@ -82,7 +82,7 @@ template <class Device>
       break;
     default: return ok;
   }
-  const bool changed = entries.number(entries.find(index, sub_index)) != number_in(bytes);
+  const bool changed = entries.number(index, sub_index) != number_in(bytes);
   return cob_id.valid() && changed ? AbortCode::device_state : ok;
 }
 

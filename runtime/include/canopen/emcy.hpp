@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "canopen/abort_code.hpp"
 #include "canopen/cob_id.hpp"
@@ -69,8 +70,8 @@ class EmergencyProducer {
   /// A service has found an error.
   void appeared(ObjectStore<Device>& store, ServiceError error) {
     service_errors_ |= bit_of(error);
-    const std::uint16_t code = service_error_codes[static_cast<std::uint8_t>(error)];
-    note(store, code, Device::emergency_info(code));
+    const std::uint8_t row = static_cast<std::uint8_t>(error);
+    note(store, service_error_codes[row], has_info ? infos[row] : no_info);
   }
 
   /// What a service has found is over. False: it was not there.
@@ -139,7 +140,8 @@ class EmergencyProducer {
           start_inhibit_time(store, now);
         }
         --waiting_;
-        for (std::size_t i = 0; i < waiting_; ++i) queue_[i] = queue_[i + 1];
+        Message last = queue_[waiting_];
+        for (std::size_t i = waiting_; i-- != 0;) std::swap(last, queue_[i]);  // each goes up by one
       }
     }
     return true;
@@ -185,7 +187,17 @@ class EmergencyProducer {
     return static_cast<std::uint8_t>(bits != 0 ? bits | static_cast<std::uint8_t>(ErrorRegister::generic) : 0);
   }
 
-  void note_reset(ObjectStore<Device>& store) { note(store, emergency_code::reset, {}); }
+  static constexpr EmergencyInfo no_info{};
+
+  /// What the EMCYs of service errors carry; one for all where a device says nothing.
+  static constexpr auto infos = [] {
+    std::array<EmergencyInfo, std::size(service_error_codes)> rows{};
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = Device::emergency_info(service_error_codes[i]);
+    return rows;
+  }();
+  static constexpr bool has_info = std::ranges::any_of(infos, [](const EmergencyInfo& info) { return info != no_info; });
+
+  void note_reset(ObjectStore<Device>& store) { note(store, emergency_code::reset, no_info); }
 
   void note(ObjectStore<Device>& store, std::uint16_t code, const EmergencyInfo& info) {
     const std::uint8_t bits = error_register();
@@ -243,12 +255,12 @@ class EmergencyProducer {
     }
   }
 
-  std::array<Message, has_cob_id ? depth : 1> queue_{};
-  TimePoint inhibit_end_{};
   std::uint8_t waiting_ = 0;
   std::uint8_t application_bits_ = 0;
   std::uint8_t service_errors_ = 0;
   bool inhibited_ = false;
+  TimePoint inhibit_end_{};
+  std::array<Message, has_cob_id ? depth : 1> queue_{};
 };
 
 }  // namespace canopen

@@ -436,7 +436,7 @@ class MpdoService {
 
     /// Whether one may be sent now.
     [[nodiscard]] bool over(TimePoint now) {
-      if (runs && now >= end) runs = false;
+      if (runs && !is_ahead(end, Device::options.inhibit_time_unit, now)) runs = false;
       return !runs;
     }
     void start(EntryAccess<Device> entries, entry::Word word, TimePoint now) {
@@ -445,7 +445,9 @@ class MpdoService {
       runs = time.count() != 0;
       end = now + time;
     }
-    [[nodiscard]] TimePoint earliest(TimePoint now) const { return runs ? end : now; }
+    [[nodiscard]] TimePoint earliest(TimePoint now) const {
+      return runs && is_ahead(end, Device::options.inhibit_time_unit, now) ? end : now;
+    }
   };
 
   struct Consumer {

@@ -98,6 +98,11 @@ class EntryAccess {
     return load<std::uint32_t>(where);
   }
 
+  /// The same for an entry that exists.
+  [[nodiscard, gnu::noinline]] std::uint32_t number(std::uint16_t index, std::uint8_t sub_index) const {
+    return number(find(index, sub_index));
+  }
+
   /// The same for an entry that is known at compile time.
   template <std::uint16_t Index, std::uint8_t SubIndex>
   [[nodiscard]] std::uint32_t number() const {

@@ -252,22 +252,33 @@ class RpdoService {
 
   template <class Host>
   void take(std::size_t which, const Frame& frame, Host host) {
-    Pdos::for_each([&]<class Pdo, std::size_t I>() {
-      if constexpr (Mapped::capacities[I] == 0) {
-        if (I == which) take_static<Pdo>(frame, host);
-      }
-    });
     if constexpr (has_dynamic_mapping) {
       if (Mapped::capacities[which] != 0) take_mapped(which, frame.data, host);
     }
+    take_static(which, frame, host, Pdos{}, std::make_index_sequence<count>{});
     host.happened(RpdoEvent::taken, number_of(which));
   }
 
-  template <class Pdo, class Host>
-  static void take_static(const Frame& frame, Host host) {
-    Pdo::for_each([&]<class O, std::size_t I>() {
-      if constexpr (!is_dummy<O>) host.template take<O>(Pdo::template get<I>(frame));
-    });
+  template <class Host, class... Pdo, std::size_t... I>
+  static void take_static(std::size_t which, const Frame& frame, Host host, PdoList<Pdo...>, std::index_sequence<I...>) {
+    (take_if<Pdo, Mapped::capacities[I] == 0>(which == I, frame, host), ...);
+  }
+
+  template <class Pdo, bool IsStatic, class Host>
+  static void take_if([[maybe_unused]] bool it_is, const Frame& frame, Host host) {
+    if constexpr (IsStatic) {
+      if (it_is) take_objects<Pdo>(frame, host, std::make_index_sequence<Pdo::entries>{});
+    }
+  }
+
+  template <class Pdo, class Host, std::size_t... I>
+  static void take_objects(const Frame& frame, Host host, std::index_sequence<I...>) {
+    (take_object<typename Pdo::template Entry<I>>(Pdo::template get<I>(frame), host), ...);
+  }
+
+  template <class O, class Host>
+  static void take_object([[maybe_unused]] const typename O::type& value, [[maybe_unused]] Host host) {
+    if constexpr (!is_dummy<O>) host.template take<O>(value);
   }
 
   template <class Host>

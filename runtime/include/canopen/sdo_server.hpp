@@ -115,6 +115,9 @@ class SdoServer {
     has_reply_ = false;
   }
 
+  /// Whether the segments of a block download come, whose first byte is no command.
+  [[nodiscard]] bool takes_segments() const { return has_block && state_ == State::block_downloading; }
+
   /// Forgets the transfer and the answer.
   void reset() {
     state_ = State::idle;

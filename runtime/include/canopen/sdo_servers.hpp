@@ -42,7 +42,9 @@ class SdoServers {
     for (std::size_t i = 0; i < count; ++i) {
       if (cob_id_of_server(i, request_sub_index, store) != cob_id) continue;
       if (frame.size != 8) return true;
-      if constexpr (count > 1) take_domain_from_others(i, frame.data);
+      if constexpr (count > 1) {
+        if (!servers_[i].takes_segments()) take_domain_from_others(i, frame.data);
+      }
       servers_[i].on_request(frame.data, hooks, now);
       return true;
     }

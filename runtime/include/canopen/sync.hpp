@@ -74,7 +74,7 @@ class SyncProducer {
   /// 1005h or 1006h has a new value, or the node has entered a state in which SYNCs are sent: the first one comes one
   /// period later. The counter begins with 1 where `restart` says so (after Stopped and at boot-up) and where producing
   /// begins.
-  void start(const ObjectStore<Device>& store, TimePoint now, bool restart) {
+  [[gnu::noinline]] void start(const ObjectStore<Device>& store, TimePoint now, bool restart) {
     const Duration period = period_of(store);
     const bool produces = (store.template number<0x1005, 0>() & CobId::no_rtr_bit) != 0 && is_span(period);
     if (restart || !running_) counter_ = 0;

@@ -142,8 +142,7 @@ class TpdoService {
   bool serve(ObjectStore<Device>& store, B& bus, TimePoint now) {
     for (std::size_t i = 0; i < count; ++i) {
       Slot& slot = slots_[i];
-      if (!wanted(slot) && !event_timer_expired(slot, now)) continue;
-      if (is_inhibited(slot, now)) continue;
+      if (is_inhibited(slot, now) || (!wanted(slot) && !event_timer_expired(slot, now))) continue;
       if (!send(i, store, bus)) return false;
       sent(i, store.entries(), now);
     }
@@ -252,20 +251,16 @@ class TpdoService {
     if (slot.size == 0 || !CobId{cob_id_of(i, entries)}.valid()) return;
     slot.type = static_cast<std::uint8_t>(Column<pdo_parameter::transmission_type>::get(entries, i, event_driven_type));
     slot.flags |= active;
-    const Transmission transmission = transmission_of(slot.type);
-    if (transmission != Transmission::event_driven) slot.flags &= static_cast<std::uint8_t>(~inhibited);
-    switch (transmission) {
-      case Transmission::event_driven:
-        slot.flags |= event_driven;
-        start_event_timer(i, entries, now);
-        break;
-      case Transmission::synchronous:
-        slot.syncs = slot.type;
-        if (has_sync_start && parameter<pdo_parameter::sync_start>(i, entries) != 0) slot.flags |= before_start;
-        break;
-      case Transmission::remote_synchronous: sample(i, store); break;
-      case Transmission::remote:
-      case Transmission::reserved: break;
+    if (transmission_of(slot.type) == Transmission::event_driven) {
+      slot.flags |= event_driven;
+      return start_event_timer(i, entries, now);
+    }
+    slot.flags &= static_cast<std::uint8_t>(~inhibited);
+    if (slot.type <= last_cyclic) {
+      slot.syncs = slot.type;
+      if (has_sync_start && parameter<pdo_parameter::sync_start>(i, entries) != 0) slot.flags |= before_start;
+    } else if (slot.type == remote_synchronous) {
+      sample(i, store);
     }
   }
 
@@ -356,15 +351,24 @@ class TpdoService {
     if constexpr (has_dynamic_mapping) {
       if (Mapped::capacities[which] != 0) return pack_mapped(which, store.entries(), frame.data);
     }
-    Pdos::for_each([&]<class Pdo, std::size_t I>() {
-      if constexpr (Mapped::capacities[I] == 0) {
-        if (I == which) pack_static<Pdo>(frame, store, std::make_index_sequence<Pdo::entries>{});
-      }
-    });
+    pack_static(which, store, frame, Pdos{}, std::make_index_sequence<count>{});
+  }
+
+  template <class... Pdo, std::size_t... I>
+  static void pack_static(std::size_t which, const ObjectStore<Device>& store, Frame& frame, PdoList<Pdo...>,
+                          std::index_sequence<I...>) {
+    (pack_if<Pdo, Mapped::capacities[I] == 0>(which == I, store, frame), ...);
+  }
+
+  template <class Pdo, bool IsStatic>
+  static void pack_if([[maybe_unused]] bool it_is, const ObjectStore<Device>& store, Frame& frame) {
+    if constexpr (IsStatic) {
+      if (it_is) pack_objects<Pdo>(store, frame, std::make_index_sequence<Pdo::entries>{});
+    }
   }
 
   template <class Pdo, std::size_t... I>
-  static void pack_static(Frame& frame, const ObjectStore<Device>& store, std::index_sequence<I...>) {
+  static void pack_objects(const ObjectStore<Device>& store, Frame& frame, std::index_sequence<I...>) {
     Pdo::pack_into(frame, store.template get<typename Pdo::template Entry<I>>()...);
   }
 
