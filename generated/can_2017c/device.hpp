@@ -60,6 +60,9 @@ struct Device {
   /// Bit n is set where an RPDO may map data type n as a dummy.
   static constexpr std::uint32_t dummies = 0x0000;
 
+  /// A mapping over the bus takes objects whose length is a multiple of so many bits.
+  static constexpr std::uint8_t granularity = 8;
+
   /// Whether a new value of an entry sends the event-driven TPDOs that carry it.
   static constexpr bool triggers_event([[maybe_unused]] std::uint16_t index, [[maybe_unused]] std::uint8_t sub_index) {
     return index != 0x6401;

@@ -14,7 +14,7 @@ std::string map_a_bit() {
   bench::Bench<Device> device;
   EXPECT_EQ(device.ask("605 2F 02 16 00 00 00 00 00"), "585 60 02 16 00 00 00 00 00");
   EXPECT_EQ(device.ask("605 23 02 16 01 10 00 01 20"), "585 60 02 16 01 00 00 00 00");
-  return device.ask("605 23 02 16 02 01 00 04 20");
+  return device.ask("605 23 02 16 02 01 01 04 20");
 }
 
 TEST(Granularity, Of8RefusesABit) {
