@@ -90,17 +90,11 @@ class EntryAccess {
   }
 
   /// An unsigned value of up to 32 bits.
-  [[nodiscard, gnu::noinline]] std::uint32_t number(entry::Word word) const {
-    if (is_immediate(word)) return immediate_value(word);
-    const std::uint8_t* const where = address(word);
-    if (entry::size_of(word) == 1) return *where;
-    if (entry::size_of(word) == 2) return load<std::uint16_t>(where);
-    return load<std::uint32_t>(where);
-  }
+  [[nodiscard]] std::uint32_t number(entry::Word word) const { return number_of(store_, word); }
 
   /// The same for an entry that exists.
-  [[nodiscard, gnu::noinline]] std::uint32_t number(std::uint16_t index, std::uint8_t sub_index) const {
-    return number(find(index, sub_index));
+  [[nodiscard]] std::uint32_t number(std::uint16_t index, std::uint8_t sub_index) const {
+    return number_of(store_, find(index, sub_index));
   }
 
   /// The same for an entry that is known at compile time.
@@ -204,8 +198,9 @@ class EntryAccess {
     } else if (kinds.padded && (size & (size - 1)) != 0) {
       return extend(word, where, bytes, size == 3 ? 4 : 8);  // such numbers lie in the next wider type
     }
-    // A download in several frames has put a DOMAIN's bytes in place already.
-    if (size != 0 && where != bytes.data()) std::memcpy(where, bytes.data(), size);
+    const std::uint8_t* from = bytes.data();
+    if (where == from) return;  // a download in several frames has put a DOMAIN's bytes in place already
+    for (std::uint8_t* const end = where + size; where != end;) *where++ = *from++;  // few: a call would take longer
   }
 
   /// Bytes that a string entry can hold.
@@ -224,6 +219,16 @@ class EntryAccess {
   [[nodiscard]] static constexpr bool is_domain(entry::Word word) { return kinds.domains && entry::is_domain(word); }
 
  private:
+  /// In an image once, with the address of the values in a register.
+  [[nodiscard, gnu::noinline]] static std::uint32_t number_of(ObjectStore<Device>* store, entry::Word word) {
+    const EntryAccess entries{*store};
+    if (is_immediate(word)) return entries.immediate_value(word);
+    const std::uint8_t* const where = entries.address(word);
+    if (entry::size_of(word) == 1) return *where;
+    if (entry::size_of(word) == 2) return load<std::uint16_t>(where);
+    return load<std::uint32_t>(where);
+  }
+
   static constexpr bool has_limits = !Device::dictionary.limits.empty() || !Device::dictionary.wide_limits.empty();
   static constexpr std::size_t string_header = sizeof(std::uint16_t);
 

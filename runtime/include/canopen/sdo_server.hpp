@@ -207,11 +207,15 @@ class SdoServer {
 
   // Upload
 
+  /// Finds an entry that may be read now.
+  [[nodiscard]] AbortCode find_readable(auto& hooks) {
+    if (const AbortCode code = find(entry::readable, AbortCode::write_only); code != ok) return code;
+    return hooks.before_read(index(), sub_index());
+  }
+
   /// The value to send, as `bytes_` and `size_`: of a streamed one a null pointer and `unknown_size`.
   template <class Hooks>
   [[nodiscard]] AbortCode open_upload(Hooks& hooks) {
-    if (const AbortCode code = find(entry::readable, AbortCode::write_only); code != ok) return code;
-    if (const AbortCode code = hooks.before_read(index(), sub_index()); code != ok) return code;
     if constexpr (DomainStreamHooks<Hooks, Device>) {
       bytes_ = nullptr;
       size_ = sdo::unknown_size;
@@ -234,15 +238,25 @@ class SdoServer {
 
   template <class Hooks>
   [[nodiscard]] AbortCode initiate_upload(Hooks& hooks) {
+    if (const AbortCode code = find_readable(hooks); code != ok) return code;
+    const std::uint32_t bytes = entry::size_of(word_);
+    if (entry::class_of(word_) != entry::Class::special && bytes <= 4) {
+      answer_value(bytes, hooks.entries().number(word_) & (0xFFFF'FFFF >> (32 - 8 * bytes)));
+      return ok;
+    }
     if (const AbortCode code = open_upload(hooks); code != ok) return code;
     answer_upload();
     return ok;
   }
 
+  /// An expedited answer.
+  void answer_value(std::uint32_t bytes, std::uint32_t value) {
+    answer(Device::options.sdo_upload_size_indicated ? 0x43u | (4 - bytes) << 2 : 0x42u, value);
+  }
+
   void answer_upload() {
     if (size_ - 1u < 4u) {
-      const unsigned unused = (4 - size_) << 2;
-      answer(Device::options.sdo_upload_size_indicated ? 0x43u | unused : 0x42u);
+      answer_value(size_, 0);
       std::memcpy(&reply_[4], bytes_, size_);
       return;
     }
@@ -299,26 +313,30 @@ class SdoServer {
 
   [[nodiscard]] AbortCode initiate_download(const std::array<std::uint8_t, 8>& request, auto& hooks) {
     if (const AbortCode code = find(entry::writable, AbortCode::read_only); code != ok) return code;
-    size_indicated_ = (request[0] & sdo::size_indicated) != 0;
+    const bool told = (request[0] & sdo::size_indicated) != 0;
     if ((request[0] & sdo::expedited) != 0) {
-      std::uint32_t size = 4u - ((request[0] >> 2) & 3u);
-      if (!size_indicated_)
-        size = size_unless_told();
-      size_indicated_ = true;
-      if (const AbortCode code = prepare(size, hooks); code != ok) return code;
-      std::memcpy(buffer_.data(), &request[4], 4);
-      if (is_domain()) {
-        if (const AbortCode code = store(hooks, buffer_.data(), size, true); code != ok) return code;
-      } else {
-        position_ = size;
-      }
-      if (const AbortCode code = finish(hooks); code != ok) return code;
+      const std::uint32_t size = told ? 4u - ((request[0] >> 2) & 3u) : size_unless_told();
+      if (const AbortCode code = take_expedited(&request[4], size, hooks); code != ok) return code;
     } else {
+      size_indicated_ = told;
       if (const AbortCode code = prepare(sdo::word_of(request), hooks); code != ok) return code;
       state_ = State::downloading;
     }
     answer(0x60);
     return ok;
+  }
+
+  /// Four bytes, of which the first ones are a value.
+  [[nodiscard]] AbortCode take_expedited(const std::uint8_t* bytes, std::uint32_t size, auto& hooks) {
+    std::memcpy(buffer_.data(), bytes, 4);
+    if (is_domain()) {
+      size_indicated_ = true;
+      if (const AbortCode code = prepare(size, hooks); code != ok) return code;
+      if (const AbortCode code = store(hooks, buffer_.data(), size, true); code != ok) return code;
+      return finish(hooks);
+    }
+    const AbortCode code = hooks.entries().check_length(index(), sub_index(), word_, size);
+    return code != ok ? code : write({buffer_.data(), size}, hooks);
   }
 
   /// Of an expedited download that does not tell: the entry's, and four bytes where that varies.
@@ -400,16 +418,22 @@ class SdoServer {
   [[nodiscard]] AbortCode finish(Hooks& hooks) {
     state_ = State::idle;
     if (size_indicated_ && position_ != size_) return AbortCode::length_mismatch;
-    if (!streamed(hooks)) {
-      const EntryAccess<Device> entries = hooks.entries();
-      const std::span<std::uint8_t> bytes{bytes_, position_};
-      if (const AbortCode code = check_length(entries); code != ok) return code;
-      if (entry::place_of(word_) != entry::Place::ram) return hooks.command(index(), sub_index(), bytes);
-      if (const AbortCode code = entries.check_value(index(), sub_index(), word_, bytes); code != ok) return code;
-      if (const AbortCode code = hooks.before_write(index(), sub_index(), bytes); code != ok) return code;
-      // A handler may have bound a DOMAIN to other memory: the application has taken the bytes then.
-      if (!is_domain() || entries.domain(word_).data == bytes_) entries.write(word_, bytes);
+    if (streamed(hooks)) {
+      hooks.after_write(index(), sub_index());
+      return ok;
     }
+    if (const AbortCode code = check_length(hooks.entries()); code != ok) return code;
+    return write({bytes_, position_}, hooks);
+  }
+
+  /// Writes bytes whose length fits, unless something speaks against them.
+  [[nodiscard, gnu::noinline]] AbortCode write(std::span<std::uint8_t> bytes, auto& hooks) {
+    const EntryAccess<Device> entries = hooks.entries();
+    if (entry::place_of(word_) != entry::Place::ram) return hooks.command(index(), sub_index(), bytes);
+    if (const AbortCode code = entries.check_value(index(), sub_index(), word_, bytes); code != ok) return code;
+    if (const AbortCode code = hooks.before_write(index(), sub_index(), bytes); code != ok) return code;
+    // A handler may have bound a DOMAIN to other memory: the application has taken the bytes then.
+    if (!is_domain() || entries.domain(word_).data == bytes.data()) entries.write(word_, bytes);
     hooks.after_write(index(), sub_index());
     return ok;
   }
@@ -448,6 +472,7 @@ class SdoServer {
 
   [[nodiscard]] AbortCode initiate_block_upload(const std::array<std::uint8_t, 8>& request, auto& hooks) {
     if (!set_block_size(request[4])) return AbortCode::block_size;
+    if (const AbortCode code = find_readable(hooks); code != ok) return code;
     if (const AbortCode code = open_upload(hooks); code != ok) return code;
     if (size_ <= request[5] && request[5] != 0) {  // the protocol switch threshold: 0 wants no other protocol
       answer_upload();
