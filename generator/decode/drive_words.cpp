@@ -15,7 +15,7 @@ struct BitPattern {
 };
 
 /// The first row that fits counts.
-constexpr BitPattern states[] = {
+constexpr BitPattern drive_states[] = {
     {0x4F, 0x00, "not ready to switch on"}, {0x4F, 0x40, "switch on disabled"},
     {0x6F, 0x21, "ready to switch on"},     {0x6F, 0x23, "switched on"},
     {0x6F, 0x27, "operation enabled"},      {0x6F, 0x07, "quick stop active"},
@@ -23,7 +23,7 @@ constexpr BitPattern states[] = {
     {0x00, 0x00, "no state of CiA 402"},
 };
 
-constexpr BitPattern commands[] = {
+constexpr BitPattern drive_commands[] = {
     {0x80, 0x80, "fault reset"}, {0x02, 0x00, "disable voltage"}, {0x06, 0x02, "quick stop"},
     {0x07, 0x06, "shutdown"},    {0x0F, 0x07, "switch on"},       {0x0F, 0x0F, "enable operation"},
 };
@@ -69,10 +69,10 @@ void append_drive_word(std::string& text, DriveWord word, std::uint16_t value) {
   append_hex(text, value, 4);
   text += "h ";
   if (word == DriveWord::statusword) {
-    append_first(text, states, value);
+    append_first(text, drive_states, value);
     append_all(text, status_bits, value);
   } else {
-    append_first(text, commands, value);
+    append_first(text, drive_commands, value);
     append_all(text, control_bits, value);
   }
 }

@@ -92,7 +92,7 @@ void append_flags(std::string& text, std::span<const Flag> flags, std::uint32_t 
   if (*separator == ',') text += ')';
 }
 
-void append_value(std::string& text, std::string_view before, std::span<const Flag> rows, std::uint8_t value) {
+void append_named(std::string& text, std::string_view before, std::span<const Flag> rows, std::uint8_t value) {
   for (const Flag& row : rows) {
     if (row.bit != value) continue;
     text += before;
@@ -108,8 +108,8 @@ void append_details(std::string& text, std::uint32_t error_class, const canopen:
     case controller: return append_flags(text, controller_states, frame.data[1]);
     case protocol:
       append_flags(text, violations, frame.data[2]);
-      return append_value(text, " at ", places, frame.data[3]);
-    case transceiver: return append_value(text, ", ", wires, frame.data[4]);
+      return append_named(text, " at ", places, frame.data[3]);
+    case transceiver: return append_named(text, ", ", wires, frame.data[4]);
     default: return;
   }
 }

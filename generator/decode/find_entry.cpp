@@ -60,7 +60,7 @@ FoundEntry found(const Object& object, const Entry* entry = nullptr) {
   return {&object, entry, ""};
 }
 
-FoundEntry problem(std::string sentence) { return {nullptr, nullptr, std::move(sentence)}; }
+FoundEntry no_entry(std::string sentence) { return {nullptr, nullptr, std::move(sentence)}; }
 
 std::string sub_indices_of(const Object& object) {
   std::string text;
@@ -161,13 +161,13 @@ std::string near_indices(const Device& device, std::uint16_t index) {
 FoundEntry by_address(const Device& device, const EntryAddress& address) {
   const Object* object = device.find(address.index);
   if (object == nullptr) {
-    return problem(
+    return no_entry(
         fmt::format("the device has no object {}{}", index_label(address.index), near_indices(device, address.index)));
   }
   if (!address.sub_index) return found(*object);
   const Entry* entry = object->find(*address.sub_index);
   if (entry == nullptr) {
-    return problem(fmt::format("{} \"{}\" has no sub-index {:02X}h; it has {}", index_label(object->index),
+    return no_entry(fmt::format("{} \"{}\" has no sub-index {:02X}h; it has {}", index_label(object->index),
                                object->name, *address.sub_index, sub_indices_of(*object)));
   }
   return found(*object, entry);
@@ -184,7 +184,7 @@ std::optional<FoundEntry> by_both_names(const Device& device, std::string_view t
     if ((text[at] == '[' && rest.ends_with(']')) || (text[at] == '<' && rest.ends_with('>'))) rest.remove_suffix(1);
     if (text[at] == ':' && rest.starts_with(':')) rest.remove_prefix(1);
     if (const Entry* entry = find_in(*object, trim(rest))) return found(*object, entry);
-    return problem(fmt::format("{} \"{}\" has no entry \"{}\"; it has {}", index_label(object->index), object->name,
+    return no_entry(fmt::format("{} \"{}\" has no entry \"{}\"; it has {}", index_label(object->index), object->name,
                                trim(rest), sub_indices_of(*object)));
   }
   return std::nullopt;
@@ -200,13 +200,13 @@ FoundEntry by_entry_name(const Device& device, std::string_view text) {
     }
   }
   if (matches.size() == 1) return matches.front();
-  if (matches.empty()) return problem(fmt::format("the device has no object \"{}\"{}", text, near_names(device, text)));
+  if (matches.empty()) return no_entry(fmt::format("the device has no object \"{}\"{}", text, near_names(device, text)));
   std::string sentence = fmt::format("\"{}\" may be", text);
   for (std::size_t i = 0; i < std::min(matches.size(), most_suggestions); ++i) {
     sentence += fmt::format("{} {}", i == 0 ? "" : " or", entry_title(*matches[i].object, *matches[i].entry));
   }
   if (matches.size() > most_suggestions) sentence += fmt::format(" or {} more", matches.size() - most_suggestions);
-  return problem(std::move(sentence));
+  return no_entry(std::move(sentence));
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 
 namespace edsc {
 
-inline constexpr std::uint8_t last_node_id = 127;
+inline constexpr unsigned last_node_id = 127;
 
 struct RuleContext {
   Device& device;
