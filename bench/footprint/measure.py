@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
-"""What a device costs on a Cortex-M: flash and RAM of a whole node, of its services and of its dictionary, and the
+"""What a device costs on a Cortex-M: flash and RAM of a whole node, of each service and of the dictionary, and the
 instructions of what it does all the time, beside other stacks.
 
-    measure.py EDSC RUNTIME_INCLUDE [--functions] [--markdown]
+    measure.py EDSC RUNTIME_INCLUDE [--page | --functions]
 
 Bytes are those of images for a Cortex-M0+ at -Os, linked, without those of an empty program: NMT slave, boot-up, heartbeat,
 SDO server, EMCY with a history, SYNC and 4 + 4 PDOs for ref.eds. Instructions are those of a Cortex-M4 at -O2, counted by
-QEMU, and exact: the loop that asks and the store of the frame are in them. `--functions` lists what is in the images.
+QEMU, and exact: the loop that asks and the store of the frame are in them. A `!` stands where a mark is missed.
+
+`--page` prints docs/footprint.md. `--functions` lists what is in the images.
 """
 
 from __future__ import annotations
@@ -16,7 +18,7 @@ import re
 import subprocess
 import tempfile
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -29,17 +31,52 @@ FAST = ("-mcpu=cortex-m4", "-O2", "-DCOUNT")
 
 
 @dataclass(frozen=True)
+class Entry:
+    """A VAR that a sheet gains, or a sub-index of it."""
+
+    index: int
+    data_type: int
+    access: str = "rw"
+    default: str = "0"
+    sub_index: int | None = None
+    array: int = 0  # elements; the entry is the object then
+
+    @property
+    def section(self) -> str:
+        return f"{self.index:04X}" + (f"sub{self.sub_index:X}" if self.sub_index is not None else "")
+
+    def text(self) -> str:
+        keys = [f"[{self.section}]", f"ParameterName=Added {self.section}"]
+        if self.array:
+            keys += ["ObjectType=0x8", f"SubNumber={self.array + 1}"]
+        else:
+            keys += ["ObjectType=0x7", f"DataType=0x{self.data_type:04X}", f"AccessType={self.access}",
+                     f"DefaultValue={self.default}", "PDOMapping=0"]
+        return "\n".join(keys) + "\n\n"
+
+
+U8, U16, U32 = 5, 6, 7
+
+
+def array(index: int, data_type: int, elements: int) -> tuple[Entry, ...]:
+    return (Entry(index, data_type, array=elements), Entry(index, U8, "const", str(elements), 0),
+            *(Entry(index, data_type, sub_index=i + 1) for i in range(elements)))
+
+
+@dataclass(frozen=True)
 class Variant:
     """A device: its data sheet and what is asked of edsc."""
 
     sheet: str
     static_mapping: bool = False
     block_transfer: bool = False
-    without: tuple[str, ...] = ()  # indices that the sheet loses, as regular expressions
+    without: str = ""  # the indices that the sheet loses, as a regular expression
+    added: tuple[Entry, ...] = ()
 
     @property
     def name(self) -> str:
-        parts = [self.sheet, "static" * self.static_mapping, "block" * self.block_transfer, *self.without]
+        parts = [self.sheet, "static" * self.static_mapping, "block" * self.block_transfer, self.without,
+                 *(f"{entry.section}_{entry.data_type}{entry.access}{entry.default}" for entry in self.added)]
         return re.sub(r"\W+", "_", "_".join(filter(None, parts)))
 
 
@@ -79,8 +116,8 @@ class Bench:
             return made
         made.mkdir()
         sheet = made / "device.eds"
-        sheet.write_text(without(variant.without, (SHEETS / f"{variant.sheet}.eds").read_text(encoding="utf-8")),
-                         encoding="utf-8")
+        text = (SHEETS / f"{variant.sheet}.eds").read_text(encoding="latin-1")
+        sheet.write_text(changed(text, variant), encoding="latin-1")
         if variant.block_transfer:
             (made / "device.options.json").write_text('{ "sdo_block_transfer": true }', encoding="utf-8")
         flags = ["--static-mapping"] if variant.static_mapping else []
@@ -106,6 +143,12 @@ class Bench:
         size = self.size(program, variant)
         return Size(size.flash - self.empty.flash, size.ram - self.empty.ram)
 
+    def bytes_per_entry(self, variant: Variant) -> float:
+        """Flash of the dictionary, its values and the search alone."""
+        entries = len(re.findall(r"(?im)^\[[0-9A-F]{4}(?:sub[0-9A-F]+)?\]\n(?:[^\[\n].*\n)*?DataType=",
+                                 (self.headers(variant) / "device.eds").read_text(encoding="latin-1")))
+        return round(self.cost("dictionary", variant).flash / entries, 1)
+
     def instructions(self, program: str, variant: Variant) -> dict[str, float]:
         made = self.build(program, variant, FAST)
         printed = subprocess.run(["qemu-system-arm", "-M", "mps2-an386", "-icount", "shift=0", "-semihosting",
@@ -124,12 +167,14 @@ def output(*command: str | Path) -> str:
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout
 
 
-def without(indices: Iterable[str], sheet: str) -> str:
-    """A data sheet without the objects whose index one of these patterns matches."""
-    for pattern in indices:
-        sheet = re.sub(rf"(?im)^\[(?:{pattern})(?:sub[0-9A-F]+)?\]\n(?:[^\[\n].*\n|\n)*", "", sheet)
-        sheet = re.sub(rf"(?im)^\d+=0x(?:{pattern})\n", "", sheet)
-    return renumbered(sheet)
+def changed(text: str, variant: Variant) -> str:
+    """A data sheet without some objects, and with others."""
+    if variant.without:
+        text = re.sub(rf"(?im)^\[(?:{variant.without})(?:sub[0-9A-F]+)?\]\n(?:[^\[\n].*\n|\n)*", "", text)
+        text = re.sub(rf"(?im)^\d+=0x(?:{variant.without})\n", "", text)
+    objects = "".join(f"0=0x{entry.index:04X}\n" for entry in variant.added if entry.sub_index is None)
+    text = text.replace("[OptionalObjects]\n", "[OptionalObjects]\n" + objects, 1)
+    return renumbered(text + "\n" + "".join(entry.text() for entry in variant.added))
 
 
 def renumbered(sheet: str) -> str:
@@ -157,6 +202,55 @@ def sizes(bench: Bench) -> list[Row]:
         Row("flash, dynamic mapping, block transfer with CRC", block.flash, 18032, node, 7000),
         Row("RAM, static mapping", static.ram, 1012, "modm-canopen", 550),
         Row("RAM, dynamic mapping", dynamic.ram, 3200, "canopen-stack", 700),
+        Row("dictionary, flash per sub-entry", bench.bytes_per_entry(STATIC), 13.4, "canopen-stack", 5.5),
+    ]
+
+
+def services(bench: Bench) -> list[tuple[str, Size]]:
+    """What each service adds to ref.eds with a static mapping, its objects included."""
+    whole = bench.cost("node", STATIC)
+
+    def part(without: str) -> Size:
+        rest = bench.cost("node", Variant("ref", static_mapping=True, without=without))
+        return Size(whole.flash - rest.flash, whole.ram - rest.ram)
+
+    def more(*added: Entry, **how: bool) -> Size:
+        larger = bench.cost("node", Variant("ref", **{"static_mapping": True, **how}, added=added))
+        return Size(larger.flash - whole.flash, larger.ram - whole.ram)
+
+    return [
+        ("4 RPDOs (1400h, 1600h)", part("14..|16..")),
+        ("4 TPDOs (1800h, 1A00h)", part("18..|1A..")),
+        ("dynamic mapping of both", more(static_mapping=False)),
+        ("SYNC consumer and producer (1005h, 1006h)", part("100[56]")),
+        ("SYNC producer (1006h)", part("1006")),
+        ("synchronous window (1007h)", more(Entry(0x1007, U32))),
+        ("SYNC counter (1019h)", more(Entry(0x1019, U8))),
+        ("EMCY producer and history (1003h, 1014h)", part("1003|1014")),
+        ("inhibit time of EMCY (1015h)", more(Entry(0x1015, U16))),
+        ("heartbeat producer (1017h)", part("1017")),
+        ("heartbeat consumer of 4 nodes (1016h)", more(*array(0x1016, U32, 4))),
+        ("node guarding (100Ch, 100Dh)", more(Entry(0x100C, U16), Entry(0x100D, U8))),
+        ("TIME consumer and producer (1012h)", more(Entry(0x1012, U32, default="0x100"))),
+        ("error behaviour (1029h)", more(*array(0x1029, U8, 1))),
+        ("SDO block transfer with CRC", Size(*(b - a for a, b in zip(
+            astuple(bench.cost("node", DYNAMIC)), astuple(bench.cost("node", BLOCK)))))),
+    ]
+
+
+def objects(bench: Bench) -> list[tuple[str, Size]]:
+    """What an entry adds."""
+    whole = bench.cost("node", STATIC)
+
+    def more(*added: Entry) -> Size:
+        larger = bench.cost("node", Variant("ref", static_mapping=True, added=added))
+        return Size(larger.flash - whole.flash, larger.ram - whole.ram)
+
+    return [
+        ("a VAR behind another one, UNSIGNED32, 0", more(Entry(0x6503, U32))),
+        ("a VAR with neighbours that are not there", more(Entry(0x5000, U32))),
+        ("a VAR that is a constant of 16 bits", more(Entry(0x6503, U16, "const", "0x1234"))),
+        ("an ARRAY of 16 UNSIGNED16", more(*array(0x6503, U16, 16))),
     ]
 
 
@@ -189,18 +283,66 @@ def print_rows(title: str, rows: Iterable[Row]) -> None:
         print(f"{row.what:<50}{row.value:8g}{row.mark:8g}{missed:3}{row.peer:8g}{row.value / row.peer:7.2f}  {row.peer_name}")
 
 
+def table(*columns: str, rows: Iterable[Sequence[object]]) -> str:
+    lines = [columns, ["---"] + ["--:"] * (len(columns) - 1), *rows]
+    return "\n".join("| " + " | ".join(map(str, line)) + " |" for line in lines)
+
+
+def page(bench: Bench) -> str:
+    """docs/footprint.md."""
+    def beside_peers(rows: Iterable[Row]) -> list[Sequence[object]]:
+        return [(row.what, f"{row.value:g}", f"{row.peer:g}, {row.peer_name}", f"{row.value / row.peer:.2f}") for row in rows]
+
+    def with_bytes(rows: Iterable[tuple[str, Size]]) -> list[Sequence[object]]:
+        return [(what, size.flash, size.ram) for what, size in rows]
+
+    return f"""# What a device costs
+
+`bench/footprint/measure.py build/demo/generator/edsc runtime/include --page` prints this page.
+
+Bytes are those of a linked image for a Cortex-M0+ (`-Os`, arm-none-eabi-g++ 12), without those of an empty program and with
+those of the C library that the image needs; RAM is `.data` and `.bss`. Instructions are those of a Cortex-M4 (`-O2`), counted
+by QEMU: the loop that asks and the store of the frame are in them. The device is `bench/ref.eds`: 76 indices, 212 entries, NMT
+slave, boot-up, heartbeat, SDO server (expedited and segmented), EMCY with a history of 8, SYNC, 4 RPDOs and 4 TPDOs of 4
+objects each. The other stacks were built and measured in the same way with the same dictionary; the best of them stands here.
+
+## A whole device
+
+{table("bytes", "edsc", "best other stack", "ratio", rows=beside_peers(sizes(bench)))}
+
+A node is all zeroes, and nothing of it is kept in flash, when its node-ID comes with `start(node_id, now)` and its bus has no
+members.
+
+## What it does all the time
+
+{table("instructions", "edsc", "best other stack", "ratio", rows=beside_peers(counts(bench)))}
+
+## Each service
+
+What it adds to the device above, its objects included: what is not in the data sheet is not in the image.
+
+{table("service", "flash", "RAM", rows=with_bytes(services(bench)))}
+
+## Each object
+
+{table("object", "flash", "RAM", rows=with_bytes(objects(bench)))}
+"""
+
+
 def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("edsc", type=Path)
     parser.add_argument("runtime", type=Path)
+    parser.add_argument("--page", action="store_true", help="print docs/footprint.md")
     parser.add_argument("--functions", action="store_true", help="list what is in the images")
-    parser.add_argument("--sizes", action="store_true", help="sizes alone")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         bench = Bench(arguments.edsc.resolve(), arguments.runtime.resolve(), Path(folder))
+        if arguments.page:
+            print(page(bench), end="")
+            return
         print_rows("bytes, Cortex-M0+ -Os", sizes(bench))
-        if not arguments.sizes:
-            print_rows("instructions, Cortex-M4 -O2", counts(bench))
+        print_rows("instructions, Cortex-M4 -O2", counts(bench))
         if arguments.functions:
             for variant in (STATIC, DYNAMIC, BLOCK):
                 print(f"\n{variant.name}")

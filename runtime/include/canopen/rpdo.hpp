@@ -260,19 +260,20 @@ class RpdoService {
   }
 
   template <class Host, class... Pdo, std::size_t... I>
-  static void take_static(std::size_t which, const Frame& frame, Host host, PdoList<Pdo...>, std::index_sequence<I...>) {
+  static void take_static([[maybe_unused]] std::size_t which, [[maybe_unused]] const Frame& frame,
+                          [[maybe_unused]] Host host, PdoList<Pdo...>, std::index_sequence<I...>) {
     (take_if<Pdo, Mapped::capacities[I] == 0>(which == I, frame, host), ...);
   }
 
   template <class Pdo, bool IsStatic, class Host>
-  static void take_if([[maybe_unused]] bool it_is, const Frame& frame, Host host) {
+  static void take_if([[maybe_unused]] bool it_is, [[maybe_unused]] const Frame& frame, [[maybe_unused]] Host host) {
     if constexpr (IsStatic) {
       if (it_is) take_objects<Pdo>(frame, host, std::make_index_sequence<Pdo::entries>{});
     }
   }
 
   template <class Pdo, class Host, std::size_t... I>
-  static void take_objects(const Frame& frame, Host host, std::index_sequence<I...>) {
+  static void take_objects([[maybe_unused]] const Frame& frame, [[maybe_unused]] Host host, std::index_sequence<I...>) {
     (take_object<typename Pdo::template Entry<I>>(Pdo::template get<I>(frame), host), ...);
   }
 

@@ -355,20 +355,22 @@ class TpdoService {
   }
 
   template <class... Pdo, std::size_t... I>
-  static void pack_static(std::size_t which, const ObjectStore<Device>& store, Frame& frame, PdoList<Pdo...>,
+  static void pack_static([[maybe_unused]] std::size_t which, [[maybe_unused]] const ObjectStore<Device>& store,
+                          [[maybe_unused]] Frame& frame, PdoList<Pdo...>,
                           std::index_sequence<I...>) {
     (pack_if<Pdo, Mapped::capacities[I] == 0>(which == I, store, frame), ...);
   }
 
   template <class Pdo, bool IsStatic>
-  static void pack_if([[maybe_unused]] bool it_is, const ObjectStore<Device>& store, Frame& frame) {
+  static void pack_if([[maybe_unused]] bool it_is, [[maybe_unused]] const ObjectStore<Device>& store,
+                      [[maybe_unused]] Frame& frame) {
     if constexpr (IsStatic) {
       if (it_is) pack_objects<Pdo>(store, frame, std::make_index_sequence<Pdo::entries>{});
     }
   }
 
   template <class Pdo, std::size_t... I>
-  static void pack_objects(const ObjectStore<Device>& store, Frame& frame, std::index_sequence<I...>) {
+  static void pack_objects([[maybe_unused]] const ObjectStore<Device>& store, Frame& frame, std::index_sequence<I...>) {
     Pdo::pack_into(frame, store.template get<typename Pdo::template Entry<I>>()...);
   }
 
