@@ -1,4 +1,5 @@
-/// What a program of this folder begins with on a Cortex-M: vectors, and memory as C++ expects it. `program` is its own.
+/// What a program of this folder begins with on a Cortex-M: vectors, and memory as C++ expects it. `program` is its
+/// own.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 /// Looks up entries by index and sub-index, in an order without order.
-#include "../cortex_m/startup.hpp"
 #include "../cortex_m/count.hpp"
+#include "../cortex_m/startup.hpp"
 
 #include <canopen/object_store.hpp>
 #include <cstdint>
@@ -32,12 +32,12 @@ void choose() {
   }
 }
 
-
 }  // namespace
 
 void program() {
   start_counter();
   choose();
-  print_mean("look-up", [](std::uint32_t i) { found = Entries::find(some[i % places].index, some[i % places].sub_index); });
+  print_mean("look-up",
+             [](std::uint32_t i) { found = Entries::find(some[i % places].index, some[i % places].sub_index); });
   end_program();
 }

@@ -38,7 +38,9 @@ Can can;
 
 constinit auto node = canopen::make_node<device::Device>(can);
 
-canopen::TimePoint now() { return canopen::TimePoint{canopen::Duration{*reinterpret_cast<volatile std::uint32_t*>(timer)}}; }
+canopen::TimePoint now() {
+  return canopen::TimePoint{canopen::Duration{*reinterpret_cast<volatile std::uint32_t*>(timer)}};
+}
 
 }  // namespace
 

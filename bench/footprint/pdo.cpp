@@ -1,6 +1,6 @@
 /// PDOs of four objects in eight bytes: one packed and one taken, and a cycle of four RPDOs, a SYNC and four TPDOs.
-#include "../cortex_m/startup.hpp"
 #include "../cortex_m/count.hpp"
+#include "../cortex_m/startup.hpp"
 
 #include <canopen/node.hpp>
 #include <cstdint>
@@ -68,7 +68,8 @@ void program() {
 
   const canopen::TimePoint now{};
   node.start(canopen::NodeId{5}, now);
-  static canopen::Frame frames[] = {frame_of(0x205), frame_of(0x305), frame_of(0x405), frame_of(0x505), frame_of(0x80, 0)};
+  static canopen::Frame frames[] = {frame_of(0x205), frame_of(0x305), frame_of(0x405), frame_of(0x505),
+                                    frame_of(0x80, 0)};
   canopen::Frame start = frame_of(0, 2);
   start.data[0] = 1;
   start.data[1] = 5;

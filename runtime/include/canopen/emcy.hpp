@@ -91,7 +91,8 @@ class EmergencyProducer {
   ///   0609 0030h  1014h: the CAN-ID changes while EMCY is valid, is a restricted one, or has 29 bits where the device
   ///               takes 11; bit 30 is 1. 1015h: no multiple of what the device counts in
   ///   0604 0047h  the data sheet gives the object another type than CiA 301
-  [[nodiscard]] static AbortCode check(EntryAccess<Device> entries, std::uint16_t index, std::span<std::uint8_t> bytes) {
+  [[nodiscard]] static AbortCode check(EntryAccess<Device> entries, std::uint16_t index,
+                                       std::span<std::uint8_t> bytes) {
     if (index == 0x1015) {
       if constexpr (Device::options.emcy_inhibit_time_step != 1) {
         if (bytes.size() != sizeof(std::uint16_t)) return AbortCode::internal_incompatibility;
@@ -195,7 +196,8 @@ class EmergencyProducer {
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = Device::emergency_info(service_error_codes[i]);
     return rows;
   }();
-  static constexpr bool has_info = std::ranges::any_of(infos, [](const EmergencyInfo& info) { return info != no_info; });
+  static constexpr bool has_info =
+      std::ranges::any_of(infos, [](const EmergencyInfo& info) { return info != no_info; });
 
   void note_reset(ObjectStore<Device>& store) { note(store, emergency_code::reset, no_info); }
 

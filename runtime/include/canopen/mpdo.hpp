@@ -178,7 +178,8 @@ class MpdoLists {
       const auto index = static_cast<std::uint16_t>(at);
       const std::size_t end = begin + capacity(index);
       if (end == begin) continue;
-      rows[i++] = {Device::dictionary.find(index, 0), index, static_cast<std::uint16_t>(begin), static_cast<std::uint16_t>(end)};
+      rows[i++] = {Device::dictionary.find(index, 0), index, static_cast<std::uint16_t>(begin),
+                   static_cast<std::uint16_t>(end)};
       begin = end;
     }
     return rows;

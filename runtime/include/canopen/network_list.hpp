@@ -60,8 +60,7 @@ namespace network_list_detail {
 
 /// An entry of up to 32 bits; 0 where the dictionary has none.
 template <class Device>
-[[nodiscard]] std::uint32_t number_or_zero(EntryAccess<Device> entries, std::uint16_t index,
-                                                  std::uint8_t sub_index) {
+[[nodiscard]] std::uint32_t number_or_zero(EntryAccess<Device> entries, std::uint16_t index, std::uint8_t sub_index) {
   const entry::Word word = entries.find(index, sub_index);
   return word > Dictionary::no_sub_index ? entries.number(word) : 0;
 }

@@ -566,7 +566,8 @@ class Node {
 
   [[nodiscard]] AbortCode before_read(std::uint16_t index, std::uint8_t sub_index) {
     if constexpr (Device::dictionary.has(0x1003, 0)) {
-      if (index == 0x1003 && sub_index > store_.template number<0x1003, 0>()) return AbortCode::no_data;  // no such error
+      if (index == 0x1003 && sub_index > store_.template number<0x1003, 0>())
+        return AbortCode::no_data;  // no such error
     }
     return handlers_.before_read(*this, object_key(index, sub_index));
   }
@@ -717,7 +718,9 @@ class Node {
       if (mapped.is_dummy()) return false;  // is marked already
       const entry::Word word = EntryAccess<Device>::find(mapped.index(), mapped.sub_index());
       const std::uint8_t size = EntryAccess<Device>::bytes_of(word);
-      if ((word & entry::limited) != 0 || (kinds.booleans && entry::is_boolean(word)) || (kinds.padded && (size & (size - 1)) != 0)) return true;
+      if ((word & entry::limited) != 0 || (kinds.booleans && entry::is_boolean(word)) ||
+          (kinds.padded && (size & (size - 1)) != 0))
+        return true;
       if (mapped.index() < 0x2000 || HandlerSet<Handlers...>::handles(mapped.key())) return true;
       if (MpdoService<Device>::sends_source && (word & entry::tpdo) != 0) return true;
       return TpdoService<Device>::carries(const_cast<Node&>(node).entries(), mapped.key());

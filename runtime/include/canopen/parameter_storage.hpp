@@ -28,9 +28,8 @@ inline constexpr std::uint32_t load_signature = 0x6461'6F6C;  ///< "load"
 /// What speaks against a command to 1010h or 1011h: another signature, or that the data sheet's value has not bit 0
 /// set, "on command" (0800 0020h).
 template <class Device>
-[[nodiscard]] AbortCode check_storage_command(EntryAccess<Device> entries,
-                                                     std::uint16_t index, std::uint8_t sub_index,
-                                                     std::span<const std::uint8_t> bytes) {
+[[nodiscard]] AbortCode check_storage_command(EntryAccess<Device> entries, std::uint16_t index, std::uint8_t sub_index,
+                                              std::span<const std::uint8_t> bytes) {
   std::uint32_t signature = 0;
   std::memcpy(&signature, bytes.data(), std::min(bytes.size(), sizeof signature));
   if (signature != (index == store_parameters ? save_signature : load_signature)) {

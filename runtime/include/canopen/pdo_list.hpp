@@ -112,7 +112,8 @@ template <class Pdos>
   }
 }
 
-/// Place in a list of the PDO whose communication or mapping parameter has this index; `Pdos::count` when there is none.
+/// Place in a list of the PDO whose communication or mapping parameter has this index; `Pdos::count` when there is
+/// none.
 template <class Pdos>
 [[nodiscard]] constexpr std::size_t place_of_pdo(std::uint16_t index) {
   const std::size_t place = index & 0x1FFu;

@@ -123,10 +123,9 @@ class MappingParameter {
   const std::uint8_t* first_;
 };
 
-/// What speaks against writing these bytes, whose length is right, to a mapping parameter, which has room for `capacity`
-/// objects. A PDO is remapped in five
-/// steps: disable it by bit 31 of its COB-ID, set sub-index 0 to 0, write the entries, set sub-index 0 to their number,
-/// enable it.
+/// What speaks against writing these bytes, whose length is right, to a mapping parameter, which has room for
+/// `capacity` objects. A PDO is remapped in five steps: disable it by bit 31 of its COB-ID, set sub-index 0 to 0, write
+/// the entries, set sub-index 0 to their number, enable it.
 ///   0800 0022h  the PDO is valid
 ///   0601 0000h  sub-index 0 is not 0
 ///   0604 0041h  the object does not exist, cannot be mapped, or has another length

@@ -32,8 +32,8 @@ enum class RpdoEvent : std::uint8_t {
   in_time,       ///< the first good frame after a timeout
 };
 
-/// All RPDOs of one device, with the parameters of 1400h and following as they are at the moment. Those of types 254 and
-/// 255 are taken over at once, those of types 0..240 at the next SYNC. Of a frame longer than the mapping the first
+/// All RPDOs of one device, with the parameters of 1400h and following as they are at the moment. Those of types 254
+/// and 255 are taken over at once, those of types 0..240 at the next SYNC. Of a frame longer than the mapping the first
 /// bytes are used, a shorter one is not taken. With an event timer (sub-index 5, ms) an RPDO is missed when it stays
 /// away for longer, from its first frame on.
 ///

@@ -170,7 +170,8 @@ class SdoServer {
       return ok;
     }
     if constexpr (has_block) {
-      if (command == sdo::ClientCommand::block_upload && static_cast<sdo::BlockUpload>(request[0] & 3) != sdo::BlockUpload::initiate)
+      if (command == sdo::ClientCommand::block_upload &&
+          static_cast<sdo::BlockUpload>(request[0] & 3) != sdo::BlockUpload::initiate)
         return block_upload(request, hooks);
       if (command == sdo::ClientCommand::block_download && (request[0] & 1) != 0)
         return end_block_download(request, hooks);
@@ -376,8 +377,7 @@ class SdoServer {
   /// Whether so many more bytes may come.
   [[nodiscard]] AbortCode check_room(std::uint32_t size) const {
     if (size <= size_ - position_) return ok;
-    if (buffer_is_short && size_ == buffer_bytes && !size_indicated_ && !is_domain())
-      return AbortCode::out_of_memory;
+    if (buffer_is_short && size_ == buffer_bytes && !size_indicated_ && !is_domain()) return AbortCode::out_of_memory;
     return AbortCode::length_too_high;
   }
 

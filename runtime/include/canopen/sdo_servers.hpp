@@ -60,7 +60,8 @@ class SdoServers {
   [[nodiscard]] bool serve(ObjectStore<Device>& store, B& bus, Hooks&& hooks, TimePoint now) {
     for (std::size_t i = 0; i < count; ++i) {
       while (servers_[i].has_reply()) {
-        if (!send_data(bus, cob_id_of_server(i, response_sub_index, store), 8, servers_[i].reply().data())) return false;
+        if (!send_data(bus, cob_id_of_server(i, response_sub_index, store), 8, servers_[i].reply().data()))
+          return false;
         servers_[i].reply_sent(hooks, now);
       }
     }
@@ -143,7 +144,7 @@ class SdoServers {
 /// is valid, or is a restricted one.
 template <class Device>
 [[nodiscard]] AbortCode check_sdo_cob_id(EntryAccess<Device> entries, std::uint16_t index, std::uint8_t sub_index,
-                                                std::span<const std::uint8_t> bytes) {
+                                         std::span<const std::uint8_t> bytes) {
   if (sub_index != 1 && sub_index != 2) return ok;
   const CobId before{entries.number(entries.find(index, sub_index))};
   return check_pdo_cob_id(before, CobId{number_in(bytes)}, true);

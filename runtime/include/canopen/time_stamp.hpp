@@ -61,8 +61,7 @@ class TimeStamp {
 /// What speaks against writing these bytes to 1012h (CiA 301, 7.5.2.15). 0609 0030h: the CAN-ID changes while TIME is
 /// consumed or produced, is a restricted one, or has 29 bits where the device takes 11.
 template <class Device>
-[[nodiscard]] AbortCode check_time_parameter(EntryAccess<Device> entries,
-                                                    std::span<const std::uint8_t> bytes) {
+[[nodiscard]] AbortCode check_time_parameter(EntryAccess<Device> entries, std::span<const std::uint8_t> bytes) {
   constexpr std::uint32_t in_use = 0xC000'0000;
   const std::uint32_t after = number_in(bytes);
   const std::uint32_t before = entries.template number<0x1012, 0>();

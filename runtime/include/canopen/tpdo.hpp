@@ -155,7 +155,8 @@ class TpdoService {
     for (const Slot& slot : slots_) {
       if (!wanted(slot) && (slot.flags & timed) == 0) continue;
       TimePoint at = wanted(slot) || event_timer_expired(slot, now) ? now : slot.times.event_due;
-      if ((slot.flags & inhibited) != 0 && is_ahead(slot.times.inhibit_end, inhibit_unit, now) && slot.times.inhibit_end > at)
+      if ((slot.flags & inhibited) != 0 && is_ahead(slot.times.inhibit_end, inhibit_unit, now) &&
+          slot.times.inhibit_end > at)
         at = slot.times.inhibit_end;
       if (!next || at < *next) next = at;
     }
@@ -356,8 +357,7 @@ class TpdoService {
 
   template <class... Pdo, std::size_t... I>
   static void pack_static([[maybe_unused]] std::size_t which, [[maybe_unused]] const ObjectStore<Device>& store,
-                          [[maybe_unused]] Frame& frame, PdoList<Pdo...>,
-                          std::index_sequence<I...>) {
+                          [[maybe_unused]] Frame& frame, PdoList<Pdo...>, std::index_sequence<I...>) {
     (pack_if<Pdo, Mapped::capacities[I] == 0>(which == I, store, frame), ...);
   }
 
