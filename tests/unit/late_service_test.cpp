@@ -52,6 +52,15 @@ TEST(LateTpdo, GoesOutWhoseInhibitTimeEnded40MinutesAgo) {
   EXPECT_EQ(sent.substr(0, 12), "705 05 | 185") << sent;
 }
 
+TEST(LateHeartbeat, GoesOutOnceAndThenEveryPeriod) {
+  Bench device;
+  device.ask("605 2B 17 10 00 0A 00 00 00");
+  pass_without_room(device, 40min);
+  EXPECT_EQ(serve(device), "705 7F");
+  EXPECT_EQ(serve(device), "");
+  EXPECT_EQ(device.pass(10ms), "705 7F");
+}
+
 TEST(LateEmcy, GoesOutWhoseInhibitTimeEnded40MinutesAgo) {
   Bench device;
   device.node.set<od::inhibit_time_emcy>(100);  // 10 ms

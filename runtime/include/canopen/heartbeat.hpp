@@ -41,7 +41,7 @@ class HeartbeatProducer {
     boot_up_due_ = false;
     running_ = period.count() != 0;
     due_ = due_ + period;
-    if (now >= due_) due_ = now + period;  // served so late that whole periods are missing
+    if (!is_within(due_, period, now)) due_ = now + period;  // served so late that whole periods are missing
     return true;
   }
 

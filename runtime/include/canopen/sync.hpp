@@ -96,7 +96,7 @@ class SyncProducer {
     counter_ = counter;
     const Duration period = period_of(store);
     due_ = due_ + period;
-    if (now >= due_) due_ = now + period;  // served so late that whole periods are missing
+    if (!is_within(due_, period, now)) due_ = now + period;  // served so late that whole periods are missing
     return Sync{data[0], true};
   }
 
