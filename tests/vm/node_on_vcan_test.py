@@ -48,6 +48,7 @@ def can_utils(bus: Bus) -> None:
 
 def filters(bus: Bus) -> None:
     """The kernel's own list: what a node does not look at does not reach it."""
+    expect("SDO", bus.ask(0x605, "40 00 10 00 00 00 00 00", 0x585), "43 00 10 00 00 00 00 00")
     with open("/proc/net/can/rcvlist_sff", encoding="ascii") as file:
         listed = set(re.findall(r"^ *vcan0 +([0-9a-f]{3}) ", file.read(), re.M))
     expect("filters of the node", {"000", "080", "205", "305", "605"} <= listed and "585" not in listed, True)
