@@ -143,7 +143,8 @@ class VirtualBus {
     Endpoint* winner = nullptr;
     for (const auto& endpoint : endpoints_) {
       if (endpoint->waiting_.empty()) continue;
-      if (winner == nullptr || arbitration_value(endpoint->waiting_.front()) < arbitration_value(winner->waiting_.front())) {
+      if (winner == nullptr ||
+          arbitration_value(endpoint->waiting_.front()) < arbitration_value(winner->waiting_.front())) {
         winner = endpoint.get();
       }
     }
