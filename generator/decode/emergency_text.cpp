@@ -1,5 +1,6 @@
 #include "decode/emergency_text.hpp"
 
+#include <algorithm>
 #include <canopen/emcy_consumer.hpp>
 #include <canopen/error_register.hpp>
 
@@ -195,7 +196,13 @@ std::string_view emergency_text(std::uint16_t code, std::uint16_t profile) {
   for (const ProfileCode& row : profile_codes) {
     if (row.profile == profile && row.code == code) return row.text;
   }
-  return canopen::emergency_text(code);
+  // Other profiles put codes of their own into the classes of CiA 301.
+  const auto is_known = [](std::uint16_t wanted) {
+    return std::ranges::any_of(canopen::emergency_code_texts, [&](const canopen::EmergencyCodeText& row) {
+      return (wanted & row.mask) == row.code;
+    });
+  };
+  return canopen::emergency_text(is_known(code) ? code : static_cast<std::uint16_t>(code & 0xF000));
 }
 
 void append_error_register(std::string& text, std::uint8_t error_register) {

@@ -110,8 +110,8 @@ class Suggestions {
   /// `; did you mean a or b?`
   [[nodiscard]] std::string text() {
     std::ranges::stable_sort(rows_, {}, &Row::first);
-    const auto twice = std::ranges::unique(rows_, {}, &Row::second);
-    rows_.erase(twice.begin(), twice.end());
+    const auto same = [](const Row& a, const Row& b) { return a.second == b.second; };
+    rows_.erase(std::unique(rows_.begin(), rows_.end(), same), rows_.end());
     if (rows_.empty()) return "";
     std::string out = "; did you mean ";
     const std::size_t count = std::min(rows_.size(), most_suggestions);
