@@ -17,9 +17,14 @@ int main(int argc, char** argv) {
   edsc::add_dump_command(app, exit_code);
   edsc::add_format_command(app, exit_code);
   edsc::add_diff_command(app, exit_code);
-  edsc::add_bus_command(app, exit_code);
   edsc::add_decode_command(app, exit_code);
   edsc::add_completion_command(app, exit_code);
+  edsc::add_bus_command(app, exit_code);
+  edsc::add_scan_command(app, exit_code);
+  edsc::add_read_command(app, exit_code);
+  edsc::add_write_command(app, exit_code);
+  edsc::add_nmt_command(app, exit_code);
+  edsc::add_lss_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& problem) {

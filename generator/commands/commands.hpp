@@ -24,10 +24,15 @@ void add_check_command(CLI::App& app, int& exit_code);
 void add_dump_command(CLI::App& app, int& exit_code);
 void add_format_command(CLI::App& app, int& exit_code);
 void add_diff_command(CLI::App& app, int& exit_code);
-void add_bus_command(CLI::App& app, int& exit_code);
 void add_decode_command(CLI::App& app, int& exit_code);
 /// Describes all subcommands of `app`, also those that are added later.
 void add_completion_command(CLI::App& app, int& exit_code);
+void add_bus_command(CLI::App& app, int& exit_code);
+void add_scan_command(CLI::App& app, int& exit_code);
+void add_read_command(CLI::App& app, int& exit_code);
+void add_write_command(CLI::App& app, int& exit_code);
+void add_nmt_command(CLI::App& app, int& exit_code);
+void add_lss_command(CLI::App& app, int& exit_code);
 
 /// `--color auto|always|never`, and what it comes to on this stream.
 struct ColorOption {

@@ -1,118 +1,48 @@
 #include "format/concise_dcf.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
-#include "device/value.hpp"
-#include "eds/number.hpp"
-#include "format/section_order.hpp"
-#include "text/utf8.hpp"
+#include "format/configured_values.hpp"
 
 namespace edsc {
-namespace {
-
-using canopen::DataClass;
-using canopen::DataType;
-
-void append_number(std::string& bytes, std::uint64_t number, unsigned count) {
-  for (unsigned i = 0; i < count; ++i) bytes += static_cast<char>(number >> (8 * i));
-}
-
-/// A value as an SDO download carries it.
-std::string data_of(const Value& value, const canopen::DataTypeRow& type) {
-  std::string data;
-  if (type.type == DataType::unicode_string) {
-    for (const char16_t unit : to_utf16(value.bytes)) append_number(data, unit, 2);
-  } else if (type.kind == DataClass::string) {
-    data = value.bytes;
-  } else {
-    append_number(data, value.bits, (type.bits + 7U) / 8U);
-  }
-  return data;
-}
-
-class ConciseDcf {
- public:
-  ConciseDcf(const DataSheet& sheet, const Device& device, Diagnostics& diagnostics)
-      : sheet_(sheet), device_(device), diagnostics_(diagnostics) {}
-
-  std::string write() {
-    for (const Object& object : device_.objects) {
-      const ObjectDescription* const description = find_object(sheet_, object.index);
-      for (const Entry& entry : object.entries) {
-        if (description != nullptr && canopen::writable(entry.access)) add(entry, *description);
-      }
-    }
-    std::string stream;
-    append_number(stream, count_, 4);
-    return stream + entries_;
-  }
-
- private:
-  /// The two fields of an entry; null where the data sheet has none.
-  struct Fields {
-    const Field* default_value = nullptr;
-    const Field* parameter_value = nullptr;
-  };
-
-  static Fields fields_of(const EntryDescription& description) {
-    return {&description.default_value, &description.parameter_value};
-  }
-
-  /// In a DCF the values of a compact form are what is configured; in an EDS they are its defaults.
-  [[nodiscard]] Fields fields_of(const Entry& entry, const ObjectDescription& object) const {
-    const auto sub = std::ranges::find(object.sub_objects, entry.sub_index, &SubObjectDescription::sub_index);
-    if (sub != object.sub_objects.end()) return fields_of(*sub);
-    const Object* const resolved = device_.find(entry.index);
-    if (!resolved->has_sub_indices()) return fields_of(object);
-    if (entry.sub_index == 0) return {};
-    Fields fields = fields_of(object);
-    const auto value = std::ranges::find(object.compact_values, entry.sub_index, &NumberedField::number);
-    if (value != object.compact_values.end()) {
-      (sheet_.is_dcf ? fields.parameter_value : fields.default_value) = &value->field;
-    }
-    return fields;
-  }
-
-  void add(const Entry& entry, const ObjectDescription& object) {
-    if (entry.type->kind == DataClass::domain) return;
-    const Fields fields = fields_of(entry, object);
-    if (fields.parameter_value == nullptr || strip_inline_comment(fields.parameter_value->text).empty()) return;
-    const auto configured = data(*fields.parameter_value, entry, diagnostics_);
-    Diagnostics ignored;
-    if (!configured || configured == data(*fields.default_value, entry, ignored)) return;
-    append_number(entries_, entry.index, 2);
-    append_number(entries_, entry.sub_index, 1);
-    append_number(entries_, configured->size(), 4);
-    entries_ += *configured;
-    ++count_;
-  }
-
-  [[nodiscard]] std::optional<std::string> data(const Field& field, const Entry& entry,
-                                                Diagnostics& diagnostics) const {
-    const auto value = parse_value(field, *entry.type, device_.node_id, diagnostics);
-    if (!value) return std::nullopt;
-    if (value->plus_node_id) {
-      diagnostics.error(
-          "node-id", field.position,
-          fmt::format("{} follows the node-ID, which is not known", entry_label(entry.index, entry.sub_index)));
-      return std::nullopt;
-    }
-    return data_of(*value, *entry.type);
-  }
-
-  const DataSheet& sheet_;
-  const Device& device_;
-  Diagnostics& diagnostics_;
-  std::string entries_;
-  std::uint32_t count_ = 0;
-};
-
-}  // namespace
 
 std::string concise_dcf(const DataSheet& sheet, const Device& device, Diagnostics& diagnostics) {
-  return ConciseDcf(sheet, device, diagnostics).write();
+  std::vector<ConfiguredValue> values = configured_values(sheet, device, diagnostics);
+  std::erase_if(values, [](const ConfiguredValue& value) { return !value.differs; });
+  std::string stream;
+  append_bytes(stream, values.size(), 4);
+  for (const ConfiguredValue& value : values) {
+    append_bytes(stream, value.entry->index, 2);
+    append_bytes(stream, value.entry->sub_index, 1);
+    append_bytes(stream, value.data.size(), 4);
+    stream += value.data;
+  }
+  return stream;
+}
+
+std::optional<std::vector<ConciseEntry>> read_concise_dcf(std::string_view stream) {
+  const auto number = [&stream](unsigned count) {
+    std::uint64_t value = 0;
+    for (unsigned i = count; i-- > 0;) value = value << 8 | static_cast<unsigned char>(stream[i]);
+    stream.remove_prefix(count);
+    return value;
+  };
+  constexpr std::size_t head = 7;
+  if (stream.size() < 4) return std::nullopt;
+  std::vector<ConciseEntry> entries;
+  for (std::uint64_t left = number(4); left > 0; --left) {
+    if (stream.size() < head) return std::nullopt;
+    ConciseEntry entry;
+    entry.index = static_cast<std::uint16_t>(number(2));
+    entry.sub_index = static_cast<std::uint8_t>(number(1));
+    const std::uint64_t size = number(4);
+    if (stream.size() < size) return std::nullopt;
+    entry.data = stream.substr(0, size);
+    stream.remove_prefix(size);
+    entries.push_back(entry);
+  }
+  if (!stream.empty()) return std::nullopt;
+  return entries;
 }
 
 }  // namespace edsc

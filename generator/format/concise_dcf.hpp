@@ -1,7 +1,11 @@
 /// The concise DCF: what an NMT master downloads to configure a node, object 1F22h (CiA 302-3, 4.2).
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "device/device.hpp"
 #include "eds/data_sheet.hpp"
@@ -12,5 +16,14 @@ namespace edsc {
 /// writable entries whose ParameterValue differs from their default. `device` is that of `sheet`, with the node-ID. A
 /// formula without node-ID, and a value that cannot be read, is reported; what the report is about is left out.
 [[nodiscard]] std::string concise_dcf(const DataSheet& sheet, const Device& device, Diagnostics& diagnostics);
+
+struct ConciseEntry {
+  std::uint16_t index = 0;
+  std::uint8_t sub_index = 0;
+  std::string_view data;  ///< of the stream
+};
+
+/// The entries of such a stream; nothing when it is shorter or longer than it says.
+[[nodiscard]] std::optional<std::vector<ConciseEntry>> read_concise_dcf(std::string_view stream);
 
 }  // namespace edsc

@@ -1,0 +1,74 @@
+#include "commands/live_device.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+#include "commands/commands.hpp"
+#include "decode/find_entry.hpp"
+
+namespace edsc {
+namespace {
+
+NamedEntries by_address(const std::string& text) {
+  const auto address = parse_entry_address(text);
+  if (!address) {
+    return {{}, fmt::format("\"{}\" is no address such as 1018h:01; for names a data sheet is needed (--eds)", text)};
+  }
+  LiveEntry entry;
+  entry.index = address->index;
+  entry.sub_index = address->sub_index.value_or(0);
+  return {{entry}, ""};
+}
+
+}  // namespace
+
+std::unique_ptr<LoadedDevice> load_live_device(const std::string& path, std::uint8_t node) {
+  Diagnostics diagnostics;
+  diagnostics.drop_notes();
+  LoadSettings settings;
+  settings.path = path;
+  settings.node_id = node;
+  settings.check = false;
+  auto loaded = load_device(settings, diagnostics);
+  if (loaded->device) return loaded;
+  print_findings(stderr, diagnostics, ColorOption{});
+  return nullptr;
+}
+
+NamedEntries name_entries(const Device* device, const std::string& text) {
+  if (device == nullptr) return by_address(text);
+  const FoundEntry found = find_entry(*device, text);
+  if (!found.ok()) return {{}, found.problem};
+  if (found.entry != nullptr) return {{live_entry(*found.object, *found.entry)}, ""};
+  NamedEntries named;
+  for (const Entry& entry : found.object->entries) {
+    if (canopen::readable(entry.access)) named.entries.push_back(live_entry(*found.object, entry));
+  }
+  if (named.entries.empty()) {
+    named.problem =
+        fmt::format("{} \"{}\" has no entry that can be read", index_label(found.object->index), found.object->name);
+  }
+  return named;
+}
+
+NamedEntries name_entry(const Device* device, const std::string& text) {
+  if (device == nullptr) return by_address(text);
+  const FoundEntry found = find_one_entry(*device, text);
+  if (!found.ok()) return {{}, found.problem};
+  return {{live_entry(*found.object, *found.entry)}, ""};
+}
+
+bool read_bytes(const std::string& path, std::vector<std::uint8_t>& bytes, std::string& problem) {
+  errno = 0;
+  std::ifstream file{path, std::ios::binary};
+  if (file) bytes.assign(std::istreambuf_iterator<char>{file}, {});
+  if (file && !file.bad()) return true;
+  problem = fmt::format("{}: {}", path, errno != 0 ? std::strerror(errno) : "cannot be read");
+  return false;
+}
+
+}  // namespace edsc

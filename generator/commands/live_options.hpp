@@ -1,0 +1,41 @@
+/// Arguments that the commands at a live bus have in common.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <canopen/data_type.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace edsc {
+
+/// `BUS`
+CLI::Option* add_bus_argument(CLI::App& command, std::string& bus);
+
+/// `NODE`: 1..127.
+CLI::Option* add_node_argument(CLI::App& command, std::uint8_t& node);
+
+/// `--timeout MS`
+CLI::Option* add_timeout_option(CLI::App& command, unsigned& milliseconds);
+
+/// `--step MS` of Fastscan
+CLI::Option* add_step_option(CLI::App& command, unsigned& milliseconds);
+
+/// `--format text|json`
+CLI::Option* add_format_option(CLI::App& command, std::string& format);
+
+/// `--type TYPE`
+CLI::Option* add_type_option(CLI::App& command, const canopen::DataTypeRow*& type);
+
+/// A number as people write it: 31, 0x1F or 1Fh. Nothing when it is none, or above `most`.
+[[nodiscard]] std::optional<std::uint32_t> parse_count(const std::string& text, std::uint32_t most = 0xFFFF'FFFF);
+
+/// `1..127`, `5` or `1,3,8..20`: ascending, each once. Empty when it is none of these.
+[[nodiscard]] std::vector<std::uint8_t> parse_node_list(const std::string& text);
+
+/// An option or argument that is such a number.
+CLI::Option* add_count_option(CLI::App& command, const std::string& name, std::optional<std::uint32_t>& number,
+                              const std::string& description);
+
+}  // namespace edsc

@@ -1,0 +1,206 @@
+#include "live/scan.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "commands/commands.hpp"
+#include "commands/live_options.hpp"
+#include "commands/load_device.hpp"
+#include "live/device_profile.hpp"
+#include "live/exit_code.hpp"
+#include "live/identity.hpp"
+#include "live/lss_session.hpp"
+#include "live/nmt_text.hpp"
+#include "live/text_table.hpp"
+#include "text/utf8.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr const char* examples = R"(Examples:
+  edsc scan socketcan:can0                                   all nodes that answer or send heartbeats
+  edsc scan socketcan:can0 --nodes 1..10 --listen 3000       some of them; three seconds for slow heartbeats
+  edsc scan socketcan:can0 --eds drive.eds --eds io.eds      and which data sheet fits each
+  edsc scan slcan:/dev/ttyACM0 --lss                         and the devices without node-ID, by LSS Fastscan
+  edsc scan socketcand:127.0.0.1:29536/vcan0 --format json   for a program)";
+
+struct Settings {
+  std::string bus;
+  std::string nodes = "1..127";
+  ScanSettings scan;
+  std::vector<std::string> sheets;
+  bool lss = false;
+  unsigned lss_step_ms = 20;
+  std::string format = "text";
+  ColorOption color;
+};
+
+/// A data sheet that devices are compared with.
+struct Candidate {
+  std::string path;
+  Identity identity;
+};
+
+struct Findings {
+  std::vector<FoundNode> nodes;
+  std::vector<canopen::LssAddress> unconfigured;
+};
+
+using Json = nlohmann::ordered_json;
+
+Identity identity_of(const FoundNode& node) {
+  return {node.device_type, node.vendor_id, node.product_code, node.revision_number, node.serial_number};
+}
+
+std::string hex_or_dash(std::optional<std::uint32_t> number) { return number ? fmt::format("{:08X}h", *number) : "-"; }
+
+/// Text of a device, which may be any bytes.
+std::string shown(const std::string& bytes) {
+  std::string text;
+  for (const char c : bytes) text += static_cast<unsigned char>(c) < 0x20 || c == 0x7F ? '.' : c;
+  return is_utf8(text) ? text : "?";
+}
+
+bool fits(Fit fit) { return fit == Fit::same || fit == Fit::minor_revision || fit == Fit::major_revision; }
+
+std::string fits_text(const FoundNode& node, const std::vector<Candidate>& candidates) {
+  std::string text;
+  for (const Candidate& candidate : candidates) {
+    const Fit fit = compare_identity(candidate.identity, identity_of(node));
+    if (!fits(fit)) continue;
+    text += (text.empty() ? "" : ", ") + candidate.path;
+    if (fit != Fit::same) text += fmt::format(" ({})", to_text(fit));
+  }
+  return text.empty() ? "none" : text;
+}
+
+void print_text(const Findings& found, const std::vector<Candidate>& candidates, bool colour) {
+  TextTable table;
+  std::vector<std::string> head{"node", "state", "vendor-ID", "product", "revision", "serial", "device type", "name"};
+  if (!candidates.empty()) head.emplace_back("data sheet");
+  table.add(std::move(head));
+  for (const FoundNode& node : found.nodes) {
+    std::vector<std::string> row{
+        fmt::format("{:>4}", node.node_id), std::string{node.state ? to_text(*node.state) : "-"},
+        hex_or_dash(node.vendor_id),        hex_or_dash(node.product_code),
+        hex_or_dash(node.revision_number),  hex_or_dash(node.serial_number)};
+    row.push_back(!node.answers_sdo  ? "no answer over SDO"
+                  : node.device_type ? fmt::format("{:08X}h {}", *node.device_type, profile_text(*node.device_type))
+                                     : "-");
+    row.push_back(node.name ? shown(*node.name) : "-");
+    if (!candidates.empty()) row.push_back(fits_text(node, candidates));
+    table.add(std::move(row));
+  }
+  const std::vector<std::string> lines = table.lines();
+  for (std::size_t i = found.nodes.empty() ? lines.size() : 0; i < lines.size(); ++i) {
+    const bool bold = colour && i == 0;
+    fmt::print("{}{}{}\n", bold ? "\x1B[1m" : "", lines[i], bold ? "\x1B[0m" : "");
+  }
+  for (const canopen::LssAddress& address : found.unconfigured) {
+    fmt::print("without node-ID: vendor-ID {:08X}h, product code {:08X}h, revision {:08X}h, serial number {:08X}h\n",
+               address.vendor_id, address.product_code, address.revision_number, address.serial_number);
+  }
+}
+
+Json number_or_null(std::optional<std::uint32_t> number) { return number ? Json(*number) : Json(nullptr); }
+
+Json as_json(const FoundNode& node, const std::vector<Candidate>& candidates) {
+  Json json{{"node_id", node.node_id}};
+  json["state"] = node.state ? Json(to_text(*node.state)) : Json(nullptr);
+  json["answers_sdo"] = node.answers_sdo;
+  json["device_type"] = number_or_null(node.device_type);
+  json["profile"] = node.device_type ? Json(*node.device_type & 0xFFFF) : Json(nullptr);
+  json["vendor_id"] = number_or_null(node.vendor_id);
+  json["product_code"] = number_or_null(node.product_code);
+  json["revision_number"] = number_or_null(node.revision_number);
+  json["serial_number"] = number_or_null(node.serial_number);
+  json["name"] = node.name ? Json(shown(*node.name)) : Json(nullptr);
+  json["data_sheets"] = Json::array();
+  for (const Candidate& candidate : candidates) {
+    const Fit fit = compare_identity(candidate.identity, identity_of(node));
+    if (fits(fit)) json["data_sheets"].push_back({{"file", candidate.path}, {"fit", to_text(fit)}});
+  }
+  return json;
+}
+
+void print_json(const Findings& found, const std::vector<Candidate>& candidates) {
+  Json json{{"version", 1}, {"nodes", Json::array()}, {"unconfigured", Json::array()}};
+  for (const FoundNode& node : found.nodes) json["nodes"].push_back(as_json(node, candidates));
+  for (const canopen::LssAddress& address : found.unconfigured) {
+    json["unconfigured"].push_back({{"vendor_id", address.vendor_id},
+                                    {"product_code", address.product_code},
+                                    {"revision_number", address.revision_number},
+                                    {"serial_number", address.serial_number}});
+  }
+  fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
+/// False when a data sheet cannot be read, which is then told.
+bool load_candidates(const Settings& settings, std::vector<Candidate>& candidates) {
+  for (const std::string& path : settings.sheets) {
+    Diagnostics diagnostics;
+    LoadSettings load;
+    load.path = path;
+    load.check = false;
+    const auto loaded = load_device(load, diagnostics);
+    if (!loaded->device) {
+      print_findings(stderr, diagnostics, settings.color);
+      return false;
+    }
+    candidates.push_back({path, identity_of(*loaded->device)});
+  }
+  return true;
+}
+
+std::vector<canopen::LssAddress> find_unconfigured(LiveBus& bus, const Settings& settings) {
+  canopen::LssTimeouts timeouts;
+  timeouts.fastscan_step = canopen::Duration{settings.lss_step_ms * 1000U};
+  return LssSession{bus, timeouts}.find_unconfigured();
+}
+
+int run_scan(Settings settings) {
+  settings.scan.nodes = parse_node_list(settings.nodes);
+  std::vector<Candidate> candidates;
+  if (!load_candidates(settings, candidates)) return exit_wrong_usage;
+  return with_bus(settings.bus, [&](LiveBus& bus) {
+    Findings found;
+    found.nodes = scan(bus, settings.scan);
+    if (settings.lss) found.unconfigured = find_unconfigured(bus, settings);
+    if (settings.format == "json") {
+      print_json(found, candidates);
+    } else {
+      print_text(found, candidates, settings.color.on(stdout));
+    }
+    if (!found.nodes.empty() || !found.unconfigured.empty()) return int{exit_fine};
+    fmt::print(stderr, "edsc: no node answers on {}\n", settings.bus);
+    return exit_device_failed;
+  });
+}
+
+}  // namespace
+
+void add_scan_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("scan", "which nodes are on a bus, and who they are");
+  command->footer(examples);
+  auto settings = std::make_shared<Settings>();
+  add_bus_argument(*command, settings->bus);
+  command->add_option("--nodes", settings->nodes, "node-IDs to ask: 1..127, or a list such as 1,3,8..20")
+      ->check([](const std::string& text) {
+        return parse_node_list(text).empty() ? "\"" + text + "\" is no list of node-IDs" : std::string{};
+      })
+      ->capture_default_str();
+  add_timeout_option(*command, settings->scan.timeout_ms);
+  command->add_option("--listen", settings->scan.listen_ms, "ms to listen to heartbeats for, at least")
+      ->check(CLI::Range(0, 600'000))
+      ->capture_default_str();
+  command->add_option("--eds", settings->sheets, "data sheet to compare with; may be given more than once")
+      ->type_name("FILE");
+  auto* lss = command->add_flag("--lss", settings->lss, "find devices without node-ID by LSS Fastscan, too");
+  add_step_option(*command, settings->lss_step_ms)->needs(lss);
+  add_format_option(*command, settings->format);
+  settings->color.add_to(*command);
+  command->callback([settings, &exit_code] { exit_code = run_scan(*settings); });
+}
+
+}  // namespace edsc

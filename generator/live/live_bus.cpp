@@ -1,0 +1,86 @@
+#include "live/live_bus.hpp"
+
+#include <fmt/format.h>
+
+#include <system_error>
+
+#include "live/exit_code.hpp"
+
+namespace edsc {
+namespace {
+
+using canopen::Duration;
+using canopen::Frame;
+using canopen::TimePoint;
+
+constexpr Duration look_at_interruption = canopen::from_milliseconds(50);
+constexpr Duration longest_refusal = canopen::from_milliseconds(2000);
+constexpr Duration try_again = canopen::from_milliseconds(1);
+
+}  // namespace
+
+bool LiveBus::send(const Frame& frame) {
+  try {
+    if (bus_.send(frame)) {
+      refused_since_.reset();
+      return true;
+    }
+  } catch (const std::system_error& problem) {
+    throw BusLost{problem.what()};
+  }
+  if (!refused_since_) refused_since_ = now();
+  return false;
+}
+
+void LiveBus::send_all(const Frame& frame) {
+  while (!send(frame)) {
+    (void)receive(try_again);
+    if (Interruption::noted()) throw Interrupted{};
+  }
+}
+
+std::optional<Frame> LiveBus::receive(Duration timeout) {
+  const TimePoint end = now() + std::min(timeout, canopen::longest_span);
+  for (;;) {
+    if (refused_since_ && now() - *refused_since_ > longest_refusal) {
+      throw BusLost{"it takes no frames: nobody acknowledges them, or the controller is off"};
+    }
+    const TimePoint present = now();
+    const Duration left = end > present ? end - present : Duration{0};
+    std::optional<Frame> frame;
+    try {
+      frame = bus_.receive(std::min(left, look_at_interruption));
+    } catch (const std::system_error& problem) {
+      throw BusLost{problem.what()};
+    }
+    if (frame) {
+      if (on_frame) on_frame(*frame, now());
+      return frame;
+    }
+    if (left <= look_at_interruption || Interruption::noted()) return std::nullopt;
+  }
+}
+
+void LiveBus::listen(Duration span) {
+  const TimePoint end = now() + span;
+  for (TimePoint present = now(); present < end; present = now()) {
+    (void)receive(end - present);
+    if (Interruption::noted()) throw Interrupted{};
+  }
+}
+
+int with_bus(const std::string& address, const std::function<int(LiveBus&)>& command) {
+  const Interruption interruption;
+  LiveBus bus{address};
+  try {
+    return command(bus);
+  } catch (const BusLost& problem) {
+    fmt::print(stderr, "edsc: {}: the bus is lost: {}\n", address, problem.what());
+    return exit_device_failed;
+  } catch (const Interrupted&) {
+    fmt::print(stderr, "edsc: interrupted\n");
+    return exit_interrupted;
+  }
+}
+
+}  // namespace edsc

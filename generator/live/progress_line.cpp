@@ -1,0 +1,32 @@
+#include "live/progress_line.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+namespace edsc {
+namespace {
+
+constexpr std::chrono::milliseconds before_the_first{300};
+constexpr std::chrono::milliseconds between{100};
+
+}  // namespace
+
+ProgressLine::ProgressLine() : terminal_{isatty(fileno(stderr)) != 0}, next_{Clock::now() + before_the_first} {}
+
+ProgressLine::~ProgressLine() {
+  if (shown_) fmt::print(stderr, "\r\x1B[K");
+}
+
+bool ProgressLine::due() const { return terminal_ && Clock::now() >= next_; }
+
+void ProgressLine::show(const std::string& text) {
+  if (!due()) return;
+  fmt::print(stderr, "\r{}\x1B[K", text);
+  std::fflush(stderr);
+  shown_ = true;
+  next_ = Clock::now() + between;
+}
+
+}  // namespace edsc

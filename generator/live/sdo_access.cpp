@@ -1,0 +1,138 @@
+#include "live/sdo_access.hpp"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <span>
+
+namespace edsc {
+namespace {
+
+using canopen::AbortCode;
+using canopen::Duration;
+using canopen::Frame;
+
+canopen::SdoClientOptions options_of(const SdoSettings& settings, bool block) {
+  canopen::SdoClientOptions options;
+  options.timeout = Duration{settings.timeout_ms * 1000U};
+  options.block_transfer = block;
+  return options;
+}
+
+bool is_abort_of(const Frame& frame, canopen::NodeId node) {
+  return frame.size == 8 && !frame.remote && !frame.extended &&
+         frame.id == canopen::default_sdo(node).response.can_id() && frame.data[0] == canopen::sdo::abort_command;
+}
+
+/// A client on whose way is noted who has ended the transfer.
+template <class Client>
+struct Observed {
+  Client& client;
+  canopen::NodeId node;
+  bool heard = false;    ///< the device has answered
+  bool aborted = false;  ///< the last thing it said was an abort
+
+  [[nodiscard]] bool busy() const { return client.busy(); }
+  [[nodiscard]] std::optional<canopen::TimePoint> next_deadline() const { return client.next_deadline(); }
+  void on_time(canopen::TimePoint now) { client.on_time(now); }
+  void on_frame(const Frame& frame, canopen::TimePoint now) {
+    if (!frame.extended && frame.id == canopen::default_sdo(node).response.can_id()) {
+      heard = true;
+      aborted = is_abort_of(frame, node);
+    }
+    client.on_frame(frame, now);
+  }
+};
+
+}  // namespace
+
+std::string abort_text(AbortCode code) {
+  const auto number = static_cast<std::uint32_t>(code);
+  return fmt::format("{:04X} {:04X}h, {}", number >> 16, number & 0xFFFF, canopen::to_text(code));
+}
+
+std::string failure_text(const SdoOutcome& outcome) {
+  switch (outcome.end) {
+    case SdoEnd::done: return "done";
+    case SdoEnd::refused: return "refused: " + abort_text(outcome.code);
+    case SdoEnd::no_answer: return "no answer";
+    case SdoEnd::broken: return "the transfer broke: " + abort_text(outcome.code);
+  }
+  return {};
+}
+
+SdoAccess::SdoAccess(LiveBus& bus, canopen::NodeId node, SdoSettings settings)
+    : bus_{bus},
+      node_{node},
+      settings_{settings},
+      segmented_{bus, node, options_of(settings, false)},
+      block_{bus, node, options_of(settings, true)} {}
+
+SdoOutcome SdoAccess::finish(Client& client) {
+  Observed<Client> observed{client, node_};
+  bool interrupted = false;
+  run(bus_, observed, [&] {
+    interrupted = true;
+    client.cancel(AbortCode::general, LiveBus::now());
+    return true;
+  });
+  if (interrupted) throw Interrupted{};
+  SdoOutcome outcome;
+  outcome.code = client.result();
+  if (outcome.code == canopen::ok) return outcome;
+  if (observed.aborted) {
+    outcome.end = SdoEnd::refused;
+  } else {
+    outcome.end = outcome.code == AbortCode::timeout ? SdoEnd::no_answer : SdoEnd::broken;
+  }
+  if (outcome.end == SdoEnd::no_answer && !observed.heard && &client == &block_) no_block_ = true;
+  return outcome;
+}
+
+/// A device that is silent about block transfers is asked again for one by segments.
+template <class Begin>
+SdoOutcome SdoAccess::transfer(SdoTransfer how, Begin begin) {
+  if (how == SdoTransfer::block && !no_block_) {
+    begin(block_);
+    SdoOutcome outcome = finish(block_);
+    if (!no_block_) return outcome;
+  }
+  begin(segmented_);
+  return finish(segmented_);
+}
+
+SdoOutcome SdoAccess::upload(std::uint16_t index, std::uint8_t sub_index, SdoTransfer how,
+                             const SdoProgress& progress) {
+  std::vector<std::uint8_t> bytes;
+  auto take = [&](std::uint32_t /*offset*/, std::span<const std::uint8_t> piece, bool /*last*/) {
+    if (piece.size() > longest_upload - bytes.size()) return AbortCode::out_of_memory;
+    bytes.insert(bytes.end(), piece.begin(), piece.end());
+    if (progress) progress(bytes.size(), 0);
+    return canopen::ok;
+  };
+  SdoOutcome outcome = transfer(how, [&](Client& client) {
+    bytes.clear();
+    (void)client.upload(index, sub_index, canopen::sink_of(take), LiveBus::now());
+  });
+  if (outcome.done()) outcome.bytes = std::move(bytes);
+  return outcome;
+}
+
+SdoOutcome SdoAccess::download(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> value,
+                               SdoTransfer how, const SdoProgress& progress) {
+  if (!progress || value.size() <= 4) {
+    return transfer(how, [&](Client& client) { (void)client.download(index, sub_index, value, LiveBus::now()); });
+  }
+  auto give = [&](std::uint32_t offset, std::span<std::uint8_t> room) -> canopen::Result<std::uint32_t> {
+    const auto size = std::min(room.size(), value.size() - offset);
+    if (size != 0) std::memcpy(room.data(), &value[offset], size);
+    progress(offset + size, value.size());
+    return static_cast<std::uint32_t>(size);
+  };
+  return transfer(how, [&](Client& client) {
+    (void)client.download(index, sub_index, canopen::source_of(give, static_cast<std::uint32_t>(value.size())),
+                          LiveBus::now());
+  });
+}
+
+}  // namespace edsc

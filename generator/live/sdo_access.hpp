@@ -1,0 +1,79 @@
+/// Entries of a remote node over SDO, from a command.
+#pragma once
+
+#include <canopen/abort_code.hpp>
+#include <canopen/node_id.hpp>
+#include <canopen/sdo_client.hpp>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "live/live_bus.hpp"
+
+namespace edsc {
+
+enum class SdoEnd : std::uint8_t {
+  done,
+  refused,    ///< by the device, with its abort code
+  no_answer,  ///< the device was silent for the timeout
+  broken,     ///< what the device answered is against the protocol, or longer than is bearable
+};
+
+struct SdoOutcome {
+  SdoEnd end = SdoEnd::done;
+  canopen::AbortCode code = canopen::ok;
+  std::vector<std::uint8_t> bytes;  ///< of an upload
+
+  [[nodiscard]] bool done() const { return end == SdoEnd::done; }
+};
+
+/// Why there is no value: `refused: 0602 0000h, object does not exist`.
+[[nodiscard]] std::string failure_text(const SdoOutcome& outcome);
+
+/// `0602 0000h, object does not exist`
+[[nodiscard]] std::string abort_text(canopen::AbortCode code);
+
+enum class SdoTransfer : std::uint8_t {
+  segmented,  ///< expedited where four bytes do
+  block,      ///< by segments when the device has no block transfer
+};
+
+struct SdoSettings {
+  unsigned timeout_ms = 500;
+};
+
+/// How many bytes have gone, of how many; 0 where that is not known.
+using SdoProgress = std::function<void(std::size_t done, std::size_t total)>;
+
+/// One SDO server of one node. Throws Interrupted, when the transfer has been aborted, and BusLost.
+class SdoAccess {
+ public:
+  static constexpr std::size_t longest_upload = 256 * 1024 * 1024;
+
+  SdoAccess(LiveBus& bus, canopen::NodeId node, SdoSettings settings);
+
+  [[nodiscard]] SdoOutcome upload(std::uint16_t index, std::uint8_t sub_index,
+                                  SdoTransfer transfer = SdoTransfer::segmented, const SdoProgress& progress = {});
+  [[nodiscard]] SdoOutcome download(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> value,
+                                    SdoTransfer transfer = SdoTransfer::segmented, const SdoProgress& progress = {});
+
+  [[nodiscard]] canopen::NodeId node() const { return node_; }
+
+ private:
+  using Client = canopen::SdoClient<LiveBus>;
+
+  template <class Begin>
+  SdoOutcome transfer(SdoTransfer how, Begin begin);
+  SdoOutcome finish(Client& client);
+
+  LiveBus& bus_;
+  canopen::NodeId node_;
+  SdoSettings settings_;
+  Client segmented_;
+  Client block_;
+  bool no_block_ = false;  ///< the device was silent where a block transfer was asked for
+};
+
+}  // namespace edsc

@@ -1,0 +1,44 @@
+/// Columns of text.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace edsc {
+
+/// Rows of cells; each column is as wide as its widest cell, with two blanks between columns and none at the end of a
+/// line. Characters are counted as code points of UTF-8.
+class TextTable {
+ public:
+  void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
+
+  [[nodiscard]] std::vector<std::string> lines() const {
+    std::vector<std::size_t> widths;
+    for (const auto& row : rows_) {
+      widths.resize(std::max(widths.size(), row.size()), 0);
+      for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width_of(row[i]));
+    }
+    std::vector<std::string> lines;
+    for (const auto& row : rows_) {
+      std::string line;
+      for (std::size_t i = 0; i < row.size(); ++i) {
+        line += row[i];
+        line.append(widths[i] - width_of(row[i]) + 2, ' ');
+      }
+      line.erase(line.find_last_not_of(' ') + 1);
+      lines.push_back(std::move(line));
+    }
+    return lines;
+  }
+
+ private:
+  [[nodiscard]] static std::size_t width_of(const std::string& text) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+  }
+
+  std::vector<std::vector<std::string>> rows_;
+};
+
+}  // namespace edsc
