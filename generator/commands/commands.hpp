@@ -31,6 +31,7 @@ void add_bus_command(CLI::App& app, int& exit_code);
 void add_scan_command(CLI::App& app, int& exit_code);
 void add_read_command(CLI::App& app, int& exit_code);
 void add_write_command(CLI::App& app, int& exit_code);
+void add_configure_command(CLI::App& app, int& exit_code);
 void add_nmt_command(CLI::App& app, int& exit_code);
 void add_lss_command(CLI::App& app, int& exit_code);
 

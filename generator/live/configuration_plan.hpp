@@ -1,0 +1,45 @@
+/// The order in which the values of a DCF go to a node: what may change only while something is off goes when it is
+/// off.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "live/live_entry.hpp"
+
+namespace edsc {
+
+/// One value that a DCF configures.
+struct ConfigurationValue {
+  LiveEntry entry;
+  std::vector<std::uint8_t> bytes;
+  Position position;  ///< in the DCF; no file where it is a concise one
+};
+
+enum class StepKind : std::uint8_t {
+  write,       ///< the value
+  switch_off,  ///< COB-ID: read it, and write it with the bits that make it off; nothing where it is off
+  switch_on,   ///< COB-ID: write the value, or what was read before where the DCF has none
+  clear,       ///< write 0: the number of mapped objects, or a period
+};
+
+struct ConfigurationStep {
+  StepKind kind = StepKind::write;
+  LiveEntry entry;
+  const ConfigurationValue* value = nullptr;  ///< null where the DCF says nothing of this entry
+  std::vector<std::uint8_t> bytes;            ///< to write; of `switch_on` empty where the DCF says nothing
+  std::uint32_t off_set = 0;                  ///< COB-ID: bits that are set, and cleared, when it is off
+  std::uint32_t off_cleared = 0;
+  unsigned group = 0;  ///< steps of one group other than 0 are given up together
+};
+
+/// Values that command rather than configure, and what is written at the end: 1003h, 1010h, 1011h, 1020h, 1023h to
+/// 1026h, 1F50h to 1F5Ah, 1F82h; and what tools leave alone (ObjFlags bit 0).
+[[nodiscard]] bool is_left_out(const LiveEntry& entry);
+
+/// The steps, in order: communication parameters, application, then each PDO: its COB-ID off, number of mapped objects
+/// 0, mapping, number, other parameters, COB-ID. `values` must outlive them; `device` is null for a concise DCF.
+[[nodiscard]] std::vector<ConfigurationStep> plan_configuration(const std::vector<ConfigurationValue>& values,
+                                                                const Device* device);
+
+}  // namespace edsc
