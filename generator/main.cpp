@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
   edsc::add_read_command(app, exit_code);
   edsc::add_write_command(app, exit_code);
   edsc::add_configure_command(app, exit_code);
+  edsc::add_monitor_command(app, exit_code);
   edsc::add_nmt_command(app, exit_code);
   edsc::add_lss_command(app, exit_code);
   try {

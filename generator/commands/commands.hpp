@@ -32,6 +32,7 @@ void add_scan_command(CLI::App& app, int& exit_code);
 void add_read_command(CLI::App& app, int& exit_code);
 void add_write_command(CLI::App& app, int& exit_code);
 void add_configure_command(CLI::App& app, int& exit_code);
+void add_monitor_command(CLI::App& app, int& exit_code);
 void add_nmt_command(CLI::App& app, int& exit_code);
 void add_lss_command(CLI::App& app, int& exit_code);
 
