@@ -1,0 +1,150 @@
+/// What the commands at a live bus show: identities, tables, the state of a monitored bus.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "live/identity.hpp"
+#include "live/live_entry.hpp"
+#include "live/monitor_view.hpp"
+#include "live/text_table.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr Identity sheet{0x192, 0x93, 5, 0x0001'0002, {}};
+
+Identity with(std::optional<std::uint32_t> Identity::*number, std::optional<std::uint32_t> value) {
+  Identity identity = sheet;
+  identity.*number = value;
+  return identity;
+}
+
+TEST(Identity, FitsByVendorProductAndRevision) {
+  EXPECT_EQ(compare_identity(sheet, sheet), Fit::same);
+  EXPECT_EQ(compare_identity(sheet, with(&Identity::serial_number, 7)), Fit::same);
+  EXPECT_EQ(compare_identity(sheet, with(&Identity::revision_number, 0x0001'0003)), Fit::minor_revision);
+  EXPECT_EQ(compare_identity(sheet, with(&Identity::revision_number, 0x0002'0002)), Fit::major_revision);
+  EXPECT_EQ(compare_identity(sheet, with(&Identity::product_code, 6)), Fit::other);
+  EXPECT_EQ(compare_identity(sheet, with(&Identity::vendor_id, 0x94)), Fit::other);
+  EXPECT_EQ(compare_identity(sheet, with(&Identity::device_type, 0x191)), Fit::other);
+}
+
+TEST(Identity, IsNotKnownWithoutAVendor) {
+  EXPECT_EQ(compare_identity(sheet, with(&Identity::vendor_id, {})), Fit::unknown);
+  EXPECT_EQ(compare_identity({}, sheet), Fit::unknown);
+}
+
+TEST(Identity, NamesWhatDiffers) {
+  EXPECT_EQ(identity_differences(sheet, {0x192, 0x94, 6, 0x0001'0002, 1}),
+            "vendor-ID is 00000094h, not 00000093h; product code is 00000006h, not 00000005h");
+}
+
+TEST(TextTable, AlignsColumnsByCodePoints) {
+  TextTable table;
+  table.add({"a", "bb", "c"});
+  table.add({"\xC3\xA4\xC3\xB6", "b", ""});
+  EXPECT_EQ(table.lines(), (std::vector<std::string>{"a   bb  c", "\xC3\xA4\xC3\xB6  b"}));
+}
+
+TEST(CutToWidth, CountsCodePointsAndNoColours) {
+  EXPECT_EQ(cut_to_width("abcdef", 4), "abcd");
+  EXPECT_EQ(cut_to_width("\xC3\xA4\xC3\xB6\xC3\xBC", 2), "\xC3\xA4\xC3\xB6");
+  EXPECT_EQ(cut_to_width("\x1B[1mabcdef\x1B[0m", 4), "\x1B[1mabcd\x1B[0m");
+  EXPECT_EQ(cut_to_width("\x1B[1mab\x1B[0m", 4), "\x1B[1mab\x1B[0m");
+}
+
+TEST(CutToWidth, LeavesNoControlCharacterOfADevice) { EXPECT_EQ(cut_to_width("a\tb\x7F", 9), "a.b."); }
+
+TEST(FindType, TakesShortNamesAndThoseOfCia301) {
+  EXPECT_EQ(find_type("u16"), canopen::find_data_type(6));
+  EXPECT_EQ(find_type("unsigned16"), canopen::find_data_type(6));
+  EXPECT_EQ(find_type("f32"), canopen::find_data_type(8));
+  EXPECT_EQ(find_type("u17"), nullptr);
+}
+
+TEST(Rate, IsThatOfTheLastSpan) {
+  Rate rate;
+  rate.count(10);
+  rate.take(2);
+  EXPECT_EQ(rate.per_second(), 5);
+  rate.take(1);
+  EXPECT_EQ(rate.per_second(), 0);
+  EXPECT_EQ(rate.total(), 10U);
+}
+
+Message heartbeat(std::string_view state, Service service = Service::heartbeat) {
+  Message message;
+  message.service = service;
+  message.node_id = 5;
+  message.state = state;
+  return message;
+}
+
+constexpr canopen::Frame frame{0x705, 1, false, false, {5}};
+
+TEST(MonitorState, TellsAChangeOfStateAndNoOtherHeartbeat) {
+  MonitorState state;
+  EXPECT_TRUE(state.add(frame, heartbeat("operational"), 0));
+  EXPECT_FALSE(state.add(frame, heartbeat("operational"), 100'000));
+  EXPECT_TRUE(state.add(frame, heartbeat("stopped"), 200'000));
+  EXPECT_EQ(state.nodes().at(5).heartbeats, 3U);
+}
+
+TEST(MonitorState, KnowsALateHeartbeatByTheOnesBefore) {
+  MonitorState state;
+  state.add(frame, heartbeat("operational"), 0);
+  EXPECT_FALSE(state.nodes().at(5).is_late(60'000'000));  // of one alone nobody knows when the next is due
+  state.add(frame, heartbeat("operational"), 500'000);
+  EXPECT_FALSE(state.nodes().at(5).is_late(1'600'000));
+  EXPECT_TRUE(state.nodes().at(5).is_late(1'600'001));
+  EXPECT_TRUE(state.add(frame, heartbeat("operational"), 3'000'000));  // back again
+  EXPECT_FALSE(state.nodes().at(5).is_late(9'000'000));
+}
+
+TEST(MonitorState, StartsAnewWithABootUpMessage) {
+  MonitorState state;
+  state.add(frame, heartbeat("operational"), 0);
+  EXPECT_TRUE(state.add(frame, heartbeat("boot-up", Service::boot_up), 10'000));
+  EXPECT_TRUE(state.add(frame, heartbeat("boot-up", Service::boot_up), 20'000));
+  EXPECT_EQ(state.nodes().at(5).heartbeats, 1U);
+}
+
+Message tpdo(std::string text) {
+  Message message;
+  message.service = Service::tpdo;
+  message.node_id = 5;
+  message.number = 1;
+  message.text = std::move(text);
+  return message;
+}
+
+TEST(MonitorState, TellsAPdoWhenItsValuesChange) {
+  MonitorState state;
+  EXPECT_TRUE(state.add(frame, tpdo("Speed = 1"), 0));
+  EXPECT_FALSE(state.add(frame, tpdo("Speed = 1"), 1));
+  EXPECT_TRUE(state.add(frame, tpdo("Speed = 2"), 2));
+  EXPECT_EQ(state.pdos().begin()->second.frames.total(), 3U);
+}
+
+TEST(MonitorView, ShowsNodesPdosAndLoad) {
+  MonitorState state;
+  state.start(0);
+  state.set_name(5, "Drive");
+  state.add(frame, heartbeat("operational"), 500'000);
+  state.add(frame, tpdo("Speed = 1 rpm"), 600'000);
+  state.end(1'000'000);
+  const MonitorView view{"socketcan:can0", 125, false};
+  EXPECT_EQ(monitor_lines(state, view, 1'000'000), (std::vector<std::string>{
+                                                       "socketcan:can0  1.0 s  2 frames  2.0 per s  load 0.1 %",
+                                                       "",
+                                                       "node  name   state        heard  last EMCY",
+                                                       "   5  Drive  operational  0.5 s  -",
+                                                       "",
+                                                       "node  PDO     per s  values",
+                                                       "   5  TPDO 1  1.0    Speed = 1 rpm",
+                                                   }));
+}
+
+}  // namespace
+}  // namespace edsc
