@@ -40,7 +40,7 @@ template <class Device, Axis A, Options options = Options{}>
 class Drive {
  public:
   /// The axis must outlive the drive.
-  explicit constexpr Drive(A& axis) : axis_{axis} {}
+  explicit constexpr Drive(A& moved_axis) : axis_{moved_axis} {}
 
   /// Power-on, or a reset that starts the drive anew: transitions 0 and 1. The axis has no power.
   void start() {

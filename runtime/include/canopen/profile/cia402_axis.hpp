@@ -18,9 +18,9 @@ struct Profile {
 
 /// Inputs as bits of 60FDh (CiA 402-2, 10.5.7).
 namespace input {
-inline constexpr std::uint32_t negative_limit = 0x1;
-inline constexpr std::uint32_t positive_limit = 0x2;
-inline constexpr std::uint32_t home_switch = 0x4;
+inline constexpr std::uint8_t negative_limit = 0x1;
+inline constexpr std::uint8_t positive_limit = 0x2;
+inline constexpr std::uint8_t home_switch = 0x4;
 }  // namespace input
 
 /// Commands take the place of those before them; ramps of 0 are as steep as the axis can.

@@ -10,7 +10,7 @@ namespace canopen::cia402 {
 struct HomingMethod {
   std::int8_t number;     ///< 6098h
   std::int8_t direction;  ///< of the search; 0: home is where the axis is
-  std::uint32_t signal;   ///< bit of `input` that is searched and left again; 0: none
+  std::uint8_t signal;    ///< bit of `input` that is searched and left again; 0: none
   bool index_pulse;       ///< home is the next index pulse after that
 };
 
@@ -112,7 +112,7 @@ class Homing {
   enum class Phase : std::uint8_t { idle, search, leave, index, stop, attained, failed };
 
   template <Axis A>
-  [[nodiscard]] static bool active(const A& axis, std::uint32_t signal) {
+  [[nodiscard]] static bool active(const A& axis, std::uint8_t signal) {
     return (axis.inputs() & signal) != 0;
   }
 
