@@ -71,10 +71,7 @@ class PlantMaster {
   /// 1000h is a constant of the data sheet.
   template <class Device>
   [[nodiscard]] static std::uint32_t default_of() {
-    typename Device::Values values{};
-    const canopen::EntryAccess entries{Device::dictionary, reinterpret_cast<std::uint8_t*>(&values),
-                                       canopen::NodeId{1}};
-    return entries.number(Device::dictionary.find(0x1000, 0));
+    return canopen::ObjectStore<Device>{}.template number<0x1000, 0>();
   }
 
   // Booting

@@ -261,7 +261,7 @@ class RpdoService {
 
   template <class Host, class... Pdo, std::size_t... I>
   static void take_static([[maybe_unused]] std::size_t which, [[maybe_unused]] const Frame& frame,
-                          [[maybe_unused]] Host host, PdoList<Pdo...>, std::index_sequence<I...>) {
+                          [[maybe_unused]] const Host& host, PdoList<Pdo...>, std::index_sequence<I...>) {
     (take_if<Pdo, Mapped::capacities[I] == 0>(which == I, frame, host), ...);
   }
 

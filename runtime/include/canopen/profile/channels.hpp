@@ -13,7 +13,8 @@
 namespace canopen {
 
 /// The value of a BOOLEAN.
-[[nodiscard]] inline bool is_true(const EntryAccess& entries, entry::Word word) {
+template <class Device>
+[[nodiscard]] bool is_true(EntryAccess<Device> entries, entry::Word word) {
   std::array<std::uint8_t, 8> scratch;
   return entries.read(word, scratch)[0] != 0;
 }
@@ -39,7 +40,7 @@ struct ChannelObject {
 
   /// The value of a channel, counted from 0; `missing` where the device has no such object or no such element.
   template <class T>
-  [[nodiscard]] static T get([[maybe_unused]] const EntryAccess& entries, [[maybe_unused]] std::uint8_t channel,
+  [[nodiscard]] static T get([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] std::uint8_t channel,
                              T missing) {
     if constexpr (exists) {
       if (channel < count) return static_cast<T>(entries.number(words[channel]));

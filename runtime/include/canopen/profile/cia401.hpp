@@ -50,7 +50,7 @@ class DigitalInputs {
   void sample([[maybe_unused]] Node& node, [[maybe_unused]] std::uint8_t block, [[maybe_unused]] std::uint8_t levels) {
     if constexpr (blocks > 0) {
       if (block >= blocks) return;
-      const EntryAccess entries = node.entries();
+      const EntryAccess<Device> entries = node.entries();
       const std::uint8_t before = Value::template get<std::uint8_t>(entries, block, 0);
       const auto after = static_cast<std::uint8_t>(settled(entries, block, levels) ^
                                                    Polarity::template get<std::uint8_t>(entries, block, 0));
@@ -65,7 +65,7 @@ class DigitalInputs {
     std::array<std::uint8_t, blocks> held{};  ///< as they count
   };
 
-  [[nodiscard]] std::uint8_t settled([[maybe_unused]] const EntryAccess& entries, [[maybe_unused]] std::uint8_t block,
+  [[nodiscard]] std::uint8_t settled([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] std::uint8_t block,
                                      std::uint8_t levels) {
     if constexpr (Filter::exists) {
       const std::uint8_t filtered = Filter::template get<std::uint8_t>(entries, block, 0);
@@ -78,7 +78,7 @@ class DigitalInputs {
     }
   }
 
-  [[nodiscard]] static bool tells([[maybe_unused]] const EntryAccess& entries, [[maybe_unused]] std::uint8_t block,
+  [[nodiscard]] static bool tells([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] std::uint8_t block,
                                   [[maybe_unused]] std::uint8_t before, [[maybe_unused]] std::uint8_t after) {
     if constexpr (Device::dictionary.has(0x6005, 0)) {
       if (!is_true(entries, Device::dictionary.find(0x6005, 0))) return false;
@@ -114,7 +114,7 @@ class DigitalOutputs {
   /// time.
   template <class Node, class Drive>
   void update([[maybe_unused]] Node& node, [[maybe_unused]] Drive&& drive) {
-    const EntryAccess entries = node.entries();
+    const EntryAccess<Device> entries = node.entries();
     for (std::uint8_t block = 0; block < blocks; ++block) {
       const unsigned value =
           Value::template get<unsigned>(entries, block, 0) ^ Polarity::template get<unsigned>(entries, block, 0);
@@ -132,7 +132,7 @@ class DigitalOutputs {
   void fail([[maybe_unused]] Node& node) {
     if constexpr (Value::exists && (ErrorMode::exists || ErrorValue::exists)) {
       for (std::uint8_t block = 0; block < blocks; ++block) {
-        const EntryAccess entries = node.entries();
+        const EntryAccess<Device> entries = node.entries();
         const unsigned mode = ErrorMode::template get<unsigned>(entries, block, 0xFF);
         const unsigned before = Value::template get<unsigned>(entries, block, 0);
         const auto after = static_cast<std::uint8_t>((before & ~mode) |
@@ -169,7 +169,7 @@ class AnalogueInputs {
   void sample([[maybe_unused]] Node& node, [[maybe_unused]] std::uint8_t channel, [[maybe_unused]] std::int16_t value) {
     if constexpr (channels > 0) {
       if (channel >= channels) return;
-      const EntryAccess entries = node.entries();
+      const EntryAccess<Device> entries = node.entries();
       if (value == Value::template get<std::int16_t>(entries, channel, 0)) return;
       const bool told = tells(entries, channel, value);
       if constexpr (has_delta) {
@@ -191,7 +191,7 @@ class AnalogueInputs {
 
   struct NoDelta {};
 
-  [[nodiscard]] bool tells([[maybe_unused]] const EntryAccess& entries, [[maybe_unused]] std::uint8_t channel,
+  [[nodiscard]] bool tells([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] std::uint8_t channel,
                            [[maybe_unused]] std::int16_t value) const {
     if constexpr (Device::dictionary.has(0x6423, 0)) {
       if (!is_true(entries, Device::dictionary.find(0x6423, 0))) return false;
@@ -206,14 +206,14 @@ class AnalogueInputs {
     }
   }
 
-  [[nodiscard]] static bool outside(const EntryAccess& entries, std::uint8_t channel, unsigned trigger,
+  [[nodiscard]] static bool outside(EntryAccess<Device> entries, std::uint8_t channel, unsigned trigger,
                                     std::int32_t value) {
     if ((trigger & above_upper_limit) != 0 && value >= UpperLimit::template get<std::int32_t>(entries, channel, 0))
       return true;
     return (trigger & below_lower_limit) != 0 && value < LowerLimit::template get<std::int32_t>(entries, channel, 0);
   }
 
-  [[nodiscard]] bool moved([[maybe_unused]] const EntryAccess& entries, [[maybe_unused]] std::uint8_t channel,
+  [[nodiscard]] bool moved([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] std::uint8_t channel,
                            [[maybe_unused]] unsigned trigger, [[maybe_unused]] std::int32_t value) const {
     if constexpr (has_delta) {
       const std::int32_t way = value - told_[channel];
@@ -245,7 +245,7 @@ class AnalogueOutputs {
   /// To be called when the node has taken a frame or time.
   template <class Node, class Drive>
   void update([[maybe_unused]] Node& node, [[maybe_unused]] Drive&& drive) {
-    const EntryAccess entries = node.entries();
+    const EntryAccess<Device> entries = node.entries();
     for (std::uint8_t channel = 0; channel < channels; ++channel) {
       const auto value = Value::template get<std::int16_t>(entries, channel, 0);
       if (value == values_[channel]) continue;
@@ -260,7 +260,7 @@ class AnalogueOutputs {
   void fail([[maybe_unused]] Node& node) {
     if constexpr (Value::exists && (ErrorMode::exists || ErrorValue::exists)) {
       for (std::uint8_t channel = 0; channel < channels; ++channel) {
-        const EntryAccess entries = node.entries();
+        const EntryAccess<Device> entries = node.entries();
         if (ErrorMode::template get<std::uint8_t>(entries, channel, 1) == 0) continue;
         const auto after = static_cast<std::int16_t>(ErrorValue::template get<std::int32_t>(entries, channel, 0));
         if (after != Value::template get<std::int16_t>(entries, channel, 0)) Value::set(node, channel, after);
