@@ -137,8 +137,8 @@ class EntryAccess {
   }
 
   /// What speaks against writing these bytes: their length, then their value. CiA 301, 7.2.4.3.17.
-  [[nodiscard]] AbortCode check(std::uint16_t index, std::uint8_t sub_index, entry::Word word,
-                                std::span<const std::uint8_t> bytes) const {
+  [[nodiscard, gnu::noinline]] AbortCode check(std::uint16_t index, std::uint8_t sub_index, entry::Word word,
+                                               std::span<const std::uint8_t> bytes) const {
     if (const AbortCode length = check_length(index, sub_index, word, bytes.size()); length != ok) return length;
     return check_value(index, sub_index, word, bytes);
   }
@@ -147,7 +147,8 @@ class EntryAccess {
   [[nodiscard]] static AbortCode check_value([[maybe_unused]] std::uint16_t index,
                                              [[maybe_unused]] std::uint8_t sub_index, entry::Word word,
                                              [[maybe_unused]] std::span<const std::uint8_t> bytes) {
-    if (entry::place_of(word) != entry::Place::ram) return AbortCode::not_stored;  // a command, such as 1010h's, of no service
+    if (entry::place_of(word) != entry::Place::ram)
+      return AbortCode::not_stored;  // a command, such as 1010h's, of no service
     if constexpr (kinds.booleans) {
       if (entry::is_boolean(word)) return bytes[0] > 1 ? AbortCode::invalid_value : ok;
     }
