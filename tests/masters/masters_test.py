@@ -11,8 +11,10 @@ skipped.
 from __future__ import annotations
 
 import argparse
+import ctypes
 import importlib.util
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -36,6 +38,12 @@ class Skipped(Exception):
     pass
 
 
+def end_with_parent() -> None:
+    """In a child before it runs: no node outlives a test that is killed."""
+    set_parent_death_signal = 1  # PR_SET_PDEATHSIG of prctl(2)
+    ctypes.CDLL(None).prctl(set_parent_death_signal, signal.SIGKILL)
+
+
 class Plant:
     """A bus and the nodes on it."""
 
@@ -55,14 +63,15 @@ class Plant:
             program.wait()
 
     def serve(self, edsc: Path) -> str:
-        bus = subprocess.Popen([edsc, "bus", "--listen", "127.0.0.1:0"], stdout=subprocess.PIPE, text=True)
+        bus = subprocess.Popen([edsc, "bus", "--listen", "127.0.0.1:0"], stdout=subprocess.PIPE, text=True,
+                               preexec_fn=end_with_parent)
         self.programs.append(bus)
         return bus.stdout.readline().strip()
 
     def power_on(self) -> None:
         for name in self.names:
             node = subprocess.Popen([self.directory / name, self.address, "--node-id", str(NODES[name])],
-                                    stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
+                                    stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True, preexec_fn=end_with_parent)
             self.programs.append(node)
             self.nodes[name] = node
 

@@ -36,6 +36,7 @@ class Walk:
 
     def run(self) -> None:
         """`short`: without the parts that are long lists of SDO transfers, and with one PDO of each kind."""
+        self.wire.listen_to(self.node_id)
         by_sdo = () if self.short else (self.upload_all, self.refuse_all, self.download_all, self.remap)
         for part in (self.boot, *by_sdo, self.states, self.tpdos, self.rpdos, self.heartbeat, self.guarding, self.consumer,
                      self.emergencies, self.inputs):
@@ -393,7 +394,7 @@ class Walk:
     # ---- error control ----
 
     def heartbeat(self) -> None:
-        for milliseconds in (20, 100):
+        for milliseconds in (20, 50):
             self.write(PRODUCER_HEARTBEAT, 0, milliseconds)
             for _ in range(4):  # a machine with much to do may let one measurement fail
                 interval = self.heartbeat_interval()

@@ -26,6 +26,11 @@ class Wire:
     def close(self) -> None:
         self.bus.shutdown()
 
+    def listen_to(self, node_id: int) -> None:
+        """Frames of this node alone, by the lower seven bits of their CAN-IDs; the kernel passes no others."""
+        self.forget()
+        self.bus.set_filters([{"can_id": node_id, "can_mask": 0x7F}])
+
     def send(self, can_id: int, data: bytes = b"") -> None:
         self.bus.send(can.Message(arbitration_id=can_id, data=data, is_extended_id=False))
 
