@@ -1,5 +1,5 @@
-/// Any bytes that a client of the bus server sends: each frame in them is one, and the client's codec writes and reads the
-/// same.
+/// Any bytes that a client of the bus server sends: each frame in them is one, and the client's codec writes and reads
+/// the same.
 #include <cstdlib>
 
 #include "bus_server/socketcand_text.hpp"
