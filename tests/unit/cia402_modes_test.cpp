@@ -381,6 +381,19 @@ TEST(Modes, ChangeWhenAMotorThatTurnsHasStopped) {
   EXPECT_EQ(drive.get<od::modes_of_operation_display>(), mode::homing);
 }
 
+TEST(Modes, EndAHoming) {
+  DriveBench drive;
+  drive.set<od::homing_method>(17);
+  drive.enable(mode::homing);
+  drive.control(0x1F);
+  drive.pass(500ms);
+  drive.set<od::modes_of_operation>(mode::profile_position);
+  drive.input("limit negative on");  // what it was looking for
+  drive.pass(500ms);
+  EXPECT_EQ(drive.velocity(), 0);
+  EXPECT_EQ(drive.get<od::modes_of_operation_display>(), mode::profile_position);
+}
+
 TEST(Modes, GoOnInTheOldOneWhenTheChangeIsTakenBack) {
   DriveBench drive;
   drive.run(10'000);

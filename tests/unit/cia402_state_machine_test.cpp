@@ -266,6 +266,31 @@ TEST(Cia402OptionCode, DisableVoltageCoasts) {
   EXPECT_EQ(drive.velocity(), 0);
 }
 
+TEST(Cia402OptionCode, ShutdownEndsAHoming) {
+  DriveBench drive;
+  drive.set<od::shutdown_option_code>(1);
+  drive.set<od::homing_method>(17);
+  drive.enable(canopen::cia402::mode::homing);
+  drive.control(0x1F);
+  drive.pass(500ms);
+  drive.control(0x06);
+  drive.input("limit negative on");
+  drive.pass(500ms);
+  EXPECT_EQ(drive.velocity(), 0);
+  EXPECT_EQ(drive.state(), State::ready_to_switch_on);
+}
+
+TEST(Cia402StateMachine, TakesNoStepsForTheTimeWithoutPower) {
+  DriveBench drive;
+  drive.set<od::modes_of_operation>(canopen::cia402::mode::profile_velocity);
+  drive.set<od::target_velocity>(10'000);
+  drive.control(0x06);
+  drive.now = drive.now + 1s;
+  drive.control(0x0F);
+  EXPECT_EQ(drive.state(), State::operation_enabled);
+  EXPECT_EQ(drive.app->axis().velocity_demand(), 0);
+}
+
 TEST(Cia402OptionCode, EnableOperationTakesALeaveBackThatHasNotEnded) {
   DriveBench drive;
   drive.run(10'000);

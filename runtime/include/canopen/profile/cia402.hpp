@@ -59,8 +59,8 @@ class Drive {
   /// `next_deadline`.
   template <class Node, class Application>
   void on_time(Node& node, TimePoint now, Application&& application) {
-    take_controlword(node);
     if (!busy()) stepped_ = now;
+    take_controlword(node);
     while (busy() && now - stepped_ >= step_time) {
       stepped_ = stepped_ + step_time;
       step(node, application);
@@ -213,6 +213,7 @@ class Drive {
     if (braking == Braking::none || !axis_.moving()) return enter(to);
     leaving_ = true;
     leave_to_ = to;
+    homing_.interrupt_running();
     brake(node, braking);
   }
 
@@ -239,7 +240,7 @@ class Drive {
 
   void leave_operation() {
     set_points_.clear();
-    if (homing_.running()) homing_.interrupt();
+    homing_.interrupt_running();
     halted_ = leaving_ = changing_ = homing_starts_ = false;
   }
 
@@ -292,6 +293,7 @@ class Drive {
     if (state_ == State::operation_enabled && axis_.moving()) {
       if (!changing_) axis_.stop(profile(node).deceleration);
       changing_ = true;
+      homing_.interrupt_running();
       return false;
     }
     changing_ = false;
@@ -319,7 +321,7 @@ class Drive {
     if (halt == halted_) return;
     halted_ = halt;
     if (halt) {
-      if (homing_.running()) homing_.interrupt();
+      homing_.interrupt_running();
       const Braking braking = braking_of(value<object::HaltOptionCode>(node, option_code::halt));
       axis_.stop(braking == Braking::slow_down_ramp    ? profile(node).deceleration
                  : braking == Braking::quick_stop_ramp ? quick_stop_deceleration(node)

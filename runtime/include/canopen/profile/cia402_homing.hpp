@@ -107,6 +107,10 @@ class Homing {
 
   /// Ends it before home is attained, or forgets that it was.
   void interrupt() { phase_ = Phase::idle; }
+  /// Ends it before home is attained.
+  void interrupt_running() {
+    if (running()) interrupt();
+  }
 
  private:
   enum class Phase : std::uint8_t { idle, search, leave, index, stop, attained, failed };
