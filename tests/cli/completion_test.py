@@ -33,15 +33,21 @@ def options_of(text: str) -> set[str]:
 
 def commands_of(text: str) -> list[str]:
     behind = text.split("Subcommands:\n")
-    return re.findall(r"^  (\w[\w-]*)", behind[1], re.MULTILINE) if len(behind) == 2 else []
+    return re.findall(r"^  (\w[\w-]*)", behind[1].split("\n\n")[0], re.MULTILINE) if len(behind) == 2 else []
 
 
-def all_commands(path: tuple[str, ...] = ()) -> dict[tuple[str, ...], str]:
-    """The help of each command, by its words."""
-    text = run(*path, "--help")
+def arguments_before_commands(text: str) -> list[str]:
+    """What stands for the positionals that a command takes before its own commands: `edsc lss BUS SUBCOMMAND`."""
+    usage = re.search(r"^Usage: .*?\[OPTIONS\](.*) SUBCOMMAND", text, re.MULTILINE)
+    return usage[1].split() if usage else []
+
+
+def all_commands(path: tuple[str, ...] = (), words: tuple[str, ...] = ()) -> dict[tuple[str, ...], str]:
+    """The help of each command, by its path; `words` lead to it, with arguments."""
+    text = run(*words, "--help")
     found = {path: text}
     for command in commands_of(text):
-        found |= all_commands((*path, command))
+        found |= all_commands((*path, command), (*words, *arguments_before_commands(text), command))
     return found
 
 

@@ -168,6 +168,24 @@ def volts(raw: int) -> float:
     return (signed + (0.5 if signed > 0 else -0.5 if signed < 0 else 0.0) + 32768) / 65535 * 20 - 10
 
 
+def read(bus: KernelBus | ServedBus, node_id: int, entry: str) -> int:
+    """An INTEGER16 of a node, which has taken all frames of before by then."""
+    index, sub_index = (int(part.rstrip("h"), 16) for part in entry.split(":"))
+    bus.send(Frame(0x600 + node_id, bytes([0x40, index & 0xFF, index >> 8, sub_index, 0, 0, 0, 0])))
+    answer = bus.receive(LATE)
+    assert answer is not None and answer.can_id == 0x580 + node_id, f"{entry}: got {answer}"
+    return int.from_bytes(answer.data[4:6], "little")
+
+
+def set_input(bus: KernelBus | ServedBus, plant: Program, node_id: int, entry: str, value: int) -> None:
+    """Gives a channel its voltage after all frames of before, and waits until the node has seen it."""
+    read(bus, node_id, entry)
+    plant.say(f"node {node_id} analogue {int(entry.split(':')[1], 16)} {volts(value):.6f}")
+    end = time.monotonic() + LATE
+    while (got := read(bus, node_id, entry)) != value:
+        assert time.monotonic() < end, f"{entry}: {got} in place of {value}"
+
+
 def replay(bus: KernelBus | ServedBus, plant: Program, trace: Path) -> int:
     """The number of frames that were as in the trace."""
     frames = 0
@@ -193,7 +211,7 @@ def replay(bus: KernelBus | ServedBus, plant: Program, trace: Path) -> int:
                     frames += 1
                 elif words[0] == "=":
                     node, entry, value = words[2:5]
-                    plant.say(f"node {node} analogue {int(entry.split(':')[1], 16)} {volts(int(value, 0)):.6f}")
+                    set_input(bus, plant, int(node), entry, int(value, 0))
             span = 0.0
         except AssertionError as problem:
             raise AssertionError(f"{trace.name}:{number}: {problem}") from None
