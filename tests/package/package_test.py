@@ -24,7 +24,7 @@ SHEET = SOURCE_DIR / "eds/rk5c.eds"
 ARM = "arm-none-eabi-g++"
 
 # With the flags of edsc's own build, a compiler cache that is there has edsc's objects at hand.
-LIKE_EDSC_ITSELF = ["-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_EXTENSIONS=OFF",
+LIKE_EDSC_ITSELF = ["-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_EXTENSIONS=OFF", "-DEDSC_UNITY_BUILD=ON",
                     *(["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else [])]
 
 FROM_PACKAGE = "find_package(edsc REQUIRED)"
