@@ -108,7 +108,7 @@ inline void print_help(const Description& what) {
       "  can active|passive|off|overrun   what the CAN controller tells\n"
       "  power-cycle                      switches it off and on\n\n"
       "examples:\n"
-      "  %s socketcan:vcan0 --node-id 5 --store /tmp/%s.parameters\n"
+      "  %s socketcan:vcan0 --node-id 5 --store %s.parameters\n"
       "  (sleep 1; echo power-cycle; sleep 1) | %s socketcan:vcan0 --node-id 5\n\n"
       "exit codes: 0 ended by a signal; 1 the bus is lost; 2 wrong arguments, or the bus cannot be opened\n",
       what.program, what.device, what.node_id, what.inputs, what.program, what.program, what.program);
