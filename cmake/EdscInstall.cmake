@@ -13,4 +13,6 @@ endif()
 install(EXPORT edscTargets NAMESPACE edsc:: DESTINATION ${package_dir})
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/edscConfigVersion.cmake COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
 install(FILES ${PROJECT_SOURCE_DIR}/cmake/edscConfig.cmake ${PROJECT_SOURCE_DIR}/cmake/EdscAddDictionary.cmake
+              ${PROJECT_SOURCE_DIR}/cmake/EdscAddFirmware.cmake ${PROJECT_SOURCE_DIR}/cmake/firmware_report.py
               ${CMAKE_CURRENT_BINARY_DIR}/edscConfigVersion.cmake DESTINATION ${package_dir})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/cmake/boards DESTINATION ${package_dir})

@@ -1,2 +1,2 @@
 include(${CMAKE_CURRENT_LIST_DIR}/edscTargets.cmake)
-include(${CMAKE_CURRENT_LIST_DIR}/EdscAddDictionary.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/EdscAddFirmware.cmake)

@@ -108,14 +108,14 @@ constexpr char* put_hex(char* to, std::uint32_t number, unsigned digits) {
   }
   const std::size_t digits = frame.extended ? 8 : 3;
   if (line.size() < 1 + digits + 1) return std::nullopt;
-  const std::optional<std::uint32_t> id = hex_number(line.substr(1, digits));
+  const std::optional<std::uint32_t> id = hex_number({line.data() + 1, digits});
   const std::uint8_t size = hex_value(line[1 + digits]);
   if (!id || *id > (frame.extended ? 0x1FFF'FFFFu : 0x7FFu) || size > 8) return std::nullopt;
   frame.id = *id;
   frame.size = size;
   line.remove_prefix(1 + digits + 1);
   for (std::uint8_t i = 0; i < size && !frame.remote; ++i) {
-    const std::optional<std::uint32_t> byte = line.size() >= 2 ? hex_number(line.substr(0, 2)) : std::nullopt;
+    const std::optional<std::uint32_t> byte = line.size() >= 2 ? hex_number({line.data(), 2}) : std::nullopt;
     if (!byte) return std::nullopt;
     frame.data[i] = static_cast<std::uint8_t>(*byte);
     line.remove_prefix(2);
@@ -224,7 +224,7 @@ class SlcanAdapter {
     }
     for (const Command& command : commands) {
       if (command.letter != line[0]) continue;
-      const std::string_view digits = line.substr(1);
+      const std::string_view digits{line.data() + 1, line.size() - 1};
       const std::optional<std::uint32_t> number = slcan::hex_number(digits);
       const bool complete = digits.size() == command.digits && (digits.empty() || number);
       if (!complete || (command.when & (open_ ? open : closed)) == 0) return false;

@@ -1,0 +1,114 @@
+include(${CMAKE_CURRENT_LIST_DIR}/EdscAddDictionary.cmake)
+
+# edsc_add_firmware(TARGET EDS file BOARD board SOURCES file... [NAMESPACE name] [NODE_ID n] [OPTIONS file] [STATIC_MAPPING]
+#                   [FLASH_LIMIT bytes] [RAM_LIMIT bytes])
+#
+# Makes an image for a Cortex-M from an EDS or DCF and sources with a `main`, in a build with a toolchain file for it:
+# TARGET.elf, .hex and .bin, TARGET.map, and TARGET.report.txt with the bytes of symbols and of the data sheet's objects.
+#
+#   edsc_add_firmware(drive EDS drive.eds BOARD mps2-an385 NODE_ID 5 SOURCES main.cpp FLASH_LIMIT 16000)
+#
+# BOARD        one of the folders in boards/ beside this file, or a folder with the same files (docs/porting.md).
+# NAMESPACE    of the dictionary; the name of the data sheet by default, cpc_tc1 for cpc-tc1.eds.
+# NODE_ID      is told to the sources as EDSC_NODE_ID.
+# FLASH_LIMIT  an image that is larger is an error, which names what is large. RAM_LIMIT: the same, without the stack.
+# NODE_ID, OPTIONS and STATIC_MAPPING are those of edsc_add_dictionary.
+#
+# The sources know EDSC_DEVICE, the device's type, and EDSC_DEVICE_HEADER, what to include for it. There is no heap: what
+# calls malloc or operator new does not link.
+function(edsc_add_firmware target)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "STATIC_MAPPING" "EDS;BOARD;NAMESPACE;NODE_ID;OPTIONS;FLASH_LIMIT;RAM_LIMIT" "SOURCES")
+  if(arg_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "edsc_add_firmware(${target}): unknown arguments: ${arg_UNPARSED_ARGUMENTS}")
+  endif()
+  foreach(needed IN ITEMS EDS BOARD SOURCES)
+    if(NOT arg_${needed})
+      message(FATAL_ERROR "edsc_add_firmware(${target}): ${needed} is missing")
+    endif()
+  endforeach()
+  if(NOT CMAKE_CROSSCOMPILING)
+    message(FATAL_ERROR "edsc_add_firmware(${target}): the build is for the host; give it a toolchain file")
+  endif()
+  if(NOT arg_NAMESPACE)
+    get_filename_component(stem ${arg_EDS} NAME_WE)
+    string(MAKE_C_IDENTIFIER ${stem} arg_NAMESPACE)
+  endif()
+
+  set(dictionary_arguments EDS ${arg_EDS} NAMESPACE ${arg_NAMESPACE})
+  foreach(argument IN ITEMS NODE_ID OPTIONS)
+    if(arg_${argument})
+      list(APPEND dictionary_arguments ${argument} ${arg_${argument}})
+    endif()
+  endforeach()
+  if(arg_STATIC_MAPPING)
+    list(APPEND dictionary_arguments STATIC_MAPPING)
+  endif()
+  edsc_add_dictionary(${target}_dictionary ${dictionary_arguments})
+  set(dictionary ${CMAKE_CURRENT_BINARY_DIR}/edsc/${target}_dictionary/${arg_NAMESPACE}/dictionary.hpp)
+
+  edsc_add_board(${arg_BOARD} board)
+  add_executable(${target} ${arg_SOURCES})
+  target_link_libraries(${target} PRIVATE ${target}_dictionary ${board})
+  target_compile_definitions(${target} PRIVATE EDSC_DEVICE=${arg_NAMESPACE}::Device
+                                               EDSC_DEVICE_HEADER=<${arg_NAMESPACE}/device.hpp>)
+  if(arg_NODE_ID)
+    target_compile_definitions(${target} PRIVATE EDSC_NODE_ID=${arg_NODE_ID})
+  endif()
+  set(map ${CMAKE_CURRENT_BINARY_DIR}/${target}.map)
+  target_link_options(${target} PRIVATE -Wl,-Map=${map})
+  set_target_properties(${target} PROPERTIES SUFFIX .elf ADDITIONAL_CLEAN_FILES ${map})
+
+  find_package(Python3 3.11 REQUIRED COMPONENTS Interpreter)
+  set(image ${CMAKE_CURRENT_BINARY_DIR}/${target})
+  string(REGEX REPLACE "g\\+\\+(\\.exe)?$" "" prefix ${CMAKE_CXX_COMPILER})
+  set(report_arguments --prefix ${prefix})
+  if(arg_FLASH_LIMIT)
+    list(APPEND report_arguments --flash-limit ${arg_FLASH_LIMIT})
+  endif()
+  if(arg_RAM_LIMIT)
+    list(APPEND report_arguments --ram-limit ${arg_RAM_LIMIT})
+  endif()
+  add_custom_command(
+    TARGET ${target} POST_BUILD
+    COMMAND ${CMAKE_OBJCOPY} -O ihex $<TARGET_FILE:${target}> ${image}.hex
+    COMMAND ${CMAKE_OBJCOPY} -O binary $<TARGET_FILE:${target}> ${image}.bin
+    COMMAND Python3::Interpreter ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/firmware_report.py $<TARGET_FILE:${target}> ${dictionary}
+            ${image}.report.txt ${report_arguments}
+    BYPRODUCTS ${image}.hex ${image}.bin ${image}.report.txt
+    VERBATIM)
+endfunction()
+
+# edsc_add_board(BOARD VARIABLE): the target with a board's start-up, drivers and flags for all that is linked with it; its
+# name goes into VARIABLE. The board's folder has
+#   board.cmake  sets board_cpu, the value of -mcpu, and board_sources, which define what board.hpp declares
+#   memory.ld    tells where `flash` and `ram` are
+function(edsc_add_board board variable)
+  set(folder ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/boards/${board})
+  if(NOT EXISTS ${folder}/board.cmake)
+    get_filename_component(folder ${board} ABSOLUTE)
+  endif()
+  if(NOT EXISTS ${folder}/board.cmake)
+    message(FATAL_ERROR "edsc_add_firmware: there is no board ${board}, and no folder of this name with a board.cmake")
+  endif()
+  get_filename_component(name ${folder} NAME)
+  set(target edsc_board_${name})
+  set(${variable} ${target} PARENT_SCOPE)
+  if(TARGET ${target})
+    return()
+  endif()
+
+  include(${folder}/board.cmake)
+  set(boards ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/boards)
+  set(cpu -mcpu=${board_cpu} -mthumb)
+  add_library(${target} OBJECT ${boards}/startup.cpp ${board_sources})
+  target_include_directories(${target} PUBLIC ${boards})
+  target_link_libraries(${target} PUBLIC edsc::runtime)
+  target_compile_options(${target} PUBLIC ${cpu} -ffunction-sections -fdata-sections -fno-exceptions -fno-rtti
+                                          -fno-threadsafe-statics)
+  set(no_heap malloc calloc realloc free _malloc_r _calloc_r _realloc_r _free_r)
+  list(TRANSFORM no_heap PREPEND -Wl,--wrap=) # and there is no __wrap_malloc
+  target_link_options(
+    ${target} PUBLIC ${cpu} -nostartfiles -nostdlib -Wl,--gc-sections ${no_heap} -L${folder} -T${boards}/sections.ld)
+  target_link_libraries(${target} PUBLIC -Wl,--start-group -lc_nano -lgcc -Wl,--end-group)
+  set_property(TARGET ${target} APPEND PROPERTY INTERFACE_LINK_DEPENDS ${boards}/sections.ld ${folder}/memory.ld)
+endfunction()

@@ -1,0 +1,44 @@
+/// Node-ID and bit rate of a node that LSS configures, in flash of their own.
+#pragma once
+
+#include <array>
+#include <canopen/flash_storage.hpp>
+#include <canopen/lss_handler.hpp>
+#include <canopen/lss_protocol.hpp>
+#include <canopen/node_id.hpp>
+#include <cstdint>
+
+#include "board.hpp"
+
+/// The port of canopen::configured_by_lss. A serial line has no bit rate of a CAN bus: it is stored, and no more.
+class LssSettings {
+ public:
+  explicit constexpr LssSettings(board::Flash& flash) : storage_{flash} {}
+
+  /// At power-on.
+  void open() {
+    std::array<std::uint8_t, 3> image{};
+    const bool stored = storage_.open() == canopen::StorageState::whole && storage_.size() == image.size();
+    if (!stored || !storage_.read(0, image)) return;
+    node_id_ = canopen::NodeId{image[0]};
+    bit_timing_ = {image[1], image[2]};
+  }
+
+  [[nodiscard]] canopen::NodeId node_id() const { return node_id_; }
+  [[nodiscard]] canopen::LssBitTiming bit_timing() const { return bit_timing_; }
+
+  [[nodiscard]] canopen::LssError accept(canopen::NodeId) { return canopen::lss::success; }
+  [[nodiscard]] canopen::LssError accept(canopen::LssBitTiming) { return canopen::lss::success; }
+  [[nodiscard]] canopen::LssError store(canopen::NodeId node_id, canopen::LssBitTiming timing) {
+    const std::array<std::uint8_t, 3> image = {node_id.value(), timing.table, timing.index};
+    const bool stored = storage_.begin(image.size()) && storage_.write(image) && storage_.commit();
+    return stored ? canopen::lss::success : canopen::lss::storage_access_error;
+  }
+  void stop_communication() {}
+  void start_communication(canopen::LssBitTiming) {}
+
+ private:
+  canopen::FlashStorage<board::Flash> storage_;
+  canopen::NodeId node_id_ = canopen::unconfigured_node_id;
+  canopen::LssBitTiming bit_timing_{0, 4};  ///< 125 kbit/s
+};

@@ -1,0 +1,60 @@
+/// Firmware of one device: its node behind SLCAN on the board's serial line, with its parameters in flash, and with LSS
+/// where it has no node-ID of its own.
+#include <canopen/flash_storage.hpp>
+#include <canopen/node.hpp>
+#include EDSC_DEVICE_HEADER
+
+#include "board.hpp"
+#include "lss_settings.hpp"
+#include "serial_bus.hpp"
+
+namespace {
+
+using Device = EDSC_DEVICE;
+
+constinit SerialBus bus;
+
+board::Flash parameter_pages{0};
+constinit canopen::FlashStorage storage{parameter_pages};
+
+board::Flash lss_pages{1};
+constinit LssSettings lss{lss_pages};
+
+/// With storage where the device stores, and LSS where its node-ID does not come from the build.
+template <class D>
+auto make_node() {
+  constexpr bool stores = D::dictionary.has(0x1010, 0);
+#ifdef EDSC_NODE_ID
+  if constexpr (stores) return canopen::make_node<D>(bus, canopen::stored_in(storage));
+  if constexpr (!stores) return canopen::make_node<D>(bus);
+#else
+  const auto by_lss = canopen::configured_by_lss<D::lss_options>(lss);
+  if constexpr (stores) return canopen::make_node<D>(bus, canopen::stored_in(storage), by_lss);
+  if constexpr (!stores) return canopen::make_node<D>(bus, by_lss);
+#endif
+}
+
+/// Made at power-on: one that the compiler makes would lie in flash as well, where it refers to others.
+auto node = make_node<Device>();
+
+canopen::NodeId node_id() {
+#ifdef EDSC_NODE_ID
+  return canopen::NodeId{EDSC_NODE_ID};
+#else
+  lss.open();
+  return lss.node_id();
+#endif
+}
+
+}  // namespace
+
+int main() {
+  board::start();
+  node.start(node_id(), board::now());
+  for (;;) {
+    const std::optional<canopen::Frame> frame = bus.receive();
+    const canopen::TimePoint now = board::now();
+    if (frame) node.on_frame(*frame, now);
+    node.on_time(now);
+  }
+}

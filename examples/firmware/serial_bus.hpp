@@ -1,0 +1,69 @@
+/// A CAN bus behind SLCAN on the board's serial line: the host sees an adapter, behind which is one node.
+#pragma once
+
+#include <array>
+#include <canopen/bus_status.hpp>
+#include <canopen/frame.hpp>
+#include <canopen/port/slcan_codec.hpp>
+#include <canopen/time.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "board.hpp"
+
+/// While the host's channel is closed nobody acknowledges, as on a bus without another node: `send` takes nothing, and
+/// what is due stays due. So a node starts at power-on, and its boot-up message is the first frame that the host gets.
+class SerialBus {
+ public:
+  /// To the host. False: the channel is closed, or the line has no room for a frame now.
+  [[nodiscard]] bool send(const canopen::Frame& frame) {
+    if (!adapter_.is_open() || room() < canopen::slcan::longest_line + longest_answer) return false;
+    adapter_.on_frame(frame, board::now(), *this);
+    return true;
+  }
+
+  /// A frame of the host, if one has come. Moves characters in both directions.
+  [[nodiscard]] std::optional<canopen::Frame> receive() {
+    while (first_ != last_ && board::uart_put(line_[first_ % line_.size()])) ++first_;
+    if (room() < longest_answer) return std::nullopt;
+    received_ = false;
+    if (const std::optional<char> character = board::uart_get()) {
+      Side side{*this};
+      adapter_.on_character(*character, side);
+    }
+    return received_ ? std::optional{frame_} : std::nullopt;
+  }
+
+  /// To the serial line; there is room.
+  void write(std::span<const char> text) {
+    for (const char character : text) line_[last_++ % line_.size()] = character;
+  }
+
+ private:
+  static constexpr std::size_t longest_answer = 12;
+
+  /// What the adapter asks of the bus. The bit rate is of no account: there is no wire behind the adapter.
+  struct Side {
+    SerialBus& bus;
+    void write(std::span<const char> text) { bus.write(text); }
+    bool open(const canopen::SlcanChannel&) { return true; }
+    void close() {}
+    bool send(const canopen::Frame& frame) {
+      bus.frame_ = frame;
+      bus.received_ = true;
+      return true;
+    }
+    std::uint8_t status() { return 0; }
+  };
+
+  [[nodiscard]] std::size_t room() const { return line_.size() - static_cast<std::uint8_t>(last_ - first_); }
+
+  canopen::SlcanAdapter adapter_{"edsc"};
+  canopen::Frame frame_{};
+  bool received_ = false;
+  std::uint8_t first_ = 0;
+  std::uint8_t last_ = 0;
+  std::array<char, 128> line_{};  ///< characters that wait for the UART; a power of two
+};
