@@ -25,7 +25,8 @@ struct Vectors {
   void (*handlers[15])();
 };
 [[gnu::section(".vectors"), gnu::used]] constexpr Vectors vectors{
-    &__stack_top__, {reset, halt, halt, halt, halt, halt, nullptr, nullptr, nullptr, nullptr, halt, halt, nullptr, halt, halt}};
+    &__stack_top__,
+    {reset, halt, halt, halt, halt, halt, nullptr, nullptr, nullptr, nullptr, halt, halt, nullptr, halt, halt}};
 
 }  // namespace
 

@@ -17,6 +17,8 @@ class Wire:
         if match := SOCKETCAND.fullmatch(address):
             options = {"interface": "socketcand", "host": match[1], "port": int(match[2]), "channel": match[3]}
             logging.getLogger("can.interfaces.socketcand").setLevel(logging.ERROR)
+        elif address.startswith("slcan:"):
+            options = {"interface": "slcan", "channel": address.removeprefix("slcan:"), "sleep_after_open": 0}
         else:
             options = {"interface": "socketcan", "channel": address.removeprefix("socketcan:")}
         self.socketcand = options["interface"] == "socketcand"

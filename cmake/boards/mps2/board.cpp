@@ -1,4 +1,5 @@
-/// The MPS2 boards of Arm, with the peripherals of AN385 and AN386: CMSDK UART 0 and the counter of the FPGA's registers.
+/// The MPS2 boards of Arm, with the peripherals of AN385 and AN386: CMSDK UART 0 and the counter of the FPGA's
+/// registers.
 #include "../board.hpp"
 
 #include <cstring>

@@ -1,0 +1,153 @@
+#!/usr/bin/env python3
+"""An image of a reference device on a board of QEMU, over SLCAN on its serial line: boot-up, LSS, all that its data sheet
+promises, stored parameters over a loss of power, edsc itself, and the stack that all this took.
+
+    firmware_test.py BOARD IMAGE DATA_SHEET NODE_ID EDSC
+
+NODE_ID 0: by LSS. Exit code 77: skipped.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parent / "masters")]
+SKIPPED = 77
+BY_LSS = 9        # the node-ID that a device without one gets
+LARGEST_STACK = 640  # bytes; the most is for storing parameters
+PATIENCE = 3.0    # s
+SAVE, LOAD = b"save", b"load"
+STORE, RESTORE, HEARTBEAT = 0x1010, 0x1011, 0x1017
+STORED_TIME = 0x1234  # ms; nothing is heard of it during the test
+
+
+class Firmware:
+    def __init__(self, machine: Machine, sheet: DataSheet, report: Report) -> None:
+        self.machine, self.sheet, self.report = machine, sheet, report
+
+    def check(self, check: str, what: str, got: object, wanted: object) -> bool:
+        return self.report.check(check, what, str(got), str(wanted))
+
+    def first_frame(self, seconds: float = PATIENCE) -> str:
+        frame = self.wire.bus.recv(seconds)
+        return f"{frame.arbitration_id:03X} {frame.data.hex(' ')}" if frame is not None else "nothing"
+
+    def power_on(self) -> None:
+        self.machine.power_on()
+        self.wire = self.machine.wire()
+        self.walk = Walk(self.wire, self.sheet, self.report, tell=lambda _: None)
+        self.sdo = self.walk.sdo
+
+    def power_off(self) -> None:
+        self.wire.close()
+        self.machine.power_off()
+
+    def boot(self, what: str) -> None:
+        """The node has started long before the channel was opened."""
+        self.check("boot-up", what, self.first_frame(), f"{0x700 + self.sheet.node_id:03X} 00")
+
+    def lss(self) -> None:
+        """CiA 305: to configuration, a node-ID, store, to waiting; then the node boots. 5E asks for the active one."""
+        self.check("lss", "silent without node-ID", self.first_frame(1.5), "nothing")
+        node_id = f"{BY_LSS:02X}"
+        for request, answer in (("04 01", None), (f"11 {node_id}", "11 00 00 00 00 00 00 00"),
+                                ("17", "17 00 00 00 00 00 00 00"), ("5E", "5E FF 00 00 00 00 00 00"), ("04 00", None)):
+            self.wire.send(0x7E5, bytes.fromhex(request).ljust(8, b"\0"))
+            if answer:
+                got = self.wire.receive(0x7E4, PATIENCE)
+                self.check("lss", request, got and got.hex(" ").upper(), answer)
+
+    def whole_walk(self) -> None:
+        walk = self.walk
+        for part in (walk.boot, walk.upload_all, walk.refuse_all, walk.download_all, walk.remap, walk.states, walk.tpdos,
+                     walk.rpdos, walk.heartbeat, walk.guarding, walk.consumer):
+            try:
+                walk.reset()
+                part()
+            except (Abort, Silence, ValueError) as problem:
+                self.check("walk", part.__name__, problem, "its end")
+
+    def heartbeat_time(self) -> int:
+        return int.from_bytes(self.sdo.upload(HEARTBEAT, 0, 2), "little")
+
+    def storage(self) -> None:
+        self.walk.reset()
+        default = self.heartbeat_time()
+        self.sdo.download(HEARTBEAT, 0, STORED_TIME.to_bytes(2, "little"))
+        self.sdo.download(STORE, 1, SAVE)
+        self.stack()
+        for what, wanted in (("stored", STORED_TIME), ("restored", default)):
+            self.power_off()
+            self.power_on()
+            self.boot(what)
+            self.check("storage", what, self.heartbeat_time(), wanted)
+            self.sdo.download(RESTORE, 1, LOAD)
+
+    def stack(self) -> None:
+        """What is painted at power-on and is not any more."""
+        first, last = self.machine.paint
+        memory = self.machine.save(first, last - first, self.machine.folder / "stack")
+        untouched = len(memory) - len(memory.lstrip(bytes([STACK_PAINT])))
+        used = len(memory) - untouched
+        print(f"{self.machine.image.name}: {used} bytes of stack")
+        self.check("stack", f"at most {LARGEST_STACK} bytes", untouched > 0 and 0 < used <= LARGEST_STACK, True)
+
+    def edsc(self, program: Path, sheet: Path) -> None:
+        """The project's own host side on the same line."""
+        self.wire.close()
+        vendor = self.sheet.default(0x1018, 1)
+        result = subprocess.run([program, "read", self.machine.address, str(self.sheet.node_id), "1018h:01", "--eds", sheet,
+                                 "--format", "json"], capture_output=True, text=True, timeout=20)
+        read = json.loads(result.stdout)["entries"] if result.returncode == 0 else result.stderr
+        self.check("edsc", "read 1018h:01", [entry["value"] for entry in read] if result.returncode == 0 else read, [vendor])
+
+
+def memory_for_the_stack(image: Path) -> tuple[int, int]:
+    symbols = subprocess.run(["arm-none-eabi-nm", image], check=True, capture_output=True, text=True).stdout
+    places = {name: int(address, 16) for address, _, name in map(str.split, symbols.splitlines())}
+    return places["__bss_end__"], places["__stack_top__"]
+
+
+def main() -> int:
+    board, image, data_sheet, node_id, edsc = sys.argv[1], Path(sys.argv[2]), Path(sys.argv[3]), int(sys.argv[4]), Path(sys.argv[5])
+    sheet = DataSheet(data_sheet, node_id or BY_LSS)
+    own = read_exceptions(HERE / "exceptions.tsv")
+    report = Report(data_sheet.stem.replace("-", "_"), own + read_exceptions(HERE.parent / "masters/exceptions.tsv"))
+    with tempfile.TemporaryDirectory() as folder:
+        machine = Machine(board, image, Path(folder), memory_for_the_stack(image))
+        try:
+            firmware = Firmware(machine, sheet, report)
+            firmware.power_on()
+            if node_id == 0:
+                firmware.lss()
+            firmware.boot("power-on")
+            firmware.whole_walk()
+            firmware.storage()
+            firmware.edsc(edsc, data_sheet)
+        finally:
+            machine.power_off()
+    print(report.summary())
+    return 1 if report.failed.total() else 0
+
+
+if __name__ == "__main__":
+    if missing := [name for name in ("can", "serial") if importlib.util.find_spec(name) is None]:
+        print(f"skipped: {' and '.join(missing)} missing from {sys.executable}")
+        sys.exit(SKIPPED)
+    if not shutil.which("qemu-system-arm"):
+        print("skipped: there is no qemu-system-arm")
+        sys.exit(SKIPPED)
+    from data_sheet import DataSheet
+    from machine import STACK_PAINT, Machine
+    from report import Report, read_exceptions
+    from sdo import Abort, Silence
+    from walk import Walk
+
+    sys.exit(main())
