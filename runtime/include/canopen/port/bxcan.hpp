@@ -1,0 +1,204 @@
+/// The CAN controller bxCAN of STM32F0, F1, F2, F3, F4, F7 and L4. No operating system, no interrupts: a loop asks.
+///
+///     canopen::BxCan<> bus{*reinterpret_cast<canopen::BxCanRegisters*>(0x4000'6400)};
+///     bus.start(42'000'000, 500'000);            // the clock of APB1; clock and pins of the controller are on by then
+///     if (const auto frame = bus.receive()) node.on_frame(*frame, now);
+///     if (const auto status = bus.status_change()) node.on_bus_status(*status, now);
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <span>
+
+#include "canopen/accepted_frames.hpp"
+#include "canopen/bus_status.hpp"
+#include "canopen/frame.hpp"
+#include "canopen/port/bit_timing.hpp"
+
+namespace canopen {
+
+/// The register block (reference manual RM0090, chapter "Controller area network").
+struct BxCanRegisters {
+  using Register = volatile std::uint32_t;
+  struct Mailbox {
+    Register id;      ///< TIxR, RIxR
+    Register length;  ///< TDTxR, RDTxR
+    Register low;     ///< data bytes 0 to 3
+    Register high;    ///< data bytes 4 to 7
+  };
+  struct FilterBank {
+    Register id;
+    Register mask;
+  };
+
+  Register master_control;   // MCR, 000h
+  Register master_status;    // MSR
+  Register transmit_status;  // TSR
+  Register receive_fifo[2];  // RF0R, RF1R
+  Register interrupts;       // IER
+  Register error_status;     // ESR
+  Register bit_timing;       // BTR, 01Ch
+  Register reserved_020[88];
+  Mailbox transmit[3];  // 180h
+  Mailbox receive[2];   // 1B0h
+  Register reserved_1d0[12];
+  Register filter_master;  // FMR, 200h
+  Register filter_list;    // FM1R: 1: two identifiers, 0: identifier and mask
+  Register reserved_208;
+  Register filter_wide;  // FS1R: 1: one filter of 32 bits
+  Register reserved_210;
+  Register filter_fifo;  // FFA1R
+  Register reserved_218;
+  Register filter_active;  // FA1R, 21Ch
+  Register reserved_220[8];
+  FilterBank filters[28];  // 240h
+};
+static_assert(sizeof(BxCanRegisters) == 0x320);
+
+/// `Registers` is another type in tests alone.
+template <class Registers = BxCanRegisters>
+class BxCan {
+ public:
+  static constexpr BitTimingRange range{1024, 16, 8, 4};
+  static constexpr std::size_t filter_banks = 14;  ///< that every chip has, for its first controller
+
+  explicit constexpr BxCan(Registers& registers) : registers_{registers} {}
+
+  /// Goes on the bus, with all frames accepted. `clock` in Hz is that of the controller, `bit_rate` in bit/s. False:
+  /// the clock gives no such rate, or the controller does not come up, as one without clock or with CAN_RX held low.
+  [[nodiscard]] bool start(std::uint32_t clock, std::uint32_t bit_rate) {
+    const std::optional<BitTiming> timing = canopen::bit_timing(clock, bit_rate, range);
+    if (!timing) return false;
+    registers_.master_control = initialize | recover_from_bus_off;  // awake, and mailboxes by identifier: TXFP is 0
+    if (!wait_for(initialize)) return false;
+    registers_.bit_timing = (timing->resynchronization - 1u) << 24 | (timing->after_sample - 1u) << 20 |
+                            (timing->before_sample - 1u) << 16 | (timing->prescaler - 1u);
+    accept_all();
+    registers_.master_control = registers_.master_control & ~initialize;
+    return wait_for(0);
+  }
+
+  /// Accepts every frame.
+  void accept_all() {
+    registers_.filter_master = registers_.filter_master | 1;
+    registers_.filter_active = 0;
+    registers_.filter_list = 0;
+    registers_.filter_wide = 1;
+    registers_.filter_fifo = 0;
+    registers_.filters[0].id = 0;
+    registers_.filters[0].mask = 0;
+    registers_.filter_active = 1;
+    registers_.filter_master = registers_.filter_master & ~1u;
+  }
+
+  /// Accepts these frames alone, two to a filter bank; all frames where there are more than the banks hold.
+  void accept(std::span<const AcceptedFrame> frames) {
+    if (frames.empty() || frames.size() > 2 * filter_banks) return accept_all();
+    const std::size_t banks = (frames.size() + 1) / 2;
+    const std::uint32_t used = (1u << banks) - 1;
+    registers_.filter_master = registers_.filter_master | 1;
+    registers_.filter_active = 0;
+    registers_.filter_list = used;
+    registers_.filter_wide = used;
+    registers_.filter_fifo = 0;
+    for (std::size_t bank = 0; bank < banks; ++bank) {
+      const std::size_t second = 2 * bank + 1 < frames.size() ? 2 * bank + 1 : 2 * bank;
+      registers_.filters[bank].id = word_of(frames[2 * bank].id, frames[2 * bank].extended, frames[2 * bank].remote);
+      registers_.filters[bank].mask = word_of(frames[second].id, frames[second].extended, frames[second].remote);
+    }
+    registers_.filter_active = used;
+    registers_.filter_master = registers_.filter_master & ~1u;
+  }
+
+  /// Into a free mailbox. The controller sends the one with the lowest identifier first. Of two frames with the same
+  /// identifier the second waits until the first is gone: the order of equals is that of the mailboxes. False: no room.
+  [[nodiscard]] bool send(const Frame& frame) {
+    const std::uint32_t empty = registers_.transmit_status >> 26 & 7;
+    const std::uint32_t id = word_of(frame.id, frame.extended, frame.remote);
+    std::size_t free = mailboxes;
+    for (std::size_t i = 0; i < mailboxes; ++i) {
+      if ((empty >> i & 1) != 0) {
+        if (free == mailboxes) free = i;
+      } else if ((registers_.transmit[i].id & ~request) == id) {
+        return false;
+      }
+    }
+    if (free == mailboxes) return false;
+    std::array<std::uint32_t, 2> words;
+    std::memcpy(words.data(), frame.data.data(), sizeof words);
+    auto& box = registers_.transmit[free];
+    box.length = frame.size;
+    box.low = words[0];
+    box.high = words[1];
+    box.id = id | request;
+    return true;
+  }
+
+  /// The next frame from receive FIFO 0, if there is one.
+  [[nodiscard]] std::optional<Frame> receive() {
+    const std::uint32_t fifo = registers_.receive_fifo[0];
+    if ((fifo & overrun) != 0) {
+      overrun_ = true;
+      registers_.receive_fifo[0] = overrun;
+    }
+    if ((fifo & pending) == 0) return std::nullopt;
+    const auto& box = registers_.receive[0];
+    const std::uint32_t id = box.id;
+    const std::array<std::uint32_t, 2> words = {box.low, box.high};
+    Frame frame;
+    frame.extended = (id & extended) != 0;
+    frame.remote = (id & remote) != 0;
+    frame.id = frame.extended ? id >> 3 : id >> 21;
+    const std::uint32_t length = box.length & 0xF;
+    frame.size = static_cast<std::uint8_t>(length > 8 ? 8 : length);
+    std::memcpy(frame.data.data(), words.data(), sizeof words);
+    registers_.receive_fifo[0] = release;
+    return frame;
+  }
+
+  /// What the controller tells of itself, when it is another than at the last call.
+  [[nodiscard]] std::optional<BusStatus> status_change() {
+    const std::uint32_t errors = registers_.error_status;
+    BusStatus status;
+    if ((errors & 2) != 0) status.state = BusState::passive;
+    if ((errors & 4) != 0) status.state = BusState::off;
+    status.overrun = overrun_;
+    overrun_ = false;
+    if (status == told_) return std::nullopt;
+    told_ = status;
+    return status;
+  }
+
+ private:
+  static constexpr std::size_t mailboxes = 3;
+  static constexpr std::uint32_t initialize = 1 << 0;            // MCR.INRQ, MSR.INAK
+  static constexpr std::uint32_t asleep = 1 << 1;                // MSR.SLAK
+  static constexpr std::uint32_t recover_from_bus_off = 1 << 6;  // MCR.ABOM
+  static constexpr std::uint32_t request = 1;                    // TIxR.TXRQ
+  static constexpr std::uint32_t remote = 1 << 1;                // TIxR.RTR
+  static constexpr std::uint32_t extended = 1 << 2;              // TIxR.IDE
+  static constexpr std::uint32_t pending = 3;                    // RFxR.FMP
+  static constexpr std::uint32_t overrun = 1 << 4;               // RFxR.FOVR
+  static constexpr std::uint32_t release = 1 << 5;               // RFxR.RFOM
+
+  /// The identifier as mailboxes and filters hold it.
+  [[nodiscard]] static constexpr std::uint32_t word_of(std::uint32_t id, bool is_extended, bool is_remote) {
+    return (is_extended ? id << 3 | extended : id << 21) | (is_remote ? remote : 0);
+  }
+
+  /// Until MSR.INAK is this, and the controller awake. 11 recessive bits take 1.1 ms at 10 kbit/s.
+  [[nodiscard]] bool wait_for(std::uint32_t acknowledged) const {
+    for (std::uint32_t patience = 1'000'000; patience > 0; --patience) {
+      if ((registers_.master_status & (initialize | asleep)) == acknowledged) return true;
+    }
+    return false;
+  }
+
+  Registers& registers_;
+  BusStatus told_{};
+  bool overrun_ = false;
+};
+
+}  // namespace canopen

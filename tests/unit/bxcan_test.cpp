@@ -1,0 +1,173 @@
+#include <gtest/gtest.h>
+
+#include <canopen/port/bxcan.hpp>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+namespace {
+
+using canopen::BusState;
+using canopen::Frame;
+
+/// A controller that does at once what is asked of it.
+struct FakeController {
+  struct Mailbox {
+    std::uint32_t id = 0, length = 0, low = 0, high = 0;
+  };
+  struct FilterBank {
+    std::uint32_t id = 0, mask = 0;
+  };
+  /// MSR: in initialisation when MCR asks for it.
+  struct Status {
+    FakeController& controller;
+    operator std::uint32_t() const { return controller.powered ? controller.master_control & 1 : 2; }
+  };
+  /// RF0R: 20h releases a frame, 10h takes back the overrun.
+  struct Fifo {
+    FakeController& controller;
+    operator std::uint32_t() const {
+      return static_cast<std::uint32_t>(controller.waiting.size()) | (controller.lost ? 0x10u : 0);
+    }
+    void operator=(std::uint32_t value) {
+      if ((value & 0x10) != 0) controller.lost = false;
+      if ((value & 0x20) != 0) controller.waiting.pop_front();
+      controller.show();
+    }
+  };
+
+  void arrive(Mailbox box) {
+    waiting.push_back(box);
+    show();
+  }
+  void show() {
+    if (!waiting.empty()) receive[0] = waiting.front();
+  }
+
+  bool powered = true;
+  bool lost = false;
+  std::deque<Mailbox> waiting;
+
+  std::uint32_t master_control = 0x0001'0002;  // asleep, as after a reset
+  Status master_status{*this};
+  std::uint32_t transmit_status = 0x1C00'0000;
+  Fifo receive_fifo[1] = {{*this}};
+  std::uint32_t error_status = 0;
+  std::uint32_t bit_timing = 0;
+  Mailbox transmit[3];
+  Mailbox receive[1];
+  std::uint32_t filter_master = 0x2A1C'0E01, filter_list = 0, filter_wide = 0, filter_fifo = 0, filter_active = 0;
+  FilterBank filters[28];
+};
+
+struct BxCan : testing::Test {
+  FakeController controller;
+  canopen::BxCan<FakeController> bus{controller};
+};
+
+TEST(BitTiming, HasTheSamplePointOfCia301) {
+  constexpr canopen::BitTimingRange range = canopen::BxCan<>::range;
+  EXPECT_EQ(canopen::bit_timing(42'000'000, 500'000, range), (canopen::BitTiming{6, 11, 2, 2}));  // 85.7 %
+  EXPECT_EQ(canopen::bit_timing(36'000'000, 1'000'000, range), (canopen::BitTiming{2, 15, 2, 2}));
+  EXPECT_EQ(canopen::bit_timing(8'000'000, 125'000, range), (canopen::BitTiming{4, 13, 2, 2}));  // 87.5 %
+  EXPECT_EQ(canopen::bit_timing(8'000'000, 10'000, range), (canopen::BitTiming{50, 13, 2, 2}));
+  EXPECT_EQ(canopen::bit_timing(36'000'000, 800'000, range),
+            (canopen::BitTiming{3, 12, 2, 2}));  // 86.7 %, with 5 it were 88.9 %
+  EXPECT_EQ(canopen::bit_timing(8'000'000, 300'000, range), std::nullopt);
+  EXPECT_EQ(canopen::bit_timing(4'000'000, 1'000'000, range), std::nullopt);  // four quanta
+}
+
+TEST_F(BxCan, GoesOnTheBusWithItsBitTiming) {
+  ASSERT_TRUE(bus.start(8'000'000, 125'000));
+  EXPECT_EQ(controller.bit_timing, 0x011C'0003u);  // SJW 2, TS2 2, TS1 13, BRP 4
+  EXPECT_EQ(controller.master_control, 0x40u);     // awake, running, recovers from bus-off by itself
+  EXPECT_EQ(controller.filter_active, 1u);
+  EXPECT_EQ(controller.filters[0].mask, 0u);
+  EXPECT_EQ(controller.filter_master & 1, 0u);
+}
+
+TEST_F(BxCan, DoesNotStartWithoutAClock) {
+  controller.powered = false;
+  EXPECT_FALSE(bus.start(8'000'000, 125'000));
+  controller.powered = true;
+  EXPECT_FALSE(bus.start(8'000'000, 300'000));
+}
+
+TEST_F(BxCan, SendsFromAFreeMailbox) {
+  // 185 37 12
+  ASSERT_TRUE(bus.send({.id = 0x185, .size = 2, .data = {0x37, 0x12}}));
+  EXPECT_EQ(controller.transmit[0].id, 0x185u << 21 | 1);
+  EXPECT_EQ(controller.transmit[0].length, 2u);
+  EXPECT_EQ(controller.transmit[0].low, 0x1237u);
+  controller.transmit_status = 0x1800'0000;  // mailbox 0 is full
+  ASSERT_TRUE(bus.send({.id = 0x1234'5678, .size = 8, .extended = true, .data = {1, 2, 3, 4, 5, 6, 7, 8}}));
+  EXPECT_EQ(controller.transmit[1].id, 0x1234'5678u << 3 | 5);
+  EXPECT_EQ(controller.transmit[1].high, 0x0807'0605u);
+  controller.transmit_status = 0x1000'0000;
+  ASSERT_TRUE(bus.send({.id = 0x701, .size = 1, .remote = true}));
+  EXPECT_EQ(controller.transmit[2].id, 0x701u << 21 | 3);
+  controller.transmit_status = 0;
+  EXPECT_FALSE(bus.send({.id = 0x80, .size = 0}));
+}
+
+TEST_F(BxCan, KeepsFramesOfTheSameIdentifierInOrder) {
+  ASSERT_TRUE(bus.send({.id = 0x585, .size = 8, .data = {0x00}}));
+  controller.transmit_status = 0x1800'0000;
+  EXPECT_FALSE(bus.send({.id = 0x585, .size = 8, .data = {0x10}}));
+  EXPECT_TRUE(bus.send({.id = 0x185, .size = 2}));
+  controller.transmit_status = 0x1C00'0000;  // both are gone
+  EXPECT_TRUE(bus.send({.id = 0x585, .size = 8, .data = {0x10}}));
+}
+
+TEST_F(BxCan, ReceivesInOrder) {
+  EXPECT_EQ(bus.receive(), std::nullopt);
+  controller.arrive({0x605u << 21, 0xAB00'0108, 0x0010'0040, 0});  // a time stamp stands above the length
+  controller.arrive({0x1ABC'DEF0u << 3 | 4, 1, 0x7F, 0});
+  controller.arrive({0x705u << 21 | 2, 1, 0, 0});
+  EXPECT_EQ(bus.receive(), (Frame{.id = 0x605, .size = 8, .data = {0x40, 0x00, 0x10, 0x00, 0, 0, 0, 0}}));
+  EXPECT_EQ(bus.receive(), (Frame{.id = 0x1ABC'DEF0, .size = 1, .extended = true, .data = {0x7F}}));
+  EXPECT_EQ(bus.receive(), (Frame{.id = 0x705, .size = 1, .remote = true}));
+  EXPECT_EQ(bus.receive(), std::nullopt);
+}
+
+TEST_F(BxCan, AcceptsTheFramesOfANodeAlone) {
+  const canopen::AcceptedFrame frames[] = {{0x000}, {0x605}, {.id = 0x185, .remote = true}};
+  bus.accept(frames);
+  EXPECT_EQ(controller.filter_active, 3u);
+  EXPECT_EQ(controller.filter_list, 3u);
+  EXPECT_EQ(controller.filter_wide, 3u);
+  EXPECT_EQ(controller.filters[0].id, 0u);
+  EXPECT_EQ(controller.filters[0].mask, 0x605u << 21);
+  EXPECT_EQ(controller.filters[1].id, 0x185u << 21 | 2);
+  EXPECT_EQ(controller.filters[1].mask, 0x185u << 21 | 2);
+}
+
+TEST_F(BxCan, AcceptsAllWhereTheFiltersDoNotSuffice) {
+  const std::vector<canopen::AcceptedFrame> frames(29);
+  bus.accept(frames);
+  EXPECT_EQ(controller.filter_active, 1u);
+  EXPECT_EQ(controller.filter_list, 0u);
+  EXPECT_EQ(controller.filters[0].mask, 0u);
+}
+
+TEST_F(BxCan, TellsItsErrorStateOnce) {
+  EXPECT_EQ(bus.status_change(), std::nullopt);
+  controller.error_status = 0x0088'0003;  // warning, passive
+  EXPECT_EQ(bus.status_change(), (canopen::BusStatus{.state = BusState::passive}));
+  EXPECT_EQ(bus.status_change(), std::nullopt);
+  controller.error_status = 0x00F8'0007;
+  EXPECT_EQ(bus.status_change(), (canopen::BusStatus{.state = BusState::off}));
+  controller.error_status = 0;
+  EXPECT_EQ(bus.status_change(), canopen::BusStatus{});
+}
+
+TEST_F(BxCan, TellsThatFramesAreLost) {
+  controller.lost = true;
+  EXPECT_EQ(bus.receive(), std::nullopt);
+  EXPECT_EQ(bus.status_change(), (canopen::BusStatus{.overrun = true}));
+  EXPECT_EQ(bus.status_change(), canopen::BusStatus{});
+  EXPECT_FALSE(controller.lost);
+}
+
+}  // namespace
