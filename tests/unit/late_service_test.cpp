@@ -12,7 +12,6 @@ namespace od = pdo_device::od;
 using namespace std::chrono_literals;
 using Bench = bench::Bench<pdo_device::Device>;
 
-constexpr auto event_driven = "185 00 00 00 00 00 00";
 
 /// Lets time pass in steps of a quarter of an hour at most, while heartbeats find no room.
 void pass_without_room(Bench& device, canopen::Duration span) {
