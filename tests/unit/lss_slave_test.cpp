@@ -78,12 +78,12 @@ TEST(LssSlave, IsSilentWhenOneOfTheFourNumbersIsAnotherOne) {
 
 TEST(LssSlave, IsSelectedByTheFourNumbersInTheirOrderOnly) {
   LssDevice device;
-  for (const std::size_t i : {1, 2, 3}) EXPECT_EQ(device.ask(selection[i]), "");
-  for (const std::size_t i : {0, 2, 3}) EXPECT_EQ(device.ask(selection[i]), "");
-  for (const std::size_t i : {0, 1, 3}) EXPECT_EQ(device.ask(selection[i]), "");
-  for (const std::size_t i : {0, 1, 2, 1, 3}) EXPECT_EQ(device.ask(selection[i]), "");
+  for (const unsigned i : {1U, 2U, 3U}) EXPECT_EQ(device.ask(selection[i]), "");
+  for (const unsigned i : {0U, 2U, 3U}) EXPECT_EQ(device.ask(selection[i]), "");
+  for (const unsigned i : {0U, 1U, 3U}) EXPECT_EQ(device.ask(selection[i]), "");
+  for (const unsigned i : {0U, 1U, 2U, 1U, 3U}) EXPECT_EQ(device.ask(selection[i]), "");
   EXPECT_EQ(device.slave.state(), LssState::waiting);
-  for (const std::size_t i : {0, 1, 0, 1, 2}) EXPECT_EQ(device.ask(selection[i]), "");
+  for (const unsigned i : {0U, 1U, 0U, 1U, 2U}) EXPECT_EQ(device.ask(selection[i]), "");
   EXPECT_EQ(device.ask(selection[3]), "7E4 44 00 00 00 00 00 00 00");
 }
 
@@ -583,7 +583,7 @@ TEST(LssSlave, AnswersWellFormedFramesToWhateverComes) {
       ASSERT_EQ(frame.id, 0x7E4u);
       ASSERT_EQ(frame.size, 8);
       ASSERT_EQ(frame.data[0], answer_to(request.data[0])) << bench::text(request);
-      for (const std::size_t reserved : {5, 6, 7}) ASSERT_EQ(frame.data[reserved], 0) << answer;
+      for (const unsigned reserved : {5U, 6U, 7U}) ASSERT_EQ(frame.data[reserved], 0) << answer;
     }
     ASSERT_TRUE(device.slave.state() == LssState::waiting || device.slave.state() == LssState::configuration);
     for (const NodeId node_id : {device.slave.node_id(), device.slave.pending_node_id(), device.stored_node_id}) {
