@@ -128,6 +128,7 @@ void add_check_command(CLI::App& app, int& exit_code) {
                       "options file (default: FILE's name with .options.json, if there)");
   add_node_id_option(*command, settings->node_id);
   command->add_option("--silence", settings->silence, "a rule that is not reported; may be given more than once")
+      ->allow_extra_args(false)
       ->check([](const std::string& rule) {
         return find_rule(rule) != nullptr ? std::string{} : "no rule is called \"" + rule + "\" (see --list-rules)";
       });

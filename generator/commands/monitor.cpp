@@ -170,6 +170,7 @@ void add_monitor_command(CLI::App& app, int& exit_code) {
   add_bus_argument(*command, settings->bus);
   command->add_option("--node", settings->nodes, "node-ID and its data sheet; may be given more than once")
       ->type_name("ID=FILE")
+      ->allow_extra_args(false)
       ->check([](const std::string& text) {
         return parse_node_file(text) ? std::string{} : "\"" + text + "\" is not a node-ID, = and a file";
       });

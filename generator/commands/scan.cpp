@@ -195,6 +195,7 @@ void add_scan_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(0, 600'000))
       ->capture_default_str();
   command->add_option("--eds", settings->sheets, "data sheet to compare with; may be given more than once")
+      ->allow_extra_args(false)
       ->type_name("FILE");
   auto* lss = command->add_flag("--lss", settings->lss, "find devices without node-ID by LSS Fastscan, too");
   add_step_option(*command, settings->lss_step_ms)->needs(lss);

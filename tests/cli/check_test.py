@@ -95,6 +95,10 @@ class Silence(CheckTest):
         self.assertEqual(returncode, FINE)
         self.assertEqual([d["rule"] for d in findings["diagnostics"]], ["eds-version"])
 
+    def test_of_one_rule_before_a_file(self) -> None:
+        returncode, findings = self.check("--silence", "file-name", self.sheet(ERROR))
+        self.assertEqual((returncode, len(findings["diagnostics"])), (INPUT_HAS_ERRORS, 1))
+
     def test_by_the_options_file(self) -> None:
         (self.folder / "example.options.json").write_text('{"silence": ["eds-version"]}', encoding="utf-8")
         returncode, findings = self.check(self.sheet(WARNING), "--strict")

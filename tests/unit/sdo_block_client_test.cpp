@@ -403,6 +403,22 @@ TEST(SdoClient, IsBusyUntilItsAbortIsSent) {
   EXPECT_FALSE(client.client.busy());
 }
 
+TEST(SdoClient, DropsAnAbortThatFindsNoRoomForALongTime) {
+  Client client;
+  client.upload();
+  client.bus.room = 0;
+  client.pass(100ms);
+  client.pass(99ms);
+  EXPECT_TRUE(client.client.busy());
+  client.pass(1ms);
+  EXPECT_FALSE(client.client.busy());
+  EXPECT_EQ(client.client.result(), AbortCode::timeout);
+  EXPECT_EQ(client.client.next_deadline(), std::nullopt);
+  client.bus.room = 1;
+  EXPECT_EQ(client.pass(1ms), "");
+  EXPECT_EQ(client.upload(), "40 12 20 00 00 00 00 00");
+}
+
 TEST(SdoClient, SpeaksToAServerOnOtherCanIds) {
   bench::RecordingBus bus;
   canopen::SdoClient client{bus, {canopen::CobId{0x6E1}, canopen::CobId{0x2000'1234}}};

@@ -175,12 +175,17 @@ class SdoClient {
     flush();
   }
 
-  /// Sends what found no room, and ends a transfer whose server is silent. To be called at `next_deadline()`, and when
+  /// Sends what found no room, and ends a transfer whose server is silent; an abort that finds no room for as long as the
+  /// timeout is dropped. To be called at `next_deadline()`, and when
   /// the bus has room again.
   void on_time(TimePoint now) {
     now_ = now;
     flush();
-    if (state_ == State::idle || now < deadline_) return;
+    if (now < deadline_) return;
+    if (state_ == State::idle) {
+      has_request_ = false;  // an abort that has found no room: the server is silent by now
+      return;
+    }
     if (state_ == State::block_uploading && sequence_ != 0) {
       confirm_sub_block();  // what is lost comes again
     } else {
