@@ -3,10 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <canopen/port/virtual_bus.hpp>
-#include <cctype>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -19,6 +17,7 @@
 #include "traces/player.hpp"
 #include "traces/station.hpp"
 #include "traces/trace.hpp"
+#include "traces/trace_files.hpp"
 
 namespace {
 
@@ -64,20 +63,6 @@ class ModuleStation final : public trace::Station {
   nodes::Surroundings around_;
 };
 
-std::vector<std::filesystem::path> traces() {
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator{EDSC_PLANT_TRACES_DIR}) files.push_back(entry.path());
-  std::ranges::sort(files);
-  return files;
-}
-
-std::string test_name(const testing::TestParamInfo<std::filesystem::path>& info) {
-  std::string name = info.param.stem().string();
-  std::ranges::replace_if(
-      name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
-  return name;
-}
-
 class PlantTraces : public testing::TestWithParam<std::filesystem::path> {};
 
 TEST_P(PlantTraces, AreWhatTheModulesDo) {
@@ -103,7 +88,7 @@ TEST_P(PlantTraces, AreWhatTheModulesDo) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Manual003, PlantTraces, testing::ValuesIn(traces()), test_name);
+INSTANTIATE_TEST_SUITE_P(Manual003, PlantTraces, testing::ValuesIn(trace::files_in(EDSC_PLANT_TRACES_DIR)), trace::test_name);
 
 // In one process on one bus
 

@@ -6,7 +6,6 @@
 #include <can_2024c/device.hpp>
 #include <can_2053c/device.hpp>
 #include <can_2057c/device.hpp>
-#include <cctype>
 #include <cpc_tc1/device.hpp>
 #include <cpd/device.hpp>
 #include <ezd_1136/device.hpp>
@@ -23,6 +22,7 @@
 #include "player.hpp"
 #include "station.hpp"
 #include "trace.hpp"
+#include "trace_files.hpp"
 
 namespace {
 
@@ -37,22 +37,6 @@ constexpr DeviceRow devices[] = {
     {"cpc-tc1", trace::make_station<cpc_tc1::Device>},     {"cpd", trace::make_station<cpd::Device>},
     {"ezd-1136", trace::make_station<ezd_1136::Device>},   {"rk5c", trace::make_station<rk5c::Device>},
 };
-
-std::vector<std::filesystem::path> trace_files() {
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator{EDSC_TRACES_DIR}) {
-    if (entry.path().extension() == ".trace") files.push_back(entry.path());
-  }
-  std::ranges::sort(files);
-  return files;
-}
-
-std::string test_name(const testing::TestParamInfo<std::filesystem::path>& info) {
-  std::string name = info.param.stem().string();
-  std::ranges::replace_if(
-      name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
-  return name;
-}
 
 class Traces : public testing::TestWithParam<std::filesystem::path> {};
 
@@ -80,6 +64,6 @@ TEST_P(Traces, AreListedInTheReadme) {
   EXPECT_NE(text.find("`" + GetParam().stem().string() + "`"), std::string::npos);
 }
 
-INSTANTIATE_TEST_SUITE_P(Manuals, Traces, testing::ValuesIn(trace_files()), test_name);
+INSTANTIATE_TEST_SUITE_P(Manuals, Traces, testing::ValuesIn(trace::files_in(EDSC_TRACES_DIR)), trace::test_name);
 
 }  // namespace
