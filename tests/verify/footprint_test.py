@@ -18,7 +18,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from support.compilers import ARM_GCC, SKIPPED, those_installed  # noqa: E402
 
-FIGURE = re.compile(r"(?<=\| )-?\d+(?:\.\d+)?(?= \|)")
+FIGURE = re.compile(r"(?<=\| )[+-]?\d+(?:\.\d+)?(?: %)?(?= \|)")
 WHOLE_DEVICE = re.compile(r"^\| ((?:flash|RAM), [^|]+) \| (\d+) \|", re.MULTILINE)
 MOST_GROWTH = 1.05
 
