@@ -29,7 +29,7 @@ AXIS = "tests/decode/axis.dcf"
 SCHEMA = SOURCE_DIR / "docs/schema/message.schema.json"
 PART = re.compile(r"^--- (log|output|errors|exit)(?: (\d+))?\n", re.MULTILINE)
 FINE, INPUT_HAS_ERRORS, WRONG_USAGE = 0, 1, 2
-SOON = 5.0
+SOON = 30.0
 
 
 def edsc(*arguments: str, log: str = "", **more: object) -> subprocess.CompletedProcess[str]:

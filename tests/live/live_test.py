@@ -52,7 +52,7 @@ class LiveTest(unittest.TestCase):
 
     def edsc(self, command: str, *arguments: object) -> subprocess.CompletedProcess[str]:
         return subprocess.run(self.command(command, *arguments), cwd=self.folder, capture_output=True, text=True,
-                              timeout=20)
+                              timeout=60)
 
     def start(self, command: str, *arguments: object) -> subprocess.Popen[str]:
         process = subprocess.Popen(self.command(command, *arguments), cwd=self.folder, text=True,
@@ -125,7 +125,7 @@ class ScanOfAnEmptyBus(LiveTest):
         self.assertIn("Connection refused", result.stderr)
 
     def test_what_is_no_address(self) -> None:
-        result = subprocess.run([EDSC, "scan", "can0"], capture_output=True, text=True, timeout=20)
+        result = subprocess.run([EDSC, "scan", "can0"], capture_output=True, text=True, timeout=60)
         self.assertEqual(result.returncode, WRONG_USAGE)
         self.assertTrue(result.stderr.startswith('edsc: "can0" is no bus'), result.stderr)
 
@@ -209,7 +209,7 @@ class Silence(LiveTest):
     nodes = ()
 
     def wait_for(self, process: subprocess.Popen[str]) -> tuple[int, str, str]:
-        return process.wait(timeout=10), process.stdout.read(), process.stderr.read()
+        return process.wait(timeout=60), process.stdout.read(), process.stderr.read()
 
     def test_ctrl_c_aborts_the_transfer(self) -> None:
         asked = self.network.client()
@@ -364,7 +364,7 @@ class Configure(LiveTest):
     def test_the_steps_without_a_bus(self) -> None:
         self.only(x1A00sub0="1", x1A00sub1="0x60640020", x2004="1200", x1005="0x81")
         result = subprocess.run([EDSC, "configure", "socketcan:none", "5", "axis.dcf", "--dry-run"], cwd=self.folder,
-                                capture_output=True, text=True, timeout=20)
+                                capture_output=True, text=True, timeout=60)
         self.expect(result, FINE, """\
 switch off  1005h:00 COB-ID SYNC
 switch on   1005h:00 COB-ID SYNC = 00000081h
@@ -528,7 +528,7 @@ class Monitor(LiveTest):
         client = self.network.client()
         client.send("086 30 81 11 00 00 00 00 00")
         client.send("123 01")
-        stdout, stderr = process.communicate(timeout=10)
+        stdout, stderr = process.communicate(timeout=60)
         found = self.expect_json(subprocess.CompletedProcess([], process.returncode, stdout, stderr), "monitor.schema.json")
         drive, other = found["nodes"]
         self.assertEqual((drive["node_id"], drive["name"], drive["state"], drive["late"]), (5, "Live device", "operational", False))
@@ -557,7 +557,7 @@ class Monitor(LiveTest):
         self.assertIn("Position actual value = 123456 inc", rest)
         self.assertIn("operational", rest)
         process.send_signal(signal.SIGINT)
-        self.assertEqual((process.wait(timeout=10), process.stdout.read()), (FINE, ""))
+        self.assertEqual((process.wait(timeout=60), process.stdout.read()), (FINE, ""))
 
     def test_the_table_on_a_terminal(self) -> None:
         terminal, inside = pty.openpty()
@@ -587,7 +587,7 @@ class Monitor(LiveTest):
         shown_until("more lines")
         os.write(terminal, b"q")
         self.assertTrue(shown_until("\x1b[?1049l").endswith("\x1b[?25h\x1b[?1049l"))
-        self.assertEqual(process.wait(timeout=10), FINE)
+        self.assertEqual(process.wait(timeout=60), FINE)
         self.assertEqual(termios.tcgetattr(inside), before)
         os.close(inside)
 

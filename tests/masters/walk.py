@@ -19,7 +19,7 @@ ERROR_REGISTER, ERROR_HISTORY, EMCY_COB_ID = 0x1001, 0x1003, 0x1014
 INVALID, NO_REMOTE_FRAMES = 1 << 31, 1 << 30
 HARMLESS = {0x6040: 6, 0x6060: 1, 0x6098: 17}  # values that move no drive, and that drives know
 INPUTS = Path(__file__).with_name("inputs.tsv")
-PATIENCE = 3.0  # s, for what must come
+PATIENCE = 10.0  # s, for what must come
 SHORT = 0.04    # s, for what must not come
 
 

@@ -280,9 +280,9 @@ def restart_the_sensor(bus: KernelBus | ServedBus, arguments: argparse.Namespace
 
 def refuse_wrong_arguments(arguments: argparse.Namespace) -> None:
     for wrong in ([], ["nowhere"], ["socketcan:nowhere0"], ["socketcan:vcan0", "--node-id", "128"], ["a", "b"]):
-        done = subprocess.run([arguments.rk5c, *wrong], capture_output=True, text=True, timeout=10)
+        done = subprocess.run([arguments.rk5c, *wrong], capture_output=True, text=True, timeout=60)
         assert done.returncode == 2 and done.stderr.startswith("rk5c: "), (wrong, done)
-    done = subprocess.run([arguments.rk5c, "--help"], capture_output=True, text=True, timeout=10)
+    done = subprocess.run([arguments.rk5c, "--help"], capture_output=True, text=True, timeout=60)
     assert done.returncode == 0 and "position 1 12345" in done.stdout, done
     print("ok   wrong arguments, --help")
 

@@ -40,6 +40,7 @@ def node_behind_an_adapter(vm_adapter: str) -> None:
         expect("boot-up, when the driver has opened the channel", bus.receive(0x705), "00")
         expect("SDO", bus.ask(0x605, "40 00 10 00 00 00 00 00", 0x585), "43 00 10 00 00 00 00 00")
         bus.send(0x000, "01 05")
+        expect("TPDO 1 on start", bus.receive(0x185), "00 00 00 00")
         expect("TPDO 1", bus.ask(0x205, "AA 34 12 00 00 00 00", 0x185), "AA 34 12 00")
         run(f"cansend {interface} 705#R")
         expect("a remote frame", bus.receive(0x705), "05")
