@@ -6,7 +6,6 @@
 #include <concepts>
 #include <cstdint>
 #include <cstring>
-#include <optional>
 #include <span>
 
 #include "canopen/crc16.hpp"
@@ -34,19 +33,21 @@ class FlashStorage {
   explicit constexpr FlashStorage(Pages& flash_pages) : pages_{flash_pages} {}
 
   [[nodiscard]] StorageState open() {
-    std::optional<Header> best;
-    bool blank = true;
+    StorageState state = StorageState::empty;
     page_ = 1;
+    size_ = 0;
+    erasures_ = 0;
     for (std::uint8_t page = 0; page < 2; ++page) {
-      const std::optional<Header> header = header_of(page, blank);
-      if (!header || (best && best->erasures >= header->erasures)) continue;
-      best = header;
+      const StorageState found = look_into(page);
+      if (found == StorageState::damaged && state == StorageState::empty) state = found;
+      if (found != StorageState::whole || (state == found && erasures_ >= header_.erasures)) continue;
+      state = found;
+      size_ = header_.size;
+      erasures_ = header_.erasures;
       page_ = page;
     }
-    size_ = best ? best->size : 0;
-    erasures_ = best ? best->erasures : 0;
-    if (best) return StorageState::whole;
-    return blank ? StorageState::empty : StorageState::damaged;
+    header_ = {};
+    return state;
   }
 
   [[nodiscard]] std::uint32_t size() const { return size_; }
@@ -60,16 +61,16 @@ class FlashStorage {
 
   [[nodiscard]] bool begin(std::uint32_t size) {
     if (size > Pages::page_size - image_at) return false;
-    fresh_ = {};
-    fresh_.size = size;
-    fresh_.erasures = ++erasures_;
+    header_ = {};
+    header_.size = size;
+    header_.erasures = ++erasures_;
     written_ = 0;
     return pages_.erase(spare());
   }
 
   [[nodiscard]] bool write(std::span<const std::uint8_t> bytes) {
-    if (bytes.size() > fresh_.size - written_) return false;
-    fresh_.image_crc = crc16_ccitt(fresh_.image_crc, bytes);
+    if (bytes.size() > header_.size - written_) return false;
+    header_.image_crc = crc16_ccitt(header_.image_crc, bytes);
     for (const std::uint8_t byte : bytes) {
       word_[written_ % word_size] = byte;
       if (++written_ % word_size == 0 && !write_word(image_at + written_ - word_size)) return false;
@@ -78,20 +79,15 @@ class FlashStorage {
   }
 
   [[nodiscard]] bool commit() {
-    if (written_ != fresh_.size) return false;
+    if (written_ != header_.size) return false;
     if (const std::uint32_t rest = written_ % word_size; rest != 0) {
       std::fill(word_.begin() + rest, word_.end(), std::uint8_t{0xFF});
       if (!write_word(image_at + written_ - rest)) return false;
     }
-    fresh_.crc = crc_of(fresh_);
-    std::array<std::uint8_t, image_at> bytes;
-    bytes.fill(0xFF);
-    std::memcpy(bytes.data(), &fresh_, sizeof fresh_);
-    if (!pages_.write(spare(), 0, bytes)) return false;
-    bool blank = true;
-    if (!header_of(spare(), blank)) return false;  // the medium has not kept it
+    header_.crc = crc_of(header_);
+    if (!write_header() || look_into(spare()) != StorageState::whole) return false;  // the medium has not kept it
     page_ = spare();
-    size_ = fresh_.size;
+    size_ = header_.size;
     return true;
   }
 
@@ -121,33 +117,37 @@ class FlashStorage {
 
   [[nodiscard]] bool write_word(std::uint32_t offset) { return pages_.write(spare(), offset, word_); }
 
-  /// The header of a page that holds a whole image. `blank` becomes false where something else stands in its place.
-  [[nodiscard]] std::optional<Header> header_of(std::uint8_t page, bool& blank) const {
-    Header header;
-    const std::span<std::uint8_t> bytes{reinterpret_cast<std::uint8_t*>(&header), sizeof header};
-    const bool readable = pages_.read(page, 0, bytes);
-    if (readable && std::ranges::all_of(bytes, [](std::uint8_t byte) { return byte == 0xFF; })) return std::nullopt;
-    blank = false;
-    if (!readable || header.crc != crc_of(header) || header.size > Pages::page_size - image_at) return std::nullopt;
-    if (image_crc(page, header.size) != header.image_crc) return std::nullopt;
-    return header;
+  // In functions of their own, whose buffers lie on the stack one after the other.
+  [[nodiscard, gnu::noinline]] bool write_header() const {
+    std::array<std::uint8_t, image_at> bytes;
+    bytes.fill(0xFF);
+    std::memcpy(bytes.data(), &header_, sizeof header_);
+    return pages_.write(spare(), 0, bytes);
   }
 
-  /// Nothing where the page cannot be read.
-  [[nodiscard]] std::optional<std::uint16_t> image_crc(std::uint8_t page, std::uint32_t size) const {
+  /// What a page holds; `header_` is its header then.
+  [[nodiscard, gnu::noinline]] StorageState look_into(std::uint8_t page) {
+    const std::span<std::uint8_t> bytes{reinterpret_cast<std::uint8_t*>(&header_), sizeof header_};
+    if (!pages_.read(page, 0, bytes)) return StorageState::damaged;
+    if (std::ranges::all_of(bytes, [](std::uint8_t byte) { return byte == 0xFF; })) return StorageState::empty;
+    const bool sound = header_.crc == crc_of(header_) && header_.size <= Pages::page_size - image_at;
+    return sound && image_is_whole(page) ? StorageState::whole : StorageState::damaged;
+  }
+
+  [[nodiscard]] bool image_is_whole(std::uint8_t page) const {
     std::array<std::uint8_t, 16> bytes;
     std::uint16_t crc = first_crc;
-    for (std::uint32_t done = 0; done < size;) {
-      const std::span<std::uint8_t> piece{bytes.data(), std::min<std::uint32_t>(bytes.size(), size - done)};
-      if (!pages_.read(page, image_at + done, piece)) return std::nullopt;
+    for (std::uint32_t done = 0; done < header_.size;) {
+      const std::span<std::uint8_t> piece{bytes.data(), std::min<std::uint32_t>(bytes.size(), header_.size - done)};
+      if (!pages_.read(page, image_at + done, piece)) return false;
       crc = crc16_ccitt(crc, piece);
       done += static_cast<std::uint32_t>(piece.size());
     }
-    return crc;
+    return crc == header_.image_crc;
   }
 
   Pages& pages_;
-  Header fresh_{};             ///< of the image in the making
+  Header header_{};             ///< of the image in the making, or of the page that was looked into
   std::uint32_t written_ = 0;  ///< bytes of it
   std::uint32_t size_ = 0;     ///< of the present image
   std::uint32_t erasures_ = 0;

@@ -79,30 +79,16 @@ class ParameterStorage {
   /// storage.
   template <Storage S>
   [[nodiscard]] bool save(S& storage, SectionSet sections, ObjectStore<Device>& store) {
-    const auto written = static_cast<SectionSet>(sections | set_of(ParameterSection::configuration));
-    Records records{};
-    return find(storage, records) && rewrite(storage, records, written, ram_of(store), store.node_id());
+    return rewrite(storage, sections | set_of(ParameterSection::configuration), 0, store);
   }
 
   /// Gives some sections up, so that the next reset or, by the options, the next power-on brings their defaults. 1020h
   /// is no longer true then: it goes too, and is 0 from now on. False: nothing has changed in storage.
   template <Storage S>
   [[nodiscard]] bool restore(S& storage, SectionSet sections, ObjectStore<Device>& store) {
-    Records records{};
-    if (!find(storage, records)) return false;
     const unsigned given_up =
         (sections & ~set_of(ParameterSection::with_node_id)) | set_of(ParameterSection::configuration);
-    bool any = false;
-    for (std::size_t i = 0; i < parameter_sections; ++i) {
-      if (!is_in(given_up, i) || records[i].position == 0) continue;
-      any = true;
-      if constexpr (Device::options.restore_needs_power_cycle) {
-        records[i].given_up = 1;
-      } else {
-        records[i].position = 0;
-      }
-    }
-    if (any && !rewrite(storage, records, 0, ram_of(store), store.node_id())) return false;
+    if (!holds_none_of(storage, given_up) && !rewrite(storage, 0, given_up, store)) return false;
     clear_configuration(store);
     restored_ = true;
     return true;
@@ -138,7 +124,6 @@ class ParameterStorage {
     std::uint8_t node_id = 0;
     std::uint8_t given_up = 0;
   };
-  using Records = std::array<Record, parameter_sections>;
 
   static constexpr bool has_configuration =
       Layout::stores(verify_configuration, 1) && Layout::stores(verify_configuration, 2);
@@ -158,43 +143,78 @@ class ParameterStorage {
     }
   }
 
-  /// The records whose layout is this device's. False: storage could not be read.
+  /// The record of a section whose layout is this device's. It is looked for each time: all of them would take much of
+  /// the stack. False: storage could not be read.
   template <Storage S>
-  [[nodiscard]] bool find(S& storage, Records& records) const {
+  [[nodiscard, gnu::noinline]] bool find(S& storage, std::size_t section, Record& record) const {
+    record = {};
     const std::uint32_t end = storage.size();
     for (std::uint32_t at = 0; at + sizeof(Header) <= end;) {
       Header header;
       if (!storage.read(at, {reinterpret_cast<std::uint8_t*>(&header), sizeof header})) return false;
       at += static_cast<std::uint32_t>(sizeof header);
-      for (std::size_t i = 0; i < parameter_sections; ++i) {
-        if (header.signature != Layout::signatures[i] || header.size != Layout::sizes[i]) continue;
-        if (header.given_up == 0 || restored_) records[i] = {at, header.node_id, header.given_up};
-      }
+      const bool same_layout = header.signature == Layout::signatures[section] && header.size == Layout::sizes[section];
+      if (same_layout && (header.given_up == 0 || restored_)) record = {at, header.node_id, header.given_up};
       at += header.size;
     }
     return true;
   }
 
-  /// Makes a new image: of the sections in `written` with the values as they are now, of others with what `records`
-  /// says.
+  /// Whether storage could be read, and has nothing of some sections.
   template <Storage S>
-  [[nodiscard]] static bool rewrite(S& storage, const Records& records, SectionSet written, const std::uint8_t* ram,
-                                    NodeId node_id) {
+  [[nodiscard, gnu::noinline]] bool holds_none_of(S& storage, unsigned sections) const {
+    Record record;
+    for (std::size_t i = 0; i < parameter_sections; ++i) {
+      if (is_in(sections, i) && (!find(storage, i, record) || record.position != 0)) return false;
+    }
+    return true;
+  }
+
+  /// The same for an image without the sections in `given_up`, or in which they count for the last time.
+  template <Storage S>
+  [[nodiscard]] bool find_kept(S& storage, std::size_t section, unsigned given_up, Record& record) const {
+    if (!find(storage, section, record)) return false;
+    if (is_in(given_up, section)) {
+      if constexpr (Device::options.restore_needs_power_cycle) {
+        record.given_up = 1;
+      } else {
+        record.position = 0;
+      }
+    }
+    return true;
+  }
+
+  /// Makes a new image: of the sections in `written` with the values as they are now, of others with what is stored.
+  template <Storage S>
+  [[nodiscard, gnu::noinline]] bool rewrite(S& storage, unsigned written, unsigned given_up,
+                                            ObjectStore<Device>& store) const {
     std::uint32_t size = 0;
     for (std::size_t i = 0; i < parameter_sections; ++i) {
-      if (Layout::sizes[i] != 0 && (is_in(written, i) || records[i].position != 0))
+      if (Layout::sizes[i] == 0) continue;
+      Record record;
+      if (!find_kept(storage, i, given_up, record)) return false;
+      if (is_in(written, i) || record.position != 0)
         size += static_cast<std::uint32_t>(sizeof(Header)) + Layout::sizes[i];
     }
     if (!storage.begin(size)) return false;
     for (std::size_t i = 0; i < parameter_sections; ++i) {
       if (Layout::sizes[i] == 0) continue;
-      if (is_in(written, i)) {
-        if (!write_header(storage, i, {.node_id = node_id.value()}) || !write_values(storage, i, ram)) return false;
-      } else if (records[i].position != 0) {
-        if (!write_header(storage, i, records[i]) || !copy_values(storage, i, records[i])) return false;
-      }
+      if (!(is_in(written, i) ? write_present(storage, i, store) : write_kept(storage, i, given_up))) return false;
     }
     return storage.commit();
+  }
+
+  // In functions of their own, as their buffers would take stack while the image is committed.
+  template <Storage S>
+  [[nodiscard, gnu::noinline]] static bool write_present(S& storage, std::size_t section, ObjectStore<Device>& store) {
+    return write_header(storage, section, {.node_id = store.node_id().value()}) &&
+           write_values(storage, section, ram_of(store));
+  }
+  template <Storage S>
+  [[nodiscard, gnu::noinline]] bool write_kept(S& storage, std::size_t section, unsigned given_up) const {
+    Record record;
+    if (!find_kept(storage, section, given_up, record)) return false;
+    return record.position == 0 || (write_header(storage, section, record) && copy_values(storage, section, record));
   }
 
   template <Storage S>
@@ -212,7 +232,7 @@ class ParameterStorage {
   }
 
   template <Storage S>
-  [[nodiscard]] static bool copy_values(S& storage, std::size_t section, Record record) {
+  [[nodiscard, gnu::noinline]] static bool copy_values(S& storage, std::size_t section, const Record& record) {
     std::array<std::uint8_t, 16> bytes;
     for (std::uint32_t done = 0; done < Layout::sizes[section];) {
       const std::uint32_t size = std::min<std::uint32_t>(bytes.size(), Layout::sizes[section] - done);
@@ -247,11 +267,11 @@ class ParameterStorage {
   template <Storage S>
   [[nodiscard]] bool load(S& storage, unsigned sections, std::span<const NodeIdRelative> relative,
                           ObjectStore<Device>& store) const {
-    Records records{};
-    if (!find(storage, records)) return false;
     for (std::size_t i = 0; i < parameter_sections; ++i) {
-      if (!is_in(sections, i) || records[i].position == 0) continue;
-      if (!load_section(storage, i, records[i], relative, store)) return false;
+      if (!is_in(sections, i) || Layout::sizes[i] == 0) continue;
+      Record record;
+      if (!find(storage, i, record)) return false;
+      if (record.position != 0 && !load_section(storage, i, record, relative, store)) return false;
     }
     return true;
   }

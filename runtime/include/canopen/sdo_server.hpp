@@ -426,10 +426,21 @@ class SdoServer {
     return write({bytes_, position_}, hooks);
   }
 
-  /// Writes bytes whose length fits, unless something speaks against them.
+  /// Takes bytes whose length fits. "save" calls deeply: what a write of a value needs is not on the stack then.
   [[nodiscard, gnu::noinline]] AbortCode write(std::span<std::uint8_t> bytes, auto& hooks) {
-    const EntryAccess<Device> entries = hooks.entries();
     if (entry::place_of(word_) != entry::Place::ram) return hooks.command(index(), sub_index(), bytes);
+    if constexpr (takes_commands) return write_value_apart(bytes, hooks);
+    return write_value(bytes, hooks);
+  }
+
+  static constexpr bool takes_commands = Device::dictionary.has(0x1010, 0) || Device::dictionary.has(0x1011, 0);
+  [[nodiscard, gnu::noinline]] AbortCode write_value_apart(std::span<std::uint8_t> bytes, auto& hooks) {
+    return write_value(bytes, hooks);
+  }
+
+  /// Writes a value, unless something speaks against it.
+  [[nodiscard]] AbortCode write_value(std::span<std::uint8_t> bytes, auto& hooks) {
+    const EntryAccess<Device> entries = hooks.entries();
     if (const AbortCode code = entries.check_value(index(), sub_index(), word_, bytes); code != ok) return code;
     if (const AbortCode code = hooks.before_write(index(), sub_index(), bytes); code != ok) return code;
     // A handler may have bound a DOMAIN to other memory: the application has taken the bytes then.
