@@ -24,16 +24,20 @@ struct FakeController {
     FakeController& controller;
     operator std::uint32_t() const { return controller.powered ? controller.master_control & 1 : 2; }
   };
-  /// RF0R: 20h releases a frame, 10h takes back the overrun.
+  /// RF0R: 20h releases a frame, which takes a number of reads, and 10h takes back the overrun.
   struct Fifo {
     FakeController& controller;
     operator std::uint32_t() const {
-      return static_cast<std::uint32_t>(controller.waiting.size()) | (controller.lost ? 0x10u : 0);
+      const auto frames = static_cast<std::uint32_t>(controller.waiting.size());
+      const std::uint32_t shown = frames | (controller.lost ? 0x10u : 0) | (controller.releasing > 0 ? 0x20u : 0);
+      if (controller.releasing > 0 && --controller.releasing == 0) controller.release();
+      return shown;
     }
     void operator=(std::uint32_t value) {
       if ((value & 0x10) != 0) controller.lost = false;
-      if ((value & 0x20) != 0) controller.waiting.pop_front();
-      controller.show();
+      if ((value & 0x20) == 0 || controller.waiting.empty() || controller.releasing > 0) return;
+      controller.releasing = controller.release_takes;
+      if (controller.releasing == 0) controller.release();
     }
   };
 
@@ -44,9 +48,15 @@ struct FakeController {
   void show() {
     if (!waiting.empty()) receive[0] = waiting.front();
   }
+  void release() {
+    waiting.pop_front();
+    show();
+  }
 
   bool powered = true;
   bool lost = false;
+  int release_takes = 0;  ///< reads of RF0R
+  int releasing = 0;      ///< reads that are left of it
   std::deque<Mailbox> waiting;
 
   std::uint32_t master_control = 0x0001'0002;  // asleep, as after a reset
@@ -129,6 +139,17 @@ TEST_F(BxCan, ReceivesInOrder) {
   EXPECT_EQ(bus.receive(), (Frame{.id = 0x1ABC'DEF0, .size = 1, .extended = true, .data = {0x7F}}));
   EXPECT_EQ(bus.receive(), (Frame{.id = 0x705, .size = 1, .remote = true}));
   EXPECT_EQ(bus.receive(), std::nullopt);
+}
+
+TEST_F(BxCan, GivesAFrameOnceWhileItsReleaseTakesTime) {
+  controller.release_takes = 2;
+  controller.arrive({0x205u << 21, 1, 0x11, 0});
+  controller.arrive({0x205u << 21, 1, 0x22, 0});
+  std::vector<std::uint8_t> bytes;
+  for (int i = 0; i < 12; ++i) {
+    if (const std::optional<Frame> frame = bus.receive()) bytes.push_back(frame->data[0]);
+  }
+  EXPECT_EQ(bytes, (std::vector<std::uint8_t>{0x11, 0x22}));
 }
 
 TEST_F(BxCan, AcceptsTheFramesOfANodeAlone) {

@@ -136,14 +136,15 @@ class BxCan {
     return true;
   }
 
-  /// The next frame from receive FIFO 0, if there is one.
+  /// The next frame from receive FIFO 0, if there is one. While the release of the last frame is under way FMP still
+  /// counts it, and the mailbox still shows it.
   [[nodiscard]] std::optional<Frame> receive() {
     const std::uint32_t fifo = registers_.receive_fifo[0];
     if ((fifo & overrun) != 0) {
       overrun_ = true;
       registers_.receive_fifo[0] = overrun;
     }
-    if ((fifo & pending) == 0) return std::nullopt;
+    if ((fifo & pending) == 0 || (fifo & release) != 0) return std::nullopt;
     const auto& box = registers_.receive[0];
     const std::uint32_t id = box.id;
     const std::array<std::uint32_t, 2> words = {box.low, box.high};
