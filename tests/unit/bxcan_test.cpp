@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <canopen/port/bxcan.hpp>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -19,10 +20,14 @@ struct FakeController {
   struct FilterBank {
     std::uint32_t id = 0, mask = 0;
   };
-  /// MSR: in initialisation when MCR asks for it.
+  /// MSR: in initialisation when MCR asks for it, as soon as the frame on the wire has ended.
   struct Status {
     FakeController& controller;
-    operator std::uint32_t() const { return controller.powered ? controller.master_control & 1 : 2; }
+    operator std::uint32_t() const {
+      if (!controller.powered) return 2;
+      if (controller.wire_busy > 0 && --controller.wire_busy > 0) return 0;
+      return controller.master_control & 1;
+    }
   };
   /// RF0R: 20h releases a frame, which takes a number of reads, and 10h takes back the overrun.
   struct Fifo {
@@ -55,6 +60,7 @@ struct FakeController {
 
   bool powered = true;
   bool lost = false;
+  int wire_busy = 0;      ///< reads of MSR until the frame on the wire has ended
   int release_takes = 0;  ///< reads of RF0R
   int releasing = 0;      ///< reads that are left of it
   std::deque<Mailbox> waiting;
@@ -72,6 +78,8 @@ struct FakeController {
 };
 
 struct BxCan : testing::Test {
+  BxCan() { controller.master_control = 0; }  // on the bus
+
   FakeController controller;
   canopen::BxCan<FakeController> bus{controller};
 };
@@ -88,7 +96,19 @@ TEST(BitTiming, HasTheSamplePointOfCia301) {
   EXPECT_EQ(canopen::bit_timing(4'000'000, 1'000'000, range), std::nullopt);  // four quanta
 }
 
+TEST_F(BxCan, HasTheRegistersWhereTheManualSays) {
+  using Registers = canopen::BxCanRegisters;
+  EXPECT_EQ(offsetof(Registers, bit_timing), 0x01Cu);
+  EXPECT_EQ(offsetof(Registers, transmit), 0x180u);
+  EXPECT_EQ(offsetof(Registers, receive), 0x1B0u);
+  EXPECT_EQ(offsetof(Registers, filter_master), 0x200u);
+  EXPECT_EQ(offsetof(Registers, filter_wide), 0x20Cu);
+  EXPECT_EQ(offsetof(Registers, filter_active), 0x21Cu);
+  EXPECT_EQ(offsetof(Registers, filters), 0x240u);
+}
+
 TEST_F(BxCan, GoesOnTheBusWithItsBitTiming) {
+  controller.master_control = 0x0001'0002;  // asleep, as after a reset
   ASSERT_TRUE(bus.start(8'000'000, 125'000));
   EXPECT_EQ(controller.bit_timing, 0x011C'0003u);  // SJW 2, TS2 2, TS1 13, BRP 4
   EXPECT_EQ(controller.master_control, 0x40u);     // awake, running, recovers from bus-off by itself
@@ -102,6 +122,35 @@ TEST_F(BxCan, DoesNotStartWithoutAClock) {
   EXPECT_FALSE(bus.start(8'000'000, 125'000));
   controller.powered = true;
   EXPECT_FALSE(bus.start(8'000'000, 300'000));
+}
+
+TEST_F(BxCan, ChangesTheBitRateWhenTheWireIsFree) {
+  ASSERT_TRUE(bus.start(8'000'000, 125'000));
+  const canopen::AcceptedFrame frames[] = {{0x000}, {0x7E5}};
+  bus.accept(frames);
+  ASSERT_TRUE(bus.send({.id = 0x7E4, .size = 8}));
+  controller.transmit_status = 0x1800'0000;
+  controller.wire_busy = 5;
+  EXPECT_TRUE(bus.stop());
+  EXPECT_EQ(controller.wire_busy, 0);
+  EXPECT_FALSE(bus.send({.id = 0x701, .size = 1}));  // it is not on the bus
+  EXPECT_EQ(controller.bit_timing, 0x011C'0003u);
+  ASSERT_TRUE(bus.start(8'000'000, 250'000));
+  EXPECT_EQ(controller.bit_timing, 0x011C'0001u);
+  EXPECT_EQ(controller.filter_list, 1u);  // as accepted before
+  EXPECT_EQ(controller.filters[0].mask, 0x7E5u << 21);
+  EXPECT_EQ(controller.transmit[0].id, 0x7E4u << 21 | 1);  // still requested
+  EXPECT_TRUE(bus.send({.id = 0x701, .size = 1}));
+}
+
+TEST_F(BxCan, ListensInSilence) {
+  ASSERT_TRUE(bus.start(8'000'000, 125'000, canopen::BusMode::silent));
+  EXPECT_EQ(controller.bit_timing, 0x811C'0003u);
+  EXPECT_FALSE(bus.send({.id = 0x701, .size = 1}));
+  controller.arrive({0x705u << 21, 1, 0x7F, 0});
+  EXPECT_EQ(bus.receive(), (Frame{.id = 0x705, .size = 1, .data = {0x7F}}));
+  ASSERT_TRUE(bus.start(8'000'000, 125'000));
+  EXPECT_TRUE(bus.send({.id = 0x701, .size = 1}));
 }
 
 TEST_F(BxCan, SendsFromAFreeMailbox) {

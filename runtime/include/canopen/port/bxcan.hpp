@@ -1,14 +1,13 @@
 /// The CAN controller bxCAN of STM32F0, F1, F2, F3, F4, F7 and L4. No operating system, no interrupts: a loop asks.
 ///
 ///     canopen::BxCan<> bus{*reinterpret_cast<canopen::BxCanRegisters*>(0x4000'6400)};
-///     bus.start(42'000'000, 500'000);            // the clock of APB1; clock and pins of the controller are on by then
+///     const bool up = bus.start(42'000'000, 500'000);  // the clock of APB1; clock and pins are on by then
 ///     if (const auto frame = bus.receive()) node.on_frame(*frame, now);
 ///     if (const auto status = bus.status_change()) node.on_bus_status(*status, now);
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <optional>
 #include <span>
 
@@ -16,6 +15,7 @@
 #include "canopen/bus_status.hpp"
 #include "canopen/frame.hpp"
 #include "canopen/port/bit_timing.hpp"
+#include "canopen/port/can_controller.hpp"
 
 namespace canopen {
 
@@ -57,7 +57,8 @@ struct BxCanRegisters {
 };
 static_assert(sizeof(BxCanRegisters) == 0x320);
 
-/// `Registers` is another type in tests alone.
+/// The first controller of a chip: the filter banks of a second one lie in the registers of the first. `Registers` is
+/// another type in tests alone.
 template <class Registers = BxCanRegisters>
 class BxCan {
  public:
@@ -66,22 +67,30 @@ class BxCan {
 
   explicit constexpr BxCan(Registers& registers) : registers_{registers} {}
 
-  /// Goes on the bus, with all frames accepted. `clock` in Hz is that of the controller, `bit_rate` in bit/s. False:
-  /// the clock gives no such rate, or the controller does not come up, as one without clock or with CAN_RX held low.
-  [[nodiscard]] bool start(std::uint32_t clock, std::uint32_t bit_rate) {
+  /// Goes on the bus, or changes the bit rate there, with what `accept` has been told, or all frames. `clock` in Hz is
+  /// that of the controller, `bit_rate` in bit/s. Frames that wait stay. False: the clock gives no such rate, or the
+  /// controller does not come up, as one without clock or with CAN_RX held low.
+  [[nodiscard]] bool start(std::uint32_t clock, std::uint32_t bit_rate, BusMode mode = BusMode::normal) {
     const std::optional<BitTiming> timing = canopen::bit_timing(clock, bit_rate, range);
-    if (!timing) return false;
-    registers_.master_control = initialize | recover_from_bus_off;  // awake, and mailboxes by identifier: TXFP is 0
-    if (!wait_for(initialize)) return false;
+    if (!timing || !stop()) return false;
     registers_.bit_timing = (timing->resynchronization - 1u) << 24 | (timing->after_sample - 1u) << 20 |
-                            (timing->before_sample - 1u) << 16 | (timing->prescaler - 1u);
-    accept_all();
+                            (timing->before_sample - 1u) << 16 | (timing->prescaler - 1u) |
+                            (mode == BusMode::silent ? silent : 0);
+    if (!filtered_) accept_all();
     registers_.master_control = registers_.master_control & ~initialize;
-    return wait_for(0);
+    return wait_until([this] { return (registers_.master_status & (initialize | asleep)) == 0; });
+  }
+
+  /// Leaves the bus when the frame that is on the wire has ended. Frames that wait stay until the next start. False:
+  /// the controller has no clock.
+  bool stop() {
+    registers_.master_control = initialize | recover_from_bus_off;  // awake, and mailboxes by identifier: TXFP is 0
+    return wait_until([this] { return (registers_.master_status & (initialize | asleep)) == initialize; });
   }
 
   /// Accepts every frame.
   void accept_all() {
+    filtered_ = true;
     registers_.filter_master = registers_.filter_master | 1;
     registers_.filter_active = 0;
     registers_.filter_list = 0;
@@ -98,6 +107,7 @@ class BxCan {
     if (frames.empty() || frames.size() > 2 * filter_banks) return accept_all();
     const std::size_t banks = (frames.size() + 1) / 2;
     const std::uint32_t used = (1u << banks) - 1;
+    filtered_ = true;
     registers_.filter_master = registers_.filter_master | 1;
     registers_.filter_active = 0;
     registers_.filter_list = used;
@@ -113,8 +123,10 @@ class BxCan {
   }
 
   /// Into a free mailbox. The controller sends the one with the lowest identifier first. Of two frames with the same
-  /// identifier the second waits until the first is gone: the order of equals is that of the mailboxes. False: no room.
+  /// identifier the second waits until the first is gone: the order of equals is that of the mailboxes. False: no room,
+  /// not on the bus, or silent.
   [[nodiscard]] bool send(const Frame& frame) {
+    if ((registers_.master_status & initialize) != 0 || (registers_.bit_timing & silent) != 0) return false;
     const std::uint32_t empty = registers_.transmit_status >> 26 & 7;
     const std::uint32_t id = word_of(frame.id, frame.extended, frame.remote);
     std::size_t free = mailboxes;
@@ -126,8 +138,7 @@ class BxCan {
       }
     }
     if (free == mailboxes) return false;
-    std::array<std::uint32_t, 2> words;
-    std::memcpy(words.data(), frame.data.data(), sizeof words);
+    const DataWords words = words_of(frame);
     auto& box = registers_.transmit[free];
     box.length = frame.size;
     box.low = words[0];
@@ -141,20 +152,18 @@ class BxCan {
   [[nodiscard]] std::optional<Frame> receive() {
     const std::uint32_t fifo = registers_.receive_fifo[0];
     if ((fifo & overrun) != 0) {
-      overrun_ = true;
+      report_.note_overrun();
       registers_.receive_fifo[0] = overrun;
     }
     if ((fifo & pending) == 0 || (fifo & release) != 0) return std::nullopt;
     const auto& box = registers_.receive[0];
     const std::uint32_t id = box.id;
-    const std::array<std::uint32_t, 2> words = {box.low, box.high};
     Frame frame;
     frame.extended = (id & extended) != 0;
     frame.remote = (id & remote) != 0;
     frame.id = frame.extended ? id >> 3 : id >> 21;
-    const std::uint32_t length = box.length & 0xF;
-    frame.size = static_cast<std::uint8_t>(length > 8 ? 8 : length);
-    std::memcpy(frame.data.data(), words.data(), sizeof words);
+    frame.size = size_of_code(box.length);
+    set_data(frame, {box.low, box.high});
     registers_.receive_fifo[0] = release;
     return frame;
   }
@@ -162,14 +171,7 @@ class BxCan {
   /// What the controller tells of itself, when it is another than at the last call.
   [[nodiscard]] std::optional<BusStatus> status_change() {
     const std::uint32_t errors = registers_.error_status;
-    BusStatus status;
-    if ((errors & 2) != 0) status.state = BusState::passive;
-    if ((errors & 4) != 0) status.state = BusState::off;
-    status.overrun = overrun_;
-    overrun_ = false;
-    if (status == told_) return std::nullopt;
-    told_ = status;
-    return status;
+    return report_.change((errors & 4) != 0 ? BusState::off : (errors & 2) != 0 ? BusState::passive : BusState::active);
   }
 
  private:
@@ -177,6 +179,7 @@ class BxCan {
   static constexpr std::uint32_t initialize = 1 << 0;            // MCR.INRQ, MSR.INAK
   static constexpr std::uint32_t asleep = 1 << 1;                // MSR.SLAK
   static constexpr std::uint32_t recover_from_bus_off = 1 << 6;  // MCR.ABOM
+  static constexpr std::uint32_t silent = 1u << 31;              // BTR.SILM
   static constexpr std::uint32_t request = 1;                    // TIxR.TXRQ
   static constexpr std::uint32_t remote = 1 << 1;                // TIxR.RTR
   static constexpr std::uint32_t extended = 1 << 2;              // TIxR.IDE
@@ -189,17 +192,9 @@ class BxCan {
     return (is_extended ? id << 3 | extended : id << 21) | (is_remote ? remote : 0);
   }
 
-  /// Until MSR.INAK is this, and the controller awake. 11 recessive bits take 1.1 ms at 10 kbit/s.
-  [[nodiscard]] bool wait_for(std::uint32_t acknowledged) const {
-    for (std::uint32_t patience = 1'000'000; patience > 0; --patience) {
-      if ((registers_.master_status & (initialize | asleep)) == acknowledged) return true;
-    }
-    return false;
-  }
-
   Registers& registers_;
-  BusStatus told_{};
-  bool overrun_ = false;
+  StatusReport report_;
+  bool filtered_ = false;  ///< by `accept` or `accept_all`
 };
 
 }  // namespace canopen

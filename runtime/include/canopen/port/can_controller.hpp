@@ -1,0 +1,66 @@
+/// What the drivers of CAN controllers have in common.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+
+#include "canopen/bus_status.hpp"
+#include "canopen/frame.hpp"
+
+namespace canopen {
+
+enum class BusMode : std::uint8_t {
+  normal,
+  silent,  ///< listens, and neither sends nor acknowledges: to find out a bit rate, or to watch
+};
+
+/// The data bytes of a frame, as registers and message RAM hold them.
+using DataWords = std::array<std::uint32_t, 2>;
+
+[[nodiscard]] inline DataWords words_of(const Frame& frame) {
+  DataWords words;
+  std::memcpy(words.data(), frame.data.data(), sizeof words);
+  return words;
+}
+
+inline void set_data(Frame& frame, const DataWords& words) {
+  std::memcpy(frame.data.data(), words.data(), sizeof words);
+}
+
+/// The data length code of a classic frame: 9 to 15 mean 8 (ISO 11898-1).
+[[nodiscard]] constexpr std::uint8_t size_of_code(std::uint32_t code) {
+  return static_cast<std::uint8_t>((code & 0xF) > 8 ? 8 : code & 0xF);
+}
+
+/// Reads until `reached` is true. False: it does not come, as without a clock. 11 recessive bits take 1.1 ms at
+/// 10 kbit/s, the longest frame 16 ms.
+template <class Condition>
+[[nodiscard]] bool wait_until(Condition&& reached) {
+  for (std::uint32_t patience = 1'000'000; patience > 0; --patience) {
+    if (reached()) return true;
+  }
+  return false;
+}
+
+/// Tells a node what a controller says of itself, when it is another than the last time.
+class StatusReport {
+ public:
+  /// Frames have been lost.
+  void note_overrun() { overrun_ = true; }
+
+  [[nodiscard]] std::optional<BusStatus> change(BusState state) {
+    const BusStatus status{state, overrun_};
+    overrun_ = false;
+    if (status == told_) return std::nullopt;
+    told_ = status;
+    return status;
+  }
+
+ private:
+  BusStatus told_{};
+  bool overrun_ = false;
+};
+
+}  // namespace canopen
