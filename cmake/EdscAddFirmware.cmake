@@ -80,8 +80,10 @@ endfunction()
 
 # edsc_add_board(BOARD VARIABLE): the target with a board's start-up, drivers and flags for all that is linked with it; its
 # name goes into VARIABLE. The board's folder has
-#   board.cmake  sets board_cpu, the value of -mcpu, and board_sources, which define what board.hpp declares
+#   board.cmake  sets board_cpu, the value of -mcpu, and board_sources, which define what board.hpp declares; where they are
+#                not 2048 and 4 bytes, also board_flash_page and board_flash_word
 #   memory.ld    tells where `flash` and `ram` are
+# Headers in the folder are found by the program, too.
 function(edsc_add_board board variable)
   set(folder ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/boards/${board})
   if(NOT EXISTS ${folder}/board.cmake)
@@ -97,11 +99,19 @@ function(edsc_add_board board variable)
     return()
   endif()
 
+  unset(board_flash_page)
+  unset(board_flash_word)
   include(${folder}/board.cmake)
   set(boards ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/boards)
   set(cpu -mcpu=${board_cpu} -mthumb)
   add_library(${target} OBJECT ${boards}/startup.cpp ${board_sources})
-  target_include_directories(${target} PUBLIC ${boards})
+  target_include_directories(${target} PUBLIC ${boards} ${folder})
+  if(board_flash_page)
+    target_compile_definitions(${target} PUBLIC EDSC_BOARD_FLASH_PAGE=${board_flash_page})
+  endif()
+  if(board_flash_word)
+    target_compile_definitions(${target} PUBLIC EDSC_BOARD_FLASH_WORD=${board_flash_word})
+  endif()
   target_link_libraries(${target} PUBLIC edsc::runtime)
   target_compile_options(${target} PUBLIC ${cpu} -ffunction-sections -fdata-sections -fno-exceptions -fno-rtti
                                           -fno-threadsafe-statics)

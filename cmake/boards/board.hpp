@@ -20,11 +20,20 @@ void start();
 /// The next character from the serial line, if there is one.
 [[nodiscard]] std::optional<char> uart_get();
 
-/// Two pages for a canopen::FlashStorage. There are two such pairs, with the numbers 0 and 1.
+#ifndef EDSC_BOARD_FLASH_PAGE
+#define EDSC_BOARD_FLASH_PAGE 2048
+#endif
+#ifndef EDSC_BOARD_FLASH_WORD
+#define EDSC_BOARD_FLASH_WORD 4
+#endif
+
+/// Two pages for a canopen::FlashStorage. There are two such pairs, with the numbers 0 and 1. `board_flash_page` and
+/// `board_flash_word` of board.cmake say how large a page is that can be erased by itself, and a word that can be
+/// written by itself.
 class Flash {
  public:
-  static constexpr std::uint32_t page_size = 2048;
-  static constexpr std::uint32_t word_size = 4;
+  static constexpr std::uint32_t page_size = EDSC_BOARD_FLASH_PAGE;
+  static constexpr std::uint32_t word_size = EDSC_BOARD_FLASH_WORD;
 
   explicit constexpr Flash(std::uint8_t pair) : pair_{pair} {}
 

@@ -1,0 +1,93 @@
+/// Firmware of one device on a CAN bus: its node with the board's CAN controller, its parameters in flash, and LSS
+/// where its node-ID does not come from the build. The build is tested, and the parts are; it has not run on a board
+/// yet.
+#include <array>
+#include <canopen/accepted_frames.hpp>
+#include <canopen/flash_storage.hpp>
+#include <canopen/node.hpp>
+#include <optional>
+#include <span>
+#include EDSC_DEVICE_HEADER
+
+#include "board.hpp"
+#include "can.hpp"
+#include "can_lss.hpp"
+
+namespace {
+
+using Device = EDSC_DEVICE;
+
+board::Can can = board::make_can();
+
+board::Flash parameter_pages{0};
+constinit canopen::FlashStorage storage{parameter_pages};
+
+#ifndef EDSC_NODE_ID
+board::Flash lss_pages{1};
+CanLss lss{lss_pages, can};
+#endif
+
+/// With storage where the device stores, and LSS where its node-ID does not come from the build.
+template <class D>
+auto make_node() {
+  constexpr bool stores = D::dictionary.has(0x1010, 0);
+#ifdef EDSC_NODE_ID
+  if constexpr (stores) return canopen::make_node<D>(can, canopen::stored_in(storage));
+  if constexpr (!stores) return canopen::make_node<D>(can);
+#else
+  const auto by_lss = canopen::configured_by_lss<D::lss_options>(lss);
+  if constexpr (stores) return canopen::make_node<D>(can, canopen::stored_in(storage), by_lss);
+  if constexpr (!stores) return canopen::make_node<D>(can, by_lss);
+#endif
+}
+
+auto node = make_node<Device>();
+
+/// Goes on the bus; what node-ID the node has there.
+canopen::NodeId start_can() {
+#ifdef EDSC_NODE_ID
+  (void)can.start(board::can_clock, 125'000);
+  return canopen::NodeId{EDSC_NODE_ID};
+#else
+  lss.open();
+  lss.start_communication(lss.bit_timing());
+  return lss.node_id();
+#endif
+}
+
+/// The acceptance filters follow the COB-IDs, which SDO and LSS can change: they are set again when they are others.
+class Filters {
+ public:
+  void follow() {
+    Frames frames{};
+    std::size_t count = 0;
+    canopen::for_each_accepted_frame(node, [&](const canopen::AcceptedFrame& frame) { frames[count++] = frame; });
+    if (count == count_ && frames == frames_) return;
+    frames_ = frames;
+    count_ = count;
+    can.accept(std::span{frames_}.first(count_));
+  }
+
+ private:
+  using Frames = std::array<canopen::AcceptedFrame, canopen::most_accepted_frames<Device>>;
+
+  Frames frames_{};
+  std::size_t count_ = 0;
+};
+
+constinit Filters filters;
+
+}  // namespace
+
+int main() {
+  board::start();
+  node.start(start_can(), board::now());
+  for (;;) {
+    const std::optional<canopen::Frame> frame = can.receive();
+    const canopen::TimePoint now = board::now();
+    if (frame) node.on_frame(*frame, now);
+    if (const auto status = can.status_change()) node.on_bus_status(*status, now);
+    node.on_time(now);
+    filters.follow();
+  }
+}
