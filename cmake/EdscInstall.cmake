@@ -1,18 +1,35 @@
+# What `cmake --install` puts where, in two components: `program`, and `development` with the runtime's headers and the CMake
+# package. The headers have a folder of their own, so that a cross build that is told of it sees no other header of the host;
+# the CMake package is the same on all machines and looks for the program that runs on this one.
 include(CMakePackageConfigHelpers)
 
-set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/edsc)
-install(TARGETS edsc_runtime EXPORT edscTargets)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/runtime/include/canopen DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+set(package_dir ${CMAKE_INSTALL_DATADIR}/cmake/edsc)
+set(document_dir ${CMAKE_INSTALL_DATADIR}/doc)
+
 if(TARGET edsc)
-  install(TARGETS edsc EXPORT edscTargets RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(TARGETS edsc RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
   set(shell_files ${PROJECT_BINARY_DIR}/generator/shell)
-  install(FILES ${shell_files}/edsc.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME edsc)
-  install(FILES ${shell_files}/edsc.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions RENAME _edsc)
-  install(FILES ${shell_files}/edsc.man DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 RENAME edsc.1)
+  install(FILES ${shell_files}/edsc.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME edsc
+          COMPONENT program)
+  install(FILES ${shell_files}/edsc.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions RENAME _edsc COMPONENT program)
+  install(FILES ${shell_files}/edsc.man DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 RENAME edsc.1 COMPONENT program)
+  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${document_dir}/edsc RENAME copyright COMPONENT program)
 endif()
-install(EXPORT edscTargets NAMESPACE edsc:: DESTINATION ${package_dir})
-write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/edscConfigVersion.cmake COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
-install(FILES ${PROJECT_SOURCE_DIR}/cmake/edscConfig.cmake ${PROJECT_SOURCE_DIR}/cmake/EdscAddDictionary.cmake
-              ${PROJECT_SOURCE_DIR}/cmake/EdscAddFirmware.cmake ${PROJECT_SOURCE_DIR}/cmake/firmware_report.py
-              ${CMAKE_CURRENT_BINARY_DIR}/edscConfigVersion.cmake DESTINATION ${package_dir})
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/cmake/boards DESTINATION ${package_dir})
+
+install(TARGETS edsc_runtime EXPORT edscTargets COMPONENT development)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/runtime/include/canopen DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/edsc
+        COMPONENT development)
+install(EXPORT edscTargets NAMESPACE edsc:: DESTINATION ${package_dir} COMPONENT development)
+set(generated_dir ${PROJECT_BINARY_DIR}/package)
+configure_package_config_file(
+  ${PROJECT_SOURCE_DIR}/cmake/edscConfig.cmake.in ${generated_dir}/edscConfig.cmake
+  INSTALL_DESTINATION ${package_dir} PATH_VARS CMAKE_INSTALL_BINDIR)
+write_basic_package_version_file(${generated_dir}/edscConfigVersion.cmake COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
+install(
+  FILES ${generated_dir}/edscConfig.cmake ${generated_dir}/edscConfigVersion.cmake
+        ${PROJECT_SOURCE_DIR}/cmake/EdscAddDictionary.cmake ${PROJECT_SOURCE_DIR}/cmake/EdscAddFirmware.cmake
+        ${PROJECT_SOURCE_DIR}/cmake/firmware_report.py
+  DESTINATION ${package_dir} COMPONENT development)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/cmake/boards ${PROJECT_SOURCE_DIR}/cmake/toolchains DESTINATION ${package_dir}
+        COMPONENT development)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${document_dir}/libedsc-dev RENAME copyright COMPONENT development)

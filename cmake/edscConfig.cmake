@@ -1,2 +1,0 @@
-include(${CMAKE_CURRENT_LIST_DIR}/edscTargets.cmake)
-include(${CMAKE_CURRENT_LIST_DIR}/EdscAddFirmware.cmake)
