@@ -1,0 +1,37 @@
+# The Debian packages, by the target `package` or cpack: edsc_VERSION_ARCHITECTURE.deb with the program, and
+# libedsc-dev_VERSION_all.deb with what is compiled for a device.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME edsc)
+set(CPACK_PACKAGE_CONTACT "Seed 57085386 maintainers <maintainers@users.noreply.h-seed-57085386.example>")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_COMPONENTS_ALL program development)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/compress_manual_pages.cmake)
+
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME edsc)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION devel)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON) # asks dpkg-shlibdeps, of dpkg-dev, and file
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS libedsc-dev)
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "") # CPack would put it before each of the descriptions
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "${PROJECT_DESCRIPTION}
+It makes checked C++20 of EDS, DCF and XDD files: a constexpr object dictionary,
+typed access to every object and PDO codecs. Its other commands check, format
+and compare data sheets, decode CAN logs, and scan, read, configure and watch
+the devices of a live bus.")
+
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libedsc-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "edsc (= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "cmake (>= 3.25), python3 (>= 3.11)")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "gcc-arm-none-eabi, libstdc++-arm-none-eabi-newlib")
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "${PROJECT_DESCRIPTION}, development files
+What a device is compiled with: the headers of the CANopen runtime, which needs
+no heap, no exceptions and no operating system, functions for CMake, and
+start-up code, linker scripts and drivers of boards with a Cortex-M.")
+
+include(CPack)
