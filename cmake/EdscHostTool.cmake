@@ -1,8 +1,8 @@
 # Makes the imported or built target edsc::edsc: the compiler that runs on this machine.
 #
-# - EDSC_EXECUTABLE names one that is there already.
+# - EDSC_EXECUTABLE names one that is there already; a project that has edsc as a part then compiles none.
 # - In a build for this machine it is built here.
-# - In a cross build it is built for the host, in a build of its own.
+# - In a cross build it is built for the host, in a build of its own, with what EDSC_HOST_ARGUMENTS adds to its cmake.
 
 if(TARGET edsc::edsc)
   return()
@@ -15,16 +15,31 @@ if(EDSC_EXECUTABLE)
 endif()
 
 include(ExternalProject)
+set(EDSC_HOST_ARGUMENTS "" CACHE STRING "further arguments of cmake when edsc is built for the host of a cross build")
 set(host_build ${CMAKE_BINARY_DIR}/edsc-host)
+set(host_program ${host_build}/program/edsc)
+# What the environment says is for the target's compiler.
+set(host_cmake ${CMAKE_COMMAND} -E env)
+foreach(variable IN ITEMS CMAKE_TOOLCHAIN_FILE CC CXX CPPFLAGS CFLAGS CXXFLAGS LDFLAGS)
+  list(APPEND host_cmake --unset=${variable})
+endforeach()
+list(APPEND host_cmake ${CMAKE_COMMAND})
 ExternalProject_Add(
   edsc_host
-  SOURCE_DIR ${CMAKE_CURRENT_LIST_DIR}/..
+  SOURCE_DIR ${PROJECT_SOURCE_DIR}
   BINARY_DIR ${host_build}
-  CMAKE_ARGS -DCMAKE_BUILD_TYPE=Release -DEDSC_BUILD_TESTS=OFF -DEDSC_BUILD_EXAMPLES=OFF
-  BUILD_COMMAND ${CMAKE_COMMAND} --build <BINARY_DIR> --target edsc
+  CONFIGURE_COMMAND
+    ${host_cmake} -S <SOURCE_DIR> -B <BINARY_DIR> -G ${CMAKE_GENERATOR} -DCMAKE_BUILD_TYPE=Release
+    -DEDSC_BUILD_TESTS=OFF -DEDSC_BUILD_EXAMPLES=OFF -DCMAKE_RUNTIME_OUTPUT_DIRECTORY_RELEASE=${host_build}/program
+    ${EDSC_HOST_ARGUMENTS}
+  BUILD_COMMAND ${host_cmake} --build <BINARY_DIR> --config Release --target edsc
   INSTALL_COMMAND ""
-  BUILD_ALWAYS ON
-  BUILD_BYPRODUCTS ${host_build}/generator/edsc)
+  BUILD_BYPRODUCTS ${host_program}
+  USES_TERMINAL_BUILD ON)
+# Built again when a file of it has changed, and asked of nothing else.
+file(GLOB_RECURSE host_files ${PROJECT_SOURCE_DIR}/generator/* ${PROJECT_SOURCE_DIR}/templates/*
+     ${PROJECT_SOURCE_DIR}/runtime/*)
+ExternalProject_Add_StepDependencies(edsc_host build ${PROJECT_SOURCE_DIR}/CMakeLists.txt ${host_files})
 add_executable(edsc::edsc IMPORTED GLOBAL)
-set_target_properties(edsc::edsc PROPERTIES IMPORTED_LOCATION ${host_build}/generator/edsc)
+set_target_properties(edsc::edsc PROPERTIES IMPORTED_LOCATION ${host_program})
 add_dependencies(edsc::edsc edsc_host)
