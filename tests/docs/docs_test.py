@@ -7,6 +7,7 @@ somewhere, and what they say a command prints is what it prints.
 In README.md and docs/*.md
 - each line of a ```sh block is run in a copy of the repository, with edsc in the PATH. `./demo.sh` builds and runs there;
   `./test.sh` is not run by itself, only looked for.
+- a block under `<!-- run by: path -->` is run by that test, which names the document.
 - a block under `<!-- path -->` stands in that file, letter by letter.
 - a block under `<!-- output: command -->` is what the command prints.
 """
@@ -50,6 +51,9 @@ def check_block(document: Path, block: re.Match[str], source: Path, folder: Path
     if mark and mark.startswith("output: "):
         printed = run(mark.removeprefix("output: "), folder, environment).stdout
         return [] if printed == text else [f"{document}: {mark} differs; it prints:\n{printed}"]
+    if mark and mark.startswith("run by: "):
+        named = document.name in (source / mark.removeprefix("run by: ")).read_text(encoding="utf-8")
+        return [] if named else [f"{document}: {mark}: which does not name the document"]
     if mark:
         found = text in (source / mark).read_text(encoding="utf-8")
         return [] if found else [f"{document}: the block under {mark} does not stand in that file"]

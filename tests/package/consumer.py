@@ -1,0 +1,84 @@
+"""A project that uses edsc, somewhere else: examples/project, copied.
+
+Scripts that use it are called with SOURCE_DIR and BUILD_DIR. BUILD_DIR is a build of edsc, from which it is installed.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+SOURCE_DIR = Path(sys.argv[1]).resolve()
+BUILD_DIR = Path(sys.argv[2]).resolve()
+FROM_PACKAGE = "find_package(edsc REQUIRED)"
+TOOLCHAIN = "toolchains/arm-none-eabi.cmake"
+EM_ARM = 40  # e_machine of the ELF header
+WITHOUT_ARM = "" if shutil.which("arm-none-eabi-g++") else "SKIPPED: arm-none-eabi-g++ is not installed"
+
+ENVIRONMENT = {name: value for name, value in os.environ.items() if name not in ("CMAKE_PREFIX_PATH", "DESTDIR")}
+ENVIRONMENT["CMAKE_BUILD_TYPE"] = "Release"
+
+
+def use_compiler_cache(folder: Path) -> None:
+    """What is below this folder is the same wherever the folder is."""
+    if shutil.which("ccache"):
+        ENVIRONMENT.update(CMAKE_CXX_COMPILER_LAUNCHER="ccache", CCACHE_BASEDIR=str(folder))
+
+
+def run(*command: object, folder: Path | None = None) -> str:
+    """Output of a command that must succeed."""
+    result = subprocess.run([str(word) for word in command], cwd=folder, env=ENVIRONMENT, stdin=subprocess.DEVNULL,
+                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", timeout=900)
+    if result.returncode != 0:
+        raise AssertionError(f"{' '.join(map(str, command))}: exit code {result.returncode}\n{result.stdout[-4000:]}")
+    return result.stdout
+
+
+def copy_sources(to: Path) -> None:
+    """The working tree without what is built or of git."""
+    shutil.copytree(SOURCE_DIR, to, symlinks=True,
+                    ignore=shutil.ignore_patterns("build", "out", ".git", ".cache", "__pycache__"))
+
+
+class Project:
+    """A copy of examples/project in `source`; `edsc` stands in place of its find_package, `more` at its end."""
+
+    def __init__(self, source: Path, edsc: str = FROM_PACKAGE, more: str = "", build_dir: Path | None = None) -> None:
+        self.source = source
+        self.build_dir = build_dir or source / "build"
+        shutil.copytree(SOURCE_DIR / "examples/project", source, dirs_exist_ok=True)
+        lists = self.lists.read_text()
+        assert FROM_PACKAGE in lists
+        self.lists.write_text(lists.replace(FROM_PACKAGE, edsc) + more)
+
+    @property
+    def lists(self) -> Path:
+        return self.source / "CMakeLists.txt"
+
+    @property
+    def sheet(self) -> Path:
+        return self.source / "valve.eds"
+
+    def configure(self, *settings: object) -> str:
+        return run("cmake", "-S", self.source, "-B", self.build_dir, "-G", "Ninja", *settings)
+
+    def build(self, *targets: str) -> str:
+        return run("cmake", "--build", self.build_dir, *(["--target", *targets] if targets else []))
+
+
+class PackageTest(unittest.TestCase):
+    def setUp(self) -> None:
+        self.folder = Path(tempfile.mkdtemp(prefix="edsc package ")).resolve()  # with a blank on purpose
+        self.addCleanup(shutil.rmtree, self.folder)
+        use_compiler_cache(self.folder)
+
+    def install(self) -> Path:
+        """The prefix of an installed edsc."""
+        prefix = self.folder / "prefix"
+        run("cmake", "--install", BUILD_DIR, "--prefix", prefix)
+        return prefix
