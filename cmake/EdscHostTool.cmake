@@ -1,6 +1,7 @@
 # Makes the imported or built target edsc::edsc: the compiler that runs on this machine.
 #
 # - EDSC_EXECUTABLE names one that is there already; a project that has edsc as a part then compiles none.
+# - EDSC_HOST_PRESET names a preset of this project whose build has it, and is brought up to date.
 # - In a build for this machine it is built here.
 # - In a cross build it is built for the host, in a build of its own, with what EDSC_HOST_ARGUMENTS adds to its cmake.
 
@@ -11,6 +12,22 @@ endif()
 if(EDSC_EXECUTABLE)
   add_executable(edsc::edsc IMPORTED GLOBAL)
   set_target_properties(edsc::edsc PROPERTIES IMPORTED_LOCATION ${EDSC_EXECUTABLE})
+  return()
+endif()
+
+if(EDSC_HOST_PRESET)
+  set(executable ${PROJECT_SOURCE_DIR}/build/${EDSC_HOST_PRESET}/generator/edsc)
+  add_custom_target(
+    edsc_host
+    COMMAND ${CMAKE_COMMAND} --preset ${EDSC_HOST_PRESET} --log-level=WARNING
+    COMMAND ${CMAKE_COMMAND} --build --preset ${EDSC_HOST_PRESET} --target edsc
+    BYPRODUCTS ${executable}
+    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
+    COMMENT "Building edsc by the preset ${EDSC_HOST_PRESET}"
+    VERBATIM)
+  add_executable(edsc::edsc IMPORTED GLOBAL)
+  set_target_properties(edsc::edsc PROPERTIES IMPORTED_LOCATION ${executable})
+  add_dependencies(edsc::edsc edsc_host)
   return()
 endif()
 

@@ -19,7 +19,7 @@ PAGES = 4 * 2048  # bytes: two pairs of pages of board::Flash
 
 def connected(path: Path) -> socket.socket:
     """To a socket that QEMU is about to make."""
-    end = time.monotonic() + 5
+    end = time.monotonic() + 60
     while not path.exists() and time.monotonic() < end:
         time.sleep(0.01)
     line = socket.socket(socket.AF_UNIX)
