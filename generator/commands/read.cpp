@@ -78,10 +78,9 @@ bool choose_entries(const Settings& settings, const Device* device, std::vector<
 SdoOutcome read_entry(SdoAccess& node, const LiveEntry& entry, const Settings& settings) {
   ProgressLine progress;
   const bool block = settings.block || best_transfer(entry) == SdoTransfer::block;
-  return node.upload(entry.index, entry.sub_index, block ? SdoTransfer::block : SdoTransfer::segmented,
-                     [&](std::size_t done, std::size_t) {
-                       if (progress.due()) progress.show(fmt::format("{}: {} bytes", title(entry), done));
-                     });
+  return upload(node, entry, block ? SdoTransfer::block : SdoTransfer::segmented, [&](std::size_t done, std::size_t) {
+    if (progress.due()) progress.show(fmt::format("{}: {} bytes", title(entry), done));
+  });
 }
 
 void print_line(const LiveEntry& entry, const SdoOutcome& outcome, bool raw) {

@@ -85,9 +85,9 @@ int write_entry(LiveBus& bus, const Settings& settings, const LiveEntry& entry,
   const SdoOutcome outcome = download(node, entry, settings, bytes);
   if (!outcome.done()) return failed(entry, failure_text(outcome));
   if (settings.verify) {
-    const SdoOutcome back = node.upload(entry.index, entry.sub_index, best_transfer(entry));
+    const SdoOutcome back = upload(node, entry, best_transfer(entry));
     if (!back.done()) return failed(entry, "written, but not read back: " + failure_text(back));
-    if (back.bytes != bytes) return failed(entry, "written, but it reads back as " + value_of(entry, back.bytes));
+    if (!reads_back(back, bytes)) return failed(entry, "written, but it reads back as " + value_of(entry, back.bytes));
   }
   fmt::print("{} = {}{}\n", title(entry), settings.raw ? hex_bytes(bytes) : value_of(entry, bytes),
              settings.verify ? ", verified" : "");

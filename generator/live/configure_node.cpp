@@ -89,7 +89,7 @@ class Run {
 
   /// Keeps what was there for `switch_on`.
   void switch_off(const ConfigurationStep& step) {
-    const SdoOutcome outcome = node_.upload(step.entry.index, step.entry.sub_index);
+    const SdoOutcome outcome = upload(node_, step.entry);
     if (!outcome.done()) return fail(step, outcome);
     const auto cob_id = word_of(outcome.bytes);
     if (!cob_id) return;  // no COB-ID as CiA 301 has it: the device judges what is written
@@ -107,7 +107,7 @@ class Run {
   }
 
   void clear(const ConfigurationStep& step) {
-    const SdoOutcome outcome = node_.upload(step.entry.index, step.entry.sub_index);
+    const SdoOutcome outcome = upload(node_, step.entry);
     if (!outcome.done()) return fail(step, outcome);
     const bool clear = std::ranges::all_of(outcome.bytes, [](std::uint8_t byte) { return byte == 0; });
     if (!clear) write(step, Bytes(outcome.bytes.size(), 0));
@@ -115,10 +115,10 @@ class Run {
 
   void verify(const ConfigurationStep& step) {
     if (step.entry.entry != nullptr && !canopen::readable(step.entry.entry->access)) return;
-    const SdoOutcome outcome = node_.upload(step.entry.index, step.entry.sub_index);
+    const SdoOutcome outcome = upload(node_, step.entry);
     if (!outcome.done()) {
       fail(step, outcome);
-    } else if (outcome.bytes == step.bytes) {
+    } else if (reads_back(outcome, step.bytes)) {
       ++result_.verified;
     } else {
       result_.failures.push_back({step.entry, step.value, "reads back as " + value_of(step.entry, outcome.bytes)});

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -88,6 +89,23 @@ LiveEntry live_entry(const Object& object, const Entry& entry) {
 void set_type(LiveEntry& entry, const canopen::DataTypeRow& type) {
   entry.type = &type;
   entry.entry = nullptr;
+}
+
+SdoOutcome upload(SdoAccess& node, const LiveEntry& entry, SdoTransfer transfer, const SdoProgress& progress) {
+  SdoOutcome outcome = node.upload(entry.index, entry.sub_index, transfer, progress);
+  if (outcome.size_told || entry.type == nullptr) return outcome;
+  if (entry.type->bits != 0) {
+    outcome.bytes.resize(std::min<std::size_t>(outcome.bytes.size(), (entry.type->bits + 7U) / 8U));
+  } else if (entry.type->type == DataType::visible_string) {
+    while (!outcome.bytes.empty() && outcome.bytes.back() == 0) outcome.bytes.pop_back();
+  }
+  return outcome;
+}
+
+bool reads_back(const SdoOutcome& outcome, std::span<const std::uint8_t> bytes) {
+  if (outcome.size_told) return std::ranges::equal(outcome.bytes, bytes);
+  const std::size_t known = std::min(outcome.bytes.size(), bytes.size());
+  return bytes.size() <= 4 && std::ranges::equal(std::span{outcome.bytes}.first(known), bytes.first(known));
 }
 
 std::string title(const LiveEntry& entry) {

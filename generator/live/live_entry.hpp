@@ -27,6 +27,14 @@ struct LiveEntry {
 /// A type in place of the data sheet's, whose access, limits and unit do not count then.
 void set_type(LiveEntry& entry, const canopen::DataTypeRow& type);
 
+/// What the node has there. Where its answer tells no size, as many bytes as the type has, and a string without the 00h
+/// behind it.
+[[nodiscard]] SdoOutcome upload(SdoAccess& node, const LiveEntry& entry,
+                                SdoTransfer transfer = SdoTransfer::segmented, const SdoProgress& progress = {});
+
+/// Whether these bytes were read back. Where the answer told no size, those behind them do not count.
+[[nodiscard]] bool reads_back(const SdoOutcome& outcome, std::span<const std::uint8_t> bytes);
+
 /// `6064h:00 Position actual value`
 [[nodiscard]] std::string title(const LiveEntry& entry);
 

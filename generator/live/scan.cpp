@@ -25,18 +25,19 @@ constexpr Duration look_again = canopen::from_milliseconds(5);
 struct Question {
   std::uint16_t index;
   std::uint8_t sub_index;
+  std::size_t size;  ///< bytes; the answer need not tell
   std::optional<std::uint32_t> FoundNode::*number;
 };
 
 /// The first one shows that the node is there.
 constexpr Question questions[] = {
-    {0x1000, 0, &FoundNode::device_type},
-    {0x1018, 1, &FoundNode::vendor_id},
-    {0x1018, 2, &FoundNode::product_code},
-    {0x1018, 3, &FoundNode::revision_number},
-    {0x1018, 4, &FoundNode::serial_number},
-    {0x1017, 0, &FoundNode::heartbeat_ms},
-    {0x1008, 0, nullptr},
+    {0x1000, 0, 4, &FoundNode::device_type},
+    {0x1018, 1, 4, &FoundNode::vendor_id},
+    {0x1018, 2, 4, &FoundNode::product_code},
+    {0x1018, 3, 4, &FoundNode::revision_number},
+    {0x1018, 4, 4, &FoundNode::serial_number},
+    {0x1017, 0, 2, &FoundNode::heartbeat_ms},
+    {0x1008, 0, 0, nullptr},
 };
 
 /// The questions to one node, one after the other.
@@ -86,7 +87,7 @@ class Interview {
       return;
     }
     std::uint32_t number = 0;
-    std::memcpy(&number, bytes.data(), std::min(bytes.size(), sizeof number));
+    std::memcpy(&number, bytes.data(), std::min(bytes.size(), question.size));
     node_.*question.number = number;
   }
 

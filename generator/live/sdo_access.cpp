@@ -24,6 +24,13 @@ bool is_abort_of(const Frame& frame, canopen::NodeId node) {
          frame.id == canopen::default_sdo(node).response.can_id() && frame.data[0] == canopen::sdo::abort_command;
 }
 
+/// An expedited answer that leaves open how many of its four bytes count (CiA 301, 7.2.4.3.6).
+bool is_upload_without_size(const Frame& frame) {
+  using namespace canopen::sdo;
+  constexpr std::uint8_t command = 0xE0, initiate_upload = 0x40;
+  return frame.size == 8 && (frame.data[0] & (command | expedited | size_indicated)) == (initiate_upload | expedited);
+}
+
 /// A client on whose way is noted who has ended the transfer.
 template <class Client>
 struct Observed {
@@ -31,6 +38,7 @@ struct Observed {
   canopen::NodeId node;
   bool heard = false;    ///< the device has answered
   bool aborted = false;  ///< the last thing it said was an abort
+  bool size_told = true;
 
   [[nodiscard]] bool busy() const { return client.busy(); }
   [[nodiscard]] std::optional<canopen::TimePoint> next_deadline() const { return client.next_deadline(); }
@@ -39,6 +47,7 @@ struct Observed {
     if (!frame.extended && frame.id == canopen::default_sdo(node).response.can_id()) {
       heard = true;
       aborted = is_abort_of(frame, node);
+      if (is_upload_without_size(frame)) size_told = false;
     }
     client.on_frame(frame, now);
   }
@@ -79,6 +88,7 @@ SdoOutcome SdoAccess::finish(Client& client) {
   if (interrupted) throw Interrupted{};
   SdoOutcome outcome;
   outcome.code = client.result();
+  outcome.size_told = observed.size_told;
   if (outcome.code == canopen::ok) return outcome;
   if (observed.aborted) {
     outcome.end = SdoEnd::refused;

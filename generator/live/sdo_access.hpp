@@ -25,6 +25,7 @@ struct SdoOutcome {
   SdoEnd end = SdoEnd::done;
   canopen::AbortCode code = canopen::ok;
   std::vector<std::uint8_t> bytes;  ///< of an upload
+  bool size_told = true;            ///< false: some of the four bytes may be none of the value's
 
   [[nodiscard]] bool done() const { return end == SdoEnd::done; }
 };

@@ -241,6 +241,19 @@ class Silence(LiveTest):
         self.expect(self.edsc("read", 5, "1008h"), FAILED,
                     stderr="edsc: 1008h:00: the transfer broke: 0503 0000h, toggle bit not alternated\n")
 
+    def test_an_answer_that_tells_no_size_is_cut_to_the_type(self) -> None:
+        answers = {"605 40 17 10 00 00 00 00 00": ["585 42 17 10 00 F4 01 EE EE"],
+                   "605 40 08 10 00 00 00 00 00": ["585 42 08 10 00 41 42 00 00"],
+                   "605 2B 04 20 00 DC 05 00 00": ["585 60 04 20 00 00 00 00 00"],
+                   "605 40 04 20 00 00 00 00 00": ["585 42 04 20 00 DC 05 EE EE"]}
+        self.network.device(lambda frame: answers.get(frame, []))
+        self.expect(self.edsc("read", 5, "1017h", "1008h", "--eds", "device.eds"), FINE,
+                    '1017h:00 Producer heartbeat time = 500 ms\n1008h:00 Manufacturer device name = "AB"\n')
+        self.expect(self.edsc("read", 5, "1017h"), FINE, "1017h:00 = F4 01 EE EE\n")
+        self.expect(self.edsc("write", 5, "speed", "1500", "--eds", "device.eds", "--verify"), FINE,
+                    "2004h:00 Speed = 1500 rpm, verified\n")
+        self.expect(self.edsc("write", 5, "2004h", "--raw", "DC", "05", "--verify"), FINE, "2004h:00 = DC 05, verified\n")
+
     def test_block_transfer_falls_back_to_segments(self) -> None:
         segments = {"605 40 01 20 00 00 00 00 00": ["585 41 01 20 00 09 00 00 00"],
                     "605 60 00 00 00 00 00 00 00": ["585 00 01 02 03 04 05 06 07"],
@@ -360,6 +373,28 @@ class Configure(LiveTest):
             "605 2B 00 18 05 64 00 00 00",
             "605 23 00 18 01 85 01 00 40",
         ])
+
+    def test_answers_that_tell_no_size_are_cut_to_the_type(self) -> None:
+        self.only(x2004="1500", x1017="250")
+        values = {"04 20 00": "00 00", "17 10 00": "00 00"}
+
+        def answer(frame: str) -> list[str]:
+            can_id, command, entry, data = frame[:3], frame[4:6], frame[7:15], frame[16:21]
+            if can_id != "605":
+                return []
+            if command != "40":
+                values[entry] = data
+            if entry not in values:
+                return [f"585 80 {entry} 00 00 02 06"]
+            return [f"585 42 {entry} {values[entry]} EE EE" if command == "40" else f"585 60 {entry} 00 00 00 00"]
+
+        with Network(EDSC, LIVE_NODES) as network:
+            self.network = network
+            network.device(answer)
+            result = self.edsc("configure", 5, "axis.dcf", "--force", "--format", "json")
+            found = self.expect_json(result, "configure.schema.json")
+        self.assertEqual((found["written"], found["verified"], found["failures"]), (2, 2, []))
+        self.assertEqual((values["04 20 00"], values["17 10 00"]), ("DC 05", "FA 00"))
 
     def test_the_steps_without_a_bus(self) -> None:
         self.only(x1A00sub0="1", x1A00sub1="0x60640020", x2004="1200", x1005="0x81")
