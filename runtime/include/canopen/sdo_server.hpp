@@ -527,9 +527,16 @@ class SdoServer {
   }
 
   void add_to_crc(const std::uint8_t* bytes, std::uint32_t size) {
-    std::uint16_t crc = block_.crc;
-    for (const std::uint8_t* const end = bytes + size; bytes != end; ++bytes) crc = crc16_ccitt(crc, *bytes);
-    block_.crc = crc;
+#ifndef __OPTIMIZE_SIZE__
+    if (size == sdo::segment_bytes) {
+      std::uint16_t crc = crc16_ccitt(block_.crc, bytes[0], bytes[1]);
+      crc = crc16_ccitt(crc, bytes[2], bytes[3]);
+      crc = crc16_ccitt(crc, bytes[4], bytes[5]);
+      block_.crc = crc16_ccitt(crc, bytes[6]);
+      return;
+    }
+#endif
+    block_.crc = crc16_ccitt(block_.crc, {bytes, size});
   }
 
   /// The client has taken the first segments of the sub-block. What is missing goes out again, in the next one.
