@@ -1,9 +1,9 @@
 /// The BBC micro:bit: UART, TIMER0 and NVMC of its nRF51822.
-#include "../board.hpp"
+#include "board.hpp"
 
 #include <cstring>
 
-#include "../registers.hpp"
+#include "registers.hpp"
 
 namespace board {
 namespace {

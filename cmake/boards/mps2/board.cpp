@@ -1,10 +1,10 @@
 /// The MPS2 boards of Arm, with the peripherals of AN385 and AN386: CMSDK UART 0 and the counter of the FPGA's
 /// registers.
-#include "../board.hpp"
+#include "board.hpp"
 
 #include <cstring>
 
-#include "../registers.hpp"
+#include "registers.hpp"
 
 namespace board {
 namespace {
