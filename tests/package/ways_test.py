@@ -186,7 +186,7 @@ class Ways(unittest.TestCase):
         line = blocks("A subdirectory", "cmake")[0].replace("(edsc)", "(edsc-src ../edsc-build)")
         project = Project(self.folder / "subdirectory/project", SETTINGS + line + UNCHANGED)
         copy_sources(project.source / "edsc-src")
-        log = self.check_host(project)
+        log = self.check_host(project, "-DCMAKE_BUILD_TYPE=")
         behind = dict(re.findall(r"behind edsc: (\w+)=(.*)", log))
         launcher = ENVIRONMENT.get("CMAKE_CXX_COMPILER_LAUNCHER", "")
         self.assertEqual(behind, {
@@ -216,7 +216,7 @@ class Ways(unittest.TestCase):
         with tarfile.open(archive, "w:gz", compresslevel=1) as tar:
             tar.add(self.sources, "edsc-0.1.0", filter=lambda entry: None if "/build" in entry.name else entry)
         project = Project(self.folder / "fetched/project", blocks("FetchContent", "cmake")[0])
-        self.check_host(project, f"-DEDSC_ARCHIVE={archive}", f"-DFETCHCONTENT_BASE_DIR={project.source}")
+        self.check_host(project, f"-DEDSC_ARCHIVE={archive}", f"-DFETCHCONTENT_BASE_DIR={project.source}", "-DCMAKE_BUILD_TYPE=")
 
     @unittest.skipIf(WITHOUT_ARM, WITHOUT_ARM)
     def test_fetch_content_for_a_cortex_m(self) -> None:
