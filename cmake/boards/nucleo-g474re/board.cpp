@@ -1,11 +1,11 @@
 /// The Nucleo-G474RE: the crystal for all clocks, LPUART1 behind ST-LINK's serial line, TIM2, flash, and the pins of
 /// FDCAN1. After the reference manual RM0440 and the board's manual UM2505; it has not run on a board yet. Not done: a
 /// word of flash that was being written when the power went is an ECC error, and reading it an NMI.
-#include "../board.hpp"
+#include "board.hpp"
 
 #include <cstring>
 
-#include "../registers.hpp"
+#include "registers.hpp"
 
 namespace board {
 namespace {
