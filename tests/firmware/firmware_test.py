@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """An image of a reference device on a board of QEMU, over SLCAN on its serial line: boot-up, LSS, all that its data sheet
-promises, stored parameters over a loss of power, edsc itself, and the stack that all this took.
+promises, stored parameters over a loss of power, the stack that all this took, and the same by the commands of edsc.
 
     firmware_test.py BOARD IMAGE DATA_SHEET NODE_ID EDSC
 
@@ -9,7 +9,6 @@ NODE_ID 0: by LSS.
 
 from __future__ import annotations
 
-import json
 import subprocess
 import sys
 import tempfile
@@ -18,6 +17,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "masters")]
 from data_sheet import DataSheet  # noqa: E402
+from host_side import HostSide  # noqa: E402
 from machine import STACK_PAINT, Machine  # noqa: E402
 from report import Report, read_exceptions  # noqa: E402
 from sdo import Abort, Silence  # noqa: E402
@@ -109,15 +109,6 @@ class Firmware:
         print(f"{self.machine.image.name}: {used} bytes of stack")
         self.check("stack", f"at most {LARGEST_STACK} bytes", untouched > 0 and 0 < used <= LARGEST_STACK, True)
 
-    def edsc(self, program: Path, sheet: Path) -> None:
-        """The project's own host side on the same line."""
-        self.wire.close()
-        vendor = self.sheet.default(0x1018, 1)
-        result = subprocess.run([program, "read", self.machine.address, str(self.sheet.node_id), "1018h:01", "--eds", sheet,
-                                 "--format", "json"], capture_output=True, text=True, timeout=120)
-        read = json.loads(result.stdout)["entries"] if result.returncode == 0 else result.stderr
-        self.check("edsc", "read 1018h:01", [entry["value"] for entry in read] if result.returncode == 0 else read, [vendor])
-
 
 def memory_for_the_stack(image: Path) -> tuple[int, int]:
     symbols = subprocess.run(["arm-none-eabi-nm", image], check=True, capture_output=True, text=True).stdout
@@ -140,7 +131,8 @@ def main() -> int:
             firmware.boot("power-on")
             firmware.whole_walk()
             firmware.storage()
-            firmware.edsc(edsc, data_sheet)
+            firmware.power_off()
+            HostSide(edsc, machine, data_sheet, sheet, node_id == 0, report).run()
         finally:
             machine.power_off()
     print(report.summary())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import socket
 import subprocess
@@ -62,8 +63,11 @@ class Machine:
         """`paint`: beginning and end of memory that is full of STACK_PAINT at power-on."""
         self.board, self.image, self.folder, self.paint = board, image, folder, paint
         self.flash = folder / "flash"
-        self.flash.write_bytes(b"\xff" * PAGES)
         self.process: subprocess.Popen[str] | None = None
+        self.erase()
+
+    def erase(self) -> None:
+        self.flash.write_bytes(b"\xff" * PAGES)
 
     def power_on(self) -> None:
         control = self.folder / "control"
@@ -79,6 +83,7 @@ class Machine:
         if not match:
             raise RuntimeError(f"qemu-system-arm: {told}{self.process.stdout.read()}")
         self.address = f"slcan:{match[0]}"
+        self.line = os.open(match[0], os.O_RDWR | os.O_NOCTTY)  # QEMU looks for a host that comes back once a second only
         self.control = connected(control)
         self.lines = self.control.makefile("rw")
         self.lines.readline()
@@ -110,6 +115,7 @@ class Machine:
             self.save(BOARDS[self.board].pages, PAGES, self.flash)
             self.process.kill()
         self.control.close()
+        os.close(self.line)
         self.process.wait()
         self.process.stdout.close()
         self.process = None

@@ -214,11 +214,27 @@ TEST(SlcanHost, TellsWhatTheAdapterRefuses) {
                                          std::pair{"\r\a", "the adapter does not open its channel"}}) {
     Host host;
     host.host.start(std::uint8_t{8}, host.now);
-    (void)host.pass(100ms);
-    (void)host.hear(answers);
+    for (int attempt = 1; attempt <= 3; ++attempt) {
+      EXPECT_EQ(host.host.state(), SlcanHost::State::connecting) << attempt;
+      (void)host.pass(100ms);
+      (void)host.hear(answers);
+    }
     EXPECT_EQ(host.host.state(), SlcanHost::State::refused);
     EXPECT_EQ(host.host.problem(), problem);
   }
+}
+
+TEST(SlcanHost, TakesALateAnswerForNoRefusal) {
+  Host host;
+  host.host.start(std::nullopt, host.now);
+  (void)host.written();
+  EXPECT_EQ(host.pass(100ms), "O\r");
+  EXPECT_EQ(host.hear("\a"), "") << "to the C before";
+  EXPECT_EQ(host.written(), "C\r");
+  EXPECT_EQ(host.hear("\r\r"), "");
+  EXPECT_EQ(host.pass(100ms), "O\r");
+  EXPECT_EQ(host.hear("\r"), "");
+  EXPECT_EQ(host.host.state(), SlcanHost::State::open);
 }
 
 TEST(SlcanHost, DoesWithoutAnswers) {

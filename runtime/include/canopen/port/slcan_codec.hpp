@@ -345,7 +345,7 @@ class SlcanHost {
       case Step::setting:
       case Step::opening:
         if (line->empty()) next_step(now);
-        if (!line->empty() && (*line)[0] == slcan::refusal) refuse();
+        if (!line->empty() && (*line)[0] == slcan::refusal) refuse(now);
         return std::nullopt;
       case Step::open: break;
     }
@@ -381,6 +381,7 @@ class SlcanHost {
   static constexpr Duration settling{100'000};  ///< for what is still on its way
   static constexpr Duration patience{500'000};  ///< for an answer
   static constexpr Duration between_flags{1'000'000};
+  static constexpr std::uint8_t most_refusals = 3;
 
   void enter(Step step, std::optional<TimePoint> deadline) {
     step_ = step;
@@ -400,7 +401,12 @@ class SlcanHost {
     }
   }
 
-  void refuse() {
+  /// A slow adapter's answer to what was before may look like one: only the third one is believed.
+  void refuse(TimePoint now) {
+    if (++refusals_ < most_refusals) {
+      put("C\r");
+      return enter(Step::closing, now + settling);
+    }
     problem_ = step_ == Step::setting ? "the adapter refuses the bit rate" : "the adapter does not open its channel";
     enter(Step::refused, std::nullopt);
   }
@@ -441,6 +447,7 @@ class SlcanHost {
   std::optional<TimePoint> deadline_;
   std::string_view problem_;
   BusStatus status_;
+  std::uint8_t refusals_ = 0;
   bool asked_ = false;  ///< for flags, without an answer until now
   bool has_flags_ = true;
 };
