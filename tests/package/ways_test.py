@@ -67,8 +67,7 @@ class Ways(unittest.TestCase):
         ENVIRONMENT["PREFIX"] = str(cls.prefix)
 
     def document(self, section: str, number: int) -> str:
-        return "".join(run("bash", "-c", line, folder=self.sources)
-                       for line in blocks(section, "sh")[number].splitlines())
+        return run("bash", "-euc", blocks(section, "sh")[number], folder=self.sources)
 
     def built(self) -> None:
         """Once: edsc by the document's first commands, installed."""
@@ -190,8 +189,9 @@ class Ways(unittest.TestCase):
         behind = dict(re.findall(r"behind edsc: (\w+)=(.*)", log))
         launcher = ENVIRONMENT.get("CMAKE_CXX_COMPILER_LAUNCHER", "")
         self.assertEqual(behind, {
-            "COMPILE_OPTIONS": "", "COMPILE_DEFINITIONS": "", "INCLUDE_DIRECTORIES": "", "LINK_OPTIONS": "", "LINK_LIBRARIES": "",
-            "TESTS": "", "CMAKE_CXX_STANDARD": "17", "CMAKE_MODULE_PATH": "", "CMAKE_CXX_COMPILER_LAUNCHER": launcher})
+            "COMPILE_OPTIONS": "", "COMPILE_DEFINITIONS": "", "INCLUDE_DIRECTORIES": "", "LINK_OPTIONS": "",
+            "LINK_LIBRARIES": "", "TESTS": "",
+            "CMAKE_CXX_STANDARD": "17", "CMAKE_MODULE_PATH": "", "CMAKE_CXX_COMPILER_LAUNCHER": launcher})
         self.assertIn("Total Tests: 0", run("ctest", "--test-dir", project.build_dir, "-N"))
         run("cmake", "--install", project.build_dir, "--prefix", self.folder / "subdirectory/prefix")
         self.assertFalse((self.folder / "subdirectory/prefix").exists(), "edsc is installed with the project")
@@ -216,7 +216,8 @@ class Ways(unittest.TestCase):
         with tarfile.open(archive, "w:gz", compresslevel=1) as tar:
             tar.add(self.sources, "edsc-0.1.0", filter=lambda entry: None if "/build" in entry.name else entry)
         project = Project(self.folder / "fetched/project", blocks("FetchContent", "cmake")[0])
-        self.check_host(project, f"-DEDSC_ARCHIVE={archive}", f"-DFETCHCONTENT_BASE_DIR={project.source}", "-DCMAKE_BUILD_TYPE=")
+        self.check_host(project, f"-DEDSC_ARCHIVE={archive}", f"-DFETCHCONTENT_BASE_DIR={project.source}",
+                        "-DCMAKE_BUILD_TYPE=")
 
     @unittest.skipIf(WITHOUT_ARM, WITHOUT_ARM)
     def test_fetch_content_for_a_cortex_m(self) -> None:
