@@ -77,6 +77,8 @@ struct FakeController {
   FilterBank filters[28];
 };
 
+static_assert(canopen::CanController<canopen::BxCan<>>);
+
 struct BxCan : testing::Test {
   BxCan() { controller.master_control = 0; }  // on the bus
 

@@ -18,6 +18,8 @@ using bench::frame;
 using canopen::BusState;
 using canopen::BusStatus;
 
+static_assert(canopen::CanController<canopen::FdcanG4> && canopen::CanController<canopen::FdcanH7>);
+
 template <class Kind>
 constexpr fake::Chip chip = std::is_same_v<Kind, canopen::FdcanOfG4> ? fake::Chip::g4 : fake::Chip::h7;
 

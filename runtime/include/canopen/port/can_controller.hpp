@@ -2,10 +2,13 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <cstdint>
 #include <cstring>
 #include <optional>
+#include <span>
 
+#include "canopen/accepted_frames.hpp"
 #include "canopen/bus_status.hpp"
 #include "canopen/frame.hpp"
 
@@ -14,6 +17,17 @@ namespace canopen {
 enum class BusMode : std::uint8_t {
   normal,
   silent,  ///< listens, and neither sends nor acknowledges: to find out a bit rate, or to watch
+};
+
+/// What a program asks of a CAN controller: BxCan, Fdcan, and what a new port has to have (docs/porting.md).
+template <class T>
+concept CanController = Bus<T> && requires(T& can, std::uint32_t number, std::span<const AcceptedFrame> frames) {
+  { can.start(number, number, BusMode::silent) } -> std::same_as<bool>;  // clock in Hz, bit rate in bit/s
+  { can.stop() } -> std::same_as<bool>;
+  can.accept_all();
+  can.accept(frames);
+  { can.receive() } -> std::same_as<std::optional<Frame>>;
+  { can.status_change() } -> std::same_as<std::optional<BusStatus>>;
 };
 
 /// The data bytes of a frame, as registers and message RAM hold them.
