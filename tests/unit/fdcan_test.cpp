@@ -418,4 +418,46 @@ TYPED_TEST(Fdcan, CarriesANode) {
   EXPECT_EQ(answer.substr(0, 15), "585 43 00 10 00") << answer;
 }
 
+/// LSS with the controller's bit rate.
+template <class Bus>
+struct LssOnCan {
+  Bus& bus;
+
+  [[nodiscard]] canopen::LssError accept(canopen::NodeId) { return canopen::lss::success; }
+  [[nodiscard]] canopen::LssError accept(canopen::LssBitTiming) { return canopen::lss::success; }
+  [[nodiscard]] canopen::LssError store(canopen::NodeId, canopen::LssBitTiming) { return canopen::lss::success; }
+  [[nodiscard]] canopen::LssBitTiming bit_timing() const { return {0, 2}; }
+  void stop_communication() { EXPECT_TRUE(bus.stop()); }
+  void start_communication(canopen::LssBitTiming timing) {
+    EXPECT_TRUE(bus.start(80'000'000, canopen::lss::bit_rates[timing.index] * 1000u));
+  }
+};
+
+TYPED_TEST(Fdcan, HasItsBitRateChangedByLss) {
+  this->go_on_the_bus();
+  LssOnCan<typename TestFixture::Bus> port{this->bus};
+  auto node = canopen::make_node<sample::Device>(this->bus, canopen::configured_by_lss(port));
+  canopen::TimePoint now{};
+  node.start(canopen::NodeId{5}, now);
+  EXPECT_EQ(this->sent(), "705 00");
+  const auto ask = [&](const std::string& text) {
+    this->arrive(text);
+    if (const std::optional<canopen::Frame> request = this->bus.receive()) node.on_frame(*request, now);
+    return this->sent();
+  };
+  const auto pass = [&](canopen::Duration span) {
+    now = now + span;
+    node.on_time(now);
+  };
+  EXPECT_EQ(ask("7E5 04 01 00 00 00 00 00 00"), "");
+  EXPECT_EQ(ask("7E5 13 00 04 00 00 00 00 00"), "7E4 13 00 00 00 00 00 00 00");  // 125 kbit/s
+  EXPECT_EQ(ask("7E5 15 0A 00 00 00 00 00 00"), "");                             // in 10 ms, and 10 ms of silence
+  pass(std::chrono::milliseconds{10});
+  EXPECT_FALSE(this->controller.on_the_bus());
+  pass(std::chrono::milliseconds{10});
+  EXPECT_TRUE(this->controller.on_the_bus());
+  EXPECT_EQ(this->controller.nominal_bit_timing() >> 16 & 0x1FF, 3u);
+  EXPECT_EQ(ask("7E5 5E 00 00 00 00 00 00 00"), "7E4 5E 05 00 00 00 00 00 00");
+}
+
 }  // namespace

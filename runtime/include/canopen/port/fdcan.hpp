@@ -194,8 +194,9 @@ class Fdcan {
     running_ = false;
     if (requested != 0 && (registers_.common.cccr & initialize) == 0) {
       registers_.txbcr = requested;
-      if (!wait_until([this] { return registers_.txbrp == 0; })) return false;
+      const bool ended = wait_until([this] { return registers_.txbrp == 0; });
       kept_ |= requested & ~registers_.txbto;
+      if (!ended) return false;
     } else {
       kept_ |= requested;  // in bus-off nothing is under way
     }
