@@ -33,7 +33,7 @@ def use_compiler_cache(folder: Path) -> None:
 def run(*command: object, folder: Path | None = None) -> str:
     """Output of a command that must succeed."""
     result = subprocess.run([str(word) for word in command], cwd=folder, env=ENVIRONMENT, stdin=subprocess.DEVNULL,
-                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", timeout=900)
+                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", timeout=1700)
     if result.returncode != 0:
         raise AssertionError(f"{' '.join(map(str, command))}: exit code {result.returncode}\n{result.stdout[-4000:]}")
     return result.stdout
