@@ -1,0 +1,81 @@
+#!/usr/bin/env python3
+"""Firmware that is over its limits, or asks for a heap, is no firmware: what the build says of it.
+
+    budget_test.py EDSC
+"""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+from project import SOURCE_DIR, Project
+
+EDSC = Path(sys.argv[1]).resolve()
+SHEET = SOURCE_DIR / "examples/first_device/pump.eds"
+MAIN = SOURCE_DIR / "examples/firmware/main.cpp"
+ON_THE_HEAP = {
+    "malloc": "#include <cstdlib>\nvolatile char* p;\nint main() { p = static_cast<char*>(std::malloc(8)); }\n",
+    "new": "volatile int* p;\nint main() { p = new int{5}; }\n",
+    "string": "#include <string>\nstd::string text;\nint main() { text += \"a text that is long enough for the heap\"; }\n",
+}
+
+
+class Budget(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls) -> None:
+        folder = tempfile.TemporaryDirectory(prefix="edsc-budget-")
+        cls.addClassCleanup(folder.cleanup)
+        cls.project = Project(Path(folder.name), EDSC)
+        for name, text in ON_THE_HEAP.items():
+            (cls.project.folder / f"{name}.cpp").write_text(text)
+        common = f'EDS "{SHEET}" BOARD microbit NODE_ID 5 SOURCES'
+        cls.project.configure("\n".join([
+            f'edsc_add_firmware(fits {common} "{MAIN}" FLASH_LIMIT 20000 RAM_LIMIT 2000)',
+            f'edsc_add_firmware(much_flash {common} "{MAIN}" FLASH_LIMIT 5000 RAM_LIMIT 2000)',
+            f'edsc_add_firmware(much_ram {common} "{MAIN}" FLASH_LIMIT 20000 RAM_LIMIT 100)',
+            *(f"edsc_add_firmware(heap_{name} {common} {name}.cpp)" for name in ON_THE_HEAP)]))
+
+    def refused(self, target: str) -> str:
+        result = self.project.build(target)
+        self.assertNotEqual(result.returncode, 0, result.stdout)
+        return result.stdout
+
+    def test_within_its_limits(self) -> None:
+        result = self.project.build("fits")
+        self.assertEqual(result.returncode, 0, result.stdout)
+        self.assertRegex(result.stdout, r"fits\.elf: \d+ bytes of flash \(limit 20000\), \d+ bytes of RAM \(limit 2000\)")
+        report = (self.project.build_dir / "fits.report.txt").read_text()
+        self.assertRegex(report, r"\nflash: \d+ of objects, \d+ shared by them \(.*\), \d+ of code and its data, \d+ between\n")
+
+    def test_too_much_flash(self) -> None:
+        told = self.refused("much_flash")
+        self.assertRegex(told, r"error: much_flash\.elf has \d+ bytes of flash, \d+ more than its limit of 5000\n"
+                               r"largest in flash:\n +\d+  canopen::\S+\n")
+        self.assertRegex(told, r"the data sheet's largest objects:\n  object  flash     RAM\n(  [0-9A-F]{4}h +\d+ +\d+\n)+")
+        self.assertRegex(told, r"\n  2000h +\d+ +2\n")
+        self.assertNotIn("bytes of RAM, ", told)
+
+    def test_too_much_ram(self) -> None:
+        told = self.refused("much_ram")
+        self.assertRegex(told, r"error: much_ram\.elf has \d+ bytes of RAM, \d+ more than its limit of 100\n"
+                               r"largest in RAM:\n(?s:.*)\n +\d+  node\n")
+        self.assertNotIn("bytes of flash, ", told)
+
+    def test_an_image_over_its_limit_is_built_again(self) -> None:
+        for attempt in ("first", "second"):
+            with self.subTest(attempt):
+                self.assertIn("more than its limit of 5000", self.refused("much_flash"))
+
+    def test_nothing_links_with_a_heap(self) -> None:
+        for name in ON_THE_HEAP:
+            with self.subTest(name):
+                told = self.refused(f"heap_{name}")
+                self.assertRegex(told, r"undefined reference to `(__wrap_malloc|operator new|std::)")
+                self.assertFalse((self.project.build_dir / f"heap_{name}.elf").exists())
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]])
