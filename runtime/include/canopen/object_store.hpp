@@ -9,6 +9,7 @@
 
 #include "canopen/abort_code.hpp"
 #include "canopen/dictionary.hpp"
+#include "canopen/entry_search.hpp"
 #include "canopen/node_id.hpp"
 #include "canopen/object.hpp"
 
@@ -61,9 +62,7 @@ class EntryAccess {
 
   /// As Dictionary::find, whose code is in the image once.
   [[nodiscard, gnu::noinline]] static entry::Word find(std::uint16_t index, std::uint8_t sub_index) {
-    constexpr const Dictionary& table = Device::dictionary;
-    const Run& run = last_run<table.runs.size() - 1>(table.runs.data(), index);
-    return table.sub_word(table.word_in(run, index), sub_index);
+    return Device::dictionary.sub_word(EntrySearch<Device>::find(index), sub_index);
   }
 
   /// The bytes of an entry as SDO sends them. Immediate values are put into `scratch`, others are seen in place.
@@ -232,17 +231,6 @@ class EntryAccess {
 
   static constexpr bool has_limits = !Device::dictionary.limits.empty() || !Device::dictionary.wide_limits.empty();
   static constexpr std::size_t string_header = sizeof(std::uint16_t);
-
-  /// The last of `Count` runs that does not begin behind an index: as many steps for each.
-  template <std::size_t Count>
-  [[nodiscard]] static const Run& last_run(const Run* runs, std::uint16_t index) {
-    if constexpr (Count > 1) {
-      if (runs[Count / 2].first <= index) runs += Count / 2;
-      return last_run<Count - Count / 2>(runs, index);
-    } else {
-      return *runs;
-    }
-  }
 
   /// Whether a 00h follows the text: there is room for it behind the capacity then.
   [[nodiscard]] static bool is_terminated(entry::Word word) {
