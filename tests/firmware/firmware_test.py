@@ -107,6 +107,7 @@ class Firmware:
         untouched = len(memory) - len(memory.lstrip(bytes([STACK_PAINT])))
         used = len(memory) - untouched
         print(f"{self.machine.image.name}: {used} bytes of stack")
+        self.machine.image.with_suffix(".stack").write_text(f"{used}\n", encoding="utf-8")  # for bench/footprint/images.py
         self.check("stack", f"at most {LARGEST_STACK} bytes", untouched > 0 and 0 < used <= LARGEST_STACK, True)
 
 

@@ -309,6 +309,7 @@ class Walk:
             self.remote_tpdo(index, name, cob_id, entries)
             self.timed_tpdo(index, name, cob_id, entries)
             self.nmt(STOP)
+            self.wire.pass_on()
             for _ in range(100):
                 if self.wire.receive(can_id, SHORT) is None:  # what was on its way has come
                     break

@@ -22,8 +22,14 @@ class Wire:
         else:
             options = {"interface": "socketcan", "channel": address.removeprefix("socketcan:")}
         self.socketcand = options["interface"] == "socketcand"
+        self.slcan = options["interface"] == "slcan"
         self.bus = can.Bus(**options)
         self.waiting: deque[tuple[float, int, bytes]] = deque(maxlen=10000)
+
+    def pass_on(self) -> None:
+        """Until an SLCAN adapter has given on all that was sent to it. What comes meanwhile is forgotten."""
+        if self.slcan:
+            self.bus.get_version(60)
 
     def close(self) -> None:
         self.bus.shutdown()
