@@ -3,6 +3,7 @@
 #define EDSC_CAN_2053C_DEVICE_HPP
 
 #include <array>
+#include <canopen/bytes.hpp>
 #include <canopen/device_options.hpp>
 #include <canopen/pdo_list.hpp>
 
@@ -79,12 +80,12 @@ struct Device {
     }
   }
 
-  static constexpr void reset_communication([[maybe_unused]] Values& values) {
-    values.communication_preset = can_2053c::communication_preset;
-    values.communication_cleared = {};
+  static void reset_communication([[maybe_unused]] Values& values) {
+    canopen::copy_bytes(&values.communication_preset, &can_2053c::communication_preset, sizeof values.communication_preset);
+    canopen::clear_bytes(&values.communication_cleared, sizeof values.communication_cleared);
   }
-  static constexpr void reset_application([[maybe_unused]] Values& values) {
-    values.application_cleared = {};
+  static void reset_application([[maybe_unused]] Values& values) {
+    canopen::clear_bytes(&values.application_cleared, sizeof values.application_cleared);
   }
 
   static constexpr std::span<const canopen::NodeIdRelative> node_id_relative_communication() {

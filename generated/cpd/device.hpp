@@ -3,6 +3,7 @@
 #define EDSC_CPD_DEVICE_HPP
 
 #include <array>
+#include <canopen/bytes.hpp>
 #include <canopen/device_options.hpp>
 #include <canopen/pdo_list.hpp>
 
@@ -56,13 +57,13 @@ struct Device {
   /// The manufacturer-specific bytes of an EMCY that the services send by themselves.
   static constexpr std::array<std::uint8_t, 5> emergency_info([[maybe_unused]] std::uint16_t code) { return {}; }
 
-  static constexpr void reset_communication([[maybe_unused]] Values& values) {
-    values.communication_preset = cpd::communication_preset;
-    values.communication_cleared = {};
+  static void reset_communication([[maybe_unused]] Values& values) {
+    canopen::copy_bytes(&values.communication_preset, &cpd::communication_preset, sizeof values.communication_preset);
+    canopen::clear_bytes(&values.communication_cleared, sizeof values.communication_cleared);
   }
-  static constexpr void reset_application([[maybe_unused]] Values& values) {
-    values.application_preset = cpd::application_preset;
-    values.application_cleared = {};
+  static void reset_application([[maybe_unused]] Values& values) {
+    canopen::copy_bytes(&values.application_preset, &cpd::application_preset, sizeof values.application_preset);
+    canopen::clear_bytes(&values.application_cleared, sizeof values.application_cleared);
   }
 
   static constexpr std::span<const canopen::NodeIdRelative> node_id_relative_communication() {
