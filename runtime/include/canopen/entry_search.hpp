@@ -56,7 +56,9 @@ struct ByHash {
   static constexpr std::size_t bytes = slots * sizeof(std::uint16_t) + buckets * sizeof(Displacement) +
                                        (used_slots - count) * sizeof(Word);
 
-  [[nodiscard]] static constexpr std::uint32_t hash(std::uint16_t index, std::uint32_t multiplier) { return index * multiplier; }
+  [[nodiscard]] static constexpr std::uint32_t hash(std::uint16_t index, std::uint32_t multiplier) {
+    return index * multiplier;
+  }
   [[nodiscard]] static constexpr std::uint32_t bucket_of(std::uint32_t hash) { return hash >> (32 - bucket_bits); }
   [[nodiscard]] static constexpr std::uint32_t place_of(std::uint32_t hash) { return hash >> (32 - bucket_bits - slot_bits); }
 
