@@ -110,7 +110,12 @@ class EmergencyProducer {
   }
 
   /// No error, and none to be told (CiA 301, 7.2.7.1: what a reset does).
-  void reset() { *this = EmergencyProducer{}; }
+  void reset() {
+    waiting_ = 0;
+    application_bits_ = 0;
+    service_errors_ = 0;
+    inhibit_ = {};
+  }
 
   /// A reset is asked for: its EMCY, where the device has one. It is lost when the bus has no room.
   template <Bus B>
@@ -126,7 +131,7 @@ class EmergencyProducer {
   /// Only the last message that waits is to be sent.
   void keep_last() {
     if (waiting_ == 0) return;
-    queue_[0] = queue_[waiting_ - 1u];
+    first_ = place(waiting_ - 1u);
     waiting_ = 1;
   }
 
@@ -134,15 +139,13 @@ class EmergencyProducer {
   template <Bus B>
   bool serve(const ObjectStore<Device>& store, B& bus, TimePoint now) {
     if constexpr (has_cob_id) {
-      if (inhibited_ && !is_ahead(inhibit_end_, inhibit_unit, now)) inhibited_ = false;
-      while (waiting_ != 0 && !inhibited_) {
+      while (waiting_ != 0 && !is_inhibited(now)) {
         if (CobId{store.template number<0x1014, 0>()}.valid()) {
-          if (!send(store, bus, queue_[0])) return false;
+          if (!send(store, bus, queue_[first_])) return false;
           start_inhibit_time(store, now);
         }
         --waiting_;
-        Message last = queue_[waiting_];
-        for (std::size_t i = waiting_; i-- != 0;) std::swap(last, queue_[i]);  // each goes up by one
+        first_ = place(1);
       }
     }
     return true;
@@ -151,13 +154,18 @@ class EmergencyProducer {
   /// When the next one is to be sent; a moment not after `now` when one waits already.
   [[nodiscard]] std::optional<TimePoint> next_deadline(TimePoint now) const {
     if (waiting_ == 0) return std::nullopt;
-    return inhibited_ && is_ahead(inhibit_end_, inhibit_unit, now) ? inhibit_end_ : now;
+    if constexpr (has_inhibit_time) {
+      if (inhibit_.runs && is_ahead(inhibit_.end, inhibit_unit, now)) return inhibit_.end;
+    }
+    return now;
   }
 
  private:
-  struct Message {
-    alignas(4) std::array<std::uint8_t, 8> bytes;
+  struct Inhibit {
+    TimePoint end;
+    bool runs;
   };
+  struct Nothing {};
 
   static constexpr std::uint32_t inhibit_unit = from_hundred_microseconds(1).count();
   static constexpr bool has_register = Device::dictionary.has(0x1001, 0);
@@ -207,21 +215,22 @@ class EmergencyProducer {
     if (code != emergency_code::reset || Device::options.error_history_keeps_resets) remember(store, code, info);
     if constexpr (has_cob_id) {
       if (waiting_ < depth) ++waiting_;
-      queue_[waiting_ - 1u] = message_of(code, bits, info);
+      queue_[place(waiting_ - 1u)] = message_of(code, bits, info);
     }
   }
 
-  [[nodiscard]] static Message message_of(std::uint16_t code, std::uint8_t bits, const EmergencyInfo& info) {
-    Message message{{static_cast<std::uint8_t>(code), static_cast<std::uint8_t>(code >> 8), bits}};
-    std::memcpy(&message.bytes[3], info.data(), info.size());
-    return message;
+  /// Where the message is that comes so many behind the first one.
+  [[nodiscard]] std::uint8_t place(unsigned behind) const { return static_cast<std::uint8_t>((first_ + behind) % depth); }
+
+  [[nodiscard]] static FrameWords message_of(std::uint16_t code, std::uint8_t bits, const EmergencyInfo& info) {
+    return {code | std::uint32_t{bits} << 16 | std::uint32_t{info[0]} << 24, number_in(std::span{info}.subspan(1))};
   }
 
   template <Bus B>
-  [[nodiscard]] static bool send(const ObjectStore<Device>& store, B& bus, const Message& message) {
+  [[nodiscard]] static bool send(const ObjectStore<Device>& store, B& bus, FrameWords message) {
     const CobId cob_id{store.template number<0x1014, 0>()};
     if (!cob_id.valid()) return true;
-    return send_data(bus, cob_id.value(), 8, message.bytes.data());
+    return send_words(bus, cob_id.value(), 8, message.first, message.second);
   }
 
   static void store_register(ObjectStore<Device>& store, std::uint8_t bits) {
@@ -236,15 +245,16 @@ class EmergencyProducer {
     if constexpr (has_history) {
       std::uint8_t& count = *store.entries().ram(history_count);
       std::uint8_t* field = store.entries().ram(history_first);
-      if (count >= history_capacity) count = history_capacity - 1;  // the application may set any number
-      std::uint32_t next = code | static_cast<std::uint32_t>(info[0] << 16) | (std::uint32_t{info[1]} << 24);
-      for (unsigned i = 0; i <= count; ++i, field += sizeof next) {
-        std::uint32_t older;
-        std::memcpy(&older, std::assume_aligned<alignof(std::uint32_t)>(field), sizeof older);
-        std::memcpy(std::assume_aligned<alignof(std::uint32_t)>(field), &next, sizeof next);
-        next = older;
+      unsigned older = count;
+      if (older >= history_capacity) older = history_capacity - 1;  // the application may set any number
+      count = static_cast<std::uint8_t>(older + 1);
+      const std::uint32_t newest = code | static_cast<std::uint32_t>(info[0] << 16) | (std::uint32_t{info[1]} << 24);
+      for (field += sizeof newest * older; older != 0; --older, field -= sizeof newest) {
+        std::uint32_t moved;
+        std::memcpy(&moved, std::assume_aligned<alignof(std::uint32_t)>(field - sizeof moved), sizeof moved);
+        std::memcpy(std::assume_aligned<alignof(std::uint32_t)>(field), &moved, sizeof moved);
       }
-      ++count;
+      std::memcpy(std::assume_aligned<alignof(std::uint32_t)>(field), &newest, sizeof newest);
     }
   }
 
@@ -252,17 +262,25 @@ class EmergencyProducer {
     if constexpr (has_inhibit_time) {
       const Duration inhibit =
           from_hundred_microseconds(static_cast<std::uint16_t>(store.template number<0x1015, 0>()));
-      inhibited_ = inhibit.count() != 0;
-      inhibit_end_ = now + inhibit;
+      inhibit_ = {now + inhibit, inhibit.count() != 0};
     }
   }
 
+  /// Forgets an inhibit time that is over.
+  [[nodiscard]] bool is_inhibited([[maybe_unused]] TimePoint now) {
+    if constexpr (has_inhibit_time) {
+      inhibit_.runs = inhibit_.runs && is_ahead(inhibit_.end, inhibit_unit, now);
+      return inhibit_.runs;
+    }
+    return false;
+  }
+
   std::uint8_t waiting_ = 0;
+  std::uint8_t first_ = 0;  ///< place of the first one that waits
   std::uint8_t application_bits_ = 0;
   std::uint8_t service_errors_ = 0;
-  bool inhibited_ = false;
-  TimePoint inhibit_end_{};
-  std::array<Message, has_cob_id ? depth : 1> queue_{};
+  [[no_unique_address]] std::conditional_t<has_inhibit_time, Inhibit, Nothing> inhibit_{};
+  std::array<FrameWords, has_cob_id ? depth : 1> queue_{};
 };
 
 }  // namespace canopen

@@ -31,21 +31,51 @@ struct Frame {
   return frame.id | (frame.extended ? std::uint32_t{0x2000'0000} : 0);
 }
 
+/// Gives a frame the CAN-ID of a COB-ID as a parameter holds it.
+constexpr void set_cob_id(Frame& frame, std::uint32_t cob_id) {
+  frame.extended = (cob_id & 0x2000'0000) != 0;
+  const unsigned flags = frame.extended ? 3 : 21;  // bits above the CAN-ID
+  frame.id = cob_id << flags >> flags;
+}
+
 /// What a node sends through. `send` answers false when the controller has no room now; the frame is then not taken.
 template <class T>
 concept Bus = requires(T& bus, const Frame& frame) {
   { bus.send(frame) } -> std::same_as<bool>;
 };
 
-/// Sends the first of eight data bytes, whose address is a multiple of four, under a COB-ID as a parameter holds it.
+/// Whether the image is to be small rather than fast, as -Os says.
+#ifdef __OPTIMIZE_SIZE__
+inline constexpr bool prefers_size = true;
+#else
+inline constexpr bool prefers_size = false;
+#endif
+
+/// The data bytes of a frame as they lie in memory.
+struct FrameWords {
+  std::uint32_t first = 0;
+  std::uint32_t second = 0;
+};
+static_assert(sizeof(FrameWords) == sizeof Frame::data);
+
+/// Sends the first of eight data bytes, which lie in memory as these two words, under a COB-ID as a parameter holds it.
 template <Bus B>
-[[nodiscard, gnu::noinline]] bool send_data(B& bus, std::uint32_t cob_id, std::uint8_t size, const std::uint8_t* data) {
+[[nodiscard, gnu::noinline]] bool send_words(B& bus, std::uint32_t cob_id, std::uint8_t size, std::uint32_t first,
+                                             std::uint32_t second = 0) {
   Frame frame;
-  frame.extended = (cob_id & 0x2000'0000) != 0;
-  frame.id = cob_id & (frame.extended ? 0x1FFF'FFFFu : 0x7FFu);
+  set_cob_id(frame, cob_id);
   frame.size = size;
-  std::memcpy(frame.data.data(), std::assume_aligned<4>(data), sizeof frame.data);
+  std::memcpy(frame.data.data(), &first, sizeof first);
+  std::memcpy(frame.data.data() + sizeof first, &second, sizeof second);
   return bus.send(frame);
+}
+
+/// The same for bytes at an address that is a multiple of four.
+template <Bus B>
+[[nodiscard]] bool send_data(B& bus, std::uint32_t cob_id, std::uint8_t size, const std::uint8_t* data) {
+  FrameWords words;
+  std::memcpy(&words, std::assume_aligned<4>(data), sizeof words);
+  return send_words(bus, cob_id, size, words.first, words.second);
 }
 
 }  // namespace canopen

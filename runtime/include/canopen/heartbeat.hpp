@@ -36,8 +36,8 @@ class HeartbeatProducer {
     } else if (!running_ || is_within(due_, period, now)) {
       return true;
     }
-    alignas(4) const std::uint8_t data[8] = {static_cast<std::uint8_t>(state)};
-    if (!send_data(bus, function_code::error_control + std::uint32_t{node_id.value()}, 1, data)) return false;
+    const std::uint32_t cob_id = function_code::error_control + std::uint32_t{node_id.value()};
+    if (!send_words(bus, cob_id, 1, static_cast<std::uint8_t>(state))) return false;
     boot_up_due_ = false;
     running_ = period.count() != 0;
     due_ = due_ + period;
