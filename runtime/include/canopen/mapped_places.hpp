@@ -21,12 +21,26 @@ namespace canopen {
 
 /// Copies the 1..8 bytes of a value to or from a frame: in words where the processor has them at any address.
 inline void copy_value(std::uint8_t* to, const std::uint8_t* from, unsigned bytes) {
-  if (pdo_detail::unaligned_words) {
+  if constexpr (pdo_detail::unaligned_words) {
     if (bytes == 4) return static_cast<void>(std::memcpy(to, from, 4));
+    if (bytes == 8) return static_cast<void>(std::memcpy(to, from, 8));
     if (bytes == 2) return static_cast<void>(std::memcpy(to, from, 2));
+    if (bytes == 1) return static_cast<void>(*to = *from);
+    if ((bytes & 4) != 0) {
+      std::memcpy(to, from, 4);
+      to += 4;
+      from += 4;
+    }
+    if ((bytes & 2) != 0) {
+      std::memcpy(to, from, 2);
+      to += 2;
+      from += 2;
+    }
+    if ((bytes & 1) != 0) *to = *from;
+  } else {
+    do *to++ = *from++;
+    while (--bytes != 0);
   }
-  do *to++ = *from++;
-  while (--bytes != 0);
 }
 
 /// The mappings of all PDOs of one direction. `Pdos` is a PdoList; those whose mapping is static have no part in it.
@@ -51,17 +65,26 @@ class MappedPlaces {
     return place < count ? capacities[place] : std::uint8_t{0};
   }
 
-  using Place = std::conditional_t<(sizeof(typename Device::Values) < 0x8000), std::uint16_t, std::uint32_t>;
-  static constexpr Place mark = static_cast<Place>(Place{1} << (sizeof(Place) * 8 - 1));
-  static constexpr Place no_place = static_cast<Place>(~Place{0});
+  using Runs = MappedRun<Device>;
+  using Place = typename Runs::Word;
 
-  /// Looks up the objects of a PDO; those that are constants are marked. Answers the data bytes of its frame; 0 when it
-  /// carries nothing.
-  std::uint8_t look_up(std::size_t pdo, EntryAccess<Device> entries) {
+  /// Looks up the objects of a PDO. `watched(mapped)` says of one whether its value is not just stored. Answers the data
+  /// bytes of its frame; 0 when it carries nothing.
+  template <class Watched>
+  std::uint8_t look_up(std::size_t pdo, [[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] Watched watched) {
     if constexpr (count != 0) {
       const MappingParameter mapping = parameter(pdo, entries);
-      if (mapping.count() <= capacities[pdo])
-        return mapping.template look_up<Device>(Indices.mapping == tpdo_indices.mapping, of(pdo));
+      if (mapping.count() > capacities[pdo]) return 0;
+      Place* const places = of(pdo);
+      const std::uint8_t bits = mapping.template look_up<Device>(Indices.mapping == tpdo_indices.mapping, places);
+      if (bits == 0) return 0;
+      if constexpr (Indices.mapping == rpdo_indices.mapping) {
+        for (std::uint8_t i = 0; i < mapping.count(); ++i) {
+          if (watched(mapping[i])) places[i] |= Runs::apart;
+        }
+      }
+      Runs::join(places, mapping.count(), bits);
+      return static_cast<std::uint8_t>((bits + 7) / 8);
     }
     return 0;
   }
@@ -86,18 +109,12 @@ class MappedPlaces {
     return false;
   }
 
-  /// The places of a PDO, one for each object.
-  [[nodiscard]] const Place* of(std::size_t pdo) const { return &places_[firsts[pdo]]; }
-  [[nodiscard]] Place* of(std::size_t pdo) { return &places_[firsts[pdo]]; }
+  /// Whether the mapping of a PDO is dynamic.
+  [[nodiscard]] static bool is_dynamic(std::size_t pdo) { return all || capacities[pdo] != 0; }
 
-  /// Whether an object of this device can stand at another place than a whole byte.
-  static constexpr bool has_bits = [] {
-    bool has = (Device::dummies & 2) != 0;
-    Device::dictionary.for_each_entry([&](std::uint16_t, std::uint8_t, entry::Word word) {
-      has = has || (entry::is_boolean(word) && (word & (entry::tpdo | entry::rpdo)) != 0);
-    });
-    return has;
-  }();
+  /// The runs of a PDO, which fill its frame.
+  [[nodiscard]] const Place* of(std::size_t pdo) const { return &places_[first_of(pdo)]; }
+  [[nodiscard]] Place* of(std::size_t pdo) { return &places_[first_of(pdo)]; }
 
  private:
   using Count = ParameterColumn<Device, Pdos, Indices.mapping, 0>;
@@ -106,9 +123,30 @@ class MappedPlaces {
   /// Where the places of each PDO begin.
   static constexpr std::array<std::uint16_t, count + 1> firsts = [] {
     std::array<std::uint16_t, count + 1> rows{};
-    for (std::size_t i = 0; i < count; ++i) rows[i + 1] = static_cast<std::uint16_t>(rows[i] + capacities[i]);
+    for (std::size_t i = 0; i < count; ++i) {
+      const unsigned padding = capacities[i] != 0 && Runs::has_bits ? 1 : 0;
+      rows[i + 1] = static_cast<std::uint16_t>(rows[i] + capacities[i] + padding);
+    }
     return rows;
   }();
+
+  static constexpr bool all = std::ranges::none_of(capacities, [](std::uint8_t capacity) { return capacity == 0; });
+
+  /// Whether each PDO has as many.
+  static constexpr bool is_regular = [] {
+    for (std::size_t i = 0; i < count; ++i) {
+      if (firsts[i] != firsts[1] * i) return false;
+    }
+    return true;
+  }();
+
+  [[nodiscard]] static std::size_t first_of(std::size_t pdo) {
+    if constexpr (count > 0 && is_regular) {
+      return std::size_t{firsts[1]} * pdo;
+    } else {
+      return firsts[pdo];
+    }
+  }
 
   std::array<Place, firsts[count]> places_{};
 };

@@ -84,25 +84,7 @@ class Node {
     }
     if (state_ == NmtState::initialisation) return serve_lss();
     if (attention_) serve();
-    const std::uint32_t cob_id = cob_id_of(frame);
-    if (frame.remote) {
-      on_remote(frame);
-    } else if (serves_sdo(state_) && sdo_.on_frame(store_, frame, SdoHooks{*this}, now_)) {
-      attention_ = true;
-    } else if (cob_id == function_code::nmt) {
-      on_nmt(frame);
-    } else if (SyncConsumer<Device>::takes(store_, cob_id)) {
-      on_sync(SyncConsumer<Device>::sync_of(store_, frame));
-    } else if (const std::optional<TimeOfDay> time = TimeStamp<Device>::take(store_, frame)) {
-      if (serves_sync(state_)) handlers_.template tell<TimeHandler>(*this, *time);
-    } else if (const std::optional<ConsumedEmergency> emergency = EmergencyConsumer<Device>::take(entries(), frame)) {
-      if (serves_emcy(state_)) handlers_.template tell<EmergencyHandler>(*this, *emergency);
-    } else if (on_error_control(frame)) {
-      // a message of another node
-    } else if (serves_pdo(state_)) {
-      rpdos_.on_frame(frame, RpdoHost{*this});
-      mpdos_.on_frame(entries(), frame, node_id_, RpdoHost{*this});
-    }
+    if (!is_rpdo(frame)) on_other_frame(frame);
     if (attention_) serve();
   }
 
@@ -357,6 +339,38 @@ class Node {
       return Streams::write(node.handlers_.all(), node, object_key(index, sub_index), offset, bytes, last);
     }
   };
+
+  /// Takes a frame that is an RPDO and has one of the CAN-IDs that the pre-defined connection set gives to PDOs: most
+  /// frames are, and no other service is asked. Where an RPDO has another CAN-ID the other services come first.
+  [[nodiscard]] bool is_rpdo(const Frame& frame) {
+    if constexpr (!has_rpdos || MpdoService<Device>::exists) return false;
+    constexpr std::uint32_t can_ids = function_code::sdo_response - function_code::tpdo1;
+    const std::uint32_t cob_id = cob_id_of(frame);
+    if (frame.remote || cob_id - function_code::tpdo1 >= can_ids || !serves_pdo(state_)) return false;
+    return rpdos_.on_frame(frame, cob_id, RpdoHost{*this});
+  }
+
+  [[gnu::noinline]] void on_other_frame(const Frame& frame) {
+    const std::uint32_t cob_id = cob_id_of(frame);
+    if (frame.remote) {
+      on_remote(frame);
+    } else if (serves_sdo(state_) && sdo_.on_frame(store_, frame, SdoHooks{*this}, now_)) {
+      attention_ = true;
+    } else if (cob_id == function_code::nmt) {
+      on_nmt(frame);
+    } else if (SyncConsumer<Device>::takes(store_, cob_id)) {
+      on_sync(SyncConsumer<Device>::sync_of(store_, frame));
+    } else if (const std::optional<TimeOfDay> time = TimeStamp<Device>::take(store_, frame)) {
+      if (serves_sync(state_)) handlers_.template tell<TimeHandler>(*this, *time);
+    } else if (const std::optional<ConsumedEmergency> emergency = EmergencyConsumer<Device>::take(entries(), frame)) {
+      if (serves_emcy(state_)) handlers_.template tell<EmergencyHandler>(*this, *emergency);
+    } else if (on_error_control(frame)) {
+      // a message of another node
+    } else if (serves_pdo(state_)) {
+      rpdos_.on_frame(frame, cob_id, RpdoHost{*this});
+      mpdos_.on_frame(entries(), frame, node_id_, RpdoHost{*this});
+    }
+  }
 
   // Network management
 
@@ -730,17 +744,19 @@ class Node {
   [[gnu::noinline]] void on_sync(Sync sync) {
     if (!serves_sync(state_)) return;
     if constexpr (SyncConsumer<Device>::exists) {
-      if (!sync.good) {
-        service_error(ServiceError::sync_length);
-        return;
+      if constexpr (SyncConsumer<Device>::has_overflow) {
+        if (!sync.good) {
+          service_error(ServiceError::sync_length);
+          return;
+        }
+        service_error_over(ServiceError::sync_length);
       }
-      service_error_over(ServiceError::sync_length);
       sync_window_.open(store_, now_);
       if constexpr (has_clock) set_clock(now_.since_start().count() + clock_offset_);
       if (serves_pdo(state_)) {
         if constexpr (has_tpdos) {
-          tpdos_.on_sync(store_, sync);
-          serve();  // with the values as they were at the SYNC
+          // With the values as they are now, and at once where nothing else waits.
+          if (!tpdos_.on_sync(store_, bus_, sync, !attention_ && !silent())) serve();
         }
         if constexpr (has_rpdos) rpdos_.on_sync(RpdoHost{*this});
       }
@@ -779,10 +795,9 @@ class Node {
   /// Errors of RPDOs are over when no RPDO has them any more.
   void tell_rpdo_errors() {
     if constexpr (has_rpdos || MpdoService<Device>::receives) {
-      if (!rpdos_.any(RpdoEvent::too_short) && !mpdos_.too_short()) service_error_over(ServiceError::pdo_length);
-    }
-    if constexpr (has_rpdos) {
-      if (!rpdos_.any(RpdoEvent::timeout)) service_error_over(ServiceError::rpdo_timeout);
+      const auto [too_short, timeout] = rpdos_.conditions();
+      if (!too_short && !mpdos_.too_short()) service_error_over(ServiceError::pdo_length);
+      if (!timeout) service_error_over(ServiceError::rpdo_timeout);
     }
     if constexpr (MpdoService<Device>::receives) {
       if (!mpdos_.destination_missing()) service_error_over(ServiceError::mpdo_destination);
@@ -857,7 +872,11 @@ class Node {
     attention_ = false;
     if (silent()) return;
     if constexpr (SyncProducer<Device>::exists) {
-      if (const std::optional<Sync> sync = sync_producer_.serve(store_, bus_, now_)) on_sync(*sync);
+      if (sync_producer_.serve(store_, bus_, now_)) {
+        attention_ = true;  // what is more important than a PDO goes out before them
+        on_sync(sync_producer_.last(store_));
+        attention_ = false;
+      }
     }
     if (!send_due()) attention_ = true;
   }

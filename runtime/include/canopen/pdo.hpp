@@ -174,6 +174,11 @@ struct PdoLayout {
     pack_aligned<1>(data, values...);
   }
 
+  /// The same for data at an address that is a multiple of four, as those of a frame are.
+  static constexpr void pack_into_words(Data& data, const typename Objects::type&... values) {
+    pack_aligned<pdo_detail::frame_data_align>(data, values...);
+  }
+
   /// The same for a frame, whose length it sets.
   static constexpr void pack_into(Frame& frame, const typename Objects::type&... values) {
     frame.size = size;
@@ -195,7 +200,13 @@ struct PdoLayout {
   }
   template <std::size_t I>
   [[nodiscard]] static constexpr typename Entry<I>::type get(const Frame& frame) {
-    return get_aligned<I, pdo_detail::frame_data_align>(frame.data);
+    return get_from_words<I>(frame.data);
+  }
+
+  /// The same of data at an address that is a multiple of four.
+  template <std::size_t I>
+  [[nodiscard]] static constexpr typename Entry<I>::type get_from_words(const Data& data) {
+    return get_aligned<I, pdo_detail::frame_data_align>(data);
   }
 
   /// The value of an object in these data bytes.

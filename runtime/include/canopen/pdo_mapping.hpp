@@ -7,6 +7,7 @@
 #include <iterator>
 #include <memory>
 #include <span>
+#include <type_traits>
 
 #include "canopen/abort_code.hpp"
 #include "canopen/cob_id.hpp"
@@ -64,12 +65,68 @@ template <class Device>
   }
   const entry::Word word = EntryAccess<Device>::find(mapped.index(), mapped.sub_index());
   if ((word & (tpdo ? entry::tpdo : entry::rpdo)) == 0) return not_mappable;  // so are those that do not exist
-  // An immediate value has no address, and MappedPlaces keeps 15 bits of that of a constant.
-  if (entry::place_of(word) > entry::Place::rom) return not_mappable;
-  if (entry::place_of(word) == entry::Place::rom && entry::offset_of(word) >= 0x8000) return not_mappable;
+  if (entry::place_of(word) > entry::Place::rom) return not_mappable;  // an immediate value has no address
   if (EntryAccess<Device>::kinds.booleans && entry::is_boolean(word) && bits == 1) return word;
   return bits != 0 && bits == EntryAccess<Device>::bytes_of(word) * 8u ? word : not_mappable;
 }
+
+/// How a mapping is kept once it has been looked up: values that lie one behind the other in RAM as in the frame are
+/// one run, a word with their offset and length.
+template <class Device>
+struct MappedRun {
+  /// Whether an object of this device can stand at another place than a whole byte.
+  static constexpr bool has_bits = [] {
+    bool has = (Device::dummies & 2) != 0;
+    Device::dictionary.for_each_entry([&](std::uint16_t, std::uint8_t, entry::Word word) {
+      has = has || (entry::is_boolean(word) && (word & (entry::tpdo | entry::rpdo)) != 0);
+    });
+    return has;
+  }();
+  static constexpr unsigned unit = has_bits ? 1 : 8;  ///< bits that a length counts in
+
+  /// Whether 12 bits hold the offsets of all objects that may be mapped.
+  static constexpr bool has_short_offsets = [] {
+    bool has = true;
+    Device::dictionary.for_each_entry([&](std::uint16_t, std::uint8_t, entry::Word word) {
+      if ((word & (entry::tpdo | entry::rpdo)) == 0 || entry::place_of(word) > entry::Place::rom) return;
+      has = has && entry::offset_of(word) < 0xFFF;
+    });
+    return has;
+  }();
+
+  using Word = std::conditional_t<has_short_offsets && !has_bits, std::uint16_t, std::uint32_t>;
+  static constexpr unsigned length_shift = sizeof(Word) == 2 ? 12 : 24;
+  static constexpr Word offset_mask = static_cast<Word>((Word{1} << length_shift) - 1);
+
+  /// Not just values in RAM: a constant, or a value for which more is to be done than to store it.
+  static constexpr Word apart = static_cast<Word>(Word{1} << (8 * sizeof(Word) - 1));
+  static constexpr Word nothing = apart | offset_mask;  ///< a dummy; with the length left out
+
+  [[nodiscard]] static constexpr Word word_of(entry::Word word, unsigned bits) {
+    const Word length = static_cast<Word>((bits / unit - 1) << length_shift);
+    if (word == mapped_dummy) return length | nothing;
+    return length | entry::offset_of(word) | (entry::place_of(word) == entry::Place::rom ? apart : Word{0});
+  }
+  [[nodiscard]] static constexpr unsigned length(Word run) {
+    return static_cast<unsigned>((run & static_cast<Word>(~apart)) >> length_shift) + 1;
+  }
+  [[nodiscard]] static constexpr Word offset(Word run) { return run & offset_mask; }
+
+  /// Joins what lies one behind the other. Behind `bits` bits that end within a byte stands a dummy for the others.
+  [[gnu::noinline]] static void join(Word* runs, unsigned count, unsigned bits) {
+    Word* last = runs;
+    for (const Word *run = runs + 1, *const end = runs + count; run != end; ++run) {
+      const bool both_plain = ((*last | *run) & apart) == 0;
+      const bool whole_bytes = !has_bits || ((length(*last) | length(*run)) & 7) == 0;
+      if (both_plain && whole_bytes && offset(*last) + length(*last) * unit / 8 == offset(*run)) {
+        *last = static_cast<Word>(*last + (length(*run) << length_shift));
+      } else {
+        *++last = *run;
+      }
+    }
+    if (has_bits && bits % 8 != 0) *++last = word_of(mapped_dummy, 8 - bits % 8);
+  }
+};
 
 /// The mapping parameter of one PDO as it stands in RAM.
 class MappingParameter {
@@ -102,20 +159,15 @@ class MappingParameter {
     return static_cast<std::uint8_t>(bits);
   }
 
-  /// Puts down where the objects lie, all bits set for a dummy, with the highest bit set for those among the constants.
-  /// Answers the data bytes that they take; 0 when they make no PDO.
-  template <class Device, class Place>
-  [[gnu::noinline]] std::uint8_t look_up(bool tpdo, Place* places) const {
+  /// Puts down where the objects lie. Answers the bits that they take; 0 when they make no PDO.
+  template <class Device>
+  [[gnu::noinline]] std::uint8_t look_up(bool tpdo, typename MappedRun<Device>::Word* runs) const {
     const std::uint8_t bits = bits_of<Device>(tpdo, count());
-    if (bits == 0) return 0;
-    for (std::uint8_t i = 0; i < count(); ++i) {
-      const entry::Word word = can_be_mapped<Device>(tpdo, (*this)[i]);
-      constexpr Place mark = static_cast<Place>(Place{1} << (sizeof(Place) * 8 - 1));
-      Place place = static_cast<Place>(entry::offset_of(word));
-      if (entry::place_of(word) == entry::Place::rom) place = static_cast<Place>(place | mark);
-      places[i] = word == mapped_dummy ? static_cast<Place>(~Place{0}) : place;
+    for (std::uint8_t i = 0; bits != 0 && i < count(); ++i) {
+      const MappedObject mapped = (*this)[i];
+      runs[i] = MappedRun<Device>::word_of(can_be_mapped<Device>(tpdo, mapped), mapped.bits());
     }
-    return static_cast<std::uint8_t>((bits + 7) / 8);
+    return bits;
   }
 
  private:

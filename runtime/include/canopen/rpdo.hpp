@@ -70,20 +70,26 @@ class RpdoService {
   void watch_again([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] Watched watched) {
     if constexpr (has_dynamic_mapping) {
       for (std::size_t i = 0; i < count; ++i) {
-        if (Mapped::capacities[i] != 0) slots_[i].size = look_up(i, entries, watched);
+        if (Mapped::is_dynamic(i)) slots_[i].size = look_up(i, entries, watched);
       }
     }
   }
 
-  /// Takes a frame for each RPDO that it is.
+  /// Takes a frame for each RPDO that it is. `cob_id` is its own. False when it is none.
   template <class Host>
-  void on_frame(const Frame& frame, Host host) {
-    const std::uint32_t cob_id = cob_id_of(frame);
-    for (std::size_t i = 0; i < count; ++i) {
-      // An RPDO's bit 30 means nothing; no frame has bit 31.
-      const std::uint32_t own = Column<pdo_parameter::cob_id>::get(host.entries(), i, CobId::invalid_bit);
-      if ((own & ~CobId::no_rtr_bit) == cob_id) receive(i, frame, host);
+  [[gnu::noinline]] bool on_frame(const Frame& frame, std::uint32_t cob_id, Host host) {
+    if (count == 0) return false;
+    std::size_t i = 0;
+    while (cob_id_at(i, host.entries()) != cob_id) {
+      if (++i == count) return false;
     }
+    Slot& slot = slots_[i];
+    // One that waits for the SYNC, and nothing else, has the short way.
+    const bool waits = (slot.flags & ~buffered) == at_sync && frame.size >= slot.size && !host.window_over();
+    if (!waits) return receive_all(i, frame, cob_id, host);
+    slot.data = frame.data;
+    slot.flags = at_sync | buffered;
+    return true;
   }
 
   /// A SYNC has come: what has been received since the last one counts now.
@@ -92,9 +98,7 @@ class RpdoService {
     for (std::size_t i = 0; i < count && host.operational(); ++i) {
       if ((slots_[i].flags & buffered) == 0) continue;
       slots_[i].flags &= static_cast<std::uint8_t>(~buffered);
-      Frame frame;
-      frame.data = slots_[i].data;
-      take(i, frame, host);
+      take(i, slots_[i].data, host);
     }
   }
 
@@ -117,13 +121,15 @@ class RpdoService {
     return next;
   }
 
-  /// Whether an RPDO is in this condition now: `too_short` or `timeout`.
-  [[nodiscard]] bool any(RpdoEvent condition) const {
-    const std::uint8_t flag = condition == RpdoEvent::too_short ? cut_short : missed;
-    for (const Slot& slot : slots_) {
-      if ((slot.flags & flag) != 0) return true;
-    }
-    return false;
+  /// Conditions that RPDOs are in.
+  struct Conditions {
+    bool too_short;
+    bool timeout;
+  };
+  [[nodiscard]] Conditions conditions() const {
+    std::uint8_t flags = 0;
+    for (const Slot& slot : slots_) flags |= slot.flags;
+    return {(flags & cut_short) != 0, (flags & missed) != 0};
   }
 
  private:
@@ -132,7 +138,13 @@ class RpdoService {
     cut_short = 2,  ///< the last frame was too short
     monitored = 4,  ///< deadline counts
     missed = 8,     ///< the deadline has passed
+    at_sync = 16,   ///< of types 0..240
+    at_once = 32,   ///< of types 254 and 255
+    timed = 64,     ///< its event timer is not 0
+    shared = 128,   ///< another one may have the same CAN-ID
   };
+
+  static constexpr std::uint8_t unmapped = 0xFF;  ///< as a size: no frame is long enough
 
   using Data = std::array<std::uint8_t, 8>;
 
@@ -152,57 +164,68 @@ class RpdoService {
     alignas(4) Data data;
     [[no_unique_address]] std::conditional_t<has_event_timer, TimePoint, NoTime> deadline;
     std::uint8_t flags;
-    std::uint8_t size;  ///< data bytes that are mapped
+    std::uint8_t size;  ///< data bytes that are mapped, or `unmapped`
   };
+
+  /// As `cob_id_of` tells it of a frame: bit 30 of an RPDO means nothing, and no frame has bit 31.
+  [[nodiscard]] static std::uint32_t cob_id_at(std::size_t i, EntryAccess<Device> entries) {
+    return Column<pdo_parameter::cob_id>::get(entries, i, CobId::invalid_bit) & ~CobId::no_rtr_bit;
+  }
 
   [[nodiscard]] static std::uint16_t number_of(std::size_t i) { return number_of_pdo<Pdos>(i); }
 
   template <class Watched>
   void activate(std::size_t i, EntryAccess<Device> entries, Watched watched) {
-    slots_[i] = {};
-    slots_[i].size = look_up(i, entries, watched);
+    Slot& slot = slots_[i];
+    slot.size = look_up(i, entries, watched);
+    constexpr std::uint32_t event_driven = 255;
+    const std::uint32_t type = Column<pdo_parameter::transmission_type>::get(entries, i, event_driven);
+    slot.flags = type <= 240 ? at_sync : type >= 254 ? at_once : 0;
+    if (event_timer(i, entries) != 0) slot.flags |= timed;
+    for (std::size_t other = 0; other < count; ++other) {
+      if (other == i || cob_id_at(other, entries) != cob_id_at(i, entries)) continue;
+      slots_[other].flags |= shared;
+      slot.flags |= shared;
+    }
   }
 
   template <class Watched>
   std::uint8_t look_up(std::size_t i, [[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] Watched watched) {
     if constexpr (has_dynamic_mapping) {
-      if (Mapped::capacities[i] != 0) {
-        const std::uint8_t size = places_.look_up(i, entries);
-        if (size != 0) mark_watched(i, entries, watched);
-        return size;
+      if (Mapped::is_dynamic(i)) {
+        const std::uint8_t size = places_.look_up(i, entries, watched);
+        return size != 0 ? size : unmapped;
       }
     }
     return sizes[i];
   }
 
-  /// Marks those objects for which more is to be done than to store a value.
-  template <class Watched>
-  [[gnu::noinline]] void mark_watched(std::size_t i, EntryAccess<Device> entries, Watched watched) {
-    const MappingParameter mapping = Mapped::parameter(i, entries);
-    auto* const places = places_.of(i);
-    for (std::size_t object = 0; object < mapping.count(); ++object) {
-      if (watched(mapping[object])) places[object] = static_cast<typename Mapped::Place>(places[object] | Mapped::mark);
+  /// Takes a frame for RPDO `i` and those behind it that have the same CAN-ID.
+  template <class Host>
+  [[gnu::noinline]] bool receive_all(std::size_t i, const Frame& frame, std::uint32_t cob_id, Host host) {
+    for (; i < count; ++i) {
+      if (cob_id_at(i, host.entries()) == cob_id) receive(i, frame, host);
     }
+    return true;
   }
 
   template <class Host>
-  [[gnu::noinline]] void receive(std::size_t i, const Frame& frame, Host host) {
+  void receive(std::size_t i, const Frame& frame, Host host) {
     Slot& slot = slots_[i];
-    if (slot.size == 0) return;
     if (frame.size < slot.size) return cut(i, host);
     if ((slot.flags & (cut_short | monitored | missed)) != 0) settle(i, host);
     start_deadline(i, host);
-    const Transmission transmission = transmission_type(i, host.entries());
-    if (transmission == Transmission::synchronous && !host.window_over()) {
+    if ((slot.flags & at_sync) != 0 && !host.window_over()) {
       slot.data = frame.data;
       slot.flags |= buffered;
     }
-    if (transmission == Transmission::event_driven) take(i, frame, host);
+    if ((slot.flags & at_once) != 0) take(i, frame.data, host);
   }
 
   /// A frame is too short.
   template <class Host>
   void cut(std::size_t i, Host host) {
+    if (slots_[i].size == unmapped) return;
     const bool first = (slots_[i].flags & cut_short) == 0;
     slots_[i].flags |= cut_short;
     if (first) host.happened(RpdoEvent::too_short, number_of(i));
@@ -238,43 +261,42 @@ class RpdoService {
   template <class Host>
   void start_deadline([[maybe_unused]] std::size_t i, [[maybe_unused]] Host host) {
     if constexpr (has_event_timer) {
-      const auto time = static_cast<std::uint16_t>(Column<pdo_parameter::event_timer>::get(host.entries(), i, 0));
-      if (time == 0) return;
+      if ((slots_[i].flags & timed) == 0) return;
       slots_[i].flags |= monitored;
-      slots_[i].deadline = host.now() + from_milliseconds(time);
+      slots_[i].deadline = host.now() + from_milliseconds(event_timer(i, host.entries()));
     }
   }
 
-  [[nodiscard]] static Transmission transmission_type(std::size_t i, EntryAccess<Device> entries) {
-    constexpr std::uint32_t event_driven = 255;
-    return transmission_of(Column<pdo_parameter::transmission_type>::get(entries, i, event_driven));
+  /// In ms; 0 where there is none.
+  [[nodiscard]] static std::uint16_t event_timer(std::size_t i, EntryAccess<Device> entries) {
+    return static_cast<std::uint16_t>(Column<pdo_parameter::event_timer>::get(entries, i, 0));
   }
 
   template <class Host>
-  void take(std::size_t which, const Frame& frame, Host host) {
+  void take(std::size_t which, const Data& data, Host host) {
     if constexpr (has_dynamic_mapping) {
-      if (Mapped::capacities[which] != 0) take_mapped(which, frame.data, host);
+      if (Mapped::is_dynamic(which)) take_mapped(which, data, host);
     }
-    take_static(which, frame, host, Pdos{}, std::make_index_sequence<count>{});
+    take_static(which, data, host, Pdos{}, std::make_index_sequence<count>{});
     host.happened(RpdoEvent::taken, number_of(which));
   }
 
   template <class Host, class... Pdo, std::size_t... I>
-  static void take_static([[maybe_unused]] std::size_t which, [[maybe_unused]] const Frame& frame,
-                          [[maybe_unused]] const Host& host, PdoList<Pdo...>, std::index_sequence<I...>) {
-    (take_if<Pdo, Mapped::capacities[I] == 0>(which == I, frame, host), ...);
+  static void take_static([[maybe_unused]] std::size_t which, [[maybe_unused]] const Data& data,
+                          [[maybe_unused]] Host host, PdoList<Pdo...>, std::index_sequence<I...>) {
+    (take_if<Pdo, Mapped::capacities[I] == 0>(which == I, data, host), ...);
   }
 
   template <class Pdo, bool IsStatic, class Host>
-  static void take_if([[maybe_unused]] bool it_is, [[maybe_unused]] const Frame& frame, [[maybe_unused]] Host host) {
+  static void take_if([[maybe_unused]] bool it_is, [[maybe_unused]] const Data& data, [[maybe_unused]] Host host) {
     if constexpr (IsStatic) {
-      if (it_is) take_objects<Pdo>(frame, host, std::make_index_sequence<Pdo::entries>{});
+      if (it_is) take_objects<Pdo>(data, host, std::make_index_sequence<Pdo::entries>{});
     }
   }
 
   template <class Pdo, class Host, std::size_t... I>
-  static void take_objects([[maybe_unused]] const Frame& frame, [[maybe_unused]] Host host, std::index_sequence<I...>) {
-    (take_object<typename Pdo::template Entry<I>>(Pdo::template get<I>(frame), host), ...);
+  static void take_objects([[maybe_unused]] const Data& data, [[maybe_unused]] Host host, std::index_sequence<I...>) {
+    (take_object<typename Pdo::template Entry<I>>(Pdo::template get_from_words<I>(data), host), ...);
   }
 
   template <class O, class Host>
@@ -284,34 +306,39 @@ class RpdoService {
 
   template <class Host>
   void take_mapped(std::size_t which, const Data& data, Host host) {
+    using Runs = typename Mapped::Runs;
     const EntryAccess<Device> entries = host.entries();
-    const MappingParameter mapping = Mapped::parameter(which, entries);
-    const auto* const places = places_.of(which);
-    const std::size_t objects = mapping.count();
-    unsigned at = 0;
-    for (std::size_t i = 0; i < objects; ++i) {
-      const unsigned bits = mapping.bits(i);
-      const auto place = places[i];
-      const bool whole_bytes = !Mapped::has_bits || ((at | bits) & 7) == 0;
-      if (whole_bytes && (place & Mapped::mark) == 0) {
-        copy_value(entries.ram(place), data.data() + at / 8, bits / 8);
-      } else if (place != Mapped::no_place) {  // no dummy
-        take_watched(mapping[i], data, at, host);
+    const auto* run = places_.of(which);
+    for (unsigned at = 0, end = slots_[which].size * 8u / Runs::unit; at < end; ++run) {
+      const unsigned length = Runs::length(*run);
+      if ((*run & Runs::apart) == 0) {
+        std::uint8_t* const to = entries.ram(static_cast<entry::Word>(Runs::offset(*run)));
+        take_bits_into(to, data.data(), at * Runs::unit, length * Runs::unit);
+      } else if ((*run & Runs::nothing) != Runs::nothing) {
+        take_watched(which, data, at * Runs::unit, host);
       }
-      at += bits;
+      at += length;
     }
   }
 
+  /// Of the object that begins at a bit.
   template <class Host>
-  [[gnu::noinline]] static void take_watched(MappedObject mapped, const Data& data, unsigned at, Host host) {
+  [[gnu::noinline]] static void take_watched(std::size_t which, const Data& data, unsigned at, Host host) {
+    const MappingParameter mapping = Mapped::parameter(which, host.entries());
+    std::size_t i = 0;
+    for (unsigned bits = at; bits != 0; ++i) bits -= mapping.bits(i);
+    const MappedObject mapped = mapping[i];
     alignas(8) std::array<std::uint8_t, 8> bytes;
-    if constexpr (Mapped::has_bits) {
-      const std::uint64_t value = take_bits(data.data(), at, mapped.bits());
-      std::memcpy(bytes.data(), &value, sizeof value);
-    } else {
-      copy_value(bytes.data(), data.data() + at / 8, mapped.bits() / 8u);
-    }
+    take_bits_into(bytes.data(), data.data(), at, mapped.bits());
     host.take(mapped.index(), mapped.sub_index(), std::span{bytes}.first((mapped.bits() + 7u) / 8u));
+  }
+
+  /// Values from a bit of the data on; in the last byte the bits behind them are 0.
+  static void take_bits_into(std::uint8_t* to, const std::uint8_t* data, unsigned at, unsigned bits) {
+    if (!Mapped::Runs::has_bits || ((at | bits) & 7) == 0) return copy_value(to, data + at / 8, bits / 8);
+    const std::uint64_t value = take_bits(data, at, bits);
+    const auto* from = reinterpret_cast<const std::uint8_t*>(&value);
+    copy_value(to, from, (bits + 7) / 8);
   }
 
   std::array<Slot, count> slots_{};

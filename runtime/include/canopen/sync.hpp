@@ -84,20 +84,24 @@ class SyncProducer {
 
   void stop() { running_ = false; }
 
-  /// Sends a SYNC that is due, and answers it: a producer consumes its own. Nothing when none is due or the bus has no
-  /// room.
+  /// Sends a SYNC that is due; a producer consumes its own. False when none is due or the bus has no room.
   template <Bus B>
-  [[nodiscard]] std::optional<Sync> serve(const ObjectStore<Device>& store, B& bus, TimePoint now) {
-    if (!running_ || is_within(due_, period_of(store), now)) return std::nullopt;
+  [[nodiscard]] bool serve(const ObjectStore<Device>& store, B& bus, TimePoint now) {
+    if (!running_ || is_within(due_, period_of(store), now)) return false;
     const std::uint8_t overflow = SyncConsumer<Device>::overflow_of(store);
     const std::uint8_t counter = counter_ < overflow ? static_cast<std::uint8_t>(counter_ + 1) : std::uint8_t{1};
-    alignas(4) const std::uint8_t data[8] = {overflow != 0 ? counter : std::uint8_t{0}};
-    if (!send_data(bus, store.template number<0x1005, 0>(), overflow != 0 ? 1 : 0, data)) return std::nullopt;
+    const std::uint32_t cob_id = store.template number<0x1005, 0>();
+    if (!send_words(bus, cob_id, overflow != 0 ? 1 : 0, overflow != 0 ? counter : 0u)) return false;
     counter_ = counter;
     const Duration period = period_of(store);
     due_ = due_ + period;
     if (!is_within(due_, period, now)) due_ = now + period;  // served so late that whole periods are missing
-    return Sync{data[0], true};
+    return true;
+  }
+
+  /// The SYNC that has been sent last.
+  [[nodiscard]] Sync last(const ObjectStore<Device>& store) const {
+    return Sync{SyncConsumer<Device>::overflow_of(store) != 0 ? counter_ : std::uint8_t{0}, true};
   }
 
   [[nodiscard]] std::optional<TimePoint> next_deadline() const { return running_ ? std::optional{due_} : std::nullopt; }

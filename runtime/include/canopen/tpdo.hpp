@@ -4,6 +4,8 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <cstring>
+#include <memory>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -99,26 +101,27 @@ class TpdoService {
     if (i == count) return;
     if (!is_tpdo_mapping(index)) {
       if (sub_index == pdo_parameter::inhibit_time) return;
-      if (sub_index == pdo_parameter::event_timer) return start_event_timer(i, store.entries(), now);
+      if (sub_index == pdo_parameter::event_timer) return start_event_timer(slots_[i], i, store.entries(), now);
     }
     const bool sends_changes = (slots_[i].flags & event_driven) != 0;
     slots_[i].flags &= static_cast<std::uint8_t>(sends_changes ? inhibited | changed_bit : inhibited);
     activate(i, store, now);
   }
 
-  /// A SYNC has come: those that wait for it are due, those of type 252 take their data.
-  void on_sync(ObjectStore<Device>& store, Sync sync) {
+  /// A SYNC has come: those that wait for it are sent where `now`, and else are due. Those of type 252 take their data.
+  /// False when any is due.
+  template <Bus B>
+  [[nodiscard]] bool on_sync(ObjectStore<Device>& store, B& bus, Sync sync, bool now) {
     for (std::size_t i = 0; i < count; ++i) {
       Slot& slot = slots_[i];
-      if ((slot.flags & active) == 0) continue;
-      if (slot.type == 0) {
-        if ((slot.flags & changed_bit) != 0 || !Device::options.tpdo_acyclic_on_change) slot.flags |= due;
-      } else if (slot.type <= last_cyclic) {
-        count_sync(i, store.entries(), sync);
-      } else if (has_samples && slot.type == remote_synchronous) {
-        sample(i, store);
+      if (slot.type > last_cyclic) {
+        if (has_samples && slot.type == remote_synchronous) sample(i, store);
+      } else if (wants_sync(i, store.entries(), sync)) {
+        now = now && send(slot, i, store, bus);
+        slot.flags = static_cast<std::uint8_t>(now ? slot.flags & ~(changed_bit | due | asked) : slot.flags | due);
       }
     }
+    return now;
   }
 
   /// The synchronous window is over: what the last SYNC wanted is not sent any more.
@@ -132,7 +135,7 @@ class TpdoService {
   void on_remote(EntryAccess<Device> entries, std::uint32_t can_id) {
     if constexpr (Device::options.tpdo_remote_frames) {
       for (std::size_t i = 0; i < count; ++i) {
-        if ((slots_[i].flags & active) != 0 && cob_id_of(i, entries) == can_id) slots_[i].flags |= asked;
+        if (slots_[i].type != inactive && cob_id_of(i, entries) == can_id) slots_[i].flags |= asked;
       }
     }
   }
@@ -143,8 +146,9 @@ class TpdoService {
     for (std::size_t i = 0; i < count; ++i) {
       Slot& slot = slots_[i];
       if (is_inhibited(slot, now) || (!wanted(slot) && !event_timer_expired(slot, now))) continue;
-      if (!send(i, store, bus)) return false;
-      sent(i, store.entries(), now);
+      const bool is_sampled = has_samples && slot.type == remote_synchronous;
+      if (!(is_sampled ? send_sample(slot, i, store, bus) : send(slot, i, store, bus))) return false;
+      sent(slot, i, store.entries(), now);
     }
     return true;
   }
@@ -165,7 +169,6 @@ class TpdoService {
 
  private:
   enum Flag : std::uint8_t {
-    active = 1,         ///< valid, mapped, and the node is Operational
     changed_bit = 2,    ///< a mapped object has a new value
     due = 4,            ///< a SYNC wants it
     timed = 8,          ///< event_due counts
@@ -176,7 +179,9 @@ class TpdoService {
   };
 
   static constexpr std::uint8_t last_cyclic = 240;
+  static constexpr std::uint8_t inactive = 251;  ///< not valid, not mapped, or the node is not Operational
   static constexpr std::uint8_t remote_synchronous = 252;
+  static constexpr std::uint8_t first_event_driven = 254;
   static constexpr std::uint8_t event_driven_type = 255;  ///< of a TPDO without a transmission type
 
   template <std::uint8_t SubIndex>
@@ -245,16 +250,17 @@ class TpdoService {
   void activate(std::size_t i, ObjectStore<Device>& store, TimePoint now) {
     Slot& slot = slots_[i];
     const EntryAccess<Device> entries = store.entries();
+    slot.type = inactive;
     slot.size = sizes[i];
     if constexpr (has_dynamic_mapping) {
-      if (Mapped::capacities[i] != 0) slot.size = places_.look_up(i, entries);
+      if (Mapped::is_dynamic(i)) slot.size = places_.look_up(i, entries, [](MappedObject) { return false; });
     }
-    if (slot.size == 0 || !CobId{cob_id_of(i, entries)}.valid()) return;
+    const CobId cob_id{cob_id_of(i, entries)};
+    if (slot.size == 0 || !cob_id.valid() || !may_be_written(cob_id, false, true)) return;
     slot.type = static_cast<std::uint8_t>(Column<pdo_parameter::transmission_type>::get(entries, i, event_driven_type));
-    slot.flags |= active;
-    if (transmission_of(slot.type) == Transmission::event_driven) {
+    if (slot.type >= first_event_driven) {
       slot.flags |= event_driven;
-      return start_event_timer(i, entries, now);
+      return start_event_timer(slot, i, entries, now);
     }
     slot.flags &= static_cast<std::uint8_t>(~inhibited);
     if (slot.type <= last_cyclic) {
@@ -265,37 +271,40 @@ class TpdoService {
     }
   }
 
-  void count_sync(std::size_t i, EntryAccess<Device> entries, Sync sync) {
+  /// Whether one of types 0..240 is to be sent at this SYNC.
+  [[nodiscard]] bool wants_sync(std::size_t i, EntryAccess<Device> entries, Sync sync) {
     Slot& slot = slots_[i];
+    if (slot.type == 0) return (slot.flags & changed_bit) != 0 || !Device::options.tpdo_acyclic_on_change;
     if (has_sync_start && (slot.flags & before_start) != 0) {
-      if (sync.counter != 0 && sync.counter != parameter<pdo_parameter::sync_start>(i, entries)) return;
+      if (sync.counter != 0 && sync.counter != parameter<pdo_parameter::sync_start>(i, entries)) return false;
       slot.flags &= static_cast<std::uint8_t>(~before_start);
     }
-    if (--slot.syncs != 0) return;
+    if (slot.syncs > 1) {
+      --slot.syncs;
+      return false;
+    }
     slot.syncs = slot.type;
-    slot.flags |= due;
+    return true;
   }
 
   /// Whether it is to be sent, but for the event timer.
   [[nodiscard]] static bool wanted(const Slot& slot) {
-    if ((slot.flags & active) == 0) return false;
     if ((slot.flags & (due | asked)) != 0) return true;
     constexpr std::uint8_t event = event_driven | changed_bit;
     return Device::options.event_driven_on_change && (slot.flags & event) == event;
   }
 
-  void start_event_timer(std::size_t i, EntryAccess<Device> entries, TimePoint now) {
-    slots_[i].flags &= static_cast<std::uint8_t>(~timed);
-    if ((slots_[i].flags & event_driven) != 0) go_on_with_event_timer(i, entries, now);
+  static void start_event_timer(Slot& slot, std::size_t i, EntryAccess<Device> entries, TimePoint now) {
+    slot.flags &= static_cast<std::uint8_t>(~timed);
+    if ((slot.flags & event_driven) != 0) go_on_with_event_timer(slot, i, entries, now);
   }
 
   /// The next time is one period after the last one, so that it does not drift: where that is over, or there was none,
   /// one period from now.
-  [[gnu::noinline]] void go_on_with_event_timer([[maybe_unused]] std::size_t i,
-                                                [[maybe_unused]] EntryAccess<Device> entries,
-                                                [[maybe_unused]] TimePoint now) {
+  [[gnu::noinline]] static void go_on_with_event_timer([[maybe_unused]] Slot& slot, [[maybe_unused]] std::size_t i,
+                                                       [[maybe_unused]] EntryAccess<Device> entries,
+                                                       [[maybe_unused]] TimePoint now) {
     if constexpr (has_event_timer) {
-      Slot& slot = slots_[i];
       const Duration period = from_milliseconds(parameter<pdo_parameter::event_timer>(i, entries));
       TimePoint next = slot.times.event_due + period;
       if ((slot.flags & timed) == 0 || !is_within(next, period, now)) next = now + period;
@@ -318,86 +327,82 @@ class TpdoService {
   }
 
   template <Bus B>
-  [[nodiscard]] bool send(std::size_t which, ObjectStore<Device>& store, B& bus) {
-    const CobId cob_id{cob_id_of(which, store.entries())};
-    Frame frame{};
-    frame.id = cob_id.can_id();
-    frame.extended = cob_id.extended();
-    frame.size = slots_[which].size;
-    if (!take_sample(which, frame.data)) pack(which, store, frame);
-    return bus.send(frame);
+  [[nodiscard]] bool send(const Slot& slot, std::size_t which, ObjectStore<Device>& store, B& bus) {
+    const std::uint32_t cob_id = cob_id_of(which, store.entries());
+    if constexpr (prefers_size) {
+      FrameWords words;
+      pack(which, store, reinterpret_cast<Data&>(words));
+      return send_words(bus, cob_id, slot.size, words.first, words.second);
+    } else {
+      Frame frame;
+      frame.id = cob_id & 0x1FFF'FFFF;
+      frame.extended = (cob_id & CobId::extended_bit) != 0;
+      frame.size = slot.size;
+      pack(which, store, frame.data);
+      return bus.send(frame);
+    }
+  }
+
+  /// Sends the data of the last SYNC.
+  template <Bus B>
+  [[nodiscard]] bool send_sample(const Slot& slot, std::size_t which, ObjectStore<Device>& store, B& bus) {
+    return send_words(bus, cob_id_of(which, store.entries()), slot.size, slot.times.event_due.since_start().count(),
+                      slot.times.inhibit_end.since_start().count());
   }
 
   void sample([[maybe_unused]] std::size_t which, [[maybe_unused]] ObjectStore<Device>& store) {
     if constexpr (has_samples) {
-      Frame frame{};
-      pack(which, store, frame);
-      slots_[which].times = std::bit_cast<Times>(frame.data);
+      slots_[which].times = Times{};
+      pack(which, store, reinterpret_cast<Data&>(slots_[which].times));
     }
   }
 
-  /// The data of the last SYNC; false when this is no TPDO of type 252.
-  [[nodiscard]] bool take_sample([[maybe_unused]] std::size_t which, [[maybe_unused]] Data& data) const {
-    if constexpr (has_samples) {
-      if (slots_[which].type == remote_synchronous) {
-        data = std::bit_cast<Data>(slots_[which].times);
-        return true;
-      }
-    }
-    return false;
-  }
-
-  /// Puts the values of the mapped objects into a frame whose data are zero so far.
-  [[gnu::noinline]] void pack(std::size_t which, ObjectStore<Device>& store, Frame& frame) const {
+  /// Puts the values of the mapped objects into data that are zero so far, at an address that is a multiple of four.
+  void pack(std::size_t which, ObjectStore<Device>& store, Data& data) const {
     if constexpr (has_dynamic_mapping) {
-      if (Mapped::capacities[which] != 0) return pack_mapped(which, store.entries(), frame.data);
+      if (Mapped::is_dynamic(which)) pack_mapped(which, store.entries(), data);
     }
-    pack_static(which, store, frame, Pdos{}, std::make_index_sequence<count>{});
+    pack_static(which, store, data, Pdos{}, std::make_index_sequence<count>{});
   }
 
   template <class... Pdo, std::size_t... I>
   static void pack_static([[maybe_unused]] std::size_t which, [[maybe_unused]] const ObjectStore<Device>& store,
-                          [[maybe_unused]] Frame& frame, PdoList<Pdo...>, std::index_sequence<I...>) {
-    (pack_if<Pdo, Mapped::capacities[I] == 0>(which == I, store, frame), ...);
+                          [[maybe_unused]] Data& data, PdoList<Pdo...>, std::index_sequence<I...>) {
+    (pack_if<Pdo, Mapped::capacities[I] == 0>(which == I, store, data), ...);
   }
 
   template <class Pdo, bool IsStatic>
   static void pack_if([[maybe_unused]] bool it_is, [[maybe_unused]] const ObjectStore<Device>& store,
-                      [[maybe_unused]] Frame& frame) {
+                      [[maybe_unused]] Data& data) {
     if constexpr (IsStatic) {
-      if (it_is) pack_objects<Pdo>(store, frame, std::make_index_sequence<Pdo::entries>{});
+      if (it_is) pack_objects<Pdo>(store, data, std::make_index_sequence<Pdo::entries>{});
     }
   }
 
   template <class Pdo, std::size_t... I>
-  static void pack_objects([[maybe_unused]] const ObjectStore<Device>& store, Frame& frame, std::index_sequence<I...>) {
-    Pdo::pack_into(frame, store.template get<typename Pdo::template Entry<I>>()...);
+  static void pack_objects([[maybe_unused]] const ObjectStore<Device>& store, Data& data, std::index_sequence<I...>) {
+    Pdo::pack_into_words(data, store.template get<typename Pdo::template Entry<I>>()...);
   }
 
   void pack_mapped(std::size_t which, EntryAccess<Device> entries, Data& data) const {
-    const MappingParameter mapping = Mapped::parameter(which, entries);
-    const auto* const places = places_.of(which);
-    const std::size_t objects = mapping.count();
-    unsigned at = 0;
-    for (std::size_t i = 0; i < objects; ++i) {
-      const auto place = places[i];
-      const std::uint8_t* const from = (place & Mapped::mark) == 0
-                                           ? entries.ram(place)
-                                           : entries.constant(static_cast<entry::Word>(place & ~Mapped::mark));
-      const unsigned bits = mapping.bits(i);
-      if (Mapped::has_bits && ((at | bits) & 7) != 0) {
-        put_bits(data.data(), at, bits, take_bits(from, 0, bits));
-      } else {
-        copy_value(data.data() + at / 8, from, bits / 8);
+    using Runs = typename Mapped::Runs;
+    const auto* run = places_.of(which);
+    for (unsigned at = 0, end = slots_[which].size * 8u / Runs::unit; at < end; ++run) {
+      const unsigned length = Runs::length(*run);
+      const auto offset = static_cast<entry::Word>(Runs::offset(*run));
+      const std::uint8_t* const from = (*run & Runs::apart) == 0 ? entries.ram(offset) : entries.constant(offset);
+      if constexpr (!Runs::has_bits) {
+        copy_value(data.data() + at, from, length);
+      } else if ((*run & Runs::nothing) != Runs::nothing) {
+        put_bits(data.data(), at, length, take_bits(from, 0, length));
       }
-      at += bits;
+      at += length;
     }
   }
 
   /// The inhibit time begins, and the event timer starts again: from when it ran out, so that the period does not
   /// drift, or from now.
-  void sent(std::size_t i, EntryAccess<Device> entries, TimePoint now) {
-    Slot& slot = slots_[i];
+  void sent(Slot& slot, std::size_t i, EntryAccess<Device> entries, TimePoint now) {
     slot.flags &= static_cast<std::uint8_t>(~(changed_bit | due | asked));
     if ((slot.flags & event_driven) == 0) return;
     if constexpr (has_inhibit_time) {
@@ -405,7 +410,7 @@ class TpdoService {
       if (inhibit.count() != 0) slot.flags |= inhibited;
       slot.times.inhibit_end = now + inhibit;
     }
-    go_on_with_event_timer(i, entries, now);
+    go_on_with_event_timer(slot, i, entries, now);
   }
 
   struct Nothing {};
