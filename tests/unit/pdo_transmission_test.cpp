@@ -315,6 +315,42 @@ TEST(RpdoCobId, Bit30HasNoMeaning) {
   EXPECT_EQ(device.node.get<od::output_word>(), 0x0201);
 }
 
+TEST(RpdoCobId, OfTwoRpdosBringsAFrameToBoth) {
+  Running device;
+  device.ask("605 23 01 14 01 05 03 00 80");
+  device.ask("605 23 01 14 01 05 02 00 00");
+  device.ask("205 01 02 00 00 00 00");
+  EXPECT_EQ(device.node.get<od::output_word>(), 0x0201);
+  device.ask(sync);
+  EXPECT_EQ(device.node.get<od::byte>(), 0x01);
+  device.ask("605 2F 00 14 02 01 00 00 00");  // both wait for the SYNC
+  device.ask("205 03 04 00 00 00 00");
+  device.ask(sync);
+  EXPECT_EQ(device.node.get<od::output_word>(), 0x0403);
+  EXPECT_EQ(device.node.get<od::byte>(), 0x03);
+}
+
+TEST(RpdoCobId, MayLieOutsideThoseOfThePredefinedConnectionSet) {
+  Running device;
+  device.ask("605 23 01 14 01 05 03 00 80");
+  device.ask("605 23 01 14 01 90 06 00 00");
+  device.ask("690 11");
+  device.ask("605 23 00 14 01 05 02 00 80");
+  device.ask("605 23 00 14 01 05 02 00 20");
+  device.ask("00000205 01 02 00 00 00 00");
+  device.ask(sync);
+  EXPECT_EQ(device.node.get<od::byte>(), 0x11);
+  EXPECT_EQ(device.node.get<od::output_word>(), 0x0201);
+}
+
+TEST(SyncCobId, MayBeOneOfThoseOfPdos) {
+  Running device;
+  device.ask("605 23 05 10 00 50 02 00 00");
+  device.ask("305 11");
+  device.ask("250");
+  EXPECT_EQ(device.node.get<od::byte>(), 0x11);
+}
+
 TEST(RpdoCobId, EndsTheErrorOfAShortFrameWhenItIsWritten) {
   Running device;
   EXPECT_EQ(device.ask("205 01"), "085 10 82 11 00 00 00 00 00");

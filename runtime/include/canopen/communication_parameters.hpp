@@ -16,10 +16,10 @@
 namespace canopen {
 
 [[nodiscard]] constexpr bool is_rpdo_communication(std::uint16_t index) {
-  return (index & 0xFE00) == rpdo_indices.communication;
+  return index >> 9 == rpdo_indices.communication >> 9;
 }
 [[nodiscard]] constexpr bool is_tpdo_communication(std::uint16_t index) {
-  return (index & 0xFE00) == tpdo_indices.communication;
+  return index >> 9 == tpdo_indices.communication >> 9;
 }
 
 /// An inhibit time as 1800h..19FFh:03 hold it.

@@ -74,7 +74,7 @@ class MappedPlaces {
   std::uint8_t look_up(std::size_t pdo, [[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] Watched watched) {
     if constexpr (count != 0) {
       const MappingParameter mapping = parameter(pdo, entries);
-      if (mapping.count() > capacities[pdo]) return 0;
+      if (mapping.count() > capacity(pdo)) return 0;
       Place* const places = of(pdo);
       const std::uint8_t bits = mapping.template look_up<Device>(Indices.mapping == tpdo_indices.mapping, places);
       if (bits == 0) return 0;
@@ -103,14 +103,14 @@ class MappedPlaces {
   /// Whether a PDO carries an object.
   [[nodiscard]] static bool carries(std::size_t pdo, EntryAccess<Device> entries, std::uint32_t key) {
     const MappingParameter mapping = parameter(pdo, entries);
-    for (std::uint8_t i = 0; i < mapping.count() && i < capacities[pdo]; ++i) {
+    for (std::uint8_t i = 0; i < mapping.count() && i < capacity(pdo); ++i) {
       if (mapping[i].key() == key) return true;
     }
     return false;
   }
 
   /// Whether the mapping of a PDO is dynamic.
-  [[nodiscard]] static bool is_dynamic(std::size_t pdo) { return all || capacities[pdo] != 0; }
+  [[nodiscard]] static bool is_dynamic(std::size_t pdo) { return capacity(pdo) != 0; }
 
   /// The runs of a PDO, which fill its frame.
   [[nodiscard]] const Place* of(std::size_t pdo) const { return &places_[first_of(pdo)]; }
@@ -130,18 +130,20 @@ class MappedPlaces {
     return rows;
   }();
 
-  static constexpr bool all = std::ranges::none_of(capacities, [](std::uint8_t capacity) { return capacity == 0; });
+  /// Whether all PDOs have room for as many objects.
+  static constexpr bool is_regular =
+      count > 0 && std::ranges::all_of(capacities, [](std::uint8_t capacity) { return capacity == capacities[0]; });
 
-  /// Whether each PDO has as many.
-  static constexpr bool is_regular = [] {
-    for (std::size_t i = 0; i < count; ++i) {
-      if (firsts[i] != firsts[1] * i) return false;
+  [[nodiscard]] static std::uint8_t capacity(std::size_t pdo) {
+    if constexpr (is_regular) {
+      return capacities[0];
+    } else {
+      return capacities[pdo];
     }
-    return true;
-  }();
+  }
 
   [[nodiscard]] static std::size_t first_of(std::size_t pdo) {
-    if constexpr (count > 0 && is_regular) {
+    if constexpr (is_regular) {
       return std::size_t{firsts[1]} * pdo;
     } else {
       return firsts[pdo];

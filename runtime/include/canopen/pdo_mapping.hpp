@@ -41,8 +41,8 @@ inline constexpr std::uint8_t destination_multiplexed = 255;
 /// Bits of the data types 0001h..0008h, which an RPDO may map as dummies (CiA 301, 7.4.7.1).
 inline constexpr std::uint8_t dummy_bits[] = {0, 1, 8, 16, 32, 8, 16, 32, 32};
 
-[[nodiscard]] constexpr bool is_rpdo_mapping(std::uint16_t index) { return (index & 0xFE00) == rpdo_indices.mapping; }
-[[nodiscard]] constexpr bool is_tpdo_mapping(std::uint16_t index) { return (index & 0xFE00) == tpdo_indices.mapping; }
+[[nodiscard]] constexpr bool is_rpdo_mapping(std::uint16_t index) { return index >> 9 == rpdo_indices.mapping >> 9; }
+[[nodiscard]] constexpr bool is_tpdo_mapping(std::uint16_t index) { return index >> 9 == tpdo_indices.mapping >> 9; }
 
 inline constexpr entry::Word not_mappable = 0;
 inline constexpr entry::Word mapped_dummy = 1;

@@ -78,11 +78,8 @@ class RpdoService {
   /// Takes a frame for each RPDO that it is. `cob_id` is its own. False when it is none.
   template <class Host>
   [[gnu::noinline]] bool on_frame(const Frame& frame, std::uint32_t cob_id, Host host) {
-    if (count == 0) return false;
-    std::size_t i = 0;
-    while (cob_id_at(i, host.entries()) != cob_id) {
-      if (++i == count) return false;
-    }
+    const std::size_t i = find(cob_id, host.entries(), std::make_index_sequence<count>{});
+    if (i == count) return false;
     Slot& slot = slots_[i];
     // One that waits for the SYNC, and nothing else, has the short way.
     const bool waits = (slot.flags & ~buffered) == at_sync && frame.size >= slot.size && !host.window_over();
@@ -170,6 +167,19 @@ class RpdoService {
   /// As `cob_id_of` tells it of a frame: bit 30 of an RPDO means nothing, and no frame has bit 31.
   [[nodiscard]] static std::uint32_t cob_id_at(std::size_t i, EntryAccess<Device> entries) {
     return Column<pdo_parameter::cob_id>::get(entries, i, CobId::invalid_bit) & ~CobId::no_rtr_bit;
+  }
+
+  /// The first one with a CAN-ID; `count` when there is none.
+  template <std::size_t... I>
+  [[nodiscard]] static std::size_t find(std::uint32_t cob_id, EntryAccess<Device> entries, std::index_sequence<I...>) {
+    constexpr std::size_t few = 8;
+    std::size_t i = 0;
+    if constexpr (prefers_size || count > few) {
+      while (i < count && cob_id_at(i, entries) != cob_id) ++i;
+    } else {
+      static_cast<void>((true && ... && (cob_id_at(I, entries) != cob_id && ++i != 0)));
+    }
+    return i;
   }
 
   [[nodiscard]] static std::uint16_t number_of(std::size_t i) { return number_of_pdo<Pdos>(i); }

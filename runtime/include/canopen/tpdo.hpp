@@ -247,14 +247,19 @@ class TpdoService {
     return static_cast<std::uint16_t>(Column<SubIndex>::get(entries, i, 0));
   }
 
+  /// Data bytes.
+  std::uint8_t look_up(std::size_t i, [[maybe_unused]] EntryAccess<Device> entries) {
+    if constexpr (has_dynamic_mapping) {
+      if (Mapped::is_dynamic(i)) return places_.look_up(i, entries, [](MappedObject) { return false; });
+    }
+    return sizes[i];
+  }
+
   void activate(std::size_t i, ObjectStore<Device>& store, TimePoint now) {
     Slot& slot = slots_[i];
     const EntryAccess<Device> entries = store.entries();
     slot.type = inactive;
-    slot.size = sizes[i];
-    if constexpr (has_dynamic_mapping) {
-      if (Mapped::is_dynamic(i)) slot.size = places_.look_up(i, entries, [](MappedObject) { return false; });
-    }
+    slot.size = look_up(i, entries);
     const CobId cob_id{cob_id_of(i, entries)};
     if (slot.size == 0 || !cob_id.valid() || !may_be_written(cob_id, false, true)) return;
     slot.type = static_cast<std::uint8_t>(Column<pdo_parameter::transmission_type>::get(entries, i, event_driven_type));
