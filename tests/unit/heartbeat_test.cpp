@@ -62,7 +62,7 @@ TEST(Heartbeat, CarriesTheState) {
 
 /// The sample device with a default of 1017h other than 0, as a stored value would be.
 struct StoredHeartbeat : sample::Device {
-  static constexpr void reset_communication(Values& values) {
+  static void reset_communication(Values& values) {
     sample::Device::reset_communication(values);
     values.communication_cleared.producer_heartbeat_time = 20;
   }
