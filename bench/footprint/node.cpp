@@ -3,7 +3,6 @@
 
 #include <canopen/node.hpp>
 #include <cstdint>
-#include <cstring>
 #include <device/device.hpp>
 
 namespace {
@@ -25,11 +24,10 @@ struct Can {
   static bool send(const canopen::Frame& frame) {
     Mailbox& box = transmit();
     if ((box.status & 1) != 0) return false;
-    std::uint32_t words[2];
-    std::memcpy(words, frame.data.data(), sizeof words);
+    const canopen::FrameWords words = canopen::words_of(frame);
     box.id = frame.id;
-    box.data[0] = words[0];
-    box.data[1] = words[1];
+    box.data[0] = words.first;
+    box.data[1] = words.second;
     box.size = frame.size;
     return true;
   }
@@ -49,12 +47,7 @@ void program() {
   for (;;) {
     Mailbox& box = receive();
     if ((box.status & 2) != 0) {
-      canopen::Frame frame;
-      frame.id = box.id;
-      frame.size = static_cast<std::uint8_t>(box.size);
-      const std::uint32_t words[2] = {box.data[0], box.data[1]};
-      std::memcpy(frame.data.data(), words, sizeof words);
-      node.on_frame(frame, now());
+      node.on_frame(canopen::make_frame(box.id, static_cast<std::uint8_t>(box.size), {box.data[0], box.data[1]}), now());
     }
     node.on_time(now());
   }

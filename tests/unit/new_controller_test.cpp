@@ -52,11 +52,11 @@ class SimpleCan {
 
   [[nodiscard]] bool send(const canopen::Frame& frame) {
     if (registers_.control != 0 || (registers_.status & (1 | 4)) != 0) return false;
-    const canopen::DataWords words = canopen::words_of(frame);
+    const canopen::FrameWords words = canopen::words_of(frame);
     registers_.transmit.id = frame.id | (frame.extended ? 1u << 31 : 0) | (frame.remote ? 1u << 30 : 0);
     registers_.transmit.length = frame.size;
-    registers_.transmit.low = words[0];
-    registers_.transmit.high = words[1];
+    registers_.transmit.low = words.first;
+    registers_.transmit.high = words.second;
     registers_.command = 1;
     return true;
   }
@@ -69,12 +69,9 @@ class SimpleCan {
     }
     if ((status & 2) == 0) return std::nullopt;
     const std::uint32_t id = registers_.receive.id;
-    canopen::Frame frame;
-    frame.id = id & 0x1FFF'FFFF;
-    frame.extended = id >> 31 != 0;
-    frame.remote = (id >> 30 & 1) != 0;
-    frame.size = canopen::size_of_code(registers_.receive.length);
-    canopen::set_data(frame, {registers_.receive.low, registers_.receive.high});
+    const canopen::Frame frame = canopen::make_frame(
+        id & 0x1FFF'FFFF, canopen::size_of_code(registers_.receive.length),
+        {registers_.receive.low, registers_.receive.high}, id >> 31 != 0, (id >> 30 & 1) != 0);
     registers_.command = 2;
     return frame;
   }
@@ -122,9 +119,8 @@ struct FakeSimpleCan {
   std::string take() {
     if (!sending) return "";
     sending = false;
-    canopen::Frame frame{.id = transmit.id & 0x1FFF'FFFF, .size = static_cast<std::uint8_t>(transmit.length)};
-    canopen::set_data(frame, {transmit.low, transmit.high});
-    return bench::text(frame);
+    return bench::text(canopen::make_frame(transmit.id & 0x1FFF'FFFF, static_cast<std::uint8_t>(transmit.length),
+                                           {transmit.low, transmit.high}));
   }
 
   bool sending = false;

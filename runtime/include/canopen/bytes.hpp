@@ -1,5 +1,4 @@
-/// Copies and clears any number of bytes. In code that is compiled for size, by a loop of its own: the library's memcpy and
-/// memset would take hundreds of bytes of an image.
+/// Copies and clears bytes.
 #pragma once
 
 #include <atomic>
@@ -7,36 +6,55 @@
 #include <cstdint>
 #include <cstring>
 
+#include "canopen/optimization.hpp"
+
 namespace canopen {
 
-#ifdef __OPTIMIZE_SIZE__
+namespace bytes_detail {
 
-/// The fence keeps a compiler from taking the loop for a memcpy.
-[[gnu::noinline]] inline void copy_bytes(void* to, const void* from, std::size_t size) {
-  auto* at = static_cast<std::uint8_t*>(to);
-  const auto* source = static_cast<const std::uint8_t*>(from);
-  for (std::uint8_t* const end = at + size; at != end;) {
-    *at++ = *source++;
+/// The library's memcpy and memset would take hundreds of bytes of an image. The fence keeps a compiler from making them
+/// of these loops.
+[[gnu::noinline]] inline void copy_by_loop(std::uint8_t* to, const std::uint8_t* from, std::size_t size) {
+  for (const std::uint8_t* const end = to + size; to != end;) {
+    *to++ = *from++;
     std::atomic_signal_fence(std::memory_order_acq_rel);
   }
 }
 
-[[gnu::noinline]] inline void clear_bytes(void* to, std::size_t size) {
-  auto* at = static_cast<std::uint8_t*>(to);
-  for (std::uint8_t* const end = at + size; at != end;) {
-    *at++ = 0;
+[[gnu::noinline]] inline void clear_by_loop(std::uint8_t* to, std::size_t size) {
+  for (const std::uint8_t* const end = to + size; to != end;) {
+    *to++ = 0;
     std::atomic_signal_fence(std::memory_order_acq_rel);
   }
 }
 
-#else
+}  // namespace bytes_detail
 
+/// Copies any number of bytes.
 inline void copy_bytes(void* to, const void* from, std::size_t size) {
-  if (size != 0) std::memcpy(to, from, size);
+  if constexpr (prefers_size) {
+    bytes_detail::copy_by_loop(static_cast<std::uint8_t*>(to), static_cast<const std::uint8_t*>(from), size);
+  } else if (size != 0) {
+    std::memcpy(to, from, size);
+  }
 }
 
-inline void clear_bytes(void* to, std::size_t size) { std::memset(to, 0, size); }
+/// Copies few bytes, for which a call of memcpy would take longer.
+inline void copy_few_bytes(std::uint8_t* to, const std::uint8_t* from, std::size_t size) {
+  if constexpr (prefers_size) {
+    bytes_detail::copy_by_loop(to, from, size);
+  } else {
+    for (const std::uint8_t* const end = to + size; to != end;) *to++ = *from++;
+  }
+}
 
-#endif
+/// Clears any number of bytes.
+inline void clear_bytes(void* to, std::size_t size) {
+  if constexpr (prefers_size) {
+    bytes_detail::clear_by_loop(static_cast<std::uint8_t*>(to), size);
+  } else {
+    std::memset(to, 0, size);
+  }
+}
 
 }  // namespace canopen

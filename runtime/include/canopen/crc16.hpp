@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <span>
 
+#include "canopen/optimization.hpp"
+
 namespace canopen {
 
 /// The CRC of some bytes and one more. No table: a byte takes a few shifts and exclusive ors.
@@ -26,9 +28,9 @@ namespace canopen {
 [[nodiscard]] constexpr std::uint16_t crc16_ccitt(std::uint16_t crc, std::span<const std::uint8_t> bytes) {
   const std::uint8_t* at = bytes.data();
   const std::uint8_t* const end = at + bytes.size();
-#ifndef __OPTIMIZE_SIZE__
-  for (; end - at >= 2; at += 2) crc = crc16_ccitt(crc, at[0], at[1]);
-#endif
+  if constexpr (!prefers_size) {
+    for (; end - at >= 2; at += 2) crc = crc16_ccitt(crc, at[0], at[1]);
+  }
   for (; at != end; ++at) crc = crc16_ccitt(crc, *at);
   return crc;
 }

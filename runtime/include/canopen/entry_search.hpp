@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "canopen/dictionary.hpp"
+#include "canopen/optimization.hpp"
 
 namespace canopen {
 
@@ -176,12 +177,6 @@ struct ByHash {
 /// More indices take a compiler long to lay out.
 inline constexpr std::size_t most_hashed = 1024;
 
-#ifdef __OPTIMIZE_SIZE__
-inline constexpr bool fast = false;
-#else
-inline constexpr bool fast = true;
-#endif
-
 /// Whether a hash is there and pays: by its speed, or where it takes less flash.
 template <class Device, bool Fast>
 [[nodiscard]] constexpr bool by_hash() {
@@ -196,7 +191,7 @@ template <class Device, bool Fast>
 }  // namespace entry_search
 
 /// The search of a device. Code that is compiled for size has another one.
-template <class Device, bool Fast = entry_search::fast>
+template <class Device, bool Fast = !prefers_size>
 using EntrySearch = std::conditional_t<entry_search::by_hash<Device, Fast>(), entry_search::ByHash<Device>,
                                        entry_search::ByRuns<Device>>;
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <concepts>
 #include <cstdint>
 #include <cstring>
@@ -31,11 +32,16 @@ struct Frame {
   return frame.id | (frame.extended ? std::uint32_t{0x2000'0000} : 0);
 }
 
+/// The CAN-ID of a COB-ID as a parameter holds it, without the bits above it.
+[[nodiscard]] constexpr std::uint32_t can_id_of(std::uint32_t cob_id, bool extended) {
+  const unsigned flags = extended ? 3 : 21;
+  return cob_id << flags >> flags;
+}
+
 /// Gives a frame the CAN-ID of a COB-ID as a parameter holds it.
 constexpr void set_cob_id(Frame& frame, std::uint32_t cob_id) {
   frame.extended = (cob_id & 0x2000'0000) != 0;
-  const unsigned flags = frame.extended ? 3 : 21;  // bits above the CAN-ID
-  frame.id = cob_id << flags >> flags;
+  frame.id = can_id_of(cob_id, frame.extended);
 }
 
 /// What a node sends through. `send` answers false when the controller has no room now; the frame is then not taken.
@@ -44,13 +50,6 @@ concept Bus = requires(T& bus, const Frame& frame) {
   { bus.send(frame) } -> std::same_as<bool>;
 };
 
-/// Whether the image is to be small rather than fast, as -Os says.
-#ifdef __OPTIMIZE_SIZE__
-inline constexpr bool prefers_size = true;
-#else
-inline constexpr bool prefers_size = false;
-#endif
-
 /// The data bytes of a frame as they lie in memory.
 struct FrameWords {
   std::uint32_t first = 0;
@@ -58,16 +57,30 @@ struct FrameWords {
 };
 static_assert(sizeof(FrameWords) == sizeof Frame::data);
 
+[[nodiscard]] inline FrameWords words_of(const Frame& frame) {
+  FrameWords words;
+  const std::uint8_t* const data = std::assume_aligned<4>(frame.data.data());
+  std::memcpy(&words.first, data, sizeof words.first);
+  std::memcpy(&words.second, data + sizeof words.first, sizeof words.second);
+  return words;
+}
+
+/// A frame with its data as words: no memory is cleared before it is filled.
+[[nodiscard]] inline Frame make_frame(std::uint32_t id, std::uint8_t size, FrameWords words, bool extended = false,
+                                      bool remote = false) {
+  static_assert(std::endian::native == std::endian::little);
+  const auto byte = [](std::uint32_t word, unsigned shift) { return static_cast<std::uint8_t>(word >> shift); };
+  return {id, size, extended, remote,
+          {byte(words.first, 0), byte(words.first, 8), byte(words.first, 16), byte(words.first, 24),
+           byte(words.second, 0), byte(words.second, 8), byte(words.second, 16), byte(words.second, 24)}};
+}
+
 /// Sends the first of eight data bytes, which lie in memory as these two words, under a COB-ID as a parameter holds it.
 template <Bus B>
 [[nodiscard, gnu::noinline]] bool send_words(B& bus, std::uint32_t cob_id, std::uint8_t size, std::uint32_t first,
                                              std::uint32_t second = 0) {
-  Frame frame;
-  set_cob_id(frame, cob_id);
-  frame.size = size;
-  std::memcpy(frame.data.data(), &first, sizeof first);
-  std::memcpy(frame.data.data() + sizeof first, &second, sizeof second);
-  return bus.send(frame);
+  const bool extended = (cob_id & 0x2000'0000) != 0;
+  return bus.send(make_frame(can_id_of(cob_id, extended), size, {first, second}, extended));
 }
 
 /// The same for bytes at an address that is a multiple of four.

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "canopen/abort_code.hpp"
+#include "canopen/bytes.hpp"
 #include "canopen/dictionary.hpp"
 #include "canopen/entry_search.hpp"
 #include "canopen/node_id.hpp"
@@ -200,7 +201,7 @@ class EntryAccess {
     }
     const std::uint8_t* from = bytes.data();
     if (where == from) return;  // a download in several frames has put a DOMAIN's bytes in place already
-    for (std::uint8_t* const end = where + size; where != end;) *where++ = *from++;  // few: a call would take longer
+    copy_few_bytes(where, from, size);
   }
 
   /// Bytes that a string entry can hold.

@@ -17,6 +17,7 @@
 #include "canopen/dictionary.hpp"
 #include "canopen/frame.hpp"
 #include "canopen/object_store.hpp"
+#include "canopen/optimization.hpp"
 #include "canopen/result.hpp"
 #include "canopen/sdo_protocol.hpp"
 #include "canopen/time.hpp"
@@ -528,15 +529,13 @@ class SdoServer {
   }
 
   void add_to_crc(const std::uint8_t* bytes, std::uint32_t size) {
-#ifndef __OPTIMIZE_SIZE__
-    if (size == sdo::segment_bytes) {
+    if (!prefers_size && size == sdo::segment_bytes) {
       std::uint16_t crc = crc16_ccitt(block_.crc, bytes[0], bytes[1]);
       crc = crc16_ccitt(crc, bytes[2], bytes[3]);
       crc = crc16_ccitt(crc, bytes[4], bytes[5]);
       block_.crc = crc16_ccitt(crc, bytes[6]);
       return;
     }
-#endif
     block_.crc = crc16_ccitt(block_.crc, {bytes, size});
   }
 
@@ -547,7 +546,10 @@ class SdoServer {
     if (lost == 0 && block_.last) {
       state_ = State::block_upload_ending;
       clear_reply(static_cast<std::uint8_t>(sdo::block_upload_end | (block_.unused << 2)));
-      if (block_.checked) std::memcpy(&reply_[1], &block_.crc, sizeof block_.crc);
+      if (block_.checked) {
+        reply_[1] = static_cast<std::uint8_t>(block_.crc);
+        reply_[2] = static_cast<std::uint8_t>(block_.crc >> 8);
+      }
       return ok;
     }
     if (!set_block_size(request[2])) return AbortCode::block_size;
@@ -631,12 +633,7 @@ class SdoServer {
 
   /// Seven bytes, the usual number, need no call where speed counts.
   static void copy(std::uint8_t* to, const std::uint8_t* from, std::uint32_t size) {
-#ifndef __OPTIMIZE_SIZE__
-    if (size == sdo::segment_bytes) {
-      std::memcpy(to, from, sdo::segment_bytes);
-      return;
-    }
-#endif
+    if (!prefers_size && size == sdo::segment_bytes) return copy_bytes(to, from, sdo::segment_bytes);
     copy_bytes(to, from, size);
   }
 

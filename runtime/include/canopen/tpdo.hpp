@@ -15,6 +15,7 @@
 #include "canopen/frame.hpp"
 #include "canopen/mapped_places.hpp"
 #include "canopen/object_store.hpp"
+#include "canopen/optimization.hpp"
 #include "canopen/parameter_column.hpp"
 #include "canopen/pdo.hpp"
 #include "canopen/pdo_list.hpp"

@@ -138,11 +138,11 @@ class BxCan {
       }
     }
     if (free == mailboxes) return false;
-    const DataWords words = words_of(frame);
+    const FrameWords words = words_of(frame);
     auto& box = registers_.transmit[free];
     box.length = frame.size;
-    box.low = words[0];
-    box.high = words[1];
+    box.low = words.first;
+    box.high = words.second;
     box.id = id | request;
     return true;
   }
@@ -158,12 +158,9 @@ class BxCan {
     if ((fifo & pending) == 0 || (fifo & release) != 0) return std::nullopt;
     const auto& box = registers_.receive[0];
     const std::uint32_t id = box.id;
-    Frame frame;
-    frame.extended = (id & extended) != 0;
-    frame.remote = (id & remote) != 0;
-    frame.id = frame.extended ? id >> 3 : id >> 21;
-    frame.size = size_of_code(box.length);
-    set_data(frame, {box.low, box.high});
+    const bool is_extended = (id & extended) != 0;
+    const Frame frame = make_frame(is_extended ? id >> 3 : id >> 21, size_of_code(box.length), {box.low, box.high},
+                                   is_extended, (id & remote) != 0);
     registers_.receive_fifo[0] = release;
     return frame;
   }

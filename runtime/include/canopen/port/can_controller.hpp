@@ -1,10 +1,8 @@
 /// What the drivers of CAN controllers have in common.
 #pragma once
 
-#include <array>
 #include <concepts>
 #include <cstdint>
-#include <cstring>
 #include <optional>
 #include <span>
 
@@ -29,19 +27,6 @@ concept CanController = Bus<T> && requires(T& can, std::uint32_t number, std::sp
   { can.receive() } -> std::same_as<std::optional<Frame>>;
   { can.status_change() } -> std::same_as<std::optional<BusStatus>>;
 };
-
-/// The data bytes of a frame, as registers and message RAM hold them.
-using DataWords = std::array<std::uint32_t, 2>;
-
-[[nodiscard]] inline DataWords words_of(const Frame& frame) {
-  DataWords words;
-  std::memcpy(words.data(), frame.data.data(), sizeof words);
-  return words;
-}
-
-inline void set_data(Frame& frame, const DataWords& words) {
-  std::memcpy(frame.data.data(), words.data(), sizeof words);
-}
 
 /// The data length code of a classic frame: 9 to 15 mean 8 (ISO 11898-1).
 [[nodiscard]] constexpr std::uint8_t size_of_code(std::uint32_t code) {

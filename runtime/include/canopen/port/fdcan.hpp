@@ -247,12 +247,12 @@ class Fdcan {
     const std::uint32_t queue = registers_.txfqs;
     if ((queue & queue_full) != 0) return false;
     const std::uint32_t put = queue >> 16 & 0x1F;
-    const DataWords words = words_of(frame);
+    const FrameWords words = words_of(frame);
     volatile std::uint32_t* const element = ram_ + transmit_element(put);
     element[0] = word;
     element[1] = std::uint32_t{frame.size} << 16;
-    element[2] = words[0];
-    element[3] = words[1];
+    element[2] = words.first;
+    element[3] = words.second;
     registers_.txbar = 1u << put;
     return true;
   }
@@ -268,12 +268,11 @@ class Fdcan {
     const std::uint32_t get = fifo >> 8 & 0x3F;
     const volatile std::uint32_t* const element = ram_ + first_word_ + layout.receive() + get * layout.element;
     const std::uint32_t word = element[0];
-    Frame frame;
-    frame.extended = (word & extended) != 0;
-    frame.remote = (word & remote) != 0;
-    frame.id = frame.extended ? word & all_extended : word >> 18 & all_standard;
-    frame.size = size_of_code(element[1] >> 16);
-    if (!frame.remote) set_data(frame, {element[2], element[3]});
+    const bool is_extended = (word & extended) != 0;
+    const bool is_remote = (word & remote) != 0;
+    const FrameWords words = is_remote ? FrameWords{} : FrameWords{element[2], element[3]};
+    const Frame frame = make_frame(is_extended ? word & all_extended : word >> 18 & all_standard,
+                                   size_of_code(element[1] >> 16), words, is_extended, is_remote);
     registers_.rxf0a = get;
     return frame;
   }
