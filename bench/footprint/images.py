@@ -3,8 +3,8 @@
 
     images.py DIR [--check]
 
-DIR is build/firmware/tests/firmware. Prints docs/images.md; `--check` compares it with what is there: the words, and the figures,
-of which another compiler's may be 3 % larger or smaller.
+DIR is build/firmware/tests/firmware. Prints docs/images.md; `--check` compares it with what is there: the words, and the figures.
+Another compiler's may be 3 % larger or smaller; the stack, whose limit the tests know, goes deeper when much comes at once.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs/images.md"
 BOARDS = {"microbit": "Cortex-M0+", "mps2-an385": "Cortex-M3", "mps2-an386": "Cortex-M4"}
-TOLERANCE = 0.03
+TOLERANCE, OF_THE_STACK = 0.03, 0.15
 REPORT = re.compile(r"(.+)\.elf: (\d+) bytes of flash.*?, (\d+) bytes of RAM")
 HEAD = """# Whole images
 
@@ -52,10 +52,11 @@ def page(folder: Path) -> str:
     return HEAD + "\n".join(lines) + "\n"
 
 
-def differ(written: str, printed: str) -> bool:
+def differ(column: int, written: str, printed: str) -> bool:
     """Of two cells. One that nobody has measured this time is not compared."""
     if written.isdecimal() and printed.isdecimal():
-        return abs(int(written) - int(printed)) > TOLERANCE * int(printed)
+        is_stack = column > 0 and column % 3 == 0
+        return abs(int(written) - int(printed)) > (OF_THE_STACK if is_stack else TOLERANCE) * int(printed)
     return written != printed and not (written.isdecimal() and printed == "-")
 
 
@@ -63,7 +64,7 @@ def compare(written: list[str], printed: list[str]) -> list[str]:
     found = [f"docs/images.md has {len(written)} lines, not {len(printed)}"] if len(written) != len(printed) else []
     for number, (before, now) in enumerate(zip(written, printed), 1):
         cells = [line.split(" | ") for line in (before.strip("| "), now.strip("| "))]
-        if len(cells[0]) != len(cells[1]) or any(map(differ, *cells)):
+        if len(cells[0]) != len(cells[1]) or any(map(differ, range(len(cells[0])), *cells)):
             found.append(f"docs/images.md:{number}: {before}\n  the images: {now}")
     return found
 
