@@ -416,7 +416,7 @@ TEST(SdoClient, DropsAnAbortThatFindsNoRoomForALongTime) {
   EXPECT_EQ(client.client.next_deadline(), std::nullopt);
   client.bus.room = 1;
   EXPECT_EQ(client.pass(1ms), "");
-  EXPECT_EQ(client.upload(), "40 12 20 00 00 00 00 00");
+  EXPECT_EQ(client.upload(), "A4 12 20 00 7F 04 00 00");
 }
 
 TEST(SdoClient, SpeaksToAServerOnOtherCanIds) {
