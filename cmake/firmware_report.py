@@ -191,7 +191,8 @@ def main() -> int:
     line = f"{arguments.image.name}: {sums}; the data sheet's objects: {flash.total()} and {ram.total()}"
     heading = "object  flash     RAM"
     arguments.report.write_text("\n".join([
-        line, f"flash: {in_flash.text()}", f"RAM: {in_ram.text()}", "", "largest in flash", *symbols_text(image, IN_FLASH), "", "largest in RAM", *symbols_text(image, IN_RAM), "",
+        line, f"flash: {in_flash.text()}", f"RAM: {in_ram.text()}", "",
+        "largest in flash", *symbols_text(image, IN_FLASH), "", "largest in RAM", *symbols_text(image, IN_RAM), "",
         heading, *objects_text(flash, ram), ""]), encoding="utf-8")
     print(line)
     over = [(used, limit, what, kinds) for used, limit, what, kinds in limits if limit and used > limit]

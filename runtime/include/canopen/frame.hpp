@@ -38,12 +38,6 @@ struct Frame {
   return cob_id << flags >> flags;
 }
 
-/// Gives a frame the CAN-ID of a COB-ID as a parameter holds it.
-constexpr void set_cob_id(Frame& frame, std::uint32_t cob_id) {
-  frame.extended = (cob_id & 0x2000'0000) != 0;
-  frame.id = can_id_of(cob_id, frame.extended);
-}
-
 /// What a node sends through. `send` answers false when the controller has no room now; the frame is then not taken.
 template <class T>
 concept Bus = requires(T& bus, const Frame& frame) {

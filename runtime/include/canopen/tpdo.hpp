@@ -2,10 +2,7 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstdint>
-#include <cstring>
-#include <memory>
 #include <optional>
 #include <type_traits>
 #include <utility>
