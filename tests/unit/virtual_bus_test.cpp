@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 #include <canopen/node.hpp>
+#include <canopen/port/key_tree.hpp>
 #include <canopen/port/virtual_bus.hpp>
 
+#include <algorithm>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -152,6 +155,102 @@ TEST(VirtualBus, ANodeWhoseQueueIsFullSendsLater) {
   node.set<od::producer_heartbeat_time>(100);
   bus.run_for(10ms);
   EXPECT_EQ(log.lines, (Lines{"55: 705 00", "110: 705 7F"}));
+}
+
+TEST(VirtualBus, AsksAnEndpointForItsDeadlineOnlyWhenItMayHaveChanged) {
+  VirtualBus bus;
+  unsigned asked = 0;
+  auto& idle = bus.attach();
+  idle.next_deadline = [&] {
+    ++asked;
+    return std::optional{TimePoint{10s}};
+  };
+  auto& busy = bus.attach();
+  TimePoint next{};
+  busy.next_deadline = [&] { return std::optional{next}; };
+  busy.on_time = [&](TimePoint now) { next = now + 1ms; };
+  bus.run_for(1s);
+  EXPECT_LE(asked, 1u);
+}
+
+TEST(VirtualBus, AnEndpointWhoseDeadlineAnotherOneHasChangedSaysSo) {
+  VirtualBus bus;
+  std::optional<TimePoint> begin{TimePoint{5ms}};
+  std::optional<TimePoint> caused;
+  std::vector<TimePoint> calls;
+  auto& effect = bus.attach();
+  effect.next_deadline = [&] { return caused; };
+  effect.on_time = [&](TimePoint now) {
+    calls.push_back(now);
+    caused.reset();
+  };
+  auto& cause = bus.attach();
+  cause.next_deadline = [&] { return begin; };
+  cause.on_time = [&](TimePoint now) {
+    begin.reset();
+    caused = now + 2ms;
+    effect.deadline_changed();
+  };
+  bus.run_for(1s);
+  EXPECT_EQ(calls, std::vector{TimePoint{7ms}});
+}
+
+TEST(VirtualBus, DeadlinesAreServedInTheOrderInWhichEndpointsWereAttached) {
+  VirtualBus bus;
+  std::string order;
+  std::vector<std::optional<TimePoint>> deadlines(9, TimePoint{3ms});
+  for (std::size_t i = 0; i < deadlines.size(); ++i) {
+    auto& endpoint = bus.attach();
+    endpoint.next_deadline = [&deadlines, i] { return deadlines[i]; };
+    endpoint.on_time = [&, i](TimePoint) {
+      order += static_cast<char>('0' + i);
+      deadlines[i].reset();
+    };
+  }
+  bus.run_for(3ms);
+  EXPECT_EQ(order, "012345678");
+}
+
+TEST(VirtualBus, TimeBeginsAtZeroAgain) {
+  VirtualBus bus;
+  std::vector<TimePoint> calls;
+  auto& endpoint = bus.attach();
+  TimePoint next{30min};
+  endpoint.next_deadline = [&] { return std::optional{next}; };
+  endpoint.on_time = [&](TimePoint now) {
+    calls.push_back(now);
+    next = now + 30min;
+  };
+  bus.run_for(60min);
+  bus.run_for(60min);
+  const TimePoint half_hour{30min};
+  EXPECT_EQ(calls, (std::vector{half_hour, half_hour + 30min, half_hour + 60min, half_hour + 60min + 30min}));
+}
+
+TEST(KeyTree, FindsWhatALoopOverAllKeysFinds) {
+  using canopen::KeyTree;
+  for (const std::size_t size : {1u, 2u, 3u, 8u, 13u, 127u}) {
+    std::mt19937 random{static_cast<std::uint32_t>(size)};
+    KeyTree tree;
+    std::vector<KeyTree::Key> keys;
+    for (int round = 0; round < 2000; ++round) {
+      if (keys.size() < size) {
+        keys.push_back(KeyTree::none);
+        tree.resize(keys.size());
+      }
+      const std::size_t place = random() % keys.size();
+      keys[place] = random() % 4 == 0 ? KeyTree::none : random() % 50;
+      tree.set(place, keys[place]);
+      ASSERT_EQ(tree.least(), *std::min_element(keys.begin(), keys.end()));
+      const KeyTree::Key limit = random() % 50;
+      const std::size_t from = random() % (keys.size() + 1);
+      const auto first = std::find_if(keys.begin() + static_cast<std::ptrdiff_t>(from), keys.end(),
+                                      [limit](KeyTree::Key key) { return key <= limit; });
+      const std::size_t expected =
+          first == keys.end() ? KeyTree::no_place : static_cast<std::size_t>(first - keys.begin());
+      ASSERT_EQ(tree.first_up_to(limit, from), expected);
+    }
+  }
 }
 
 }  // namespace

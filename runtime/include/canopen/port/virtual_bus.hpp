@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -12,6 +13,7 @@
 
 #include "canopen/arbitration.hpp"
 #include "canopen/frame.hpp"
+#include "canopen/port/key_tree.hpp"
 #include "canopen/time.hpp"
 
 namespace canopen {
@@ -25,6 +27,11 @@ namespace canopen {
 /// Endpoints are attached to it; each frame that one sends comes to all others, lowest CAN-ID first among those that
 /// wait. With a bit rate a frame takes its time on the wire; without one it takes none. Frames sent while others are
 /// delivered wait their turn: there is no recursion.
+///
+/// The bus asks an endpoint for its deadline when it may have changed: at the beginning of `run_for` and `settle`, after
+/// a frame has passed the wire, and after `on_time` or `send` of this endpoint. So an application may do with its
+/// nodes what it likes between two calls of `run_for`, and in everything that a frame causes. Only `on_time` of one
+/// endpoint that changes the node of another has to say so: `Endpoint::deadline_changed()`.
 class VirtualBus {
  public:
   /// One participant: a Bus for what it sends. It lives as long as the bus and does not move.
@@ -34,7 +41,14 @@ class VirtualBus {
     bool send(const Frame& frame) {
       if (waiting_.size() >= queue_limit) return false;
       waiting_.push_back(frame);
+      if (waiting_.size() == 1) bus_.waits(*this);
+      deadline_changed();
       return true;
+    }
+
+    /// Has the bus ask for the deadline again. Needed in one case only: `on_time` of another endpoint has changed it.
+    void deadline_changed() {
+      if (!std::exchange(outdated_, true)) bus_.outdated_.push_back(place_);
     }
 
     /// Called with each frame that another endpoint has sent.
@@ -47,6 +61,11 @@ class VirtualBus {
 
    private:
     friend class VirtualBus;
+    Endpoint(VirtualBus& bus, std::size_t place) : bus_{bus}, place_{place} {}
+
+    VirtualBus& bus_;
+    std::size_t place_;
+    bool outdated_ = false;  ///< the bus does not know the deadline
     std::deque<Frame> waiting_;
   };
 
@@ -59,7 +78,14 @@ class VirtualBus {
   VirtualBus(const VirtualBus&) = delete;
   VirtualBus& operator=(const VirtualBus&) = delete;
 
-  [[nodiscard]] Endpoint& attach() { return *endpoints_.emplace_back(std::make_unique<Endpoint>()); }
+  [[nodiscard]] Endpoint& attach() {
+    const std::size_t place = endpoints_.size();
+    waiting_.resize(place + 1);
+    deadlines_.resize(place + 1);
+    Endpoint& endpoint = *endpoints_.emplace_back(new Endpoint{*this, place});
+    endpoint.deadline_changed();
+    return endpoint;
+  }
 
   /// Connects a node, built on this endpoint, with the frames and the time of the bus.
   template <class Node>
@@ -71,7 +97,7 @@ class VirtualBus {
 
   void listen(Listener listener) { listeners_.push_back(std::move(listener)); }
 
-  [[nodiscard]] TimePoint now() const { return now_; }
+  [[nodiscard]] TimePoint now() const { return TimePoint{Duration{static_cast<std::uint32_t>(now_)}}; }
 
   /// How long this frame occupies the wire.
   [[nodiscard]] Duration duration_of(const Frame& frame) const {
@@ -81,15 +107,17 @@ class VirtualBus {
 
   /// Lets this time pass: frames and deadlines in their order, also those at the very end.
   void run_for(Duration span) {
-    const TimePoint end = now_ + span;
+    const Time end = now_ + span.count();
+    all_deadlines_changed();
     while (step(end)) {
     }
-    now_ = end;
+    now_ = std::max(now_, end);
   }
 
   /// Delivers all frames that wait, and those that they cause, without waiting for deadlines. Gives up after
   /// `most` frames, as two endpoints may answer each other for ever; says how many there were.
   std::size_t settle(std::size_t most = 10'000) {
+    all_deadlines_changed();
     std::size_t frames = 0;
     for (; frames < most; ++frames) {
       serve_deadlines();
@@ -101,74 +129,99 @@ class VirtualBus {
   }
 
  private:
+  /// Microseconds, beginning where a moment before the first one is not negative. The low 32 bits are the TimePoint.
+  using Time = KeyTree::Key;
+
   struct OnWire {
     Endpoint* sender;
     Frame frame;
   };
 
   /// Does what is next until `end`; false when nothing is.
-  bool step(TimePoint end) {
+  bool step(Time end) {
     serve_deadlines();
     (void)begin_frame();
-    std::optional<TimePoint> next = earliest_deadline();
-    if (on_wire_ && (!next || wire_free_ <= *next)) next = wire_free_;
-    if (!next || *next > end) return false;
-    now_ = std::max(now_, *next);
+    Time next = deadlines_.least();
+    if (on_wire_) next = std::min(next, wire_free_);
+    if (next > end) return false;
+    now_ = std::max(now_, next);
     if (on_wire_ && wire_free_ <= now_) end_frame();
     return true;
   }
 
+  /// Calls each endpoint whose time has come once. One that wants to be called again at once has to let time pass: it is
+  /// asked again in the next step.
   void serve_deadlines() {
-    for (std::size_t i = 0; i < endpoints_.size(); ++i) {
+    ask_for_deadlines();
+    for (std::size_t i = 0; (i = deadlines_.first_up_to(now_, i)) != KeyTree::no_place; ++i) {
       Endpoint& endpoint = *endpoints_[i];
-      if (!endpoint.next_deadline || !endpoint.on_time) continue;
-      if (const auto deadline = endpoint.next_deadline(); deadline && *deadline <= now_) endpoint.on_time(now_);
+      if (endpoint.on_time) endpoint.on_time(now());
+      endpoint.deadline_changed();
+      ask_for_deadlines();
+    }
+    for (std::size_t i = 0; (i = deadlines_.first_up_to(now_, i)) != KeyTree::no_place; ++i) {
+      deadlines_.set(i, KeyTree::none);
+      endpoints_[i]->deadline_changed();
     }
   }
 
-  /// Of those to come: an endpoint that wants to be called again at once has to let time pass.
-  [[nodiscard]] std::optional<TimePoint> earliest_deadline() const {
-    std::optional<TimePoint> earliest;
-    for (const auto& endpoint : endpoints_) {
-      if (!endpoint->next_deadline) continue;
-      const auto deadline = endpoint->next_deadline();
-      if (deadline && *deadline > now_ && (!earliest || *deadline < *earliest)) earliest = deadline;
+  void ask_for_deadlines() {
+    while (!outdated_.empty()) {
+      Endpoint& endpoint = *endpoints_[outdated_.back()];
+      outdated_.pop_back();
+      endpoint.outdated_ = false;
+      const auto deadline = endpoint.next_deadline ? endpoint.next_deadline() : std::nullopt;
+      deadlines_.set(endpoint.place_, deadline ? time_of(*deadline) : KeyTree::none);
     }
-    return earliest;
+  }
+
+  void all_deadlines_changed() {
+    for (const auto& endpoint : endpoints_) endpoint->deadline_changed();
+  }
+
+  /// Of a moment less than half of what a TimePoint counts away from now.
+  [[nodiscard]] Time time_of(TimePoint moment) const {
+    const auto ahead = static_cast<std::int32_t>((moment - now()).count());
+    return now_ + static_cast<Time>(std::int64_t{ahead});
+  }
+
+  /// The endpoint's first waiting frame has become another one.
+  void waits(const Endpoint& endpoint) {
+    const bool any = !endpoint.waiting_.empty();
+    waiting_.set(endpoint.place_, any ? arbitration_value(endpoint.waiting_.front()) : KeyTree::none);
   }
 
   /// Arbitration: the frame with the lowest CAN-ID takes the wire if it is free.
   bool begin_frame() {
     if (on_wire_) return true;
-    Endpoint* winner = nullptr;
-    for (const auto& endpoint : endpoints_) {
-      if (endpoint->waiting_.empty()) continue;
-      if (winner == nullptr ||
-          arbitration_value(endpoint->waiting_.front()) < arbitration_value(winner->waiting_.front())) {
-        winner = endpoint.get();
-      }
-    }
-    if (winner == nullptr) return false;
-    on_wire_ = OnWire{winner, winner->waiting_.front()};
-    winner->waiting_.pop_front();
-    wire_free_ = now_ + duration_of(on_wire_->frame);
+    if (waiting_.least() == KeyTree::none) return false;
+    Endpoint& winner = *endpoints_[waiting_.first_up_to(waiting_.least())];
+    on_wire_ = OnWire{&winner, winner.waiting_.front()};
+    winner.waiting_.pop_front();
+    waits(winner);
+    winner.deadline_changed();  // it has room again
+    wire_free_ = now_ + duration_of(on_wire_->frame).count();
     return true;
   }
 
   void end_frame() {
     const OnWire done = *std::exchange(on_wire_, std::nullopt);
-    for (const Listener& listener : listeners_) listener(done.frame, now_);
+    for (const Listener& listener : listeners_) listener(done.frame, now());
     for (std::size_t i = 0; i < endpoints_.size(); ++i) {
       Endpoint& endpoint = *endpoints_[i];
-      if (&endpoint != done.sender && endpoint.on_frame) endpoint.on_frame(done.frame, now_);
+      if (&endpoint != done.sender && endpoint.on_frame) endpoint.on_frame(done.frame, now());
     }
+    all_deadlines_changed();
   }
 
   std::vector<std::unique_ptr<Endpoint>> endpoints_;
   std::vector<Listener> listeners_;
+  KeyTree waiting_;                    ///< what arbitration compares of each endpoint's first frame
+  KeyTree deadlines_;                  ///< a Time for each endpoint, except for those in `outdated_`
+  std::vector<std::size_t> outdated_;  ///< places of endpoints that have to be asked
   std::optional<OnWire> on_wire_;
-  TimePoint wire_free_{};
-  TimePoint now_{};
+  Time now_ = Time{1} << 32;
+  Time wire_free_ = now_;
   std::uint32_t bit_rate_ = 0;
 };
 
