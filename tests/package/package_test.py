@@ -6,10 +6,15 @@
 
 from __future__ import annotations
 
+import re
+import shutil
 import sys
+import tempfile
 import unittest
+from pathlib import Path
+from unittest.mock import patch
 
-from consumer import FROM_PACKAGE, SOURCE_DIR, PackageTest, Project
+from consumer import ENVIRONMENT, FROM_PACKAGE, SOURCE_DIR, PackageTest, Project, run, use_compiler_cache
 
 
 class Arguments(PackageTest):
@@ -23,6 +28,25 @@ class Arguments(PackageTest):
         for name, place in (("fixed", "rom"), ("mapped", "ram")):
             text = (project.build_dir / f"edsc/{name}/{name}/dictionary.hpp").read_text()
             self.assertIn(word.format(place), text)
+
+
+class CompilerCache(PackageTest):
+    @unittest.skipUnless(shutil.which("ccache"), "SKIPPED: ccache is not installed")
+    def test_dependencies_of_a_cached_object_are_those_of_this_copy_of_the_project(self) -> None:
+        """The second copy takes its objects from the cache after the first copy has been deleted."""
+        prefix = self.install()
+        base = Path(tempfile.mkdtemp(prefix="edsc-cache-")).resolve()
+        self.addCleanup(shutil.rmtree, base)
+        for copy in (base / "first", base / "second"):
+            with patch.dict(ENVIRONMENT, CCACHE_DIR=str(base / "cache")):
+                use_compiler_cache(copy)
+                project = Project(copy / "project", "set(CMAKE_UNITY_BUILD ON)\n" + FROM_PACKAGE)
+                project.configure(f"-DCMAKE_PREFIX_PATH={prefix}")
+                project.build()
+                self.assertIn("no work to do", run("ninja", "-C", project.build_dir, "-d", "explain"))
+                hits = re.findall(r"^(?:direct|preprocessed)_cache_hit\t(\d+)", run("ccache", "--print-stats"), re.MULTILINE)
+            shutil.rmtree(copy)
+        self.assertGreater(sum(map(int, hits)), 0)
 
 
 class Mistakes(PackageTest):

@@ -58,12 +58,12 @@ def blocks(section: str, language: str) -> list[str]:
 class Ways(unittest.TestCase):
     @classmethod
     def setUpClass(cls) -> None:
-        cls.folder = Path(tempfile.mkdtemp(prefix="edsc ways ")).resolve()  # with a blank on purpose
+        cls.folder = Path(tempfile.mkdtemp(prefix="edsc-ways-")).resolve()
         cls.addClassCleanup(shutil.rmtree, cls.folder)
         use_compiler_cache(cls.folder)
         cls.sources = cls.folder / "sources"
         copy_sources(cls.sources)
-        cls.prefix = cls.folder / "prefix"
+        cls.prefix = cls.folder / "a prefix"  # here and below: with a blank on purpose
         ENVIRONMENT["PREFIX"] = str(cls.prefix)
 
     def document(self, section: str, number: int) -> str:
@@ -75,7 +75,7 @@ class Ways(unittest.TestCase):
             self.document("Installed", 0)
 
     def nothing_to_do(self, build_dir: Path) -> None:
-        self.assertIn("no work to do", run("cmake", "--build", build_dir))
+        self.assertIn("no work to do", run("ninja", "-C", build_dir, "-d", "explain"))
 
     def check_host(self, project: Project, *settings: object) -> str:
         log = project.configure(*settings)
@@ -201,7 +201,7 @@ class Ways(unittest.TestCase):
         """edsc is built for the host, whatever the environment says of compilers."""
         line = blocks("A subdirectory", "cmake")[0].replace("(edsc)", f'("{self.sources}" edsc)')
         toolchain = self.sources / "cmake" / TOOLCHAIN
-        project = Project(self.folder / "subdirectory arm", line, build_dir=self.sources / "m3-a")  # as deep as build/test
+        project = Project(self.folder / "subdirectory-arm", line, build_dir=self.sources / "m3-a")  # as deep as build/test
         variables = {"CXX": "arm-none-eabi-g++", "CXXFLAGS": "-mcpu=cortex-m3", "CMAKE_TOOLCHAIN_FILE": str(toolchain)}
         ENVIRONMENT.update(variables)
         try:
@@ -221,20 +221,31 @@ class Ways(unittest.TestCase):
 
     @unittest.skipIf(WITHOUT_ARM, WITHOUT_ARM)
     def test_fetch_content_for_a_cortex_m(self) -> None:
-        project = Project(self.folder / "fetched arm", blocks("FetchContent", "cmake")[0], build_dir=self.sources / "m3-b")
+        project = Project(self.folder / "fetched-arm", blocks("FetchContent", "cmake")[0], build_dir=self.sources / "m3-b")
         self.check_cross(project, f"-DCMAKE_TOOLCHAIN_FILE={self.sources / 'cmake' / TOOLCHAIN}", "-DEDSC_ARCHIVE=",
                          f"-DFETCHCONTENT_SOURCE_DIR_EDSC={self.sources}")
 
     def test_sources_with_a_program_that_is_there(self) -> None:
-        """Nothing of edsc is compiled."""
-        project = Project(self.folder / "program", f'add_subdirectory("{self.sources}" edsc)')
+        """Nothing of edsc is compiled, and its folder has a blank in its path."""
+        sources = self.folder / "the sources"
+        copy_sources(sources)
+        project = Project(self.folder / "a program", f'add_subdirectory("{sources}" edsc)')
         self.check_host(project, f"-DEDSC_EXECUTABLE={EDSC}")
         self.assertNotIn("edsc_compiler", (project.build_dir / "build.ninja").read_text())
         if not WITHOUT_ARM:
-            project = Project(self.folder / "program arm", f'add_subdirectory("{self.sources}" edsc)')
+            project = Project(self.folder / "program arm", f'add_subdirectory("{sources}" edsc)')
             self.check_cross(project, f"-DEDSC_EXECUTABLE={EDSC}",
-                             f"-DCMAKE_TOOLCHAIN_FILE={self.sources / 'cmake' / TOOLCHAIN}")
+                             f"-DCMAKE_TOOLCHAIN_FILE={sources / 'cmake' / TOOLCHAIN}")
             self.assertNotIn("edsc_host", (project.build_dir / "build.ninja").read_text())
+
+    def test_sources_in_a_folder_with_a_blank(self) -> None:
+        """What its build runs besides compilers."""
+        sources = self.folder / "more sources"
+        copy_sources(sources)
+        run("cmake", "-S", sources, "-B", sources / "build", "-G", "Ninja", "-DEDSC_BUILD_TESTS=OFF",
+            "-DEDSC_BUILD_EXAMPLES=OFF")
+        run("cmake", "--build", sources / "build", "--target", "generator/built_in_templates.cpp")
+        self.assertIn("dictionary.hpp", (sources / "build/generator/built_in_templates.cpp").read_text())
 
     # ---- boards ----
 
