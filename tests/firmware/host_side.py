@@ -166,6 +166,8 @@ class HostSide:
         watchdog.start()
         told: dict[str, str] = {}
         for line in process.stdout:
+            if told.keys() == words.keys():
+                continue  # one signal: a second one kills edsc while it ends
             told |= {name: line for name, word in words.items() if word in line}
             if told.keys() == words.keys():
                 process.send_signal(signal.SIGINT)
