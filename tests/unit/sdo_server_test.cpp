@@ -377,6 +377,13 @@ TEST(SdoServer, AbortsUnknownCommandSpecifiers) {
   EXPECT_EQ(device.ask("605 C2 17 10 00 02 00 00 00"), "585 80 17 10 00 01 00 04 05");  // block download
 }
 
+TEST(SdoServer, NamesTheTransferThatAnUnknownCommandEnds) {
+  Bench device;
+  device.ask("605 40 08 10 00 00 00 00 00");
+  EXPECT_EQ(device.ask("605 E0 00 20 01 00 00 00 00"), "585 80 08 10 00 01 00 04 05");
+  EXPECT_EQ(device.ask("605 60 00 00 00 00 00 00 00"), "585 80 08 10 00 01 00 04 05");
+}
+
 TEST(SdoServer, AbortsSegmentsWithoutATransfer) {
   Bench device;
   EXPECT_EQ(device.ask("605 60 00 00 00 00 00 00 00"), "585 80 00 00 00 01 00 04 05");

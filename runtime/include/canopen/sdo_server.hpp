@@ -178,6 +178,8 @@ class SdoServer {
       if (command == sdo::ClientCommand::block_download && (request[0] & 1) != 0)
         return end_block_download(request, hooks);
     }
+    // An unknown command initiates nothing: its abort names the transfer that it ends.
+    if (command == sdo::ClientCommand::reserved && state_ != State::idle) return AbortCode::command_specifier;
     begin(request);
     if (command == sdo::ClientCommand::initiate_upload) return initiate_upload(hooks);
     if (command == sdo::ClientCommand::initiate_download) return initiate_download(request, hooks);
