@@ -1,0 +1,416 @@
+/// A node of the runtime and a model of CiA 301 get the same SDO requests: each answer must be one that the model
+/// allows, byte by byte, and the values must be the same afterwards. From each state that the model has, all 256
+/// command bytes are tried with each multiplexer and with data of every kind; then come random walks.
+#include "sdo_server_model.hpp"
+
+#include <gtest/gtest.h>
+#include <canopen/node.hpp>
+#include <sdo_model_device/device.hpp>
+
+#include <cstdlib>
+#include <map>
+#include <random>
+
+namespace {
+
+namespace od = sdo_model_device::od;
+using model::Data;
+using model::Entry;
+using model::Octets;
+using model::Type;
+
+constexpr std::size_t file_room = 1000;  // 143 segments: more than a sub-block has
+
+struct Bus {
+  std::array<Data, 300> sent{};
+  std::size_t count = 0;
+  bool other = false;  ///< a frame that is not an SDO answer
+  unsigned room = 1000;
+  bool send(const canopen::Frame& frame) {
+    if (room == 0) return false;
+    --room;
+    if (frame.id != 0x585 || frame.size != 8 || frame.extended || frame.remote || count == sent.size()) {
+      other = true;
+    } else {
+      sent[count++] = frame.data;
+    }
+    return true;
+  }
+};
+
+/// The dictionary of sdo_model_device.eds, written down a second time.
+std::vector<Entry> dictionary() {
+  const auto text = [](std::string_view string) { return Octets(string.begin(), string.end()); };
+  const auto number = [](std::uint64_t value, std::size_t size) {
+    Octets octets(size);
+    for (std::size_t i = 0; i < size; ++i) octets[i] = static_cast<std::uint8_t>(value >> 8 * i);
+    return octets;
+  };
+  const Type u = Type::unsigned_integer;
+  const Type i = Type::signed_integer;
+  Octets log(901);
+  for (std::size_t k = 0; k < log.size(); ++k) log[k] = static_cast<std::uint8_t>(k * 37 >> 3);
+  return {
+      {0x1000, 0, u, true, false, 4, {}, {}, number(0x5A0000, 4)},
+      {0x1001, 0, u, true, false, 1, {}, {}, {0}},
+      {0x1008, 0, Type::string, true, false, 17, {}, {}, text("Model of a server")},
+      {0x1017, 0, u, true, true, 2, {}, {}, {0, 0}},
+      {0x1018, 0, u, true, false, 1, {}, {}, {1}},
+      {0x1018, 1, u, true, false, 4, {}, {}, {0, 0, 0, 0}},
+      {0x2000, 0, u, true, true, 1, {}, {}, {7}},
+      {0x2001, 0, u, true, true, 2, 10.0, 1000.0, {100, 0}},
+      {0x2002, 0, u, true, true, 4, {}, {}, number(0x01020304, 4)},
+      {0x2003, 0, i, true, true, 3, {}, {}, {0xFE, 0xFF, 0xFF}},
+      {0x2004, 0, u, true, true, 8, {}, {}, number(0x1122334455667788, 8)},
+      {0x2005, 0, Type::boolean, true, true, 1, {}, {}, {0}},
+      {0x2006, 0, Type::real32, true, true, 4, -1.0, 1.0, {0, 0, 0, 0}},
+      {0x2007, 0, Type::string, true, true, 16, {}, {}, text("text")},
+      {0x2008, 0, Type::string, true, true, 40, {}, {}, {1, 2, 3}},
+      {0x2009, 0, u, false, true, 4, {}, {}, {0, 0, 0, 0}},
+      {0x200A, 0, Type::domain, true, true, file_room, {}, {}, text("a file of eighteen")},
+      {0x200B, 0, Type::domain, true, false, log.size(), {}, {}, log},
+      {0x200C, 0, u, true, false, 2, {}, {}, {0x34, 0x12}},
+      {0x200D, 0, u, true, false, 1, {}, {}, {4}},
+      {0x200D, 1, u, true, true, 1, {}, {}, {1}},
+      {0x200D, 2, i, true, true, 2, -5.0, 300.0, {0xFB, 0xFF}},
+      {0x200D, 4, u, true, false, 2, {}, {}, {0xCD, 0xAB}},
+      {0x200E, 0, Type::string, false, true, 9, {}, {}, {}},
+      {0x200F, 0, Type::domain, false, true, 30, {}, {}, {}},
+      {0x2010, 0, Type::domain, true, false, 0, {}, {}, {}},
+  };
+}
+
+/// Both servers, side by side.
+class Pair {
+ public:
+  Pair() : expected{dictionary()} {
+    node.start(now);
+    reset_bus();
+    first_values = node.values();
+    restart();
+  }
+
+  /// Idle, with the values of the beginning.
+  void restart() {
+    ask({0x80});
+    node.values() = first_values;
+    for (std::size_t i = 0; i < first_entries.size(); ++i) {
+      if (first_entries[i].writable) expected.entries()[i].value = first_entries[i].value;
+    }
+    bind_domains();
+    changed = false;
+  }
+
+  void ask(const Data& request) {
+    ++requests;
+    reset_bus();
+    node.on_frame(canopen::Frame{.id = 0x605, .size = 8, .data = request}, now);
+    drain();
+    const char* wrong = expected.request(request, {bus.sent.data(), bus.count});
+    if (bus.other) wrong = "a server sends SDO answers alone";
+    if (wrong == nullptr && expected.written() != nullptr) {
+      changed = true;
+      if (value_of(*expected.written()) != expected.written()->value)
+        wrong = "another value than the one that was written";
+    }
+    if (Entry* const entry = expected.spoilt(); entry != nullptr && wrong == nullptr) entry->value = value_of(*entry);
+    log.push_back(request);
+    if (wrong != nullptr) fail(wrong);
+  }
+
+  /// Compares all values.
+  void check_values() {
+    for (const Entry& entry : expected.entries()) {
+      if (value_of(entry) == entry.value) continue;
+      char text[60];
+      std::snprintf(text, sizeof text, "%04X:%02X has changed or has not", unsigned{entry.index},
+                    unsigned{entry.sub_index});
+      fail(text);
+    }
+  }
+
+  [[nodiscard]] Octets value_of(const Entry& entry) {
+    std::array<std::uint8_t, 8> scratch{};
+    const auto word = canopen::EntryAccess<sdo_model_device::Device>::find(entry.index, entry.sub_index);
+    const auto bytes = node.entries().read(word, scratch);
+    return {bytes.begin(), bytes.end()};
+  }
+
+  void begin_log() { log.clear(); }
+
+  /// A frame that is not a request to this server: not answered, and without consequences.
+  void ignore(const canopen::Frame& frame) {
+    reset_bus();
+    node.on_frame(frame, now);
+    drain();
+    if (bus.count != 0 || bus.other) fail("a frame that is not a request is answered");
+  }
+
+  /// How many frames the bus takes before the node is called again.
+  unsigned room = 1000;
+
+  model::SdoServer expected;
+  bool changed = false;
+  std::uint64_t requests = 0;
+  int failures = 0;
+
+ private:
+  void reset_bus() {
+    bus.count = 0;
+    bus.other = false;
+    bus.room = room;
+  }
+
+  /// Gives the node room until it has nothing to send.
+  void drain() {
+    while (bus.room == 0) {
+      bus.room = room;
+      node.on_time(now);
+    }
+  }
+
+  void bind_domains() {
+    for (Entry& entry : expected.entries()) {
+      if (entry.type != Type::domain || entry.size == 0) continue;
+      std::vector<std::uint8_t>& memory = memories[entry.index];
+      memory.resize(entry.size);
+      std::copy(entry.value.begin(), entry.value.end(), memory.begin());
+    }
+    node.bind<od::file>(memories[0x200A], first_file_size);
+    node.bind<od::update>(memories[0x200F], 0);
+    node.bind_constant<od::log>(memories[0x200B]);
+    node.bind_constant<od::empty_file>(std::span{&nothing, 0});
+  }
+
+  void fail(const char* wrong) {
+    if (++failures_of[wrong] > 3) return;
+    ++failures;
+    std::string text;
+    const auto add = [&text](const Data& data) {
+      for (const std::uint8_t byte : data) {
+        char piece[4];
+        std::snprintf(piece, sizeof piece, "%02X ", static_cast<unsigned>(byte));
+        text += piece;
+      }
+    };
+    for (std::size_t i = log.size() > 12 ? log.size() - 12 : 0; i < log.size(); ++i) {
+      text += "\n  > ";
+      add(log[i]);
+    }
+    for (std::size_t i = 0; i < bus.count && i < 4; ++i) {
+      text += "\n  < ";
+      add(bus.sent[i]);
+    }
+    ADD_FAILURE() << wrong << text << "\n  (" << bus.count << " answers)";
+  }
+
+  canopen::TimePoint now{};
+  Bus bus;
+  canopen::Node<sdo_model_device::Device, Bus> node{bus, canopen::NodeId{5}};
+  sdo_model_device::Values first_values{};
+  const std::vector<Entry> first_entries = dictionary();
+  const std::size_t first_file_size = 18;
+  std::map<unsigned, std::vector<std::uint8_t>> memories;
+  std::uint8_t nothing = 0;
+  std::vector<Data> log;
+  std::map<std::string, int> failures_of;
+};
+
+Data request(unsigned command, std::uint32_t multiplexer, std::uint32_t word = 0) {
+  Data data{static_cast<std::uint8_t>(command), static_cast<std::uint8_t>(multiplexer >> 8),
+            static_cast<std::uint8_t>(multiplexer >> 16), static_cast<std::uint8_t>(multiplexer)};
+  for (unsigned i = 0; i < 4; ++i) data[4 + i] = static_cast<std::uint8_t>(word >> 8 * i);
+  return data;
+}
+
+using Path = std::vector<Data>;
+
+/// How to come into each state of the model: a search through what may be asked next.
+std::map<std::string, Path> states(Pair& pair) {
+  Path initiates;
+  for (const std::uint32_t entry : {0x200000u, 0x200200u, 0x200400u, 0x200700u, 0x200800u, 0x200A00u, 0x200F00u}) {
+    for (const std::uint32_t size : {1u, 4u, 8u, 14u, 16u, 900u}) {
+      initiates.push_back(request(0x21, entry, size));
+      initiates.push_back(request(0xC6, entry, size));
+      initiates.push_back(request(0xC2, entry, size));
+    }
+    initiates.push_back(request(0x20, entry));
+    initiates.push_back(request(0xC4, entry));
+  }
+  for (const std::uint32_t entry :
+       {0x100000u, 0x100800u, 0x200000u, 0x200400u, 0x200700u, 0x200800u, 0x200A00u, 0x200B00u, 0x201000u}) {
+    initiates.push_back(request(0x40, entry));
+    for (const std::uint32_t size : {1u, 2u, 5u, 127u}) {
+      initiates.push_back(request(0xA4, entry, size));
+      initiates.push_back(request(0xA0, entry, size | 0x2000));
+    }
+  }
+  std::map<std::string, Path> found{{pair.expected.key(), {}}};
+  std::vector<Path> open{{}};
+  while (!open.empty()) {
+    std::vector<Path> next;
+    for (const Path& path : open) {
+      pair.restart();
+      for (const Data& step : path) pair.ask(step);
+      std::vector<Path> steps;
+      for (const Data& step : path.empty() ? initiates : pair.expected.suggestions()) steps.push_back({step});
+      if (pair.expected.phase() == model::SdoServer::Phase::block_download) {
+        // To the end of a sub-block, and to the segment before it.
+        Path segments;
+        for (std::uint8_t number = steps.front().front()[0]; number < 127; ++number)
+          segments.push_back({number, 'a', 'b', 'c', 'd', 'e', 'f', 'g'});
+        steps.push_back(segments);
+        segments.push_back({127, 'a', 'b', 'c', 'd', 'e', 'f', 'g'});
+        steps.push_back(segments);
+      }
+      for (const Path& step : steps) {
+        pair.restart();
+        pair.begin_log();
+        Path longer = path;
+        longer.insert(longer.end(), step.begin(), step.end());
+        for (const Data& each : longer) pair.ask(each);
+        if (found.emplace(pair.expected.key(), longer).second) next.push_back(std::move(longer));
+      }
+      if (pair.failures > 20) return found;
+    }
+    open = std::move(next);
+  }
+  return found;
+}
+
+constexpr std::uint32_t multiplexers[] = {0x100000, 0x100001, 0x100800, 0x101801, 0x101804, 0x1FFF00, 0x200000,
+                                          0x200100, 0x200200, 0x200300, 0x200400, 0x200500, 0x200600, 0x200700,
+                                          0x200800, 0x200900, 0x200A00, 0x200B00, 0x200C00, 0x200D02, 0x200D03,
+                                          0x200DFF, 0x200E00, 0x200F00, 0x201000, 0x000000, 0xFFFFFF, 0x201100};
+constexpr std::uint32_t words[] = {
+    0,    1,    2,      3,          4,          5,          9,          0x7F,       0x80,   300,    301,
+    1000, 1001, 0xFFFB, 0xFFFFFFFA, 0x3F800000, 0x3F800001, 0xBF800001, 0x7FC00000, 0x037F, 0x0401, 0xFF00FF01};
+
+bool has_multiplexer(unsigned command) {
+  const unsigned specifier = command >> 5;
+  return specifier == 1 || specifier == 2 || (specifier == 5 && (command & 3) == 0) ||
+         (specifier == 6 && (command & 1) == 0);
+}
+
+#ifdef EDSC_SANITIZED
+constexpr unsigned thinned = 40;  // of a build with sanitizers: so many times less
+#else
+constexpr unsigned thinned = 5;
+#endif
+
+void tell(const Pair& pair) { std::printf("%llu requests\n", static_cast<unsigned long long>(pair.requests)); }
+
+TEST(SdoServerModel, EachCommandInEachState) {
+  Pair pair;
+  const std::map<std::string, Path> all = states(pair);
+  std::printf("%zu states of the model\n", all.size());
+  for (const auto& [key, path] : all) {
+    const auto attempt = [&](const Data& last) {
+      pair.restart();
+      pair.begin_log();
+      for (const Data& step : path) pair.ask(step);
+      pair.ask(last);
+      if (pair.changed) pair.check_values();
+    };
+    const unsigned step = path.empty() ? 1 : path.size() > 40 ? 9 * thinned : thinned;
+    for (unsigned command = 0; command < 256; ++command) {
+      unsigned choice = command;
+      if (has_multiplexer(command) && key.front() != '3') {
+        for (const std::uint32_t multiplexer : multiplexers) {
+          for (std::size_t w = choice++ % step; w < std::size(words); w += path.empty() ? 1 : 5 * step)
+            attempt(request(command, multiplexer, words[w]));
+        }
+      } else {
+        for (std::size_t w = choice % step; w < std::size(words); w += step) {
+          const std::uint32_t word = words[w];
+          attempt(request(command, word << 16 | (word & 0xFF00) | word >> 16, word * 3));
+        }
+      }
+    }
+    pair.check_values();
+    if (pair.failures != 0) break;
+  }
+  tell(pair);
+}
+
+/// One walk through requests that mostly fit the state.
+void walk(Pair& pair, std::mt19937& random, unsigned steps) {
+  const auto upto = [&random](unsigned end) { return static_cast<unsigned>(random() % end); };
+  for (unsigned i = 0; i < steps && pair.failures == 0; ++i) {
+    const std::vector<Data> next = pair.expected.suggestions();
+    const unsigned kind = upto(32);
+    Data data{};
+    if (!next.empty() && kind < 26) {
+      data = next[upto(static_cast<unsigned>(next.size()))];
+      if (kind == 0) data[upto(8)] ^= static_cast<std::uint8_t>(1u << upto(8));
+    } else {
+      for (std::uint8_t& byte : data) byte = static_cast<std::uint8_t>(random());
+      constexpr std::uint8_t commands[] = {0x20, 0x21, 0x22, 0x23, 0x27, 0x2B, 0x2F, 0x40, 0x40, 0x40, 0xA0, 0xA4,
+                                           0xA4, 0xC0, 0xC2, 0xC4, 0xC6, 0x60, 0x00, 0xA1, 0xA2, 0xC1, 0xE0};
+      if (kind != 31) {
+        data = request(commands[upto(std::size(commands))], multiplexers[upto(std::size(multiplexers))],
+                       words[upto(std::size(words))]);
+      }
+      if (kind < 30 && pair.expected.phase() == model::SdoServer::Phase::block_download) data[0] = 0x80;
+    }
+    pair.ask(data);
+    if (i % 16 == 0) pair.check_values();
+  }
+}
+
+std::uint32_t seed() {
+  const char* const given = std::getenv("EDSC_MODEL_SEED");
+  const std::uint32_t seed = given != nullptr ? static_cast<std::uint32_t>(std::strtoul(given, nullptr, 0)) : 20261122u;
+  std::printf("seed %u; EDSC_MODEL_SEED is another one\n", seed);
+  return seed;
+}
+
+TEST(SdoServerModel, RandomWalks) {
+  Pair pair;
+  std::mt19937 random{seed()};
+  for (unsigned i = 0; i < 10'000 / thinned && pair.failures == 0; ++i) {
+    pair.restart();
+    pair.begin_log();
+    walk(pair, random, 500);
+  }
+  tell(pair);
+}
+
+TEST(SdoServerModel, RandomWalksOnABusWithLittleRoom) {
+  Pair pair;
+  std::mt19937 random{seed()};
+  for (unsigned i = 0; i < 1000 / thinned && pair.failures == 0; ++i) {
+    pair.restart();
+    pair.begin_log();
+    pair.room = 1 + i % 3;
+    walk(pair, random, 200);
+  }
+  tell(pair);
+}
+
+TEST(SdoServerModel, OtherFramesDoNotDisturb) {
+  Pair pair;
+  std::mt19937 random{seed()};
+  const std::map<std::string, Path> all = states(pair);
+  for (const auto& [key, path] : all) {
+    pair.restart();
+    pair.begin_log();
+    for (const Data& step : path) pair.ask(step);
+    // An SDO request has eight bytes (7.2.4.3), is a data frame, and has the CAN-ID of 1200h:01.
+    for (std::uint8_t size = 0; size < 8; ++size) {
+      pair.ignore({.id = 0x605, .size = size, .data = {0x40, 0x00, 0x10}});
+      pair.ignore({.id = 0x605, .size = size, .data = {0x80, 0x00, 0x10}});
+    }
+    pair.ignore({.id = 0x605, .size = 8, .remote = true});
+    pair.ignore({.id = 0x605, .size = 8, .extended = true, .data = {0x80}});
+    for (const std::uint32_t id : {0x604u, 0x606u, 0x585u, 0x600u}) pair.ignore({.id = id, .size = 8, .data = {0x80}});
+    for (const Data& step : pair.expected.suggestions()) {
+      pair.ask(step);
+      break;
+    }
+    if (pair.failures != 0) break;
+  }
+  tell(pair);
+}
+
+}  // namespace
