@@ -183,8 +183,7 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
   }
 
   /// Alarm 50 while enabled; 100 when the node is started again after that.
-  void communication_lost(bool lost) {
-    if (!lost || drive_.state() != State::operation_enabled) return;
+  void abort_connection(std::int16_t) {
     was_disconnected_ = true;
     raise(50);
   }

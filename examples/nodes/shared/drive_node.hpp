@@ -36,7 +36,7 @@ namespace nodes {
 ///     void operate(std::int8_t mode)               see canopen::cia402::NoApplication
 ///     std::uint16_t statusword(std::uint16_t)      the same
 ///     void watch()                                 called after each change and each step
-///     void communication_lost(bool lost)           by life guarding, a heartbeat or the bus
+///     void abort_connection(std::int16_t code)     the same
 ///     void restarted()                             power-on, or an NMT reset
 ///     void on_state(canopen::NmtState state)       an NMT state is entered
 ///     void failed(std::uint16_t code)              an error of the drive has been reported
@@ -54,6 +54,7 @@ class DriveNode {
               canopen::on_state(StateTeller{this}),
               canopen::on_life_guarding(GuardTeller{this}),
               canopen::on_heartbeat(HeartbeatTeller{this}),
+              drive_.error_handler(),
               std::move(handlers)...} {}
   DriveNode(const DriveNode&) = delete;
   DriveNode& operator=(const DriveNode&) = delete;
@@ -87,7 +88,6 @@ class DriveNode {
   void on_bus_status(const canopen::BusStatus& status, canopen::TimePoint now) {
     panel_.on_bus_status(status);
     node_.on_bus_status(status, now);
-    lose_communication(status.state == canopen::BusState::off);
     on_time(now);
   }
 
@@ -116,10 +116,7 @@ class DriveNode {
   };
   struct GuardTeller {
     DriveNode* drive;
-    void operator()(bool lost) const {
-      drive->panel_.on_life_guarding(lost);
-      drive->lose_communication(lost);
-    }
+    void operator()(bool lost) const { drive->panel_.on_life_guarding(lost); }
   };
   struct HeartbeatTeller {
     DriveNode* drive;
@@ -127,7 +124,6 @@ class DriveNode {
       const bool lost = event == canopen::HeartbeatEvent::lost;
       if (!lost && event != canopen::HeartbeatEvent::back) return;
       drive->panel_.on_heartbeat(lost);
-      drive->lose_communication(lost);
     }
   };
 
@@ -150,19 +146,17 @@ class DriveNode {
   Surroundings& around_;
   Panel panel_;
   SimulatedAxis axis_;
-  canopen::cia402::Drive<Device, SimulatedAxis, options> drive_{axis_};
+  using DeviceControl = canopen::cia402::Drive<Device, SimulatedAxis, options>;
+  DeviceControl drive_{axis_};
   canopen::Node<Device, B, canopen::StateHandler<StateTeller>, canopen::LifeGuardingHandler<GuardTeller>,
-                canopen::HeartbeatHandler<HeartbeatTeller>, Handlers...>
+                canopen::HeartbeatHandler<HeartbeatTeller>,
+                canopen::ErrorHandler<typename DeviceControl::ErrorTaker>, Handlers...>
       node_;
 
  private:
   void restart() {
     drive_.start();
     if constexpr (requires { self().restarted(); }) self().restarted();
-  }
-
-  void lose_communication([[maybe_unused]] bool lost) {
-    if constexpr (requires { self().communication_lost(lost); }) self().communication_lost(lost);
   }
 
   [[nodiscard]] bool take(const InputLine& line) {

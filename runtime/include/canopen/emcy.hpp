@@ -61,6 +61,12 @@ class EmergencyProducer {
     note(store, code, info);
   }
 
+  /// An error that has been reported already holds these bits of the register.
+  void hold(ObjectStore<Device>& store, ErrorRegister bits) {
+    application_bits_ |= static_cast<std::uint8_t>(bits);
+    if constexpr (has_register) store_register(store, error_register());
+  }
+
   /// An error has gone, and with it these bits of the register; those that another error holds are not to be named.
   void gone(ObjectStore<Device>& store, ErrorRegister bits) {
     application_bits_ &= static_cast<std::uint8_t>(~static_cast<unsigned>(bits));

@@ -24,6 +24,7 @@ enum class ErrorRegister : std::uint8_t {
 namespace emergency_code {
 inline constexpr std::uint16_t reset = 0x0000;  ///< an error is gone
 inline constexpr std::uint16_t data_set = 0x6300;  ///< stored parameters are lost
+inline constexpr std::uint16_t communication = 0x8100;
 inline constexpr std::uint16_t overrun = 0x8110;  ///< frames have been lost
 inline constexpr std::uint16_t bus_passive = 0x8120;
 inline constexpr std::uint16_t error_control = 0x8130;  ///< a node that is watched, or the one that guards, is lost

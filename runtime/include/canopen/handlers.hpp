@@ -67,6 +67,11 @@ struct EmergencyHandler {
 };
 
 template <class F>
+struct ErrorHandler {
+  [[no_unique_address]] F call;
+};
+
+template <class F>
 struct RpdoHandler {
   [[no_unique_address]] F call;
 };
@@ -122,6 +127,13 @@ template <class F>
 /// Called with the EMCYs of 1028h: `handler(ConsumedEmergency)` or `handler(node, ConsumedEmergency)`.
 template <class F>
 [[nodiscard]] constexpr EmergencyHandler<F> on_emergency(F handler) {
+  return {std::move(handler)};
+}
+
+/// Called with the code of each error that this node reports by EMCY, whether a service has found it or the application
+/// has called `emergency`: `handler(std::uint16_t)` or `handler(node, std::uint16_t)`. The EMCY may be sent later.
+template <class F>
+[[nodiscard]] constexpr ErrorHandler<F> on_error(F handler) {
   return {std::move(handler)};
 }
 
@@ -252,6 +264,10 @@ class HandlerSet {
     for_each([&](auto& handler) { code = code == ok ? offer_read(handler, node, key) : code; });
     return code;
   }
+
+  /// Whether a handler of this type is among them.
+  template <class H>
+  static constexpr bool has = (std::is_same_v<H, Handlers> || ...);
 
   /// Whether the node has a storage.
   static constexpr bool has_storage = (storage_detail::is_stored_in<Handlers> || ...);

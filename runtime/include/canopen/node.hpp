@@ -128,6 +128,10 @@ class Node {
     return next;
   }
 
+  /// Whether a handler of this type was given to the node.
+  template <class Handler>
+  static constexpr bool has_handler = HandlerSet<Handlers...>::template has<Handler>;
+
   [[nodiscard]] NmtState state() const { return state_; }
   [[nodiscard]] NodeId node_id() const { return node_id_; }
 
@@ -176,7 +180,11 @@ class Node {
   void emergency(std::uint16_t code, ErrorRegister bits, const EmergencyInfo& info = {}) {
     emergencies_.appeared(store_, code, bits, info);
     attention_ = true;
+    handlers_.template tell<ErrorHandler>(*this, code);
   }
+
+  /// Sets bits of 1001h without an EMCY: an error that has been reported keeps them until `emergency_over` names them.
+  void hold_error(ErrorRegister bits) { emergencies_.hold(store_, bits); }
 
   /// An error of the application has gone. `bits` of 1001h are cleared: those that no other error of the application
   /// holds. The EMCY 0000h goes out, with what is left.
@@ -807,6 +815,7 @@ class Node {
   void service_error(ServiceError error) {
     emergencies_.appeared(store_, error);
     attention_ = true;
+    handlers_.template tell<ErrorHandler>(*this, service_error_codes[static_cast<std::uint8_t>(error)]);
   }
   void service_error_over(ServiceError error) {
     if (emergencies_.gone(store_, error)) attention_ = true;

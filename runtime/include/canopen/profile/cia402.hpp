@@ -2,7 +2,8 @@
 ///
 ///     MyAxis axis;
 ///     canopen::cia402::Drive<my_drive::Device, MyAxis> drive{axis};
-///     drive.start(now);                            // power-on, before node.start(now)
+///     auto node = canopen::make_node<my_drive::Device>(bus, node_id, drive.error_handler());
+///     drive.start();                               // power-on, before node.start(now)
 ///     node.on_frame(frame, now);                   // after each frame, and at next_deadline():
 ///     drive.on_time(node, now);
 ///     node.on_time(now);
@@ -17,6 +18,7 @@
 
 #include "canopen/emcy.hpp"
 #include "canopen/error_register.hpp"
+#include "canopen/handlers.hpp"
 #include "canopen/nmt.hpp"
 #include "canopen/profile/cia402_axis.hpp"
 #include "canopen/profile/cia402_homing.hpp"
@@ -34,6 +36,8 @@ namespace canopen::cia402 {
 /// What an application may add, each where it has it:
 ///     void operate(std::int8_t mode)              a step in a mode of the manufacturer's; it moves the axis
 ///     std::uint16_t statusword(std::uint16_t)     the statusword with the manufacturer's bits
+///     void abort_connection(std::int16_t code)    communication is lost and 6007h is 1 or the manufacturer's: replaces
+///                                                 the fault of the profile
 struct NoApplication {};
 
 template <class Device, Axis A, Options options = Options{}>
@@ -41,6 +45,17 @@ class Drive {
  public:
   /// The axis must outlive the drive.
   explicit constexpr Drive(A& moved_axis) : axis_{moved_axis} {}
+
+  /// A node of a drive has this handler. An error that the node reports goes into 603Fh. A heartbeat or life guarding
+  /// event and bus-off are a loss of communication, as NMT Stopped is: the next `on_time` does what 6007h says.
+  struct ErrorTaker {
+    Drive* drive;
+    void operator()(auto& node, std::uint16_t code) const {
+      set<object::ErrorCode>(node, code);
+      if (code == emergency_code::error_control || code == emergency_code::bus_off) drive->loss_ = Loss::reported;
+    }
+  };
+  [[nodiscard]] constexpr ErrorHandler<ErrorTaker> error_handler() { return on_error(ErrorTaker{this}); }
 
   /// Power-on, or a reset that starts the drive anew: transitions 0 and 1. The axis has no power.
   void start() {
@@ -51,6 +66,7 @@ class Drive {
     controlword_ = 0;
     fault_bits_ = ErrorRegister{};
     halted_ = leaving_ = false;
+    loss_ = Loss::none;
     mode_ = options.initial_mode;
     enter(State::switch_on_disabled);
   }
@@ -59,9 +75,16 @@ class Drive {
   /// `next_deadline`.
   template <class Node, class Application>
   void on_time(Node& node, TimePoint now, Application&& application) {
+    static_assert(std::remove_cvref_t<Node>::template has_handler<ErrorHandler<ErrorTaker>>,
+                  "the node of a drive needs drive.error_handler() among its handlers");
     if (!busy()) stepped_ = now;
+    watch_connection(node, application);
     take_controlword(node);
-    while (busy() && now - stepped_ >= step_time) {
+    for (unsigned steps = 0; busy() && now - stepped_ >= step_time; ++steps) {
+      if (steps == options.max_steps) {
+        stepped_ = now;
+        break;
+      }
       stepped_ = stepped_ + step_time;
       step(node, application);
     }
@@ -74,22 +97,15 @@ class Drive {
 
   /// When the axis is to take its next step. Nothing: it rests without power.
   [[nodiscard]] std::optional<TimePoint> next_deadline() const {
+    if (loss_ != Loss::none) return stepped_;
     return busy() ? std::optional{stepped_ + step_time} : std::nullopt;
   }
 
   /// An error of the drive: transition 13, 603Fh and an EMCY. A fault reset ends it.
   template <class Node>
   void fault(Node& node, std::uint16_t code, ErrorRegister bits, const EmergencyInfo& info = {}) {
-    set<object::ErrorCode>(node, code);
     node.emergency(code, bits, info);
-    fault_bits_ = fault_bits_ | bits;
-    if (state_ == State::fault || state_ == State::fault_reaction_active) return;
-    const bool had_power = has_power(state_);
-    leave_operation();
-    const Braking braking = braking_of(value<object::FaultReactionOptionCode>(node, option_code::fault_reaction));
-    if (!had_power || braking == Braking::none || !axis_.moving()) return enter(State::fault);
-    enter(State::fault_reaction_active);
-    brake(node, braking);
+    signal_fault(node, bits);
   }
 
   /// Errors that are there still: no fault reset (transition 15) as long as it is true.
@@ -154,7 +170,55 @@ class Drive {
   /// Whether time matters to the axis.
   [[nodiscard]] bool busy() const { return has_power(state_) || axis_.moving(); }
 
+  // Loss of communication
+
+  enum class Loss : std::uint8_t {
+    none,
+    reported,  ///< by a service, with its EMCY
+    stopped,   ///< NMT Stopped: no service reports it
+  };
+
+  /// Does once for each loss what 6007h says (CiA 402-2, abort connection option code).
+  template <class Node, class Application>
+  void watch_connection(Node& node, [[maybe_unused]] Application& application) {
+    const bool stopped = node.state() == NmtState::stopped;
+    if (stopped && !stopped_ && loss_ == Loss::none) loss_ = Loss::stopped;
+    stopped_ = stopped;
+    const Loss loss = loss_;
+    loss_ = Loss::none;
+    if (loss == Loss::none) return;
+    if (!has_power(state_) && !(options.faults_without_power && loss == Loss::reported)) return;
+    const auto code = value<object::AbortConnectionOptionCode>(node, option_code::abort_connection);
+    switch (code) {
+      case option_code::no_action: return;
+      case option_code::disable_voltage: return carry_out(node, Command::disable_voltage);
+      case option_code::quick_stop_command: return carry_out(node, Command::quick_stop);
+      default: break;
+    }
+    if constexpr (requires { application.abort_connection(code); }) {
+      application.abort_connection(code);
+    } else if (loss == Loss::stopped) {
+      fault(node, emergency_code::communication, ErrorRegister::communication);
+    } else {
+      node.hold_error(ErrorRegister::communication);
+      signal_fault(node, ErrorRegister::communication);
+    }
+  }
+
   // Device control
+
+  /// Transition 13, for an error that has been reported.
+  template <class Node>
+  void signal_fault(Node& node, ErrorRegister bits) {
+    fault_bits_ = fault_bits_ | bits;
+    if (state_ == State::fault || state_ == State::fault_reaction_active) return;
+    const bool had_power = has_power(state_);
+    leave_operation();
+    const Braking braking = braking_of(value<object::FaultReactionOptionCode>(node, option_code::fault_reaction));
+    if (!had_power || braking == Braking::none || !axis_.moving()) return enter(State::fault);
+    enter(State::fault_reaction_active);
+    brake(node, braking);
+  }
 
   template <class Node>
   void take_controlword(Node& node) {
@@ -603,6 +667,8 @@ class Drive {
   std::int8_t selected_ = options.initial_mode;
   std::uint16_t controlword_ = 0;  ///< that has been taken
   ErrorRegister fault_bits_{};
+  Loss loss_ = Loss::none;  ///< that 6007h has not yet answered
+  bool stopped_ = false;    ///< the NMT state when it was looked at last
   bool fault_is_there_ = false;
   bool voltage_enabled_ = true;
   bool warning_ = false;

@@ -11,6 +11,7 @@ namespace canopen::cia402::object {
 template <std::uint16_t Index, class T, std::uint8_t SubIndex = 0>
 using Entry = Object<Index, SubIndex, T, Access::rw>;
 
+using AbortConnectionOptionCode = Entry<0x6007, std::int16_t>;
 using ErrorCode = Entry<0x603F, std::uint16_t>;
 using Controlword = Entry<0x6040, std::uint16_t>;
 using Statusword = Entry<0x6041, std::uint16_t>;

@@ -1,4 +1,4 @@
-/// What the option codes 605Ah to 605Eh make a drive do (CiA 402-2, 8.5.1 to 8.5.5).
+/// What the option codes 6007h and 605Ah to 605Eh make a drive do (CiA 402-2).
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,14 @@ enum class Braking : std::uint8_t {
 
 namespace option_code {
 
+/// 6007h: the action when communication is lost.
+inline constexpr std::int16_t no_action = 0;
+inline constexpr std::int16_t fault_signal = 1;
+inline constexpr std::int16_t disable_voltage = 2;
+inline constexpr std::int16_t quick_stop_command = 3;
+
 // Without the object.
+inline constexpr std::int16_t abort_connection = fault_signal;
 inline constexpr std::int16_t quick_stop = 2;
 inline constexpr std::int16_t shutdown = 0;
 inline constexpr std::int16_t disable_operation = 1;

@@ -38,6 +38,12 @@ struct Options {
   bool tells_speed_is_zero = true;
   /// Bit 11 of the statusword tells of software limits, too. If not, of limit switches alone.
   bool tells_software_limits = true;
+  /// A heartbeat or life guarding event and bus-off are a fault even while the axis has no power. If not, 6007h acts on
+  /// an axis with power only.
+  bool faults_without_power = false;
+  /// Steps that the axis takes at most to catch up when `on_time` was called late. Time beyond them is left out, so that
+  /// the axis does not jump and a call takes bounded time.
+  std::uint16_t max_steps = 100;
   /// Time between two steps of the axis, in us.
   std::uint32_t step = 1'000;
   /// How often actual values are set while the axis moves, in us. When it has come to rest they always are.
