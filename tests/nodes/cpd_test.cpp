@@ -87,6 +87,47 @@ TEST(CpdNode, SendsAnEmcyForAnErrorAndGoesToFault) {
   EXPECT_EQ(drive.get<od::error_code>(), 0x2212);  // of the last one
 }
 
+TEST(CpdNode, SwitchesToErrorStatusWhenNobodyGuardsItAnyMore) {  // 9.4.9, 7.2.2
+  Servo drive;
+  drive.ask("605 2B 0C 10 00 64 00 00 00");  // 100Ch: 100 ms
+  drive.ask("605 2F 0D 10 00 03 00 00 00");  // 100Dh: 3
+  drive.set<od::target_velocity>(500);
+  drive.set<od::profile_deceleration>(5'000);
+  drive.enable(3);
+  drive.pass(500ms);
+  ASSERT_EQ(drive.app->axis().velocity(), 500);
+  EXPECT_EQ(drive.ask("705 R 1"), "705 05");
+  EXPECT_EQ(drive.pass(310ms), "085 30 81 11 00 00 00 00 00");
+  drive.pass(1s);
+  EXPECT_EQ(drive.statusword() & 0x004F, 0x0008);  // bit 3, fault
+  EXPECT_EQ(drive.app->axis().velocity(), 0);
+  EXPECT_EQ(drive.ask("605 40 3F 60 00 00 00 00 00"), "585 4B 3F 60 00 30 81 00 00");
+  EXPECT_EQ(drive.ask("605 40 41 20 00 00 00 00 00"), "585 4B 41 20 00 20 00 00 00");
+  EXPECT_EQ(drive.ask(next_error), error_number(0x8130));
+  EXPECT_EQ(drive.ask(next_error), error_number(0));
+}
+
+TEST(CpdNode, SwitchesToErrorStatusWithoutPowerToo) {
+  Servo drive;
+  drive.ask("605 2B 0C 10 00 64 00 00 00");
+  drive.ask("605 2F 0D 10 00 03 00 00 00");
+  drive.ask("705 R 1");
+  EXPECT_EQ(drive.pass(310ms), "085 30 81 11 00 00 00 00 00");
+  EXPECT_EQ(drive.state(), State::fault);
+  EXPECT_EQ(drive.ask("605 2B 40 60 00 80 00 00 00"), "585 60 40 60 00 00 00 00 00 | 085 00 00 11 00 00 00 00 00");
+  EXPECT_EQ(drive.state(), State::ready_to_switch_on);
+}
+
+TEST(CpdNode, HasErrorsOfServicesIn603FhAndInItsErrorMemory) {  // 3.5.1
+  Servo drive;
+  EXPECT_EQ(drive.ask("205 0F"), "085 10 82 11 00 00 00 00 00");
+  EXPECT_EQ(drive.ask("605 40 3F 60 00 00 00 00 00"), "585 4B 3F 60 00 10 82 00 00");
+  EXPECT_EQ(drive.input("fault 0x2212 0x02").substr(0, 27), "085 12 22 13 00 00 00 00 00");
+  EXPECT_EQ(drive.ask(next_error), error_number(0x8210));
+  EXPECT_EQ(drive.ask(next_error), error_number(0x2212));
+  EXPECT_EQ(drive.ask(next_error), error_number(0));
+}
+
 // shows 002.38
 TEST(CpdNode, KeepsTheLast20ErrorsAndReadsThemFromTheOldestOn) {
   const std::string store = testing::TempDir() + "cpd_error_memory";

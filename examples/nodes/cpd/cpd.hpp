@@ -43,6 +43,7 @@ inline constexpr canopen::cia402::Options options = [] {
   result.ready_without_shutdown = true;
   result.target_reached_until_motion = true;
   result.tells_speed_is_zero = false;
+  result.faults_without_power = true;  // manual 002, 9.4.9
   result.actual_values = 10'000;
   return result;
 }();
@@ -115,6 +116,15 @@ struct RewindsErrorMemory {
   void operator()(std::uint16_t) const { memory->rewind(); }
 };
 
+/// 303Ch has the errors of services and of the drive alike (manual 002, 3.5.1).
+struct RemembersErrors {
+  ErrorMemory* memory;
+  nodes::Surroundings* around;
+  void operator()(std::uint16_t code) const {
+    if (!memory->add(code)) around->log("the error memory cannot be stored");
+  }
+};
+
 template <class Self, canopen::Bus B>
 using Base = nodes::DriveNode<Self, cpd::Device, B, options, canopen::StoredIn<nodes::NodeStorage>,
                               canopen::WriteHandler<od::modes_of_operation, AcceptsMode>,
@@ -122,7 +132,8 @@ using Base = nodes::DriveNode<Self, cpd::Device, B, options, canopen::StoredIn<n
                               canopen::WriteHandler<od::parameter_storage::save_settings_to_eeprom, SavesSettings>,
                               canopen::WriteHandler<od::parameter_storage::reset_user_settings, RestoresSettings>,
                               canopen::ReadHandler<od::error_memory::error_number, ReadsErrorMemory>,
-                              canopen::WriteHandler<od::error_memory_control::error_memory_reset, RewindsErrorMemory>>;
+                              canopen::WriteHandler<od::error_memory_control::error_memory_reset, RewindsErrorMemory>,
+                              canopen::ErrorHandler<RemembersErrors>>;
 
 template <canopen::Bus B>
 class Cpd : public Base<Cpd<B>, B> {
@@ -143,7 +154,7 @@ class Cpd : public Base<Cpd<B>, B> {
 
   Cpd(B& bus, nodes::Surroundings& around)
       : Node{bus, around, canopen::NodeId{127}, axis,        canopen::stored_in(around.parameters), {}, {},
-             {},  {},     {{&errors_}},         {{&errors_}}},
+             {},  {},     {{&errors_}},         {{&errors_}}, {{&errors_, &around}}},
         errors_{around.application} {
     errors_.load();
   }
@@ -194,15 +205,13 @@ class Cpd : public Base<Cpd<B>, B> {
     }
     if (was_fault_ && drive_.state() == State::ready_to_switch_on) status_ = latched_ = 0;  // fault reset
     was_fault_ = drive_.state() == State::fault;
+    const bool failed = was_fault_ || drive_.state() == State::fault_reaction_active;
+    if (failed && (status_ & drive_status::external_error) == 0) status_ |= drive_status::internal_error;
     set<od::drive_status>(status_);
     set<od::monitoring_status::latched_monitoring_signals>(latched_);
     set<od::motion_generator::ramp_position_actual_value>(axis_.position_demand());
   }
 
-  void failed(std::uint16_t code) {
-    if ((status_ & drive_status::external_error) == 0) status_ |= drive_status::internal_error;
-    if (!errors_.add(code)) this->around_.log("the error memory cannot be stored");
-  }
 
   bool take_line(const nodes::InputLine& line) {
     if (line.is("pulses", 1)) {

@@ -39,7 +39,6 @@ namespace nodes {
 ///     void abort_connection(std::int16_t code)     the same
 ///     void restarted()                             power-on, or an NMT reset
 ///     void on_state(canopen::NmtState state)       an NMT state is entered
-///     void failed(std::uint16_t code)              an error of the drive has been reported
 ///     bool take_line(const InputLine& line)        its own inputs
 /// `handlers` go to the node. The surroundings must outlive it.
 template <class Self, class Device, canopen::Bus B, canopen::cia402::Options options, class... Handlers>
@@ -140,7 +139,6 @@ class DriveNode {
   /// An error of the drive, as the profile reports it.
   void fault(std::uint16_t code, canopen::ErrorRegister bits, const canopen::EmergencyInfo& info = {}) {
     drive_.fault(node_, code, bits, info);
-    if constexpr (requires { self().failed(code); }) self().failed(code);
   }
 
   Surroundings& around_;
