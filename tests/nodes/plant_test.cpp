@@ -188,6 +188,47 @@ TEST(ModuleNode, ShowsItsStateAndItsErrorsWithItsIndicators) {
   EXPECT_TRUE(module.logged("RUN single flash"));
 }
 
+struct ModuleError {
+  const char* line;   ///< of the node's inputs
+  const char* emcy;   ///< the row of table 5.3.2
+  std::uint16_t register_1001h;
+};
+
+constexpr ModuleError module_errors[] = {
+    {"fault can-controller", "085 00 10 81 01 00 00 00 00", 0x81},
+    {"fault eeprom", "085 00 50 81 02 00 00 00 00", 0x81},
+    {"fault rx-buffer", "085 10 81 11 04 00 00 00 00", 0x11},
+    {"fault tx-buffer", "085 10 81 11 05 00 00 00 00", 0x11},
+    {"can overrun", "085 10 81 11 06 00 00 00 00", 0x11},
+    {"can off", "085 40 81 11 08 00 00 00 00", 0x11},
+};
+
+template <template <class Bus> class Module>
+void expect_module_errors() {
+  for (const ModuleError& row : module_errors) {
+    SCOPED_TRACE(row.line);
+    bench::NodeBench<Module> module;
+    module.ask(bench::start);
+    const nodes::InputLine line{row.line};
+    if (const auto status = nodes::bus_status_of(line)) {
+      module.app->on_bus_status(*status, module.now);
+      EXPECT_EQ(module.bus.take(), row.emcy);
+    } else {
+      EXPECT_EQ(module.input(row.line), row.emcy);
+    }
+    EXPECT_EQ(module.ask("605 40 01 10 00 00 00 00 00"),
+              row.register_1001h == 0x81 ? "585 4F 01 10 00 81 00 00 00" : "585 4F 01 10 00 11 00 00 00");
+  }
+}
+
+// shows 003.71..003.75, 003.77
+TEST(ModuleNode, ReportsTheErrorsOfTheTableInEveryModule) {
+  expect_module_errors<Can2017c>();
+  expect_module_errors<Can2024c>();
+  expect_module_errors<Can2053c>();
+  expect_module_errors<Can2057c>();
+}
+
 TEST(ModuleNode, KeepsItsParametersBeyondPowerOffWhenTheyAreSaved) {
   bench::NodeBench<Can2057c> module;
   module.ask("605 2F 07 62 01 A5 00 00 00");
