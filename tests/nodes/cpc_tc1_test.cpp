@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <optional>
 #include <string>
 
 #include "node_bench.hpp"
@@ -99,6 +101,50 @@ TEST(CpcTc1Node, KeepsWhatIsStoredOverAPowerCycle) {
   drive.power_cycle();
   EXPECT_EQ(drive.ask("605 40 17 10 00 00 00 00 00"), "585 4B 17 10 00 00 00 00 00");
   EXPECT_EQ(drive.ask("605 40 18 10 04 00 00 00 00"), "585 43 18 10 04 34 12 01 15");  // its serial number
+}
+
+constexpr auto lss_waiting = "7E5 04 00 00 00 00 00 00 00";
+constexpr auto lss_configuration = "7E5 04 01 00 00 00 00 00 00";
+constexpr auto lss_inquire_node_id = "7E5 5E 00 00 00 00 00 00 00";
+
+// shows 000.151
+TEST(CpcTc1Node, GetsItsNodeIdAndItsBitRateByLssAndKeepsThem) {  // chapter 13; CiA 305
+  const std::string store = testing::TempDir() + "cpc_tc1_lss";
+  for (const char* suffix : {"", ".application", ".lss"}) std::filesystem::remove(store + suffix);
+  bench::NodeBench<cpc_tc1_node::CpcTc1> drive{canopen::NodeId{5}, store};
+  EXPECT_EQ(drive.boot_up, "705 00");
+  EXPECT_EQ(drive.ask(lss_configuration), "");
+  EXPECT_EQ(drive.ask(lss_inquire_node_id), "7E4 5E 05 00 00 00 00 00 00");
+  EXPECT_EQ(drive.ask("7E5 5A 00 00 00 00 00 00 00").substr(0, 6), "7E4 5A");  // vendor-ID
+  EXPECT_EQ(drive.ask("7E5 5D 00 00 00 00 00 00 00"), "7E4 5D 34 12 01 15 00 00 00");  // 1018h:04
+  EXPECT_EQ(drive.ask("7E5 11 2A 00 00 00 00 00 00"), "7E4 11 00 00 00 00 00 00 00");
+  EXPECT_EQ(drive.ask("7E5 13 00 04 00 00 00 00 00"), "7E4 13 00 00 00 00 00 00 00");  // 125 kbit/s
+  EXPECT_EQ(drive.ask("7E5 17 00 00 00 00 00 00 00"), "7E4 17 00 00 00 00 00 00 00");
+  EXPECT_EQ(drive.ask(lss_waiting), "");
+  EXPECT_TRUE(drive.logged("LSS: node-ID 42, 125 kbit/s stored"));
+  EXPECT_EQ(drive.power_cycle(), "72A 00");
+  bench::NodeBench<cpc_tc1_node::CpcTc1> again{std::nullopt, store};  // the process has been started anew
+  EXPECT_EQ(again.boot_up, "72A 00");
+  for (const char* suffix : {"", ".application", ".lss"}) std::filesystem::remove(store + suffix);
+}
+
+// shows 000.150
+TEST(CpcTc1Node, TakesTheBitRatesOfChapter13AndNoOther) {
+  bench::NodeBench<cpc_tc1_node::CpcTc1> drive;
+  drive.ask(lss_configuration);
+  struct Row {
+    int index;           ///< of table 0 of CiA 305
+    const char* rate;    ///< nothing: the manual does not have it
+  };
+  for (const Row& row : {Row{0, "1000"}, Row{1, "800"}, Row{2, "500"}, Row{3, "250"}, Row{4, "125"}, Row{5, nullptr},
+                         Row{6, "50"}, Row{7, "20"}, Row{8, "10"}, Row{9, nullptr}}) {
+    SCOPED_TRACE(row.index);
+    const std::string index = "0" + std::to_string(row.index);
+    EXPECT_EQ(drive.ask("7E5 13 00 " + index + " 00 00 00 00 00"),
+              row.rate != nullptr ? "7E4 13 00 00 00 00 00 00 00" : "7E4 13 01 00 00 00 00 00 00");
+    if (row.rate == nullptr) continue;
+    EXPECT_TRUE(drive.logged("LSS: " + std::string{row.rate} + " kbit/s is pending"));
+  }
 }
 
 TEST(CpcTc1Node, ReportsAFaultAndForgetsItWithAReset) {

@@ -3,12 +3,15 @@
 #pragma once
 
 #include <canopen/abort_code.hpp>
+#include <canopen/lss_handler.hpp>
+#include <canopen/lss_protocol.hpp>
 #include <canopen/node.hpp>
 #include <cpc_tc1/device.hpp>
 #include <cstdint>
 
 #include "shared/description.hpp"
 #include "shared/drive_node.hpp"
+#include "shared/lss_settings.hpp"
 
 namespace cpc_tc1_node {
 
@@ -48,8 +51,16 @@ template <std::uint8_t SubIndex>
 using Restore = canopen::WriteHandler<od::restore_default_parameters<SubIndex>, RefusesWithMotorOn>;
 
 template <class Self, canopen::Bus B>
-using Base = nodes::DriveNode<Self, cpc_tc1::Device, B, options, canopen::StoredIn<nodes::NodeStorage>, Store<1>,
-                              Store<2>, Store<3>, Restore<1>, Restore<2>, Restore<3>>;
+using Base = nodes::DriveNode<Self, cpc_tc1::Device, B, options, canopen::StoredIn<nodes::NodeStorage>,
+                              canopen::LssHandler<cpc_tc1::Device::lss_options, nodes::LssSettings>, Store<1>, Store<2>,
+                              Store<3>, Restore<1>, Restore<2>, Restore<3>>;
+
+/// Made before the node, which starts with the node-ID that LSS has stored.
+struct ConfiguredByLss {
+  explicit ConfiguredByLss(nodes::Surroundings& around) : lss{around, canopen::NodeId{1}, bit_rate_1000} {}
+  static constexpr canopen::LssBitTiming bit_rate_1000{0, 0};
+  nodes::LssSettings lss;
+};
 
 /// Bits of 1002h above those of the statusword.
 namespace status {
@@ -60,7 +71,7 @@ inline constexpr std::uint32_t stationary = 1u << 24;
 }  // namespace status
 
 template <canopen::Bus B>
-class CpcTc1 : public Base<CpcTc1<B>, B> {
+class CpcTc1 : private ConfiguredByLss, public Base<CpcTc1<B>, B> {
   using Node = Base<CpcTc1<B>, B>;
   using Node::axis_;
   using Node::drive_;
@@ -68,7 +79,7 @@ class CpcTc1 : public Base<CpcTc1<B>, B> {
 
  public:
   static constexpr nodes::Description description{
-      "cpc_tc1", "A servo drive of CiA 402.", "1",
+      "cpc_tc1", "A servo drive of CiA 402 that LSS configures.", "the one that LSS has stored, or 1",
       "  mode N                           1 position, 3 velocity, 8 cyclic position: there is no 6060h\n"
       "  enable on|off                    the input External Enable\n"
       "  fault CODE [BITS]                an error of the drive: 603Fh, EMCY; BITS of 1001h\n"
@@ -77,11 +88,13 @@ class CpcTc1 : public Base<CpcTc1<B>, B> {
       "  position N                       the shaft is turned by hand, without power\n"};
 
   CpcTc1(B& bus, nodes::Surroundings& around)
-      : Node{bus,
+      : ConfiguredByLss{around},
+        Node{bus,
              around,
-             canopen::NodeId{1},
+             lss.node_id(),
              axis,
              canopen::stored_in(around.parameters),
+             canopen::configured_by_lss<cpc_tc1::Device::lss_options>(lss),
              {{&motor_on_}},
              {{&motor_on_}},
              {{&motor_on_}},

@@ -153,7 +153,7 @@ class Cpd : public Base<Cpd<B>, B> {
       "  position N                       the shaft is turned by hand, without power\n"};
 
   Cpd(B& bus, nodes::Surroundings& around)
-      : Node{bus, around, canopen::NodeId{127}, axis,        canopen::stored_in(around.parameters), {}, {},
+      : Node{bus, around, around.node_id.value_or(canopen::NodeId{127}), axis,        canopen::stored_in(around.parameters), {}, {},
              {},  {},     {{&errors_}},         {{&errors_}}, {{&errors_, &around}}},
         errors_{around.application} {
     errors_.load();

@@ -40,7 +40,7 @@ namespace nodes {
 ///     void restarted()                             power-on, or an NMT reset
 ///     void on_state(canopen::NmtState state)       an NMT state is entered
 ///     bool take_line(const InputLine& line)        its own inputs
-/// `handlers` go to the node. The surroundings must outlive it.
+/// `node_id` is the one of power-on, `handlers` go to the node. The surroundings must outlive it.
 template <class Self, class Device, canopen::Bus B, canopen::cia402::Options options, class... Handlers>
 class DriveNode {
  public:
@@ -49,7 +49,7 @@ class DriveNode {
         panel_{around},
         axis_{axis},
         node_{bus,
-              around.node_id.value_or(node_id),
+              node_id,
               canopen::on_state(StateTeller{this}),
               canopen::on_life_guarding(GuardTeller{this}),
               canopen::on_heartbeat(HeartbeatTeller{this}),
