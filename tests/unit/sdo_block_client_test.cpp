@@ -190,7 +190,7 @@ TEST(SdoBlockClientUpload, AbortsWhatDoesNotFit) {
       {"", "C6 12 20 00 65 00 00 00", AbortCode::out_of_memory},  // 101 bytes for 100
       {"C6 12 20 00 0E 00 00 00", "00 01 02 03 04 05 06 07", AbortCode::sequence_number},
       {"C2 12 20 00 0E 00 00 00|81 01 02 03 04 05 06 07", "C1 00 00 00 00 00 00 00", AbortCode::length_mismatch},
-      {"C2 12 20 00 07 00 00 00|81 01 02 03 04 05 06 07", "C2 00 00 00 00 00 00 00", AbortCode::command_specifier},
+      {"C2 12 20 00 07 00 00 00|81 01 02 03 04 05 06 07", "C2 12 20 00 07 00 00 00", AbortCode::command_specifier},
   };
   for (const WrongAnswer& row : rows) {
     Client client;
@@ -294,7 +294,7 @@ TEST(SdoBlockClientDownload, AbortsWhatDoesNotFit) {
   const WrongAnswer rows[] = {
       {"", "A4 12 20 00 00 00 00 00", AbortCode::block_size},
       {"", "A4 12 20 00 80 00 00 00", AbortCode::block_size},
-      {"", "A2 01 7F 00 00 00 00 00", AbortCode::command_specifier},
+      {"", "60 12 20 00 00 00 00 00", AbortCode::command_specifier},
       {"A4 12 20 00 7F 00 00 00", "A2 03 7F 00 00 00 00 00", AbortCode::sequence_number},
       {"A4 12 20 00 7F 00 00 00", "A2 01 00 00 00 00 00 00", AbortCode::block_size},
       {"A4 12 20 00 7F 00 00 00", "A1 00 00 00 00 00 00 00", AbortCode::command_specifier},
@@ -417,6 +417,28 @@ TEST(SdoClient, DropsAnAbortThatFindsNoRoomForALongTime) {
   client.bus.room = 1;
   EXPECT_EQ(client.pass(1ms), "");
   EXPECT_EQ(client.upload(), "A4 12 20 00 7F 04 00 00");
+}
+
+TEST(SdoClient, LateSegmentsOfABlockUploadBelongToNoOtherTransfer) {
+  Client client;
+  client.upload();
+  client.answer("C2 12 20 00 0E 00 00 00");
+  client.client.cancel(AbortCode::general, client.now);
+  client.take();
+  client.client.upload(0x1000, 0, client.memory, client.now);
+  EXPECT_EQ(client.take(), "") << "a segment may look like any answer";
+  EXPECT_EQ(client.answer("43 00 10 00 00 00 00 00"), "");  // segment 67
+  EXPECT_TRUE(client.client.busy());
+  EXPECT_EQ(client.pass(100ms), "A4 00 10 00 7F 04 00 00");
+}
+
+TEST(SdoBlockClientDownload, IgnoresTheConfirmationOfAnEarlierOneBeforeItHasBegun) {
+  Client client;
+  const auto bytes = counting<7>();
+  client.download(bytes);
+  EXPECT_EQ(client.answer("A2 01 7F 00 00 00 00 00"), "");
+  EXPECT_EQ(client.answer("A1 00 00 00 00 00 00 00"), "");
+  EXPECT_EQ(client.answer("A4 12 20 00 7F 00 00 00"), "81 01 02 03 04 05 06 07");
 }
 
 TEST(SdoClient, SpeaksToAServerOnOtherCanIds) {

@@ -88,6 +88,14 @@ template <class F>
 /// and time until it is no longer `busy()`, then look at `result()` and, after an upload, at `data()`.
 ///
 /// An upload fills, and a download reads, memory of the caller's that must stay until the transfer is over.
+///
+/// An SDO has one client: two of them take each other's answers. Use one client for a node and keep it, since it knows
+/// which answers may still come. SDO does not number its transfers; only the index and sub-index of initiate answers and
+/// aborts (the multiplexer) tell to which request they belong. Those of another entry are ignored, as are segments before
+/// the own transfer has begun. After a transfer that ended without its answer, by a timeout or `cancel`:
+///   - another entry is requested at once: answers of one server arrive in the order of the requests;
+///   - the same entry is requested when the late answer has arrived, or after another timeout;
+///   - after the segments of a block upload, which may have any content, nothing is requested for another timeout.
 template <Bus B>
 class SdoClient {
  public:
@@ -159,20 +167,34 @@ class SdoClient {
     return download(O::index, O::sub_index, std::span{number_}.first((O::bits + 7u) / 8u), now);
   }
 
-  /// Ends the transfer and tells the server why.
+  /// Ends the transfer with an abort code, which is sent to the server if the server knows of the transfer.
   void cancel(AbortCode code, TimePoint now) {
     now_ = now;
-    if (state_ != State::idle) abort(code);
+    if (state_ != State::idle) give_up(code);
     flush();
+  }
+
+  /// The server has been reset: its boot-up message has arrived. Ends the transfer with 0800 0022h. Answers to requests
+  /// from before the reset do not arrive after the boot-up message, so the same entry can be requested again at once.
+  void server_reset(TimePoint now) {
+    cancel(AbortCode::device_state, now);
+    if (left_over_ == LeftOver::any) left_over_ = LeftOver::none;
+    was_reset_ = true;
   }
 
   /// Takes an answer of the server; other frames are ignored.
   void on_frame(const Frame& frame, TimePoint now) {
     now_ = now;
-    if (state_ == State::idle || frame.remote || frame.size != 8) return;
+    if (frame.remote || frame.size != 8) return;
     if (frame.extended != channel_.response.extended() || frame.id != channel_.response.can_id()) return;
-    handle(frame.data);
-    flush();
+    const bool waits = held();
+    const bool late = take_left_over(frame.data);
+    if (waits) {
+      if (!held()) release();
+    } else if (!late && state_ != State::idle) {
+      handle(frame.data);
+      flush();
+    }
   }
 
   /// Sends what found no room, and ends a transfer whose server is silent; an abort that finds no room for as long as the
@@ -180,8 +202,13 @@ class SdoClient {
   /// the bus has room again.
   void on_time(TimePoint now) {
     now_ = now;
+    const bool waits = held();
+    if (waits && now >= late_until_) {
+      left_over_ = LeftOver::none;
+      return release();
+    }
     flush();
-    if (now < deadline_) return;
+    if (held() || now < deadline_) return;
     if (state_ == State::idle) {
       has_request_ = false;  // an abort that has found no room: the server is silent by now
       return;
@@ -189,19 +216,28 @@ class SdoClient {
     if (state_ == State::block_uploading && sequence_ != 0) {
       confirm_sub_block();  // what is lost comes again
     } else {
-      abort(AbortCode::timeout);
+      give_up(AbortCode::timeout);
     }
     flush();
   }
 
   /// When `on_time` has something to do: not later than the last time told while a frame waits for room on the bus.
   [[nodiscard]] std::optional<TimePoint> next_deadline() const {
+    if (held()) return late_until_;
     if (has_request_) return now_;
     return state_ == State::idle ? std::nullopt : std::optional{deadline_};
   }
 
   /// Whether a transfer runs, or its abort waits for room on the bus.
   [[nodiscard]] bool busy() const { return state_ != State::idle || has_request_; }
+
+  /// Not busy, and no answer of an earlier transfer is expected any more: another client may use the SDO.
+  [[nodiscard]] bool settled(TimePoint now) const {
+    return !busy() && (left_over_ == LeftOver::none || now >= late_until_);
+  }
+
+  /// When the last late answer counts as lost; only after a transfer that is not `settled`.
+  [[nodiscard]] TimePoint settled_at() const { return late_until_; }
 
   /// How the last transfer ended: `ok`, or the abort code of either side.
   [[nodiscard]] AbortCode result() const { return result_; }
@@ -226,11 +262,67 @@ class SdoClient {
     block_download_ending,  ///< waits for the last word of the server
   };
 
+  /// The answer that a transfer without one has left over.
+  enum class LeftOver : std::uint8_t {
+    none,
+    entry,  ///< an initiate answer or abort, of `late_entry_`
+    any,    ///< segments of a block upload, or several initiate answers
+  };
+
   void begin(std::uint16_t index, std::uint8_t sub_index) {
+    if (left_over_ != LeftOver::none && now_ >= late_until_) left_over_ = LeftOver::none;
     index_ = index;
     sub_index_ = sub_index;
     result_ = ok;
     restart();
+  }
+
+  [[nodiscard]] std::uint32_t entry() const { return sdo::multiplexer(index_, sub_index_); }
+
+  [[nodiscard]] bool is_initiating() const {
+    return state_ == State::initiating_upload || state_ == State::initiating_download ||
+           state_ == State::initiating_block_upload || state_ == State::initiating_block_download;
+  }
+
+  /// Whether the first request waits since an answer of an earlier transfer could be taken for its own.
+  [[nodiscard]] bool held() const {
+    if (!has_request_ || !is_initiating() || left_over_ == LeftOver::none) return false;
+    return left_over_ == LeftOver::any || (late_entry_ == entry() && !was_reset_);
+  }
+
+  /// Whether an answer is the one that an earlier transfer has left over. The answers of a server that was reset belong
+  /// to the transfer that runs.
+  [[nodiscard]] bool take_left_over(const sdo::Data& answer) {
+    if (left_over_ != LeftOver::entry || !names_some_entry(answer)) return false;
+    if (sdo::multiplexer_of(answer) != late_entry_) return false;
+    if (was_reset_ && is_initiating() && late_entry_ == entry()) {
+      was_reset_ = false;  // the next one with this entry is the answer to the other request
+      return false;
+    }
+    left_over_ = LeftOver::none;
+    return true;
+  }
+
+  /// The first request has waited long enough.
+  void release() {
+    deadline_ = now_ + options_.timeout;
+    flush();
+  }
+
+  /// Ends a transfer whose last request is not answered. A server that knows nothing of it is not told.
+  void give_up(AbortCode code) {
+    const bool started = !(is_initiating() && has_request_);
+    if (!started) return finish(code);
+    if (is_initiating()) {
+      const bool another = left_over_ != LeftOver::none && late_entry_ != entry();
+      left_over_ = another ? LeftOver::any : LeftOver::entry;
+      late_entry_ = entry();
+      was_reset_ = false;
+    } else if (state_ == State::block_uploading) {
+      left_over_ = LeftOver::any;
+    }
+    late_until_ = now_ + options_.timeout;
+    abort(code);
   }
 
   void restart() {
@@ -270,6 +362,7 @@ class SdoClient {
 
   void handle(const sdo::Data& answer) {
     if (state_ == State::block_uploading && answer[0] != sdo::abort_command) return take_block_segment(answer);
+    if (names_some_entry(answer) ? !names_entry(answer) : is_initiating()) return;  // of an earlier transfer
     const sdo::ServerCommand command = sdo::server_command(answer[0]);
     if (command == sdo::ServerCommand::abort) return aborted(answer);
     switch (state_) {
@@ -281,7 +374,7 @@ class SdoClient {
         return segment_uploaded(answer);
       case State::initiating_download:
         if (command != sdo::ServerCommand::initiate_download) break;
-        return download_initiated(answer);
+        return download_initiated();
       case State::downloading:
         if (command != sdo::ServerCommand::download_segment) break;
         return segment_downloaded(answer);
@@ -307,12 +400,24 @@ class SdoClient {
     abort(AbortCode::command_specifier);
   }
 
-  [[nodiscard]] bool names_entry(const sdo::Data& answer) const {
-    return sdo::index_of(answer) == index_ && answer[3] == sub_index_;
+  /// Whether an answer has an index and sub-index: initiate answers and aborts.
+  [[nodiscard]] static bool names_some_entry(const sdo::Data& answer) {
+    switch (sdo::server_command(answer[0])) {
+      case sdo::ServerCommand::initiate_upload:
+      case sdo::ServerCommand::initiate_download:
+      case sdo::ServerCommand::abort: return true;
+      case sdo::ServerCommand::block_upload: return (answer[0] & 1) == 0;
+      case sdo::ServerCommand::block_download: return (answer[0] & 3) == 0;
+      case sdo::ServerCommand::upload_segment:
+      case sdo::ServerCommand::download_segment:
+      case sdo::ServerCommand::reserved: return false;
+    }
+    return false;
   }
 
+  [[nodiscard]] bool names_entry(const sdo::Data& answer) const { return sdo::multiplexer_of(answer) == entry(); }
+
   void aborted(const sdo::Data& answer) {
-    if (!names_entry(answer)) return;
     const auto code = static_cast<AbortCode>(sdo::word_of(answer));
     const bool refused = code == AbortCode::command_specifier || code == AbortCode::general;
     if (refused && state_ == State::initiating_block_upload) {
@@ -341,7 +446,6 @@ class SdoClient {
   }
 
   void upload_initiated(const sdo::Data& answer) {
-    if (!names_entry(answer)) return;
     const bool size_indicated = (answer[0] & sdo::size_indicated) != 0;
     if ((answer[0] & sdo::expedited) != 0) {
       std::uint32_t size = size_indicated ? 4u - ((answer[0] >> 2) & 3u) : 4u;
@@ -410,8 +514,7 @@ class SdoClient {
     sdo::put_multiplexer(request_, index_, sub_index_);
   }
 
-  void download_initiated(const sdo::Data& answer) {
-    if (!names_entry(answer)) return;
+  void download_initiated() {
     if (last_) return finish(ok);
     state_ = State::downloading;
     send_segment();
@@ -463,7 +566,6 @@ class SdoClient {
   }
 
   void block_upload_initiated(const sdo::Data& answer) {
-    if (!names_entry(answer)) return;
     checked_ = options_.crc && (answer[0] & sdo::crc_supported) != 0;
     if (!room_for((answer[0] & sdo::block_size_indicated) != 0, answer)) return;
     state_ = State::block_uploading;
@@ -531,7 +633,6 @@ class SdoClient {
   }
 
   void block_download_initiated(const sdo::Data& answer) {
-    if (!names_entry(answer)) return;
     checked_ = options_.crc && (answer[0] & sdo::crc_supported) != 0;
     state_ = State::block_downloading;
     begin_sub_block(answer[4]);
@@ -604,7 +705,7 @@ class SdoClient {
 
   /// Sends the request that waits, and of a block download as many segments as there is room for.
   void flush() {
-    while (has_request_) {
+    while (has_request_ && !held()) {
       Frame frame{};
       frame.id = channel_.request.can_id();
       frame.extended = channel_.request.extended();
@@ -629,13 +730,16 @@ class SdoClient {
   std::array<std::uint8_t, sdo::segment_bytes> last_segment_{};  ///< block upload: until its end tells how much counts
   std::uint32_t size_ = sdo::unknown_size;                       ///< of the value, as far as it is known
   std::uint32_t position_ = 0;
+  std::uint32_t late_entry_ = 0;
   TimePoint now_{};
   TimePoint deadline_{};
+  TimePoint late_until_{};  ///< when what is left over counts as lost
   AbortCode result_ = ok;
   std::uint16_t index_ = 0;
   std::uint16_t crc_ = 0;
   std::uint8_t sub_index_ = 0;
   State state_ = State::idle;
+  LeftOver left_over_ = LeftOver::none;
   std::uint8_t toggle_ = 0;
   std::uint8_t block_size_ = 0;  ///< download: segments of this sub-block
   std::uint8_t sequence_ = 0;    ///< of the last segment
@@ -645,6 +749,7 @@ class SdoClient {
   bool last_ = false;     ///< download: the last bytes are on their way
   bool checked_ = false;  ///< the CRC counts
   bool block_refused_ = false;
+  bool was_reset_ = false;  ///< the server, since the answer was left over
   bool has_request_ = false;
 };
 
