@@ -33,6 +33,7 @@ struct Host {
   std::vector<std::string>* log;
 
   void happened(NmtMasterEvent event, NodeId node_id, NmtState state) {
+    if (event == NmtMasterEvent::not_watched) return;  // most slaves here
     char text[40];
     std::snprintf(text, sizeof text, "(%d %s %02X)", node_id.value(), event_names[static_cast<int>(event)],
                   static_cast<unsigned>(state));
@@ -248,7 +249,7 @@ TEST(NmtMaster, AsksASilentSlaveEverySecond) {
   EXPECT_EQ(network.pass(1ms), (Lines{"605 40 00 10 00 00 00 00 00"}));
   EXPECT_EQ(network.pass(100ms), (Lines{"(5 B)", "605 80 00 10 00 00 00 04 05"}));
   EXPECT_EQ(network.pass(999ms), Lines{});
-  EXPECT_EQ(network.pass(1ms), (Lines{"605 40 00 10 00 00 00 00 00"}));
+  EXPECT_EQ(network.pass(1ms), (Lines{"000 80 05", "605 40 00 10 00 00 00 00 00"})) << "it may be in Stopped";
   EXPECT_EQ(network.pass(100ms), (Lines{"605 80 00 10 00 00 00 04 05"})) << "told once";
 }
 
@@ -311,7 +312,7 @@ TEST(NmtMaster, ABootUpInTheMiddleOfTheIdentityBeginsAnew) {
   master.on_frame(bench::frame("585 43 00 10 00 91 01 0F 00"), TimePoint{});
   EXPECT_EQ(bus.take(), "000 82 00 | 605 40 00 10 00 00 00 00 00 | 605 40 18 10 01 00 00 00 00");
   master.on_frame(bench::frame("705 00"), TimePoint{});
-  EXPECT_EQ(bus.take(), "605 40 00 10 00 00 00 00 00");
+  EXPECT_EQ(bus.take(), "605 80 18 10 01 22 00 00 08 | 605 40 00 10 00 00 00 00 00");
 }
 
 TEST(NmtMaster, KeepsCommandsUntilTheBusHasRoom) {
@@ -404,20 +405,72 @@ TEST(NmtMaster, WaitsForTheHeartbeatBeforeTheStart) {
   network.master.start(network.bus.now());
   EXPECT_EQ(network.pass(0ms),
             (Lines{"(network started)", "000 82 00", "705 00", "(5 boot-up 00)", "605 40 00 10 00 00 00 00 00",
-                   "705 7F", "(5 state 7F)", "585 43 00 10 00 91 01 0F 00", "(5 0)", "000 01 05"}));
+                   "705 7F", "(5 state 7F)", "585 43 00 10 00 91 01 0F 00", "605 40 17 10 00 00 00 00 00",
+                   "585 4B 17 10 00 32 00 00 00", "(5 0)", "000 01 05"}));
   EXPECT_EQ(network.pass(50ms), (Lines{"705 05", "(5 state 05)"}));
 }
 
-TEST(NmtMaster, ASlaveWithoutItsHeartbeatIsNotStarted) {
+TEST(NmtMaster, SetsTheHeartbeatOfASlaveThatHasNone) {
   NmtSlave slave{NodeId{5}, mandatory};
   slave.heartbeat_time = 100;
   Network network{{slave}, {}};
-  network.slave(5, false).switch_on();
+  Slave& device = network.slave(5, false);
+  device.switch_on();
   network.pass(0ms);
   network.master.start(network.bus.now());
-  EXPECT_EQ(network.pass(99ms).back(), "585 43 00 10 00 91 01 0F 00");
-  EXPECT_EQ(network.pass(1ms), (Lines{"(5 K)"}));
-  EXPECT_FALSE(network.master.network_started());
+  EXPECT_EQ(network.pass(60ms),
+            (Lines{"000 82 00", "705 00", "(5 boot-up 00)", "605 40 00 10 00 00 00 00 00", "585 43 00 10 00 91 01 0F 00",
+                   "605 40 17 10 00 00 00 00 00", "585 4B 17 10 00 00 00 00 00", "605 2B 17 10 00 32 00 00 00",
+                   "585 60 17 10 00 00 00 00 00", "(5 state 7F)", "(5 0)", "(network started)", "000 01 05",
+                   "(5 state 05)"}));
+  device.switch_off();
+  EXPECT_EQ(network.pass(1s).front(), "(5 lost 05)");
+}
+
+/// A master and a slave with a heartbeat time, whose frames are the test's, until 1017h is read.
+struct Asked {
+  explicit Asked(std::uint16_t heartbeat_time) {
+    slaves[0].heartbeat_time = heartbeat_time;
+    master.start(TimePoint{});
+    EXPECT_EQ(answer("705 00"), "000 82 00 | 605 40 00 10 00 00 00 00 00");
+    EXPECT_EQ(answer("585 43 00 10 00 91 01 0F 00"), "605 40 17 10 00 00 00 00 00");
+  }
+  std::string answer(const std::string& text) {
+    master.on_frame(bench::frame(text), now);
+    return bus.take();
+  }
+
+  bench::RecordingBus bus;
+  Lines log;
+  TimePoint now{};
+  std::array<NmtSlave, 1> slaves{NmtSlave{NodeId{5}, mandatory}};
+  canopen::NmtMaster<bench::RecordingBus, 1, Host> master{bus, slaves, {}, 100ms, Host{&log}};
+};
+
+TEST(NmtMaster, LeavesAHeartbeatTimeThatIsShortEnough) {
+  EXPECT_EQ(Asked{600}.answer("585 4B 17 10 00 90 01 00 00"), "") << "400 ms";
+  EXPECT_EQ(Asked{600}.answer("585 4B 17 10 00 91 01 00 00"), "605 2B 17 10 00 2C 01 00 00") << "401 ms: 300 ms then";
+  EXPECT_EQ(Asked{600}.answer("585 4B 17 10 00 00 00 00 00"), "605 2B 17 10 00 2C 01 00 00");
+  EXPECT_EQ(Asked{1}.answer("585 4B 17 10 00 00 00 00 00"), "605 2B 17 10 00 01 00 00 00");
+  EXPECT_EQ(Asked{600}.answer("585 80 17 10 00 01 00 01 06"), "605 2B 17 10 00 2C 01 00 00") << "write-only";
+}
+
+TEST(NmtMaster, ASlaveWithoutItsHeartbeatIsNotStarted) {
+  Asked plant{100};
+  EXPECT_EQ(plant.answer("585 4B 17 10 00 32 00 00 00"), "");
+  plant.master.on_time(TimePoint{99ms});
+  EXPECT_EQ(plant.log, (Lines{"(5 boot-up 00)"}));
+  plant.master.on_time(TimePoint{100ms});
+  EXPECT_EQ(plant.log, (Lines{"(5 boot-up 00)", "(5 K)"}));
+  EXPECT_FALSE(plant.master.network_started());
+  EXPECT_EQ(plant.bus.take(), "");
+}
+
+TEST(NmtMaster, ASlaveThatCannotHaveAHeartbeatIsNotStarted) {
+  Asked plant{100};
+  plant.answer("585 80 17 10 00 00 00 02 06");
+  EXPECT_EQ(plant.answer("585 80 17 10 00 00 00 02 06"), "");
+  EXPECT_EQ(plant.log, (Lines{"(5 boot-up 00)", "(5 K)"}));
 }
 
 TEST(NmtMaster, ASlaveThatDoesNotAnswerGuardingIsNotStarted) {
@@ -478,7 +531,8 @@ TEST(NmtMaster, ResetsALostSlaveAndBootsItAgain) {
   EXPECT_EQ(network.master.state(NodeId{5}), std::nullopt);
   device.switch_on();
   EXPECT_EQ(network.pass(10ms), (Lines{"705 00", "(5 boot-up 00)", "605 40 00 10 00 00 00 00 00", "(5 back 7F)",
-                                       "585 43 00 10 00 91 01 0F 00", "(5 0)", "000 01 05"}));
+                                       "585 43 00 10 00 91 01 0F 00", "605 40 17 10 00 00 00 00 00",
+                                       "585 4B 17 10 00 32 00 00 00", "(5 0)", "000 01 05"}));
 }
 
 TEST(NmtMaster, StopsAllNodesWhenAMandatorySlaveIsLost) {
@@ -556,8 +610,9 @@ TEST(NmtMaster, BootsANetworkOfFive) {
                       "(3 boot-up 00)", "(3 state 7F)", "(3 0)", "000 01 03",  //
                       "(4 boot-up 00)", "(4 M)",                               //
                       "(3 state 05)",   "(2 state 05)",                        //
-                      "(5 B)",          "(6 B)",                               //
+                      "(6 B)",          "(5 B)",                               //
                       "(6 boot-up 00)", "(6 state 7F)", "(6 0)", "(network started)", "000 01 06", "(6 state 05)",
+                      "000 80 05",
                   }));
   EXPECT_EQ(fourth.state(), NmtState::pre_operational);
   EXPECT_EQ(late.state(), NmtState::operational);
@@ -576,7 +631,7 @@ TEST(BootStatus, HasALetterAndATextForEach) {
     letters += static_cast<char>(row.status);
     EXPECT_EQ(to_text(row.status), row.text);
   }
-  EXPECT_EQ(letters, "0ABCDFKLMNO");
+  EXPECT_EQ(letters, "0ABCDFJKLMNO");
   EXPECT_EQ(to_text(static_cast<BootStatus>('Z')), "unknown boot status");
 }
 

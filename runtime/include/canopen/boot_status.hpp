@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <string_view>
 
+#include "canopen/abort_code.hpp"
+
 namespace canopen {
 
-/// The letters are those of CiA 302-2. G, H and I are of program download, J of configuration: not of this master.
+/// The letters are those of CiA 302-2. G, H and I belong to program download, which this master does not do.
 enum class BootStatus : char {
   booted = '0',
   not_listed = 'A',
@@ -14,6 +16,7 @@ enum class BootStatus : char {
   device_type = 'C',
   vendor_id = 'D',
   no_guarding = 'F',
+  configuration = 'J',
   no_heartbeat = 'K',
   was_operational = 'L',
   product_code = 'M',
@@ -29,10 +32,11 @@ struct BootStatusText {
 inline constexpr BootStatusText boot_status_texts[] = {
     {BootStatus::booted, "booted"},
     {BootStatus::not_listed, "node is not in the network list 1F81h"},
-    {BootStatus::no_response, "device type 1000h could not be read"},
+    {BootStatus::no_response, "no answer, or device type 1000h could not be read"},
     {BootStatus::device_type, "device type 1000h is not the one of 1F84h"},
     {BootStatus::vendor_id, "vendor-ID 1018h:01 is not the one of 1F85h"},
     {BootStatus::no_guarding, "no answer to guarding when error control was started"},
+    {BootStatus::configuration, "configuration failed"},
     {BootStatus::no_heartbeat, "no heartbeat when error control was started"},
     {BootStatus::was_operational, "node was Operational already and stays so"},
     {BootStatus::product_code, "product code 1018h:02 is not the one of 1F86h"},
@@ -46,5 +50,17 @@ inline constexpr BootStatusText boot_status_texts[] = {
   }
   return "unknown boot status";
 }
+
+/// How a boot-up ended, and why.
+struct BootResult {
+  BootStatus status = BootStatus::booted;
+  AbortCode abort_code = ok;   ///< of the SDO transfer that the status is about, or of the application's configuration
+  std::uint16_t index = 0;     ///< entry of that transfer, or of a number of the identity that differs; 0: none
+  std::uint8_t sub_index = 0;
+  std::uint32_t expected = 0;  ///< number of the identity by the network list
+  std::uint32_t seen = 0;      ///< number of the identity that the node has, when `abort_code` is `ok`
+
+  constexpr operator BootStatus() const { return status; }  // NOLINT(google-explicit-constructor): the short form
+};
 
 }  // namespace canopen

@@ -41,11 +41,18 @@ struct NmtSlave {
   std::uint32_t product_code = 0;     ///< 1F86h, compared with 1018h:02
   std::uint32_t revision_number = 0;  ///< 1F87h, compared with 1018h:03
   std::uint32_t serial_number = 0;    ///< 1F88h, compared with 1018h:04
-  std::uint16_t heartbeat_time = 0;   ///< ms, as 1016h has it; 0: guarded with the times of `assignment`
+  /// ms without a heartbeat after which the slave is lost, as 1016h has it. During boot-up 1017h of the slave is written
+  /// with half of it when it is 0 or too long for that. 0: guarded with the times of `assignment`.
+  std::uint16_t heartbeat_time = 0;
+  /// Concise DCF as 1F22h has it: written to the slave each time it boots. It must outlive the master.
+  std::span<const std::uint8_t> concise_dcf{};
 
   [[nodiscard]] constexpr bool has(std::uint32_t bit) const { return (assignment & bit) != 0; }
   [[nodiscard]] constexpr std::uint8_t life_time_factor() const { return static_cast<std::uint8_t>(assignment >> 8); }
   [[nodiscard]] constexpr std::uint16_t guard_time() const { return static_cast<std::uint16_t>(assignment >> 16); }
+
+  /// Whether a loss of the slave is noticed, by heartbeat or guarding.
+  [[nodiscard]] constexpr bool watched() const { return heartbeat_time != 0 || guard_time() != 0; }
 };
 
 /// What counts for all of them.

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string_view>
 
 #include "canopen/cob_id.hpp"
 #include "canopen/frame.hpp"
@@ -17,6 +18,16 @@ enum class NmtState : std::uint8_t {
   operational = 5,
   pre_operational = 127,
 };
+
+[[nodiscard]] constexpr std::string_view to_text(NmtState state) {
+  switch (state) {
+    case NmtState::initialisation: return "Initialisation";
+    case NmtState::stopped: return "Stopped";
+    case NmtState::operational: return "Operational";
+    case NmtState::pre_operational: return "Pre-operational";
+  }
+  return "unknown state";
+}
 
 /// The commands of an NMT master (CiA 301, 7.2.8.3.1).
 enum class NmtCommand : std::uint8_t {

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "canopen/abort_code.hpp"
@@ -20,6 +22,7 @@
 #include "canopen/node_guarding.hpp"
 #include "canopen/node_id.hpp"
 #include "canopen/sdo_client.hpp"
+#include "canopen/sdo_queue.hpp"
 #include "canopen/time.hpp"
 
 namespace canopen {
@@ -42,7 +45,21 @@ enum class NmtMasterEvent : std::uint8_t {
   toggle_error,      ///< guarding: an answer with the toggle bit of the one before
   lost,              ///< no heartbeat, or no answer to guarding, for its time
   back,              ///< the first one after that
+  not_watched,       ///< it has booted, and its loss will not be noticed: neither heartbeat nor guarding is in the list
 };
+
+[[nodiscard]] constexpr std::string_view to_text(NmtMasterEvent event) {
+  switch (event) {
+    case NmtMasterEvent::boot_up: return "boot-up";
+    case NmtMasterEvent::state_changed: return "NMT state changed";
+    case NmtMasterEvent::unexpected_state: return "NMT state is not the commanded one";
+    case NmtMasterEvent::toggle_error: return "toggle bit of node guarding did not alternate";
+    case NmtMasterEvent::lost: return "lost";
+    case NmtMasterEvent::back: return "back";
+    case NmtMasterEvent::not_watched: return "not watched: no heartbeat time and no guard time in the network list";
+  }
+  return "unknown event";
+}
 
 /// One number of a slave's identity: where it is read, what it is compared with, how a difference is told.
 struct IdentityCheck {
@@ -61,32 +78,45 @@ inline constexpr IdentityCheck identity_checks[] = {
     {0x1018, 4, &NmtSlave::serial_number, BootStatus::serial_number},
 };
 
-/// Boots up to `Count` slaves and watches them. Each is reset, identified over SDO when its boot-up message has come
-/// (or after a second, for a message that was missed), watched by heartbeat or guarding, and started. A slave that does
-/// not answer is asked again every second. One with `keep_alive` that is found Operational is not reset; to find that
-/// it needs a heartbeat or guarding. The network is started when all mandatory slaves have booted; slaves that come
-/// later are booted as they come. A wrong identity ends the boot-up of a slave until its next boot-up message.
+/// Boots up to `Count` slaves and watches them (CiA 302-2, boot NMT slave). Each is reset, and when its boot-up message
+/// has arrived, or after a second, as the message may have been missed:
+///   1. identified over SDO; a wrong identity ends the boot-up until the next boot-up message,
+///   2. configured: its concise DCF (1F22h) is written, then the application configures it,
+///   3. told its heartbeat time: where the list has one, 1017h is read, and written when it is 0 or too long,
+///   4. watched by heartbeat or guarding, and
+///   5. started.
+/// A slave that does not answer is asked again every second, and commanded to Pre-operational before, as a slave in
+/// Stopped does not answer. One with `keep_alive` that is found Operational is not reset or configured; to find that it
+/// needs a heartbeat or guarding. The network is started when all mandatory slaves have booted; slaves that come later are
+/// booted as they come.
 ///
-/// Slaves are identified one after the other through one `Client`, which is built from the bus, a node-ID and a
-/// time-out and has upload, busy, result, data, on_frame, on_time and next_deadline as `SdoClient` has.
+/// The master and the application share the SDO of a slave: `request` appends a transfer to the queue of its node, where
+/// the boot-up has its turn as well. Up to `Clients` nodes are served at the same time; `Requests` of the application may
+/// wait. A boot-up message ends all requests to its node with 0800 0022h.
 ///
 /// The application around it (`Host`) is told:
 ///   happened(NmtMasterEvent, NodeId, NmtState)   with the state last told
-///   booted(NodeId, BootStatus)                   how a boot-up ended; no_response: the slave is asked again
+///   configure(NodeId)                            optional: configure the slave now, in as many requests as it takes, and
+///                                                call `configured` then; called again when the slave has booted up again
+///   booted(NodeId, BootResult)                   how a boot-up ended; no_response: the slave is asked again. A Host may
+///                                                take a BootStatus instead
 ///   network_started()                            unless 1F80h forbids it, the master's own device may be started now
 ///   boot_time_elapsed()                          a mandatory slave is missing; it is still waited for
-template <Bus B, std::size_t Count, class Host, class Client = SdoClient<B>>
+template <Bus B, std::size_t Count, class Host, std::size_t Requests = 4, std::size_t Clients = (Count < 4 ? Count : 4)>
 class NmtMaster {
  public:
   /// Of `slaves` the first `Count` are looked after; they must outlive the master. 1F81h bit 0 has to be set in those
   /// that are to be booted.
-  constexpr NmtMaster(B& can_bus, std::span<const NmtSlave> slaves, NmtStartUp start_up, Duration sdo_timeout,
+  constexpr NmtMaster(B& can_bus, std::span<const NmtSlave> slaves, NmtStartUp start_up, SdoClientOptions options,
                       Host host)
       : bus_{can_bus},
         slaves_{slaves.first(std::min(slaves.size(), Count))},
         start_up_{start_up},
-        sdo_timeout_{sdo_timeout},
-        host_{std::move(host)} {}
+        host_{std::move(host)},
+        sdo_{can_bus, options} {}
+  constexpr NmtMaster(B& can_bus, std::span<const NmtSlave> slaves, NmtStartUp start_up, Duration sdo_timeout,
+                      Host host)
+      : NmtMaster{can_bus, slaves, start_up, SdoClientOptions{.timeout = sdo_timeout}, std::move(host)} {}
   NmtMaster(const NmtMaster&) = delete;
   NmtMaster& operator=(const NmtMaster&) = delete;
 
@@ -103,6 +133,7 @@ class NmtMaster {
         identify(i);
       } else {
         entries_[i].command = NmtCommand::reset_communication;
+        entries_[i].was_reset = true;
       }
     }
     serve();
@@ -113,6 +144,27 @@ class NmtMaster {
     now_ = now;
     if (const std::optional<std::size_t> i = find(node_id)) reset(*i, NmtCommand::reset_communication);
     serve();
+  }
+
+  /// The application has configured a slave, after `configure` of the host: `ok`, or why it could not. Without effect
+  /// when the slave has been lost, reset or has booted up since.
+  void configured(NodeId node_id, AbortCode result, TimePoint now) {
+    now_ = now;
+    const std::optional<std::size_t> i = find(node_id);
+    if (!i || entries_[*i].step != Step::configuring) return;
+    if (result != ok) {
+      finish(*i, {BootStatus::configuration, result});
+    } else {
+      prepare_heartbeat(*i);
+    }
+    serve();
+  }
+
+  /// Appends a transfer of the application to the queue of a node, listed or not. Memory stays in use until `done` has
+  /// been called, which is with 0800 0022h when the node boots up. 060A 0023h: `Requests` of them wait already.
+  Result<void> request(NodeId node_id, const SdoRequest& what, TimePoint now) {
+    if (sdo_.waiting(this) >= Requests) return AbortCode::no_resource;
+    return sdo_.submit(node_id, what, now);
   }
 
   /// Sends a command to one node, or to all with node-ID 0. False when the bus had no room: it is not sent.
@@ -127,7 +179,7 @@ class NmtMaster {
   /// Takes a frame from the bus.
   void on_frame(const Frame& frame, TimePoint now) {
     now_ = now;
-    if (client_) client_->on_frame(frame, now);
+    sdo_.on_frame(frame, now);
     if (const std::optional<ErrorControlMessage> message = error_control_message(frame)) on_message(*message);
     serve();
   }
@@ -135,7 +187,7 @@ class NmtMaster {
   /// Lets time pass. To be called at `next_deadline()` and when the bus has room again.
   void on_time(TimePoint now) {
     now_ = now;
-    if (client_) client_->on_time(now);
+    sdo_.on_time(now);
     heartbeats_.on_time(now, Watch{*this});
     if (booting_ && !network_started_ && boot_time_runs_ && now >= boot_deadline_) {
       boot_time_runs_ = false;
@@ -151,7 +203,7 @@ class NmtMaster {
     const auto consider = [&next](std::optional<TimePoint> other) {
       if (other && (!next || *other < *next)) next = other;
     };
-    if (client_) consider(client_->next_deadline());
+    consider(sdo_.next_deadline(std::any_of(entries_.begin(), entries_.end(), wants_sdo)));
     if (booting_ && !network_started_ && boot_time_runs_) consider(boot_deadline_);
     for (std::size_t i = 0; i < slaves_.size(); ++i) {
       if (entries_[i].command) return now_;
@@ -186,25 +238,48 @@ class NmtMaster {
  private:
   static constexpr Duration retry_time = std::chrono::seconds{1};
   static constexpr std::size_t checks = std::size(identity_checks);
-  static constexpr std::size_t nobody = Count;
 
   enum class Step : std::uint8_t {
     idle,                    ///< not begun, or ended
     waiting,                 ///< for a boot-up message, or to be asked without one
     identifying,             ///< `check` is the number that is read, or is next to be read
+    downloading,             ///< the entry of the concise DCF at `position`
+    configuring,             ///< the application does
+    reading_heartbeat_time,  ///< 1017h
+    writing_heartbeat_time,
     starting_error_control,  ///< for the first heartbeat or answer
   };
 
   struct Entry {
     TimePoint deadline{};
-    std::optional<NmtCommand> command{};  ///< waits to be sent
+    std::array<std::uint8_t, 4> number{};  ///< that is read or written
+    std::uint32_t position = 0;            ///< in the concise DCF, of the entry that is written
+    std::uint32_t left = 0;                ///< entries of the concise DCF that are not written yet
+    std::optional<NmtCommand> command{};   ///< waits to be sent
     std::optional<BootStatus> status{};
     Step step = Step::idle;
     std::uint8_t check = 0;
+    bool asked = false;      ///< a request of the master is in the queue
+    bool dropped = false;    ///< its answer does not matter any more
     bool booted_up = false;  ///< its boot-up message has come: it is asked before those that are silent
+    bool silent = false;     ///< it has not answered
     bool was_reset = false;
     bool complete = false;  ///< has booted and is not lost
   };
+
+  [[nodiscard]] static bool wants_sdo(const Entry& entry) {
+    switch (entry.step) {
+      case Step::identifying:
+      case Step::downloading:
+      case Step::reading_heartbeat_time:
+      case Step::writing_heartbeat_time: return !entry.asked;
+      case Step::idle:
+      case Step::waiting:
+      case Step::configuring:
+      case Step::starting_error_control: return false;
+    }
+    return false;
+  }
 
   /// Hands the events of heartbeats and guarding on.
   struct Watch {
@@ -258,13 +333,14 @@ class NmtMaster {
     all_command_ = to_all;
     boot_time_runs_ = start_up_.boot_time.count() != 0;
     boot_deadline_ = now_ + start_up_.boot_time;
-    release_client();
     for (std::size_t i = 0; i < slaves_.size(); ++i) {
+      const bool asked = entries_[i].asked;
       entries_[i] = Entry{};
+      entries_[i].asked = entries_[i].dropped = asked;
+      entries_[i].was_reset = to_all.has_value();
       guards_[i].stop();
       if (!slaves_[i].has(slave_assignment::listed)) continue;
-      const ConsumerHeartbeatTime time{slaves_[i].node_id, slaves_[i].heartbeat_time};
-      heartbeats_.configure(i, time);
+      watch_heartbeat(i);
       wait(i);
     }
     check_network();
@@ -274,12 +350,23 @@ class NmtMaster {
 
   void wait(std::size_t i) {
     entries_[i].step = Step::waiting;
+    entries_[i].dropped = entries_[i].asked;
     entries_[i].deadline = now_ + retry_time;
   }
 
-  void reset(std::size_t i, NmtCommand command) {
-    if (active_ == i) release_client();
+  /// The slave is watched from its next heartbeat on.
+  void watch_heartbeat(std::size_t i) {
+    heartbeats_.configure(i, ConsumerHeartbeatTime{slaves_[i].node_id, slaves_[i].heartbeat_time});
+  }
+
+  /// A slave that is being reset or booted may be silent. One that is lost still comes back.
+  void stop_watching(std::size_t i) {
     guards_[i].stop();
+    if (heartbeats_.state_of(slaves_[i].node_id)) watch_heartbeat(i);
+  }
+
+  void reset(std::size_t i, NmtCommand command) {
+    stop_watching(i);
     entries_[i].command = command;
     entries_[i].complete = false;
     entries_[i].was_reset = true;
@@ -288,11 +375,77 @@ class NmtMaster {
   }
 
   void identify(std::size_t i) {
-    if (active_ == i) release_client();
     guards_[i].stop();
     entries_[i].step = Step::identifying;
+    entries_[i].dropped = entries_[i].asked;
     entries_[i].check = 0;
     entries_[i].complete = false;
+  }
+
+  /// A slave that has not answered may be in Stopped. One that may have to be kept alive is not commanded.
+  void ask_again(std::size_t i) {
+    const bool may_be_operational = slaves_[i].has(slave_assignment::keep_alive) && !entries_[i].was_reset;
+    if (entries_[i].silent && !may_be_operational && !entries_[i].command) {
+      entries_[i].command = NmtCommand::enter_pre_operational;
+    }
+    identify(i);
+  }
+
+  /// Whether the slave may be Operational from before the master's start, which is looked at before anything is changed.
+  [[nodiscard]] bool may_be_kept_alive(std::size_t i) const {
+    return slaves_[i].has(slave_assignment::keep_alive) && !entries_[i].was_reset && !entries_[i].booted_up;
+  }
+
+  void configure(std::size_t i) {
+    const std::span<const std::uint8_t> dcf = slaves_[i].concise_dcf;
+    entries_[i].position = 4;
+    entries_[i].left = dcf.empty() ? 0 : number_of(dcf.first(std::min<std::size_t>(dcf.size(), 4)));
+    if (entries_[i].left == 0) return configure_by_host(i);
+    entries_[i].step = Step::downloading;
+    if (!dcf_data(i)) finish(i, {BootStatus::configuration, AbortCode::length_mismatch});
+  }
+
+  /// The bytes of the present entry of the concise DCF; nothing when the DCF is shorter than it says.
+  [[nodiscard]] std::optional<std::span<const std::uint8_t>> dcf_data(std::size_t i) const {
+    constexpr std::size_t head = 7;
+    const std::span<const std::uint8_t> dcf = slaves_[i].concise_dcf;
+    const std::size_t at = entries_[i].position;
+    if (dcf.size() < at || dcf.size() - at < head) return std::nullopt;
+    const std::size_t size = number_of(dcf.subspan(at + 3, 4));
+    if (dcf.size() - at - head < size) return std::nullopt;
+    return dcf.subspan(at + head, size);
+  }
+
+  void dcf_entry_written(std::size_t i) {
+    constexpr std::uint32_t head = 7;
+    entries_[i].position += head + static_cast<std::uint32_t>(dcf_data(i)->size());
+    if (--entries_[i].left == 0) return configure_by_host(i);
+    if (!dcf_data(i)) finish(i, {BootStatus::configuration, AbortCode::length_mismatch});
+  }
+
+  void configure_by_host(std::size_t i) {
+    if constexpr (requires { host_.configure(NodeId{}); }) {
+      entries_[i].step = Step::configuring;
+      host_.configure(slaves_[i].node_id);
+    } else {
+      prepare_heartbeat(i);
+    }
+  }
+
+  void prepare_heartbeat(std::size_t i) {
+    if (!beats(i)) return start_error_control(i);
+    entries_[i].step = Step::reading_heartbeat_time;
+  }
+
+  /// Two heartbeats in the consumer's time leave room for one that is late or lost on the way.
+  void heartbeat_time_read(std::size_t i, const SdoAnswer& answer) {
+    const std::uint32_t consumer = slaves_[i].heartbeat_time;
+    const std::uint32_t producer = number_of(answer.data.first(std::min<std::size_t>(answer.data.size(), 2)));
+    const bool is_short_enough = producer != 0 && 3 * producer <= 2 * consumer;
+    if (answer.result == ok && is_short_enough) return start_error_control(i);
+    const std::uint32_t wanted = std::max<std::uint32_t>(consumer / 2, 1);
+    entries_[i].number = {static_cast<std::uint8_t>(wanted), static_cast<std::uint8_t>(wanted >> 8)};
+    entries_[i].step = Step::writing_heartbeat_time;
   }
 
   void start_error_control(std::size_t i) {
@@ -308,7 +461,7 @@ class NmtMaster {
     const std::optional<NmtState> state = state_of(i);
     const bool heard = state && *state != NmtState::initialisation;
     if (!heard && (beats(i) || is_guarded(i)) && now_ < entries_[i].deadline) return;
-    if (slaves_[i].has(slave_assignment::keep_alive) && !entries_[i].was_reset && !entries_[i].booted_up) {
+    if (may_be_kept_alive(i)) {
       if (heard && *state == NmtState::operational) return finish(i, BootStatus::was_operational);
       return reset(i, NmtCommand::reset_communication);
     }
@@ -316,17 +469,28 @@ class NmtMaster {
     finish(i, beats(i) ? BootStatus::no_heartbeat : BootStatus::no_guarding);
   }
 
-  void finish(std::size_t i, BootStatus status) {
+  void finish(std::size_t i, BootStatus status) { finish(i, BootResult{status}); }
+
+  void finish(std::size_t i, const BootResult& result) {
+    const BootStatus status = result.status;
     Entry& entry = entries_[i];
     entry.step = Step::idle;
     entry.status = status;
     entry.complete = status == BootStatus::booted || status == BootStatus::was_operational;
     if (!entry.complete) guards_[i].stop();
-    host_.booted(slaves_[i].node_id, status);
+    host_.booted(slaves_[i].node_id, result);
+    if (entry.complete && !slaves_[i].watched()) {
+      tell(NmtMasterEvent::not_watched, slaves_[i].node_id, NmtState::initialisation);
+    }
     const bool one_by_one = !start_up_.has(nmt_start_up::start_all) || network_started_;
     const bool may_start = slaves_[i].has(slave_assignment::boot) && !start_up_.has(nmt_start_up::no_slave_start);
     if (status == BootStatus::booted && may_start && one_by_one) entry.command = NmtCommand::start;
     check_network();
+  }
+
+  /// Whether a slave is in a step before its error control.
+  [[nodiscard]] bool is_being_booted(std::size_t i) const {
+    return entries_[i].step >= Step::identifying && entries_[i].step < Step::starting_error_control;
   }
 
   /// The network starts when no mandatory slave is missing.
@@ -349,35 +513,42 @@ class NmtMaster {
     if (boot_up) {
       boot_ups_[message.node_id.value() / 32u] |= std::uint32_t{1} << (message.node_id.value() % 32u);
       tell(NmtMasterEvent::boot_up, message.node_id, message.state);
+      sdo_.node_reset(message.node_id, now_);
     }
     const std::optional<std::size_t> i = find(message.node_id);
     if (!i) {
-      if (boot_up) host_.booted(message.node_id, BootStatus::not_listed);
+      if (boot_up) host_.booted(message.node_id, BootResult{BootStatus::not_listed});
       return;
     }
     heartbeats_.on_message(message, now_, Watch{*this});
     guards_[*i].on_message(message, Watch{*this});
-    if (boot_up) on_boot_up(*i);
+    if (boot_up) return on_boot_up(*i);
+    const bool is_silent = entries_[*i].step == Step::waiting || entries_[*i].step == Step::identifying;
+    if (message.state == NmtState::stopped && is_silent && !entries_[*i].command) {
+      reset(*i, NmtCommand::reset_communication);  // which it has missed: it does not answer in Stopped
+    }
   }
 
   /// A slave that was booted already is booted again where 1F81h says so.
   void on_boot_up(std::size_t i) {
     Entry& entry = entries_[i];
-    if (entry.command == NmtCommand::start) entry.command.reset();
+    if (entry.command == NmtCommand::start || entry.command == NmtCommand::enter_pre_operational) entry.command.reset();
     entry.booted_up = true;
+    entry.silent = false;
+    stop_watching(i);
     if (!booting_) return;
     if (entry.step != Step::idle || slaves_[i].has(slave_assignment::boot)) {
       identify(i);
     } else {
-      guards_[i].stop();
       entry.complete = false;
     }
   }
 
   /// A slave is lost (CiA 302-2, error handling): all nodes are stopped or reset, or the slave alone is reset.
   void on_lost(NodeId node_id, NmtState state) {
-    tell(NmtMasterEvent::lost, node_id, state);
     const std::optional<std::size_t> i = find(node_id);
+    if (i && is_being_booted(*i)) return watch_heartbeat(*i);  // its heartbeat is not set up yet
+    tell(NmtMasterEvent::lost, node_id, state);
     if (!i) return;
     if (entries_[*i].step == Step::starting_error_control) {
       guards_[*i].stop();
@@ -398,71 +569,112 @@ class NmtMaster {
     }
   }
 
-  // Identity
+  // SDO
 
-  void release_client() {
-    client_.reset();
-    active_ = nobody;
-  }
-
-  /// Asks one slave after the other: those whose boot-up message has come first.
-  void serve_identity() {
-    for (;;) {
-      if (active_ == nobody) {
-        const std::optional<std::size_t> i = next_to_identify();
-        if (!i) return;
-        active_ = *i;
-        next_ = *i + 1;
-        client_.emplace(bus_, slaves_[*i].node_id, sdo_timeout_);
-        begin_check();
+  /// Puts a request of each slave that needs one into the queue as soon as it can begin, or has to wait for the
+  /// application's at its node; those whose boot-up message has come first.
+  void serve_sdo() {
+    for (const bool booted_up : {true, false}) {
+      for (std::size_t i = 0; i < slaves_.size(); ++i) {
+        if (!wants_sdo(entries_[i]) || entries_[i].booted_up != booted_up) continue;
+        const NodeId node_id = slaves_[i].node_id;
+        if (!sdo_.busy(node_id) && !sdo_.ready(node_id, now_)) continue;
+        entries_[i].asked = static_cast<bool>(sdo_.submit(node_id, request_of(i), now_));
       }
-      if (client_->busy()) return;
-      take_answer();
     }
   }
 
-  [[nodiscard]] std::optional<std::size_t> next_to_identify() const {
-    std::optional<std::size_t> silent;
-    for (std::size_t n = 0; n < slaves_.size(); ++n) {
-      std::size_t i = next_ + n;
-      if (i >= slaves_.size()) i -= slaves_.size();
-      if (entries_[i].step != Step::identifying) continue;
-      if (entries_[i].booted_up) return i;
-      if (!silent) silent = i;
+  [[nodiscard]] SdoRequest request_of(std::size_t i) {
+    Entry& entry = entries_[i];
+    SdoRequest request;
+    request.done = [](void* context, NodeId node_id, const SdoAnswer& answer) {
+      static_cast<NmtMaster*>(context)->on_answer(node_id, answer);
+    };
+    request.context = this;
+    std::tie(request.index, request.sub_index) = entry_of(i);
+    request.download = entry.step == Step::downloading || entry.step == Step::writing_heartbeat_time;
+    if (entry.step == Step::downloading) {
+      request.bytes = *dcf_data(i);
+    } else if (request.download) {
+      request.bytes = std::span{entry.number}.first(2);
+    } else {
+      request.memory = entry.number;
     }
-    return silent;
+    return request;
   }
 
-  void begin_check() {
-    const IdentityCheck& check = identity_checks[entries_[active_].check];
-    (void)client_->upload(check.index, check.sub_index, answer_, now_);
+  /// Index and sub-index of the present request.
+  [[nodiscard]] std::pair<std::uint16_t, std::uint8_t> entry_of(std::size_t i) const {
+    if (entries_[i].step == Step::identifying) {
+      const IdentityCheck& check = identity_checks[entries_[i].check];
+      return {check.index, check.sub_index};
+    }
+    if (entries_[i].step != Step::downloading) return {0x1017, 0};
+    const std::span<const std::uint8_t> entry = slaves_[i].concise_dcf.subspan(entries_[i].position, 3);
+    return {static_cast<std::uint16_t>(number_of(entry.first(2))), entry[2]};
   }
 
-  void take_answer() {
-    const std::size_t i = active_;
-    const IdentityCheck& check = identity_checks[entries_[i].check];
-    const bool answered = client_->result() == ok;
-    if (entries_[i].check == 0 && !answered) return on_no_response(i);
+  void on_answer(NodeId node_id, const SdoAnswer& answer) {
+    const std::optional<std::size_t> found = find(node_id);
+    if (!found) return;
+    const std::size_t i = *found;
+    entries_[i].asked = false;
+    if (std::exchange(entries_[i].dropped, false)) return;
+    if (answer.result == AbortCode::timeout) return on_no_response(i, answer);
+    switch (entries_[i].step) {
+      case Step::identifying: return identity_read(i, answer);
+      case Step::downloading:
+        if (answer.result != ok) return finish(i, failure(i, BootStatus::configuration, answer));
+        return dcf_entry_written(i);
+      case Step::reading_heartbeat_time: return heartbeat_time_read(i, answer);
+      case Step::writing_heartbeat_time:
+        if (answer.result != ok) return finish(i, failure(i, BootStatus::no_heartbeat, answer));
+        return start_error_control(i);
+      case Step::idle:
+      case Step::waiting:
+      case Step::configuring:
+      case Step::starting_error_control: return;
+    }
+  }
+
+  /// What a transfer of the master has failed with.
+  [[nodiscard]] BootResult failure(std::size_t i, BootStatus status, const SdoAnswer& answer) const {
+    const auto [index, sub_index] = entry_of(i);
+    return {status, answer.result, index, sub_index};
+  }
+
+  void identity_read(std::size_t i, const SdoAnswer& answer) {
+    Entry& entry = entries_[i];
+    const IdentityCheck& check = identity_checks[entry.check];
+    const bool answered = answer.result == ok;
+    if (entry.check == 0 && !answered) return on_no_response(i, answer);
     const std::uint32_t expected = slaves_[i].*check.expected;
-    if (expected != 0 && (!answered || number_of(client_->data()) != expected)) {
-      release_client();
-      return finish(i, check.failure);
+    if (expected != 0 && (!answered || number_of(answer.data) != expected)) {
+      BootResult result = failure(i, check.failure, answer);
+      result.expected = expected;
+      result.seen = number_of(answer.data);
+      return finish(i, result);
     }
     do {
-      ++entries_[i].check;
-    } while (entries_[i].check < checks && slaves_[i].*identity_checks[entries_[i].check].expected == 0);
-    if (entries_[i].check < checks) return begin_check();
-    release_client();
-    start_error_control(i);
+      ++entry.check;
+    } while (entry.check < checks && slaves_[i].*identity_checks[entry.check].expected == 0);
+    if (entry.check < checks) return;
+    entry.silent = false;
+    if (may_be_kept_alive(i)) {
+      start_error_control(i);
+    } else {
+      configure(i);
+    }
   }
 
-  void on_no_response(std::size_t i) {
-    release_client();
+  void on_no_response(std::size_t i, const SdoAnswer& answer) {
+    const BootResult result = failure(i, BootStatus::no_response, answer);
     entries_[i].booted_up = false;
+    entries_[i].silent = true;
     wait(i);
     if (entries_[i].status == BootStatus::no_response) return;
     entries_[i].status = BootStatus::no_response;
-    host_.booted(slaves_[i].node_id, BootStatus::no_response);
+    host_.booted(slaves_[i].node_id, result);
   }
 
   [[nodiscard]] static std::uint32_t number_of(std::span<const std::uint8_t> bytes) {
@@ -475,14 +687,14 @@ class NmtMaster {
 
   void serve() {
     send_commands();
-    serve_identity();
+    serve_sdo();
     for (std::size_t i = 0; i < slaves_.size(); ++i) {
-      if (entries_[i].step == Step::waiting && now_ >= entries_[i].deadline) identify(i);
+      if (entries_[i].step == Step::waiting && now_ >= entries_[i].deadline) ask_again(i);
       (void)guards_[i].serve(bus_, now_, Watch{*this});
       if (entries_[i].step == Step::starting_error_control) check_error_control(i);
     }
     send_commands();
-    serve_identity();
+    serve_sdo();
   }
 
   /// Sends the commands that wait; what finds no room stays.
@@ -511,16 +723,12 @@ class NmtMaster {
   B& bus_;
   std::span<const NmtSlave> slaves_;
   NmtStartUp start_up_;
-  Duration sdo_timeout_;
   [[no_unique_address]] Host host_;
   std::array<Entry, Count> entries_{};
   std::array<NodeGuardingMaster, Count> guards_{};
   HeartbeatConsumer<Count> heartbeats_{};
-  std::optional<Client> client_{};
-  std::array<std::uint8_t, 4> answer_{};
+  SdoQueue<B, Clients, Count + Requests> sdo_;
   std::array<std::uint32_t, 4> boot_ups_{};  ///< a bit for each node
-  std::size_t active_ = nobody;              ///< whom the client asks
-  std::size_t next_ = 0;                     ///< whom it asks next, as far as that one is to be asked
   std::optional<NmtCommand> all_command_{};  ///< to all nodes: waits to be sent
   TimePoint boot_deadline_{};
   TimePoint now_{};

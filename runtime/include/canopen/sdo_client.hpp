@@ -203,10 +203,8 @@ class SdoClient {
   void on_time(TimePoint now) {
     now_ = now;
     const bool waits = held();
-    if (waits && now >= late_until_) {
-      left_over_ = LeftOver::none;
-      return release();
-    }
+    if ((waits || state_ == State::idle) && !is_late_answer_due(now)) left_over_ = LeftOver::none;
+    if (waits && !held()) return release();
     flush();
     if (held() || now < deadline_) return;
     if (state_ == State::idle) {
@@ -233,14 +231,19 @@ class SdoClient {
 
   /// Not busy, and no answer of an earlier transfer is expected any more: another client may use the SDO.
   [[nodiscard]] bool settled(TimePoint now) const {
-    return !busy() && (left_over_ == LeftOver::none || now >= late_until_);
+    return !busy() && (left_over_ == LeftOver::none || !is_late_answer_due(now));
   }
 
-  /// When the last late answer counts as lost; only after a transfer that is not `settled`.
-  [[nodiscard]] TimePoint settled_at() const { return late_until_; }
+  /// When the answer that an earlier transfer left over counts as lost.
+  [[nodiscard]] std::optional<TimePoint> settled_at() const {
+    return left_over_ == LeftOver::none ? std::nullopt : std::optional{late_until_};
+  }
 
   /// How the last transfer ended: `ok`, or the abort code of either side.
   [[nodiscard]] AbortCode result() const { return result_; }
+
+  /// Whether the server has told the size of the value that it has sent, which an expedited answer need not do.
+  [[nodiscard]] bool size_known() const { return size_ != sdo::unknown_size; }
 
   /// What an upload that ended well has brought into memory.
   [[nodiscard]] std::span<const std::uint8_t> data() const {
@@ -270,7 +273,7 @@ class SdoClient {
   };
 
   void begin(std::uint16_t index, std::uint8_t sub_index) {
-    if (left_over_ != LeftOver::none && now_ >= late_until_) left_over_ = LeftOver::none;
+    if (!is_late_answer_due(now_)) left_over_ = LeftOver::none;
     index_ = index;
     sub_index_ = sub_index;
     result_ = ok;
@@ -302,6 +305,8 @@ class SdoClient {
     left_over_ = LeftOver::none;
     return true;
   }
+
+  [[nodiscard]] bool is_late_answer_due(TimePoint now) const { return is_within(late_until_, options_.timeout, now); }
 
   /// The first request has waited long enough.
   void release() {
