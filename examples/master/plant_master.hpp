@@ -27,7 +27,8 @@ class PlantMaster {
   static constexpr canopen::Duration cycle = std::chrono::milliseconds{100};
 
   PlantMaster(B& bus, Log log) : log_{std::move(log)}, master_{bus, slaves(), {canopen::nmt_start_up::no_slave_start}} {
-    master_.on_booted = [this](canopen::NodeId node_id, canopen::BootStatus status) { booted(node_id, status); };
+    master_.on_configure = [this](canopen::NodeId node_id) { return configure(node_id); };
+    master_.on_booted = [this](canopen::NodeId node_id, const canopen::BootResult& result) { booted(node_id, result); };
     master_.on_event = [this](canopen::NmtMasterEvent event, canopen::NodeId node_id, canopen::NmtState) {
       if (event == canopen::NmtMasterEvent::lost) lost(node_id);
     };
@@ -76,14 +77,9 @@ class PlantMaster {
 
   // Booting
 
-  void booted(canopen::NodeId node_id, canopen::BootStatus status) {
-    log_(name(node_id) + ": " + std::string{canopen::to_text(status)});
-    if (status != canopen::BootStatus::booted) return;
-    const canopen::Result<void> configured = configure(node_id);
-    if (!configured) {
-      log_(name(node_id) + " cannot be configured: " + std::string{canopen::to_text(configured.abort_code())});
-      return;
-    }
+  void booted(canopen::NodeId node_id, const canopen::BootResult& result) {
+    log_(canopen::boot_text(node_id, result));
+    if (result != canopen::BootStatus::booted) return;
     ready_[node_id.value() - 1u] = true;
     if (std::ranges::find(ready_, false) != ready_.end()) return;
     if (!listening_) listen();
@@ -131,8 +127,7 @@ class PlantMaster {
     if (!listening_) log_("the PDOs of the inputs cannot be read");
   }
 
-  /// Outputs stop; their modules bring them to their error values. A module that is lost itself is being reset already,
-  /// and would not boot in Stopped.
+  /// Outputs stop; their modules bring them to their error values. A module that is lost itself is being reset already.
   void lost(canopen::NodeId node_id) {
     log_(name(node_id) + " is lost: outputs stop");
     running_ = false;

@@ -59,7 +59,7 @@ int run_nmt(const Settings& settings) {
     bus.listen(canopen::from_milliseconds(10));  // the port may still hold the frame
     if (settings.wait_ms == 0 || confirmation.comes_in_time()) return int{exit_fine};
     fmt::print(stderr, "edsc: node {} does not tell within {} ms that it is in {}\n", settings.node, settings.wait_ms,
-               to_text(settings.command->leads_to));
+               nmt_state_text(settings.command->leads_to));
     return exit_device_failed;
   });
 }

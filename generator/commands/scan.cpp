@@ -82,7 +82,7 @@ void print_text(const Findings& found, const std::vector<Candidate>& candidates,
   table.add(std::move(head));
   for (const FoundNode& node : found.nodes) {
     std::vector<std::string> row{
-        fmt::format("{:>4}", node.node_id), std::string{node.state ? to_text(*node.state) : "-"},
+        fmt::format("{:>4}", node.node_id), std::string{node.state ? nmt_state_text(*node.state) : "-"},
         hex_or_dash(node.vendor_id),        hex_or_dash(node.product_code),
         hex_or_dash(node.revision_number),  hex_or_dash(node.serial_number)};
     row.push_back(!node.answers_sdo  ? "no answer over SDO"
@@ -107,7 +107,7 @@ Json number_or_null(std::optional<std::uint32_t> number) { return number ? Json(
 
 Json as_json(const FoundNode& node, const std::vector<Candidate>& candidates) {
   Json json{{"node_id", node.node_id}};
-  json["state"] = node.state ? Json(to_text(*node.state)) : Json(nullptr);
+  json["state"] = node.state ? Json(nmt_state_text(*node.state)) : Json(nullptr);
   json["answers_sdo"] = node.answers_sdo;
   json["device_type"] = number_or_null(node.device_type);
   json["profile"] = node.device_type ? Json(*node.device_type & 0xFFFF) : Json(nullptr);

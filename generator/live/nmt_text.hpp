@@ -20,7 +20,7 @@ inline constexpr NmtStateText nmt_state_texts[] = {
     {canopen::NmtState::pre_operational, "pre-operational"},
 };
 
-[[nodiscard]] constexpr std::string_view to_text(canopen::NmtState state) {
+[[nodiscard]] constexpr std::string_view nmt_state_text(canopen::NmtState state) {
   for (const auto& row : nmt_state_texts) {
     if (row.state == state) return row.text;
   }

@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <canopen/port/virtual_bus.hpp>
 #include <canopen/port/virtual_bus_port.hpp>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -184,6 +186,152 @@ TEST_F(MasterOfOne, HasNoPdoThatIsNotValid) {
   EXPECT_TRUE(inputs.write<od::tpdo_communication_parameter_1::cob_id_used_by_tpdo>(0x8000'0185u));
   const auto done = inputs.on_pdo<can_2053c::Tpdo1>([](auto, auto) {});
   EXPECT_EQ(done.abort_code(), canopen::AbortCode::device_state);
+}
+
+// COB-IDs that change
+
+TEST_F(MasterOfOne, FollowsACobIdThatIsWrittenThroughIt) {
+  namespace od = can_2053c::od;
+  using CobId = od::tpdo_communication_parameter_1::cob_id_used_by_tpdo;
+  std::vector<int> got;
+  ASSERT_TRUE(inputs.on_pdo<can_2053c::Tpdo1>([&](auto low, auto high) { got = {low, high}; }));
+  EXPECT_TRUE(inputs.write<CobId>(0x8000'0185u));
+  EXPECT_TRUE(inputs.write<CobId>(0x0000'01C5u));
+  EXPECT_TRUE(master.command(canopen::NmtCommand::start, canopen::NodeId{5}));
+  module.set_digital(1, 0x80);
+  master.poll(10ms);
+  EXPECT_EQ(got, (std::vector<int>{0, 0x80}));
+  got.clear();
+  EXPECT_TRUE(inputs.request<can_2053c::Tpdo1>());
+  master.poll(10ms);
+  EXPECT_EQ(got, (std::vector<int>{0, 0x80}));
+}
+
+TEST_F(MasterOfOne, ReadsTheCobIdsAgainWhenTheNodeHasBootedUp) {
+  namespace od = can_2053c::od;
+  using CobId = od::tpdo_communication_parameter_1::cob_id_used_by_tpdo;
+  std::vector<int> got;
+  EXPECT_TRUE(inputs.write<CobId>(0x8000'0185u));
+  EXPECT_TRUE(inputs.write<CobId>(0x0000'01C5u));
+  ASSERT_TRUE(inputs.on_pdo<can_2053c::Tpdo1>([&](auto low, auto high) { got = {low, high}; }));
+  EXPECT_TRUE(master.command(canopen::NmtCommand::reset_communication, canopen::NodeId{5}));
+  master.poll(10ms);
+  EXPECT_TRUE(master.command(canopen::NmtCommand::start, canopen::NodeId{5}));
+  module.set_digital(1, 0x80);
+  master.poll(10ms);
+  EXPECT_EQ(got, (std::vector<int>{0, 0x80})) << "on 185h again";
+}
+
+// Boot-up with canopen::Master
+
+using canopen::NodeId;
+
+/// A CAN-2053C as node 5, and a master that boots it.
+struct Boot : testing::Test {
+  Boot() {
+    canopen::VirtualBus::connect(end, module);
+    module.start(bus.now());
+    const canopen::NmtSlave slave{
+        NodeId{5}, canopen::slave_assignment::listed | canopen::slave_assignment::boot | canopen::slave_assignment::mandatory};
+    master.emplace(port, std::vector{slave});
+    inputs.emplace(*master, NodeId{5});
+    master->on_booted = [this](NodeId node_id, const canopen::BootResult& result) {
+      log.push_back(boot_text(node_id, result));
+    };
+    master->on_event = [this](canopen::NmtMasterEvent event, NodeId node_id, canopen::NmtState state) {
+      if (event != canopen::NmtMasterEvent::state_changed) log.push_back(event_text(node_id, event, state));
+    };
+  }
+  canopen::VirtualBus bus;
+  canopen::VirtualBus::Endpoint& end = bus.attach();
+  nodes::Surroundings around{NodeId{5}};
+  Can2053c<canopen::VirtualBus::Endpoint> module{end, around};
+  canopen::VirtualBusPort port{bus};
+  std::optional<canopen::Master<canopen::VirtualBusPort>> master;
+  std::optional<canopen::MasterRemote<can_2053c::Device, canopen::VirtualBusPort>> inputs;
+  std::vector<std::string> log;
+};
+
+TEST_F(Boot, ConfiguresWithSeveralTransfers) {
+  namespace od = can_2053c::od;
+  master->on_configure = [&](NodeId) -> canopen::Result<void> {
+    if (const auto done = inputs->write<od::tpdo_communication_parameter_1::event_timer>(500); !done) return done;
+    return inputs->write<od::guard_time>(250);
+  };
+  master->start();
+  master->poll(50ms);
+  EXPECT_EQ(module.node().get<od::guard_time>(), 250);
+  EXPECT_EQ(module.node().state(), canopen::NmtState::operational);
+  EXPECT_EQ(log.back(), "node 5: not watched: no heartbeat time and no guard time in the network list");
+}
+
+TEST_F(Boot, TellsWhyTheConfigurationFailed) {
+  namespace od = can_2053c::od;
+  master->on_configure = [&](NodeId node_id) { return master->download(node_id, 0x5FFF, 0, {}); };
+  master->start();
+  master->poll(50ms);
+  EXPECT_EQ(log.back(), "node 5: configuration failed: 0602 0000h, object does not exist");
+  EXPECT_EQ(module.node().state(), canopen::NmtState::pre_operational);
+}
+
+TEST_F(Boot, ConfiguresWithoutWaiting) {
+  namespace od = can_2053c::od;
+  const std::array<std::uint8_t, 2> value{0xFA, 0};
+  master->on_configure = [&](NodeId node_id) -> std::optional<canopen::Result<void>> {
+    EXPECT_TRUE(master->begin_download(node_id, 0x100C, 0, value, [&, node_id](canopen::Result<void> first) {
+      EXPECT_TRUE(first);
+      EXPECT_TRUE(master->begin_upload(node_id, 0x100C, 0, [&, node_id](const auto& read) {
+        EXPECT_EQ(*read, std::vector<std::uint8_t>(value.begin(), value.end()));
+        log.push_back("configured");
+        master->configured(node_id, canopen::ok);
+      }));
+    }));
+    return std::nullopt;
+  };
+  master->start();
+  master->poll(50ms);
+  EXPECT_EQ(module.node().get<od::guard_time>(), 250);
+  ASSERT_GE(log.size(), 3u);
+  EXPECT_EQ(log[log.size() - 3], "configured");
+  EXPECT_EQ(log[log.size() - 2], "node 5: booted");
+}
+
+TEST_F(Boot, ReadsTheCobIdsBeforeTheSlaveIsStarted) {
+  namespace od = can_2053c::od;
+  using CobId = od::tpdo_communication_parameter_1::cob_id_used_by_tpdo;
+  std::vector<int> got;
+  master->start();
+  master->poll(50ms);
+  ASSERT_TRUE(inputs->on_pdo<can_2053c::Tpdo1>([&](auto low, auto high) { got = {low, high}; }));
+  master->on_configure = [&](NodeId) -> canopen::Result<void> {
+    if (const auto done = inputs->write<CobId>(0x8000'0185u); !done) return done;
+    return inputs->write<CobId>(0x0000'01C5u);
+  };
+  module.set_digital(1, 0x80);
+  master->boot(NodeId{5});
+  master->poll(50ms);
+  EXPECT_EQ(got, (std::vector<int>{0, 0x80})) << "the one that is sent with the start";
+}
+
+TEST_F(Boot, EndsARequestToANodeThatIsSilentAndRefusesThoseThatDoNotFit) {
+  EXPECT_EQ(master->upload(NodeId{9}, 0x1000, 0).abort_code(), canopen::AbortCode::timeout);
+  int refused = 0;
+  for (std::size_t i = 0; i <= master->max_requests + 1; ++i) {
+    refused += master->begin_upload(NodeId{9}, 0x1000, 0, {}) ? 0 : 1;
+  }
+  EXPECT_EQ(refused, 1) << "one runs, the others wait";
+}
+
+TEST(MasterText, TellsNodeEntryReasonAndNumbers) {
+  using canopen::BootStatus;
+  EXPECT_EQ(boot_text(NodeId{5}, {BootStatus::booted}), "node 5: booted");
+  EXPECT_EQ(boot_text(NodeId{5}, {BootStatus::product_code, canopen::ok, 0x1018, 2, 0x10001, 0x20001}),
+            "node 5: product code 1018h:02 is not the one of 1F86h: expected 00010001h, seen 00020001h");
+  EXPECT_EQ(boot_text(NodeId{5}, {BootStatus::configuration, canopen::AbortCode::value_too_high, 0x2001, 3}),
+            "node 5: configuration failed: 2001h:03: 0609 0031h, value too high");
+  EXPECT_EQ(event_text(NodeId{5}, canopen::NmtMasterEvent::lost, canopen::NmtState::operational),
+            "node 5: lost, last state operational");
+  EXPECT_EQ(event_text(NodeId{5}, canopen::NmtMasterEvent::boot_up, canopen::NmtState::initialisation), "node 5: boot-up");
 }
 
 }  // namespace

@@ -299,10 +299,10 @@ TEST(NmtBoot, EveryEventAndStateHasAText) {
     EXPECT_NE(to_text(static_cast<NmtMasterEvent>(event)), "unknown event");
   }
   EXPECT_EQ(to_text(static_cast<NmtMasterEvent>(99)), "unknown event");
-  EXPECT_EQ(to_text(NmtState::initialisation), "Initialisation");
-  EXPECT_EQ(to_text(NmtState::stopped), "Stopped");
-  EXPECT_EQ(to_text(NmtState::operational), "Operational");
-  EXPECT_EQ(to_text(NmtState::pre_operational), "Pre-operational");
+  EXPECT_EQ(to_text(NmtState::initialisation), "initialisation");
+  EXPECT_EQ(to_text(NmtState::stopped), "stopped");
+  EXPECT_EQ(to_text(NmtState::operational), "operational");
+  EXPECT_EQ(to_text(NmtState::pre_operational), "pre-operational");
   EXPECT_EQ(to_text(static_cast<NmtState>(6)), "unknown state");
 }
 
@@ -326,12 +326,13 @@ TEST(NmtBoot, TheAnswerThatASecondBootUpLeavesOverIsNotTakenForAnother) {
 
 TEST(NmtBoot, ABootUpEndsWhatWasRequestedBefore) {
   Desk desk{{slave(5)}};
+  desk.start();
   Transfer transfers[3];
   for (Transfer& transfer : transfers) {
     EXPECT_TRUE(desk.master.request(NodeId{5}, transfer.read(0x2001, 0), desk.now));
   }
   desk.bus.take();
-  EXPECT_EQ(desk.take("705 00"), "605 80 01 20 00 22 00 00 08");
+  EXPECT_EQ(desk.take("705 00"), "605 80 01 20 00 22 00 00 08 | 605 40 00 10 00 00 00 00 00");
   for (const Transfer& transfer : transfers) {
     EXPECT_EQ(transfer.calls, 1);
     EXPECT_EQ(transfer.result, AbortCode::device_state);

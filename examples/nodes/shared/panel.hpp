@@ -14,16 +14,6 @@
 
 namespace nodes {
 
-[[nodiscard]] constexpr std::string_view to_text(canopen::NmtState state) {
-  switch (state) {
-    case canopen::NmtState::initialisation: return "initialisation";
-    case canopen::NmtState::pre_operational: return "pre-operational";
-    case canopen::NmtState::operational: return "operational";
-    case canopen::NmtState::stopped: return "stopped";
-  }
-  return "unknown";
-}
-
 [[nodiscard]] constexpr std::string_view to_text(canopen::IndicatorPattern pattern) {
   switch (pattern) {
     case canopen::IndicatorPattern::off: return "off";

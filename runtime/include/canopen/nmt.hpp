@@ -21,10 +21,10 @@ enum class NmtState : std::uint8_t {
 
 [[nodiscard]] constexpr std::string_view to_text(NmtState state) {
   switch (state) {
-    case NmtState::initialisation: return "Initialisation";
-    case NmtState::stopped: return "Stopped";
-    case NmtState::operational: return "Operational";
-    case NmtState::pre_operational: return "Pre-operational";
+    case NmtState::initialisation: return "initialisation";
+    case NmtState::stopped: return "stopped";
+    case NmtState::operational: return "operational";
+    case NmtState::pre_operational: return "pre-operational";
   }
   return "unknown state";
 }

@@ -92,7 +92,7 @@ inline constexpr IdentityCheck identity_checks[] = {
 ///
 /// The master and the application share the SDO of a slave: `request` appends a transfer to the queue of its node, where
 /// the boot-up has its turn as well. Up to `Clients` nodes are served at the same time; `Requests` of the application may
-/// wait. A boot-up message ends all requests to its node with 0800 0022h.
+/// wait. The boot-up message of a slave ends all requests to it with 0800 0022h.
 ///
 /// The application around it (`Host`) is told:
 ///   happened(NmtMasterEvent, NodeId, NmtState)   with the state last told
@@ -161,7 +161,7 @@ class NmtMaster {
   }
 
   /// Appends a transfer of the application to the queue of a node, listed or not. Memory stays in use until `done` has
-  /// been called, which is with 0800 0022h when the node boots up. 060A 0023h: `Requests` of them wait already.
+  /// been called, which is with 0800 0022h when a slave of the list boots up. 060A 0023h: `Requests` of them wait already.
   Result<void> request(NodeId node_id, const SdoRequest& what, TimePoint now) {
     if (sdo_.waiting(this) >= Requests) return AbortCode::no_resource;
     return sdo_.submit(node_id, what, now);
@@ -513,7 +513,6 @@ class NmtMaster {
     if (boot_up) {
       boot_ups_[message.node_id.value() / 32u] |= std::uint32_t{1} << (message.node_id.value() % 32u);
       tell(NmtMasterEvent::boot_up, message.node_id, message.state);
-      sdo_.node_reset(message.node_id, now_);
     }
     const std::optional<std::size_t> i = find(message.node_id);
     if (!i) {
@@ -537,6 +536,7 @@ class NmtMaster {
     entry.silent = false;
     stop_watching(i);
     if (!booting_) return;
+    sdo_.node_reset(slaves_[i].node_id, now_);
     if (entry.step != Step::idle || slaves_[i].has(slave_assignment::boot)) {
       identify(i);
     } else {

@@ -8,10 +8,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <concepts>
 #include <cstdint>
 #include <cstring>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -20,10 +22,12 @@
 
 #include "canopen/abort_code.hpp"
 #include "canopen/frame.hpp"
+#include "canopen/handlers.hpp"
 #include "canopen/node_id.hpp"
 #include "canopen/remote.hpp"
 #include "canopen/result.hpp"
 #include "canopen/sdo_client.hpp"
+#include "canopen/sdo_queue.hpp"
 #include "canopen/time.hpp"
 
 namespace canopen {
@@ -38,7 +42,102 @@ concept BlockingBus = Bus<T> && requires(T& bus, Duration timeout) {
 template <class Device, BlockingBus B>
 class BlockingRemoteNode;
 
-/// Transfers by index and sub-index. What `receive` of the bus throws comes through.
+/// The value of a number, or why the bytes of its entry are none: 0607 0010h when there are more or fewer. A server need
+/// not tell how many of the four bytes of an expedited answer count.
+template <NumberObject O>
+[[nodiscard]] Result<typename O::type> number_from(const SdoAnswer& answer) {
+  if (answer.result != ok) return answer.result;
+  constexpr std::size_t size = (O::bits + 7u) / 8u;
+  const std::size_t received = answer.data.size();
+  if (received != size && (answer.size_known || received < size)) return AbortCode::length_mismatch;
+  std::array<std::uint8_t, 8> bytes{};
+  std::memcpy(bytes.data(), answer.data.data(), size);
+  return handler_detail::value_from<O>(std::span{bytes}.first(size));
+}
+
+/// The objects of a device by their generated types, over an `Sdo` that has
+///   read_number(NodeId, index, sub_index, memory) -> SdoAnswer
+///   upload(NodeId, index, sub_index) -> Result<std::vector<std::uint8_t>>
+///   download(NodeId, index, sub_index, bytes) -> Result<void>
+/// What does not compile for a RemoteNode does not compile here.
+template <class Device, class Sdo>
+class BlockingObjects {
+ public:
+  BlockingObjects(Sdo& sdo, NodeId node) : sdo_{sdo}, node_{node} {}
+
+  /// The value of a number.
+  template <NumberObject O>
+  requires ObjectOf<O, Device> && RemoteReadable<O>
+  [[nodiscard]] Result<typename O::type> read() {
+    std::array<std::uint8_t, 8> memory{};
+    return number_from<O>(sdo_.read_number(node_, O::index, O::sub_index, memory));
+  }
+
+  /// The value of a string. 0607 0012h: it is longer than the data sheet says.
+  template <StringObject O>
+  requires ObjectOf<O, Device> && RemoteReadable<O>
+  [[nodiscard]] Result<typename O::type> read() {
+    const Result<std::vector<std::uint8_t>> bytes = sdo_.upload(node_, O::index, O::sub_index);
+    if (!bytes) return bytes.abort_code();
+    typename O::type text{};
+    std::size_t size = bytes->size();
+    constexpr bool terminated =
+        Device::dictionary.zero_terminated_strings && std::is_convertible_v<decltype(text.view()), std::string_view>;
+    if (terminated && size != 0 && bytes->back() == 0) --size;
+    if (size > text.capacity()) return AbortCode::length_too_high;
+    std::copy_n(bytes->begin(), size, text.bytes.begin());
+    text.size = static_cast<std::uint16_t>(size);
+    return text;
+  }
+
+  /// The bytes of a DOMAIN.
+  template <DomainObject O>
+  requires ObjectOf<O, Device> && RemoteReadable<O>
+  [[nodiscard]] Result<std::vector<std::uint8_t>> read() { return sdo_.upload(node_, O::index, O::sub_index); }
+
+  /// Writes a number. A value outside the limits is refused without a frame.
+  template <NumberObject O, ValueFor<O> V>
+  requires ObjectOf<O, Device> && RemoteWritable<O> Result<void> write(V value) {
+    if (const AbortCode code = check_value<O>(value); code != ok) return code;
+    return write_number<O>(static_cast<typename O::type>(value));
+  }
+
+  /// Writes a constant, whose limits the compiler checks.
+  template <NumberObject O, auto Value>
+  requires ObjectOf<O, Device> && RemoteWritable<O> && ValueFor<decltype(Value), O> Result<void> write() {
+    static_assert(check_value<O>(Value) == ok, "this value is outside the limits of the object");
+    return write_number<O>(static_cast<typename O::type>(Value));
+  }
+
+  /// Writes a string or DOMAIN. 0607 0012h: the string is longer than the object holds.
+  template <DictionaryObject O>
+  requires ObjectOf<O, Device> && RemoteWritable<O> &&
+      (StringObject<O> || DomainObject<O>)Result<void> write(std::span<const std::uint8_t> bytes) {
+    if constexpr (StringObject<O>) {
+      if (bytes.size() > O::type::capacity()) return AbortCode::length_too_high;
+    }
+    return sdo_.download(node_, O::index, O::sub_index, bytes);
+  }
+  template <StringObject O>
+  requires ObjectOf<O, Device> && RemoteWritable<O> Result<void> write(std::string_view text) {
+    return write<O>(std::span{reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  }
+
+ private:
+  template <class O>
+  [[nodiscard]] Result<void> write_number(typename O::type value) {
+    const std::uint64_t raw = pdo_detail::to_bits(value);
+    std::array<std::uint8_t, sizeof raw> bytes{};
+    std::memcpy(bytes.data(), &raw, sizeof raw);
+    return sdo_.download(node_, O::index, O::sub_index, std::span{bytes}.first((O::bits + 7u) / 8u));
+  }
+
+  Sdo& sdo_;
+  NodeId node_;
+};
+
+/// Transfers by index and sub-index. What `receive` of the bus throws comes through. A transfer ends, also on a bus that
+/// takes no frame: with 0504 0000h after the timeout.
 template <BlockingBus B>
 class BlockingSdo {
  public:
@@ -46,7 +145,8 @@ class BlockingSdo {
 
   explicit BlockingSdo(B& can_bus, SdoClientOptions options = {}) : bus_{can_bus}, options_{options} {}
 
-  /// Called with every frame that comes while a transfer waits: heartbeats, PDOs, emergencies.
+  /// Called with every frame that comes while a transfer waits: heartbeats, PDOs, emergencies. A transfer to the same node
+  /// that it begins is refused with 060A 0023h.
   std::function<void(const Frame&, TimePoint now)> on_frame;
 
   /// The value of an entry. 0504 0005h: it is longer than `most` bytes.
@@ -58,16 +158,28 @@ class BlockingSdo {
       value.insert(value.end(), bytes.begin(), bytes.end());
       return ok;
     };
-    SdoClient client{bus_, node, options_};
-    client.upload(index, sub_index, sink_of(take), bus_.now());
+    SdoClient<B>& client = client_of(node);
+    if (!client.upload(index, sub_index, sink_of(take), bus_.now())) return AbortCode::no_resource;
+    const Unfinished drop{*this, node};
     if (const AbortCode code = run(client); code != ok) return code;
     return value;
   }
 
   Result<void> download(NodeId node, std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> bytes) {
-    SdoClient client{bus_, node, options_};
-    client.download(index, sub_index, bytes, bus_.now());
+    SdoClient<B>& client = client_of(node);
+    if (!client.download(index, sub_index, bytes, bus_.now())) return AbortCode::no_resource;
+    const Unfinished drop{*this, node};
     return run(client);
+  }
+
+  /// The value of an entry of up to eight bytes.
+  [[nodiscard]] SdoAnswer read_number(NodeId node, std::uint16_t index, std::uint8_t sub_index,
+                                      std::span<std::uint8_t> memory) {
+    SdoClient<B>& client = client_of(node);
+    if (!client.upload(index, sub_index, memory, bus_.now())) return {AbortCode::no_resource, {}};
+    const Unfinished drop{*this, node};
+    const AbortCode result = run(client);
+    return {result, client.data(), client.size_known()};
   }
 
   /// A node by the types of its device. It must not outlive this.
@@ -101,80 +213,31 @@ class BlockingSdo {
   [[nodiscard]] const SdoClientOptions& options() const { return options_; }
 
  private:
+  /// Drops a client whose transfer is not over when the bus throws: its memory is gone.
+  struct Unfinished {
+    BlockingSdo& sdo;
+    NodeId node;
+    ~Unfinished() {
+      const auto found = sdo.clients_.find(node.value());
+      if (found->second.busy()) sdo.clients_.erase(found);
+    }
+  };
+
+  /// The client of a node stays: it knows which answers of earlier transfers may still come.
+  [[nodiscard]] SdoClient<B>& client_of(NodeId node) {
+    return clients_.try_emplace(node.value(), bus_, node, options_).first->second;
+  }
+
   B& bus_;
   SdoClientOptions options_;
+  std::map<std::uint8_t, SdoClient<B>> clients_;
 };
 
-/// A device on the bus by its generated types. What does not compile for a RemoteNode does not compile here.
+/// A device on the bus by its generated types.
 template <class Device, BlockingBus B>
-class BlockingRemoteNode {
+class BlockingRemoteNode : public BlockingObjects<Device, BlockingSdo<B>> {
  public:
-  BlockingRemoteNode(BlockingSdo<B>& sdo, NodeId node) : sdo_{sdo}, node_{node} {}
-
-  /// The value of a number.
-  template <NumberObject O>
-  requires ObjectOf<O, Device> && RemoteReadable<O>
-  [[nodiscard]] Result<typename O::type> read() {
-    RemoteNode<Device, B> remote{sdo_.bus(), node_, sdo_.options()};
-    if (const Result<void> begun = remote.template read<O>(sdo_.bus().now()); !begun) return begun.abort_code();
-    (void)sdo_.run(remote);
-    return remote.template value<O>();
-  }
-
-  /// The value of a string. 0607 0012h: it is longer than the data sheet says.
-  template <StringObject O>
-  requires ObjectOf<O, Device> && RemoteReadable<O>
-  [[nodiscard]] Result<typename O::type> read() {
-    const Result<std::vector<std::uint8_t>> bytes = sdo_.upload(node_, O::index, O::sub_index);
-    if (!bytes) return bytes.abort_code();
-    typename O::type text{};
-    std::size_t size = bytes->size();
-    constexpr bool terminated =
-        Device::dictionary.zero_terminated_strings && std::is_convertible_v<decltype(text.view()), std::string_view>;
-    if (terminated && size != 0 && bytes->back() == 0) --size;
-    if (size > text.capacity()) return AbortCode::length_too_high;
-    std::copy_n(bytes->begin(), size, text.bytes.begin());
-    text.size = static_cast<std::uint16_t>(size);
-    return text;
-  }
-
-  /// The bytes of a DOMAIN.
-  template <DomainObject O>
-  requires ObjectOf<O, Device> && RemoteReadable<O>
-  [[nodiscard]] Result<std::vector<std::uint8_t>> read() { return sdo_.upload(node_, O::index, O::sub_index); }
-
-  /// Writes a number. A value outside the limits is refused without a frame.
-  template <NumberObject O, ValueFor<O> V>
-  requires ObjectOf<O, Device> && RemoteWritable<O> Result<void> write(V value) {
-    RemoteNode<Device, B> remote{sdo_.bus(), node_, sdo_.options()};
-    if (const Result<void> begun = remote.template write<O>(value, sdo_.bus().now()); !begun) return begun;
-    return sdo_.run(remote);
-  }
-
-  /// Writes a constant, whose limits the compiler checks.
-  template <NumberObject O, auto Value>
-  requires ObjectOf<O, Device> && RemoteWritable<O> && ValueFor<decltype(Value), O> Result<void> write() {
-    RemoteNode<Device, B> remote{sdo_.bus(), node_, sdo_.options()};
-    if (const Result<void> begun = remote.template write<O, Value>(sdo_.bus().now()); !begun) return begun;
-    return sdo_.run(remote);
-  }
-
-  /// Writes a string or DOMAIN. 0607 0012h: the string is longer than the object holds.
-  template <DictionaryObject O>
-  requires ObjectOf<O, Device> && RemoteWritable<O> &&
-      (StringObject<O> || DomainObject<O>)Result<void> write(std::span<const std::uint8_t> bytes) {
-    RemoteNode<Device, B> remote{sdo_.bus(), node_, sdo_.options()};
-    if (const Result<void> begun = remote.template write<O>(bytes, sdo_.bus().now()); !begun) return begun;
-    return sdo_.run(remote);
-  }
-  template <StringObject O>
-  requires ObjectOf<O, Device> && RemoteWritable<O> Result<void> write(std::string_view text) {
-    return write<O>(std::span{reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-  }
-
- private:
-  BlockingSdo<B>& sdo_;
-  NodeId node_;
+  using BlockingObjects<Device, BlockingSdo<B>>::BlockingObjects;
 };
 
 }  // namespace canopen

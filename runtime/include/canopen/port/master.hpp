@@ -2,20 +2,27 @@
 /// PDOs with them, all by the generated types of their devices.
 ///
 ///     canopen::HostBus bus{"socketcan:can0"};
-///     canopen::Master master{bus, slaves, {canopen::nmt_start_up::no_slave_start}};
+///     canopen::Master master{bus, slaves};
 ///     auto drive = master.remote<cpc_tc1::Device>(canopen::NodeId{5});
-///     master.on_booted = [&](canopen::NodeId, canopen::BootStatus) { drive.write<od::profile_velocity>(4'000); };
+///     master.on_configure = [&](canopen::NodeId) { return drive.write<od::profile_velocity>(4'000); };
+///     master.on_booted = [&](canopen::NodeId node, const canopen::BootResult& result) { log(boot_text(node, result)); };
 ///     drive.on_pdo<cpc_tc1::Tpdo2>([](auto status, auto position) { ... });
 ///     master.start();
 ///     while (!stop) master.poll(100ms);
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <cstdio>
+#include <cstring>
 #include <deque>
 #include <functional>
+#include <list>
 #include <map>
 #include <optional>
+#include <span>
+#include <string>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -32,6 +39,7 @@
 #include "canopen/pdo_list.hpp"
 #include "canopen/port/blocking_sdo.hpp"
 #include "canopen/result.hpp"
+#include "canopen/sdo_queue.hpp"
 #include "canopen/time.hpp"
 
 namespace canopen {
@@ -50,29 +58,66 @@ inline constexpr std::uint16_t number_in<Layout, PdoList<Pdos...>> =
 
 }  // namespace master_detail
 
+/// `node 5: product code 1018h:02 is not the one of 1F86h: expected 00010001h, seen 00020001h`
+[[nodiscard]] inline std::string boot_text(NodeId node_id, const BootResult& result) {
+  const auto print = [](const char* format, auto... numbers) {
+    char text[64];
+    std::snprintf(text, sizeof text, format, numbers...);
+    return std::string{text};
+  };
+  std::string text = "node " + std::to_string(node_id.value()) + ": " + std::string{to_text(result.status)};
+  if (result.abort_code != ok) {
+    const auto code = static_cast<unsigned>(result.abort_code);
+    if (result.index != 0) text += print(": %04Xh:%02X", unsigned{result.index}, unsigned{result.sub_index});
+    text += print(": %04X %04Xh, ", code >> 16, code & 0xFFFF) + std::string{to_text(result.abort_code)};
+  } else if (result.index != 0) {
+    text += print(": expected %08Xh, seen %08Xh", unsigned{result.expected}, unsigned{result.seen});
+  }
+  return text;
+}
+
+/// `node 5: lost, last state operational`
+[[nodiscard]] inline std::string event_text(NodeId node_id, NmtMasterEvent event, NmtState state) {
+  std::string text = "node " + std::to_string(node_id.value()) + ": " + std::string{to_text(event)};
+  const bool has_state = event != NmtMasterEvent::boot_up && event != NmtMasterEvent::not_watched;
+  if (has_state) text += (event == NmtMasterEvent::lost ? ", last state " : ": ") + std::string{to_text(state)};
+  return text;
+}
+
 template <class Device, BlockingBus B>
 class MasterRemote;
 
 /// Handlers are called from `poll` alone, in the order in which things have happened. They may transfer by SDO, for
 /// which the master goes on watching its slaves; they may not call `poll`. What the bus throws comes through.
+///
+/// All transfers to a node, of the application and of the boot-up, run one after the other (SdoQueue). The boot-up message
+/// of a slave of the list ends those that were requested before with 0800 0022h.
 template <BlockingBus B>
 class Master {
  public:
+  static constexpr std::size_t max_slaves = 127;
+  static constexpr std::size_t max_requests = 64;  ///< of the application that wait; one more: 060A 0023h
+  static constexpr std::size_t max_nodes_at_once = 16;  ///< few enough for the answers to come in time at 20 kbit/s
+  static constexpr std::size_t max_upload = 16 * 1024 * 1024;  ///< bytes; 0504 0005h: a value is longer
+
   explicit Master(B& can_bus, std::vector<NmtSlave> slaves = {}, NmtStartUp start_up = {},
                   SdoClientOptions options = {})
-      : bus_{can_bus},
-        slaves_{std::move(slaves)},
-        nmt_{can_bus, slaves_, start_up, options.timeout, Host{*this}},
-        sdo_{watched_, options} {}
+      : bus_{can_bus}, slaves_{std::move(slaves)}, nmt_{can_bus, slaves_, start_up, options, Host{*this}} {}
   Master(const Master&) = delete;
   Master& operator=(const Master&) = delete;
 
+  /// The configuration step of a slave, after its identity and its concise DCF, and before its error control is started
+  /// (CiA 302-2): `ok`, or why it failed, which ends its boot-up with BootStatus::configuration. Without a value the
+  /// application goes on by itself, with `begin_upload` and `begin_download`, and calls `configured` at the end.
+  std::function<std::optional<Result<void>>(NodeId)> on_configure;
   /// How the boot-up of a slave has ended.
-  std::function<void(NodeId, BootStatus)> on_booted;
+  std::function<void(NodeId, const BootResult&)> on_booted;
   /// What the master sees of a slave, with the state last told.
   std::function<void(NmtMasterEvent, NodeId, NmtState)> on_event;
   /// All mandatory slaves have booted.
   std::function<void()> on_network_started;
+  /// Mandatory slaves are missing when the boot time 1F89h is over; they are still waited for.
+  std::function<void()> on_boot_time_elapsed;
   /// The EMCY of a node that sends it at 80h + node-ID.
   std::function<void(NodeId, const EmergencyMessage&)> on_emergency;
 
@@ -84,9 +129,15 @@ class Master {
     const TimePoint end = bus_.now() + span;
     do {
       const TimePoint now = bus_.now();
-      static_cast<void>(receive(now < end ? end - now : Duration{0}));
+      receive(now < end ? end - now : Duration{0});
       tell();
     } while (bus_.now() < end);
+  }
+
+  /// The end of a configuration for which `on_configure` has returned no value. Without effect when the slave has booted
+  /// up again since.
+  void configured(NodeId node_id, Result<void> result) {
+    if (to_configure_[node_id.value() & 0x7F] == 0) after_configuration(node_id, result);
   }
 
   /// An NMT command to one node, or to all with node-ID 0. False when the bus had no room.
@@ -107,23 +158,88 @@ class Master {
     return {*this, node_id};
   }
 
+  /// The value of an entry; waits for it.
+  [[nodiscard]] Result<std::vector<std::uint8_t>> upload(NodeId node_id, std::uint16_t index, std::uint8_t sub_index) {
+    Transfer& transfer = add({});
+    const Result<void> submitted = submit_upload(transfer, node_id, index, sub_index);
+    const Result<void> done = submitted ? wait_for(transfer) : submitted;
+    std::vector<std::uint8_t> value = std::move(transfer.bytes);
+    remove(transfer);
+    if (!done) return done.abort_code();
+    return value;
+  }
+
+  /// Writes an entry; waits until it is written.
+  Result<void> download(NodeId node_id, std::uint16_t index, std::uint8_t sub_index,
+                        std::span<const std::uint8_t> bytes) {
+    Transfer& transfer = add({});
+    const Result<void> submitted = submit_download(transfer, node_id, index, sub_index, bytes);
+    const Result<void> done = submitted ? wait_for(transfer) : submitted;
+    remove(transfer);
+    return done;
+  }
+
+  /// The value of an entry of up to eight bytes; waits for it.
+  [[nodiscard]] SdoAnswer read_number(NodeId node_id, std::uint16_t index, std::uint8_t sub_index,
+                                      std::span<std::uint8_t> memory) {
+    Transfer& transfer = add({});
+    transfer.bytes.resize(memory.size());
+    SdoRequest request = request_of(transfer, index, sub_index);
+    request.memory = transfer.bytes;
+    const Result<void> submitted = nmt_.request(node_id, request, bus_.now());
+    const Result<void> done = submitted ? wait_for(transfer) : submitted;
+    const std::size_t size = done ? transfer.size : 0;
+    std::copy_n(transfer.bytes.begin(), size, memory.begin());
+    const SdoAnswer answer{done.abort_code(), memory.first(size), transfer.size_known};
+    remove(transfer);
+    return answer;
+  }
+
+  using UploadDone = std::function<void(const Result<std::vector<std::uint8_t>>&)>;
+  using DownloadDone = std::function<void(Result<void>)>;
+
+  /// Begins to read an entry; `done` is called from `poll`, exactly once unless this is refused: 060A 0023h.
+  Result<void> begin_upload(NodeId node_id, std::uint16_t index, std::uint8_t sub_index, UploadDone done) {
+    Transfer& transfer = add([done = std::move(done)](Transfer& ended) {
+      if (!done) return;
+      if (ended.result == ok) {
+        done(std::move(ended.bytes));
+      } else {
+        done(ended.result);
+      }
+    });
+    return begun(transfer, submit_upload(transfer, node_id, index, sub_index));
+  }
+
+  /// Begins to write a copy of these bytes to an entry.
+  Result<void> begin_download(NodeId node_id, std::uint16_t index, std::uint8_t sub_index,
+                              std::span<const std::uint8_t> bytes, DownloadDone done) {
+    Transfer& transfer = add([done = std::move(done)](Transfer& ended) {
+      if (done) done(ended.result);
+    });
+    return begun(transfer, submit_download(transfer, node_id, index, sub_index, bytes));
+  }
+
  private:
   template <class Device, BlockingBus Any>
   friend class MasterRemote;
-
-  static constexpr std::size_t most_slaves = 127;
 
   /// Keeps what the NMT master tells until `poll`.
   struct Host {
     Master& master;
     void happened(NmtMasterEvent event, NodeId node_id, NmtState state) {
+      if (event == NmtMasterEvent::boot_up) master.keep([&m = master, node_id] { m.read_cob_ids(node_id); });
       master.keep([&m = master, event, node_id, state] {
         if (m.on_event) m.on_event(event, node_id, state);
       });
     }
-    void booted(NodeId node_id, BootStatus status) {
-      master.keep([&m = master, node_id, status] {
-        if (m.on_booted) m.on_booted(node_id, status);
+    void configure(NodeId node_id) {
+      ++master.to_configure_[node_id.value() & 0x7F];
+      master.keep([&m = master, node_id] { m.configure(node_id); });
+    }
+    void booted(NodeId node_id, const BootResult& result) {
+      master.keep([&m = master, node_id, result] {
+        if (m.on_booted) m.on_booted(node_id, result);
       });
     }
     void network_started() {
@@ -131,22 +247,37 @@ class Master {
         if (m.on_network_started) m.on_network_started();
       });
     }
-    void boot_time_elapsed() {}
+    void boot_time_elapsed() {
+      master.keep([&m = master] {
+        if (m.on_boot_time_elapsed) m.on_boot_time_elapsed();
+      });
+    }
   };
 
-  /// The bus as transfers see it: while they wait the master goes on.
-  struct WatchedBus {
-    Master& master;
-    [[nodiscard]] bool send(const Frame& frame) { return master.bus_.send(frame); }
-    [[nodiscard]] std::optional<Frame> receive(Duration timeout) { return master.receive(timeout); }
-    [[nodiscard]] TimePoint now() { return master.bus_.now(); }
+  /// A transfer in the queue. The master owns it, as it may outlive the call that waits for it when the bus throws.
+  struct Transfer {
+    Master* master = nullptr;
+    std::vector<std::uint8_t> bytes;
+    NodeId node_id{};
+    std::uint16_t index = 0;
+    std::uint8_t sub_index = 0;
+    bool download = false;
+    bool over = false;
+    bool size_known = true;
+    AbortCode result = ok;
+    std::size_t size = 0;
+    std::function<void(Transfer&)> done;  ///< called from `poll`; none: somebody waits
   };
 
   struct PdoHandler {
-    std::uint32_t cob_id;
-    std::uint8_t size;  ///< bytes that it needs
+    std::uint8_t node_id;
+    std::uint16_t index;    ///< of the communication parameter
+    std::uint32_t cob_id;   ///< with bit 29 for an extended frame; `no_cob_id`: the PDO is not valid
+    std::uint8_t size;      ///< bytes that it needs
     std::function<void(const Frame&)> call;
   };
+
+  static constexpr std::uint32_t no_cob_id = 0xFFFF'FFFF;
 
   void keep(std::function<void()> what) { waiting_.push_back(std::move(what)); }
 
@@ -158,8 +289,8 @@ class Master {
     }
   }
 
-  /// The next frame within this time. The NMT master has seen it then; PDOs and EMCYs are kept.
-  [[nodiscard]] std::optional<Frame> receive(Duration timeout) {
+  /// Accepts the next frame within this time, or several when the first one is not for the master.
+  void receive(Duration timeout) {
     constexpr Duration try_again{1'000};  // the bus had no room for a frame
     const TimePoint end = bus_.now() + timeout;
     for (;;) {
@@ -175,7 +306,7 @@ class Master {
         take(*frame);
       }
       nmt_.on_time(now);
-      if (frame || now >= end) return frame;
+      if (frame || now >= end) return;
     }
   }
 
@@ -193,26 +324,176 @@ class Master {
     }
   }
 
-  /// The COB-ID in a PDO communication parameter of a node, read once. 0800 0022h: the PDO is not valid.
+  // Transfers
+
+  [[nodiscard]] Transfer& add(std::function<void(Transfer&)> done) {
+    Transfer& transfer = transfers_.emplace_back();
+    transfer.master = this;
+    transfer.done = std::move(done);
+    return transfer;
+  }
+  void remove(Transfer& transfer) {
+    transfers_.remove_if([&transfer](const Transfer& other) { return &other == &transfer; });
+  }
+
+  [[nodiscard]] static SdoRequest request_of(Transfer& transfer, std::uint16_t index, std::uint8_t sub_index) {
+    SdoRequest request;
+    request.index = index;
+    request.sub_index = sub_index;
+    request.context = &transfer;
+    request.done = [](void* context, NodeId, const SdoAnswer& answer) {
+      Transfer& ended = *static_cast<Transfer*>(context);
+      ended.result = answer.result;
+      ended.size = answer.data.size();
+      ended.size_known = answer.size_known;
+      ended.over = true;
+      ended.master->on_transfer(ended);
+    };
+    return request;
+  }
+
+  [[nodiscard]] Result<void> submit_upload(Transfer& transfer, NodeId node_id, std::uint16_t index,
+                                           std::uint8_t sub_index) {
+    SdoRequest request = request_of(transfer, index, sub_index);
+    request.sink.context = &transfer;
+    request.sink.take = [](void* context, std::uint32_t, std::span<const std::uint8_t> bytes, bool) {
+      std::vector<std::uint8_t>& value = static_cast<Transfer*>(context)->bytes;
+      if (bytes.size() > max_upload - value.size()) return AbortCode::out_of_memory;
+      value.insert(value.end(), bytes.begin(), bytes.end());
+      return ok;
+    };
+    return nmt_.request(node_id, request, bus_.now());
+  }
+
+  [[nodiscard]] Result<void> submit_download(Transfer& transfer, NodeId node_id, std::uint16_t index,
+                                             std::uint8_t sub_index, std::span<const std::uint8_t> bytes) {
+    transfer.bytes.assign(bytes.begin(), bytes.end());
+    transfer.node_id = node_id;
+    transfer.index = index;
+    transfer.sub_index = sub_index;
+    transfer.download = true;
+    SdoRequest request = request_of(transfer, index, sub_index);
+    request.download = true;
+    request.bytes = transfer.bytes;
+    return nmt_.request(node_id, request, bus_.now());
+  }
+
+  [[nodiscard]] Result<void> wait_for(const Transfer& transfer) {
+    while (!transfer.over) receive(std::chrono::milliseconds{100});
+    return transfer.result;
+  }
+
+  /// A transfer that is refused has no end to be told.
+  [[nodiscard]] Result<void> begun(Transfer& transfer, Result<void> submitted) {
+    if (!submitted) remove(transfer);
+    return submitted;
+  }
+
+  /// A COB-ID that has been written counts from now on.
+  void on_transfer(Transfer& ended) {
+    if (ended.download && ended.result == ok && is_pdo_cob_id(ended.index, ended.sub_index) && ended.bytes.size() == 4) {
+      set_cob_id(ended.node_id, ended.index, number_of(ended.bytes));
+    }
+    if (!ended.done) return;
+    keep([this, &ended] {
+      const std::function<void(Transfer&)> done = std::move(ended.done);
+      done(ended);
+      remove(ended);
+    });
+  }
+
+  // Configuration
+
+  void configure(NodeId node_id) {
+    std::uint8_t& to_configure = to_configure_[node_id.value() & 0x7F];
+    const std::uint8_t turn = to_configure;
+    std::optional<Result<void>> result = Result<void>{};
+    if (turn == 1) {  // if not, it has booted up again
+      --to_configure;
+      if (on_configure) result = on_configure(node_id);
+      if (result && to_configure == 0) after_configuration(node_id, *result);
+    } else {
+      --to_configure;
+    }
+  }
+
+  /// The slave may have other COB-IDs than when they were read. A node answers in order: with the last one all are known.
+  void after_configuration(NodeId node_id, Result<void> result) {
+    if (!result) return nmt_.configured(node_id, result.abort_code(), bus_.now());
+    const bool reads = read_cob_ids(node_id, [this, node_id](AbortCode code) {
+      if (code == AbortCode::device_state) return;  // it has booted up again
+      nmt_.configured(node_id, code == AbortCode::timeout ? code : ok, bus_.now());
+    });
+    if (!reads) nmt_.configured(node_id, ok, bus_.now());
+  }
+
+  // COB-IDs of PDOs
+
+  [[nodiscard]] static bool is_pdo_cob_id(std::uint16_t index, std::uint8_t sub_index) {
+    const bool receive = index >= rpdo_indices.communication && index < rpdo_indices.mapping;
+    const bool transmit = index >= tpdo_indices.communication && index < tpdo_indices.mapping;
+    return (receive || transmit) && sub_index == pdo_parameter::cob_id;
+  }
+
+  [[nodiscard]] static std::uint32_t number_of(std::span<const std::uint8_t> bytes) {
+    std::uint32_t value = 0;
+    for (std::size_t i = bytes.size(); i > 0; --i) value = (value << 8) | bytes[i - 1];
+    return value;
+  }
+
+  /// What a PDO communication parameter of a node holds, for handlers and for what is sent.
+  void set_cob_id(NodeId node_id, std::uint16_t index, std::uint32_t value) {
+    const CobId parameter{value};
+    const std::uint32_t extended = parameter.extended() ? std::uint32_t{0x2000'0000} : 0;
+    const std::uint32_t cob_id = parameter.valid() ? parameter.can_id() | extended : no_cob_id;
+    cob_ids_[{node_id.value(), index}] = cob_id;
+    for (PdoHandler& pdo : pdos_) {
+      if (pdo.node_id == node_id.value() && pdo.index == index) pdo.cob_id = cob_id;
+    }
+  }
+
+  /// Reads the COB-IDs of a node that are known, once more. `done`, if any, is called with the end of the last one; false:
+  /// there are none.
+  bool read_cob_ids(NodeId node_id, std::function<void(AbortCode)> done = {}) {
+    std::vector<std::uint16_t> indices;
+    for (const auto& [key, cob_id] : cob_ids_) {
+      if (key.first == node_id.value()) indices.push_back(key.second);
+    }
+    bool last_begun = false;
+    for (const std::uint16_t index : indices) {
+      const bool last = index == indices.back();
+      const auto read = [this, node_id, index, last, done](const Result<std::vector<std::uint8_t>>& bytes) {
+        if (bytes && bytes->size() == 4) set_cob_id(node_id, index, number_of(*bytes));
+        if (last && done) done(bytes.abort_code());
+      };
+      const bool begun = static_cast<bool>(begin_upload(node_id, index, pdo_parameter::cob_id, read));
+      if (!begun) cob_ids_.erase({node_id.value(), index});  // read when it is needed
+      last_begun = last && begun;
+    }
+    return last_begun;
+  }
+
+  /// The COB-ID of a PDO of a node, which is read where it is not known. 0800 0022h: the PDO is not valid.
   [[nodiscard]] Result<std::uint32_t> pdo_cob_id(NodeId node_id, std::uint16_t index) {
     const auto key = std::pair{node_id.value(), index};
-    if (const auto known = cob_ids_.find(key); known != cob_ids_.end()) return known->second;
-    const Result<std::vector<std::uint8_t>> bytes = sdo_.upload(node_id, index, pdo_parameter::cob_id, 4);
+    const auto known = cob_ids_.find(key);
+    if (known != cob_ids_.end() && known->second != no_cob_id) return known->second;
+    const Result<std::vector<std::uint8_t>> bytes = upload(node_id, index, pdo_parameter::cob_id);
     if (!bytes) return bytes.abort_code();
-    std::uint32_t value = 0;
-    for (std::size_t i = bytes->size(); i > 0; --i) value = (value << 8) | (*bytes)[i - 1];
-    const CobId cob_id{value};
-    if (!cob_id.valid()) return AbortCode::device_state;
-    return cob_ids_[key] = cob_id.can_id() | (cob_id.extended() ? std::uint32_t{0x2000'0000} : 0);
+    if (bytes->size() != 4) return AbortCode::length_mismatch;
+    set_cob_id(node_id, index, number_of(*bytes));
+    const std::uint32_t cob_id = cob_ids_[key];
+    if (cob_id == no_cob_id) return AbortCode::device_state;
+    return cob_id;
   }
 
   B& bus_;
   std::vector<NmtSlave> slaves_;
-  NmtMaster<B, most_slaves, Host> nmt_;
-  WatchedBus watched_{*this};
-  BlockingSdo<WatchedBus> sdo_;
+  NmtMaster<B, max_slaves, Host, max_requests, max_nodes_at_once> nmt_;
+  std::list<Transfer> transfers_;
   std::deque<PdoHandler> pdos_;
   std::map<std::pair<std::uint8_t, std::uint16_t>, std::uint32_t> cob_ids_;
+  std::array<std::uint8_t, 128> to_configure_{};  ///< calls of `on_configure` that wait, by node-ID
   std::deque<std::function<void()>> waiting_;
 };
 
@@ -227,26 +508,28 @@ class MasterRemote {
   /// The value of an object.
   template <DictionaryObject O>
   [[nodiscard]] auto read() {
-    return blocking().template read<O>();
+    return objects().template read<O>();
   }
   /// Writes an object. A value outside the limits is refused without a frame.
   template <DictionaryObject O, class V>
   Result<void> write(V value) {
-    return blocking().template write<O>(value);
+    return objects().template write<O>(value);
   }
   /// Writes a constant, whose limits the compiler checks.
   template <DictionaryObject O, auto Value>
   Result<void> write() {
-    return blocking().template write<O, Value>();
+    return objects().template write<O, Value>();
   }
 
   /// From now on the handler is called with the values of each TPDO of this layout: `handler(values...)`. Its COB-ID is
-  /// read from the node.
+  /// read from the node, again when the node has booted up, and follows what is written to it through the master.
+  /// 0800 0022h: the PDO is not valid; the handler is not kept.
   template <class Layout, class F>
   Result<void> on_pdo(F handler) {
     const Result<std::uint32_t> cob_id = master_.pdo_cob_id(node_id_, tpdo_index<Layout>());
     if (!cob_id) return cob_id.abort_code();
-    master_.pdos_.push_back({*cob_id, Layout::size, [handler = std::move(handler)](const Frame& frame) mutable {
+    master_.pdos_.push_back({node_id_.value(), tpdo_index<Layout>(), *cob_id, Layout::size,
+                             [handler = std::move(handler)](const Frame& frame) mutable {
                                std::apply(handler, Layout::unpack(frame));
                              }});
     return ok;
@@ -289,7 +572,7 @@ class MasterRemote {
     frame.id = cob_id & 0x1FFF'FFFF;
     return frame;
   }
-  [[nodiscard]] auto blocking() { return master_.sdo_.template remote<Device>(node_id_); }
+  [[nodiscard]] BlockingObjects<Device, Master<B>> objects() { return {master_, node_id_}; }
 
   Master<B>& master_;
   NodeId node_id_;
