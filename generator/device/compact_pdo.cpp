@@ -6,6 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "device/cob_id_parameter.hpp"
+#include "device/complete_device.hpp"
 #include "device/limits.hpp"
 #include "device/resolve_information.hpp"
 
@@ -16,20 +18,16 @@ using canopen::Access;
 using canopen::DataType;
 
 constexpr std::uint32_t known_bits = 0x3F;
-/// PDOs with a COB-ID of the pre-defined connection set (CiA 301, 7.3.5); the others are off.
-constexpr std::uint32_t predefined_pdos = 4;
-constexpr std::uint32_t cob_id_off = 0x8000'0000;
 
 struct Direction {
   std::string_view name;
   std::uint16_t communication, mapping;
-  std::uint32_t first_cob_id;
   Field DeviceInfo::*count;
 };
 
 constexpr Direction directions[] = {
-    {"RPDO", 0x1400, 0x1600, 0x200, &DeviceInfo::nr_of_rx_pdo},
-    {"TPDO", 0x1800, 0x1A00, 0x180, &DeviceInfo::nr_of_tx_pdo},
+    {"RPDO", 0x1400, 0x1600, &DeviceInfo::nr_of_rx_pdo},
+    {"TPDO", 0x1800, 0x1A00, &DeviceInfo::nr_of_tx_pdo},
 };
 
 struct CommunicationSub {
@@ -37,9 +35,11 @@ struct CommunicationSub {
   DataType type;
 };
 
+constexpr std::string_view transmission_type = "Transmission type";
+
 /// Sub-indices 1 to 6 of a communication parameter (CiA 301, 7.5.2.35).
 constexpr CommunicationSub communication_subs[] = {
-    {"COB-ID", DataType::unsigned32},       {"Transmission type", DataType::unsigned8},
+    {"COB-ID", DataType::unsigned32},       {transmission_type, DataType::unsigned8},
     {"Inhibit time", DataType::unsigned16}, {"Compatibility entry", DataType::unsigned8},
     {"Event timer", DataType::unsigned16},  {"SYNC start value", DataType::unsigned8},
 };
@@ -115,23 +115,16 @@ class CompactPdos {
     for (const CommunicationSub& row : communication_subs) {
       ++sub_index;
       if ((mask_ >> (sub_index - 1U) & 1U) == 0) continue;
-      const bool is_cob_id = sub_index == 1;
+      const CobIdParameter* const cob_id = find_cob_id_parameter(object.index, sub_index);
       Entry& entry = add_entry(
-          object, sub_index, is_cob_id ? fmt::format("{} used by {}", row.name, direction.name) : std::string{row.name},
-          row.type, Access::rw);
-      if (is_cob_id) entry.default_value = cob_id(direction, i);
+          object, sub_index,
+          cob_id != nullptr ? fmt::format("{} used by {}", row.name, direction.name) : std::string{row.name}, row.type,
+          Access::rw);
+      if (cob_id != nullptr) entry.default_value = predefined_cob_id(*cob_id, object.index, device_.node_id, position_);
+      if (row.name == transmission_type) entry.default_value = value(default_transmission_type);
     }
     object.entries.front().default_value = value(object.entries.back().sub_index);
     return object;
-  }
-
-  [[nodiscard]] Value cob_id(const Direction& direction, std::uint32_t i) const {
-    Value result = value(cob_id_off);
-    result.hexadecimal = true;
-    if (i >= predefined_pdos) return result;
-    result.bits = direction.first_cob_id + 0x100 * i + device_.node_id.value_or(0);
-    result.plus_node_id = !device_.node_id;
-    return result;
   }
 
   [[nodiscard]] Object mapping(const Direction& direction, std::uint32_t i) const {

@@ -26,6 +26,13 @@ const Entry* Object::find(std::uint8_t sub_index) const {
   return at != entries.end() && at->sub_index == sub_index ? &*at : nullptr;
 }
 
+std::uint8_t Object::highest_sub_index() const {
+  constexpr std::uint8_t structure = 0xFF;
+  const auto last = std::find_if(entries.rbegin(), entries.rend(),
+                                 [](const Entry& entry) { return entry.sub_index != structure; });
+  return last != entries.rend() ? last->sub_index : 0;
+}
+
 unsigned Pdo::bits() const {
   unsigned sum = 0;
   for (const PdoEntry& entry : entries) sum += entry.bits;

@@ -34,7 +34,8 @@ struct Value {
   bool plus_node_id = false;  ///< the node-ID is added when it is known
   bool hexadecimal = false;   ///< spelled so in the data sheet
   std::string bytes;          ///< of strings
-  Position position;
+  Position position;          ///< where the file has it, or would have it
+  std::string_view clause;    ///< of CiA 301, which gives the value; empty when the file does
 };
 
 /// One entry of the object dictionary: what an SDO can name.
@@ -82,6 +83,8 @@ struct Object {
 
   [[nodiscard]] bool has_sub_indices() const { return type == ObjectType::array || type == ObjectType::record; }
   [[nodiscard]] const Entry* find(std::uint8_t sub_index) const;
+  /// Without FFh, which describes the structure of the object (CiA 301, 7.4.4).
+  [[nodiscard]] std::uint8_t highest_sub_index() const;
 };
 
 enum class PdoDirection : std::uint8_t { receive, transmit };

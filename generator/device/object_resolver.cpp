@@ -29,20 +29,12 @@ Value number_value(std::uint64_t bits, const Position& position) {
   return value;
 }
 
-/// FFh tells the structure of an object and does not count (CiA 301, 7.4.4).
-std::uint8_t highest_sub_index(const Object& object) {
-  constexpr std::uint8_t structure = 0xFF;
-  const auto last = std::find_if(object.entries.rbegin(), object.entries.rend(),
-                                 [](const Entry& entry) { return entry.sub_index != structure; });
-  return last != object.entries.rend() ? last->sub_index : structure;
-}
-
 /// What sub-index 0 holds when the data sheet does not say: the highest sub-index, but no error in the pre-defined
 /// error field (CiA 301, 7.5.2.6), and as many objects as there are in a mapping (7.5.2.36).
 std::uint8_t implied_count(const Object& object) {
   constexpr std::uint16_t pre_defined_error_field = 0x1003;
   if (object.index == pre_defined_error_field) return 0;
-  if (!contains(mapping_parameters, object.index)) return highest_sub_index(object);
+  if (!contains(mapping_parameters, object.index)) return object.highest_sub_index();
   std::uint8_t count = 0;
   for (const Entry& entry : object.entries) {
     const bool is_next = entry.sub_index == count + 1;
@@ -180,7 +172,7 @@ void ObjectResolver::check_sub_indices(const ObjectDescription& description) {
 
 void ObjectResolver::supply_sub_index_0(const ObjectDescription& description, Object& object) {
   if (object.entries.front().sub_index != 0) {
-    const std::uint8_t highest = highest_sub_index(object);
+    const std::uint8_t highest = object.highest_sub_index();
     diagnostics_.warning(
         "sub-index-0", description.position,
         fmt::format("{} has no sub-index 0; one with the value {} is supplied", index_label(object.index), highest));
@@ -190,6 +182,7 @@ void ObjectResolver::supply_sub_index_0(const ObjectDescription& description, Ob
   Entry& first = object.entries.front();
   if (!first.default_value && first.type->kind == DataClass::unsigned_integer && object.entries.size() > 1) {
     first.default_value = number_value(implied_count(object), first.position);
+    first.default_value->clause = contains(mapping_parameters, object.index) ? "7.5.2.36" : "7.4.4";
   }
 }
 

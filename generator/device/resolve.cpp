@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "device/compact_pdo.hpp"
+#include "device/complete_device.hpp"
 #include "device/entry_resolver.hpp"
 #include "device/identifier.hpp"
 #include "device/index_range.hpp"
@@ -44,6 +45,7 @@ class Resolver {
       }
     }
     resolve_objects();
+    complete_device(device_, diagnostics_);
     name_objects(device_, options_);
     check_option_keys();
     resolve_pdos(device_, options_);

@@ -56,6 +56,9 @@ ordered_json entry_view(const Entry& entry) {
   view["access"] = canopen::row_of(entry.access).name;
   view["pdo_mapping"] = entry.pdo_mapping;
   if (entry.default_value) view["default_value"] = value_view(*entry.default_value, *entry.type);
+  if (entry.default_value && !entry.default_value->clause.empty()) {
+    view["default_by"] = fmt::format("CiA 301, {}", entry.default_value->clause);
+  }
   if (entry.low_limit) view["low_limit"] = value_view(*entry.low_limit, *entry.type);
   if (entry.high_limit) view["high_limit"] = value_view(*entry.high_limit, *entry.type);
   if (entry.obj_flags != 0) view["obj_flags"] = entry.obj_flags;

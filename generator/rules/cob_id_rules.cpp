@@ -5,6 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "device/cob_id_parameter.hpp"
 #include "rules/rule_groups.hpp"
 
 namespace edsc {
@@ -12,112 +13,85 @@ namespace {
 
 using canopen::CobId;
 
-enum class Service : std::uint8_t { sync, time, emcy, sdo_server, sdo_client, rpdo, tpdo };
-
-/// Where COB-IDs stand in the dictionary.
-struct CobIdRange {
-  std::uint16_t first, last;
-  std::uint8_t first_sub_index, last_sub_index;
-  Service service;
-  bool has_valid_bit;  ///< bit 31: does not exist
-};
-
-constexpr CobIdRange cob_id_ranges[] = {
-    {0x1005, 0x1005, 0, 0, Service::sync, false},      {0x1012, 0x1012, 0, 0, Service::time, false},
-    {0x1014, 0x1014, 0, 0, Service::emcy, true},       {0x1200, 0x127F, 1, 2, Service::sdo_server, true},
-    {0x1280, 0x12FF, 1, 2, Service::sdo_client, true}, {0x1400, 0x15FF, 1, 1, Service::rpdo, true},
-    {0x1800, 0x19FF, 1, 1, Service::tpdo, true},
-};
-
-/// The pre-defined connection set (CiA 301, 7.3.5, table 40): what an entry's COB-ID is for node-ID 0.
-struct Predefined {
-  std::uint16_t index;
-  std::uint8_t sub_index;
-  std::uint16_t function_code;
-};
-
-constexpr Predefined predefined[] = {
-    {0x1014, 0, canopen::function_code::emcy},         {0x1200, 1, canopen::function_code::sdo_request},
-    {0x1200, 2, canopen::function_code::sdo_response}, {0x1400, 1, canopen::function_code::rpdo1},
-    {0x1401, 1, canopen::function_code::rpdo2},        {0x1402, 1, canopen::function_code::rpdo3},
-    {0x1403, 1, canopen::function_code::rpdo4},        {0x1800, 1, canopen::function_code::tpdo1},
-    {0x1801, 1, canopen::function_code::tpdo2},        {0x1802, 1, canopen::function_code::tpdo3},
-    {0x1803, 1, canopen::function_code::tpdo4},
-};
-
+constexpr std::uint16_t default_sdo = 0x1200;
 
 /// A COB-ID that the device has after a reset.
 struct CobIdUse {
   const Entry* entry;
-  Service service;
-  bool has_valid_bit;
+  const CobIdParameter* parameter;
   bool plus_node_id;
   CobId cob_id;  ///< for node-ID 0 when the node-ID is added
 
-  [[nodiscard]] bool valid() const { return !has_valid_bit || cob_id.valid(); }
+  [[nodiscard]] bool valid() const { return !parameter->has_valid_bit || cob_id.valid(); }
+  [[nodiscard]] CobIdService service() const { return parameter->service; }
   [[nodiscard]] CobId of(std::uint32_t node_id) const {
     return plus_node_id ? CobId{cob_id.value() + node_id} : cob_id;
   }
-  [[nodiscard]] const Position& place() const { return entry->default_value->position; }
+  [[nodiscard]] Position place() const { return default_place(*entry); }
 };
 
-const Predefined* find_predefined(const Entry& entry) {
-  const auto at = std::ranges::find_if(
-      predefined, [&](const Predefined& row) { return row.index == entry.index && row.sub_index == entry.sub_index; });
-  return at == std::end(predefined) ? nullptr : &*at;
-}
-
-void collect(const Object& object, const CobIdRange& range, std::vector<CobIdUse>& uses) {
+void collect(const Object& object, const CobIdParameter& parameter, std::vector<CobIdUse>& uses) {
   for (const Entry& entry : object.entries) {
-    if (entry.sub_index < range.first_sub_index || entry.sub_index > range.last_sub_index) continue;
-    if (!entry.default_value || entry.type->kind != canopen::DataClass::unsigned_integer) continue;
-    uses.push_back({&entry, range.service, range.has_valid_bit, entry.default_value->plus_node_id,
-                    CobId{static_cast<std::uint32_t>(entry.default_value->bits)}});
+    if (entry.sub_index < parameter.first_sub_index || entry.sub_index > parameter.last_sub_index) continue;
+    if (entry.type->kind != canopen::DataClass::unsigned_integer) continue;
+    const bool known = entry.default_value.has_value();
+    uses.push_back({&entry, &parameter, known && entry.default_value->plus_node_id,
+                    CobId{known ? static_cast<std::uint32_t>(entry.default_value->bits) : 0}});
   }
 }
 
 std::vector<CobIdUse> cob_ids_of(const Device& device) {
   std::vector<CobIdUse> uses;
-  for (const CobIdRange& range : cob_id_ranges) {
-    auto at = std::ranges::lower_bound(device.objects, range.first, {}, &Object::index);
-    for (; at != device.objects.end() && at->index <= range.last; ++at) collect(*at, range, uses);
+  for (const CobIdParameter& parameter : cob_id_parameters()) {
+    auto at = std::ranges::lower_bound(device.objects, parameter.first, {}, &Object::index);
+    for (; at != device.objects.end() && at->index <= parameter.last; ++at) collect(*at, parameter, uses);
   }
   return uses;
 }
 
-/// A PDO whose COB-ID has no default has CAN-ID 0 and is valid.
-void check_missing(const RuleContext& context) {
-  for (const Pdo& pdo : context.device.pdos) {
-    const Entry* entry = pdo.communication == nullptr ? nullptr : pdo.communication->find(1);
-    if (entry == nullptr || entry->default_value) continue;
-    context.report("cob-id-missing", entry->position,
-                   fmt::format("{} has no default: {} gets CAN-ID 0", named(*entry), pdo_label(pdo)));
-  }
-}
-
-/// Bits 11..28 of a COB-ID with an 11-bit CAN-ID are 0.
-void check_frame(const RuleContext& context, const CobIdUse& use) {
+/// Bits 11..28 of a COB-ID with an 11-bit CAN-ID are 0. One that is off may be anything.
+bool check_frame(const RuleContext& context, const CobIdUse& use) {
   const std::uint32_t highest = use.of(last_node_id).value();
-  if (use.cob_id.extended() || (highest & 0x1FFF'F800U) == 0) return;
+  if (!use.valid() || use.cob_id.extended() || (highest & 0x1FFF'F800U) == 0) return true;
   context.report(
       "cob-id-frame", use.place(),
       fmt::format("{} has more than 11 bits, but bit 29 says that it is an 11-bit CAN-ID", named(*use.entry)));
+  return false;
 }
 
-/// The default SDO's own CAN-IDs are restricted for all others; a client talks to default SDOs of other nodes.
-bool may_be_restricted(const CobIdUse& use) { return use.service == Service::sdo_client || use.entry->index == 0x1200; }
+/// A client talks to default SDOs of other nodes, whose CAN-IDs are restricted for all others.
+bool is_default_sdo_of_another(const CobIdUse& use, std::uint32_t can_id) {
+  if (use.service() != CobIdService::sdo_client) return false;
+  const std::uint32_t code = can_id & ~last_node_id;
+  return (code == canopen::function_code::sdo_request || code == canopen::function_code::sdo_response) &&
+         (can_id & last_node_id) != 0;
+}
+
+/// Why a COB-ID has a CAN-ID that its service may not use; null when it may.
+const char* restriction_of(const CobIdUse& use, std::uint32_t can_id) {
+  if (use.service() == CobIdService::emcy && can_id == canopen::function_code::sync) return "SYNC";
+  return is_default_sdo_of_another(use, can_id) ? nullptr : canopen::restriction_of(can_id);
+}
+
+/// 180h alone for TPDO 1 is meant as 180h + node-ID.
+std::string hint(const CobIdUse& use) {
+  if (use.plus_node_id || !use.parameter->plus_node_id) return "";
+  const std::uint32_t function_code = use.parameter->predefined_of(use.entry->index);
+  if (use.cob_id.can_id() != function_code) return "";
+  return fmt::format("; $NODEID+0x{:X} adds the node-ID", use.cob_id.value());
+}
 
 void check_restricted(const RuleContext& context, const CobIdUse& use) {
-  if (!use.valid() || use.cob_id.extended() || may_be_restricted(use)) return;
+  if (!use.valid() || use.cob_id.extended() || use.entry->index == default_sdo) return;
   const std::uint32_t first = use.plus_node_id ? 1 : 0;
   const std::uint32_t last = use.plus_node_id ? last_node_id : 0;
   for (std::uint32_t node_id = first; node_id <= last; ++node_id) {
     const std::uint32_t can_id = use.of(node_id).can_id();
-    const char* reason = canopen::restriction_of(can_id);
+    const char* reason = restriction_of(use, can_id);
     if (reason == nullptr) continue;
     context.report("cob-id-restricted", use.place(),
-                   fmt::format("{} is CAN-ID {:03X}h{}, which is restricted: {}", named(*use.entry), can_id,
-                               use.plus_node_id ? fmt::format(" for node-ID {}", node_id) : "", reason));
+                   fmt::format("{} is CAN-ID {:03X}h{}, which is restricted ({}){}", named(*use.entry), can_id,
+                               use.plus_node_id ? fmt::format(" for node-ID {}", node_id) : "", reason, hint(use)));
     return;
   }
 }
@@ -125,26 +99,14 @@ void check_restricted(const RuleContext& context, const CobIdUse& use) {
 /// In a sheet for any node-ID, 181h for TPDO 1 is meant as 180h + node-ID.
 void check_node_id(const RuleContext& context, const CobIdUse& use) {
   if (context.sheet.is_dcf || context.device.node_id || use.plus_node_id || use.cob_id.extended()) return;
-  const Predefined* row = find_predefined(*use.entry);
-  if (row == nullptr || use.entry->index == 0x1200) return;
+  if (!use.parameter->plus_node_id) return;
   const std::uint32_t can_id = use.cob_id.can_id();
-  if (can_id <= row->function_code || can_id > row->function_code + last_node_id) return;
+  const std::uint32_t function_code = use.parameter->predefined_of(use.entry->index);
+  if (can_id <= function_code || can_id > function_code + last_node_id) return;
   context.report(
       "cob-id-node-id", use.place(),
       fmt::format("{} is {:03X}h, the CAN-ID of node {} alone; $NODEID+0x{:X} is that of any node", named(*use.entry),
-                  can_id, can_id - row->function_code, row->function_code + (use.cob_id.value() & 0xE000'0000U)));
-}
-
-/// CiA 301, 7.5.2.33: the default SDO is 600h and 580h + node-ID.
-void check_default_sdo(const RuleContext& context, const CobIdUse& use) {
-  if (use.entry->index != 0x1200) return;
-  const Predefined& row = *find_predefined(*use.entry);
-  const bool right = context.device.node_id ? use.of(*context.device.node_id).value() ==
-                                                  std::uint32_t{row.function_code} + *context.device.node_id
-                                            : use.plus_node_id && use.cob_id.value() == row.function_code;
-  if (right || (context.sheet.is_dcf && !context.device.node_id)) return;
-  context.report("default-sdo-cob-id", use.place(),
-                 fmt::format("{} of the default SDO is $NODEID+0x{:X}", named(*use.entry), row.function_code));
+                  can_id, can_id - function_code, function_code + (use.cob_id.value() & 0xE000'0000U)));
 }
 
 /// The node-ID for which two COB-IDs are the same; 0 when there is none, 255 when they always are.
@@ -159,7 +121,7 @@ std::uint32_t common_node_id(const CobIdUse& a, const CobIdUse& b) {
 
 /// Several RPDOs may take the same frame.
 bool may_share(const CobIdUse& a, const CobIdUse& b) {
-  return a.service == Service::rpdo && b.service == Service::rpdo;
+  return a.service() == CobIdService::rpdo && b.service() == CobIdService::rpdo;
 }
 
 void check_pair(const RuleContext& context, const CobIdUse& first, const CobIdUse& second) {
@@ -171,13 +133,18 @@ void check_pair(const RuleContext& context, const CobIdUse& first, const CobIdUs
                  {{first.place(), "the first one"}});
 }
 
-/// Each frame has one meaning. SDO clients use the CAN-IDs of other nodes, whatever those are.
+/// The CAN-IDs of other nodes, whatever those are.
+bool is_of_another_node(const CobIdUse& use) {
+  return use.service() == CobIdService::sdo_client || use.service() == CobIdService::emcy_consumer;
+}
+
+/// Each frame has one meaning.
 void check_duplicates(const RuleContext& context, const std::vector<CobIdUse>& uses) {
   std::unordered_map<std::uint32_t, const CobIdUse*> by_formula;
   std::vector<const CobIdUse*> formulas;
   std::vector<const CobIdUse*> plain;
   for (const CobIdUse& use : uses) {
-    if (!use.valid() || use.service == Service::sdo_client) continue;
+    if (!use.valid() || is_of_another_node(use)) continue;
     if (!use.plus_node_id) {
       plain.push_back(&use);
       continue;
@@ -198,13 +165,10 @@ void check_duplicates(const RuleContext& context, const std::vector<CobIdUse>& u
 }  // namespace
 
 void check_cob_ids(const RuleContext& context) {
-  check_missing(context);
   const std::vector<CobIdUse> uses = cob_ids_of(context.device);
   for (const CobIdUse& use : uses) {
-    check_frame(context, use);
-    check_restricted(context, use);
+    if (check_frame(context, use)) check_restricted(context, use);
     check_node_id(context, use);
-    check_default_sdo(context, use);
   }
   check_duplicates(context, uses);
 }

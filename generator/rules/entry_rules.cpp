@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "diagnostics/quote.hpp"
 #include "eds/number.hpp"
 #include "rules/pdo_defaults.hpp"
@@ -20,6 +22,22 @@ void check_constant(const RuleContext& context, const Entry& entry) {
   if (context.options.is_settable(entry.index, entry.sub_index)) return;
   context.report("const-without-value", entry.position,
                  fmt::format("{} is const and has no DefaultValue", named(entry)));
+}
+
+/// What reads otherwise in a running device, whatever the file says.
+bool is_live(const Entry& entry) {
+  constexpr EntryKey live[] = {{0x1002, 0}, {0x1018, 4}};
+  constexpr std::uint16_t first_application_index = 0x2000;
+  if (entry.index >= first_application_index && entry.access == Access::ro && entry.pdo_mapping) return true;
+  return std::ranges::find(live, EntryKey{entry.index, entry.sub_index}) != std::end(live);
+}
+
+/// 0 is what such a value has before the device has measured or counted.
+void check_live(const RuleContext& context, const Entry& entry) {
+  if (!entry.default_value || !entry.default_value->clause.empty() || !is_live(entry)) return;
+  if (entry.default_value->bits == 0 && entry.default_value->bytes.empty()) return;
+  context.report("live-default", entry.default_value->position,
+                 fmt::format("{} has a default, but a running device has another value", named(entry)));
 }
 
 void check_mapping(const RuleContext& context, const Entry& entry) {
@@ -60,6 +78,7 @@ void check_entries(const RuleContext& context) {
   for (const Object& object : context.device.objects) {
     for (const Entry& entry : object.entries) {
       check_constant(context, entry);
+      check_live(context, entry);
       check_mapping(context, entry);
       check_name_length(context, entry);
     }

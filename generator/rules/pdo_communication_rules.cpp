@@ -32,10 +32,7 @@ bool is_synchronous(Transmission transmission) {
 void check_transmission_type(const RuleContext& context, const Pdo& pdo, std::uint64_t type) {
   const Entry& entry = *pdo.communication->find(transmission_type_sub_index);
   const Transmission transmission = transmission_of(type);
-  if (!canopen::transmission_type_is_legal(is_receive(pdo), static_cast<std::uint32_t>(type))) {
-    context.report("pdo-transmission-type", default_place(entry),
-                   fmt::format("{}: transmission type {} is reserved", pdo_label(pdo), type));
-  } else if (is_synchronous(transmission) && on_by_default(pdo) && context.device.find(0x1005) == nullptr) {
+  if (is_synchronous(transmission) && on_by_default(pdo) && context.device.find(0x1005) == nullptr) {
     context.report("pdo-sync", default_place(entry),
                    fmt::format("{} waits for SYNC (transmission type {}), but 1005h is missing", pdo_label(pdo), type));
   }

@@ -128,6 +128,8 @@ constexpr std::array rules = {
     Rule{"limits-order", warning, "LowLimit is above HighLimit", "CiA 306-1, 4.6.2"},
     Rule{"limit-formula", warning, "a limit that follows the node-ID", "CiA 306-1, 4.6.2"},
     Rule{"default-outside-limits", warning, "a default beyond its limits", "CiA 306-1, 4.6.2"},
+    Rule{"implied-default", note, "a default that CiA 301 implies is missing", "CiA 301, 7.5.2"},
+    Rule{"live-default", note, "a default for a value that the device measures or counts", "CiA 306-1, 4.6.2"},
     Rule{"const-without-value", note, "a constant without DefaultValue", "CiA 306-1, 4.6.2"},
     // Names.
     Rule{"name-length", note, "a name of more than 241 characters", "CiA 306-1, 4.6.2"},
@@ -136,9 +138,9 @@ constexpr std::array rules = {
     Rule{"name-reserved", note, "a name is a word of C++ or of the generated code", "edsc"},
     Rule{"name-digit", note, "a name begins with a digit", "edsc"},
     // COB-IDs.
-    Rule{"cob-id-missing", warning, "a PDO's COB-ID has no default", "CiA 301, 7.5.2.35"},
-    Rule{"cob-id-frame", warning, "more than 11 bits in an 11-bit CAN-ID", "CiA 301, 7.5.2.35"},
-    Rule{"cob-id-restricted", warning, "a restricted CAN-ID", "CiA 301, 7.3.5"},
+    Rule{"cob-id-missing", note, "a COB-ID without default, or 0", "CiA 301, 7.3.5"},
+    Rule{"cob-id-frame", error, "more than 11 bits in an 11-bit CAN-ID", "CiA 301, 7.5.2.35"},
+    Rule{"cob-id-restricted", error, "a restricted CAN-ID", "CiA 301, 7.3.5"},
     Rule{"cob-id-node-id", warning, "a CAN-ID of one node in a sheet for any node", "CiA 301, 7.3.5"},
     Rule{"cob-id-twice", warning, "two services with the same CAN-ID", "CiA 301, 7.3.5"},
     Rule{"default-sdo-cob-id", warning, "the default SDO has other CAN-IDs", "CiA 301, 7.5.2.33"},

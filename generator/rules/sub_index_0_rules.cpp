@@ -9,18 +9,10 @@ namespace {
 /// Objects whose sub-index 0 is not the highest sub-index, but a number that changes: errors, mapped objects.
 bool counts(std::uint16_t index) { return index == 0x1003 || contains(mapping_parameters, index); }
 
-/// Without FFh, which holds the object's structure.
-std::uint8_t highest_sub_index(const Object& object) {
-  for (auto at = object.entries.rbegin(); at != object.entries.rend(); ++at) {
-    if (at->sub_index != 0xFF) return at->sub_index;
-  }
-  return 0;
-}
-
 void check_value(const RuleContext& context, const Object& object, const Entry& count) {
   if (!count.default_value || counts(object.index)) return;
   const std::uint64_t value = count.default_value->bits;
-  const std::uint8_t highest = highest_sub_index(object);
+  const std::uint8_t highest = object.highest_sub_index();
   if (value == highest) return;
   context.report(
       "sub-index-0-value", count.default_value->position,

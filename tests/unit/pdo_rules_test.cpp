@@ -205,7 +205,7 @@ TEST(PdoRules, WarnOnlyWhenThePdoIsOffByDefault) {
 
 TEST(PdoRules, WarnOfAPdoThatLacksOneOfItsParameters) {
   const CheckedPdos communication(objects + group("1801", "Communication", "0x9", 2) +
-                              var("1801sub0", "Count", "5", "ro", "DefaultValue=1\n") + var("1801sub1", "COB-ID", "7"));
+                              var("1801sub0", "Count", "5", "ro", "DefaultValue=1\n") + var("1801sub1", "COB-ID", "7", "rw", "DefaultValue=$NODEID+0x280\n"));
   ASSERT_EQ(rules_of(communication.diagnostics), Rules{"pdo-pair"});
   EXPECT_EQ(communication.line_of("pdo-pair"), "[1801]");
   EXPECT_TRUE(message_has(communication, "pdo-pair", "TPDO 2 has no mapping parameter 1A01h"));

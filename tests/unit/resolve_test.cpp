@@ -111,7 +111,7 @@ TEST(Resolve, GivesTheMembersOfADefstructToARecordOfItsType) {
 
 TEST(Resolve, GivesTheMembersOfAPredefinedRecordToOneOfItsType) {
   const DeviceFromText text(group("1018", "Identity object", "0x9", 2) + "DataType=0x0023\n" +
-                            sub("1018", 0, "Count", "5") + "[1018sub1]\nParameterName=Vendor-ID\nAccessType=ro\n");
+                            sub("1018", 0, "Count", "5", "DefaultValue=1\n") + "[1018sub1]\nParameterName=Vendor-ID\nAccessType=ro\n");
   EXPECT_EQ(text.entry(0x1018, 1).type->type, DataType::unsigned32);
   EXPECT_EQ(rules_of(text.diagnostics), Rules{});
 }
