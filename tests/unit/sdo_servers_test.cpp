@@ -30,6 +30,14 @@ TEST(SdoServers, SecondOneAnswersOnItsOwnCanIds) {
   EXPECT_EQ(device.ask("605 40 01 12 01 00 00 00 00"), "585 43 01 12 01 40 05 00 00");
 }
 
+/// CiA 301, 7.5.2.33: bit 30 says that the COB-ID is assigned dynamically. It is not part of the CAN-ID.
+TEST(SdoServers, SecondOneAnswersWhereItsCobIdsAreAssignedDynamically) {
+  Bench device;
+  EXPECT_EQ(device.ask("605 23 01 12 01 80 06 00 40"), "585 60 01 12 01 00 00 00 00");
+  EXPECT_EQ(device.ask("605 23 01 12 02 C0 04 00 40"), "585 60 01 12 02 00 00 00 00");
+  EXPECT_EQ(device.ask("680 40 01 12 01 00 00 00 00"), "4C0 43 01 12 01 80 06 00 40");
+}
+
 TEST(SdoServers, HaveTransfersOfTheirOwn) {
   std::array<std::uint8_t, 16> memory{};
   Bench device;

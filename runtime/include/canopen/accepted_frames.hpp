@@ -52,7 +52,7 @@ struct Rule {
 inline constexpr Rule rules[] = {
     {0x1005, 0x1005, 0, 0, Source::sync},        {0x1012, 0x1012, 0, 0, Source::time},
     {0x1016, 0x1016, 1, 127, Source::heartbeat}, {0x1028, 0x1028, 1, 127, Source::emergency},
-    {0x1200, 0x127F, 1, 1, Source::sdo_request}, {0x1400, 0x15FF, 1, 1, Source::rpdo},
+    {0x1201, 0x127F, 1, 1, Source::sdo_request}, {0x1400, 0x15FF, 1, 1, Source::rpdo},
     {0x1800, 0x19FF, 1, 1, Source::tpdo},
 };
 
@@ -70,9 +70,11 @@ constexpr void for_each_source(const Dictionary& dictionary, Visit&& visit) {
 /// Calls `visit` with the frames that a number in an entry of this kind means, if any.
 template <class Visit>
 void accept(Source source, std::uint32_t value, bool remote_frames, Visit&& visit) {
-  constexpr std::uint32_t identifier = CobId::extended_bit | 0x1FFF'FFFF;
+  const auto accepted = [&](std::uint32_t cob_id, bool remote) {
+    visit(AcceptedFrame{CobId{cob_id & CobId::identifier}.can_id(), (cob_id & CobId::extended_bit) != 0, remote});
+  };
   const auto frames = [&](std::uint32_t cob_id, bool remote) {
-    visit(AcceptedFrame{CobId{cob_id & identifier}.can_id(), (cob_id & CobId::extended_bit) != 0, remote});
+    if (is_usable(cob_id & CobId::identifier)) accepted(cob_id, remote);
   };
   const CobId cob_id{value};
   switch (source) {
@@ -90,7 +92,7 @@ void accept(Source source, std::uint32_t value, bool remote_frames, Visit&& visi
       return;
     case Source::heartbeat:
       if (const ConsumerHeartbeatTime time{value}; time.used()) {
-        frames(function_code::error_control + std::uint32_t{time.node_id().value()}, false);
+        accepted(function_code::error_control + std::uint32_t{time.node_id().value()}, false);
       }
       return;
   }
@@ -124,9 +126,7 @@ void for_each_accepted_frame(Node<Device, B, Handlers...>& node, Visit&& visit) 
   const NodeId node_id = node.node_id();
   if (!node_id.valid()) return;
   visit(AcceptedFrame{function_code::nmt, false, false});
-  if constexpr (!Device::dictionary.has(0x1200, 1)) {
-    visit(AcceptedFrame{function_code::sdo_request + std::uint32_t{node_id.value()}, false, false});
-  }
+  visit(AcceptedFrame{function_code::sdo_request + std::uint32_t{node_id.value()}, false, false});
   if constexpr (Device::dictionary.has(0x100C, 0) && Device::dictionary.has(0x100D, 0)) {
     visit(AcceptedFrame{function_code::error_control + std::uint32_t{node_id.value()}, false, true});
   }

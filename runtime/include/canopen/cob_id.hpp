@@ -36,6 +36,7 @@ class CobId {
   static constexpr std::uint32_t invalid_bit = 0x8000'0000;   ///< PDO, SDO, EMCY: does not exist
   static constexpr std::uint32_t no_rtr_bit = 0x4000'0000;    ///< TPDO: no remote frame; SYNC: this device produces it
   static constexpr std::uint32_t extended_bit = 0x2000'0000;  ///< 29-bit identifier
+  static constexpr std::uint32_t identifier = 0x3FFF'FFFF;    ///< the CAN-ID, with the bit that tells its length
 
   constexpr CobId() = default;
   constexpr explicit CobId(std::uint32_t value) : value_{value} {}
@@ -95,12 +96,54 @@ inline constexpr const char* restricted_can_id_reasons[] = {
   return false;
 }
 
+/// Whether a service may send or receive under a COB-ID of the dictionary: it is valid (bit 31 is 0), and CiA 301 does
+/// not restrict its CAN-ID. One that is not usable counts as not existing, however it came into the dictionary. Of 1005h
+/// and 1012h, whose bits 30 and 31 mean something else, only the identifier is to be passed.
+[[nodiscard, gnu::noinline]] constexpr bool is_usable(std::uint32_t cob_id) {
+  if ((cob_id & CobId::invalid_bit) != 0) return false;
+  return (cob_id & CobId::extended_bit) != 0 || !is_restricted(cob_id & 0x7FF);
+}
+
 /// Whether a COB-ID may be written for its CAN-ID: 29 bits where the device takes them, or 11, and where it is in use
 /// none that other services need.
 [[nodiscard, gnu::noinline]] constexpr bool may_be_written(CobId cob_id, bool in_use, bool extended_ids) {
   if (cob_id.extended()) return extended_ids;
   if ((cob_id.value() & 0x1FFF'F800) != 0) return false;
-  return !in_use || !is_restricted(cob_id.can_id());
+  return !in_use || is_usable(cob_id.can_id());
+}
+
+/// Whether the COB-ID of a PDO, an SDO server or EMCY may go from one value to another: its CAN-ID may change only while
+/// it is not valid, is of 11 or 29 bits, and one that other services need cannot be made valid.
+[[nodiscard, gnu::noinline]] constexpr bool may_change(CobId before, CobId after, bool extended_ids) {
+  const bool changed = ((before.value() ^ after.value()) & CobId::identifier) != 0;
+  if (before.valid() && after.valid() && changed) return false;
+  return may_be_written(after, !before.valid() && after.valid(), extended_ids);
+}
+
+/// Entries that hold a COB-ID, and the bits that belong to it or make it invalid.
+struct CobIdEntries {
+  std::uint16_t first;
+  std::uint16_t last;
+  std::uint8_t first_sub_index;
+  std::uint8_t last_sub_index;
+  std::uint32_t bits;
+};
+inline constexpr CobIdEntries cob_id_entries[] = {
+    {0x1005, 0x1005, 0, 0, CobId::identifier}, {0x1012, 0x1012, 0, 0, CobId::identifier},
+    {0x1014, 0x1014, 0, 0, 0xFFFF'FFFF},       {0x1201, 0x127F, 1, 2, 0xFFFF'FFFF},
+    {0x1400, 0x15FF, 1, 1, 0xFFFF'FFFF},       {0x1800, 0x19FF, 1, 1, 0xFFFF'FFFF},
+};
+
+/// Whether an entry can have this value: one that is no COB-ID can, and so can a COB-ID that is not valid.
+[[nodiscard]] constexpr bool is_possible_cob_id(std::uint16_t index, std::uint8_t sub_index, std::uint32_t value) {
+  for (const CobIdEntries& row : cob_id_entries) {
+    if (index < row.first || index > row.last || sub_index < row.first_sub_index || sub_index > row.last_sub_index) {
+      continue;
+    }
+    const CobId cob_id{value & row.bits};
+    return !cob_id.valid() || may_be_written(cob_id, true, true);
+  }
+  return true;
 }
 
 /// Why an 11-bit CAN-ID may not be used by a configurable object; null when it may.

@@ -27,23 +27,13 @@ namespace canopen {
   return Duration{std::uint32_t{count} * options.inhibit_time_unit};
 }
 
-/// Whether a PDO or an SDO server may go from one COB-ID to another. 0609 0030h: its CAN-ID may change only while it is
-/// not valid, is of 11 or 29 bits, and one that other services need cannot be made valid.
-[[nodiscard, gnu::noinline]] constexpr AbortCode check_pdo_cob_id(CobId before, CobId after, bool extended_ids) {
-  constexpr std::uint32_t identifier = 0x3FFF'FFFF;
-  const bool changed = ((before.value() ^ after.value()) & identifier) != 0;
-  if (before.valid() && after.valid() && changed) return AbortCode::invalid_value;
-  const bool made_valid = !before.valid() && after.valid();
-  return may_be_written(after, made_valid, extended_ids) ? ok : AbortCode::invalid_value;
-}
-
 /// 0609 0030h where the device has not what the COB-ID of a PDO asks for.
 [[nodiscard]] constexpr AbortCode check_pdo_features(const DeviceOptions& options, bool tpdo, CobId cob_id) {
   const auto [first, last] = options.pdo_reserved_can_ids;
   if (first <= last && cob_id.valid() && !cob_id.extended() && cob_id.can_id() >= first && cob_id.can_id() <= last)
     return AbortCode::invalid_value;
   if (!tpdo) return ok;
-  if (!options.tpdo_remote_frames && cob_id.valid() && cob_id.rtr_allowed()) return AbortCode::invalid_value;
+  if (!options.tpdo_remote_frames && cob_id.rtr_allowed()) return AbortCode::invalid_value;
   if (!options.tpdo_remote_frames_can_be_disabled && !cob_id.rtr_allowed()) return AbortCode::invalid_value;
   return ok;
 }
@@ -68,8 +58,8 @@ template <class Device>
     case pdo_parameter::cob_id: {
       if (bytes.size() != sizeof(std::uint32_t)) return AbortCode::internal_incompatibility;
       const CobId after = written_cob_id(cob_id, Device::options.pdo_cob_id_writable, bytes);
-      const AbortCode code = check_pdo_cob_id(cob_id, after, Device::options.pdo_extended_ids);
-      return code != ok ? code : check_pdo_features(Device::options, tpdo, after);
+      if (!may_change(cob_id, after, Device::options.pdo_extended_ids)) return AbortCode::invalid_value;
+      return check_pdo_features(Device::options, tpdo, after);
     }
     case pdo_parameter::transmission_type: return check_transmission_type(Device::options, tpdo, bytes[0]);
     case pdo_parameter::inhibit_time:

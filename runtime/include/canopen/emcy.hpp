@@ -94,8 +94,8 @@ class EmergencyProducer {
 
   /// What speaks against writing these bytes to 1014h or 1015h (CiA 301, 7.5.2.17 and 7.5.2.18). Bits of 1014h that the
   /// device does not let change are put back into `bytes`.
-  ///   0609 0030h  1014h: the CAN-ID changes while EMCY is valid, is a restricted one, or has 29 bits where the device
-  ///               takes 11; bit 30 is 1. 1015h: no multiple of what the device counts in
+  ///   0609 0030h  1014h: the CAN-ID changes while EMCY is valid, is a restricted one, also where the device keeps
+  ///               some of its bits, or has 29 bits where the device takes 11; bit 30 is 1. 1015h: no multiple of what the device counts in
   ///   0604 0047h  the data sheet gives the object another type than CiA 301
   [[nodiscard]] static AbortCode check(EntryAccess<Device> entries, std::uint16_t index,
                                        std::span<std::uint8_t> bytes) {
@@ -108,11 +108,15 @@ class EmergencyProducer {
     }
     if (bytes.size() != sizeof(std::uint32_t)) return AbortCode::internal_incompatibility;
     const CobId before{entries.template number<0x1014, 0>()};
+    const CobId written{number_in(bytes)};
     const CobId after = written_cob_id(before, Device::options.emcy_cob_id_writable, bytes);
     constexpr std::uint32_t reserved_bit = 0x4000'0000;
-    const bool in_use = before.valid() && after.valid() && !Device::options.emcy_cob_id_writable_while_valid;
-    if ((after.value() & reserved_bit) != 0 || (in_use && before != after)) return AbortCode::invalid_value;
-    return may_be_written(after, after.valid(), Device::options.pdo_extended_ids) ? ok : AbortCode::invalid_value;
+    if ((after.value() & reserved_bit) != 0) return AbortCode::invalid_value;
+    if constexpr (Device::options.emcy_cob_id_writable != 0xFFFF'FFFF) {
+      if (after.valid() && !is_usable(written.value() & CobId::identifier)) return AbortCode::invalid_value;
+    }
+    const CobId from = Device::options.emcy_cob_id_writable_while_valid ? CobId{} : before;
+    return may_change(from, after, Device::options.pdo_extended_ids) ? ok : AbortCode::invalid_value;
   }
 
   /// No error, and none to be told (CiA 301, 7.2.7.1: what a reset does).
@@ -234,9 +238,7 @@ class EmergencyProducer {
 
   template <Bus B>
   [[nodiscard]] static bool send(const ObjectStore<Device>& store, B& bus, FrameWords message) {
-    const CobId cob_id{store.template number<0x1014, 0>()};
-    if (!cob_id.valid()) return true;
-    return send_words(bus, cob_id.value(), 8, message.first, message.second);
+    return send_configured(bus, store.template number<0x1014, 0>(), 8, message.first, message.second);
   }
 
   static void store_register(ObjectStore<Device>& store, std::uint8_t bits) {

@@ -8,6 +8,8 @@
 #include <cstring>
 #include <memory>
 
+#include "canopen/cob_id.hpp"
+
 namespace canopen {
 
 /// A classic CAN data or remote frame. The data begin at a multiple of four, so that codecs may use whole words.
@@ -75,6 +77,13 @@ template <Bus B>
                                              std::uint32_t second = 0) {
   const bool extended = (cob_id & 0x2000'0000) != 0;
   return bus.send(make_frame(can_id_of(cob_id, extended), size, {first, second}, extended));
+}
+
+/// The same for a service whose COB-ID can be configured: where it is not usable nothing is sent, and nothing waits.
+template <Bus B>
+[[nodiscard, gnu::noinline]] bool send_configured(B& bus, std::uint32_t cob_id, std::uint8_t size, std::uint32_t first,
+                                                  std::uint32_t second = 0) {
+  return !is_usable(cob_id) || send_words(bus, cob_id, size, first, second);
 }
 
 /// The same for bytes at an address that is a multiple of four.

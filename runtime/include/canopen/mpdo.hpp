@@ -258,10 +258,10 @@ class MultiplexedPdos {
            transmission_of(entries.number(row.transmission_type)) == Transmission::event_driven;
   }
 
-  /// The first valid one of this mode; null when there is none.
+  /// The first usable one of this mode; null when there is none.
   [[nodiscard]] static const Parameters* find(EntryAccess<Device> entries, std::uint8_t wanted) {
     for (const Parameters& row : rows) {
-      if (mode(entries, row) == wanted && CobId{entries.number(row.cob_id)}.valid() && event_driven(entries, row)) {
+      if (mode(entries, row) == wanted && is_usable(entries.number(row.cob_id)) && event_driven(entries, row)) {
         return &row;
       }
     }

@@ -352,9 +352,10 @@ class Node {
   /// frames are, and no other service is asked. Where an RPDO has another CAN-ID the other services come first.
   [[nodiscard]] bool is_rpdo(const Frame& frame) {
     if constexpr (!has_rpdos || MpdoService<Device>::exists) return false;
-    constexpr std::uint32_t can_ids = function_code::sdo_response - function_code::tpdo1;
+    constexpr std::uint32_t first = function_code::tpdo1 + 1;
+    constexpr std::uint32_t can_ids = function_code::sdo_response - first;
     const std::uint32_t cob_id = cob_id_of(frame);
-    if (frame.remote || cob_id - function_code::tpdo1 >= can_ids || !serves_pdo(state_)) return false;
+    if (frame.remote || cob_id - first >= can_ids || !serves_pdo(state_)) return false;
     return rpdos_.on_frame(frame, cob_id, RpdoHost{*this});
   }
 
@@ -366,14 +367,14 @@ class Node {
       attention_ = true;
     } else if (cob_id == function_code::nmt) {
       on_nmt(frame);
+    } else if (on_error_control(frame) || !is_usable(cob_id)) {
+      // a message of another node, or one that no service whose COB-ID can be configured may take
     } else if (SyncConsumer<Device>::takes(store_, cob_id)) {
       on_sync(SyncConsumer<Device>::sync_of(store_, frame));
     } else if (const std::optional<TimeOfDay> time = TimeStamp<Device>::take(store_, frame)) {
       if (serves_sync(state_)) handlers_.template tell<TimeHandler>(*this, *time);
     } else if (const std::optional<ConsumedEmergency> emergency = EmergencyConsumer<Device>::take(entries(), frame)) {
       if (serves_emcy(state_)) handlers_.template tell<EmergencyHandler>(*this, *emergency);
-    } else if (on_error_control(frame)) {
-      // a message of another node
     } else if (serves_pdo(state_)) {
       rpdos_.on_frame(frame, cob_id, RpdoHost{*this});
       mpdos_.on_frame(entries(), frame, node_id_, RpdoHost{*this});

@@ -21,8 +21,9 @@ namespace canopen {
 inline constexpr std::uint16_t sdo_server_parameter = 0x1200;
 inline constexpr std::uint16_t last_sdo_server_parameter = 0x127F;
 
-/// The first server always exists, with the COB-IDs of the pre-defined connection set where 1200h does not stand in the
-/// dictionary. Servers share no state; a DOMAIN that one of them begins to write is taken from the others.
+/// The first server always exists, with the COB-IDs of the pre-defined connection set: CiA 301 fixes those of 1200h.
+/// Another one exists while both of its COB-IDs are usable; bit 30, "dynamically assigned", makes no difference. Servers
+/// share no state; a DOMAIN that one of them begins to write is taken from the others.
 template <class Device>
 class SdoServers {
  public:
@@ -41,6 +42,7 @@ class SdoServers {
     const std::uint32_t cob_id = cob_id_of(frame);
     for (std::size_t i = 0; i < count; ++i) {
       if (cob_id_of_server(i, request_sub_index, store) != cob_id) continue;
+      if (i != 0 && cob_id_of_server(i, response_sub_index, store) == CobId::invalid_bit) continue;
       if (frame.size != 8) return true;
       if constexpr (count > 1) {
         if (!servers_[i].takes_segments()) take_domain_from_others(i, frame.data);
@@ -60,8 +62,9 @@ class SdoServers {
   [[nodiscard]] bool serve(ObjectStore<Device>& store, B& bus, Hooks&& hooks, TimePoint now) {
     for (std::size_t i = 0; i < count; ++i) {
       while (servers_[i].has_reply()) {
-        if (!send_data(bus, cob_id_of_server(i, response_sub_index, store), 8, servers_[i].reply().data()))
-          return false;
+        const std::uint32_t cob_id = cob_id_of_server(i, response_sub_index, store);
+        const bool gone = i != 0 && cob_id == CobId::invalid_bit;  // since the request
+        if (!gone && !send_data(bus, cob_id, 8, servers_[i].reply().data())) return false;
         servers_[i].reply_sent(hooks, now);
       }
     }
@@ -105,25 +108,16 @@ class SdoServers {
     return rows;
   }();
 
-  /// With bit 31 set: this server does not exist now, and no frame is for it.
+  /// As `cob_id_of` tells it of a frame; `invalid_bit` where this server has none that is usable.
   [[nodiscard]] static std::uint32_t cob_id_of_server(std::size_t i, std::uint8_t sub_index, ObjectStore<Device>& store) {
     if (i == 0) {
-      return sub_index == request_sub_index ? first_cob_id<request_sub_index>(store)
-                                            : first_cob_id<response_sub_index>(store);
+      const std::uint32_t base =
+          sub_index == request_sub_index ? function_code::sdo_request : function_code::sdo_response;
+      return base + store.node_id().value();
     }
     const entry::Word word = EntryAccess<Device>::find(indices[i], sub_index);
-    return word > Dictionary::no_sub_index ? store.entries().number(word) : CobId::invalid_bit;
-  }
-
-  template <std::uint8_t SubIndex>
-  [[nodiscard]] static std::uint32_t first_cob_id(const ObjectStore<Device>& store) {
-    if constexpr (Device::dictionary.has(sdo_server_parameter, SubIndex)) {
-      return store.template number<sdo_server_parameter, SubIndex>();
-    } else {
-      constexpr std::uint16_t base =
-          SubIndex == request_sub_index ? function_code::sdo_request : function_code::sdo_response;
-      return std::uint32_t{base} + store.node_id().value();
-    }
+    const std::uint32_t cob_id = word > Dictionary::no_sub_index ? store.entries().number(word) : CobId::invalid_bit;
+    return is_usable(cob_id) ? cob_id & CobId::identifier : CobId::invalid_bit;
   }
 
   void take_domain_from_others(std::size_t server, const std::array<std::uint8_t, 8>& request) {
@@ -140,14 +134,17 @@ class SdoServers {
   std::array<SdoServer<Device>, count> servers_{};
 };
 
-/// What speaks against writing these bytes to a COB-ID of 1200h..12FFh. 0609 0030h: its CAN-ID changes while the channel
-/// is valid, or is a restricted one.
+/// What speaks against writing these bytes to a COB-ID of 1200h..127Fh. 0609 0030h: its CAN-ID changes while the channel
+/// is valid, or is a restricted one; another value for 1200h, which is fixed.
 template <class Device>
 [[nodiscard]] AbortCode check_sdo_cob_id(EntryAccess<Device> entries, std::uint16_t index, std::uint8_t sub_index,
                                          std::span<const std::uint8_t> bytes) {
   if (sub_index != 1 && sub_index != 2) return ok;
   const CobId before{entries.number(entries.find(index, sub_index))};
-  return check_pdo_cob_id(before, CobId{number_in(bytes)}, true);
+  if constexpr (Device::dictionary.takes_writes(sdo_server_parameter, sdo_server_parameter)) {
+    if (index == sdo_server_parameter) return before.value() == number_in(bytes) ? ok : AbortCode::invalid_value;
+  }
+  return may_change(before, CobId{number_in(bytes)}, true) ? ok : AbortCode::invalid_value;
 }
 
 }  // namespace canopen

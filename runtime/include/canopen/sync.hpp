@@ -76,7 +76,9 @@ class SyncProducer {
   /// begins.
   [[gnu::noinline]] void start(const ObjectStore<Device>& store, TimePoint now, bool restart) {
     const Duration period = period_of(store);
-    const bool produces = (store.template number<0x1005, 0>() & CobId::no_rtr_bit) != 0 && is_span(period);
+    const std::uint32_t cob_id = store.template number<0x1005, 0>();
+    const bool produces =
+        (cob_id & CobId::no_rtr_bit) != 0 && is_span(period) && is_usable(cob_id & CobId::identifier);
     if (restart || !running_) counter_ = 0;
     running_ = produces;
     due_ = now + period;
@@ -91,7 +93,7 @@ class SyncProducer {
     const std::uint8_t overflow = SyncConsumer<Device>::overflow_of(store);
     const std::uint8_t counter = counter_ < overflow ? static_cast<std::uint8_t>(counter_ + 1) : std::uint8_t{1};
     const std::uint32_t cob_id = store.template number<0x1005, 0>();
-    if (!send_words(bus, cob_id, overflow != 0 ? 1 : 0, overflow != 0 ? counter : 0u)) return false;
+    if (!send_configured(bus, cob_id & CobId::identifier, overflow != 0 ? 1 : 0, overflow != 0 ? counter : 0u)) return false;
     counter_ = counter;
     const Duration period = period_of(store);
     due_ = due_ + period;
@@ -160,13 +162,14 @@ template <class Device>
   if (index == 0x1005) {
     if (bytes.size() != sizeof(std::uint32_t)) return AbortCode::internal_incompatibility;
     const CobId before{entries.template number<0x1005, 0>()};
+    const CobId written{number_in(bytes)};
     const CobId after = written_cob_id(before, Device::options.sync_cob_id_writable, bytes);
-    constexpr std::uint32_t identifier = CobId::extended_bit | 0x1FFF'FFFF;
-    const bool generates = (after.value() & CobId::no_rtr_bit) != 0;
-    if (generates && !SyncProducer<Device>::exists) return AbortCode::invalid_value;
-    const bool generated = (before.value() & CobId::no_rtr_bit) != 0;
-    const bool changed = ((before.value() ^ after.value()) & identifier) != 0;
-    if (generates && generated && changed) return AbortCode::invalid_value;
+    if constexpr (!SyncProducer<Device>::exists) {
+      if ((written.value() & CobId::no_rtr_bit) != 0) return AbortCode::invalid_value;
+    }
+    const bool generates = (before.value() & after.value() & CobId::no_rtr_bit) != 0;
+    const bool changed = ((before.value() ^ after.value()) & CobId::identifier) != 0;
+    if (generates && changed) return AbortCode::invalid_value;
     return may_be_written(after, true, Device::options.pdo_extended_ids) ? ok : AbortCode::invalid_value;
   }
   if (index == 0x1006) return number_in(bytes) > longest_span.count() ? AbortCode::value_too_high : ok;

@@ -27,7 +27,7 @@ class TimeStamp {
     if constexpr (exists) {
       const std::uint32_t cob_id = store.template number<0x1012, 0>();
       const bool consumes = (cob_id & consume_bit) != 0;
-      if (consumes && cob_id_of(frame) == (cob_id & identifier) && frame.size >= size) {
+      if (consumes && cob_id_of(frame) == (cob_id & CobId::identifier) && frame.size >= size) {
         TimeOfDay time;
         std::memcpy(&time.milliseconds, &frame.data[0], sizeof time.milliseconds);
         std::memcpy(&time.days, &frame.data[4], sizeof time.days);
@@ -43,7 +43,7 @@ class TimeStamp {
   [[nodiscard]] static bool send(const ObjectStore<Device>& store, B& bus, TimeOfDay time) {
     static_assert(exists, "this device has no 1012h");
     const CobId cob_id{store.template number<0x1012, 0>()};
-    if ((cob_id.value() & produce_bit) == 0) return false;
+    if ((cob_id.value() & produce_bit) == 0 || !is_usable(cob_id.value() & CobId::identifier)) return false;
     Frame frame{};
     frame.id = cob_id.can_id();
     frame.extended = cob_id.extended();
@@ -55,7 +55,6 @@ class TimeStamp {
 
   static constexpr std::uint32_t consume_bit = 0x8000'0000;
   static constexpr std::uint32_t produce_bit = 0x4000'0000;
-  static constexpr std::uint32_t identifier = CobId::extended_bit | 0x1FFF'FFFF;
 };
 
 /// What speaks against writing these bytes to 1012h (CiA 301, 7.5.2.15). 0609 0030h: the CAN-ID changes while TIME is

@@ -259,7 +259,7 @@ class TpdoService {
     slot.type = inactive;
     slot.size = look_up(i, entries);
     const CobId cob_id{cob_id_of(i, entries)};
-    if (slot.size == 0 || !cob_id.valid() || !may_be_written(cob_id, false, true)) return;
+    if (slot.size == 0 || !cob_id.valid() || !may_be_written(cob_id, true, true)) return;
     slot.type = static_cast<std::uint8_t>(Column<pdo_parameter::transmission_type>::get(entries, i, event_driven_type));
     if (slot.type >= first_event_driven) {
       slot.flags |= event_driven;
@@ -335,8 +335,9 @@ class TpdoService {
     if constexpr (prefers_size) {
       FrameWords words;
       pack(which, store, reinterpret_cast<Data&>(words));
-      return send_words(bus, cob_id, slot.size, words.first, words.second);
+      return send_configured(bus, cob_id, slot.size, words.first, words.second);
     } else {
+      if (!is_usable(cob_id)) return true;
       Frame frame;
       frame.id = cob_id & 0x1FFF'FFFF;
       frame.extended = (cob_id & CobId::extended_bit) != 0;
@@ -349,8 +350,8 @@ class TpdoService {
   /// Sends the data of the last SYNC.
   template <Bus B>
   [[nodiscard]] bool send_sample(const Slot& slot, std::size_t which, ObjectStore<Device>& store, B& bus) {
-    return send_words(bus, cob_id_of(which, store.entries()), slot.size, slot.times.event_due.since_start().count(),
-                      slot.times.inhibit_end.since_start().count());
+    return send_configured(bus, cob_id_of(which, store.entries()), slot.size,
+                           slot.times.event_due.since_start().count(), slot.times.inhibit_end.since_start().count());
   }
 
   void sample([[maybe_unused]] std::size_t which, [[maybe_unused]] ObjectStore<Device>& store) {
