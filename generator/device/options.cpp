@@ -53,6 +53,7 @@ struct NumberOption {
 constexpr std::array runtime_numbers = {
     NumberOption{"inhibit_time_unit", 1, 32767},
     NumberOption{"emcy_inhibit_time_step", 1, 65535},
+    NumberOption{"sdo_timeout", 0, 65535},
 };
 
 /// Enumerators of canopen::Storing that depart from an entry's access.
@@ -355,7 +356,7 @@ class OptionsReader {
 
   void number(const NumberOption& option, const json& value) {
     const std::uint64_t count = value.is_number_unsigned() ? value.get<std::uint64_t>() : 0;
-    if (count < option.low || count > option.high) {
+    if (!value.is_number_unsigned() || count < option.low || count > option.high) {
       return error(option.name, fmt::format("a number from {} to {}", option.low, option.high));
     }
     options_.runtime.emplace_back(option.name, fmt::format("{}", count));

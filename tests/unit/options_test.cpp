@@ -95,6 +95,9 @@ TEST(OptionsFile, HandsEachDepartureToTheRuntime) {
   }
   EXPECT_EQ(ReadOptions(R"({ "inhibit_time_unit": 1000 })").options.runtime, (Runtime{{"inhibit_time_unit", "1000"}}));
   EXPECT_EQ(ReadOptions(R"({ "emcy_inhibit_time_step": 10 })").options.runtime, (Runtime{{"emcy_inhibit_time_step", "10"}}));
+  for (const std::string value : {"0", "1000", "65535"}) {
+    EXPECT_EQ(ReadOptions("{ \"sdo_timeout\": " + value + " }").options.runtime, (Runtime{{"sdo_timeout", value}}));
+  }
   EXPECT_EQ(ReadOptions(R"({ "pdo_reserved_can_ids": ["0x80", "0x100"] })").options.runtime,
             (Runtime{{"pdo_reserved_can_ids", "{0x080, 0x100}"}}));
   EXPECT_EQ(ReadOptions(R"({ "reset_emergency": "ff00h" })").options.runtime, (Runtime{{"reset_emergency", "0xFF00"}}));

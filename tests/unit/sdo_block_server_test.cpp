@@ -366,6 +366,34 @@ TEST(SdoBlockDownload, ConfirmsWhatHasComeOfASubBlockWhoseEndIsOverdue) {
   EXPECT_EQ(device.ask("D5 00 00 00 00 00 00 00"), "A1 00 00 00 00 00 00 00");
 }
 
+/// The client dies after its first segment: what comes then is no segment, but only a timeout can tell.
+TEST(SdoBlockDownload, LeavesTheServerDeafForASecondAtMost) {
+  SdoBench device;
+  EXPECT_EQ(device.ask("C6 0C 20 00 10 00 00 00"), "A4 0C 20 00 7F 00 00 00");
+  device.ask("01 41 42 43 44 45 46 47");
+  EXPECT_EQ(device.pass(500ms), "A2 01 7F 00 00 00 00 00");
+  EXPECT_EQ(device.pass(1s), "80 0C 20 00 00 00 04 05");
+  EXPECT_EQ(device.ask("40 00 10 00 00 00 00 00"), "43 00 10 00 91 01 0F 00");
+}
+
+struct WithoutTimeout : sample::Device {
+  static constexpr canopen::DeviceOptions options{.sdo_block_transfer = true, .sdo_timeout = 0};
+};
+
+TEST(SdoBlockDownload, WaitsWithoutEndWhereTheTimeoutIs0) {
+  SdoBench<WithoutTimeout> device;
+  device.ask("C2 0C 20 00 10 00 00 00");
+  EXPECT_FALSE(device.server.next_deadline());
+}
+
+TEST(SdoTimeout, IsOneSecondWithBlockTransferUnlessTheDeviceSaysOtherwise) {
+  using canopen::sdo_timeout_of;
+  EXPECT_EQ(sdo_timeout_of({}), 0);
+  EXPECT_EQ(sdo_timeout_of({.sdo_block_transfer = true}), 1000);
+  EXPECT_EQ(sdo_timeout_of({.sdo_block_transfer = true, .sdo_timeout = 0}), 0);
+  EXPECT_EQ(sdo_timeout_of({.sdo_timeout = 250}), 250);
+}
+
 TEST(SdoBlockDownload, AbortsWhenNothingComesOfASubBlock) {
   SdoBench<WithTimeout> device;
   device.ask("C2 0C 20 00 10 00 00 00");

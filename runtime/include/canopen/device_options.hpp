@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "canopen/cob_id.hpp"
 
@@ -22,7 +23,7 @@ struct DeviceOptions {
   RestrictedCanIds pdo_reserved_can_ids{1, 0};
   /// PDOs may have 29-bit CAN-IDs. If not, a write with bit 29 set is refused: 0609 0030h.
   bool pdo_extended_ids = true;
-  /// TPDOs may answer remote frames. If not, bit 30 of a valid one must be 1 and types 252 and 253 are refused: 0609
+  /// TPDOs may answer remote frames. If not, bit 30 of their COB-ID must be 1 and types 252 and 253 are refused: 0609
   /// 0030h.
   bool tpdo_remote_frames = true;
   /// Bit 30 of 1800h..19FFh:01 may be 1. If not: 0609 0030h.
@@ -39,7 +40,7 @@ struct DeviceOptions {
   /// A TPDO of type 0 is sent at the next SYNC after a mapped object has changed; if not, at every SYNC.
   bool tpdo_acyclic_on_change = true;
   /// The mapping of a PDO may be written while the PDO is valid, as long as its number of mapped objects is 0. If not:
-  /// 0800 0022h.
+  /// 0601 0000h.
   bool pdo_mapping_writable_while_valid = false;
   /// The answer to a number of mapped objects that gives no valid mapping.
   std::uint32_t pdo_mapping_abort_code = 0x0604'0042;
@@ -70,11 +71,19 @@ struct DeviceOptions {
   /// The SDO server takes block transfers. If not, it answers their initiate with 0504 0001h.
   bool sdo_block_transfer = false;
   /// A segmented or block transfer in which nothing comes for this many milliseconds is aborted: 0504 0000h. 0: never.
-  std::uint16_t sdo_timeout = 0;
+  /// Without a value: see `sdo_timeout_of`.
+  std::optional<std::uint16_t> sdo_timeout = std::nullopt;
   /// The answer to a write of anything but "save" to 1010h or "load" to 1011h.
   std::uint32_t storage_signature_abort_code = 0x0800'0020;
   /// After "load" the values in use stay over NMT resets: the defaults come with the next power-on.
   bool restore_needs_power_cycle = false;
 };
+
+/// The SDO timeout of a device in milliseconds; 0: none. A server in a block download takes every frame for a segment,
+/// so that a client that has gone would leave it deaf: one with block transfer has a timeout by default.
+[[nodiscard]] constexpr std::uint16_t sdo_timeout_of(const DeviceOptions& options) {
+  constexpr std::uint16_t with_blocks = 1000;
+  return options.sdo_timeout.value_or(options.sdo_block_transfer ? with_blocks : std::uint16_t{0});
+}
 
 }  // namespace canopen

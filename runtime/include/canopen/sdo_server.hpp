@@ -14,6 +14,7 @@
 #include "canopen/abort_code.hpp"
 #include "canopen/bytes.hpp"
 #include "canopen/crc16.hpp"
+#include "canopen/device_options.hpp"
 #include "canopen/dictionary.hpp"
 #include "canopen/frame.hpp"
 #include "canopen/object_store.hpp"
@@ -143,7 +144,7 @@ class SdoServer {
     block_download_ending,   ///< waits for the CRC
   };
 
-  static constexpr Duration timeout = from_milliseconds(Device::options.sdo_timeout);
+  static constexpr Duration timeout = from_milliseconds(sdo_timeout_of(Device::options));
   static constexpr bool has_timeout = timeout.count() != 0;
   static constexpr bool has_block = Device::options.sdo_block_transfer;
   static constexpr std::size_t number_bytes = 8;
