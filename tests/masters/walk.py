@@ -177,7 +177,7 @@ class Walk:
             entries = [self.read(mapping, sub) for sub in range(1, self.read(mapping) + 1)]
             self.set("valid", index, 1, cob_id & ~INVALID)
             if dynamic:
-                self.set("mapping-valid", mapping, 0, 0, "abort 08000022")
+                self.set("mapping-valid", mapping, 0, 0, "abort 06010000")
             self.set("cob-id-valid", index, 1, cob_id & ~(INVALID | 0x7FF) | other, "abort 06090030")
             self.set("invalid", index, 1, cob_id | INVALID)
             self.set("cob-id", index, 1, cob_id & ~0x7FF | INVALID | other)

@@ -506,11 +506,20 @@ TEST(Manual000, RefusesANumberOfEntriesThatMakesNoPdo) {
   EXPECT_EQ(write(drive, 0x1600, 0, 1, 2), taken(0x1600, 0));
 }
 
+/// Chapter 12, 1800h: "This bit is always 1", without exception for a PDO that is not valid.
+TEST(Manual000, KeepsBit30OfATpdoThatIsNotValid) {
+  Drive drive;
+  EXPECT_EQ(drive.ask("605 23 00 18 01 85 01 00 C0"), "585 60 00 18 01 00 00 00 00");
+  EXPECT_EQ(drive.ask("605 23 00 18 01 85 01 00 80"), "585 80 00 18 01 30 00 09 06");
+  EXPECT_EQ(drive.ask("605 23 00 18 01 85 01 00 00"), "585 80 00 18 01 30 00 09 06");
+  EXPECT_EQ(drive.ask("605 40 00 18 01 00 00 00 00"), "585 43 00 18 01 85 01 00 C0");
+}
+
 // shows 000.94
 TEST(Manual000, RefusesEntriesOutOfTheOrderOfTheSteps) {
   Drive drive;
-  EXPECT_EQ(write(drive, 0x1600, 1, 4, 0x607A'0020), refused(0x1600, 1, 0x0800'0022));
-  EXPECT_EQ(write(drive, 0x1600, 0, 1, 0), refused(0x1600, 0, 0x0800'0022));
+  EXPECT_EQ(write(drive, 0x1600, 1, 4, 0x607A'0020), refused(0x1600, 1, 0x0601'0000));
+  EXPECT_EQ(write(drive, 0x1600, 0, 1, 0), refused(0x1600, 0, 0x0601'0000));
   write(drive, 0x1400, 1, 4, 0x8000'0205);
   EXPECT_EQ(write(drive, 0x1600, 1, 4, 0x607A'0020), refused(0x1600, 1, 0x0601'0000));
 }

@@ -184,9 +184,9 @@ TEST(DynamicMapping, OfNothingIsSentNever) {
 
 TEST(DynamicMappingRefuses, AnyWriteWhileThePdoIsValid) {
   Bench device;
-  EXPECT_EQ(count(device, 0x1A00, 0), "0800 0022");
-  EXPECT_EQ(map(device, 0x1A00, 1, 0x20000008), "0800 0022");
-  EXPECT_EQ(count(device, 0x1600, 0), "0800 0022");
+  EXPECT_EQ(count(device, 0x1A00, 0), "0601 0000");
+  EXPECT_EQ(map(device, 0x1A00, 1, 0x20000008), "0601 0000");
+  EXPECT_EQ(count(device, 0x1600, 0), "0601 0000");
 }
 
 TEST(DynamicMappingRefuses, AnEntryWhileSubIndex0IsNot0) {

@@ -175,11 +175,18 @@ class MappingParameter {
   const std::uint8_t* first_;
 };
 
+/// Whether the first `count` objects of a mapping parameter with room for `capacity` make a PDO, one of no objects
+/// included.
+template <class Device>
+[[nodiscard]] bool is_possible_mapping(MappingParameter mapping, bool tpdo, std::uint8_t count, std::uint8_t capacity) {
+  if (count == 0 || (Device::options.mpdo && count >= source_multiplexed)) return true;
+  return count <= capacity && mapping.bits_of<Device>(tpdo, count) != 0;
+}
+
 /// What speaks against writing these bytes, whose length is right, to a mapping parameter, which has room for
 /// `capacity` objects. A PDO is remapped in five steps: disable it by bit 31 of its COB-ID, set sub-index 0 to 0, write
 /// the entries, set sub-index 0 to their number, enable it.
-///   0800 0022h  the PDO is valid
-///   0601 0000h  sub-index 0 is not 0
+///   0601 0000h  the PDO is valid, or sub-index 0 is not 0
 ///   0604 0041h  the object does not exist, cannot be mapped, or has another length
 ///   0604 0042h  too many objects or bits, or one that cannot be mapped (or what the device answers instead)
 template <class Device>
@@ -189,14 +196,11 @@ template <class Device>
   if constexpr (!Device::options.pdo_mapping_writable_while_valid) {
     const auto communication = static_cast<std::uint16_t>(index - (rpdo_indices.mapping - rpdo_indices.communication));
     const entry::Word cob_id = entries.find(communication, pdo_parameter::cob_id);
-    if (cob_id > Dictionary::no_sub_index && CobId{entries.number(cob_id)}.valid()) return AbortCode::device_state;
+    if (cob_id > Dictionary::no_sub_index && CobId{entries.number(cob_id)}.valid()) return AbortCode::unsupported_access;
   }
   const MappingParameter mapping{entries.ram(entries.find(index, 0)), entries.ram(entries.find(index, 1))};
   if (sub_index == 0) {
-    const std::uint8_t count = bytes[0];
-    if (count == 0) return ok;
-    if (Device::options.mpdo && count >= source_multiplexed) return ok;
-    if (count <= capacity && mapping.bits_of<Device>(tpdo, count) != 0) return ok;
+    if (is_possible_mapping<Device>(mapping, tpdo, bytes[0], capacity)) return ok;
     return static_cast<AbortCode>(Device::options.pdo_mapping_abort_code);
   }
   if (mapping.count() != 0) return AbortCode::unsupported_access;
