@@ -10,10 +10,13 @@
 #include <type_traits>
 
 #include "canopen/abort_code.hpp"
+#include "canopen/cob_id.hpp"
 #include "canopen/dictionary.hpp"
 #include "canopen/node_id.hpp"
 #include "canopen/object_store.hpp"
 #include "canopen/parameter_layout.hpp"
+#include "canopen/pdo_list.hpp"
+#include "canopen/pdo_mapping.hpp"
 #include "canopen/storage.hpp"
 
 namespace canopen {
@@ -54,14 +57,15 @@ class ParameterStorage {
     restored_ = false;
   }
 
-  /// Whether stored values were lost since power-on.
+  /// Whether stored values were lost since power-on, or some of them could not have been written and have their
+  /// defaults.
   [[nodiscard]] bool damaged() const { return damaged_; }
 
   /// Default values for 2000h..FFFFh, and over them what is stored.
   template <Storage S>
   void reset_application(S& storage, ObjectStore<Device>& store, NodeId node_id) {
     store.reset_application(node_id);
-    if (load(storage, all_sections & ~communication_sections, Device::node_id_relative_application(), store)) return;
+    if (load(storage, all_sections & ~communication_sections, Device::node_id_relative_application(), {}, store)) return;
     damaged_ = true;
     store.reset_application(node_id);
   }
@@ -70,9 +74,14 @@ class ParameterStorage {
   template <Storage S>
   void reset_communication(S& storage, ObjectStore<Device>& store, NodeId node_id) {
     store.reset_communication(node_id);
-    if (load(storage, communication_sections, Device::node_id_relative_communication(), store)) return;
+    Mappings left_out{};
+    bool loaded = load_communication(storage, left_out, store);
+    if (loaded && !find_impossible(store.entries(), left_out)) return;
     damaged_ = true;
     store.reset_communication(node_id);
+    if (!loaded) return;
+    loaded = load_communication(storage, left_out, store);
+    if (!loaded) store.reset_communication(node_id);
   }
 
   /// Stores the values of some sections, and 1020h with them. What else is stored stays. False: nothing has changed in
@@ -262,16 +271,69 @@ class ParameterStorage {
     return value;
   }
 
-  /// Puts what is stored in the place of the defaults. False: storage could not be read, and some values are not what
-  /// they should be.
+  /// A mapping parameter that is stored, and the objects that it has room for.
+  struct StoredMapping {
+    std::uint16_t index;
+    std::uint8_t capacity;
+  };
+  template <class Visit>
+  static constexpr void for_each_stored_mapping(Visit&& visit) {
+    Device::dictionary.for_each_entry([&](std::uint16_t index, std::uint8_t sub_index, entry::Word) {
+      if (sub_index != 0 || (!is_rpdo_mapping(index) && !is_tpdo_mapping(index)) || !Layout::stores(index, 0)) return;
+      const std::uint8_t capacity = mapping_capacity(Device::dictionary, index);
+      if (capacity != 0) visit(StoredMapping{index, capacity});
+    });
+  }
+  static constexpr std::size_t mapping_count = [] {
+    std::size_t count = 0;
+    for_each_stored_mapping([&](StoredMapping) { ++count; });
+    return count;
+  }();
+  static constexpr std::array<StoredMapping, mapping_count> stored_mappings = [] {
+    std::array<StoredMapping, mapping_count> rows{};
+    std::size_t i = 0;
+    for_each_stored_mapping([&](StoredMapping row) { rows[i++] = row; });
+    return rows;
+  }();
+
+  /// Some of `stored_mappings`.
+  using Mappings = std::array<bool, mapping_count>;
+
+  /// Finds the mapping parameters that make no PDO with the objects that the device has now. False: all of them do.
+  [[nodiscard]] static bool find_impossible([[maybe_unused]] EntryAccess<Device> entries,
+                                            [[maybe_unused]] Mappings& impossible) {
+    bool found = false;
+    for (std::size_t i = 0; i < mapping_count; ++i) {
+      const auto [index, capacity] = stored_mappings[i];
+      const MappingParameter mapping{entries.ram(entries.find(index, 0)), entries.ram(entries.find(index, 1))};
+      impossible[i] = !is_possible_mapping<Device>(mapping, is_tpdo_mapping(index), mapping.count(), capacity);
+      found = found || impossible[i];
+    }
+    return found;
+  }
+
+  [[nodiscard]] static bool is_in(const Mappings& mappings, std::uint16_t index) {
+    for (std::size_t i = 0; i < mapping_count; ++i) {
+      if (stored_mappings[i].index == index) return mappings[i];
+    }
+    return false;
+  }
+
   template <Storage S>
-  [[nodiscard]] bool load(S& storage, unsigned sections, std::span<const NodeIdRelative> relative,
-                          ObjectStore<Device>& store) const {
+  [[nodiscard]] bool load_communication(S& storage, const Mappings& left_out, ObjectStore<Device>& store) {
+    return load(storage, communication_sections, Device::node_id_relative_communication(), left_out, store);
+  }
+
+  /// Puts what is stored in the place of the defaults, but for some mapping parameters. False: storage could not be
+  /// read, and some values are not what they should be.
+  template <Storage S>
+  [[nodiscard, gnu::noinline]] bool load(S& storage, unsigned sections, std::span<const NodeIdRelative> relative,
+                                         const Mappings& left_out, ObjectStore<Device>& store) {
     for (std::size_t i = 0; i < parameter_sections; ++i) {
       if (!is_in(sections, i) || Layout::sizes[i] == 0) continue;
       Record record;
       if (!find(storage, i, record)) return false;
-      if (record.position != 0 && !load_section(storage, i, record, relative, store)) return false;
+      if (record.position != 0 && !load_section(storage, i, record, relative, left_out, store)) return false;
     }
     return true;
   }
@@ -279,14 +341,15 @@ class ParameterStorage {
   /// A value that was the default of another node-ID is the default of this one: a COB-ID that follows the node-ID goes
   /// on to follow it (CiA 305).
   template <Storage S>
-  [[nodiscard]] static bool load_section(S& storage, std::size_t section, Record record,
-                                         std::span<const NodeIdRelative> relative, ObjectStore<Device>& store) {
+  [[nodiscard]] bool load_section(S& storage, std::size_t section, Record record,
+                                  std::span<const NodeIdRelative> relative, const Mappings& left_out,
+                                  ObjectStore<Device>& store) {
     const bool same_node_id = record.node_id == store.node_id().value();
     if (!same_node_id && section == static_cast<std::size_t>(ParameterSection::with_node_id)) return true;
     std::uint8_t* const ram = ram_of(store);
     std::array<Relative, most_relative> defaults;
     for (std::size_t i = 0; i < relative.size(); ++i) defaults[i] = relative_value(ram, relative[i]);
-    if (!read_values(storage, section, record.position, ram)) return false;
+    if (!read_values(storage, section, record.position, left_out, store.entries())) return false;
     for (std::size_t i = 0; !same_node_id && i < relative.size(); ++i) {
       const Relative stored = relative_value(ram, relative[i]);
       if (stored + store.node_id().value() == defaults[i] + record.node_id)
@@ -295,11 +358,56 @@ class ParameterStorage {
     return true;
   }
 
+  /// Takes the values of a section one by one.
   template <Storage S>
-  [[nodiscard]] static bool read_values(S& storage, std::size_t section, std::uint32_t position, std::uint8_t* ram) {
-    for (std::size_t i = Layout::firsts[section]; i < Layout::firsts[section + 1]; ++i) {
-      if (!storage.read(position, {ram + Layout::runs[i].offset, Layout::runs[i].size})) return false;
-      position += Layout::runs[i].size;
+  [[nodiscard, gnu::noinline]] bool read_values(S& storage, std::size_t section, std::uint32_t position,
+                                                const Mappings& left_out, EntryAccess<Device> entries) {
+    bool readable = true;
+    Device::dictionary.for_each_entry([&](std::uint16_t index, std::uint8_t sub_index, entry::Word word) {
+      if (!readable || entry::place_of(word) != entry::Place::ram) return;
+      const std::uint32_t place = Layout::place_in(section, entry::offset_of(word));
+      if (place == Layout::nowhere || is_in(left_out, index)) return;
+      readable = read_value(storage, position + place, index, sub_index, word, entries);
+    });
+    return readable;
+  }
+
+  /// Takes a value. One that could not have been written over the bus leaves the default.
+  template <Storage S>
+  [[nodiscard]] bool read_value(S& storage, std::uint32_t position, std::uint16_t index, std::uint8_t sub_index,
+                                entry::Word word, EntryAccess<Device> entries) {
+    alignas(8) std::array<std::uint8_t, 8> bytes{};
+    std::size_t size = EntryAccess<Device>::bytes_of(word);
+    const bool is_string = size == 0;  // DOMAINs are not stored
+    if (is_string) size = sizeof(std::uint16_t);
+    if (!storage.read(position, std::span{bytes}.first(size))) return false;
+    if (is_string) {
+      return read_string(storage, position, index, sub_index, word, number_in(std::span{bytes}.first(2)), entries);
+    }
+    const std::span<const std::uint8_t> value{bytes.data(), size};
+    if (entries.holds(word, value)) return true;
+    if (EntryAccess<Device>::check_value(index, sub_index, word, value) == ok &&
+        is_possible_cob_id(index, sub_index, number_in(value.first(std::min<std::size_t>(size, 4))))) {
+      entries.write(word, value);
+    } else {
+      damaged_ = true;
+    }
+    return true;
+  }
+
+  template <Storage S>
+  [[nodiscard]] bool read_string([[maybe_unused]] S& storage, [[maybe_unused]] std::uint32_t position,
+                                 [[maybe_unused]] std::uint16_t index, [[maybe_unused]] std::uint8_t sub_index,
+                                 [[maybe_unused]] entry::Word word, [[maybe_unused]] std::uint32_t size,
+                                 [[maybe_unused]] EntryAccess<Device> entries) {
+    if constexpr (EntryAccess<Device>::kinds.strings_in_ram) {
+      if (size > entries.capacity(index, sub_index)) {
+        damaged_ = true;
+        return true;
+      }
+      const std::span<std::uint8_t> text{entries.ram(word) + sizeof(std::uint16_t), size};
+      if (!storage.read(position + static_cast<std::uint32_t>(sizeof(std::uint16_t)), text)) return false;
+      entries.write(word, text);
     }
     return true;
   }
