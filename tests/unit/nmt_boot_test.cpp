@@ -313,6 +313,7 @@ TEST(NmtBoot, TheAnswerThatASecondBootUpLeavesOverIsNotTakenForAnother) {
   desk.start();
   EXPECT_EQ(desk.take("705 00"), "605 40 00 10 00 00 00 00 00");
   EXPECT_EQ(desk.take("705 00"), "605 80 00 10 00 22 00 00 08 | 605 40 00 10 00 00 00 00 00");
+  EXPECT_EQ(desk.log(), (Lines{"5 boot-up", "5 boot-up"}));
   desk.take(device_type);  // to the first request
   Transfer write;
   const std::array<std::uint8_t, 1> value{1};

@@ -536,6 +536,7 @@ class NmtMaster {
     entry.silent = false;
     stop_watching(i);
     if (!booting_) return;
+    entry.dropped = entry.asked;
     sdo_.node_reset(slaves_[i].node_id, now_);
     if (entry.step != Step::idle || slaves_[i].has(slave_assignment::boot)) {
       identify(i);
