@@ -4,6 +4,7 @@
 
 #include <array>
 #include <canopen/bytes.hpp>
+#include <canopen/cob_id_check.hpp>
 #include <canopen/device_options.hpp>
 #include <canopen/pdo_list.hpp>
 
@@ -11,6 +12,13 @@
 #include "pdo.hpp"
 
 namespace can_2053c {
+
+/// The services start with CAN-IDs that are theirs.
+static_assert(canopen::checked_cob_ids<
+    canopen::StartCobId{0x1005, 0x00, 0x80},
+    canopen::StartCobId{0x1014, 0x00, 0x80, true},
+    canopen::StartCobId{0x1200, 0x01, 0x600, true},
+    canopen::StartCobId{0x1200, 0x02, 0x580, true}>());
 
 /// What canopen::Node takes to be this device.
 struct Device {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "device/stored_eds.hpp"
+#include "render/cob_id_view.hpp"
 #include "render/compiled_format.hpp"
 #include "render/cpp_text.hpp"
 #include "render/json_object.hpp"
@@ -206,6 +207,7 @@ ordered_json served_pdos(const Device& device, PdoDirection direction) {
   ordered_json rows = ordered_json::array();
   for (const Pdo& pdo : device.pdos) {
     if (pdo.direction != direction || pdo.communication == nullptr || pdo.mapping == nullptr) continue;
+    if (has_wrong_cob_id(pdo)) continue;
     const bool empty = pdo.broken || pdo.entries.empty();
     if (empty && !pdo.dynamic && !pdo.multiplexed) continue;
     const std::string_view kind = direction == PdoDirection::receive ? "Rpdo" : "Tpdo";
@@ -332,12 +334,14 @@ ordered_json description_rows(const Device& device) {
 ordered_json cpp_view(const Device& device, const Options& options, Diagnostics& diagnostics) {
   const std::string& path = device.source->name();
   ordered_json distinct = distinct_pdos(device);
+  ordered_json cob_ids = cob_id_rows(device);
   return json_object("file", cpp_comment(path.substr(path.find_last_of('/') + 1)), "namespace", device.name, "guard",
                      to_upper("edsc_" + device.name), "product_name",
                      cpp_string(device.product_name.empty() ? device.name : device.product_name), "types",
                      ObjectTypes{device, options}.view(), "memory", layout_view(lay_out(device, options, diagnostics)),
                      "zero_terminated_strings", options.zero_terminated_strings, "pdos", pdo_rows(device),
-                     "distinct_pdos", json_object("any", !distinct.empty(), "rows", std::move(distinct)), "rpdos",
+                     "distinct_pdos", json_object("any", !distinct.empty(), "rows", std::move(distinct)), "cob_ids",
+                     json_object("any", !cob_ids.empty(), "rows", std::move(cob_ids)), "rpdos",
                      served_pdos(device, PdoDirection::receive), "tpdos", served_pdos(device, PdoDirection::transmit),
                      "options", runtime_rows(options), "any_options", !options.runtime.empty(), "event_conditions",
                      event_conditions(options), "any_event_condition", !options.no_event.empty(), "emergency_info",

@@ -7,12 +7,15 @@
 #include <string>
 #include <vector>
 
+#include "device/cob_id_parameter.hpp"
+#include "device/complete_device.hpp"
 #include "render/cpp_text.hpp"
 #include "render/memory_layout.hpp"
 
 namespace edsc {
 namespace {
 
+using canopen::CobId;
 using canopen::DataClass;
 using canopen::PdoParameters;
 using nlohmann::ordered_json;
@@ -46,7 +49,6 @@ ordered_json entry_rows(const Device& device, const Pdo& pdo) {
   ordered_json rows = ordered_json::array();
   unsigned at = 0;
   for (const PdoEntry& entry : pdo.entries) {
-    if (pdo.broken) break;
     const std::string name = entry.dummy != nullptr ? "(dummy)" : cpp_comment(entry.object->name);
     const auto* type = entry.dummy != nullptr ? entry.dummy : entry.object->type;
     rows.push_back(
@@ -61,44 +63,39 @@ ordered_json entry_rows(const Device& device, const Pdo& pdo) {
 
 // ---- what the compiler checks ----
 
-/// A PDO's parameters and mapping as far as the rules find nothing wrong with them: what `edsc check` warns of is built
-/// all the same.
+/// A PDO's parameters, and what `edsc check` warns of that harms nobody: that is built all the same.
 struct Provable {
   PdoParameters parameters;
   std::uint32_t granularity = 1;
   std::vector<std::string> left_out;
 };
 
-std::uint64_t default_of(const Pdo& pdo, std::uint8_t sub_index, std::uint64_t otherwise) {
+/// What the device has after a reset; 0 where the entry has no default, `otherwise` where there is no entry.
+std::uint64_t start_value(const Pdo& pdo, std::uint8_t sub_index, std::uint64_t otherwise) {
   const Entry* entry = pdo.communication->find(sub_index);
-  return entry != nullptr && entry->default_value ? entry->default_value->bits : otherwise;
+  if (entry == nullptr) return otherwise;
+  return entry->default_value ? entry->default_value->bits : 0;
 }
 
-void add_cob_id(const Pdo& pdo, Provable& provable) {
+/// What the device has is what is proven: nothing that is wrong is left out.
+void add_cob_id(const Pdo& pdo, PdoParameters& parameters) {
   const Entry* entry = pdo.communication->find(1);
-  if (!entry->default_value) return provable.left_out.push_back("COB-ID");
-  PdoParameters with_cob_id = provable.parameters;
-  with_cob_id.cob_id = static_cast<std::uint32_t>(entry->default_value->bits);
-  with_cob_id.plus_node_id = entry->default_value->plus_node_id;
-  if (!canopen::cob_id_is_legal(with_cob_id)) return provable.left_out.push_back("COB-ID");
-  provable.parameters = with_cob_id;
+  parameters.cob_id = static_cast<std::uint32_t>(start_value(pdo, 1, CobId::invalid_bit));
+  parameters.plus_node_id = entry->default_value && entry->default_value->plus_node_id;
 }
 
+/// Times that the transmission type does not use harm nobody.
 void add_transmission(const Pdo& pdo, Provable& provable) {
-  const std::uint64_t type = default_of(pdo, 2, 255);
-  const auto number = static_cast<std::uint32_t>(std::min<std::uint64_t>(type, 256));
-  if (!canopen::transmission_type_is_legal(is_receive(pdo), number)) {
-    return provable.left_out.push_back("transmission type");
-  }
-  provable.parameters.transmission_type = static_cast<std::uint8_t>(type);
-  const auto inhibit_time = static_cast<std::uint16_t>(default_of(pdo, 3, 0));
-  const auto event_timer = static_cast<std::uint16_t>(default_of(pdo, 5, 0));
-  if (inhibit_time != 0 && !canopen::inhibit_time_is_used(is_receive(pdo), number)) {
+  const auto type = static_cast<std::uint8_t>(start_value(pdo, 2, default_transmission_type));
+  provable.parameters.transmission_type = type;
+  const auto inhibit_time = static_cast<std::uint16_t>(start_value(pdo, 3, 0));
+  const auto event_timer = static_cast<std::uint16_t>(start_value(pdo, 5, 0));
+  if (inhibit_time != 0 && !canopen::inhibit_time_is_used(is_receive(pdo), type)) {
     provable.left_out.push_back("inhibit time");
   } else {
     provable.parameters.inhibit_time = inhibit_time;
   }
-  if (event_timer != 0 && !canopen::event_timer_is_used(is_receive(pdo), number)) {
+  if (event_timer != 0 && !canopen::event_timer_is_used(is_receive(pdo), type)) {
     provable.left_out.push_back("event timer");
   } else {
     provable.parameters.event_timer = event_timer;
@@ -116,7 +113,7 @@ void add_granularity(const Device& device, const Pdo& pdo, Provable& provable) {
 
 Provable provable_of(const Device& device, const Pdo& pdo) {
   Provable provable;
-  add_cob_id(pdo, provable);
+  add_cob_id(pdo, provable.parameters);
   add_transmission(pdo, provable);
   if (pdo.communication->find(4) != nullptr) {
     provable.parameters.compatibility_entry = true;
@@ -128,7 +125,7 @@ Provable provable_of(const Device& device, const Pdo& pdo) {
 
 /// Whether there is anything to check it against.
 bool is_checked(const Pdo& pdo) {
-  return pdo.mapping != nullptr && !pdo.broken && pdo.communication != nullptr && pdo.communication->find(1) != nullptr;
+  return pdo.mapping != nullptr && !is_left_out(pdo) && pdo.communication != nullptr && pdo.communication->find(1) != nullptr;
 }
 
 /// `canopen::PdoParameters{.cob_id = 0x180, .plus_node_id = true}`, without what says nothing.
@@ -155,6 +152,15 @@ std::string check_arguments(const Provable& provable) {
 
 }  // namespace
 
+bool has_wrong_cob_id(const Pdo& pdo) {
+  if (pdo.communication == nullptr || pdo.communication->find(1) == nullptr) return false;
+  PdoParameters parameters;
+  add_cob_id(pdo, parameters);
+  return !canopen::cob_id_is_legal(parameters);
+}
+
+bool is_left_out(const Pdo& pdo) { return pdo.broken || has_wrong_cob_id(pdo); }
+
 ordered_json pdo_rows(const Device& device) {
   ordered_json rows = ordered_json::array();
   for (const Pdo& pdo : device.pdos) {
@@ -168,9 +174,9 @@ ordered_json pdo_rows(const Device& device) {
     row["template"] = receive ? "canopen::Rpdo" : "canopen::Tpdo";
     row["communication"] = index_label(static_cast<std::uint16_t>((receive ? 0x1400 : 0x1800) + offset));
     row["mapping"] = index_label(static_cast<std::uint16_t>((receive ? 0x1600 : 0x1A00) + offset));
-    row["broken"] = pdo.broken;
+    row["broken"] = is_left_out(pdo);
     row["bits"] = pdo.bits();
-    row["entries"] = entry_rows(device, pdo);
+    row["entries"] = is_left_out(pdo) ? ordered_json::array() : entry_rows(device, pdo);
     row["checked"] = is_checked(pdo);
     if (is_checked(pdo)) {
       const Provable provable = provable_of(device, pdo);

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <canopen/cob_id.hpp>
+#include <canopen/cob_id_check.hpp>
 #include <unordered_map>
 #include <vector>
 
@@ -59,18 +59,11 @@ bool check_frame(const RuleContext& context, const CobIdUse& use) {
   return false;
 }
 
-/// A client talks to default SDOs of other nodes, whose CAN-IDs are restricted for all others.
-bool is_default_sdo_of_another(const CobIdUse& use, std::uint32_t can_id) {
-  if (use.service() != CobIdService::sdo_client) return false;
-  const std::uint32_t code = can_id & ~last_node_id;
-  return (code == canopen::function_code::sdo_request || code == canopen::function_code::sdo_response) &&
-         (can_id & last_node_id) != 0;
-}
-
 /// Why a COB-ID has a CAN-ID that its service may not use; null when it may.
 const char* restriction_of(const CobIdUse& use, std::uint32_t can_id) {
-  if (use.service() == CobIdService::emcy && can_id == canopen::function_code::sync) return "SYNC";
-  return is_default_sdo_of_another(use, can_id) ? nullptr : canopen::restriction_of(can_id);
+  if (!canopen::is_restricted_for(use.entry->index, can_id)) return nullptr;
+  const char* const reason = canopen::restriction_of(can_id);
+  return reason != nullptr ? reason : "SYNC";
 }
 
 /// 180h alone for TPDO 1 is meant as 180h + node-ID.

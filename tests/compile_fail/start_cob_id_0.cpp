@@ -1,0 +1,9 @@
+// expect: COB-ID: it is restricted .*canopen::ObjectAt<'1', '2', '0', '1', 'h', ':', '0', '2'> .*canopen::CanId<'0', '0', '0', 'h'>
+// A server that sends on CAN-ID 0 commands NMT.
+#include <canopen/cob_id_check.hpp>
+
+#ifdef GOOD
+static_assert(canopen::checked_cob_ids<canopen::StartCobId{0x1201, 0x02, 0x80000000}>());
+#else
+static_assert(canopen::checked_cob_ids<canopen::StartCobId{0x1201, 0x02, 0}>());
+#endif
