@@ -168,6 +168,34 @@ TEST(BlockingSdo, TellsWhyNot) {
   EXPECT_LT(plant.bus.now() - before, canopen::Duration{510ms});
 }
 
+TEST(BlockingSdo, EndsOnABusThatTakesNoFrame) {
+  struct Full {
+    canopen::VirtualBusPort port;
+    bool send(const canopen::Frame&) { return false; }
+    std::optional<canopen::Frame> receive(canopen::Duration timeout) { return port.receive(timeout); }
+    TimePoint now() const { return port.now(); }
+  };
+  canopen::VirtualBus bus;
+  Full full{canopen::VirtualBusPort{bus}};
+  canopen::BlockingSdo master{full};
+  for (int i = 0; i < 2; ++i) {
+    const TimePoint before = bus.now();
+    EXPECT_EQ(master.upload(NodeId{5}, 0x1000, 0).abort_code(), AbortCode::timeout);
+    EXPECT_LT(bus.now() - before, canopen::Duration{510ms});
+  }
+}
+
+TEST(BlockingSdo, RefusesATransferToTheNodeThatItWaitsFor) {
+  Plant plant;
+  plant.device.set<od::producer_heartbeat_time>(10);
+  AbortCode nested = canopen::ok;
+  plant.master.on_frame = [&](const canopen::Frame&, TimePoint) {
+    if (nested == canopen::ok) nested = plant.master.upload(NodeId{6}, 0x1000, 0).abort_code();
+  };
+  EXPECT_EQ(plant.master.upload(NodeId{6}, 0x1000, 0).abort_code(), AbortCode::timeout);
+  EXPECT_EQ(nested, AbortCode::no_resource);
+}
+
 TEST(BlockingSdo, HandsOtherFramesOnWhileItWaits) {
   Plant plant;
   plant.device.set<od::producer_heartbeat_time>(10);
