@@ -63,6 +63,7 @@ struct Device {
     departures.pdo_mapping_writable_while_valid = true;
     departures.pdo_reserved_can_ids = {0x080, 0x100};
     departures.reset_emergency = 0xFF00;
+    departures.sdo_block_transfer = true;
     return departures;
   }();
 

@@ -1621,7 +1621,7 @@ inline constexpr canopen::entry::Word subs[] = {
     immediate | 0x0 | u32 | ro,
     immediate | 0x2057 | u32 | ro,
     rom | offsetof(IdentityObject, revision_number) | u32 | ro,
-    immediate | 0x0 | u32 | ro,
+    immediate | 0 | u32 | ro,
     immediate | 2 | u8 | ro,  // 1200h
     immediate_plus_node_id | 0x600 | u32 | ro,
     immediate_plus_node_id | 0x580 | u32 | ro,

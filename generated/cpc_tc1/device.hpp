@@ -8,10 +8,10 @@
 #include <canopen/device_options.hpp>
 #include <canopen/lss_options.hpp>
 #include <canopen/pdo_list.hpp>
-
+#include <span>
 #include "dictionary.hpp"
 #include "pdo.hpp"
-
+#include "stored_eds.hpp"
 namespace cpc_tc1 {
 
 /// The services start with CAN-IDs that are theirs.
@@ -59,6 +59,9 @@ struct Device {
   /// How LSS configures the device: canopen::configured_by_lss<Device::lss_options>(port).
   static constexpr canopen::LssOptions lss_options{
       .bit_rates = 0x01DF};
+
+  /// What 1021h holds.
+  static constexpr std::span<const std::uint8_t> stored_eds = cpc_tc1::stored_eds;
 
   /// Bit n is set where an RPDO may map data type n as a dummy.
   static constexpr std::uint32_t dummies = 0x01FC;

@@ -668,7 +668,6 @@ struct Values {
     std::uint16_t producer_heartbeat_time;                          ///< 1017h:00  Producer heartbeat time
     std::uint8_t error_register;                                    ///< 1001h:00  Error register
     std::uint8_t synchronous_counter_overflow_value;                ///< 1019h:00  Synchronous counter overflow value
-    std::uint8_t store_format;                                      ///< 1022h:00  Store format
   } communication_cleared;
   /// 2000h..FFFFh that start from zero.
   struct ApplicationCleared {
@@ -761,7 +760,7 @@ inline constexpr canopen::entry::Word entries[] = {
     record | 4,  // 1018h  Identity object
     ram | offsetof(Values, communication_cleared.synchronous_counter_overflow_value) | u8 | rw | limited,  // 1019h:00
     ram | offsetof(Values, communication_cleared.store_eds) | domain | ro,  // 1021h:00
-    ram | offsetof(Values, communication_cleared.store_format) | u8 | ro,  // 1022h:00
+    immediate | 0 | u8 | ro,  // 1022h:00
     record | 5,  // 1200h  SDO server parameter
     record | 6,  // 1400h  RPDO communication parameter 1
     record | 7,  // 1401h  RPDO communication parameter 2

@@ -1326,7 +1326,7 @@ inline constexpr canopen::entry::Word subs[] = {
     rom | offsetof(IdentityObject, vendor_id) | u32 | ro,
     immediate | 0x0 | u32 | ro,
     immediate | 0x0 | u32 | ro,
-    immediate | 0x0 | u32 | ro,
+    immediate | 0 | u32 | ro,
     immediate | 2 | u8 | ro,  // 1020h
     ram | u32 | rw,
     immediate | 1 | u8 | ro,  // 1029h

@@ -1197,7 +1197,6 @@ struct Values {
     std::uint32_t resolution_setting;                               ///< 20F2h:00  Resolution setting
     std::array<std::int32_t, 2> software_position_limit;            ///< 607Dh:01..02  Software position limit
     std::uint32_t supported_drive_modes;                            ///< 6502h:00  Supported drive modes
-    std::int16_t run_state;                                         ///< 206Dh:00  Run state
     std::uint16_t idle_current;                                     ///< 20D5h:00  Idle current
     std::uint16_t filter_coefficient;                               ///< 20E0h:00  Filter coefficient
     std::int16_t current_command_setting;                           ///< 20F1h:00  Current command setting
@@ -1236,6 +1235,7 @@ struct Values {
     std::int16_t integrated_current;                                ///< 2064h:00  Integrated current
     std::uint16_t bus_voltage;                                      ///< 2065h:00  Bus voltage
     std::uint16_t drive_error_code;                                 ///< 206Ch:00  Drive error code
+    std::int16_t run_state;                                         ///< 206Dh:00  Run state
     std::uint16_t locked_rotor_detection;                           ///< 207Ch:00  Locked rotor detection
     std::uint16_t analog_voltage;                                   ///< 2090h:00  Analog voltage
     std::uint16_t current_loop_kpt;                                 ///< 20C8h:00  Current loop Kpt
@@ -1316,7 +1316,6 @@ inline constexpr Values::ApplicationPreset application_preset{
     .resolution_setting = 4000,
     .software_position_limit = {{-2000000000, 2000000000}},
     .supported_drive_modes = 0x00000025,
-    .run_state = 4,
     .idle_current = 50,
     .filter_coefficient = 50,
     .current_command_setting = 1500,
@@ -1449,7 +1448,7 @@ inline constexpr canopen::entry::Word entries[] = {
     ram | offsetof(Values, application_cleared.integrated_current) | i16 | ro,  // 2064h:00
     ram | offsetof(Values, application_cleared.bus_voltage) | u16 | ro,  // 2065h:00
     ram | offsetof(Values, application_cleared.drive_error_code) | u16 | ro,  // 206Ch:00
-    ram | offsetof(Values, application_preset.run_state) | i16 | ro,  // 206Dh:00
+    ram | offsetof(Values, application_cleared.run_state) | i16 | ro,  // 206Dh:00
     ram | offsetof(Values, application_cleared.locked_rotor_detection) | u16 | ro | tpdo,  // 207Ch:00
     ram | offsetof(Values, application_cleared.analog_voltage) | u16 | ro,  // 2090h:00
     ram | offsetof(Values, application_cleared.current_loop_kpt) | u16 | rw,  // 20C8h:00
@@ -1547,7 +1546,7 @@ inline constexpr canopen::entry::Word subs[] = {
     immediate | 0x0 | u32 | ro,
     immediate | 0x470 | u32 | ro,
     rom | offsetof(IdentityObject, revision_number) | u32 | ro,
-    immediate | 0x0 | u32 | ro,
+    immediate | 0 | u32 | ro,
     immediate | 2 | u8 | ro,  // 1200h
     immediate_plus_node_id | 0x600 | u32 | ro,
     immediate_plus_node_id | 0x580 | u32 | ro,

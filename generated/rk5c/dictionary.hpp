@@ -262,14 +262,14 @@ struct TpdoMappingParameter {
 struct Values {
   /// 1000h..1FFFh with a default other than zero.
   struct CommunicationPreset {
-    std::uint32_t manufacturer_status_register;                     ///< 1002h:00  Manufacturer status register
     std::uint32_t cob_id_sync;                                      ///< 1005h:00  COB-ID SYNC
     std::uint32_t cob_id_emcy;                                      ///< 1014h:00  COB-ID EMCY
-    IdentityObject identity_object;                                 ///< 1018h  Identity object
     TpdoCommunicationParameter tpdo_communication_parameter_1;      ///< 1800h  TPDO communication parameter 1
   } communication_preset;
   /// 1000h..1FFFh that start from zero.
   struct CommunicationCleared {
+    std::uint32_t manufacturer_status_register;                     ///< 1002h:00  Manufacturer status register
+    IdentityObject identity_object;                                 ///< 1018h  Identity object
     std::uint16_t inhibit_time_emcy;                                ///< 1015h:00  Inhibit time EMCY
     std::uint16_t producer_heartbeat_time;                          ///< 1017h:00  Producer heartbeat time
     std::uint8_t error_register;                                    ///< 1001h:00  Error register
@@ -291,10 +291,8 @@ struct Values {
 
 /// What a reset copies from flash. A value that follows the node-ID stands without it.
 inline constexpr Values::CommunicationPreset communication_preset{
-    .manufacturer_status_register = 0x00000001,
     .cob_id_sync = 0x00000080,
     .cob_id_emcy = 0x00000080,
-    .identity_object = {.serial_number = 0x15011234},
     .tpdo_communication_parameter_1 = {.cob_id_used_by_tpdo = 0x00000180, .event_timer = 1, .transmission_type = 0xFE},
 };
 
@@ -353,7 +351,7 @@ inline constexpr canopen::Run runs[] = {
 inline constexpr canopen::entry::Word entries[] = {
     rom | offsetof(Constants, device_type) | u32 | ro,  // 1000h:00
     ram | offsetof(Values, communication_cleared.error_register) | u8 | ro,  // 1001h:00
-    ram | offsetof(Values, communication_preset.manufacturer_status_register) | u32 | ro,  // 1002h:00
+    ram | offsetof(Values, communication_cleared.manufacturer_status_register) | u32 | ro,  // 1002h:00
     ram | offsetof(Values, communication_preset.cob_id_sync) | u32 | rw,  // 1005h:00
     rom | offsetof(Constants, manufacturer_device_name) | visible_string | ro,  // 1008h:00
     rom | offsetof(Constants, manufacturer_hardware_version) | visible_string | ro,  // 1009h:00
@@ -409,7 +407,7 @@ inline constexpr canopen::entry::Word subs[] = {
 inline constexpr canopen::Group groups[] = {
     {.ram = 0, .rom = 0, .subs = 0, .highest = 1, .stride = 0},  // 1010h
     {.ram = 0, .rom = 0, .subs = 0, .highest = 1, .stride = 0},  // 1011h
-    {.ram = offsetof(Values, communication_preset.identity_object), .rom = offsetof(Constants, identity_object), .subs = 2, .highest = 4, .stride = 0},  // 1018h
+    {.ram = offsetof(Values, communication_cleared.identity_object), .rom = offsetof(Constants, identity_object), .subs = 2, .highest = 4, .stride = 0},  // 1018h
     {.ram = 0, .rom = 0, .subs = 7, .highest = 2, .stride = 0},  // 1200h
     {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_1), .rom = 0, .subs = 10, .highest = 5, .stride = 0},  // 1800h
     {.ram = 0, .rom = offsetof(Constants, tpdo_mapping_parameter_1), .subs = 16, .highest = 2, .stride = 0},  // 1A00h

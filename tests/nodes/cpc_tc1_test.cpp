@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <optional>
 #include <string>
 
@@ -81,6 +83,22 @@ TEST(CpcTc1Node, StopsWhenItsEnableInputFalls) {
   EXPECT_EQ(drive.app->axis().velocity(), 0);
 }
 
+// shows 000.82
+TEST(CpcTc1Node, KeepsTheCanIdOfATpdoWhileItIsValidAndItsBits29And30) {
+  Servo drive;  // Operational
+  constexpr auto refused = "585 80 00 18 01 30 00 09 06";
+  constexpr auto taken = "585 60 00 18 01 00 00 00 00";
+  EXPECT_EQ(drive.ask("605 23 00 18 01 86 01 00 40"), refused);  // another CAN-ID
+  EXPECT_EQ(drive.ask("605 23 00 18 01 85 01 00 60"), refused);  // bit 29
+  EXPECT_EQ(drive.ask("605 23 00 18 01 85 01 00 00"), refused);  // bit 30
+  EXPECT_NE(drive.ask("205 06 00").find("185 31 02"), std::string::npos);
+  EXPECT_EQ(drive.ask("605 23 00 18 01 85 01 00 C0"), taken);
+  EXPECT_EQ(drive.ask("605 23 00 18 01 85 01 00 E0"), refused);
+  EXPECT_EQ(drive.ask("205 07 00").find("185 33 02"), std::string::npos);
+  EXPECT_EQ(drive.ask("605 23 00 18 01 85 01 00 40").substr(0, 27), taken);
+  EXPECT_NE(drive.ask("205 06 00").find("185 31 02"), std::string::npos);
+}
+
 // shows 000.20
 TEST(CpcTc1Node, StoresAndRestoresNothingWhileTheMotorIsOn) {
   Servo drive;
@@ -101,6 +119,27 @@ TEST(CpcTc1Node, KeepsWhatIsStoredOverAPowerCycle) {
   drive.power_cycle();
   EXPECT_EQ(drive.ask("605 40 17 10 00 00 00 00 00"), "585 4B 17 10 00 00 00 00 00");
   EXPECT_EQ(drive.ask("605 40 18 10 04 00 00 00 00"), "585 43 18 10 04 34 12 01 15");  // its serial number
+}
+
+// shows 000.149, 000.184
+TEST(CpcTc1Node, SendsItsDataSheetFrom1021hAsText) {  // chapter 11; 12, 1021h and 1022h
+  std::ifstream file{EDSC_EDS_DIR "/cpc-tc1.eds", std::ios::binary};
+  const std::string expected{std::istreambuf_iterator<char>{file}, {}};
+  ASSERT_FALSE(expected.empty());
+  bench::NodeBench<cpc_tc1_node::CpcTc1> drive;
+  EXPECT_EQ(drive.ask("605 40 22 10 00 00 00 00 00"), "585 4F 22 10 00 00 00 00 00");  // text, not compressed
+  const canopen::Frame initiated = bench::frame(drive.ask("605 40 21 10 00 00 00 00 00"));
+  EXPECT_EQ(initiated.data[0], 0x41);
+  EXPECT_EQ(initiated.data[4] | initiated.data[5] << 8, static_cast<int>(expected.size()));
+  std::string text;
+  for (bool toggle = false, last = false; !last && text.size() <= expected.size(); toggle = !toggle) {
+    const canopen::Frame segment =
+        bench::frame(drive.ask(toggle ? "605 70 00 00 00 00 00 00 00" : "605 60 00 00 00 00 00 00 00"));
+    ASSERT_EQ(segment.data[0] & 0xF0, toggle ? 0x10 : 0x00);
+    last = (segment.data[0] & 1) != 0;
+    text.append(segment.data.begin() + 1, segment.data.end() - (segment.data[0] >> 1 & 7));
+  }
+  EXPECT_EQ(text, expected);
 }
 
 constexpr auto lss_waiting = "7E5 04 00 00 00 00 00 00 00";

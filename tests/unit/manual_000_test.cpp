@@ -133,18 +133,6 @@ TEST(Manual000, SendsItsNameWithoutA00h) {
   EXPECT_EQ(drive.ask("605 70 00 00 00 00 00 00 00"), "585 1B 33 30 00 00 00 00 00");
 }
 
-// shows 000.149, 000.184
-TEST(Manual000, SendsItsDataSheetFrom1021h) {
-  Drive drive;
-  constexpr std::array<std::uint8_t, 10> text{'[', 'F', 'i', 'l', 'e', 'I', 'n', 'f', 'o', ']'};
-  EXPECT_EQ(drive.ask("605 40 21 10 00 00 00 00 00"), "585 80 21 10 00 24 00 00 08");
-  drive.node.bind_constant<od::store_eds>(text);
-  EXPECT_EQ(drive.ask("605 40 21 10 00 00 00 00 00"), "585 41 21 10 00 0A 00 00 00");
-  EXPECT_EQ(drive.ask("605 60 00 00 00 00 00 00 00"), "585 00 5B 46 69 6C 65 49 6E");
-  EXPECT_EQ(drive.ask("605 70 00 00 00 00 00 00 00"), "585 19 66 6F 5D 00 00 00 00");
-  EXPECT_EQ(drive.ask("605 40 22 10 00 00 00 00 00"), "585 4F 22 10 00 00 00 00 00");
-}
-
 // SDO
 
 // shows 000.22, 000.23
@@ -298,7 +286,7 @@ TEST(Manual000, AnRpdoIgnoresBit30AndHasNoBit29) {
   EXPECT_EQ(drive.node.get<od::controlword>(), 0x0F);
 }
 
-// shows 000.82, 000.83, 000.173
+// shows 000.83, 000.173
 TEST(Manual000, ATpdoKeepsItsCanIdWhileItIsValid) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 23 00 18 01 86 01 00 40"), "585 80 00 18 01 30 00 09 06");

@@ -28,7 +28,7 @@ constexpr std::uint32_t invalid_value = 0x0609'0030;
 // shows 004.26, 004.42, 004.54, 004.79..004.81, 004.91, 004.93, 004.95, 004.119..004.121, 004.123, 004.126..004.131
 TEST(Manual004, HasTheObjectsOf41) {
   constexpr manual::Entry entries[] = {
-      {0x1000, 0, 4, ro, 0x000A'0196}, {0x1001, 0, 1, ro, 0},           {0x1002, 0, 4, ro, 1},
+      {0x1000, 0, 4, ro, 0x000A'0196}, {0x1001, 0, 1, ro, 0},
       {0x1005, 0, 4, rw, 0x80},        {0x1010, 0, 1, ro, 1},           {0x1010, 1, 4, rw, 1},
       {0x1011, 0, 1, ro, 1},           {0x1011, 1, 4, rw, 1},           {0x1014, 0, 4, rw, 0x85},
       {0x1015, 0, 2, rw, 0},           {0x1017, 0, 2, rw, 0},           {0x1018, 0, 1, ro, 4},
@@ -378,6 +378,7 @@ struct LssSensor {
       : port{memory, {}},
         node{bus, memory.node_id, canopen::stored_in(memory.parameters), canopen::configured_by_lss<lss>(port)} {
     node.start(now);
+    static_cast<void>(node.set<od::identity_object::serial_number>(0x1501'1234));  // of this sensor
     bus.take();
   }
 
