@@ -94,6 +94,7 @@ TEST(CpcTc1Node, KeepsTheCanIdOfATpdoWhileItIsValidAndItsBits29And30) {
   EXPECT_NE(drive.ask("205 06 00").find("185 31 02"), std::string::npos);
   EXPECT_EQ(drive.ask("605 23 00 18 01 85 01 00 C0"), taken);
   EXPECT_EQ(drive.ask("605 23 00 18 01 85 01 00 E0"), refused);
+  EXPECT_EQ(drive.ask("605 23 00 18 01 85 01 00 80"), refused);  // bit 30 is always 1
   EXPECT_EQ(drive.ask("205 07 00").find("185 33 02"), std::string::npos);
   EXPECT_EQ(drive.ask("605 23 00 18 01 85 01 00 40").substr(0, 27), taken);
   EXPECT_NE(drive.ask("205 06 00").find("185 31 02"), std::string::npos);

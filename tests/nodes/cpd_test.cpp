@@ -87,6 +87,7 @@ TEST(CpdNode, SendsAnEmcyForAnErrorAndGoesToFault) {
   EXPECT_EQ(drive.get<od::error_code>(), 0x2212);  // of the last one
 }
 
+// shows 002.57
 TEST(CpdNode, SwitchesToErrorStatusWhenNobodyGuardsItAnyMore) {  // 9.4.9, 7.2.2
   Servo drive;
   drive.ask("605 2B 0C 10 00 64 00 00 00");  // 100Ch: 100 ms
@@ -159,6 +160,53 @@ TEST(CpdNode, SavesAndResetsItsSettingsBy3004h) {
   drive.ask(bench::reset_node);
   EXPECT_EQ(drive.ask("605 40 29 30 04 00 00 00 00"), "585 4B 29 30 04 00 00 00 00");
   EXPECT_EQ(drive.ask("605 2B 04 30 08 02 00 00 00"), "585 80 04 30 08 30 00 09 06");
+}
+
+// shows 002.74
+TEST(CpdNode, TakesAndSendsAPdoWhileBit31OfItsCobIdIs0) {
+  Servo drive;
+  drive.enable(3);
+  drive.ask("405 0F 00 E8 03 00 00");  // R_PDO3: 1402h:01 is 8000 0405h
+  EXPECT_EQ(drive.get<od::target_velocity>(), 0);
+  EXPECT_EQ(drive.ask("605 23 02 14 01 05 04 00 00"), "585 60 02 14 01 00 00 00 00");
+  drive.ask("405 0F 00 E8 03 00 00");
+  drive.pass(1s);
+  EXPECT_EQ(drive.app->axis().velocity(), 1'000);
+  EXPECT_EQ(drive.ask("605 23 02 14 01 05 04 00 80"), "585 60 02 14 01 00 00 00 00");
+  drive.ask("405 0F 00 00 00 00 00");
+  EXPECT_EQ(drive.get<od::target_velocity>(), 1'000);
+  EXPECT_EQ(drive.ask("080"), "");  // T_PDO2: 1801h:01 is C000 0285h
+  EXPECT_EQ(drive.ask("605 23 01 18 01 85 02 00 40"), "585 60 01 18 01 00 00 00 00");
+  EXPECT_EQ(drive.ask("080").substr(0, 4), "285 ");
+}
+
+// shows 002.88
+TEST(CpdNode, MapsPdo4OverTheBusAndPdo1To3Never) {
+  Servo drive;
+  for (const char* object : {"00 16", "01 16", "02 16", "00 1A", "01 1A", "02 1A"}) {
+    EXPECT_EQ(drive.ask(std::string{"605 2F "} + object + " 00 00 00 00 00"),
+              std::string{"585 80 "} + object + " 00 02 00 01 06");
+  }
+  EXPECT_EQ(drive.ask("605 23 03 16 01 20 00 FF 60"), "585 60 03 16 01 00 00 00 00");  // R_PDO4: 60FFh
+  EXPECT_EQ(drive.ask("605 2F 03 16 00 01 00 00 00"), "585 60 03 16 00 00 00 00 00");
+  EXPECT_EQ(drive.ask("605 23 03 14 01 05 05 00 00"), "585 60 03 14 01 00 00 00 00");
+  drive.ask("505 F4 01 00 00");
+  EXPECT_EQ(drive.get<od::target_velocity>(), 500);
+  EXPECT_EQ(drive.ask("605 23 03 1A 01 20 00 64 60"), "585 60 03 1A 01 00 00 00 00");  // T_PDO4: 6064h
+  EXPECT_EQ(drive.ask("605 2F 03 1A 00 01 00 00 00"), "585 60 03 1A 00 00 00 00 00");
+  drive.ask("605 23 03 18 01 85 04 00 40");
+  EXPECT_EQ(drive.input("position 1000"), "485 E8 03 00 00");
+}
+
+// shows 002.162
+TEST(CpdNode, HasTheSubIndicesThatTable92LeavesOutReadOnly) {
+  Servo drive;
+  for (const char* object : {"01 16 03", "01 16 04", "02 16 03", "02 16 04", "01 1A 03", "01 1A 04", "02 1A 03", "02 1A 04"}) {
+    EXPECT_EQ(drive.ask(std::string{"605 40 "} + object + " 00 00 00 00"),
+              std::string{"585 43 "} + object + " 00 00 00 00");
+    EXPECT_EQ(drive.ask(std::string{"605 23 "} + object + " 20 00 64 60"),
+              std::string{"585 80 "} + object + " 02 00 01 06");
+  }
 }
 
 // shows 002.111
@@ -240,7 +288,7 @@ TEST(CpdNode, LatchesItsLimitsIn301Ch) {
   EXPECT_EQ(drive.ask("605 40 1C 30 08 00 00 00 00"), "585 4B 1C 30 08 04 00 00 00");
 }
 
-// shows 002.35, 002.115
+// shows 002.34, 002.35, 002.115
 TEST(CpdNode, ReportsAFollowingErrorBeyond6065h) {
   Servo drive;
   drive.set<od::following_error_window>(500);
@@ -250,6 +298,8 @@ TEST(CpdNode, ReportsAFollowingErrorBeyond6065h) {
   drive.input("block on");
   EXPECT_NE(drive.pass(100ms).find("085 11 86 21 11 86 65 60 00"), std::string::npos);
   EXPECT_EQ(drive.state(), State::fault);
+  EXPECT_EQ(drive.ask("605 40 3F 60 00 00 00 00 00"), "585 4B 3F 60 00 11 86 00 00");
+  EXPECT_EQ(drive.ask("605 40 01 10 00 00 00 00 00"), "585 4F 01 10 00 21 00 00 00");
 }
 
 // shows 002.108

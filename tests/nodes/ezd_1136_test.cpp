@@ -169,7 +169,7 @@ TEST(Ezd1136Node, WarnsAtItsLimits) {
   EXPECT_EQ(drive.statusword(), 0x1637);
 }
 
-// shows 001.50
+// shows 001.50, 001.91
 TEST(Ezd1136Node, TellsItsRunStateIn206DhAndByItsLamp) {
   Stepper drive;
   EXPECT_EQ(drive.get<od::run_state>(), 1);
@@ -184,6 +184,32 @@ TEST(Ezd1136Node, TellsItsRunStateIn206DhAndByItsLamp) {
   drive.pass(2s);
   EXPECT_EQ(drive.get<od::run_state>(), 2);
   EXPECT_TRUE(drive.logged("LED green flashing"));
+}
+
+// shows 001.72
+TEST(Ezd1136Node, MovesInPulsesHundredthsOfATurnPerSecondAndTurnsPerSecondSquared) {
+  Stepper drive;
+  drive.set<od::profile_acceleration>(5);  // turns per second squared
+  drive.ask(to_velocity);
+  drive.enable();
+  drive.set<od::target_velocity>(1'000);  // 10 turns per second, 600 turns per minute
+  drive.pass(1s);
+  EXPECT_NEAR(drive.get<od::velocity_actual_value>(), 500, 6);  // up to 10 ms and a step old
+  drive.pass(1s + 10ms);
+  EXPECT_EQ(drive.get<od::velocity_actual_value>(), 1'000);
+  const std::int32_t from = drive.app->axis().position();
+  drive.pass(1s);
+  EXPECT_EQ(drive.app->axis().position() - from, 100'000);  // pulses: 10 turns
+}
+
+// shows 001.75
+TEST(Ezd1136Node, TellsItsCurrentAndItsAnalogueInputInThousandths) {
+  Stepper drive;
+  EXPECT_NE(drive.input("current 1.25"), "?");
+  EXPECT_EQ(drive.ask("605 40 64 20 00 00 00 00 00"), "585 4B 64 20 00 E2 04 00 00");  // 1250 mA
+  EXPECT_NE(drive.input("analogue 3.3"), "?");
+  EXPECT_EQ(drive.ask("605 40 90 20 00 00 00 00 00"), "585 4B 90 20 00 E4 0C 00 00");  // 3300 mV
+  EXPECT_EQ(drive.input("current much"), "?");
 }
 
 struct QuickStop {

@@ -9,11 +9,13 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "node_bench.hpp"
+#include "shared/run_node.hpp"
 #include "traces/player.hpp"
 #include "traces/station.hpp"
 #include "traces/trace.hpp"
@@ -150,6 +152,20 @@ TEST_F(PlantOnABus, SetsItsOutputsToTheirErrorValuesInStopped) {
 
 // A module on its own
 
+// shows 003.1
+TEST(ModuleNode, HasANodeIdOfTwoRotarySwitches1To99) {
+  const auto parse = [](const std::string& node_id) {
+    const char* const arguments[] = {"can_2057c", "bus", "--node-id", node_id.c_str()};
+    return nodes::parse_arguments(4, arguments, Can2057c<bench::RecordingBus>::description.highest_node_id);
+  };
+  for (unsigned number = 1; number <= 99; ++number) {
+    bench::NodeBench<Can2057c> module{parse(std::to_string(number)).node_id};
+    EXPECT_EQ(module.boot_up, bench::text({.id = 0x700 + number, .size = 1}));
+  }
+  EXPECT_THROW(static_cast<void>(parse("0")), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(parse("100")), std::invalid_argument);
+}
+
 // shows 003.65
 TEST(ModuleNode, ScalesItsAnalogueChannels) {
   EXPECT_EQ(nodes::raw_from_volts(5), 0x3FFF);
@@ -227,6 +243,21 @@ TEST(ModuleNode, ReportsTheErrorsOfTheTableInEveryModule) {
   expect_module_errors<Can2024c>();
   expect_module_errors<Can2053c>();
   expect_module_errors<Can2057c>();
+}
+
+// Manual 003, 3.2: block protocols for larger data, both ways; the frames are those of CiA 301, 7.2.4.3.
+TEST(ModuleNode, ServesSdoBlockTransfers) {
+  bench::NodeBench<Can2053c> module;
+  EXPECT_EQ(module.ask("605 A4 08 10 00 7F 00 00 00"), "585 C6 08 10 00 09 00 00 00");  // "CAN-2053" and 00h
+  EXPECT_EQ(module.ask("605 A3 00 00 00 00 00 00 00"), "585 01 43 41 4E 2D 32 30 35 | 585 82 33 00 00 00 00 00 00");
+  EXPECT_EQ(module.ask("605 A2 02 7F 00 00 00 00 00"), "585 D5 A6 4D 00 00 00 00 00");  // 5 bytes are empty; CRC 4DA6h
+  EXPECT_EQ(module.ask("605 A1 00 00 00 00 00 00 00"), "");
+  EXPECT_EQ(module.ask("605 C6 17 10 00 02 00 00 00"), "585 A4 17 10 00 7F 00 00 00");  // 1017h = 500
+  EXPECT_EQ(module.ask("605 81 F4 01 00 00 00 00 00"), "585 A2 01 7F 00 00 00 00 00");
+  EXPECT_EQ(module.ask("605 D5 24 CF 00 00 00 00 00").substr(0, 27), "585 A1 00 00 00 00 00 00 00");
+  EXPECT_EQ(module.ask("605 40 17 10 00 00 00 00 00"), "585 4B 17 10 00 F4 01 00 00");
+  bench::NodeBench<Can2057c> other;
+  EXPECT_EQ(other.ask("605 A4 08 10 00 7F 00 00 00"), "585 80 08 10 00 01 00 04 05");
 }
 
 TEST(ModuleNode, KeepsItsParametersBeyondPowerOffWhenTheyAreSaved) {

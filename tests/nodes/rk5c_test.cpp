@@ -246,8 +246,13 @@ TEST(Rk5cNode, KeepsWhatLssHasStoredBeyondPowerOff) {
   EXPECT_EQ(sensor.app->node().node_id(), canopen::NodeId{5});
 }
 
-TEST(Rk5cNode, IsSelectedByTheSerialNumberOfItsLabel) {
+// shows 004.6
+TEST(Rk5cNode, TellsRevisionAndSerialNumberByLssAndIn1018h) {
   Sensor sensor;
+  sensor.ask("7E5 04 01 00 00 00 00 00 00");
+  EXPECT_EQ(sensor.ask("7E5 5C 00 00 00 00 00 00 00"), "7E4 5C 01 00 01 00 00 00 00");
+  EXPECT_EQ(sensor.ask("605 40 18 10 03 00 00 00 00"), "585 42 18 10 03 01 00 01 00");
+  EXPECT_EQ(sensor.ask("7E5 5D 00 00 00 00 00 00 00"), "7E4 5D 34 12 01 15 00 00 00");
   EXPECT_EQ(sensor.ask("605 40 18 10 04 00 00 00 00"), "585 42 18 10 04 34 12 01 15");
 }
 

@@ -519,7 +519,7 @@ constexpr Emergency emergencies[] = {
     {0x8140, ErrorRegister::communication, 8, "085 40 81 11 08 00 00 00 00"},
 };
 
-// shows 003.71..003.75, 003.77, 003.82
+// shows 003.82
 TEST(Manual003, SendsTheEmergenciesThatItsFirmwareFinds) {
   for (const auto& [code, bits, detail, frame] : emergencies) {
     DigitalOutputs module;

@@ -13,7 +13,8 @@ class Can2024c : public nodes::IoModule<can_2024c::Device, B> {
  public:
   static constexpr nodes::Description description{
       "can_2024c", "An analogue output module, four channels of -10 V to +10 V.", "3",
-      "  fault NAME | fault over          can-controller, eeprom, rx-buffer or tx-buffer: its EMCY\n"};
+      "  fault NAME | fault over          can-controller, eeprom, rx-buffer or tx-buffer: its EMCY\n",
+      99};  // two rotary switches
 
   Can2024c(B& bus, nodes::Surroundings& around)
       : nodes::IoModule<can_2024c::Device, B>{bus, around, canopen::NodeId{3}} {}

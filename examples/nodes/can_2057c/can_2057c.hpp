@@ -13,7 +13,8 @@ class Can2057c : public nodes::IoModule<can_2057c::Device, B> {
  public:
   static constexpr nodes::Description description{
       "can_2057c", "A digital output module, 16 channels in two blocks.", "1",
-      "  fault NAME | fault over          can-controller, eeprom, rx-buffer or tx-buffer: its EMCY\n"};
+      "  fault NAME | fault over          can-controller, eeprom, rx-buffer or tx-buffer: its EMCY\n",
+      99};  // two rotary switches
 
   Can2057c(B& bus, nodes::Surroundings& around)
       : nodes::IoModule<can_2057c::Device, B>{bus, around, canopen::NodeId{1}} {}

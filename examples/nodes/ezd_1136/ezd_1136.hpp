@@ -3,6 +3,7 @@
 
 #include <canopen/abort_code.hpp>
 #include <canopen/node.hpp>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <ezd_1136/device.hpp>
@@ -135,6 +136,8 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
       "  alarm CODE                       10 to 16, 20, 24 to 26, 50 or 100\n"
       "  warning BITS on|off              256, 512, 1024 (emergency stop), 2048, 4096, 8192, or their sum\n"
       "  supply VOLTS                     below 18 V alarm 13, above 60 V alarm 14\n"
+      "  current AMPERES                  of the motor, for 2064h\n"
+      "  analogue VOLTS                   at the analogue input, for 2090h\n"
       "  limit negative|positive on|off   a limit switch\n"
       "  home on|off                      the home switch\n"
       "  block on|off                     something keeps the shaft from turning\n"
@@ -208,6 +211,16 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
     if (line.is("supply", 1)) {
       const auto volts = line.number<int>(1, 0, 655);
       if (volts) set_supply(*volts);
+      return volts.has_value();
+    }
+    if (line.is("current", 1)) {
+      const auto amperes = line.real(1);
+      if (amperes) set<od::integrated_current>(static_cast<std::int16_t>(std::lround(*amperes * 1000)));
+      return amperes.has_value();
+    }
+    if (line.is("analogue", 1)) {
+      const auto volts = line.real(1);
+      if (volts) set<od::analog_voltage>(static_cast<std::uint16_t>(std::lround(*volts * 1000)));
       return volts.has_value();
     }
     return false;

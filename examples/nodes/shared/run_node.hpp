@@ -55,7 +55,7 @@ struct Arguments {
 };
 
 /// Throws std::invalid_argument with a sentence.
-[[nodiscard]] inline Arguments parse_arguments(int argc, const char* const* argv) {
+[[nodiscard]] inline Arguments parse_arguments(int argc, const char* const* argv, int highest_node_id = 127) {
   Arguments result;
   const auto number = [](std::string_view option, std::string_view text, std::uint32_t most) {
     const bool hex = text.starts_with("0x");
@@ -77,7 +77,8 @@ struct Arguments {
       result.help = true;
     } else if (argument == "--node-id") {
       const canopen::NodeId node_id{static_cast<std::uint8_t>(number(argument, value(), 127))};
-      if (!node_id.valid()) throw std::invalid_argument{"--node-id: a node-ID is 1 to 127"};
+      if (!node_id.valid() || node_id.value() > highest_node_id)
+        throw std::invalid_argument{"--node-id: a node-ID is 1 to " + std::to_string(highest_node_id)};
       result.node_id = node_id;
     } else if (argument == "--serial") {
       result.serial_number = number(argument, value(), 0xFFFF'FFFF);
@@ -100,7 +101,7 @@ inline void print_help(const Description& what) {
       "usage: %s BUS [--node-id N] [--store FILE] [--serial N]\n"
       "%s\n\n"
       "  BUS           socketcan:vcan0, slcan:/dev/ttyACM0 or socketcand:127.0.0.1:29536/vcan0\n"
-      "  --node-id N   1 to 127; without it %s\n"
+      "  --node-id N   1 to %d; without it %s\n"
       "  --store FILE  where parameters are stored; without it they last as long as the program\n"
       "  --serial N    serial number 1018h:04, where the device has one to set\n\n"
       "It runs until SIGINT or SIGTERM and logs on standard output. Lines on standard input are its inputs:\n"
@@ -111,7 +112,7 @@ inline void print_help(const Description& what) {
       "  %s socketcan:vcan0 --node-id 5 --store %s.parameters\n"
       "  (sleep 1; echo power-cycle; sleep 1) | %s socketcan:vcan0 --node-id 5\n\n"
       "exit codes: 0 ended by a signal; 1 the bus is lost; 2 wrong arguments, or the bus cannot be opened\n",
-      what.program, what.device, what.node_id, what.inputs, what.program, what.program, what.program);
+      what.program, what.device, what.highest_node_id, what.node_id, what.inputs, what.program, what.program, what.program);
 }
 
 /// Lines of standard input, without waiting for them.
@@ -198,7 +199,7 @@ template <template <class Bus> class Application>
   Arguments arguments;
   std::optional<canopen::HostBus> bus;
   try {
-    arguments = parse_arguments(argc, argv);
+    arguments = parse_arguments(argc, argv, what.highest_node_id);
     if (arguments.help) {
       print_help(what);
       return exit_code::fine;
