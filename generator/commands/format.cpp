@@ -18,6 +18,7 @@ constexpr const char* examples = R"(Examples:
   edsc format drive.eds -o drive.eds                       in place
   edsc format drive.eds --check                            exit code 1 when the file is not canonical
   edsc format drive.eds --dcf --node-id 5 -o axis1.dcf     the DCF of node 5
+  edsc format drive.eds --dcf --node-id 5 --all            the same with a ParameterValue for each writable entry
   edsc format axis1.dcf --concise -o axis1.bin             what a master downloads to it (object 1F22h))";
 
 struct Settings {
@@ -26,6 +27,7 @@ struct Settings {
   std::optional<std::uint8_t> node_id;
   bool check = false;
   bool dcf = false;
+  bool all = false;
   bool concise = false;
   ColorOption color;
 };
@@ -52,7 +54,9 @@ void read(const Settings& settings, Input& input, Diagnostics& diagnostics) {
 
 std::string canonical_text(const Settings& settings, const Input& input) {
   Document document = canonical_form(input.ini, input.sheet, input.device);
-  if (settings.dcf) make_dcf(document, input.sheet, input.device);
+  if (settings.dcf) {
+    make_dcf(document, input.sheet, input.device, settings.all ? DcfValues::all : DcfValues::different);
+  }
   return to_text(document);
 }
 
@@ -108,13 +112,15 @@ void add_format_command(CLI::App& app, int& exit_code) {
       command->add_option("-o,--output", settings->output, "file to write; may be FILE (default: standard output)");
   auto* check = command->add_flag("--check", settings->check, "write nothing; exit code 1 when FILE is not canonical");
   auto* dcf = command->add_flag("--dcf", settings->dcf,
-                                "make a DCF: [DeviceComissioning], and a ParameterValue for what is writable");
+                                "make a DCF: [DeviceComissioning], and the ParameterValues that differ from defaults");
+  auto* all = command->add_flag("--all", settings->all, "with --dcf: a ParameterValue for each writable entry");
   auto* concise = command->add_flag("--concise", settings->concise,
                                     "write the concise DCF: what differs from the defaults, as object 1F22h holds it");
   add_node_id_option(*command, settings->node_id);
   settings->color.add_to(*command);
   check->excludes(output)->excludes(dcf)->excludes(concise);
   dcf->excludes(concise)->needs("--node-id");
+  all->needs(dcf);
   command->callback([settings, &exit_code] {
     if (settings->node_id && !settings->dcf && !settings->concise) {
       throw CLI::RequiresError("--node-id", "--dcf or --concise");

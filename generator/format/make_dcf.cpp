@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "device/value.hpp"
 #include "eds/number.hpp"
+#include "format/configured_values.hpp"
 #include "format/key_table.hpp"
 #include "format/number_spelling.hpp"
 #include "format/section_order.hpp"
@@ -43,8 +45,10 @@ void remove(DocumentSection& section, std::string_view key) {
 
 class DcfMaker {
  public:
-  DcfMaker(Document& document, const DataSheet& sheet, const Device& device)
-      : document_(document), sheet_(sheet), device_(device) {}
+  DcfMaker(Document& document, const DataSheet& sheet, const Device& device, DcfValues values)
+      : document_(document), sheet_(sheet), device_(device), values_(values) {
+    if (values == DcfValues::different) compare_with_defaults();
+  }
 
   void make() {
     commission();
@@ -108,6 +112,25 @@ class DcfMaker {
     configure(section, 0);
   }
 
+  /// Notes the ParameterValues of a DCF that are the defaults, and the mapping parameters in which one is not: their
+  /// number and entries belong together.
+  void compare_with_defaults() {
+    if (!sheet_.is_dcf) return;
+    Diagnostics ignored;
+    const auto configured = configured_values(sheet_, device_, ignored);
+    for (const ConfiguredValue& value : configured) {
+      const bool mapping = (value.entry->index & 0xFE00) == 0x1600 || (value.entry->index & 0xFE00) == 0x1A00;
+      if (!value.differs) defaults_.insert(value.entry);
+      if (value.differs && mapping) whole_.insert(value.entry->index);
+    }
+  }
+
+  /// Whether the entry has a ParameterValue in the DCF, given whether it has one in the file.
+  [[nodiscard]] bool is_wanted(const Entry& entry, bool has_value) const {
+    if (values_ == DcfValues::all || whole_.contains(entry.index)) return true;
+    return has_value && !defaults_.contains(&entry);
+  }
+
   /// In an EDS a ParameterValue says nothing; in the DCF it would.
   void drop_meaningless_value(DocumentSection& section) {
     if (!sheet_.is_dcf) remove(section, "ParameterValue");
@@ -118,7 +141,12 @@ class DcfMaker {
     const Entry* const entry = device_.find(section.kind.index, sub_index);
     if (entry == nullptr || !entry->default_value || !canopen::writable(entry->access)) return;
     const DocumentEntry* source = find_entry(section, "ParameterValue");
-    if (source == nullptr || source->value.empty()) source = find_entry(section, "DefaultValue");
+    const bool has_value = source != nullptr && !source->value.empty();
+    if (!is_wanted(*entry, has_value)) {
+      remove(section, "ParameterValue");
+      return;
+    }
+    if (!has_value) source = find_entry(section, "DefaultValue");
     if (source == nullptr || source->value.empty()) return;
     set(section, "ParameterValue", resolved(source->value, *entry));
   }
@@ -145,12 +173,15 @@ class DcfMaker {
   Document& document_;
   const DataSheet& sheet_;
   const Device& device_;
+  DcfValues values_;
+  std::set<const Entry*> defaults_;  ///< with a ParameterValue that is the default
+  std::set<std::uint16_t> whole_;    ///< mapping parameters of which all entries get a ParameterValue
 };
 
 }  // namespace
 
-void make_dcf(Document& document, const DataSheet& sheet, const Device& device) {
-  DcfMaker(document, sheet, device).make();
+void make_dcf(Document& document, const DataSheet& sheet, const Device& device, DcfValues values) {
+  DcfMaker(document, sheet, device, values).make();
 }
 
 }  // namespace edsc

@@ -1,15 +1,23 @@
 /// An EDS becomes the DCF of one node: CiA 306-1, clause 5.
 #pragma once
 
+#include <cstdint>
+
 #include "device/device.hpp"
 #include "eds/data_sheet.hpp"
 #include "format/document.hpp"
 
 namespace edsc {
 
-/// Gives a document in canonical form its [DeviceComissioning], and each writable entry the ParameterValue that its default
-/// gives for the node-ID of `device`. The ParameterValues of an EDS, which have no meaning there, are dropped; those of a
-/// DCF stay, their formulas resolved.
-void make_dcf(Document& document, const DataSheet& sheet, const Device& device);
+/// Which entries get a ParameterValue.
+enum class DcfValues : std::uint8_t {
+  different,  ///< whose value differs from the default for this node; of a PDO mapping then the whole object
+  all,        ///< all writable ones
+};
+
+/// Gives a document in canonical form its [DeviceComissioning], and writable entries the ParameterValue for the node-ID
+/// of `device`: that of a DCF with its formula resolved, else the default. The ParameterValues of an EDS, which have no
+/// meaning there, are dropped.
+void make_dcf(Document& document, const DataSheet& sheet, const Device& device, DcfValues values);
 
 }  // namespace edsc

@@ -1,6 +1,7 @@
 /// The canonical form of an EDS or DCF (CiA 306-1), and the DCF that it makes.
 #include "format/canonical_form.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -26,9 +27,9 @@ struct Formatted {
 
   [[nodiscard]] std::string text() const { return to_text(canonical_form(ini, sheet, device)); }
 
-  [[nodiscard]] std::string dcf() const {
+  [[nodiscard]] std::string dcf(DcfValues values = DcfValues::different) const {
     Document document = canonical_form(ini, sheet, device);
-    make_dcf(document, sheet, device);
+    make_dcf(document, sheet, device, values);
     return to_text(document);
   }
 
@@ -284,10 +285,39 @@ constexpr std::string_view two_entries =
     "ParameterValue=7\n\n"
     "[2001]\nParameterName=b\nObjectType=0x7\nDataType=0x0007\nAccessType=ro\nDefaultValue=$NODEID+0x200\n";
 
-TEST(MakeDcf, GivesWritableEntriesTheirValue) {
-  const std::string dcf = Formatted(std::string{two_entries}, std::uint8_t{5}).dcf();
+TEST(MakeDcf, GivesAllWritableEntriesTheirValueWhenAsked) {
+  const std::string dcf = Formatted(std::string{two_entries}, std::uint8_t{5}).dcf(DcfValues::all);
   EXPECT_NE(dcf.find("DefaultValue=$NODEID+0x180\nParameterValue=0x00000185\n"), std::string::npos) << dcf;
   EXPECT_TRUE(dcf.ends_with("AccessType=ro\nDefaultValue=$NODEID+0x200\n")) << dcf;
+}
+
+TEST(MakeDcf, HasNoValueThatTheDefaultGives) {
+  EXPECT_EQ(Formatted(std::string{two_entries}, std::uint8_t{5}).dcf().find("ParameterValue"), std::string::npos);
+}
+
+TEST(MakeDcf, DropsAValueThatIsTheDefaultForTheNode) {
+  const std::string text = "[DeviceComissioning]\nNodeID=5\n" + object_with("0x0007",
+                                                                            "DefaultValue=$NODEID+2\n"
+                                                                            "ParameterValue=0x7\n");
+  EXPECT_EQ(Formatted(text, std::uint8_t{5}).dcf().find("ParameterValue"), std::string::npos);
+  EXPECT_NE(Formatted(text, std::uint8_t{5}).dcf(DcfValues::all).find("ParameterValue=0x00000007\n"),
+            std::string::npos);
+  EXPECT_NE(Formatted(text, std::uint8_t{6}).dcf().find("ParameterValue=0x00000007\n"), std::string::npos);
+}
+
+/// A loader writes number and entries of a mapping together; a part of them would be another mapping.
+TEST(MakeDcf, KeepsAMappingTogether) {
+  const auto entry = [](int sub_index, std::string_view type, std::string_view keys) {
+    return fmt::format("\n[1A00sub{}]\nParameterName=n\nObjectType=7\nDataType={}\nAccessType=rw\n{}", sub_index, type,
+                       keys);
+  };
+  const std::string text = "[DeviceComissioning]\nNodeID=5\n\n[1A00]\nParameterName=m\nObjectType=9\nSubNumber=3\n" +
+                           entry(0, "5", "DefaultValue=2\n") + entry(1, "7", "DefaultValue=0x60410010\n") +
+                           entry(2, "7", "DefaultValue=0x60640020\nParameterValue=0x60640120\n");
+  const std::string dcf = Formatted(text, std::uint8_t{5}).dcf();
+  EXPECT_NE(dcf.find("DefaultValue=2\nParameterValue=2\n"), std::string::npos) << dcf;
+  EXPECT_NE(dcf.find("ParameterValue=0x60410010\n"), std::string::npos) << dcf;
+  EXPECT_NE(dcf.find("ParameterValue=0x60640120\n"), std::string::npos) << dcf;
 }
 
 TEST(MakeDcf, CommissionsTheNode) {
