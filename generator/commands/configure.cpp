@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <canopen/error_control.hpp>
 #include <canopen/nmt_master.hpp>
+#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
@@ -20,9 +22,10 @@ namespace edsc {
 namespace {
 
 constexpr const char* examples = R"(Examples:
-  edsc configure socketcan:can0 5 axis1.dcf                     write all ParameterValues, read them back
-  edsc configure socketcan:can0 5 axis1.dcf --store --start     keep them without power, then start the node
-  edsc configure socketcan:can0 5 axis1.dcf --dry-run           the steps in their order; nothing is sent
+  edsc configure socketcan:can0 5 axis1.dcf --dry-run           what differs, and the steps; nothing is written
+  edsc configure socketcan:can0 5 axis1.dcf                     write what differs, read it back
+  edsc configure socketcan:can0 5 axis1.dcf --store --start     keep it without power, then start the node
+  edsc configure socketcan:can0 5 axis1.dcf --all               write all ParameterValues
   edsc configure socketcan:can0 5 axis1.bin --concise --eds drive.eds
   edsc format drive.eds --dcf --node-id 5 -o axis1.dcf          where the DCF comes from)";
 
@@ -36,6 +39,8 @@ struct Settings {
   bool start = false;
   bool store = false;
   bool force = false;
+  bool all = false;
+  bool node_id_and_bit_rate = false;
   bool dry_run = false;
   std::string format = "text";
   SdoSettings sdo;
@@ -45,16 +50,31 @@ struct Settings {
 struct Configuration {
   std::unique_ptr<LoadedDevice> loaded;  ///< null: a concise DCF without data sheet
   std::vector<std::uint8_t> stream;      ///< of a concise DCF
-  std::vector<ConfigurationValue> values;
+  std::vector<ConfigurationValue> values;  ///< without what is left out
   std::size_t left_out = 0;
   std::optional<ConfigurationTime> time;  ///< of 1020h
 
   [[nodiscard]] const Device* device() const { return loaded ? &*loaded->device : nullptr; }
 };
 
+/// A value that the node does not have.
+struct Change {
+  ConfigurationValue value;
+  std::optional<std::vector<std::uint8_t>> before;  ///< nothing where it cannot be read
+};
+
+/// What is to be written to the node.
+struct Work {
+  std::size_t compared = 0;
+  std::vector<Change> changes;             ///< of those that were compared
+  std::vector<Change> withheld;            ///< node-ID and bit rate, without the flag
+  std::vector<ConfigurationValue> values;  ///< to write
+};
+
 /// What a run came to besides its values.
 struct Ending {
-  bool configured_already = false;
+  std::string not_compared;  ///< numbers of the identity
+  bool nothing_differs = false;
   bool time_written = false;
   bool stored = false;
   std::vector<std::string> problems;
@@ -135,23 +155,61 @@ bool read_concise(const Settings& settings, Configuration& configuration) {
   return true;
 }
 
+/// Takes out what is not written in any case.
+void leave_out(Configuration& configuration) {
+  configuration.left_out =
+      std::erase_if(configuration.values, [](const ConfigurationValue& value) { return is_left_out(value.entry); });
+}
+
 std::string_view verb_of(StepKind kind) {
   switch (kind) {
     case StepKind::write: return "write";
     case StepKind::switch_off: return "switch off";
     case StepKind::switch_on: return "switch on";
     case StepKind::clear: return "clear";
+    case StepKind::restore: return "restore";
+  }
+  return {};
+}
+
+std::string written_by(const ConfigurationStep& step) {
+  switch (step.kind) {
+    case StepKind::write: return " = " + value_of(step.entry, step.bytes);
+    case StepKind::switch_on:
+      return step.bytes.empty() ? " as before" : " = " + value_of(step.entry, step.bytes);
+    case StepKind::restore:
+      return step.bytes.empty() ? " as before"
+                                : fmt::format(" as before, at least {}", value_of(step.entry, step.bytes));
+    case StepKind::switch_off:
+    case StepKind::clear: break;
   }
   return {};
 }
 
 void print_steps(const std::vector<ConfigurationStep>& steps) {
   for (const ConfigurationStep& step : steps) {
-    const bool writes = step.kind == StepKind::write || step.kind == StepKind::switch_on;
-    fmt::print("{:<10}  {}{}\n", verb_of(step.kind), title(step.entry),
-               !writes              ? ""
-               : step.bytes.empty() ? " as before"
-                                    : " = " + value_of(step.entry, step.bytes));
+    fmt::print("{:<10}  {}{}\n", verb_of(step.kind), title(step.entry), written_by(step));
+  }
+}
+
+std::string text_before(const Change& change) {
+  if (change.before) return value_of(change.value.entry, *change.before);
+  const Entry* entry = change.value.entry.entry;
+  return entry != nullptr && !canopen::readable(entry->access) ? "(write-only)" : "(cannot be read)";
+}
+
+std::string change_text(const Change& change) {
+  return fmt::format("{}: {} -> {}", title(change.value.entry), text_before(change),
+                     value_of(change.value.entry, change.value.bytes));
+}
+
+void print_withheld(const Work& work, bool compared) {
+  for (const Change& change : work.withheld) {
+    const std::string what = compared ? change_text(change)
+                                      : title(change.value.entry) + " = " +
+                                            value_of(change.value.entry, change.value.bytes);
+    fmt::print(stderr, "edsc: not written, the node's own node-ID or bit rate: {} (--node-id-and-bit-rate writes it)\n",
+               what);
   }
 }
 
@@ -163,27 +221,46 @@ std::optional<std::uint32_t> read_number(SdoAccess& node, std::uint16_t index, s
   return number;
 }
 
-/// Whether the node is the device of the DCF, as far as both know. What speaks against it is told.
-bool is_right_device(SdoAccess& node, const Settings& settings, const Configuration& configuration) {
+/// Which numbers of the identity the file or the node does not state.
+std::string not_compared_text(const Settings& settings, const std::vector<NotCompared>& numbers) {
+  std::vector<NotCompared> in_sheet, elsewhere;
+  for (const NotCompared& number : numbers) (number.in_sheet ? in_sheet : elsewhere).push_back(number);
+  std::string text;
+  if (!elsewhere.empty()) {
+    text = fmt::format("{} (not in {})", names_of(elsewhere), settings.concise ? settings.sheet : settings.path);
+  }
+  if (!in_sheet.empty()) text += fmt::format("{}{} (not in the node)", text.empty() ? "" : ", ", names_of(in_sheet));
+  return text;
+}
+
+/// Whether the node is the device of the DCF, as far as both state it. What contradicts it is reported.
+bool is_right_device(SdoAccess& node, const Settings& settings, const Configuration& configuration, Ending& ending) {
   const SdoOutcome first = node.upload(0x1000, 0);
   if (first.end == SdoEnd::no_answer) return refuse(fmt::format("node {} does not answer", settings.node));
-  if (configuration.device() == nullptr || settings.force) return true;
+  if (settings.force) return true;
+  if (configuration.device() == nullptr) {
+    ending.not_compared = "identity (a concise DCF does not state it; --eds names the EDS of the device)";
+    return true;
+  }
   const auto meant = parse_unsigned(configuration.loaded->sheet.commissioning.node_id.text);
   if (meant && *meant != settings.node) {
     return refuse(fmt::format("{} is for node {}, not for node {} (--force writes nevertheless)", settings.path, *meant,
                               settings.node));
   }
   Identity device;
-  if (first.done() && first.bytes.size() == sizeof(std::uint32_t)) device.device_type = read_number(node, 0x1000, 0);
+  device.device_type = read_number(node, 0x1000, 0);
   device.vendor_id = read_number(node, 0x1018, 1);
   device.product_code = read_number(node, 0x1018, 2);
   device.revision_number = read_number(node, 0x1018, 3);
   device.serial_number = read_number(node, 0x1018, 4);
   const Identity sheet = identity_of(*configuration.device());
+  ending.not_compared = not_compared_text(settings, not_compared(sheet, device));
   const Fit fit = compare_identity(sheet, device);
   if (fit == Fit::same || fit == Fit::minor_revision || fit == Fit::unknown) return true;
-  return refuse(fmt::format("node {} is not the device of {}: {} (--force writes nevertheless)", settings.node,
-                            settings.path, identity_differences(sheet, device)));
+  return refuse(fmt::format(
+      "node {} is not the device of {}: {}; \"edsc scan BUS --eds FILE\" finds the node of a file, --force writes "
+      "nevertheless",
+      settings.node, settings.concise ? settings.sheet : settings.path, identity_differences(sheet, device)));
 }
 
 std::string place_of_value(const ConfigurationValue* value) {
@@ -200,26 +277,60 @@ void print_failures(const ConfigurationResult& result, const Ending& ending) {
   for (const std::string& problem : ending.problems) fmt::print(stderr, "edsc: {}\n", problem);
 }
 
-void print_summary(const Settings& settings, const Configuration& configuration, const ConfigurationResult& result,
-                   const Ending& ending) {
-  if (ending.configured_already) {
-    fmt::print("node {}: configured already, as 1020h says; nothing written\n", settings.node);
-    return;
+std::string compared_text(const Work& work) {
+  const auto unknown = static_cast<std::size_t>(
+      std::ranges::count_if(work.changes, [](const Change& change) { return !change.before.has_value(); }));
+  std::string text = fmt::format("{} of {} values differ", work.changes.size() - unknown, work.compared);
+  if (unknown != 0) text += fmt::format(", {} cannot be compared", unknown);
+  return text;
+}
+
+void print_summary(const Settings& settings, const Configuration& configuration, const Work& work,
+                   const ConfigurationResult& result, const Ending& ending) {
+  std::string text = fmt::format("node {}: ", settings.node);
+  if (!settings.all) text += compared_text(work);
+  if (settings.dry_run) {
+    text += "; nothing written";
+  } else if (settings.all || result.values != 0) {
+    text += fmt::format("{}{} of {} values written, {} verified", settings.all ? "" : "; ", result.written,
+                        result.values, result.verified);
   }
-  std::string text = fmt::format("node {}: {} of {} values written, {} verified", settings.node, result.written,
-                                 result.values, result.verified);
   if (!result.failures.empty()) text += fmt::format(", {} failed", result.failures.size());
   if (configuration.left_out != 0) text += fmt::format(", {} left out", configuration.left_out);
+  if (!work.withheld.empty()) text += fmt::format(", {} not written (node-ID, bit rate)", work.withheld.size());
   if (ending.time_written) text += ", 1020h written";
   if (ending.stored) text += ", stored";
   fmt::print("{}\n", text);
 }
 
-void print_json(const Settings& settings, const Configuration& configuration, const ConfigurationResult& result,
-                const Ending& ending) {
+Json entry_json(const LiveEntry& entry, const ConfigurationValue* value) {
+  Json row{{"index", entry.index}, {"sub_index", entry.sub_index}};
+  row["name"] = entry.name.empty() ? Json(nullptr) : Json(entry.name);
+  const bool placed = value != nullptr && value->position.file != nullptr;
+  row["line"] = placed ? Json(value->position.line) : Json(nullptr);
+  return row;
+}
+
+Json changes_json(const std::vector<Change>& changes) {
+  Json rows = Json::array();
+  for (const Change& change : changes) {
+    Json row = entry_json(change.value.entry, &change.value);
+    row["before"] = change.before ? Json(value_of(change.value.entry, *change.before)) : Json(nullptr);
+    row["wanted"] = value_of(change.value.entry, change.value.bytes);
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+void print_json(const Settings& settings, const Configuration& configuration, const Work& work,
+                const ConfigurationResult& result, const Ending& ending) {
   Json json{{"version", 1},
             {"node_id", settings.node},
-            {"configured_already", ending.configured_already},
+            {"dry_run", settings.dry_run},
+            {"configured_already", ending.nothing_differs},
+            {"compared", work.compared},
+            {"changes", changes_json(work.changes)},
+            {"withheld", changes_json(work.withheld)},
             {"values", result.values},
             {"written", result.written},
             {"verified", result.verified},
@@ -229,10 +340,7 @@ void print_json(const Settings& settings, const Configuration& configuration, co
             {"failures", Json::array()},
             {"problems", ending.problems}};
   for (const ConfigurationFailure& failure : result.failures) {
-    Json row{{"index", failure.entry.index}, {"sub_index", failure.entry.sub_index}};
-    row["name"] = failure.entry.name.empty() ? Json(nullptr) : Json(failure.entry.name);
-    const bool placed = failure.value != nullptr && failure.value->position.file != nullptr;
-    row["line"] = placed ? Json(failure.value->position.line) : Json(nullptr);
+    Json row = entry_json(failure.entry, failure.value);
     row["text"] = failure.what;
     json["failures"].push_back(std::move(row));
   }
@@ -242,7 +350,7 @@ void print_json(const Settings& settings, const Configuration& configuration, co
 /// Behind all values: when they were made, and that they stay.
 void finish(LiveBus& bus, SdoAccess& node, const Settings& settings, const Configuration& configuration,
             Ending& ending) {
-  if (configuration.time) {
+  if (configuration.time && (settings.all || read_configuration_time(node) != configuration.time)) {
     const std::string problem = write_configuration_time(node, *configuration.time);
     ending.time_written = problem.empty();
     if (!problem.empty()) ending.problems.push_back("1020h Verify configuration: " + problem);
@@ -258,32 +366,118 @@ void finish(LiveBus& bus, SdoAccess& node, const Settings& settings, const Confi
   if (!outcome.done()) ending.problems.push_back("1010h:01 Store parameters: " + failure_text(outcome));
 }
 
-int configure(LiveBus& bus, const Settings& settings, const Configuration& configuration,
-              const std::vector<ConfigurationStep>& steps) {
+/// Hears the boot-up message of the node.
+class RestartWatch {
+ public:
+  RestartWatch(LiveBus& bus, std::uint8_t node) : bus_{bus} {
+    bus.on_frame = [this, node](const canopen::Frame& frame, canopen::TimePoint) {
+      const auto message = canopen::error_control_message(frame);
+      if (!message || message->node_id.value() != node) return;
+      if (message->state == canopen::NmtState::initialisation) restarted_ = true;
+    };
+  }
+  ~RestartWatch() { bus_.on_frame = nullptr; }
+  RestartWatch(const RestartWatch&) = delete;
+  RestartWatch& operator=(const RestartWatch&) = delete;
+
+  [[nodiscard]] bool restarted() const { return restarted_; }
+
+ private:
+  LiveBus& bus_;
+  bool restarted_ = false;
+};
+
+/// Everything but node-ID and bit rate, which need their flag.
+Work all_values(const Settings& settings, const Configuration& configuration) {
+  Work work;
+  for (const ConfigurationValue& value : configuration.values) {
+    if (sets_node_id_or_bit_rate(value.entry) && !settings.node_id_and_bit_rate) {
+      work.withheld.push_back({value, {}});
+    } else {
+      work.values.push_back(value);
+    }
+  }
+  return work;
+}
+
+/// What the node does not have; nothing when it does not answer any more.
+std::optional<Work> what_differs(SdoAccess& node, const Settings& settings, const Configuration& configuration,
+                                 const ConfigurationHooks& hooks) {
+  Comparison comparison = compare_configuration(node, configuration.values, hooks);
+  if (comparison.lost) return std::nullopt;
+  Work work;
+  std::vector<bool> differs(configuration.values.size());
+  for (std::size_t i = 0; i < differs.size(); ++i) {
+    ComparedValue& compared = comparison.values[i];
+    const ConfigurationValue& value = configuration.values[i];
+    if (has_effect(value, configuration.values)) ++work.compared;
+    if (!compared.differs) continue;
+    Change change{value, {}};
+    if (compared.known()) change.before = std::move(compared.found.bytes);
+    differs[i] = !sets_node_id_or_bit_rate(value.entry) || settings.node_id_and_bit_rate;
+    (differs[i] ? work.changes : work.withheld).push_back(std::move(change));
+  }
+  work.values = values_to_write(configuration.values, differs);
+  return work;
+}
+
+int configure(LiveBus& bus, const Settings& settings, const Configuration& configuration) {
   SdoAccess node{bus, canopen::NodeId{settings.node}, settings.sdo};
-  if (!settings.keep_state) {
+  const RestartWatch watch{bus, settings.node};
+  if (!settings.keep_state && !settings.dry_run) {
     bus.send_all(canopen::nmt_frame(canopen::NmtCommand::enter_pre_operational, node.node()));
     bus.listen(after_nmt);
   }
-  if (!is_right_device(node, settings, configuration)) return exit_device_failed;
   Ending ending;
-  ConfigurationResult result;
-  ending.configured_already =
-      configuration.time && !settings.force && read_configuration_time(node) == configuration.time;
-  if (!ending.configured_already) {
+  if (!is_right_device(node, settings, configuration, ending)) return exit_device_failed;
+  if (!ending.not_compared.empty()) {
+    fmt::print(stderr, "edsc: node {}: not compared: {}\n", settings.node, ending.not_compared);
+  }
+  ConfigurationHooks hooks{{}, [&] { return watch.restarted(); }};
+  /// Shows how far the work is, as long as it lasts.
+  const auto with_progress = [&](std::string_view doing, const auto& work) {
     ProgressLine progress;
-    result = configure_node(node, steps, [&](std::size_t done, std::size_t of) {
-      if (progress.due()) progress.show(fmt::format("node {}: {} of {}", settings.node, done, of));
-    });
+    hooks.progress = [&](std::size_t done, std::size_t of) {
+      if (progress.due()) progress.show(fmt::format("node {}: {} of {} {}", settings.node, done, of, doing));
+    };
+    return work();
+  };
+  const std::optional<Work> work = settings.all ? all_values(settings, configuration) : with_progress("compared", [&] {
+    return what_differs(node, settings, configuration, hooks);
+  });
+  if (!work) {
+    refuse(fmt::format("node {} does not answer any more; nothing written", settings.node));
+    return exit_device_failed;
+  }
+  const bool text = settings.format == "text";
+  const auto steps = plan_configuration(work->values, configuration.device());
+  if (text) {
+    for (const Change& change : work->changes) fmt::print("{}\n", change_text(change));
+    std::fflush(stdout);
+  }
+  print_withheld(*work, !settings.all);
+  ending.nothing_differs = !settings.all && work->changes.empty();
+  ConfigurationResult result;
+  if (settings.dry_run) {
+    if (text && !steps.empty()) fmt::print("steps:\n");
+    if (text) print_steps(steps);
+  } else {
+    result = with_progress("done", [&] { return configure_node(node, steps, hooks); });
     if (result.done()) finish(bus, node, settings, configuration, ending);
+    if (watch.restarted()) {
+      ending.problems.push_back(fmt::format(
+          "node {} restarted meanwhile: it may have lost what was written before; configure it again", settings.node));
+    }
   }
   const bool fine = result.done() && ending.problems.empty();
-  if (fine && settings.start) bus.send_all(canopen::nmt_frame(canopen::NmtCommand::start, node.node()));
+  if (fine && settings.start && !settings.dry_run) {
+    bus.send_all(canopen::nmt_frame(canopen::NmtCommand::start, node.node()));
+  }
   print_failures(result, ending);
-  if (settings.format == "json") {
-    print_json(settings, configuration, result, ending);
+  if (text) {
+    print_summary(settings, configuration, *work, result, ending);
   } else {
-    print_summary(settings, configuration, result, ending);
+    print_json(settings, configuration, *work, result, ending);
   }
   return fine ? int{exit_fine} : exit_device_failed;
 }
@@ -292,20 +486,20 @@ int run_configure(const Settings& settings) {
   Configuration configuration;
   const bool read = settings.concise ? read_concise(settings, configuration) : read_dcf(settings, configuration);
   if (!read) return exit_wrong_usage;
-  for (const ConfigurationValue& value : configuration.values)
-    configuration.left_out += is_left_out(value.entry) ? 1 : 0;
-  const auto steps = plan_configuration(configuration.values, configuration.device());
-  if (settings.dry_run) {
-    print_steps(steps);
+  leave_out(configuration);
+  if (settings.dry_run && settings.all) {
+    const Work work = all_values(settings, configuration);
+    print_steps(plan_configuration(work.values, configuration.device()));
+    print_withheld(work, false);
     return exit_fine;
   }
-  return with_bus(settings.bus, [&](LiveBus& bus) { return configure(bus, settings, configuration, steps); });
+  return with_bus(settings.bus, [&](LiveBus& bus) { return configure(bus, settings, configuration); });
 }
 
 }  // namespace
 
 void add_configure_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("configure", "write the values of a DCF to a node");
+  CLI::App* command = app.add_subcommand("configure", "write the values of a DCF that a node does not have");
   command->footer(examples);
   auto settings = std::make_shared<Settings>();
   add_bus_argument(*command, settings->bus);
@@ -318,8 +512,12 @@ void add_configure_command(CLI::App& app, int& exit_code) {
   command->add_flag("--store", settings->store, "let the node store its parameters (1010h) when all went well");
   command->add_flag("--start", settings->start, "start the node when all went well");
   command->add_flag("--keep-state", settings->keep_state, "do not put the node into Pre-operational first");
-  command->add_flag("--force", settings->force, "write to another device, and what 1020h says is written already");
-  command->add_flag("--dry-run", settings->dry_run, "print the steps and send nothing");
+  command->add_flag("--all", settings->all, "write all values, not only those that differ from the node's");
+  command->add_flag("--node-id-and-bit-rate", settings->node_id_and_bit_rate,
+                    "also write the node's own node-ID and bit rate");
+  command->add_flag("--force", settings->force, "write to another device");
+  command->add_flag("--dry-run", settings->dry_run,
+                    "print what differs and the steps, and write nothing; with --all all steps, without the bus");
   add_format_option(*command, settings->format);
   add_timeout_option(*command, settings->sdo.timeout_ms);
   command->callback([settings, &exit_code] { exit_code = run_configure(*settings); });

@@ -1,9 +1,15 @@
 #include "live/configuration_plan.hpp"
 
 #include <algorithm>
+#include <array>
 #include <canopen/cob_id.hpp>
+#include <cctype>
 #include <map>
 #include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
 
 namespace edsc {
 namespace {
@@ -76,7 +82,9 @@ class Planner {
     for (const ConfigurationValue& value : values) {
       const std::uint16_t index = value.entry.index;
       if (is_left_out(value.entry)) continue;
-      if (is_pdo_communication(index)) {
+      if (sets_node_id_or_bit_rate(value.entry)) {
+        commissioning_.push_back(&value);
+      } else if (is_pdo_communication(index)) {
         pdos_[index].push_back(&value);
       } else if (is_pdo_mapping(index)) {
         pdos_[static_cast<std::uint16_t>(index - mapping_after_communication)].push_back(&value);
@@ -90,6 +98,7 @@ class Planner {
   std::vector<ConfigurationStep> plan() {
     plan_ordinary();
     for (const auto& [communication, values] : pdos_) plan_pdo(communication, values);
+    for (const ConfigurationValue* value : commissioning_) add(StepKind::write, *value);
     return std::move(steps_);
   }
 
@@ -135,14 +144,18 @@ class Planner {
   }
 
   void plan_ordinary() {
-    const bool overflow = std::ranges::any_of(
-        ordinary_, [](const ConfigurationValue* value) { return value->entry.index == sync_overflow; });
-    if (overflow && (find(ordinary_, sync_period, 0) != nullptr)) {
+    const bool overflow = find(ordinary_, sync_overflow, 0) != nullptr;
+    const bool period = find(ordinary_, sync_period, 0) != nullptr;
+    const bool restores_period = !period && device_ != nullptr && is_writable(sync_period, 0);
+    if (overflow && (period || restores_period)) {
       add(StepKind::clear, sync_period, 0, nullptr);  // 1019h changes only while there is no period
     }
     for (std::size_t i = 0; i < ordinary_.size(); ++i) {
       if (guard_of(ordinary_[i]->entry) == nullptr) {
         add(StepKind::write, *ordinary_[i]);
+        if (ordinary_[i]->entry.index == sync_overflow && restores_period) {
+          add(StepKind::restore, sync_period, 0, nullptr);
+        }
         continue;
       }
       std::size_t end = i + 1;
@@ -197,19 +210,74 @@ class Planner {
     if (counted) add(StepKind::clear, mapping, 0, nullptr);
     for (const ConfigurationValue* value : entries) add(StepKind::write, *value);
     if (!counted) return;
-    add(StepKind::write, mapping, 0, count);
+    add(count == nullptr ? StepKind::restore : StepKind::write, mapping, 0, count);
     if (count == nullptr) steps_.back().bytes = {entries.back()->entry.sub_index};
   }
 
   const Device* device_;
-  Values ordinary_;
+  Values ordinary_, commissioning_;
   std::map<std::uint16_t, Values> pdos_;  ///< by the index of the communication parameter
   std::vector<ConfigurationStep> steps_;
   unsigned group_ = 0;
   unsigned groups_ = 0;
 };
 
+/// The letters and digits of a name, in lower case: `CAN bit rate`, `CanBitRate` and `CAN_Bitrate` are one.
+std::string squashed(std::string_view name) {
+  std::string text;
+  for (const char c : name) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) {
+      text += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    }
+  }
+  return text;
+}
+
+constexpr std::array commissioning_names = {"nodeid", "nodeaddress", "nodenumber", "canaddress",
+                                            "baud",   "bitrate",     "canspeed"};
+/// Other nodes, and other interfaces than CAN.
+constexpr std::array other_names = {"remote", "consumer", "producer", "client", "server", "master", "slave",
+                                    "rs232",  "rs422",    "rs485",    "usb",    "uart",   "serial", "modbus"};
+
+bool contains_one_of(std::string_view text, std::span<const char* const> words) {
+  return std::ranges::any_of(words, [&](std::string_view word) { return text.find(word) != std::string_view::npos; });
+}
+
+constexpr std::uint16_t node_id_of_cia301_v3 = 0x100B;
+constexpr std::uint16_t first_of_manufacturer = 0x2000;
+
 }  // namespace
+
+bool sets_node_id_or_bit_rate(const LiveEntry& entry) {
+  if (entry.index == node_id_of_cia301_v3) return true;
+  if (entry.index < first_of_manufacturer || entry.entry == nullptr) return false;
+  const std::string name = squashed(entry.name);
+  return contains_one_of(name, commissioning_names) && !contains_one_of(name, other_names);
+}
+
+bool has_effect(const ConfigurationValue& value, const std::vector<ConfigurationValue>& values) {
+  if (!is_pdo_mapping(value.entry.index) || value.entry.sub_index == 0) return true;
+  const auto count = std::ranges::find_if(values, [&](const ConfigurationValue& other) {
+    return other.entry.index == value.entry.index && other.entry.sub_index == 0;
+  });
+  return count == values.end() || count->bytes.empty() || value.entry.sub_index <= count->bytes.front();
+}
+
+std::vector<ConfigurationValue> values_to_write(const std::vector<ConfigurationValue>& values,
+                                                const std::vector<bool>& differs) {
+  std::set<std::uint16_t> whole;  // objects of which each value is written
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!differs[i]) continue;
+    const std::uint16_t index = values[i].entry.index;
+    if (is_pdo_mapping(index)) whole.insert(index);
+    if (index == sync_overflow) whole.insert(sync_period);
+  }
+  std::vector<ConfigurationValue> wanted;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (differs[i] || whole.contains(values[i].entry.index)) wanted.push_back(values[i]);
+  }
+  return wanted;
+}
 
 bool is_left_out(const LiveEntry& entry) {
   constexpr std::uint32_t no_write = 1;

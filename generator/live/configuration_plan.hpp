@@ -21,6 +21,7 @@ enum class StepKind : std::uint8_t {
   switch_off,  ///< COB-ID: read it, and write it with the bits that make it off; nothing where it is off
   switch_on,   ///< COB-ID: write the value, or what was read before where the DCF has none
   clear,       ///< write 0: the number of mapped objects, or a period
+  restore,     ///< write what `clear` found, or `bytes` where that is more
 };
 
 struct ConfigurationStep {
@@ -37,8 +38,20 @@ struct ConfigurationStep {
 /// 1026h, 1F50h to 1F5Ah, 1F82h; and what tools leave alone (ObjFlags bit 0).
 [[nodiscard]] bool is_left_out(const LiveEntry& entry);
 
+/// Whether the entry sets the node-ID or the bit rate of its own CAN interface. CiA 301 has no such object, so it is
+/// known by its name, and 100Bh of CiA 301 V3; without an EDS only 100Bh is known.
+[[nodiscard]] bool sets_node_id_or_bit_rate(const LiveEntry& entry);
+
+/// The values that must be written when those with `differs` are not what the node has: these, all that counts of a
+/// mapping of which a part differs, and the SYNC period with the SYNC overflow.
+[[nodiscard]] std::vector<ConfigurationValue> values_to_write(const std::vector<ConfigurationValue>& values,
+                                                              const std::vector<bool>& differs);
+
+/// Whether the value takes effect: not a mapping entry above the number of mapped objects that the DCF has.
+[[nodiscard]] bool has_effect(const ConfigurationValue& value, const std::vector<ConfigurationValue>& values);
+
 /// The steps, in order: communication parameters, application, then each PDO: its COB-ID off, number of mapped objects
-/// 0, mapping, number, other parameters, COB-ID. `values` must outlive them; `device` is null for a concise DCF.
+/// 0, mapping, number, other parameters, COB-ID; at last node-ID and bit rate. `values` must outlive them; `device` is null for a concise DCF.
 [[nodiscard]] std::vector<ConfigurationStep> plan_configuration(const std::vector<ConfigurationValue>& values,
                                                                 const Device* device);
 

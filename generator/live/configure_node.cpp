@@ -8,6 +8,7 @@
 #include <cstring>
 #include <map>
 #include <set>
+#include <span>
 
 namespace edsc {
 namespace {
@@ -27,29 +28,49 @@ Bytes bytes_of(std::uint32_t word) {
   return bytes;
 }
 
+bool can_be_read(const LiveEntry& entry) {
+  return entry.entry == nullptr || canopen::readable(entry.entry->access);
+}
+
+/// Whether the node has the value. The 00h after a VISIBLE_STRING does not count.
+bool holds(const LiveEntry& entry, const SdoOutcome& outcome, std::span<const std::uint8_t> bytes) {
+  if (reads_back(outcome, bytes)) return true;
+  if (entry.type == nullptr || entry.type->type != canopen::DataType::visible_string) return false;
+  const auto text = [](std::span<const std::uint8_t> with_padding) {
+    while (!with_padding.empty() && with_padding.back() == 0) with_padding = with_padding.first(with_padding.size() - 1);
+    return with_padding;
+  };
+  return std::ranges::equal(text(outcome.bytes), text(bytes));
+}
+
 class Run {
  public:
-  Run(SdoAccess& node, const std::vector<ConfigurationStep>& steps,
-      const std::function<void(std::size_t, std::size_t)>& progress)
-      : node_{node}, steps_{steps}, progress_{progress} {
+  Run(SdoAccess& node, const std::vector<ConfigurationStep>& steps, const ConfigurationHooks& hooks)
+      : node_{node}, steps_{steps}, hooks_{hooks} {
     for (const ConfigurationStep& step : steps) result_.values += counts(step) ? 1 : 0;
   }
 
   ConfigurationResult run() {
     for (const ConfigurationStep& step : steps_) {
-      if (result_.lost) break;
-      progress_(result_.written, result_.values);
+      if (is_lost()) break;
+      hooks_.progress(result_.written, result_.values);
       if (step.group == 0 || !given_up_.contains(step.group)) carry_out(step);
     }
-    for (std::size_t i = 0; i < refused_.size() && !result_.lost; ++i) try_again(*refused_[i]);
-    for (std::size_t i = 0; i < written_.size() && !result_.lost; ++i) {
-      progress_(i, written_.size());
+    for (std::size_t i = 0; i < refused_.size() && !is_lost(); ++i) try_again(*refused_[i]);
+    for (std::size_t i = 0; i < written_.size() && !is_lost(); ++i) {
+      hooks_.progress(i, written_.size());
       verify(*written_[i]);
     }
+    (void)is_lost();
     return std::move(result_);
   }
 
  private:
+  [[nodiscard]] bool is_lost() {
+    if (hooks_.restarted()) result_.lost = result_.restarted = true;
+    return result_.lost;
+  }
+
   static bool counts(const ConfigurationStep& step) {
     return step.value != nullptr && (step.kind == StepKind::write || step.kind == StepKind::switch_on);
   }
@@ -60,6 +81,7 @@ class Run {
       case StepKind::switch_off: return switch_off(step);
       case StepKind::switch_on: return switch_on(step);
       case StepKind::clear: return clear(step);
+      case StepKind::restore: return restore(step);
     }
   }
 
@@ -87,38 +109,47 @@ class Run {
     written_.push_back(&step);
   }
 
-  /// Keeps what was there for `switch_on`.
+  /// Keeps what was there for `switch_on`, where it was not off.
   void switch_off(const ConfigurationStep& step) {
     const SdoOutcome outcome = upload(node_, step.entry);
     if (!outcome.done()) return fail(step, outcome);
     const auto cob_id = word_of(outcome.bytes);
     if (!cob_id) return;  // no COB-ID as CiA 301 has it: the device judges what is written
     const std::uint32_t off = (*cob_id | step.off_set) & ~step.off_cleared;
+    if (off == *cob_id) return;
     before_[key(step.entry)] = *cob_id;
-    if (off != *cob_id) write(step, bytes_of(off));
+    write(step, bytes_of(off));
   }
 
   void switch_on(const ConfigurationStep& step) {
     if (!step.bytes.empty()) return write(step, step.bytes);
     const auto before = before_.find(key(step.entry));
-    if (before == before_.end()) return;
-    const std::uint32_t off = (before->second | step.off_set) & ~step.off_cleared;
-    if (off != before->second) write(step, bytes_of(before->second));
+    if (before != before_.end()) write(step, bytes_of(before->second));
   }
 
   void clear(const ConfigurationStep& step) {
     const SdoOutcome outcome = upload(node_, step.entry);
     if (!outcome.done()) return fail(step, outcome);
+    cleared_[key(step.entry)] = outcome.bytes;
     const bool clear = std::ranges::all_of(outcome.bytes, [](std::uint8_t byte) { return byte == 0; });
     if (!clear) write(step, Bytes(outcome.bytes.size(), 0));
   }
 
+  /// The numbers are low byte first and as long as each other, or one of them is empty.
+  void restore(const ConfigurationStep& step) {
+    const Bytes& before = cleared_[key(step.entry)];
+    const bool more = std::ranges::lexicographical_compare(before.rbegin(), before.rend(), step.bytes.rbegin(),
+                                                           step.bytes.rend());
+    const Bytes& wanted = before.empty() || more ? step.bytes : before;
+    if (std::ranges::any_of(wanted, [](std::uint8_t byte) { return byte != 0; })) write(step, wanted);
+  }
+
   void verify(const ConfigurationStep& step) {
-    if (step.entry.entry != nullptr && !canopen::readable(step.entry.entry->access)) return;
+    if (!can_be_read(step.entry)) return;
     const SdoOutcome outcome = upload(node_, step.entry);
     if (!outcome.done()) {
       fail(step, outcome);
-    } else if (reads_back(outcome, step.bytes)) {
+    } else if (holds(step.entry, outcome, step.bytes)) {
       ++result_.verified;
     } else {
       result_.failures.push_back({step.entry, step.value, "reads back as " + value_of(step.entry, outcome.bytes)});
@@ -138,10 +169,11 @@ class Run {
 
   SdoAccess& node_;
   const std::vector<ConfigurationStep>& steps_;
-  const std::function<void(std::size_t, std::size_t)>& progress_;
+  const ConfigurationHooks& hooks_;
   ConfigurationResult result_;
   std::vector<const ConfigurationStep*> refused_, written_;
   std::map<std::uint32_t, std::uint32_t> before_;
+  std::map<std::uint32_t, Bytes> cleared_;
   std::set<unsigned> given_up_;
 };
 
@@ -160,8 +192,30 @@ bool take(std::string_view& text, std::size_t digits, char behind, unsigned most
 }  // namespace
 
 ConfigurationResult configure_node(SdoAccess& node, const std::vector<ConfigurationStep>& steps,
-                                   const std::function<void(std::size_t, std::size_t)>& progress) {
-  return Run{node, steps, progress}.run();
+                                   const ConfigurationHooks& hooks) {
+  return Run{node, steps, hooks}.run();
+}
+
+Comparison compare_configuration(SdoAccess& node, const std::vector<ConfigurationValue>& values,
+                                 const ConfigurationHooks& hooks) {
+  Comparison comparison;
+  for (const ConfigurationValue& value : values) {
+    hooks.progress(comparison.values.size(), values.size());
+    ComparedValue compared;
+    compared.found.end = SdoEnd::refused;
+    if (!has_effect(value, values)) {
+      comparison.values.push_back(std::move(compared));
+      continue;
+    }
+    if (can_be_read(value.entry)) compared.found = upload(node, value.entry);
+    if (compared.found.end == SdoEnd::no_answer) {
+      comparison.lost = true;
+      break;
+    }
+    compared.differs = !compared.known() || !holds(value.entry, compared.found, value.bytes);
+    comparison.values.push_back(std::move(compared));
+  }
+  return comparison;
 }
 
 std::optional<ConfigurationTime> parse_configuration_time(std::string_view date, std::string_view time) {

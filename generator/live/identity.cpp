@@ -6,17 +6,18 @@ namespace edsc {
 namespace {
 
 struct Number {
-  std::string_view name;
+  std::string_view name, key;
   std::optional<std::uint32_t> Identity::*value;
   Fit difference;
+  bool usual = true;  ///< every EDS should state it
 };
 
 constexpr Number numbers[] = {
-    {"device type", &Identity::device_type, Fit::other},
-    {"vendor-ID", &Identity::vendor_id, Fit::other},
-    {"product code", &Identity::product_code, Fit::other},
-    {"revision number", &Identity::revision_number, Fit::major_revision},
-    {"serial number", &Identity::serial_number, Fit::other},
+    {"device type", "device_type", &Identity::device_type, Fit::other},
+    {"vendor-ID", "vendor_id", &Identity::vendor_id, Fit::other},
+    {"product code", "product_code", &Identity::product_code, Fit::other},
+    {"revision number", "revision_number", &Identity::revision_number, Fit::major_revision},
+    {"serial number", "serial_number", &Identity::serial_number, Fit::other, false},
 };
 
 std::optional<std::uint32_t> default_of(const Device& device, std::uint16_t index, std::uint8_t sub_index) {
@@ -58,13 +59,16 @@ std::string_view to_text(Fit fit) {
 }
 
 Fit compare_identity(const Identity& sheet, const Identity& device) {
-  if (!sheet.vendor_id || !device.vendor_id) return Fit::unknown;
-  Fit fit = Fit::same;
+  Fit fit = Fit::unknown;
   for (const Number& number : numbers) {
-    if (!differs(sheet.*number.value, device.*number.value)) continue;
+    const auto expected = sheet.*number.value, found = device.*number.value;
+    if (!expected || !found) continue;
+    if (*expected == *found) {
+      if (fit == Fit::unknown) fit = Fit::same;
+      continue;
+    }
     if (number.difference == Fit::other) return Fit::other;
-    const bool same_major = (*(sheet.*number.value) >> 16) == (*(device.*number.value) >> 16);
-    fit = same_major ? Fit::minor_revision : Fit::major_revision;
+    fit = (*expected >> 16) == (*found >> 16) ? Fit::minor_revision : Fit::major_revision;
   }
   return fit;
 }
@@ -73,9 +77,25 @@ std::string identity_differences(const Identity& sheet, const Identity& device) 
   std::string text;
   for (const Number& number : numbers) {
     if (!differs(sheet.*number.value, device.*number.value)) continue;
-    text += fmt::format("{}{} is {:08X}h, not {:08X}h", text.empty() ? "" : "; ", number.name, *(device.*number.value),
+    text += fmt::format("{}{} is {:08X}h, expected {:08X}h", text.empty() ? "" : "; ", number.name, *(device.*number.value),
                         *(sheet.*number.value));
   }
+  return text;
+}
+
+std::vector<NotCompared> not_compared(const Identity& sheet, const Identity& device) {
+  std::vector<NotCompared> missing;
+  for (const Number& number : numbers) {
+    const bool in_sheet = (sheet.*number.value).has_value(), in_device = (device.*number.value).has_value();
+    if ((in_sheet && in_device) || (!number.usual && !in_sheet)) continue;
+    missing.push_back({number.name, number.key, in_sheet});
+  }
+  return missing;
+}
+
+std::string names_of(const std::vector<NotCompared>& numbers) {
+  std::string text;
+  for (const NotCompared& number : numbers) text += fmt::format("{}{}", text.empty() ? "" : ", ", number.name);
   return text;
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "device/device.hpp"
 
@@ -21,19 +22,34 @@ struct Identity {
 [[nodiscard]] Identity identity_of(const Device& device);
 
 enum class Fit : std::uint8_t {
-  same,            ///< all that both know is equal
-  minor_revision,  ///< but for the lower half of the revision number: the CANopen behaviour is the same
-  major_revision,  ///< but for the revision number
+  same,            ///< every number that both state is equal
+  minor_revision,  ///< except the lower half of the revision number: the CANopen behaviour is the same
+  major_revision,  ///< except the revision number
   other,           ///< another device type, vendor, product or serial number
-  unknown,         ///< the data sheet, or the device, does not say who it is
+  unknown,         ///< no number is stated by both
 };
 
 /// `same device`
 [[nodiscard]] std::string_view to_text(Fit fit);
 
+/// Compares each number that both state; a number that only one of them states does not count.
 [[nodiscard]] Fit compare_identity(const Identity& sheet, const Identity& device);
 
-/// What differs, number by number: `product code is 00001234h, not 00001235h`.
+/// The differences, number by number: `product code is 00001234h, expected 00001235h`.
 [[nodiscard]] std::string identity_differences(const Identity& sheet, const Identity& device);
+
+/// A number that could not be compared.
+struct NotCompared {
+  std::string_view name;  ///< `vendor-ID`
+  std::string_view key;   ///< in JSON: `vendor_id`
+  bool in_sheet = false;  ///< stated by the sheet, but not by the device
+};
+
+/// Device type, vendor-ID, product code and revision number that one of them does not state; the serial number only
+/// where the sheet states it.
+[[nodiscard]] std::vector<NotCompared> not_compared(const Identity& sheet, const Identity& device);
+
+/// `vendor-ID, product code`
+[[nodiscard]] std::string names_of(const std::vector<NotCompared>& numbers);
 
 }  // namespace edsc

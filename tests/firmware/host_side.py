@@ -134,8 +134,8 @@ class HostSide:
         return None
 
     def write_dcf(self) -> None:
-        subprocess.run([self.program, "format", self.path, "--dcf", "--node-id", self.node, "-o", self.dcf], check=True,
-                       capture_output=True)
+        subprocess.run([self.program, "format", self.path, "--dcf", "--all", "--node-id", self.node, "-o", self.dcf],
+                       check=True, capture_output=True)
         values = {"1017": HEARTBEAT_TIME}
         if (index := self.timed_tpdo()) is not None:
             values[f"{index:04X}sub1"] = self.sheet.default(index, 1) & ~INVALID
@@ -148,7 +148,7 @@ class HostSide:
 
     def configure(self) -> None:
         self.write_dcf()
-        result = self.node_command("configure", self.dcf, "--start", *["--store"] * self.stores, "--format", "json")
+        result = self.node_command("configure", self.dcf, "--all", "--start", *["--store"] * self.stores, "--format", "json")
         told = json.loads(result.stdout or '{"failures": [], "problems": [], "stored": [], "written": 0, "values": 0}')
         self.check("configure", (result.returncode, told["failures"], told["problems"], told["stored"]),
                    (0, [], [], self.stores))

@@ -40,6 +40,7 @@ std::vector<std::string> plan(const std::vector<Wanted>& wanted, const Device* d
       case StepKind::switch_off: steps.push_back("off " + entry); break;
       case StepKind::switch_on: steps.push_back("on " + entry + value); break;
       case StepKind::clear: steps.push_back("clear " + entry); break;
+      case StepKind::restore: steps.push_back("restore " + entry + value); break;
     }
   }
   return steps;
@@ -63,10 +64,11 @@ TEST(ConfigurationPlan, ChangesAMappingWhileItsPdoIsOffAndItsNumberIsZero) {
                    "on 1800h:01 = 81 01 00 00"}));
 }
 
-TEST(ConfigurationPlan, SetsTheNumberOfMappedObjectsThatTheDcfDoesNotTell) {
+/// A DCF with what differs from the defaults may name one entry of many: the others stay mapped.
+TEST(ConfigurationPlan, RestoresTheNumberOfMappedObjectsThatTheDcfDoesNotHave) {
   EXPECT_EQ(plan({{0x1600, 1, {8, 0, 0, 0x20}}, {0x1600, 2, {8, 0, 1, 0x20}}}),
             (Steps{"off 1400h:01", "clear 1600h:00", "1600h:01 = 08 00 00 20", "1600h:02 = 08 00 01 20",
-                   "1600h:00 = 02", "on 1400h:01"}));
+                   "restore 1600h:00 = 02", "on 1400h:01"}));
 }
 
 TEST(ConfigurationPlan, LeavesACobIdAloneThatCannotBeWritten) {
@@ -87,6 +89,83 @@ TEST(ConfigurationPlan, StartsASyncProducerBehindItsPeriodAndOverflow) {
   EXPECT_EQ(plan({{0x1005, 0, {0x80, 0, 0, 0x40}}, {0x1006, 0, {0x10, 0x27, 0, 0}}, {0x1019, 0, {16}}}),
             (Steps{"clear 1006h:00", "1019h:00 = 10", "1006h:00 = 10 27 00 00", "off 1005h:00",
                    "on 1005h:00 = 80 00 00 40"}));
+}
+
+TEST(ConfigurationPlan, RestoresTheSyncPeriodThatTheDcfDoesNotHave) {
+  const DeviceFromText device{var("1006", "a", "7", "rw") + var("1019", "b", "5", "rw")};
+  EXPECT_EQ(plan({{0x1019, 0, {16}}}, &device.device),
+            (Steps{"clear 1006h:00", "1019h:00 = 10", "restore 1006h:00"}));
+  EXPECT_EQ(plan({{0x1019, 0, {16}}}), (Steps{"1019h:00 = 10"}));
+}
+
+TEST(ConfigurationPlan, WritesNodeIdAndBitRateAtLast) {
+  const DeviceFromText device{var("2000", "Node-ID", "5", "rw") + var("2001", "CAN bit rate", "5", "rw") +
+                              var("2002", "Gain", "5", "rw")};
+  std::vector<ConfigurationValue> values;
+  for (const std::uint16_t index : {0x2000, 0x2001, 0x2002}) {
+    const Object* object = device.device.find(static_cast<std::uint16_t>(index));
+    values.push_back({live_entry(*object, object->entries.front()), {1}, {}});
+  }
+  const auto steps = plan_configuration(values, &device.device);
+  ASSERT_EQ(steps.size(), 3U);
+  EXPECT_EQ(steps.front().entry.index, 0x2002);
+}
+
+/// Names of objects in vendors' files; CiA 301 has no object for either.
+TEST(NodeIdAndBitRate, AreKnownByTheirName) {
+  const auto sets = [](std::uint16_t index, std::string name) {
+    const Entry entry;
+    LiveEntry named;
+    named.index = index;
+    named.entry = &entry;
+    named.name = std::move(name);
+    return sets_node_id_or_bit_rate(named);
+  };
+  for (const char* name : {"Node-ID", "Node ID", "CANopen NodeID", "CAN Node-ID", "Device, ucSetBaudIndex_2510h2",
+                           "CAN bit rate", "CAN Bitrate", "BaudRate", "Baudrate Set", "ulSetNodeId_2510h1"}) {
+    EXPECT_TRUE(sets(0x2000, name)) << name;
+  }
+  for (const char* name : {"Inhibit time EMCY", "RS232 Baudrate", "MODBUS RTU Baudrate", "Gain",
+                           "Remote TPDO number and node-ID", "Node-ID of the SDO server"}) {
+    EXPECT_FALSE(sets(0x2000, name)) << name;
+  }
+  EXPECT_FALSE(sets(0x1016, "Consumer heartbeat time, Node-ID 1"));
+  EXPECT_TRUE(sets(0x100B, "Reserved"));
+}
+
+/// The values to write, of those that differ.
+std::vector<std::string> to_write(const std::vector<Wanted>& wanted, const std::vector<bool>& differs) {
+  std::vector<ConfigurationValue> values;
+  for (const Wanted& value : wanted) {
+    LiveEntry entry;
+    entry.index = value.index;
+    entry.sub_index = value.sub_index;
+    values.push_back({entry, value.bytes, {}});
+  }
+  std::vector<std::string> names;
+  for (const ConfigurationValue& value : values_to_write(values, differs)) {
+    names.push_back(entry_label(value.entry.index, value.entry.sub_index));
+  }
+  return names;
+}
+
+TEST(ValuesToWrite, AreThoseThatDiffer) {
+  EXPECT_EQ(to_write({{0x1017, 0, {1, 0}}, {0x1800, 1, {0x81, 1, 0, 0}}, {0x1800, 5, {1, 0}}}, {false, false, true}),
+            (Steps{"1800h:05"}));
+}
+
+TEST(ValuesToWrite, AreAMappingAsAWhole) {
+  EXPECT_EQ(to_write({{0x1800, 1, {0x81, 1, 0, 0}},
+                      {0x1A00, 0, {2}},
+                      {0x1A00, 1, {0x10, 0, 0x41, 0x60}},
+                      {0x1A00, 2, {0x20, 0, 0x64, 0x60}},
+                      {0x1A01, 0, {1}}},
+                     {false, false, false, true, false}),
+            (Steps{"1A00h:00", "1A00h:01", "1A00h:02"}));
+}
+
+TEST(ValuesToWrite, AreTheSyncPeriodWithTheOverflow) {
+  EXPECT_EQ(to_write({{0x1006, 0, {1, 0, 0, 0}}, {0x1019, 0, {2}}}, {false, true}), (Steps{"1006h:00", "1019h:00"}));
 }
 
 TEST(ConfigurationPlan, LeavesOutWhatCommands) {

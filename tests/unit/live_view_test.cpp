@@ -30,14 +30,30 @@ TEST(Identity, FitsByVendorProductAndRevision) {
   EXPECT_EQ(compare_identity(sheet, with(&Identity::device_type, 0x191)), Fit::other);
 }
 
-TEST(Identity, IsNotKnownWithoutAVendor) {
-  EXPECT_EQ(compare_identity(sheet, with(&Identity::vendor_id, {})), Fit::unknown);
+/// An EDS without vendor-ID is common; what it states must fit all the same.
+TEST(Identity, ComparesEachNumberThatBothState) {
+  const Identity without_vendor = with(&Identity::vendor_id, {});
+  EXPECT_EQ(compare_identity(without_vendor, sheet), Fit::same);
+  EXPECT_EQ(compare_identity(without_vendor, with(&Identity::product_code, 6)), Fit::other);
+  EXPECT_EQ(compare_identity(without_vendor, with(&Identity::device_type, 0x191)), Fit::other);
+  EXPECT_EQ(compare_identity({0x192, {}, {}, {}, {}}, sheet), Fit::same);
+  EXPECT_EQ(compare_identity({0x192, {}, {}, {}, {}}, with(&Identity::device_type, 0x191)), Fit::other);
+  EXPECT_EQ(compare_identity({{}, {}, {}, 0x0002'0000, {}}, sheet), Fit::major_revision);
   EXPECT_EQ(compare_identity({}, sheet), Fit::unknown);
+  EXPECT_EQ(compare_identity(sheet, {}), Fit::unknown);
 }
 
 TEST(Identity, NamesWhatDiffers) {
   EXPECT_EQ(identity_differences(sheet, {0x192, 0x94, 6, 0x0001'0002, 1}),
-            "vendor-ID is 00000094h, not 00000093h; product code is 00000006h, not 00000005h");
+            "vendor-ID is 00000094h, expected 00000093h; product code is 00000006h, expected 00000005h");
+}
+
+TEST(Identity, NamesWhatIsNotCompared) {
+  EXPECT_EQ(names_of(not_compared(sheet, sheet)), "");
+  EXPECT_EQ(names_of(not_compared(with(&Identity::vendor_id, {}), with(&Identity::revision_number, {}))),
+            "vendor-ID, revision number");
+  EXPECT_EQ(names_of(not_compared(with(&Identity::serial_number, 7), sheet)), "serial number");
+  EXPECT_TRUE(not_compared(sheet, {}).front().in_sheet);
 }
 
 TEST(TextTable, AlignsColumnsByCodePoints) {
