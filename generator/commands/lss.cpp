@@ -52,11 +52,6 @@ int done_or_failed(std::string_view service, const LssResult& result) {
   return result.done() ? int{exit_fine} : failed(service, result);
 }
 
-std::string address_text(const LssAddress& address) {
-  return fmt::format("vendor-ID {:08X}h, product code {:08X}h, revision {:08X}h, serial number {:08X}h",
-                     address.vendor_id, address.product_code, address.revision_number, address.serial_number);
-}
-
 Json address_json(const LssAddress& address) {
   return {{"vendor_id", address.vendor_id},
           {"product_code", address.product_code},
@@ -99,7 +94,7 @@ int inquire(LssSession& session, const Settings& settings) {
     json["node_id"] = has_node_id ? Json(node_id.value) : Json(nullptr);
     print(json);
   } else {
-    fmt::print("{}, {}\n", address_text(address),
+    fmt::print("{}, {}\n", to_text(address),
                !node_id.done() ? "node-ID not told"
                : has_node_id   ? fmt::format("node-ID {}", node_id.value)
                                : "no node-ID");
@@ -121,15 +116,31 @@ int activate(LssSession& session, const Settings& settings) {
 
 int store(LssSession& session, const Settings& /*settings*/) { return done_or_failed("store", session.store()); }
 
+void print_found(const std::vector<LssAddress>& found) {
+  Json json{{"version", 1}, {"unconfigured", Json::array()}};
+  for (const LssAddress& address : found) json["unconfigured"].push_back(address_json(address));
+  print(json);
+}
+
+/// What was found is shown also where the search is interrupted or fails.
 int fastscan(LssSession& session, const Settings& settings) {
-  const std::vector<LssAddress> found = session.find_unconfigured(address_of(settings), known_numbers(settings));
-  if (settings.format == "json") {
-    Json json{{"version", 1}, {"unconfigured", Json::array()}};
-    for (const LssAddress& address : found) json["unconfigured"].push_back(address_json(address));
-    print(json);
-  } else {
-    for (const LssAddress& address : found) fmt::print("{}\n", address_text(address));
+  const bool text = settings.format == "text";
+  std::vector<LssAddress> found;
+  LssResult result;
+  const auto show = [&](const LssAddress& address) {
+    found.push_back(address);
+    if (!text) return;
+    fmt::print("{}\n", to_text(address));
+    std::fflush(stdout);
+  };
+  try {
+    result = session.find_unconfigured(show, address_of(settings), known_numbers(settings));
+  } catch (...) {
+    if (!text) print_found(found);
+    throw;
   }
+  if (!text) print_found(found);
+  if (!result.done()) return failed("fastscan", result);
   if (!found.empty()) return exit_fine;
   fmt::print(stderr, "edsc: fastscan: no device without node-ID answers\n");
   return exit_device_failed;
@@ -155,13 +166,19 @@ int assign(LssSession& session, const Settings& settings) {
   session.switch_state(LssState::waiting);
   const LssResult found = known == 4 ? session.select(address) : session.fastscan(address, known);
   if (!found.done()) return failed(known == 4 ? "select" : "fastscan", found);
+  if (known != 4) {
+    if (const LssResult confirmed = session.confirm(address); !confirmed.done()) {
+      session.switch_state(LssState::waiting);
+      return failed("fastscan", confirmed);
+    }
+  }
   const int exit_code = assign_selected(session, settings);
   session.switch_state(LssState::waiting);
   if (exit_code != exit_fine) return exit_code;
   if (settings.format == "json") {
     print({{"version", 1}, {"address", address_json(address)}, {"node_id", settings.node_id}});
   } else {
-    fmt::print("{}: node-ID {}{}\n", address_text(address), settings.node_id, settings.store ? ", stored" : "");
+    fmt::print("{}: node-ID {}{}\n", to_text(address), settings.node_id, settings.store ? ", stored" : "");
   }
   return exit_fine;
 }

@@ -45,6 +45,7 @@ struct Candidate {
 struct Findings {
   std::vector<FoundNode> nodes;
   std::vector<canopen::LssAddress> unconfigured;
+  std::string lss_failure;
 };
 
 using Json = nlohmann::ordered_json;
@@ -70,7 +71,11 @@ std::string fits_text(const FoundNode& node, const std::vector<Candidate>& candi
     const Fit fit = compare_identity(candidate.identity, identity_of(node));
     if (!fits(fit)) continue;
     text += (text.empty() ? "" : ", ") + candidate.path;
-    if (fit != Fit::same) text += fmt::format(" ({})", to_text(fit));
+    std::string remark{fit == Fit::same ? "" : to_text(fit)};
+    if (const auto missing = not_compared(candidate.identity, identity_of(node)); !missing.empty()) {
+      remark += fmt::format("{}{} not compared", remark.empty() ? "" : "; ", names_of(missing));
+    }
+    if (!remark.empty()) text += fmt::format(" ({})", remark);
   }
   return text.empty() ? "none" : text;
 }
@@ -98,8 +103,7 @@ void print_text(const Findings& found, const std::vector<Candidate>& candidates,
     fmt::print("{}{}{}\n", bold ? "\x1B[1m" : "", lines[i], bold ? "\x1B[0m" : "");
   }
   for (const canopen::LssAddress& address : found.unconfigured) {
-    fmt::print("without node-ID: vendor-ID {:08X}h, product code {:08X}h, revision {:08X}h, serial number {:08X}h\n",
-               address.vendor_id, address.product_code, address.revision_number, address.serial_number);
+    fmt::print("without node-ID: {}\n", to_text(address));
   }
 }
 
@@ -119,7 +123,12 @@ Json as_json(const FoundNode& node, const std::vector<Candidate>& candidates) {
   json["data_sheets"] = Json::array();
   for (const Candidate& candidate : candidates) {
     const Fit fit = compare_identity(candidate.identity, identity_of(node));
-    if (fits(fit)) json["data_sheets"].push_back({{"file", candidate.path}, {"fit", to_text(fit)}});
+    if (!fits(fit)) continue;
+    Json sheet{{"file", candidate.path}, {"fit", to_text(fit)}, {"not_compared", Json::array()}};
+    for (const NotCompared& number : not_compared(candidate.identity, identity_of(node))) {
+      sheet["not_compared"].push_back(number.key);
+    }
+    json["data_sheets"].push_back(std::move(sheet));
   }
   return json;
 }
@@ -153,10 +162,14 @@ bool load_candidates(const Settings& settings, std::vector<Candidate>& candidate
   return true;
 }
 
-std::vector<canopen::LssAddress> find_unconfigured(LiveBus& bus, const Settings& settings) {
+void find_nodes(LiveBus& bus, const Settings& settings, Findings& found) {
+  scan(bus, settings.scan, found.nodes);
+  if (!settings.lss) return;
   canopen::LssTimeouts timeouts;
   timeouts.fastscan_step = canopen::Duration{settings.lss_step_ms * 1000U};
-  return LssSession{bus, timeouts}.find_unconfigured();
+  const LssResult result = LssSession{bus, timeouts}.find_unconfigured(
+      [&](const canopen::LssAddress& address) { found.unconfigured.push_back(address); });
+  found.lss_failure = result.failure;
 }
 
 int run_scan(Settings settings) {
@@ -165,12 +178,24 @@ int run_scan(Settings settings) {
   if (!load_candidates(settings, candidates)) return exit_wrong_usage;
   return with_bus(settings.bus, [&](LiveBus& bus) {
     Findings found;
-    found.nodes = scan(bus, settings.scan);
-    if (settings.lss) found.unconfigured = find_unconfigured(bus, settings);
-    if (settings.format == "json") {
-      print_json(found, candidates);
-    } else {
-      print_text(found, candidates, settings.color.on(stdout));
+    const auto show = [&] {
+      if (settings.format == "json") {
+        print_json(found, candidates);
+      } else {
+        print_text(found, candidates, settings.color.on(stdout));
+      }
+      std::fflush(stdout);
+    };
+    try {
+      find_nodes(bus, settings, found);
+    } catch (...) {
+      show();  // what was found so far
+      throw;
+    }
+    show();
+    if (!found.lss_failure.empty()) {
+      fmt::print(stderr, "edsc: fastscan: {}\n", found.lss_failure);
+      return exit_device_failed;
     }
     if (!found.nodes.empty() || !found.unconfigured.empty()) return int{exit_fine};
     fmt::print(stderr, "edsc: no node answers on {}\n", settings.bus);

@@ -126,15 +126,43 @@ LssResult LssSession::fastscan(LssAddress& address, std::uint8_t known) {
   return result;
 }
 
-std::vector<LssAddress> LssSession::find_unconfigured(const LssAddress& among, std::uint8_t known) {
-  std::vector<LssAddress> found;
-  while (found.size() != most_slaves) {
-    LssAddress address = among;
-    if (!fastscan(address, known).done()) break;
-    found.push_back(address);
+LssResult LssSession::fastscan_above(LssAddress& address, std::uint8_t known) {
+  LssResult result = perform(Service::other, [&](auto now) { return master_.fastscan_above(address, known, now); });
+  if (result.done()) address = master_.address();
+  return result;
+}
+
+LssResult LssSession::confirm(const LssAddress& address) {
+  LssAddress inquired;
+  const std::string expected = to_text(address);
+  if (const LssResult result = inquire_address(inquired); !result.done()) {
+    return {fmt::format("found {}, but no slave with this address answers an inquiry ({})", expected, result.failure), 0};
+  }
+  if (inquired == address) return {};
+  return {fmt::format("found {}, but the slave in configuration state has {}", expected, to_text(inquired)), 0};
+}
+
+LssResult LssSession::find_unconfigured(const std::function<void(const LssAddress&)>& found, const LssAddress& among,
+                                        std::uint8_t known) {
+  switch_state(LssState::waiting);
+  LssAddress address = among;
+  LssResult result = fastscan(address, known);
+  for (std::size_t count = 0; result.done() && count != most_slaves; ++count) {
+    const LssAddress last = address;
+    const LssResult confirmed = confirm(address);
+    switch_state(LssState::waiting);
+    if (!confirmed.done()) return confirmed;
+    found(address);
+    result = fastscan_above(address, known);
+    if (result.done() && address == last) return {"found " + to_text(address) + " again", 0};
   }
   switch_state(LssState::waiting);
-  return found;
+  return {};
+}
+
+std::string to_text(const LssAddress& address) {
+  return fmt::format("vendor-ID {:08X}h, product code {:08X}h, revision {:08X}h, serial number {:08X}h",
+                     address.vendor_id, address.product_code, address.revision_number, address.serial_number);
 }
 
 }  // namespace edsc

@@ -2,9 +2,8 @@
 #pragma once
 
 #include <canopen/lss_master.hpp>
-#include <optional>
+#include <functional>
 #include <string>
-#include <vector>
 
 #include "live/live_bus.hpp"
 
@@ -17,6 +16,9 @@ struct LssResult {
 
   [[nodiscard]] bool done() const { return failure.empty(); }
 };
+
+/// `vendor-ID 00000093h, product code 43354B52h, revision 00010001h, serial number 15011234h`
+[[nodiscard]] std::string to_text(const canopen::LssAddress& address);
 
 /// Throws Interrupted, after the slaves have been put into waiting state, and BusLost.
 class LssSession {
@@ -38,16 +40,22 @@ class LssSession {
   /// fills in the others.
   [[nodiscard]] LssResult fastscan(canopen::LssAddress& address, std::uint8_t known);
 
-  /// All slaves without node-ID that fastscan finds; of those only whose first `known` numbers are those of `among`.
-  /// All slaves are waiting then.
-  [[nodiscard]] std::vector<canopen::LssAddress> find_unconfigured(const canopen::LssAddress& among = {},
-                                                                   std::uint8_t known = 0);
+  /// Whether one slave is in configuration state and has this address, as the four inquiries say.
+  [[nodiscard]] LssResult confirm(const canopen::LssAddress& address);
+
+  /// Finds all slaves without node-ID, ascending by address; of those only whose first `known` numbers are those of
+  /// `among`. `found` is called for each that has confirmed its address. All slaves are waiting before, after, and while
+  /// the next one is searched for, as some answer each Fastscan frame in configuration state. A failure: an answer that
+  /// no slave confirms; the search ends there.
+  LssResult find_unconfigured(const std::function<void(const canopen::LssAddress&)>& found,
+                              const canopen::LssAddress& among = {}, std::uint8_t known = 0);
 
  private:
   enum class Service : std::uint8_t { other, configure_node_id, configure_bit_timing, store };
 
   template <class Begin>
   LssResult perform(Service service, Begin begin);
+  [[nodiscard]] LssResult fastscan_above(canopen::LssAddress& address, std::uint8_t known);
   [[nodiscard]] std::string refusal(Service service) const;
 
   LiveBus& bus_;

@@ -103,7 +103,7 @@ class Scan {
     for (const std::uint8_t node_id : settings.nodes) nodes_[node_id].node_id = node_id;
   }
 
-  std::vector<FoundNode> run() {
+  void run() {
     const TimePoint begin = LiveBus::now();
     std::size_t next = 0;
     while (next != settings_.nodes.size() || !running_.empty() || waits_for_heartbeats(begin)) {
@@ -119,6 +119,9 @@ class Scan {
       }
       if (Interruption::noted()) interrupt();
     }
+  }
+
+  [[nodiscard]] std::vector<FoundNode> found() const {
     std::vector<FoundNode> found;
     for (const std::uint8_t node_id : settings_.nodes) {
       const FoundNode& node = nodes_[node_id];
@@ -172,6 +175,15 @@ class Scan {
 
 }  // namespace
 
-std::vector<FoundNode> scan(LiveBus& bus, const ScanSettings& settings) { return Scan{bus, settings}.run(); }
+void scan(LiveBus& bus, const ScanSettings& settings, std::vector<FoundNode>& found) {
+  Scan scan{bus, settings};
+  try {
+    scan.run();
+  } catch (...) {
+    found = scan.found();
+    throw;
+  }
+  found = scan.found();
+}
 
 }  // namespace edsc

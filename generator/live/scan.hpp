@@ -28,7 +28,7 @@ struct FoundNode {
   std::optional<std::string> name;            ///< 1008h
 };
 
-/// The nodes that were found, ascending. Throws Interrupted, BusLost.
-[[nodiscard]] std::vector<FoundNode> scan(LiveBus& bus, const ScanSettings& settings);
+/// Fills in the nodes that were found, ascending, also before it throws. Throws Interrupted, BusLost.
+void scan(LiveBus& bus, const ScanSettings& settings, std::vector<FoundNode>& found);
 
 }  // namespace edsc

@@ -6,6 +6,7 @@
 #include <deque>
 #include <random>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "lss_bench.hpp"
@@ -298,11 +299,53 @@ TEST(LssMaster, ChecksTheNumbersThatAreKnown) {
   EXPECT_EQ(bench.master.address(), bench::rk5c_address);
 }
 
-/// A device on a virtual bus.
+TEST(LssMaster, LooksForASlaveAboveAnAddress) {
+  MasterBench bench;
+  bench.master.fastscan_above({1, 2, 3, 0xFFFF'FFF5}, 3, bench.now);
+  std::string sent = bench.bus.take();
+  for (int step = 0; step < 4; ++step) {
+    bench.hear("7E4 4F 00 00 00 00 00 00 00");
+    sent += " | " + bench.pass(20ms);
+  }
+  EXPECT_EQ(sent,
+            "7E5 51 00 00 00 00 80 00 00 | 7E5 51 01 00 00 00 00 00 01 | 7E5 51 02 00 00 00 00 01 02 | "
+            "7E5 51 03 00 00 00 00 02 03 | 7E5 51 F6 FF FF FF 01 03 03");
+  EXPECT_EQ(bench.pass(20ms), "7E5 51 F8 FF FF FF 03 03 03");  // nobody: the next 0
+  bench.hear("7E4 4F 00 00 00 00 00 00 00");
+  EXPECT_EQ(bench.pass(20ms), "7E5 51 F8 FF FF FF 02 03 03");
+  EXPECT_EQ(bench.pass(20ms), "7E5 51 FC FF FF FF 01 03 03");  // nobody: bit 2 is 1
+  bench.hear("7E4 4F 00 00 00 00 00 00 00");
+  EXPECT_EQ(bench.pass(20ms), "7E5 51 FC FF FF FF 00 03 03");
+  EXPECT_EQ(bench.pass(20ms), "7E5 51 FD FF FF FF 00 03 00");
+  bench.hear("7E4 4F 00 00 00 00 00 00 00");
+  EXPECT_EQ(bench.pass(20ms), "");
+  EXPECT_EQ(bench.master.outcome(), LssOutcome::done);
+  EXPECT_EQ(bench.master.address(), (LssAddress{1, 2, 3, 0xFFFF'FFFD}));
+}
+
+TEST(LssMaster, FindsNothingAboveTheHighestAddress) {
+  MasterBench bench;
+  bench.master.fastscan_above({~0u, ~0u, ~0u, ~0u}, 0, bench.now);
+  int steps = 0;
+  while (bench.master.busy() && ++steps < 100) {
+    bench.hear("7E4 4F 00 00 00 00 00 00 00");
+    bench.pass(20ms);
+  }
+  EXPECT_EQ(bench.master.outcome(), LssOutcome::no_answer);
+  EXPECT_LT(steps, 100);
+}
+
+/// A device on a virtual bus. `answers_always`: in configuration state it answers every Fastscan frame, as a widespread
+/// stack does.
 struct BusDevice {
-  BusDevice(VirtualBus& bus, NodeId persistent, const LssAddress& address)
+  BusDevice(VirtualBus& bus, NodeId persistent, const LssAddress& address, bool answers_always = false)
       : device{persistent, address}, endpoint{bus.attach()} {
-    endpoint.on_frame = [this](const canopen::Frame& frame, TimePoint now) {
+    endpoint.on_frame = [this, answers_always](const canopen::Frame& frame, TimePoint now) {
+      if (answers_always && frame.id == 0x7E5 && frame.data[0] == 0x51 &&
+          device.slave.state() == LssState::configuration) {
+        endpoint.send(bench::frame("7E4 4F 00 00 00 00 00 00 00"));
+        return;
+      }
       device.slave.on_frame(frame, bench::LssDevice<>::Hooks{device}, now);
       EXPECT_TRUE(device.slave.serve(endpoint));
     };
@@ -396,6 +439,62 @@ TEST(LssNetwork, FastscanFindsEachOfTwoSlavesOnce) {
 
 TEST(LssNetwork, FastscanFindsEachOfTwentySlavesOnce) {
   for (unsigned seed = 0; seed < 3; ++seed) commission(20, seed);
+}
+
+/// Finds all devices, each of which confirms its address, while none gets a node-ID.
+void find_all(std::size_t count, unsigned seed, bool answers_always) {
+  Network network;
+  std::vector<LssAddress> addresses = random_addresses(count, seed);
+  for (const LssAddress& address : addresses) {
+    network.devices.emplace_back(network.bus, unconfigured_node_id, address, answers_always);
+  }
+  std::vector<LssAddress> found;
+  LssOutcome outcome = network.finish(network.master.fastscan(network.bus.now()));
+  while (outcome == LssOutcome::done && found.size() <= count) {
+    found.push_back(network.master.address());
+    ASSERT_EQ(network.finish(network.master.inquire_serial_number(network.bus.now())), LssOutcome::done);
+    EXPECT_EQ(network.master.value(), found.back().serial_number);
+    network.finish(network.master.switch_state_global(LssState::waiting, network.bus.now()));
+    network.bus.settle();
+    outcome = network.finish(network.master.fastscan_above(found.back(), 0, network.bus.now()));
+  }
+  const auto ascending = [](const LssAddress& a, const LssAddress& b) {
+    return std::tie(a.vendor_id, a.product_code, a.revision_number, a.serial_number) <
+           std::tie(b.vendor_id, b.product_code, b.revision_number, b.serial_number);
+  };
+  std::ranges::sort(addresses, ascending);
+  EXPECT_EQ(found, addresses);
+  for (const BusDevice& one : network.devices) EXPECT_EQ(one.device.slave.node_id(), unconfigured_node_id);
+}
+
+TEST(LssNetwork, FindsAllSlavesOneAboveTheOther) {
+  for (unsigned seed = 0; seed < 5; ++seed) {
+    find_all(1, seed, false);
+    find_all(3, seed, false);
+  }
+  find_all(20, 305, false);
+}
+
+TEST(LssNetwork, FindsAllSlavesThatAnswerEveryFastscanFrameInConfigurationState) {
+  for (unsigned seed = 0; seed < 5; ++seed) {
+    find_all(1, seed, true);
+    find_all(2, seed, true);
+  }
+}
+
+TEST(LssNetwork, FindsAboveAnAddressAmongTheKnownNumbers) {
+  Network network;
+  for (const std::uint32_t serial : {4u, 9u}) {
+    network.devices.emplace_back(network.bus, unconfigured_node_id, LssAddress{1, 2, 3, serial});
+  }
+  network.devices.emplace_back(network.bus, unconfigured_node_id, LssAddress{1, 2, 4, 0});
+  EXPECT_EQ(network.finish(network.master.fastscan_above({1, 2, 3, 4}, 3, network.bus.now())), LssOutcome::done);
+  EXPECT_EQ(network.master.address(), (LssAddress{1, 2, 3, 9}));
+  network.finish(network.master.switch_state_global(LssState::waiting, network.bus.now()));
+  network.bus.settle();
+  EXPECT_EQ(network.finish(network.master.fastscan_above({1, 2, 3, 9}, 3, network.bus.now())), LssOutcome::no_answer);
+  EXPECT_EQ(network.finish(network.master.fastscan_above({1, 2, 3, 9}, 2, network.bus.now())), LssOutcome::done);
+  EXPECT_EQ(network.master.address(), (LssAddress{1, 2, 4, 0}));
 }
 
 TEST(LssNetwork, FastscanFindsAddressesOfZerosAndOfOnes) {

@@ -125,6 +125,16 @@ class LssMaster {
     return true;
   }
 
+  /// Finds the slave without node-ID with the lowest address above this one, and puts it into the configuration state.
+  /// With the address that was found last it finds the next one, while all slaves stay without node-ID; they have to be
+  /// in the waiting state. Up to 140 steps more than a fastscan.
+  bool fastscan_above(const LssAddress& address, std::uint8_t known, TimePoint now) {
+    if (!fastscan(address, known, now)) return false;
+    branch_ = 4;
+    climb();
+    return true;
+  }
+
   /// Takes an answer; other frames are ignored.
   void on_frame(const Frame& frame, [[maybe_unused]] TimePoint now) {
     if (!busy() || to_send_ <= last_ || !lss::is_lss(frame, lss::response_id)) return;
@@ -210,7 +220,8 @@ class LssMaster {
     const auto command = static_cast<lss::Command>(to_send_);
     if (!scanning()) return lss::make_frame(lss::request_id, command, words_[to_send_ - first_]);
     const bool beginning = bit_ == lss::fastscan_reset;
-    Frame frame = lss::make_frame(lss::request_id, command, beginning ? 0 : words_[number_]);
+    const std::uint32_t word = branch_ != no_branch && !confirming_ ? asked_ : words_[number_];
+    Frame frame = lss::make_frame(lss::request_id, command, beginning ? 0 : word);
     frame.data[5] = bit_;
     frame.data[6] = number_;
     frame.data[7] = confirming_ ? (number_ + 1) & 3 : number_;
@@ -220,6 +231,7 @@ class LssMaster {
   void finish(LssOutcome outcome) {
     busy_ = false;
     confirming_ = false;
+    branch_ = no_branch;
     outcome_ = outcome;
   }
 
@@ -233,7 +245,9 @@ class LssMaster {
     return answer_ == lss::Command::identified || answer_ == lss::Command::identified_non_configured;
   }
 
-  // Fastscan: for each number its bits from the highest on, then the whole number once more.
+  // Fastscan: for each number its bits from the highest on, then the whole number once more. Above an address: the
+  // address is followed up to a number, in which each 0 from the lowest bit on is asked for as a 1; where a slave
+  // answers, its lower bits and the other numbers are scanned as ever.
 
   [[nodiscard]] bool scanning() const { return last_ == static_cast<std::uint8_t>(lss::Command::fastscan); }
 
@@ -242,10 +256,25 @@ class LssMaster {
       if (!answered_) return finish(LssOutcome::no_answer);
       begin_number();
     } else if (confirming_) {
-      if (!answered_) return finish(LssOutcome::no_answer);
+      if (!answered_ && branch_ == no_branch) return finish(LssOutcome::no_answer);
       if (number_ == 3) return finish(LssOutcome::done);
-      ++number_;
-      begin_number();
+      if (answered_) {
+        ++number_;
+        begin_number();
+      } else {
+        branch_ = number_ + 1;  // no slave has the number of the address, one above may be there
+        climb();
+      }
+    } else if (branch_ != no_branch) {
+      if (answered_) {
+        branch_ = no_branch;
+        words_[number_] = asked_;
+        confirming_ = bit_ == 0;
+        if (!confirming_) --bit_;
+      } else {
+        ++bit_;
+        find_zero();
+      }
     } else {
       if (!answered_) words_[number_] |= std::uint32_t{1} << bit_;
       if (bit_ == 0) {
@@ -254,14 +283,37 @@ class LssMaster {
         --bit_;
       }
     }
+    if (!busy_) return;
     start(lss::Command::fastscan, lss::Command::fastscan, lss::Command::identified, timeouts_.fastscan_step, now);
   }
 
   void begin_number() {
-    confirming_ = number_ < known_;
-    bit_ = confirming_ ? 0 : 31;
-    if (!confirming_) words_[number_] = 0;
+    confirming_ = number_ < (branch_ != no_branch ? branch_ : known_);
+    bit_ = confirming_ || branch_ != no_branch ? 0 : 31;
+    if (branch_ != no_branch) {
+      if (!confirming_) find_zero();
+    } else if (!confirming_) {
+      words_[number_] = 0;
+    }
   }
+
+  /// Goes on with the number before, from the beginning.
+  void climb() {
+    if (branch_ <= known_) return finish(LssOutcome::no_answer);
+    --branch_;
+    number_ = 0;
+    bit_ = lss::fastscan_reset;
+    confirming_ = false;
+  }
+
+  /// From `bit_` on.
+  void find_zero() {
+    while (bit_ < 32 && (words_[number_] >> bit_ & 1) != 0) ++bit_;
+    if (bit_ == 32) return climb();
+    asked_ = (words_[number_] >> bit_ | 1) << bit_;
+  }
+
+  static constexpr std::uint8_t no_branch = 0xFF;
 
   B& bus_;
   LssTimeouts timeouts_;
@@ -277,6 +329,8 @@ class LssMaster {
   std::uint8_t known_ = 0;
   std::uint8_t number_ = 0;  ///< fastscan: LSSSub
   std::uint8_t bit_ = 0;     ///< fastscan: BitCheck
+  std::uint8_t branch_ = no_branch;  ///< above an address: the number that differs from it
+  std::uint32_t asked_ = 0;          ///< the number with the other bit
   bool confirming_ = false;
   bool answered_ = false;
   bool busy_ = false;
