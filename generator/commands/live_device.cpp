@@ -62,6 +62,11 @@ NamedEntries name_entry(const Device* device, const std::string& text) {
   return {{live_entry(*found.object, *found.entry)}, ""};
 }
 
+void report_broken_block(const LiveEntry& entry, const SdoOutcome& outcome) {
+  if (outcome.block_failure.empty()) return;
+  fmt::print(stderr, "edsc: {}: the block transfer broke: {}; trying segments\n", title(entry), outcome.block_failure);
+}
+
 bool read_bytes(const std::string& path, std::vector<std::uint8_t>& bytes, std::string& problem) {
   errno = 0;
   std::ifstream file{path, std::ios::binary};

@@ -25,6 +25,9 @@ struct NamedEntries {
 /// The one entry that a text names.
 [[nodiscard]] NamedEntries name_entry(const Device* device, const std::string& text);
 
+/// Reports a block transfer that broke, after which segments were used.
+void report_broken_block(const LiveEntry& entry, const SdoOutcome& outcome);
+
 /// The bytes of a file; false when it cannot be read, with the reason.
 [[nodiscard]] bool read_bytes(const std::string& path, std::vector<std::uint8_t>& bytes, std::string& problem);
 

@@ -32,6 +32,7 @@ struct Settings {
   bool raw = false;
   bool all = false;
   bool block = false;
+  bool segmented = false;
   SdoSettings sdo;
 };
 
@@ -40,23 +41,29 @@ using Json = nlohmann::ordered_json;
 /// So many entries without an answer in a row, and the node is taken for gone.
 constexpr unsigned most_silent = 3;
 
+/// An entry to read.
+struct Chosen {
+  LiveEntry entry;
+  bool by_object = false;  ///< as one of its object: not each of them need have a value now
+};
+
 /// All that tools may read (ObjFlags, CiA 306-1, 4.6.3.2): of DOMAINs only those that are asked for.
-std::vector<LiveEntry> all_entries(const Device& device) {
+std::vector<Chosen> all_entries(const Device& device) {
   constexpr std::uint32_t no_read = 2;
-  std::vector<LiveEntry> entries;
+  std::vector<Chosen> entries;
   for (const Object& object : device.objects) {
     for (const Entry& entry : object.entries) {
       const bool flagged = ((entry.obj_flags | object.obj_flags) & no_read) != 0;
       if (!canopen::readable(entry.access) || flagged) continue;
       if (entry.type != nullptr && entry.type->kind == canopen::DataClass::domain) continue;
-      entries.push_back(live_entry(object, entry));
+      entries.push_back({live_entry(object, entry), true});
     }
   }
   return entries;
 }
 
 /// False when an object is not known, which is then told.
-bool choose_entries(const Settings& settings, const Device* device, std::vector<LiveEntry>& entries) {
+bool choose_entries(const Settings& settings, const Device* device, std::vector<Chosen>& entries) {
   if (settings.all) {
     entries = all_entries(*device);
     return true;
@@ -69,18 +76,58 @@ bool choose_entries(const Settings& settings, const Device* device, std::vector<
     }
     for (LiveEntry& entry : named.entries) {
       if (settings.type != nullptr) set_type(entry, *settings.type);
-      entries.push_back(std::move(entry));
+      entries.push_back({std::move(entry), named.entries.size() > 1});
     }
   }
   return true;
 }
 
-SdoOutcome read_entry(SdoAccess& node, const LiveEntry& entry, const Settings& settings) {
+/// What sub-index 0 of the object that is being read says.
+class EntryCount {
+ public:
+  void take(const LiveEntry& entry, const SdoOutcome& outcome) {
+    if (entry.sub_index != 0) return;
+    index_ = entry.index;
+    count_ = outcome.done() && outcome.bytes.size() == 1 ? std::optional{outcome.bytes.front()} : std::nullopt;
+  }
+
+  /// Whether the entry is above it.
+  [[nodiscard]] bool leaves_out(const LiveEntry& entry) const {
+    return count_ && entry.index == index_ && entry.sub_index > *count_;
+  }
+
+ private:
+  std::uint16_t index_ = 0;
+  std::optional<std::uint8_t> count_;
+};
+
+/// 1003h has as many entries as its sub-index 0 says (CiA 301, 7.5.2.4); of the others none is read.
+bool has_no_entry(const Chosen& chosen, const EntryCount& count) {
+  constexpr std::uint16_t error_history = 0x1003;
+  return chosen.by_object && chosen.entry.index == error_history && count.leaves_out(chosen.entry);
+}
+
+/// Whether the device may refuse to read the entry without being at fault: it has no value now, or it is a mapping
+/// entry above the number of mapped objects.
+bool may_be_refused(const Chosen& chosen, const EntryCount& count, const SdoOutcome& outcome) {
+  if (!chosen.by_object || outcome.end != SdoEnd::refused) return false;
+  const unsigned range = chosen.entry.index & 0xFE00U;
+  return outcome.code == canopen::AbortCode::no_data ||
+         ((range == 0x1600 || range == 0x1A00) && count.leaves_out(chosen.entry));
+}
+
+SdoOutcome read_value(SdoAccess& node, const LiveEntry& entry, const Settings& settings) {
   ProgressLine progress;
-  const bool block = settings.block || best_transfer(entry) == SdoTransfer::block;
+  const bool block = !settings.segmented && (settings.block || best_transfer(entry) == SdoTransfer::block);
   return upload(node, entry, block ? SdoTransfer::block : SdoTransfer::segmented, [&](std::size_t done, std::size_t) {
     if (progress.due()) progress.show(fmt::format("{}: {} bytes", title(entry), done));
   });
+}
+
+SdoOutcome read_entry(SdoAccess& node, const LiveEntry& entry, const Settings& settings) {
+  SdoOutcome outcome = read_value(node, entry, settings);
+  report_broken_block(entry, outcome);
+  return outcome;
 }
 
 void print_line(const LiveEntry& entry, const SdoOutcome& outcome, bool raw) {
@@ -105,22 +152,28 @@ int save(const Settings& settings, const LiveEntry& entry, const SdoOutcome& out
   return exit_fine;
 }
 
-int read_entries(LiveBus& bus, const Settings& settings, const std::vector<LiveEntry>& entries) {
+int read_entries(LiveBus& bus, const Settings& settings, const std::vector<Chosen>& entries) {
   SdoAccess node{bus, canopen::NodeId{settings.node}, settings.sdo};
   Json json{{"version", 1}, {"node_id", settings.node}, {"entries", Json::array()}};
   int exit_code = exit_fine;
   unsigned silent = 0;
   bool heard = false;
+  EntryCount count;
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    const LiveEntry& entry = entries[i];
+    const LiveEntry& entry = entries[i].entry;
+    if (has_no_entry(entries[i], count)) continue;
     const SdoOutcome outcome = read_entry(node, entry, settings);
     if (!settings.file.empty()) return save(settings, entry, outcome);
+    count.take(entry, outcome);
+    const bool excused = may_be_refused(entries[i], count, outcome);
     if (settings.format == "json") {
       json["entries"].push_back(as_json(entry, outcome, outcome.bytes));
+    } else if (excused) {
+      fmt::print("{}: no value\n", title(entry));
     } else {
       print_line(entry, outcome, settings.raw);
     }
-    if (!outcome.done()) exit_code = exit_device_failed;
+    if (!outcome.done() && !excused) exit_code = exit_device_failed;
     silent = outcome.end == SdoEnd::no_answer ? silent + 1 : 0;
     heard = heard || silent == 0;
     if (silent >= (heard ? most_silent : 1) && i + 1 != entries.size()) {
@@ -138,7 +191,7 @@ int run_read(const Settings& settings) {
     loaded = load_live_device(settings.sheet, settings.node);
     if (!loaded) return exit_wrong_usage;
   }
-  std::vector<LiveEntry> entries;
+  std::vector<Chosen> entries;
   if (!choose_entries(settings, loaded ? &*loaded->device : nullptr, entries)) return exit_wrong_usage;
   if (!settings.file.empty() && entries.size() != 1) {
     fmt::print(stderr, "edsc: --file takes the value of one entry, not of {}\n", entries.size());
@@ -166,7 +219,8 @@ void add_read_command(CLI::App& app, int& exit_code) {
   auto* file =
       command->add_option("--file", settings->file, "write the bytes of one entry to this file")->type_name("FILE");
   file->excludes(all)->excludes(raw);
-  command->add_flag("--block", settings->block, "block transfer also for what is no DOMAIN");
+  auto* block = command->add_flag("--block", settings->block, "block transfer also for what is not a DOMAIN");
+  command->add_flag("--segmented", settings->segmented, "no block transfer")->excludes(block);
   add_timeout_option(*command, settings->sdo.timeout_ms);
   command->callback([settings, &exit_code] {
     if (!settings->all && settings->objects.empty()) throw CLI::RequiresError("OBJECT or --all", 1);

@@ -30,6 +30,7 @@ struct Settings {
   bool force = false;
   bool verify = false;
   bool block = false;
+  bool segmented = false;
   SdoSettings sdo;
 };
 
@@ -66,7 +67,7 @@ std::string access_problem(const LiveEntry& entry) {
 SdoOutcome download(SdoAccess& node, const LiveEntry& entry, const Settings& settings,
                     const std::vector<std::uint8_t>& bytes) {
   ProgressLine progress;
-  const bool block = settings.block || bytes.size() >= long_value;
+  const bool block = !settings.segmented && (settings.block || bytes.size() >= long_value);
   const SdoProgress show = [&](std::size_t done, std::size_t total) {
     if (progress.due()) progress.show(fmt::format("{}: {} of {} bytes", title(entry), done, total));
   };
@@ -83,14 +84,21 @@ int write_entry(LiveBus& bus, const Settings& settings, const LiveEntry& entry,
                 const std::vector<std::uint8_t>& bytes) {
   SdoAccess node{bus, canopen::NodeId{settings.node}, settings.sdo};
   const SdoOutcome outcome = download(node, entry, settings, bytes);
+  report_broken_block(entry, outcome);
   if (!outcome.done()) return failed(entry, failure_text(outcome));
   if (settings.verify) {
-    const SdoOutcome back = upload(node, entry, best_transfer(entry));
+    const SdoOutcome back = upload(node, entry, settings.segmented ? SdoTransfer::segmented : best_transfer(entry));
+    report_broken_block(entry, back);
     if (!back.done()) return failed(entry, "written, but not read back: " + failure_text(back));
     if (!reads_back(back, bytes)) return failed(entry, "written, but it reads back as " + value_of(entry, back.bytes));
   }
-  fmt::print("{} = {}{}\n", title(entry), settings.raw ? hex_bytes(bytes) : value_of(entry, bytes),
-             settings.verify ? ", verified" : "");
+  const std::string verified = settings.verify ? ", verified" : "";
+  if (settings.file.empty()) {
+    fmt::print("{} = {}{}\n", title(entry), settings.raw ? hex_bytes(bytes) : value_of(entry, bytes), verified);
+  } else {
+    fmt::print("{}: {} {} from {}{}\n", title(entry), bytes.size(), bytes.size() == 1 ? "byte" : "bytes",
+               settings.file, verified);
+  }
   return exit_fine;
 }
 
@@ -136,7 +144,8 @@ void add_write_command(CLI::App& app, int& exit_code) {
       ->excludes(raw);
   command->add_flag("--force", settings->force, "leave access and limits to the device");
   command->add_flag("--verify", settings->verify, "read the value back");
-  command->add_flag("--block", settings->block, "block transfer also for short values");
+  auto* block = command->add_flag("--block", settings->block, "block transfer also for short values");
+  command->add_flag("--segmented", settings->segmented, "no block transfer")->excludes(block);
   add_timeout_option(*command, settings->sdo.timeout_ms);
   command->callback([settings, &exit_code] {
     if (settings->file.empty() && settings->value.empty()) throw CLI::RequiresError("VALUE or --file", 1);

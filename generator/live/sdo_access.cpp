@@ -5,12 +5,17 @@
 #include <cstring>
 #include <span>
 
+#include "device/device.hpp"
+
 namespace edsc {
 namespace {
 
 using canopen::AbortCode;
 using canopen::Duration;
 using canopen::Frame;
+
+/// For what a device still sends of a transfer that broke.
+constexpr Duration after_a_break = canopen::from_milliseconds(50);
 
 canopen::SdoClientOptions options_of(const SdoSettings& settings, bool block) {
   canopen::SdoClientOptions options;
@@ -31,27 +36,50 @@ bool is_upload_without_size(const Frame& frame) {
   return frame.size == 8 && (frame.data[0] & (command | expedited | size_indicated)) == (initiate_upload | expedited);
 }
 
-/// A client on whose way is noted who has ended the transfer.
+/// A client, and who has ended its transfer.
 template <class Client>
 struct Observed {
   Client& client;
   canopen::NodeId node;
-  bool heard = false;    ///< the device has answered
-  bool aborted = false;  ///< the last thing it said was an abort
+  std::uint32_t entry;           ///< index and sub-index, as the frame holds them
+  bool heard = false;            ///< the device has answered
+  bool ended_by_device = false;  ///< an abort of the device ended the transfer
   bool size_told = true;
+  std::optional<ForeignAbort> foreign_abort{};  ///< an abort that the client has ignored
 
   [[nodiscard]] bool busy() const { return client.busy(); }
   [[nodiscard]] std::optional<canopen::TimePoint> next_deadline() const { return client.next_deadline(); }
   void on_time(canopen::TimePoint now) { client.on_time(now); }
   void on_frame(const Frame& frame, canopen::TimePoint now) {
-    if (!frame.extended && frame.id == canopen::default_sdo(node).response.can_id()) {
-      heard = true;
-      aborted = is_abort_of(frame, node);
-      if (is_upload_without_size(frame)) size_told = false;
-    }
+    const bool of_server = !frame.extended && frame.id == canopen::default_sdo(node).response.can_id();
+    const bool was_busy = client.busy();
     client.on_frame(frame, now);
+    if (!of_server) return;
+    heard = true;
+    const bool ended = was_busy && !client.busy();
+    if (ended && is_upload_without_size(frame)) size_told = false;
+    if (!is_abort_of(frame, node)) return;
+    if (ended) {
+      ended_by_device = true;
+    } else if (canopen::sdo::multiplexer_of(frame.data) != entry) {
+      foreign_abort = ForeignAbort{canopen::sdo::index_of(frame.data), frame.data[3],
+                                   static_cast<AbortCode>(canopen::sdo::word_of(frame.data))};
+    }
   }
 };
+
+/// Abort codes of the protocol itself: another kind of transfer may do.
+bool is_of_protocol(AbortCode code) {
+  switch (code) {
+    case AbortCode::toggle_bit:
+    case AbortCode::timeout:
+    case AbortCode::command_specifier:
+    case AbortCode::block_size:
+    case AbortCode::sequence_number:
+    case AbortCode::crc: return true;
+    default: return false;
+  }
+}
 
 }  // namespace
 
@@ -63,8 +91,12 @@ std::string abort_text(AbortCode code) {
 std::string failure_text(const SdoOutcome& outcome) {
   switch (outcome.end) {
     case SdoEnd::done: return "done";
-    case SdoEnd::refused: return "refused: " + abort_text(outcome.code);
-    case SdoEnd::no_answer: return "no answer";
+    case SdoEnd::refused: return "refused by the device: " + abort_text(outcome.code);
+    case SdoEnd::no_answer:
+      if (!outcome.foreign_abort) return "no answer";
+      return fmt::format("no answer, but an abort of {}: {}",
+                         entry_label(outcome.foreign_abort->index, outcome.foreign_abort->sub_index),
+                         abort_text(outcome.foreign_abort->code));
     case SdoEnd::broken: return "the transfer broke: " + abort_text(outcome.code);
   }
   return {};
@@ -77,8 +109,8 @@ SdoAccess::SdoAccess(LiveBus& bus, canopen::NodeId node, SdoSettings settings)
       segmented_{bus, node, options_of(settings, false)},
       block_{bus, node, options_of(settings, true)} {}
 
-SdoOutcome SdoAccess::finish(Client& client) {
-  Observed<Client> observed{client, node_};
+SdoOutcome SdoAccess::finish(Client& client, std::uint32_t entry) {
+  Observed<Client> observed{client, node_, entry};
   bool interrupted = false;
   run(bus_, observed, [&] {
     interrupted = true;
@@ -90,7 +122,8 @@ SdoOutcome SdoAccess::finish(Client& client) {
   outcome.code = client.result();
   outcome.size_told = observed.size_told;
   if (outcome.code == canopen::ok) return outcome;
-  if (observed.aborted) {
+  outcome.foreign_abort = observed.foreign_abort;
+  if (observed.ended_by_device) {
     outcome.end = SdoEnd::refused;
   } else {
     outcome.end = outcome.code == AbortCode::timeout ? SdoEnd::no_answer : SdoEnd::broken;
@@ -99,16 +132,25 @@ SdoOutcome SdoAccess::finish(Client& client) {
   return outcome;
 }
 
-/// A device that is silent about block transfers is asked again for one by segments.
+/// A device that is silent about block transfers is asked again for one by segments; so is one whose block transfer
+/// broke, when what it still sends of that has come.
 template <class Begin>
-SdoOutcome SdoAccess::transfer(SdoTransfer how, Begin begin) {
+SdoOutcome SdoAccess::transfer(SdoTransfer how, std::uint32_t entry, Begin begin) {
+  std::string failure;
   if (how == SdoTransfer::block && !no_block_) {
     begin(block_);
-    SdoOutcome outcome = finish(block_);
-    if (!no_block_) return outcome;
+    SdoOutcome outcome = finish(block_, entry);
+    const bool broke = outcome.end == SdoEnd::no_answer || is_of_protocol(outcome.code);
+    if (outcome.done() || (!no_block_ && !broke)) return outcome;
+    if (!no_block_) {
+      failure = failure_text(outcome);
+      bus_.listen(after_a_break);
+    }
   }
   begin(segmented_);
-  return finish(segmented_);
+  SdoOutcome outcome = finish(segmented_, entry);
+  outcome.block_failure = std::move(failure);
+  return outcome;
 }
 
 SdoOutcome SdoAccess::upload(std::uint16_t index, std::uint8_t sub_index, SdoTransfer how,
@@ -120,7 +162,7 @@ SdoOutcome SdoAccess::upload(std::uint16_t index, std::uint8_t sub_index, SdoTra
     if (progress) progress(bytes.size(), 0);
     return canopen::ok;
   };
-  SdoOutcome outcome = transfer(how, [&](Client& client) {
+  SdoOutcome outcome = transfer(how, canopen::sdo::multiplexer(index, sub_index), [&](Client& client) {
     bytes.clear();
     (void)client.upload(index, sub_index, canopen::sink_of(take), LiveBus::now());
   });
@@ -131,7 +173,7 @@ SdoOutcome SdoAccess::upload(std::uint16_t index, std::uint8_t sub_index, SdoTra
 SdoOutcome SdoAccess::download(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> value,
                                SdoTransfer how, const SdoProgress& progress) {
   if (!progress || value.size() <= 4) {
-    return transfer(how, [&](Client& client) { (void)client.download(index, sub_index, value, LiveBus::now()); });
+    return transfer(how, canopen::sdo::multiplexer(index, sub_index), [&](Client& client) { (void)client.download(index, sub_index, value, LiveBus::now()); });
   }
   auto give = [&](std::uint32_t offset, std::span<std::uint8_t> room) -> canopen::Result<std::uint32_t> {
     const auto size = std::min(room.size(), value.size() - offset);
@@ -139,7 +181,7 @@ SdoOutcome SdoAccess::download(std::uint16_t index, std::uint8_t sub_index, std:
     progress(offset + size, value.size());
     return static_cast<std::uint32_t>(size);
   };
-  return transfer(how, [&](Client& client) {
+  return transfer(how, canopen::sdo::multiplexer(index, sub_index), [&](Client& client) {
     (void)client.download(index, sub_index, canopen::source_of(give, static_cast<std::uint32_t>(value.size())),
                           LiveBus::now());
   });

@@ -6,6 +6,7 @@
 #include <canopen/sdo_client.hpp>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,9 +17,16 @@ namespace edsc {
 
 enum class SdoEnd : std::uint8_t {
   done,
-  refused,    ///< by the device, with its abort code
-  no_answer,  ///< the device was silent for the timeout
+  refused,    ///< by the device: its abort ended the transfer
+  no_answer,  ///< the device sent nothing that belongs to the transfer for the timeout
   broken,     ///< what the device answered is against the protocol, or longer than is bearable
+};
+
+/// An abort that names another entry than that of the transfer. CiA 301 has none, so it does not end the transfer.
+struct ForeignAbort {
+  std::uint16_t index = 0;
+  std::uint8_t sub_index = 0;
+  canopen::AbortCode code = canopen::ok;
 };
 
 struct SdoOutcome {
@@ -26,11 +34,13 @@ struct SdoOutcome {
   canopen::AbortCode code = canopen::ok;
   std::vector<std::uint8_t> bytes;  ///< of an upload
   bool size_told = true;            ///< false: some of the four bytes may be none of the value's
+  std::optional<ForeignAbort> foreign_abort;  ///< that came before the end
+  std::string block_failure;                  ///< why a block transfer broke, where segments came after it
 
   [[nodiscard]] bool done() const { return end == SdoEnd::done; }
 };
 
-/// Why there is no value: `refused: 0602 0000h, object does not exist`.
+/// Why there is no value: `refused by the device: 0602 0000h, object does not exist`.
 [[nodiscard]] std::string failure_text(const SdoOutcome& outcome);
 
 /// `0602 0000h, object does not exist`
@@ -38,7 +48,7 @@ struct SdoOutcome {
 
 enum class SdoTransfer : std::uint8_t {
   segmented,  ///< expedited where four bytes do
-  block,      ///< by segments when the device has no block transfer
+  block,      ///< by segments when the device has no block transfer, and again by segments when it breaks
 };
 
 struct SdoSettings {
@@ -66,8 +76,8 @@ class SdoAccess {
   using Client = canopen::SdoClient<LiveBus>;
 
   template <class Begin>
-  SdoOutcome transfer(SdoTransfer how, Begin begin);
-  SdoOutcome finish(Client& client);
+  SdoOutcome transfer(SdoTransfer how, std::uint32_t entry, Begin begin);
+  SdoOutcome finish(Client& client, std::uint32_t entry);
 
   LiveBus& bus_;
   canopen::NodeId node_;

@@ -36,6 +36,18 @@ FINE, FAILED, WRONG_USAGE, INTERRUPTED = 0, 1, 2, 130
 ABORT_GENERAL = "605 80 17 10 00 00 00 00 08"
 
 
+def entry(section: str, name: str, data_type: int, access: str, value: object) -> str:
+    return (f"\n[{section}]\nParameterName={name}\nObjectType=7\nDataType={data_type}\nAccessType={access}\n"
+            f"DefaultValue={value}\nPDOMapping=0\n")
+
+
+HISTORY = ("\n[1003]\nParameterName=Pre-defined error field\nObjectType=8\nSubNumber=3\n" +
+           entry("1003sub0", "Number of errors", 5, "rw", 0) + entry("1003sub1", "Error 1", 7, "ro", 0) +
+           entry("1003sub2", "Error 2", 7, "ro", 0) +
+           "\n[2010]\nParameterName=Log\nObjectType=8\nSubNumber=3\n" + entry("2010sub0", "Number", 5, "ro", 2) +
+           entry("2010sub1", "Row 1", 7, "ro", 0) + entry("2010sub2", "Row 2", 7, "ro", 0))
+
+
 class LiveTest(unittest.TestCase):
     maxDiff = None
     nodes: tuple[int, ...] = (5,)
@@ -100,6 +112,17 @@ node  state  vendor-ID  product    revision   serial     device type            
         result = self.edsc("scan", "--nodes", "5", *self.fast, "--eds", "other.eds", "--format", "json")
         self.assertEqual(self.expect_json(result, "scan.schema.json")["nodes"][0]["data_sheets"], [])
 
+    def test_an_eds_without_vendor_fits_by_its_other_numbers(self) -> None:
+        text = re.sub(r"0x00ABCDEF", "0", SHEET.read_text())
+        (self.folder / "no_vendor.eds").write_text(text)
+        (self.folder / "other_type.eds").write_text(text.replace("0x00020192", "0x00040191"))
+        sheets = ("--eds", "no_vendor.eds", "--eds", "other_type.eds")
+        result = self.edsc("scan", "--nodes", "5", *self.fast, *sheets)
+        self.assertTrue(result.stdout.splitlines()[1].endswith("no_vendor.eds (vendor-ID not compared)"), result.stdout)
+        result = self.edsc("scan", "--nodes", "5", *self.fast, *sheets, "--format", "json")
+        self.assertEqual(self.expect_json(result, "scan.schema.json")["nodes"][0]["data_sheets"],
+                         [{"file": "no_vendor.eds", "fit": "same device", "not_compared": ["vendor_id"]}])
+
     def test_it_asks_only_the_nodes_that_it_is_told(self) -> None:
         self.assertEqual(self.edsc("scan", "--nodes", "6..9", *self.fast).stdout.count("Live device"), 1)
         self.assertNotIn("605", [frame.split()[0] for frame in self.network.frames()])
@@ -155,9 +178,9 @@ class Read(LiveTest):
 
     def test_what_the_device_refuses(self) -> None:
         self.expect(self.edsc("read", 5, "2FFFh", "6064h"), FAILED, "6064h:00 = 40 E2 01 00\n",
-                    "edsc: 2FFFh:00: refused: 0602 0000h, object does not exist\n")
+                    "edsc: 2FFFh:00: refused by the device: 0602 0000h, object does not exist\n")
         self.expect(self.edsc("read", 5, "2006h"), FAILED,
-                    stderr="edsc: 2006h:00: refused: 0601 0001h, read of a write-only object\n")
+                    stderr="edsc: 2006h:00: refused by the device: 0601 0001h, read of a write-only object\n")
 
     def test_a_node_that_is_not_there(self) -> None:
         self.expect(self.edsc("read", 9, "1018h:01", "1018h:02", "--timeout", 50), FAILED,
@@ -178,7 +201,7 @@ class Read(LiveTest):
         found = self.expect_json(self.edsc("read", 5, "2FFFh", "--format", "json"), "read.schema.json", FAILED)
         self.assertEqual(found["entries"], [{
             "index": 0x2FFF, "sub_index": 0, "name": None, "type": None, "result": "refused",
-            "abort_code": 0x06020000, "text": "refused: 0602 0000h, object does not exist"}])
+            "abort_code": 0x06020000, "text": "refused by the device: 0602 0000h, object does not exist"}])
 
     def test_a_domain_goes_to_a_file_by_block_transfer(self) -> None:
         self.expect(self.edsc("read", 5, "log", "--eds", "device.eds", "--file", "log.bin"), FINE,
@@ -254,6 +277,75 @@ class Silence(LiveTest):
                     "2004h:00 Speed = 1500 rpm, verified\n")
         self.expect(self.edsc("write", 5, "2004h", "--raw", "DC", "05", "--verify"), FINE, "2004h:00 = DC 05, verified\n")
 
+    def test_an_abort_of_another_entry_is_no_refusal(self) -> None:
+        answers = {"605 40 17 10 00 00 00 00 00": ["585 80 00 00 00 05 00 04 05"]}
+        self.network.device(lambda frame: answers.get(frame, []))
+        self.expect(self.edsc("read", 5, "1017h", "--timeout", 100), FAILED,
+                    stderr="edsc: 1017h:00: no answer, but an abort of 0000h:00: 0504 0005h, out of memory\n")
+
+    def test_a_block_transfer_that_breaks_is_tried_by_segments(self) -> None:
+        def device(end_of_block: str, received: bytearray):
+            """Takes a block download, and breaks it after its first segment."""
+            def answer(frame: str) -> list[str]:
+                if frame.startswith("605 C6 00 20 00"):
+                    return ["585 A4 00 20 00 7F 00 00 00"]
+                if frame.startswith("605 01 "):
+                    return [end_of_block] if end_of_block else []
+                if frame.startswith("605 21 00 20 00"):
+                    received.clear()
+                    answer.segmented = True
+                    return ["585 60 00 20 00 00 00 00 00"]
+                if answer.segmented and frame.startswith("605 "):
+                    command = int(frame[4:6], 16)
+                    received.extend(bytes.fromhex(frame[7:])[:7 - (command >> 1 & 7)])
+                    return [f"585 {0x20 | command & 0x10:02X} 00 00 00 00 00 00 00"]
+                return []
+            answer.segmented = False
+            return answer
+
+        content = bytes(i % 7 for i in range(200))
+        (self.folder / "firmware.bin").write_bytes(content)
+        for end_of_block, words in (
+                ("585 80 00 00 00 03 00 04 05", "no answer, but an abort of 0000h:00: 0504 0003h, invalid sequence number"),
+                ("585 80 00 20 00 04 00 04 05", "refused by the device: 0504 0004h, CRC error"),
+                ("", "no answer")):
+            with self.subTest(end_of_block), Network(EDSC, LIVE_NODES) as network:
+                self.network = network
+                received = bytearray()
+                network.device(device(end_of_block, received))
+                self.expect(self.edsc("write", 5, "2000h", "--file", "firmware.bin", "--timeout", 500), FINE,
+                            "2000h:00: 200 bytes from firmware.bin\n",
+                            f"edsc: 2000h:00: the block transfer broke: {words}; trying segments\n")
+                self.assertEqual(bytes(received), content)
+
+    def test_a_refusal_of_a_block_transfer_is_the_end(self) -> None:
+        (self.folder / "firmware.bin").write_bytes(bytes(200))
+        self.network.device(lambda frame: ["585 80 00 20 00 02 00 01 06"] if frame.startswith("605 C6") else [])
+        self.expect(self.edsc("write", 5, "2000h", "--file", "firmware.bin"), FAILED,
+                    stderr="edsc: 2000h:00: refused by the device: 0601 0002h, write of a read-only object\n")
+
+    def test_entries_without_a_value_are_no_failure(self) -> None:
+        (self.folder / "history.eds").write_text(SHEET.read_text() + HISTORY)
+        answers = {"605 40 03 10 00 00 00 00 00": ["585 4F 03 10 00 01 00 00 00"],
+                   "605 40 03 10 01 00 00 00 00": ["585 43 03 10 01 10 23 00 00"],
+                   "605 40 10 20 00 00 00 00 00": ["585 4F 10 20 00 02 00 00 00"],
+                   "605 40 10 20 01 00 00 00 00": ["585 43 10 20 01 01 00 00 00"],
+                   "605 40 10 20 02 00 00 00 00": ["585 80 10 20 02 24 00 00 08"]}
+        default = lambda frame: [f"585 80 {frame[7:15]} 24 00 00 08"] if frame.startswith("605 40 ") else []
+        self.network.device(lambda frame: answers.get(frame) or default(frame))
+        self.expect(self.edsc("read", 5, "1003h", "2010h", "--eds", "history.eds"), FINE, """\
+1003h:00 Pre-defined error field, Number of errors = 1
+1003h:01 Pre-defined error field, Error 1 = 00002310h
+2010h:00 Log, Number = 2
+2010h:01 Log, Row 1 = 1
+2010h:02 Log, Row 2: no value
+""")
+        result = self.edsc("read", 5, "--all", "--eds", "history.eds")
+        self.assertEqual((result.returncode, result.stderr), (FINE, ""))
+        self.assertNotIn("1003h:02", result.stdout)
+        self.expect(self.edsc("read", 5, "1003h:02", "--eds", "history.eds"), FAILED,
+                    stderr="edsc: 1003h:02 Pre-defined error field, Error 2: refused by the device: 0800 0024h, no data available\n")
+
     def test_block_transfer_falls_back_to_segments(self) -> None:
         segments = {"605 40 01 20 00 00 00 00 00": ["585 41 01 20 00 09 00 00 00"],
                     "605 60 00 00 00 00 00 00 00": ["585 00 01 02 03 04 05 06 07"],
@@ -289,9 +381,9 @@ class Write(LiveTest):
 
     def test_force_leaves_them_to_the_device(self) -> None:
         self.expect(self.edsc("write", 5, "maximum_speed", 6001, "--eds", "device.eds", "--force"), FAILED,
-                    stderr="edsc: 2005h:00 Maximum speed: refused: 0609 0031h, value too high\n")
+                    stderr="edsc: 2005h:00 Maximum speed: refused by the device: 0609 0031h, value too high\n")
         self.expect(self.edsc("write", 5, "1008h", "x", "--eds", "device.eds", "--force"), FAILED,
-                    stderr="edsc: 1008h:00 Manufacturer device name: refused: 0601 0002h, write of a read-only object\n")
+                    stderr="edsc: 1008h:00 Manufacturer device name: refused by the device: 0601 0002h, write of a read-only object\n")
 
     def test_a_value_that_reads_back_as_another(self) -> None:
         self.expect(self.edsc("write", 5, "rounded_value", 15, "--eds", "device.eds", "--verify"), FAILED,
@@ -301,10 +393,24 @@ class Write(LiveTest):
         content = bytes(i % 251 for i in range(5000))
         (self.folder / "firmware.bin").write_bytes(content)
         self.expect(self.edsc("write", 5, "firmware", "--file", "firmware.bin", "--eds", "device.eds"), FINE,
-                    "2000h:00 Firmware = " + content[:32].hex(" ").upper() + " ... (5000 bytes)\n")
+                    "2000h:00 Firmware: 5000 bytes from firmware.bin\n")
         self.edsc("read", 5, "log", "--eds", "device.eds", "--file", "back.bin")
         self.assertEqual((self.folder / "back.bin").read_bytes(), content)
         self.assertEqual(self.network.frames("605")[0], "605 C6 00 20 00 88 13 00 00")
+
+    def test_a_file_without_an_eds_is_not_echoed(self) -> None:
+        (self.folder / "firmware.bin").write_bytes(bytes(1000))
+        self.expect(self.edsc("write", 5, "2000h", "--file", "firmware.bin"), FINE, "2000h:00: 1000 bytes from firmware.bin\n")
+
+    def test_by_segments_when_asked(self) -> None:
+        (self.folder / "firmware.bin").write_bytes(bytes(range(200)))
+        self.expect(self.edsc("write", 5, "2000h", "--file", "firmware.bin", "--segmented"), FINE,
+                    "2000h:00: 200 bytes from firmware.bin\n")
+        self.expect(self.edsc("read", 5, "2001h", "--file", "back.bin", "--eds", "device.eds", "--segmented"), FINE,
+                    "2001h:00 Log: 200 bytes to back.bin\n")
+        self.assertEqual((self.folder / "back.bin").read_bytes(), bytes(range(200)))
+        self.assertEqual([frame[:15] for frame in self.network.frames("605") if frame[7:15] in ("00 20 00", "01 20 00")],
+                         ["605 21 00 20 00", "605 40 01 20 00"])
 
     def test_wrong_usage(self) -> None:
         for arguments, words in (
@@ -321,10 +427,12 @@ class Write(LiveTest):
 
 
 class Configure(LiveTest):
+    left_out = "4"  # of the DCF with all values
+
     def dcf(self, **values: str) -> Path:
         """The DCF of node 5 with these ParameterValues: `x2004="1200"`."""
         path = self.folder / "axis.dcf"
-        subprocess.run([EDSC, "format", SHEET, "--dcf", "--node-id", "5", "-o", path], check=True)
+        subprocess.run([EDSC, "format", self.folder / "device.eds", "--dcf", "--all", "--node-id", "5", "-o", path], check=True)
         text = path.read_text()
         for section, value in values.items():
             pattern = rf"(\[{section[1:]}\][^\[]*?ParameterValue=)[^\n]*"
@@ -344,10 +452,13 @@ class Configure(LiveTest):
         path.write_text("\n".join(kept) + "\n")
         return path
 
-    def test_all_values_and_again_nothing(self) -> None:
+    def test_what_differs_and_again_nothing(self) -> None:
         self.dcf(x2004="1200", x1017="250")
-        self.expect(self.edsc("configure", 5, "axis.dcf", "--store"), FINE,
-                    "node 5: 25 of 25 values written, 25 verified, 4 left out, 1020h written, stored\n")
+        self.expect(self.edsc("configure", 5, "axis.dcf", "--store"), FINE, """\
+1017h:00 Producer heartbeat time: 0 ms -> 250 ms
+2004h:00 Speed: 1000 rpm -> 1200 rpm
+node 5: 2 of 25 values differ; 2 of 2 values written, 2 verified, LEFT left out, 1020h written, stored
+""".replace("LEFT", self.left_out))
         self.expect(self.edsc("read", 5, "2004h", "1017h", "1020h:01", "1020h:02", "--eds", "device.eds"), FINE, """\
 2004h:00 Speed = 1200 rpm
 1017h:00 Producer heartbeat time = 250 ms
@@ -355,12 +466,104 @@ class Configure(LiveTest):
 1020h:02 Verify configuration, Configuration time = 031C8240h
 """)
         self.expect(self.edsc("configure", 5, "axis.dcf"), FINE,
-                    "node 5: configured already, as 1020h says; nothing written\n")
-        self.assertIn("605 23 10 10 01 73 61 76 65", self.network.frames())
+                    f"node 5: 0 of 25 values differ, {self.left_out} left out\n")
+        frames = self.network.frames("605")
+        self.assertIn("605 23 10 10 01 73 61 76 65", frames)
+        self.assertEqual([frame for frame in frames if frame[4] == "2" and frame[7:12] not in ("20 10", "10 10")],
+                         ["605 2B 17 10 00 FA 00 00 00", "605 2B 04 20 00 B0 04 00 00"])
+
+    def test_an_edited_value_is_written_though_the_date_is_the_same(self) -> None:
+        self.only(x2004="1200")
+        self.expect(self.edsc("configure", 5, "axis.dcf"), FINE,
+                    "2004h:00 Speed: 1000 rpm -> 1200 rpm\n"
+                    "node 5: 1 of 1 values differ; 1 of 1 values written, 1 verified, 1020h written\n")
+        self.only(x2004="1300")
+        self.expect(self.edsc("configure", 5, "axis.dcf"), FINE,
+                    "2004h:00 Speed: 1200 rpm -> 1300 rpm\n"
+                    "node 5: 1 of 1 values differ; 1 of 1 values written, 1 verified, 1020h written\n")
+
+    def test_all_values(self) -> None:
+        self.dcf(x2004="1200", x1017="250")
+        self.expect(self.edsc("configure", 5, "axis.dcf", "--all"), FINE,
+                    f"node 5: 25 of 25 values written, 25 verified, {self.left_out} left out, 1020h written\n")
+
+    def test_a_dry_run_writes_nothing(self) -> None:
+        self.only(x2004="1200", x1017="0", x1A00sub0="1", x1A00sub1="0x60640020")
+        self.expect(self.edsc("configure", 5, "axis.dcf", "--dry-run"), FINE, """\
+1A00h:00 TPDO mapping parameter 1, Number of mapped objects: 2 -> 1
+1A00h:01 TPDO mapping parameter 1, Mapping entry 1: 60410010h -> 60640020h
+2004h:00 Speed: 1000 rpm -> 1200 rpm
+steps:
+write       2004h:00 Speed = 1200 rpm
+switch off  1800h:01 TPDO communication parameter 1, COB-ID used by TPDO
+clear       1A00h:00 TPDO mapping parameter 1, Number of mapped objects
+write       1A00h:01 TPDO mapping parameter 1, Mapping entry 1 = 60640020h
+write       1A00h:00 TPDO mapping parameter 1, Number of mapped objects = 1
+switch on   1800h:01 TPDO communication parameter 1, COB-ID used by TPDO as before
+node 5: 3 of 4 values differ; nothing written
+""")
+        found = self.expect_json(self.edsc("configure", 5, "axis.dcf", "--dry-run", "--format", "json"),
+                                 "configure.schema.json")
+        self.assertEqual([(row["index"], row["before"], row["wanted"]) for row in found["changes"]],
+                         [(0x1A00, "2", "1"), (0x1A00, "60410010h", "60640020h"), (0x2004, "1000 rpm", "1200 rpm")])
+        frames = self.network.frames("000", "605")
+        self.assertEqual([frame for frame in frames if frame[:3] == "000" or frame[4] != "4"], [])
+
+    def test_a_write_only_value_is_written_each_time(self) -> None:
+        self.only(x2004="1000")
+        path = self.folder / "axis.dcf"
+        path.write_text(re.sub(r"(\[2006\][^\[]*?)PDOMapping", r"\g<1>ParameterValue=5\nPDOMapping", path.read_text()))
+        for _ in range(2):
+            result = self.edsc("configure", 5, "axis.dcf")
+            self.assertEqual(result.returncode, FINE, result.stderr)
+            self.assertIn("2006h:00 Password: (write-only) -> 5\n"
+                          "node 5: 0 of 2 values differ, 1 cannot be compared; 1 of 1 values written, 0 verified",
+                          result.stdout)
+
+    def test_node_id_and_bit_rate_need_their_flag(self) -> None:
+        sheet = self.folder / "device.eds"
+        sheet.write_text(sheet.read_text().replace("ParameterName=Speed", "ParameterName=CAN bit rate"))
+        self.only(x2004="1200", x1017="250")
+        withheld = "edsc: not written, the node's own node-ID or bit rate: 2004h:00 CAN bit rate{} (--node-id-and-bit-rate writes it)\n"
+        self.expect(self.edsc("configure", 5, "axis.dcf"), FINE,
+                    "1017h:00 Producer heartbeat time: 0 ms -> 250 ms\n"
+                    "node 5: 1 of 2 values differ; 1 of 1 values written, 1 verified, 1 not written (node-ID, bit rate), "
+                    "1020h written\n", withheld.format(": 1000 rpm -> 1200 rpm"))
+        self.expect(self.edsc("configure", 5, "axis.dcf", "--all"), FINE,
+                    "node 5: 1 of 1 values written, 1 verified, 1 not written (node-ID, bit rate), 1020h written\n",
+                    withheld.format(" = 1200 rpm"))
+        found = self.expect_json(self.edsc("configure", 5, "axis.dcf", "--format", "json"), "configure.schema.json")
+        self.assertEqual([row["index"] for row in found["withheld"]], [0x2004])
+        self.expect(self.edsc("configure", 5, "axis.dcf", "--node-id-and-bit-rate"), FINE,
+                    "2004h:00 CAN bit rate: 1000 rpm -> 1200 rpm\n"
+                    "node 5: 1 of 2 values differ; 1 of 1 values written, 1 verified, 1020h written\n")
+
+    def test_a_node_that_restarts_in_the_middle(self) -> None:
+        self.only(x2004="1500", x1017="250")
+        values = {"04 20 00": "E8 03", "17 10 00": "00 00"}
+
+        def answer(frame: str) -> list[str]:
+            command, entry = frame[4:6], frame[7:15]
+            if frame[:3] != "605":
+                return []
+            if entry not in values:
+                return [f"585 80 {entry} 00 00 02 06"]
+            if command == "40":
+                return [f"585 4B {entry} {values[entry]} 00 00"]
+            return [f"585 60 {entry} 00 00 00 00", "705 00"]
+
+        with Network(EDSC, LIVE_NODES) as network:
+            self.network = network
+            network.device(answer)
+            result = self.edsc("configure", 5, "axis.dcf", "--force", "--store", "--start")
+            self.assertEqual(result.returncode, FAILED)
+            self.assertIn("edsc: node 5 restarted meanwhile: it may have lost what was written before", result.stderr)
+            frames = network.frames("605", "000")
+            self.assertFalse([frame for frame in frames if frame.startswith(("605 23 10 10", "000 01"))])
 
     def test_a_pdo_goes_off_before_its_mapping_changes(self) -> None:
         self.only(x1A00sub0="1", x1A00sub1="0x60640020", x1800sub1="0x40000185", x1800sub5="100")
-        self.expect(self.edsc("configure", 5, "axis.dcf", "--start"), FINE,
+        self.expect(self.edsc("configure", 5, "axis.dcf", "--all", "--start"), FINE,
                     "node 5: 4 of 4 values written, 4 verified, 1020h written\n")
         frames = self.network.frames("000", "605")
         self.assertEqual(frames[0], "000 80 05")
@@ -373,6 +576,39 @@ class Configure(LiveTest):
             "605 2B 00 18 05 64 00 00 00",
             "605 23 00 18 01 85 01 00 40",
         ])
+
+    def test_of_a_pdo_only_what_differs_is_written(self) -> None:
+        self.only(x1A00sub0="2", x1A00sub1="0x60410010", x1A00sub2="0x60640020", x1800sub1="0x00000185", x1800sub5="100")
+        self.expect(self.edsc("configure", 5, "axis.dcf"), FINE, """\
+1800h:05 TPDO communication parameter 1, Event timer: 0 ms -> 100 ms
+node 5: 1 of 5 values differ; 1 of 1 values written, 1 verified, 1020h written
+""")
+        self.only(x1A00sub0="2", x1A00sub1="0x60410010", x1A00sub2="0x60410010")
+        self.expect(self.edsc("configure", 5, "axis.dcf"), FINE, """\
+1A00h:02 TPDO mapping parameter 1, Mapping entry 2: 60640020h -> 60410010h
+node 5: 1 of 3 values differ; 3 of 3 values written, 3 verified, 1020h written
+""")
+        frames = self.network.frames("605")
+        self.assertEqual([frame for frame in frames if frame[4] == "2" and frame[7:12] != "20 10"], [
+            "605 23 00 18 01 85 01 00 80",
+            "605 2B 00 18 05 64 00 00 00",
+            "605 23 00 18 01 85 01 00 00",
+            "605 23 00 18 01 85 01 00 80",
+            "605 2F 00 1A 00 00 00 00 00",
+            "605 23 00 1A 01 10 00 41 60",
+            "605 23 00 1A 02 10 00 41 60",
+            "605 2F 00 1A 00 02 00 00 00",
+            "605 23 00 18 01 85 01 00 00",
+        ])
+
+    def test_one_entry_of_a_mapping_leaves_the_others_mapped(self) -> None:
+        self.only(x1A00sub1="0x60410010")
+        self.only(x1A00sub2="0x60410010")
+        self.edsc("configure", 5, "axis.dcf")
+        self.expect(self.edsc("read", 5, "1A00h:00", "--type", "u8"), FINE, "1A00h:00 = 2\n")
+        self.only(x1A00sub1="0x60640020")
+        self.assertEqual(self.edsc("configure", 5, "axis.dcf").returncode, FINE)
+        self.expect(self.edsc("read", 5, "1A00h:00", "--type", "u8"), FINE, "1A00h:00 = 2\n")
 
     def test_answers_that_tell_no_size_are_cut_to_the_type(self) -> None:
         self.only(x2004="1500", x1017="250")
@@ -398,7 +634,8 @@ class Configure(LiveTest):
 
     def test_the_steps_without_a_bus(self) -> None:
         self.only(x1A00sub0="1", x1A00sub1="0x60640020", x2004="1200", x1005="0x81")
-        result = subprocess.run([EDSC, "configure", "socketcan:none", "5", "axis.dcf", "--dry-run"], cwd=self.folder,
+        result = subprocess.run([EDSC, "configure", "socketcan:none", "5", "axis.dcf", "--dry-run", "--all"],
+                                cwd=self.folder,
                                 capture_output=True, text=True, timeout=60)
         self.expect(result, FINE, """\
 switch off  1005h:00 COB-ID SYNC
@@ -413,8 +650,11 @@ switch on   1800h:01 TPDO communication parameter 1, COB-ID used by TPDO as befo
 
     def test_values_that_wait_for_others_are_tried_again(self) -> None:
         self.only(x2004="4000", x2005="5000")
-        self.expect(self.edsc("configure", 5, "axis.dcf"), FINE,
-                    "node 5: 2 of 2 values written, 2 verified, 1020h written\n")
+        self.expect(self.edsc("configure", 5, "axis.dcf"), FINE, """\
+2004h:00 Speed: 1000 rpm -> 4000 rpm
+2005h:00 Maximum speed: 3000 rpm -> 5000 rpm
+node 5: 2 of 2 values differ; 2 of 2 values written, 2 verified, 1020h written
+""")
         written = [frame for frame in self.network.frames("605") if frame[4] == "2" and frame[7:12] != "20 10"]
         self.assertEqual(written, ["605 2B 04 20 00 A0 0F 00 00", "605 2B 05 20 00 88 13 00 00",
                                    "605 2B 04 20 00 A0 0F 00 00"])
@@ -424,10 +664,10 @@ switch on   1800h:01 TPDO communication parameter 1, COB-ID used by TPDO as befo
         lines = path.read_text().splitlines()
         speed, mapping, rounded = (next(i for i, line in enumerate(lines, 1) if line == f"ParameterValue={value}")
                                    for value in ("4000", "0x20020008", "7"))
-        self.expect(self.edsc("configure", 5, "axis.dcf", "--store"), FAILED,
+        self.expect(self.edsc("configure", 5, "axis.dcf", "--all", "--store"), FAILED,
                     "node 5: 2 of 5 values written, 1 verified, 3 failed\n", f"""\
-axis.dcf:{mapping}:16: error: 1A00h:02 TPDO mapping parameter 1, Mapping entry 2 = 20020008h: refused: 0604 0041h, object cannot be mapped to the PDO; what belongs to it is left as it is now
-axis.dcf:{speed}:16: error: 2004h:00 Speed = 4000 rpm: refused: 0609 0031h, value too high
+axis.dcf:{mapping}:16: error: 1A00h:02 TPDO mapping parameter 1, Mapping entry 2 = 20020008h: refused by the device: 0604 0041h, object cannot be mapped to the PDO; what belongs to it is left as it is now
+axis.dcf:{speed}:16: error: 2004h:00 Speed = 4000 rpm: refused by the device: 0609 0031h, value too high
 axis.dcf:{rounded}:16: error: 2009h:00 Rounded value = 7: reads back as 0
 """)
         self.expect(self.edsc("read", 5, "1800h:01", "--eds", "device.eds"), FINE,
@@ -437,10 +677,25 @@ axis.dcf:{rounded}:16: error: 2009h:00 Rounded value = 7: reads back as 0
         path = self.only(x2004="1200")
         path.write_text(path.read_text().replace("0x00001001", "0x00001002"))
         self.expect(self.edsc("configure", 5, "axis.dcf"), FAILED,
-                    stderr="edsc: node 5 is not the device of axis.dcf: product code is 00001001h, not 00001002h "
-                           "(--force writes nevertheless)\n")
+                    stderr="edsc: node 5 is not the device of axis.dcf: product code is 00001001h, expected "
+                           '00001002h; "edsc scan BUS --eds FILE" finds the node of a file, --force writes nevertheless\n')
         self.expect(self.edsc("configure", 5, "axis.dcf", "--force"), FINE,
-                    "node 5: 1 of 1 values written, 1 verified, 1020h written\n")
+                    "2004h:00 Speed: 1000 rpm -> 1200 rpm\n"
+                    "node 5: 1 of 1 values differ; 1 of 1 values written, 1 verified, 1020h written\n")
+
+    def test_another_device_whose_dcf_has_no_vendor(self) -> None:
+        path = self.only(x2004="1200")
+        path.write_text(path.read_text().replace("0x00ABCDEF", "0").replace("0x00020192", "0x00040191"))
+        result = self.edsc("configure", 5, "axis.dcf")
+        self.assertEqual((result.returncode, result.stdout), (FAILED, ""))
+        self.assertIn("device type is 00020192h, expected 00040191h; ", result.stderr)
+        path.write_text(path.read_text().replace("0x00040191", "0x00020192"))
+        self.expect(self.edsc("configure", 5, "axis.dcf"), FINE,
+                    "2004h:00 Speed: 1000 rpm -> 1200 rpm\n"
+                    "node 5: 1 of 1 values differ; 1 of 1 values written, 1 verified, 1020h written\n",
+                    "edsc: node 5: not compared: vendor-ID (not in axis.dcf)\n")
+        self.assertEqual([frame for frame in self.network.frames("605") if frame[4:15] == "2B 04 20 00"],
+                         ["605 2B 04 20 00 B0 04 00 00"])
 
     def test_the_dcf_of_another_node(self) -> None:
         self.only(x2004="1200")
@@ -453,8 +708,13 @@ axis.dcf:{rounded}:16: error: 2009h:00 Rounded value = 7: reads back as 0
     def test_a_concise_dcf(self) -> None:
         self.only(x2004="1200", x1017="250")
         subprocess.run([EDSC, "format", "axis.dcf", "--concise", "-o", "axis.bin"], cwd=self.folder, check=True)
+        unknown = ("edsc: node 5: not compared: identity (a concise DCF does not state it; "
+                   "--eds names the EDS of the device)\n")
         self.expect(self.edsc("configure", 5, "axis.bin", "--concise"), FINE,
-                    "node 5: 2 of 2 values written, 2 verified\n")
+                    "1017h:00: 00 00 -> FA 00\n2004h:00: E8 03 -> B0 04\n"
+                    "node 5: 2 of 2 values differ; 2 of 2 values written, 2 verified\n", unknown)
+        self.expect(self.edsc("configure", 5, "axis.bin", "--concise", "--eds", "device.eds"), FINE,
+                    "node 5: 0 of 2 values differ\n")
         self.expect(self.edsc("configure", 5, "axis.dcf", "--concise"), WRONG_USAGE,
                     stderr="edsc: axis.dcf is no concise DCF: it is shorter or longer than it says\n")
         self.expect(self.edsc("configure", 5, "device.eds"), WRONG_USAGE,
@@ -465,7 +725,7 @@ axis.dcf:{rounded}:16: error: 2009h:00 Rounded value = 7: reads back as 0
         line = path.read_text().splitlines().index("ParameterValue=4000") + 1
         found = self.expect_json(self.edsc("configure", 5, "axis.dcf", "--format", "json"), "configure.schema.json", FAILED)
         self.assertEqual(found["failures"], [{"index": 0x2004, "sub_index": 0, "name": "Speed", "line": line,
-                                              "text": "refused: 0609 0031h, value too high"}])
+                                              "text": "refused by the device: 0609 0031h, value too high"}])
 
 
 class Nmt(LiveTest):
@@ -547,6 +807,89 @@ class Lss(LiveTest):
         for arguments in ((), ("node-id", 128), ("node-id",), ("bit-rate", 300), ("select", "--vendor", 1),
                           ("assign", "--node-id", 5, "--serial", 4), ("state", "off")):
             self.assertEqual(self.lss(*arguments).returncode, WRONG_USAGE, arguments)
+
+
+class FastscanSlave:
+    """A slave of CiA 305 without node-ID; in configuration state it answers every Fastscan frame, as a widespread stack
+    does. `always`: so it does in waiting state."""
+
+    def __init__(self, address: tuple[int, int, int, int], always: bool = False) -> None:
+        self.address, self.always = address, always
+        self.configuration, self.position = False, 0
+
+    def answer(self, frame: str) -> list[str]:
+        can_id, *words = frame.split()
+        data = bytes.fromhex("".join(words))
+        if can_id != "7E5":
+            return []
+        if data[0] == 0x04:
+            self.configuration = data[1] == 1
+        if self.configuration and 0x5A <= data[0] <= 0x5D:
+            number = self.address[data[0] - 0x5A].to_bytes(4, "little").hex(" ")
+            return [f"7E4 {data[0]:02X} {number} 00 00 00"]
+        return ["7E4 4F 00 00 00 00 00 00 00"] if data[0] == 0x51 and self.is_meant(data) else []
+
+    def is_meant(self, data: bytes) -> bool:
+        number, bit, sub, following = int.from_bytes(data[1:5], "little"), *data[5:8]
+        if self.configuration or self.always:
+            return True
+        if bit == 0x80:
+            self.position = 0
+            return True
+        if self.position != sub or (number ^ self.address[sub]) >> bit:
+            return False
+        if bit == 0:
+            self.position = following
+            self.configuration = following < sub
+        return True
+
+
+class FastscanOfSlavesThatAnswerAlways(LiveTest):
+    nodes = ()
+    numbers = ("--step", 40, "fastscan", "--vendor", "93h", "--product", 2, "--revision", 3)
+    shown = "vendor-ID 00000093h, product code 00000002h, revision 00000003h, serial number {:08X}h"
+
+    def slaves(self, *serials: int, always: bool = False) -> None:
+        for serial in serials:
+            self.network.device(FastscanSlave((0x93, 2, 3, serial), always).answer)
+
+    def test_one(self) -> None:
+        self.slaves(0x15011234)
+        self.expect(self.edsc("lss", *self.numbers), FINE, self.shown.format(0x15011234) + "\n")
+
+    def test_two(self) -> None:
+        self.slaves(0x15011234, 0x15011230)
+        self.expect(self.edsc("lss", *self.numbers), FINE,
+                    self.shown.format(0x15011230) + "\n" + self.shown.format(0x15011234) + "\n")
+
+    def test_one_that_answers_always(self) -> None:
+        self.slaves(0x15011234, always=True)
+        result = self.edsc("lss", *self.numbers)
+        self.assertEqual((result.returncode, result.stdout), (FAILED, ""))
+        self.assertIn("fastscan: found " + self.shown.format(0), result.stderr)
+        self.assertIn("no slave with this address answers an inquiry", result.stderr)
+
+    def test_what_was_found_is_shown_on_an_interruption(self) -> None:
+        for arguments in (("lss", *self.numbers), ("lss", *self.numbers, "--format", "json"),
+                          ("scan", "--nodes", 9, "--listen", 0, "--timeout", 20, "--lss", "--step", 5)):
+            with self.subTest(arguments), Network(EDSC, LIVE_NODES) as network:
+                self.network = network
+                self.slaves(0x15011234, 0x15011238)
+                listener = network.client()
+                process = self.start(*arguments)
+                while listener.receive()[:6] != "7E4 5D":  # the first one has told its last number
+                    pass
+                while not listener.receive().startswith("7E5 51"):
+                    pass
+                process.send_signal(signal.SIGINT)
+                stdout, stderr = process.communicate(timeout=60)
+                self.assertEqual((process.returncode, stderr), (INTERRUPTED, "edsc: interrupted\n"))
+                if arguments[0] == "scan":
+                    self.assertIn("without node-ID: vendor-ID", stdout)
+                elif "json" in arguments:
+                    self.assertEqual([row["serial_number"] for row in json.loads(stdout)["unconfigured"]], [0x15011234])
+                else:
+                    self.assertEqual(stdout, self.shown.format(0x15011234) + "\n")
 
 
 class Monitor(LiveTest):

@@ -41,15 +41,20 @@ class InputLine {
   /// A word after the first one, from 1 on.
   [[nodiscard]] std::string_view word(std::size_t position) const { return words_[position]; }
 
-  /// The same as a whole number, decimal or 0x; nothing when it is none or outside the range.
+  /// The same as a whole number, 8976, 0x2310 or 2310h; nothing when it is none or outside the range.
   template <class T>
   [[nodiscard]] std::optional<T> number(std::size_t position, T lowest = std::numeric_limits<T>::min(),
                                         T highest = std::numeric_limits<T>::max()) const {
     std::string_view text = words_[position];
     const bool negative = text.starts_with('-');
     if (negative) text.remove_prefix(1);
-    const bool hex = text.starts_with("0x") || text.starts_with("0X");
-    if (hex) text.remove_prefix(2);
+    const bool prefixed = text.starts_with("0x") || text.starts_with("0X");
+    const bool hex = prefixed || text.ends_with('h') || text.ends_with('H');
+    if (prefixed) {
+      text.remove_prefix(2);
+    } else if (hex) {
+      text.remove_suffix(1);
+    }
     std::int64_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, hex ? 16 : 10);
     if (error != std::errc{} || end != text.data() + text.size() || value < 0) return std::nullopt;
