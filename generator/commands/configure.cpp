@@ -172,14 +172,23 @@ std::string_view verb_of(StepKind kind) {
   return {};
 }
 
+/// The value; of many bytes without a type the first ones.
+std::string shown(const LiveEntry& entry, const std::vector<std::uint8_t>& bytes) {
+  constexpr std::size_t most_bytes = 32;
+  if (entry.type != nullptr || bytes.size() <= most_bytes) return value_of(entry, bytes);
+  LiveEntry domain = entry;
+  set_type(domain, *canopen::find_data_type(static_cast<std::uint32_t>(canopen::DataType::domain)));
+  return value_of(domain, bytes);
+}
+
 std::string written_by(const ConfigurationStep& step) {
   switch (step.kind) {
-    case StepKind::write: return " = " + value_of(step.entry, step.bytes);
+    case StepKind::write: return " = " + shown(step.entry, step.bytes);
     case StepKind::switch_on:
-      return step.bytes.empty() ? " as before" : " = " + value_of(step.entry, step.bytes);
+      return step.bytes.empty() ? " as before" : " = " + shown(step.entry, step.bytes);
     case StepKind::restore:
       return step.bytes.empty() ? " as before"
-                                : fmt::format(" as before, at least {}", value_of(step.entry, step.bytes));
+                                : fmt::format(" as before, at least {}", shown(step.entry, step.bytes));
     case StepKind::switch_off:
     case StepKind::clear: break;
   }
@@ -193,21 +202,21 @@ void print_steps(const std::vector<ConfigurationStep>& steps) {
 }
 
 std::string text_before(const Change& change) {
-  if (change.before) return value_of(change.value.entry, *change.before);
+  if (change.before) return shown(change.value.entry, *change.before);
   const Entry* entry = change.value.entry.entry;
   return entry != nullptr && !canopen::readable(entry->access) ? "(write-only)" : "(cannot be read)";
 }
 
 std::string change_text(const Change& change) {
   return fmt::format("{}: {} -> {}", title(change.value.entry), text_before(change),
-                     value_of(change.value.entry, change.value.bytes));
+                     shown(change.value.entry, change.value.bytes));
 }
 
 void print_withheld(const Work& work, bool compared) {
   for (const Change& change : work.withheld) {
     const std::string what = compared ? change_text(change)
                                       : title(change.value.entry) + " = " +
-                                            value_of(change.value.entry, change.value.bytes);
+                                            shown(change.value.entry, change.value.bytes);
     fmt::print(stderr, "edsc: not written, the node's own node-ID or bit rate: {} (--node-id-and-bit-rate writes it)\n",
                what);
   }
@@ -233,9 +242,20 @@ std::string not_compared_text(const Settings& settings, const std::vector<NotCom
   return text;
 }
 
-/// Whether the node is the device of the DCF, as far as both state it. What contradicts it is reported.
-bool is_right_device(SdoAccess& node, const Settings& settings, const Configuration& configuration, Ending& ending) {
-  const SdoOutcome first = node.upload(0x1000, 0);
+void enter_pre_operational(LiveBus& bus, const SdoAccess& node) {
+  bus.send_all(canopen::nmt_frame(canopen::NmtCommand::enter_pre_operational, node.node()));
+  bus.listen(after_nmt);
+}
+
+/// Whether the node is the device of the DCF, as far as both state it. What contradicts it is reported. A node that is
+/// silent may be in Stopped.
+bool is_right_device(LiveBus& bus, SdoAccess& node, const Settings& settings, const Configuration& configuration,
+                     Ending& ending) {
+  SdoOutcome first = node.upload(0x1000, 0);
+  if (first.end == SdoEnd::no_answer && !settings.keep_state && !settings.dry_run) {
+    enter_pre_operational(bus, node);
+    first = node.upload(0x1000, 0);
+  }
   if (first.end == SdoEnd::no_answer) return refuse(fmt::format("node {} does not answer", settings.node));
   if (settings.force) return true;
   if (configuration.device() == nullptr) {
@@ -271,7 +291,7 @@ std::string place_of_value(const ConfigurationValue* value) {
 
 void print_failures(const ConfigurationResult& result, const Ending& ending) {
   for (const ConfigurationFailure& failure : result.failures) {
-    const std::string wanted = failure.value == nullptr ? "" : " = " + value_of(failure.entry, failure.value->bytes);
+    const std::string wanted = failure.value == nullptr ? "" : " = " + shown(failure.entry, failure.value->bytes);
     fmt::print(stderr, "{}{}{}: {}\n", place_of_value(failure.value), title(failure.entry), wanted, failure.what);
   }
   for (const std::string& problem : ending.problems) fmt::print(stderr, "edsc: {}\n", problem);
@@ -315,8 +335,8 @@ Json changes_json(const std::vector<Change>& changes) {
   Json rows = Json::array();
   for (const Change& change : changes) {
     Json row = entry_json(change.value.entry, &change.value);
-    row["before"] = change.before ? Json(value_of(change.value.entry, *change.before)) : Json(nullptr);
-    row["wanted"] = value_of(change.value.entry, change.value.bytes);
+    row["before"] = change.before ? Json(shown(change.value.entry, *change.before)) : Json(nullptr);
+    row["wanted"] = shown(change.value.entry, change.value.bytes);
     rows.push_back(std::move(row));
   }
   return rows;
@@ -424,12 +444,8 @@ std::optional<Work> what_differs(SdoAccess& node, const Settings& settings, cons
 int configure(LiveBus& bus, const Settings& settings, const Configuration& configuration) {
   SdoAccess node{bus, canopen::NodeId{settings.node}, settings.sdo};
   const RestartWatch watch{bus, settings.node};
-  if (!settings.keep_state && !settings.dry_run) {
-    bus.send_all(canopen::nmt_frame(canopen::NmtCommand::enter_pre_operational, node.node()));
-    bus.listen(after_nmt);
-  }
   Ending ending;
-  if (!is_right_device(node, settings, configuration, ending)) return exit_device_failed;
+  if (!is_right_device(bus, node, settings, configuration, ending)) return exit_device_failed;
   if (!ending.not_compared.empty()) {
     fmt::print(stderr, "edsc: node {}: not compared: {}\n", settings.node, ending.not_compared);
   }
@@ -462,6 +478,7 @@ int configure(LiveBus& bus, const Settings& settings, const Configuration& confi
     if (text && !steps.empty()) fmt::print("steps:\n");
     if (text) print_steps(steps);
   } else {
+    if (!steps.empty() && !settings.keep_state) enter_pre_operational(bus, node);
     result = with_progress("done", [&] { return configure_node(node, steps, hooks); });
     if (result.done()) finish(bus, node, settings, configuration, ending);
     if (watch.restarted()) {

@@ -566,7 +566,7 @@ node 5: 3 of 4 values differ; nothing written
         self.expect(self.edsc("configure", 5, "axis.dcf", "--all", "--start"), FINE,
                     "node 5: 4 of 4 values written, 4 verified, 1020h written\n")
         frames = self.network.frames("000", "605")
-        self.assertEqual(frames[0], "000 80 05")
+        self.assertLess(frames.index("000 80 05"), frames.index("605 23 00 18 01 85 01 00 80"))
         self.assertEqual(frames[-1], "000 01 05")
         self.assertEqual([frame for frame in frames if frame[4] == "2" and frame[7:12] != "20 10"], [
             "605 23 00 18 01 85 01 00 80",
@@ -694,8 +694,17 @@ axis.dcf:{rounded}:16: error: 2009h:00 Rounded value = 7: reads back as 0
                     "2004h:00 Speed: 1000 rpm -> 1200 rpm\n"
                     "node 5: 1 of 1 values differ; 1 of 1 values written, 1 verified, 1020h written\n",
                     "edsc: node 5: not compared: vendor-ID (not in axis.dcf)\n")
-        self.assertEqual([frame for frame in self.network.frames("605") if frame[4:15] == "2B 04 20 00"],
-                         ["605 2B 04 20 00 B0 04 00 00"])
+        self.expect(self.edsc("configure", 5, "axis.dcf"), FINE, "node 5: 0 of 1 values differ\n",
+                    "edsc: node 5: not compared: vendor-ID (not in axis.dcf)\n")
+        self.assertEqual([frame for frame in self.network.frames("000", "605")
+                          if frame.startswith("000") or frame[4:15] == "2B 04 20 00"],
+                         ["000 80 05", "605 2B 04 20 00 B0 04 00 00"])
+
+    def test_a_stopped_node(self) -> None:
+        self.only(x2004="1200")
+        self.edsc("nmt", "stop", 5)
+        result = self.edsc("configure", 5, "axis.dcf", "--timeout", 200)
+        self.assertEqual((result.returncode, result.stderr), (FINE, ""))
 
     def test_the_dcf_of_another_node(self) -> None:
         self.only(x2004="1200")

@@ -166,6 +166,17 @@ TEST(ModuleNode, HasANodeIdOfTwoRotarySwitches1To99) {
   EXPECT_THROW(static_cast<void>(parse("100")), std::invalid_argument);
 }
 
+TEST(InputLine, TakesNumbersAsPeopleWriteThem) {
+  const nodes::InputLine line{"fault 8976 0x2310 2310h 2310H -5 2310 0x 2310hh h"};
+  EXPECT_EQ(line.number<std::uint16_t>(1), 0x2310);
+  EXPECT_EQ(line.number<std::uint16_t>(2), 0x2310);
+  EXPECT_EQ(line.number<std::uint16_t>(3), 0x2310);
+  EXPECT_EQ(line.number<std::uint16_t>(4), 0x2310);
+  EXPECT_EQ(line.number<std::int16_t>(5), -5);
+  EXPECT_EQ(line.number<std::uint16_t>(6), 2310);
+  for (const std::size_t word : {7u, 8u, 9u}) EXPECT_FALSE(line.number<std::uint16_t>(word)) << word;
+}
+
 // shows 003.65
 TEST(ModuleNode, ScalesItsAnalogueChannels) {
   EXPECT_EQ(nodes::raw_from_volts(5), 0x3FFF);
