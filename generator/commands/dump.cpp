@@ -1,10 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "commands/commands.hpp"
 #include "commands/load_device.hpp"
+#include "device/broken_pdos.hpp"
 #include "render/view.hpp"
-#include "rules/check_device.hpp"
-#include "rules/pdo_rules.hpp"
 
 namespace edsc {
 namespace {
@@ -21,14 +22,11 @@ struct Settings {
   ColorOption color;
 };
 
-/// What the rules find is for `check` and `generate`. Here they mark the PDOs that are broken, and drop limits that no
-/// value can meet from what the C++ templates see.
-nlohmann::ordered_json view_of(LoadedDevice& loaded) {
-  Diagnostics unheard;
-  check_pdos(*loaded.device, loaded.options, unheard);
-  nlohmann::ordered_json view = device_view(*loaded.device);
-  check_device(*loaded.device, loaded.sheet, loaded.options, unheard);
-  return view;
+/// A broken PDO is shown as such; with any other error, part of the data sheet is missing or assumed.
+bool is_incomplete(const Diagnostics& diagnostics) {
+  return std::ranges::any_of(diagnostics.all(), [](const Diagnostic& one) {
+    return one.severity == Severity::error && !is_broken_pdo_rule(one.rule);
+  });
 }
 
 int dump(const Settings& settings) {
@@ -39,12 +37,12 @@ int dump(const Settings& settings) {
   const auto loaded = load_device(load, diagnostics);
   nlohmann::ordered_json view;
   if (loaded->device) {
-    view = view_of(*loaded);
+    view = device_view(*loaded->device);
     if (settings.cpp) view["cpp"] = cpp_view(*loaded->device, loaded->options, diagnostics);
   }
   print_findings(stderr, diagnostics, settings.color);
   if (loaded->unreadable) return exit_wrong_usage;
-  const bool failed = !loaded->device || diagnostics.errors() > 0;
+  const bool failed = !loaded->device || is_incomplete(diagnostics);
   if (!failed || (settings.keep_going && loaded->device)) {
     fmt::print("{}\n", view.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   }

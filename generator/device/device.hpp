@@ -110,7 +110,7 @@ struct Pdo {
   Position position;                   ///< the communication parameter's section, else the mapping parameter's
   bool multiplexed = false;            ///< sub-index 0 of its mapping is 254 or 255: an MPDO, which has no entries
   bool dynamic = false;                ///< its mapping may change: the mapping parameter lies in RAM
-  bool broken = false;                 ///< a rule found an error in it: no layout can be made
+  bool broken = false;                 ///< its mapping is invalid: no layout can be made
 
   [[nodiscard]] unsigned bits() const;
 };

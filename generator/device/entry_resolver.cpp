@@ -177,6 +177,21 @@ void EntryResolver::resolve_limits(const EntryDescription& description, const Va
   entry.high_limit = parse_limit(description.high_limit, Limit::high, *entry.type, node_id_, diagnostics_);
   if (!entry.low_limit && type.low_limit != nullptr) entry.low_limit = *type.low_limit;
   if (!entry.high_limit && type.high_limit != nullptr) entry.high_limit = *type.high_limit;
+  drop_limit_formula(entry.low_limit);
+  drop_limit_formula(entry.high_limit);
+  if (!entry.low_limit || !entry.high_limit) return;
+  if (!is_less(*entry.type, entry.high_limit->bits, entry.low_limit->bits)) return;
+  diagnostics_.warning("limits-order", entry.low_limit->position, "LowLimit is above HighLimit; neither is checked");
+  entry.low_limit.reset();
+  entry.high_limit.reset();
+}
+
+/// A node-ID-dependent limit is not a constant: it cannot be checked before the node-ID is known.
+void EntryResolver::drop_limit_formula(std::optional<Value>& limit) {
+  if (!limit || !limit->plus_node_id) return;
+  diagnostics_.warning("limit-formula", limit->position,
+                       "a limit that follows the node-ID is not checked unless the node-ID is given");
+  limit.reset();
 }
 
 void EntryResolver::resolve_files(const EntryDescription& description, Entry& entry) {

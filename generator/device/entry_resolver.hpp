@@ -37,6 +37,7 @@ class EntryResolver {
   bool pdo_mapping(const EntryDescription& description);
   void resolve_default(const EntryDescription& description, Entry& entry);
   void resolve_limits(const EntryDescription& description, const ValueType& type, Entry& entry);
+  void drop_limit_formula(std::optional<Value>& limit);
   void resolve_files(const EntryDescription& description, Entry& entry);
 
   const TypeTable& types_;

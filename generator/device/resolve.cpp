@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "device/broken_pdos.hpp"
 #include "device/compact_pdo.hpp"
 #include "device/complete_device.hpp"
 #include "device/entry_resolver.hpp"
@@ -49,6 +50,7 @@ class Resolver {
     name_objects(device_, options_);
     check_option_keys();
     resolve_pdos(device_, options_);
+    mark_broken_pdos(device_, options_, diagnostics_);
     resolve_stored_eds(device_, options_, diagnostics_);
     check_settable_mappings();
     return std::move(device_);

@@ -308,4 +308,12 @@ std::optional<Value> parse_limit(const Field& field, Limit which, const canopen:
   return ValueReader{field, type, node_id, which, diagnostics}.read();
 }
 
+bool is_less(const DataTypeRow& type, std::uint64_t a, std::uint64_t b) {
+  if (type.kind == DataClass::signed_integer) return static_cast<std::int64_t>(a) < static_cast<std::int64_t>(b);
+  if (type.kind != DataClass::real) return a < b;
+  if (type.bits == 64) return std::bit_cast<double>(a) < std::bit_cast<double>(b);
+  const auto single = [](std::uint64_t bits) { return std::bit_cast<float>(static_cast<std::uint32_t>(bits)); };
+  return single(a) < single(b);
+}
+
 }  // namespace edsc

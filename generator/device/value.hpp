@@ -22,4 +22,7 @@ enum class Limit : std::uint8_t { low, high };
 [[nodiscard]] std::optional<Value> parse_limit(const Field& field, Limit which, const canopen::DataTypeRow& type,
                                                std::optional<std::uint8_t> node_id, Diagnostics& diagnostics);
 
+/// Whether `a` is less than `b`, both the bits of values of this type.
+[[nodiscard]] bool is_less(const canopen::DataTypeRow& type, std::uint64_t a, std::uint64_t b);
+
 }  // namespace edsc

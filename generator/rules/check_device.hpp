@@ -7,8 +7,8 @@
 
 namespace edsc {
 
-/// Runs all rules over the device and the data sheet that it was made of. PDOs with an error are marked as broken;
-/// limits that cannot hold are dropped, with a warning.
-void check_device(Device& device, const DataSheet& sheet, const Options& options, Diagnostics& diagnostics);
+/// Runs all rules over the device and the data sheet that it was made of. The device is the same before and after: what
+/// cannot be used of a data sheet is left out, and reported, by resolve_device().
+void check_device(const Device& device, const DataSheet& sheet, const Options& options, Diagnostics& diagnostics);
 
 }  // namespace edsc

@@ -4,7 +4,7 @@
 
 #include "diagnostics/quote.hpp"
 #include "eds/number.hpp"
-#include "rules/pdo_defaults.hpp"
+#include "device/pdo_defaults.hpp"
 #include "rules/rule_groups.hpp"
 #include "text/utf8.hpp"
 

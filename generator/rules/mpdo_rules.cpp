@@ -4,7 +4,7 @@
 #include <canopen/mpdo.hpp>
 #include <canopen/transmission_type.hpp>
 
-#include "rules/pdo_defaults.hpp"
+#include "device/pdo_defaults.hpp"
 #include "rules/rule_groups.hpp"
 
 namespace edsc {

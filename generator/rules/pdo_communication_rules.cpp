@@ -5,7 +5,7 @@
 #include <canopen/pdo_parameters.hpp>
 #include <canopen/transmission_type.hpp>
 
-#include "rules/pdo_defaults.hpp"
+#include "device/pdo_defaults.hpp"
 #include "rules/rule_groups.hpp"
 
 namespace edsc {
@@ -27,6 +27,17 @@ Transmission transmission_of(std::uint64_t type) {
 
 bool is_synchronous(Transmission transmission) {
   return transmission == Transmission::synchronous || transmission == Transmission::remote_synchronous;
+}
+
+/// A PDO is made of two parameters (CiA 301, 7.5.2.35).
+void check_pair(const RuleContext& context, const Pdo& pdo) {
+  if (pdo.communication != nullptr && pdo.mapping != nullptr) return;
+  const bool has_mapping = pdo.communication == nullptr;
+  const int first = is_receive(pdo) ? (has_mapping ? 0x1400 : 0x1600) : (has_mapping ? 0x1800 : 0x1A00);
+  const auto missing = static_cast<std::uint16_t>(first + pdo.number - 1);
+  context.report("pdo-pair", pdo.position,
+                 fmt::format("{} has no {} parameter {}", pdo_label(pdo), has_mapping ? "communication" : "mapping",
+                             index_label(missing)));
 }
 
 void check_transmission_type(const RuleContext& context, const Pdo& pdo, std::uint64_t type) {
@@ -99,6 +110,7 @@ void check_sync_start(const RuleContext& context, const Pdo& pdo, std::uint64_t 
 
 void check_pdo_communication(const RuleContext& context) {
   for (const Pdo& pdo : context.device.pdos) {
+    check_pair(context, pdo);
     if (pdo.communication == nullptr) continue;
     check_compatibility_entry(context, pdo);
     const auto type = communication_default(pdo, transmission_type_sub_index);

@@ -4,7 +4,7 @@
 #include <unordered_map>
 
 #include "eds/number.hpp"
-#include "rules/pdo_defaults.hpp"
+#include "device/pdo_defaults.hpp"
 #include "rules/rule_groups.hpp"
 
 namespace edsc {

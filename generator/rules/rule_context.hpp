@@ -16,7 +16,7 @@ namespace edsc {
 inline constexpr unsigned last_node_id = 127;
 
 struct RuleContext {
-  Device& device;
+  const Device& device;
   const DataSheet& sheet;
   const Options& options;
   Diagnostics& diagnostics;

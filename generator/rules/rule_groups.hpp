@@ -9,6 +9,8 @@ namespace edsc {
 void check_file(const RuleContext& context);
 /// [DeviceInfo], alone and against the objects.
 void check_device_info(const RuleContext& context);
+/// Mandatory objects, and defaults against limits.
+void check_objects(const RuleContext& context);
 /// Objects that others need, and indices that nobody should use.
 void check_presence(const RuleContext& context);
 /// The communication profile's objects against CiA 301.
@@ -21,9 +23,9 @@ void check_entries(const RuleContext& context);
 void check_communication_values(const RuleContext& context);
 /// COB-IDs, alone and against each other.
 void check_cob_ids(const RuleContext& context);
-/// PDO communication parameters.
+/// PDO communication parameters, and that each PDO has both of its parameters.
 void check_pdo_communication(const RuleContext& context);
-/// PDO mapping parameters as a whole; single entries are checked by check_pdos().
+/// PDO mapping parameters as a whole; single entries are checked by mark_broken_pdos().
 void check_pdo_mapping(const RuleContext& context);
 /// Multiplex PDOs and their lists.
 void check_mpdos(const RuleContext& context);

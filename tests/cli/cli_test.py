@@ -384,10 +384,24 @@ class Check(CommandLine):
         self.assertIn("[pdo-size]", result.stderr)
         self.assertEqual(result.stdout, "")
 
-    def test_dump_leaves_the_rules_to_check(self) -> None:
+    def test_dump_shows_a_broken_pdo_and_says_why(self) -> None:
         result = self.edsc("dump", WRONG)
-        self.expect(FINE, result)
+        self.expect(FINE, result, "[pdo-size]")
         self.assertTrue(any(pdo["broken"] for pdo in json.loads(result.stdout)["pdos"]))
+
+    def test_every_command_sees_the_device_that_check_describes(self) -> None:
+        sheet = self.write("limits.eds", SMALL + "[2000]\nParameterName=Value\nObjectType=7\nDataType=6\nAccessType=rw\n"
+                                                 "LowLimit=1000\nHighLimit=10\n")
+        self.expect(FINE, self.edsc("check", sheet), "neither is checked")
+        dumped = self.edsc("dump", sheet, "--cpp")
+        self.expect(FINE, dumped, "[limits-order]")
+        device = json.loads(dumped.stdout)
+        entry = next(row for row in device["objects"] if row["index"] == 0x2000)["entries"][0]
+        self.assertFalse({"low_limit", "high_limit"} & set(entry))
+        nobody = "socketcand:127.0.0.1:1/none"  # a value beyond the limits is refused before the bus is opened
+        self.assertNotIn("limit", self.edsc("write", nobody, "5", "2000h", "500", "--eds", sheet).stderr)
+        good = self.write("good.eds", sheet.read_text().replace("HighLimit=10\n", "HighLimit=2000\n"))
+        self.assertIn("below the low limit", self.edsc("write", nobody, "5", "2000h", "500", "--eds", good).stderr)
 
     def test_takes_the_worst_of_several_files(self) -> None:
         self.expect(INPUT_HAS_ERRORS, self.edsc("check", GOOD, WRONG, GOOD))

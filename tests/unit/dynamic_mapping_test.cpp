@@ -261,7 +261,6 @@ TEST(DynamicMapping, IsStaticWhereItsDefaultCountsWhatMapsNothing) {
 TEST(DynamicMapping, IsServedFromAnEmptyLayoutWhereItsDefaultIsWrong) {
   const std::string wrong = communication("1400") + mapping("1600");  // an input in an RPDO
   DeviceFromText dynamic{wrong + var("2000", "Input", "5", "ro", "PDOMapping=1\n")};
-  check_device(dynamic.device, dynamic.sheet, dynamic.options, dynamic.diagnostics);
   ASSERT_TRUE(dynamic.device.pdos.at(0).broken);
   EXPECT_EQ(served(dynamic, "rpdos"), (std::vector<std::string>{"1 canopen::Rpdo<>"}));
 }

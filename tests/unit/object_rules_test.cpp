@@ -1,11 +1,11 @@
-#include "rules/object_rules.hpp"
-
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
+#include "decode/value_text.hpp"
 #include "device_from_text.hpp"
+#include "rules/rule_groups.hpp"
 
 namespace edsc {
 namespace {
@@ -13,7 +13,9 @@ namespace {
 using Rules = std::vector<std::string>;
 
 struct CheckedObjects : DeviceFromText {
-  explicit CheckedObjects(std::string text) : DeviceFromText(std::move(text)) { check_objects(device, diagnostics); }
+  explicit CheckedObjects(std::string text) : DeviceFromText(std::move(text)) {
+    check_objects({device, sheet, options, diagnostics});
+  }
 };
 
 TEST(ObjectRules, WarnOfEachMandatoryObjectThatIsMissing) {
@@ -52,19 +54,34 @@ TEST(ObjectRules, CompareLimitsAsTheTypeDoes) {
   EXPECT_EQ(rules_of(CheckedObjects(var("2000", "V", "0x11", "rw", "LowLimit=-2\nHighLimit=1e300\n")).diagnostics), Rules{});
 }
 
-TEST(ObjectRules, DropLimitsInTheWrongOrder) {
-  const CheckedObjects checked(var("2000", "Value", "3", "rw", "LowLimit=10\nHighLimit=-5\nDefaultValue=0\n"));
-  EXPECT_EQ(findings(checked.diagnostics, "limits-order"), (std::vector{warning_at(6, 10, "limits-order")}));
-  EXPECT_FALSE(checked.entry(0x2000).low_limit);
-  EXPECT_FALSE(checked.entry(0x2000).high_limit);
+// What cannot be checked is left out when the device is resolved, so that every command sees the same device.
+
+TEST(UnusableLimits, AreDroppedWhereLowIsAboveHigh) {
+  const DeviceFromText read(var("2000", "Value", "3", "rw", "LowLimit=1000\nHighLimit=10\nDefaultValue=0\n"));
+  EXPECT_EQ(findings(read.diagnostics, "limits-order"), (std::vector{warning_at(6, 10, "limits-order")}));
+  EXPECT_FALSE(read.entry(0x2000).low_limit);
+  EXPECT_FALSE(read.entry(0x2000).high_limit);
+  EXPECT_EQ(parse_value_text(read.entry(0x2000), "500").problem, "");
+  const CheckedObjects checked(std::string{read.source.text()});
   EXPECT_EQ(rules_of(checked.diagnostics), Rules{"limits-order"});
 }
 
-TEST(ObjectRules, DropALimitThatFollowsTheNodeId) {
-  const CheckedObjects checked(var("2000", "Value", "7", "rw", "LowLimit=1\nHighLimit=$NODEID+0x100\n"));
-  EXPECT_EQ(findings(checked.diagnostics, "limit-formula"), (std::vector{warning_at(7, 11, "limit-formula")}));
-  EXPECT_TRUE(checked.entry(0x2000).low_limit);
-  EXPECT_FALSE(checked.entry(0x2000).high_limit);
+TEST(UnusableLimits, AreDroppedWhereATypeOfTheSheetHasThem) {
+  const DeviceFromText read("[0040]\nParameterName=Percent\nObjectType=5\nDataType=6\nLowLimit=100\nHighLimit=1\n" +
+                            var("2000", "Value", "0x40", "rw"));
+  EXPECT_EQ(rules_of(read.diagnostics), Rules{"limits-order"});
+  EXPECT_FALSE(read.entry(0x2000).low_limit);
+  EXPECT_FALSE(read.entry(0x2000).high_limit);
+}
+
+TEST(UnusableLimits, AreDroppedWhereOneFollowsTheNodeId) {
+  const std::string text = var("2000", "Value", "7", "rw", "LowLimit=1\nHighLimit=$NODEID+0x100\n");
+  const DeviceFromText read(text);
+  EXPECT_EQ(findings(read.diagnostics, "limit-formula"), (std::vector{warning_at(7, 11, "limit-formula")}));
+  EXPECT_TRUE(read.entry(0x2000).low_limit);
+  EXPECT_FALSE(read.entry(0x2000).high_limit);
+  const DeviceFromText node_5(text, {}, {"", 5});
+  EXPECT_EQ(node_5.entry(0x2000).high_limit.value().bits, 0x105U);
 }
 
 TEST(ObjectRules, DoNotCompareADefaultThatFollowsTheNodeId) {

@@ -1,5 +1,3 @@
-#include "rules/pdo_rules.hpp"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +5,7 @@
 #include <vector>
 
 #include "device_from_text.hpp"
+#include "rules/rule_groups.hpp"
 
 namespace edsc {
 namespace {
@@ -40,11 +39,8 @@ std::string pdo(bool receive, const std::vector<std::string>& mapping, std::stri
   return objects + text;
 }
 
-struct CheckedPdos : DeviceFromText {
-  explicit CheckedPdos(std::string text, Options given = {}) : DeviceFromText(std::move(text), std::move(given)) {
-    check_pdos(device, options, diagnostics);
-  }
-};
+/// Mappings are checked when the device is resolved.
+using CheckedPdos = DeviceFromText;
 
 /// Expects one finding of `rule`, and nothing else, at the line of the mapping entry with this word.
 void expect_one(const CheckedPdos& checked, Severity severity, const std::string& rule, const std::string& word) {
@@ -204,14 +200,17 @@ TEST(PdoRules, WarnOnlyWhenThePdoIsOffByDefault) {
 }
 
 TEST(PdoRules, WarnOfAPdoThatLacksOneOfItsParameters) {
-  const CheckedPdos communication(objects + group("1801", "Communication", "0x9", 2) +
-                              var("1801sub0", "Count", "5", "ro", "DefaultValue=1\n") + var("1801sub1", "COB-ID", "7", "rw", "DefaultValue=$NODEID+0x280\n"));
+  DeviceFromText communication(objects + group("1801", "Communication", "0x9", 2) +
+                               var("1801sub0", "Count", "5", "ro", "DefaultValue=1\n") +
+                               var("1801sub1", "COB-ID", "7", "rw", "DefaultValue=$NODEID+0x280\n"));
+  check_pdo_communication({communication.device, communication.sheet, {}, communication.diagnostics});
   ASSERT_EQ(rules_of(communication.diagnostics), Rules{"pdo-pair"});
   EXPECT_EQ(communication.line_of("pdo-pair"), "[1801]");
   EXPECT_TRUE(message_has(communication, "pdo-pair", "TPDO 2 has no mapping parameter 1A01h"));
 
-  const CheckedPdos mapping(objects + group("1603", "Mapping", "0x9", 1) +
-                        var("1603sub0", "Count", "5", "ro", "DefaultValue=0\n"));
+  DeviceFromText mapping(objects + group("1603", "Mapping", "0x9", 1) +
+                         var("1603sub0", "Count", "5", "ro", "DefaultValue=0\n"));
+  check_pdo_communication({mapping.device, mapping.sheet, {}, mapping.diagnostics});
   ASSERT_EQ(rules_of(mapping.diagnostics), Rules{"pdo-pair"});
   EXPECT_TRUE(message_has(mapping, "pdo-pair", "RPDO 4 has no communication parameter 1403h"));
 }

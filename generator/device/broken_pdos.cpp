@@ -1,10 +1,12 @@
-#include "rules/pdo_rules.hpp"
+#include "device/broken_pdos.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
-#include "rules/pdo_defaults.hpp"
+#include "device/limits.hpp"
+#include "device/pdo_defaults.hpp"
 
 namespace edsc {
 namespace {
@@ -12,9 +14,11 @@ namespace {
 using canopen::Mappable;
 
 constexpr unsigned most_bits = 64;
-constexpr std::size_t most_entries = 64;
 
-/// What a rule says of one entry of a mapping; an empty message means nothing.
+constexpr std::string_view rules[] = {"pdo-object",          "pdo-mappable", "pdo-direction", "pdo-length",
+                                      "pdo-variable-length", "pdo-dummy",    "pdo-size",      "pdo-entries"};
+
+/// What is wrong with one entry of a mapping; nothing when the rule is empty.
 struct Finding {
   std::string_view rule;
   std::string message;
@@ -147,34 +151,24 @@ void check_size(Pdo& pdo, Diagnostics& diagnostics) {
                                            pdo.bits(), most_bits, labelled(*over))},
                   over->place, diagnostics);
   }
-  if (pdo.entries.size() > most_entries) {
-    const PdoEntry& over = pdo.entries[most_entries];
+  if (pdo.entries.size() > most_mapped_objects) {
+    const PdoEntry& over = pdo.entries[most_mapped_objects];
     report_broken(pdo,
                   {"pdo-entries", fmt::format("{} maps {} objects; {} is the most, which {} exceeds", pdo_label(pdo),
-                                              pdo.entries.size(), most_entries, labelled(over))},
+                                              pdo.entries.size(), most_mapped_objects, labelled(over))},
                   over.place, diagnostics);
   }
 }
 
-void check_pair(const Pdo& pdo, Diagnostics& diagnostics) {
-  if (pdo.communication != nullptr && pdo.mapping != nullptr) return;
-  const bool receive = pdo.direction == PdoDirection::receive;
-  const std::uint16_t offset = static_cast<std::uint16_t>(pdo.number - 1);
-  const auto missing = static_cast<std::uint16_t>(
-      (pdo.communication == nullptr ? (receive ? 0x1400 : 0x1800) : (receive ? 0x1600 : 0x1A00)) + offset);
-  diagnostics.warning("pdo-pair", pdo.position,
-                      fmt::format("{} has no {} parameter {}", pdo_label(pdo),
-                                  pdo.communication == nullptr ? "communication" : "mapping", index_label(missing)));
-}
-
 }  // namespace
 
-void check_pdos(Device& device, const Options& options, Diagnostics& diagnostics) {
+void mark_broken_pdos(Device& device, const Options& options, Diagnostics& diagnostics) {
   for (Pdo& pdo : device.pdos) {
-    check_pair(pdo, diagnostics);
     for (const PdoEntry& entry : pdo.entries) check_entry(device, options, pdo, entry, diagnostics);
     check_size(pdo, diagnostics);
   }
 }
+
+bool is_broken_pdo_rule(std::string_view rule) { return std::ranges::find(rules, rule) != std::end(rules); }
 
 }  // namespace edsc

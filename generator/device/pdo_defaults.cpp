@@ -1,4 +1,4 @@
-#include "rules/pdo_defaults.hpp"
+#include "device/pdo_defaults.hpp"
 
 #include <canopen/cob_id.hpp>
 

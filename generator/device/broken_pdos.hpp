@@ -1,0 +1,18 @@
+/// Default PDO mappings of which no layout can be made.
+#pragma once
+
+#include <string_view>
+
+#include "device/device.hpp"
+#include "device/options.hpp"
+
+namespace edsc {
+
+/// Marks PDOs with an invalid mapping as broken and reports why: as an error, but as a warning where the PDO is invalid
+/// by default (bit 31 of its COB-ID). A BOOLEAN that is mapped as a byte is accepted with a warning.
+void mark_broken_pdos(Device& device, const Options& options, Diagnostics& diagnostics);
+
+/// Whether a diagnostic of this rule marks a PDO as broken.
+[[nodiscard]] bool is_broken_pdo_rule(std::string_view rule);
+
+}  // namespace edsc
