@@ -57,8 +57,8 @@ std::uint32_t predefined_id(PdoDirection direction, std::uint16_t number) {
 }  // namespace
 
 std::string display_name(const Object& object, const Entry& entry) {
-  if (!entry.denotation.empty()) return std::string{entry.denotation};
-  const std::string object_name{object.denotation.empty() ? std::string_view{object.name} : object.denotation};
+  if (!entry.denotation.empty()) return entry.denotation;
+  const std::string& object_name = object.denotation.empty() ? object.name : object.denotation;
   return object.has_sub_indices() ? object_name + ", " + entry.name : object_name;
 }
 

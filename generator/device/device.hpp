@@ -1,4 +1,5 @@
 /// The device: a data sheet with every formula, compact form and missing key resolved. Each value still knows its line.
+/// It owns its text: the data sheet may go before it. Positions point into the source file.
 #pragma once
 
 #include <canopen/access.hpp>
@@ -55,14 +56,14 @@ struct Entry {
   Position access_position;     ///< where a rule about its access points
   Position mapping_position;    ///< where a rule about PDOMapping points
 
-  // What a DCF says besides; the text is the data sheet's.
-  std::string_view denotation;     ///< the user's name
-  std::string_view param_refd;     ///< the parameter of a network variable
-  std::string_view upload_file;    ///< of a DOMAIN: where its value comes from
-  std::string_view download_file;  ///< of a DOMAIN: where its value goes to
+  // What a DCF says besides.
+  std::string denotation;     ///< the user's name
+  std::string param_refd;     ///< the parameter of a network variable
+  std::string upload_file;    ///< of a DOMAIN: where its value comes from
+  std::string download_file;  ///< of a DOMAIN: where its value goes to
 
   // What some vendors say besides.
-  std::string_view unit, factor, description;
+  std::string unit, factor, description;
 
   /// In which PDOs it may be mapped.
   [[nodiscard]] canopen::Mappable mappable() const {
@@ -77,7 +78,7 @@ struct Object {
   std::string identifier;        ///< unique in the device
   std::vector<Entry> entries;    ///< ascending by sub-index; of a VAR or DOMAIN exactly one
   Position position;
-  std::string_view denotation;
+  std::string denotation;
   std::uint32_t obj_flags = 0;
   std::vector<std::uint16_t> links;  ///< objects that belong with it: ObjectLinks
 

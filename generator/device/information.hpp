@@ -1,24 +1,24 @@
-/// What a data sheet says besides its objects, in types. Texts are views of the data sheet's.
+/// What a data sheet says besides its objects, in types.
 #pragma once
 
 #include <cstdint>
 #include <optional>
-#include <string_view>
+#include <string>
 #include <vector>
 
 namespace edsc {
 
 /// [FileInfo] (CiA 306-1, clause 4.4). Dates and times stay as they are written.
 struct FileInformation {
-  std::string_view file_name, file_version, file_revision, eds_version, description;
-  std::string_view creation_time, creation_date, created_by;
-  std::string_view modification_time, modification_date, modified_by;
-  std::string_view last_eds;
+  std::string file_name, file_version, file_revision, eds_version, description;
+  std::string creation_time, creation_date, created_by;
+  std::string modification_time, modification_date, modified_by;
+  std::string last_eds;
 };
 
 /// [DeviceInfo] (clause 4.5); who the device is stands in `Device`. Nothing where a key is missing or cannot be read.
 struct Capabilities {
-  std::string_view order_code;
+  std::string order_code;
   std::vector<std::uint16_t> baud_rates;  ///< kbit/s, those that are supported
   std::optional<bool> simple_boot_up_master, simple_boot_up_slave, group_messaging, lss_supported;
   std::optional<std::uint32_t> granularity, dynamic_channels_supported, nr_of_rx_pdo, nr_of_tx_pdo, compact_pdo;
@@ -26,34 +26,34 @@ struct Capabilities {
 
 /// [DeviceComissioning] of a DCF (clause 5.3); the node-ID stands in `Device`.
 struct Commissioning {
-  std::string_view node_name, network_name, node_refd, net_refd;
+  std::string node_name, network_name, node_refd, net_refd;
   std::optional<std::uint32_t> baudrate, net_number, lss_serial_number;
   std::optional<bool> canopen_manager;
 };
 
 struct ToolInformation {
-  std::string_view name, command;
+  std::string name, command;
 };
 
 /// A segment of the [DynamicChannels] (clause 4.8).
 struct DynamicChannel {
   std::optional<std::uint32_t> data_type, first_index, last_index, process_picture_offset;
-  std::string_view direction;
+  std::string direction;
 };
 
 /// What may be plugged into a modular device (clause 6).
 struct ModuleInformation {
   std::uint16_t number = 0;
-  std::string_view product_name, order_code;
+  std::string product_name, order_code;
   std::optional<std::uint32_t> product_version, product_revision;
-  std::vector<std::string_view> comments;
+  std::vector<std::string> comments;
 };
 
 struct Information {
   FileInformation file;
   Capabilities capabilities;
   std::optional<Commissioning> commissioning;
-  std::vector<std::string_view> comments;
+  std::vector<std::string> comments;
   std::vector<ToolInformation> tools;
   std::vector<DynamicChannel> dynamic_channels;
   std::vector<ModuleInformation> supported_modules;

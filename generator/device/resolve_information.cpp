@@ -14,7 +14,7 @@ namespace {
 template <typename Source, typename Target>
 struct TextRow {
   Field Source::*from;
-  std::string_view Target::*to;
+  std::string Target::*to;
 };
 
 template <typename Source, typename Target, typename Number>
@@ -74,7 +74,7 @@ class InformationReader {
   Information read() {
     for (const auto& row : file_texts) information_.file.*row.to = (sheet_.file_info.*row.from).text;
     information_.comments = lines_of(sheet_.comments);
-    for (const Tool& tool : sheet_.tools) information_.tools.push_back({tool.name.text, tool.command.text});
+    for (const Tool& tool : sheet_.tools) information_.tools.push_back({std::string{tool.name.text}, std::string{tool.command.text}});
     read_capabilities();
     read_commissioning();
     read_dynamic_channels();
@@ -93,9 +93,9 @@ class InformationReader {
     return field.present && value ? std::optional{*value != 0} : std::nullopt;
   }
 
-  static std::vector<std::string_view> lines_of(const Comments& comments) {
-    std::vector<std::string_view> lines;
-    for (const NumberedField& line : comments.text) lines.push_back(line.field.text);
+  static std::vector<std::string> lines_of(const Comments& comments) {
+    std::vector<std::string> lines;
+    for (const NumberedField& line : comments.text) lines.emplace_back(line.field.text);
     return lines;
   }
 
@@ -148,7 +148,8 @@ class InformationReader {
 
   void read_modules() {
     for (const ModuleDescription& module : sheet_.modules.supported) {
-      information_.supported_modules.push_back({module.number, module.product_name.text, module.order_code.text,
+      information_.supported_modules.push_back({module.number, std::string{module.product_name.text},
+                                                std::string{module.order_code.text},
                                                 number(module.product_version, "modules"),
                                                 number(module.product_revision, "modules"), lines_of(module.comments)});
     }

@@ -14,7 +14,7 @@ struct ViewRow {
 using Number = std::optional<std::uint32_t>;
 using Flag = std::optional<bool>;
 
-constexpr ViewRow<FileInformation, std::string_view> file_texts[] = {
+constexpr ViewRow<FileInformation, std::string> file_texts[] = {
     {"file_name", &FileInformation::file_name},
     {"file_version", &FileInformation::file_version},
     {"file_revision", &FileInformation::file_revision},
@@ -44,7 +44,7 @@ constexpr ViewRow<Capabilities, Number> device_numbers[] = {
     {"compact_pdo", &Capabilities::compact_pdo},
 };
 
-constexpr ViewRow<Commissioning, std::string_view> commissioning_texts[] = {
+constexpr ViewRow<Commissioning, std::string> commissioning_texts[] = {
     {"node_name", &Commissioning::node_name},
     {"network_name", &Commissioning::network_name},
     {"node_refd", &Commissioning::node_refd},

@@ -536,5 +536,30 @@ TEST(Resolve, ReadsTheDefaultMapping) {
   EXPECT_EQ(pdo.bits(), 8U);
 }
 
+// ---- text ----
+
+TEST(Resolve, MakesADeviceThatOwnsItsText) {
+  const DeviceFromText text("[FileInfo]\nDescription=a drive\n[DeviceComissioning]\nNodeName=left\n[Comments]\nLines=1\n"
+                            "Line1=nothing to say\n[Tools]\nItems=1\n[Tool1]\nName=tune\nCommand=tune.exe\n" +
+                                var("2000", "Value", "7", "rw",
+                                    "Denotation=torque\nUnit=mNm\nFactor=0.1\nDescription=of the motor\nParamRefd=x\n"),
+                            {}, {}, "test.dcf");
+  const Information& information = text.device.information;
+  const Entry& entry = text.entry(0x2000);
+  const std::vector<std::string_view> texts = {information.file.description, information.commissioning.value().node_name,
+                                               information.comments.at(0),   information.tools.at(0).command,
+                                               entry.denotation,             entry.unit,
+                                               entry.factor,                 entry.description,
+                                               entry.param_refd};
+  const std::vector<std::string_view> wanted = {"a drive", "left", "nothing to say", "tune.exe", "torque",
+                                                "mNm",     "0.1",  "of the motor",   "x"};
+  EXPECT_EQ(texts, wanted);
+  const std::string_view sheet = text.source.text();
+  for (const std::string_view one : texts) {
+    const bool is_view = one.data() >= sheet.data() && one.data() <= sheet.data() + sheet.size();
+    EXPECT_FALSE(is_view) << one;
+  }
+}
+
 }  // namespace
 }  // namespace edsc
