@@ -104,6 +104,7 @@ int check(const Settings& settings) {
   for (const std::string& path : settings.paths) {
     Diagnostics diagnostics;
     if (settings.strict) diagnostics.treat_warnings_as_errors();
+    diagnostics.silence_errors();
     for (const std::string& rule : settings.silence) diagnostics.silence(rule);
     const auto loaded = load_device({path, settings.options_path, "", settings.node_id}, diagnostics);
     report.add(diagnostics);

@@ -6,6 +6,9 @@
 #include "commands/commands.hpp"
 #include "commands/load_device.hpp"
 #include "device/identifier.hpp"
+#include "device/left_out.hpp"
+#include "diagnostics/excerpt.hpp"
+#include "diagnostics/place.hpp"
 #include "render/render.hpp"
 #include "render/view.hpp"
 #include "render/write_files.hpp"
@@ -100,16 +103,28 @@ std::vector<OutputFile> render_all(const Settings& settings, LoadedDevice& loade
   return files;
 }
 
+/// Needed where the findings do not say it: with --keep-going an error says what is wrong, a silenced rule says nothing,
+/// and one that fires often is counted only.
+void print(const std::vector<LeftOut>& left_out) {
+  for (const LeftOut& one : left_out) {
+    const Place place = place_of(one.position);
+    fmt::print(stderr, "{}:{}:{}: left out: {}\n", printable(place.file), place.line, place.column, one.what);
+  }
+}
+
 int generate(const Settings& settings) {
   Diagnostics diagnostics;
   diagnostics.drop_notes();
   const auto loaded = load_device(settings.load, diagnostics);
   std::vector<OutputFile> files;
+  std::vector<LeftOut> left_out;
   const bool is_device = loaded->device.has_value();
+  if (is_device) left_out = find_left_out(loaded->sheet, *loaded->device);
   if (is_device && (diagnostics.errors() == 0 || settings.keep_going)) files = render_all(settings, *loaded, diagnostics);
   print_findings(stderr, diagnostics, settings.color);
   if (loaded->unreadable) return exit_wrong_usage;
   if (!is_device || (diagnostics.errors() > 0 && !settings.keep_going)) return exit_input_has_errors;
+  if (diagnostics.errors() > 0 || diagnostics.any_silenced() || !diagnostics.suppressed().empty()) print(left_out);
 
   if (const std::string problem = write_files(files); !problem.empty()) {
     fmt::print(stderr, "edsc: {}\n", problem);

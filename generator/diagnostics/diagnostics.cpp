@@ -24,8 +24,9 @@ std::size_t Diagnostics::KindHash::operator()(const Kind& kind) const {
 }
 
 void Diagnostics::report(Diagnostic diagnostic) {
-  const bool dropped = drop_notes_ && diagnostic.severity == Severity::note;
-  if (dropped || is_silenced(diagnostic.rule)) {
+  if (drop_notes_ && diagnostic.severity == Severity::note) return;
+  if (is_silenced(diagnostic)) {
+    any_silenced_ = any_silenced_ || diagnostic.severity != Severity::note;
     return;
   }
   if (strict_ && diagnostic.severity == Severity::warning) {
@@ -68,8 +69,9 @@ void Diagnostics::count(Severity severity) {
   notes_ += severity == Severity::note ? 1 : 0;
 }
 
-bool Diagnostics::is_silenced(std::string_view rule) const {
-  return std::find(silenced_.begin(), silenced_.end(), rule) != silenced_.end();
+bool Diagnostics::is_silenced(const Diagnostic& diagnostic) const {
+  if (diagnostic.severity == Severity::error && !silence_errors_) return false;
+  return std::find(silenced_.begin(), silenced_.end(), diagnostic.rule) != silenced_.end();
 }
 
 }  // namespace edsc

@@ -46,8 +46,12 @@ class Diagnostics {
   void warning(std::string_view rule, const Position& position, std::string message);
   void note(std::string_view rule, const Position& position, std::string message);
 
-  /// Rules whose findings are dropped.
+  /// Drops the warnings and notes of a rule; its errors stay, since what is wrong with them is left out of the device.
   void silence(std::string rule);
+  /// From here on silence() drops errors as well: for `edsc check`, which makes nothing of the device.
+  void silence_errors() { silence_errors_ = true; }
+  /// Whether silence() has dropped a warning or an error.
+  [[nodiscard]] bool any_silenced() const { return any_silenced_; }
   /// From here on a warning counts as an error (`--strict`). A note stays a note.
   void treat_warnings_as_errors() { strict_ = true; }
 
@@ -90,7 +94,7 @@ class Diagnostics {
   };
 
   void count(Severity severity);
-  [[nodiscard]] bool is_silenced(std::string_view rule) const;
+  [[nodiscard]] bool is_silenced(const Diagnostic& diagnostic) const;
 
   std::vector<Diagnostic> all_;
   std::unordered_map<Kind, Tally, KindHash> tallies_;
@@ -101,6 +105,8 @@ class Diagnostics {
   std::size_t notes_ = 0;
   bool strict_ = false;
   bool drop_notes_ = false;
+  bool silence_errors_ = false;
+  bool any_silenced_ = false;
 };
 
 }  // namespace edsc

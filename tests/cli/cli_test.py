@@ -328,6 +328,31 @@ class Generate(CommandLine):
         self.expect(FINE, result, "[pdo-size]")
         self.assertIn("TPDO 1, 1800h and 1A00h: left out", (self.output / "wrong/pdo.hpp").read_text())
 
+    def test_says_each_thing_that_is_left_out(self) -> None:
+        wrong = self.write("wrong.eds", WRONG.read_text() + "[2100]\nParameterName=Odd\nObjectType=7\nDataType=0x99\n"
+                           "AccessType=rw\n[2101]\nParameterName=Even\nObjectType=7\nDataType=5\nAccessType=rw\n"
+                           "DefaultValue=x\n")
+        result = self.edsc("generate", wrong, "-o", self.output, "--keep-going")
+        said = [line.split("left out: ")[1] for line in result.stderr.splitlines() if "left out: " in line]
+        self.assertEqual(said, ['2100h "Odd"', 'the DefaultValue of 2101h:00 "Even"', "the default mapping of TPDO 1"])
+
+    def test_an_error_cannot_be_silenced(self) -> None:
+        wrong = self.write("wrong.eds", WRONG.read_text())
+        self.write("wrong.options.json", '{"silence": ["pdo-size"]}')
+        self.expect(FINE, self.edsc("check", wrong))
+        self.expect(INPUT_HAS_ERRORS, self.edsc("generate", wrong, "-o", self.output), "[pdo-size]")
+        self.assertEqual(snapshot(self.output), {})
+        self.expect(FINE, self.edsc("generate", wrong, "-o", self.output, "--keep-going"),
+                    "left out: the default mapping of TPDO 1")
+
+    def test_a_silenced_warning_does_not_hide_what_is_left_out(self) -> None:
+        sheet = self.write("off.eds", WRONG.read_text().replace("$NODEID+0x180", "$NODEID+0x80000180"))
+        self.expect(FINE, self.edsc("generate", sheet, "-o", self.output), "it is off by default and left out")
+        self.write("off.options.json", '{"silence": ["pdo-size"]}')
+        result = self.edsc("generate", sheet, "-o", self.output)
+        self.expect(FINE, result, "left out: the default mapping of TPDO 1")
+        self.assertNotIn("[pdo-size]", result.stderr)
+
     def test_with_static_mapping_keeps_the_mapping_in_flash(self) -> None:
         sheet = FIXTURES / "dynamic_mapping.eds"
         for extra in ((), ("--static-mapping",)):

@@ -34,10 +34,23 @@ TEST(Diagnostics, CountErrorsAndWarnings) {
 TEST(Diagnostics, DropSilencedRules) {
   Diagnostics diagnostics;
   diagnostics.silence("one");
+  diagnostics.warning("two", {}, "kept");
+  EXPECT_FALSE(diagnostics.any_silenced());
+  diagnostics.warning("one", {}, "dropped");
+  EXPECT_TRUE(diagnostics.any_silenced());
+  ASSERT_EQ(diagnostics.all().size(), 1U);
+  EXPECT_EQ(diagnostics.all().at(0).rule, "two");
+}
+
+TEST(Diagnostics, DropSilencedErrorsForCheckOnly) {
+  Diagnostics diagnostics;
+  diagnostics.silence("one");
+  diagnostics.error("one", {}, "kept");
+  EXPECT_EQ(diagnostics.errors(), 1U);
+  diagnostics.silence_errors();
   diagnostics.error("one", {}, "dropped");
   diagnostics.error("two", {}, "kept");
-  EXPECT_EQ(diagnostics.errors(), 1U);
-  EXPECT_EQ(diagnostics.all().at(0).rule, "two");
+  EXPECT_EQ(diagnostics.errors(), 2U);
 }
 
 TEST(Diagnostics, CountWarningsAsErrorsWhenStrict) {
