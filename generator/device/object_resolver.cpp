@@ -43,6 +43,13 @@ std::uint8_t implied_count(const Object& object) {
   return count;
 }
 
+/// Whether a VAR or DOMAIN with sub-objects is one nevertheless: it has a type of its own and announces no sub-objects.
+/// Then it is their index that is wrong.
+bool describes_a_value(const ObjectDescription& description) {
+  return !strip_inline_comment(description.data_type.text).empty() &&
+         number_of(description.sub_number).value_or(0) == 0 && number_of(description.compact_sub_obj).value_or(0) == 0;
+}
+
 }  // namespace
 
 Entry count_entry(std::uint16_t index, std::uint8_t highest, const Position& position) {
@@ -107,9 +114,22 @@ ObjectType ObjectResolver::object_type(const ObjectDescription& description) {
   }
   const bool is_simple = *known == ObjectType::var || *known == ObjectType::domain;
   if (!is_simple || !has_subs) return *known;
+  if (describes_a_value(description)) {
+    report_stray_sub_objects(description, *known);
+    return *known;
+  }
   diagnostics_.warning("object-type", field.position,
                        fmt::format("a {} has no sub-objects: taken for a RECORD", to_string(*known)));
   return ObjectType::record;
+}
+
+void ObjectResolver::report_stray_sub_objects(const ObjectDescription& description, ObjectType type) {
+  for (const SubObjectDescription& sub : description.sub_objects) {
+    diagnostics_.warning("sub-object-without-object", sub.position,
+                         fmt::format("{} is a {} and does not have sub-objects; {} {} is left out",
+                                     index_label(description.index), to_string(type),
+                                     entry_label(description.index, sub.sub_index), quote(sub.parameter_name.text)));
+  }
 }
 
 void ObjectResolver::resolve_links(const ObjectDescription& description, Object& object) {

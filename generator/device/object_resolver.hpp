@@ -23,6 +23,7 @@ class ObjectResolver {
 
  private:
   ObjectType object_type(const ObjectDescription& description);
+  void report_stray_sub_objects(const ObjectDescription& description, ObjectType type);
   void resolve_sub_objects(const ObjectDescription& description, Object& object);
   void resolve_sub_object(const SubObjectDescription& sub, const ObjectDescription& description, Object& object);
   void resolve_links(const ObjectDescription& description, Object& object);

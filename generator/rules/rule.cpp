@@ -91,7 +91,7 @@ constexpr std::array rules = {
     Rule{"error-behavior", warning, "1029h has a reserved value", "CiA 301, 7.5.2.32"},
     Rule{"storage-capability", warning, "1010h or 1011h read reserved bits", "CiA 301, 7.5.2.13"},
     // Objects and their keys.
-    Rule{"sub-object-without-object", warning, "sub-objects without their object", "CiA 306-1, 4.6.2"},
+    Rule{"sub-object-without-object", warning, "sub-objects without their object, or of a VAR", "CiA 306-1, 4.6.2"},
     Rule{"object-type", warning, "ObjectType does not fit", "CiA 301, 7.4.3"},
     Rule{"no-sub-objects", warning, "an ARRAY or RECORD without sub-objects", "CiA 306-1, 4.6.2"},
     Rule{"sub-number", warning, "SubNumber differs from the number of sub-objects", "CiA 306-1, 4.6.2"},

@@ -169,9 +169,26 @@ TEST(Resolve, TakesAnObjectWithoutObjectTypeForAVar) {
 }
 
 TEST(Resolve, TakesAVarWithSubObjectsForARecord) {
-  const DeviceFromText text(var("2000", "Value", "5") + sub("2000", 0, "Count", "5") + sub("2000", 1, "One", "5"));
-  EXPECT_EQ(text.device.find(0x2000)->type, ObjectType::record);
-  EXPECT_EQ(findings(text.diagnostics, "object-type"), (std::vector{warning_at(3, 12, "object-type")}));
+  const std::string subs = sub("2000", 0, "Count", "5") + sub("2000", 1, "One", "5");
+  const DeviceFromText announced(var("2000", "Value", "5", "rw", "SubNumber=2\n") + subs);
+  EXPECT_EQ(announced.device.find(0x2000)->type, ObjectType::record);
+  EXPECT_EQ(findings(announced.diagnostics, "object-type"), (std::vector{warning_at(3, 12, "object-type")}));
+  const DeviceFromText untyped("[2000]\nParameterName=Value\nObjectType=7\n" + subs);
+  EXPECT_EQ(untyped.device.find(0x2000)->type, ObjectType::record);
+  EXPECT_EQ(findings(untyped.diagnostics, "object-type"), (std::vector{warning_at(3, 12, "object-type")}));
+}
+
+TEST(Resolve, KeepsAVarThatASubObjectOfAnotherIndexStraysInto) {
+  const DeviceFromText text(var("1017", "Heartbeat", "6", "rw", "DefaultValue=500\n") + "[1017sub4]\n" +
+                            "ParameterName=Serial number\nObjectType=7\nDataType=7\nAccessType=ro\n");
+  EXPECT_EQ(text.device.find(0x1017)->type, ObjectType::var);
+  EXPECT_EQ(text.entry(0x1017).type->type, DataType::unsigned16);
+  EXPECT_EQ(text.entry(0x1017).default_value.value().bits, 500U);
+  EXPECT_EQ(text.device.find(0x1017)->entries.size(), 1U);
+  EXPECT_EQ(rules_of(text.diagnostics), Rules{"sub-object-without-object"});
+  EXPECT_EQ(text.line_of("sub-object-without-object"), "[1017sub4]");
+  EXPECT_NE(text.finding("sub-object-without-object").message.find("1017h:04 \"Serial number\" is left out"),
+            std::string::npos);
 }
 
 TEST(Resolve, TakesAnUnknownObjectTypeForWhatItLooksLike) {
