@@ -46,6 +46,7 @@ struct Entry {
   std::string name;        ///< ParameterName
   std::string identifier;  ///< the same in C++: unique in its object, of a VAR unique in the device
   const canopen::DataTypeRow* type = nullptr;
+  std::uint32_t octets = 0;  ///< of a string: the length that its DEFTYPE states, in bytes; 0 where none does
   canopen::Access access = canopen::Access::rw;
   bool pdo_mapping = false;
   std::uint32_t obj_flags = 0;  ///< what configuration tools leave alone: bit 0 writing, bit 1 reading
@@ -116,14 +117,20 @@ struct Pdo {
   [[nodiscard]] unsigned bits() const;
 };
 
+/// What a type of the data sheet's own stands for.
+struct TypeReference {
+  const canopen::DataTypeRow* row = nullptr;  ///< null where none is known
+  std::uint32_t octets = 0;                   ///< of a string: its length in bytes, where a DEFTYPE states one
+};
+
 /// A data type of the data sheet's own: DEFTYPE, DEFSTRUCT, or a range of a basic type as CANFestival writes it.
 struct TypeDefinition {
   std::uint16_t index = 0;
   std::string name;
   ObjectType kind = ObjectType::deftype;
-  const canopen::DataTypeRow* type = nullptr;  ///< of a DEFTYPE what it stands for
+  TypeReference type;  ///< of a DEFTYPE what it stands for
   std::optional<Value> low_limit, high_limit;
-  std::vector<const canopen::DataTypeRow*> members;  ///< of a DEFSTRUCT, by sub-index - 1; null where none is known
+  std::vector<TypeReference> members;  ///< of a DEFSTRUCT, by sub-index - 1
   Position position;
 };
 

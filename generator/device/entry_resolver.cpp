@@ -51,6 +51,7 @@ std::optional<Entry> EntryResolver::resolve(const EntryDescription& description,
   entry.access_position = description.access_type.present ? description.access_type.position : description.position;
   entry.mapping_position = description.pdo_mapping.present ? description.pdo_mapping.position : description.position;
   entry.type = type.row;
+  entry.octets = type.octets;
   entry.access = access(description);
   entry.pdo_mapping = pdo_mapping(description);
   entry.obj_flags = obj_flags(description);

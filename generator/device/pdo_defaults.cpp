@@ -21,6 +21,7 @@ std::optional<std::uint32_t> mapped_string_capacity(const Entry& entry, const Op
       at != options.string_capacity.end()) {
     return at->second;
   }
+  if (entry.octets != 0) return entry.octets;
   if (!entry.default_value || entry.default_value->bytes.empty()) return std::nullopt;
   return static_cast<std::uint32_t>(entry.default_value->bytes.size());
 }

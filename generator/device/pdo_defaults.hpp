@@ -19,7 +19,7 @@ inline constexpr std::uint8_t transmission_type_sub_index = 2;
 [[nodiscard]] std::optional<std::uint64_t> communication_default(const Pdo& pdo, std::uint8_t sub_index);
 
 /// Bytes that a VISIBLE_STRING or OCTET_STRING may take in a PDO: what its options say that it holds, else the length of
-/// its default. Nothing where neither is known.
+/// its DEFTYPE or of its default. Nothing where none is known.
 [[nodiscard]] std::optional<std::uint32_t> mapped_string_capacity(const Entry& entry, const Options& options);
 
 }  // namespace edsc

@@ -11,6 +11,7 @@
 namespace edsc {
 namespace {
 
+using canopen::DataClass;
 using canopen::DataType;
 using canopen::DataTypeRow;
 
@@ -60,6 +61,9 @@ const SubObjectDescription* find_sub(const ObjectDescription& object, std::uint8
 }
 
 class DefinitionReader {
+  static constexpr int most_steps = 8;              ///< from a DEFTYPE to its basic type
+  static constexpr std::uint64_t most_octets = 256;  ///< longer ones are a DOMAIN, whose memory is the application's
+
  public:
   DefinitionReader(const DataSheet& sheet, std::optional<std::uint8_t> node_id, Diagnostics& diagnostics)
       : sheet_{sheet}, node_id_{node_id}, diagnostics_{diagnostics} {}
@@ -88,42 +92,70 @@ class DefinitionReader {
       if (sub.sub_index == 0) continue;
       definition.members.resize(sub.sub_index);
       const auto code = number_of(sub.default_value);
-      definition.members.back() = code ? follow(*code) : nullptr;
-      if (definition.members.back() == nullptr) report(sub.default_value, "is not the index of a data type");
+      if (code) definition.members.back() = follow(*code);
+      if (definition.members.back().row == nullptr) report(sub.default_value, "is not the index of a data type");
     }
   }
 
   /// A range as CANFestival writes it: a RECORD of the basic type's index, the lowest and the highest value.
   void read_range(const ObjectDescription& object, TypeDefinition& definition) {
     const auto code = number_of(find_sub(object, 1)->default_value);
-    definition.type = code ? follow(*code) : nullptr;
-    if (definition.type == nullptr)
+    if (code) definition.type = follow(*code);
+    if (definition.type.row == nullptr) {
       return report(find_sub(object, 1)->default_value, "is not the index of a data type");
+    }
     const SubObjectDescription* low = find_sub(object, 2);
     const SubObjectDescription* high = find_sub(object, 3);
-    if (low != nullptr) definition.low_limit = limit(low->default_value, Limit::low, *definition.type);
-    if (high != nullptr) definition.high_limit = limit(high->default_value, Limit::high, *definition.type);
+    if (low != nullptr) definition.low_limit = limit(low->default_value, Limit::low, *definition.type.row);
+    if (high != nullptr) definition.high_limit = limit(high->default_value, Limit::high, *definition.type.row);
   }
 
   void read_alias(const ObjectDescription& object, TypeDefinition& definition) {
-    const auto code = number_of(object.data_type);
-    definition.type = code ? follow(*code) : nullptr;
-    if (definition.type == nullptr) return report(object.data_type, "is not the index of a data type");
-    definition.low_limit = limit(object.low_limit, Limit::low, *definition.type);
-    definition.high_limit = limit(object.high_limit, Limit::high, *definition.type);
+    const TypeReference basic = data_type(object, most_steps);
+    definition.type = with_length(basic, stated_length(object));
+    if (definition.type.row == nullptr) return report(object.data_type, "is not the index of a data type");
+    if (definition.type.row != basic.row) return report_length(object, definition.type);
+    if (definition.type.row->bits == 0) return;  // a string or DOMAIN
+    definition.low_limit = limit(object.low_limit, Limit::low, *definition.type.row);
+    definition.high_limit = limit(object.high_limit, Limit::high, *definition.type.row);
   }
 
   /// From a type to the basic one that it stands for, through any DEFTYPEs between.
-  const DataTypeRow* follow(std::uint64_t code) {
-    constexpr int most_steps = 8;
-    for (int step = 0; step < most_steps; ++step) {
-      if (const DataTypeRow* row = basic_type(code)) return row;
-      const ObjectDescription* object = code < first_communication_index ? find_description(sheet_, code) : nullptr;
-      const auto next = object != nullptr ? number_of(object->data_type) : std::nullopt;
-      if (!next) return nullptr;
-      code = *next;
-    }
-    return nullptr;
+  TypeReference follow(std::uint64_t code, int steps = most_steps) {
+    if (const DataTypeRow* row = basic_type(code)) return {row};
+    const ObjectDescription* object = code < first_communication_index ? find_description(sheet_, code) : nullptr;
+    if (object == nullptr || steps == 0) return {};
+    return with_length(data_type(*object, steps - 1), stated_length(*object));
+  }
+
+  TypeReference data_type(const ObjectDescription& object, int steps) {
+    const auto code = number_of(object.data_type);
+    return code ? follow(*code, steps) : TypeReference{};
+  }
+
+  /// The value of a DEFTYPE is the length of its type in bits (CiA 301, 7.4.7); 0 where it states none.
+  static std::uint64_t stated_length(const ObjectDescription& object) {
+    const bool is_deftype = number_of(object.object_type) == static_cast<std::uint64_t>(ObjectType::deftype);
+    return is_deftype ? number_of(object.default_value).value_or(0) : 0;
+  }
+
+  /// A type of another length than its basic type's is not that type: octets, or a DOMAIN where it is long or not whole
+  /// bytes.
+  static TypeReference with_length(const TypeReference& basic, std::uint64_t bits) {
+    const DataTypeRow* row = basic.row;
+    if (bits == 0) return basic;
+    if (row != nullptr && (row->bits == bits || row->kind == DataClass::domain)) return basic;
+    if (bits % 8 != 0 || bits / 8 > most_octets) return {basic_type(DataType::domain)};
+    const bool is_string = row != nullptr && row->kind == DataClass::string;
+    return {is_string ? row : basic_type(DataType::octet_string), static_cast<std::uint32_t>(bits / 8)};
+  }
+
+  void report_length(const ObjectDescription& object, const TypeReference& type) {
+    const std::string length = type.octets != 0 ? fmt::format(" of {} bytes", type.octets) : "";
+    diagnostics_.note("type-length", object.default_value.position,
+                      fmt::format("{} {} has {} bits: its objects are of type {}{}", index_label(object.index),
+                                  quote(object.parameter_name.text), number_of(object.default_value).value_or(0),
+                                  type.row->name, length));
   }
 
   std::optional<Value> limit(const Field& field, Limit which, const DataTypeRow& type) {
@@ -158,14 +190,16 @@ const TypeDefinition* TypeTable::definition(std::uint64_t code) const {
 ValueType TypeTable::find(std::uint64_t code) const {
   if (const DataTypeRow* row = basic_type(code)) return {row};
   const TypeDefinition* own = definition(code);
-  if (own == nullptr || own->type == nullptr) return {};
-  return {own->type, own->low_limit ? &*own->low_limit : nullptr, own->high_limit ? &*own->high_limit : nullptr};
+  if (own == nullptr || own->type.row == nullptr) return {};
+  return {own->type.row, own->low_limit ? &*own->low_limit : nullptr, own->high_limit ? &*own->high_limit : nullptr,
+          own->type.octets};
 }
 
 ValueType TypeTable::find_member(std::uint64_t code, std::uint8_t sub_index) const {
   if (const TypeDefinition* own = definition(code)) {
-    const bool known = sub_index >= 1 && sub_index <= own->members.size();
-    return {known ? own->members[sub_index - 1U] : nullptr};
+    if (sub_index < 1 || sub_index > own->members.size()) return {};
+    const TypeReference& member = own->members[sub_index - 1U];
+    return {member.row, nullptr, nullptr, member.octets};
   }
   for (const ComplexMember& row : complex_members) {
     if (row.type == code && sub_index >= row.first && sub_index <= row.last) return {basic_type(row.member)};

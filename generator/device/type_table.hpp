@@ -21,6 +21,7 @@ struct ValueType {
   const canopen::DataTypeRow* row = nullptr;
   const Value* low_limit = nullptr;
   const Value* high_limit = nullptr;
+  std::uint32_t octets = 0;  ///< of a string: the length that its DEFTYPE states, in bytes; 0 where none does
 };
 
 class TypeTable {

@@ -53,6 +53,7 @@ ordered_json entry_view(const Entry& entry) {
   view["identifier"] = entry.identifier;
   view["data_type"] = entry.type->name;
   view["bits"] = entry.type->bits;
+  if (entry.octets != 0) view["octets"] = entry.octets;
   view["access"] = canopen::row_of(entry.access).name;
   view["pdo_mapping"] = entry.pdo_mapping;
   if (entry.default_value) view["default_value"] = value_view(*entry.default_value, *entry.type);
@@ -107,13 +108,14 @@ ordered_json type_view(const TypeDefinition& type) {
   view["name"] = type.name;
   if (type.kind == ObjectType::defstruct) {
     ordered_json members = ordered_json::array();
-    for (const canopen::DataTypeRow* member : type.members) members.push_back(name_of(member));
+    for (const TypeReference& member : type.members) members.push_back(name_of(member.row));
     view["members"] = std::move(members);
   } else {
-    view["data_type"] = name_of(type.type);
+    view["data_type"] = name_of(type.type.row);
   }
-  if (type.low_limit) view["low_limit"] = value_view(*type.low_limit, *type.type);
-  if (type.high_limit) view["high_limit"] = value_view(*type.high_limit, *type.type);
+  if (type.type.octets != 0) view["octets"] = type.type.octets;
+  if (type.low_limit) view["low_limit"] = value_view(*type.low_limit, *type.type.row);
+  if (type.high_limit) view["high_limit"] = value_view(*type.high_limit, *type.type.row);
   view["line"] = type.position.line;
   return view;
 }

@@ -103,7 +103,8 @@ std::uint32_t string_capacity(const Entry& entry, const Options& options) {
     return at->second;
   }
   const std::size_t length = entry.default_value ? wire_length(*entry.default_value, *entry.type) : 0;
-  if (length > 0) return static_cast<std::uint32_t>(length);
+  if (length > 0) return std::max(static_cast<std::uint32_t>(length), entry.octets);
+  if (entry.octets != 0) return entry.octets;
   return entry.access == Access::constant ? 0 : default_string_capacity;
 }
 

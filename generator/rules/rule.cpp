@@ -109,6 +109,7 @@ constexpr std::array rules = {
     Rule{"data-type", error, "DataType is missing or unknown", "CiA 301, 7.4.7"},
     Rule{"complex-data-type", warning, "an entry of a complex data type", "CiA 301, 7.4.7"},
     Rule{"type-definition", warning, "a data type of the sheet's own stands for no basic type", "CiA 301, 7.4.7"},
+    Rule{"type-length", note, "a DEFTYPE of another length than its basic type", "CiA 301, 7.4.7"},
     Rule{"access-type", error, "AccessType is missing or unknown", "CiA 306-1, 4.6.2"},
     Rule{"pdo-mapping", warning, "PDOMapping is not 0 or 1", "CiA 306-1, 4.6.2"},
     Rule{"mapping-of-no-length", warning, "PDOMapping=1 for a value of no fixed length", "CiA 301, 7.4.7"},

@@ -66,6 +66,60 @@ TEST(Resolve, FollowsADeftypeToItsBasicType) {
   EXPECT_EQ(text.diagnostics.errors(), 0U);
 }
 
+/// `[0042]`: a DEFTYPE whose value is its length in bits.
+std::string deftype(std::string_view index, std::string_view data_type, std::string_view bits) {
+  return "[" + std::string{index} + "]\nParameterName=Own\nObjectType=0x5\nDataType=" + std::string{data_type} +
+         "\nAccessType=ro\nDefaultValue=" + std::string{bits} + "\n";
+}
+
+TEST(Resolve, TakesADeftypeOfAnotherLengthForOctets) {
+  const DeviceFromText text(deftype("0042", "7", "2048") + var("2000", "Image", "0x42"));
+  EXPECT_EQ(text.entry(0x2000).type->type, DataType::octet_string);
+  EXPECT_EQ(text.entry(0x2000).octets, 256U);
+  EXPECT_EQ(rules_of(text.diagnostics), Rules{"type-length"});
+  EXPECT_EQ(text.finding("type-length").severity, Severity::note);
+  EXPECT_EQ(text.line_of("type-length"), "DefaultValue=2048");
+}
+
+TEST(Resolve, ReadsTheLengthThatADeftypeStates) {
+  struct Row {
+    std::string_view data_type, bits;
+    DataType type;
+    std::uint32_t octets;
+  };
+  const Row rows[] = {
+      {"7", "32", DataType::unsigned32, 0},        {"6", "16", DataType::unsigned16, 0},
+      {"5", "8", DataType::unsigned8, 0},          {"4", "0x20", DataType::integer32, 0},
+      {"7", "0", DataType::unsigned32, 0},         {"7", "", DataType::unsigned32, 0},
+      {"7", "24", DataType::octet_string, 3},      {"9", "160", DataType::visible_string, 20},
+      {"0xA", "64", DataType::octet_string, 8},    {"0xF", "0x8000", DataType::domain, 0},
+      {"7", "2056", DataType::domain, 0},          {"7", "20", DataType::domain, 0},
+  };
+  for (const Row& row : rows) {
+    const DeviceFromText text(deftype("0042", row.data_type, row.bits) + var("2000", "Value", "0x42"));
+    EXPECT_EQ(text.entry(0x2000).type->type, row.type) << row.data_type << " of " << row.bits;
+    EXPECT_EQ(text.entry(0x2000).octets, row.octets) << row.data_type << " of " << row.bits;
+    const Rules rules = rules_of(text.diagnostics);
+    EXPECT_TRUE(rules.empty() || rules == Rules{"type-length"}) << row.data_type << " of " << row.bits;
+  }
+}
+
+TEST(Resolve, FollowsADeftypeToOneThatStatesALength) {
+  const DeviceFromText text(deftype("0042", "7", "2048") + deftype("0043", "0x42", "0") + var("2000", "Image", "0x43"));
+  EXPECT_EQ(text.entry(0x2000).type->type, DataType::octet_string);
+  EXPECT_EQ(text.entry(0x2000).octets, 256U);
+}
+
+TEST(Resolve, MapsAnObjectOfTheLengthThatItsDeftypeStates) {
+  const DeviceFromText text(deftype("0042", "7", "40") + var("2000", "Image", "0x42", "ro", "PDOMapping=1\n") +
+                            group("1800", "Communication", "9", 3) + sub("1800", 0, "Count", "5", "DefaultValue=2\n") +
+                            sub("1800", 1, "COB-ID", "7", "DefaultValue=0x181\n") + sub("1800", 2, "Type", "5") +
+                            group("1A00", "Mapping", "9", 2) + sub("1A00", 0, "Count", "5", "DefaultValue=1\n") +
+                            sub("1A00", 1, "Entry", "7", "DefaultValue=0x20000028\n"));
+  EXPECT_FALSE(text.device.pdos.at(0).broken);
+  EXPECT_EQ(text.diagnostics.errors(), 0U);
+}
+
 TEST(Resolve, EndsWhenDeftypesNameEachOther) {
   const DeviceFromText text(
       "[0040]\nParameterName=A\nObjectType=0x5\nDataType=0x0041\n"
