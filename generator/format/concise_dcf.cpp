@@ -2,13 +2,16 @@
 
 #include <algorithm>
 
+#include "device/index_range.hpp"
 #include "format/configured_values.hpp"
 
 namespace edsc {
 
 std::string concise_dcf(const DataSheet& sheet, const Device& device, Diagnostics& diagnostics) {
   std::vector<ConfiguredValue> values = configured_values(sheet, device, diagnostics);
-  std::erase_if(values, [](const ConfiguredValue& value) { return !value.differs; });
+  std::erase_if(values, [](const ConfiguredValue& value) {
+    return !value.differs || contains(command_objects, value.entry->index);
+  });
   std::string stream;
   append_bytes(stream, values.size(), 4);
   for (const ConfiguredValue& value : values) {

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 #include <utility>
 
+#include "device/index_range.hpp"
 #include "device/value.hpp"
 #include "eds/number.hpp"
 #include "format/configured_values.hpp"
@@ -52,6 +54,7 @@ class DcfMaker {
 
   void make() {
     commission();
+    drop_commands();
     for (DocumentSection& section : document_.sections) {
       if (section.kind.kind == SectionKind::file_info && !sheet_.is_dcf) set_last_eds(section);
       if (section.kind.kind == SectionKind::object) configure_object(section);
@@ -61,6 +64,22 @@ class DcfMaker {
   }
 
  private:
+  /// A tool that loads the DCF would send them.
+  void drop_commands() {
+    for (DocumentSection& section : document_.sections) {
+      if (is_command(section)) remove(section, "ParameterValue");
+    }
+    std::erase_if(document_.sections, [](const DocumentSection& section) {
+      return section.kind.kind == SectionKind::compact_values && is_command(section);
+    });
+  }
+
+  static bool is_command(const DocumentSection& section) {
+    constexpr SectionKind kinds[] = {SectionKind::object, SectionKind::sub_object, SectionKind::compact_values};
+    return std::ranges::find(kinds, section.kind.kind) != std::end(kinds) &&
+           contains(command_objects, section.kind.index);
+  }
+
   void commission() {
     DocumentSection& section = commissioning_section();
     set(section, "NodeID", fmt::format("{}", device_.node_id.value_or(0)));
@@ -138,6 +157,7 @@ class DcfMaker {
 
   void configure(DocumentSection& section, std::uint8_t sub_index) {
     drop_meaningless_value(section);
+    if (is_command(section)) return;
     const Entry* const entry = device_.find(section.kind.index, sub_index);
     if (entry == nullptr || !entry->default_value || !canopen::writable(entry->access)) return;
     const DocumentEntry* source = find_entry(section, "ParameterValue");

@@ -17,7 +17,7 @@ enum class DcfValues : std::uint8_t {
 
 /// Gives a document in canonical form its [DeviceComissioning], and writable entries the ParameterValue for the node-ID
 /// of `device`: that of a DCF with its formula resolved, else the default. The ParameterValues of an EDS, which have no
-/// meaning there, are dropped.
+/// meaning there, are dropped. Commands such as 1010h never have one.
 void make_dcf(Document& document, const DataSheet& sheet, const Device& device, DcfValues values);
 
 }  // namespace edsc

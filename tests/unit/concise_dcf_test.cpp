@@ -56,6 +56,14 @@ TEST(ConciseDcf, HasStringsWithoutTerminator) {
   EXPECT_EQ(Concise(configured("0xB", "a\xC3\xA4")).hex(), "01 00 00 00 00 20 00 04 00 00 00 61 00 E4 00");
 }
 
+TEST(ConciseDcf, LeavesOutCommands) {
+  const std::string commands = commissioning + group("1011", "Restore", "8", 2) +
+                               var("1011sub0", "Highest sub-index", "5", "ro", "DefaultValue=1\n") +
+                               var("1011sub1", "All", "7", "rw", "DefaultValue=1\nParameterValue=0x64616F6C\n") +
+                               var("1023", "OS command", "5", "rw", "ParameterValue=1\n");
+  EXPECT_EQ(Concise(commands).hex(), "00 00 00 00");
+}
+
 TEST(ConciseDcf, LeavesOutWhatCannotBeWritten) {
   EXPECT_EQ(Concise(configured("7", "1", "ro")).hex(), "00 00 00 00");
   EXPECT_EQ(Concise(configured("7", "1", "const")).hex(), "00 00 00 00");

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "device/resolve.hpp"
+#include "device_from_text.hpp"
 #include "format/key_table.hpp"
 #include "format/make_dcf.hpp"
 #include "format/number_spelling.hpp"
@@ -347,6 +348,26 @@ TEST(MakeDcf, KeepsTheValuesOfADcf) {
 TEST(MakeDcf, DropsAValueOfAnEds) {
   const std::string eds = object_with("0x0007", "DefaultValue=\nParameterValue=7\n");
   EXPECT_EQ(Formatted(eds, std::uint8_t{5}).dcf().find("ParameterValue"), std::string::npos);
+}
+
+TEST(MakeDcf, GivesCommandsNoValue) {
+  const std::string stores = group("1010", "Store parameters", "8", 2) +
+                             var("1010sub0", "Highest sub-index", "5", "ro", "DefaultValue=1\n") +
+                             var("1010sub1", "Save all", "7", "rw", "DefaultValue=1\nParameterValue=0x65766173\n");
+  const std::string clears = group("1003", "Errors", "8", 2) +
+                             var("1003sub0", "Number of errors", "5", "rw", "DefaultValue=0\n") +
+                             var("1003sub1", "Error", "7", "ro");
+  const std::string control = group("1F51", "Program control", "8", 1) + "DataType=5\nAccessType=rw\nCompactSubObj=1\n" +
+                              "[1F51Value]\nNrOfEntries=1\n1=1\n";
+  const std::string other = var("2000", "Value", "5", "rw", "DefaultValue=3\n");
+  for (const std::string& head : {std::string{}, std::string{"[DeviceComissioning]\nNodeID=5\n"}}) {
+    const std::string dcf = Formatted(head + clears + stores + control + other, std::uint8_t{5}).dcf(DcfValues::all);
+    const std::string_view value = "ParameterValue=";
+    const std::size_t first = dcf.find(value);
+    EXPECT_EQ(dcf.find("ParameterValue=3"), first) << dcf;
+    EXPECT_EQ(dcf.find(value, first + 1), std::string::npos) << dcf;
+    EXPECT_EQ(dcf.find("[1F51Value]"), std::string::npos) << dcf;
+  }
 }
 
 TEST(MakeDcf, HasTheBitRateOfADeviceThatHasOnlyOne) {

@@ -48,7 +48,7 @@ TEST(ModularDevice, TellsWhatModulesItSupports) {
   EXPECT_EQ(information.supported_modules[0].product_version, 1U);
   EXPECT_EQ(information.supported_modules[0].product_revision, 2U);
   EXPECT_EQ(information.supported_modules[0].order_code, "DI-2");
-  EXPECT_EQ(information.supported_modules[0].comments, (std::vector<std::string_view>{"two channels"}));
+  EXPECT_EQ(information.supported_modules[0].comments, (std::vector<std::string>{"two channels"}));
   EXPECT_TRUE(information.connected_modules.empty());
   EXPECT_EQ(text.device.objects.size(), 1U) << "nothing is plugged in";
   EXPECT_EQ(rules_of(text.diagnostics), Rules{});

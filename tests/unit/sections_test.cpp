@@ -20,7 +20,7 @@ struct ReadSections : DeviceFromText {
 
 TEST(CommentsSection, HoldsLinesByTheirNumber) {
   const ReadSections read("[Comments]\nLines=2\nLine2=second\nline1=first; with a semicolon\n");
-  EXPECT_EQ(read.device.information.comments, (std::vector<std::string_view>{"first; with a semicolon", "second"}));
+  EXPECT_EQ(read.device.information.comments, (std::vector<std::string>{"first; with a semicolon", "second"}));
   EXPECT_EQ(rules_of(read.diagnostics), Rules{});
 }
 
