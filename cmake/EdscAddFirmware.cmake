@@ -14,6 +14,8 @@ include(${CMAKE_CURRENT_LIST_DIR}/EdscAddDictionary.cmake)
 # FLASH_LIMIT  an image that is larger is an error, which names what is large. RAM_LIMIT: the same, without the stack.
 # NODE_ID, OPTIONS and STATIC_MAPPING are those of edsc_add_dictionary.
 #
+# Without CMAKE_BUILD_TYPE, and without -O in CMAKE_CXX_FLAGS, images are compiled with -Os.
+#
 # The sources know EDSC_DEVICE, the device's type, and EDSC_DEVICE_HEADER, what to include for it. There is no heap: what
 # calls malloc or operator new does not link.
 function(edsc_add_firmware target)
@@ -115,6 +117,11 @@ function(edsc_add_board board variable)
   target_link_libraries(${target} PUBLIC edsc::runtime)
   target_compile_options(${target} PUBLIC ${cpu} -ffunction-sections -fdata-sections -fno-exceptions -fno-rtti
                                           -fno-threadsafe-statics)
+  # Without any -O, the image would be five times as large.
+  if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES AND NOT CMAKE_CXX_FLAGS MATCHES "(^| )-O")
+    message(STATUS "edsc_add_firmware: CMAKE_BUILD_TYPE is not set: images are compiled with -Os")
+    target_compile_options(${target} PUBLIC -Os)
+  endif()
   set(no_heap malloc calloc realloc free _malloc_r _calloc_r _realloc_r _free_r)
   list(TRANSFORM no_heap PREPEND -Wl,--wrap=) # and there is no __wrap_malloc
   target_link_options(

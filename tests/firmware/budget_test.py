@@ -6,6 +6,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 import sys
 import tempfile
 import unittest
@@ -78,6 +80,34 @@ class Budget(unittest.TestCase):
                 told = self.refused(f"heap_{name}")
                 self.assertRegex(told, r"undefined reference to `(__wrap_malloc|operator new|std::)")
                 self.assertFalse((self.project.build_dir / f"heap_{name}.elf").exists())
+
+
+class Optimisation(unittest.TestCase):
+    """By the commands that compile an image: nothing is built."""
+
+    def configure(self, *options: str, build_type: str) -> tuple[str, set[str]]:
+        """What CMake prints, and the -O of all that is compiled for the board."""
+        folder = tempfile.TemporaryDirectory(prefix="edsc-optimisation-")
+        self.addCleanup(folder.cleanup)
+        project = Project(Path(folder.name), EDSC)
+        told = project.configure(f'edsc_add_firmware(pump EDS "{SHEET}" BOARD microbit NODE_ID 5 SOURCES "{MAIN}")',
+                                 "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON", *options, build_type=build_type)
+        commands = json.loads((project.build_dir / "compile_commands.json").read_text())
+        self.assertIn(str(MAIN), [command["file"] for command in commands])
+        return told, {" ".join(re.findall(r" (-O\w*)", command["command"])) for command in commands}
+
+    def test_is_for_size_where_nobody_chose_one(self) -> None:
+        told, optimisation = self.configure(build_type="")
+        self.assertEqual(optimisation, {"-Os"})
+        self.assertIn("CMAKE_BUILD_TYPE is not set: images are compiled with -Os", told)
+
+    def test_is_that_of_the_build_type(self) -> None:
+        told, optimisation = self.configure("-DCMAKE_CXX_FLAGS_MINSIZEREL=-O1", build_type="MinSizeRel")
+        self.assertEqual(optimisation, {"-O1"})
+        self.assertNotIn("CMAKE_BUILD_TYPE", told)
+
+    def test_is_that_of_the_flags(self) -> None:
+        self.assertEqual(self.configure("-DCMAKE_CXX_FLAGS=-O2", build_type="")[1], {"-O2"})
 
 
 if __name__ == "__main__":

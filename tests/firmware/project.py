@@ -22,13 +22,15 @@ class Project:
     folder: Path
     edsc: Path
 
-    def configure(self, lines: str) -> None:
+    def configure(self, lines: str, *options: str, build_type: str = "Release") -> str:
+        """What CMake prints."""
         (self.folder / "CMakeLists.txt").write_text(LISTS.format(source=SOURCE_DIR, lines=lines))
         launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
         result = self.run("cmake", "-S", self.folder, "-B", self.build_dir, "-G", "Ninja", f"-DCMAKE_TOOLCHAIN_FILE={TOOLCHAIN}",
-                          "-DCMAKE_BUILD_TYPE=Release", f"-DEDSC_EXECUTABLE={self.edsc}", *launcher)
+                          f"-DCMAKE_BUILD_TYPE={build_type}", f"-DEDSC_EXECUTABLE={self.edsc}", *launcher, *options)
         if result.returncode != 0:
             raise AssertionError(result.stdout)
+        return result.stdout
 
     def build(self, *targets: str) -> subprocess.CompletedProcess[str]:
         wanted = ["--target", *targets] if targets else []
