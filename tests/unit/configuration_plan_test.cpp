@@ -102,9 +102,8 @@ TEST(ConfigurationPlan, WritesNodeIdAndBitRateAtLast) {
   const DeviceFromText device{var("2000", "Node-ID", "5", "rw") + var("2001", "CAN bit rate", "5", "rw") +
                               var("2002", "Gain", "5", "rw")};
   std::vector<ConfigurationValue> values;
-  for (const std::uint16_t index : {0x2000, 0x2001, 0x2002}) {
-    const Object* object = device.device.find(static_cast<std::uint16_t>(index));
-    values.push_back({live_entry(*object, object->entries.front()), {1}, {}});
+  for (const Object& object : device.device.objects) {
+    if (object.index >= 0x2000) values.push_back({live_entry(object, object.entries.front()), {1}, {}});
   }
   const auto steps = plan_configuration(values, &device.device);
   ASSERT_EQ(steps.size(), 3U);
