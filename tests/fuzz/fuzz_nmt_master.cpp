@@ -65,7 +65,10 @@ struct Bus {
       require((frame.id & 0x780) == 0x600 && !frame.remote && frame.size == 8, "all else are SDO requests");
       require(world.is_slave(frame.id & 0x7F), "a slave is identified");
       const unsigned specifier = frame.data[0] >> 5;
-      require(specifier == 2 || specifier == 3 || specifier == 4, "a master that identifies a slave reads");
+      const bool heartbeat_time = frame.data[1] == 0x17 && frame.data[2] == 0x10 && frame.data[3] == 0;
+      require(specifier == 2 || specifier == 3 || specifier == 4 || (specifier == 1 && heartbeat_time),
+              "a master that boots a slave reads, and writes 1017h");
+      require(specifier != 1 || world.slaves[(frame.id & 0x7F) - 1].heartbeat_time != 0, "who is guarded has no heartbeat");
     }
     if (world.room == 0) return false;
     --world.room;
@@ -124,7 +127,7 @@ struct Step {
 
 constexpr NmtCommand commands[] = {NmtCommand::start, NmtCommand::stop, NmtCommand::enter_pre_operational,
                                    NmtCommand::reset_node, NmtCommand::reset_communication};
-constexpr std::uint32_t asked[] = {0x100000, 0x101801, 0x101802, 0x101803, 0x101804};
+constexpr std::uint32_t asked[] = {0x100000, 0x101801, 0x101802, 0x101803, 0x101804, 0x101700};
 constexpr std::uint8_t states[] = {0, 4, 5, 127, 0x80, 0x84, 0x85, 0xFF, 1, 3};
 
 /// Mostly an answer or a message that fits.
@@ -139,7 +142,7 @@ Frame frame_of(const Step& step) {
       frame.id = 0x580u + node_id;
       if ((step.choice & 8) == 0) {
         const std::uint32_t entry = asked[step.other % std::size(asked)];
-        frame.data[0] = (step.choice & 0x10) != 0 ? 0x80 : static_cast<std::uint8_t>(0x43 | (step.choice >> 3 & 0xC));
+        frame.data[0] = (step.choice & 0x10) != 0 ? (step.other & 0x40) != 0 ? 0x60 : 0x80 : static_cast<std::uint8_t>(0x43 | (step.choice >> 3 & 0xC));
         frame.data[1] = static_cast<std::uint8_t>(entry >> 8);
         frame.data[2] = static_cast<std::uint8_t>(entry >> 16);
         frame.data[3] = static_cast<std::uint8_t>(entry);
