@@ -11,18 +11,16 @@
 #include <string>
 #include <string_view>
 
+#include "device/index_range.hpp"
+
 namespace edsc {
 namespace {
 
 using canopen::CobId;
 
-struct IndexRange {
-  std::uint16_t first, last;
-};
-
-/// 1003h, store, restore, verify, OS command and prompt, program download, request NMT.
-constexpr IndexRange commands[] = {{0x1003, 0x1003}, {0x1010, 0x1011}, {0x1020, 0x1020},
-                                   {0x1023, 0x1026}, {0x1F50, 0x1F5A}, {0x1F82, 0x1F82}};
+/// What is not written besides `command_objects`: 1020h is written at the end, and the other objects of a program
+/// download command as well.
+constexpr std::array not_written = {IndexRange{0x1020, 0x1020}, IndexRange{0x1F50, 0x1F5A}};
 
 constexpr std::uint32_t produces_sync = 0x4000'0000;
 constexpr std::uint32_t consumes_or_produces_time = 0xC000'0000;
@@ -282,7 +280,7 @@ std::vector<ConfigurationValue> values_to_write(const std::vector<ConfigurationV
 bool is_left_out(const LiveEntry& entry) {
   constexpr std::uint32_t no_write = 1;
   if (entry.entry != nullptr && (entry.entry->obj_flags & no_write) != 0) return true;
-  return std::ranges::any_of(commands, [&](const IndexRange& range) { return is_in(range, entry.index); });
+  return contains(command_objects, entry.index) || contains(not_written, entry.index);
 }
 
 std::vector<ConfigurationStep> plan_configuration(const std::vector<ConfigurationValue>& values, const Device* device) {

@@ -34,8 +34,8 @@ struct ConfigurationStep {
   unsigned group = 0;  ///< steps of one group other than 0 are given up together
 };
 
-/// Values that command rather than configure, and what is written at the end: 1003h, 1010h, 1011h, 1020h, 1023h to
-/// 1026h, 1F50h to 1F5Ah, 1F82h; and what tools leave alone (ObjFlags bit 0).
+/// Values that command rather than configure (`command_objects`, 1F50h to 1F5Ah), 1020h, which is written at the end, and
+/// what tools leave alone (ObjFlags bit 0).
 [[nodiscard]] bool is_left_out(const LiveEntry& entry);
 
 /// Whether the entry sets the node-ID or the bit rate of its own CAN interface. CiA 301 has no such object, so it is
