@@ -41,6 +41,7 @@ struct Entry {
 /// The abort codes of table 22.
 using Code = std::uint32_t;
 constexpr Code toggle_bit = 0x0503'0000;
+constexpr Code timeout = 0x0504'0000;
 constexpr Code command_specifier = 0x0504'0001;
 constexpr Code block_size = 0x0504'0002;
 constexpr Code sequence_number = 0x0504'0003;
@@ -97,6 +98,23 @@ class SdoServer {
     return wrong;
   }
 
+  /// The client says nothing any more, and this is what the server sends in the time after it. Of time-outs the
+  /// standard has the abort code alone (0504 0000h), which ends the transfer. A server may confirm a sub-block whose
+  /// end is missing before it gives up: the client sees then what is to be sent again.
+  const char* time_out(Answers answers) {
+    answers_ = answers;
+    written_ = nullptr;
+    spoilt_ = nullptr;
+    if (phase_ == Phase::idle) return answers.empty() ? nullptr : "an idle server is silent";
+    if (phase_ == Phase::block_download && in_order_ != 0 && answers.size() == 2) {
+      const Data& confirmation = answers[0];
+      if (confirmation != Data{0xA2, static_cast<std::uint8_t>(in_order_), confirmation[2]})
+        return "the confirmation of a sub-block whose end is missing";
+      answers_ = answers.last(1);
+    }
+    return aborts({timeout}, "0504 0000h: the client is silent");
+  }
+
   [[nodiscard]] Phase phase() const { return phase_; }
   [[nodiscard]] std::vector<Entry>& entries() { return entries_; }
   /// The entry that the last request gave a new value.
@@ -143,7 +161,9 @@ class SdoServer {
   [[nodiscard]] bool answers_abort() const { return answers_.size() == 1 && answers_[0][0] == 0x80; }
 
   [[nodiscard]] static std::uint32_t word(const Data& data) {
-    return data[4] | data[5] << 8 | data[6] << 16 | static_cast<std::uint32_t>(data[7]) << 24;
+    std::uint32_t value = 0;
+    for (unsigned i = 0; i < 4; ++i) value |= static_cast<std::uint32_t>(data[4 + i]) << 8 * i;
+    return value;
   }
   static void put_word(Data& data, std::uint32_t value) {
     for (unsigned i = 0; i < 4; ++i) data[4 + i] = static_cast<std::uint8_t>(value >> 8 * i);
@@ -573,7 +593,7 @@ inline std::vector<Data> SdoServer::suggestions() const {
       break;
     case Phase::block_upload_initiated: add({0xA3}); break;
     case Phase::block_upload_sent:
-      for (const unsigned size : {1, 3, 127}) {
+      for (const unsigned size : {1u, 3u, 127u}) {
         add({0xA2, byte(in_order_), byte(size)});
         add({0xA2, byte(in_order_ - 1), byte(size)});
         add({0xA2, 0, byte(size)});

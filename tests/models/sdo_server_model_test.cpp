@@ -146,6 +146,21 @@ class Pair {
     if (bus.count != 0 || bus.other) fail("a frame that is not a request is answered");
   }
 
+  /// Time passes until the server has nothing to do any more.
+  void be_silent() {
+    reset_bus();
+    for (int i = 0; i < 10; ++i) {
+      const auto deadline = node.next_deadline();
+      if (!deadline) break;
+      if (*deadline > now) now = *deadline;
+      node.on_time(now);
+    }
+    const char* wrong = expected.time_out({bus.sent.data(), bus.count});
+    if (bus.other) wrong = "a server sends SDO answers alone";
+    if (Entry* const entry = expected.spoilt(); entry != nullptr && wrong == nullptr) entry->value = value_of(*entry);
+    if (wrong != nullptr) fail(wrong);
+  }
+
   /// How many frames the bus takes before the node is called again.
   unsigned room = 1000;
 
@@ -304,7 +319,9 @@ TEST(SdoServerModel, EachCommandInEachState) {
   Pair pair;
   const std::map<std::string, Path> all = states(pair);
   std::printf("%zu states of the model\n", all.size());
-  for (const auto& [key, path] : all) {
+  for (const auto& state : all) {
+    const std::string& key = state.first;
+    const Path& path = state.second;
     const auto attempt = [&](const Data& last) {
       pair.restart();
       pair.begin_log();
@@ -384,6 +401,21 @@ TEST(SdoServerModel, RandomWalksOnABusWithLittleRoom) {
     pair.begin_log();
     pair.room = 1 + i % 3;
     walk(pair, random, 200);
+  }
+  tell(pair);
+}
+
+TEST(SdoServerModel, ASilentClientEndsEachTransfer) {
+  Pair pair;
+  const std::map<std::string, Path> all = states(pair);
+  for (const auto& [key, path] : all) {
+    pair.restart();
+    pair.begin_log();
+    for (const Data& step : path) pair.ask(step);
+    pair.be_silent();
+    pair.ask(request(0x40, 0x100000));
+    pair.check_values();
+    if (pair.failures != 0) break;
   }
   tell(pair);
 }
