@@ -9,6 +9,7 @@
 #include "device/left_out.hpp"
 #include "diagnostics/excerpt.hpp"
 #include "diagnostics/place.hpp"
+#include "render/pdo_view.hpp"
 #include "render/render.hpp"
 #include "render/view.hpp"
 #include "render/write_files.hpp"
@@ -112,6 +113,15 @@ void print(const std::vector<LeftOut>& left_out) {
   }
 }
 
+/// What the device does not have, and PDOs that are not generated since their COB-ID is wrong.
+std::vector<LeftOut> all_left_out(const LoadedDevice& loaded) {
+  std::vector<LeftOut> left_out = find_left_out(loaded.sheet, *loaded.device);
+  for (const Pdo& pdo : loaded.device->pdos) {
+    if (!pdo.broken && has_wrong_cob_id(pdo)) left_out.push_back({pdo.position, pdo_label(pdo)});
+  }
+  return left_out;
+}
+
 int generate(const Settings& settings) {
   Diagnostics diagnostics;
   diagnostics.drop_notes();
@@ -119,7 +129,7 @@ int generate(const Settings& settings) {
   std::vector<OutputFile> files;
   std::vector<LeftOut> left_out;
   const bool is_device = loaded->device.has_value();
-  if (is_device) left_out = find_left_out(loaded->sheet, *loaded->device);
+  if (is_device) left_out = all_left_out(*loaded);
   if (is_device && (diagnostics.errors() == 0 || settings.keep_going)) files = render_all(settings, *loaded, diagnostics);
   print_findings(stderr, diagnostics, settings.color);
   if (loaded->unreadable) return exit_wrong_usage;

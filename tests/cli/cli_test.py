@@ -336,6 +336,13 @@ class Generate(CommandLine):
         said = [line.split("left out: ")[1] for line in result.stderr.splitlines() if "left out: " in line]
         self.assertEqual(said, ['2100h "Odd"', 'the DefaultValue of 2101h:00 "Even"', "the default mapping of TPDO 1"])
 
+    def test_says_that_a_pdo_with_a_restricted_cob_id_is_left_out(self) -> None:
+        text = (FIXTURES / "pdo_device.eds").read_text()
+        start = text.index("DefaultValue=", text.index("[1800sub1]"))
+        wrong = self.write("wrong.eds", text[:start] + "DefaultValue=$NODEID+0x580\n" + text[text.index("\n", start) + 1:])
+        result = self.edsc("generate", wrong, "-o", self.output, "--keep-going")
+        self.expect(FINE, result, "[cob-id-restricted]", "left out: TPDO 1\n")
+
     def test_an_error_cannot_be_silenced(self) -> None:
         wrong = self.write("wrong.eds", WRONG.read_text())
         self.write("wrong.options.json", '{"silence": ["pdo-size"]}')

@@ -33,7 +33,7 @@ struct Read {
   [[nodiscard]] std::string canonical() const { return to_text(canonical_form(ini, sheet, device)); }
   [[nodiscard]] std::string dcf() const {
     Document document = canonical_form(ini, sheet, device);
-    make_dcf(document, sheet, device);
+    make_dcf(document, sheet, device, DcfValues::all);
     return to_text(document);
   }
 
