@@ -59,7 +59,8 @@ TEST(Emcy, HistoryIsClearedByZeroOnly) {
 
 TEST(Emcy, HistoryStaysInItsMemoryWhateverTheApplicationSets) {
   Bench device;
-  device.node.set<od::pre_defined_error_field<0>>(200);
+  const std::uint8_t count[] = {200};
+  device.node.set(0x1003, 0, count);
   device.node.set<od::inhibit_time_emcy>(5);
   device.node.set<od::byte>(9);
   device.node.emergency(0x4210, ErrorRegister::temperature);

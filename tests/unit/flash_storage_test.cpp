@@ -65,6 +65,44 @@ TYPED_TEST(FlashStorageOf, IsEmptyWhenThePagesAreErased) {
   EXPECT_EQ(storage.erasures(), 0u);
 }
 
+/// A flipped bit in the newest image is no loss of power, after which its header would be bad.
+TYPED_TEST(FlashStorageOf, ReportsADamagedImageThatIsNewerThanTheOther) {
+  TypeParam flash;
+  const auto old_image = image_of(20, 1);
+  const auto new_image = image_of(20, 100);
+  canopen::FlashStorage storage{flash};
+  static_cast<void>(storage.open());
+  EXPECT_TRUE(put(storage, old_image));  // page 0
+  EXPECT_TRUE(put(storage, new_image));  // page 1
+  const std::uint32_t begin = std::max(12u, TypeParam::word_size);
+  const std::uint32_t image_at = (begin + TypeParam::word_size - 1) / TypeParam::word_size * TypeParam::word_size;
+  for (std::uint32_t bit = 0; bit < 20 * 8; ++bit) {
+    TypeParam copy = flash;
+    copy.pages[1].at(image_at + bit / 8) ^= static_cast<std::uint8_t>(1u << bit % 8);
+    canopen::FlashStorage damaged{copy};
+    EXPECT_EQ(damaged.open(), StorageState::damaged) << bit;
+    EXPECT_EQ(get(damaged), old_image) << bit;
+    EXPECT_TRUE(put(damaged, new_image));
+    canopen::FlashStorage mended{copy};
+    EXPECT_EQ(mended.open(), StorageState::whole) << bit;
+    EXPECT_EQ(get(mended), new_image) << bit;
+  }
+}
+
+/// Power went while the older page was being erased: its image went first.
+TYPED_TEST(FlashStorageOf, PassesOverADamagedImageThatIsOlder) {
+  TypeParam flash;
+  canopen::FlashStorage storage{flash};
+  static_cast<void>(storage.open());
+  EXPECT_TRUE(put(storage, image_of(20, 1)));
+  EXPECT_TRUE(put(storage, image_of(20, 100)));
+  for (std::size_t at = 64; at < 256; ++at) flash.pages[0][at] = 0xFF;
+  flash.pages[0][TypeParam::word_size >= 16 ? 32 : 16] = 0xFF;
+  canopen::FlashStorage again{flash};
+  EXPECT_EQ(again.open(), StorageState::whole);
+  EXPECT_EQ(get(again), image_of(20, 100));
+}
+
 TYPED_TEST(FlashStorageOf, KeepsImagesOfAnyLength) {
   TypeParam flash;
   for (const std::size_t size : {std::size_t{1}, std::size_t{7}, std::size_t{16}, std::size_t{33}, std::size_t{200}}) {
@@ -140,7 +178,7 @@ TEST(FlashStorage, FallsBackToTheOlderPage) {
   ASSERT_TRUE(put(storage, image_of(40, 1)));
   ASSERT_TRUE(put(storage, image_of(40, 2)));
   flash.pages.at(1).at(30) ^= 0x10;
-  EXPECT_EQ(storage.open(), StorageState::whole);
+  EXPECT_EQ(storage.open(), StorageState::damaged);
   EXPECT_EQ(get(storage), image_of(40, 1));
 }
 
@@ -200,7 +238,9 @@ struct Values {
 
 void set(Device& device, const Values& values) {
   device.node.set<od::profile_acceleration>(values.acceleration);
-  device.node.set<InhibitTime>(values.inhibit_time);
+  const std::uint8_t time[] = {static_cast<std::uint8_t>(values.inhibit_time),
+                               static_cast<std::uint8_t>(values.inhibit_time >> 8)};
+  device.node.set(InhibitTime::index, InhibitTime::sub_index, time);  // the PDO is valid
   device.node.set<od::gain>(values.gain);
 }
 

@@ -12,6 +12,8 @@ namespace od = pdo_device::od;
 using namespace std::chrono_literals;
 using Bench = bench::Bench<pdo_device::Device>;
 
+/// An inhibit time, as the bytes of 1800h:03.
+constexpr std::uint8_t ten_milliseconds[] = {100, 0};
 
 /// Lets time pass in steps of a quarter of an hour at most, while heartbeats find no room.
 void pass_without_room(Bench& device, canopen::Duration span) {
@@ -42,7 +44,7 @@ TEST(LateTpdo, GoesOutWhoseEventTimerRanOut40MinutesAgo) {
 
 TEST(LateTpdo, GoesOutWhoseInhibitTimeEnded40MinutesAgo) {
   Bench device;
-  device.node.set<od::tpdo_communication_parameter_1::inhibit_time>(100);  // 10 ms
+  device.node.set(0x1800, 3, ten_milliseconds);
   device.ask(bench::start);
   device.ask("605 2B 17 10 00 0A 00 00 00");
   device.node.set<od::input_word>(0x1234);

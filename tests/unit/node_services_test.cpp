@@ -102,7 +102,7 @@ TEST(BusStatus, IsToldByEmcys) {
   device.node.on_bus_status({canopen::BusState::passive, false}, device.now);
   EXPECT_EQ(device.pass(0s), "085 20 81 11 00 00 00 00 00");
   device.node.on_bus_status({canopen::BusState::active, true}, device.now);
-  EXPECT_EQ(device.pass(0s), "085 10 81 11 04 00 00 00 00 | 085 00 00 11 00 00 00 00 00");
+  EXPECT_EQ(device.pass(0s), "085 10 81 11 06 00 00 00 00 | 085 00 00 11 00 00 00 00 00");
   device.node.on_bus_status({canopen::BusState::active, false}, device.now);
   EXPECT_EQ(device.pass(0s), "085 00 00 00 00 00 00 00 00");
 }

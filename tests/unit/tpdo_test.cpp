@@ -11,6 +11,9 @@ using namespace std::chrono_literals;
 
 constexpr auto zeros = "185 00 00 00 00 00 00";
 
+/// An inhibit time, as the bytes of 1800h:03.
+constexpr std::uint8_t ten_milliseconds[] = {100, 0};
+
 TEST(Tpdo, IsSentOnceOnEnteringOperational) {
   Bench device;
   EXPECT_EQ(device.ask(bench::start), zeros);
@@ -143,7 +146,7 @@ TEST(Tpdo, AnEventTimerWrittenInOperationalCountsAtOnce) {
 
 TEST(Tpdo, IsNotSentAgainBeforeTheInhibitTimeIsOver) {
   Bench device;
-  device.node.set<od::tpdo_communication_parameter_1::inhibit_time>(100);  // 10 ms
+  device.node.set(0x1800, 3, ten_milliseconds);
   device.ask(bench::start);
   device.node.set<od::statusword>(1);
   EXPECT_EQ(device.node.next_deadline(), device.now + 10ms);
@@ -157,7 +160,7 @@ TEST(Tpdo, IsNotSentAgainBeforeTheInhibitTimeIsOver) {
 
 TEST(Tpdo, TheInhibitTimeHoldsTheEventTimerBackToo) {
   Bench device;
-  device.node.set<od::tpdo_communication_parameter_1::inhibit_time>(100);
+  device.node.set(0x1800, 3, ten_milliseconds);
   device.node.set<od::tpdo_communication_parameter_1::event_timer>(3);
   device.ask(bench::start);
   EXPECT_EQ(device.node.next_deadline(), device.now + 10ms);

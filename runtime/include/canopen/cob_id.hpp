@@ -120,30 +120,27 @@ inline constexpr const char* restricted_can_id_reasons[] = {
   return may_be_written(after, !before.valid() && after.valid(), extended_ids);
 }
 
-/// Entries that hold a COB-ID, and the bits that belong to it or make it invalid.
+/// Entries that hold a COB-ID which a service uses.
 struct CobIdEntries {
   std::uint16_t first;
   std::uint16_t last;
   std::uint8_t first_sub_index;
   std::uint8_t last_sub_index;
-  std::uint32_t bits;
+  bool has_valid_bit;  ///< bit 31; of 1005h and 1012h bits 30 and 31 mean something else
 };
 inline constexpr CobIdEntries cob_id_entries[] = {
-    {0x1005, 0x1005, 0, 0, CobId::identifier}, {0x1012, 0x1012, 0, 0, CobId::identifier},
-    {0x1014, 0x1014, 0, 0, 0xFFFF'FFFF},       {0x1201, 0x127F, 1, 2, 0xFFFF'FFFF},
-    {0x1400, 0x15FF, 1, 1, 0xFFFF'FFFF},       {0x1800, 0x19FF, 1, 1, 0xFFFF'FFFF},
+    {0x1005, 0x1005, 0, 0, false}, {0x1012, 0x1012, 0, 0, false}, {0x1014, 0x1014, 0, 0, true},
+    {0x1201, 0x127F, 1, 2, true},  {0x1400, 0x15FF, 1, 1, true},  {0x1800, 0x19FF, 1, 1, true},
 };
 
-/// Whether an entry can have this value: one that is no COB-ID can, and so can a COB-ID that is not valid.
-[[nodiscard]] constexpr bool is_possible_cob_id(std::uint16_t index, std::uint8_t sub_index, std::uint32_t value) {
+/// The row of an entry; null when it holds no COB-ID.
+[[nodiscard]] constexpr const CobIdEntries* find_cob_id_entries(std::uint16_t index, std::uint8_t sub_index) {
   for (const CobIdEntries& row : cob_id_entries) {
-    if (index < row.first || index > row.last || sub_index < row.first_sub_index || sub_index > row.last_sub_index) {
-      continue;
-    }
-    const CobId cob_id{value & row.bits};
-    return !cob_id.valid() || may_be_written(cob_id, true, true);
+    const bool fits = index >= row.first && index <= row.last && sub_index >= row.first_sub_index &&
+                      sub_index <= row.last_sub_index;
+    if (fits) return &row;
   }
-  return true;
+  return nullptr;
 }
 
 /// Why an 11-bit CAN-ID may not be used by a configurable object; null when it may.

@@ -49,7 +49,7 @@ inline constexpr std::uint16_t service_error_codes[] = {
 /// One device's errors. Each error that appears is sent once, with the register as it is then, and goes into the
 /// history; each one that goes is sent as code 0000h with what is left in the register. Messages wait, in order, while
 /// the bus has no room, the inhibit time 1015h runs or the node is not in a state for them; of more than `depth` that
-/// wait the last one gives way.
+/// wait the last one is overwritten, and counted.
 template <class Device>
 class EmergencyProducer {
  public:
@@ -57,7 +57,7 @@ class EmergencyProducer {
 
   /// An error has appeared. `bits` stay set in the register until `gone` names them.
   void appeared(ObjectStore<Device>& store, std::uint16_t code, ErrorRegister bits, const EmergencyInfo& info) {
-    application_bits_ |= static_cast<std::uint8_t>(bits);
+    application_bits_ |= held_by(bits);
     note(store, code, info);
   }
 
@@ -67,10 +67,14 @@ class EmergencyProducer {
     if constexpr (has_register) store_register(store, error_register());
   }
 
-  /// An error has gone, and with it these bits of the register; those that another error holds are not to be named.
-  void gone(ObjectStore<Device>& store, ErrorRegister bits) {
-    application_bits_ &= static_cast<std::uint8_t>(~static_cast<unsigned>(bits));
+  /// An error has gone, and with it these bits of the register; those that another error holds are not to be named. False:
+  /// there was no such error.
+  bool gone(ObjectStore<Device>& store, ErrorRegister bits) {
+    const std::uint8_t held = held_by(bits);
+    if ((application_bits_ & (held == unnamed ? 0xFF : held)) == 0) return false;
+    application_bits_ &= static_cast<std::uint8_t>(~unsigned{held});
     note_reset(store);
+    return true;
   }
 
   /// A service has found an error.
@@ -138,6 +142,9 @@ class EmergencyProducer {
     }
   }
 
+  /// EMCYs that found no room among those that wait, since power-on; 65,535 stands for more.
+  [[nodiscard]] std::uint16_t lost() const { return lost_; }
+
   /// Only the last message that waits is to be sent.
   void keep_last() {
     if (waiting_ == 0) return;
@@ -195,6 +202,13 @@ class EmergencyProducer {
     return capacity;
   }();
 
+  /// Stands in `application_bits_` for errors that set the generic bit alone and do not name it. CiA 301 has no such bit.
+  static constexpr std::uint8_t unnamed = 0x40;
+
+  [[nodiscard]] static constexpr std::uint8_t held_by(ErrorRegister bits) {
+    return bits == ErrorRegister::none ? unnamed : static_cast<std::uint8_t>(bits);
+  }
+
   [[nodiscard]] static constexpr std::uint8_t bit_of(ServiceError error) {
     return static_cast<std::uint8_t>(1u << static_cast<std::uint8_t>(error));
   }
@@ -203,7 +217,8 @@ class EmergencyProducer {
   [[nodiscard]] std::uint8_t error_register() const {
     const auto bits = static_cast<std::uint8_t>(
         application_bits_ | (service_errors_ != 0 ? static_cast<std::uint8_t>(ErrorRegister::communication) : 0));
-    return static_cast<std::uint8_t>(bits != 0 ? bits | static_cast<std::uint8_t>(ErrorRegister::generic) : 0);
+    constexpr auto generic = static_cast<std::uint8_t>(ErrorRegister::generic);
+    return static_cast<std::uint8_t>(bits != 0 ? (bits & ~unsigned{unnamed}) | generic : 0);
   }
 
   static constexpr EmergencyInfo no_info{};
@@ -224,7 +239,11 @@ class EmergencyProducer {
     if constexpr (has_register) store_register(store, bits);
     if (code != emergency_code::reset || Device::options.error_history_keeps_resets) remember(store, code, info);
     if constexpr (has_cob_id) {
-      if (waiting_ < depth) ++waiting_;
+      if (waiting_ < depth) {
+        ++waiting_;
+      } else if (lost_ != 0xFFFF) {
+        ++lost_;
+      }
       queue_[place(waiting_ - 1u)] = message_of(code, bits, info);
     }
   }
@@ -287,6 +306,7 @@ class EmergencyProducer {
   std::uint8_t first_ = 0;  ///< place of the first one that waits
   std::uint8_t application_bits_ = 0;
   std::uint8_t service_errors_ = 0;
+  std::uint16_t lost_ = 0;
   [[no_unique_address]] std::conditional_t<has_inhibit_time, Inhibit, Nothing> inhibit_{};
   std::array<FrameWords, has_cob_id ? depth : 1> queue_{};
 };

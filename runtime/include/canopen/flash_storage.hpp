@@ -25,8 +25,9 @@ concept FlashPages = requires(T& pages, std::uint8_t page, std::uint32_t offset,
   { pages.read(page, offset, to) } -> std::same_as<bool>;
 };
 
-/// A page holds a header and the image. The header is written last: until its last word stands, its checksum is wrong
-/// and the other page counts. The pages must outlive the storage.
+/// A page holds a header and the image. The header is written last: until its last word is written, its checksum is
+/// wrong and the other page counts. So no loss of power leaves a newer header that is good before an image that is not:
+/// such a page is reported as damaged, and the older image counts. The pages must outlive the storage.
 template <FlashPages Pages>
 class FlashStorage {
  public:
@@ -37,9 +38,11 @@ class FlashStorage {
     page_ = 1;
     size_ = 0;
     erasures_ = 0;
+    std::uint32_t broken = 0;  // count of a page with a good header and a bad image
     for (std::uint8_t page = 0; page < 2; ++page) {
       const StorageState found = look_into(page);
       if (found == StorageState::damaged && state == StorageState::empty) state = found;
+      if (found == StorageState::damaged && header_is_sound()) broken = std::max(broken, header_.erasures);
       if (found != StorageState::whole || (state == found && erasures_ >= header_.erasures)) continue;
       state = found;
       size_ = header_.size;
@@ -47,6 +50,10 @@ class FlashStorage {
       page_ = page;
     }
     header_ = {};
+    if (broken > erasures_) {
+      erasures_ = broken;
+      return StorageState::damaged;
+    }
     return state;
   }
 
@@ -130,8 +137,11 @@ class FlashStorage {
     const std::span<std::uint8_t> bytes{reinterpret_cast<std::uint8_t*>(&header_), sizeof header_};
     if (!pages_.read(page, 0, bytes)) return StorageState::damaged;
     if (std::ranges::all_of(bytes, [](std::uint8_t byte) { return byte == 0xFF; })) return StorageState::empty;
-    const bool sound = header_.crc == crc_of(header_) && header_.size <= Pages::page_size - image_at;
-    return sound && image_is_whole(page) ? StorageState::whole : StorageState::damaged;
+    return header_is_sound() && image_is_whole(page) ? StorageState::whole : StorageState::damaged;
+  }
+
+  [[nodiscard]] bool header_is_sound() const {
+    return header_.crc == crc_of(header_) && header_.size <= Pages::page_size - image_at;
   }
 
   [[nodiscard]] bool image_is_whole(std::uint8_t page) const {

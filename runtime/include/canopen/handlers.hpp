@@ -186,6 +186,13 @@ inline constexpr bool is_write_handler_of = false;
 template <class P, class F, class O>
 inline constexpr bool is_write_handler_of<WriteHandler<P, F>, O> = P::index == O::index&& P::sub_index == O::sub_index;
 
+template <class Handler>
+inline constexpr bool is_access_handler = false;
+template <class O, class F>
+inline constexpr bool is_access_handler<WriteHandler<O, F>> = true;
+template <class O, class F>
+inline constexpr bool is_access_handler<ReadHandler<O, F>> = true;
+
 /// Whether a handler is of a kind, such as SyncHandler.
 template <class Handler, template <class> class Kind>
 inline constexpr bool is_of = false;
@@ -233,6 +240,9 @@ class HandlerSet {
   /// Whether `O` has a write handler.
   template <DictionaryObject O>
   static constexpr bool handles_write = (handler_detail::is_write_handler_of<Handlers, O> || ...);
+
+  /// Whether any handler is called when an object is read or written.
+  static constexpr bool has_access_handlers = (handler_detail::is_access_handler<Handlers> || ...);
 
   /// The same for an object known by number.
   [[nodiscard]] static bool handles([[maybe_unused]] std::uint32_t key) { return ((key == handler_detail::written_key<Handlers>) || ...); }

@@ -136,10 +136,17 @@ class Node {
   [[nodiscard]] NodeId node_id() const { return node_id_; }
 
   /// Does what an NMT master could command (CiA 301, 7.3.2: by local control). Nothing before `start`, or without a
-  /// node-ID. Not to be called by handlers that refuse or take a value.
+  /// node-ID. From a write or read handler: as soon as the SDO server's answer is sent.
   void request(NmtCommand command, TimePoint now) {
     now_ = now;
     if (state_ == NmtState::initialisation) return;
+    if constexpr (has_handlers) {
+      if (handling_.active) {
+        handling_.requested = static_cast<std::uint8_t>(command);
+        attention_ = true;
+        return;
+      }
+    }
     carry_out(command);
     serve();
   }
@@ -152,31 +159,43 @@ class Node {
 
   /// Sets an object, whatever its access on the bus. TPDOs that carry it go out with the next `on_time` or `on_frame`
   /// when the value is a new one. Refused outside the limits of the data sheet: value_too_high, value_too_low, or
-  /// invalid_value for a REAL that is not a number.
+  /// invalid_value for a REAL that is not a number. A parameter of 1000h..1FFFh is refused as SDO refuses it: a PDO is
+  /// mapped, or gets another CAN-ID, while it is not valid. In a write handler of the same object this is the value that
+  /// counts, and not the one that was written.
   template <DictionaryObject O>
   AbortCode set(const typename O::type& value) {
     static_assert(!std::is_same_v<typename O::type, Domain>, "the memory of a DOMAIN is bound with bind()");
     if (const AbortCode code = check_limits<O>(value); code != ok) return code;
-    if (store_.template set<O>(value)) changed<O>();
-    return ok;
+    if constexpr (O::index < 0x2000 && std::is_integral_v<typename O::type>) {
+      typename O::type checked = value;
+      const std::span<std::uint8_t> bytes{reinterpret_cast<std::uint8_t*>(&checked), (O::bits + 7) / 8};
+      if (const AbortCode code = check_communication(O::index, O::sub_index, bytes); code != ok) return code;
+      return take_over<O>(checked);
+    } else {
+      return take_over<O>(value);
+    }
   }
 
   /// Sets an object known by number only, in the bytes that SDO would bring. Its access on the bus does not count,
   /// handlers are not called, and services do not ask whether a parameter of theirs may change now; they take it over.
-  /// Refused for its length and its limits as a download would be; read_only: it is a constant of the data sheet.
+  /// TPDOs go out as with the typed `set`. Refused for its length and its limits as a download would be; read_only: it is
+  /// a constant of the data sheet.
   AbortCode set(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> bytes) {
     const entry::Word word = EntryAccess<Device>::find(index, sub_index);
     if (word == Dictionary::no_object) return AbortCode::no_object;
     if (word == Dictionary::no_sub_index) return AbortCode::no_sub_index;
     if (entry::place_of(word) != entry::Place::ram) return AbortCode::read_only;
     if (const AbortCode code = entries().check(index, sub_index, word, bytes); code != ok) return code;
+    handler_has_set(object_key(index, sub_index));
+    if (!entry::is_domain(word) && entries().holds(word, bytes)) return ok;
     entries().write(word, bytes);
-    after_write(index, sub_index);
+    after_write(index, sub_index, true);
     return ok;
   }
 
   /// An error of the application has appeared (CiA 301, 7.2.7.1): its emergency error code, the bits of 1001h that it
-  /// sets (the generic one comes by itself), and the manufacturer's bytes. Sent at once where the bus has room.
+  /// sets (the generic one comes by itself), and the manufacturer's bytes. Sent with the next `on_time` or `on_frame`, as
+  /// what `set` causes: `next_deadline` is due at once.
   void emergency(std::uint16_t code, ErrorRegister bits, const EmergencyInfo& info = {}) {
     emergencies_.appeared(store_, code, bits, info);
     attention_ = true;
@@ -187,11 +206,15 @@ class Node {
   void hold_error(ErrorRegister bits) { emergencies_.hold(store_, bits); }
 
   /// An error of the application has gone. `bits` of 1001h are cleared: those that no other error of the application
-  /// holds. The EMCY 0000h goes out, with what is left.
+  /// holds, none for an error that has named none. The EMCY 0000h goes out, with what is left; nothing when no error
+  /// held them.
   void emergency_over(ErrorRegister bits) {
-    emergencies_.gone(store_, bits);
-    attention_ = true;
+    if (emergencies_.gone(store_, bits)) attention_ = true;
   }
+
+  /// EMCYs that were never sent, since power-on, as more came than can wait while the bus has no room, the inhibit time
+  /// 1015h runs or the node is Stopped. 1003h, where there is one, has them all the same. 65,535 stands for more.
+  [[nodiscard]] std::uint16_t lost_emergencies() const { return emergencies_.lost(); }
 
   /// The CAN controller's state has changed, or it has lost frames.
   void on_bus_status(const BusStatus& status, TimePoint now) {
@@ -301,11 +324,22 @@ class Node {
   static constexpr entry::Kinds kinds = EntryAccess<Device>::kinds;
   static constexpr bool has_tpdos = TpdoService<Device>::count > 0;
   static constexpr bool has_rpdos = RpdoService<Device>::count > 0;
+  static constexpr bool sends_changes = has_tpdos || MpdoService<Device>::sends_source;
   static constexpr bool has_dynamic_tpdos = TpdoService<Device>::has_dynamic_mapping;
   static constexpr bool has_dynamic_rpdos = RpdoService<Device>::has_dynamic_mapping;
 
   /// 1021h, which a device whose data sheet is generated into it binds by itself.
   using StoreEds = Object<0x1021, 0x00, Domain, Access::ro>;
+
+  static constexpr bool has_handlers = HandlerSet<Handlers...>::has_access_handlers;
+
+  /// What goes on while a read or write handler is called.
+  struct Handling {
+    std::uint32_t key;       ///< of the object that is being written
+    bool active;             ///< a handler is being called
+    bool has_set;            ///< it has set the object itself
+    std::uint8_t requested;  ///< the NMT command that it has asked for
+  };
 
   struct Nothing {};
   template <bool Exists, class Service>
@@ -314,6 +348,7 @@ class Node {
 
   struct SdoHooks {
     Node& node;
+    bool new_value = true;  ///< what is written differs from what was there
     [[nodiscard]] EntryAccess<Device> entries() { return node.entries(); }
     [[nodiscard]] AbortCode before_read(std::uint16_t index, std::uint8_t sub_index) {
       return node.before_read(index, sub_index);
@@ -325,7 +360,17 @@ class Node {
       }
       return code;
     }
-    void after_write(std::uint16_t index, std::uint8_t sub_index) { node.after_write(index, sub_index); }
+    [[nodiscard]] bool is_new(entry::Word word, std::span<const std::uint8_t> bytes) {
+      if constexpr (has_handlers) {
+        if (node.handling_.has_set) new_value = false;
+      }
+      if constexpr (sends_changes) {
+        // DOMAINs are in no TPDO.
+        if (new_value && (word & entry::tpdo) != 0) new_value = !entries().holds(word, bytes);
+      }
+      return new_value;
+    }
+    void after_write(std::uint16_t index, std::uint8_t sub_index) { node.after_write(index, sub_index, new_value); }
     [[nodiscard]] AbortCode command(std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
       return node.command(index, sub_index, bytes);
     }
@@ -592,12 +637,41 @@ class Node {
       if (index == 0x1003 && sub_index > store_.template number<0x1003, 0>())
         return AbortCode::no_data;  // no such error
     }
-    return handlers_.before_read(*this, object_key(index, sub_index));
+    return ask_handlers(0, [&] { return handlers_.before_read(*this, object_key(index, sub_index)); });
   }
 
   [[nodiscard]] AbortCode before_write(std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
     if (const AbortCode code = check_communication(index, sub_index, bytes); code != ok) return code;
-    return handlers_.before_write(*this, object_key(index, sub_index), bytes);
+    const std::uint32_t key = object_key(index, sub_index);
+    return ask_handlers(key, [&] { return handlers_.before_write(*this, key, bytes); });
+  }
+
+  /// Calls the handlers of an object that is read or written: while they run `request` waits, and `set` is noticed.
+  template <class Ask>
+  [[nodiscard]] AbortCode ask_handlers([[maybe_unused]] std::uint32_t written, Ask&& ask) {
+    if constexpr (has_handlers) {
+      handling_.key = written;
+      handling_.active = true;
+      handling_.has_set = false;
+      const AbortCode code = ask();
+      handling_.active = false;
+      return code;
+    } else {
+      return ask();
+    }
+  }
+
+  /// An object is being set: by its own write handler, perhaps.
+  void handler_has_set([[maybe_unused]] std::uint32_t key) {
+    if constexpr (has_handlers) {
+      if (handling_.active && handling_.key == key) handling_.has_set = true;
+    }
+  }
+
+  /// Whether the handler of the value that has just been written has set the object itself.
+  [[nodiscard]] bool set_by_handler() const {
+    if constexpr (has_handlers) return handling_.has_set;
+    return false;
   }
 
   /// A write to an entry that is no variable: "save" and "load". Sub-indices of 1010h and 1011h that CiA 301 gives no
@@ -608,7 +682,7 @@ class Node {
       if (index == store_parameters || index == restore_parameters) {
         const std::uint32_t key = object_key(index, sub_index);
         AbortCode code = check_storage_command(entries(), index, sub_index, bytes);
-        if (code == ok) code = handlers_.before_write(*this, key, bytes);
+        if (code == ok) code = ask_handlers(key, [&] { return handlers_.before_write(*this, key, bytes); });
         if (code != ok || (sections_of(sub_index) == 0 && handlers_.handles(key))) return code;
         return index == store_parameters ? save(sub_index) : restore(sub_index);
       }
@@ -665,8 +739,8 @@ class Node {
     return ok;
   }
 
-  /// Tells the services that an object has a new value.
-  void after_write(std::uint16_t index, std::uint8_t sub_index) {
+  /// Tells the services that an object has been written: with a new value, or with the one that it had.
+  void after_write(std::uint16_t index, std::uint8_t sub_index, bool new_value) {
     attention_ = true;
     if constexpr (has_heartbeat_time) {
       if (index == 0x1017) {
@@ -701,9 +775,9 @@ class Node {
         tpdos_.parameter_changed(store_, index, sub_index, now_);
         if (has_dynamic_tpdos && is_tpdo_mapping(index)) rpdos_.watch_again(entries(), Watched{*this});
       }
-      tpdos_.changed(entries(), index, sub_index);
+      if (new_value) tpdos_.changed(entries(), index, sub_index);
     }
-    mpdos_.changed(entries(), index, sub_index);
+    if (new_value) mpdos_.changed(entries(), index, sub_index);
     if constexpr (has_rpdos) {
       if (is_rpdo_communication(index) || is_rpdo_mapping(index)) {
         rpdos_.parameter_changed(entries(), index, Watched{*this});
@@ -827,23 +901,36 @@ class Node {
     const entry::Word word = EntryAccess<Device>::find(index, sub_index);
     if (kinds.booleans && entry::is_boolean(word)) bytes[0] = bytes[0] != 0 ? 1 : 0;
     if (entries().check(index, sub_index, word, bytes) != ok) return;
-    if (before_write(index, sub_index, bytes) != ok) return;
+    if (before_write(index, sub_index, bytes) != ok || set_by_handler()) return;
     if (entries().holds(word, bytes)) return;
     entries().write(word, bytes);
-    after_write(index, sub_index);
+    after_write(index, sub_index, true);
   }
 
   /// A value from an RPDO. One that is outside its limits or that its handler refuses is not taken.
   template <DictionaryObject O>
   void take(const typename O::type& value) {
     if (check_limits<O>(value) != ok) return;
-    if (handlers_.template before_write<O>(*this, value) != ok) return;
+    if constexpr (HandlerSet<Handlers...>::template handles_write<O>) {
+      const auto ask = [&] { return handlers_.template before_write<O>(*this, value); };
+      if (ask_handlers(object_key(O::index, O::sub_index), ask) != ok || set_by_handler()) return;
+    }
     if (store_.template set<O>(value)) changed<O>();
+  }
+
+  /// A value that has passed all checks.
+  template <DictionaryObject O>
+  AbortCode take_over(const typename O::type& value) {
+    if constexpr (HandlerSet<Handlers...>::template handles_write<O>) {
+      handler_has_set(object_key(O::index, O::sub_index));
+    }
+    if (store_.template set<O>(value)) changed<O>();
+    return ok;
   }
 
   template <DictionaryObject O>
   void changed() {
-    if constexpr (O::index < 0x2000) after_write(O::index, O::sub_index);
+    if constexpr (O::index < 0x2000) after_write(O::index, O::sub_index, true);
     if constexpr (has_tpdos) {
       if (serves_pdo(state_) && tpdos_.template changed<O>(entries())) attention_ = true;
     }
@@ -889,6 +976,17 @@ class Node {
       }
     }
     if (!send_due()) attention_ = true;
+    if constexpr (has_handlers) {
+      if (handling_.requested != 0 && !sdo_.has_reply()) carry_out_requested();
+    }
+  }
+
+  /// What a handler has asked for, now that the SDO server has answered.
+  void carry_out_requested() {
+    const auto command = static_cast<NmtCommand>(handling_.requested);
+    handling_.requested = 0;
+    carry_out(command);
+    serve();
   }
 
   /// The boot-up message, or a heartbeat.
@@ -928,6 +1026,7 @@ class Node {
   bool attention_ = false;  ///< something may have become due since it was last looked after
   BusStatus bus_status_{};
   HeartbeatProducer heartbeat_{};
+  [[no_unique_address]] Present<has_handlers, Handling> handling_{};
   [[no_unique_address]] SyncWindow<Device> sync_window_{};
   [[no_unique_address]] Present<SyncProducer<Device>::exists, SyncProducer<Device>> sync_producer_{};
   SdoServers<Device> sdo_{};

@@ -176,9 +176,13 @@ class EntryAccess {
     return is_domain(word) ? domain(word).capacity : bytes_of(word);
   }
 
-  /// Whether a number in RAM has these bytes.
+  /// Whether a number or a string in RAM has these bytes.
   [[nodiscard]] bool holds(entry::Word word, std::span<const std::uint8_t> bytes) const {
     const std::uint8_t* own = ram(word);
+    if (kinds.strings_in_ram && entry::is_string(word)) {
+      if (load<std::uint16_t>(own) != bytes.size()) return false;
+      own += string_header;
+    }
     for (const std::uint8_t byte : bytes) {
       if (byte != *own++) return false;
     }

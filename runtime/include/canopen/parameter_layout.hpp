@@ -313,19 +313,7 @@ class ParameterLayout {
            owners[entry::offset_of(word)] < parameter_sections;
   }
 
-  /// Where the value at an offset in RAM stands among those of a section; `nowhere` when it is not one of them.
-  static constexpr std::uint32_t nowhere = 0xFFFF'FFFF;
-  [[nodiscard]] static std::uint32_t place_in(std::size_t section, std::uint16_t offset) {
-    std::uint32_t place = 0;
-    for (std::size_t i = firsts[section]; i < firsts[section + 1]; ++i) {
-      const unsigned behind = static_cast<unsigned>(offset - runs[i].offset);
-      if (behind < runs[i].size) return place + behind;
-      place += runs[i].size;
-    }
-    return nowhere;
-  }
-
-  /// Whether an entry that lies in RAM is stored, at run time.
+  /// The same for an entry that lies in RAM, at run time.
   [[nodiscard]] static bool stores(entry::Word word) {
     const std::uint16_t offset = entry::offset_of(word);
     for (const StoredRun& run : runs) {

@@ -44,7 +44,7 @@ template <class Device>
 
 /// The stored values of one device. An image holds one record for each section that is stored: a header, then the bytes
 /// of its values in the order of the layout. Records of another layout are passed over, and are gone with the next
-/// "save" or "load".
+/// "save" or "load". A value that could not have been written over the bus leaves the default.
 template <class Device>
 class ParameterStorage {
  public:
@@ -64,24 +64,13 @@ class ParameterStorage {
   /// Default values for 2000h..FFFFh, and over them what is stored.
   template <Storage S>
   void reset_application(S& storage, ObjectStore<Device>& store, NodeId node_id) {
-    store.reset_application(node_id);
-    if (load(storage, all_sections & ~communication_sections, Device::node_id_relative_application(), {}, store)) return;
-    damaged_ = true;
-    store.reset_application(node_id);
+    reset<false>(storage, store, node_id);
   }
 
   /// The same for 1000h..1FFFh.
   template <Storage S>
   void reset_communication(S& storage, ObjectStore<Device>& store, NodeId node_id) {
-    store.reset_communication(node_id);
-    Mappings left_out{};
-    bool loaded = load_communication(storage, left_out, store);
-    if (loaded && !find_impossible(store.entries(), left_out)) return;
-    damaged_ = true;
-    store.reset_communication(node_id);
-    if (!loaded) return;
-    loaded = load_communication(storage, left_out, store);
-    if (!loaded) store.reset_communication(node_id);
+    reset<true>(storage, store, node_id);
   }
 
   /// Stores the values of some sections, and 1020h with them. What else is stored stays. False: nothing has changed in
@@ -271,64 +260,149 @@ class ParameterStorage {
     return value;
   }
 
-  /// A mapping parameter that is stored, and the objects that it has room for.
-  struct StoredMapping {
+  // Values that could not have been written
+
+  /// A stored entry that not all bytes are a value of, or sub-index 0 of a mapping parameter.
+  struct Checked {
     std::uint16_t index;
-    std::uint8_t capacity;
+    std::uint8_t sub_index;
+    std::uint8_t what;  ///< `plain_value`, `cob_id`, `identifier`, or the objects that a mapping parameter has room for
   };
+  static constexpr std::uint8_t plain_value = 0;
+  static constexpr std::uint8_t cob_id = 0xFF;      ///< one that is not valid may be anything
+  static constexpr std::uint8_t identifier = 0xFE;  ///< the same, and bits 30 and 31 mean something else
+  [[nodiscard]] static constexpr bool is_mapping(const Checked& row) {
+    return row.what != plain_value && row.what < identifier;
+  }
+
+  [[nodiscard]] static constexpr std::uint8_t what_is(std::uint16_t index, std::uint8_t sub_index) {
+    if (const CobIdEntries* const row = find_cob_id_entries(index, sub_index)) {
+      return row->has_valid_bit ? cob_id : identifier;
+    }
+    const bool mapping = sub_index == 0 && (is_rpdo_mapping(index) || is_tpdo_mapping(index));
+    return mapping ? mapping_capacity(Device::dictionary, index) : plain_value;
+  }
+
   template <class Visit>
-  static constexpr void for_each_stored_mapping(Visit&& visit) {
-    Device::dictionary.for_each_entry([&](std::uint16_t index, std::uint8_t sub_index, entry::Word) {
-      if (sub_index != 0 || (!is_rpdo_mapping(index) && !is_tpdo_mapping(index)) || !Layout::stores(index, 0)) return;
-      const std::uint8_t capacity = mapping_capacity(Device::dictionary, index);
-      if (capacity != 0) visit(StoredMapping{index, capacity});
+  static constexpr void for_each_checked(Visit&& visit) {
+    Device::dictionary.for_each_entry([&](std::uint16_t index, std::uint8_t sub_index, entry::Word word) {
+      if (entry::place_of(word) != entry::Place::ram || !Layout::stores(index, sub_index)) return;
+      const std::uint8_t what = what_is(index, sub_index);
+      const bool limited = (word & entry::limited) != 0 || entry::is_boolean(word) || entry::is_string(word);
+      if (limited || what != plain_value) visit(Checked{index, sub_index, what});
     });
   }
-  static constexpr std::size_t mapping_count = [] {
+
+  static constexpr std::size_t checked_count = [] {
     std::size_t count = 0;
-    for_each_stored_mapping([&](StoredMapping) { ++count; });
+    for_each_checked([&](const Checked&) { ++count; });
     return count;
   }();
-  static constexpr std::array<StoredMapping, mapping_count> stored_mappings = [] {
-    std::array<StoredMapping, mapping_count> rows{};
+  static constexpr std::array<Checked, checked_count> checked = [] {
+    std::array<Checked, checked_count> rows{};
     std::size_t i = 0;
-    for_each_stored_mapping([&](StoredMapping row) { rows[i++] = row; });
+    for_each_checked([&](const Checked& row) { rows[i++] = row; });
     return rows;
   }();
+  static constexpr std::size_t communication_count = static_cast<std::size_t>(
+      std::ranges::count_if(checked, [](const Checked& row) { return row.index < 0x2000; }));
 
-  /// Some of `stored_mappings`.
-  using Mappings = std::array<bool, mapping_count>;
+  /// One bit for each row of `checked`.
+  using Rows = std::array<std::uint8_t, (checked_count + 7) / 8>;
+  [[nodiscard]] static bool is_row(const Rows& rows, std::size_t i) { return (rows[i / 8] >> i % 8 & 1) != 0; }
 
-  /// Finds the mapping parameters that make no PDO with the objects that the device has now. False: all of them do.
-  [[nodiscard]] static bool find_impossible([[maybe_unused]] EntryAccess<Device> entries,
-                                            [[maybe_unused]] Mappings& impossible) {
-    bool found = false;
-    for (std::size_t i = 0; i < mapping_count; ++i) {
-      const auto [index, capacity] = stored_mappings[i];
-      const MappingParameter mapping{entries.ram(entries.find(index, 0)), entries.ram(entries.find(index, 1))};
-      impossible[i] = !is_possible_mapping<Device>(mapping, is_tpdo_mapping(index), mapping.count(), capacity);
-      found = found || impossible[i];
+  /// Whether the value of an entry could have been written.
+  [[nodiscard, gnu::noinline]] static bool is_possible(EntryAccess<Device> entries, const Checked& row) {
+    const entry::Word word = EntryAccess<Device>::find(row.index, row.sub_index);
+    const std::uint8_t* const at = entries.ram(word);
+    if constexpr (std::ranges::any_of(checked, is_mapping)) {
+      if (is_mapping(row)) {
+        const MappingParameter mapping{at, entries.ram(EntryAccess<Device>::find(row.index, 1))};
+        return is_possible_mapping<Device>(mapping, is_tpdo_mapping(row.index), *at, row.what);
+      }
     }
-    return found;
+    if constexpr (EntryAccess<Device>::kinds.strings_in_ram) {
+      if (entry::is_string(word)) return number_in({at, 2}) <= EntryAccess<Device>::capacity(row.index, row.sub_index);
+    }
+    const std::size_t size = EntryAccess<Device>::bytes_of(word);
+    if (EntryAccess<Device>::check_value(row.index, row.sub_index, word, {at, size}) != ok) return false;
+    if (row.what == plain_value) return true;
+    const CobId value{entries.number(word) & (row.what == cob_id ? 0xFFFF'FFFF : CobId::identifier)};
+    return !value.valid() || may_be_written(value, true, true);
   }
 
-  [[nodiscard]] static bool is_in(const Mappings& mappings, std::uint16_t index) {
-    for (std::size_t i = 0; i < mapping_count; ++i) {
-      if (stored_mappings[i].index == index) return mappings[i];
+  /// Whether a byte of RAM belongs to one of these rows.
+  [[nodiscard]] static bool belongs_to(const Rows& rows, std::size_t offset) {
+    for (std::size_t i = 0; i < checked_count; ++i) {
+      if (is_row(rows, i) && (is_in_entry(offset, checked[i].index, checked[i].sub_index, 1) ||
+                              (is_mapping(checked[i]) && is_in_entry(offset, checked[i].index, 1, checked[i].what))))
+        return true;
     }
     return false;
   }
-
-  template <Storage S>
-  [[nodiscard]] bool load_communication(S& storage, const Mappings& left_out, ObjectStore<Device>& store) {
-    return load(storage, communication_sections, Device::node_id_relative_communication(), left_out, store);
+  [[nodiscard]] static bool is_in_entry(std::size_t offset, std::uint16_t index, std::uint8_t sub_index,
+                                        unsigned elements) {
+    const entry::Word word = EntryAccess<Device>::find(index, sub_index);
+    const std::size_t bytes = EntryAccess<Device>::bytes_of(word);
+    std::size_t size = (bytes <= 2 ? bytes : bytes <= 4 ? 4 : 8) * elements;  // in memory
+    if (entry::is_string(word)) size = sizeof(std::uint16_t) + EntryAccess<Device>::capacity(index, sub_index);
+    return offset - entry::offset_of(word) < size;
   }
 
-  /// Puts what is stored in the place of the defaults, but for some mapping parameters. False: storage could not be
-  /// read, and some values are not what they should be.
+  template <bool Communication>
+  static void reset_to_defaults(ObjectStore<Device>& store, NodeId node_id) {
+    Communication ? store.reset_communication(node_id) : store.reset_application(node_id);
+  }
+
+  /// Default values, and over them what is stored.
+  template <bool Communication, Storage S>
+  void reset(S& storage, ObjectStore<Device>& store, NodeId node_id) {
+    constexpr std::size_t begin = Communication ? 0 : communication_count;
+    constexpr std::size_t end = Communication ? communication_count : checked_count;
+    reset_to_defaults<Communication>(store, node_id);
+    if (!load<Communication>(storage, nullptr, store)) {
+      damaged_ = true;
+      reset_to_defaults<Communication>(store, node_id);
+    } else if constexpr (begin != end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (!is_possible(store.entries(), checked[i])) return leave_out<Communication>(storage, store, node_id, i, end);
+      }
+    }
+  }
+
+  /// Loads again without the values of rows `first` to `end` that could not have been written.
+  template <bool Communication, Storage S>
+  [[gnu::noinline]] void leave_out(S& storage, ObjectStore<Device>& store, NodeId node_id, std::size_t first,
+                                   std::size_t end) {
+    Rows left_out{};
+    for (std::size_t i = first; i < end; ++i) {
+      if (!is_possible(store.entries(), checked[i])) left_out[i / 8] |= static_cast<std::uint8_t>(1u << i % 8);
+    }
+    reset_to_defaults<Communication>(store, node_id);
+    for (std::size_t i = first; i < end; ++i) {
+      // A default that could not be written either is the data sheet's fault.
+      if (is_row(left_out, i) && is_possible(store.entries(), checked[i])) damaged_ = true;
+    }
+    if (!load<Communication>(storage, &left_out, store)) {
+      damaged_ = true;
+      reset_to_defaults<Communication>(store, node_id);
+    }
+  }
+
+  /// Puts what is stored in the place of the defaults, but for some rows of `checked`. False: storage could not be read,
+  /// and some values are not what they should be.
+  template <bool Communication, Storage S>
+  [[nodiscard]] bool load(S& storage, const Rows* left_out, ObjectStore<Device>& store) const {
+    if constexpr (Communication) {
+      return load(storage, communication_sections, Device::node_id_relative_communication(), left_out, store);
+    } else {
+      return load(storage, all_sections & ~communication_sections, Device::node_id_relative_application(), left_out,
+                  store);
+    }
+  }
   template <Storage S>
   [[nodiscard, gnu::noinline]] bool load(S& storage, unsigned sections, std::span<const NodeIdRelative> relative,
-                                         const Mappings& left_out, ObjectStore<Device>& store) {
+                                         const Rows* left_out, ObjectStore<Device>& store) const {
     for (std::size_t i = 0; i < parameter_sections; ++i) {
       if (!is_in(sections, i) || Layout::sizes[i] == 0) continue;
       Record record;
@@ -341,15 +415,15 @@ class ParameterStorage {
   /// A value that was the default of another node-ID is the default of this one: a COB-ID that follows the node-ID goes
   /// on to follow it (CiA 305).
   template <Storage S>
-  [[nodiscard]] bool load_section(S& storage, std::size_t section, Record record,
-                                  std::span<const NodeIdRelative> relative, const Mappings& left_out,
-                                  ObjectStore<Device>& store) {
+  [[nodiscard]] static bool load_section(S& storage, std::size_t section, Record record,
+                                         std::span<const NodeIdRelative> relative, const Rows* left_out,
+                                         ObjectStore<Device>& store) {
     const bool same_node_id = record.node_id == store.node_id().value();
     if (!same_node_id && section == static_cast<std::size_t>(ParameterSection::with_node_id)) return true;
     std::uint8_t* const ram = ram_of(store);
     std::array<Relative, most_relative> defaults;
     for (std::size_t i = 0; i < relative.size(); ++i) defaults[i] = relative_value(ram, relative[i]);
-    if (!read_values(storage, section, record.position, left_out, store.entries())) return false;
+    if (!read_values(storage, section, record.position, left_out, ram)) return false;
     for (std::size_t i = 0; !same_node_id && i < relative.size(); ++i) {
       const Relative stored = relative_value(ram, relative[i]);
       if (stored + store.node_id().value() == defaults[i] + record.node_id)
@@ -358,56 +432,31 @@ class ParameterStorage {
     return true;
   }
 
-  /// Takes the values of a section one by one.
   template <Storage S>
-  [[nodiscard, gnu::noinline]] bool read_values(S& storage, std::size_t section, std::uint32_t position,
-                                                const Mappings& left_out, EntryAccess<Device> entries) {
-    bool readable = true;
-    Device::dictionary.for_each_entry([&](std::uint16_t index, std::uint8_t sub_index, entry::Word word) {
-      if (!readable || entry::place_of(word) != entry::Place::ram) return;
-      const std::uint32_t place = Layout::place_in(section, entry::offset_of(word));
-      if (place == Layout::nowhere || is_in(left_out, index)) return;
-      readable = read_value(storage, position + place, index, sub_index, word, entries);
-    });
-    return readable;
-  }
-
-  /// Takes a value. One that could not have been written over the bus leaves the default.
-  template <Storage S>
-  [[nodiscard]] bool read_value(S& storage, std::uint32_t position, std::uint16_t index, std::uint8_t sub_index,
-                                entry::Word word, EntryAccess<Device> entries) {
-    alignas(8) std::array<std::uint8_t, 8> bytes{};
-    std::size_t size = EntryAccess<Device>::bytes_of(word);
-    const bool is_string = size == 0;  // DOMAINs are not stored
-    if (is_string) size = sizeof(std::uint16_t);
-    if (!storage.read(position, std::span{bytes}.first(size))) return false;
-    if (is_string) {
-      return read_string(storage, position, index, sub_index, word, number_in(std::span{bytes}.first(2)), entries);
-    }
-    const std::span<const std::uint8_t> value{bytes.data(), size};
-    if (entries.holds(word, value)) return true;
-    if (EntryAccess<Device>::check_value(index, sub_index, word, value) == ok &&
-        is_possible_cob_id(index, sub_index, number_in(value.first(std::min<std::size_t>(size, 4))))) {
-      entries.write(word, value);
-    } else {
-      damaged_ = true;
+  [[nodiscard]] static bool read_values(S& storage, std::size_t section, std::uint32_t position, const Rows* left_out,
+                                        std::uint8_t* ram) {
+    for (std::size_t i = Layout::firsts[section]; i < Layout::firsts[section + 1]; ++i) {
+      const StoredRun run = Layout::runs[i];
+      if (left_out == nullptr ? !storage.read(position, {ram + run.offset, run.size})
+                              : !read_others(storage, position, run, *left_out, ram))
+        return false;
+      position += run.size;
     }
     return true;
   }
 
+  /// Byte by byte: it is a rare case.
   template <Storage S>
-  [[nodiscard]] bool read_string([[maybe_unused]] S& storage, [[maybe_unused]] std::uint32_t position,
-                                 [[maybe_unused]] std::uint16_t index, [[maybe_unused]] std::uint8_t sub_index,
-                                 [[maybe_unused]] entry::Word word, [[maybe_unused]] std::uint32_t size,
-                                 [[maybe_unused]] EntryAccess<Device> entries) {
-    if constexpr (EntryAccess<Device>::kinds.strings_in_ram) {
-      if (size > entries.capacity(index, sub_index)) {
-        damaged_ = true;
-        return true;
+  [[nodiscard, gnu::noinline]] static bool read_others([[maybe_unused]] S& storage,
+                                                       [[maybe_unused]] std::uint32_t position,
+                                                       [[maybe_unused]] StoredRun run,
+                                                       [[maybe_unused]] const Rows& left_out,
+                                                       [[maybe_unused]] std::uint8_t* ram) {
+    if constexpr (checked_count != 0) {
+      for (std::uint16_t i = 0; i < run.size; ++i) {
+        const std::size_t offset = std::size_t{run.offset} + i;
+        if (!belongs_to(left_out, offset) && !storage.read(position + i, {ram + offset, 1})) return false;
       }
-      const std::span<std::uint8_t> text{entries.ram(word) + sizeof(std::uint16_t), size};
-      if (!storage.read(position + static_cast<std::uint32_t>(sizeof(std::uint16_t)), text)) return false;
-      entries.write(word, text);
     }
     return true;
   }

@@ -31,6 +31,8 @@ namespace canopen {
 ///   AbortCode before_write(index, sub_index, bytes);    the bytes fit the entry; may refuse, or change them
 ///   void after_write(index, sub_index);
 ///   AbortCode command(index, sub_index, bytes);         a write to an entry that is no variable, such as 1010h
+/// and, where it wants to be asked:
+///   bool is_new(word, bytes);                           after before_write: whether they are still to be stored
 template <class T, class Device>
 concept SdoServerHooks = requires(T hooks, std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
   { hooks.entries() } -> std::same_as<EntryAccess<Device>>;
@@ -449,9 +451,18 @@ class SdoServer {
     if (const AbortCode code = entries.check_value(index(), sub_index(), word_, bytes); code != ok) return code;
     if (const AbortCode code = hooks.before_write(index(), sub_index(), bytes); code != ok) return code;
     // A handler may have bound a DOMAIN to other memory: the application has taken the bytes then.
-    if (!is_domain() || entries.domain(word_).data == bytes.data()) entries.write(word_, bytes);
+    const bool in_place = !is_domain() || entries.domain(word_).data == bytes.data();
+    if (in_place && is_new(bytes, hooks)) entries.write(word_, bytes);
     hooks.after_write(index(), sub_index());
     return ok;
+  }
+
+  [[nodiscard]] bool is_new(std::span<const std::uint8_t> bytes, auto& hooks) const {
+    if constexpr (requires { hooks.is_new(word_, bytes); }) {
+      return hooks.is_new(word_, bytes);
+    } else {
+      return true;
+    }
   }
 
   /// Of an announced size the length has been looked at already.

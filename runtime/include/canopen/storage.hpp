@@ -8,7 +8,8 @@
 
 namespace canopen {
 
-/// What a storage holds when it is opened. Damaged: there was an image, and it cannot be read or its checksum is wrong.
+/// What a storage holds when it is opened. Damaged: there was an image, and it cannot be read or its checksum is wrong;
+/// `size` and `read` give an older one, if there is one.
 enum class StorageState : std::uint8_t { empty, whole, damaged };
 
 /// `begin`, `write` and `commit` make a new image. Whenever power is lost there is the old image or the new one; until
