@@ -155,7 +155,7 @@ TEST(CpcTc1Node, GetsItsNodeIdAndItsBitRateByLssAndKeepsThem) {  // chapter 13; 
   EXPECT_EQ(drive.boot_up, "705 00");
   EXPECT_EQ(drive.ask(lss_configuration), "");
   EXPECT_EQ(drive.ask(lss_inquire_node_id), "7E4 5E 05 00 00 00 00 00 00");
-  EXPECT_EQ(drive.ask("7E5 5A 00 00 00 00 00 00 00").substr(0, 6), "7E4 5A");  // vendor-ID
+  EXPECT_EQ(drive.ask("7E5 5A 00 00 00 00 00 00 00").substr(0, 6), "7E4 5A");          // vendor-ID
   EXPECT_EQ(drive.ask("7E5 5D 00 00 00 00 00 00 00"), "7E4 5D 34 12 01 15 00 00 00");  // 1018h:04
   EXPECT_EQ(drive.ask("7E5 11 2A 00 00 00 00 00 00"), "7E4 11 00 00 00 00 00 00 00");
   EXPECT_EQ(drive.ask("7E5 13 00 04 00 00 00 00 00"), "7E4 13 00 00 00 00 00 00 00");  // 125 kbit/s
@@ -173,8 +173,8 @@ TEST(CpcTc1Node, TakesTheBitRatesOfChapter13AndNoOther) {
   bench::NodeBench<cpc_tc1_node::CpcTc1> drive;
   drive.ask(lss_configuration);
   struct Row {
-    int index;           ///< of table 0 of CiA 305
-    const char* rate;    ///< nothing: the manual does not have it
+    int index;         ///< of table 0 of CiA 305
+    const char* rate;  ///< nothing: the manual does not have it
   };
   for (const Row& row : {Row{0, "1000"}, Row{1, "800"}, Row{2, "500"}, Row{3, "250"}, Row{4, "125"}, Row{5, nullptr},
                          Row{6, "50"}, Row{7, "20"}, Row{8, "10"}, Row{9, nullptr}}) {

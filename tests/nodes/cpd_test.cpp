@@ -201,7 +201,8 @@ TEST(CpdNode, MapsPdo4OverTheBusAndPdo1To3Never) {
 // shows 002.162
 TEST(CpdNode, HasTheSubIndicesThatTable92LeavesOutReadOnly) {
   Servo drive;
-  for (const char* object : {"01 16 03", "01 16 04", "02 16 03", "02 16 04", "01 1A 03", "01 1A 04", "02 1A 03", "02 1A 04"}) {
+  for (const char* object :
+       {"01 16 03", "01 16 04", "02 16 03", "02 16 04", "01 1A 03", "01 1A 04", "02 1A 03", "02 1A 04"}) {
     EXPECT_EQ(drive.ask(std::string{"605 40 "} + object + " 00 00 00 00"),
               std::string{"585 43 "} + object + " 00 00 00 00");
     EXPECT_EQ(drive.ask(std::string{"605 23 "} + object + " 20 00 64 60"),

@@ -90,7 +90,8 @@ TEST_P(PlantTraces, AreWhatTheModulesDo) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Manual003, PlantTraces, testing::ValuesIn(trace::files_in(EDSC_PLANT_TRACES_DIR)), trace::test_name);
+INSTANTIATE_TEST_SUITE_P(Manual003, PlantTraces, testing::ValuesIn(trace::files_in(EDSC_PLANT_TRACES_DIR)),
+                         trace::test_name);
 
 // In one process on one bus
 
@@ -216,8 +217,8 @@ TEST(ModuleNode, ShowsItsStateAndItsErrorsWithItsIndicators) {
 }
 
 struct ModuleError {
-  const char* line;   ///< of the node's inputs
-  const char* emcy;   ///< the row of table 5.3.2
+  const char* line;  ///< of the node's inputs
+  const char* emcy;  ///< the row of table 5.3.2
   std::uint16_t register_1001h;
 };
 

@@ -1,4 +1,5 @@
-/// What a drive does when communication is lost: 6007h, abort connection option code (CiA 402-2), with a motor that turns.
+/// What a drive does when communication is lost: 6007h, abort connection option code (CiA 402-2), with a motor that
+/// turns.
 #include <gtest/gtest.h>
 
 #include <canopen/bus_status.hpp>
@@ -98,9 +99,9 @@ TEST(Cia402AbortConnection, IsAFaultWhenTheControllerIsBusOff) {
 
 struct Row {
   std::int16_t option;
-  State after;       ///< at once
-  State at_rest;     ///< when the axis stands
-  bool stays_on;     ///< the motor goes on as before
+  State after;    ///< at once
+  State at_rest;  ///< when the axis stands
+  bool stays_on;  ///< the motor goes on as before
 };
 
 TEST(Cia402AbortConnection, DoesWhat6007hSays) {
@@ -145,8 +146,7 @@ TEST(Cia402AbortConnection, CountsOncePerLoss) {
 
 /// A manufacturer's drive with a reaction of its own.
 template <canopen::Bus B>
-class OwnReaction
-    : public nodes::DriveNode<OwnReaction<B>, cia402_drive::Device, B, canopen::cia402::Options{}> {
+class OwnReaction : public nodes::DriveNode<OwnReaction<B>, cia402_drive::Device, B, canopen::cia402::Options{}> {
   using Base = nodes::DriveNode<OwnReaction<B>, cia402_drive::Device, B, canopen::cia402::Options{}>;
 
  public:

@@ -153,8 +153,18 @@ class Cpd : public Base<Cpd<B>, B> {
       "  position N                       the shaft is turned by hand, without power\n"};
 
   Cpd(B& bus, nodes::Surroundings& around)
-      : Node{bus, around, around.node_id.value_or(canopen::NodeId{127}), axis,        canopen::stored_in(around.parameters), {}, {},
-             {},  {},     {{&errors_}},         {{&errors_}}, {{&errors_, &around}}},
+      : Node{bus,
+             around,
+             around.node_id.value_or(canopen::NodeId{127}),
+             axis,
+             canopen::stored_in(around.parameters),
+             {},
+             {},
+             {},
+             {},
+             {{&errors_}},
+             {{&errors_}},
+             {{&errors_, &around}}},
         errors_{around.application} {
     errors_.load();
   }
@@ -211,7 +221,6 @@ class Cpd : public Base<Cpd<B>, B> {
     set<od::monitoring_status::latched_monitoring_signals>(latched_);
     set<od::motion_generator::ramp_position_actual_value>(axis_.position_demand());
   }
-
 
   bool take_line(const nodes::InputLine& line) {
     if (line.is("pulses", 1)) {

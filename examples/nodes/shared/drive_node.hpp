@@ -147,8 +147,8 @@ class DriveNode {
   using DeviceControl = canopen::cia402::Drive<Device, SimulatedAxis, options>;
   DeviceControl drive_{axis_};
   canopen::Node<Device, B, canopen::StateHandler<StateTeller>, canopen::LifeGuardingHandler<GuardTeller>,
-                canopen::HeartbeatHandler<HeartbeatTeller>,
-                canopen::ErrorHandler<typename DeviceControl::ErrorTaker>, Handlers...>
+                canopen::HeartbeatHandler<HeartbeatTeller>, canopen::ErrorHandler<typename DeviceControl::ErrorTaker>,
+                Handlers...>
       node_;
 
  private:

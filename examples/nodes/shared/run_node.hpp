@@ -112,7 +112,8 @@ inline void print_help(const Description& what) {
       "  %s socketcan:vcan0 --node-id 5 --store %s.parameters\n"
       "  (sleep 1; echo power-cycle; sleep 1) | %s socketcan:vcan0 --node-id 5\n\n"
       "exit codes: 0 ended by a signal; 1 the bus is lost; 2 wrong arguments, or the bus cannot be opened\n",
-      what.program, what.device, what.highest_node_id, what.node_id, what.inputs, what.program, what.program, what.program);
+      what.program, what.device, what.highest_node_id, what.node_id, what.inputs, what.program, what.program,
+      what.program);
 }
 
 /// Lines of standard input, without waiting for them.
