@@ -7,7 +7,8 @@
 Each EDS, DCF and XDD of the corpus, of eds/ and of the tests' fixtures is generated and compiled with a node, several of
 them to a program. The node lives on a virtual bus in simulated time under three node-IDs, that of a DCF under its own:
 power-on, SDO, heartbeat, EMCY, SYNC, PDOs, NMT commands, resets (live/life.py). What it may send is read from the sheet by
-live/sheet.py, which has nothing of edsc. A sheet that `edsc generate` refuses is tried with --keep-going: what is generated then has to live too.
+live/sheet.py, which has nothing of edsc. A sheet that `edsc generate` refuses is tried with --keep-going: what is generated
+then has to live too.
 
 The corpus lies in the folder EDSC_CORPUS, or in ../shared/eds-corpus beside the repository; without one the sheets of the
 repository are tested alone. One sheet by hand, with all frames:
@@ -46,6 +47,7 @@ class Job:
     title: str
     name: str = ""  # its namespace
     refused: bool = False
+    frames: int = 0  # that it has sent
     problems: list[str] = field(default_factory=list)
 
 
@@ -79,10 +81,14 @@ class Driver:
         command = [self.arguments.edsc.resolve(), "generate", job.path, "-o", self.work / "generated", "--name", job.name,
                    "--color", "never"]
         result = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=60)
+        device = self.work / "generated" / job.name / "device.hpp"
         if result.returncode == 1:
             job.refused = True
+            device.unlink(missing_ok=True)  # that of an earlier run
             result = subprocess.run([*command, "--keep-going"], capture_output=True, text=True, errors="replace", timeout=60)
-        if not (self.work / "generated" / job.name / "device.hpp").is_file() or result.returncode not in (0, 1):
+        if result.returncode not in (0, 1):
+            job.problems.append(f"edsc generate ends with {result.returncode}")
+        if not device.is_file():
             job.name = ""
 
     def compile(self, source: str, target: str) -> str:
@@ -127,6 +133,7 @@ class Driver:
                 self.show(job, life, log)
         for number, (job, life) in enumerate(lives):
             if number < len(logs):
+                job.frames += sum(line[:1].isdigit() for line in logs[number].splitlines())
                 job.problems += [f"node {life.node_id}: {problem}" for problem in life.judge(logs[number].splitlines())]
         if result.returncode != 0 or len(logs) != len(lives):
             job, life = lives[max(len(logs) - 1, 0)]
@@ -180,17 +187,18 @@ def main() -> int:
     groups = [generated[first:first + SHEETS_PER_PROGRAM] for first in range(0, len(generated), SHEETS_PER_PROGRAM)]
     in_parallel(driver.run_group, list(enumerate(groups)))
     for job in jobs:
-        if job.problems:
-            print(f"{job.title}{' (refused, --keep-going)' if job.refused else ''}: {len(job.problems)} problems")
+        how = " (refused, --keep-going)" if job.refused else ""
+        if not job.problems:
+            print(f"{job.title}{how}: {f'lives, {job.frames} frames' if job.name else 'nothing is generated'}")
+        else:
+            print(f"{job.title}{how}: {len(job.problems)} problems")
             for problem in job.problems[:SHOWN]:
                 print(f"    {problem}")
-        elif not job.name:
-            print(f"{job.title}: nothing is generated")
     alive = sum(not job.problems for job in generated)
     refused = sum(job.refused for job in generated)
     print(f"{alive} of {len(generated)} devices live ({refused} of them in spite of errors); {len(jobs)} sheets, "
           f"node-IDs {', '.join(map(str, NODE_IDS))}")
-    return 0 if alive == len(generated) else 1
+    return 1 if any(job.problems for job in jobs) else 0
 
 
 if __name__ == "__main__":
