@@ -32,10 +32,17 @@ bool is_live(const Entry& entry) {
   return std::ranges::find(live, EntryKey{entry.index, entry.sub_index}) != std::end(live);
 }
 
+/// CiA 402: 6061h is the mode that 6060h sets, so that it starts with the same default.
+bool shows_a_setting(const RuleContext& context, const Entry& entry) {
+  const Entry* const mode = entry.index == 0x6061 ? context.device.find(0x6060, 0) : nullptr;
+  return mode != nullptr && mode->default_value && mode->default_value->bits == entry.default_value->bits;
+}
+
 /// 0 is what such a value has before the device has measured or counted.
 void check_live(const RuleContext& context, const Entry& entry) {
   if (!entry.default_value || !entry.default_value->clause.empty() || !is_live(entry)) return;
   if (entry.default_value->bits == 0 && entry.default_value->bytes.empty()) return;
+  if (shows_a_setting(context, entry)) return;
   context.report("live-default", entry.default_value->position,
                  fmt::format("{} has a default, but a running device has another value", named(entry)));
 }

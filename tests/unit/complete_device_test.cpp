@@ -235,6 +235,38 @@ TEST(CompleteDevice, HasNoReservedValues) {
   EXPECT_EQ(rules_of(text.diagnostics), (Rules{"storage-capability", "sync-counter", "error-behavior"}));
 }
 
+// ---- defaults that no running device has ----
+
+std::vector<std::string> live_defaults(const std::string& sheet) {
+  DeviceFromText text(sheet);
+  check_device(text.device, text.sheet, text.options, text.diagnostics);
+  std::vector<std::string> lines;
+  for (const Diagnostic& diagnostic : text.diagnostics.all()) {
+    if (diagnostic.rule == "live-default") lines.emplace_back(text.source.line(diagnostic.position.line));
+  }
+  return lines;
+}
+
+TEST(LiveDefaults, AreNoted) {
+  const std::string mappable = "PDOMapping=1\n";
+  EXPECT_EQ(live_defaults(var("6041", "Statusword", "6", "ro", mappable + "DefaultValue=0x250\n")),
+            Rules{"DefaultValue=0x250"});
+  EXPECT_EQ(live_defaults(var("1002", "Status", "7", "ro", "DefaultValue=3\n")), Rules{"DefaultValue=3"});
+  EXPECT_EQ(live_defaults(record("1018", {"1", "2", "3", "4"})), Rules{"DefaultValue=4"}) << "the serial number";
+  EXPECT_EQ(live_defaults(var("6041", "Statusword", "6", "ro", mappable + "DefaultValue=0\n")), Rules{});
+  EXPECT_EQ(live_defaults(var("6040", "Controlword", "6", "rww", mappable + "DefaultValue=6\n")), Rules{});
+  EXPECT_EQ(live_defaults(var("6502", "Modes", "7", "ro", "DefaultValue=5\n")), Rules{}) << "cannot be mapped";
+}
+
+TEST(LiveDefaults, MayRepeatASetting) {
+  const auto sheet = [](const std::string& display) {
+    return var("6060", "Modes of operation", "2", "rww", "PDOMapping=1\nDefaultValue=1\n") +
+           var("6061", "Modes of operation display", "2", "ro", "PDOMapping=1\nDefaultValue=" + display + "\n");
+  };
+  EXPECT_EQ(live_defaults(sheet("1")), Rules{});
+  EXPECT_EQ(live_defaults(sheet("3")), Rules{"DefaultValue=3"});
+}
+
 // ---- dump ----
 
 TEST(CompleteDevice, SaysInTheDumpWhichValuesAreByCia301) {
