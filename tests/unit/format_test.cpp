@@ -370,6 +370,15 @@ TEST(MakeDcf, GivesCommandsNoValue) {
   }
 }
 
+TEST(MakeDcf, ConfiguresNoValueInPlaceOfThatOfCia301) {
+  const std::string eds = "[1014]\nParameterName=COB-ID EMCY\nDataType=0x0007\nAccessType=rw\nDefaultValue=";
+  const auto dcf = [&](const std::string& value) {
+    return Formatted(eds + value, std::uint8_t{5}).dcf(DcfValues::all);
+  };
+  EXPECT_EQ(dcf("0\n").find("ParameterValue"), std::string::npos) << "CAN-ID 0";
+  EXPECT_NE(dcf("$NODEID+0x80\n").find("ParameterValue=0x00000085"), std::string::npos);
+}
+
 TEST(MakeDcf, HasTheBitRateOfADeviceThatHasOnlyOne) {
   const std::string info = "[DeviceInfo]\nBaudRate_125=0\nBaudRate_250=1\n";
   EXPECT_NE(Formatted(info + object_with("5", ""), std::uint8_t{5}).dcf().find("Baudrate=250\n"), std::string::npos);
