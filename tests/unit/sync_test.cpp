@@ -108,10 +108,7 @@ TEST(SyncProducer, HasAPeriodOf35MinutesAtMost) {
   EXPECT_EQ(write(device, "605 23 06 10 00 FF FF FF 7F"), ok);
   EXPECT_EQ(device.pass(20min), "");
   EXPECT_EQ(device.pass(16min), "080");
-  // A longer one that the application sets is none.
-  device.node.set<od::communication_cycle_period>(0x8000'0000);
-  EXPECT_EQ(device.pass(1s), "");
-  EXPECT_EQ(device.node.next_deadline(), std::nullopt);
+  EXPECT_EQ(device.node.set<od::communication_cycle_period>(0x8000'0000), canopen::AbortCode::value_too_high);
 }
 
 TEST(SyncWindow, OfMoreThan35MinutesIsNone) {
@@ -232,7 +229,8 @@ TEST(Time, IsSentByAProducer) {
 
 TEST(Time, HasACanIdOf11BitsWhateverTheApplicationSets) {
   Bench device;
-  device.node.set<od::cob_id_time>(0x4000'0900);
+  EXPECT_EQ(device.node.set<od::cob_id_time>(0x4000'0900), canopen::AbortCode::invalid_value);
+  EXPECT_EQ(device.node.set<od::cob_id_time>(0x4000'0100), canopen::ok);
   EXPECT_TRUE(device.node.send_time({1000, 10}));
   EXPECT_EQ(device.pass(0s), "100 E8 03 00 00 0A 00");
 }
