@@ -138,6 +138,75 @@ struct Transfer {
   static constexpr AbortCode ok_to_come = AbortCode::local_control;
 };
 
+// Heartbeats
+
+/// Until the master has read 1017h of slave 5, which is this one.
+std::string ask_for_heartbeat_time(Desk& desk, const std::string& answer) {
+  desk.start();
+  desk.take("705 00");
+  EXPECT_EQ(desk.take(device_type), "");
+  desk.master.configured(NodeId{5}, canopen::ok, desk.now);
+  EXPECT_EQ(desk.bus.take(), "605 40 17 10 00 00 00 00 00");
+  return desk.take(answer);
+}
+
+TEST(NmtBoot, ASlaveWhoseHeartbeatTimeIsWrittenIsWatchedFromItsNextHeartbeatOn) {
+  Desk desk{{slave(5, 300)}};
+  EXPECT_EQ(ask_for_heartbeat_time(desk, "585 4B 17 10 00 FA 00 00 00"), "605 2B 17 10 00 96 00 00 00");
+  EXPECT_EQ(desk.take("705 7F"), "");  // by the old period
+  EXPECT_EQ(desk.pass(90ms), "");
+  EXPECT_EQ(desk.take("585 60 17 10 00 00 00 00 00"), "");  // its new period begins here
+  EXPECT_EQ(desk.pass(149ms), "");
+  EXPECT_EQ(desk.take("705 7F"), "000 01 05");
+  EXPECT_EQ(desk.pass(299ms), "");
+  EXPECT_EQ(desk.log(), (Lines{"5 boot-up", "5 configure", "5 0", "network started"}));
+}
+
+TEST(NmtBoot, ASlaveThatKeepsAHeartbeatTimeInTimeMayRefuseAnother) {
+  Desk desk{{slave(5, 300)}};
+  EXPECT_EQ(ask_for_heartbeat_time(desk, "585 4B 17 10 00 FA 00 00 00"), "605 2B 17 10 00 96 00 00 00");
+  EXPECT_EQ(desk.take("585 80 17 10 00 02 00 01 06"), "");
+  EXPECT_EQ(desk.take("705 7F"), "000 01 05");
+  EXPECT_EQ(desk.log(), (Lines{"5 boot-up", "5 configure", "5 0", "network started"}));
+}
+
+TEST(NmtBoot, ASlaveThatRefusesAHeartbeatAtAllDoesNotBoot) {
+  Desk desk{{slave(5, 300)}};
+  ask_for_heartbeat_time(desk, "585 4B 17 10 00 00 00 00 00");
+  desk.take("585 80 17 10 00 02 00 01 06");
+  EXPECT_EQ(desk.log(), (Lines{"5 boot-up", "5 configure", "5 K"}));
+  EXPECT_EQ(desk.told.results.back().abort_code, AbortCode::read_only);
+}
+
+// Slaves that are silent
+
+TEST(NmtBoot, SilentSlavesAreAskedInTurn) {
+  bench::RecordingBus bus;
+  Told told;
+  const std::vector<NmtSlave> slaves{slave(1), slave(2), slave(3), slave(4), slave(5), slave(6)};
+  canopen::NmtMaster<bench::RecordingBus, 6, Host, 1, 1> master{bus, slaves, {}, 500ms, Host{&told}};
+  TimePoint now{};
+  master.start(now);
+  while (now < TimePoint{30s}) {
+    now = std::max(now + 1ms, master.next_deadline().value_or(now));
+    master.on_time(now);
+  }
+  const std::string sent = bus.take();
+  for (const char* request : {"601 40", "602 40", "603 40", "604 40", "605 40", "606 40"}) {
+    EXPECT_NE(sent.find(request), std::string::npos) << request;
+  }
+}
+
+TEST(NmtBoot, AConfigurationThatEndsWithATimeoutIsRepeated) {
+  Desk desk{{slave(5)}};
+  desk.start();
+  desk.take("705 00");
+  desk.take(device_type);
+  desk.master.configured(NodeId{5}, AbortCode::timeout, desk.now);
+  EXPECT_EQ(desk.log(), (Lines{"5 boot-up", "5 configure", "5 B"}));
+  EXPECT_NE(desk.pass(1500ms).find("605 40 00 10 00 00 00 00 00"), std::string::npos);
+}
+
 // The configuration step
 
 TEST(NmtBoot, TheApplicationConfiguresBeforeErrorControl) {

@@ -185,6 +185,39 @@ TEST(BlockingSdo, EndsOnABusThatTakesNoFrame) {
   }
 }
 
+TEST(BlockingSdo, AnAnswerThatWasNotReadInTimeIsNotThatOfTheNextRequest) {
+  canopen::VirtualBus bus;
+  canopen::VirtualBusPort port{bus};
+  canopen::VirtualBus::Endpoint& slave = bus.attach();
+  canopen::BlockingSdo master{port};
+  EXPECT_EQ(master.upload(NodeId{5}, 0x6041, 0).abort_code(), AbortCode::timeout);
+  bus.settle();
+  ASSERT_TRUE(slave.send(bench::frame("585 4B 41 60 00 37 06 00 00")));
+  bus.run_for(2s);
+  slave.on_frame = [&](const canopen::Frame& frame, TimePoint) {
+    if (frame.data[0] == 0x40) (void)slave.send(bench::frame("585 4B 41 60 00 33 06 00 00"));
+  };
+  EXPECT_EQ(master.upload(NodeId{5}, 0x6041, 0).value(), (std::vector<std::uint8_t>{0x33, 0x06}));
+}
+
+TEST(BlockingSdo, CompletesATransferInsideOfWhichAnotherOneHasRun) {
+  canopen::VirtualBus bus;
+  canopen::VirtualBusPort port{bus};
+  canopen::VirtualBus::Endpoint& slaves = bus.attach();
+  slaves.on_frame = [&](const canopen::Frame& frame, TimePoint) {
+    if (frame.id == 0x606) (void)slaves.send(bench::frame("585 4B 41 60 00 05 00 00 00"));
+    if (frame.id == 0x606) (void)slaves.send(bench::frame("586 4B 41 60 00 06 00 00 00"));
+    if (frame.id == 0x605) (void)slaves.send(bench::frame("705 7F"));
+  };
+  canopen::BlockingSdo master{port};
+  std::vector<std::uint8_t> inner;
+  master.on_frame = [&](const canopen::Frame& frame, TimePoint) {
+    if (frame.id == 0x705) inner = master.upload(NodeId{6}, 0x6041, 0).value();
+  };
+  EXPECT_EQ(master.upload(NodeId{5}, 0x6041, 0).value(), (std::vector<std::uint8_t>{5, 0}));
+  EXPECT_EQ(inner, (std::vector<std::uint8_t>{6, 0}));
+}
+
 TEST(BlockingSdo, RefusesATransferToTheNodeThatItWaitsFor) {
   Plant plant;
   plant.device.set<od::producer_heartbeat_time>(10);

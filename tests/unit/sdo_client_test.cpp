@@ -55,6 +55,17 @@ TEST(SdoClient, ReadsAndWritesWideNumbersInSegments) {
   EXPECT_EQ(pair.client.value<od::integer64_value>(), -123456789012);
 }
 
+TEST(SdoClient, HasNoDataAfterADownload) {
+  Pair pair;
+  pair.client.read<od::integer24_value>(pair.bus.now());
+  pair.bus.settle();
+  EXPECT_EQ(pair.client.data().size(), 3u);
+  pair.client.write<od::integer64_value>(-123456789012, pair.bus.now());
+  pair.bus.settle();
+  EXPECT_EQ(pair.client.result(), canopen::ok);
+  EXPECT_TRUE(pair.client.data().empty());
+}
+
 TEST(SdoClient, UploadsAString) {
   Pair pair;
   std::array<std::uint8_t, 32> memory{};

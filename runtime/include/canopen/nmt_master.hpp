@@ -152,7 +152,9 @@ class NmtMaster {
     now_ = now;
     const std::optional<std::size_t> i = find(node_id);
     if (!i || entries_[*i].step != Step::configuring) return;
-    if (result != ok) {
+    if (result == AbortCode::timeout) {
+      retry(*i, {BootStatus::no_response, result});
+    } else if (result != ok) {
       finish(*i, {BootStatus::configuration, result});
     } else {
       prepare_heartbeat(*i);
@@ -264,6 +266,7 @@ class NmtMaster {
     bool booted_up = false;  ///< its boot-up message has come: it is asked before those that are silent
     bool silent = false;     ///< it has not answered
     bool was_reset = false;
+    bool beats_in_time = false;  ///< 1017h is shorter than the consumer's time
     bool complete = false;  ///< has booted and is not lost
   };
 
@@ -443,9 +446,21 @@ class NmtMaster {
     const std::uint32_t producer = number_of(answer.data.first(std::min<std::size_t>(answer.data.size(), 2)));
     const bool is_short_enough = producer != 0 && 3 * producer <= 2 * consumer;
     if (answer.result == ok && is_short_enough) return start_error_control(i);
+    entries_[i].beats_in_time = answer.result == ok && producer != 0 && producer < consumer;
     const std::uint32_t wanted = std::max<std::uint32_t>(consumer / 2, 1);
     entries_[i].number = {static_cast<std::uint8_t>(wanted), static_cast<std::uint8_t>(wanted >> 8)};
     entries_[i].step = Step::writing_heartbeat_time;
+  }
+
+  /// The slave starts its period anew, so it is watched from its next heartbeat on. One that refuses may keep a time of
+  /// its own that is short enough.
+  void heartbeat_time_written(std::size_t i, const SdoAnswer& answer) {
+    if (answer.result == ok) {
+      watch_heartbeat(i);
+    } else if (!entries_[i].beats_in_time) {
+      return finish(i, failure(i, BootStatus::no_heartbeat, answer));
+    }
+    start_error_control(i);
   }
 
   void start_error_control(std::size_t i) {
@@ -573,14 +588,18 @@ class NmtMaster {
   // SDO
 
   /// Puts a request of each slave that needs one into the queue as soon as it can begin, or has to wait for the
-  /// application's at its node; those whose boot-up message has come first.
+  /// application's at its node: first those whose boot-up message has come, and in turn, so that slaves that are silent
+  /// do not take all clients from the others.
   void serve_sdo() {
+    const std::size_t first = next_;
     for (const bool booted_up : {true, false}) {
-      for (std::size_t i = 0; i < slaves_.size(); ++i) {
+      for (std::size_t n = 0; n < slaves_.size(); ++n) {
+        const std::size_t i = (first + n) % slaves_.size();
         if (!wants_sdo(entries_[i]) || entries_[i].booted_up != booted_up) continue;
         const NodeId node_id = slaves_[i].node_id;
         if (!sdo_.busy(node_id) && !sdo_.ready(node_id, now_)) continue;
         entries_[i].asked = static_cast<bool>(sdo_.submit(node_id, request_of(i), now_));
+        next_ = i + 1;
       }
     }
   }
@@ -628,9 +647,7 @@ class NmtMaster {
         if (answer.result != ok) return finish(i, failure(i, BootStatus::configuration, answer));
         return dcf_entry_written(i);
       case Step::reading_heartbeat_time: return heartbeat_time_read(i, answer);
-      case Step::writing_heartbeat_time:
-        if (answer.result != ok) return finish(i, failure(i, BootStatus::no_heartbeat, answer));
-        return start_error_control(i);
+      case Step::writing_heartbeat_time: return heartbeat_time_written(i, answer);
       case Step::idle:
       case Step::waiting:
       case Step::configuring:
@@ -669,7 +686,11 @@ class NmtMaster {
   }
 
   void on_no_response(std::size_t i, const SdoAnswer& answer) {
-    const BootResult result = failure(i, BootStatus::no_response, answer);
+    retry(i, failure(i, BootStatus::no_response, answer));
+  }
+
+  /// A slave that is silent is asked again after a while.
+  void retry(std::size_t i, const BootResult& result) {
     entries_[i].booted_up = false;
     entries_[i].silent = true;
     wait(i);
@@ -731,6 +752,7 @@ class NmtMaster {
   SdoQueue<B, Clients, Count + Requests> sdo_;
   std::array<std::uint32_t, 4> boot_ups_{};  ///< a bit for each node
   std::optional<NmtCommand> all_command_{};  ///< to all nodes: waits to be sent
+  std::size_t next_ = 0;                     ///< the slave that is asked next, where it has something to be asked
   TimePoint boot_deadline_{};
   TimePoint now_{};
   bool booting_ = false;  ///< `start` has been called

@@ -127,6 +127,7 @@ class SdoClient {
   /// Begins to write an entry. False while busy.
   bool download(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> bytes, TimePoint now) {
     if (busy()) return false;
+    memory_ = {};
     bytes_ = bytes;
     source_ = {};
     begin_download(index, sub_index, static_cast<std::uint32_t>(bytes.size()), now);
@@ -136,6 +137,7 @@ class SdoClient {
   /// Begins to write an entry piece by piece.
   bool download(std::uint16_t index, std::uint8_t sub_index, SdoSource source, TimePoint now) {
     if (busy()) return false;
+    memory_ = {};
     bytes_ = {};
     source_ = source;
     begin_download(index, sub_index, source.size, now);
@@ -245,9 +247,9 @@ class SdoClient {
   /// Whether the server has told the size of the value that it has sent, which an expedited answer need not do.
   [[nodiscard]] bool size_known() const { return size_ != sdo::unknown_size; }
 
-  /// What an upload that ended well has brought into memory.
+  /// What an upload that ended well has brought into memory; empty after a download.
   [[nodiscard]] std::span<const std::uint8_t> data() const {
-    return memory_.first(sink_.take == nullptr ? position_ : 0);
+    return memory_.empty() ? memory_ : memory_.first(position_);
   }
 
  private:

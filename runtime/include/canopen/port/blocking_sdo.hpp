@@ -12,6 +12,7 @@
 #include <concepts>
 #include <cstdint>
 #include <cstring>
+#include <deque>
 #include <functional>
 #include <map>
 #include <optional>
@@ -192,12 +193,17 @@ class BlockingSdo {
   template <class Client>
   AbortCode run(Client& client) {
     constexpr Duration try_again{1'000};  // the bus had no room for a frame
+    while (!early_.empty()) {
+      const Frame frame = early_.front();
+      early_.pop_front();
+      if (on_frame) on_frame(frame, bus_.now());
+    }
     while (client.busy()) {
       const TimePoint present = bus_.now();
       const std::optional<TimePoint> deadline = client.next_deadline();
       const Duration wait = deadline && *deadline > present ? *deadline - present : try_again;
       if (const std::optional<Frame> frame = bus_.receive(wait)) {
-        client.on_frame(*frame, bus_.now());
+        if (!take(*frame, &client)) client.on_frame(*frame, bus_.now());
         if (on_frame) on_frame(*frame, bus_.now());
       }
       client.on_time(bus_.now());
@@ -223,14 +229,32 @@ class BlockingSdo {
     }
   };
 
-  /// The client of a node stays: it knows which answers of earlier transfers may still come.
+  /// The client of a node stays: it knows which answers of earlier transfers may still come. Those that have come since
+  /// are taken first, so that none of them answers the next request.
   [[nodiscard]] SdoClient<B>& client_of(NodeId node) {
-    return clients_.try_emplace(node.value(), bus_, node, options_).first->second;
+    SdoClient<B>& client = clients_.try_emplace(node.value(), bus_, node, options_).first->second;
+    while (const std::optional<Frame> frame = bus_.receive(Duration{0})) {
+      (void)take(*frame, nullptr);
+      early_.push_back(*frame);
+    }
+    return client;
+  }
+
+  /// Gives a frame to the clients of all nodes: a transfer that `on_frame` has begun may run inside of another one.
+  /// Whether `client` is one of them.
+  bool take(const Frame& frame, const void* client) {
+    bool is_one_of_them = false;
+    for (auto& [node, one] : clients_) {
+      one.on_frame(frame, bus_.now());
+      is_one_of_them = is_one_of_them || &one == client;
+    }
+    return is_one_of_them;
   }
 
   B& bus_;
   SdoClientOptions options_;
   std::map<std::uint8_t, SdoClient<B>> clients_;
+  std::deque<Frame> early_;  ///< read before the request was sent; `on_frame` has not seen them
 };
 
 /// A device on the bus by its generated types.

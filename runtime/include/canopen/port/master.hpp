@@ -467,7 +467,7 @@ class Master {
         if (last && done) done(bytes.abort_code());
       };
       const bool begun = static_cast<bool>(begin_upload(node_id, index, pdo_parameter::cob_id, read));
-      if (!begun) cob_ids_.erase({node_id.value(), index});  // read when it is needed
+      if (!begun) cob_ids_[{node_id.value(), index}] = no_cob_id;  // not known, and read with the next boot-up
       last_begun = last && begun;
     }
     return last_begun;
