@@ -368,9 +368,9 @@ void print_json(const Settings& settings, const Configuration& configuration, co
 }
 
 /// Behind all values: when they were made, and that they stay.
-void finish(LiveBus& bus, SdoAccess& node, const Settings& settings, const Configuration& configuration,
+void finish(LiveBus& bus, SdoAccess& node, const Settings& settings, const Configuration& configuration, bool complete,
             Ending& ending) {
-  if (configuration.time && (settings.all || read_configuration_time(node) != configuration.time)) {
+  if (complete && configuration.time && (settings.all || read_configuration_time(node) != configuration.time)) {
     const std::string problem = write_configuration_time(node, *configuration.time);
     ending.time_written = problem.empty();
     if (!problem.empty()) ending.problems.push_back("1020h Verify configuration: " + problem);
@@ -472,7 +472,7 @@ int configure(LiveBus& bus, const Settings& settings, const Configuration& confi
     std::fflush(stdout);
   }
   print_withheld(*work, !settings.all);
-  ending.nothing_differs = !settings.all && work->changes.empty();
+  ending.nothing_differs = !settings.all && work->changes.empty() && work->withheld.empty();
   ConfigurationResult result;
   if (settings.dry_run) {
     if (text && !steps.empty()) fmt::print("steps:\n");
@@ -480,7 +480,7 @@ int configure(LiveBus& bus, const Settings& settings, const Configuration& confi
   } else {
     if (!steps.empty() && !settings.keep_state) enter_pre_operational(bus, node);
     result = with_progress("done", [&] { return configure_node(node, steps, hooks); });
-    if (result.done()) finish(bus, node, settings, configuration, ending);
+    if (result.done()) finish(bus, node, settings, configuration, work->withheld.empty(), ending);
     if (watch.restarted()) {
       ending.problems.push_back(fmt::format(
           "node {} restarted meanwhile: it may have lost what was written before; configure it again", settings.node));

@@ -108,12 +108,12 @@ class Completion {
   void complete_cob_id(const CobIdParameter& parameter, Entry& entry) {
     Value own = predefined_cob_id(parameter, entry.index, device_.node_id, place_of(entry));
     if (!holds(entry, own.bits)) return;
-    if (entry.index == default_sdo) return fix_default_sdo(std::move(own), entry);
+    if (entry.index == default_sdo) return fix_default_sdo(parameter, std::move(own), entry);
     if (!entry.default_value) {
-      note_cob_id(entry, "has no default", own);
+      note_cob_id(parameter, entry, "has no default", own);
     } else if (is_can_id_0(parameter, *entry.default_value)) {
       own.bits |= entry.default_value->bits & flags_of(parameter);
-      note_cob_id(entry, "is CAN-ID 000h, which is NMT", own);
+      note_cob_id(parameter, entry, "is CAN-ID 000h, which is NMT", own);
     } else {
       return;
     }
@@ -130,11 +130,11 @@ class Completion {
   }
 
   /// The COB-IDs of the default SDO are the same in every device (7.5.2.33).
-  void fix_default_sdo(Value own, Entry& entry) {
+  void fix_default_sdo(const CobIdParameter& parameter, Value own, Entry& entry) {
     const auto& value = entry.default_value;
     if (value && value->bits == own.bits && value->plus_node_id == own.plus_node_id) return;
     if (!value) {
-      note_cob_id(entry, "has no default", own);
+      note_cob_id(parameter, entry, "has no default", own);
     } else {
       diagnostics_.warning("default-sdo-cob-id", value->position,
                            fmt::format("{} is {}, but that of the default SDO is {}; using that ({})", named(entry),
@@ -143,10 +143,11 @@ class Completion {
     entry.default_value = std::move(own);
   }
 
-  void note_cob_id(const Entry& entry, std::string_view why, const Value& own) {
+  void note_cob_id(const CobIdParameter& parameter, const Entry& entry, std::string_view why, const Value& own) {
+    const bool off = parameter.has_valid_bit && !CobId{static_cast<std::uint32_t>(own.bits)}.valid();
     note("cob-id-missing", own.position,
-         fmt::format("{} {}; using {}{} ({})", named(entry), why, spelled(own),
-                     CobId{static_cast<std::uint32_t>(own.bits)}.valid() ? "" : ", which is off", by(own.clause)));
+         fmt::format("{} {}; using {}{} ({})", named(entry), why, spelled(own), off ? ", which is off" : "",
+                     by(own.clause)));
   }
 
   // ---- other values ----

@@ -43,10 +43,19 @@ std::uint8_t implied_count(const Object& object) {
   return count;
 }
 
-/// Whether a VAR or DOMAIN with sub-objects is one nevertheless: it has a type of its own and announces no sub-objects.
-/// Then it is their index that is wrong.
+/// The clause of CiA 301 that says what sub-index 0 counts.
+std::string_view implied_count_clause(std::uint16_t index) {
+  if (index == 0x1003) return "7.5.2.4";
+  if (!contains(mapping_parameters, index)) return "7.4.4";
+  return index < 0x1A00 ? "7.5.2.36" : "7.5.2.38";
+}
+
+/// Whether a VAR or DOMAIN with sub-objects is one nevertheless: it has a type of its own, announces no sub-objects, and
+/// sub-index 0, which counts them, is not there. Then it is their index that is wrong.
 bool describes_a_value(const ObjectDescription& description) {
-  return !strip_inline_comment(description.data_type.text).empty() &&
+  const bool counts = std::ranges::any_of(
+      description.sub_objects, [](const SubObjectDescription& sub) { return sub.sub_index == 0; });
+  return !counts && !strip_inline_comment(description.data_type.text).empty() &&
          number_of(description.sub_number).value_or(0) == 0 && number_of(description.compact_sub_obj).value_or(0) == 0;
 }
 
@@ -202,7 +211,7 @@ void ObjectResolver::supply_sub_index_0(const ObjectDescription& description, Ob
   Entry& first = object.entries.front();
   if (!first.default_value && first.type->kind == DataClass::unsigned_integer && object.entries.size() > 1) {
     first.default_value = number_value(implied_count(object), first.position);
-    first.default_value->clause = contains(mapping_parameters, object.index) ? "7.5.2.36" : "7.4.4";
+    first.default_value->clause = implied_count_clause(object.index);
   }
 }
 

@@ -73,6 +73,12 @@ class Configuration {
     if (entry.type->kind == DataClass::domain) return;
     const Fields fields = fields_of(entry, object);
     if (fields.parameter_value == nullptr || strip_inline_comment(fields.parameter_value->text).empty()) return;
+    if (entry.default_value && !entry.default_value->clause.empty()) {
+      diagnostics_.note("implied-default", fields.parameter_value->position,
+                        fmt::format("{} is not configured: CiA 301, {}, gives it another value",
+                                    entry_label(entry.index, entry.sub_index), entry.default_value->clause));
+      return;
+    }
     auto configured = data(*fields.parameter_value, entry, diagnostics_);
     if (!configured) return;
     Diagnostics ignored;

@@ -160,8 +160,11 @@ class DcfMaker {
     if (is_command(section)) return;
     const Entry* const entry = device_.find(section.kind.index, sub_index);
     if (entry == nullptr || !entry->default_value || !canopen::writable(entry->access)) return;
-    // What CiA 301 gives the device is in it already; the file's own value would be wrong.
-    if (!entry->default_value->clause.empty()) return;
+    if (!entry->default_value->clause.empty()) {
+      // What CiA 301 gives the device is in it already; the file's own value would be wrong.
+      remove(section, "ParameterValue");
+      return;
+    }
     const DocumentEntry* source = find_entry(section, "ParameterValue");
     const bool has_value = source != nullptr && !source->value.empty();
     if (!is_wanted(*entry, has_value)) {

@@ -231,14 +231,29 @@ std::string squashed(std::string_view name) {
   return text;
 }
 
-constexpr std::array commissioning_names = {"nodeid", "nodeaddress", "nodenumber", "canaddress",
-                                            "baud",   "bitrate",     "canspeed"};
-/// Other nodes, and other interfaces than CAN.
-constexpr std::array other_names = {"remote", "consumer", "producer", "client", "server", "master", "slave",
-                                    "rs232",  "rs422",    "rs485",    "usb",    "uart",   "serial", "modbus"};
+/// The words of a name in lower case, between blanks: `CAN bit rate`, `CanBitRate` and `CAN_Bit-Rate` are ` can bit rate `.
+std::string words_of(std::string_view name) {
+  std::string words = " ";
+  bool after_lower = false;
+  for (const char c : name) {
+    const auto letter = static_cast<unsigned char>(c);
+    const bool upper = std::isupper(letter) != 0;
+    const bool ends = std::isalnum(letter) == 0 || (upper && after_lower);
+    if (ends && words.back() != ' ') words += ' ';
+    if (std::isalnum(letter) != 0) words += static_cast<char>(std::tolower(letter));
+    after_lower = std::islower(letter) != 0;
+  }
+  return words.back() == ' ' ? words : words + ' ';
+}
 
-bool contains_one_of(std::string_view text, std::span<const char* const> words) {
-  return std::ranges::any_of(words, [&](std::string_view word) { return text.find(word) != std::string_view::npos; });
+constexpr std::array commissioning_names = {"nodeid", "nodeaddress", "nodenumber", "canaddress", "baud", "bitrate"};
+constexpr std::array commissioning_words = {" can speed "};
+/// Other nodes, and other interfaces than CAN.
+constexpr std::array other_words = {" remote ", " consumer ", " producer ", " client ", " server ", " master ", " rs232 ",
+                                    " rs422 ",  " rs485 ",    " usb ",      " uart ",   " serial ", " modbus "};
+
+bool contains_one_of(std::string_view text, std::span<const char* const> parts) {
+  return std::ranges::any_of(parts, [&](std::string_view part) { return text.find(part) != std::string_view::npos; });
 }
 
 constexpr std::uint16_t node_id_of_cia301_v3 = 0x100B;
@@ -249,8 +264,10 @@ constexpr std::uint16_t first_of_manufacturer = 0x2000;
 bool sets_node_id_or_bit_rate(const LiveEntry& entry) {
   if (entry.index == node_id_of_cia301_v3) return true;
   if (entry.index < first_of_manufacturer || entry.entry == nullptr) return false;
-  const std::string name = squashed(entry.name);
-  return contains_one_of(name, commissioning_names) && !contains_one_of(name, other_names);
+  const std::string words = words_of(entry.name);
+  const bool named =
+      contains_one_of(squashed(entry.name), commissioning_names) || contains_one_of(words, commissioning_words);
+  return named && !contains_one_of(words, other_words);
 }
 
 bool has_effect(const ConfigurationValue& value, const std::vector<ConfigurationValue>& values) {

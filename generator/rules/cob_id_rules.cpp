@@ -160,7 +160,8 @@ void check_duplicates(const RuleContext& context, const std::vector<CobIdUse>& u
 void check_cob_ids(const RuleContext& context) {
   const std::vector<CobIdUse> uses = cob_ids_of(context.device);
   for (const CobIdUse& use : uses) {
-    if (check_frame(context, use)) check_restricted(context, use);
+    if (!check_frame(context, use)) continue;
+    check_restricted(context, use);
     check_node_id(context, use);
   }
   check_duplicates(context, uses);

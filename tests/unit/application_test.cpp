@@ -127,6 +127,14 @@ TEST(RequestInAWriteHandler, OfAnRpdoComesAfterItsOtherObjects) {
   EXPECT_EQ(device.node.get<od::word>(), 0);
 }
 
+TEST(RequestInADomainHandler, WaitsForTheSdoAnswer) {
+  auto device = with(canopen::on_domain_write<od::stream>(
+      [](auto& node, std::uint32_t, std::span<const std::uint8_t>, bool last) {
+        if (last) node.request(NmtCommand::reset_node, canopen::TimePoint{});
+      }));
+  EXPECT_EQ(device.ask("605 23 08 20 00 01 02 03 04"), "585 60 08 20 00 00 00 00 00 | 705 00");
+}
+
 TEST(Request, OutsideOfHandlersIsCarriedOutAtOnce) {
   Device device;
   device.node.request(NmtCommand::reset_node, device.now);

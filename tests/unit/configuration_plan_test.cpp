@@ -121,11 +121,13 @@ TEST(NodeIdAndBitRate, AreKnownByTheirName) {
     return sets_node_id_or_bit_rate(named);
   };
   for (const char* name : {"Node-ID", "Node ID", "CANopen NodeID", "CAN Node-ID", "Device, ucSetBaudIndex_2510h2",
-                           "CAN bit rate", "CAN Bitrate", "BaudRate", "Baudrate Set", "ulSetNodeId_2510h1"}) {
+                           "CAN bit rate", "CAN Bitrate", "BaudRate", "Baudrate Set", "ulSetNodeId_2510h1",
+                           "CAN bus baud rate", "Bus bit rate", "Fieldbus baudrate", "CANopen slave node-ID",
+                           "CAN speed"}) {
     EXPECT_TRUE(sets(0x2000, name)) << name;
   }
   for (const char* name : {"Inhibit time EMCY", "RS232 Baudrate", "MODBUS RTU Baudrate", "Gain",
-                           "Remote TPDO number and node-ID", "Node-ID of the SDO server"}) {
+                           "Remote TPDO number and node-ID", "Node-ID of the SDO server", "Scan speed", "UsbBaudrate"}) {
     EXPECT_FALSE(sets(0x2000, name)) << name;
   }
   EXPECT_FALSE(sets(0x1016, "Consumer heartbeat time, Node-ID 1"));

@@ -245,6 +245,13 @@ TEST(Resolve, KeepsAVarThatASubObjectOfAnotherIndexStraysInto) {
             std::string::npos);
 }
 
+TEST(Resolve, TakesAVarWithSubIndex0ForARecord) {
+  const std::string sub = "ParameterName=Part\nObjectType=7\nDataType=7\nAccessType=ro\n";
+  const DeviceFromText text(var("1018", "Identity", "7", "ro") + "[1018sub0]\n" + sub + "[1018sub1]\n" + sub);
+  EXPECT_EQ(text.device.find(0x1018)->type, ObjectType::record);
+  EXPECT_EQ(text.device.find(0x1018)->entries.size(), 2U);
+}
+
 TEST(Resolve, TakesAnUnknownObjectTypeForWhatItLooksLike) {
   const DeviceFromText text("[2000]\nParameterName=Value\nObjectType=99\nDataType=5\nAccessType=ro\n");
   EXPECT_EQ(text.device.find(0x2000)->type, ObjectType::var);

@@ -100,6 +100,9 @@ inline constexpr const char* restricted_can_id_reasons[] = {
 /// not restrict its CAN-ID. One that is not usable counts as not existing, however it came into the dictionary. Of 1005h
 /// and 1012h, whose bits 30 and 31 mean something else, only the identifier is to be passed.
 [[nodiscard, gnu::noinline]] constexpr bool is_usable(std::uint32_t cob_id) {
+  constexpr std::uint32_t first = 0x181;  // of those between TIME and SDO, which most COB-IDs have
+  constexpr std::uint32_t count = 0x400;
+  if ((cob_id & ~CobId::no_rtr_bit) - first < count) return true;
   if ((cob_id & CobId::invalid_bit) != 0) return false;
   return (cob_id & CobId::extended_bit) != 0 || !is_restricted(cob_id & 0x7FF);
 }

@@ -331,7 +331,7 @@ class Node {
   /// 1021h, which a device whose data sheet is generated into it binds by itself.
   using StoreEds = Object<0x1021, 0x00, Domain, Access::ro>;
 
-  static constexpr bool has_handlers = HandlerSet<Handlers...>::has_access_handlers;
+  static constexpr bool has_handlers = HandlerSet<Handlers...>::has_access_handlers || DomainHandlerSet<Handlers...>::any;
 
   /// What goes on while a read or write handler is called.
   struct Handling {
@@ -382,14 +382,16 @@ class Node {
     }
     [[nodiscard]] Result<std::uint32_t> read_domain(std::uint16_t index, std::uint8_t sub_index, std::uint32_t offset,
                                                     std::span<std::uint8_t> bytes) requires(Streams::any) {
-      return Streams::read(node.handlers_.all(), node, object_key(index, sub_index), offset, bytes);
+      const std::uint32_t key = object_key(index, sub_index);
+      return node.ask_handlers(0, [&] { return Streams::read(node.handlers_.all(), node, key, offset, bytes); });
     }
     [[nodiscard]] bool streams_download(std::uint16_t index, std::uint8_t sub_index) const requires(Streams::any) {
       return Streams::streams_download(object_key(index, sub_index));
     }
     [[nodiscard]] AbortCode write_domain(std::uint16_t index, std::uint8_t sub_index, std::uint32_t offset,
                                          std::span<const std::uint8_t> bytes, bool last) requires(Streams::any) {
-      return Streams::write(node.handlers_.all(), node, object_key(index, sub_index), offset, bytes, last);
+      const std::uint32_t key = object_key(index, sub_index);
+      return node.ask_handlers(0, [&] { return Streams::write(node.handlers_.all(), node, key, offset, bytes, last); });
     }
   };
 
@@ -648,14 +650,14 @@ class Node {
 
   /// Calls the handlers of an object that is read or written: while they run `request` waits, and `set` is noticed.
   template <class Ask>
-  [[nodiscard]] AbortCode ask_handlers([[maybe_unused]] std::uint32_t written, Ask&& ask) {
+  [[nodiscard]] auto ask_handlers([[maybe_unused]] std::uint32_t written, Ask&& ask) {
     if constexpr (has_handlers) {
       handling_.key = written;
       handling_.active = true;
       handling_.has_set = false;
-      const AbortCode code = ask();
+      const auto answer = ask();
       handling_.active = false;
-      return code;
+      return answer;
     } else {
       return ask();
     }
