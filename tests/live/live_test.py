@@ -527,13 +527,14 @@ node 5: 3 of 4 values differ; nothing written
         withheld = "edsc: not written, the node's own node-ID or bit rate: 2004h:00 CAN bit rate{} (--node-id-and-bit-rate writes it)\n"
         self.expect(self.edsc("configure", 5, "axis.dcf"), FINE,
                     "1017h:00 Producer heartbeat time: 0 ms -> 250 ms\n"
-                    "node 5: 1 of 2 values differ; 1 of 1 values written, 1 verified, 1 not written (node-ID, bit rate), "
-                    "1020h written\n", withheld.format(": 1000 rpm -> 1200 rpm"))
+                    "node 5: 1 of 2 values differ; 1 of 1 values written, 1 verified, 1 not written (node-ID, bit rate)\n",
+                    withheld.format(": 1000 rpm -> 1200 rpm"))
         self.expect(self.edsc("configure", 5, "axis.dcf", "--all"), FINE,
-                    "node 5: 1 of 1 values written, 1 verified, 1 not written (node-ID, bit rate), 1020h written\n",
+                    "node 5: 1 of 1 values written, 1 verified, 1 not written (node-ID, bit rate)\n",
                     withheld.format(" = 1200 rpm"))
         found = self.expect_json(self.edsc("configure", 5, "axis.dcf", "--format", "json"), "configure.schema.json")
         self.assertEqual([row["index"] for row in found["withheld"]], [0x2004])
+        self.assertFalse(found["configured_already"])
         self.expect(self.edsc("configure", 5, "axis.dcf", "--node-id-and-bit-rate"), FINE,
                     "2004h:00 CAN bit rate: 1000 rpm -> 1200 rpm\n"
                     "node 5: 1 of 2 values differ; 1 of 1 values written, 1 verified, 1020h written\n")
