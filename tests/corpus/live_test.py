@@ -13,7 +13,7 @@ then has to live too.
 The corpus lies in the folder EDSC_CORPUS, or in ../shared/eds-corpus beside the repository; without one the sheets of the
 repository are tested alone. One sheet by hand, with all frames:
 
-    live_test.py . build/test/generator/edsc /tmp/live --only cpd.eds --frames
+    live_test.py . build/test/generator/edsc build/live --only cpd.eds --frames
 """
 
 from __future__ import annotations
