@@ -30,7 +30,7 @@ struct ConfigurationResult {
   [[nodiscard]] bool done() const { return failures.empty() && !lost; }
 };
 
-/// What a run asks and tells.
+/// What a run asks for and reports.
 struct ConfigurationHooks {
   std::function<void(std::size_t done, std::size_t of)> progress;  ///< before each step
   std::function<bool()> restarted;                                 ///< whether the node has sent a boot-up message
