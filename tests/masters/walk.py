@@ -36,10 +36,10 @@ class Walk:
 
     def run(self) -> None:
         """`short`: without the parts that are long lists of SDO transfers, and with one PDO of each kind."""
-        self.wire.listen_to(self.node_id)
         by_sdo = () if self.short else (self.upload_all, self.refuse_all, self.download_all, self.remap)
         for part in (self.boot, *by_sdo, self.states, self.tpdos, self.rpdos, self.heartbeat, self.guarding, self.consumer,
                      self.emergencies, self.inputs):
+            self.wire.listen_to(self.node_id)
             try:
                 self.reset()
                 part()
@@ -242,6 +242,7 @@ class Walk:
         self.check("nmt", when, beats, {bytes([wanted])})
 
     def states(self) -> None:
+        self.wire.listen_to(self.node_id, pdos=False)
         self.write(PRODUCER_HEARTBEAT, 0, 10)
         self.stay_in_state("after boot-up", 0x7F)
         names = list(STATES)

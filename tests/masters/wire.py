@@ -23,6 +23,7 @@ class Wire:
             options = {"interface": "socketcan", "channel": address.removeprefix("socketcan:")}
         self.socketcand = options["interface"] == "socketcand"
         self.slcan = options["interface"] == "slcan"
+        self.socketcan = options["interface"] == "socketcan"
         self.bus = can.Bus(**options)
         self.waiting: deque[tuple[float, int, bytes]] = deque(maxlen=10000)
 
@@ -34,10 +35,13 @@ class Wire:
     def close(self) -> None:
         self.bus.shutdown()
 
-    def listen_to(self, node_id: int) -> None:
-        """Frames of this node alone, by the lower seven bits of their CAN-IDs; the kernel passes no others."""
+    def listen_to(self, node_id: int, pdos: bool = True) -> None:
+        """Frames of this node alone, by the lower seven bits of their CAN-IDs; the kernel passes no others. `pdos` is False
+        where they are not needed: a device with an event timer of 1 ms sends faster than Python reads on a slow machine."""
         self.forget()
-        self.bus.set_filters([{"can_id": node_id, "can_mask": 0x7F}])
+        every = [{"can_id": node_id, "can_mask": 0x7F}]
+        services = [{"can_id": function | node_id, "can_mask": 0x7FF} for function in (0x080, 0x580, 0x700)]
+        self.bus.set_filters(every if pdos else services)
 
     def send(self, can_id: int, data: bytes = b"") -> None:
         self.bus.send(can.Message(arbitration_id=can_id, data=data, is_extended_id=False))
@@ -70,11 +74,14 @@ class Wire:
                 return None
 
     def forget(self, can_id: int | None = None) -> None:
-        """What has come by now and nobody has asked for."""
+        """What has come by now and nobody has asked for. On SocketCAN the kernel says when a frame came, so that this ends
+        also where frames come as fast as they are read."""
+        begin = time.time() if self.socketcan else float("inf")
+        kept = deque((one for one in self.waiting if can_id is not None and one[1] != can_id), maxlen=self.waiting.maxlen)
         while (message := self.bus.recv(0)) is not None:
-            if can_id is not None and not message.is_remote_frame and message.arbitration_id != can_id:
-                self.waiting.append((message.timestamp, message.arbitration_id, bytes(message.data)))
-        if can_id is None:
-            self.waiting.clear()
-        else:
-            self.waiting = deque((one for one in self.waiting if one[1] != can_id), maxlen=self.waiting.maxlen)
+            later = message.timestamp > begin
+            if not message.is_remote_frame and (later or can_id not in (None, message.arbitration_id)):
+                kept.append((message.timestamp, message.arbitration_id, bytes(message.data)))
+            if later:
+                break
+        self.waiting = kept
