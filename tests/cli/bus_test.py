@@ -42,12 +42,12 @@ class Bus:
     def end(self, with_signal: int = signal.SIGTERM) -> tuple[int, str, str]:
         """Exit code, and what it printed behind the addresses, on both streams."""
         self.process.send_signal(with_signal)
-        return self.process.wait(timeout=60), self.process.stdout.read(), self.process.stderr.read()
+        return self.process.wait(timeout=600), self.process.stdout.read(), self.process.stderr.read()
 
 
 class Client:
     def __init__(self, port: int, bus: str = "vcan0") -> None:
-        self.socket = socket.create_connection(("127.0.0.1", port), timeout=60)
+        self.socket = socket.create_connection(("127.0.0.1", port), timeout=600)
         self.expect("< hi >")
         for command in (f"< open {bus} >", "< rawmode >"):
             self.say(command)
@@ -101,12 +101,12 @@ class BusCommand(unittest.TestCase):
 
     def test_it_complains_about_bad_clients(self) -> None:
         with Bus("--clients", "1") as bus:
-            with socket.create_connection(("127.0.0.1", bus.port), timeout=60) as bad:
+            with socket.create_connection(("127.0.0.1", bus.port), timeout=600) as bad:
                 bad.sendall(b"\0\xff" * 1000 + b"<" * 10 + b"x" * 1000)
                 while bad.recv(1000):
                     pass
             first = self.client(bus)
-            with socket.create_connection(("127.0.0.1", bus.port), timeout=60) as second:
+            with socket.create_connection(("127.0.0.1", bus.port), timeout=600) as second:
                 self.assertEqual(second.recv(1000), b"< error too many clients >")
             first.say("< echo >")
             first.expect("< echo >")
@@ -124,7 +124,7 @@ class BusCommand(unittest.TestCase):
                                      (("--clients", "0"), "--clients"),
                                      (("vcan0",), "vcan0")):
                 with self.subTest(arguments=arguments):
-                    result = subprocess.run([EDSC, "bus", *arguments], capture_output=True, text=True, timeout=60)
+                    result = subprocess.run([EDSC, "bus", *arguments], capture_output=True, text=True, timeout=600)
                     self.assertEqual(result.returncode, WRONG_USAGE)
                     self.assertIn(words, result.stderr + result.stdout)
 
@@ -143,11 +143,11 @@ class PythonCan(unittest.TestCase):
             other = Client(bus.port)
             for can_id, data in ((0x000, b"\x01\x05"), (0x605, bytes(range(8))), (0x80, b""), (0x1FFFFFFF, b"\xff")):
                 first.send(can.Message(arbitration_id=can_id, data=data, is_extended_id=can_id > 0x7FF))
-                message = second.recv(timeout=60)
+                message = second.recv(timeout=600)
                 self.assertEqual((message.arbitration_id, bytes(message.data)), (can_id, data))
             other.say("< sendrtr 705 1 >< send 701 1 5 >")
             logging.disable()  # it passes the remote frame over, and logs that
-            self.assertEqual(second.recv(timeout=60).arbitration_id, 0x701)
+            self.assertEqual(second.recv(timeout=600).arbitration_id, 0x701)
             logging.disable(logging.NOTSET)
             first.shutdown()
             second.shutdown()

@@ -43,7 +43,7 @@ class CheckTest(unittest.TestCase):
         return name
 
     def run_edsc(self, *arguments: str) -> subprocess.CompletedProcess[str]:
-        return subprocess.run([EDSC, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=60)
+        return subprocess.run([EDSC, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=600)
 
     def check(self, *arguments: str) -> tuple[int, dict]:
         result = self.run_edsc("check", "--format", "json", *arguments)

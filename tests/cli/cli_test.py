@@ -91,7 +91,7 @@ class CommandLine(unittest.TestCase):
     def edsc(self, *arguments: object, environment: dict[str, str] | None = None,
              **more: object) -> subprocess.CompletedProcess[str]:
         return subprocess.run([EDSC, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True,
-                              errors="replace", timeout=30, env={**os.environ, **(environment or {})}, **more)
+                              errors="replace", timeout=600, env={**os.environ, **(environment or {})}, **more)
 
     def write(self, name: str, text: str | bytes) -> Path:
         path = self.folder / name
@@ -502,7 +502,7 @@ class Dump(CommandLine):
         if not os.path.exists("/dev/full"):
             self.skipTest("SKIPPED: no /dev/full")
         with open("/dev/full", "w") as full:
-            result = subprocess.run([EDSC, "dump", GOOD], stdout=full, stderr=subprocess.PIPE, text=True, timeout=30)
+            result = subprocess.run([EDSC, "dump", GOOD], stdout=full, stderr=subprocess.PIPE, text=True, timeout=600)
         self.assertEqual(result.returncode, WRONG_USAGE)
 
 
@@ -517,7 +517,7 @@ class Colour(CommandLine):
     def on_a_terminal(self, environment: dict[str, str]) -> str:
         ours, theirs = os.openpty()
         try:
-            subprocess.run([EDSC, "check", WRONG], stdout=theirs, timeout=30, env={**os.environ, **environment})
+            subprocess.run([EDSC, "check", WRONG], stdout=theirs, timeout=600, env={**os.environ, **environment})
             return os.read(ours, 65536).decode(errors="replace")
         finally:
             os.close(ours)

@@ -19,7 +19,7 @@ KINDS = ("bash", "zsh", "man")
 
 
 def run(*arguments: str) -> str:
-    return subprocess.run([EDSC, *arguments], capture_output=True, text=True, check=True, timeout=30).stdout
+    return subprocess.run([EDSC, *arguments], capture_output=True, text=True, check=True, timeout=600).stdout
 
 
 def options_of(text: str) -> set[str]:
@@ -64,7 +64,7 @@ compopt() {{ :; }}
 COMP_WORDS=(edsc {quoted}); COMP_CWORD={len(words)}; _edsc
 printf '%s\\n' "${{COMPREPLY[@]}}"
 """
-        result = subprocess.run(["bash", "--norc", "-u"], input=script, capture_output=True, text=True, timeout=30, check=True,
+        result = subprocess.run(["bash", "--norc", "-u"], input=script, capture_output=True, text=True, timeout=600, check=True,
                                 cwd=folder)
         self.assertEqual(result.stderr, "")
         return set(result.stdout.split())
@@ -125,7 +125,7 @@ _edsc_whole() {{
 _edsc_whole
 _edsc_decode
 """
-        result = subprocess.run(["zsh", "-f"], input=script, capture_output=True, text=True, timeout=30, check=False)
+        result = subprocess.run(["zsh", "-f"], input=script, capture_output=True, text=True, timeout=600, check=False)
         self.assertEqual(result.stderr, "")
         self.assertIn("--format[text or json, an object on each line]:text|json:(text json)\n", result.stdout)
 
@@ -146,14 +146,14 @@ class ManPage(unittest.TestCase):
 
     @unittest.skipUnless(shutil.which("groff"), "SKIPPED: there is no groff")
     def test_is_clean_for_groff(self) -> None:
-        result = subprocess.run(["groff", "-man", "-ww", "-Tutf8"], input=self.page, capture_output=True, text=True, timeout=30,
+        result = subprocess.run(["groff", "-man", "-ww", "-Tutf8"], input=self.page, capture_output=True, text=True, timeout=600,
                                 check=True)
         self.assertEqual(result.stderr, "")
         self.assertIn("EXIT STATUS", re.sub(".\b", "", result.stdout))
 
     @unittest.skipUnless(shutil.which("mandoc"), "SKIPPED: there is no mandoc")
     def test_is_clean_for_mandoc(self) -> None:
-        result = subprocess.run(["mandoc", "-Tlint", "-W", "warning"], input=self.page, capture_output=True, text=True, timeout=30,
+        result = subprocess.run(["mandoc", "-Tlint", "-W", "warning"], input=self.page, capture_output=True, text=True, timeout=600,
                                 check=False)
         without_date = [line for line in result.stdout.splitlines() if "missing date" not in line]  # the output has no dates
         self.assertEqual(without_date, [])

@@ -22,7 +22,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from support.compilers import GCC, SKIPPED, compile_only, in_parallel  # noqa: E402
 
 AT_LEAST = 135
-SECONDS = 10
+SECONDS = 600
 XML = (".xdd", ".xdc", ".xpd")
 ERROR = re.compile(r": error: ")
 PLACED_ERROR = re.compile(r":\d+:\d+: error: ")

@@ -21,7 +21,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from corpus_test import find_corpus  # noqa: E402
 from support.compilers import SKIPPED  # noqa: E402
 
-SECONDS = 20
+SECONDS = 600
 MEMBERS = {"default": "default_value", "low": "low_limit", "high": "high_limit", "type": "data_type",
            "mapping": "pdo_mapping"}
 FORMULA = re.compile(r"\$NODEID(?:\+(0x[0-9A-F]+))?$")

@@ -26,7 +26,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from corpus_test import find_corpus, paths_in  # noqa: E402
 from support.compilers import SKIPPED, in_parallel  # noqa: E402
 
-SECONDS = 20
+SECONDS = 600
 NODE_ID = "5"
 ERROR = re.compile(r": error: ")
 KNOWN_SECTION = re.compile(

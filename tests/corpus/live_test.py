@@ -80,12 +80,12 @@ class Driver:
         job.name = "d" + hashlib.sha256(job.title.encode()).hexdigest()[:10]
         command = [self.arguments.edsc.resolve(), "generate", job.path, "-o", self.work / "generated", "--name", job.name,
                    "--color", "never"]
-        result = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=60)
+        result = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=600)
         device = self.work / "generated" / job.name / "device.hpp"
         if result.returncode == 1:
             job.refused = True
             device.unlink(missing_ok=True)  # that of an earlier run
-            result = subprocess.run([*command, "--keep-going"], capture_output=True, text=True, errors="replace", timeout=60)
+            result = subprocess.run([*command, "--keep-going"], capture_output=True, text=True, errors="replace", timeout=600)
         if result.returncode not in (0, 1):
             job.problems.append(f"edsc generate ends with {result.returncode}")
         if not device.is_file():

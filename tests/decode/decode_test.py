@@ -29,12 +29,12 @@ AXIS = "tests/decode/axis.dcf"
 SCHEMA = SOURCE_DIR / "docs/schema/message.schema.json"
 PART = re.compile(r"^--- (log|output|errors|exit)(?: (\d+))?\n", re.MULTILINE)
 FINE, INPUT_HAS_ERRORS, WRONG_USAGE = 0, 1, 2
-SOON = 30.0
+SOON = 120.0
 
 
 def edsc(*arguments: str, log: str = "", **more: object) -> subprocess.CompletedProcess[str]:
     return subprocess.run([EDSC, "decode", "--color", "never", *arguments], cwd=SOURCE_DIR, input=log, text=True,
-                          errors="replace", capture_output=True, timeout=60, **more)
+                          errors="replace", capture_output=True, timeout=600, **more)
 
 
 class Case:

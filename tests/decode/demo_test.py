@@ -20,9 +20,9 @@ def main() -> int:
     source, edsc, demo = (Path(argument).resolve() for argument in sys.argv[1:4])
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "demo.log"
-        subprocess.run([demo, "--log", log], check=True, stdout=subprocess.DEVNULL, timeout=60)
+        subprocess.run([demo, "--log", log], check=True, stdout=subprocess.DEVNULL, timeout=600)
         nodes = [option for node, name in NODES.items() for option in ("--node", f"{node}={source}/eds/{name}.eds")]
-        result = subprocess.run([edsc, "decode", *nodes, "--format", "json", log], capture_output=True, text=True, timeout=60,
+        result = subprocess.run([edsc, "decode", *nodes, "--format", "json", log], capture_output=True, text=True, timeout=600,
                                 check=False)
         frames = len(log.read_text().splitlines())
     messages = [json.loads(line) for line in result.stdout.splitlines()]

@@ -64,7 +64,7 @@ class LiveTest(unittest.TestCase):
 
     def edsc(self, command: str, *arguments: object) -> subprocess.CompletedProcess[str]:
         return subprocess.run(self.command(command, *arguments), cwd=self.folder, capture_output=True, text=True,
-                              timeout=60)
+                              timeout=600)
 
     def start(self, command: str, *arguments: object) -> subprocess.Popen[str]:
         process = subprocess.Popen(self.command(command, *arguments), cwd=self.folder, text=True,
@@ -148,7 +148,7 @@ class ScanOfAnEmptyBus(LiveTest):
         self.assertIn("Connection refused", result.stderr)
 
     def test_what_is_no_address(self) -> None:
-        result = subprocess.run([EDSC, "scan", "can0"], capture_output=True, text=True, timeout=60)
+        result = subprocess.run([EDSC, "scan", "can0"], capture_output=True, text=True, timeout=600)
         self.assertEqual(result.returncode, WRONG_USAGE)
         self.assertTrue(result.stderr.startswith('edsc: "can0" is no bus'), result.stderr)
 
@@ -232,7 +232,7 @@ class Silence(LiveTest):
     nodes = ()
 
     def wait_for(self, process: subprocess.Popen[str]) -> tuple[int, str, str]:
-        return process.wait(timeout=60), process.stdout.read(), process.stderr.read()
+        return process.wait(timeout=600), process.stdout.read(), process.stderr.read()
 
     def test_ctrl_c_aborts_the_transfer(self) -> None:
         asked = self.network.client()
@@ -637,7 +637,7 @@ node 5: 1 of 3 values differ; 3 of 3 values written, 3 verified, 1020h written
         self.only(x1A00sub0="1", x1A00sub1="0x60640020", x2004="1200", x1005="0x81")
         result = subprocess.run([EDSC, "configure", "socketcan:none", "5", "axis.dcf", "--dry-run", "--all"],
                                 cwd=self.folder,
-                                capture_output=True, text=True, timeout=60)
+                                capture_output=True, text=True, timeout=600)
         self.expect(result, FINE, """\
 switch off  1005h:00 COB-ID SYNC
 switch on   1005h:00 COB-ID SYNC = 00000081h
@@ -892,7 +892,7 @@ class FastscanOfSlavesThatAnswerAlways(LiveTest):
                 while not listener.receive().startswith("7E5 51"):
                     pass
                 process.send_signal(signal.SIGINT)
-                stdout, stderr = process.communicate(timeout=60)
+                stdout, stderr = process.communicate(timeout=600)
                 self.assertEqual((process.returncode, stderr), (INTERRUPTED, "edsc: interrupted\n"))
                 if arguments[0] == "scan":
                     self.assertIn("without node-ID: vendor-ID", stdout)
@@ -916,7 +916,7 @@ class Monitor(LiveTest):
         client = self.network.client()
         client.send("086 30 81 11 00 00 00 00 00")
         client.send("123 01")
-        stdout, stderr = process.communicate(timeout=60)
+        stdout, stderr = process.communicate(timeout=600)
         found = self.expect_json(subprocess.CompletedProcess([], process.returncode, stdout, stderr), "monitor.schema.json")
         drive, other = found["nodes"]
         self.assertEqual((drive["node_id"], drive["name"], drive["state"], drive["late"]), (5, "Live device", "operational", False))
@@ -945,7 +945,7 @@ class Monitor(LiveTest):
         self.assertIn("Position actual value = 123456 inc", rest)
         self.assertIn("operational", rest)
         process.send_signal(signal.SIGINT)
-        self.assertEqual((process.wait(timeout=60), process.stdout.read()), (FINE, ""))
+        self.assertEqual((process.wait(timeout=600), process.stdout.read()), (FINE, ""))
 
     def test_the_table_on_a_terminal(self) -> None:
         terminal, inside = pty.openpty()
@@ -959,7 +959,7 @@ class Monitor(LiveTest):
         self.addCleanup(process.kill)
 
         def shown_until(wanted: str) -> str:
-            shown, end = "", time.monotonic() + 5
+            shown, end = "", time.monotonic() + 120
             while wanted not in shown and time.monotonic() < end:
                 if select.select([terminal], [], [], 0.1)[0]:
                     shown += os.read(terminal, 65536).decode()
@@ -975,7 +975,7 @@ class Monitor(LiveTest):
         shown_until("more lines")
         os.write(terminal, b"q")
         self.assertTrue(shown_until("\x1b[?1049l").endswith("\x1b[?25h\x1b[?1049l"))
-        self.assertEqual(process.wait(timeout=60), FINE)
+        self.assertEqual(process.wait(timeout=600), FINE)
         self.assertEqual(termios.tcgetattr(inside), before)
         os.close(inside)
 

@@ -16,7 +16,7 @@ class Client:
     """A socketcand client that sends and takes frames as `605 40 00 10 00 00 00 00 00`."""
 
     def __init__(self, port: int) -> None:
-        self.socket = socket.create_connection(("127.0.0.1", port), timeout=60)
+        self.socket = socket.create_connection(("127.0.0.1", port), timeout=600)
         self.heard = ""
         for command in ("", "< open vcan0 >", "< rawmode >"):
             self.socket.sendall(command.encode())
@@ -106,8 +106,8 @@ class Network:
         for process in (self.nodes, self.bus):
             if process is not None:
                 process.terminate()
-                process.wait(timeout=60)
-        self.reader.join(timeout=60)
+                process.wait(timeout=600)
+        self.reader.join(timeout=600)
         for process in (self.nodes, self.bus):
             if process is not None:
                 process.stdout.close()

@@ -80,7 +80,7 @@ class Plant:
         failed = 0
         for name, node in self.nodes.items():
             node.terminate()
-            if (code := node.wait(timeout=60)) != 0:
+            if (code := node.wait(timeout=600)) != 0:
                 print(f"{name}: ended with {code} after SIGTERM")
                 failed += 1
         return failed

@@ -22,7 +22,7 @@ TRACES = sys.argv[4:] or ["001-states-in-homing", "001-states-in-profile-positio
                           "002-6.3.4-manual-movement"]
 ADDRESS = re.compile(r"socketcand:127\.0\.0\.1:(\d+)/(\w+)\n")
 FRAME = re.compile(rb"< frame ([0-9A-F]+) [0-9.]+ ([0-9A-F]*) >")
-LATEST = 20.0  # s until a frame has come
+LATEST = 120.0  # s until a frame has come
 
 
 class Bus:

@@ -22,7 +22,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-LATE = 20.0  # seconds that a frame may take on a busy machine
+LATE = 120.0  # seconds that a frame may take on a busy machine
 REMOTE = 0x4000_0000
 
 
@@ -280,9 +280,9 @@ def restart_the_sensor(bus: KernelBus | ServedBus, arguments: argparse.Namespace
 
 def refuse_wrong_arguments(arguments: argparse.Namespace) -> None:
     for wrong in ([], ["nowhere"], ["socketcan:nowhere0"], ["socketcan:vcan0", "--node-id", "128"], ["a", "b"]):
-        done = subprocess.run([arguments.rk5c, *wrong], capture_output=True, text=True, timeout=60)
+        done = subprocess.run([arguments.rk5c, *wrong], capture_output=True, text=True, timeout=600)
         assert done.returncode == 2 and done.stderr.startswith("rk5c: "), (wrong, done)
-    done = subprocess.run([arguments.rk5c, "--help"], capture_output=True, text=True, timeout=60)
+    done = subprocess.run([arguments.rk5c, "--help"], capture_output=True, text=True, timeout=600)
     assert done.returncode == 0 and "position 1 12345" in done.stdout, done
     print("ok   wrong arguments, --help")
 

@@ -212,7 +212,7 @@ def run(edsc: Path, folder: Path, example: Example, kind: str, base: str) -> tup
             marked = options.lines
     command = block.option("command", "check")
     arguments = {"check": [], "generate": ["-o", "out"], "format": ["-o", "out.eds"]}[command]
-    result = subprocess.run([edsc, command, file, *arguments], cwd=folder, capture_output=True, text=True, timeout=60)
+    result = subprocess.run([edsc, command, file, *arguments], cwd=folder, capture_output=True, text=True, timeout=600)
     column = int(block.option("column", "0"))
     place = next((Place(n, column or line.column) for n, line in enumerate(marked, 1) if line.column), Place(1, 1))
     output = result.stdout + result.stderr

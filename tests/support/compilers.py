@@ -52,7 +52,7 @@ def compile_only(compiler: Compiler, source: Path, include: Sequence[Path],
     """Looks at a source or header without writing anything."""
     folders = [f"-I{folder}" for folder in include]
     return subprocess.run([*compiler.command, *FLAGS, *extra, *folders, str(source)], capture_output=True, text=True,
-                          errors="replace", timeout=120)
+                          errors="replace", timeout=600)
 
 
 def in_parallel(job, arguments: Iterable) -> list:

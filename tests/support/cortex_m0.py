@@ -28,7 +28,7 @@ def build(source: Path, include: Sequence[Path], folder: Path, *extra: str) -> I
     """Compiles one source; it is not linked, so that what is outside stays outside."""
     made = folder / "image.o"
     folders = [f"-I{path}" for path in include]
-    subprocess.run([*COMMAND, *folders, *extra, "-c", source, "-o", made], check=True, timeout=120)
+    subprocess.run([*COMMAND, *folders, *extra, "-c", source, "-o", made], check=True, timeout=600)
     text, data, bss = (int(number) for number in output("arm-none-eabi-size", made).splitlines()[1].split()[:3])
     return Image(text + data, data + bss, output("arm-none-eabi-nm", "-C", made))
 

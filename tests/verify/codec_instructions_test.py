@@ -46,7 +46,7 @@ TARGETS = (
 def compiled(target: Target, source: Path, runtime: Path, folder: Path) -> Path:
     made = folder / f"{source.stem}.o"
     subprocess.run([*target.compiler.command, "-std=c++20", "-O2", "-fno-exceptions", "-fno-rtti", f"-I{runtime}", "-c",
-                    source, "-o", made], check=True, timeout=120)
+                    source, "-o", made], check=True, timeout=600)
     return made
 
 

@@ -48,7 +48,7 @@ def main() -> int:
             dialogue(bus)
         finally:
             program.send_signal(signal.SIGTERM)
-        expect("exit code after SIGTERM", str(program.wait(timeout=5)), "0")
+        expect("exit code after SIGTERM", str(program.wait(timeout=600)), "0")
     missing = subprocess.run([sys.argv[1], "can99", "5"], capture_output=True, text=True, check=False)
     expect("exit code without an interface", str(missing.returncode), "1")
     return 0
