@@ -238,6 +238,11 @@ class Server {
   void say(std::string_view text) const {
     EXPECT_EQ(::send(client_.number(), text.data(), text.size(), MSG_NOSIGNAL), static_cast<ssize_t>(text.size()));
   }
+  /// As much of it as the connection takes, if there is still one.
+  void try_to_say(std::string_view text) const {
+    pollfd room{client_.number(), POLLOUT, 0};
+    if (::poll(&room, 1, 10) == 1) (void)::send(client_.number(), text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+  }
   /// Waits for these characters.
   [[nodiscard]] bool hears(std::string_view wanted) {
     for (int i = 0; i < 1000 && heard_.size() < wanted.size(); ++i) heard_ += read_some(client_.number());
@@ -276,6 +281,64 @@ TEST(SocketcandPort, SendsAndReceivesFrames) {
   server.say("10F00 >< frame 705 1.5 05 >");
   EXPECT_EQ(text_of(bus.receive(1s)), "585 43 00 10 00 91 01 0F 00");
   EXPECT_EQ(text_of(bus.receive(1s)), "705 05");
+}
+
+/// Says elements that are not frames until it goes, or for half a minute, after which a test has failed.
+class Flood {
+ public:
+  explicit Flood(const Server& server)
+      : thread_{[this, &server] {
+          const auto end = std::chrono::steady_clock::now() + 30s;
+          while (!stop_ && !over_) {
+            server.try_to_say(elements_);
+            over_ = std::chrono::steady_clock::now() > end;
+          }
+        }} {}
+  ~Flood() {
+    stop_ = true;
+    thread_.join();
+  }
+
+  [[nodiscard]] bool is_over() const { return over_; }
+
+ private:
+  static std::string many(std::string_view element) {
+    std::string text;
+    for (int i = 0; i < 1000; ++i) text += element;
+    return text;
+  }
+
+  std::string elements_ = many("< echo >");
+  std::atomic<bool> stop_{false};
+  std::atomic<bool> over_{false};
+  std::thread thread_;
+};
+
+TEST(SocketcandPort, LetsTimePassWhileBytesComeButNoFrame) {
+  Server server;
+  std::thread greeting{[&] { server.greet(); }};
+  HostBus bus{server.address("vcan0")};
+  greeting.join();
+  const Flood flood{server};
+  EXPECT_EQ(text_of(bus.receive(50ms)), "none");
+  EXPECT_FALSE(flood.is_over()) << "it has returned when nothing came any more";
+}
+
+TEST(SocketcandPort, GivesUpAServerThatSaysMuchAndNeverOpensTheBus) {
+  Server server;
+  std::optional<Flood> flood;
+  std::thread noise{[&] {
+    server.accept();
+    flood.emplace(server);
+  }};
+  try {
+    const HostBus bus{server.address("vcan0")};
+    FAIL() << "opened";
+  } catch (const std::system_error& problem) {
+    EXPECT_EQ(problem.code(), std::errc::timed_out);
+  }
+  noise.join();
+  EXPECT_FALSE(flood->is_over());
 }
 
 TEST(SocketcandPort, TellsOfALostServer) {

@@ -90,13 +90,15 @@ template <class Port>
   const TimePoint end = monotonic_now() + timeout;
   for (;;) {
     while (const std::optional<PortEvent> event = port.take()) {
-      if (!event->frame) continue;
-      if (port.has_more()) port.events().set_alarm(event->time, monotonic_now());
-      return event->frame;
+      if (event->frame) {
+        if (port.has_more()) port.events().set_alarm(event->time, monotonic_now());
+        return event->frame;
+      }
+      if (monotonic_now() >= end) break;  // the status may change without end
     }
     const TimePoint now = monotonic_now();
     if (now >= end) {
-      port.events().set_alarm(port.next_deadline(), now);
+      port.events().set_alarm(port.has_more() ? std::optional{now} : port.next_deadline(), now);
       return std::nullopt;
     }
     port.events().wait(until(port.next_deadline(), now, end - now));

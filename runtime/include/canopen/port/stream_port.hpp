@@ -83,13 +83,15 @@ class StreamPort {
 
   [[nodiscard]] std::optional<PortEvent> take() {
     flush();
-    do {
+    for (std::size_t reads = 0;; ++reads) {
       while (has_more()) {
         const std::optional<Frame> frame = protocol_.on_character(bytes_[read_++], present_);
         if (frame) return PortEvent{frame, present_, told_};
         if (const auto changed = status_event()) return changed;
       }
-    } while (read_some());
+      // A stream may bring bytes without end and no frame: time must pass meanwhile.
+      if (reads == reads_at_once || !read_some()) break;
+    }
     protocol_.on_time(pass_time());
     flush();
     return status_event();
@@ -118,8 +120,9 @@ class StreamPort {
     const auto connecting = [this] { return protocol_.state() == Protocol::State::connecting; };
     while (connecting()) {
       flush();
-      while (connecting() && (has_more() || read_some())) {
-        if (has_more()) (void)protocol_.on_character(bytes_[read_++], present_);
+      for (std::size_t reads = 0; connecting(); ++reads) {
+        while (connecting() && has_more()) (void)protocol_.on_character(bytes_[read_++], present_);
+        if (!connecting() || reads == reads_at_once || !read_some()) break;
       }
       protocol_.on_time(pass_time());
       flush();
@@ -137,6 +140,8 @@ class StreamPort {
   Protocol protocol_;
 
  private:
+  static constexpr std::size_t reads_at_once = 4;  ///< between two looks at the time
+
   [[nodiscard]] ssize_t write(std::string_view text) const {
     if (is_socket_) return ::send(stream_.number(), text.data(), text.size(), MSG_NOSIGNAL);
     return ::write(stream_.number(), text.data(), text.size());
