@@ -106,6 +106,46 @@ TEST(SdoClient, AbortsAValueThatIsLongerThanItsMemory) {
   EXPECT_EQ(pair.client.result(), AbortCode::out_of_memory);
 }
 
+/// The size that a server announces bounds what it may send.
+TEST(SdoClient, AbortsAServerThatSendsMoreThanItHasAnnounced) {
+  bench::RecordingBus bus;
+  SdoClient client{bus, NodeId{5}, 100ms};
+  std::uint32_t taken = 0;
+  auto take = [&](std::uint32_t, std::span<const std::uint8_t> bytes, bool) {
+    taken += static_cast<std::uint32_t>(bytes.size());
+    return canopen::ok;
+  };
+  client.upload(0x1008, 0, canopen::sink_of(take), TimePoint{});
+  client.on_frame(frame("585 41 08 10 00 03 00 00 00"), TimePoint{});
+  client.on_frame(frame("585 00 41 42 43 44 45 46 47"), TimePoint{});
+  EXPECT_EQ(client.result(), AbortCode::length_too_high);
+  EXPECT_EQ(bus.take(), "605 40 08 10 00 00 00 00 00 | 605 60 00 00 00 00 00 00 00 | 605 80 08 10 00 12 00 07 06");
+  EXPECT_EQ(taken, 0u);
+  EXPECT_FALSE(client.busy());
+}
+
+TEST(SdoClient, AbortsABlockUploadThatBringsMoreThanAnnounced) {
+  bench::RecordingBus bus;
+  SdoClient client{bus, NodeId{5}, canopen::SdoClientOptions{.timeout = 100ms, .block_transfer = true}};
+  auto take = [](std::uint32_t, std::span<const std::uint8_t>, bool) { return canopen::ok; };
+  client.upload(0x1008, 0, canopen::sink_of(take), TimePoint{});
+  client.on_frame(frame("585 C2 08 10 00 08 00 00 00"), TimePoint{});
+  client.on_frame(frame("585 01 41 42 43 44 45 46 47"), TimePoint{});
+  EXPECT_TRUE(client.busy());
+  client.on_frame(frame("585 02 41 42 43 44 45 46 47"), TimePoint{});
+  EXPECT_EQ(client.result(), AbortCode::length_too_high);
+}
+
+TEST(SdoClient, AbortsASegmentThatBringsNothingAndIsNotTheLast) {
+  bench::RecordingBus bus;
+  SdoClient client{bus, NodeId{5}, 100ms};
+  auto take = [](std::uint32_t, std::span<const std::uint8_t>, bool) { return canopen::ok; };
+  client.upload(0x1008, 0, canopen::sink_of(take), TimePoint{});
+  client.on_frame(frame("585 40 08 10 00 00 00 00 00"), TimePoint{});
+  client.on_frame(frame("585 0E 00 00 00 00 00 00 00"), TimePoint{});
+  EXPECT_EQ(client.result(), AbortCode::length_too_low);
+}
+
 TEST(SdoClient, TakesOneTransferAtATime) {
   bench::RecordingBus bus;
   SdoClient client{bus, NodeId{5}, 100ms};

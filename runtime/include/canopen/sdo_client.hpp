@@ -87,7 +87,9 @@ template <class F>
 /// Reads and writes the dictionary of one remote node through one of its SDO servers. Begin a transfer, hand in frames
 /// and time until it is no longer `busy()`, then look at `result()` and, after an upload, at `data()`.
 ///
-/// An upload fills, and a download reads, memory of the caller's that must stay until the transfer is over.
+/// An upload fills, and a download reads, memory of the caller's that must stay until the transfer is over. A server that
+/// sends more bytes than it has announced ends the upload with 0607 0012h, a segment without bytes that is not the last
+/// one with 0607 0013h. One that announces no size is bounded by the memory, or by the sink.
 ///
 /// An SDO has one client: two of them take each other's answers. Use one client for a node and keep it, since it knows
 /// which answers may still come. SDO does not number its transfers; only the index and sub-index of initiate answers and
@@ -183,6 +185,9 @@ class SdoClient {
     if (left_over_ == LeftOver::any) left_over_ = LeftOver::none;
     was_reset_ = true;
   }
+
+  /// Other options from the next transfer on; not while busy.
+  void set_options(const SdoClientOptions& options) { options_ = options; }
 
   /// Takes an answer of the server; other frames are ignored.
   void on_frame(const Frame& frame, TimePoint now) {
@@ -487,8 +492,12 @@ class SdoClient {
 
   [[nodiscard]] bool take(const std::uint8_t* from, std::uint32_t size, bool last) {
     AbortCode code = ok;
-    if (last && size_ != sdo::unknown_size && position_ + size != size_) {
+    if (size_ != sdo::unknown_size && size > size_ - position_) {
+      code = AbortCode::length_too_high;
+    } else if (last && size_ != sdo::unknown_size && position_ + size != size_) {
       code = AbortCode::length_mismatch;
+    } else if (size == 0 && !last) {
+      code = AbortCode::length_too_low;  // a transfer of such segments has no end
     } else if (sink_.take != nullptr) {
       code = sink_.take(sink_.context, position_, {from, size}, last);
     } else if (size > memory_.size() - position_) {
