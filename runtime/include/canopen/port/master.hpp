@@ -186,7 +186,7 @@ class Master {
     transfer.bytes.resize(memory.size());
     SdoRequest request = request_of(transfer, index, sub_index);
     request.memory = transfer.bytes;
-    const Result<void> submitted = nmt_.request(node_id, request, bus_.now());
+    const Result<void> submitted = submit(node_id, request);
     const Result<void> done = submitted ? wait_for(transfer) : submitted;
     const std::size_t size = done ? transfer.size : 0;
     std::copy_n(transfer.bytes.begin(), size, memory.begin());
@@ -301,13 +301,15 @@ class Master {
       }
       const std::optional<Frame> frame = bus_.receive(wait);
       const TimePoint now = bus_.now();
-      if (frame) {
-        nmt_.on_frame(*frame, now);
-        take(*frame);
-      }
+      if (frame) on_frame(*frame, now);
       nmt_.on_time(now);
       if (frame || now >= end) return;
     }
+  }
+
+  void on_frame(const Frame& frame, TimePoint now) {
+    nmt_.on_frame(frame, now);
+    take(frame);
   }
 
   void take(const Frame& frame) {
@@ -362,7 +364,7 @@ class Master {
       value.insert(value.end(), bytes.begin(), bytes.end());
       return ok;
     };
-    return nmt_.request(node_id, request, bus_.now());
+    return submit(node_id, request);
   }
 
   [[nodiscard]] Result<void> submit_download(Transfer& transfer, NodeId node_id, std::uint16_t index,
@@ -375,6 +377,12 @@ class Master {
     SdoRequest request = request_of(transfer, index, sub_index);
     request.download = true;
     request.bytes = transfer.bytes;
+    return submit(node_id, request);
+  }
+
+  /// Takes the frames that have come before it requests the transfer, so that none of them is taken for its answer.
+  [[nodiscard]] Result<void> submit(NodeId node_id, const SdoRequest& request) {
+    while (const std::optional<Frame> frame = bus_.receive(Duration{0})) on_frame(*frame, bus_.now());
     return nmt_.request(node_id, request, bus_.now());
   }
 

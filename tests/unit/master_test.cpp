@@ -1,0 +1,78 @@
+/// The master of a host: which frames belong to which of its transfers.
+#include <gtest/gtest.h>
+#include <canopen/port/master.hpp>
+
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "bench.hpp"
+
+namespace {
+
+using bench::frame;
+using canopen::AbortCode;
+using canopen::Duration;
+using canopen::Frame;
+using canopen::NodeId;
+using canopen::TimePoint;
+using namespace std::chrono_literals;
+
+/// A bus of which a test says what is on it: frames that wait to be received, and the answer to each frame that is sent.
+struct ScriptedBus {
+  bool send(const Frame& sent) {
+    const auto answer = answers.find(bench::text(sent));
+    if (answer != answers.end()) waiting.push_back(frame(answer->second));
+    return true;
+  }
+  std::optional<Frame> receive(Duration timeout) {
+    if (waiting.empty()) {
+      time = time + timeout;
+      return std::nullopt;
+    }
+    const Frame next = waiting.front();
+    waiting.pop_front();
+    return next;
+  }
+  [[nodiscard]] TimePoint now() const { return time; }
+
+  std::map<std::string, std::string> answers;
+  std::deque<Frame> waiting;
+  TimePoint time{};
+};
+
+TEST(Master, DoesNotTakeALateAnswerThatIsUnreadForThatOfItsNextRequest) {
+  ScriptedBus bus;
+  canopen::Master master{bus};
+  const auto lost = master.upload(NodeId{5}, 0x2000, 0);
+  ASSERT_FALSE(lost);
+  EXPECT_EQ(lost.abort_code(), AbortCode::timeout);
+  bus.time = bus.time + 10s;
+  bus.waiting.push_back(frame("585 4F 00 20 00 01 00 00 00"));
+  bus.answers["605 40 00 20 00 00 00 00 00"] = "585 4F 00 20 00 02 00 00 00";
+  const auto value = master.upload(NodeId{5}, 0x2000, 0);
+  ASSERT_TRUE(value);
+  EXPECT_EQ(*value, std::vector<std::uint8_t>{2});
+  std::array<std::uint8_t, 8> memory{};
+  bus.waiting.push_back(frame("585 4F 00 20 00 03 00 00 00"));
+  EXPECT_EQ(master.read_number(NodeId{5}, 0x2000, 0, memory).data[0], 2);
+  bus.waiting.push_back(frame("585 60 00 20 00 00 00 00 00"));
+  bus.answers["605 2F 00 20 00 07 00 00 00"] = "585 80 00 20 00 31 00 09 06";
+  const std::uint8_t seven = 7;
+  EXPECT_EQ(master.download(NodeId{5}, 0x2000, 0, {&seven, 1}).abort_code(), AbortCode::value_too_high);
+}
+
+TEST(Master, StillTellsOfAFrameThatCameBeforeARequest) {
+  ScriptedBus bus;
+  canopen::Master master{bus};
+  int emergencies = 0;
+  master.on_emergency = [&](NodeId, const canopen::EmergencyMessage&) { ++emergencies; };
+  bus.waiting.push_back(frame("085 10 81 11 00 00 00 00 00"));
+  bus.answers["605 40 00 20 00 00 00 00 00"] = "585 4F 00 20 00 02 00 00 00";
+  ASSERT_TRUE(master.upload(NodeId{5}, 0x2000, 0));
+  master.poll(0us);
+  EXPECT_EQ(emergencies, 1);
+}
+
+}  // namespace
