@@ -97,24 +97,17 @@ void BusClient::refuse(std::string_view reason) {
   put(" >");
 }
 
-bool BusClient::flush(Clock::time_point now) {
-  if (idle_) waiting_since_ = now;
+bool BusClient::flush() {
   while (backlog() > 0) {
     const ssize_t sent = ::send(socket_, backlog_.data() + written_, backlog(), MSG_NOSIGNAL | MSG_DONTWAIT);
     if (sent < 0 && errno == EINTR) continue;
     if (sent < 0 && errno != EAGAIN) return false;
     if (sent < 0) break;
     written_ += static_cast<std::size_t>(sent);
-    waiting_since_ = now;
   }
-  idle_ = backlog() == 0;
   backlog_.erase(0, written_);
   written_ = 0;
   return true;
-}
-
-BusClient::Clock::duration BusClient::stalled(Clock::time_point now) const {
-  return idle_ ? Clock::duration::zero() : now - waiting_since_;
 }
 
 }  // namespace edsc

@@ -30,6 +30,9 @@ class BusClient {
   [[nodiscard]] int socket() const { return socket_; }
   [[nodiscard]] const std::string& name() const { return name_; }
 
+  /// When it was connected.
+  [[nodiscard]] Clock::time_point since() const { return since_; }
+
   /// The number of the bus that it has opened.
   [[nodiscard]] std::optional<std::size_t> bus() const { return bus_; }
 
@@ -54,13 +57,10 @@ class BusClient {
   void put(std::string_view text) { backlog_.append(text); }
 
   /// Writes as much as the connection takes. False when it is broken.
-  [[nodiscard]] bool flush(Clock::time_point now);
+  [[nodiscard]] bool flush();
 
   /// Bytes on their way to the client.
   [[nodiscard]] std::size_t backlog() const { return backlog_.size() - written_; }
-
-  /// How long it has read nothing although something is on its way.
-  [[nodiscard]] Clock::duration stalled(Clock::time_point now) const;
 
  private:
   [[nodiscard]] ClientRequest on_element(std::string_view element);
@@ -76,9 +76,8 @@ class BusClient {
   canopen::Frame frame_;
   std::string leaves_because_;
   std::string backlog_;
-  std::size_t written_ = 0;            ///< of the backlog
-  bool idle_ = true;                   ///< nothing was left of the backlog when it was last flushed
-  Clock::time_point waiting_since_{};  ///< when the connection last took something, while not idle
+  std::size_t written_ = 0;  ///< of the backlog
+  Clock::time_point since_ = Clock::now();
 };
 
 }  // namespace edsc

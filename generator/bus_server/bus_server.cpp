@@ -80,11 +80,9 @@ void BusServer::listen() {
 void BusServer::turn(std::chrono::milliseconds wait, const sigset_t* signals) {
   std::vector<pollfd> ready{{listener_, POLLIN, 0}};
   for (const auto& client : clients_) {
-    const bool congested = waits(*client);
-    if (congested) wait = std::min(wait, limits_.patience / 4);
-    ready.push_back(
-        {client->socket(), static_cast<short>((congested ? 0 : POLLIN) | (client->backlog() > 0 ? POLLOUT : 0)), 0});
+    ready.push_back({client->socket(), static_cast<short>(POLLIN | (client->backlog() > 0 ? POLLOUT : 0)), 0});
   }
+  wait = until_handshake_ends(wait);
   const timespec span{wait.count() / 1000, wait.count() % 1000 * 1'000'000};
   const int count = ::ppoll(ready.data(), ready.size(), &span, signals);
   if (count < 0 && errno != EINTR) fail("poll");
@@ -94,7 +92,7 @@ void BusServer::turn(std::chrono::milliseconds wait, const sigset_t* signals) {
     auto& client = clients_[i - 1];
     const bool heard = (ready[i].revents & (POLLIN | POLLHUP | POLLERR)) != 0;
     if (!heard || hear(*client)) continue;
-    static_cast<void>(client->flush(Clock::now()));
+    static_cast<void>(client->flush());
     leaving.push_back(std::move(client));
   }
   std::erase(clients_, nullptr);
@@ -116,7 +114,7 @@ void BusServer::welcome() {
     return;
   }
   client->refuse("too many clients");
-  static_cast<void>(client->flush(Clock::now()));
+  static_cast<void>(client->flush());
   say(*client, "too many clients");
 }
 
@@ -163,22 +161,32 @@ void BusServer::deliver(const BusClient& sender) {
   events_.on_frame(sender.frame(), buses_[*sender.bus()], time);
 }
 
-/// Sends what is on its way; clients that are lost, or have read nothing for too long, leave.
+/// How long to wait before the next client has had its time to open a bus.
+std::chrono::milliseconds BusServer::until_handshake_ends(std::chrono::milliseconds at_most) const {
+  const auto now = Clock::now();
+  for (const auto& client : clients_) {
+    if (client->bus()) continue;
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(client->since() + limits_.handshake - now);
+    at_most = std::clamp(left, std::chrono::milliseconds{0}, at_most);
+  }
+  return at_most;
+}
+
+/// Sends what is on its way. Clients that are lost, that read too slowly or that open no bus are disconnected.
 void BusServer::flush() {
   const auto now = Clock::now();
   std::erase_if(clients_, [&](const std::unique_ptr<BusClient>& client) {
-    if (!client->flush(now)) return true;
-    if (client->backlog() <= limits_.backlog || client->stalled(now) < limits_.patience) return false;
-    say(*client, "it does not read");
+    if (!client->flush()) return true;
+    if (client->backlog() > limits_.backlog) {
+      say(*client, "it reads too slowly: " + std::to_string(client->backlog()) + " bytes wait for it");
+      return true;
+    }
+    if (client->bus() || now - client->since() < limits_.handshake) return false;
+    client->refuse("no bus was opened in time");
+    static_cast<void>(client->flush());
+    say(*client, "it has not opened a bus for " + std::to_string(limits_.handshake.count()) + " ms");
     return true;
   });
-}
-
-/// True while the client's bus waits until one of its clients has read what is on its way.
-bool BusServer::waits(const BusClient& client) const {
-  return client.bus() && std::any_of(clients_.begin(), clients_.end(), [&](const auto& other) {
-           return other->bus() == client.bus() && other->backlog() > limits_.backlog;
-         });
 }
 
 void BusServer::say(const BusClient& client, const std::string& message) const {

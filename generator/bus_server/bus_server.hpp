@@ -20,8 +20,8 @@ namespace edsc {
 
 struct BusLimits {
   std::size_t clients = 64;
-  std::size_t backlog = std::size_t{1} << 20;  ///< bytes on their way to one client, beyond which its bus waits for it
-  std::chrono::milliseconds patience{1000};    ///< how long a bus waits for a client that reads nothing
+  std::size_t backlog = std::size_t{8} << 20;  ///< bytes on their way to one client, beyond which it is disconnected
+  std::chrono::milliseconds handshake{5000};   ///< after which a client that has opened no bus is disconnected
 };
 
 /// What the server tells of; none of them may be empty.
@@ -30,7 +30,7 @@ struct BusEvents {
   std::function<void(const std::string& message)> on_trouble;  ///< a client is sent away
 };
 
-/// Each bus hands every frame to all its clients but the sender, to all in the same order.
+/// Each bus hands every frame to all its clients but the sender, to all in the same order. It waits for none of them.
 class BusServer {
  public:
   /// Listens. Throws std::system_error when it cannot.
@@ -56,8 +56,8 @@ class BusServer {
   [[nodiscard]] bool answer(BusClient& client, ClientRequest request);
   [[nodiscard]] bool open_bus(BusClient& client);
   void deliver(const BusClient& sender);
+  [[nodiscard]] std::chrono::milliseconds until_handshake_ends(std::chrono::milliseconds at_most) const;
   void flush();
-  [[nodiscard]] bool waits(const BusClient& client) const;
   void say(const BusClient& client, const std::string& message) const;
 
   ListenAddress address_;
