@@ -153,20 +153,25 @@ SdoOutcome SdoAccess::transfer(SdoTransfer how, std::uint32_t entry, Begin begin
   return outcome;
 }
 
+AbortCode UploadBuffer::append(std::span<const std::uint8_t> piece) {
+  if (piece.size() > limit_ - bytes_.size()) return AbortCode::out_of_memory;
+  bytes_.insert(bytes_.end(), piece.begin(), piece.end());
+  return canopen::ok;
+}
+
 SdoOutcome SdoAccess::upload(std::uint16_t index, std::uint8_t sub_index, SdoTransfer how,
                              const SdoProgress& progress) {
-  std::vector<std::uint8_t> bytes;
+  UploadBuffer bytes;
   auto take = [&](std::uint32_t /*offset*/, std::span<const std::uint8_t> piece, bool /*last*/) {
-    if (piece.size() > longest_upload - bytes.size()) return AbortCode::out_of_memory;
-    bytes.insert(bytes.end(), piece.begin(), piece.end());
-    if (progress) progress(bytes.size(), 0);
-    return canopen::ok;
+    const AbortCode result = bytes.append(piece);
+    if (result == canopen::ok && progress) progress(bytes.size(), 0);
+    return result;
   };
   SdoOutcome outcome = transfer(how, canopen::sdo::multiplexer(index, sub_index), [&](Client& client) {
     bytes.clear();
     (void)client.upload(index, sub_index, canopen::sink_of(take), LiveBus::now());
   });
-  if (outcome.done()) outcome.bytes = std::move(bytes);
+  if (outcome.done()) outcome.bytes = bytes.take();
   return outcome;
 }
 

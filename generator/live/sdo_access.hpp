@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "live/live_bus.hpp"
@@ -58,11 +59,29 @@ struct SdoSettings {
 /// How many bytes have gone, of how many; 0 where that is not known.
 using SdoProgress = std::function<void(std::size_t done, std::size_t total)>;
 
+/// The bytes of an upload, up to a limit: the device decides how long its answer is.
+class UploadBuffer {
+ public:
+  static constexpr std::size_t max_upload = 256 * 1024 * 1024;
+
+  explicit UploadBuffer(std::size_t limit = max_upload) : limit_{limit} {}
+
+  /// Takes all bytes of the piece or, with the abort code, none.
+  [[nodiscard]] canopen::AbortCode append(std::span<const std::uint8_t> piece);
+  void clear() { bytes_.clear(); }
+
+  [[nodiscard]] std::size_t size() const { return bytes_.size(); }
+  [[nodiscard]] std::size_t limit() const { return limit_; }
+  [[nodiscard]] std::vector<std::uint8_t> take() { return std::move(bytes_); }
+
+ private:
+  std::size_t limit_;
+  std::vector<std::uint8_t> bytes_;
+};
+
 /// One SDO server of one node. Throws Interrupted, when the transfer has been aborted, and BusLost.
 class SdoAccess {
  public:
-  static constexpr std::size_t longest_upload = 256 * 1024 * 1024;
-
   SdoAccess(LiveBus& bus, canopen::NodeId node, SdoSettings settings);
 
   [[nodiscard]] SdoOutcome upload(std::uint16_t index, std::uint8_t sub_index,

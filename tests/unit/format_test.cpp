@@ -206,6 +206,34 @@ TEST(CanonicalForm, KeepsTheCommentOfAListedObject) {
   EXPECT_NE(text.find("SupportedObjects=2\n1=0x2000\n; two\n2=0x2001\n"), std::string::npos) << text;
 }
 
+TEST(CanonicalForm, KeepsTheCommentBeforeTheNumberOfListedObjects) {
+  for (const char* list : {"MandatoryObjects", "OptionalObjects", "ManufacturerObjects"}) {
+    for (const char* key : {"SupportedObjects=1", "Supported Objects=1", "SUPPORTEDOBJECTS=0x1 ; one"}) {
+      const std::string text = formatted(std::string{"["} + list + "]\n; about the list\n" + key +
+                                         "\n1=0x2000\n[2000]\nDataType=5\n");
+      EXPECT_NE(text.find("; about the list\n"), std::string::npos) << list << ' ' << key << '\n' << text;
+    }
+  }
+  const std::string text = formatted(
+      "[ManufacturerObjects]\n; about the list\nSupportedObjects=1\n1=0x2000\n[2000]\nDataType=5\n");
+  EXPECT_NE(text.find("[ManufacturerObjects]\n; about the list\nSupportedObjects=1\n1=0x2000\n"), std::string::npos)
+      << text;
+}
+
+TEST(CanonicalForm, KeepsCommentsOfAListThatHasNoObjects) {
+  const std::string text = formatted(
+      "[OptionalObjects]\n; none yet\nSupportedObjects=0\n; gone\n1=0x1008\n[2000]\nDataType=5\n");
+  EXPECT_NE(text.find("[OptionalObjects]\n; none yet\n; gone\nSupportedObjects=0\n"), std::string::npos) << text;
+}
+
+TEST(CanonicalForm, KeepsCommentsOfBothWhenAListIsThereTwice) {
+  const std::string text = formatted(
+      "[ManufacturerObjects]\n; first\nSupportedObjects=1\n1=0x2000\n"
+      "[ManufacturerObjects]\n; second\nSupportedObjects=1\n1=0x2000\n[2000]\nDataType=5\n");
+  EXPECT_NE(text.find("; first\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("; second\n"), std::string::npos) << text;
+}
+
 TEST(CanonicalForm, KeepsBaseAndValueOfNumbers) {
   EXPECT_EQ(spelled_default("0x0007", "0xabc"), "0x00000ABC");
   EXPECT_EQ(spelled_default("0x0006", "0XABC"), "0x0ABC");
