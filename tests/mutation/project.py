@@ -1,0 +1,93 @@
+"""What is mutated, and which programs test it."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+
+@dataclass(frozen=True)
+class Program:
+    """A program that tests the files whose path begins with one of `tests`."""
+
+    name: str
+    tests: tuple[str, ...]
+    command: tuple[str, ...]  # {source} and {build} are the folders of the mutated copy
+    targets: tuple[str, ...]
+
+    def is_for(self, file: str) -> bool:
+        return file.startswith(self.tests)
+
+
+@dataclass(frozen=True)
+class Project:
+    root: Path
+    folders: tuple[str, ...]
+    programs: tuple[Program, ...]
+    include_folders: tuple[str, ...]
+    cmake_options: tuple[str, ...] = ()
+    excluded: tuple[str, ...] = ()
+    # Constants elsewhere are part of types and tables that the compiler computes.
+    constexpr_variables_in: tuple[str, ...] = ()
+    equivalents: Path | None = None
+    warnings_are_errors_for: tuple[str, ...] = ()  # what includes these files
+
+    def files(self, under: str = "") -> list[str]:
+        paths = (path for folder in self.folders for path in (self.root / folder).rglob("*.[ch]pp"))
+        names = sorted(str(path.relative_to(self.root)) for path in paths)
+        return [name for name in names if name.startswith(under) and not name.startswith(self.excluded)]
+
+    def compile_arguments(self, root: Path) -> list[str]:
+        return ["-std=c++20", *(f"-I{root / folder}" for folder in self.include_folders)]
+
+
+def gtest(name: str, *tests: str) -> Program:
+    return Program(name, tests, (f"{{build}}/tests/{name}", "--gtest_fail_fast", "--gtest_brief=1"), (name,))
+
+
+def script(name: str, path: str, *tests: str) -> Program:
+    """A Python script that is called with the source folder and the command edsc."""
+    return Program(name, tests, (sys.executable, f"{{source}}/tests/{path}", "{source}", "{build}/generator/edsc"),
+                   ("edsc",))
+
+
+RUNTIME = "runtime/include/canopen/"
+
+# Fast programs first: the first that fails is the last one to run.
+EDSC_PROGRAMS = (
+    gtest("decode_tests", "generator/decode/", "generator/text/", "generator/device/"),
+    gtest("live_tests", "generator/live/"),
+    gtest("bus_server_tests", "generator/bus_server/"),
+    gtest("generator_tests", "generator/"),
+    script("golden", "golden/golden_test.py", "generator/"),
+    script("check", "cli/check_test.py", "generator/"),
+    script("decode", "decode/decode_test.py", "generator/decode/", "generator/commands/"),
+    script("completion", "cli/completion_test.py", "generator/commands/"),
+    script("rules", "rules/rules_test.py", "generator/rules/", "generator/eds/", "generator/xdd/",
+           "generator/diagnostics/"),
+    script("cli", "cli/cli_test.py", "generator/"),
+    gtest("profile_tests", f"{RUNTIME}profile/"),
+    gtest("cia402_tests", f"{RUNTIME}profile/"),
+    gtest("can_controller_tests", f"{RUNTIME}port/"),
+    gtest("port_tests", f"{RUNTIME}port/", f"{RUNTIME}send_queue.hpp", f"{RUNTIME}accepted_frames.hpp"),
+    gtest("model_tests", RUNTIME),
+    gtest("runtime_tests", RUNTIME),
+    gtest("node_tests", RUNTIME),
+)
+
+
+def edsc_project(root: Path) -> Project:
+    return Project(
+        root=root,
+        folders=("runtime/include", "generator"),
+        programs=EDSC_PROGRAMS,
+        include_folders=("generator", "runtime/include"),
+        # Each source is compiled alone: those without a mutant come from the compiler's cache.
+        cmake_options=("-DCMAKE_BUILD_TYPE=Release", "-DEDSC_UNITY_BUILD=OFF", "-DEDSC_BUILD_EXAMPLES=OFF"),
+        # The sockets of the kernel are tested in a virtual machine.
+        excluded=(f"{RUNTIME}port/socketcan.hpp",),
+        constexpr_variables_in=("generator/",),
+        warnings_are_errors_for=(RUNTIME,),
+        equivalents=root / "tests/mutation/equivalents.tsv",
+    )
