@@ -5,7 +5,8 @@ separate_arguments(mutation_arguments UNIX_COMMAND "${EDSC_MUTATION_ARGUMENTS}")
 add_custom_target(
   mutation
   COMMAND ${debian_python} ${CMAKE_CURRENT_SOURCE_DIR}/mutation/mutation.py ${mutation_arguments}
-          --folder ${PROJECT_BINARY_DIR}/mutated
+          --folder ${PROJECT_BINARY_DIR}/mutated --edsc $<TARGET_FILE:edsc>
   WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
   COMMENT "Mutants of the runtime and the generator"
   USES_TERMINAL VERBATIM)
+add_dependencies(mutation edsc)

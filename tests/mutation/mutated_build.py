@@ -10,11 +10,9 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from points import Mutation
-from project import Program, Project
+from project import Area, Program, Project
 from schemata import Schemata, write_schemata
 
-# Schemata are full of comparisons and conversions that deserve a warning.
-NO_WARNINGS = "-O1 -w"
 MESSAGE = re.compile(r"^(?P<path>[^\s:][^:]*):(?P<line>\d+):(?P<column>\d+): (?P<kind>fatal error|error|note):", re.M)
 REQUIRED_FROM = re.compile(r"^(?P<path>[^\s:][^:]*):(?P<line>\d+):(?P<column>\d+):\s+(required|in .constexpr.)", re.M)
 
@@ -32,8 +30,9 @@ def write_if_changed(path: Path, contents: bytes) -> None:
 
 
 class MutatedBuild:
-    def __init__(self, project: Project, folder: Path, mutants: dict[int, Mutation], jobs: int):
+    def __init__(self, project: Project, area: Area, folder: Path, mutants: dict[int, Mutation], jobs: int):
         self.project = project
+        self.area = area
         self.source = folder / "source"
         self.build = folder / "build"
         self.mutants = mutants  # by number; those that do not compile are taken out
@@ -71,15 +70,9 @@ class MutatedBuild:
             self.schemata[file] = write_schemata((self.project.root / file).read_bytes(), mutants)
             write_if_changed(self.source / file, self.schemata[file].text)
 
-    def flags(self) -> str:
-        """Without flags of its own, a build takes what is not mutated from the compiler's cache. Where warnings are
-        errors, all that includes the mutated headers is compiled anyway."""
-        strict = self.project.warnings_are_errors_for
-        return NO_WARNINGS if strict and any(file.startswith(strict) for file in self.schemata) else ""
-
     def configure(self) -> None:
         output = self.run(["cmake", "-S", str(self.source), "-B", str(self.build), "-G", "Ninja",
-                           f"-DCMAKE_CXX_FLAGS={self.flags()}", *self.project.cmake_options])
+                           *self.area.cmake_options])
         if output is not None:
             raise BuildError(output)
 

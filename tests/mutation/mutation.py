@@ -15,13 +15,12 @@ import argparse
 import json
 import sys
 from collections import Counter
-from collections.abc import Callable
 from pathlib import Path
 
 from equivalents import find_equivalent, read_equivalents
 from mutated_build import BuildError, MutatedBuild
 from points import Mutation
-from project import Program, Project, edsc_project
+from project import Area, Program, Project, edsc_project
 from runs import Baseline, BaselineError, Result, Runner
 from selection import select_changed, select_sample
 
@@ -42,6 +41,7 @@ def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--jobs", metavar="N", type=int, default=MAX_JOBS, choices=range(1, MAX_JOBS + 1))
     parser.add_argument("--folder", type=Path, default=Path("build/mutation"),
                         help="for the mutated copy and its build")
+    parser.add_argument("--edsc", type=Path, help="generates the code for tests of the runtime (default: built again)")
     parser.add_argument("--output", type=Path, help="the results as JSON (default: report.json in the folder)")
     parsed = parser.parse_args(arguments)
     if (parsed.against is None) == (parsed.sample is None):
@@ -50,9 +50,9 @@ def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
 
 
 class Report:
-    def __init__(self, project: Project, dropped: list[Mutation]):
+    def __init__(self, project: Project):
         self.project = project
-        self.dropped = dropped
+        self.dropped: list[Mutation] = []
         self.known = read_equivalents(project.equivalents) if project.equivalents else []
         self.results: list[Result] = []
         self.equivalent: list[tuple[Result, str]] = []
@@ -114,16 +114,15 @@ class Report:
                 "how": how, "programs": result.programs}
 
 
-def select_programs(project: Project, mutations: list[Mutation], names: str | None) -> list[Program]:
+def select_programs(area: Area, mutants: dict[int, Mutation], names: str | None) -> list[Program]:
     """The programs that test one of the mutated files."""
-    files = {mutation.file for mutation in mutations}
-    wanted = names.split(",") if names is not None else [program.name for program in project.programs]
-    return [program for program in project.programs
+    files = {mutation.file for mutation in mutants.values()}
+    wanted = names.split(",") if names is not None else [program.name for program in area.programs]
+    return [program for program in area.programs
             if program.name in wanted and any(program.is_for(file) for file in files)]
 
 
-def run_mutants(build: MutatedBuild, programs: list[Program], jobs: int, scratch: Path,
-                notice: Callable[[Result], None]) -> None:
+def run_mutants(build: MutatedBuild, programs: list[Program], jobs: int, scratch: Path, report: Report) -> None:
     runner = Runner(build.source, build.build, scratch)
     baselines: list[Baseline] = []
     for program in programs:
@@ -134,7 +133,19 @@ def run_mutants(build: MutatedBuild, programs: list[Program], jobs: int, scratch
         mutation = result.mutation
         print(f"[{done:4}/{len(build.mutants)}] {result.outcome:12} {mutation.file}:{mutation.line} {mutation.operator}"
               f"{' by ' + result.how if result.how else ''}", flush=True)
-        notice(result)
+        report.add(result)
+
+
+def run_area(project: Project, area: Area, mutants: dict[int, Mutation], arguments: argparse.Namespace,
+             report: Report) -> None:
+    folder = arguments.folder.resolve() / area.name
+    scratch = folder / "scratch"
+    scratch.mkdir(parents=True, exist_ok=True)
+    programs = select_programs(area, mutants, arguments.programs)
+    build = MutatedBuild(project, area, folder, mutants, arguments.jobs)
+    build.make(programs)
+    report.dropped += build.dropped
+    run_mutants(build, programs, arguments.jobs, scratch, report)
 
 
 def run(project: Project, arguments: argparse.Namespace) -> int:
@@ -145,25 +156,24 @@ def run(project: Project, arguments: argparse.Namespace) -> int:
     print(f"{len(mutations)} mutants in {len({mutation.file for mutation in mutations})} files", flush=True)
     if not mutations:
         return 0
-    programs = select_programs(project, mutations, arguments.programs)
-    folder = arguments.folder.resolve()
-    scratch = folder / "scratch"
-    scratch.mkdir(parents=True, exist_ok=True)
-    build = MutatedBuild(project, folder, dict(enumerate(mutations, 1)), arguments.jobs)
+    numbered = dict(enumerate(mutations, 1))
+    report = Report(project)
     try:
-        build.make(programs)
-        report = Report(project, build.dropped)
-        run_mutants(build, programs, arguments.jobs, scratch, report.add)
+        for area in project.areas:
+            mutants = {number: mutation for number, mutation in numbered.items() if area.has(mutation.file)}
+            if mutants:
+                run_area(project, area, mutants, arguments, report)
     except (BuildError, BaselineError) as error:
         print(error, file=sys.stderr)
         return 2
     report.print()
-    (arguments.output or folder / "report.json").write_text(json.dumps(report.as_json(), indent=2) + "\n")
+    (arguments.output or arguments.folder / "report.json").write_text(json.dumps(report.as_json(), indent=2) + "\n")
     return 0 if report.score() >= arguments.min_score else 1
 
 
 def main() -> int:
-    return run(edsc_project(Path(__file__).resolve().parents[2]), parse_arguments(None))
+    arguments = parse_arguments(None)
+    return run(edsc_project(Path(__file__).resolve().parents[2], arguments.edsc), arguments)
 
 
 if __name__ == "__main__":

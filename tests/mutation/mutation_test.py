@@ -27,7 +27,7 @@ except ImportError:
 
 import equivalents
 import mutation
-from project import Program, Project
+from project import Area, Program, Project
 
 SAMPLE = Path(__file__).resolve().parent / "sample"
 SOURCE_DIR = Path(sys.argv.pop(1)).resolve()
@@ -60,9 +60,9 @@ class SampleProject(unittest.TestCase):
                          f"{HEADER}\tfor (int i = 0; i < last; i += 1) {{\tfor (int i = 1; i < last; i += 1) {{\t"
                          "adds 0 once less\n")
         cls.project = Project(
-            root=cls.root, folders=("include",), include_folders=("include",), constexpr_variables_in=("include/",),
-            equivalents=known,
-            programs=(Program("sample_test", ("include/",), ("{build}/sample_test",), ("sample_test",)),))
+            root=cls.root, include_folders=("include",), equivalents=known,
+            areas=(Area("all", "include/", (Program("sample_test", ("include/",), ("{build}/sample_test",),
+                                                    ("sample_test",)),), mutates_constexpr_variables=True),))
         cls.exit_code, cls.output = cls.check()
         assert cls.exit_code == 1, cls.output
         cls.report = json.loads((cls.root.parent / "mutation/report.json").read_text())

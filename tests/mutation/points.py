@@ -34,6 +34,8 @@ OPERATORS = {
 }
 
 INTEGER = re.compile(rb"(0[xX][0-9a-fA-F']+|0[bB][01']+|[0-9][0-9']*)([uUlLzZ]*)")
+# What is in a macro's argument is not always an expression. A record of all macros would take longer than the rest.
+MACRO_CALL = re.compile(rb"\b(?:[A-Z][A-Z0-9_]{2,}|assert)\(")
 # Values that `return {};` returns as well.
 EMPTY_VALUES = {b"{}", b"false", b"nullptr", b"0", b"0U", b"std::nullopt", b'""'}
 
@@ -95,17 +97,22 @@ class Finder:
         self.constexpr_variables = constexpr_variables
         self.found: dict[tuple, Mutation] = {}
         self.path = unit.spelling
-        self.macros = [
-            (cursor.extent.start.offset, cursor.extent.end.offset)
-            for cursor in unit.cursor.get_children()
-            if cursor.kind == CursorKind.MACRO_INSTANTIATION and self.is_here(cursor)
-        ]
+        self.macros = [(match.start(), self.closing_parenthesis(match.end())) for match in MACRO_CALL.finditer(source)]
         for cursor in unit.cursor.get_children():
-            if self.is_here(cursor) and not cursor.kind.is_preprocessing():
+            if self.is_here(cursor):
                 self.visit(cursor, Context())
 
     def is_here(self, cursor: Cursor) -> bool:
         return cursor.location.file is not None and cursor.location.file.name == self.path
+
+    def closing_parenthesis(self, start: int) -> int:
+        """The end of what begins after an opening parenthesis."""
+        depth = 1
+        for at in range(start, len(self.source)):
+            depth += {b"(": 1, b")": -1}.get(self.source[at : at + 1], 0)
+            if depth == 0:
+                return at + 1
+        return len(self.source)
 
     def text(self, cursor: Cursor) -> bytes:
         return self.source[cursor.extent.start.offset : cursor.extent.end.offset]
@@ -271,8 +278,7 @@ class Finder:
 def find_mutations(root: Path, file: str, arguments: list[str], constexpr_variables: bool) -> list[Mutation]:
     """The mutations of root/file, compiled with `arguments`, in the order of the source."""
     path = root / file
-    unit = clang.cindex.Index.create().parse(
-        str(path), args=["-xc++", *arguments], options=TranslationUnit.PARSE_DETAILED_PROCESSING_RECORD)
+    unit = clang.cindex.Index.create().parse(str(path), args=["-xc++", *arguments])
     errors = [text for text in unit.diagnostics if text.severity >= clang.cindex.Diagnostic.Fatal]
     if errors:
         raise RuntimeError(f"{file}: {errors[0].spelling}")

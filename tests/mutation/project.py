@@ -21,22 +21,35 @@ class Program:
 
 
 @dataclass(frozen=True)
-class Project:
-    root: Path
-    folders: tuple[str, ...]
+class Area:
+    """Files whose mutants are in one build."""
+
+    name: str
+    folder: str
     programs: tuple[Program, ...]
-    include_folders: tuple[str, ...]
     cmake_options: tuple[str, ...] = ()
     excluded: tuple[str, ...] = ()
-    # Constants elsewhere are part of types and tables that the compiler computes.
-    constexpr_variables_in: tuple[str, ...] = ()
+    # Otherwise constexpr variables are left out, as part of types and tables that the compiler computes.
+    mutates_constexpr_variables: bool = False
+
+    def has(self, file: str) -> bool:
+        return file.startswith(self.folder) and not file.startswith(self.excluded)
+
+
+@dataclass(frozen=True)
+class Project:
+    root: Path
+    areas: tuple[Area, ...]
+    include_folders: tuple[str, ...]
     equivalents: Path | None = None
-    warnings_are_errors_for: tuple[str, ...] = ()  # what includes these files
 
     def files(self, under: str = "") -> list[str]:
-        paths = (path for folder in self.folders for path in (self.root / folder).rglob("*.[ch]pp"))
+        paths = (path for area in self.areas for path in (self.root / area.folder).rglob("*.[ch]pp"))
         names = sorted(str(path.relative_to(self.root)) for path in paths)
-        return [name for name in names if name.startswith(under) and not name.startswith(self.excluded)]
+        return [name for name in names if name.startswith(under) and self.area_of(name) is not None]
+
+    def area_of(self, file: str) -> Area | None:
+        return next((area for area in self.areas if area.has(file)), None)
 
     def compile_arguments(self, root: Path) -> list[str]:
         return ["-std=c++20", *(f"-I{root / folder}" for folder in self.include_folders)]
@@ -55,7 +68,7 @@ def script(name: str, path: str, *tests: str) -> Program:
 RUNTIME = "runtime/include/canopen/"
 
 # Fast programs first: the first that fails is the last one to run.
-EDSC_PROGRAMS = (
+GENERATOR_PROGRAMS = (
     gtest("decode_tests", "generator/decode/", "generator/text/", "generator/device/"),
     gtest("live_tests", "generator/live/"),
     gtest("bus_server_tests", "generator/bus_server/"),
@@ -67,6 +80,8 @@ EDSC_PROGRAMS = (
     script("rules", "rules/rules_test.py", "generator/rules/", "generator/eds/", "generator/xdd/",
            "generator/diagnostics/"),
     script("cli", "cli/cli_test.py", "generator/"),
+)
+RUNTIME_PROGRAMS = (
     gtest("profile_tests", f"{RUNTIME}profile/"),
     gtest("cia402_tests", f"{RUNTIME}profile/"),
     gtest("can_controller_tests", f"{RUNTIME}port/"),
@@ -76,18 +91,22 @@ EDSC_PROGRAMS = (
     gtest("node_tests", RUNTIME),
 )
 
+# Schemata are full of comparisons that deserve a warning, and in tests of the runtime a warning is an error.
+NO_WARNINGS = "-DCMAKE_CXX_FLAGS=-O1 -w"
 
-def edsc_project(root: Path) -> Project:
-    return Project(
-        root=root,
-        folders=("runtime/include", "generator"),
-        programs=EDSC_PROGRAMS,
-        include_folders=("generator", "runtime/include"),
-        # Each source is compiled alone: those without a mutant come from the compiler's cache.
+
+def edsc_project(root: Path, edsc: Path | None) -> Project:
+    """`edsc` generates the code for tests of the runtime; without it, it is built from the copy with the mutants."""
+    generator = Area(
+        "generator", "generator/", GENERATOR_PROGRAMS,
+        # Each source is compiled alone, as for the test preset: those without a mutant come from the compiler's cache.
         cmake_options=("-DCMAKE_BUILD_TYPE=Release", "-DEDSC_UNITY_BUILD=OFF", "-DEDSC_BUILD_EXAMPLES=OFF"),
+        mutates_constexpr_variables=True)
+    given = () if edsc is None else (f"-DEDSC_EXECUTABLE={edsc.resolve()}", "-DEDSC_HOST_PRESET=given")
+    runtime = Area(
+        "runtime", "runtime/include/", RUNTIME_PROGRAMS,
+        cmake_options=("-DCMAKE_BUILD_TYPE=None", NO_WARNINGS, "-DEDSC_BUILD_EXAMPLES=OFF", *given),
         # The sockets of the kernel are tested in a virtual machine.
-        excluded=(f"{RUNTIME}port/socketcan.hpp",),
-        constexpr_variables_in=("generator/",),
-        warnings_are_errors_for=(RUNTIME,),
-        equivalents=root / "tests/mutation/equivalents.tsv",
-    )
+        excluded=(f"{RUNTIME}port/socketcan.hpp",))
+    return Project(root, (generator, runtime), ("generator", "runtime/include"),
+                   root / "tests/mutation/equivalents.tsv")

@@ -15,7 +15,7 @@ HUNK = re.compile(r"^@@ -\S+ \+(\d+)(?:,(\d+))? @@")
 
 
 def mutations_of(project: Project, file: str) -> list[Mutation]:
-    with_variables = bool(project.constexpr_variables_in) and file.startswith(project.constexpr_variables_in)
+    with_variables = project.area_of(file).mutates_constexpr_variables
     return find_mutations(project.root, file, project.compile_arguments(project.root), with_variables)
 
 
@@ -23,7 +23,7 @@ def git(root: Path, *arguments: str) -> str:
     return subprocess.run(["git", *arguments], cwd=root, check=True, capture_output=True, text=True).stdout
 
 
-def changed_lines(root: Path, reference: str, folders: tuple[str, ...]) -> dict[str, set[int]]:
+def changed_lines(root: Path, reference: str, folders: list[str]) -> dict[str, set[int]]:
     """Lines of the working tree that are not in the reference."""
     # Of what both have in common: what the reference has gained since is no change of this tree.
     base = git(root, "merge-base", reference, "HEAD").strip()
@@ -40,7 +40,7 @@ def changed_lines(root: Path, reference: str, folders: tuple[str, ...]) -> dict[
 
 
 def select_changed(project: Project, reference: str, under: str) -> list[Mutation]:
-    lines = changed_lines(project.root, reference, project.folders)
+    lines = changed_lines(project.root, reference, [area.folder for area in project.areas])
     return [mutation for file in project.files(under) if lines.get(file)
             for mutation in mutations_of(project, file) if mutation.line in lines[file]]
 
