@@ -8,8 +8,8 @@
 #include "commands/commands.hpp"
 #include "commands/load_device.hpp"
 #include "diagnostics/print.hpp"
+#include "diagnostics/rule.hpp"
 #include "diagnostics/sarif.hpp"
-#include "rules/rule.hpp"
 
 namespace edsc {
 namespace {
@@ -38,8 +38,13 @@ int list_rules(const std::string& format) {
     if (format == "text") {
       fmt::print("{:<28} {:<8} {} ({})\n", rule.id, to_string(rule.severity), rule.meaning, rule.source);
     }
-    rows.push_back(
-        {{"id", rule.id}, {"severity", to_string(rule.severity)}, {"meaning", rule.meaning}, {"source", rule.source}});
+    nlohmann::ordered_json severities = {to_string(rule.severity)};
+    if (rule.mildest != rule.severity) severities.push_back(to_string(rule.mildest));
+    rows.push_back({{"id", rule.id},
+                    {"severity", to_string(rule.severity)},
+                    {"severities", severities},
+                    {"meaning", rule.meaning},
+                    {"source", rule.source}});
   }
   if (format != "text") fmt::print("{}\n", rows.dump(2));
   return exit_fine;

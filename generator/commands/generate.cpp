@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <stdexcept>
 
@@ -122,6 +123,12 @@ std::vector<LeftOut> all_left_out(const LoadedDevice& loaded) {
   return left_out;
 }
 
+/// Whether each finding is listed with its place.
+bool lists_all(const Diagnostics& diagnostics) {
+  return diagnostics.suppressed().empty() &&
+         std::ranges::none_of(diagnostics.all(), [](const Diagnostic& one) { return one.unnamed > 0; });
+}
+
 int generate(const Settings& settings) {
   Diagnostics diagnostics;
   diagnostics.drop_notes();
@@ -134,7 +141,7 @@ int generate(const Settings& settings) {
   print_findings(stderr, diagnostics, settings.color);
   if (loaded->unreadable) return exit_wrong_usage;
   if (!is_device || (diagnostics.errors() > 0 && !settings.keep_going)) return exit_input_has_errors;
-  if (diagnostics.errors() > 0 || diagnostics.any_silenced() || !diagnostics.suppressed().empty()) print(left_out);
+  if (diagnostics.errors() > 0 || diagnostics.any_silenced() || !lists_all(diagnostics)) print(left_out);
 
   if (const std::string problem = write_files(files); !problem.empty()) {
     fmt::print(stderr, "edsc: {}\n", problem);

@@ -4,7 +4,7 @@
 
 #include "device/resolve.hpp"
 #include "rules/check_device.hpp"
-#include "rules/rule.hpp"
+#include "diagnostics/rule.hpp"
 #include "text/ini.hpp"
 #include "xdd/read_xdd.hpp"
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 
 #include "device/limits.hpp"
 #include "device/pdo_defaults.hpp"
@@ -15,14 +16,19 @@ using canopen::Mappable;
 
 constexpr unsigned most_bits = 64;
 
-constexpr std::string_view rules[] = {"pdo-object",          "pdo-mappable", "pdo-direction", "pdo-length",
-                                      "pdo-variable-length", "pdo-dummy",    "pdo-size",      "pdo-entries"};
+/// An error, or a warning where the PDO is off by default.
+using BrokenPdoRule = RuleId<Severity::error, Severity::warning>;
 
-/// What is wrong with one entry of a mapping; nothing when the rule is empty.
-struct Finding {
-  std::string_view rule;
+constexpr BrokenPdoRule rules[] = {"pdo-object",          "pdo-mappable", "pdo-direction", "pdo-length",
+                                   "pdo-variable-length", "pdo-dummy",    "pdo-size",      "pdo-entries"};
+
+/// Why no layout can be made of a PDO.
+struct BrokenPdo {
+  BrokenPdoRule rule;
   std::string message;
+  std::string cause = {};  ///< the same for all PDOs that one fault breaks
 };
+using Finding = std::optional<BrokenPdo>;
 
 std::string quoted_object(const PdoEntry& entry) {
   return fmt::format("{} \"{}\"", entry_label(entry.index, entry.sub_index), entry.object->name);
@@ -41,17 +47,18 @@ bool is_boolean_in_a_byte(const PdoEntry& entry) {
 Finding check_dummy(const Device& device, const Pdo& pdo, const PdoEntry& entry) {
   const std::string dummy = fmt::format("the dummy {} {}", index_label(entry.index), entry.dummy->name);
   if (pdo.direction == PdoDirection::transmit) {
-    return {"pdo-dummy", fmt::format("{} {}, which only an RPDO may", maps(pdo, entry), dummy)};
+    return BrokenPdo{"pdo-dummy", fmt::format("{} {}, which only an RPDO may", maps(pdo, entry), dummy)};
   }
   if (std::ranges::find(device.dummies, entry.index) == device.dummies.end()) {
-    return {"pdo-dummy", fmt::format("{} {}, which [DummyUsage] does not allow", maps(pdo, entry), dummy)};
+    return BrokenPdo{"pdo-dummy", fmt::format("{} {}, which [DummyUsage] does not allow", maps(pdo, entry), dummy)};
   }
   const unsigned bits = entry.dummy->bits;
   if (bits == 0) {
-    return {"pdo-variable-length", fmt::format("{} {}, a type of no fixed length", maps(pdo, entry), dummy)};
+    return BrokenPdo{"pdo-variable-length", fmt::format("{} {}, a type of no fixed length", maps(pdo, entry), dummy)};
   }
   if (entry.bits != bits) {
-    return {"pdo-length", fmt::format("{} {} bits of {}, which has {}", maps(pdo, entry), entry.bits, dummy, bits)};
+    return BrokenPdo{"pdo-length",
+                     fmt::format("{} {} bits of {}, which has {}", maps(pdo, entry), entry.bits, dummy, bits)};
   }
   return {};
 }
@@ -60,16 +67,18 @@ Finding check_dummy(const Device& device, const Pdo& pdo, const PdoEntry& entry)
 Finding check_string(const Options& options, const Pdo& pdo, const PdoEntry& entry) {
   const auto capacity = mapped_string_capacity(*entry.object, options);
   if (!capacity) {
-    return {"pdo-variable-length", fmt::format("{} {}, a {} of no fixed length", maps(pdo, entry), quoted_object(entry),
-                                               entry.object->type->name)};
+    return BrokenPdo{"pdo-variable-length", fmt::format("{} {}, a {} of no fixed length", maps(pdo, entry),
+                                                        quoted_object(entry), entry.object->type->name)};
   }
   if (entry.bits % 8 != 0 || entry.bits == 0) {
-    return {"pdo-variable-length", fmt::format("{} {} bits of {}, a {}: these are no whole bytes", maps(pdo, entry),
-                                               entry.bits, quoted_object(entry), entry.object->type->name)};
+    return BrokenPdo{"pdo-variable-length",
+                     fmt::format("{} {} bits of {}, a {}: these are no whole bytes", maps(pdo, entry), entry.bits,
+                                 quoted_object(entry), entry.object->type->name)};
   }
   if (entry.bits / 8u > *capacity) {
-    return {"pdo-length", fmt::format("{} {} bits of {}, which is {} and holds {}", maps(pdo, entry), entry.bits,
-                                      quoted_object(entry), entry.object->type->name, *capacity * 8)};
+    return BrokenPdo{"pdo-length",
+                     fmt::format("{} {} bits of {}, which is {} and holds {}", maps(pdo, entry), entry.bits,
+                                 quoted_object(entry), entry.object->type->name, *capacity * 8)};
   }
   return {};
 }
@@ -79,58 +88,67 @@ Finding check_object(const Device& device, const Options& options, const Pdo& pd
     const Object* object = device.find(entry.index);
     const std::string label = entry_label(entry.index, entry.sub_index);
     if (object == nullptr) {
-      return {"pdo-object", fmt::format("{} {}: the device has no such object", maps(pdo, entry), label)};
+      return BrokenPdo{"pdo-object", fmt::format("{} {}: the device has no such object", maps(pdo, entry), label),
+                       label};
     }
-    return {"pdo-object",
-            fmt::format("{} {} of \"{}\": the device has no such sub-index", maps(pdo, entry), label, object->name)};
+    return BrokenPdo{
+        "pdo-object",
+        fmt::format("{} {} of \"{}\": the device has no such sub-index", maps(pdo, entry), label, object->name), label};
   }
   const Entry& object = *entry.object;
   if (!object.pdo_mapping) {
-    return {"pdo-mappable",
-            fmt::format("{} {}, which cannot be mapped (PDOMapping=0)", maps(pdo, entry), quoted_object(entry))};
+    return BrokenPdo{
+        "pdo-mappable",
+        fmt::format("{} {}, which cannot be mapped (PDOMapping=0)", maps(pdo, entry), quoted_object(entry)),
+        "PDOMapping=0"};
   }
   const Mappable needed = pdo.direction == PdoDirection::receive ? Mappable::rpdo : Mappable::tpdo;
   if (!canopen::allows(object.mappable(), needed)) {
-    return {"pdo-direction",
-            fmt::format("{} {}, which {} may not carry (access {})", maps(pdo, entry), quoted_object(entry),
-                        pdo.direction == PdoDirection::receive ? "an RPDO" : "a TPDO",
-                        canopen::row_of(object.access).name)};
+    return BrokenPdo{
+        "pdo-direction",
+        fmt::format("{} {}, which {} may not carry (access {})", maps(pdo, entry), quoted_object(entry),
+                    pdo.direction == PdoDirection::receive ? "an RPDO" : "a TPDO", canopen::row_of(object.access).name),
+        fmt::format("{} in {}", canopen::row_of(object.access).name,
+                    pdo.direction == PdoDirection::receive ? "RPDOs" : "TPDOs")};
   }
   if (object.type->kind == canopen::DataClass::string) return check_string(options, pdo, entry);
   if (object.type->bits == 0) {
-    return {"pdo-variable-length",
-            fmt::format("{} {}, a {} of no fixed length", maps(pdo, entry), quoted_object(entry), object.type->name)};
+    return BrokenPdo{"pdo-variable-length", fmt::format("{} {}, a {} of no fixed length", maps(pdo, entry),
+                                                        quoted_object(entry), object.type->name)};
   }
-  if (is_boolean_in_a_byte(entry)) {
-    return {"pdo-boolean-byte", fmt::format("{} {} as 8 bits; a BOOLEAN has 1. The whole byte is used",
-                                            maps(pdo, entry), quoted_object(entry))};
-  }
-  if (object.type->bits != entry.bits) {
-    return {"pdo-length", fmt::format("{} {} bits of {}, which is {} and has {}", maps(pdo, entry), entry.bits,
-                                      quoted_object(entry), object.type->name, object.type->bits)};
+  if (object.type->bits != entry.bits && !is_boolean_in_a_byte(entry)) {
+    return BrokenPdo{"pdo-length", fmt::format("{} {} bits of {}, which is {} and has {}", maps(pdo, entry), entry.bits,
+                                               quoted_object(entry), object.type->name, object.type->bits)};
   }
   return {};
 }
 
 /// A PDO that is wrong is an error; one that is off by default harms nobody until it is switched on.
-void report_broken(Pdo& pdo, Finding finding, const Position& place, Diagnostics& diagnostics) {
+void report_broken(Pdo& pdo, BrokenPdo finding, const Position& place, Diagnostics& diagnostics) {
   pdo.broken = true;
   if (on_by_default(pdo)) {
-    diagnostics.error(finding.rule, place, std::move(finding.message));
+    diagnostics.error(finding.rule, place, std::move(finding.message), {}, std::move(finding.cause));
   } else {
-    diagnostics.warning(finding.rule, place, finding.message + "; it is off by default and left out");
+    diagnostics.warning(finding.rule, place, finding.message + "; it is off by default and left out", {},
+                        std::move(finding.cause));
   }
+}
+
+void report_boolean_byte(const Pdo& pdo, const PdoEntry& entry, Diagnostics& diagnostics) {
+  diagnostics.warning(
+      "pdo-boolean-byte", entry.place,
+      fmt::format("{} {} as 8 bits; a BOOLEAN has 1. The whole byte is used", maps(pdo, entry), quoted_object(entry)),
+      {}, "bytes");
 }
 
 void check_entry(const Device& device, const Options& options, Pdo& pdo, const PdoEntry& entry,
                  Diagnostics& diagnostics) {
   Finding finding =
       entry.dummy != nullptr ? check_dummy(device, pdo, entry) : check_object(device, options, pdo, entry);
-  if (finding.rule.empty()) return;
-  if (finding.rule == "pdo-boolean-byte") {
-    diagnostics.warning(finding.rule, entry.place, std::move(finding.message));
-  } else {
-    report_broken(pdo, std::move(finding), entry.place, diagnostics);
+  if (finding) {
+    report_broken(pdo, std::move(*finding), entry.place, diagnostics);
+  } else if (entry.object != nullptr && entry.dummy == nullptr && is_boolean_in_a_byte(entry)) {
+    report_boolean_byte(pdo, entry, diagnostics);
   }
 }
 
@@ -169,6 +187,8 @@ void mark_broken_pdos(Device& device, const Options& options, Diagnostics& diagn
   }
 }
 
-bool is_broken_pdo_rule(std::string_view rule) { return std::ranges::find(rules, rule) != std::end(rules); }
+bool is_broken_pdo_rule(std::string_view rule) {
+  return std::ranges::find(rules, rule, &BrokenPdoRule::id) != std::end(rules);
+}
 
 }  // namespace edsc

@@ -226,7 +226,7 @@ class Completion {
 
   static std::string by(std::string_view clause) { return fmt::format("CiA 301, {}", clause); }
 
-  void note(std::string_view rule, const Position& position, std::string message) {
+  void note(NoteRule rule, const Position& position, std::string message) {
     diagnostics_.note(rule, position, std::move(message));
   }
 

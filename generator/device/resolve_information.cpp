@@ -83,7 +83,7 @@ class InformationReader {
   }
 
  private:
-  std::optional<std::uint32_t> number(const Field& field, std::string_view rule) {
+  std::optional<std::uint32_t> number(const Field& field, WarningRule rule) {
     return read_number(field, rule, diagnostics_);
   }
 
@@ -175,7 +175,7 @@ Information resolve_information(const DataSheet& sheet, const Options& options, 
   return InformationReader{sheet, options, diagnostics}.read();
 }
 
-std::optional<std::uint32_t> read_number(const Field& field, std::string_view rule, Diagnostics& diagnostics) {
+std::optional<std::uint32_t> read_number(const Field& field, WarningRule rule, Diagnostics& diagnostics) {
   const std::string_view text = strip_inline_comment(field.text);
   if (!field.present || text.empty()) return std::nullopt;
   const auto number = parse_unsigned(text);

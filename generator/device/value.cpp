@@ -66,7 +66,7 @@ class ValueReader {
     switch (type_.kind) {
       case DataClass::string: return string();
       case DataClass::domain:
-        warning("domain-value", "a DOMAIN has no value in a data sheet; it is left out");
+        warning("domain-value", "a DOMAIN has no value in a data sheet; it is left out", "value");
         return std::nullopt;
       case DataClass::boolean:
       case DataClass::unsigned_integer:
@@ -94,11 +94,9 @@ class ValueReader {
     return result;
   }
 
-  void error(std::string_view rule, std::string message) {
-    diagnostics_.error(rule, field_.position, std::move(message));
-  }
-  void warning(std::string_view rule, std::string message) {
-    diagnostics_.warning(rule, field_.position, std::move(message));
+  void error(ErrorRule rule, std::string message) { diagnostics_.error(rule, field_.position, std::move(message)); }
+  void warning(WarningRule rule, std::string message, std::string cause = {}) {
+    diagnostics_.warning(rule, field_.position, std::move(message), {}, std::move(cause));
   }
 
   std::optional<Value> not_a_number() {
@@ -135,7 +133,7 @@ class ValueReader {
   bool is_node_id(std::string_view variable) {
     if (equal_ignoring_case(variable, "$NODEID")) return true;
     if (!equal_ignoring_case(variable, "$NODE_ID") && !equal_ignoring_case(variable, "$MY_NODE_ID")) return false;
-    warning("node-id-formula", fmt::format("{} is read as $NODEID", variable));
+    warning("node-id-formula", fmt::format("{} is read as $NODEID", variable), std::string{variable});
     return true;
   }
 
@@ -152,7 +150,7 @@ class ValueReader {
 
   std::optional<Value> boolean(std::string_view text) {
     if (equal_ignoring_case(text, "true") || equal_ignoring_case(text, "false")) {
-      warning("number-spelling", "a BOOLEAN is written as 0 or 1");
+      warning("number-spelling", "a BOOLEAN is written as 0 or 1", "BOOLEAN");
       return value(equal_ignoring_case(text, "true") ? 1 : 0);
     }
     const auto number = parse_unsigned(without_suffix(text));
@@ -172,7 +170,7 @@ class ValueReader {
     if (is_octal(plain)) {
       warning("number-spelling", fmt::format("a leading 0 makes {} an octal number: {}", quote(text), *magnitude));
     }
-    if (plain.size() != digits.size()) warning("number-spelling", "a C suffix has no place in a data sheet");
+    if (plain.size() != digits.size()) warning("number-spelling", "a C suffix has no place in a data sheet", "suffix");
     return negative ? negative_integer(*magnitude) : positive_integer(*magnitude, is_hexadecimal(plain));
   }
 
@@ -231,7 +229,7 @@ class ValueReader {
     const std::string_view plain = without_real_suffix(text);
     const auto number = parse_real(plain);
     if (!number) return not_a_number();
-    if (plain.size() != text.size()) warning("number-spelling", "a C suffix has no place in a data sheet");
+    if (plain.size() != text.size()) warning("number-spelling", "a C suffix has no place in a data sheet", "suffix");
     if (type_.bits == 64) return value(std::bit_cast<std::uint64_t>(*number));
     const auto single = static_cast<float>(*number);
     if (std::isinf(single) && !std::isinf(*number)) return out_of_range(*number > 0);
@@ -258,7 +256,7 @@ class ValueReader {
     } else {
       const std::string_view text = field_.text;
       if (text.size() >= 2 && text.front() == '"' && text.back() == '"') {
-        warning("string-quotes", "the quotation marks belong to the text: a data sheet puts none around it");
+        warning("string-quotes", "the quotation marks belong to the text: a data sheet puts none around it", "quotes");
       }
       result.bytes = text;
     }

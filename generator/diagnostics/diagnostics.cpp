@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <utility>
 
 namespace edsc {
@@ -23,6 +24,10 @@ std::size_t Diagnostics::KindHash::operator()(const Kind& kind) const {
          static_cast<std::size_t>(kind.severity);
 }
 
+std::size_t Diagnostics::CauseHash::operator()(const Cause& cause) const {
+  return KindHash{}(cause.kind) ^ (std::hash<std::string>{}(cause.words) << 1U);
+}
+
 void Diagnostics::report(Diagnostic diagnostic) {
   if (drop_notes_ && diagnostic.severity == Severity::note) return;
   if (is_silenced(diagnostic)) {
@@ -32,9 +37,9 @@ void Diagnostics::report(Diagnostic diagnostic) {
   if (strict_ && diagnostic.severity == Severity::warning) {
     diagnostic.severity = Severity::error;
   }
-  count(diagnostic.severity);
-
   const Kind kind{diagnostic.position.file, diagnostic.rule, diagnostic.severity};
+  if (join(kind, diagnostic)) return;
+  count(diagnostic.severity);
   Tally& tally = tallies_[kind];
   ++tally.found;
   if (tally.found <= most_per_rule) {
@@ -49,16 +54,41 @@ void Diagnostics::report(Diagnostic diagnostic) {
   ++suppressed_[tally.suppressed_row].count;
 }
 
-void Diagnostics::error(std::string_view rule, const Position& position, std::string message) {
-  report({Severity::error, rule, position, std::move(message), {}});
+bool Diagnostics::join(const Kind& kind, Diagnostic& diagnostic) {
+  if (diagnostic.cause.empty()) return false;
+  const bool is_listed = tallies_[kind].found < most_per_rule;
+  const auto [first, is_new] = first_of_cause_.try_emplace(
+      Cause{kind, diagnostic.cause}, is_listed ? all_.size() : std::numeric_limits<std::size_t>::max());
+  if (is_new) return false;
+  if (first->second >= all_.size()) return true;
+  Diagnostic& listed = all_[first->second];
+  ++listed.places;
+  if (listed.places > most_places) {
+    ++listed.unnamed;
+  } else {
+    listed.notes.push_back({diagnostic.position, std::move(diagnostic.message)});
+  }
+  return true;
 }
 
-void Diagnostics::warning(std::string_view rule, const Position& position, std::string message) {
-  report({Severity::warning, rule, position, std::move(message), {}});
+void Diagnostics::error(ErrorRule rule, const Position& position, std::string message, std::vector<Note> notes,
+                        std::string cause) {
+  report({Severity::error, rule.id(), position, std::move(message), std::move(notes), std::move(cause)});
 }
 
-void Diagnostics::note(std::string_view rule, const Position& position, std::string message) {
-  report({Severity::note, rule, position, std::move(message), {}});
+void Diagnostics::warning(WarningRule rule, const Position& position, std::string message, std::vector<Note> notes,
+                          std::string cause) {
+  report({Severity::warning, rule.id(), position, std::move(message), std::move(notes), std::move(cause)});
+}
+
+void Diagnostics::note(NoteRule rule, const Position& position, std::string message, std::vector<Note> notes,
+                       std::string cause) {
+  report({Severity::note, rule.id(), position, std::move(message), std::move(notes), std::move(cause)});
+}
+
+void Diagnostics::usual(AnyRule rule, const Position& position, std::string message, std::vector<Note> notes,
+                        std::string cause) {
+  report({rule.row().severity, rule.id(), position, std::move(message), std::move(notes), std::move(cause)});
 }
 
 void Diagnostics::silence(std::string rule) { silenced_.push_back(std::move(rule)); }

@@ -8,6 +8,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "diagnostics/rule.hpp"
+
 namespace edsc {
 
 class SourceFile;
@@ -20,8 +22,6 @@ struct Position {
   std::uint32_t column = 0;
   std::uint32_t length = 1;  ///< bytes to underline
 };
-
-enum class Severity : std::uint8_t { note, warning, error };
 
 [[nodiscard]] std::string_view to_string(Severity severity);
 
@@ -36,15 +36,27 @@ struct Diagnostic {
   Position position;
   std::string message;
   std::vector<Note> notes;  ///< further places that explain the first
+  /// Findings of one rule with the same cause are one: the notes name the next places, and `places` counts all of them.
+  /// Without a cause, a finding is on its own.
+  std::string cause;
+  std::size_t places = 1;
+  std::size_t unnamed = 0;  ///< how many of the places are neither `position` nor among the notes
 };
 
 /// Collects what the passes over one or more files find, in the order they find it.
 class Diagnostics {
  public:
+  void error(ErrorRule rule, const Position& position, std::string message, std::vector<Note> notes = {},
+             std::string cause = {});
+  void warning(WarningRule rule, const Position& position, std::string message, std::vector<Note> notes = {},
+               std::string cause = {});
+  void note(NoteRule rule, const Position& position, std::string message, std::vector<Note> notes = {},
+            std::string cause = {});
+  /// A finding of the severity that the rule usually has.
+  void usual(AnyRule rule, const Position& position, std::string message, std::vector<Note> notes = {},
+             std::string cause = {});
+  /// Takes over a finding of another collection.
   void report(Diagnostic diagnostic);
-  void error(std::string_view rule, const Position& position, std::string message);
-  void warning(std::string_view rule, const Position& position, std::string message);
-  void note(std::string_view rule, const Position& position, std::string message);
 
   /// Drops the warnings and notes of a rule; its errors stay, since what is wrong with them is left out of the device.
   void silence(std::string rule);
@@ -76,6 +88,8 @@ class Diagnostics {
   /// A rule that fires more often than this in one file (and with one severity) is counted, not listed: nobody reads
   /// the 51st.
   static constexpr std::size_t most_per_rule = 50;
+  /// Of the places with one cause, so many are named.
+  static constexpr std::size_t most_places = 4;
 
  private:
   struct Kind {
@@ -87,6 +101,14 @@ class Diagnostics {
   struct KindHash {
     std::size_t operator()(const Kind& kind) const;
   };
+  struct Cause {
+    Kind kind;
+    std::string words;
+    bool operator==(const Cause&) const = default;
+  };
+  struct CauseHash {
+    std::size_t operator()(const Cause& cause) const;
+  };
   struct Tally {
     std::size_t found = 0;
     std::size_t last_listed = 0;     ///< in `all_`
@@ -94,10 +116,13 @@ class Diagnostics {
   };
 
   void count(Severity severity);
+  /// Whether the finding is a further place of a listed one, or of one that is only counted.
+  bool join(const Kind& kind, Diagnostic& diagnostic);
   [[nodiscard]] bool is_silenced(const Diagnostic& diagnostic) const;
 
   std::vector<Diagnostic> all_;
   std::unordered_map<Kind, Tally, KindHash> tallies_;
+  std::unordered_map<Cause, std::size_t, CauseHash> first_of_cause_;  ///< where in `all_`; may be behind its end
   std::vector<Suppressed> suppressed_;
   std::vector<std::string> silenced_;
   std::size_t errors_ = 0;

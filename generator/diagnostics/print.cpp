@@ -81,6 +81,13 @@ class TextPrinter {
       print_head(note.position, Severity::note, note.message, {});
       print_source(note.position);
     }
+    if (diagnostic.unnamed > 0) {
+      print_file(diagnostic.position.file);
+      print_message(Severity::note,
+                    fmt::format("{} more {} of the same cause", diagnostic.unnamed,
+                                diagnostic.unnamed == 1 ? "place" : "places"),
+                    {});
+    }
   }
 
   void print(const Diagnostics::Suppressed& suppressed) {
@@ -158,6 +165,7 @@ nlohmann::json to_json(const Diagnostic& diagnostic) {
   row["rule"] = diagnostic.rule;
   row["message"] = diagnostic.message;
   row["notes"] = std::move(notes);
+  if (diagnostic.places > 1) row["places"] = diagnostic.places;
   return row;
 }
 

@@ -72,6 +72,7 @@ void SarifLog::add(const Diagnostics& diagnostics) {
     if (json related = related_locations(diagnostic.notes); !related.empty()) {
       result["relatedLocations"] = std::move(related);
     }
+    if (diagnostic.places > 1) result["occurrenceCount"] = diagnostic.places;
     results_.push_back(std::move(result));
   }
   for (const Diagnostics::Suppressed& suppressed : diagnostics.suppressed()) {

@@ -40,6 +40,12 @@ std::optional<std::uint64_t> parse_unsigned(std::string_view text) {
   return number;
 }
 
+std::optional<std::uint64_t> parse_decimal(std::string_view text) {
+  text = trim(text);
+  while (text.size() > 1 && text[0] == '0' && is_digit(text[1])) text.remove_prefix(1);
+  return parse_unsigned(text);
+}
+
 bool is_octal(std::string_view text) {
   text = trim(text);
   const auto is_octal_digit = [](char c) { return c >= '0' && c <= '7'; };

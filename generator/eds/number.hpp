@@ -14,6 +14,9 @@ struct Field;
 /// when any of the text is not part of the number, or when 64 bits do not hold it.
 [[nodiscard]] std::optional<std::uint64_t> parse_unsigned(std::string_view text);
 
+/// The same where a leading 0 does not make a number octal: a version 08 is eight, 010 is ten.
+[[nodiscard]] std::optional<std::uint64_t> parse_decimal(std::string_view text);
+
 /// Whether a leading 0 makes it another number than its digits: 010 is eight.
 [[nodiscard]] bool is_octal(std::string_view text);
 

@@ -13,7 +13,7 @@ namespace edsc {
 struct CountKey {
   std::string_view name;         ///< as CiA 306 spells it
   std::string_view misspelling;  ///< let through with a warning; may be empty
-  std::string_view rule;         ///< for a count that is missing or differs
+  WarningRule rule;              ///< for a count that is missing or differs
   bool numbers_count_up;         ///< from 1, without gaps; else they are sub-indices, and some may be left out
 };
 

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <unordered_map>
 #include <utility>
@@ -55,11 +57,8 @@ class ObjectListReader {
   void add(const ListedObject& object) {
     const auto [first, is_new] = first_place_.try_emplace(object.index, object.position);
     if (!is_new) {
-      diagnostics_.report({Severity::warning,
-                           "object-list",
-                           object.position,
-                           fmt::format("{:04X}h is listed twice", object.index),
-                           {{first->second, "the first time"}}});
+      diagnostics_.warning("object-list", object.position, fmt::format("{:04X}h is listed twice", object.index),
+                           {{first->second, "the first time"}});
       return;
     }
     check_list(object);
@@ -71,7 +70,8 @@ class ObjectListReader {
     if (right && *right != object.list) {
       diagnostics_.warning("object-list", object.position,
                            fmt::format("{:04X}h stands in [{}], but belongs in [{}]", object.index,
-                                       section_name(object.list), section_name(*right)));
+                                       section_name(object.list), section_name(*right)),
+                           {}, fmt::format("{} {}", section_name(object.list), section_name(*right)));
     }
   }
 
@@ -89,6 +89,26 @@ std::vector<std::uint16_t> sorted_indices(const std::vector<ListedObject>& liste
   }
   std::sort(indices.begin(), indices.end());
   return indices;
+}
+
+/// Objects that no list has. Where a list lacks many of them, all or most of it was forgotten: one cause.
+void report_not_listed(const DataSheet& sheet, Diagnostics& diagnostics) {
+  const std::vector<std::uint16_t> listed = sorted_indices(sheet.listed);
+  std::map<std::optional<ObjectListKind>, std::vector<const ObjectDescription*>> missing;
+  for (const ObjectDescription& object : sheet.objects) {
+    if (!object.has_section || std::binary_search(listed.begin(), listed.end(), object.index)) continue;
+    missing[list_of(object.index)].push_back(&object);
+  }
+  for (const auto& [list, objects] : missing) {
+    const std::string list_name{list ? section_name(*list) : ""};
+    const bool one_cause = objects.size() > Diagnostics::most_places;
+    for (const ObjectDescription* object : objects) {
+      diagnostics.warning("object-not-listed", object->position,
+                          fmt::format("{:04X}h is in no object list{}", object->index,
+                                      list ? fmt::format("; it belongs in [{}]", list_name) : ""),
+                          {}, one_cause ? list_name : "");
+    }
+  }
 }
 
 }  // namespace
@@ -137,15 +157,7 @@ void compare_lists_with_objects(const DataSheet& sheet, Diagnostics& diagnostics
           fmt::format("{:04X}h is listed, but there is no section [{:04X}]", listed.index, listed.index));
     }
   }
-  const std::vector<std::uint16_t> listed = sorted_indices(sheet.listed);
-  for (const ObjectDescription& object : sheet.objects) {
-    if (object.has_section && !std::binary_search(listed.begin(), listed.end(), object.index)) {
-      const std::optional<ObjectListKind> list = list_of(object.index);
-      diagnostics.warning("object-not-listed", object.position,
-                          fmt::format("{:04X}h is in no object list{}", object.index,
-                                      list ? fmt::format("; it belongs in [{}]", section_name(*list)) : ""));
-    }
-  }
+  report_not_listed(sheet, diagnostics);
 }
 
 }  // namespace edsc

@@ -84,7 +84,7 @@ void check_pdo_counts(const RuleContext& context) {
 }
 
 struct IdentityNumber {
-  std::string_view rule;
+  AnyRule rule;
   std::string_view key;
   Field DeviceInfo::*field;
   std::uint8_t sub_index;

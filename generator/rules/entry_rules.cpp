@@ -6,6 +6,7 @@
 #include "eds/number.hpp"
 #include "device/pdo_defaults.hpp"
 #include "rules/rule_groups.hpp"
+#include "rules/standard_objects.hpp"
 #include "text/utf8.hpp"
 
 namespace edsc {
@@ -59,7 +60,8 @@ void check_mapping(const RuleContext& context, const Entry& entry) {
   if (!entry.pdo_mapping && (entry.access == Access::rwr || entry.access == Access::rww)) {
     context.report("process-data-not-mappable", entry.access_position,
                    fmt::format("{} is process data ({}), but cannot be mapped (PDOMapping=0)", named(entry),
-                               canopen::row_of(entry.access).name));
+                               canopen::row_of(entry.access).name),
+                   {}, std::string{canopen::row_of(entry.access).name});
   }
 }
 
@@ -79,10 +81,27 @@ void check_flags(const RuleContext& context, const EntryDescription& description
                  fmt::format("ObjFlags has two bits, 0 and 1; {} has others", quote(field.text)));
 }
 
+/// The elements of an ARRAY have one data type. What CiA 301 says of an object, other rules compare.
+void check_array(const RuleContext& context, const Object& object) {
+  constexpr std::uint8_t structure = 0xFF;
+  if (object.type != ObjectType::array || find_standard_object(object.index) != nullptr) return;
+  const Entry* first = nullptr;
+  for (const Entry& entry : object.entries) {
+    if (entry.sub_index == 0 || entry.sub_index == structure) continue;
+    if (first == nullptr) first = &entry;
+    if (entry.type == first->type) continue;
+    context.report("array-data-type", context.place_of(entry, &EntryDescription::data_type),
+                   fmt::format("{} is {}, but {} is {}; the elements of an ARRAY have one data type", named(entry),
+                               entry.type->name, entry_label(first->index, first->sub_index), first->type->name),
+                   {}, fmt::format("{} {}", object.index, entry.type->name));
+  }
+}
+
 }  // namespace
 
 void check_entries(const RuleContext& context) {
   for (const Object& object : context.device.objects) {
+    check_array(context, object);
     for (const Entry& entry : object.entries) {
       check_constant(context, entry);
       check_live(context, entry);

@@ -45,10 +45,11 @@ bool is_time(std::string_view text) {
 
 bool is_version(std::string_view text) { return has_form(text, "0.0"); }
 
-bool is_unsigned8(std::string_view text) { return parse_unsigned(text).value_or(256) <= 255; }
+/// Decimal, also with leading zeros: a revision 08 is the one after 07.
+bool is_unsigned8(std::string_view text) { return parse_decimal(text).value_or(256) <= 255; }
 
 struct FileInfoForm {
-  std::string_view rule;
+  AnyRule rule;
   std::string_view key;
   Field FileInfo::*field;
   bool (*fits)(std::string_view text);
@@ -67,8 +68,12 @@ constexpr FileInfoForm file_info_forms[] = {
 
 void check_file_name(const RuleContext& context) {
   const Field& field = context.sheet.file_info.file_name;
+  if (field.empty()) {
+    context.report("file-name", context.sheet.file_info.position, "FileName is missing");
+    return;
+  }
   const std::string name = std::filesystem::path{context.device.source->name()}.filename().string();
-  if (field.empty() || name == "-" || equal_ignoring_case(field.text, name)) return;
+  if (name == "-" || equal_ignoring_case(field.text, name)) return;
   context.report("file-name", field.position,
                  fmt::format("FileName is {}, the file is called {}", quote(field.text), quote(name)));
 }
@@ -128,11 +133,9 @@ void check_commissioned_baud_rate(const RuleContext& context) {
   }
   for (const DeviceInfo::BaudRate& row : context.sheet.device_info.baud_rates) {
     if (row.kbit_per_second != *rate || number_of(row.field) != 0) continue;
-    context.diagnostics.report({Severity::warning,
-                                "commissioned-baud-rate",
-                                field.position,
-                                fmt::format("Baudrate is {} kbit/s, which the device does not support", *rate),
-                                {{row.field.position, fmt::format("BaudRate_{}=0", *rate)}}});
+    context.report("commissioned-baud-rate", field.position,
+                   fmt::format("Baudrate is {} kbit/s, which the device does not support", *rate),
+                   {{row.field.position, fmt::format("BaudRate_{}=0", *rate)}});
   }
 }
 

@@ -9,8 +9,9 @@ namespace {
 /// CiA 301, 7.5.2: objects that every device has.
 constexpr std::uint16_t mandatory_indices[] = {0x1000, 0x1001, 0x1018};
 
+/// A default that CiA 301 gives is not a mistake of the file.
 void check_default(const RuleContext& context, const Entry& entry) {
-  if (!entry.default_value || entry.default_value->plus_node_id) return;
+  if (!entry.default_value || entry.default_value->plus_node_id || !entry.default_value->clause.empty()) return;
   const std::uint64_t value = entry.default_value->bits;
   const bool below = entry.low_limit && is_less(*entry.type, value, entry.low_limit->bits);
   const bool above = entry.high_limit && is_less(*entry.type, entry.high_limit->bits, value);

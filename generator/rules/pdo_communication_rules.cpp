@@ -45,7 +45,8 @@ void check_transmission_type(const RuleContext& context, const Pdo& pdo, std::ui
   const Transmission transmission = transmission_of(type);
   if (is_synchronous(transmission) && on_by_default(pdo) && context.device.find(0x1005) == nullptr) {
     context.report("pdo-sync", default_place(entry),
-                   fmt::format("{} waits for SYNC (transmission type {}), but 1005h is missing", pdo_label(pdo), type));
+                   fmt::format("{} waits for SYNC (transmission type {}), but 1005h is missing", pdo_label(pdo), type),
+                   {}, "1005h is missing");
   }
 }
 
@@ -78,11 +79,28 @@ void check_times(const RuleContext& context, const Pdo& pdo, std::uint64_t type)
   check_time(context, pdo, event_timer, canopen::event_timer_is_used(is_receive(pdo), number), type);
 }
 
+/// The event timer counts in ms, the inhibit time in 100 us. A PDO that waits longer than its event timer is never sent
+/// when that expires.
+void check_inhibit_time(const RuleContext& context, const Pdo& pdo, std::uint64_t type) {
+  constexpr std::uint64_t per_millisecond = 10;
+  if (!canopen::inhibit_time_is_used(is_receive(pdo), static_cast<std::uint32_t>(type))) return;
+  const std::uint64_t inhibit = communication_default(pdo, inhibit_time).value_or(0);
+  const std::uint64_t timer = communication_default(pdo, event_timer).value_or(0);
+  if (timer == 0 || inhibit <= timer * per_millisecond) return;
+  const Entry& entry = *pdo.communication->find(inhibit_time);
+  const Entry& timer_entry = *pdo.communication->find(event_timer);
+  context.report("pdo-inhibit-time", default_place(entry),
+                 fmt::format("{} is {}.{} ms (in 100 us), longer than the event timer of {}, {} ms", named(entry),
+                             inhibit / per_millisecond, inhibit % per_millisecond, pdo_label(pdo), timer),
+                 {{default_place(timer_entry), "the event timer"}});
+}
+
 void check_compatibility_entry(const RuleContext& context, const Pdo& pdo) {
   const Entry* entry = pdo.communication->find(compatibility_entry);
   if (entry == nullptr) return;
   context.report("pdo-compatibility-entry", entry->position,
-                 fmt::format("{} of {} is reserved and left out by CiA 301", named(*entry), pdo_label(pdo)));
+                 fmt::format("{} of {} is reserved and left out by CiA 301", named(*entry), pdo_label(pdo)), {},
+                 "sub-index 4");
 }
 
 void check_sync_start(const RuleContext& context, const Pdo& pdo, std::uint64_t type) {
@@ -118,6 +136,7 @@ void check_pdo_communication(const RuleContext& context) {
     check_transmission_type(context, pdo, *type);
     check_remote(context, pdo, *type);
     check_times(context, pdo, *type);
+    check_inhibit_time(context, pdo, *type);
     check_sync_start(context, pdo, *type);
   }
 }

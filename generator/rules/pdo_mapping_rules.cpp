@@ -23,7 +23,8 @@ void check_gaps(const RuleContext& context, const Pdo& pdo, const Entry& count) 
     }
     if (entry->default_value && entry->default_value->bits != 0) continue;
     context.report("pdo-mapping-gap", default_place(*entry),
-                   fmt::format("{} maps {} objects, but {} maps nothing", pdo_label(pdo), entries, named(*entry)));
+                   fmt::format("{} maps {} objects, but {} maps nothing", pdo_label(pdo), entries, named(*entry)), {},
+                   i == 1 ? "counted, but not mapped" : "");
     return;
   }
 }
@@ -44,7 +45,7 @@ void check_twice(const RuleContext& context, const Pdo& pdo) {
 void check_empty(const RuleContext& context, const Pdo& pdo, const Entry& count) {
   if (count.default_value->bits != 0 || !on_by_default(pdo)) return;
   context.report("pdo-empty", count.default_value->position,
-                 fmt::format("{} is valid and maps nothing", pdo_label(pdo)));
+                 fmt::format("{} is valid and maps nothing", pdo_label(pdo)), {}, "empty");
 }
 
 bool mapping_is_writable(const Pdo& pdo) {

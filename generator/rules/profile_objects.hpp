@@ -6,11 +6,13 @@
 #include <cstdint>
 #include <string_view>
 
+#include "diagnostics/rule.hpp"
+
 namespace edsc {
 
 /// One of these objects is there in a device of the profile.
 struct ProfileNeed {
-  std::string_view rule;
+  AnyRule rule;
   std::uint16_t profile;
   std::array<std::uint16_t, 3> one_of;  ///< 0 fills up
   std::string_view name;

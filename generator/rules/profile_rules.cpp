@@ -47,8 +47,7 @@ void check_io_modules(const RuleContext& context, const Entry& device_type) {
                                                    kind.name, kind.bit, index_label(kind.usual))
                                      : fmt::format("there are objects of {}, but {} does not name them (bit {})",
                                                    kind.name, named(device_type), kind.bit);
-    context.report(said ? std::string_view{"profile-401-object"} : std::string_view{"io-kinds"},
-                   default_place(device_type), message);
+    context.report(said ? AnyRule{"profile-401-object"} : AnyRule{"io-kinds"}, default_place(device_type), message);
   }
 }
 
@@ -74,7 +73,8 @@ void check_types(const RuleContext& context, std::uint16_t profile) {
       if (entry.type->type == row.type) continue;
       context.report("profile-data-type", context.place_of(entry, &EntryDescription::data_type),
                      fmt::format("{} is {}; CiA {} says {}", named(entry), entry.type->name, profile,
-                                 canopen::find_data_type(static_cast<std::uint32_t>(row.type))->name));
+                                 canopen::find_data_type(static_cast<std::uint32_t>(row.type))->name),
+                     {}, fmt::format("{} {}", object->index, entry.type->name));
     }
   }
 }

@@ -5,15 +5,11 @@
 #include <algorithm>
 #include <utility>
 
-#include "rules/rule.hpp"
-
 namespace edsc {
 
-void RuleContext::report(std::string_view rule, const Position& position, std::string message,
-                         std::vector<Note> notes) const {
-  const Rule* row = find_rule(rule);
-  const Severity severity = row == nullptr ? Severity::warning : row->severity;
-  diagnostics.report({severity, rule, position, std::move(message), std::move(notes)});
+void RuleContext::report(AnyRule rule, const Position& position, std::string message, std::vector<Note> notes,
+                         std::string cause) const {
+  diagnostics.usual(rule, position, std::move(message), std::move(notes), std::move(cause));
 }
 
 const ObjectDescription* RuleContext::describe(std::uint16_t index) const {

@@ -22,7 +22,8 @@ struct RuleContext {
   Diagnostics& diagnostics;
 
   /// A finding of a rule, as bad as the rule's row says.
-  void report(std::string_view rule, const Position& position, std::string message, std::vector<Note> notes = {}) const;
+  void report(AnyRule rule, const Position& position, std::string message, std::vector<Note> notes = {},
+              std::string cause = {}) const;
 
   /// The file as a whole.
   [[nodiscard]] Position whole_file() const { return Position{device.source}; }

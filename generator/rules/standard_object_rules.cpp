@@ -30,7 +30,8 @@ void check_object_type(const RuleContext& context, const Object& object, const S
   const bool told = description != nullptr && description->object_type.present;
   context.report("standard-object-type", told ? description->object_type.position : object.position,
                  fmt::format("{} has object code {}; the {} of CiA 301 has {} (clause {})", named(object),
-                             to_string(object.type), standard.name, to_string(standard.type), standard.clause));
+                             to_string(object.type), standard.name, to_string(standard.type), standard.clause),
+                 {}, fmt::format("{} {}", standard.first, to_string(object.type)));
 }
 
 void check_entry(const RuleContext& context, const Entry& entry, const StandardObject& standard) {
@@ -44,12 +45,14 @@ void check_entry(const RuleContext& context, const Entry& entry, const StandardO
   if (entry.type->type != row->type) {
     context.report("standard-data-type", context.place_of(entry, &EntryDescription::data_type),
                    fmt::format("{} is {}; CiA 301 says {} (clause {})", named(entry), entry.type->name,
-                               type_name(row->type), standard.clause));
+                               type_name(row->type), standard.clause),
+                   {}, fmt::format("{} {}", standard.first, entry.type->name));
   }
   if (!row->access.has(entry.access)) {
     context.report("standard-access", entry.access_position,
                    fmt::format("{} has access {}, which CiA 301 does not allow there (clause {})", named(entry),
-                               canopen::row_of(entry.access).name, standard.clause));
+                               canopen::row_of(entry.access).name, standard.clause),
+                   {}, fmt::format("{} {}", standard.first, canopen::row_of(entry.access).name));
   }
 }
 

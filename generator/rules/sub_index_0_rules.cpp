@@ -24,13 +24,15 @@ void check_count(const RuleContext& context, const Object& object) {
   if (count.sub_index != 0) return;
   if (count.type->type != canopen::DataType::unsigned8) {
     context.report("sub-index-0-type", context.place_of(count, &EntryDescription::data_type),
-                   fmt::format("{} is {}; sub-index 0 is UNSIGNED8", named(count), count.type->name));
+                   fmt::format("{} is {}; sub-index 0 is UNSIGNED8", named(count), count.type->name), {},
+                   std::string{count.type->name});
   }
   const bool may_change = counts(object.index);
   if (!canopen::readable(count.access) || (canopen::writable(count.access) && !may_change)) {
     context.report("sub-index-0-access", count.access_position,
                    fmt::format("{} has access {}; {}", named(count), canopen::row_of(count.access).name,
-                               may_change ? "it can be read" : "the highest sub-index is const or ro"));
+                               may_change ? "it can be read" : "the highest sub-index is const or ro"),
+                   {}, std::string{canopen::row_of(count.access).name});
   }
   check_value(context, object, count);
 }

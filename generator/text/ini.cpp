@@ -170,11 +170,11 @@ class IniReader {
     found_entry_outside_ = true;
   }
 
-  void error(std::string_view rule, std::string_view line, std::string_view part, std::string message) {
+  void error(ErrorRule rule, std::string_view line, std::string_view part, std::string message) {
     diagnostics_.error(rule, place(source_, line_number_, column_of(line, part), part), std::move(message));
   }
 
-  void warning(std::string_view rule, std::string_view line, std::string_view part, std::string message) {
+  void warning(WarningRule rule, std::string_view line, std::string_view part, std::string message) {
     diagnostics_.warning(rule, place(source_, line_number_, column_of(line, part), part), std::move(message));
   }
 

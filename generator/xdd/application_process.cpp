@@ -195,7 +195,7 @@ void ApplicationProcess::read_property(pugi::xml_node property, Parameter& param
     parameter.is_disabled = equal_ignoring_case(find_attribute(property, "value").value(), "true");
     return;
   }
-  xml_.warn_once("xml-element", "property " + std::string{name}, xml_.position(property),
+  xml_.note_once("xml-element", "property " + std::string{name}, xml_.position(property),
                  fmt::format("property {} is a tool's own; it is left out, here and wherever it stands", quote(name)));
 }
 

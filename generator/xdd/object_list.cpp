@@ -106,9 +106,9 @@ class ObjectListReader {
     const Parameter parameter = read_entry(element, object);
     finish(object);
     if (parameter.is_disabled) {
-      xml_.diagnostics().warning(
-          "xml-element", object.position,
-          fmt::format("{:04X}h is disabled by the property CO_disabled; it is left out", *index));
+      xml_.diagnostics().note("xml-element", object.position,
+                              fmt::format("{:04X}h is disabled by the property CO_disabled; it is left out", *index),
+                              {}, "CO_disabled");
       return;
     }
     const Field sub_number = xml_.value(find_attribute(element, "subNumber"));
@@ -238,11 +238,9 @@ class ObjectListReader {
   bool is_first(pugi::xml_node element, std::uint16_t number, FirstPlaces& first_places) {
     const auto [first, is_new] = first_places.try_emplace(number, xml_.position(element));
     if (is_new) return true;
-    xml_.diagnostics().report({Severity::warning,
-                               "duplicate-section",
-                               xml_.position(element),
+    xml_.diagnostics().warning("duplicate-section", xml_.position(element),
                                fmt::format("{:X}h stands twice; the first one counts", number),
-                               {{first->second, "the first one"}}});
+                               {{first->second, "the first one"}});
     return false;
   }
 

@@ -149,11 +149,9 @@ class XddReader {
       part = element;
       return;
     }
-    xml_.diagnostics().report({Severity::warning,
-                               "duplicate-section",
-                               xml_.position(element),
+    xml_.diagnostics().warning("duplicate-section", xml_.position(element),
                                fmt::format("{} stands twice; the first one counts", local_name(element)),
-                               {{xml_.position(part), "the first one"}}});
+                               {{xml_.position(part), "the first one"}});
   }
 
   void report_no_profile() {

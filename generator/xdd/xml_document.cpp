@@ -168,9 +168,9 @@ Field XmlDocument::text(pugi::xml_node element) {
 
 std::string_view XmlDocument::keep(std::string text) { return texts_->emplace_back(std::move(text)); }
 
-void XmlDocument::warn_once(std::string_view rule, const std::string& what, const Position& position,
+void XmlDocument::note_once(NoteRule rule, const std::string& what, const Position& position,
                             const std::string& message) {
-  if (warned_.insert(what).second) diagnostics_.warning(rule, position, message);
+  if (warned_.insert(what).second) diagnostics_.note(rule, position, message);
 }
 
 }  // namespace edsc

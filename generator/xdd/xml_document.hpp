@@ -58,7 +58,7 @@ class XmlDocument {
   [[nodiscard]] std::shared_ptr<const std::deque<std::string>> kept_texts() const { return texts_; }
 
   /// Warns of something that stands in the file often, the first time only; `what` tells such things apart.
-  void warn_once(std::string_view rule, const std::string& what, const Position& position, const std::string& message);
+  void note_once(NoteRule rule, const std::string& what, const Position& position, const std::string& message);
 
  private:
   void parse();

@@ -24,7 +24,7 @@ FINE, INPUT_HAS_ERRORS, WRONG_USAGE = 0, 1, 2
 
 # What a line of the base sheet becomes, and which rule says so.
 NOTE = ("FileName=example.eds", "FileName=other.eds", "file-name")
-WARNING = ("EDSVersion=4.0", "EDSVersion=4.04", "eds-version")
+WARNING = ("SupportedObjects=11", "SupportedObjects=12", "object-list-count")
 ERROR = ("LowLimit=0\nHighLimit=3000\nDefaultValue=100", "DefaultValue=fast", "number-format")
 
 
@@ -93,14 +93,14 @@ class Silence(CheckTest):
         sheet = self.sheet(NOTE, WARNING, ERROR)
         returncode, findings = self.check(sheet, "--silence", "number-format", "--silence", "file-name")
         self.assertEqual(returncode, FINE)
-        self.assertEqual([d["rule"] for d in findings["diagnostics"]], ["eds-version"])
+        self.assertEqual([d["rule"] for d in findings["diagnostics"]], ["object-list-count"])
 
     def test_of_one_rule_before_a_file(self) -> None:
         returncode, findings = self.check("--silence", "file-name", self.sheet(ERROR))
         self.assertEqual((returncode, len(findings["diagnostics"])), (INPUT_HAS_ERRORS, 1))
 
     def test_by_the_options_file(self) -> None:
-        (self.folder / "example.options.json").write_text('{"silence": ["eds-version"]}', encoding="utf-8")
+        (self.folder / "example.options.json").write_text('{"silence": ["object-list-count"]}', encoding="utf-8")
         returncode, findings = self.check(self.sheet(WARNING), "--strict")
         self.assertEqual((returncode, findings["diagnostics"]), (FINE, []))
 

@@ -3,14 +3,17 @@
 
     rules_test.py SOURCE_DIR EDSC [--write]      --write makes docs/rules.md anew
 
-examples.txt holds for each rule `@ id`, then `@@ bad` and `@@ good`, each followed by what it changes in base.eds:
+examples.txt holds for each rule `@ id`, then `@@ bad` and `@@ good`, each followed by what it changes in base.eds; a rule may
+have several such pairs:
 - `[section]` names the section that the lines below belong to; a new one is added at the end, and to its object list
 - `Key=value` replaces the line with this key, or adds one; `+line` adds it as it is; `-Key` and `-[section]` take away
 - of a new object, missing keys mean a rw VAR of UNSIGNED8; SubNumber counts the sub-objects unless it is changed itself
 - a line with nothing but `^` says that the finding stands in the line above, in this column; without, in line 1
 Words behind `bad` and `good`: `raw` (the whole file, not a change), `escaped` (Python's escapes, and `x{n}` for n times
 x), `file=NAME`, `column=N` (of the line with the caret), `command=generate|format` (in place of check), `missing` (no
-file). `@@ bad options` is the options file.
+file). `@@ bad options` is the options file. `severity=S` says which one the finding has where the rule has two.
+
+Whatever fires in any of the examples is a rule of the table, with a severity that its row has.
 """
 
 from __future__ import annotations
@@ -75,24 +78,28 @@ class Example:
     blocks: dict[str, Block] = field(default_factory=dict)  # "bad", "good", "bad options", "good options"
 
 
-def read_examples(path: Path) -> dict[str, Example]:
-    examples: dict[str, Example] = {}
+def read_examples(path: Path) -> dict[str, list[Example]]:
+    examples: dict[str, list[Example]] = {}
     block = Block([])
     for text in path.read_text(encoding="utf-8").splitlines():
         if text.startswith("@@ "):
             words = text[3:].split()
             name = f"{words[0]} options" if "options" in words else words[0]
+            if name == "bad" and example.blocks:
+                example = Example(example.rule)
+                examples[example.rule].append(example)
             block = example.blocks[name] = Block(words)
         elif text.startswith("@ "):
-            example = examples[text[2:]] = Example(text[2:])
+            assert text[2:] not in examples, text
+            example = Example(text[2:])
+            examples[example.rule] = [example]
         elif CARET.match(text):
             block.lines[-1].column = text.index("^") + 1
         else:
             block.lines.append(Line(text))
-    for example in examples.values():
-        for block in example.blocks.values():
-            while block.lines and not block.lines[-1].text:
-                block.lines.pop()
+    for block in (block for pairs in examples.values() for example in pairs for block in example.blocks.values()):
+        while block.lines and not block.lines[-1].text:
+            block.lines.pop()
     return examples
 
 
@@ -197,7 +204,7 @@ class Place:
     column: int
 
 
-def run(edsc: Path, folder: Path, example: Example, kind: str, base: str) -> tuple[list[tuple[str, Place]], Place]:
+def run(edsc: Path, folder: Path, example: Example, kind: str, base: str) -> tuple[list[tuple[str, str, Place]], Place]:
     """What edsc finds in an example, and where its carets point."""
     block = example.blocks.get(kind, Block([kind]))
     file = block.option("file", "example.eds")
@@ -216,15 +223,19 @@ def run(edsc: Path, folder: Path, example: Example, kind: str, base: str) -> tup
     column = int(block.option("column", "0"))
     place = next((Place(n, column or line.column) for n, line in enumerate(marked, 1) if line.column), Place(1, 1))
     output = result.stdout + result.stderr
-    return [(m[6], Place(int(m[2]), int(m[3]))) for m in FINDING.finditer(output)], place
+    return [(m[6], m[4], Place(int(m[2]), int(m[3]))) for m in FINDING.finditer(output)], place
 
 
-def check_example(edsc: Path, example: Example, base: str) -> list[str]:
+def check_example(edsc: Path, example: Example, base: str, severities: dict[str, list[str]]) -> list[str]:
     problems = []
     for kind in ("bad", "good"):
         with tempfile.TemporaryDirectory() as folder:
             found, expected = run(edsc, Path(folder), example, kind, base)
-        places = [place for rule, place in found if rule == example.rule]
+        for rule, severity, _ in found:
+            if severity not in severities.get(rule, []):
+                problems.append(f"{example.rule}: {rule} fires as a {severity}, which its row does not have")
+        wanted = example.blocks.get(kind, Block([])).option("severity", "")
+        places = [place for rule, severity, place in found if rule == example.rule and severity.startswith(wanted)]
         if kind == "good" and places:
             problems.append(f"{example.rule}: the right example fires it at {places}")
         if kind == "bad" and expected not in places:
@@ -255,17 +266,21 @@ begins with `-` is taken away, `^` is where the finding stands. Made from `tests
 """
 
 
-def document(rules: list[dict[str, str]], examples: dict[str, Example]) -> str:
+def severity_of(rule: dict[str, str]) -> str:
+    return " or ".join(rule["severities"])
+
+
+def document(rules: list[dict[str, str]], examples: dict[str, list[Example]]) -> str:
     out = [INTRODUCTION, f"{len(rules)} rules:", "", "| rule | | meaning | source |", "|---|---|---|---|"]
     for rule in rules:
-        out.append(f"| [{rule['id']}](#{rule['id']}) | {rule['severity']} | {rule['meaning']} | {rule['source']} |")
+        out.append(f"| [{rule['id']}](#{rule['id']}) | {severity_of(rule)} | {rule['meaning']} | {rule['source']} |")
     for rule in rules:
-        out += ["", f"## {rule['id']}", "", f"{rule['severity'].capitalize()}: {rule['meaning']} ({rule['source']}).", ""]
-        example = examples[rule["id"]]
-        for kind, word in (("bad", "Wrong"), ("good", "Right")):
-            blocks = [*code_block(example.blocks.get(kind)), *code_block(example.blocks.get(f"{kind} options"))]
-            if blocks:
-                out += [f"{word}:", "", *blocks]
+        out += ["", f"## {rule['id']}", "", f"{severity_of(rule).capitalize()}: {rule['meaning']} ({rule['source']}).", ""]
+        for example in examples[rule["id"]]:
+            for kind, word in (("bad", "Wrong"), ("good", "Right")):
+                blocks = [*code_block(example.blocks.get(kind)), *code_block(example.blocks.get(f"{kind} options"))]
+                if blocks:
+                    out += [f"{word}:", "", *blocks]
         while not out[-1]:
             out.pop()
     return "\n".join(out) + "\n"
@@ -279,14 +294,15 @@ def main() -> int:
     listed = subprocess.run([edsc, "check", "--list-rules", "--format", "json"], check=True, capture_output=True)
     rules = json.loads(listed.stdout)
     ids = [rule["id"] for rule in rules]
+    severities = {rule["id"]: rule["severities"] for rule in rules}
     problems = [f"{rule}: no example" for rule in ids if rule not in examples]
     problems += [f"{rule}: an example, but no rule" for rule in examples if rule not in ids]
     clean = subprocess.run([edsc, "check", "base.eds", "--silence", "file-name"], cwd=folder, capture_output=True,
                            text=True)
     if clean.stdout.strip():
         problems.append(f"base.eds has findings:\n{clean.stdout}")
-    for example in examples.values():
-        problems += check_example(edsc, example, base)
+    for example in (example for pairs in examples.values() for example in pairs):
+        problems += check_example(edsc, example, base, severities)
     if not any("no example" in problem for problem in problems):
         page, text = source / "docs" / "rules.md", document(rules, examples)
         if "--write" in sys.argv:

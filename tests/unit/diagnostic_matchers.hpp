@@ -36,6 +36,10 @@ inline Finding warning_at(std::uint32_t line, std::uint32_t column, std::string 
   return {Severity::warning, std::move(rule), line, column};
 }
 
+inline Finding note_at(std::uint32_t line, std::uint32_t column, std::string rule) {
+  return {Severity::note, std::move(rule), line, column};
+}
+
 inline std::vector<Finding> findings(const Diagnostics& diagnostics) {
   std::vector<Finding> result;
   for (const Diagnostic& diagnostic : diagnostics.all()) {

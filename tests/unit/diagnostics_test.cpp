@@ -23,9 +23,9 @@ std::string printed(const Diagnostics& diagnostics) {
 TEST(Diagnostics, CountErrorsAndWarnings) {
   const SourceFile file("a.eds", "x\n");
   Diagnostics diagnostics;
-  diagnostics.error("one", {&file, 1, 1}, "first");
-  diagnostics.warning("two", {&file, 1, 1}, "second");
-  diagnostics.warning("two", {&file, 1, 1}, "third");
+  diagnostics.error("number-range", {&file, 1, 1}, "first");
+  diagnostics.warning("data-type", {&file, 1, 1}, "second");
+  diagnostics.warning("data-type", {&file, 1, 1}, "third");
   EXPECT_EQ(diagnostics.errors(), 1U);
   EXPECT_EQ(diagnostics.warnings(), 2U);
   EXPECT_EQ(diagnostics.all().size(), 3U);
@@ -33,31 +33,31 @@ TEST(Diagnostics, CountErrorsAndWarnings) {
 
 TEST(Diagnostics, DropSilencedRules) {
   Diagnostics diagnostics;
-  diagnostics.silence("one");
-  diagnostics.warning("two", {}, "kept");
+  diagnostics.silence("number-range");
+  diagnostics.warning("data-type", {}, "kept");
   EXPECT_FALSE(diagnostics.any_silenced());
-  diagnostics.warning("one", {}, "dropped");
+  diagnostics.warning("number-range", {}, "dropped");
   EXPECT_TRUE(diagnostics.any_silenced());
   ASSERT_EQ(diagnostics.all().size(), 1U);
-  EXPECT_EQ(diagnostics.all().at(0).rule, "two");
+  EXPECT_EQ(diagnostics.all().at(0).rule, "data-type");
 }
 
 TEST(Diagnostics, DropSilencedErrorsForCheckOnly) {
   Diagnostics diagnostics;
-  diagnostics.silence("one");
-  diagnostics.error("one", {}, "kept");
+  diagnostics.silence("number-range");
+  diagnostics.error("number-range", {}, "kept");
   EXPECT_EQ(diagnostics.errors(), 1U);
   diagnostics.silence_errors();
-  diagnostics.error("one", {}, "dropped");
-  diagnostics.error("two", {}, "kept");
+  diagnostics.error("number-range", {}, "dropped");
+  diagnostics.error("data-type", {}, "kept");
   EXPECT_EQ(diagnostics.errors(), 2U);
 }
 
 TEST(Diagnostics, CountWarningsAsErrorsWhenStrict) {
   Diagnostics diagnostics;
-  diagnostics.warning("one", {}, "before");
+  diagnostics.warning("number-range", {}, "before");
   diagnostics.treat_warnings_as_errors();
-  diagnostics.warning("one", {}, "after");
+  diagnostics.warning("number-range", {}, "after");
   EXPECT_EQ(diagnostics.warnings(), 1U);
   EXPECT_EQ(diagnostics.errors(), 1U);
   EXPECT_EQ(diagnostics.all().at(1).severity, Severity::error);
@@ -68,13 +68,13 @@ TEST(Diagnostics, ListTheFirstOfARuleAndCountTheRest) {
   const SourceFile other("b.eds", "x\n");
   Diagnostics diagnostics;
   for (int time = 0; time < 100'000; ++time) {
-    diagnostics.warning("one", {&file, 1, 1}, "again");
+    diagnostics.warning("number-range", {&file, 1, 1}, "again");
   }
-  diagnostics.warning("one", {&other, 1, 1}, "elsewhere");
+  diagnostics.warning("number-range", {&other, 1, 1}, "elsewhere");
   EXPECT_EQ(diagnostics.all().size(), Diagnostics::most_per_rule + 1);
   ASSERT_EQ(diagnostics.suppressed().size(), 1U);
   EXPECT_EQ(diagnostics.suppressed()[0].file, &file);
-  EXPECT_EQ(diagnostics.suppressed()[0].rule, "one");
+  EXPECT_EQ(diagnostics.suppressed()[0].rule, "number-range");
   EXPECT_EQ(diagnostics.suppressed()[0].count, 100'000 - Diagnostics::most_per_rule);
   EXPECT_EQ(diagnostics.warnings(), 100'001U);
 }
@@ -93,9 +93,9 @@ TEST(PrintText, ShowsTheLineAndUnderlinesThePlace) {
 TEST(PrintText, ShowsNotesLikewise) {
   const SourceFile file("a.eds", "[1000]\n[1000]\n");
   Diagnostics diagnostics;
-  diagnostics.report({Severity::warning, "twice", {&file, 2, 2, 4}, "second", {{{&file, 1, 2, 4}, "first"}}});
+  diagnostics.warning("duplicate-key", {&file, 2, 2, 4}, "second", {{{&file, 1, 2, 4}, "first"}});
   EXPECT_EQ(printed(diagnostics),
-            "a.eds:2:2: warning: second [twice]\n"
+            "a.eds:2:2: warning: second [duplicate-key]\n"
             "    2 | [1000]\n"
             "      |  ^~~~\n"
             "a.eds:1:2: note: first\n"
@@ -117,24 +117,88 @@ TEST(PrintText, PutsTheSuppressedBehindTheirRule) {
   const SourceFile file("a.eds", "");
   Diagnostics diagnostics;
   for (std::size_t time = 0; time < Diagnostics::most_per_rule + 3; ++time) {
-    diagnostics.warning("one", {&file}, "again");
+    diagnostics.warning("number-range", {&file}, "again");
   }
-  diagnostics.error("two", {&file}, "last");
+  diagnostics.error("data-type", {&file}, "last");
   const std::string text = printed(diagnostics);
   EXPECT_TRUE(
-      text.ends_with("a.eds:1:1: warning: again [one]\n"
-                     "a.eds: warning: 3 more of this kind [one]\n"
-                     "a.eds:1:1: error: last [two]\n"
+      text.ends_with("a.eds:1:1: warning: again [number-range]\n"
+                     "a.eds: warning: 3 more of this kind [number-range]\n"
+                     "a.eds:1:1: error: last [data-type]\n"
                      "a.eds: 1 error, 53 warnings\n"))
       << text;
+}
+
+/// 160 findings with one cause, one with another, in a file of 200 lines.
+Diagnostics findings_of_one_cause(const SourceFile& file) {
+  Diagnostics diagnostics;
+  for (std::uint32_t line = 1; line <= 160; ++line) {
+    diagnostics.error("number-range", {&file, line, 1}, "maps an rwr", {}, "rwr");
+  }
+  diagnostics.error("number-range", {&file, 170, 1}, "maps a const", {}, "const");
+  return diagnostics;
+}
+
+TEST(Diagnostics, MakeOneOfTheFindingsOfOneCause) {
+  const SourceFile file("a.eds", std::string(200, '\n'));
+  const Diagnostics diagnostics = findings_of_one_cause(file);
+  EXPECT_EQ(diagnostics.errors(), 2U);
+  EXPECT_TRUE(diagnostics.suppressed().empty());
+  ASSERT_EQ(diagnostics.all().size(), 2U);
+  const Diagnostic& first = diagnostics.all().front();
+  EXPECT_EQ(first.position.line, 1U);
+  EXPECT_EQ(first.places, 160U);
+  ASSERT_EQ(first.notes.size(), Diagnostics::most_places - 1);
+  EXPECT_EQ(first.notes.back().position.line, Diagnostics::most_places);
+  EXPECT_EQ(first.unnamed, 160 - Diagnostics::most_places);
+  EXPECT_EQ(diagnostics.all().back().places, 1U);
+}
+
+TEST(Diagnostics, KeepTheCausesOfOtherFilesAndSeveritiesApart) {
+  const SourceFile one("a.eds", "");
+  const SourceFile two("b.eds", "");
+  Diagnostics diagnostics;
+  diagnostics.error("number-range", {&one}, "x", {}, "cause");
+  diagnostics.error("number-range", {&two}, "x", {}, "cause");
+  diagnostics.warning("number-range", {&one}, "x", {}, "cause");
+  diagnostics.error("data-type", {&one}, "x", {}, "cause");
+  EXPECT_EQ(diagnostics.all().size(), 4U);
+}
+
+TEST(Diagnostics, CountManyCausesOnce) {
+  const SourceFile file("a.eds", "");
+  Diagnostics diagnostics;
+  for (int time = 0; time < 2; ++time) {
+    for (std::size_t cause = 0; cause < Diagnostics::most_per_rule + 5; ++cause) {
+      diagnostics.error("number-range", {&file}, "x", {}, std::to_string(cause));
+    }
+  }
+  EXPECT_EQ(diagnostics.errors(), Diagnostics::most_per_rule + 5);
+  EXPECT_EQ(diagnostics.all().size(), Diagnostics::most_per_rule);
+}
+
+TEST(PrintText, NamesTheFirstPlacesOfOneCause) {
+  const SourceFile file("a.eds", std::string(200, '\n'));
+  const std::string text = printed(findings_of_one_cause(file));
+  EXPECT_NE(text.find("a.eds:1:1: error: maps an rwr [number-range]\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("a.eds:4:1: note: maps an rwr\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("a.eds: note: 156 more places of the same cause\n"), std::string::npos) << text;
+  EXPECT_TRUE(text.ends_with("a.eds: 2 errors, 0 warnings\n")) << text;
+}
+
+TEST(PrintJson, CountsThePlacesOfOneCause) {
+  const SourceFile file("a.eds", std::string(200, '\n'));
+  const nlohmann::json json = print_json(findings_of_one_cause(file));
+  EXPECT_EQ(json["diagnostics"][0]["places"], 160);
+  EXPECT_FALSE(json["diagnostics"][1].contains("places"));
 }
 
 TEST(PrintText, SumsEachFile) {
   const SourceFile one("a.eds", "");
   const SourceFile two("b.eds", "");
   Diagnostics diagnostics;
-  diagnostics.error("one", {&one}, "x");
-  diagnostics.warning("one", {&two}, "x");
+  diagnostics.error("number-range", {&one}, "x");
+  diagnostics.warning("number-range", {&two}, "x");
   const std::string text = printed(diagnostics);
   EXPECT_TRUE(text.ends_with("a.eds: 1 error, 0 warnings\nb.eds: 0 errors, 1 warning\n")) << text;
 }
@@ -142,9 +206,9 @@ TEST(PrintText, SumsEachFile) {
 TEST(PrintText, CountsColumnsInCodePoints) {
   const SourceFile file("a.eds", "Maß €=x\n");
   Diagnostics diagnostics;
-  diagnostics.error("one", {&file, 1, 10, 1}, "here");
+  diagnostics.error("number-range", {&file, 1, 10, 1}, "here");
   EXPECT_TRUE(printed(diagnostics)
-                  .starts_with("a.eds:1:7: error: here [one]\n"
+                  .starts_with("a.eds:1:7: error: here [number-range]\n"
                                "    1 | Maß €=x\n"
                                "      |       ^\n"))
       << printed(diagnostics);
@@ -153,9 +217,9 @@ TEST(PrintText, CountsColumnsInCodePoints) {
 TEST(PrintText, LetsNoControlCharacterThrough) {
   const SourceFile file("a\x1B.eds", "a\tb\x1B[31m\x7F\xC2\x9B\n");
   Diagnostics diagnostics;
-  diagnostics.error("one", {&file, 1, 1, 1}, "it says \x1B[0m");
+  diagnostics.error("number-range", {&file, 1, 1, 1}, "it says \x1B[0m");
   EXPECT_EQ(printed(diagnostics),
-            "a?.eds:1:1: error: it says ?[0m [one]\n"
+            "a?.eds:1:1: error: it says ?[0m [number-range]\n"
             "    1 | a b?[31m??\n"
             "      | ^\n"
             "a?.eds: 1 error, 0 warnings\n");
@@ -164,7 +228,7 @@ TEST(PrintText, LetsNoControlCharacterThrough) {
 TEST(PrintText, ColoursOnDemand) {
   const SourceFile file("a.eds", "x\n");
   Diagnostics diagnostics;
-  diagnostics.error("one", {&file, 1, 1}, "here");
+  diagnostics.error("number-range", {&file, 1, 1}, "here");
   std::string text;
   print_text(text, diagnostics, true);
   EXPECT_NE(text.find("\x1B[1;31merror:\x1B[0m here"), std::string::npos) << text;
@@ -209,14 +273,14 @@ TEST(Quote, CutsALongTextBetweenCodePoints) {
 TEST(PrintJson, HasAStableShape) {
   const SourceFile file("a.eds", "[1000]\n[1000]\n");
   Diagnostics diagnostics;
-  diagnostics.report({Severity::warning, "twice", {&file, 2, 2, 4}, "second", {{{&file, 1, 2, 4}, "first"}}});
-  diagnostics.error("empty", {&file}, "whole");
+  diagnostics.warning("duplicate-key", {&file, 2, 2, 4}, "second", {{{&file, 1, 2, 4}, "first"}});
+  diagnostics.error("empty-file", {&file}, "whole");
   const nlohmann::json expected = nlohmann::json::parse(R"({
     "version": 1,
     "diagnostics": [
-      {"file": "a.eds", "line": 2, "column": 2, "length": 4, "severity": "warning", "rule": "twice",
+      {"file": "a.eds", "line": 2, "column": 2, "length": 4, "severity": "warning", "rule": "duplicate-key",
        "message": "second", "notes": [{"file": "a.eds", "line": 1, "column": 2, "length": 4, "message": "first"}]},
-      {"file": "a.eds", "line": 1, "column": 1, "length": 1, "severity": "error", "rule": "empty",
+      {"file": "a.eds", "line": 1, "column": 1, "length": 1, "severity": "error", "rule": "empty-file",
        "message": "whole", "notes": []}],
     "suppressed": [],
     "errors": 1,
@@ -228,12 +292,12 @@ TEST(PrintJson, CountsTheSuppressed) {
   const SourceFile file("a.eds", "");
   Diagnostics diagnostics;
   for (std::size_t time = 0; time < Diagnostics::most_per_rule + 2; ++time) {
-    diagnostics.warning("one", {&file}, "again");
+    diagnostics.warning("number-range", {&file}, "again");
   }
   const nlohmann::json json = print_json(diagnostics);
   EXPECT_EQ(json["diagnostics"].size(), Diagnostics::most_per_rule);
   EXPECT_EQ(json["suppressed"],
-            nlohmann::json::parse(R"([{"file": "a.eds", "severity": "warning", "rule": "one", "count": 2}])"));
+            nlohmann::json::parse(R"([{"file": "a.eds", "severity": "warning", "rule": "number-range", "count": 2}])"));
   EXPECT_EQ(json["warnings"], Diagnostics::most_per_rule + 2);
 }
 

@@ -19,6 +19,14 @@ TEST(ParseUnsigned, TakesNoDecimalDigitForAnOctalOne) {
   EXPECT_EQ(parse_unsigned("009"), std::nullopt);
 }
 
+TEST(ParseDecimal, TakesLeadingZerosForPartOfTheNumber) {
+  EXPECT_EQ(parse_decimal("08"), 8U);
+  EXPECT_EQ(parse_decimal(" 010"), 10U);
+  EXPECT_EQ(parse_decimal("000"), 0U);
+  EXPECT_EQ(parse_decimal("0x10"), 16U);
+  EXPECT_EQ(parse_decimal("1.0"), std::nullopt);
+}
+
 TEST(ParseUnsigned, CutsBlanksAndAPlus) {
   EXPECT_EQ(parse_unsigned(" \t12 "), 12U);
   EXPECT_EQ(parse_unsigned("+12"), 12U);

@@ -28,6 +28,15 @@ TEST(ObjectRules, WarnOfEachMandatoryObjectThatIsMissing) {
   EXPECT_EQ(checked.diagnostics.errors(), 0U);
 }
 
+TEST(ObjectLists, ThatLackManyObjectsAreOneFinding) {
+  std::string sheet = var("2000", "Value 1", "5") + var("2001", "Value 2", "5");
+  EXPECT_EQ(findings(CheckedObjects(sheet).diagnostics, "object-not-listed").size(), 2U);
+  for (const std::string_view index : {"2002", "2003", "2004", "2005"}) sheet += var(index, index, "5");
+  const CheckedObjects checked(sheet);
+  EXPECT_EQ(findings(checked.diagnostics, "object-not-listed").size(), 1U);
+  EXPECT_EQ(checked.finding("object-not-listed").places, 6U);
+}
+
 TEST(ObjectRules, AreSilentOnADefaultAtItsLimits) {
   for (const char* value : {"-5", "0", "10"}) {
     const CheckedObjects checked(
@@ -43,6 +52,15 @@ TEST(ObjectRules, WarnOfADefaultBeyondItsLimits) {
   EXPECT_NE(below.finding("default-outside-limits").message.find("2000h:00 \"Value\" is below"), std::string::npos);
   const CheckedObjects above(var("2000", "Value", "3", "rw", "HighLimit=10\nDefaultValue=11\n"));
   EXPECT_NE(above.finding("default-outside-limits").message.find("above"), std::string::npos);
+}
+
+/// CiA 301, 7.5.2.37: 255 where the file says nothing.
+TEST(ObjectRules, BlameNoFileForADefaultThatItDoesNotHave) {
+  const CheckedObjects checked(group("1800", "Communication", "9", 2) +
+                               var("1800sub0", "Count", "5", "const", "DefaultValue=2\n") +
+                               var("1800sub2", "Type", "5", "rw", "HighLimit=240\n"));
+  EXPECT_EQ(checked.entry(0x1800, 2).default_value->bits, 255U);
+  EXPECT_TRUE(findings(checked.diagnostics, "default-outside-limits").empty());
 }
 
 TEST(ObjectRules, CompareLimitsAsTheTypeDoes) {

@@ -322,7 +322,7 @@ TEST(XddParameter, WarnsOfAReferenceToNothing) {
 TEST(XddParameter, LeavesOutAnObjectThatCanopenEditorHasDisabled) {
   const ReadXdd read(Profile{referring_object + "<CANopenObject index='2001'/>",
                           parameter("<UINT/><property name='CO_disabled' value='true'/>"), "", ""});
-  EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(first_line, 2, "xml-element")}));
+  EXPECT_EQ(findings(read.diagnostics), (Findings{note_at(first_line, 2, "xml-element")}));
   ASSERT_EQ(read.sheet.objects.size(), 1U);
   EXPECT_EQ(read.object().index, 0x2001);
 }

@@ -1,16 +1,34 @@
-#include "rules/rule.hpp"
+/// The rule table: what may be wrong with a data sheet, how bad it is, and which clause says so. A finding names a row of
+/// it, and is as bad as the row allows: another id, or another severity, does not compile.
+#pragma once
 
 #include <algorithm>
-#include <array>
+#include <cstdint>
+#include <iterator>
+#include <span>
+#include <string_view>
 
 namespace edsc {
-namespace {
 
-constexpr auto note = Severity::note;
-constexpr auto error = Severity::error;
-constexpr auto warning = Severity::warning;
+enum class Severity : std::uint8_t { note, warning, error };
 
-constexpr std::array rules = {
+struct Rule {
+  std::string_view id;
+  Severity severity;  ///< what it usually is
+  std::string_view meaning;
+  std::string_view source;     ///< clause of a CiA document, or "edsc" where it is a rule of this compiler
+  Severity mildest = severity;  ///< what it is where the value can still be read, or does no harm
+
+  [[nodiscard]] constexpr bool allows(Severity other) const { return other == severity || other == mildest; }
+};
+
+namespace rule_table {
+
+inline constexpr auto note = Severity::note;
+inline constexpr auto error = Severity::error;
+inline constexpr auto warning = Severity::warning;
+
+inline constexpr Rule rows[] = {
     // The file and its lines.
     Rule{"unreadable-file", error, "the file cannot be read", "edsc"},
     Rule{"empty-file", error, "the file has no section", "CiA 306-1, 4.2"},
@@ -24,12 +42,12 @@ constexpr std::array rules = {
     Rule{"long-line", note, "a line of more than 255 characters", "CiA 306-1, 4.2"},
     Rule{"encoding", note, "characters beyond ASCII", "CiA 306-1, 4.2"},
     // [FileInfo], [DummyUsage] and [DeviceComissioning].
-    Rule{"file-info", warning, "no section [FileInfo]", "CiA 306-1, 4.4"},
-    Rule{"file-name", note, "FileName is not the name of the file", "CiA 306-1, 4.4"},
-    Rule{"file-version", warning, "FileVersion or FileRevision is not a number of 0..255", "CiA 306-1, 4.4"},
-    Rule{"eds-version", warning, "EDSVersion is not of the form 4.0", "CiA 306-1, 4.4"},
-    Rule{"file-date", warning, "a date is not of the form mm-dd-yyyy", "CiA 306-1, 4.4"},
-    Rule{"file-time", warning, "a time is not of the form hh:mmAM", "CiA 306-1, 4.4"},
+    Rule{"file-info", note, "no section [FileInfo]", "CiA 306-1, 4.4"},
+    Rule{"file-name", note, "FileName is missing, or is not the name of the file", "CiA 306-1, 4.4"},
+    Rule{"file-version", note, "FileVersion or FileRevision is not a number of 0..255", "CiA 306-1, 4.4"},
+    Rule{"eds-version", note, "EDSVersion is not of the form 4.0", "CiA 306-1, 4.4"},
+    Rule{"file-date", note, "a date is not of the form mm-dd-yyyy", "CiA 306-1, 4.4"},
+    Rule{"file-time", note, "a time is not of the form hh:mmAM", "CiA 306-1, 4.4"},
     Rule{"dummy-usage", warning, "DummyNNNN is not 0 or 1, or names no basic data type", "CiA 306-1, 4.6.4"},
     Rule{"section-spelling", note, "a section that is spelled otherwise in CiA 306", "CiA 306-1, 5.3"},
     Rule{"commissioned-node-id", note, "a DCF without NodeID", "CiA 306-1, 5.3"},
@@ -53,18 +71,18 @@ constexpr std::array rules = {
     Rule{"commissioning", warning, "a number of [DeviceComissioning] cannot be read", "CiA 306-1, 5.3"},
     Rule{"modules", warning, "NrOfEntries of [SupportedModules] differs from the modules", "CiA 306-1, 6"},
     Rule{"connected-module", error, "a module is connected that is not supported", "CiA 306-1, 6"},
-    Rule{"module-count", error, "Count of a module's extension is not n or 0;m", "CiA 306-1, 6"},
-    Rule{"module-object", error, "an object of a module is there already, or has no room", "CiA 306-1, 6"},
+    Rule{"module-count", error, "Count of a module's extension is not n or 0;m", "CiA 306-1, 6", warning},
+    Rule{"module-object", error, "an object of a module is there already, or has no room", "CiA 306-1, 6", warning},
     // XDD and XDC.
-    Rule{"xml-syntax", error, "the file is not well-formed XML", "XML 1.0"},
+    Rule{"xml-syntax", error, "the file is not well-formed XML", "XML 1.0", warning},
     Rule{"xml-profile", error, "the XML is no profile of a CANopen device", "CiA 311"},
-    Rule{"xml-element", warning, "an element or attribute that edsc does not read", "CiA 311"},
+    Rule{"xml-element", warning, "an element or attribute that edsc does not read", "CiA 311", note},
     // Sections and keys.
     Rule{"no-objects", error, "no section describes an object", "CiA 306-1, 4.6"},
     Rule{"duplicate-section", warning, "a section stands there twice: the first counts", "CiA 306-1, 4.2"},
     Rule{"duplicate-key", warning, "a key stands twice in a section: the first counts", "CiA 306-1, 4.2"},
     Rule{"unknown-section", warning, "a section that CiA 306 does not know", "CiA 306-1, 4"},
-    Rule{"section-name", error, "an object section's name is not an index or sub-index", "CiA 306-1, 4.6.2"},
+    Rule{"section-name", error, "an object section's name is not an index or sub-index", "CiA 306-1, 4.6.2", warning},
     Rule{"unknown-key", warning, "a key that CiA 306 does not know", "CiA 306-1, 4"},
     Rule{"key-spelling", warning, "a key that is spelled otherwise in CiA 306", "CiA 306-1, 4"},
     Rule{"number", error, "a number is wanted", "CiA 306-1, 4.2"},
@@ -80,7 +98,7 @@ constexpr std::array rules = {
     Rule{"obsolete-object", note, "an object of an earlier CiA 301 that is reserved now", "CiA 301, 7.5.2"},
     Rule{"reserved-index", warning, "an object at C000h..FFFFh", "CiA 301, 7.4.1"},
     // The objects of the communication profile.
-    Rule{"standard-object-type", warning, "an object of CiA 301 with another object code", "CiA 301, 7.5.2"},
+    Rule{"standard-object-type", note, "an object of CiA 301 with another object code", "CiA 301, 7.5.2"},
     Rule{"standard-data-type", warning, "an object of CiA 301 with another data type", "CiA 301, 7.5.2"},
     Rule{"standard-access", warning, "an object of CiA 301 with an access that it cannot have", "CiA 301, 7.5.2"},
     Rule{"standard-sub-index", warning, "an object of CiA 301 with a sub-index that it does not have", "CiA 301, 7.5.2"},
@@ -99,18 +117,19 @@ constexpr std::array rules = {
     Rule{"sub-index-0-type", warning, "sub-index 0 is not UNSIGNED8", "CiA 301, 7.4.4"},
     Rule{"sub-index-0-access", warning, "sub-index 0 can be written, or not be read", "CiA 301, 7.4.4"},
     Rule{"sub-index-0-value", warning, "sub-index 0 is not the highest sub-index", "CiA 301, 7.4.4"},
-    Rule{"compact-sub-obj", error, "CompactSubObj is not a number of 0..254", "CiA 306-1, 4.6.2.6"},
+    Rule{"compact-sub-obj", error, "CompactSubObj is not a number of 0..254", "CiA 306-1, 4.6.2.6", warning},
     Rule{"entry-count", warning, "NrOfEntries differs from the number of entries", "CiA 306-1, 4.6.2.6"},
     Rule{"compact-entry", warning, "an entry of [HHHHName], [HHHHValue] or [HHHHDenotation] is for no sub-index", "CiA 306-1, 4.6.2.6"},
     Rule{"compact-pdo", warning, "CompactPDO or the number of its PDOs is too large", "CiA 306-1, 4.5"},
     Rule{"object-links", warning, "ObjectLinks names no index", "CiA 306-1, 4.6.2"},
-    Rule{"sub-index-base", warning, "sub-indices that look decimal: 10h follows 9h", "CiA 306-1, 4.6.2"},
+    Rule{"sub-index-base", warning, "sub-indices that look decimal: 10h without Ah, 16h without 10h", "CiA 306-1, 4.6.2"},
+    Rule{"array-data-type", warning, "elements of an ARRAY have different data types", "CiA 301, 7.4.3"},
     Rule{"parameter-name", warning, "an object without a name", "CiA 306-1, 4.6.2"},
-    Rule{"data-type", error, "DataType is missing or unknown", "CiA 301, 7.4.7"},
+    Rule{"data-type", error, "DataType is missing or unknown", "CiA 301, 7.4.7", warning},
     Rule{"complex-data-type", warning, "an entry of a complex data type", "CiA 301, 7.4.7"},
     Rule{"type-definition", warning, "a data type of the sheet's own stands for no basic type", "CiA 301, 7.4.7"},
     Rule{"type-length", note, "a DEFTYPE of another length than its basic type", "CiA 301, 7.4.7"},
-    Rule{"access-type", error, "AccessType is missing or unknown", "CiA 306-1, 4.6.2"},
+    Rule{"access-type", error, "AccessType is missing or unknown", "CiA 306-1, 4.6.2", warning},
     Rule{"pdo-mapping", warning, "PDOMapping is not 0 or 1", "CiA 306-1, 4.6.2"},
     Rule{"mapping-of-no-length", warning, "PDOMapping=1 for a value of no fixed length", "CiA 301, 7.4.7"},
     Rule{"process-data-not-mappable", note, "rwr or rww without PDOMapping=1", "CiA 306-1, 4.6.2"},
@@ -120,9 +139,9 @@ constexpr std::array rules = {
     Rule{"device-info", warning, "a number of [DeviceInfo] cannot be read", "CiA 306-1, 4.5"},
     // Values.
     Rule{"number-format", error, "a value is not of its type", "CiA 306-1, 4.6.2"},
-    Rule{"number-range", error, "a value does not fit into its type", "CiA 306-1, 4.6.2"},
+    Rule{"number-range", error, "a value does not fit into its type", "CiA 306-1, 4.6.2", warning},
     Rule{"number-spelling", warning, "an unusual spelling of a number", "CiA 306-1, 4.2"},
-    Rule{"node-id-formula", error, "not a formula of $NODEID and a number", "CiA 306-1, 4.6.2.3"},
+    Rule{"node-id-formula", error, "not a formula of $NODEID and a number", "CiA 306-1, 4.6.2.3", warning},
     Rule{"octet-string", warning, "an OCTET_STRING that is not hexadecimal", "CiA 306-1, 4.6.2"},
     Rule{"string-quotes", warning, "a text in quotation marks", "CiA 306-1, 4.6.2"},
     Rule{"domain-value", warning, "a DOMAIN with a value", "CiA 306-1, 4.6.2"},
@@ -134,7 +153,7 @@ constexpr std::array rules = {
     Rule{"const-without-value", note, "a constant without DefaultValue", "CiA 306-1, 4.6.2"},
     // Names.
     Rule{"name-length", note, "a name of more than 241 characters", "CiA 306-1, 4.6.2"},
-    Rule{"name-twice", warning, "two names are the same in C++: the second gets a suffix", "edsc"},
+    Rule{"name-twice", note, "two names are the same in C++: the second gets a suffix", "edsc"},
     Rule{"name-empty", warning, "a name without letters and digits", "edsc"},
     Rule{"name-reserved", note, "a name is a word of C++ or of the generated code", "edsc"},
     Rule{"name-digit", note, "a name begins with a digit", "edsc"},
@@ -142,20 +161,20 @@ constexpr std::array rules = {
     Rule{"cob-id-missing", note, "a COB-ID without default, or 0", "CiA 301, 7.3.5"},
     Rule{"cob-id-frame", error, "more than 11 bits in an 11-bit CAN-ID", "CiA 301, 7.5.2.35"},
     Rule{"cob-id-restricted", error, "a restricted CAN-ID", "CiA 301, 7.3.5"},
-    Rule{"cob-id-node-id", warning, "a CAN-ID of one node in a sheet for any node", "CiA 301, 7.3.5"},
-    Rule{"cob-id-twice", warning, "two services with the same CAN-ID", "CiA 301, 7.3.5"},
+    Rule{"cob-id-node-id", warning, "a CAN-ID of one node in a sheet for any node, or the node-ID is added twice", "CiA 301, 7.3.5"},
+    Rule{"cob-id-twice", warning, "services with the same CAN-ID", "CiA 301, 7.3.5"},
     Rule{"default-sdo-cob-id", warning, "the default SDO has other CAN-IDs", "CiA 301, 7.5.2.33"},
     // PDOs.
     Rule{"pdo-pair", warning, "a PDO lacks one of its two parameters", "CiA 301, 7.5.2.35"},
-    Rule{"pdo-object", error, "a PDO maps what the device does not have", "CiA 301, 7.5.2.36"},
-    Rule{"pdo-mappable", error, "a PDO maps an object that cannot be mapped", "CiA 301, 7.5.2.36"},
-    Rule{"pdo-direction", error, "a PDO maps an object of the other direction", "CiA 301, 7.5.2.36"},
-    Rule{"pdo-length", error, "a PDO maps an object with another length", "CiA 301, 7.5.2.36"},
+    Rule{"pdo-object", error, "a PDO maps what the device does not have", "CiA 301, 7.5.2.36", warning},
+    Rule{"pdo-mappable", error, "a PDO maps an object that cannot be mapped", "CiA 301, 7.5.2.36", warning},
+    Rule{"pdo-direction", error, "a PDO maps an object of the other direction", "CiA 301, 7.5.2.36", warning},
+    Rule{"pdo-length", error, "a PDO maps an object with another length", "CiA 301, 7.5.2.36", warning},
     Rule{"pdo-boolean-byte", warning, "a PDO maps a BOOLEAN as a byte", "CiA 301, 7.5.2.36"},
-    Rule{"pdo-variable-length", error, "a PDO maps a value of no fixed length", "CiA 301, 7.5.2.36"},
-    Rule{"pdo-dummy", error, "a PDO maps a dummy that is not allowed", "CiA 301, 7.4.7.1"},
-    Rule{"pdo-size", error, "a PDO is longer than 64 bits", "CiA 301, 7.5.2.36"},
-    Rule{"pdo-entries", error, "a PDO maps more than 64 objects", "CiA 301, 7.5.2.36"},
+    Rule{"pdo-variable-length", error, "a PDO maps a value of no fixed length", "CiA 301, 7.5.2.36", warning},
+    Rule{"pdo-dummy", error, "a PDO maps a dummy that is not allowed", "CiA 301, 7.4.7.1", warning},
+    Rule{"pdo-size", error, "a PDO is longer than 64 bits", "CiA 301, 7.5.2.36", warning},
+    Rule{"pdo-entries", error, "a PDO maps more than 64 objects", "CiA 301, 7.5.2.36", warning},
     Rule{"pdo-mapping-count", warning, "a PDO maps more objects than its mapping parameter has sub-indices", "CiA 301, 7.5.2.36"},
     Rule{"pdo-mapping-gap", warning, "an entry within a PDO's mapping maps nothing", "CiA 301, 7.5.2.36"},
     Rule{"pdo-object-twice", warning, "a PDO maps an object twice", "CiA 301, 7.5.2.36"},
@@ -166,6 +185,7 @@ constexpr std::array rules = {
     Rule{"pdo-transmission-type", warning, "a reserved transmission type", "CiA 301, 7.5.2.37"},
     Rule{"pdo-sync", warning, "a synchronous PDO, but no 1005h", "CiA 301, 7.5.2.5"},
     Rule{"pdo-remote", warning, "a PDO for remote frames that allows none", "CiA 301, 7.5.2.37"},
+    Rule{"pdo-inhibit-time", warning, "the inhibit time is longer than the event timer", "CiA 301, 7.5.2.37"},
     Rule{"pdo-time-unused", note, "an inhibit time or event timer that the transmission type does not use", "CiA 301, 7.5.2.37"},
     Rule{"pdo-compatibility-entry", note, "sub-index 4 of a PDO communication parameter", "CiA 301, 7.5.2.37"},
     Rule{"pdo-sync-start", warning, "a SYNC start value without effect", "CiA 301, 7.5.2.37"},
@@ -189,13 +209,48 @@ constexpr std::array rules = {
     Rule{"dictionary-size", error, "the dictionary is too large", "edsc"},
 };
 
-}  // namespace
+}  // namespace rule_table
 
-std::span<const Rule> all_rules() { return rules; }
+[[nodiscard]] constexpr std::span<const Rule> all_rules() { return rule_table::rows; }
 
-const Rule* find_rule(std::string_view id) {
-  const auto at = std::ranges::find(rules, id, &Rule::id);
-  return at == rules.end() ? nullptr : &*at;
+/// Null when there is no such rule.
+[[nodiscard]] constexpr const Rule* find_rule(std::string_view id) {
+  const auto* const at = std::ranges::find(rule_table::rows, id, &Rule::id);
+  return at == std::end(rule_table::rows) ? nullptr : at;
 }
+
+namespace rule_table {
+/// What the compiler names where an id is not a row of the table, or where its row does not allow the severity.
+void no_such_rule();
+void severity_is_not_in_the_row_of_the_rule();
+
+template <Severity severity, Severity... others>
+inline constexpr bool is_one_of = ((severity == others) || ...);
+}  // namespace rule_table
+
+/// The id of a row whose findings may have each of these severities.
+template <Severity... severities>
+class RuleId {
+ public:
+  consteval RuleId(const char* id) : row_{find_rule(id)} {
+    if (row_ == nullptr) rule_table::no_such_rule();
+    if (!(row_->allows(severities) && ...)) rule_table::severity_is_not_in_the_row_of_the_rule();
+  }
+  /// A rule of several severities is one of each of them.
+  template <Severity... others>
+    requires(sizeof...(others) > sizeof...(severities) && (rule_table::is_one_of<severities, others...> && ...))
+  constexpr RuleId(const RuleId<others...>& other) : row_{&other.row()} {}
+
+  [[nodiscard]] constexpr const Rule& row() const { return *row_; }
+  [[nodiscard]] constexpr std::string_view id() const { return row_->id; }
+
+ private:
+  const Rule* row_;
+};
+
+using ErrorRule = RuleId<Severity::error>;
+using WarningRule = RuleId<Severity::warning>;
+using NoteRule = RuleId<Severity::note>;
+using AnyRule = RuleId<>;
 
 }  // namespace edsc
