@@ -1,8 +1,12 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <canopen/cob_id_check.hpp>
-#include <unordered_map>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "device/cob_id_parameter.hpp"
@@ -74,56 +78,127 @@ std::string hint(const CobIdUse& use) {
   return fmt::format("; $NODEID+0x{:X} adds the node-ID", use.cob_id.value());
 }
 
+/// `CAN-ID 6E0h for node-ID 96`, and the other node-IDs with a restricted CAN-ID.
+struct RestrictedNodeIds {
+  std::uint32_t first = 0, last = 0, count = 0;
+
+  void add(std::uint32_t node_id) {
+    first = count == 0 ? node_id : first;
+    last = node_id;
+    ++count;
+  }
+
+  [[nodiscard]] std::string words() const {
+    if (count == last_node_id) return " for each node-ID";
+    if (count == 1) return fmt::format(" for node-ID {}", first);
+    if (count == last - first + 1) return fmt::format(" for node-IDs {} to {}", first, last);
+    return fmt::format(" for {} node-IDs from {} to {}", count, first, last);
+  }
+};
+
 void check_restricted(const RuleContext& context, const CobIdUse& use) {
   if (!use.valid() || use.cob_id.extended() || use.entry->index == default_sdo) return;
-  const std::uint32_t first = use.plus_node_id ? 1 : 0;
-  const std::uint32_t last = use.plus_node_id ? last_node_id : 0;
-  for (std::uint32_t node_id = first; node_id <= last; ++node_id) {
-    const std::uint32_t can_id = use.of(node_id).can_id();
-    const char* reason = restriction_of(use, can_id);
-    if (reason == nullptr) continue;
-    context.report("cob-id-restricted", use.place(),
-                   fmt::format("{} is CAN-ID {:03X}h{}, which is restricted ({}){}", named(*use.entry), can_id,
-                               use.plus_node_id ? fmt::format(" for node-ID {}", node_id) : "", reason, hint(use)));
+  if (!use.plus_node_id) {
+    const std::uint32_t can_id = use.cob_id.can_id();
+    if (const char* reason = restriction_of(use, can_id)) {
+      context.report("cob-id-restricted", use.place(),
+                     fmt::format("{} is CAN-ID {:03X}h, which is restricted ({}){}", named(*use.entry), can_id, reason,
+                                 hint(use)));
+    }
     return;
   }
+  RestrictedNodeIds node_ids;
+  for (std::uint32_t node_id = 1; node_id <= last_node_id; ++node_id) {
+    if (restriction_of(use, use.of(node_id).can_id()) != nullptr) node_ids.add(node_id);
+  }
+  if (node_ids.count == 0) return;
+  const std::uint32_t can_id = use.of(node_ids.first).can_id();
+  context.report("cob-id-restricted", use.place(),
+                 fmt::format("{} is restricted{} (CAN-ID {:03X}h of node {}: {}){}", named(*use.entry),
+                             node_ids.words(), can_id, node_ids.first, restriction_of(use, can_id),
+                             node_ids.count < last_node_id ? "; a node-ID that is given is checked alone" : ""));
+}
+
+/// The node-ID that a formula adds; nothing where the file says a number.
+std::optional<std::uint32_t> added_node_id(const RuleContext& context, const CobIdUse& use) {
+  if (use.plus_node_id) return 0;
+  const EntryDescription* description = context.describe(*use.entry);
+  if (description == nullptr || !context.device.node_id) return std::nullopt;
+  const Field& configured = description->parameter_value;
+  const Field& field = context.sheet.is_dcf && !configured.empty() ? configured : description->default_value;
+  if (field.text.find('$') == std::string_view::npos) return std::nullopt;
+  return *context.device.node_id;
+}
+
+/// $NODEID+0x181 for TPDO 1 is the COB-ID of node 1 with the node-ID of the device on top.
+void check_added_twice(const RuleContext& context, const CobIdUse& use, std::uint32_t added) {
+  const std::uint32_t base = use.cob_id.value() - added;
+  const std::uint32_t can_id = CobId{base}.can_id();
+  const std::uint32_t function_code = use.parameter->predefined_of(use.entry->index);
+  if (can_id <= function_code || can_id > function_code + last_node_id) return;
+  const std::uint32_t extra = can_id - function_code;
+  context.report(
+      "cob-id-node-id", use.place(),
+      fmt::format("{} is $NODEID+0x{:X}, which has a node-ID in it already: {:03X}h for node 1, the CAN-ID of "
+                  "node {}; $NODEID+0x{:X} adds it once",
+                  named(*use.entry), base, can_id + 1, extra + 1, base - extra),
+      {}, "added twice");
 }
 
 /// In a sheet for any node-ID, 181h for TPDO 1 is meant as 180h + node-ID.
 void check_node_id(const RuleContext& context, const CobIdUse& use) {
-  if (context.sheet.is_dcf || context.device.node_id || use.plus_node_id || use.cob_id.extended()) return;
-  if (!use.parameter->plus_node_id) return;
+  if (!use.parameter->plus_node_id || use.cob_id.extended() || !use.valid()) return;
+  if (use.entry->index == default_sdo) return;  // CiA 301 fixes it
+  if (const auto added = added_node_id(context, use)) return check_added_twice(context, use, *added);
+  if (context.sheet.is_dcf || context.device.node_id) return;
   const std::uint32_t can_id = use.cob_id.can_id();
   const std::uint32_t function_code = use.parameter->predefined_of(use.entry->index);
   if (can_id <= function_code || can_id > function_code + last_node_id) return;
-  context.report(
-      "cob-id-node-id", use.place(),
-      fmt::format("{} is {:03X}h, the CAN-ID of node {} alone; $NODEID+0x{:X} is that of any node", named(*use.entry),
-                  can_id, can_id - function_code, function_code + (use.cob_id.value() & 0xE000'0000U)));
+  const std::uint32_t node_id = can_id - function_code;
+  context.report("cob-id-node-id", use.place(),
+                 fmt::format("{} is {:03X}h, the CAN-ID of node {} alone; $NODEID+0x{:X} is that of any node",
+                             named(*use.entry), can_id, node_id, function_code + (use.cob_id.value() & 0xE000'0000U)),
+                 {}, fmt::format("node {}", node_id));
 }
 
-/// The node-ID for which two COB-IDs are the same; 0 when there is none, 255 when they always are.
-std::uint32_t common_node_id(const CobIdUse& a, const CobIdUse& b) {
-  if (a.cob_id.extended() != b.cob_id.extended()) return 0;
-  const std::uint32_t of_a = a.cob_id.can_id();
-  const std::uint32_t of_b = b.cob_id.can_id();
-  if (a.plus_node_id == b.plus_node_id) return of_a == of_b ? 255 : 0;
-  const std::uint32_t node_id = a.plus_node_id ? of_b - of_a : of_a - of_b;
+/// The node-ID for which a formula is this CAN-ID; 0 when there is none.
+std::uint32_t node_id_of(const CobIdUse& formula, const CobIdUse& plain) {
+  if (formula.cob_id.extended() != plain.cob_id.extended()) return 0;
+  const std::uint32_t node_id = plain.cob_id.can_id() - formula.cob_id.can_id();
   return node_id >= 1 && node_id <= last_node_id ? node_id : 0;
 }
 
-/// Several RPDOs may take the same frame.
-bool may_share(const CobIdUse& a, const CobIdUse& b) {
-  return a.service() == CobIdService::rpdo && b.service() == CobIdService::rpdo;
-}
+/// The services that have one CAN-ID, in the order of their objects.
+struct Users {
+  std::vector<const CobIdUse*> all;
+  std::vector<std::uint32_t> node_ids;  ///< for which it is one; none where it always is
 
-void check_pair(const RuleContext& context, const CobIdUse& first, const CobIdUse& second) {
-  const std::uint32_t node_id = common_node_id(first, second);
-  if (node_id == 0 || may_share(first, second)) return;
-  const std::string when = node_id > last_node_id ? "" : fmt::format(" for node-ID {}", node_id);
-  context.report("cob-id-twice", second.place(),
-                 fmt::format("{} and {} have the same CAN-ID{}", named(*first.entry), named(*second.entry), when),
-                 {{first.place(), "the first one"}});
+  /// Several RPDOs may take the same frame.
+  [[nodiscard]] bool collide() const {
+    const auto is_rpdo = [](const CobIdUse* use) { return use->service() == CobIdService::rpdo; };
+    return all.size() > 1 && !std::ranges::all_of(all, is_rpdo);
+  }
+
+  [[nodiscard]] std::string when() const {
+    if (node_ids.empty()) return "";
+    return fmt::format(" for node-ID{} {}", node_ids.size() == 1 ? "" : "s", fmt::join(node_ids, ", "));
+  }
+};
+
+void report_users(const RuleContext& context, Users users) {
+  if (!users.collide()) return;
+  std::ranges::sort(users.all, {}, [](const CobIdUse* use) {
+    return EntryKey{use->entry->index, use->entry->sub_index};
+  });
+  std::vector<Note> notes;
+  std::string names = named(*users.all.front()->entry);
+  for (std::size_t i = 0; i < users.all.size(); ++i) {
+    const CobIdUse& use = *users.all[i];
+    if (i > 0) names += (i + 1 == users.all.size() ? " and " : ", ") + named(*use.entry);
+    if (i != 1) notes.push_back({use.place(), i == 0 ? "the first one" : "a further one"});
+  }
+  const std::string message = fmt::format("{} have the same CAN-ID{}", names, users.when());
+  context.report("cob-id-twice", users.all[1]->place(), message, std::move(notes));
 }
 
 /// The CAN-IDs of other nodes, whatever those are.
@@ -133,26 +208,31 @@ bool is_of_another_node(const CobIdUse& use) {
 
 /// Each frame has one meaning.
 void check_duplicates(const RuleContext& context, const std::vector<CobIdUse>& uses) {
-  std::unordered_map<std::uint32_t, const CobIdUse*> by_formula;
-  std::vector<const CobIdUse*> formulas;
-  std::vector<const CobIdUse*> plain;
+  std::map<std::uint32_t, Users> formulas, plain;  // by CAN-ID and its length
   for (const CobIdUse& use : uses) {
     if (!use.valid() || is_of_another_node(use)) continue;
-    if (!use.plus_node_id) {
-      plain.push_back(&use);
-      continue;
-    }
-    const auto [first, is_new] = by_formula.try_emplace(use.cob_id.value() & 0x3FFF'FFFFU, &use);
-    if (is_new) {
-      formulas.push_back(&use);
-    } else {
-      check_pair(context, *first->second, use);
-    }
+    (use.plus_node_id ? formulas : plain)[use.cob_id.value() & CobId::identifier].all.push_back(&use);
   }
-  for (std::size_t i = 0; i < plain.size(); ++i) {
-    for (const CobIdUse* formula : formulas) check_pair(context, *formula, *plain[i]);
-    for (std::size_t k = 0; k < i; ++k) check_pair(context, *plain[k], *plain[i]);
+  for (const auto& [can_id, users] : formulas) report_users(context, users);
+  for (auto& [can_id, users] : plain) {
+    const CobIdUse& number = *users.all.front();
+    for (const auto& [base, of_formula] : formulas) {
+      const std::uint32_t node_id = node_id_of(*of_formula.all.front(), number);
+      if (node_id == 0) continue;
+      users.all.insert(users.all.end(), of_formula.all.begin(), of_formula.all.end());
+      users.node_ids.push_back(node_id);
+    }
+    report_users(context, users);
   }
+}
+
+/// A frame with the CAN-ID of SYNC is a SYNC for all others, also where the device itself knows none.
+void check_sync_can_id(const RuleContext& context, const CobIdUse& use) {
+  const bool is_sync = !use.plus_node_id && use.cob_id.can_id() == canopen::function_code::sync;
+  if (use.service() != CobIdService::tpdo || !use.valid() || use.cob_id.extended() || !is_sync) return;
+  if (context.device.find(0x1005) != nullptr) return;  // then it is one of two with the same CAN-ID
+  context.report("cob-id-twice", use.place(),
+                 fmt::format("{} is CAN-ID 080h, which is SYNC for all other nodes{}", named(*use.entry), hint(use)));
 }
 
 }  // namespace
@@ -163,6 +243,7 @@ void check_cob_ids(const RuleContext& context) {
     if (!check_frame(context, use)) continue;
     check_restricted(context, use);
     check_node_id(context, use);
+    check_sync_can_id(context, use);
   }
   check_duplicates(context, uses);
 }

@@ -1,7 +1,9 @@
 #include <canopen/cob_id_check.hpp>
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "device_from_text.hpp"
 #include "render/view.hpp"
@@ -66,6 +68,53 @@ TEST(CobIdRules, KnowTheNodeId) {
   DeviceFromText text(sheet_with_cob_id("1800", 1, "$NODEID+0x680"), {}, {"", std::uint8_t{5}});
   check_device(text.device, text.sheet, text.options, text.diagnostics);
   EXPECT_TRUE(findings(text.diagnostics, "cob-id-restricted").empty()) << "685h";
+}
+
+/// CiA 301, 7.3.5: 6E0h to 6FFh are reserved.
+TEST(CobIdRules, SayForWhichNodeIdsAFormulaIsRestricted) {
+  DeviceFromText text(sheet_with_cob_id("1800", 1, "$NODEID+0x680"));
+  check_device(text.device, text.sheet, text.options, text.diagnostics);
+  EXPECT_NE(text.finding("cob-id-restricted").message.find("for node-IDs 96 to 127 (CAN-ID 6E0h"), std::string::npos)
+      << text.finding("cob-id-restricted").message;
+}
+
+/// The findings of `rule` in a sheet with this COB-ID of TPDO 1.
+std::vector<Finding> found_in_tpdo_1(const std::string& value, std::string_view rule,
+                                     std::optional<std::uint8_t> node_id = std::nullopt, const std::string& more = "") {
+  DeviceFromText text(sheet_with_cob_id("1800", 1, value) + more, {}, {"", node_id});
+  check_device(text.device, text.sheet, text.options, text.diagnostics);
+  return findings(text.diagnostics, rule);
+}
+
+TEST(CobIdRules, FindANodeIdThatIsAddedTwice) {
+  for (const std::string value : {"$NODEID+0x181", "$NODEID+0x40000181", "$NODEID+0x1FF"}) {
+    EXPECT_EQ(found_in_tpdo_1(value, "cob-id-node-id").size(), 1U) << value;
+    EXPECT_EQ(found_in_tpdo_1(value, "cob-id-node-id", std::uint8_t{5}).size(), 1U) << value << " of node 5";
+  }
+  for (const std::string value : {"$NODEID+0x180", "$NODEID+0x40000180", "$NODEID+0x280", "$NODEID+0x80000181"}) {
+    EXPECT_TRUE(found_in_tpdo_1(value, "cob-id-node-id").empty()) << value;
+    EXPECT_TRUE(found_in_tpdo_1(value, "cob-id-node-id", std::uint8_t{5}).empty()) << value << " of node 5";
+  }
+}
+
+TEST(CobIdRules, RefuseToSendOnTheCanIdOfSync) {
+  EXPECT_EQ(found_in_tpdo_1("0x80", "cob-id-twice").size(), 1U);
+  EXPECT_EQ(found_in_tpdo_1("0x80", "cob-id-twice", std::nullopt, var("1005", "SYNC", "7", "rw", "DefaultValue=0x80\n")).size(), 1U);
+  EXPECT_TRUE(found_in_tpdo_1("0x80000080", "cob-id-twice").empty()) << "off";
+  EXPECT_TRUE(found_in_tpdo_1("$NODEID+0x80", "cob-id-twice").empty()) << "that of EMCY, which the device does not have";
+}
+
+TEST(CobIdRules, ReportACanIdOfManyServicesOnce) {
+  std::string sheet;
+  for (const std::string_view index : {"1800", "1801", "1802", "1803"}) sheet += sheet_with_cob_id(index, 1, "0x280");
+  DeviceFromText text(sheet + sheet_with_cob_id("1804", 1, "$NODEID+0x27B"));
+  check_device(text.device, text.sheet, text.options, text.diagnostics);
+  const Diagnostic& finding = text.finding("cob-id-twice");
+  EXPECT_EQ(findings(text.diagnostics, "cob-id-twice").size(), 1U);
+  EXPECT_EQ(finding.message,
+            "1800h:01 \"COB-ID\", 1801h:01 \"COB-ID\", 1802h:01 \"COB-ID\", 1803h:01 \"COB-ID\" and 1804h:01 "
+            "\"COB-ID\" have the same CAN-ID for node-ID 5");
+  EXPECT_EQ(finding.notes.size(), 4U);
 }
 
 TEST(CobIdRules, SayWhatIsMeantByAFunctionCodeAlone) {
