@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "device/object_type_name.hpp"
 #include "device/resolve_information.hpp"
 #include "device/value.hpp"
 #include "diagnostics/quote.hpp"
@@ -77,6 +78,9 @@ void EntryResolver::check_sub_object_type(const EntryDescription& description) {
   if (type == static_cast<std::uint64_t>(ObjectType::var) || type == static_cast<std::uint64_t>(ObjectType::domain)) {
     return;
   }
+  if (const auto named = object_type_named(text); named == ObjectType::var || named == ObjectType::domain) {
+    return report_object_type_name(*named, description.object_type, diagnostics_);
+  }
   diagnostics_.warning("object-type", description.object_type.position,
                        "a sub-object is a VAR or a DOMAIN: taken for one");
 }
@@ -96,12 +100,14 @@ ValueType EntryResolver::data_type(const EntryDescription& description, const En
       place.in_object_with_sub_indices && member.row != nullptr) {
     diagnostics_.warning("complex-data-type", field.position,
                          fmt::format("DataType 0x{:04X} is a RECORD's, not a value's; its sub-index {} is {}", *code,
-                                     place.sub_index, member.row->name));
+                                     place.sub_index, member.row->name),
+                         {}, fmt::format("read {}", *code));
     return member;
   }
   if (types_.is_complex(*code)) {
     diagnostics_.warning("complex-data-type", field.position,
-                         fmt::format("DataType 0x{:04X} is a RECORD's, not a value's; the entry is left out", *code));
+                         fmt::format("DataType 0x{:04X} is a RECORD's, not a value's; the entry is left out", *code),
+                         {}, fmt::format("left out {}", *code));
   } else {
     diagnostics_.error(
         "data-type", field.position,
@@ -127,7 +133,8 @@ ValueType EntryResolver::missing_data_type(const EntryDescription& description, 
     if (!fits) continue;
     const ValueType type = types_.find(static_cast<std::uint64_t>(row.type));
     diagnostics_.warning("data-type", description.position,
-                         fmt::format("{} without DataType: taken for an {}", row.what, type.row->name));
+                         fmt::format("{} without DataType: taken for an {}", row.what, type.row->name), {},
+                         std::string{row.what});
     return type;
   }
   diagnostics_.error("data-type", description.position, "no DataType");
@@ -141,7 +148,7 @@ Access EntryResolver::access(const EntryDescription& description) {
     if (equal_ignoring_case(text, row.name)) return row.access;
   }
   if (!field.present || text.empty()) {
-    diagnostics_.warning("access-type", description.position, "no AccessType: taken for rw");
+    diagnostics_.warning("access-type", description.position, "no AccessType: taken for rw", {}, "missing");
   } else {
     diagnostics_.error("access-type", field.position,
                        fmt::format("AccessType {} is none of ro, wo, rw, rwr, rww, const", quote(text)));
@@ -167,10 +174,15 @@ void EntryResolver::resolve_default(const EntryDescription& description, Entry& 
   const bool is_configured = configured.present && !configured.empty();
   if (is_configured && !is_dcf_) {
     diagnostics_.warning("parameter-value", configured.position,
-                         "ParameterValue belongs into a DCF; in an EDS the DefaultValue counts");
+                         "ParameterValue belongs into a DCF; in an EDS the DefaultValue counts", {}, "EDS");
   }
   entry.default_value = parse_value(is_configured && is_dcf_ ? configured : description.default_value, *entry.type,
                                     node_id_, diagnostics_);
+  const std::size_t length = entry.default_value ? entry.default_value->bytes.size() : 0;
+  if (entry.octets == 0 || length <= entry.octets) return;
+  diagnostics_.error("number-range", entry.default_value->position,
+                     fmt::format("the value has {} bytes, its data type {}", length, entry.octets));
+  entry.default_value.reset();
 }
 
 void EntryResolver::resolve_limits(const EntryDescription& description, const ValueType& type, Entry& entry) {
@@ -201,7 +213,7 @@ void EntryResolver::resolve_files(const EntryDescription& description, Entry& en
   if (entry.type->kind == DataClass::domain) return;
   for (const Field* field : {&description.upload_file, &description.download_file}) {
     if (field->present && !field->empty()) {
-      diagnostics_.warning("domain-value", field->position, "only the value of a DOMAIN stands in a file");
+      diagnostics_.warning("domain-value", field->position, "only the value of a DOMAIN stands in a file", {}, "file");
     }
   }
 }

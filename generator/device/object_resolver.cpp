@@ -10,6 +10,7 @@
 
 #include "device/compact_sub_objects.hpp"
 #include "device/index_range.hpp"
+#include "device/object_type_name.hpp"
 #include "diagnostics/quote.hpp"
 #include "eds/number.hpp"
 
@@ -106,7 +107,9 @@ ObjectType ObjectResolver::object_type(const ObjectDescription& description) {
     }
     return fallback;
   }
-  const auto code = parse_unsigned(text);
+  const auto named = object_type_named(text);
+  if (named) report_object_type_name(*named, field, diagnostics_);
+  const auto code = named ? static_cast<std::uint64_t>(*named) : parse_unsigned(text);
   const auto known =
       std::ranges::find_if(object_types, [&](ObjectType type) { return code == static_cast<std::uint64_t>(type); });
   if (known == object_types.end()) {
@@ -189,13 +192,23 @@ void ObjectResolver::check_sub_number(const ObjectDescription& description) {
                                    strip_inline_comment(field.text), description.sub_objects.size()));
 }
 
-/// Sub-indices are hexadecimal (CiA 306-1, 4.6.2). Where 9 is followed by 10h, someone may have counted in decimal.
+/// Sub-indices are hexadecimal (CiA 306-1, 4.6.2). Where a sub-index is missing, but there is the one whose digits are
+/// its decimal number, someone may have counted in decimal: 10h in place of Ah, 16h in place of 10h.
 void ObjectResolver::check_sub_indices(const ObjectDescription& description) {
-  for (std::size_t i = 1; i < description.sub_objects.size(); ++i) {
-    const SubObjectDescription& sub = description.sub_objects[i];
-    if (sub.sub_index != 0x10 || description.sub_objects[i - 1].sub_index != 0x09) continue;
-    diagnostics_.warning("sub-index-base", sub.position,
-                         "sub-indices are hexadecimal: this is 10h, sixteen; behind 9h, is ten meant?");
+  struct Slip {
+    std::uint8_t before, meant, written;
+  };
+  constexpr Slip slips[] = {{0x09, 0x0A, 0x10}, {0x0F, 0x10, 0x16}};
+  const auto find = [&](std::uint8_t sub_index) {
+    return std::ranges::find(description.sub_objects, sub_index, &SubObjectDescription::sub_index);
+  };
+  const auto none = description.sub_objects.end();
+  for (const Slip& slip : slips) {
+    const auto written = find(slip.written);
+    if (written == none || find(slip.before) == none || find(slip.meant) != none) continue;
+    diagnostics_.warning("sub-index-base", written->position,
+                         fmt::format("sub-indices are hexadecimal: this is {:X}h; {:X}h is missing, is that meant?",
+                                     slip.written, slip.meant));
   }
 }
 

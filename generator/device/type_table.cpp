@@ -114,7 +114,11 @@ class DefinitionReader {
     const TypeReference basic = data_type(object, most_steps);
     definition.type = with_length(basic, stated_length(object));
     if (definition.type.row == nullptr) return report(object.data_type, "is not the index of a data type");
-    if (definition.type.row != basic.row) return report_length(object, definition.type);
+    if (definition.type.row != basic.row) {
+      // A basic type that the sheet describes as well is the one of CiA 301, whatever stands here.
+      if (basic_type(std::uint64_t{object.index}) == nullptr) report_length(object, definition.type);
+      return;
+    }
     if (definition.type.row->bits == 0) return;  // a string or DOMAIN
     definition.low_limit = limit(object.low_limit, Limit::low, *definition.type.row);
     definition.high_limit = limit(object.high_limit, Limit::high, *definition.type.row);

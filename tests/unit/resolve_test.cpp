@@ -104,6 +104,28 @@ TEST(Resolve, ReadsTheLengthThatADeftypeStates) {
   }
 }
 
+TEST(Resolve, KeepsABasicTypeThatASheetDescribesAsDeftype) {
+  const DeviceFromText text(deftype("0007", "7", "1") + var("2000", "Value", "7"));
+  EXPECT_EQ(text.entry(0x2000).type->type, DataType::unsigned32);
+  EXPECT_EQ(rules_of(text.diagnostics), Rules{});
+}
+
+TEST(Resolve, RefusesADefaultThatIsLongerThanItsDeftype) {
+  const std::string type = deftype("0042", "9", "32");
+  const DeviceFromText fits(type + var("2000", "Label", "0x42", "rw", "DefaultValue=four\n"));
+  EXPECT_EQ(rules_of(fits.diagnostics), Rules{});
+  const DeviceFromText text(type + var("2000", "Label", "0x42", "rw", "DefaultValue=five5\n"));
+  EXPECT_EQ(text.finding("number-range").severity, Severity::error);
+  EXPECT_EQ(text.line_of("number-range"), "DefaultValue=five5");
+  EXPECT_FALSE(text.entry(0x2000).default_value);
+}
+
+TEST(Resolve, TakesTheNameOfAnObjectTypeForItsNumber) {
+  const DeviceFromText text("[2000]\nParameterName=Value\nObjectType=var\nDataType=5\nAccessType=rw\n");
+  EXPECT_EQ(text.device.find(0x2000)->type, ObjectType::var);
+  EXPECT_EQ(text.finding("object-type").message, "ObjectType is a number; that of VAR is 0x7");
+}
+
 TEST(Resolve, FollowsADeftypeToOneThatStatesALength) {
   const DeviceFromText text(deftype("0042", "7", "2048") + deftype("0043", "0x42", "0") + var("2000", "Image", "0x43"));
   EXPECT_EQ(text.entry(0x2000).type->type, DataType::octet_string);
