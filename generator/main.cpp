@@ -2,8 +2,52 @@
 #include <fmt/format.h>
 
 #include <exception>
+#include <string>
+#include <vector>
 
 #include "commands/commands.hpp"
+#include "diagnostics/excerpt.hpp"
+#include "diagnostics/quote.hpp"
+#include "text/suggestion.hpp"
+
+namespace {
+
+/// A command and the group that the help and the manual page list it in.
+struct CommandRow {
+  const char* group;
+  void (*add)(CLI::App& app, int& exit_code);
+};
+
+constexpr CommandRow commands[] = {
+    {"EDS files", edsc::add_generate_command}, {"EDS files", edsc::add_check_command},
+    {"EDS files", edsc::add_dump_command},     {"EDS files", edsc::add_format_command},
+    {"EDS files", edsc::add_diff_command},     {"Bus", edsc::add_scan_command},
+    {"Bus", edsc::add_read_command},           {"Bus", edsc::add_write_command},
+    {"Bus", edsc::add_configure_command},      {"Bus", edsc::add_monitor_command},
+    {"Bus", edsc::add_nmt_command},            {"Bus", edsc::add_lss_command},
+    {"Bus", edsc::add_bus_command},            {"Logs", edsc::add_decode_command},
+    {"Shell", edsc::add_completion_command},
+};
+
+std::vector<const CLI::App*> commands_of(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App* one) { return !one->get_name().empty(); });
+}
+
+/// The first word in the place of a command that names none, reported; false when there is no such word.
+bool report_unknown_command(const CLI::App& app) {
+  for (const CLI::App* const chosen : app.get_subcommands()) {
+    if (report_unknown_command(*chosen)) return true;
+  }
+  std::vector<std::string> names;
+  for (const CLI::App* const command : commands_of(app)) names.push_back(command->get_name());
+  const auto words = app.remaining(false);
+  if (names.empty() || words.empty() || words.front().starts_with('-')) return false;
+  fmt::print(stderr, "{}: unknown command {}{}\n", app.get_parent() == nullptr ? "edsc" : "edsc " + app.get_name(),
+             edsc::printable(edsc::quote(words.front())), edsc::did_you_mean(words.front(), names));
+  return true;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{"edsc compiles CANopen Electronic Data Sheets (EDS, DCF) to checked C++20."};
@@ -12,24 +56,14 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer("'edsc COMMAND --help' shows a command's options and examples.");
   int exit_code = edsc::exit_fine;
-  edsc::add_generate_command(app, exit_code);
-  edsc::add_check_command(app, exit_code);
-  edsc::add_dump_command(app, exit_code);
-  edsc::add_format_command(app, exit_code);
-  edsc::add_diff_command(app, exit_code);
-  edsc::add_decode_command(app, exit_code);
-  edsc::add_completion_command(app, exit_code);
-  edsc::add_bus_command(app, exit_code);
-  edsc::add_scan_command(app, exit_code);
-  edsc::add_read_command(app, exit_code);
-  edsc::add_write_command(app, exit_code);
-  edsc::add_configure_command(app, exit_code);
-  edsc::add_monitor_command(app, exit_code);
-  edsc::add_nmt_command(app, exit_code);
-  edsc::add_lss_command(app, exit_code);
+  for (const CommandRow& row : commands) {
+    row.add(app, exit_code);
+    app.get_subcommands([](CLI::App*) { return true; }).back()->group(row.group);
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& problem) {
+    if (report_unknown_command(app)) return edsc::exit_wrong_usage;
     return app.exit(problem) == 0 ? edsc::exit_fine : edsc::exit_wrong_usage;
   } catch (const std::exception& problem) {
     fmt::print(stderr, "edsc: {}\n", problem.what());

@@ -47,6 +47,7 @@ OptionDescription describe_option(const CLI::Option& from) {
 
 CommandDescription describe(const CLI::App& app, std::vector<std::string> path) {
   CommandDescription command;
+  command.group = app.get_group();
   command.text = app.get_description();
   command.examples = app.get_footer();
   constexpr std::string_view heading = "Examples:\n";
@@ -66,6 +67,14 @@ CommandDescription describe(const CLI::App& app, std::vector<std::string> path) 
 }  // namespace
 
 CommandDescription describe_commands(const CLI::App& program) { return describe(program, {}); }
+
+std::vector<std::string> groups_of(const CommandDescription& command) {
+  std::vector<std::string> groups;
+  for (const CommandDescription& sub : command.commands) {
+    if (std::ranges::find(groups, sub.group) == groups.end()) groups.push_back(sub.group);
+  }
+  return groups;
+}
 
 std::string value_words(const OptionDescription& option) {
   switch (option.value) {

@@ -22,12 +22,16 @@ struct OptionDescription {
 
 struct CommandDescription {
   std::vector<std::string> path;  ///< `lss`, `inquire`; empty for the program
+  std::string group;  ///< of commands that the help lists together
   std::string text;
   std::string examples;  ///< lines behind `Examples:`
   std::vector<OptionDescription> options;
   std::vector<OptionDescription> arguments;
   std::vector<CommandDescription> commands;
 };
+
+/// The groups of the commands of a command, in their order.
+[[nodiscard]] std::vector<std::string> groups_of(const CommandDescription& command);
 
 [[nodiscard]] CommandDescription describe_commands(const CLI::App& program);
 

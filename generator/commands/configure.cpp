@@ -17,6 +17,7 @@
 #include "live/identity.hpp"
 #include "live/live_bus.hpp"
 #include "live/progress_line.hpp"
+#include "text/counted.hpp"
 
 namespace edsc {
 namespace {
@@ -300,7 +301,8 @@ void print_failures(const ConfigurationResult& result, const Ending& ending) {
 std::string compared_text(const Work& work) {
   const auto unknown = static_cast<std::size_t>(
       std::ranges::count_if(work.changes, [](const Change& change) { return !change.before.has_value(); }));
-  std::string text = fmt::format("{} of {} values differ", work.changes.size() - unknown, work.compared);
+  const std::size_t differing = work.changes.size() - unknown;
+  std::string text = fmt::format("{} of {} {}", differing, counted(work.compared, "value"), differing == 1 ? "differs" : "differ");
   if (unknown != 0) text += fmt::format(", {} cannot be compared", unknown);
   return text;
 }
@@ -312,8 +314,8 @@ void print_summary(const Settings& settings, const Configuration& configuration,
   if (settings.dry_run) {
     text += "; nothing written";
   } else if (settings.all || result.values != 0) {
-    text += fmt::format("{}{} of {} values written, {} verified", settings.all ? "" : "; ", result.written,
-                        result.values, result.verified);
+    text += fmt::format("{}{} of {} written, {} verified", settings.all ? "" : "; ", result.written,
+                        counted(result.values, "value"), result.verified);
   }
   if (!result.failures.empty()) text += fmt::format(", {} failed", result.failures.size());
   if (configuration.left_out != 0) text += fmt::format(", {} left out", configuration.left_out);

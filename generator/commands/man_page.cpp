@@ -77,6 +77,12 @@ std::string sentence(std::string text) {
   return text;
 }
 
+std::string upper_case(std::string text) {
+  std::ranges::transform(text, text.begin(),
+                         [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
+  return text;
+}
+
 std::string name_of(const CommandDescription& command) {
   return escaped(command.path.empty() ? "edsc" : fmt::format("edsc {}", fmt::join(command.path, " ")));
 }
@@ -130,8 +136,13 @@ std::string man_page(const CommandDescription& program, const std::string& versi
   std::string synopsis;
   append_synopsis(synopsis, program);
   out += synopsis.substr(std::string_view{".br\n"}.size());  // none before the first
-  out += ".ad b\n.hy\n.SH DESCRIPTION\n" + filled(program.text) + ".SH COMMANDS\n";
-  append_command(out, program);
+  out += ".ad b\n.hy\n.SH DESCRIPTION\n" + filled(program.text);
+  for (const std::string& group : groups_of(program)) {
+    fmt::format_to(put, ".SH COMMANDS: {}\n", escaped(upper_case(group)));
+    for (const CommandDescription& command : program.commands) {
+      if (command.group == group) append_command(out, command);
+    }
+  }
   return out + tail;
 }
 

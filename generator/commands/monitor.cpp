@@ -11,6 +11,7 @@
 #include "live/live_bus.hpp"
 #include "live/monitor_view.hpp"
 #include "live/terminal.hpp"
+#include "text/counted.hpp"
 
 namespace edsc {
 namespace {
@@ -130,7 +131,7 @@ class Monitor {
     if (lines.size() > size.rows) {
       const std::size_t hidden = lines.size() - size.rows + 1;
       lines.resize(size.rows - 1);
-      lines.push_back(fmt::format("... {} more lines", hidden));
+      lines.push_back(fmt::format("... {}", counted(hidden, "more line")));
     }
     for (std::string& line : lines) line = cut_to_width(line, size.columns);
     return lines;

@@ -9,6 +9,7 @@
 #include "live/live_bus.hpp"
 #include "live/progress_line.hpp"
 #include "render/write_files.hpp"
+#include "text/counted.hpp"
 
 namespace edsc {
 namespace {
@@ -120,7 +121,7 @@ SdoOutcome read_value(SdoAccess& node, const LiveEntry& entry, const Settings& s
   ProgressLine progress;
   const bool block = !settings.segmented && (settings.block || best_transfer(entry) == SdoTransfer::block);
   return upload(node, entry, block ? SdoTransfer::block : SdoTransfer::segmented, [&](std::size_t done, std::size_t) {
-    if (progress.due()) progress.show(fmt::format("{}: {} bytes", title(entry), done));
+    if (progress.due()) progress.show(fmt::format("{}: {}", title(entry), counted(done, "byte")));
   });
 }
 
@@ -148,7 +149,7 @@ int save(const Settings& settings, const LiveEntry& entry, const SdoOutcome& out
     fmt::print(stderr, "edsc: {}\n", problem);
     return exit_wrong_usage;
   }
-  fmt::print("{}: {} bytes to {}\n", title(entry), outcome.bytes.size(), settings.file);
+  fmt::print("{}: {} to {}\n", title(entry), counted(outcome.bytes.size(), "byte"), settings.file);
   return exit_fine;
 }
 

@@ -7,6 +7,7 @@
 #include "live/exit_code.hpp"
 #include "live/live_bus.hpp"
 #include "live/progress_line.hpp"
+#include "text/counted.hpp"
 
 namespace edsc {
 namespace {
@@ -69,7 +70,7 @@ SdoOutcome download(SdoAccess& node, const LiveEntry& entry, const Settings& set
   ProgressLine progress;
   const bool block = !settings.segmented && (settings.block || bytes.size() >= long_value);
   const SdoProgress show = [&](std::size_t done, std::size_t total) {
-    if (progress.due()) progress.show(fmt::format("{}: {} of {} bytes", title(entry), done, total));
+    if (progress.due()) progress.show(fmt::format("{}: {} of {}", title(entry), done, counted(total, "byte")));
   };
   return node.download(entry.index, entry.sub_index, bytes, block ? SdoTransfer::block : SdoTransfer::segmented,
                        bytes.size() >= long_value ? show : SdoProgress{});
@@ -96,7 +97,7 @@ int write_entry(LiveBus& bus, const Settings& settings, const LiveEntry& entry,
   if (settings.file.empty()) {
     fmt::print("{} = {}{}\n", title(entry), settings.raw ? hex_bytes(bytes) : value_of(entry, bytes), verified);
   } else {
-    fmt::print("{}: {} {} from {}{}\n", title(entry), bytes.size(), bytes.size() == 1 ? "byte" : "bytes",
+    fmt::print("{}: {} from {}{}\n", title(entry), counted(bytes.size(), "byte"),
                settings.file, verified);
   }
   return exit_fine;

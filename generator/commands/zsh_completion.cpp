@@ -68,6 +68,20 @@ std::string function_of(const CommandDescription& command) {
   return command.path.empty() ? "_edsc" : fmt::format("_edsc_{}", fmt::join(command.path, "_"));
 }
 
+/// The commands of a command, each group under its name.
+void append_choices(std::string& out, const CommandDescription& command) {
+  const auto put = std::back_inserter(out);
+  out += "      local -a commands\n";
+  for (const std::string& group : groups_of(command)) {
+    out += "      commands=(\n";
+    for (const CommandDescription& sub : command.commands) {
+      if (sub.group == group) fmt::format_to(put, "        '{}:{}'\n", sub.path.back(), quoted(sub.text));
+    }
+    fmt::format_to(put, "      )\n      _describe '{}' commands && ret=0\n",
+                   group == "Subcommands" ? "command" : quoted(group));
+  }
+}
+
 void append_function(std::string& out, const CommandDescription& command) {
   const auto put = std::back_inserter(out);
   for (const CommandDescription& sub : command.commands) append_function(out, sub);
@@ -77,14 +91,9 @@ void append_function(std::string& out, const CommandDescription& command) {
   fmt::format_to(put, "  _arguments -S{}", chooses ? " -C" : "");
   for (const OptionDescription& option : command.options) append_option(out, option);
   if (chooses) {
-    out +=
-        " \\\n    '1: :->command' \\\n    '*:: :->arguments' && ret=0\n  case $state in\n    command)\n      local -a "
-        "commands=(\n";
-    for (const CommandDescription& sub : command.commands) {
-      fmt::format_to(put, "        '{}:{}'\n", sub.path.back(), quoted(sub.text));
-    }
-    fmt::format_to(
-        put, "      )\n      _describe command commands && ret=0\n      ;;\n    arguments)\n      case $line[1] in\n");
+    out += " \\\n    '1: :->command' \\\n    '*:: :->arguments' && ret=0\n  case $state in\n    command)\n";
+    append_choices(out, command);
+    out += "      ;;\n    arguments)\n      case $line[1] in\n";
     for (const CommandDescription& sub : command.commands) {
       fmt::format_to(put, "        {}) {} && ret=0 ;;\n", sub.path.back(), function_of(sub));
     }

@@ -13,6 +13,7 @@
 #include "decode/error_frame_text.hpp"
 #include "decode/lss_text.hpp"
 #include "decode/value_text.hpp"
+#include "text/counted.hpp"
 
 namespace edsc {
 namespace {
@@ -70,7 +71,7 @@ void append_bytes(std::string& text, const Frame& frame, std::size_t first) {
 }
 
 void wrong_length(const Frame& frame, std::string_view right, Message& message) {
-  fmt::format_to(std::back_inserter(message.text), "{} {}, not {}", frame.size, frame.size == 1 ? "byte" : "bytes",
+  fmt::format_to(std::back_inserter(message.text), "{}, not {}", counted(unsigned{frame.size}, "byte"),
                  right);
   message.problem = true;
 }
@@ -395,12 +396,12 @@ void Decoder::decode_pdo(const Frame& frame, const std::vector<Route>& routes, M
     message.text += "nothing is mapped";
     message.problem = frame.size > 0;
   } else if (bits < pdo.bits) {
-    fmt::format_to(std::back_inserter(message.text), "{}too short: {} of {} bytes", separator, frame.size,
-                   (pdo.bits + 7) / 8);
+    fmt::format_to(std::back_inserter(message.text), "{}too short: {} of {}", separator, frame.size,
+                   counted((pdo.bits + 7) / 8, "byte"));
     message.problem = true;
   } else if (frame.size > (pdo.bits + 7) / 8) {
-    fmt::format_to(std::back_inserter(message.text), "{}{} bytes more than mapped", separator,
-                   frame.size - (pdo.bits + 7) / 8);
+    fmt::format_to(std::back_inserter(message.text), "{}{} more than mapped", separator,
+                   counted(frame.size - (pdo.bits + 7) / 8, "byte"));
   }
   for (std::size_t i = 1; i < routes.size(); ++i) {
     if (routes[i].use != Use::pdo) continue;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "decode/value_text.hpp"
+#include "text/counted.hpp"
 
 namespace edsc {
 namespace {
@@ -81,8 +82,8 @@ void LogDecoder::finish(std::string& complaints) {
     fmt::format_to(std::back_inserter(complaints), "{}: {} was not finished\n", settings_.log_name, transfer);
   }
   if (complaints_ > most_complaints) {
-    fmt::format_to(std::back_inserter(complaints), "{}: {} more lines like these\n", settings_.log_name,
-                   complaints_ - most_complaints);
+    fmt::format_to(std::back_inserter(complaints), "{}: {} like {}\n", settings_.log_name,
+                   counted(complaints_ - most_complaints, "more line"), complaints_ - most_complaints == 1 ? "this" : "these");
   }
 }
 

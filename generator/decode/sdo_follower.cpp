@@ -9,6 +9,7 @@
 
 #include "decode/append.hpp"
 #include "decode/value_text.hpp"
+#include "text/counted.hpp"
 
 namespace edsc {
 namespace {
@@ -43,7 +44,7 @@ void append_milliseconds(std::string& text, std::int64_t microseconds) {
 
 std::string SdoFollower::description() const {
   std::string text = noun(download_) + label_;
-  if (total_ > 0 && !expedited_) fmt::format_to(std::back_inserter(text), " after {} bytes", total_);
+  if (total_ > 0 && !expedited_) fmt::format_to(std::back_inserter(text), " after {}", counted(total_, "byte"));
   return text;
 }
 
@@ -170,7 +171,7 @@ void SdoFollower::finish(const TimedFrame& frame, Message& message) {
   message.text += label_;
   message.text += " = ";
   put_value(message);
-  if (!expedited_) fmt::format_to(std::back_inserter(message.text), ", {} bytes", total_);
+  if (!expedited_) fmt::format_to(std::back_inserter(message.text), ", {}", counted(total_, "byte"));
   if (announced_ && *announced_ != total_ && !expedited_) {
     fmt::format_to(std::back_inserter(message.text), " of {} announced", *announced_);
     message.problem = true;
@@ -227,7 +228,7 @@ void SdoFollower::initiate_download(const TimedFrame& frame, const NodeModel* mo
   expedited_ = (data[0] & canopen::sdo::expedited) != 0;
   if (!expedited_) {
     if (sized) announced_ = canopen::sdo::word_of(data);
-    if (announced_) fmt::format_to(std::back_inserter(message.text), ", {} bytes follow", *announced_);
+    if (announced_) fmt::format_to(std::back_inserter(message.text), ", {} {}", counted(*announced_, "byte"), *announced_ == 1 ? "follows" : "follow");
     return;
   }
   append(expedited_value(data));
@@ -256,7 +257,7 @@ void SdoFollower::upload_answer(const TimedFrame& frame, Message& message) {
   if (sized) announced_ = canopen::sdo::word_of(data);
   put_transfer(TransferStep::part, message);
   message.text += verb(false) + label_;
-  if (announced_) fmt::format_to(std::back_inserter(message.text), ", {} bytes follow", *announced_);
+  if (announced_) fmt::format_to(std::back_inserter(message.text), ", {} {}", counted(*announced_, "byte"), *announced_ == 1 ? "follows" : "follow");
 }
 
 /// A segment of data, whoever sends it. One with the toggle bit of the last one is that segment again.
@@ -298,14 +299,14 @@ void SdoFollower::initiate_block_download(const TimedFrame& frame, const NodeMod
   const Data& data = frame.frame.data;
   client_crc_ = (data[0] & canopen::sdo::crc_supported) != 0;
   if ((data[0] & canopen::sdo::block_size_indicated) != 0) announced_ = canopen::sdo::word_of(data);
-  if (announced_) fmt::format_to(std::back_inserter(message.text), ", {} bytes follow", *announced_);
+  if (announced_) fmt::format_to(std::back_inserter(message.text), ", {} {}", counted(*announced_, "byte"), *announced_ == 1 ? "follows" : "follow");
 }
 
 void SdoFollower::initiate_block_upload(const TimedFrame& frame, const NodeModel* model, Message& message) {
   begin(frame, model, false, true, message);
   const Data& data = frame.frame.data;
   client_crc_ = (data[0] & canopen::sdo::crc_supported) != 0;
-  fmt::format_to(std::back_inserter(message.text), ", {} segments in a block", data[4]);
+  fmt::format_to(std::back_inserter(message.text), ", {} in a block", counted(unsigned{data[4]}, "segment"));
 }
 
 void SdoFollower::block_segment(const Data& data, Message& message) {
@@ -399,7 +400,7 @@ void SdoFollower::block_download_answer(const TimedFrame& frame, Message& messag
       crc_used_ = client_crc_ && (data[0] & canopen::sdo::crc_supported) != 0;
       phase_ = Phase::block_running;
       message.text += verb(true) + label_;
-      fmt::format_to(std::back_inserter(message.text), ", {} segments in a block", data[4]);
+      fmt::format_to(std::back_inserter(message.text), ", {} in a block", counted(unsigned{data[4]}, "segment"));
       return put_transfer(TransferStep::part, message);
     case 1:
       if (phase_ != Phase::block_ended) return stray("end", message);
@@ -422,7 +423,7 @@ void SdoFollower::block_upload_answer(const TimedFrame& frame, Message& message)
   if ((data[0] & canopen::sdo::block_size_indicated) != 0) announced_ = canopen::sdo::word_of(data);
   phase_ = Phase::block_answered;
   message.text += verb(false) + label_;
-  if (announced_) fmt::format_to(std::back_inserter(message.text), ", {} bytes follow", *announced_);
+  if (announced_) fmt::format_to(std::back_inserter(message.text), ", {} {}", counted(*announced_, "byte"), *announced_ == 1 ? "follows" : "follow");
   put_transfer(TransferStep::part, message);
 }
 

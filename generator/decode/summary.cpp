@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "decode/print_message.hpp"
+#include "text/counted.hpp"
 
 namespace edsc {
 namespace {
@@ -62,7 +63,7 @@ double Summary::seconds() const { return static_cast<double>(last_us_ - first_us
 std::string Summary::text() const {
   std::string out;
   const auto put = std::back_inserter(out);
-  fmt::format_to(put, "{} frames", frames_in_all_);
+  fmt::format_to(put, "{}", counted(frames_in_all_, "frame"));
   if (has_time_) fmt::format_to(put, " in {:.6f} s", seconds());
   if (has_time_ && seconds() > 0)
     fmt::format_to(put, ", {:.0f} per second", static_cast<double>(frames_in_all_) / seconds());
@@ -84,7 +85,8 @@ std::string Summary::text() const {
   for (std::size_t id = 0; id < node_ids; ++id) {
     const Transfers& one = transfers_[id];
     if (one.finished + one.aborted == 0) continue;
-    fmt::format_to(put, "node {:<4}  {} SDO transfers, {} aborted", id, one.finished + one.aborted, one.aborted);
+    fmt::format_to(put, "node {:<4}  {}, {} aborted", id,
+                   counted(one.finished + one.aborted, "SDO transfer"), one.aborted);
     if (one.timed > 0) {
       fmt::format_to(put, ", {:.3f} ms on average, {:.3f} ms the longest",
                      static_cast<double>(one.sum_us) / 1e3 / static_cast<double>(one.timed),
@@ -96,9 +98,9 @@ std::string Summary::text() const {
     fmt::format_to(put, "node {:<4}  abort {}: {}\n", key.first, abort_text(key.second), count);
   for (const auto& [key, count] : emergencies_)
     fmt::format_to(put, "node {:<4}  EMCY {:04X}h: {}\n", key.first, key.second, count);
-  if (open_transfers_ > 0) fmt::format_to(put, "{} SDO transfers not finished\n", open_transfers_);
-  if (can_fd_frames_ > 0) fmt::format_to(put, "{} CAN FD frames passed over\n", can_fd_frames_);
-  if (broken_lines_ > 0) fmt::format_to(put, "{} lines skipped\n", broken_lines_);
+  if (open_transfers_ > 0) fmt::format_to(put, "{} not finished\n", counted(open_transfers_, "SDO transfer"));
+  if (can_fd_frames_ > 0) fmt::format_to(put, "{} passed over\n", counted(can_fd_frames_, "CAN FD frame"));
+  if (broken_lines_ > 0) fmt::format_to(put, "{} skipped\n", counted(broken_lines_, "line"));
   return out;
 }
 

@@ -14,6 +14,7 @@
 
 #include "decode/append.hpp"
 #include "text/ascii.hpp"
+#include "text/counted.hpp"
 #include "text/ini.hpp"
 #include "text/utf8.hpp"
 
@@ -434,8 +435,7 @@ void append_value(std::string& text, const DataTypeRow& type, std::span<const st
   }
   const std::size_t expected = (type.bits + 7U) / 8U;
   if (bytes.size() == expected) return;
-  fmt::format_to(std::back_inserter(text), " ({} {}, {} has {})", bytes.size(), bytes.size() == 1 ? "byte" : "bytes",
-                 type.name, expected);
+  fmt::format_to(std::back_inserter(text), " ({}, {} has {})", counted(bytes.size(), "byte"), type.name, expected);
 }
 
 std::string value_text(const DataTypeRow& type, std::span<const std::uint8_t> bytes) {

@@ -8,6 +8,7 @@
 
 #include "device/limits.hpp"
 #include "device/pdo_defaults.hpp"
+#include "text/counted.hpp"
 
 namespace edsc {
 namespace {
@@ -58,7 +59,7 @@ Finding check_dummy(const Device& device, const Pdo& pdo, const PdoEntry& entry)
   }
   if (entry.bits != bits) {
     return BrokenPdo{"pdo-length",
-                     fmt::format("{} {} bits of {}, which has {}", maps(pdo, entry), entry.bits, dummy, bits)};
+                     fmt::format("{} {} of {}, which has {}", maps(pdo, entry), counted(entry.bits, "bit"), dummy, bits)};
   }
   return {};
 }
@@ -72,12 +73,12 @@ Finding check_string(const Options& options, const Pdo& pdo, const PdoEntry& ent
   }
   if (entry.bits % 8 != 0 || entry.bits == 0) {
     return BrokenPdo{"pdo-variable-length",
-                     fmt::format("{} {} bits of {}, a {}: these are no whole bytes", maps(pdo, entry), entry.bits,
+                     fmt::format("{} {} of {}, a {}: not a number of whole bytes", maps(pdo, entry), counted(entry.bits, "bit"),
                                  quoted_object(entry), entry.object->type->name)};
   }
   if (entry.bits / 8u > *capacity) {
     return BrokenPdo{"pdo-length",
-                     fmt::format("{} {} bits of {}, which is {} and holds {}", maps(pdo, entry), entry.bits,
+                     fmt::format("{} {} of {}, which is {} and holds {}", maps(pdo, entry), counted(entry.bits, "bit"),
                                  quoted_object(entry), entry.object->type->name, *capacity * 8)};
   }
   return {};
@@ -117,7 +118,7 @@ Finding check_object(const Device& device, const Options& options, const Pdo& pd
                                                         quoted_object(entry), object.type->name)};
   }
   if (object.type->bits != entry.bits && !is_boolean_in_a_byte(entry)) {
-    return BrokenPdo{"pdo-length", fmt::format("{} {} bits of {}, which is {} and has {}", maps(pdo, entry), entry.bits,
+    return BrokenPdo{"pdo-length", fmt::format("{} {} of {}, which is {} and has {}", maps(pdo, entry), counted(entry.bits, "bit"),
                                                quoted_object(entry), object.type->name, object.type->bits)};
   }
   return {};

@@ -186,10 +186,12 @@ void ObjectResolver::resolve_sub_object(const SubObjectDescription& sub, const O
 void ObjectResolver::check_sub_number(const ObjectDescription& description) {
   const Field& field = description.sub_number;
   if (!field.present || number_of(description.compact_sub_obj).value_or(0) > 0) return;
-  if (number_of(field) == description.sub_objects.size()) return;
+  const std::size_t count = description.sub_objects.size();
+  if (number_of(field) == count) return;
   diagnostics_.warning("sub-number", field.position,
-                       fmt::format("SubNumber is {}, but {} sub-objects are described; those count",
-                                   strip_inline_comment(field.text), description.sub_objects.size()));
+                       fmt::format("SubNumber is {}, but {} described; {}", strip_inline_comment(field.text),
+                                   count == 1 ? "1 sub-object is" : fmt::format("{} sub-objects are", count),
+                                   count == 1 ? "that counts" : "those count"));
 }
 
 /// Sub-indices are hexadecimal (CiA 306-1, 4.6.2). Where a sub-index is missing, but there is the one whose digits are

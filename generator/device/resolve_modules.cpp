@@ -111,7 +111,7 @@ class ModuleResolver {
       free = entry->type->bits;
       if (free < bits) {
         diagnostics_.warning("module-count", extension.count.position,
-                             fmt::format("{} bits do not fit into {}", bits, entry->type->name));
+                             fmt::format("{} into {}", bits == 1 ? "1 bit does not fit" : fmt::format("{} bits do not fit", bits), entry->type->name));
       }
     }
     free -= std::min(free, bits);

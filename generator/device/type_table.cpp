@@ -7,6 +7,7 @@
 #include "device/value.hpp"
 #include "diagnostics/quote.hpp"
 #include "eds/number.hpp"
+#include "text/counted.hpp"
 
 namespace edsc {
 namespace {
@@ -155,10 +156,10 @@ class DefinitionReader {
   }
 
   void report_length(const ObjectDescription& object, const TypeReference& type) {
-    const std::string length = type.octets != 0 ? fmt::format(" of {} bytes", type.octets) : "";
+    const std::string length = type.octets != 0 ? fmt::format(" of {}", counted(type.octets, "byte")) : "";
     diagnostics_.note("type-length", object.default_value.position,
-                      fmt::format("{} {} has {} bits: its objects are of type {}{}", index_label(object.index),
-                                  quote(object.parameter_name.text), number_of(object.default_value).value_or(0),
+                      fmt::format("{} {} has {}: its objects are of type {}{}", index_label(object.index),
+                                  quote(object.parameter_name.text), counted(number_of(object.default_value).value_or(0), "bit"),
                                   type.row->name, length));
   }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "live/text_table.hpp"
+#include "text/counted.hpp"
 #include "text/utf8.hpp"
 
 namespace edsc {
@@ -94,8 +95,8 @@ void append_others(std::vector<std::string>& lines, const MonitorState& state, c
 
 std::vector<std::string> monitor_lines(const MonitorState& state, const MonitorView& view, std::int64_t now_us) {
   std::vector<std::string> lines;
-  std::string head = fmt::format("{}  {:.1f} s  {} frames  {:.1f} per s", view.bus, seconds(now_us - state.start_us()),
-                                 state.frames().total(), state.frames().per_second());
+  std::string head = fmt::format("{}  {:.1f} s  {}  {:.1f} per s", view.bus, seconds(now_us - state.start_us()),
+                                 counted(state.frames().total(), "frame"), state.frames().per_second());
   if (const auto percent = load(state, view)) head += fmt::format("  load {:.1f} %", *percent);
   lines.push_back(std::move(head));
   lines.emplace_back();

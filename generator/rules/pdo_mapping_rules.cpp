@@ -6,6 +6,7 @@
 #include "eds/number.hpp"
 #include "device/pdo_defaults.hpp"
 #include "rules/rule_groups.hpp"
+#include "text/counted.hpp"
 
 namespace edsc {
 namespace {
@@ -17,13 +18,13 @@ void check_gaps(const RuleContext& context, const Pdo& pdo, const Entry& count) 
     const Entry* entry = pdo.mapping->find(static_cast<std::uint8_t>(i));
     if (entry == nullptr) {
       context.report("pdo-mapping-count", count.default_value->position,
-                     fmt::format("{} maps {} objects, but {} is missing", pdo_label(pdo), entries,
+                     fmt::format("{} maps {}, but {} is missing", pdo_label(pdo), counted(entries, "object"),
                                  entry_label(pdo.mapping->index, static_cast<std::uint8_t>(i))));
       return;
     }
     if (entry->default_value && entry->default_value->bits != 0) continue;
     context.report("pdo-mapping-gap", default_place(*entry),
-                   fmt::format("{} maps {} objects, but {} maps nothing", pdo_label(pdo), entries, named(*entry)), {},
+                   fmt::format("{} maps {}, but {} maps nothing", pdo_label(pdo), counted(entries, "object"), named(*entry)), {},
                    i == 1 ? "counted, but not mapped" : "");
     return;
   }
@@ -76,8 +77,8 @@ void check_granularity_of_mappings(const RuleContext& context) {
         std::ranges::find_if(pdo.entries, [&](const PdoEntry& entry) { return entry.bits % *granularity != 0; });
     if (finer == pdo.entries.end()) continue;
     context.report("pdo-granularity", finer->place,
-                   fmt::format("{} maps, as entry {}, {} bits of {}, but Granularity is {}", pdo_label(pdo),
-                               finer->position, finer->bits, mapped_name(*finer), *granularity),
+                   fmt::format("{} maps, as entry {}, {} of {}, but Granularity is {}", pdo_label(pdo),
+                               finer->position, counted(finer->bits, "bit"), mapped_name(*finer), *granularity),
                    {{field.position, "Granularity"}});
     return;
   }

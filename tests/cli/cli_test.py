@@ -240,9 +240,21 @@ class WrongUsage(CommandLine):
                 self.assertNotEqual(result.stderr, "")
         self.assertFalse(self.output.exists())
 
+    def test_unknown_command(self) -> None:
+        for arguments, message in (
+                (("chek", "x"), 'edsc: unknown command "chek"; did you mean "check"?\n'),
+                (("chek", "--help"), 'edsc: unknown command "chek"; did you mean "check"?\n'),
+                (("nosuch", "--help"), 'edsc: unknown command "nosuch"\n'),
+                (("nosuch", "--version"), 'edsc: unknown command "nosuch"\n'),
+                (("lss", "can0", "fastcan"), 'edsc lss: unknown command "fastcan"; did you mean "fastscan"?\n'),
+                (("lss", "can0", "fastcan", "--help"), 'edsc lss: unknown command "fastcan"; did you mean "fastscan"?\n')):
+            with self.subTest(arguments=arguments):
+                result = self.edsc(*arguments)
+                self.assertEqual((result.returncode, result.stdout, result.stderr), (WRONG_USAGE, "", message))
+
     def test_help_has_examples_for_each_command(self) -> None:
         overview = self.edsc("--help").stdout
-        commands = re.findall(r"^  ([a-z]+) {4,}\S", overview.partition("Subcommands:")[2], re.MULTILINE)
+        commands = re.findall(r"^  ([a-z]+) {4,}\S", overview, re.MULTILINE)
         self.assertGreaterEqual(set(commands), {"generate", "check", "dump"})
         for command in commands:
             with self.subTest(command=command):

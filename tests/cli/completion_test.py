@@ -16,6 +16,12 @@ from pathlib import Path
 
 EDSC = Path(sys.argv[2]).resolve()
 KINDS = ("bash", "zsh", "man")
+GROUPS = {
+    "EDS files": ["generate", "check", "dump", "format", "diff"],
+    "Bus": ["scan", "read", "write", "configure", "monitor", "nmt", "lss", "bus"],
+    "Logs": ["decode"],
+    "Shell": ["completion"],
+}
 
 
 def run(*arguments: str) -> str:
@@ -32,8 +38,8 @@ def options_of(text: str) -> set[str]:
 
 
 def commands_of(text: str) -> list[str]:
-    behind = text.split("Subcommands:\n")
-    return re.findall(r"^  (\w[\w-]*)", behind[1].split("\n\n")[0], re.MULTILINE) if len(behind) == 2 else []
+    lists = re.findall(rf"^(?:Subcommands|{'|'.join(GROUPS)}):\n((?:  .*\n)*)", text, re.MULTILINE)
+    return [name for one in lists for name in re.findall(r"^  (\w[\w-]*)", one, re.MULTILINE)]
 
 
 def arguments_before_commands(text: str) -> list[str]:
@@ -52,6 +58,24 @@ def all_commands(path: tuple[str, ...] = (), words: tuple[str, ...] = ()) -> dic
 
 
 HELP = all_commands()
+
+
+class Groups(unittest.TestCase):
+    """The help lists the commands by what they work on; completion of zsh and manual page follow."""
+
+    def test_of_the_help(self) -> None:
+        headings = re.findall(r"^([A-Z][\w ]*):\n((?:  [a-z].*\n(?:   .*\n)*)+)", HELP[()], re.MULTILINE)
+        self.assertEqual({name: re.findall(r"^  ([a-z]+)", rows, re.MULTILINE) for name, rows in headings}, GROUPS)
+
+    def test_of_zsh(self) -> None:
+        rows = re.findall(r"commands=\(\n(.*?)\n *\)\n *_describe '([^']*)'", run("completion", "zsh"), re.DOTALL)
+        groups = {name: re.findall(r"^ *'(\w+):", text, re.MULTILINE) for text, name in rows if name in GROUPS}
+        self.assertEqual(groups, GROUPS)
+
+    def test_of_the_manual_page(self) -> None:
+        parts = re.findall(r"^\.SH COMMANDS: (.*)\n((?:(?!\.SH ).*\n)*)", run("completion", "man"), re.MULTILINE)
+        found = {title: list(dict.fromkeys(re.findall(r"^\.SS edsc (\w+)", text, re.MULTILINE))) for title, text in parts}
+        self.assertEqual(found, {name.upper(): commands for name, commands in GROUPS.items()})
 
 
 @unittest.skipUnless(shutil.which("bash"), "SKIPPED: there is no bash")

@@ -476,11 +476,11 @@ node 5: 2 of 25 values differ; 2 of 2 values written, 2 verified, LEFT left out,
         self.only(x2004="1200")
         self.expect(self.edsc("configure", 5, "axis.dcf"), FINE,
                     "2004h:00 Speed: 1000 rpm -> 1200 rpm\n"
-                    "node 5: 1 of 1 values differ; 1 of 1 values written, 1 verified, 1020h written\n")
+                    "node 5: 1 of 1 value differs; 1 of 1 value written, 1 verified, 1020h written\n")
         self.only(x2004="1300")
         self.expect(self.edsc("configure", 5, "axis.dcf"), FINE,
                     "2004h:00 Speed: 1200 rpm -> 1300 rpm\n"
-                    "node 5: 1 of 1 values differ; 1 of 1 values written, 1 verified, 1020h written\n")
+                    "node 5: 1 of 1 value differs; 1 of 1 value written, 1 verified, 1020h written\n")
 
     def test_all_values(self) -> None:
         self.dcf(x2004="1200", x1017="250")
@@ -517,7 +517,7 @@ node 5: 3 of 4 values differ; nothing written
             result = self.edsc("configure", 5, "axis.dcf")
             self.assertEqual(result.returncode, FINE, result.stderr)
             self.assertIn("2006h:00 Password: (write-only) -> 5\n"
-                          "node 5: 0 of 2 values differ, 1 cannot be compared; 1 of 1 values written, 0 verified",
+                          "node 5: 0 of 2 values differ, 1 cannot be compared; 1 of 1 value written, 0 verified",
                           result.stdout)
 
     def test_node_id_and_bit_rate_need_their_flag(self) -> None:
@@ -527,17 +527,17 @@ node 5: 3 of 4 values differ; nothing written
         withheld = "edsc: not written, the node's own node-ID or bit rate: 2004h:00 CAN bit rate{} (--node-id-and-bit-rate writes it)\n"
         self.expect(self.edsc("configure", 5, "axis.dcf"), FINE,
                     "1017h:00 Producer heartbeat time: 0 ms -> 250 ms\n"
-                    "node 5: 1 of 2 values differ; 1 of 1 values written, 1 verified, 1 not written (node-ID, bit rate)\n",
+                    "node 5: 1 of 2 values differs; 1 of 1 value written, 1 verified, 1 not written (node-ID, bit rate)\n",
                     withheld.format(": 1000 rpm -> 1200 rpm"))
         self.expect(self.edsc("configure", 5, "axis.dcf", "--all"), FINE,
-                    "node 5: 1 of 1 values written, 1 verified, 1 not written (node-ID, bit rate)\n",
+                    "node 5: 1 of 1 value written, 1 verified, 1 not written (node-ID, bit rate)\n",
                     withheld.format(" = 1200 rpm"))
         found = self.expect_json(self.edsc("configure", 5, "axis.dcf", "--format", "json"), "configure.schema.json")
         self.assertEqual([row["index"] for row in found["withheld"]], [0x2004])
         self.assertFalse(found["configured_already"])
         self.expect(self.edsc("configure", 5, "axis.dcf", "--node-id-and-bit-rate"), FINE,
                     "2004h:00 CAN bit rate: 1000 rpm -> 1200 rpm\n"
-                    "node 5: 1 of 2 values differ; 1 of 1 values written, 1 verified, 1020h written\n")
+                    "node 5: 1 of 2 values differs; 1 of 1 value written, 1 verified, 1020h written\n")
 
     def test_a_node_that_restarts_in_the_middle(self) -> None:
         self.only(x2004="1500", x1017="250")
@@ -582,12 +582,12 @@ node 5: 3 of 4 values differ; nothing written
         self.only(x1A00sub0="2", x1A00sub1="0x60410010", x1A00sub2="0x60640020", x1800sub1="0x00000185", x1800sub5="100")
         self.expect(self.edsc("configure", 5, "axis.dcf"), FINE, """\
 1800h:05 TPDO communication parameter 1, Event timer: 0 ms -> 100 ms
-node 5: 1 of 5 values differ; 1 of 1 values written, 1 verified, 1020h written
+node 5: 1 of 5 values differs; 1 of 1 value written, 1 verified, 1020h written
 """)
         self.only(x1A00sub0="2", x1A00sub1="0x60410010", x1A00sub2="0x60410010")
         self.expect(self.edsc("configure", 5, "axis.dcf"), FINE, """\
 1A00h:02 TPDO mapping parameter 1, Mapping entry 2: 60640020h -> 60410010h
-node 5: 1 of 3 values differ; 3 of 3 values written, 3 verified, 1020h written
+node 5: 1 of 3 values differs; 3 of 3 values written, 3 verified, 1020h written
 """)
         frames = self.network.frames("605")
         self.assertEqual([frame for frame in frames if frame[4] == "2" and frame[7:12] != "20 10"], [
@@ -682,7 +682,7 @@ axis.dcf:{rounded}:16: error: 2009h:00 Rounded value = 7: reads back as 0
                            '00001002h; "edsc scan BUS --eds FILE" finds the node of a file, --force writes nevertheless\n')
         self.expect(self.edsc("configure", 5, "axis.dcf", "--force"), FINE,
                     "2004h:00 Speed: 1000 rpm -> 1200 rpm\n"
-                    "node 5: 1 of 1 values differ; 1 of 1 values written, 1 verified, 1020h written\n")
+                    "node 5: 1 of 1 value differs; 1 of 1 value written, 1 verified, 1020h written\n")
 
     def test_another_device_whose_dcf_has_no_vendor(self) -> None:
         path = self.only(x2004="1200")
@@ -693,9 +693,9 @@ axis.dcf:{rounded}:16: error: 2009h:00 Rounded value = 7: reads back as 0
         path.write_text(path.read_text().replace("0x00040191", "0x00020192"))
         self.expect(self.edsc("configure", 5, "axis.dcf"), FINE,
                     "2004h:00 Speed: 1000 rpm -> 1200 rpm\n"
-                    "node 5: 1 of 1 values differ; 1 of 1 values written, 1 verified, 1020h written\n",
+                    "node 5: 1 of 1 value differs; 1 of 1 value written, 1 verified, 1020h written\n",
                     "edsc: node 5: not compared: vendor-ID (not in axis.dcf)\n")
-        self.expect(self.edsc("configure", 5, "axis.dcf"), FINE, "node 5: 0 of 1 values differ\n",
+        self.expect(self.edsc("configure", 5, "axis.dcf"), FINE, "node 5: 0 of 1 value differ\n",
                     "edsc: node 5: not compared: vendor-ID (not in axis.dcf)\n")
         self.assertEqual([frame for frame in self.network.frames("000", "605")
                           if frame.startswith("000") or frame[4:15] == "2B 04 20 00"],

@@ -133,7 +133,7 @@ TEST(PdoRules, LetTheOptionsSayHowMuchAStringHolds) {
 TEST(PdoRules, RefusePartsOfAByteOfAString) {
   const CheckedPdos checked(pdo(false, {"0x2008000C"}));
   expect_one(checked, Severity::error, "pdo-variable-length", "0x2008000C");
-  EXPECT_TRUE(message_has(checked, "pdo-variable-length", "no whole bytes"));
+  EXPECT_TRUE(message_has(checked, "pdo-variable-length", "not a number of whole bytes"));
 }
 
 TEST(PdoRules, RefuseADomain) {

@@ -1,0 +1,42 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string_view>
+
+#include "text/counted.hpp"
+#include "text/suggestion.hpp"
+
+namespace edsc {
+namespace {
+
+TEST(Counted, PutsOneInTheSingular) {
+  EXPECT_EQ(counted(0, "line"), "0 lines");
+  EXPECT_EQ(counted(1U, "line"), "1 line");
+  EXPECT_EQ(counted(std::uint64_t{2}, "line"), "2 lines");
+  EXPECT_EQ(counted(1, "entry", "entries"), "1 entry");
+  EXPECT_EQ(counted(2, "entry", "entries"), "2 entries");
+}
+
+constexpr std::array<std::string_view, 5> words{"check", "AccessType", "HighLimit", "LowLimit", "bus"};
+
+TEST(Suggestion, IsTheWordWithTheFewestDifferences) {
+  EXPECT_EQ(most_similar("chek", words), "check");
+  EXPECT_EQ(most_similar("AccesType", words), "AccessType");
+  EXPECT_EQ(most_similar("accestype", words), "AccessType") << "letter case is ignored";
+  EXPECT_EQ(most_similar("AccesssTyp", words), "AccessType") << "one too many, one too few";
+  EXPECT_EQ(most_similar("AcecssType", words), "AccessType") << "two swapped";
+  EXPECT_EQ(most_similar("ub", words), "") << "two characters may be anything";
+  EXPECT_EQ(most_similar("bis", words), "bus");
+}
+
+TEST(Suggestion, IsNothingForAnotherWord) {
+  EXPECT_EQ(most_similar("", words), "");
+  EXPECT_EQ(most_similar("Unit", words), "");
+  EXPECT_EQ(most_similar("scan", words), "");
+  EXPECT_EQ(most_similar(std::string(100'000, 'x'), words), "");
+  EXPECT_EQ(did_you_mean("Unit", words), "");
+  EXPECT_EQ(did_you_mean("chek", words), "; did you mean \"check\"?");
+}
+
+}  // namespace
+}  // namespace edsc
