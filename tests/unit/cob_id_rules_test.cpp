@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "device/cob_id_parameter.hpp"
 #include "device_from_text.hpp"
 #include "render/view.hpp"
 
@@ -177,6 +178,27 @@ TEST(CobIdRules, GiveTheCompilerTheCobIdsOfTheServicesThatAreOn) {
   EXPECT_EQ(rows[0]["text"], "canopen::StartCobId{0x1005, 0x00, 0x80}");
   EXPECT_EQ(rows[1]["text"], "canopen::StartCobId{0x1014, 0x00, 0x480, true}");
   EXPECT_EQ(rows_of("$NODEID+0x580").size(), 1U) << "an error; with --keep-going the headers compile";
+}
+
+// The runtime and edsc have a table of COB-IDs each: for each entry both say the same.
+TEST(CobIdTables, AgreeOnEachEntryOfTheCommunicationProfile) {
+  for (unsigned index = 0x1000; index <= 0x1FFF; ++index) {
+    for (unsigned sub_index = 0; sub_index <= 0xFF; ++sub_index) {
+      const auto number = static_cast<std::uint16_t>(index);
+      const auto sub = static_cast<std::uint8_t>(sub_index);
+      const CobIdParameter* const known = find_cob_id_parameter(number, sub);
+      const canopen::CobIdEntries* const used = canopen::find_cob_id_entries(number, sub);
+      if (used != nullptr) {
+        ASSERT_NE(known, nullptr) << std::hex << index << ":" << sub_index;
+        EXPECT_EQ(used->has_valid_bit, known->has_valid_bit) << std::hex << index << ":" << sub_index;
+      } else if (known != nullptr) {
+        // 1200h is what CiA 301 says; the others are not of a service that the runtime configures by COB-ID.
+        EXPECT_TRUE(index == 0x1200 || known->service == CobIdService::emcy_consumer ||
+                    known->service == CobIdService::sdo_client)
+            << std::hex << index << ":" << sub_index;
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -60,8 +60,8 @@ TEST(Emcy, HistoryIsClearedByZeroOnly) {
 TEST(Emcy, HistoryStaysInItsMemoryWhateverTheApplicationSets) {
   Bench device;
   const std::uint8_t count[] = {200};
-  device.node.set(0x1003, 0, count);
-  device.node.set<od::inhibit_time_emcy>(5);
+  EXPECT_EQ(device.node.set(0x1003, 0, count), canopen::ok);
+  EXPECT_EQ(device.node.set<od::inhibit_time_emcy>(5), canopen::ok);
   device.node.set<od::byte>(9);
   device.node.emergency(0x4210, ErrorRegister::temperature);
   device.pass(0s);

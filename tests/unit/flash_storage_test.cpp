@@ -65,6 +65,34 @@ TYPED_TEST(FlashStorageOf, IsEmptyWhenThePagesAreErased) {
   EXPECT_EQ(storage.erasures(), 0u);
 }
 
+TYPED_TEST(FlashStorageOf, TakesNotMoreBytesThanTheAnnouncedSize) {
+  TypeParam flash;
+  canopen::FlashStorage storage{flash};
+  static_cast<void>(storage.open());
+  const auto image = image_of(5, 1);
+  ASSERT_TRUE(storage.begin(5));
+  EXPECT_FALSE(storage.write(image_of(6, 1))) << "more than all";
+  ASSERT_TRUE(storage.write(std::span{image}.first(3)));
+  EXPECT_FALSE(storage.write(image_of(3, 1))) << "more than the rest";
+  EXPECT_FALSE(storage.commit()) << "it is not whole";
+  ASSERT_TRUE(storage.write(std::span{image}.subspan(3)));
+  EXPECT_FALSE(storage.write(image_of(1, 1)));
+  EXPECT_TRUE(storage.commit());
+  EXPECT_EQ(get(storage), image);
+}
+
+TYPED_TEST(FlashStorageOf, TakesNoImageThatAPageHasNoRoomFor) {
+  TypeParam flash;
+  canopen::FlashStorage storage{flash};
+  static_cast<void>(storage.open());
+  const std::uint32_t header = std::max(12u, TypeParam::word_size);
+  const std::uint32_t room = 256 - (header + TypeParam::word_size - 1) / TypeParam::word_size * TypeParam::word_size;
+  EXPECT_FALSE(storage.begin(room + 1));
+  EXPECT_EQ(flash.erased[0] + flash.erased[1], 0);
+  EXPECT_TRUE(put(storage, image_of(room, 1)));
+  EXPECT_EQ(get(storage), image_of(room, 1));
+}
+
 /// A flipped bit in the newest image is no loss of power, after which its header would be bad.
 TYPED_TEST(FlashStorageOf, ReportsADamagedImageThatIsNewerThanTheOther) {
   TypeParam flash;
@@ -237,11 +265,11 @@ struct Values {
 };
 
 void set(Device& device, const Values& values) {
-  device.node.set<od::profile_acceleration>(values.acceleration);
+  EXPECT_EQ(device.node.set<od::profile_acceleration>(values.acceleration), canopen::ok);
   const std::uint8_t time[] = {static_cast<std::uint8_t>(values.inhibit_time),
                                static_cast<std::uint8_t>(values.inhibit_time >> 8)};
-  device.node.set(InhibitTime::index, InhibitTime::sub_index, time);  // the PDO is valid
-  device.node.set<od::gain>(values.gain);
+  EXPECT_EQ(device.node.set(InhibitTime::index, InhibitTime::sub_index, time), canopen::ok);  // the PDO is valid
+  EXPECT_EQ(device.node.set<od::gain>(values.gain), canopen::ok);
 }
 
 Values values(const Device& device) {

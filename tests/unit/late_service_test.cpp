@@ -44,7 +44,7 @@ TEST(LateTpdo, GoesOutWhoseEventTimerRanOut40MinutesAgo) {
 
 TEST(LateTpdo, GoesOutWhoseInhibitTimeEnded40MinutesAgo) {
   Bench device;
-  device.node.set(0x1800, 3, ten_milliseconds);
+  EXPECT_EQ(device.node.set(0x1800, 3, ten_milliseconds), canopen::ok);
   device.ask(bench::start);
   device.ask("605 2B 17 10 00 0A 00 00 00");
   device.node.set<od::input_word>(0x1234);
@@ -64,7 +64,7 @@ TEST(LateHeartbeat, GoesOutOnceAndThenEveryPeriod) {
 
 TEST(LateEmcy, GoesOutWhoseInhibitTimeEnded40MinutesAgo) {
   Bench device;
-  device.node.set<od::inhibit_time_emcy>(100);  // 10 ms
+  EXPECT_EQ(device.node.set<od::inhibit_time_emcy>(100), canopen::ok);  // 10 ms
   device.node.emergency(0x1000, canopen::ErrorRegister::generic);
   device.node.emergency(0x2000, canopen::ErrorRegister::generic);
   EXPECT_EQ(serve(device), "085 00 10 01 00 00 00 00 00");

@@ -168,7 +168,7 @@ TYPED_TEST(EveryDevice, SendsItsStateAsHeartbeatInEachState) {
     device.ask("605 23 00 18 01 05 00 00 80");  // TPDO1 is none: nothing but the heartbeat
     for (std::uint16_t index = 0x1800; index <= 0x1803; ++index) manual::write(device, index, 1, 4, 0xC0000000);
     device.ask(state.command);
-    device.node.set(0x1017, 0, std::array<std::uint8_t, 2>{100, 0});
+    EXPECT_EQ(device.node.set(0x1017, 0, std::array<std::uint8_t, 2>{100, 0}), canopen::ok);
     const std::string at_once = device.pass(0s);
     EXPECT_EQ(at_once, state.heartbeat);
     EXPECT_EQ(device.pass(99ms), "");

@@ -4,6 +4,8 @@
 #include <canopen/port/virtual_bus.hpp>
 #include <mpdo_device/device.hpp>
 #include <pdo_device/device.hpp>
+#include <array>
+#include <span>
 #include <vector>
 
 #include "bench.hpp"
@@ -23,6 +25,49 @@ using Bench = bench::Bench<mpdo_device::Device>;
 struct Running : Bench {
   Running() { ask(bench::start); }
 };
+
+// The lists: an array of up to 254 elements of 32 bits (1FA0h) or 64 bits (1FD0h), and a number of one byte (CiA 301,
+// 7.5.2.41 and 7.5.2.42).
+
+namespace entry = canopen::entry;
+
+/// A device with a list of four elements.
+template <std::uint16_t Index, entry::Word Count, entry::Word Element>
+struct DeviceWithList {
+  static constexpr canopen::Run runs[] = {{Index, 0}, {0xFFFF, 1}};
+  static constexpr entry::Word entries[] = {entry::array | 0};
+  static constexpr canopen::Group groups[] = {{.ram = 0, .rom = 0, .subs = 0, .highest = 4, .stride = 8}};
+  static constexpr entry::Word subs[] = {entry::ram | entry::rw | Count, entry::ram | entry::rw | Element | 8};
+  static constexpr canopen::Dictionary dictionary{
+      .runs = runs, .entries = entries, .groups = groups, .subs = subs, .limits = {}, .wide_limits = {}, .constants = nullptr};
+};
+template <entry::Word Count, entry::Word Element, std::uint16_t Index = 0x1FA0>
+constexpr std::uint8_t scanned = canopen::MpdoLists<DeviceWithList<Index, Count, Element>, canopen::ScannedObjects>::capacity(Index);
+template <entry::Word Count, entry::Word Element, std::uint16_t Index = 0x1FD0>
+constexpr std::uint8_t dispatched =
+    canopen::MpdoLists<DeviceWithList<Index, Count, Element>, canopen::DispatchedObjects>::capacity(Index);
+
+static_assert(scanned<entry::u8, entry::u32> == 4);
+static_assert(scanned<entry::u16, entry::u32> == 0, "the number of elements has one byte");
+static_assert(scanned<entry::u8, entry::u16> == 0 && scanned<entry::u8, entry::u64> == 0);
+static_assert(dispatched<entry::u8, entry::u64> == 4);
+static_assert(dispatched<entry::u32, entry::u64> == 0 && dispatched<entry::u8, entry::u32> == 0);
+
+template <class Element>
+using ListsOf = canopen::MpdoLists<DeviceWithList<0x1FA0, entry::u8, entry::u32>, Element>;
+static_assert(ListsOf<canopen::ScannedObjects>::contain(0x1FA0) && ListsOf<canopen::ScannedObjects>::contain(0x1FCF));
+static_assert(!ListsOf<canopen::ScannedObjects>::contain(0x1F9F) && !ListsOf<canopen::ScannedObjects>::contain(0x1FD0));
+static_assert(ListsOf<canopen::DispatchedObjects>::contain(0x1FD0) && ListsOf<canopen::DispatchedObjects>::contain(0x1FFF));
+static_assert(!ListsOf<canopen::DispatchedObjects>::contain(0x1FCF) && !ListsOf<canopen::DispatchedObjects>::contain(0x2000));
+
+TEST(MpdoLists, OfTheirNumberOneByteIsLookedAt) {
+  Bench device;
+  // What comes after the byte in memory would be a block of 255 objects.
+  const std::array<std::uint8_t, 4> memory{1, 0xFF, 0xFF, 0xFF};
+  using Service = canopen::MpdoService<mpdo_device::Device>;
+  EXPECT_EQ(Service::check(device.node.entries(), 0x1FA0, 0, std::span{memory}.first(1)), canopen::ok);
+  EXPECT_EQ(Service::check(device.node.entries(), 0x1FD0, 0, std::span{memory}.first(1)), canopen::ok);
+}
 
 // DAM consumer
 
@@ -173,7 +218,7 @@ TEST(SamProducer, SendsAnObjectThatHasANewValue) {
   EXPECT_EQ(device.pass(0s), "185 05 01 20 00 34 12 00 00");
   device.node.set<od::word>(0x1234);
   EXPECT_EQ(device.pass(0s), "");
-  device.node.set<od::signed_24_bits>(-2);
+  EXPECT_EQ(device.node.set<od::signed_24_bits>(-2), canopen::ok);
   EXPECT_EQ(device.pass(0s), "185 05 03 20 00 FE FF FF 00");
 }
 
@@ -279,7 +324,7 @@ TEST(SamProducer, IsOffWhileItsTpdoIsNotValid) {
 
 TEST(DamProducer, SendsTheValueOfAnObject) {
   Running device;
-  device.node.set<od::percentage>(42);
+  EXPECT_EQ(device.node.set<od::percentage>(42), canopen::ok);
   EXPECT_TRUE(device.node.send_mpdo<od::percentage>({NodeId{6}, 0x2000, 0}));
   EXPECT_EQ(device.node.next_deadline(), device.now);
   EXPECT_EQ(device.pass(0s), "285 86 00 20 00 2A 00 00 00");
@@ -287,7 +332,7 @@ TEST(DamProducer, SendsTheValueOfAnObject) {
 
 TEST(DamProducer, SendsNegativeValuesInTheirOwnLength) {
   Running device;
-  device.node.set<od::signed_24_bits>(-2);
+  EXPECT_EQ(device.node.set<od::signed_24_bits>(-2), canopen::ok);
   device.pass(0s);
   EXPECT_TRUE(device.node.send_mpdo<od::signed_24_bits>({NodeId{6}, 0x3000, 1}));
   EXPECT_EQ(device.pass(0s), "285 86 00 30 01 FE FF FF 00");

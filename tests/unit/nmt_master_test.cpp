@@ -82,7 +82,9 @@ class Slave {
 
   void after_reset() {
     guarding_.reset();
-    if (beats_) node_.set<od::producer_heartbeat_time>(50);
+    if (beats_) {
+      EXPECT_EQ(node_.set<od::producer_heartbeat_time>(50), canopen::ok);
+    }
   }
 
   VirtualBus& bus_;

@@ -88,11 +88,39 @@ TEST(Node, ADomainStaysBoundOverAReset) {
   EXPECT_EQ(device.ask("605 40 12 20 00 00 00 00 00"), "585 41 12 20 00 06 00 00 00");
 }
 
+TEST(Node, EndsTheTransferOfADomainThatGetsOtherMemory) {
+  std::array<std::uint8_t, 16> memory{};
+  std::array<std::uint8_t, 16> other{};
+  const auto downloading = [&](bench::Bench<>& device) {
+    device.node.bind<od::parameter_file>(memory);
+    EXPECT_EQ(device.ask("605 21 12 20 00 0A 00 00 00"), "585 60 12 20 00 00 00 00 00");
+    device.node.bind<od::parameter_file>(other);
+  };
+  const std::string aborted = "585 80 12 20 00 20 00 00 08";
+  Bench device;
+  downloading(device);
+  ASSERT_TRUE(device.node.next_deadline());
+  EXPECT_LE(*device.node.next_deadline(), device.now) << "at once";
+  EXPECT_EQ(device.pass(0s), aborted);
+  Bench asked;
+  downloading(asked);
+  EXPECT_EQ(asked.ask("605 40 01 10 00 00 00 00 00"), aborted + " | 585 4F 01 10 00 00 00 00 00");
+}
+
 TEST(Node, SendsConstantBytesAsADomain) {
   static constexpr std::uint8_t bytes[] = {1, 2, 3};
   Bench device;
   device.node.bind_constant<od::log_file>(bytes);
   EXPECT_EQ(device.ask("605 40 1A 20 00 00 00 00 00"), "585 47 1A 20 00 01 02 03 00");
+}
+
+TEST(Node, EndsTheTransferOfADomainThatGetsOtherConstantBytes) {
+  static constexpr std::uint8_t bytes[] = {1, 2, 3, 4, 5, 6, 7, 8};
+  Bench device;
+  device.node.bind_constant<od::log_file>(bytes);
+  EXPECT_EQ(device.ask("605 40 1A 20 00 00 00 00 00"), "585 41 1A 20 00 08 00 00 00");
+  device.node.bind_constant<od::log_file>(bytes);
+  EXPECT_EQ(device.ask("605 40 01 10 00 00 00 00 00"), "585 80 1A 20 00 20 00 00 08 | 585 4F 01 10 00 00 00 00 00");
 }
 
 // shows 000.32
@@ -123,8 +151,8 @@ TEST(Node, StaysAsItIsBeforeItHasPower) {
 TEST(Node, TellsTheNearestDeadline) {
   Bench device;
   EXPECT_FALSE(device.node.next_deadline());
-  device.node.set<od::producer_heartbeat_time>(100);
-  device.node.set<od::tpdo_communication_parameter_1::event_timer>(30);
+  EXPECT_EQ(device.node.set<od::producer_heartbeat_time>(100), canopen::ok);
+  EXPECT_EQ(device.node.set<od::tpdo_communication_parameter_1::event_timer>(30), canopen::ok);
   EXPECT_EQ(device.pass(0ms), "705 7F");
   device.ask(bench::start);
   EXPECT_EQ(device.node.next_deadline(), device.now + 30ms);
@@ -142,7 +170,7 @@ TEST(Node, TwoOfTheSameDeviceShareNothing) {
 TEST(Node, SendsTheAnswerBeforeTheHeartbeatAndTheHeartbeatBeforePdos) {
   auto device = bench::with(canopen::on_write<od::profile_acceleration>([](auto& node, std::uint32_t) {
     node.template set<od::statusword>(1);
-    node.template set<od::producer_heartbeat_time>(100);
+    EXPECT_EQ(node.template set<od::producer_heartbeat_time>(100), canopen::ok);
   }));
   device.ask(bench::start);
   EXPECT_EQ(device.ask("605 23 83 60 00 01 00 00 00"), "585 60 83 60 00 00 00 00 00 | 705 05 | 185 01 00 00 00 00 00");

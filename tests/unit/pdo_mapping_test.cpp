@@ -44,11 +44,34 @@ std::string remap(Bench& device, std::uint16_t mapping, const std::vector<std::u
   return answer == "ok" ? count(device, mapping, entry) : answer;
 }
 
+// How a mapping is kept: 12 bits hold an offset up to FFEh, as FFFh stands for "nothing".
+
+namespace entry = canopen::entry;
+
+template <entry::Word Word>
+struct DeviceOf {
+  static constexpr std::uint32_t dummies = 0;
+  static constexpr canopen::Run runs[] = {{0x2000, 0}, {0xFFFF, 1}};
+  static constexpr entry::Word entries[] = {Word};
+  static constexpr canopen::Dictionary dictionary{
+      .runs = runs, .entries = entries, .groups = {}, .subs = {}, .limits = {}, .wide_limits = {}, .constants = nullptr};
+};
+template <entry::Word Word>
+constexpr std::size_t bytes_of_a_run = sizeof(typename canopen::MappedRun<DeviceOf<Word>>::Word);
+
+static_assert(bytes_of_a_run<entry::ram | entry::u8 | entry::rw | entry::tpdo | 0xFFE> == 2);
+static_assert(bytes_of_a_run<entry::ram | entry::u8 | entry::rw | entry::tpdo | 0xFFF> == 4);
+static_assert(bytes_of_a_run<entry::rom | entry::u8 | entry::ro | entry::tpdo | 0xFFF> == 4);
+static_assert(bytes_of_a_run<entry::ram | entry::u8 | entry::rw | entry::rpdo | 0x1000> == 4);
+static_assert(bytes_of_a_run<entry::ram | entry::u8 | entry::rw | 0xFFF> == 2, "no PDO carries it");
+static_assert(bytes_of_a_run<entry::immediate | entry::u16 | entry::ro | entry::tpdo | 0xFFF> == 2, "its value");
+static_assert(bytes_of_a_run<entry::ram | entry::boolean | entry::rw | entry::rpdo> == 4, "its length is in bits");
+
 TEST(DynamicMapping, TakesEffectWhenThePdoIsCreated) {
   Bench device;
   device.ask(bench::start);
   device.node.set<od::byte>(0x5A);
-  device.node.set<od::signed_24_bits>(-2);
+  EXPECT_EQ(device.node.set<od::signed_24_bits>(-2), canopen::ok);
   device.node.set<od::input_word>(0x1234);
   device.pass(0s);
   EXPECT_EQ(remap(device, 0x1A03, {0x20060010, 0x20030018, 0x20000008}), "ok");

@@ -1,6 +1,7 @@
 /// Channels of an I/O module (CiA 401) and of an encoder (CiA 406) and the frames that they cause.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <canopen/profile/cia401.hpp>
 #include <canopen/profile/cia406.hpp>
 #include <cstdint>
@@ -118,6 +119,58 @@ TEST_F(ProfileDigitalOutputs, TakeTheValuesOf6207hWhere6206hSaysSo) {
   EXPECT_EQ(update(), (std::vector<unsigned>{0xF5, 0x00}));
   EXPECT_EQ(module.ask("605 40 00 62 01 00 00 00 00"), "585 4F 00 62 01 F5 00 00 00");
   EXPECT_EQ(ask("205 F0 FF"), (std::vector<unsigned>{0xF0, 0xFF}));  // a new value counts again
+}
+
+/// The module without these objects.
+template <std::uint16_t... Missing>
+struct ModuleWithout : io_device::Device {
+  static constexpr auto entries = [] {
+    std::array<canopen::entry::Word, std::size(io_device::table::entries)> words{};
+    for (std::size_t run = 0; run + 1 < std::size(io_device::table::runs); ++run) {
+      for (std::size_t at = io_device::table::runs[run].position; at < io_device::table::runs[run + 1].position; ++at) {
+        const std::size_t index = io_device::table::runs[run].first + at - io_device::table::runs[run].position;
+        words[at] = ((index == Missing) || ...) ? canopen::Dictionary::no_object : io_device::table::entries[at];
+      }
+    }
+    return words;
+  }();
+  static constexpr canopen::Dictionary dictionary = [] {
+    canopen::Dictionary copy = io_device::dictionary;
+    copy.entries = entries;
+    return copy;
+  }();
+};
+
+/// The outputs of the first blocks and channels after a loss of communication; before they are F0h, FFh and 1000, -1000.
+template <std::uint16_t... Missing>
+std::string outputs_after_a_loss() {
+  bench::Bench<ModuleWithout<Missing...>> module;
+  canopen::DigitalOutputs<ModuleWithout<Missing...>> digital;
+  canopen::AnalogueOutputs<ModuleWithout<Missing...>> analogue;
+  for (const char* write : {"605 2F 00 62 01 F0 00 00 00", "605 2F 00 62 02 FF 00 00 00", "605 2F 06 62 01 0F 00 00 00",
+                            "605 2F 07 62 01 A5 00 00 00", "605 2B 11 64 01 E8 03 00 00", "605 2B 11 64 02 18 FC 00 00",
+                            "605 2F 43 64 01 00 00 00 00", "605 23 44 64 02 07 00 00 00"}) {
+    module.ask(write);
+  }
+  digital.fail(module.node);
+  analogue.fail(module.node);
+  std::string text;
+  for (const char* read : {"605 40 00 62 01 00 00 00 00", "605 40 00 62 02 00 00 00 00", "605 40 11 64 01 00 00 00 00",
+                           "605 40 11 64 02 00 00 00 00"}) {
+    text += (text.empty() ? "" : ", ") + module.ask(read).substr(16, read[8] == '0' ? 2 : 5);
+  }
+  return text;
+}
+
+// CiA 401: error mode 1, the default, takes the error value, 0 by default.
+TEST(ProfileOutputs, KeepTheirValuesWithoutErrorModeAndErrorValue) {
+  EXPECT_EQ(outputs_after_a_loss<>(), "F5, 00, E8 03, 07 00");
+  EXPECT_EQ((outputs_after_a_loss<0x6206, 0x6207>()), "F0, FF, E8 03, 07 00");
+  EXPECT_EQ((outputs_after_a_loss<0x6443, 0x6444>()), "F5, 00, E8 03, 18 FC");
+  EXPECT_EQ((outputs_after_a_loss<0x6206>()), "A5, 00, E8 03, 07 00");
+  EXPECT_EQ((outputs_after_a_loss<0x6207>()), "F0, 00, E8 03, 07 00");
+  EXPECT_EQ((outputs_after_a_loss<0x6443>()), "F5, 00, 00 00, 07 00");
+  EXPECT_EQ((outputs_after_a_loss<0x6444>()), "F5, 00, E8 03, 00 00");
 }
 
 TEST(ProfileOutputs, FailInStoppedWithoutHeartbeatAndWithBusOff) {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,28 @@ static_assert(canopen::check_value<od::unsigned24_value>(0x1000000) == AbortCode
 static_assert(canopen::check_value<od::real32_value>(1.6) == AbortCode::value_too_high);
 
 static_assert(canopen::check_value<od::real64_value>(1e300) == canopen::ok);
+
+// Limits of a REAL, which one limit alone is as well.
+struct Ratio : canopen::Object<0x5000, 0, float, canopen::Access::rw> {
+  static constexpr float low_limit = -0.5F;
+  static constexpr float high_limit = 1.5F;
+};
+struct AtMost : canopen::Object<0x5001, 0, double, canopen::Access::rw> {
+  static constexpr double high_limit = 2.0;
+};
+struct AtLeast : canopen::Object<0x5002, 0, double, canopen::Access::rw> {
+  static constexpr double low_limit = -2.0;
+};
+static_assert(canopen::check_value<Ratio>(1.5F) == canopen::ok && canopen::check_value<Ratio>(-0.5F) == canopen::ok);
+static_assert(canopen::check_value<Ratio>(1.625F) == AbortCode::value_too_high);
+static_assert(canopen::check_value<Ratio>(-0.625F) == AbortCode::value_too_low);
+static_assert(canopen::check_value<Ratio>(2) == AbortCode::value_too_high);
+static_assert(canopen::check_value<AtMost>(2.0) == canopen::ok && canopen::check_value<AtMost>(-1e300) == canopen::ok);
+static_assert(canopen::check_value<AtMost>(2.5) == AbortCode::value_too_high);
+static_assert(canopen::check_value<AtLeast>(-2.0) == canopen::ok && canopen::check_value<AtLeast>(1e300) == canopen::ok);
+static_assert(canopen::check_value<AtLeast>(-2.5) == AbortCode::value_too_low);
+static_assert(canopen::check_value<AtMost>(std::numeric_limits<double>::quiet_NaN()) == AbortCode::invalid_value);
+static_assert(canopen::check_value<AtLeast>(std::numeric_limits<double>::quiet_NaN()) == AbortCode::invalid_value);
 
 // Without waiting
 
@@ -220,7 +243,7 @@ TEST(BlockingSdo, CompletesATransferInsideOfWhichAnotherOneHasRun) {
 
 TEST(BlockingSdo, RefusesATransferToTheNodeThatItWaitsFor) {
   Plant plant;
-  plant.device.set<od::producer_heartbeat_time>(10);
+  EXPECT_EQ(plant.device.set<od::producer_heartbeat_time>(10), canopen::ok);
   AbortCode nested = canopen::ok;
   plant.master.on_frame = [&](const canopen::Frame&, TimePoint) {
     if (nested == canopen::ok) nested = plant.master.upload(NodeId{6}, 0x1000, 0).abort_code();
@@ -231,7 +254,7 @@ TEST(BlockingSdo, RefusesATransferToTheNodeThatItWaitsFor) {
 
 TEST(BlockingSdo, HandsOtherFramesOnWhileItWaits) {
   Plant plant;
-  plant.device.set<od::producer_heartbeat_time>(10);
+  EXPECT_EQ(plant.device.set<od::producer_heartbeat_time>(10), canopen::ok);
   int heartbeats = 0;
   plant.master.on_frame = [&](const canopen::Frame& frame, TimePoint) { heartbeats += frame.id == 0x705 ? 1 : 0; };
   (void)plant.master.upload(NodeId{6}, 0x1000, 0);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include "bench.hpp"
 
@@ -64,6 +65,57 @@ TEST(SdoClient, HasNoDataAfterADownload) {
   pair.bus.settle();
   EXPECT_EQ(pair.client.result(), canopen::ok);
   EXPECT_TRUE(pair.client.data().empty());
+}
+
+// CiA 301, 7.2.4.3.6: with s = 1 the answer says how many of its four bytes count.
+struct Expedited {
+  explicit Expedited(const std::string& answer, std::size_t room) {
+    client.upload(0x2000, 1, std::span{memory}.first(room), TimePoint{});
+    bus.take();
+    client.on_frame(frame("585 " + answer), TimePoint{});
+  }
+  bench::RecordingBus bus;
+  SdoClient<bench::RecordingBus> client{bus, NodeId{5}};
+  std::array<std::uint8_t, 8> memory{};
+};
+
+TEST(SdoClient, RefusesAnExpeditedAnswerThatIsLongerThanTheMemory) {
+  const char* const answers[] = {"4F 00 20 01 AA 00 00 00", "4B 00 20 01 AA BB 00 00", "47 00 20 01 AA BB CC 00",
+                                 "43 00 20 01 AA BB CC DD"};
+  for (std::size_t size = 1; size <= 4; ++size) {
+    for (std::size_t room = 1; room <= 5; ++room) {
+      Expedited transfer{answers[size - 1], room};
+      EXPECT_EQ(transfer.client.result(), size <= room ? canopen::ok : AbortCode::out_of_memory) << size << " " << room;
+      EXPECT_EQ(transfer.bus.take(), size <= room ? "" : "605 80 00 20 01 05 00 04 05") << size << " " << room;
+      EXPECT_EQ(transfer.client.data().size(), size <= room ? size : 0) << size << " " << room;
+      EXPECT_TRUE(transfer.client.size_known());
+    }
+  }
+}
+
+TEST(SdoClient, CutsAnExpeditedAnswerWithoutASizeToTheMemory) {
+  for (std::size_t room = 1; room <= 5; ++room) {
+    Expedited transfer{"42 00 20 01 AA BB CC DD", room};
+    EXPECT_EQ(transfer.client.result(), canopen::ok) << room;
+    EXPECT_EQ(transfer.bus.take(), "");
+    EXPECT_EQ(transfer.client.data().size(), room < 4 ? room : 4);
+    EXPECT_EQ(transfer.memory[room], 0) << "nothing after the end of the memory";
+    EXPECT_FALSE(transfer.client.size_known());
+  }
+}
+
+TEST(SdoClient, GivesAllFourBytesOfAnExpeditedAnswerWithoutASizeToASink) {
+  bench::RecordingBus bus;
+  SdoClient<bench::RecordingBus> client{bus, NodeId{5}};
+  std::vector<std::uint8_t> taken;
+  auto sink = [&](std::uint32_t, std::span<const std::uint8_t> bytes, bool) {
+    taken.assign(bytes.begin(), bytes.end());
+    return canopen::ok;
+  };
+  client.upload(0x2000, 1, canopen::sink_of(sink), TimePoint{});
+  client.on_frame(frame("585 42 00 20 01 AA BB CC DD"), TimePoint{});
+  EXPECT_EQ(client.result(), canopen::ok);
+  EXPECT_EQ(taken, (std::vector<std::uint8_t>{0xAA, 0xBB, 0xCC, 0xDD}));
 }
 
 TEST(SdoClient, UploadsAString) {

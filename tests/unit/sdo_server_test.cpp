@@ -25,11 +25,11 @@ TEST(SdoServer, RefusesACommandThatNothingCarriesOut) {
 TEST(SdoServer, UploadsUpToFourBytesExpedited) {
   Bench device;
   EXPECT_EQ(device.ask("605 40 00 10 00 00 00 00 00"), "585 43 00 10 00 91 01 0F 00");  // UNSIGNED32
-  device.node.set<od::unsigned24_value>(0x123456);
+  EXPECT_EQ(device.node.set<od::unsigned24_value>(0x123456), canopen::ok);
   EXPECT_EQ(device.ask("605 40 04 20 00 00 00 00 00"), "585 47 04 20 00 56 34 12 00");
   device.node.set<od::integer16_value>(-2);
   EXPECT_EQ(device.ask("605 40 02 20 00 00 00 00 00"), "585 4B 02 20 00 FE FF 00 00");
-  device.node.set<od::integer8_value>(-3);
+  EXPECT_EQ(device.node.set<od::integer8_value>(-3), canopen::ok);
   EXPECT_EQ(device.ask("605 40 01 20 00 00 00 00 00"), "585 4F 01 20 00 FD 00 00 00");
 }
 
@@ -42,7 +42,7 @@ TEST(SdoServer, UploadsABooleanAsOneByte) {
 // shows 000.25
 TEST(SdoServer, UploadsReal32) {
   Bench device;
-  device.node.set<od::real32_value>(1.5f);
+  EXPECT_EQ(device.node.set<od::real32_value>(1.5f), canopen::ok);
   EXPECT_EQ(device.ask("605 40 0A 20 00 00 00 00 00"), "585 43 0A 20 00 00 00 C0 3F");
 }
 
@@ -90,7 +90,7 @@ TEST(SdoServer, UploadsAStringInSegments) {
 
 TEST(SdoServer, UploadsNumbersOfFiveToEightBytesInSegments) {
   Bench device;
-  device.node.set<od::integer40_value>(-2);
+  EXPECT_EQ(device.node.set<od::integer40_value>(-2), canopen::ok);
   EXPECT_EQ(device.ask("605 40 06 20 00 00 00 00 00"), "585 41 06 20 00 05 00 00 00");
   EXPECT_EQ(device.ask("605 60 00 00 00 00 00 00 00"), "585 05 FE FF FF FF FF 00 00");
   device.node.set<od::unsigned64_value>(0x0102030405060708);

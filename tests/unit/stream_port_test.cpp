@@ -283,6 +283,24 @@ TEST(SocketcandPort, SendsAndReceivesFrames) {
   EXPECT_EQ(text_of(bus.receive(1s)), "705 05");
 }
 
+TEST(SocketcandPort, HasFramesThatComeWithTheEndOfTheHandshake) {
+  Server server;
+  std::thread greeting{[&] {
+    server.accept();
+    server.say("< hi >");
+    EXPECT_TRUE(server.hears("< open vcan0 >"));
+    server.say("< ok >");
+    EXPECT_TRUE(server.hears("< rawmode >"));
+    server.say("< ok >< frame 585 1.5 4300 >< frame 705 1.5 05 >");
+  }};
+  HostBus bus{server.address("vcan0")};
+  greeting.join();
+  pollfd waiting{bus.file_descriptor(), POLLIN, 0};
+  EXPECT_EQ(::poll(&waiting, 1, 10'000), 1) << "a poll loop of the application learns of them";
+  EXPECT_EQ(text_of(bus.receive(0us)), "585 43 00");
+  EXPECT_EQ(text_of(bus.receive(0us)), "705 05");
+}
+
 /// Says elements that are not frames until it goes, or for half a minute, after which a test has failed.
 class Flood {
  public:

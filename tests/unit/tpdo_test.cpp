@@ -76,8 +76,8 @@ TEST(Tpdo, PacksObjectsAtAnyBit) {
   Bench device;
   device.ask("605 23 01 18 01 85 02 00 40");
   device.node.set<od::inputs::input_2>(true);
-  device.node.set<od::integer40_value>(-1);
-  device.node.set<od::error_register>(0x81);
+  EXPECT_EQ(device.node.set<od::integer40_value>(-1), canopen::ok);
+  EXPECT_EQ(device.node.set<od::error_register>(0x81), canopen::ok);
   EXPECT_EQ(device.ask(bench::start), std::string{zeros} + " | 285 FE FF FF FF FF 07 02");
 }
 
@@ -101,7 +101,7 @@ TEST(Tpdo, MayHaveA29BitCanId) {
 
 TEST(Tpdo, IsSentEachTimeTheEventTimerRunsOut) {
   Bench device;
-  device.node.set<od::tpdo_communication_parameter_1::event_timer>(10);
+  EXPECT_EQ(device.node.set<od::tpdo_communication_parameter_1::event_timer>(10), canopen::ok);
   device.ask(bench::start);
   EXPECT_EQ(device.node.next_deadline(), device.now + 10ms);
   EXPECT_EQ(device.pass(9ms), "");
@@ -111,7 +111,7 @@ TEST(Tpdo, IsSentEachTimeTheEventTimerRunsOut) {
 
 TEST(Tpdo, ItsEventTimerDoesNotDriftWhenServedLate) {
   Bench device;
-  device.node.set<od::tpdo_communication_parameter_1::event_timer>(10);
+  EXPECT_EQ(device.node.set<od::tpdo_communication_parameter_1::event_timer>(10), canopen::ok);
   device.ask(bench::start);
   device.now = device.now + 13ms;
   device.node.on_time(device.now);
@@ -127,7 +127,7 @@ TEST(Tpdo, ItsEventTimerDoesNotDriftWhenServedLate) {
 
 TEST(Tpdo, EveryTransmissionRestartsTheEventTimer) {
   Bench device;
-  device.node.set<od::tpdo_communication_parameter_1::event_timer>(10);
+  EXPECT_EQ(device.node.set<od::tpdo_communication_parameter_1::event_timer>(10), canopen::ok);
   device.ask(bench::start);
   device.pass(6ms);
   device.node.set<od::statusword>(1);
@@ -146,7 +146,7 @@ TEST(Tpdo, AnEventTimerWrittenInOperationalCountsAtOnce) {
 
 TEST(Tpdo, IsNotSentAgainBeforeTheInhibitTimeIsOver) {
   Bench device;
-  device.node.set(0x1800, 3, ten_milliseconds);
+  EXPECT_EQ(device.node.set(0x1800, 3, ten_milliseconds), canopen::ok);
   device.ask(bench::start);
   device.node.set<od::statusword>(1);
   EXPECT_EQ(device.node.next_deadline(), device.now + 10ms);
@@ -160,8 +160,8 @@ TEST(Tpdo, IsNotSentAgainBeforeTheInhibitTimeIsOver) {
 
 TEST(Tpdo, TheInhibitTimeHoldsTheEventTimerBackToo) {
   Bench device;
-  device.node.set(0x1800, 3, ten_milliseconds);
-  device.node.set<od::tpdo_communication_parameter_1::event_timer>(3);
+  EXPECT_EQ(device.node.set(0x1800, 3, ten_milliseconds), canopen::ok);
+  EXPECT_EQ(device.node.set<od::tpdo_communication_parameter_1::event_timer>(3), canopen::ok);
   device.ask(bench::start);
   EXPECT_EQ(device.node.next_deadline(), device.now + 10ms);
   EXPECT_EQ(device.pass(9ms), "");
@@ -249,7 +249,7 @@ struct TimerOnly : sample::Device {
 
 TEST(Tpdo, AnOptionLeavesSendingToTheEventTimerAlone) {
   Bench<TimerOnly> device;
-  device.node.set<od::tpdo_communication_parameter_1::event_timer>(1);
+  EXPECT_EQ(device.node.set<od::tpdo_communication_parameter_1::event_timer>(1), canopen::ok);
   EXPECT_EQ(device.ask(bench::start), "");
   device.node.set<od::statusword>(1);
   EXPECT_EQ(device.pass(999us), "");
