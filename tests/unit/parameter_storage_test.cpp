@@ -1,6 +1,8 @@
 /// 1010h, 1011h and 1020h: what is stored, what is refused, and when stored and default values count.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <longer_label/device.hpp>
 #include <stored_device/device.hpp>
 
@@ -153,9 +155,9 @@ TEST(StoreParameters, LeavesOtherSubIndicesToTheApplication) {
 TEST(StoreParameters, IsThereForTheApplication) {
   MemoryStorage storage;
   auto device = powered(storage);
-  device.node.set<od::profile_acceleration>(7);
+  EXPECT_EQ(device.node.set<od::profile_acceleration>(7), canopen::ok);
   EXPECT_EQ(device.node.save(), canopen::ok);
-  device.node.set<od::profile_acceleration>(8);
+  EXPECT_EQ(device.node.set<od::profile_acceleration>(8), canopen::ok);
   device.ask(bench::reset_node);
   EXPECT_EQ(device.node.get<od::profile_acceleration>(), 7u);
   EXPECT_EQ(device.node.restore(3), canopen::ok);
@@ -541,6 +543,97 @@ TEST(StoreParameters, StartsWithDefaultsWhereTheStorageCannotBeRead) {
   EXPECT_EQ(device.ask(save_all), "585 80 10 10 01 00 00 06 06");
 }
 
+// Values that were stored under other limits
+
+/// The device with other limits of 6083h, which are 1 and 4294967295 in the data sheet.
+template <std::uint32_t Low, std::uint32_t High>
+struct WithLimits : stored_device::Device {
+  static constexpr auto limits = [] {
+    std::array<canopen::Limits, std::size(stored_device::table::limits)> rows{};
+    std::ranges::copy(stored_device::table::limits, rows.begin());
+    for (canopen::Limits& row : rows) {
+      if (row.key == canopen::object_key(0x6083, 0)) row = {row.key, Low, High};
+    }
+    return rows;
+  }();
+  static constexpr canopen::Dictionary dictionary = [] {
+    canopen::Dictionary copy = stored_device::dictionary;
+    copy.limits = limits;
+    return copy;
+  }();
+};
+
+template <class Device>
+std::string acceleration_after(MemoryStorage storage) {
+  auto device = powered<Device>(storage);
+  EXPECT_EQ(device.ask("605 40 17 10 00 00 00 00 00"), "585 4B 17 10 00 64 00 00 00") << "it is in another section";
+  return device.ask("605 40 83 60 00 00 00 00 00");
+}
+
+TEST(StoreParameters, DoesNotTakeValuesThatWereStoredUnderOtherLimits) {
+  MemoryStorage storage;
+  {
+    auto device = powered(storage);
+    device.ask("605 23 83 60 00 D0 07 00 00");
+    device.ask("605 2B 17 10 00 64 00 00 00");
+    EXPECT_EQ(device.ask(save_all), saved_all);
+  }
+  const std::string stored = "585 43 83 60 00 D0 07 00 00";
+  const std::string by_default = "585 43 83 60 00 E8 03 00 00";
+  EXPECT_EQ((acceleration_after<WithLimits<1, 0xFFFF'FFFF>>(storage)), stored);
+  EXPECT_EQ((acceleration_after<WithLimits<2, 0xFFFF'FFFF>>(storage)), by_default);
+  EXPECT_EQ((acceleration_after<WithLimits<1, 0xFFFF'FFFE>>(storage)), by_default);
+}
+
+// The signature of a section follows from each limit, also from those of more than 32 bits.
+template <std::uint64_t Low, std::uint64_t High>
+struct WithWideLimits : sample::Device {
+  static constexpr canopen::WideLimits wide_limits[] = {{canopen::object_key(0x2007, 0x00), Low, High},
+                                                        sample::table::wide_limits[1]};
+  static constexpr canopen::Dictionary dictionary = [] {
+    canopen::Dictionary copy = sample::dictionary;
+    copy.wide_limits = wide_limits;
+    return copy;
+  }();
+};
+template <class Device>
+constexpr auto signatures = canopen::ParameterLayout<Device>::signatures;
+constexpr std::uint64_t wide_low = sample::table::wide_limits[0].low;
+constexpr std::uint64_t wide_high = sample::table::wide_limits[0].high;
+static_assert(signatures<WithWideLimits<wide_low, wide_high>> == signatures<sample::Device>);
+static_assert(signatures<WithWideLimits<wide_low + 1, wide_high>> != signatures<sample::Device>);
+static_assert(signatures<WithWideLimits<wide_low + (1ull << 32), wide_high>> != signatures<sample::Device>);
+static_assert(signatures<WithWideLimits<wide_low, wide_high + 1>> != signatures<sample::Device>);
+static_assert(signatures<WithWideLimits<wide_low, wide_high + (1ull << 32)>> != signatures<sample::Device>);
+
+/// A device whose only default with the node-ID in it has 64 bits: 2008h.
+struct WideFollower : sample::Device {
+  static constexpr canopen::NodeIdRelative rows[] = {
+      {canopen::entry::offset_of(sample::dictionary.find(0x2008, 0)), 8}};
+  static constexpr std::span<const canopen::NodeIdRelative> node_id_relative_communication() { return {}; }
+  static constexpr std::span<const canopen::NodeIdRelative> node_id_relative_application() { return rows; }
+};
+
+TEST(StoreParameters, LetsAValueOf64BitsFollowTheNodeId) {
+  using Node = canopen::Node<WideFollower, bench::RecordingBus, canopen::StoredIn<MemoryStorage>>;
+  constexpr std::uint64_t high_bit = 1ull << 32;
+  for (const std::uint64_t value : {std::uint64_t{5}, high_bit + 5, std::uint64_t{6}}) {
+    MemoryStorage storage;
+    bench::RecordingBus bus;
+    Node node{bus, NodeId{5}, canopen::stored_in(storage)};
+    node.start({});
+    EXPECT_EQ(node.get<sample::od::unsigned64_value>(), 5u) << "the default";
+    node.set<sample::od::unsigned64_value>(value);
+    EXPECT_EQ(node.save(), canopen::ok);
+    Node same{bus, NodeId{5}, canopen::stored_in(storage)};
+    same.start({});
+    EXPECT_EQ(same.get<sample::od::unsigned64_value>(), value);
+    Node other{bus, NodeId{9}, canopen::stored_in(storage)};
+    other.start({});
+    EXPECT_EQ(other.get<sample::od::unsigned64_value>(), value == 5 ? 9 : value);
+  }
+}
+
 // Verify configuration
 
 constexpr auto configuration_date = "605 40 20 10 01 00 00 00 00";
@@ -577,6 +670,56 @@ TEST(VerifyConfiguration, IsZeroWhenAParameterHasChanged) {
   device.ask("605 23 83 60 00 D1 07 00 00");
   EXPECT_EQ(device.ask(configuration_date), "585 43 20 10 01 00 00 00 00");
   EXPECT_EQ(device.ask(configuration_time), "585 43 20 10 02 00 00 00 00");
+}
+
+// CiA 301, 7.5.2.23: 1020h is 0 when anything but the configuration tool changes a value of the configuration.
+TEST(VerifyConfiguration, IsZeroWhenAWriteHandlerSetsItsObject) {
+  MemoryStorage storage;
+  auto device = powered(storage, canopen::on_write<od::profile_acceleration>([](auto& node, std::uint32_t value) {
+    return node.template set<od::profile_acceleration>(value < 2000 ? value : 2000);
+  }));
+  configure(device);
+  device.ask("605 23 83 60 00 D1 07 00 00");
+  EXPECT_EQ(device.ask(configuration_date), "585 43 20 10 01 34 3C 00 00") << "2000 it was before";
+  device.ask("605 23 83 60 00 CF 07 00 00");
+  EXPECT_EQ(device.ask(configuration_date), "585 43 20 10 01 00 00 00 00");
+  EXPECT_EQ(device.ask(configuration_time), "585 43 20 10 02 00 00 00 00");
+}
+
+TEST(VerifyConfiguration, IsZeroWhenAWriteHandlerSetsAnotherObject) {
+  MemoryStorage storage;
+  auto device = powered(storage, canopen::on_write<od::controlword>([](auto& node, std::uint16_t value) {
+    const std::array<std::uint8_t, 4> acceleration{static_cast<std::uint8_t>(value), 7, 0, 0};
+    return node.set(0x6083, 0, acceleration);
+  }));
+  configure(device);
+  device.ask("605 2B 40 60 00 D0 00 00 00");
+  EXPECT_EQ(device.ask(configuration_date), "585 43 20 10 01 34 3C 00 00") << "2000 it was before";
+  device.ask("605 2B 40 60 00 D1 00 00 00");
+  EXPECT_EQ(device.ask(configuration_date), "585 43 20 10 01 00 00 00 00");
+}
+
+TEST(VerifyConfiguration, IsZeroWhenTheApplicationSetsAParameter) {
+  MemoryStorage storage;
+  auto device = powered(storage);
+  configure(device);
+  EXPECT_EQ(device.node.set<od::profile_acceleration>(2000), canopen::ok);
+  EXPECT_EQ(device.node.set<od::controlword>(6), canopen::ok);
+  EXPECT_EQ(device.ask(configuration_date), "585 43 20 10 01 34 3C 00 00") << "the same value, and no parameter";
+  EXPECT_EQ(device.node.set<od::profile_acceleration>(2001), canopen::ok);
+  EXPECT_EQ(device.ask(configuration_date), "585 43 20 10 01 00 00 00 00");
+}
+
+TEST(VerifyConfiguration, StaysWithWhatTheApplicationSetsInInitialisation) {
+  MemoryStorage storage;
+  auto device = powered(storage, canopen::on_state([](auto& node, canopen::NmtState state) {
+    if (state != canopen::NmtState::initialisation) return;
+    EXPECT_EQ(node.template set<od::profile_acceleration>(3000), canopen::ok);
+  }));
+  configure(device);
+  device.ask(save_all);
+  device.ask(bench::reset_node);
+  EXPECT_EQ(device.ask(configuration_date), "585 43 20 10 01 34 3C 00 00");
 }
 
 TEST(VerifyConfiguration, IsStoredAsZeroWithARangeThatHasChanged) {

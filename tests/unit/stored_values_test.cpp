@@ -124,6 +124,31 @@ TEST(StoredCobIds, ThatAreNotValidMayBeAnything) {
   EXPECT_EQ(value(device, 0x1400, 1), 0x8000'0000u);
 }
 
+// The rows are those of CiA 301: 7.5.2.35 and 7.5.2.37 (transmission types; SYNC start value), 7.5.2.6, 7.5.2.22.
+TEST(StoredServiceParameters, ThatCouldNotBeWrittenLeaveTheDefault) {
+  for (const Value& row : {Value{0x1400, 2, 241}, Value{0x1400, 2, 252}, Value{0x1400, 2, 253}, Value{0x1800, 2, 241},
+                           Value{0x1800, 2, 251}, Value{0x1800, 6, 241}, Value{0x1006, 0, 0x8000'0000},
+                           Value{0x1019, 0, 1}, Value{0x1019, 0, 241}}) {
+    bench::MemoryStorage nothing;
+    Device fresh{canopen::stored_in(nothing)};
+    MemoryStorage storage = stored({row});
+    Device device{canopen::stored_in(storage)};
+    EXPECT_EQ(power_on(storage), reported) << std::hex << row.index << " " << row.value;
+    EXPECT_EQ(value(device, row.index, row.sub_index), value(fresh, row.index, row.sub_index)) << std::hex << row.index;
+  }
+}
+
+TEST(StoredServiceParameters, AtTheEdgesOfWhatCanBeWrittenAreTaken) {
+  for (const Value& row : {Value{0x1400, 2, 240}, Value{0x1400, 2, 254}, Value{0x1800, 2, 240}, Value{0x1800, 2, 252},
+                           Value{0x1800, 2, 253}, Value{0x1800, 6, 240}, Value{0x1006, 0, 0x7FFF'FFFF},
+                           Value{0x1019, 0, 2}, Value{0x1019, 0, 240}}) {
+    MemoryStorage storage = stored({row});
+    Device device{canopen::stored_in(storage)};
+    EXPECT_EQ(power_on(storage), silent) << std::hex << row.index << " " << row.value;
+    EXPECT_EQ(value(device, row.index, row.sub_index), row.value) << std::hex << row.index;
+  }
+}
+
 TEST(StoredMapping, OfWhatDoesNotExistLeavesTheDefault) {
   MemoryStorage storage = stored({{0x1A00, 2, 0x3000'0008}, {0x1A01, 0, 1}, {0x1017, 0, 1000}});
   Device device{canopen::stored_in(storage)};

@@ -188,6 +188,9 @@ class Node {
     if (const AbortCode code = entries().check(index, sub_index, word, bytes); code != ok) return code;
     handler_has_set(object_key(index, sub_index));
     if (!entry::is_domain(word) && entries().holds(word, bytes)) return ok;
+    if constexpr (has_storage) {
+      if ((word & entry::writable) != 0) configuration_changes(index, sub_index, bytes);
+    }
     entries().write(word, bytes);
     after_write(index, sub_index, true);
     return ok;
@@ -356,7 +359,7 @@ class Node {
     [[nodiscard]] AbortCode before_write(std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
       const AbortCode code = node.before_write(index, sub_index, bytes);
       if constexpr (has_storage) {
-        if (code == ok) Parameters::before_write(node.store_, index, sub_index, bytes);
+        if (code == ok && !node.set_by_handler()) Parameters::before_write(node.store_, index, sub_index, bytes);
       }
       return code;
     }
@@ -926,8 +929,20 @@ class Node {
     if constexpr (HandlerSet<Handlers...>::template handles_write<O>) {
       handler_has_set(object_key(O::index, O::sub_index));
     }
-    if (store_.template set<O>(value)) changed<O>();
+    if (!store_.template set<O>(value)) return ok;
+    if constexpr (has_storage) {
+      if constexpr (Parameters::template is_configuration<O>) {
+        if (state_ != NmtState::initialisation) Parameters::clear_configuration(store_);
+      }
+    }
+    changed<O>();
     return ok;
+  }
+
+  /// The application is about to set an object. What it sets in Initialisation belongs to the configuration that the
+  /// device has after a reset; a later change makes 1020h 0.
+  void configuration_changes(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> bytes) {
+    if (state_ != NmtState::initialisation) Parameters::before_write(store_, index, sub_index, bytes);
   }
 
   template <DictionaryObject O>

@@ -11,6 +11,7 @@
 
 #include "canopen/abort_code.hpp"
 #include "canopen/cob_id.hpp"
+#include "canopen/communication_parameters.hpp"
 #include "canopen/dictionary.hpp"
 #include "canopen/node_id.hpp"
 #include "canopen/object_store.hpp"
@@ -18,6 +19,8 @@
 #include "canopen/pdo_list.hpp"
 #include "canopen/pdo_mapping.hpp"
 #include "canopen/storage.hpp"
+#include "canopen/sync.hpp"
+#include "canopen/transmission_type.hpp"
 
 namespace canopen {
 
@@ -49,6 +52,10 @@ template <class Device>
 class ParameterStorage {
  public:
   using Layout = ParameterLayout<Device>;
+
+  /// Whether this device stores 1020h.
+  static constexpr bool has_configuration =
+      Layout::stores(verify_configuration, 1) && Layout::stores(verify_configuration, 2);
 
   /// Power-on.
   template <Storage S>
@@ -92,8 +99,25 @@ class ParameterStorage {
     return true;
   }
 
-  /// A configuration tool is about to write these bytes. 1020h tells that the configuration is the one it names:
-  /// another value of a stored parameter makes it 0.
+  /// Whether an object belongs to the configuration that 1020h stands for: the bus can write it, and "save" stores it.
+  template <DictionaryObject O>
+  static constexpr bool is_configuration = [] {
+    if (!has_configuration || O::index == verify_configuration) return false;
+    const entry::Word word = Device::dictionary.find(O::index, O::sub_index);
+    return (word & entry::writable) != 0 && Layout::stores(O::index, O::sub_index);
+  }();
+
+  /// The configuration is not the one that 1020h stands for any more: it is 0 from now on.
+  static void clear_configuration([[maybe_unused]] ObjectStore<Device>& store) {
+    if constexpr (has_configuration) {
+      for (const std::uint8_t sub_index : {std::uint8_t{1}, std::uint8_t{2}}) {
+        const entry::Word word = Device::dictionary.find(verify_configuration, sub_index);
+        std::memset(store.entries().ram(word), 0, entry::wire_bytes(word));
+      }
+    }
+  }
+
+  /// These bytes are about to be written. Another value of a stored parameter clears 1020h.
   static void before_write([[maybe_unused]] ObjectStore<Device>& store, [[maybe_unused]] std::uint16_t index,
                            [[maybe_unused]] std::uint8_t sub_index,
                            [[maybe_unused]] std::span<const std::uint8_t> bytes) {
@@ -123,22 +147,10 @@ class ParameterStorage {
     std::uint8_t given_up = 0;
   };
 
-  static constexpr bool has_configuration =
-      Layout::stores(verify_configuration, 1) && Layout::stores(verify_configuration, 2);
-
   [[nodiscard]] static constexpr bool is_in(unsigned sections, std::size_t i) { return ((sections >> i) & 1u) != 0; }
 
   [[nodiscard]] static std::uint8_t* ram_of(ObjectStore<Device>& store) {
     return reinterpret_cast<std::uint8_t*>(&store.values());
-  }
-
-  static void clear_configuration([[maybe_unused]] ObjectStore<Device>& store) {
-    if constexpr (has_configuration) {
-      for (const std::uint8_t sub_index : {std::uint8_t{1}, std::uint8_t{2}}) {
-        const entry::Word word = Device::dictionary.find(verify_configuration, sub_index);
-        std::memset(store.entries().ram(word), 0, entry::wire_bytes(word));
-      }
-    }
   }
 
   /// The record of a section whose layout is this device's. It is looked for each time: all of them would take much of
@@ -266,19 +278,35 @@ class ParameterStorage {
   struct Checked {
     std::uint16_t index;
     std::uint8_t sub_index;
-    std::uint8_t what;  ///< `plain_value`, `cob_id`, `identifier`, or the objects that a mapping parameter has room for
+    std::uint8_t what;  ///< one of these, or the objects that a mapping parameter has room for
   };
   static constexpr std::uint8_t plain_value = 0;
+  static constexpr std::uint8_t most_mapped = 64;
+  static constexpr std::uint8_t rpdo_transmission = 0xF9;
+  static constexpr std::uint8_t tpdo_transmission = 0xFA;
+  static constexpr std::uint8_t sync_start = 0xFB;
+  static constexpr std::uint8_t sync_period = 0xFC;
+  static constexpr std::uint8_t sync_overflow = 0xFD;
   static constexpr std::uint8_t cob_id = 0xFF;      ///< one that is not valid may be anything
   static constexpr std::uint8_t identifier = 0xFE;  ///< the same, and bits 30 and 31 mean something else
   [[nodiscard]] static constexpr bool is_mapping(const Checked& row) {
-    return row.what != plain_value && row.what < identifier;
+    return row.what != plain_value && row.what <= most_mapped;
+  }
+  [[nodiscard]] static constexpr bool is_of_service(const Checked& row) {
+    return row.what > most_mapped && row.what < identifier;
   }
 
   [[nodiscard]] static constexpr std::uint8_t what_is(std::uint16_t index, std::uint8_t sub_index) {
     if (const CobIdEntries* const row = find_cob_id_entries(index, sub_index)) {
       return row->has_valid_bit ? cob_id : identifier;
     }
+    const bool tpdo = is_tpdo_communication(index);
+    if ((tpdo || is_rpdo_communication(index)) && sub_index == pdo_parameter::transmission_type) {
+      return tpdo ? tpdo_transmission : rpdo_transmission;
+    }
+    if (tpdo && sub_index == pdo_parameter::sync_start) return sync_start;
+    if (index == 0x1006) return sync_period;
+    if (index == 0x1019) return sync_overflow;
     const bool mapping = sub_index == 0 && (is_rpdo_mapping(index) || is_tpdo_mapping(index));
     return mapping ? mapping_capacity(Device::dictionary, index) : plain_value;
   }
@@ -327,8 +355,23 @@ class ParameterStorage {
     const std::size_t size = EntryAccess<Device>::bytes_of(word);
     if (EntryAccess<Device>::check_value(row.index, row.sub_index, word, {at, size}) != ok) return false;
     if (row.what == plain_value) return true;
+    if constexpr (std::ranges::any_of(checked, is_of_service)) {
+      if (is_of_service(row)) return is_possible(row.what, entries.number(word));
+    }
     const CobId value{entries.number(word) & (row.what == cob_id ? 0xFFFF'FFFF : CobId::identifier)};
     return !value.valid() || may_be_written(value, true, true);
+  }
+
+  /// Whether the service of a parameter can take a value.
+  [[nodiscard]] static bool is_possible(std::uint8_t what, std::uint32_t value) {
+    switch (what) {
+      case sync_period: return is_sync_period(value);
+      case sync_overflow: return is_sync_overflow(value);
+      case sync_start: return value <= highest_sync_counter;
+      default:
+        return check_transmission_type(Device::options, what == tpdo_transmission, static_cast<std::uint8_t>(value)) ==
+               ok;
+    }
   }
 
   /// Whether a byte of RAM belongs to one of these rows.

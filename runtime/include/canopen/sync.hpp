@@ -27,6 +27,16 @@ inline constexpr std::uint8_t highest_sync_counter = 240;
 /// Whether 1006h or 1007h holds a time: not 0, which is off, and not longer than moments can be apart.
 [[nodiscard]] constexpr bool is_span(Duration span) { return span.count() - 1u < longest_span.count(); }
 
+/// Whether 1006h may hold a time, 0 included.
+[[nodiscard]] constexpr bool is_sync_period(std::uint32_t microseconds) {
+  return microseconds <= longest_span.count();
+}
+
+/// Whether 1019h may hold a counter overflow value: 0, or 2 to 240 (CiA 301, 7.5.2.22).
+[[nodiscard]] constexpr bool is_sync_overflow(std::uint32_t value) {
+  return value != 1 && value <= highest_sync_counter;
+}
+
 /// Takes the SYNC of 1005h. With a counter overflow value in 1019h other than 0 it has one data byte, else none.
 template <class Device>
 class SyncConsumer {
@@ -172,9 +182,9 @@ template <class Device>
     if (generates && changed) return AbortCode::invalid_value;
     return may_be_written(after, true, Device::options.pdo_extended_ids) ? ok : AbortCode::invalid_value;
   }
-  if (index == 0x1006) return number_in(bytes) > longest_span.count() ? AbortCode::value_too_high : ok;
+  if (index == 0x1006) return is_sync_period(number_in(bytes)) ? ok : AbortCode::value_too_high;
   if constexpr (SyncConsumer<Device>::has_overflow) {
-    if (bytes[0] == 1 || bytes[0] > highest_sync_counter) return AbortCode::invalid_value;
+    if (!is_sync_overflow(bytes[0])) return AbortCode::invalid_value;
     if constexpr (Device::dictionary.has(0x1006, 0)) {
       if (entries.template number<0x1006, 0>() != 0) return AbortCode::device_state;
     }
