@@ -302,24 +302,10 @@ class HandlerSet {
     });
   }
 
-  /// Whether every handler's object is one of the device's.
-  [[nodiscard]] static constexpr bool known_to(const Dictionary& dictionary) {
-    return (known<Handlers>(dictionary) && ...);
-  }
-
  private:
   template <class Visit>
   constexpr void for_each([[maybe_unused]] Visit&& visit) {
     std::apply([&](auto&... handler) { (visit(handler), ...); }, handlers_);
-  }
-
-  template <class H>
-  [[nodiscard]] static constexpr bool known([[maybe_unused]] const Dictionary& dictionary) {
-    if constexpr (requires { typename H::object; }) {
-      return dictionary.has(H::object::index, H::object::sub_index);
-    } else {
-      return true;
-    }
   }
 
   template <class Handler, class Node>

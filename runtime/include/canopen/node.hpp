@@ -23,6 +23,7 @@
 #include "canopen/error_control.hpp"
 #include "canopen/error_register.hpp"
 #include "canopen/frame.hpp"
+#include "canopen/handler_check.hpp"
 #include "canopen/handlers.hpp"
 #include "canopen/heartbeat.hpp"
 #include "canopen/heartbeat_consumer.hpp"
@@ -44,13 +45,23 @@
 
 namespace canopen {
 
+/// Whether a value of its type can be refused where the application sets an object: the object has limits, uses fewer
+/// bits than its type, or is a parameter of a service.
+template <DictionaryObject O>
+inline constexpr bool can_be_refused = [] {
+  using T = typename O::type;
+  if (!std::is_arithmetic_v<T>) return false;
+  if (std::is_integral_v<T> && O::index < 0x2000) return true;
+  return !std::is_same_v<T, bool> &&
+         (requires { O::low_limit; } || requires { O::high_limit; } || O::bits < sizeof(T) * 8);
+}();
+
 /// `Device` is what edsc generates. A bus without state is kept by value, another one by reference and must outlive the
 /// node.
 template <class Device, Bus B, class... Handlers>
 class Node {
  public:
-  static_assert(HandlerSet<Handlers...>::known_to(Device::dictionary),
-                "a handler is for an object that this device has not");
+  static_assert(checked_handlers<Device, Handlers...>());
 
   constexpr Node(B& can_bus, NodeId node_id, Handlers... handlers)
       : bus_{can_bus}, handlers_{std::move(handlers)...}, node_id_{node_id} {}
@@ -158,13 +169,19 @@ class Node {
   }
 
   /// Sets an object, whatever its access on the bus. TPDOs that carry it go out with the next `on_time` or `on_frame`
-  /// when the value is a new one. Refused outside the limits of the data sheet: value_too_high, value_too_low, or
-  /// invalid_value for a REAL that is not a number. A parameter of 1000h..1FFFh is refused as SDO refuses it: a PDO is
-  /// mapped, or gets another CAN-ID, while it is not valid. In a write handler of the same object this is the value that
-  /// counts, and not the one that was written.
+  /// when the value is a new one. In a write handler of the same object this is the value that counts, and not the one
+  /// that was written. This object takes every value of its type: the answer is `ok`.
   template <DictionaryObject O>
-  AbortCode set(const typename O::type& value) {
+  requires(!can_be_refused<O>) AbortCode set(const typename O::type& value) {
     static_assert(!std::is_same_v<typename O::type, Domain>, "the memory of a DOMAIN is bound with bind()");
+    return take_over<O>(value);
+  }
+
+  /// The same for an object that can refuse a value: value_too_high or value_too_low outside the limits of the data
+  /// sheet, invalid_value for a REAL that is not a number. A parameter of 1000h..1FFFh is refused as SDO refuses it: a
+  /// PDO is mapped, or gets another CAN-ID, while it is not valid.
+  template <DictionaryObject O>
+  requires(can_be_refused<O>) [[nodiscard]] AbortCode set(const typename O::type& value) {
     if (const AbortCode code = check_limits<O>(value); code != ok) return code;
     if constexpr (O::index < 0x2000 && std::is_integral_v<typename O::type>) {
       typename O::type checked = value;
@@ -180,7 +197,7 @@ class Node {
   /// handlers are not called, and services do not ask whether a parameter of theirs may change now; they take it over.
   /// TPDOs go out as with the typed `set`. Refused for its length and its limits as a download would be; read_only: it is
   /// a constant of the data sheet.
-  AbortCode set(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> bytes) {
+  [[nodiscard]] AbortCode set(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> bytes) {
     const entry::Word word = EntryAccess<Device>::find(index, sub_index);
     if (word == Dictionary::no_object) return AbortCode::no_object;
     if (word == Dictionary::no_sub_index) return AbortCode::no_sub_index;

@@ -1,0 +1,18 @@
+// expect: a node-ID is NodeId{n} .*KnownHandler<int>
+// A number is neither a node-ID nor a handler.
+#include <canopen/node.hpp>
+#include <every_type/device.hpp>
+
+namespace od = every_type::od;
+
+struct Bus {
+  bool send(const canopen::Frame&) { return true; }
+};
+
+auto make(Bus& bus) {
+#ifdef GOOD
+  return canopen::make_node<every_type::Device>(bus, canopen::NodeId{5});
+#else
+  return canopen::make_node<every_type::Device>(bus, 5);
+#endif
+}

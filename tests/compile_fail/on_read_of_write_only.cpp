@@ -1,0 +1,19 @@
+// expect: the object is wo .*every_type::od::access_wo
+// The bus cannot read what it may only write.
+#include <canopen/node.hpp>
+#include <every_type/device.hpp>
+
+namespace od = every_type::od;
+
+struct Bus {
+  bool send(const canopen::Frame&) { return true; }
+};
+
+auto make(Bus& bus) {
+#ifdef GOOD
+  using object = od::unsigned16_value;
+#else
+  using object = od::access_wo;
+#endif
+  return canopen::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::on_read<object>([](std::uint8_t) {}));
+}

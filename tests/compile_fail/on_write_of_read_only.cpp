@@ -1,0 +1,19 @@
+// expect: the object is ro or const .*every_type::od::error_register
+// Nor can the bus write an object of access type ro.
+#include <canopen/node.hpp>
+#include <every_type/device.hpp>
+
+namespace od = every_type::od;
+
+struct Bus {
+  bool send(const canopen::Frame&) { return true; }
+};
+
+auto make(Bus& bus) {
+#ifdef GOOD
+  using object = od::unsigned8_value;
+#else
+  using object = od::error_register;
+#endif
+  return canopen::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::on_write<object>([](std::uint8_t) {}));
+}

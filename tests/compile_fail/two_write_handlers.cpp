@@ -1,0 +1,21 @@
+// expect: the object has two of them .*every_type::od::integer16_value
+// Of two write handlers of one object the first may refuse what the second has acted upon.
+#include <canopen/node.hpp>
+#include <every_type/device.hpp>
+
+namespace od = every_type::od;
+
+struct Bus {
+  bool send(const canopen::Frame&) { return true; }
+};
+
+auto make(Bus& bus) {
+#ifdef GOOD
+  using second = od::integer32_value;
+#else
+  using second = od::integer16_value;
+#endif
+  return canopen::make_node<every_type::Device>(bus, canopen::NodeId{5},
+                                                canopen::on_write<od::integer16_value>([](std::int16_t) {}),
+                                                canopen::on_write<second>([](std::int32_t) {}));
+}
