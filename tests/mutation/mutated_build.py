@@ -34,7 +34,8 @@ class MutatedBuild:
         self.project = project
         self.area = area
         self.source = folder / "source"
-        self.build = folder / "build"
+        # As far below the sources as the folders of the presets: paths in the compiler's cache are relative.
+        self.build = self.source / "build" / "mutated"
         self.mutants = mutants  # by number; those that do not compile are taken out
         self.dropped: list[Mutation] = []
         self.jobs = jobs
@@ -61,7 +62,8 @@ class MutatedBuild:
                 write_if_changed(self.source / name, path.read_bytes())
                 shutil.copymode(path, self.source / name)
         for path in self.source.rglob("*"):
-            if path.is_file() and str(path.relative_to(self.source)) not in names:
+            name = str(path.relative_to(self.source))
+            if path.is_file() and name not in names and not name.startswith("build/"):
                 path.unlink()
 
     def write_mutants(self, files: Iterable[str]) -> None:
@@ -77,8 +79,8 @@ class MutatedBuild:
             raise BuildError(output)
 
     def check_syntax(self) -> None:
-        """Each mutated file alone: cheaper than to find the same errors in all that includes it."""
-        for file in sorted(self.schemata):
+        """Each mutated header alone: cheaper than to find the same errors in all that includes it."""
+        for file in sorted(file for file in self.schemata if file.endswith(".hpp")):
             command = ["g++", *self.project.compile_arguments(self.source), "-w", "-xc++", "-fsyntax-only",
                        str(self.source / file)]
             while self.schemata[file].places and (output := self.run(command)) is not None:

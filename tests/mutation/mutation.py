@@ -35,8 +35,8 @@ def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--seed", metavar="S", type=int, default=1, help="of the sample (default: 1)")
     parser.add_argument("--per-file", metavar="N", type=int, default=5, help="of a sample, at most (default: 5)")
     parser.add_argument("--programs", metavar="NAME,NAME", help="run only these of the programs that test the files")
-    parser.add_argument("--under", metavar="FOLDER", default="",
-                        help="only files of this folder, such as generator/decode")
+    parser.add_argument("--under", metavar="FOLDER,FOLDER", default="",
+                        help="only files of these folders, such as generator/decode")
     parser.add_argument("--min-score", metavar="PERCENT", type=float, default=95, help="lowest score for exit code 0")
     parser.add_argument("--jobs", metavar="N", type=int, default=MAX_JOBS, choices=range(1, MAX_JOBS + 1))
     parser.add_argument("--folder", type=Path, default=Path("build/mutation"),
@@ -149,10 +149,11 @@ def run_area(project: Project, area: Area, mutants: dict[int, Mutation], argumen
 
 
 def run(project: Project, arguments: argparse.Namespace) -> int:
+    under = tuple(arguments.under.split(","))
     if arguments.against is not None:
-        mutations = select_changed(project, arguments.against, arguments.under)
+        mutations = select_changed(project, arguments.against, under)
     else:
-        mutations = select_sample(project, arguments.sample, arguments.seed, arguments.under, arguments.per_file)
+        mutations = select_sample(project, arguments.sample, arguments.seed, under, arguments.per_file)
     print(f"{len(mutations)} mutants in {len({mutation.file for mutation in mutations})} files", flush=True)
     if not mutations:
         return 0

@@ -1,8 +1,8 @@
 """Finds what can be mutated in a C++ source, with libclang.
 
-A mutation replaces the bytes [start, end) of a source. What the compiler evaluates is left out: template arguments, case
-labels, static_assert, array sizes, enumerators, `if constexpr`, consteval functions. A constexpr variable can be mutated
-where its users accept a variable that is initialized at run time (`constexpr_at` is the place of its keyword).
+A mutation replaces the bytes [start, end) of a source. What the compiler evaluates is left out: template arguments,
+case labels, static_assert, array sizes, enumerators, `if constexpr`, consteval functions. A constexpr variable can be
+mutated where its users accept one that is initialized at run time; `constexpr_at` is the place of its keyword.
 """
 
 from __future__ import annotations

@@ -43,7 +43,7 @@ class Project:
     include_folders: tuple[str, ...]
     equivalents: Path | None = None
 
-    def files(self, under: str = "") -> list[str]:
+    def files(self, under: tuple[str, ...]) -> list[str]:
         paths = (path for area in self.areas for path in (self.root / area.folder).rglob("*.[ch]pp"))
         names = sorted(str(path.relative_to(self.root)) for path in paths)
         return [name for name in names if name.startswith(under) and self.area_of(name) is not None]

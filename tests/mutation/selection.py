@@ -39,13 +39,13 @@ def changed_lines(root: Path, reference: str, folders: list[str]) -> dict[str, s
     return lines
 
 
-def select_changed(project: Project, reference: str, under: str) -> list[Mutation]:
+def select_changed(project: Project, reference: str, under: tuple[str, ...]) -> list[Mutation]:
     lines = changed_lines(project.root, reference, [area.folder for area in project.areas])
     return [mutation for file in project.files(under) if lines.get(file)
             for mutation in mutations_of(project, file) if mutation.line in lines[file]]
 
 
-def select_sample(project: Project, count: int, seed: int, under: str, per_file: int) -> list[Mutation]:
+def select_sample(project: Project, count: int, seed: int, under: tuple[str, ...], per_file: int) -> list[Mutation]:
     """Files are drawn with the number of their lines as weight, then lines of each, then one mutation of each line.
 
     To find the mutations of a file takes seconds, and to compile it, too: so several are of one file."""
