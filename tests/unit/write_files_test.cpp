@@ -1,13 +1,19 @@
 #include "render/write_files.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <system_error>
+#include <thread>
 #include <vector>
 
 namespace edsc {
@@ -36,7 +42,8 @@ class WriteFiles : public testing::Test {
   [[nodiscard]] std::vector<std::string> files() const {
     std::vector<std::string> result;
     for (const auto& entry : fs::recursive_directory_iterator{folder_}) {
-      if (entry.is_regular_file()) result.push_back(fs::relative(entry.path(), folder_).string());
+      std::error_code error;
+      if (entry.is_regular_file(error)) result.push_back(fs::relative(entry.path(), folder_).string());
     }
     std::ranges::sort(result);
     return result;
@@ -88,13 +95,108 @@ TEST_F(WriteFiles, ChangesNothingWhenOneFolderCannotBeMade) {
   EXPECT_EQ(files(), (Names{"file", "one.hpp"}));
 }
 
+/// Files of this process may not grow beyond `bytes` while this exists: a write fails as on a full disk.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    handler_ = std::signal(SIGXFSZ, SIG_IGN);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+  ~FileSizeLimit() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int) = SIG_DFL;
+};
+
 TEST_F(WriteFiles, ChangesNothingWhenTheDiskTakesNoMore) {
-  if (!fs::exists("/dev/full")) GTEST_SKIP() << "this system has no /dev/full";
   ASSERT_EQ(write_files({{path("one.hpp"), "before"}}), "");
-  fs::create_symlink("/dev/full", path("two.hpp.edsc-tmp"));
-  const std::string problem = write_files({{path("one.hpp"), "after"}, {path("two.hpp"), "2"}});
+  std::string problem;
+  {
+    const FileSizeLimit limit{100};
+    problem = write_files({{path("one.hpp"), "after"}, {path("two.hpp"), std::string(1000, '2')}});
+  }
   EXPECT_NE(problem.find("two.hpp"), std::string::npos) << problem;
   EXPECT_EQ(content_of(path("one.hpp")), "before");
+  EXPECT_EQ(files(), Names{"one.hpp"});
+}
+
+TEST_F(WriteFiles, DoesNotFollowASymlinkWithTheNameOfATemporaryFile) {
+  ASSERT_EQ(write_files({{path("victim"), "mine"}}), "");
+  fs::create_symlink(path("victim"), path("one.hpp.edsc-tmp"));
+  EXPECT_EQ(write_files({{path("one.hpp"), "1"}}), "");
+  EXPECT_EQ(content_of(path("victim")), "mine");
+  EXPECT_EQ(content_of(path("one.hpp")), "1");
+}
+
+TEST_F(WriteFiles, ReplacesTheTargetOfASymlinkAndKeepsTheSymlink) {
+  fs::create_directory(path("real"));
+  ASSERT_EQ(write_files({{path("real/one.hpp"), "before"}}), "");
+  fs::create_symlink("real/one.hpp", path("near.hpp"));
+  fs::create_symlink(path("near.hpp"), path("far.hpp"));
+  EXPECT_EQ(write_files({{path("far.hpp"), "after"}}), "");
+  EXPECT_TRUE(fs::is_symlink(path("far.hpp")));
+  EXPECT_TRUE(fs::is_symlink(path("near.hpp")));
+  EXPECT_EQ(content_of(path("real/one.hpp")), "after");
+  EXPECT_EQ(files().size(), 3U) << "no temporary file is left";
+}
+
+TEST_F(WriteFiles, MakesTheMissingTargetOfASymlink) {
+  fs::create_symlink("new.hpp", path("link.hpp"));
+  EXPECT_EQ(write_files({{path("link.hpp"), "1"}}), "");
+  EXPECT_TRUE(fs::is_symlink(path("link.hpp")));
+  EXPECT_EQ(content_of(path("new.hpp")), "1");
+}
+
+TEST_F(WriteFiles, RefusesASymlinkThatLeadsToItselfOrToAFolder) {
+  fs::create_symlink("loop.hpp", path("loop.hpp"));
+  fs::create_symlink(".", path("folder.hpp"));
+  for (const char* name : {"loop.hpp", "folder.hpp"}) {
+    const std::string problem = write_files({{path("one.hpp"), "1"}, {path(name), "2"}});
+    EXPECT_NE(problem.find(name), std::string::npos) << problem;
+    EXPECT_EQ(files(), Names{});
+  }
+}
+
+TEST_F(WriteFiles, KeepsTheModeOfAReplacedFile) {
+  ASSERT_EQ(write_files({{path("one.hpp"), "before"}}), "");
+  const auto mode = fs::perms::owner_all | fs::perms::group_read;
+  fs::permissions(path("one.hpp"), mode);
+  EXPECT_EQ(write_files({{path("one.hpp"), "after"}}), "");
+  EXPECT_EQ(fs::status(path("one.hpp")).permissions(), mode);
+}
+
+TEST_F(WriteFiles, WritesIntoAFifo) {
+  ASSERT_EQ(mkfifo(path("fifo").c_str(), 0600), 0);
+  std::string read;
+  std::thread reader{[&] { read = content_of(path("fifo")); }};
+  EXPECT_EQ(write_files({{path("fifo"), "through"}}), "");
+  reader.join();
+  EXPECT_EQ(read, "through");
+  EXPECT_TRUE(fs::is_fifo(path("fifo")));
+}
+
+TEST_F(WriteFiles, WritesIntoADevice) {
+  constexpr unsigned memory_devices = 1, null_device = 3, full_device = 7;
+  if (mknod(path("null").c_str(), S_IFCHR | 0600, makedev(memory_devices, null_device)) != 0) {
+    GTEST_SKIP() << "SKIPPED: this user may not make devices";
+  }
+  ASSERT_EQ(mknod(path("full").c_str(), S_IFCHR | 0600, makedev(memory_devices, full_device)), 0);
+  fs::create_symlink("null", path("link"));
+  EXPECT_EQ(write_files({{path("null"), "nowhere"}, {path("link"), "nowhere"}}), "");
+  EXPECT_TRUE(fs::is_character_file(path("null")));
+  EXPECT_TRUE(fs::is_symlink(path("link")));
+  const std::string problem = write_files({{path("one.hpp"), "1"}, {path("full"), "2"}});
+  EXPECT_NE(problem.find("full"), std::string::npos) << problem;
+  EXPECT_TRUE(fs::is_character_file(path("full")));
+  EXPECT_FALSE(fs::exists(path("one.hpp"))) << "all files or none";
 }
 
 }  // namespace
