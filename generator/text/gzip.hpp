@@ -12,8 +12,8 @@ namespace edsc {
 /// The same file for the same bytes: without name, time and operating system.
 [[nodiscard]] std::string gzip(std::string_view bytes);
 
-/// Puts what a gzip file holds into `content`, `most` bytes at most. Gives the reason when that fails, else an empty
-/// string.
-[[nodiscard]] std::string gunzip(std::string_view bytes, std::size_t most, std::string& content);
+/// Unpacks a gzip file into `content`. Stops at more than `max_bytes`, and at more than 1 MiB that is over 200 times as
+/// much as the bytes read so far: such a file is made to fill the memory. Returns the reason, empty on success.
+[[nodiscard]] std::string gunzip(std::string_view bytes, std::size_t max_bytes, std::string& content);
 
 }  // namespace edsc

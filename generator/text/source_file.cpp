@@ -212,7 +212,7 @@ std::unique_ptr<SourceFile> read_source_file(const std::string& path, std::strin
   const std::string name = is_standard_input ? "<stdin>" : path;
   if (why.empty() && is_gzip(bytes)) {
     const std::string file = std::move(bytes);
-    why = gunzip(file, SourceFile::max_bytes, bytes);
+    why = gunzip(file, SourceFile::max_unpacked_bytes, bytes);
   }
   if (!why.empty()) {
     error = "cannot read " + name + ": " + why;

@@ -18,6 +18,7 @@ enum class Encoding : std::uint8_t { ascii, utf8, utf16_le, utf16_be, cp1252, cp
 class SourceFile {
  public:
   static constexpr std::size_t max_bytes = std::size_t{1} << 30;
+  static constexpr std::size_t max_unpacked_bytes = std::size_t{1} << 26;  ///< of a gzip file
 
   /// `name` is what diagnostics show; `bytes` are decoded at once, a byte order mark is dropped. What the encoding does
   /// not define becomes U+FFFD. More than `max_bytes` throw std::length_error.

@@ -47,8 +47,28 @@ TEST(Gzip, RefusesAFileThatIsCutOffDamagedOrLonger) {
 TEST(Gzip, UnpacksNoMoreThanItMay) {
   const std::string file = gzip(std::string(2 * most, ' '));
   std::string content;
-  EXPECT_EQ(gunzip(file, most, content), "too large when it is unpacked");
+  const std::string problem = gunzip(file, most, content);
+  EXPECT_TRUE(problem.starts_with("unpacks to more than 1000000 bytes; stopped at byte ")) << problem;
+  EXPECT_TRUE(problem.ends_with(" of " + std::to_string(file.size()))) << problem;
   EXPECT_LT(content.size(), most + most / 2);
+}
+
+TEST(Gzip, RefusesWhatIsMadeToFillTheMemory) {
+  const std::string file = gzip(std::string(20 * most, ' '));
+  std::string content;
+  const std::string problem = gunzip(file, 1000 * most, content);
+  EXPECT_TRUE(problem.starts_with("unpacks to more than 200 times its size; stopped at byte ")) << problem;
+  EXPECT_LT(content.size(), 2 * most);
+}
+
+TEST(Gzip, UnpacksAFileOfManyEqualObjects) {
+  std::string text;
+  for (int i = 0; text.size() < 3 * most; ++i) {
+    text += "[" + std::to_string(2000 + i) + "]\nParameterName=Object\nObjectType=0x7\nDataType=0x0007\nAccessType=rw\n\n";
+  }
+  std::string content;
+  EXPECT_EQ(gunzip(gzip(text), 4 * most, content), "");
+  EXPECT_EQ(content, text);
 }
 
 }  // namespace
