@@ -78,6 +78,9 @@ struct store_parameters<0> : canopen::Object<0x1010, 0x00, std::uint8_t, canopen
   static constexpr auto name = "Highest sub-index supported";
 };
 
+/// Save all parameters.  1010h:01  UNSIGNED32  rw                                  can-2017c.eds:326
+using store_parameters_save_all_parameters = store_parameters<1>;
+
 /// Restore default parameters.  1011h:01..01  UNSIGNED32  rw                       can-2017c.eds:349
 template <std::uint8_t SubIndex>
 struct restore_default_parameters : canopen::Object<0x1011, SubIndex, std::uint32_t, canopen::Access::rw> {
@@ -88,6 +91,9 @@ template <>
 struct restore_default_parameters<0> : canopen::Object<0x1011, 0x00, std::uint8_t, canopen::Access::ro> {
   static constexpr auto name = "Highest sub-index supported";
 };
+
+/// Restore all default parameters.  1011h:01  UNSIGNED32  rw                       can-2017c.eds:349
+using restore_default_parameters_restore_all_default_parameters = restore_default_parameters<1>;
 
 /// COB-ID EMCY.  1014h:00  UNSIGNED32  rw                                          can-2017c.eds:360
 struct cob_id_emcy : canopen::Object<0x1014, 0x00, std::uint32_t, canopen::Access::rw> {

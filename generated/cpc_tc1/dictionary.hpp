@@ -80,6 +80,24 @@ struct store_parameters<0> : canopen::Object<0x1010, 0x00, std::uint8_t, canopen
   static constexpr auto name = "Highest sub-index supported";
 };
 
+/// Save all parameters.  1010h:01  UNSIGNED32  rw                                  cpc-tc1.eds:431
+using store_parameters_save_all_parameters = store_parameters<1>;
+
+/// Save communication parameters.  1010h:02  UNSIGNED32  rw                        cpc-tc1.eds:439
+using store_parameters_save_communication_parameters = store_parameters<2>;
+
+/// Save application parameters.  1010h:03  UNSIGNED32  rw                          cpc-tc1.eds:447
+using store_parameters_save_application_parameters = store_parameters<3>;
+
+/// Save RS232 parameters.  1010h:04  UNSIGNED32  rw                                cpc-tc1.eds:455
+using store_parameters_save_rs232_parameters = store_parameters<4>;
+
+/// Save virtual machine program.  1010h:05  UNSIGNED32  rw                         cpc-tc1.eds:463
+using store_parameters_save_virtual_machine_program = store_parameters<5>;
+
+/// Save error mapping data.  1010h:06  UNSIGNED32  rw                              cpc-tc1.eds:471
+using store_parameters_save_error_mapping_data = store_parameters<6>;
+
 /// Restore default parameters.  1011h:01..06  UNSIGNED32  rw                       cpc-tc1.eds:498
 template <std::uint8_t SubIndex>
 struct restore_default_parameters : canopen::Object<0x1011, SubIndex, std::uint32_t, canopen::Access::rw> {
@@ -90,6 +108,24 @@ template <>
 struct restore_default_parameters<0> : canopen::Object<0x1011, 0x00, std::uint8_t, canopen::Access::constant> {
   static constexpr auto name = "Highest sub-index supported";
 };
+
+/// Restore all parameters.  1011h:01  UNSIGNED32  rw                               cpc-tc1.eds:498
+using restore_default_parameters_restore_all_parameters = restore_default_parameters<1>;
+
+/// Restore communication parameters.  1011h:02  UNSIGNED32  rw                     cpc-tc1.eds:506
+using restore_default_parameters_restore_communication_parameters = restore_default_parameters<2>;
+
+/// Restore application parameters.  1011h:03  UNSIGNED32  rw                       cpc-tc1.eds:514
+using restore_default_parameters_restore_application_parameters = restore_default_parameters<3>;
+
+/// Restore RS232 parameters.  1011h:04  UNSIGNED32  rw                             cpc-tc1.eds:522
+using restore_default_parameters_restore_rs232_parameters = restore_default_parameters<4>;
+
+/// Restore virtual machine program.  1011h:05  UNSIGNED32  rw                      cpc-tc1.eds:530
+using restore_default_parameters_restore_virtual_machine_program = restore_default_parameters<5>;
+
+/// Restore error mapping data.  1011h:06  UNSIGNED32  rw                           cpc-tc1.eds:538
+using restore_default_parameters_restore_error_mapping_data = restore_default_parameters<6>;
 
 /// High resolution time stamp.  1013h:00  UNSIGNED32  rw  PDO                      cpc-tc1.eds:548
 struct high_resolution_time_stamp : canopen::Object<0x1013, 0x00, std::uint32_t, canopen::Access::rw, canopen::Mappable::both> {

@@ -37,6 +37,9 @@ struct pre_defined_error_field<0> : canopen::Object<0x1003, 0x00, std::uint8_t, 
   static constexpr auto name = "Number of errors";
 };
 
+/// Error field.  1003h:01  UNSIGNED32  ro                                          cpd.eds:238
+using pre_defined_error_field_error_field = pre_defined_error_field<1>;
+
 /// COB-ID SYNC.  1005h:00  UNSIGNED32  rw                                          cpd.eds:250
 struct cob_id_sync : canopen::Object<0x1005, 0x00, std::uint32_t, canopen::Access::rw> {
   static constexpr auto name = "COB-ID SYNC";
@@ -78,6 +81,15 @@ struct store_parameters<0> : canopen::Object<0x1010, 0x00, std::uint8_t, canopen
   static constexpr auto name = "Highest sub-index supported";
 };
 
+/// Save all parameters.  1010h:01  UNSIGNED32  rw                                  cpd.eds:321
+using store_parameters_save_all_parameters = store_parameters<1>;
+
+/// Save communication parameters.  1010h:02  UNSIGNED32  rw                        cpd.eds:329
+using store_parameters_save_communication_parameters = store_parameters<2>;
+
+/// Save application parameters.  1010h:03  UNSIGNED32  rw                          cpd.eds:337
+using store_parameters_save_application_parameters = store_parameters<3>;
+
 /// Restore default parameters.  1011h:01..03  UNSIGNED32  rw                       cpd.eds:360
 template <std::uint8_t SubIndex>
 struct restore_default_parameters : canopen::Object<0x1011, SubIndex, std::uint32_t, canopen::Access::rw> {
@@ -88,6 +100,15 @@ template <>
 struct restore_default_parameters<0> : canopen::Object<0x1011, 0x00, std::uint8_t, canopen::Access::ro> {
   static constexpr auto name = "Highest sub-index supported";
 };
+
+/// Restore all default parameters.  1011h:01  UNSIGNED32  rw                       cpd.eds:360
+using restore_default_parameters_restore_all_default_parameters = restore_default_parameters<1>;
+
+/// Restore communication default parameters.  1011h:02  UNSIGNED32  rw             cpd.eds:368
+using restore_default_parameters_restore_communication_default_parameters = restore_default_parameters<2>;
+
+/// Restore application default parameters.  1011h:03  UNSIGNED32  rw               cpd.eds:376
+using restore_default_parameters_restore_application_default_parameters = restore_default_parameters<3>;
 
 /// COB-ID EMCY.  1014h:00  UNSIGNED32  rw                                          cpd.eds:389
 struct cob_id_emcy : canopen::Object<0x1014, 0x00, std::uint32_t, canopen::Access::rw> {
@@ -150,6 +171,12 @@ struct verify_configuration<0> : canopen::Object<0x1020, 0x00, std::uint8_t, can
   static constexpr auto name = "Highest sub-index supported";
 };
 
+/// Configuration date.  1020h:01  UNSIGNED32  rw                                   cpd.eds:472
+using verify_configuration_configuration_date = verify_configuration<1>;
+
+/// Configuration time.  1020h:02  UNSIGNED32  rw                                   cpd.eds:480
+using verify_configuration_configuration_time = verify_configuration<2>;
+
 /// Error behaviour.  1029h:01..01  UNSIGNED8  rw                                   cpd.eds:504
 template <std::uint8_t SubIndex>
 struct error_behaviour : canopen::Object<0x1029, SubIndex, std::uint8_t, canopen::Access::rw> {
@@ -160,6 +187,9 @@ template <>
 struct error_behaviour<0> : canopen::Object<0x1029, 0x00, std::uint8_t, canopen::Access::ro> {
   static constexpr auto name = "Highest sub-index supported";
 };
+
+/// Communication error.  1029h:01  UNSIGNED8  rw                                   cpd.eds:504
+using error_behaviour_communication_error = error_behaviour<1>;
 
 /// SDO server parameter 1.  1200h
 namespace sdo_server_parameter_1 {
@@ -855,6 +885,12 @@ struct software_position_limit<0> : canopen::Object<0x607D, 0x00, std::uint8_t, 
   static constexpr auto name = "Highest sub-index supported";
 };
 
+/// Min position limit.  607Dh:01  INTEGER32  rw                                    cpd.eds:1424
+using software_position_limit_min_position_limit = software_position_limit<1>;
+
+/// Max position limit.  607Dh:02  INTEGER32  rw                                    cpd.eds:1432
+using software_position_limit_max_position_limit = software_position_limit<2>;
+
 /// Max profile velocity.  607Fh:00  UNSIGNED32  rw                                 cpd.eds:1441
 struct max_profile_velocity : canopen::Object<0x607F, 0x00, std::uint32_t, canopen::Access::rw> {
   static constexpr auto name = "Max profile velocity";
@@ -895,6 +931,12 @@ template <>
 struct homing_speeds<0> : canopen::Object<0x6099, 0x00, std::uint8_t, canopen::Access::ro> {
   static constexpr auto name = "Highest sub-index supported";
 };
+
+/// Speed during search for switch.  6099h:01  UNSIGNED32  rw                       cpd.eds:1510
+using homing_speeds_speed_during_search_for_switch = homing_speeds<1>;
+
+/// Speed during search for zero.  6099h:02  UNSIGNED32  rw                         cpd.eds:1518
+using homing_speeds_speed_during_search_for_zero = homing_speeds<2>;
 
 /// Following error actual value.  60F4h:00  INTEGER32  ro                          cpd.eds:1527
 struct following_error_actual_value : canopen::Object<0x60F4, 0x00, std::int32_t, canopen::Access::ro> {

@@ -1037,6 +1037,12 @@ struct software_position_limit<0> : canopen::Object<0x607D, 0x00, std::uint8_t, 
   static constexpr auto name = "Highest sub-index supported";
 };
 
+/// Minimum software position limit.  607Dh:01  INTEGER32  rw                       ezd-1136.eds:1546
+using software_position_limit_minimum_software_position_limit = software_position_limit<1>;
+
+/// Maximum software position limit.  607Dh:02  INTEGER32  rw                       ezd-1136.eds:1554
+using software_position_limit_maximum_software_position_limit = software_position_limit<2>;
+
 /// Profile velocity.  6081h:00  UNSIGNED32  rww  RPDO                              ezd-1136.eds:1563
 struct profile_velocity : canopen::Object<0x6081, 0x00, std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr auto name = "Profile velocity";
@@ -1083,6 +1089,12 @@ struct homing_speeds<0> : canopen::Object<0x6099, 0x00, std::uint8_t, canopen::A
   static constexpr auto name = "Highest sub-index supported";
 };
 
+/// Speed during search for switch.  6099h:01  UNSIGNED32  rww  RPDO                ezd-1136.eds:1641
+using homing_speeds_speed_during_search_for_switch = homing_speeds<1>;
+
+/// Speed during search for zero.  6099h:02  UNSIGNED32  rww  RPDO                  ezd-1136.eds:1649
+using homing_speeds_speed_during_search_for_zero = homing_speeds<2>;
+
 /// Homing acceleration.  609Ah:00  UNSIGNED32  rww  RPDO                           ezd-1136.eds:1658
 struct homing_acceleration : canopen::Object<0x609A, 0x00, std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr auto name = "Homing acceleration";
@@ -1108,6 +1120,12 @@ template <>
 struct digital_outputs<0> : canopen::Object<0x60FE, 0x00, std::uint8_t, canopen::Access::ro> {
   static constexpr auto name = "Highest sub-index supported";
 };
+
+/// Physical outputs.  60FEh:01  UNSIGNED32  rww  RPDO                              ezd-1136.eds:1698
+using digital_outputs_physical_outputs = digital_outputs<1>;
+
+/// Bit mask.  60FEh:02  UNSIGNED32  rww  RPDO                                      ezd-1136.eds:1706
+using digital_outputs_bit_mask = digital_outputs<2>;
 
 /// Target velocity.  60FFh:00  INTEGER32  rww  RPDO                                ezd-1136.eds:1715
 struct target_velocity : canopen::Object<0x60FF, 0x00, std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {

@@ -66,6 +66,9 @@ struct store_parameters<0> : canopen::Object<0x1010, 0x00, std::uint8_t, canopen
   static constexpr auto name = "Highest sub-index supported";
 };
 
+/// Save all parameters.  1010h:01  UNSIGNED32  rw                                  rk5c.eds:245
+using store_parameters_save_all_parameters = store_parameters<1>;
+
 /// Restore default parameters.  1011h:01..01  UNSIGNED32  rw                       rk5c.eds:270
 template <std::uint8_t SubIndex>
 struct restore_default_parameters : canopen::Object<0x1011, SubIndex, std::uint32_t, canopen::Access::rw> {
@@ -76,6 +79,9 @@ template <>
 struct restore_default_parameters<0> : canopen::Object<0x1011, 0x00, std::uint8_t, canopen::Access::ro> {
   static constexpr auto name = "Highest sub-index supported";
 };
+
+/// Restore all default parameters.  1011h:01  UNSIGNED32  rw                       rk5c.eds:270
+using restore_default_parameters_restore_all_default_parameters = restore_default_parameters<1>;
 
 /// COB-ID EMCY.  1014h:00  UNSIGNED32  rw                                          rk5c.eds:280
 struct cob_id_emcy : canopen::Object<0x1014, 0x00, std::uint32_t, canopen::Access::rw> {
@@ -187,6 +193,12 @@ template <>
 struct linear_encoder_measuring_step_settings<0> : canopen::Object<0x6005, 0x00, std::uint8_t, canopen::Access::ro> {
   static constexpr auto name = "Highest sub-index supported";
 };
+
+/// Position step setting.  6005h:01  UNSIGNED32  ro                                rk5c.eds:443
+using linear_encoder_measuring_step_settings_position_step_setting = linear_encoder_measuring_step_settings<1>;
+
+/// Speed step setting.  6005h:02  UNSIGNED32  ro                                   rk5c.eds:452
+using linear_encoder_measuring_step_settings_speed_step_setting = linear_encoder_measuring_step_settings<2>;
 
 /// Preset values for multi-sensor devices.  6010h:01..01  INTEGER32  rw            rk5c.eds:475
 template <std::uint8_t SubIndex>

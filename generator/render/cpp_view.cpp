@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <canopen/lss_options.hpp>
 #include <iterator>
+#include <map>
+#include <string>
 #include <utility>
 
+#include "device/identifier.hpp"
 #include "device/stored_eds.hpp"
 #include "render/cob_id_view.hpp"
 #include "render/compiled_format.hpp"
@@ -44,22 +47,40 @@ std::string padded(std::string text, std::size_t column) {
   return text;
 }
 
+/// What is left of the name of an element without its number: "field" of "Field 1", "Field1" and, for sub-index 0Ah,
+/// "Field A".
+std::string without_number(const Entry& element) {
+  const std::string name = to_snake_case(element.name);
+  const std::string hexadecimal = fmt::format("{:x}", element.sub_index);
+  std::string rest;
+  for (std::size_t begin = 0; begin < name.size();) {
+    const std::size_t end = std::min(name.find('_', begin), name.size());
+    std::string word = name.substr(begin, end - begin);
+    begin = end + 1;
+    if (word == hexadecimal || word == "0" + hexadecimal) continue;
+    std::erase_if(word, [](char c) { return c >= '0' && c <= '9'; });
+    if (!word.empty()) rest += (rest.empty() ? "" : "_") + word;
+  }
+  return rest;
+}
+
 /// Makes the declarations of od:: types.
 class ObjectTypes {
  public:
   ObjectTypes(const Device& device, const Options& options) : device_{device}, options_{options} {
     const std::string& path = device.source->name();
     file_ = cpp_comment(path.substr(path.find_last_of('/') + 1));
+    for (const Object& object : device.objects) static_cast<void>(names_.take(object.identifier, ""));
   }
 
-  [[nodiscard]] ordered_json view() const {
+  [[nodiscard]] ordered_json view() {
     ordered_json rows = json_array(device_.objects.size());
     for (const Object& object : device_.objects) rows.push_back(object_row(object));
     return rows;
   }
 
  private:
-  [[nodiscard]] ordered_json object_row(const Object& object) const {
+  [[nodiscard]] ordered_json object_row(const Object& object) {
     if (!object.has_sub_indices()) return json_object("var", entry_row(object.entries.front(), hexadecimal(0)));
     if (describes_uniform_array(object)) return json_object("array", array_row(object));
     return json_object("record", record_row(object));
@@ -73,7 +94,7 @@ class ObjectTypes {
                        std::move(entries));
   }
 
-  [[nodiscard]] ordered_json array_row(const Object& object) const {
+  [[nodiscard]] ordered_json array_row(const Object& object) {
     const Entry& first = object.entries[1];
     const std::size_t length = object.entries.size() - 1;
     const std::string label = fmt::format("{}:01..{:02X}", index_label(object.index), length);
@@ -81,7 +102,42 @@ class ObjectTypes {
     count["array_identifier"] = object.identifier;
     return json_object("comment", comment(first, object.name, label), "identifier", object.identifier, "name",
                        cpp_string(object.name), "base", base(first, "SubIndex"), "constants", constants(first),
-                       "length", length, "count", std::move(count));
+                       "length", length, "count", std::move(count), "elements", element_names(object));
+  }
+
+  /// Elements that have a name of their own, such as `gains_p` for `gains<1>`; null when there are none.
+  [[nodiscard]] ordered_json element_names(const Object& object) {
+    std::map<std::string, int> names;
+    for (const Entry& entry : object.entries) {
+      if (entry.sub_index != 0) ++names[without_number(entry)];
+    }
+    ordered_json rows = ordered_json::array();
+    for (const Entry& entry : object.entries) {
+      if (entry.sub_index == 0 || !has_own_name(object, entry, names)) continue;
+      const std::string suffix = fmt::format("{:04x}_{:02x}", entry.index, entry.sub_index);
+      rows.push_back(json_object("comment", comment(entry, entry.name, entry_label(entry.index, entry.sub_index)),
+                                 "identifier", names_.take(element_name(object, entry), suffix), "number",
+                                 entry.sub_index));
+    }
+    if (rows.empty()) return nullptr;
+    return json_object("array", object.identifier, "rows", std::move(rows));
+  }
+
+  /// Whether the options name an element, or its name differs from those of the object and of the other elements by
+  /// more than a number. `names`: how many elements have a name without its number.
+  [[nodiscard]] bool has_own_name(const Object& object, const Entry& element,
+                                  const std::map<std::string, int>& names) const {
+    if (options_.names.contains({element.index, element.sub_index})) return true;
+    const std::string name = without_number(element);
+    if (name.empty() || name == to_snake_case(object.name)) return false;
+    if (object.entries.size() == 2) return name == to_snake_case(element.name);
+    return names.at(name) == 1;
+  }
+
+  [[nodiscard]] static std::string element_name(const Object& object, const Entry& element) {
+    std::string name = element.identifier;
+    if (name.ends_with('_')) name.pop_back();  // which keeps words of C++ apart
+    return name.starts_with(object.identifier + "_") ? name : object.identifier + "_" + name;
   }
 
   [[nodiscard]] ordered_json entry_row(const Entry& entry, const std::string& sub_index) const {
@@ -136,6 +192,7 @@ class ObjectTypes {
   const Device& device_;
   const Options& options_;
   std::string file_;
+  IdentifierScope names_;  ///< of all objects, then of elements
 };
 
 // ---- memory layout ----

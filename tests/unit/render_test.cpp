@@ -5,6 +5,11 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
+
+#include "device_from_text.hpp"
+#include "render/view.hpp"
 
 namespace edsc {
 namespace {
@@ -59,6 +64,50 @@ TEST(Render, HasATemplateForEachGeneratedHeader) {
   for (const Template& one : built_in_templates()) names.push_back(one.file_name);
   EXPECT_EQ(names, (std::vector<std::string_view>{"dictionary.hpp", "pdo.hpp", "device.hpp", "description.hpp",
                                                   "stored_eds.hpp"}));
+}
+
+/// The names of the elements of an ARRAY `Gains` at 2000h, next to a VAR of this name at 2001h.
+std::vector<std::string> element_names(const std::vector<std::string>& names, Options options = {},
+                                       std::string_view other = "Other") {
+  std::string text = group("2000", "Gains", "0x8", static_cast<int>(names.size()) + 1) +
+                     var("2000sub0", "Count", "5", "const", "DefaultValue=" + std::to_string(names.size()) + "\n");
+  for (std::size_t i = 0; i < names.size(); ++i) text += var("2000sub" + std::to_string(i + 1), names[i], "7");
+  const DeviceFromText device{text + var("2001", other, "7"), std::move(options)};
+  Diagnostics ignored;
+  const ordered_json array = cpp_view(device.device, device.options, ignored)["types"][0]["array"];
+  std::vector<std::string> found;
+  if (array["elements"].is_null()) return found;
+  for (const ordered_json& row : array["elements"]["rows"]) {
+    found.push_back(row["identifier"].get<std::string>() + " = " + array["elements"]["array"].get<std::string>() + "<" +
+                    std::to_string(row["number"].get<int>()) + ">");
+  }
+  return found;
+}
+
+using Words = std::vector<std::string>;
+
+TEST(ElementNames, AreThoseThatSayMoreThanANumber) {
+  EXPECT_EQ(element_names({"P", "I", "D"}), (Words{"gains_p = gains<1>", "gains_i = gains<2>", "gains_d = gains<3>"}));
+  EXPECT_EQ(element_names({"Gains 1", "Gains 2"}), Words{});
+  EXPECT_EQ(element_names({"Gain1", "Gain2", "Gain of the filter"}), (Words{"gains_gain_of_the_filter = gains<3>"}));
+  EXPECT_EQ(element_names({"Gains"}), Words{});
+  EXPECT_EQ(element_names({"Gain 1"}), Words{});
+  EXPECT_EQ(element_names({"P"}), (Words{"gains_p = gains<1>"}));
+}
+
+TEST(ElementNames, DoNotRepeatTheNameOfTheObject) {
+  EXPECT_EQ(element_names({"Gains P", "Gains I"}), (Words{"gains_p = gains<1>", "gains_i = gains<2>"}));
+  EXPECT_EQ(element_names({"Default", "Gainsay"}), (Words{"gains_default = gains<1>", "gains_gainsay = gains<2>"}));
+}
+
+TEST(ElementNames, GiveWayToObjects) {
+  EXPECT_EQ(element_names({"P", "I"}, {}, "Gains P"), (Words{"gains_p_2000_01 = gains<1>", "gains_i = gains<2>"}));
+}
+
+TEST(ElementNames, AreThoseOfTheOptions) {
+  Options options;
+  options.names[{0x2000, 2}] = "integral";
+  EXPECT_EQ(element_names({"Gain 1", "Gain 2"}, options), (Words{"gains_integral = gains<2>"}));
 }
 
 }  // namespace
