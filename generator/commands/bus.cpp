@@ -14,7 +14,8 @@ namespace {
 
 constexpr const char* examples = R"(Examples:
   edsc bus                                  a bus at socketcand:127.0.0.1:29536/vcan0, until Ctrl-C
-  edsc bus --bus vcan0 --bus vcan1 --log    two of them, and their frames as lines of candump -L
+  edsc bus --bus vcan0 --bus vcan1          two of them
+  edsc bus --log > bus.log                  and all frames as a log for edsc decode; the address is on standard error
   edsc bus --listen 127.0.0.1:0             at a port that is free; the first line says which)";
 
 struct Settings {
@@ -65,7 +66,9 @@ int serve(const Settings& settings) {
   };
   events.on_trouble = [](const std::string& message) { fmt::print(stderr, "edsc bus: {}\n", message); };
   BusServer server{address, settings.buses, settings.limits, std::move(events)};
-  for (const std::string& bus : settings.buses) fmt::print("socketcand:{}/{}\n", to_text(server.address()), bus);
+  for (const std::string& bus : settings.buses) {
+    fmt::print(settings.log ? stderr : stdout, "socketcand:{}/{}\n", to_text(server.address()), bus);
+  }
   while (!stop) {
     std::fflush(stdout);
     server.turn(std::chrono::minutes{1}, signals.while_waiting());
@@ -86,7 +89,7 @@ void add_bus_command(CLI::App& app, int& exit_code) {
   command->add_option("--clients", settings->limits.clients, "how many may be connected at once")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command->add_flag("--log", settings->log, "print all frames, as lines of candump -L");
+  command->add_flag("--log", settings->log, "print all frames as lines of candump -L, and the addresses on standard error");
   command->callback([settings, &exit_code] { exit_code = serve(*settings); });
 }
 

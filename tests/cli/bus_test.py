@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import re
 import signal
@@ -27,7 +28,8 @@ class Bus:
     def __init__(self, *arguments: str, buses: int = 1) -> None:
         self.process = subprocess.Popen([EDSC, "bus", "--listen", "127.0.0.1:0", *arguments], text=True,
                                         stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-        self.addresses = [ADDRESS.fullmatch(self.process.stdout.readline()) for _ in range(buses)]
+        stream = self.process.stderr if "--log" in arguments else self.process.stdout
+        self.addresses = [ADDRESS.fullmatch(stream.readline()) for _ in range(buses)]
         self.port = int(self.addresses[0][1])
 
     def __enter__(self) -> Bus:
@@ -98,6 +100,31 @@ class BusCommand(unittest.TestCase):
             self.assertEqual(code, FINE)
             self.assertEqual([line.split(" ", 1)[1] for line in printed.splitlines()],
                              ["vcan0 705#R1", "vcan0 00000123#"])
+
+    def test_its_log_is_one_for_decode_and_can_utils(self) -> None:
+        with Bus("--log") as bus:
+            sender = self.client(bus)
+            sender.say("< send 705 1 5 >< sendrtr 705 1 >< send 00000123 0 >< echo >")
+            sender.expect("< echo >")
+            code, log, _ = bus.end()
+        self.assertEqual(code, FINE)
+        decoded = subprocess.run([EDSC, "decode", "-"], input=log, capture_output=True, text=True, timeout=60)
+        self.assertEqual((decoded.returncode, decoded.stderr), (FINE, ""))
+        self.assertEqual(len(decoded.stdout.splitlines()), 3)
+
+    def test_silent_connections_do_not_keep_others_out(self) -> None:
+        with Bus() as bus, contextlib.ExitStack() as silent:
+            for _ in range(64):
+                silent.enter_context(socket.create_connection(("127.0.0.1", bus.port), timeout=60)).recv(6)
+            while True:
+                with socket.create_connection(("127.0.0.1", bus.port), timeout=60) as late:
+                    if late.recv(6) == b"< hi >":
+                        late.sendall(b"< open vcan0 >")
+                        self.assertEqual(late.recv(6), b"< ok >")
+                        break
+                time.sleep(0.1)
+            _, _, complained = bus.end()
+        self.assertIn("is sent away: it has not opened a bus for 5000 ms", complained)
 
     def test_it_complains_about_bad_clients(self) -> None:
         with Bus("--clients", "1") as bus:

@@ -69,7 +69,7 @@ class Network:
     def __init__(self, edsc: Path, live_nodes: Path, *nodes: int) -> None:
         self.bus = subprocess.Popen([edsc, "bus", "--listen", "127.0.0.1:0", "--log"], text=True,
                                     stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-        self.address = self.bus.stdout.readline().strip()
+        self.address = self.bus.stderr.readline().strip()
         self.port = int(re.search(r":(\d+)/", self.address)[1])
         self.log: list[str] = []
         self.reader = threading.Thread(target=self.read_log, daemon=True)
