@@ -222,6 +222,9 @@ void add_read_command(CLI::App& app, int& exit_code) {
   file->excludes(all)->excludes(raw);
   auto* block = command->add_flag("--block", settings->block, "block transfer also for what is not a DOMAIN");
   command->add_flag("--segmented", settings->segmented, "no block transfer")->excludes(block);
+  command->add_option("--max-bytes", settings->sdo.max_bytes, "longest value of a type without a fixed size")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 30))
+      ->capture_default_str();
   add_timeout_option(*command, settings->sdo.timeout_ms);
   command->callback([settings, &exit_code] {
     if (!settings->all && settings->objects.empty()) throw CLI::RequiresError("OBJECT or --all", 1);

@@ -78,6 +78,13 @@ std::string_view to_text(SdoEnd end) {
   return {};
 }
 
+/// The bytes of a number, and of a string whose DEFTYPE states its length.
+std::optional<std::size_t> size_of_type(const LiveEntry& entry) {
+  if (entry.type != nullptr && entry.type->bits != 0) return (entry.type->bits + 7U) / 8U;
+  if (entry.entry != nullptr && entry.entry->octets != 0) return entry.entry->octets;
+  return std::nullopt;
+}
+
 }  // namespace
 
 LiveEntry live_entry(const Object& object, const Entry& entry) {
@@ -92,7 +99,7 @@ void set_type(LiveEntry& entry, const canopen::DataTypeRow& type) {
 }
 
 SdoOutcome upload(SdoAccess& node, const LiveEntry& entry, SdoTransfer transfer, const SdoProgress& progress) {
-  SdoOutcome outcome = node.upload(entry.index, entry.sub_index, transfer, progress);
+  SdoOutcome outcome = node.upload(entry.index, entry.sub_index, transfer, progress, size_of_type(entry));
   if (outcome.size_told || entry.type == nullptr) return outcome;
   if (entry.type->bits != 0) {
     outcome.bytes.resize(std::min<std::size_t>(outcome.bytes.size(), (entry.type->bits + 7U) / 8U));

@@ -17,6 +17,9 @@ using canopen::Frame;
 /// For what a device still sends of a transfer that broke.
 constexpr Duration after_a_break = canopen::from_milliseconds(50);
 
+/// Devices have longer values than the EDS says: so many bytes more are still shown to the user.
+constexpr std::size_t type_margin = 64;
+
 canopen::SdoClientOptions options_of(const SdoSettings& settings, bool block) {
   canopen::SdoClientOptions options;
   options.timeout = Duration{settings.timeout_ms * 1000U};
@@ -97,29 +100,40 @@ std::string failure_text(const SdoOutcome& outcome) {
       return fmt::format("no answer, but an abort of {}: {}",
                          entry_label(outcome.foreign_abort->index, outcome.foreign_abort->sub_index),
                          abort_text(outcome.foreign_abort->code));
-    case SdoEnd::broken: return "the transfer broke: " + abort_text(outcome.code);
+    case SdoEnd::broken:
+      if (outcome.max_bytes != 0) return fmt::format("the value is longer than {} bytes", outcome.max_bytes);
+      return "the transfer broke: " + abort_text(outcome.code);
   }
   return {};
 }
 
 SdoAccess::SdoAccess(LiveBus& bus, canopen::NodeId node, SdoSettings settings)
-    : bus_{bus},
-      node_{node},
-      settings_{settings},
-      segmented_{bus, node, options_of(settings, false)},
-      block_{bus, node, options_of(settings, true)} {}
+    : bus_{bus}, node_{node}, settings_{settings}, client_{bus, node, options_of(settings, false)} {}
 
-SdoOutcome SdoAccess::finish(Client& client, std::uint32_t entry) {
-  Observed<Client> observed{client, node_, entry};
+/// Gives the client what has come, and what comes within this time.
+void SdoAccess::take_frames(Duration span) {
+  constexpr unsigned at_most = 10'000;  // a bus may bring frames without end
+  const canopen::TimePoint end = LiveBus::now() + span;
+  for (unsigned i = 0; i != at_most; ++i) {
+    const canopen::TimePoint present = LiveBus::now();
+    const auto frame = bus_.receive(present < end ? end - present : Duration{0});
+    if (frame) client_.on_frame(*frame, LiveBus::now());
+    if (Interruption::noted()) throw Interrupted{};
+    if (!frame && LiveBus::now() >= end) return;
+  }
+}
+
+SdoOutcome SdoAccess::finish(std::uint32_t entry, bool block) {
+  Observed<Client> observed{client_, node_, entry};
   bool interrupted = false;
   run(bus_, observed, [&] {
     interrupted = true;
-    client.cancel(AbortCode::general, LiveBus::now());
+    client_.cancel(AbortCode::general, LiveBus::now());
     return true;
   });
   if (interrupted) throw Interrupted{};
   SdoOutcome outcome;
-  outcome.code = client.result();
+  outcome.code = client_.result();
   outcome.size_told = observed.size_told;
   if (outcome.code == canopen::ok) return outcome;
   outcome.foreign_abort = observed.foreign_abort;
@@ -128,7 +142,7 @@ SdoOutcome SdoAccess::finish(Client& client, std::uint32_t entry) {
   } else {
     outcome.end = outcome.code == AbortCode::timeout ? SdoEnd::no_answer : SdoEnd::broken;
   }
-  if (outcome.end == SdoEnd::no_answer && !observed.heard && &client == &block_) no_block_ = true;
+  if (outcome.end == SdoEnd::no_answer && !observed.heard && block) no_block_ = true;
   return outcome;
 }
 
@@ -137,18 +151,21 @@ SdoOutcome SdoAccess::finish(Client& client, std::uint32_t entry) {
 template <class Begin>
 SdoOutcome SdoAccess::transfer(SdoTransfer how, std::uint32_t entry, Begin begin) {
   std::string failure;
+  take_frames(Duration{0});  // none of those that have come answers the request
   if (how == SdoTransfer::block && !no_block_) {
-    begin(block_);
-    SdoOutcome outcome = finish(block_, entry);
+    client_.set_options(options_of(settings_, true));
+    begin();
+    SdoOutcome outcome = finish(entry, true);
     const bool broke = outcome.end == SdoEnd::no_answer || is_of_protocol(outcome.code);
     if (outcome.done() || (!no_block_ && !broke)) return outcome;
     if (!no_block_) {
       failure = failure_text(outcome);
-      bus_.listen(after_a_break);
+      take_frames(after_a_break);
     }
   }
-  begin(segmented_);
-  SdoOutcome outcome = finish(segmented_, entry);
+  client_.set_options(options_of(settings_, false));
+  begin();
+  SdoOutcome outcome = finish(entry, false);
   outcome.block_failure = std::move(failure);
   return outcome;
 }
@@ -160,25 +177,30 @@ AbortCode UploadBuffer::append(std::span<const std::uint8_t> piece) {
 }
 
 SdoOutcome SdoAccess::upload(std::uint16_t index, std::uint8_t sub_index, SdoTransfer how,
-                             const SdoProgress& progress) {
-  UploadBuffer bytes;
+                             const SdoProgress& progress, std::optional<std::size_t> type_size) {
+  UploadBuffer bytes{type_size ? *type_size + type_margin : settings_.max_bytes};
+  bool too_long = false;
   auto take = [&](std::uint32_t /*offset*/, std::span<const std::uint8_t> piece, bool /*last*/) {
     const AbortCode result = bytes.append(piece);
-    if (result == canopen::ok && progress) progress(bytes.size(), 0);
+    too_long = result != canopen::ok;
+    if (too_long && type_size) return AbortCode::length_too_high;
+    if (!too_long && progress) progress(bytes.size(), 0);
     return result;
   };
-  SdoOutcome outcome = transfer(how, canopen::sdo::multiplexer(index, sub_index), [&](Client& client) {
+  SdoOutcome outcome = transfer(how, canopen::sdo::multiplexer(index, sub_index), [&] {
     bytes.clear();
-    (void)client.upload(index, sub_index, canopen::sink_of(take), LiveBus::now());
+    (void)client_.upload(index, sub_index, canopen::sink_of(take), LiveBus::now());
   });
+  if (too_long) outcome.max_bytes = bytes.limit();
   if (outcome.done()) outcome.bytes = bytes.take();
   return outcome;
 }
 
 SdoOutcome SdoAccess::download(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> value,
                                SdoTransfer how, const SdoProgress& progress) {
+  const std::uint32_t entry = canopen::sdo::multiplexer(index, sub_index);
   if (!progress || value.size() <= 4) {
-    return transfer(how, canopen::sdo::multiplexer(index, sub_index), [&](Client& client) { (void)client.download(index, sub_index, value, LiveBus::now()); });
+    return transfer(how, entry, [&] { (void)client_.download(index, sub_index, value, LiveBus::now()); });
   }
   auto give = [&](std::uint32_t offset, std::span<std::uint8_t> room) -> canopen::Result<std::uint32_t> {
     const auto size = std::min(room.size(), value.size() - offset);
@@ -186,9 +208,9 @@ SdoOutcome SdoAccess::download(std::uint16_t index, std::uint8_t sub_index, std:
     progress(offset + size, value.size());
     return static_cast<std::uint32_t>(size);
   };
-  return transfer(how, canopen::sdo::multiplexer(index, sub_index), [&](Client& client) {
-    (void)client.download(index, sub_index, canopen::source_of(give, static_cast<std::uint32_t>(value.size())),
-                          LiveBus::now());
+  return transfer(how, entry, [&] {
+    (void)client_.download(index, sub_index, canopen::source_of(give, static_cast<std::uint32_t>(value.size())),
+                           LiveBus::now());
   });
 }
 

@@ -20,7 +20,7 @@ enum class SdoEnd : std::uint8_t {
   done,
   refused,    ///< by the device: its abort ended the transfer
   no_answer,  ///< the device sent nothing that belongs to the transfer for the timeout
-  broken,     ///< what the device answered is against the protocol, or longer than is bearable
+  broken,     ///< what the device answered is against the protocol, or too long
 };
 
 /// An abort that names another entry than that of the transfer. CiA 301 has none, so it does not end the transfer.
@@ -37,6 +37,7 @@ struct SdoOutcome {
   bool size_told = true;            ///< false: some of the four bytes may be none of the value's
   std::optional<ForeignAbort> foreign_abort;  ///< that came before the end
   std::string block_failure;                  ///< why a block transfer broke, where segments came after it
+  std::size_t max_bytes = 0;                  ///< the bound that the value exceeds; 0: it does not
 
   [[nodiscard]] bool done() const { return end == SdoEnd::done; }
 };
@@ -54,6 +55,7 @@ enum class SdoTransfer : std::uint8_t {
 
 struct SdoSettings {
   unsigned timeout_ms = 500;
+  std::size_t max_bytes = std::size_t{16} << 20;  ///< of an upload whose type has no fixed size
 };
 
 /// How many bytes have gone, of how many; 0 where that is not known.
@@ -62,9 +64,7 @@ using SdoProgress = std::function<void(std::size_t done, std::size_t total)>;
 /// The bytes of an upload, up to a limit: the device decides how long its answer is.
 class UploadBuffer {
  public:
-  static constexpr std::size_t max_upload = 256 * 1024 * 1024;
-
-  explicit UploadBuffer(std::size_t limit = max_upload) : limit_{limit} {}
+  explicit UploadBuffer(std::size_t limit) : limit_{limit} {}
 
   /// Takes all bytes of the piece or, with the abort code, none.
   [[nodiscard]] canopen::AbortCode append(std::span<const std::uint8_t> piece);
@@ -84,25 +84,31 @@ class SdoAccess {
  public:
   SdoAccess(LiveBus& bus, canopen::NodeId node, SdoSettings settings);
 
+  /// `type_size`: bytes of the data type, where that is fixed. A device that sends many more than that, or more than
+  /// `SdoSettings::max_bytes`, gets an abort: 0607 0012h or 0504 0005h.
   [[nodiscard]] SdoOutcome upload(std::uint16_t index, std::uint8_t sub_index,
-                                  SdoTransfer transfer = SdoTransfer::segmented, const SdoProgress& progress = {});
+                                  SdoTransfer transfer = SdoTransfer::segmented, const SdoProgress& progress = {},
+                                  std::optional<std::size_t> type_size = std::nullopt);
   [[nodiscard]] SdoOutcome download(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> value,
                                     SdoTransfer transfer = SdoTransfer::segmented, const SdoProgress& progress = {});
 
   [[nodiscard]] canopen::NodeId node() const { return node_; }
+
+  /// For the next transfers.
+  void set_timeout(unsigned milliseconds) { settings_.timeout_ms = milliseconds; }
 
  private:
   using Client = canopen::SdoClient<LiveBus>;
 
   template <class Begin>
   SdoOutcome transfer(SdoTransfer how, std::uint32_t entry, Begin begin);
-  SdoOutcome finish(Client& client, std::uint32_t entry);
+  SdoOutcome finish(std::uint32_t entry, bool block);
+  void take_frames(canopen::Duration span);
 
   LiveBus& bus_;
   canopen::NodeId node_;
   SdoSettings settings_;
-  Client segmented_;
-  Client block_;
+  Client client_;          ///< the only one: an SDO has one client, which knows the answers that may still come
   bool no_block_ = false;  ///< the device was silent where a block transfer was asked for
 };
 

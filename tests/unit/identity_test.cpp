@@ -91,7 +91,7 @@ TEST(UploadBuffer, RejectsOneByteMore) {
   EXPECT_EQ(buffer.take(), four_bytes);
 }
 
-TEST(UploadBuffer, HasRoomFor256Mebibytes) { EXPECT_EQ(UploadBuffer{}.limit(), 256U << 20U); }
+TEST(SdoSettings, BoundAnUploadTo16Mebibytes) { EXPECT_EQ(SdoSettings{}.max_bytes, 16U << 20U); }
 
 }  // namespace
 }  // namespace edsc
