@@ -223,26 +223,6 @@ void print_withheld(const Work& work, bool compared) {
   }
 }
 
-std::optional<std::uint32_t> read_number(SdoAccess& node, std::uint16_t index, std::uint8_t sub_index) {
-  const SdoOutcome outcome = node.upload(index, sub_index);
-  if (!outcome.done() || outcome.bytes.size() != sizeof(std::uint32_t)) return std::nullopt;
-  std::uint32_t number = 0;
-  std::memcpy(&number, outcome.bytes.data(), sizeof number);
-  return number;
-}
-
-/// Which numbers of the identity the file or the node does not state.
-std::string not_compared_text(const Settings& settings, const std::vector<NotCompared>& numbers) {
-  std::vector<NotCompared> in_sheet, elsewhere;
-  for (const NotCompared& number : numbers) (number.in_sheet ? in_sheet : elsewhere).push_back(number);
-  std::string text;
-  if (!elsewhere.empty()) {
-    text = fmt::format("{} (not in {})", names_of(elsewhere), settings.concise ? settings.sheet : settings.path);
-  }
-  if (!in_sheet.empty()) text += fmt::format("{}{} (not in the node)", text.empty() ? "" : ", ", names_of(in_sheet));
-  return text;
-}
-
 void enter_pre_operational(LiveBus& bus, const SdoAccess& node) {
   bus.send_all(canopen::nmt_frame(canopen::NmtCommand::enter_pre_operational, node.node()));
   bus.listen(after_nmt);
@@ -268,20 +248,10 @@ bool is_right_device(LiveBus& bus, SdoAccess& node, const Settings& settings, co
     return refuse(fmt::format("{} is for node {}, not for node {} (--force writes nevertheless)", settings.path, *meant,
                               settings.node));
   }
-  Identity device;
-  device.device_type = read_number(node, 0x1000, 0);
-  device.vendor_id = read_number(node, 0x1018, 1);
-  device.product_code = read_number(node, 0x1018, 2);
-  device.revision_number = read_number(node, 0x1018, 3);
-  device.serial_number = read_number(node, 0x1018, 4);
-  const Identity sheet = identity_of(*configuration.device());
-  ending.not_compared = not_compared_text(settings, not_compared(sheet, device));
-  const Fit fit = compare_identity(sheet, device);
-  if (fit == Fit::same || fit == Fit::minor_revision || fit == Fit::unknown) return true;
-  return refuse(fmt::format(
-      "node {} is not the device of {}: {}; \"edsc scan BUS --eds FILE\" finds the node of a file, --force writes "
-      "nevertheless",
-      settings.node, settings.concise ? settings.sheet : settings.path, identity_differences(sheet, device)));
+  const NodeCheck check =
+      check_node(node, *configuration.device(), settings.concise ? settings.sheet : settings.path);
+  ending.not_compared = check.not_compared;
+  return check.problem.empty() || refuse(check.problem + ", --force writes nevertheless");
 }
 
 std::string place_of_value(const ConfigurationValue* value) {
@@ -344,8 +314,20 @@ Json changes_json(const std::vector<Change>& changes) {
   return rows;
 }
 
+Json steps_json(const std::vector<ConfigurationStep>& steps) {
+  Json rows = Json::array();
+  for (const ConfigurationStep& step : steps) {
+    Json row = entry_json(step.entry, step.value);
+    row["action"] = verb_of(step.kind);
+    const bool has_value = step.kind != StepKind::switch_off && step.kind != StepKind::clear && !step.bytes.empty();
+    row["value"] = !has_value ? Json(nullptr) : Json(shown(step.entry, step.bytes));
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
 void print_json(const Settings& settings, const Configuration& configuration, const Work& work,
-                const ConfigurationResult& result, const Ending& ending) {
+                const std::vector<ConfigurationStep>& steps, const ConfigurationResult& result, const Ending& ending) {
   Json json{{"version", 1},
             {"node_id", settings.node},
             {"dry_run", settings.dry_run},
@@ -353,6 +335,7 @@ void print_json(const Settings& settings, const Configuration& configuration, co
             {"compared", work.compared},
             {"changes", changes_json(work.changes)},
             {"withheld", changes_json(work.withheld)},
+            {"steps", settings.dry_run ? steps_json(steps) : Json::array()},
             {"values", result.values},
             {"written", result.written},
             {"verified", result.verified},
@@ -370,7 +353,7 @@ void print_json(const Settings& settings, const Configuration& configuration, co
 }
 
 /// Behind all values: when they were made, and that they stay.
-void finish(LiveBus& bus, SdoAccess& node, const Settings& settings, const Configuration& configuration, bool complete,
+void finish(SdoAccess& node, const Settings& settings, const Configuration& configuration, bool complete,
             Ending& ending) {
   if (complete && configuration.time && (settings.all || read_configuration_time(node) != configuration.time)) {
     const std::string problem = write_configuration_time(node, *configuration.time);
@@ -378,12 +361,10 @@ void finish(LiveBus& bus, SdoAccess& node, const Settings& settings, const Confi
     if (!problem.empty()) ending.problems.push_back("1020h Verify configuration: " + problem);
   }
   if (!settings.store) return;
-  SdoSettings patient = settings.sdo;
-  patient.timeout_ms = std::max(patient.timeout_ms, shortest_store_ms);
-  SdoAccess storing{bus, node.node(), patient};
+  node.set_timeout(std::max(settings.sdo.timeout_ms, shortest_store_ms));
   std::vector<std::uint8_t> signature(sizeof store_signature);
   std::memcpy(signature.data(), &store_signature, sizeof store_signature);
-  const SdoOutcome outcome = storing.download(0x1010, 1, signature);
+  const SdoOutcome outcome = node.download(0x1010, 1, signature);
   ending.stored = outcome.done();
   if (!outcome.done()) ending.problems.push_back("1010h:01 Store parameters: " + failure_text(outcome));
 }
@@ -482,7 +463,7 @@ int configure(LiveBus& bus, const Settings& settings, const Configuration& confi
   } else {
     if (!steps.empty() && !settings.keep_state) enter_pre_operational(bus, node);
     result = with_progress("done", [&] { return configure_node(node, steps, hooks); });
-    if (result.done()) finish(bus, node, settings, configuration, work->withheld.empty(), ending);
+    if (result.done()) finish(node, settings, configuration, work->withheld.empty(), ending);
     if (watch.restarted()) {
       ending.problems.push_back(fmt::format(
           "node {} restarted meanwhile: it may have lost what was written before; configure it again", settings.node));
@@ -496,7 +477,7 @@ int configure(LiveBus& bus, const Settings& settings, const Configuration& confi
   if (text) {
     print_summary(settings, configuration, *work, result, ending);
   } else {
-    print_json(settings, configuration, *work, result, ending);
+    print_json(settings, configuration, *work, steps, result, ending);
   }
   return fine ? int{exit_fine} : exit_device_failed;
 }
@@ -508,7 +489,12 @@ int run_configure(const Settings& settings) {
   leave_out(configuration);
   if (settings.dry_run && settings.all) {
     const Work work = all_values(settings, configuration);
-    print_steps(plan_configuration(work.values, configuration.device()));
+    const auto steps = plan_configuration(work.values, configuration.device());
+    if (settings.format == "json") {
+      print_json(settings, configuration, work, steps, {}, {});
+    } else {
+      print_steps(steps);
+    }
     print_withheld(work, false);
     return exit_fine;
   }

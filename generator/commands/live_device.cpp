@@ -9,6 +9,7 @@
 
 #include "commands/commands.hpp"
 #include "decode/find_entry.hpp"
+#include "live/identity.hpp"
 
 namespace edsc {
 namespace {
@@ -22,6 +23,16 @@ NamedEntries by_address(const std::string& text) {
   entry.index = address->index;
   entry.sub_index = address->sub_index.value_or(0);
   return {{entry}, ""};
+}
+
+/// Which numbers of the identity the file or the node does not state.
+std::string not_compared_text(const std::string& path, const std::vector<NotCompared>& numbers) {
+  std::vector<NotCompared> in_sheet, elsewhere;
+  for (const NotCompared& number : numbers) (number.in_sheet ? in_sheet : elsewhere).push_back(number);
+  std::string text;
+  if (!elsewhere.empty()) text = fmt::format("{} (not in {})", names_of(elsewhere), path);
+  if (!in_sheet.empty()) text += fmt::format("{}{} (not in the node)", text.empty() ? "" : ", ", names_of(in_sheet));
+  return text;
 }
 
 }  // namespace
@@ -60,6 +71,17 @@ NamedEntries name_entry(const Device* device, const std::string& text) {
   const FoundEntry found = find_one_entry(*device, text);
   if (!found.ok()) return {{}, found.problem};
   return {{live_entry(*found.object, *found.entry)}, ""};
+}
+
+NodeCheck check_node(SdoAccess& node, const Device& device, const std::string& path) {
+  const Identity found = read_identity(node), expected = identity_of(device);
+  NodeCheck check;
+  check.not_compared = not_compared_text(path, not_compared(expected, found));
+  const Fit fit = compare_identity(expected, found);
+  if (fit == Fit::same || fit == Fit::minor_revision || fit == Fit::unknown) return check;
+  check.problem = fmt::format("node {} is not the device of {}: {}; \"edsc scan BUS --eds FILE\" finds the node of a file",
+                              node.node().value(), path, identity_differences(expected, found));
+  return check;
 }
 
 void report_broken_block(const LiveEntry& entry, const SdoOutcome& outcome) {

@@ -25,6 +25,14 @@ struct NamedEntries {
 /// The one entry that a text names.
 [[nodiscard]] NamedEntries name_entry(const Device* device, const std::string& text);
 
+/// Whether a node is the device of a file, as far as both state it.
+struct NodeCheck {
+  std::string problem;       ///< empty: nothing contradicts it
+  std::string not_compared;  ///< `vendor-ID (not in drive.eds)`
+};
+
+[[nodiscard]] NodeCheck check_node(SdoAccess& node, const Device& device, const std::string& path);
+
 /// Reports a block transfer that broke, after which segments were used.
 void report_broken_block(const LiveEntry& entry, const SdoOutcome& outcome);
 

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cstring>
+
+#include "live/sdo_access.hpp"
+
 namespace edsc {
 namespace {
 
@@ -31,6 +35,14 @@ std::optional<std::uint32_t> unless_zero(std::optional<std::uint32_t> number, st
   return *number == 0 ? std::nullopt : number;
 }
 
+std::optional<std::uint32_t> read_word(SdoAccess& node, std::uint16_t index, std::uint8_t sub_index) {
+  std::uint32_t number = 0;
+  const SdoOutcome outcome = node.upload(index, sub_index, SdoTransfer::segmented, {}, sizeof number);
+  if (!outcome.done() || outcome.bytes.size() != sizeof number) return std::nullopt;
+  std::memcpy(&number, outcome.bytes.data(), sizeof number);
+  return number;
+}
+
 bool differs(std::optional<std::uint32_t> a, std::optional<std::uint32_t> b) { return a && b && *a != *b; }
 
 }  // namespace
@@ -45,6 +57,11 @@ Identity identity_of(const Device& device) {
     identity.serial_number = unless_zero(commissioning->lss_serial_number);
   }
   return identity;
+}
+
+Identity read_identity(SdoAccess& node) {
+  return {read_word(node, 0x1000, 0), read_word(node, 0x1018, 1), read_word(node, 0x1018, 2),
+          read_word(node, 0x1018, 3), read_word(node, 0x1018, 4)};
 }
 
 std::string_view to_text(Fit fit) {
@@ -81,6 +98,12 @@ std::string identity_differences(const Identity& sheet, const Identity& device) 
                         *(sheet.*number.value));
   }
   return text;
+}
+
+unsigned count_differences(const Identity& sheet, const Identity& device) {
+  unsigned count = 0;
+  for (const Number& number : numbers) count += differs(sheet.*number.value, device.*number.value) ? 1 : 0;
+  return count;
 }
 
 std::vector<NotCompared> not_compared(const Identity& sheet, const Identity& device) {

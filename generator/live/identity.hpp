@@ -12,6 +12,8 @@
 
 namespace edsc {
 
+class SdoAccess;
+
 /// Who a device is. Nothing where that is not known.
 struct Identity {
   std::optional<std::uint32_t> device_type, vendor_id, product_code, revision_number, serial_number;
@@ -32,11 +34,17 @@ enum class Fit : std::uint8_t {
 /// `same device`
 [[nodiscard]] std::string_view to_text(Fit fit);
 
+/// Reads device type and identity object.
+[[nodiscard]] Identity read_identity(SdoAccess& node);
+
 /// Compares each number that both state; a number that only one of them states does not count.
 [[nodiscard]] Fit compare_identity(const Identity& sheet, const Identity& device);
 
 /// The differences, number by number: `product code is 00001234h, expected 00001235h`.
 [[nodiscard]] std::string identity_differences(const Identity& sheet, const Identity& device);
+
+/// How many numbers differ.
+[[nodiscard]] unsigned count_differences(const Identity& sheet, const Identity& device);
 
 /// A number that could not be compared.
 struct NotCompared {
