@@ -15,19 +15,6 @@ namespace {
 using canopen::DataClass;
 using canopen::DataType;
 
-/// A value as an SDO download carries it.
-std::string data_of(const Value& value, const canopen::DataTypeRow& type) {
-  std::string data;
-  if (type.type == DataType::unicode_string) {
-    for (const char16_t unit : to_utf16(value.bytes)) append_bytes(data, unit, 2);
-  } else if (type.kind == DataClass::string) {
-    data = value.bytes;
-  } else {
-    append_bytes(data, value.bits, (type.bits + 7U) / 8U);
-  }
-  return data;
-}
-
 class Configuration {
  public:
   Configuration(const DataSheet& sheet, const Device& device, Diagnostics& diagnostics)
@@ -106,6 +93,18 @@ class Configuration {
 };
 
 }  // namespace
+
+std::string data_of(const Value& value, const canopen::DataTypeRow& type) {
+  std::string data;
+  if (type.type == DataType::unicode_string) {
+    for (const char16_t unit : to_utf16(value.bytes)) append_bytes(data, unit, 2);
+  } else if (type.kind == DataClass::string) {
+    data = value.bytes;
+  } else {
+    append_bytes(data, value.bits, (type.bits + 7U) / 8U);
+  }
+  return data;
+}
 
 std::vector<ConfiguredValue> configured_values(const DataSheet& sheet, const Device& device, Diagnostics& diagnostics) {
   return Configuration(sheet, device, diagnostics).collect();

@@ -22,6 +22,9 @@ struct ConfiguredValue {
 [[nodiscard]] std::vector<ConfiguredValue> configured_values(const DataSheet& sheet, const Device& device,
                                                              Diagnostics& diagnostics);
 
+/// A value as an SDO download carries it.
+[[nodiscard]] std::string data_of(const Value& value, const canopen::DataTypeRow& type);
+
 /// A number of so many bytes behind `bytes`, low byte first.
 void append_bytes(std::string& bytes, std::uint64_t number, unsigned count);
 

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <set>
+#include <vector>
 #include <utility>
 
 #include "device/index_range.hpp"
@@ -52,8 +54,13 @@ class DcfMaker {
     if (values == DcfValues::different) compare_with_defaults();
   }
 
+  DcfMaker(Document& document, const DataSheet& sheet, const Device& device, const ParameterValues& given,
+           std::optional<unsigned> bit_rate)
+      : document_(document), sheet_(sheet), device_(device), values_(DcfValues::all), given_(&given), bit_rate_(bit_rate) {}
+
   void make() {
     commission();
+    if (given_ != nullptr) write_compact_values();
     drop_commands();
     for (DocumentSection& section : document_.sections) {
       if (section.kind.kind == SectionKind::file_info && !sheet_.is_dcf) set_last_eds(section);
@@ -88,8 +95,8 @@ class DcfMaker {
     for (const auto& [key, value] : defaults) {
       if (find_entry(section, key) == nullptr) set(section, key, std::string{value});
     }
-    const std::string rate = only_baud_rate();
-    if (find_entry(section, "Baudrate") == nullptr && !rate.empty()) set(section, "Baudrate", rate);
+    const std::string rate = bit_rate_ ? fmt::format("{}", *bit_rate_) : only_baud_rate();
+    if ((bit_rate_ || find_entry(section, "Baudrate") == nullptr) && !rate.empty()) set(section, "Baudrate", rate);
   }
 
   DocumentSection& commissioning_section() {
@@ -155,7 +162,50 @@ class DcfMaker {
     if (!sheet_.is_dcf) remove(section, "ParameterValue");
   }
 
+  /// The elements of compact forms have their values in one section for each object.
+  void write_compact_values() {
+    std::map<std::uint16_t, std::vector<DocumentEntry>> compact;
+    for (const auto& [entry, text] : *given_) {
+      const ObjectDescription* const object = find_object(sheet_, entry->index);
+      if (object == nullptr || !is_element(*object, entry->sub_index)) continue;
+      compact[entry->index].push_back({{}, fmt::format("{}", entry->sub_index), text});
+    }
+    for (auto& [index, values] : compact) {
+      std::ranges::sort(values, {}, [](const DocumentEntry& value) { return std::stoul(value.key); });
+      values.insert(values.begin(), {{}, "NrOfEntries", fmt::format("{}", values.size())});
+      compact_values_section(index).entries = std::move(values);
+    }
+  }
+
+  /// Whether a sub-index has no section of its own.
+  static bool is_element(const ObjectDescription& object, std::uint8_t sub_index) {
+    return sub_index != 0 && object.compact_sub_obj.present &&
+           std::ranges::find(object.sub_objects, sub_index, &SubObjectDescription::sub_index) == object.sub_objects.end();
+  }
+
+  DocumentSection& compact_values_section(std::uint16_t index) {
+    auto behind = document_.sections.begin();
+    for (auto at = document_.sections.begin(); at != document_.sections.end(); ++at) {
+      constexpr SectionKind kinds[] = {SectionKind::object, SectionKind::sub_object, SectionKind::compact_names};
+      if (at->kind.index != index) continue;
+      if (at->kind.kind == SectionKind::compact_values) return *at;
+      if (std::ranges::find(kinds, at->kind.kind) != std::end(kinds)) behind = std::next(at);
+    }
+    DocumentSection added;
+    added.kind.kind = SectionKind::compact_values;
+    added.kind.index = index;
+    added.title = spell_title(added.kind, {});
+    return *document_.sections.insert(behind, std::move(added));
+  }
+
+  void configure_as_given(DocumentSection& section, std::uint8_t sub_index) {
+    const auto given = given_->find(device_.find(section.kind.index, sub_index));
+    if (given == given_->end()) return remove(section, "ParameterValue");
+    set(section, "ParameterValue", given->second);
+  }
+
   void configure(DocumentSection& section, std::uint8_t sub_index) {
+    if (given_ != nullptr) return configure_as_given(section, sub_index);
     drop_meaningless_value(section);
     if (is_command(section)) return;
     const Entry* const entry = device_.find(section.kind.index, sub_index);
@@ -177,6 +227,7 @@ class DcfMaker {
   }
 
   void configure_compact_values(DocumentSection& section) {
+    if (given_ != nullptr) return;
     for (DocumentEntry& value : section.entries) {
       const KeySpelling key = spell_key(section.kind.kind, value.key);
       if (!key.is_known || key.value != ValueKind::typed || key.number > 0xFF) continue;
@@ -199,6 +250,8 @@ class DcfMaker {
   const DataSheet& sheet_;
   const Device& device_;
   DcfValues values_;
+  const ParameterValues* given_ = nullptr;  ///< the ParameterValues; null: those that the file and `values_` say
+  std::optional<unsigned> bit_rate_;
   std::set<const Entry*> defaults_;  ///< with a ParameterValue that is the default
   std::set<std::uint16_t> whole_;    ///< mapping parameters of which all entries get a ParameterValue
 };
@@ -207,6 +260,11 @@ class DcfMaker {
 
 void make_dcf(Document& document, const DataSheet& sheet, const Device& device, DcfValues values) {
   DcfMaker(document, sheet, device, values).make();
+}
+
+void make_dcf(Document& document, const DataSheet& sheet, const Device& device, const ParameterValues& values,
+              std::optional<unsigned> bit_rate) {
+  DcfMaker(document, sheet, device, values, bit_rate).make();
 }
 
 }  // namespace edsc

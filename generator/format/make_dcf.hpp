@@ -2,6 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
 
 #include "device/device.hpp"
 #include "eds/data_sheet.hpp"
@@ -19,5 +22,12 @@ enum class DcfValues : std::uint8_t {
 /// of `device`: that of a DCF with its formula resolved, else the default. The ParameterValues of an EDS, which have no
 /// meaning there, are dropped. Commands such as 1010h never have one.
 void make_dcf(Document& document, const DataSheet& sheet, const Device& device, DcfValues values);
+
+/// ParameterValues as an EDS spells them, by entry. Of the elements of a compact form either all are there or none.
+using ParameterValues = std::map<const Entry*, std::string>;
+
+/// The same with these ParameterValues and no others, and with a bit rate in kbit/s where it is known.
+void make_dcf(Document& document, const DataSheet& sheet, const Device& device, const ParameterValues& values,
+              std::optional<unsigned> bit_rate);
 
 }  // namespace edsc

@@ -39,6 +39,8 @@ class LiveBus {
 
   [[nodiscard]] static canopen::TimePoint now() { return canopen::HostBus::now(); }
   [[nodiscard]] int file_descriptor() const { return bus_.file_descriptor(); }
+  /// When the last frame that `receive` gave has come.
+  [[nodiscard]] canopen::TimePoint received_at() const { return bus_.received_at(); }
 
   /// Called with every frame that is received.
   std::function<void(const canopen::Frame&, canopen::TimePoint now)> on_frame;
