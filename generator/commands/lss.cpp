@@ -142,8 +142,7 @@ int fastscan(LssSession& session, const Settings& settings) {
   if (!text) print_found(found);
   if (!result.done()) return failed("fastscan", result);
   if (!found.empty()) return exit_fine;
-  fmt::print(stderr, "edsc: fastscan: no device without node-ID answers\n");
-  return exit_device_failed;
+  return failed("fastscan", {session.reason_for_silence(), 0});
 }
 
 /// Configures the selected slave.
@@ -165,7 +164,8 @@ int assign(LssSession& session, const Settings& settings) {
   const std::uint8_t known = known_numbers(settings);
   session.switch_state(LssState::waiting);
   const LssResult found = known == 4 ? session.select(address) : session.fastscan(address, known);
-  if (!found.done()) return failed(known == 4 ? "select" : "fastscan", found);
+  if (!found.done() && known != 4) return failed("fastscan", {session.reason_for_silence(), 0});
+  if (!found.done()) return failed("select", found);
   if (known != 4) {
     if (const LssResult confirmed = session.confirm(address); !confirmed.done()) {
       session.switch_state(LssState::waiting);

@@ -30,8 +30,9 @@ class Confirmation {
   Confirmation(LiveBus& bus, const Settings& settings) : bus_{bus}, settings_{settings} {
     bus.on_frame = [this](const canopen::Frame& frame, canopen::TimePoint) {
       const auto message = canopen::error_control_message(frame);
-      const bool told = message && message->node_id.value() == settings_.node;
-      if (told && message->state == settings_.command->leads_to) confirmed_ = true;
+      if (!message || message->node_id.value() != settings_.node) return;
+      told_ = message->state;
+      if (told_ == settings_.command->leads_to) confirmed_ = true;
     };
   }
   ~Confirmation() { bus_.on_frame = nullptr; }
@@ -46,10 +47,19 @@ class Confirmation {
     return confirmed_;
   }
 
+  /// What is known of a node that has not confirmed its state.
+  [[nodiscard]] std::string reason() const {
+    if (told_) return fmt::format("its last message says {}", nmt_state_text(*told_));
+    if (settings_.command->leads_to == canopen::NmtState::initialisation) return "it has sent no boot-up message";
+    return fmt::format("it has sent no heartbeat; 1017h may be 0 (edsc read {} {} 1017h --type u16)", settings_.bus,
+                       settings_.node);
+  }
+
  private:
   LiveBus& bus_;
   const Settings& settings_;
   bool confirmed_ = false;
+  std::optional<canopen::NmtState> told_;  ///< last
 };
 
 int run_nmt(const Settings& settings) {
@@ -58,8 +68,8 @@ int run_nmt(const Settings& settings) {
     bus.send_all(canopen::nmt_frame(settings.command->command, canopen::NodeId{settings.node}));
     bus.listen(canopen::from_milliseconds(10));  // the port may still hold the frame
     if (settings.wait_ms == 0 || confirmation.comes_in_time()) return int{exit_fine};
-    fmt::print(stderr, "edsc: node {} does not tell within {} ms that it is in {}\n", settings.node, settings.wait_ms,
-               nmt_state_text(settings.command->leads_to));
+    fmt::print(stderr, "edsc: node {} does not tell within {} ms that it is in {}: {}\n", settings.node,
+               settings.wait_ms, nmt_state_text(settings.command->leads_to), confirmation.reason());
     return exit_device_failed;
   });
 }

@@ -80,6 +80,36 @@ std::string fits_text(const FoundNode& node, const std::vector<Candidate>& candi
   return text.empty() ? "none" : text;
 }
 
+/// A node that is not the device of a file, but the most similar one.
+struct Nearest {
+  const FoundNode* node = nullptr;
+  unsigned differences = 0;
+};
+
+/// Nothing where the file fits a node, or no node states a number.
+std::optional<Nearest> nearest_misfit(const std::vector<FoundNode>& nodes, const Candidate& candidate) {
+  std::optional<Nearest> nearest;
+  for (const FoundNode& node : nodes) {
+    const Identity identity = identity_of(node);
+    if (fits(compare_identity(candidate.identity, identity))) return std::nullopt;
+    const unsigned differences = count_differences(candidate.identity, identity);
+    if (differences == 0 || (nearest && nearest->differences <= differences)) continue;
+    nearest = Nearest{&node, differences};
+  }
+  return nearest;
+}
+
+/// Why files fit no node.
+void print_misfits(const std::vector<FoundNode>& nodes, const std::vector<Candidate>& candidates) {
+  for (const Candidate& candidate : candidates) {
+    const auto nearest = nearest_misfit(nodes, candidate);
+    if (!nearest) continue;
+    fmt::print("{} fits no node; node {}{}: {}\n", candidate.path, nearest->node->node_id,
+               nodes.size() > 1 ? " is nearest" : "",
+               identity_differences(candidate.identity, identity_of(*nearest->node)));
+  }
+}
+
 void print_text(const Findings& found, const std::vector<Candidate>& candidates, bool colour) {
   TextTable table;
   std::vector<std::string> head{"node", "state", "vendor-ID", "product", "revision", "serial", "device type", "name"};
@@ -102,6 +132,7 @@ void print_text(const Findings& found, const std::vector<Candidate>& candidates,
     const bool bold = colour && i == 0;
     fmt::print("{}{}{}\n", bold ? "\x1B[1m" : "", lines[i], bold ? "\x1B[0m" : "");
   }
+  print_misfits(found.nodes, candidates);
   for (const canopen::LssAddress& address : found.unconfigured) {
     fmt::print("without node-ID: {}\n", to_text(address));
   }
@@ -121,9 +152,14 @@ Json as_json(const FoundNode& node, const std::vector<Candidate>& candidates) {
   json["serial_number"] = number_or_null(node.serial_number);
   json["name"] = node.name ? Json(shown(*node.name)) : Json(nullptr);
   json["data_sheets"] = Json::array();
+  json["misfits"] = Json::array();
   for (const Candidate& candidate : candidates) {
     const Fit fit = compare_identity(candidate.identity, identity_of(node));
-    if (!fits(fit)) continue;
+    if (!fits(fit)) {
+      const std::string differences = identity_differences(candidate.identity, identity_of(node));
+      json["misfits"].push_back({{"file", candidate.path}, {"differences", differences}});
+      continue;
+    }
     Json sheet{{"file", candidate.path}, {"fit", to_text(fit)}, {"not_compared", Json::array()}};
     for (const NotCompared& number : not_compared(candidate.identity, identity_of(node))) {
       sheet["not_compared"].push_back(number.key);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <canopen/abort_code.hpp>
 #include <iterator>
+#include <vector>
 
 #include "decode/print_message.hpp"
 #include "text/counted.hpp"
@@ -17,7 +18,59 @@ std::string abort_text(std::uint32_t code) {
                      canopen::to_text(static_cast<canopen::AbortCode>(code)));
 }
 
+/// Whether the frame is one that the node sends.
+bool is_of_node(const Message& message) {
+  switch (message.service) {
+    case Service::boot_up:
+    case Service::heartbeat:
+    case Service::guarding: return !message.state.empty();
+    case Service::emcy:
+    case Service::tpdo: return true;
+    case Service::sdo: return !message.from_client;
+    default: return false;
+  }
+}
+
+/// `1, 3..8`
+std::string ranges_of(const std::vector<std::size_t>& ids) {
+  std::string text;
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    std::size_t last = i;
+    while (last + 1 < ids.size() && ids[last + 1] == ids[last] + 1) ++last;
+    text += fmt::format("{}{}", text.empty() ? "" : ", ", ids[i]);
+    if (last > i + 1) text += fmt::format("..{}", ids[last]);
+    if (last == i + 1) text += fmt::format(", {}", ids[last]);
+    i = last;
+  }
+  return text;
+}
+
 }  // namespace
+
+/// Whether the node is asked over SDO and sends nothing, as most nodes of a scan do.
+bool Summary::is_silent(std::size_t id) const {
+  if (id == 0 || heard_[id]) return false;
+  for (const ServiceRow& row : services) {
+    const bool asked = row.service == Service::sdo;
+    if ((frames_[id][static_cast<std::size_t>(row.service)] > 0) != asked) return false;
+  }
+  return true;
+}
+
+/// One line for all silent nodes, where there are several.
+std::string Summary::silent_nodes() const {
+  std::vector<std::size_t> ids;
+  std::size_t frames = 0, aborted = 0;
+  for (std::size_t id = 1; id < node_ids; ++id) {
+    if (!is_silent(id)) continue;
+    ids.push_back(id);
+    frames += frames_[id][static_cast<std::size_t>(Service::sdo)];
+    aborted += transfers_[id].aborted;
+  }
+  if (ids.size() < 2) return {};
+  return fmt::format("{} nodes send nothing: {}: SDO {}, {} aborted\n", ids.size(), ranges_of(ids), frames,
+                     counted(aborted, "transfer"));
+}
 
 void Summary::count_code(Codes& codes, std::uint8_t node_id, std::uint32_t code) {
   const auto at = codes.find({node_id, code});
@@ -31,6 +84,7 @@ void Summary::count_code(Codes& codes, std::uint8_t node_id, std::uint32_t code)
 void Summary::add(const LogLine& line, const Message& message) {
   ++frames_in_all_;
   ++frames_[message.node_id % node_ids][static_cast<std::size_t>(message.service)];
+  if (is_of_node(message)) heard_[message.node_id % node_ids] = true;
   if (message.problem) ++problems_;
   if (line.has_time) {
     first_us_ = has_time_ ? std::min(first_us_, line.microseconds) : line.microseconds;
@@ -77,14 +131,16 @@ std::string Summary::text() const {
   };
   fmt::format_to(put, "{:<9}", "all");
   services_of([&](std::size_t service) { return total(service); });
+  const std::string silent = silent_nodes();
+  const auto is_grouped = [&](std::size_t id) { return !silent.empty() && is_silent(id); };
   for (std::size_t id = 1; id < node_ids; ++id) {
-    if (std::ranges::all_of(frames_[id], [](std::size_t count) { return count == 0; })) continue;
+    if (is_grouped(id) || std::ranges::all_of(frames_[id], [](std::size_t count) { return count == 0; })) continue;
     fmt::format_to(put, "node {:<4}", id);
     services_of([&](std::size_t service) { return frames_[id][service]; });
   }
   for (std::size_t id = 0; id < node_ids; ++id) {
     const Transfers& one = transfers_[id];
-    if (one.finished + one.aborted == 0) continue;
+    if (is_grouped(id) || one.finished + one.aborted == 0) continue;
     fmt::format_to(put, "node {:<4}  {}, {} aborted", id,
                    counted(one.finished + one.aborted, "SDO transfer"), one.aborted);
     if (one.timed > 0) {
@@ -95,9 +151,10 @@ std::string Summary::text() const {
     out += '\n';
   }
   for (const auto& [key, count] : aborts_)
-    fmt::format_to(put, "node {:<4}  abort {}: {}\n", key.first, abort_text(key.second), count);
+    if (!is_grouped(key.first)) fmt::format_to(put, "node {:<4}  abort {}: {}\n", key.first, abort_text(key.second), count);
   for (const auto& [key, count] : emergencies_)
     fmt::format_to(put, "node {:<4}  EMCY {:04X}h: {}\n", key.first, key.second, count);
+  out += silent;
   if (open_transfers_ > 0) fmt::format_to(put, "{} not finished\n", counted(open_transfers_, "SDO transfer"));
   if (can_fd_frames_ > 0) fmt::format_to(put, "{} passed over\n", counted(can_fd_frames_, "CAN FD frame"));
   if (broken_lines_ > 0) fmt::format_to(put, "{} skipped\n", counted(broken_lines_, "line"));

@@ -38,9 +38,12 @@ class Summary {
   void count_code(Codes& codes, std::uint8_t node_id, std::uint32_t code);
   [[nodiscard]] std::size_t total(std::size_t service) const;
   [[nodiscard]] double seconds() const;
+  [[nodiscard]] bool is_silent(std::size_t id) const;
+  [[nodiscard]] std::string silent_nodes() const;
 
   std::array<std::array<std::size_t, service_count>, node_ids> frames_{};  ///< by node-ID, 0 for those of no node
   std::array<Transfers, node_ids> transfers_{};
+  std::array<bool, node_ids> heard_{};  ///< the node has sent a frame
   Codes emergencies_, aborts_;
   std::size_t frames_in_all_ = 0, broken_lines_ = 0, can_fd_frames_ = 0, open_transfers_ = 0, problems_ = 0;
   bool has_time_ = false;

@@ -142,6 +142,12 @@ LssResult LssSession::confirm(const LssAddress& address) {
   return {fmt::format("found {}, but the slave in configuration state has {}", expected, to_text(inquired)), 0};
 }
 
+std::string LssSession::reason_for_silence() {
+  if (!identify_non_configured().done()) return "no device without node-ID answers";
+  return "a device without node-ID answers LSS, but not Fastscan, which it may not have; \"edsc lss BUS state "
+         "configuration\" and \"inquire\", with no other device on the bus, tell its numbers for \"assign\"";
+}
+
 LssResult LssSession::find_unconfigured(const std::function<void(const LssAddress&)>& found, const LssAddress& among,
                                         std::uint8_t known) {
   switch_state(LssState::waiting);

@@ -40,6 +40,9 @@ class LssSession {
   /// fills in the others.
   [[nodiscard]] LssResult fastscan(canopen::LssAddress& address, std::uint8_t known);
 
+  /// Why Fastscan has found no slave, as far as LSS tells: a slave without node-ID may lack Fastscan.
+  [[nodiscard]] std::string reason_for_silence();
+
   /// Whether one slave is in configuration state and has this address, as the four inquiries say.
   [[nodiscard]] LssResult confirm(const canopen::LssAddress& address);
 

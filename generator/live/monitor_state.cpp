@@ -2,6 +2,8 @@
 
 #include <canopen/port/virtual_bus.hpp>
 
+#include "live/nmt_text.hpp"
+
 namespace edsc {
 namespace {
 
@@ -24,7 +26,7 @@ bool MonitorState::add(const canopen::Frame& frame, const Message& message, std:
     case Service::tpdo:
     case Service::rpdo: return add_pdo(message, now_us);
     case Service::emcy: {
-      MonitoredNode& node = nodes_[message.node_id];
+      MonitoredNode& node = node_of(message.node_id);
       ++node.emergencies;
       node.emergency = message.text;
       node.error_code = message.error_code;
@@ -38,7 +40,7 @@ bool MonitorState::add(const canopen::Frame& frame, const Message& message, std:
       return first;
     }
     case Service::sdo: return message.step == TransferStep::finished || message.step == TransferStep::aborted;
-    case Service::nmt:
+    case Service::nmt: add_command(frame); return true;
     case Service::lss:
     case Service::error_frame: return true;
     case Service::unknown: {
@@ -50,9 +52,37 @@ bool MonitorState::add(const canopen::Frame& frame, const Message& message, std:
   return false;
 }
 
+MonitoredNode& MonitorState::node_of(std::uint8_t node_id) {
+  const auto [node, is_new] = nodes_.try_emplace(node_id);
+  if (is_new) node->second.assumed = commanded_[node_id & 0x7F];
+  return node->second;
+}
+
+/// A node does not confirm an NMT command: where it leads to is assumed until error control says it.
+void MonitorState::add_command(const canopen::Frame& frame) {
+  if (frame.remote || frame.size < 2 || frame.data[1] >= commanded_.size()) return;
+  for (const NmtCommandText& row : nmt_command_texts) {
+    if (static_cast<std::uint8_t>(row.command) != frame.data[0]) continue;
+    const bool resets = row.leads_to == canopen::NmtState::initialisation;
+    const std::string_view state = resets ? "" : nmt_state_text(row.leads_to);
+    const std::uint8_t node_id = frame.data[1];
+    for (std::size_t id = 1; id < commanded_.size(); ++id) {
+      if (node_id != 0 && id != node_id) continue;
+      commanded_[id] = state;
+      if (nodes_.contains(static_cast<std::uint8_t>(id))) assume(static_cast<std::uint8_t>(id), state);
+    }
+  }
+}
+
+void MonitorState::assume(std::uint8_t node_id, std::string_view state) {
+  MonitoredNode& node = node_of(node_id);
+  node.assumed = node.state == state ? "" : state;
+}
+
 bool MonitorState::add_state(const Message& message, std::int64_t now_us) {
   if (message.state.empty() || message.node_id == 0) return false;
-  MonitoredNode& node = nodes_[message.node_id];
+  commanded_[message.node_id & 0x7F].clear();
+  MonitoredNode& node = node_of(message.node_id);
   const bool booted = message.service == Service::boot_up;
   const bool was_late = node.is_late(now_us);
   if (node.heard_us && !booted) node.interval_us = now_us - *node.heard_us;
@@ -61,10 +91,15 @@ bool MonitorState::add_state(const Message& message, std::int64_t now_us) {
   if (!booted) ++node.heartbeats;
   const bool changed = booted || was_late || node.state != message.state;
   node.state = message.state;
+  node.assumed.clear();
   return changed;
 }
 
 bool MonitorState::add_pdo(const Message& message, std::int64_t now_us) {
+  // A node sends PDOs in Operational only.
+  if (message.service == Service::tpdo && message.node_id != 0) {
+    assume(message.node_id, nmt_state_text(canopen::NmtState::operational));
+  }
   MonitoredPdo& pdo = pdos_[{message.node_id, message.service == Service::tpdo, message.number}];
   pdo.frames.count();
   pdo.seen_us = now_us;

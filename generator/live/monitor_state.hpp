@@ -1,10 +1,12 @@
 /// What has been seen on a bus: nodes, PDOs, and how much goes on.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <tuple>
 
 #include "decode/message.hpp"
@@ -29,6 +31,7 @@ class Rate {
 struct MonitoredNode {
   std::string name;                      ///< of the data sheet
   std::string state;                     ///< as error control has told it; empty: it has not
+  std::string assumed;                   ///< from later NMT commands and TPDOs; empty: nothing contradicts `state`
   std::optional<std::int64_t> heard_us;  ///< its last error control message
   std::int64_t interval_us = 0;          ///< between its last two heartbeats; 0: not known
   std::uint64_t heartbeats = 0;
@@ -59,7 +62,7 @@ class MonitorState {
     friend auto operator<=>(const PdoKey&, const PdoKey&) = default;
   };
 
-  void set_name(std::uint8_t node_id, std::string name) { nodes_[node_id].name = std::move(name); }
+  void set_name(std::uint8_t node_id, std::string name) { node_of(node_id).name = std::move(name); }
 
   /// True: something is new; heartbeats, PDOs, SYNC and TIME that tell the same as before are not.
   bool add(const canopen::Frame& frame, const Message& message, std::int64_t now_us);
@@ -80,11 +83,15 @@ class MonitorState {
   void start(std::int64_t now_us) { start_us_ = tick_us_ = now_us; }
 
  private:
+  MonitoredNode& node_of(std::uint8_t node_id);
+  void add_command(const canopen::Frame& frame);
+  void assume(std::uint8_t node_id, std::string_view state);
   bool add_state(const Message& message, std::int64_t now_us);
   bool add_pdo(const Message& message, std::int64_t now_us);
   void take_rates(double seconds);
 
   std::map<std::uint8_t, MonitoredNode> nodes_;
+  std::array<std::string, 128> commanded_;  ///< where the last NMT command leads to, by node-ID
   std::map<PdoKey, MonitoredPdo> pdos_;
   std::map<std::uint32_t, Rate> others_;
   Rate frames_, bits_;

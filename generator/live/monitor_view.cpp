@@ -31,6 +31,12 @@ std::string other_label(std::uint32_t cob_id) {
   return (cob_id & 0x2000'0000) != 0 ? fmt::format("{:08X}h", cob_id & 0x1FFF'FFFF) : fmt::format("{:03X}h", cob_id);
 }
 
+/// `operational?`: no heartbeat says so, but NMT commands or PDOs.
+std::string state_text(const MonitoredNode& node) {
+  if (!node.assumed.empty()) return node.assumed + "?";
+  return node.state.empty() ? "-" : node.state;
+}
+
 std::string age_text(const MonitoredNode& node, std::int64_t now_us) {
   if (!node.heard_us) return "-";
   return fmt::format("{:.1f} s{}", seconds(now_us - *node.heard_us), node.is_late(now_us) ? " late" : "");
@@ -56,7 +62,7 @@ void append_nodes(std::vector<std::string>& lines, const MonitorState& state, co
   table.add({"node", "name", "state", "heard", "last EMCY"});
   for (const auto& [node_id, node] : state.nodes()) {
     table.add({fmt::format("{:>4}", node_id), node.name.empty() ? "-" : node.name,
-               node.state.empty() ? "-" : node.state, age_text(node, now_us), emergency_text(node, now_us)});
+               state_text(node), age_text(node, now_us), emergency_text(node, now_us)});
   }
   const std::size_t first = lines.size() + 1;
   append_table(lines, table, view.colour);
@@ -141,6 +147,7 @@ Json monitor_json(const MonitorState& state, const MonitorView& view, std::int64
     Json row{{"node_id", node_id}};
     row["name"] = node.name.empty() ? Json(nullptr) : Json(node.name);
     row["state"] = node.state.empty() ? Json(nullptr) : Json(node.state);
+    row["assumed_state"] = node.assumed.empty() ? Json(nullptr) : Json(node.assumed);
     row["heartbeats"] = node.heartbeats;
     row["heard_ms_ago"] = node.heard_us ? Json((now_us - *node.heard_us) / 1000) : Json(nullptr);
     row["late"] = node.is_late(now_us);

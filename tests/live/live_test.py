@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""edsc scan, read, write, configure, monitor, lss and nmt against live nodes on the virtual bus of `edsc bus`.
+"""edsc scan, read, write, configure, save, monitor, record, lss and nmt against live nodes on the virtual bus of `edsc bus`.
 
     live_test.py SOURCE_DIR EDSC LIVE_NODES [unittest arguments]
 """
@@ -25,8 +25,9 @@ from pathlib import Path
 
 import jsonschema
 
-sys.path.insert(0, str(Path(__file__).parent))
+sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parent.parent / "masters")]
 from network import Network  # noqa: E402
+from slaves import Habits, Slave  # noqa: E402
 
 SOURCE_DIR = Path(sys.argv[1]).resolve()
 EDSC = Path(sys.argv[2]).resolve()
@@ -111,6 +112,22 @@ node  state  vendor-ID  product    revision   serial     device type            
             "device.eds, newer.eds (other minor revision), next.eds (other major revision)"), result.stdout)
         result = self.edsc("scan", "--nodes", "5", *self.fast, "--eds", "other.eds", "--format", "json")
         self.assertEqual(self.expect_json(result, "scan.schema.json")["nodes"][0]["data_sheets"], [])
+
+    def test_it_says_why_a_file_fits_no_node(self) -> None:
+        text = SHEET.read_text()
+        (self.folder / "other.eds").write_text(text.replace("0x00001001", "0x00001002"))
+        (self.folder / "serial.dcf").write_text(
+            text.replace("0x00020192", "0x00040191") + "\n[DeviceComissioning]\nNodeID=6\nLSS_SerialNumber=0x101\n")
+        result = self.edsc("scan", *self.fast, "--eds", "device.eds", "--eds", "other.eds", "--eds", "serial.dcf")
+        self.assertEqual(result.stdout.splitlines()[3:], [
+            "other.eds fits no node; node 5 is nearest: product code is 00001001h, expected 00001002h",
+            "serial.dcf fits no node; node 6 is nearest: device type is 00020192h, expected 00040191h"])
+        result = self.edsc("scan", "--nodes", "5", *self.fast, "--eds", "other.eds")
+        self.assertEqual(result.stdout.splitlines()[2:],
+                         ["other.eds fits no node; node 5: product code is 00001001h, expected 00001002h"])
+        result = self.edsc("scan", "--nodes", "5", *self.fast, "--eds", "other.eds", "--format", "json")
+        self.assertEqual(self.expect_json(result, "scan.schema.json")["nodes"][0]["misfits"],
+                         [{"file": "other.eds", "differences": "product code is 00001001h, expected 00001002h"}])
 
     def test_an_eds_without_vendor_fits_by_its_other_numbers(self) -> None:
         text = re.sub(r"0x00ABCDEF", "0", SHEET.read_text())
@@ -263,6 +280,35 @@ class Silence(LiveTest):
         self.network.device(lambda frame: answers.get(frame, []))
         self.expect(self.edsc("read", 5, "1008h"), FAILED,
                     stderr="edsc: 1008h:00: the transfer broke: 0503 0000h, toggle bit not alternated\n")
+
+    def endless(self, initiate: str) -> None:
+        """A device whose uploads begin with this answer and do not end."""
+        def answer(frame: str) -> list[str]:
+            if frame.startswith("605 40"):
+                return [initiate.replace("xx xx xx", frame[7:15])]
+            if frame[4:6] in ("60", "70"):
+                return [f"585 {'00' if frame[4:6] == '60' else '10'} 41 42 43 44 45 46 47"]
+            return []
+        self.network.device(answer)
+
+    def test_an_upload_that_brings_more_than_announced(self) -> None:
+        self.endless("585 41 xx xx xx 03 00 00 00")
+        self.expect(self.edsc("read", 5, "1008h"), FAILED, stderr="edsc: 1008h:00: the transfer broke: 0607 0012h, "
+                    "value too long\n")
+        self.assertEqual(self.network.frames("605")[-1], "605 80 08 10 00 12 00 07 06")
+
+    def test_an_endless_upload_of_a_number(self) -> None:
+        self.endless("585 40 xx xx xx 00 00 00 00")
+        self.expect(self.edsc("read", 5, "1000h", "--eds", "device.eds"), FAILED,
+                    stderr="edsc: 1000h:00 Device type: the value is longer than 68 bytes\n")
+        self.assertEqual(self.network.frames("605")[-1], "605 80 00 10 00 12 00 07 06")
+
+    def test_an_endless_upload_of_a_string(self) -> None:
+        self.endless("585 40 xx xx xx 00 00 00 00")
+        self.expect(self.edsc("read", 5, "1008h", "--eds", "device.eds", "--max-bytes", 700), FAILED,
+                    stderr="edsc: 1008h:00 Manufacturer device name: the value is longer than 700 bytes\n")
+        frames = self.network.frames("605")
+        self.assertEqual((len(frames), frames[-1]), (103, "605 80 08 10 00 05 00 04 05"))
 
     def test_an_answer_that_tells_no_size_is_cut_to_the_type(self) -> None:
         answers = {"605 40 17 10 00 00 00 00 00": ["585 42 17 10 00 F4 01 EE EE"],
@@ -649,6 +695,14 @@ write       1A00h:00 TPDO mapping parameter 1, Number of mapped objects = 1
 switch on   1800h:01 TPDO communication parameter 1, COB-ID used by TPDO as before
 """)
 
+        result = subprocess.run([EDSC, "configure", "socketcan:none", "5", "axis.dcf", "--dry-run", "--all", "--format",
+                                 "json"], cwd=self.folder, capture_output=True, text=True, timeout=600)
+        found = self.expect_json(result, "configure.schema.json")
+        self.assertEqual([(step["action"], step["index"], step["value"]) for step in found["steps"][:4]],
+                         [("switch off", 0x1005, None), ("switch on", 0x1005, "00000081h"),
+                          ("write", 0x2004, "1200 rpm"), ("switch off", 0x1800, None)])
+        self.assertTrue(found["dry_run"])
+
     def test_values_that_wait_for_others_are_tried_again(self) -> None:
         self.only(x2004="4000", x2005="5000")
         self.expect(self.edsc("configure", 5, "axis.dcf"), FINE, """\
@@ -738,6 +792,207 @@ axis.dcf:{rounded}:16: error: 2009h:00 Rounded value = 7: reads back as 0
                                               "text": "refused by the device: 0609 0031h, value too high"}])
 
 
+FOREIGN = (f"[FileInfo]\nFileName=foreign.eds\nEDSVersion=4.0\n[DeviceInfo]\nVendorNumber=0x1234\nProductNumber=0x10001\n"
+           "BaudRate_250=1\nNrOfRXPDO=0\nNrOfTXPDO=0\n[MandatoryObjects]\nSupportedObjects=3\n1=0x1000\n2=0x1001\n3=0x1018\n"
+           "[OptionalObjects]\nSupportedObjects=1\n1=0x1017\n"
+           "[ManufacturerObjects]\nSupportedObjects=2\n1=0x2000\n2=0x2001\n" +
+           entry("1000", "Device type", 7, "ro", "0x000F0191") + entry("1001", "Error register", 5, "ro", 0) +
+           entry("1017", "Producer heartbeat time", 6, "rw", 0) +
+           "\n[1018]\nParameterName=Identity\nObjectType=9\nSubNumber=3\n" + entry("1018sub0", "Number", 5, "ro", 2) +
+           entry("1018sub1", "Vendor-ID", 7, "ro", "0x1234") + entry("1018sub2", "Product code", 7, "ro", "0x10001") +
+           entry("2000", "Speed", 6, "rw", 0) + entry("2001", "Label", 9, "rw", ""))
+
+
+NOT_COMPARED = "edsc: node 5: not compared: revision number (not in foreign.eds)\n"
+
+
+class Save(LiveTest):
+    def values_of(self, dcf: str) -> dict[str, str]:
+        """The ParameterValues of a DCF by section."""
+        sections = re.findall(r"\[([^\]]+)\]\n([^\[]*)", (self.folder / dcf).read_text())
+        return {name: value[1] for name, text in sections if (value := re.search("^ParameterValue=(.*)$", text, re.MULTILINE))}
+
+    def commissioning(self, dcf: str) -> str:
+        return re.search(r"\[DeviceComissioning\]\n([^\[]*)", (self.folder / dcf).read_text())[1]
+
+    def set_values(self) -> None:
+        for name, value in (("1017h", "250"), ("2002h", "left axis"), ("2003h", "-0.25"), ("2008h:02", "21"), ("6040h", "6")):
+            self.assertEqual(self.edsc("write", 5, name, value, "--eds", "device.eds").returncode, FINE)
+
+    def test_it_saves_what_differs_from_the_eds(self) -> None:
+        self.set_values()
+        result = self.edsc("save", 5, "device.eds", "-o", "axis.dcf", "--bit-rate", 250)
+        self.assertRegex(result.stdout, r"^node 5: \d+ entries read, 4 values saved to axis.dcf, 2 left out \(process data\)\n$")
+        self.assertEqual((result.stderr, result.returncode), ("", FINE))
+        self.assertEqual(self.values_of("axis.dcf"), {"1017": "250", "2002": "left axis", "2003": "-0.25", "2008sub2": "21"})
+        self.assertIn("NodeID=5\n", self.commissioning("axis.dcf"))
+        self.assertIn("Baudrate=250\n", self.commissioning("axis.dcf"))
+        checked = subprocess.run([EDSC, "check", "axis.dcf"], cwd=self.folder, capture_output=True, text=True, timeout=60)
+        self.assertEqual(checked.returncode, FINE, checked.stderr)
+        frames = self.network.frames("000", "605")
+        self.assertFalse([frame for frame in frames if frame[:3] == "000"], "save sends no NMT command")
+        self.assertFalse([frame for frame in frames if frame[4:12] in ("40 10 10", "40 11 10")], "no command is read")
+
+    def test_on_standard_output(self) -> None:
+        result = self.edsc("save", 5, "device.eds")
+        self.assertTrue(result.stdout.startswith("[FileInfo]\n"))
+        self.assertRegex(result.stderr, r"^node 5: \d+ entries read, 0 values saved, 2 left out \(process data\)\n$")
+
+    def test_all_values(self) -> None:
+        found = self.expect_json(self.edsc("save", 5, "device.eds", "-o", "all.dcf", "--all", "--format", "json"),
+                                 "save.schema.json")
+        self.assertEqual(found["saved"] + len(found["process_data"]), found["read"])
+        self.assertEqual([row["index"] for row in found["process_data"]], [0x6040, 0x60FF])
+        values = self.values_of("all.dcf")
+        self.assertEqual((values["2004"], values["1A00sub0"]), ("1000", "2"))
+        self.assertNotIn("1010sub1", values)
+
+    def test_a_device_that_lost_its_power_gets_it_back(self) -> None:
+        self.set_values()
+        self.assertEqual(self.edsc("save", 5, "device.eds", "-o", "before.dcf").returncode, FINE)
+        self.network.close()
+        self.network = Network(EDSC, LIVE_NODES, 5)
+        self.addCleanup(self.network.close)
+        self.assertEqual(self.edsc("configure", 5, "before.dcf").returncode, FINE)
+        self.assertEqual(self.edsc("save", 5, "device.eds", "-o", "after.dcf").returncode, FINE)
+        self.assertEqual((self.folder / "before.dcf").read_text(), (self.folder / "after.dcf").read_text())
+        self.assertEqual(self.values_of("after.dcf")["2002"], "left axis")
+
+    def test_a_mapping_that_differs_is_saved_as_a_whole(self) -> None:
+        (self.folder / "one.dcf").write_text(re.sub(
+            r"(\[1A00sub0\][^\[]*?)PDOMapping", r"\g<1>ParameterValue=1\nPDOMapping",
+            SHEET.read_text() + "\n[DeviceComissioning]\nNodeID=5\n", flags=re.DOTALL))
+        self.assertEqual(self.edsc("configure", 5, "one.dcf").returncode, FINE)
+        self.assertEqual(self.edsc("save", 5, "device.eds", "-o", "axis.dcf").returncode, FINE)
+        self.assertEqual(self.values_of("axis.dcf"), {"1A00sub0": "1", "1A00sub1": "0x60410010"})
+
+    def test_another_device(self) -> None:
+        (self.folder / "other.eds").write_text(SHEET.read_text().replace("0x00001001", "0x00001002"))
+        result = self.edsc("save", 5, "other.eds", "-o", "axis.dcf")
+        self.expect(result, FAILED, stderr="edsc: node 5 is not the device of other.eds: product code is 00001001h, expected "
+                    '00001002h; "edsc scan BUS --eds FILE" finds the node of a file, --force saves nevertheless\n')
+        self.assertFalse((self.folder / "axis.dcf").exists())
+        self.assertEqual(self.edsc("save", 5, "other.eds", "-o", "axis.dcf", "--force").returncode, FINE)
+        self.expect(self.edsc("save", 9, "device.eds", "--timeout", 50), FAILED, stderr="edsc: node 9 does not answer\n")
+
+    def test_wrong_usage(self) -> None:
+        for arguments in (("device.eds", "--format", "json"), ("missing.eds",), ("device.eds", "-o", "device.eds/x.dcf")):
+            self.assertEqual(self.edsc("save", 5, *arguments).returncode, WRONG_USAGE, arguments)
+
+
+class SaveOfForeignSlaves(LiveTest):
+    nodes = ()
+
+    def setUp(self) -> None:
+        super().setUp()
+        (self.folder / "foreign.eds").write_text(FOREIGN)
+
+    def slave(self, habits: Habits | None = None) -> Slave:
+        slave = Slave(5, habits or Habits())
+
+        def answer(frame: str) -> list[str]:
+            can_id, *data = frame.split()
+            slave.take(int(can_id, 16), bytes.fromhex("".join(data)), time.monotonic())
+            return [f"{can_id:03X} {data.hex(' ')}" for can_id, data in slave.due(time.monotonic())]
+
+        self.network.device(answer)
+        return slave
+
+    def test_a_power_cycle(self) -> None:
+        slave = self.slave()
+        slave.entries[(0x2000, 0)] = b"\x34\x12"
+        slave.entries[(0x2001, 0)] = b"a label of twenty one"
+        self.expect(self.edsc("save", 5, "foreign.eds", "-o", "before.dcf"), FINE,
+                    "node 5: 3 entries read, 2 values saved to before.dcf\n", NOT_COMPARED)
+        slave.reset()
+        slave.outbox.clear()  # its boot-up message is not heard any more when configure begins
+        result = self.edsc("configure", 5, "before.dcf")
+        self.assertEqual(result.returncode, FINE, result.stderr)
+        self.assertIn("2 of 2 values written, 2 verified", result.stdout)
+        self.assertEqual(slave.entries[(0x2001, 0)], b"a label of twenty one")
+        self.assertEqual(self.edsc("save", 5, "foreign.eds", "-o", "after.dcf").returncode, FINE)
+        self.assertEqual((self.folder / "before.dcf").read_text(), (self.folder / "after.dcf").read_text())
+
+    def test_what_cannot_be_read_or_written_is_listed(self) -> None:
+        slave = self.slave()
+        del slave.entries[(0x1017, 0)]
+        slave.entries[(0x2000, 0)] = b"\x34\x12\0\0"
+        slave.entries[(0x2001, 0)] = b"two\nlines"
+        result = self.edsc("save", 5, "foreign.eds", "-o", "axis.dcf")
+        self.assertEqual((result.stdout, result.returncode), ("node 5: 2 entries read, 0 values saved to axis.dcf, 3 not saved\n",
+                                                              FAILED))
+        self.assertEqual(result.stderr.splitlines()[-3:], [
+            "edsc: 1017h:00 Producer heartbeat time: refused by the device: 0602 0000h, object does not exist",
+            "edsc: 2000h:00 Speed: a DCF cannot hold the value 4660 (00001234h) (4 bytes, UNSIGNED16 has 2)",
+            'edsc: 2001h:00 Label: a DCF cannot hold the value "two\\x0Alines"'])
+
+
+class Record(LiveTest):
+    nodes = ()
+
+    def wait_until_it_records(self, process: subprocess.Popen[str]) -> None:
+        """Sends frames until it has written one."""
+        client = self.network.client()
+        while not select.select([process.stdout], [], [], 0.1)[0]:
+            client.send("701 05")
+
+    def test_it_writes_lines_of_candump(self) -> None:
+        process = self.start("record", "--count", 5)
+        self.wait_until_it_records(process)
+        client = self.network.client()
+        for frame in ("605 40 00 10 00 00 00 00 00", "080", "701 05", "701 05", "701 05"):
+            client.send(frame)
+        stdout, stderr = process.communicate(timeout=600)
+        self.assertEqual((process.returncode, stderr), (FINE, ""))
+        lines = stdout.splitlines()
+        self.assertEqual(len(lines), 5)
+        for line in lines:
+            self.assertRegex(line, r"^\(\d{10}\.\d{6}\) vcan0 [0-9A-F]{3}#[0-9A-F]*$")
+        times = [float(line[1:18]) for line in lines]
+        self.assertEqual(times, sorted(times))
+
+    def test_its_file_is_one_for_decode_and_can_utils(self) -> None:
+        process = self.start("record", "-o", "bus.log", "--interface", "can7")
+        client, log = self.network.client(), self.folder / "bus.log"
+        while not log.exists() or not log.stat().st_size:
+            client.send("605 40 00 10 00 00 00 00 00")
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        stdout, stderr = process.communicate(timeout=600)
+        count = len(log.read_text().splitlines())
+        self.assertEqual((stdout, stderr, process.returncode), (f"{count} frames to bus.log\n", "", FINE))
+        decoded = subprocess.run([EDSC, "decode", log], capture_output=True, text=True, timeout=60)
+        self.assertEqual(decoded.returncode, FINE)
+        self.assertEqual(len(decoded.stdout.splitlines()), count)
+        if shutil.which("log2asc"):
+            ascii_log = subprocess.run(["log2asc", "-I", log, "can7"], capture_output=True, text=True, timeout=60)
+            self.assertEqual((ascii_log.returncode, ascii_log.stdout.count(" 605 ")), (0, count), ascii_log)
+
+    def test_it_ends_after_its_time(self) -> None:
+        self.expect(self.edsc("record", "--seconds", 0.05), FINE)
+
+    def test_a_full_disk(self) -> None:
+        process = self.start("record", "-o", "/dev/full")
+        client = self.network.client()
+        while process.poll() is None:
+            client.send("701 05")
+            time.sleep(0.05)
+        self.assertEqual((process.returncode, process.stderr.read()),
+                         (WRONG_USAGE, "edsc: /dev/full: No space left on device\n"))
+
+    def test_the_bus_goes_away(self) -> None:
+        process = self.start("record")
+        self.wait_until_it_records(process)
+        self.network.bus.kill()
+        _, stderr = process.communicate(timeout=600)
+        self.assertEqual(process.returncode, FAILED)
+        self.assertIn(": the bus is lost: ", stderr)
+
+    def test_wrong_usage(self) -> None:
+        for arguments in (("--count", 0), ("--seconds", 0), ("--interface", "a b"), ("-o", "no/such/folder/log")):
+            self.assertEqual(self.edsc("record", *arguments).returncode, WRONG_USAGE, arguments)
+
+
 class Nmt(LiveTest):
     nodes = (5, 6)
 
@@ -749,7 +1004,18 @@ class Nmt(LiveTest):
     def test_it_waits_for_the_boot_up_message(self) -> None:
         self.expect(self.edsc("nmt", "reset-node", 5, "--wait", 5000), FINE)
         self.expect(self.edsc("nmt", "reset-node", 9, "--wait", 50), FAILED,
-                    stderr="edsc: node 9 does not tell within 50 ms that it is in boot-up\n")
+                    stderr="edsc: node 9 does not tell within 50 ms that it is in boot-up: it has sent no boot-up message\n")
+
+    def test_it_says_why_no_heartbeat_may_come(self) -> None:
+        self.expect(self.edsc("nmt", "start", 5, "--wait", 50), FAILED,
+                    stderr="edsc: node 5 does not tell within 50 ms that it is in operational: it has sent no heartbeat; "
+                           f"1017h may be 0 (edsc read {self.network.address} 5 1017h --type u16)\n")
+        self.edsc("write", 6, "1017h", 10, "--type", "u16")
+        self.expect(self.edsc("nmt", "stop", 6, "--wait", 5000), FINE)
+        self.network.device(lambda frame: ["707 7F"] if frame == "000 01 07" else [])
+        self.expect(self.edsc("nmt", "start", 7, "--wait", 1000), FAILED,
+                    stderr="edsc: node 7 does not tell within 1000 ms that it is in operational: its last message says "
+                           "pre-operational\n")
 
     def test_wrong_usage(self) -> None:
         for arguments in (("start",), ("go", 5), ("start", 128), ("start", "all", "--wait", 10)):
@@ -819,6 +1085,17 @@ class Lss(LiveTest):
             self.assertEqual(self.lss(*arguments).returncode, WRONG_USAGE, arguments)
 
 
+class LssWithoutFastscan(LiveTest):
+    nodes = ()
+
+    def test_it_says_that_a_slave_answers_lss(self) -> None:
+        self.network.device(lambda frame: ["7E4 50 00 00 00 00 00 00 00"] if frame.startswith("7E5 4C") else [])
+        words = ("edsc: fastscan: a device without node-ID answers LSS, but not Fastscan, which it may not have; \"edsc lss BUS "
+                 "state configuration\" and \"inquire\", with no other device on the bus, tell its numbers for \"assign\"\n")
+        self.expect(self.edsc("lss", "fastscan"), FAILED, stderr=words)
+        self.expect(self.edsc("lss", "assign", "--node-id", 7), FAILED, stderr=words)
+
+
 class FastscanSlave:
     """A slave of CiA 305 without node-ID; in configuration state it answers every Fastscan frame, as a widespread stack
     does. `always`: so it does in waiting state."""
@@ -881,7 +1158,7 @@ class FastscanOfSlavesThatAnswerAlways(LiveTest):
 
     def test_what_was_found_is_shown_on_an_interruption(self) -> None:
         for arguments in (("lss", *self.numbers), ("lss", *self.numbers, "--format", "json"),
-                          ("scan", "--nodes", 9, "--listen", 0, "--timeout", 20, "--lss", "--step", 5)):
+                          ("scan", "--nodes", 9, "--listen", 0, "--timeout", 20, "--lss", "--step", 60)):
             with self.subTest(arguments), Network(EDSC, LIVE_NODES) as network:
                 self.network = network
                 self.slaves(0x15011234, 0x15011238)

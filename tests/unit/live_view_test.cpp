@@ -72,6 +72,45 @@ TEST(CutToWidth, CountsCodePointsAndNoColours) {
 
 TEST(CutToWidth, LeavesNoControlCharacterOfADevice) { EXPECT_EQ(cut_to_width("a\tb\x7F", 9), "a.b."); }
 
+Message message_of(Service service, std::uint8_t node_id, std::string_view state = {}) {
+  Message message;
+  message.service = service;
+  message.node_id = node_id;
+  message.state = state;
+  return message;
+}
+
+canopen::Frame nmt(std::uint8_t command, std::uint8_t node_id) { return {0, 2, false, false, {command, node_id}}; }
+
+/// A node confirms no NMT command, and need not send heartbeats.
+TEST(MonitorState, AssumesWhereNmtCommandsAndTpdosLead) {
+  MonitorState state;
+  const auto shown = [&](std::uint8_t node_id) {
+    const MonitoredNode& node = state.nodes().at(node_id);
+    return node.state + "/" + node.assumed;
+  };
+  state.set_name(5, "drive");
+  state.add(nmt(0x01, 5), message_of(Service::nmt, 5), 0);
+  EXPECT_EQ(shown(5), "/operational");
+  state.add(nmt(0x80, 0), message_of(Service::nmt, 0), 1);
+  EXPECT_EQ(shown(5), "/pre-operational");
+  state.add({0x185, 1, false, false, {}}, message_of(Service::tpdo, 5), 2);
+  EXPECT_EQ(shown(5), "/operational");
+  state.add({0x705, 1, false, false, {}}, message_of(Service::heartbeat, 5, "operational"), 3);
+  EXPECT_EQ(shown(5), "operational/");
+  state.add(nmt(0x02, 5), message_of(Service::nmt, 5), 4);
+  EXPECT_EQ(shown(5), "operational/stopped");
+  state.add(nmt(0x81, 5), message_of(Service::nmt, 5), 5);
+  EXPECT_EQ(shown(5), "operational/");
+  EXPECT_FALSE(state.nodes().contains(7)) << "a command does not show that a node is there";
+  state.add(nmt(0x01, 7), message_of(Service::nmt, 7), 6);
+  state.add({0x87, 8, false, false, {}}, message_of(Service::emcy, 7), 7);
+  EXPECT_EQ(shown(7), "/operational");
+  const auto lines = monitor_lines(state, {}, 8);
+  EXPECT_NE(lines[4].find("operational?"), std::string::npos) << lines[4];
+  EXPECT_EQ(monitor_json(state, {}, 8)["nodes"][1]["assumed_state"], "operational");
+}
+
 TEST(FindType, TakesShortNamesAndThoseOfCia301) {
   EXPECT_EQ(find_type("u16"), canopen::find_data_type(6));
   EXPECT_EQ(find_type("unsigned16"), canopen::find_data_type(6));
