@@ -180,7 +180,7 @@ class Streams(unittest.TestCase):
         process.stdin.write(b"can0 706#05\n")
         self.assertIn(b"operational", self.read_soon(process.stdout.fileno()))
         process.send_signal(signal.SIGINT)
-        self.assertIn(b"1 frame ", self.read_soon(process.stdout.fileno()))
+        self.assertIn(b"1 frame\n", self.read_soon(process.stdout.fileno()))
         self.assertEqual(process.wait(SOON), FINE)
 
     def test_a_full_disk_is_told(self) -> None:
