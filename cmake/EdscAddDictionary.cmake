@@ -11,7 +11,8 @@ cmake_policy(VERSION 3.25) # the depfile is read as CMake 3.20 and later do
 # NODE_ID        turns $NODEID formulas into numbers.
 # OPTIONS        options file; NAME.options.json beside the data sheet by default, if it is there.
 # STATIC_MAPPING makes constants of all mapping parameters: no PDO can be mapped over the bus, and the image is smaller.
-# KEEP_GOING     generates in spite of errors in a bought device's file and leaves out what is wrong.
+# KEEP_GOING     for the file of a bought device, which you cannot change: its errors are warnings, and what is wrong is left
+#                out and named (edsc generate --keep-going).
 #
 # The headers are made again when the data sheet, its options file, a template or edsc itself changes.
 function(edsc_add_dictionary target)

@@ -14,6 +14,7 @@ if(TARGET edsc)
   install(FILES ${shell_files}/edsc.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions RENAME _edsc COMPONENT program)
   install(FILES ${shell_files}/edsc.man DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 RENAME edsc.1 COMPONENT program)
   install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${document_dir}/edsc RENAME copyright COMPONENT program)
+  install(FILES ${PROJECT_SOURCE_DIR}/docs/rules.md DESTINATION ${document_dir}/edsc COMPONENT program)
 endif()
 
 install(TARGETS edsc_runtime EXPORT edscTargets COMPONENT development)

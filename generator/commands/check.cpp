@@ -6,10 +6,12 @@
 #include <vector>
 
 #include "commands/commands.hpp"
+#include "commands/left_out_text.hpp"
 #include "commands/load_device.hpp"
 #include "diagnostics/print.hpp"
 #include "diagnostics/rule.hpp"
 #include "diagnostics/sarif.hpp"
+#include "diagnostics/unknown_rule.hpp"
 
 namespace edsc {
 namespace {
@@ -19,7 +21,8 @@ constexpr const char* examples = R"(Examples:
   edsc check drive.eds --format json      the same for a program
   edsc check eds/*.eds --format sarif     the same for a code review (SARIF 2.1.0)
   edsc check drive.eds --strict           warnings count as errors
-  edsc check --list-rules                 every rule with its meaning)";
+  edsc check --list-rules                 every rule with its meaning
+  edsc check --explain pdo-length         one rule, and where it is documented)";
 
 struct Settings {
   std::vector<std::string> paths;
@@ -28,9 +31,34 @@ struct Settings {
   std::vector<std::string> silence;
   std::optional<std::uint8_t> node_id;
   bool strict = false;
+  bool keep_going = false;
   bool list_rules = false;
+  std::string explained_rule;
   ColorOption color;
 };
+
+std::string url_of(const Rule& rule) { return fmt::format("{}rules.md#{}", EDSC_DOCS_URL, rule.id); }
+
+nlohmann::ordered_json to_json(const Rule& rule) {
+  nlohmann::ordered_json severities = {to_string(rule.severity)};
+  if (rule.mildest != rule.severity) severities.push_back(to_string(rule.mildest));
+  return {{"id", rule.id},
+          {"severity", to_string(rule.severity)},
+          {"severities", severities},
+          {"meaning", rule.meaning},
+          {"source", rule.source},
+          {"url", url_of(rule)}};
+}
+
+int explain(const Rule& rule, const std::string& format) {
+  if (format == "text") {
+    fmt::print("{}: {}\n{}\nSource: {}\nDocumentation, with examples: {}\n", rule.id, to_string(rule.severity),
+               rule.meaning, rule.source, url_of(rule));
+  } else {
+    fmt::print("{}\n", to_json(rule).dump(2));
+  }
+  return exit_fine;
+}
 
 int list_rules(const std::string& format) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
@@ -38,13 +66,7 @@ int list_rules(const std::string& format) {
     if (format == "text") {
       fmt::print("{:<28} {:<8} {} ({})\n", rule.id, to_string(rule.severity), rule.meaning, rule.source);
     }
-    nlohmann::ordered_json severities = {to_string(rule.severity)};
-    if (rule.mildest != rule.severity) severities.push_back(to_string(rule.mildest));
-    rows.push_back({{"id", rule.id},
-                    {"severity", to_string(rule.severity)},
-                    {"severities", severities},
-                    {"meaning", rule.meaning},
-                    {"source", rule.source}});
+    rows.push_back(to_json(rule));
   }
   if (format != "text") fmt::print("{}\n", rows.dump(2));
   return exit_fine;
@@ -57,12 +79,16 @@ class Report {
 
   void add(const Diagnostics& diagnostics) {
     if (format_ == "text") {
-      print_findings(stdout, diagnostics, color_);
+      print_findings(stdout, diagnostics, color_, true);
     } else if (format_ == "sarif") {
       sarif_.add(diagnostics);
     } else {
       add_json(print_json(diagnostics));
     }
+  }
+
+  void add_left_out(const std::vector<LeftOut>& left_out) const {
+    if (format_ == "text") fmt::print("{}", left_out_text(left_out));
   }
 
   void finish() const {
@@ -74,15 +100,15 @@ class Report {
  private:
   static std::vector<SarifRule> sarif_rules() {
     std::vector<SarifRule> rules;
-    for (const Rule& rule : all_rules()) rules.push_back({rule.id, rule.severity, rule.meaning, rule.source});
+    for (const Rule& rule : all_rules()) rules.push_back({rule.id, rule.severity, rule.meaning, rule.source, url_of(rule)});
     return rules;
   }
 
   void add_json(const nlohmann::json& one) {
-    for (const char* list : {"diagnostics", "suppressed"}) {
+    for (const char* list : {"diagnostics", "allowed_diagnostics", "suppressed"}) {
       for (const auto& row : one[list]) json_[list].push_back(row);
     }
-    for (const char* count : {"errors", "warnings", "notes"}) {
+    for (const char* count : {"errors", "warnings", "notes", "allowed"}) {
       json_[count] = json_[count].get<std::size_t>() + one[count].get<std::size_t>();
     }
   }
@@ -92,14 +118,17 @@ class Report {
   SarifLog sarif_{EDSC_VERSION, sarif_rules()};
   nlohmann::json json_ = {{"version", 1},
                           {"diagnostics", nlohmann::json::array()},
+                          {"allowed_diagnostics", nlohmann::json::array()},
                           {"suppressed", nlohmann::json::array()},
                           {"errors", 0},
                           {"warnings", 0},
-                          {"notes", 0}};
+                          {"notes", 0},
+                          {"allowed", 0}};
 };
 
 int check(const Settings& settings) {
   if (settings.list_rules) return list_rules(settings.format);
+  if (!settings.explained_rule.empty()) return explain(*find_rule(settings.explained_rule), settings.format);
   if (settings.paths.empty()) {
     fmt::print(stderr, "edsc check: FILE is required\n");
     return exit_wrong_usage;
@@ -111,13 +140,23 @@ int check(const Settings& settings) {
     if (settings.strict) diagnostics.treat_warnings_as_errors();
     diagnostics.silence_errors();
     for (const std::string& rule : settings.silence) diagnostics.silence(rule);
-    const auto loaded = load_device({path, settings.options_path, "", settings.node_id}, diagnostics);
+    LoadSettings load{path, settings.options_path, "", settings.node_id};
+    load.keep_going = settings.keep_going;
+    const auto loaded = load_device(load, diagnostics);
+    if (!loaded->unreadable) report_unused_allowances(*loaded, diagnostics);
     report.add(diagnostics);
+    if (settings.keep_going && loaded->device) report.add_left_out(all_left_out(*loaded));
     if (diagnostics.errors() > 0) exit_code = std::max<int>(exit_code, exit_input_has_errors);
     if (loaded->unreadable) exit_code = exit_wrong_usage;
   }
   report.finish();
   return exit_code;
+}
+
+/// CLI11's form: what is wrong, or nothing.
+std::string check_rule(const std::string& id) {
+  if (find_rule(id) != nullptr) return {};
+  return fmt::format("{} (see --list-rules)", unknown_rule(id));
 }
 
 }  // namespace
@@ -135,11 +174,11 @@ void add_check_command(CLI::App& app, int& exit_code) {
   add_node_id_option(*command, settings->node_id);
   command->add_option("--silence", settings->silence, "a rule that is not reported; may be given more than once")
       ->allow_extra_args(false)
-      ->check([](const std::string& rule) {
-        return find_rule(rule) != nullptr ? std::string{} : "no rule is called \"" + rule + "\" (see --list-rules)";
-      });
+      ->check(check_rule);
+  command->add_flag("--keep-going", settings->keep_going, keep_going_help);
   command->add_flag("--strict", settings->strict, "warnings count as errors; notes do not");
   command->add_flag("--list-rules", settings->list_rules, "list the rules and end");
+  command->add_option("--explain", settings->explained_rule, "describe a rule and end")->check(check_rule);
   settings->color.add_to(*command);
   command->callback([settings, &exit_code] { exit_code = check(*settings); });
 }

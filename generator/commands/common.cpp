@@ -18,8 +18,8 @@ bool ColorOption::on(std::FILE* stream) const {
   return isatty(fileno(stream)) != 0 && std::getenv("NO_COLOR") == nullptr;
 }
 
-void print_findings(std::FILE* stream, const Diagnostics& diagnostics, const ColorOption& color) {
-  print_text(stream, diagnostics, color.on(stream));
+void print_findings(std::FILE* stream, const Diagnostics& diagnostics, const ColorOption& color, bool with_allowed) {
+  print_text(stream, diagnostics, color.on(stream), with_allowed);
 }
 
 void add_node_id_option(CLI::App& command, std::optional<std::uint8_t>& node_id) {

@@ -18,7 +18,6 @@ constexpr const char* examples = R"(Examples:
 struct Settings {
   LoadSettings load;
   bool cpp = false;
-  bool keep_going = false;
   ColorOption color;
 };
 
@@ -43,7 +42,7 @@ int dump(const Settings& settings) {
   print_findings(stderr, diagnostics, settings.color);
   if (loaded->unreadable) return exit_wrong_usage;
   const bool failed = !loaded->device || is_incomplete(diagnostics);
-  if (!failed || (settings.keep_going && loaded->device)) {
+  if (!failed) {
     fmt::print("{}\n", view.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   }
   return failed ? exit_input_has_errors : exit_fine;
@@ -59,7 +58,7 @@ void add_dump_command(CLI::App& app, int& exit_code) {
   add_node_id_option(*command, settings->load.node_id);
   command->add_option("--options", settings->load.options_path, "options file (default: FILE's name with .options.json, if there)");
   command->add_flag("--cpp", settings->cpp, "add the view of the C++ templates");
-  command->add_flag("--keep-going", settings->keep_going, "print the device in spite of errors");
+  command->add_flag("--keep-going", settings->load.keep_going, keep_going_help);
   settings->color.add_to(*command);
   command->callback([settings, &exit_code] { exit_code = dump(*settings); });
 }

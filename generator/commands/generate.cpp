@@ -5,12 +5,9 @@
 #include <stdexcept>
 
 #include "commands/commands.hpp"
+#include "commands/left_out_text.hpp"
 #include "commands/load_device.hpp"
 #include "device/identifier.hpp"
-#include "device/left_out.hpp"
-#include "diagnostics/excerpt.hpp"
-#include "diagnostics/place.hpp"
-#include "render/pdo_view.hpp"
 #include "render/render.hpp"
 #include "render/view.hpp"
 #include "render/write_files.hpp"
@@ -34,7 +31,6 @@ struct Settings {
   std::string depfile;
   std::string depfile_target;
   std::string templates;
-  bool keep_going = false;
   bool verbose = false;
   ColorOption color;
 };
@@ -105,23 +101,10 @@ std::vector<OutputFile> render_all(const Settings& settings, LoadedDevice& loade
   return files;
 }
 
-/// Needed where the findings do not say it: with --keep-going an error says what is wrong, a silenced rule says nothing,
-/// and one that fires often is counted only.
-void print(const std::vector<LeftOut>& left_out) {
-  for (const LeftOut& one : left_out) {
-    const Place place = place_of(one.position);
-    fmt::print(stderr, "{}:{}:{}: left out: {}\n", printable(place.file), place.line, place.column, one.what);
-  }
-}
-
-/// What the device does not have, and PDOs that are not generated since their COB-ID is wrong.
-std::vector<LeftOut> all_left_out(const LoadedDevice& loaded) {
-  std::vector<LeftOut> left_out = find_left_out(loaded.sheet, *loaded.device);
-  for (const Pdo& pdo : loaded.device->pdos) {
-    if (!pdo.broken && has_wrong_cob_id(pdo)) left_out.push_back({pdo.position, pdo_label(pdo)});
-  }
-  return left_out;
-}
+/// Where all errors are in the file of another manufacturer.
+constexpr const char* keep_going_hint =
+    "edsc: nothing was generated. For a file that you cannot change, --keep-going (KEEP_GOING in CMake) generates the rest of the "
+    "device";
 
 /// Whether each finding is listed with its place.
 bool lists_all(const Diagnostics& diagnostics) {
@@ -137,11 +120,17 @@ int generate(const Settings& settings) {
   std::vector<LeftOut> left_out;
   const bool is_device = loaded->device.has_value();
   if (is_device) left_out = all_left_out(*loaded);
-  if (is_device && (diagnostics.errors() == 0 || settings.keep_going)) files = render_all(settings, *loaded, diagnostics);
+  const bool has_hint = can_keep_going(*loaded, diagnostics);
+  if (is_device && diagnostics.errors() == 0) files = render_all(settings, *loaded, diagnostics);
   print_findings(stderr, diagnostics, settings.color);
   if (loaded->unreadable) return exit_wrong_usage;
-  if (!is_device || (diagnostics.errors() > 0 && !settings.keep_going)) return exit_input_has_errors;
-  if (diagnostics.errors() > 0 || diagnostics.any_silenced() || !lists_all(diagnostics)) print(left_out);
+  if (!is_device || diagnostics.errors() > 0) {
+    if (has_hint && files.empty()) fmt::print(stderr, "{}\n", keep_going_hint);
+    return exit_input_has_errors;
+  }
+  if (settings.load.keep_going || diagnostics.any_silenced() || !lists_all(diagnostics)) {
+    fmt::print(stderr, "{}", left_out_text(left_out));
+  }
 
   if (const std::string problem = write_files(files); !problem.empty()) {
     fmt::print(stderr, "edsc: {}\n", problem);
@@ -174,7 +163,7 @@ void add_generate_command(CLI::App& app, int& exit_code) {
       ->check(CLI::ExistingDirectory);
   command->add_option("--depfile", settings->depfile, "write what the headers depend on, for make and ninja");
   command->add_option("--depfile-target", settings->depfile_target, "what depends on them there (default: the headers)");
-  command->add_flag("--keep-going", settings->keep_going, "generate in spite of errors; what is wrong is left out");
+  command->add_flag("--keep-going", settings->load.keep_going, keep_going_help);
   command->add_flag("-v,--verbose", settings->verbose, "name the files that are written");
   settings->color.add_to(*command);
   command->callback([settings, &exit_code] { exit_code = generate(*settings); });

@@ -9,7 +9,9 @@
 
 #include "commands/commands.hpp"
 #include "decode/find_entry.hpp"
+#include "diagnostics/excerpt.hpp"
 #include "live/identity.hpp"
+#include "text/counted.hpp"
 
 namespace edsc {
 namespace {
@@ -45,7 +47,13 @@ std::unique_ptr<LoadedDevice> load_live_device(const std::string& path, std::uin
   settings.node_id = node;
   settings.check = false;
   auto loaded = load_device(settings, diagnostics);
-  if (loaded->device) return loaded;
+  if (loaded->device) {
+    if (diagnostics.errors() > 0) {
+      fmt::print(stderr, "edsc: {}: {}; what is wrong is left out (\"edsc check --keep-going\" lists it)\n",
+                 printable(path), counted(diagnostics.errors(), "error"));
+    }
+    return loaded;
+  }
   print_findings(stderr, diagnostics, ColorOption{});
   return nullptr;
 }

@@ -10,7 +10,8 @@
 
 namespace edsc {
 
-/// The device of a data sheet as this node. Null when the file cannot be read as one; the reason is printed.
+/// The device of a data sheet as this node. Errors do not matter but for what is left out: how many there are is printed.
+/// Null when the file cannot be read as one; the reason is printed.
 [[nodiscard]] std::unique_ptr<LoadedDevice> load_live_device(const std::string& path, std::uint8_t node);
 
 /// The entries that a text names: one, or all readable ones of an object with sub-indices. Without a device the text

@@ -20,6 +20,7 @@ struct LoadSettings {
   std::optional<std::uint8_t> node_id;
   bool static_mapping = false;          ///< of all PDOs, whatever the options file says
   bool check = true;                    ///< run the rules over the device
+  bool keep_going = false;              ///< errors in the data sheet are warnings; what is wrong is left out
 };
 
 /// A device and all that its positions point into.
@@ -35,7 +36,13 @@ struct LoadedDevice {
 /// Reads, resolves and, where that is wanted, checks. Everything that is wrong stands in `diagnostics`; positions there point into the result.
 [[nodiscard]] std::unique_ptr<LoadedDevice> load_device(const LoadSettings& settings, Diagnostics& diagnostics);
 
-/// The same from where `loaded` holds the source, and the options, already.
+/// Whether `--keep-going` makes warnings of all errors.
+[[nodiscard]] bool can_keep_going(const LoadedDevice& loaded, const Diagnostics& diagnostics);
+
+/// Reports members of the options and comments of the data sheet that silence or allow what was not found.
+void report_unused_allowances(const LoadedDevice& loaded, Diagnostics& diagnostics);
+
+/// The same as load_device() from where `loaded` holds the source, and the options, already.
 void resolve_and_check(LoadedDevice& loaded, const LoadSettings& settings, Diagnostics& diagnostics);
 
 }  // namespace edsc

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <string>
+
 #include "device/object_type_name.hpp"
 #include "device/resolve_information.hpp"
+#include "device/type_name.hpp"
 #include "device/value.hpp"
 #include "diagnostics/quote.hpp"
 #include "eds/number.hpp"
@@ -31,6 +34,19 @@ constexpr ImpliedType implied_types[] = {
     {0x1A00, 0x1BFF, false, DataType::unsigned32, "a mapping entry"},
 };
 
+/// `: REAL32 is 0x0008` for `float`; nothing for a word that names no type.
+std::string number_of_type(std::string_view name) {
+  const DataTypeRow* const type = find_type_by_name(name);
+  return type == nullptr ? std::string{} : fmt::format(": {} is 0x{:04X}", type->name, static_cast<unsigned>(type->type));
+}
+
+/// Whether an entry of an unknown type is a DOMAIN, bytes that are not interpreted. The services of CiA 301 know the types of
+/// the communication profile, and sub-index 0 counts: these are left out.
+bool may_be_opaque(const EntryPlace& place) {
+  constexpr std::uint16_t first_application_index = 0x2000;
+  return place.index >= first_application_index && !(place.in_object_with_sub_indices && place.sub_index == 0);
+}
+
 bool has_limits(const DataTypeRow& type) {
   return type.kind == DataClass::signed_integer || type.kind == DataClass::unsigned_integer ||
          type.kind == DataClass::real;
@@ -41,8 +57,11 @@ bool has_limits(const DataTypeRow& type) {
 std::optional<Entry> EntryResolver::resolve(const EntryDescription& description, const EntryPlace& place,
                                             std::string_view name) {
   if (place.in_object_with_sub_indices && place.sub_index != 0) check_sub_object_type(description);
-  const ValueType type = data_type(description, place);
-  if (type.row == nullptr) return std::nullopt;
+  const std::optional<ValueType> found = data_type(description, place);
+  if (!found) return std::nullopt;
+  const bool is_opaque = found->row == nullptr;
+  if (is_opaque && !may_be_opaque(place)) return std::nullopt;
+  const ValueType type = is_opaque ? types_.find(static_cast<std::uint64_t>(DataType::domain)) : *found;
   std::optional<Entry> result{std::in_place};
   Entry& entry = *result;
   entry.index = place.index;
@@ -61,7 +80,7 @@ std::optional<Entry> EntryResolver::resolve(const EntryDescription& description,
   entry.unit = description.unit.text;
   entry.factor = description.factor.text;
   entry.description = description.description.text;
-  resolve_default(description, entry);
+  if (!is_opaque) resolve_default(description, entry);
   if (has_limits(*entry.type)) resolve_limits(description, type, entry);
   resolve_files(description, entry);
   return result;
@@ -85,14 +104,15 @@ void EntryResolver::check_sub_object_type(const EntryDescription& description) {
                        "a sub-object is a VAR or a DOMAIN: taken for one");
 }
 
-ValueType EntryResolver::data_type(const EntryDescription& description, const EntryPlace& place) {
+std::optional<ValueType> EntryResolver::data_type(const EntryDescription& description, const EntryPlace& place) {
   const Field& field = description.data_type;
   const std::string_view text = strip_inline_comment(field.text);
   if (!field.present || text.empty()) return missing_data_type(description, place);
   const auto code = parse_unsigned(text);
   if (!code) {
-    diagnostics_.error("data-type", field.position, fmt::format("DataType {} is not a number", quote(text)));
-    return {};
+    diagnostics_.error("data-type", field.position,
+                       fmt::format("DataType {} is not a number{}", quote(text), number_of_type(text)));
+    return ValueType{};
   }
   const ValueType type = types_.find(*code);
   if (type.row != nullptr) return type;
@@ -108,15 +128,15 @@ ValueType EntryResolver::data_type(const EntryDescription& description, const En
     diagnostics_.warning("complex-data-type", field.position,
                          fmt::format("DataType 0x{:04X} is a RECORD's, not a value's; the entry is left out", *code),
                          {}, fmt::format("left out {}", *code));
-  } else {
-    diagnostics_.error(
-        "data-type", field.position,
-        fmt::format("DataType 0x{:04X} is no basic data type of CiA 301, and no DEFTYPE of this file", *code));
+    return std::nullopt;
   }
-  return {};
+  diagnostics_.error(
+      "data-type", field.position,
+      fmt::format("DataType 0x{:04X} is not a basic data type of CiA 301, nor a DEFTYPE of this file", *code));
+  return ValueType{};
 }
 
-ValueType EntryResolver::missing_data_type(const EntryDescription& description, const EntryPlace& place) {
+std::optional<ValueType> EntryResolver::missing_data_type(const EntryDescription& description, const EntryPlace& place) {
   const auto object_type = number_of(description.object_type);
   if (object_type == static_cast<std::uint64_t>(ObjectType::domain)) {
     diagnostics_.warning("data-type", description.position, "no DataType: a DOMAIN by its ObjectType");
@@ -138,7 +158,7 @@ ValueType EntryResolver::missing_data_type(const EntryDescription& description, 
     return type;
   }
   diagnostics_.error("data-type", description.position, "no DataType");
-  return {};
+  return ValueType{};
 }
 
 Access EntryResolver::access(const EntryDescription& description) {

@@ -31,8 +31,9 @@ class EntryResolver {
 
  private:
   void check_sub_object_type(const EntryDescription& description);
-  ValueType data_type(const EntryDescription& description, const EntryPlace& place);
-  ValueType missing_data_type(const EntryDescription& description, const EntryPlace& place);
+  /// Nothing for an entry that is left out; no row for one whose type is not known.
+  std::optional<ValueType> data_type(const EntryDescription& description, const EntryPlace& place);
+  std::optional<ValueType> missing_data_type(const EntryDescription& description, const EntryPlace& place);
   canopen::Access access(const EntryDescription& description);
   bool pdo_mapping(const EntryDescription& description);
   void resolve_default(const EntryDescription& description, Entry& entry);

@@ -14,6 +14,7 @@
 #include "device/identifier.hpp"
 #include "device/index_range.hpp"
 #include "eds/number.hpp"
+#include "text/suggestion.hpp"
 
 namespace edsc {
 namespace {
@@ -42,6 +43,17 @@ constexpr std::array runtime_flags = {
 constexpr std::array runtime_masks = {"pdo_cob_id_writable", "sync_cob_id_writable", "emcy_cob_id_writable"};
 constexpr std::array runtime_abort_codes = {"pdo_mapping_abort_code", "error_history_abort_code",
                                             "storage_signature_abort_code"};
+
+/// Members that are no runtime option, or have a value of their own form.
+constexpr std::array<std::string_view, 16> structured_options = {
+    "names",          "string_capacity", "settable",          "silence", "allow",      "connected_modules",
+    "static_mapping", "no_event",        "emergency_info",    "storing", "lss",        "stored_eds",
+    "$schema",        "reset_emergency", "pdo_reserved_can_ids", "zero_terminated_strings",
+};
+
+constexpr std::array<std::string_view, 3> allow_members = {"rule", "object", "reason"};
+constexpr const char* allow_form =
+    "an array of objects: [{\"rule\": \"pdo-empty\", \"object\": \"1A00h\", \"reason\": \"mapped at start\"}]";
 
 struct NumberOption {
   const char* name;
@@ -127,6 +139,7 @@ class OptionsReader {
     }
     if (name == "settable") return settable(value);
     if (name == "silence") return silence(value);
+    if (name == "allow") return allow(value);
     if (name == "connected_modules") return connected_modules(value);
     if (name == "static_mapping") return static_mapping(value);
     if (name == "no_event") return no_event(value);
@@ -154,7 +167,16 @@ class OptionsReader {
     }
     if (name == "pdo_reserved_can_ids") return pdo_reserved_can_ids(value);
     if (name == "reset_emergency") return reset_emergency(value);
-    error(name, "no such option");
+    error(name, "no such option" + did_you_mean(name, all_names()));
+  }
+
+  static std::vector<std::string_view> all_names() {
+    std::vector<std::string_view> names{structured_options.begin(), structured_options.end()};
+    names.insert(names.end(), runtime_flags.begin(), runtime_flags.end());
+    names.insert(names.end(), runtime_masks.begin(), runtime_masks.end());
+    names.insert(names.end(), runtime_abort_codes.begin(), runtime_abort_codes.end());
+    for (const NumberOption& option : runtime_numbers) names.emplace_back(option.name);
+    return names;
   }
 
   void each_entry(const std::string& name, const json& value, const std::function<bool(EntryKey, const json&)>& take) {
@@ -197,11 +219,42 @@ class OptionsReader {
     if (!value.is_array()) return error("silence", "an array of rule ids");
     for (const json& item : value) {
       if (item.is_string()) {
-        options_.silence.push_back(item.get<std::string>());
+        options_.silence.push_back({item.get<std::string>(), position_of(item.get<std::string>())});
       } else {
         error("silence", "an array of rule ids");
       }
     }
+  }
+
+  void allow(const json& value) {
+    if (!value.is_array()) return error("allow", allow_form);
+    for (const json& item : value) allow_one(item);
+  }
+
+  void allow_one(const json& item) {
+    if (!item.is_object()) return error("allow", allow_form);
+    AllowedFindings allowed;
+    for (const auto& [name, v] : item.items()) {
+      const std::string text = v.is_string() ? v.get<std::string>() : std::string{};
+      const auto object = name == "object" ? parse_entry_selector(text) : std::nullopt;
+      if (name == "rule" && !text.empty()) {
+        allowed.rule = text;
+      } else if (name == "reason" && text.find_first_not_of(" \t\r\n") != std::string::npos) {
+        allowed.reason = text;
+      } else if (name == "object" && object) {
+        allowed.object = object;
+      } else if (std::ranges::find(allow_members, name) == allow_members.end()) {
+        return error("allow/" + name, "no such member" + did_you_mean(name, allow_members));
+      } else {
+        return error("allow/" + name, name == "object" ? "not an object or entry such as \"6040h\" or \"6401h:03\""
+                                                       : "a text that is not empty");
+      }
+    }
+    if (allowed.rule.empty() || allowed.reason.empty()) {
+      return error("allow", allowed.rule.empty() ? "missing member rule" : "missing member reason");
+    }
+    allowed.position = position_of_text(json(allowed.reason).dump());
+    options_.allow.push_back(std::move(allowed));
   }
 
   void connected_modules(const json& value) {
@@ -384,7 +437,11 @@ class OptionsReader {
   /// Where a member's name stands in the text, as well as can be told: its first occurrence in quotes.
   [[nodiscard]] Position position_of(std::string_view member) const {
     const std::string_view last = member.substr(member.rfind('/') + 1);
-    const std::size_t at = source_.text().find(fmt::format("\"{}\"", last));
+    return position_of_text(fmt::format("\"{}\"", last));
+  }
+
+  [[nodiscard]] Position position_of_text(std::string_view text) const {
+    const std::size_t at = source_.text().find(text);
     return at == std::string_view::npos ? Position{&source_} : position_at(at + 1);
   }
 

@@ -53,6 +53,20 @@ struct LssSettings {
 /// What 1021h holds: what the application binds to it, the data sheet's text, or the same as a gzip file.
 enum class StoredEds : std::uint8_t { of_application, text, compressed };
 
+/// A rule whose findings are not reported.
+struct SilencedRule {
+  std::string rule;
+  Position position;
+};
+
+/// Findings of a rule that are expected, and why: of one object or entry, or of the whole data sheet.
+struct AllowedFindings {
+  std::string rule;
+  std::optional<EntrySelector> object;
+  std::string reason;
+  Position position;
+};
+
 struct Options {
   /// C++ names to use in place of the one made from ParameterName.
   std::map<EntryKey, std::string> names;
@@ -61,7 +75,7 @@ struct Options {
   /// Constant or ro entries that the application sets at start-up: they live in RAM.
   std::vector<EntryKey> settable;
   /// Rules that are not reported for this device.
-  std::vector<std::string> silence;
+  std::vector<SilencedRule> silence;
   /// What is plugged into a modular device: the numbers of the modules, by place. Empty: what the DCF says.
   std::vector<std::uint16_t> connected_modules;
   /// VISIBLE_STRINGs go out with a trailing 00h.
@@ -78,6 +92,8 @@ struct Options {
   StoredEds stored_eds = StoredEds::of_application;
   /// Departures from CiA 301 that the runtime knows: member of canopen::DeviceOptions and its value in C++.
   std::vector<std::pair<std::string, std::string>> runtime;
+  /// Findings that are expected.
+  std::vector<AllowedFindings> allow;
 
   [[nodiscard]] bool is_settable(std::uint16_t index, std::uint8_t sub_index) const {
     return std::ranges::find(settable, EntryKey{index, sub_index}) != settable.end();

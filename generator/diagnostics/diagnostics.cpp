@@ -30,9 +30,13 @@ std::size_t Diagnostics::CauseHash::operator()(const Cause& cause) const {
 
 void Diagnostics::report(Diagnostic diagnostic) {
   if (drop_notes_ && diagnostic.severity == Severity::note) return;
-  if (is_silenced(diagnostic)) {
-    any_silenced_ = any_silenced_ || diagnostic.severity != Severity::note;
-    return;
+  if (is_tolerated(diagnostic)) diagnostic.severity = Severity::warning;
+  if (diagnostic.severity != Severity::error || silence_errors_) {
+    const Severity severity = diagnostic.severity;
+    if (drop_silenced(diagnostic) || set_aside(diagnostic)) {
+      any_silenced_ = any_silenced_ || severity != Severity::note;
+      return;
+    }
   }
   if (strict_ && diagnostic.severity == Severity::warning) {
     diagnostic.severity = Severity::error;
@@ -91,7 +95,17 @@ void Diagnostics::usual(AnyRule rule, const Position& position, std::string mess
   report({rule.row().severity, rule.id(), position, std::move(message), std::move(notes), std::move(cause)});
 }
 
-void Diagnostics::silence(std::string rule) { silenced_.push_back(std::move(rule)); }
+void Diagnostics::silence(std::string rule) { silenced_.push_back({std::move(rule)}); }
+
+bool Diagnostics::has_silenced(std::string_view rule) const {
+  return std::ranges::any_of(silenced_, [&](const Silenced& one) { return one.rule == rule && one.has_fired; });
+}
+
+bool Diagnostics::counts_only(std::string_view rule, Severity severity, const SourceFile* file) const {
+  const Severity listed_as = strict_ && severity == Severity::warning ? Severity::error : severity;
+  const auto found = tallies_.find(Kind{file, rule, listed_as});
+  return found != tallies_.end() && found->second.found >= most_per_rule;
+}
 
 void Diagnostics::count(Severity severity) {
   errors_ += severity == Severity::error ? 1 : 0;
@@ -99,9 +113,27 @@ void Diagnostics::count(Severity severity) {
   notes_ += severity == Severity::note ? 1 : 0;
 }
 
-bool Diagnostics::is_silenced(const Diagnostic& diagnostic) const {
-  if (diagnostic.severity == Severity::error && !silence_errors_) return false;
-  return std::find(silenced_.begin(), silenced_.end(), diagnostic.rule) != silenced_.end();
+bool Diagnostics::is_tolerated(const Diagnostic& diagnostic) const {
+  return foreign_file_ != nullptr && diagnostic.severity == Severity::error &&
+         diagnostic.position.file == foreign_file_ && std::ranges::find(fatal_rules_, diagnostic.rule) == fatal_rules_.end();
+}
+
+bool Diagnostics::drop_silenced(const Diagnostic& diagnostic) {
+  bool is_silenced = false;
+  for (Silenced& one : silenced_) {
+    if (one.rule != diagnostic.rule) continue;
+    is_silenced = one.has_fired = true;
+  }
+  return is_silenced;
+}
+
+bool Diagnostics::set_aside(Diagnostic& diagnostic) {
+  const auto allowance = allowances_.find(diagnostic.rule, diagnostic.position);
+  if (!allowance) return false;
+  allowances_.count_finding(*allowance);
+  ++allowed_findings_;
+  if (allowances_.all()[*allowance].findings <= most_per_rule) allowed_.push_back({std::move(diagnostic), *allowance});
+  return true;
 }
 
 }  // namespace edsc

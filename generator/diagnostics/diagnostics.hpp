@@ -3,25 +3,18 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
+#include "diagnostics/allowances.hpp"
+#include "diagnostics/position.hpp"
 #include "diagnostics/rule.hpp"
 
 namespace edsc {
-
-class SourceFile;
-
-/// A place in a source file. Lines and columns count from 1, columns in bytes of the UTF-8 text; a line of 0 means the
-/// file as a whole, which is shown as its line 1.
-struct Position {
-  const SourceFile* file = nullptr;
-  std::uint32_t line = 0;
-  std::uint32_t column = 0;
-  std::uint32_t length = 1;  ///< bytes to underline
-};
 
 [[nodiscard]] std::string_view to_string(Severity severity);
 
@@ -60,10 +53,21 @@ class Diagnostics {
 
   /// Drops the warnings and notes of a rule; its errors stay, since what is wrong with them is left out of the device.
   void silence(std::string rule);
-  /// From here on silence() drops errors as well: for `edsc check`, which makes nothing of the device.
+  /// Findings that an allowance applies to are set aside: warnings and notes, but no errors, as in silence().
+  void set_outline(SheetOutline outline) { allowances_.set_outline(std::move(outline)); }
+  void allow(Allowance allowance) { allowances_.add(std::move(allowance)); }
+  /// From here on errors are dropped or set aside as well: for `edsc check`, which makes nothing of the device.
   void silence_errors() { silence_errors_ = true; }
-  /// Whether silence() has dropped a warning or an error.
+  /// Whether a warning or an error was dropped or set aside.
   [[nodiscard]] bool any_silenced() const { return any_silenced_; }
+  /// Whether silence() of this rule has dropped a finding.
+  [[nodiscard]] bool has_silenced(std::string_view rule) const;
+  /// From here on errors at places in `file` are warnings (`--keep-going`): who reads the file of another manufacturer
+  /// cannot mend it. Those of the rules in `fatal` stay errors. A warning of this kind may still be silenced.
+  void keep_going(const SourceFile* file, std::span<const std::string_view> fatal) {
+    foreign_file_ = file;
+    fatal_rules_ = fatal;
+  }
   /// From here on a warning counts as an error (`--strict`). A note stays a note.
   void treat_warnings_as_errors() { strict_ = true; }
 
@@ -84,6 +88,18 @@ class Diagnostics {
     std::size_t last_listed;  ///< where in `all()` the last listed one of this kind stands
   };
   [[nodiscard]] const std::vector<Suppressed>& suppressed() const { return suppressed_; }
+  /// Whether the next finding of this kind is counted only, so that its message is not needed.
+  [[nodiscard]] bool counts_only(std::string_view rule, Severity severity, const SourceFile* file) const;
+
+  /// A finding that was set aside, and its place in `allowances()`. At most `most_per_rule` for each allowance are kept.
+  struct Allowed {
+    Diagnostic diagnostic;
+    std::size_t allowance;
+  };
+  [[nodiscard]] const std::vector<Allowed>& allowed() const { return allowed_; }
+  [[nodiscard]] const std::vector<Allowance>& allowances() const { return allowances_.all(); }
+  /// How many findings were set aside.
+  [[nodiscard]] std::size_t allowed_findings() const { return allowed_findings_; }
 
   /// A rule that fires more often than this in one file (and with one severity) is counted, not listed: nobody reads
   /// the 51st.
@@ -109,6 +125,10 @@ class Diagnostics {
   struct CauseHash {
     std::size_t operator()(const Cause& cause) const;
   };
+  struct Silenced {
+    std::string rule;
+    bool has_fired = false;
+  };
   struct Tally {
     std::size_t found = 0;
     std::size_t last_listed = 0;     ///< in `all_`
@@ -118,13 +138,15 @@ class Diagnostics {
   void count(Severity severity);
   /// Whether the finding is a further place of a listed one, or of one that is only counted.
   bool join(const Kind& kind, Diagnostic& diagnostic);
-  [[nodiscard]] bool is_silenced(const Diagnostic& diagnostic) const;
+  [[nodiscard]] bool is_tolerated(const Diagnostic& diagnostic) const;
+  [[nodiscard]] bool drop_silenced(const Diagnostic& diagnostic);
+  [[nodiscard]] bool set_aside(Diagnostic& diagnostic);
 
   std::vector<Diagnostic> all_;
   std::unordered_map<Kind, Tally, KindHash> tallies_;
   std::unordered_map<Cause, std::size_t, CauseHash> first_of_cause_;  ///< where in `all_`; may be behind its end
   std::vector<Suppressed> suppressed_;
-  std::vector<std::string> silenced_;
+  std::vector<Silenced> silenced_;
   std::size_t errors_ = 0;
   std::size_t warnings_ = 0;
   std::size_t notes_ = 0;
@@ -132,6 +154,11 @@ class Diagnostics {
   bool drop_notes_ = false;
   bool silence_errors_ = false;
   bool any_silenced_ = false;
+  Allowances allowances_;
+  std::vector<Allowed> allowed_;
+  std::size_t allowed_findings_ = 0;
+  const SourceFile* foreign_file_ = nullptr;
+  std::span<const std::string_view> fatal_rules_;
 };
 
 }  // namespace edsc

@@ -10,6 +10,7 @@
 
 #include "diagnostics/excerpt.hpp"
 #include "diagnostics/place.hpp"
+#include "text/counted.hpp"
 #include "text/source_file.hpp"
 
 namespace edsc {
@@ -43,6 +44,7 @@ struct FileSum {
   std::size_t errors = 0;
   std::size_t warnings = 0;
   std::size_t notes = 0;
+  std::size_t allowed = 0;
 
   void add(Severity severity, std::size_t count) {
     errors += severity == Severity::error ? count : 0;
@@ -51,7 +53,7 @@ struct FileSum {
   }
 };
 
-std::vector<FileSum> sums_by_file(const Diagnostics& diagnostics) {
+std::vector<FileSum> sums_by_file(const Diagnostics& diagnostics, bool with_allowed) {
   std::vector<FileSum> sums;
   const auto sum_of = [&](const SourceFile* file) -> FileSum& {
     const auto found = std::find_if(sums.begin(), sums.end(), [&](const FileSum& sum) { return sum.file == file; });
@@ -63,11 +65,10 @@ std::vector<FileSum> sums_by_file(const Diagnostics& diagnostics) {
   for (const Diagnostics::Suppressed& suppressed : diagnostics.suppressed()) {
     sum_of(suppressed.file).add(suppressed.severity, suppressed.count);
   }
+  if (with_allowed && diagnostics.allowed_findings() > 0) {
+    sum_of(diagnostics.allowed().front().diagnostic.position.file).allowed += diagnostics.allowed_findings();
+  }
   return sums;
-}
-
-std::string counted(std::size_t count, std::string_view noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
 class TextPrinter {
@@ -102,6 +103,9 @@ class TextPrinter {
     append("{}, {}", counted(sum.errors, "error"), counted(sum.warnings, "warning"));
     if (sum.notes > 0) {
       append(", {}", counted(sum.notes, "note"));
+    }
+    if (sum.allowed > 0) {
+      append(", {} allowed", sum.allowed);
     }
     out_ += '\n';
   }
@@ -169,6 +173,22 @@ nlohmann::json to_json(const Diagnostic& diagnostic) {
   return row;
 }
 
+nlohmann::json to_json(const Diagnostics::Allowed& allowed, const Allowance& allowance) {
+  nlohmann::json row = to_json(allowed.diagnostic);
+  nlohmann::json& why = row["allowance"] = to_json(allowance.position);
+  why["kind"] = allowance.in_source ? "inSource" : "external";
+  why["reason"] = allowance.reason;
+  return row;
+}
+
+nlohmann::json allowed_rows(const Diagnostics& diagnostics) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const Diagnostics::Allowed& one : diagnostics.allowed()) {
+    rows.push_back(to_json(one, diagnostics.allowances()[one.allowance]));
+  }
+  return rows;
+}
+
 nlohmann::json to_json(const Diagnostics::Suppressed& suppressed) {
   return {{"file", suppressed.file == nullptr ? std::string() : suppressed.file->name()},
           {"severity", to_string(suppressed.severity)},
@@ -187,7 +207,7 @@ nlohmann::json to_json_array(const Rows& rows) {
 
 }  // namespace
 
-void print_text(std::string& out, const Diagnostics& diagnostics, bool colour) {
+void print_text(std::string& out, const Diagnostics& diagnostics, bool colour, bool with_allowed) {
   TextPrinter printer(out, colour);
   const std::vector<Diagnostic>& all = diagnostics.all();
   for (std::size_t at = 0; at < all.size(); ++at) {
@@ -198,24 +218,26 @@ void print_text(std::string& out, const Diagnostics& diagnostics, bool colour) {
       }
     }
   }
-  for (const FileSum& sum : sums_by_file(diagnostics)) {
+  for (const FileSum& sum : sums_by_file(diagnostics, with_allowed)) {
     printer.print(sum);
   }
 }
 
-void print_text(std::FILE* out, const Diagnostics& diagnostics, bool colour) {
+void print_text(std::FILE* out, const Diagnostics& diagnostics, bool colour, bool with_allowed) {
   std::string text;
-  print_text(text, diagnostics, colour);
+  print_text(text, diagnostics, colour, with_allowed);
   std::fwrite(text.data(), 1, text.size(), out);
 }
 
 nlohmann::json print_json(const Diagnostics& diagnostics) {
   return {{"version", 1},
           {"diagnostics", to_json_array(diagnostics.all())},
+          {"allowed_diagnostics", allowed_rows(diagnostics)},
           {"suppressed", to_json_array(diagnostics.suppressed())},
           {"errors", diagnostics.errors()},
           {"warnings", diagnostics.warnings()},
-          {"notes", diagnostics.notes()}};
+          {"notes", diagnostics.notes()},
+          {"allowed", diagnostics.allowed_findings()}};
 }
 
 }  // namespace edsc

@@ -206,10 +206,18 @@ inline constexpr Rule rows[] = {
     // This compiler.
     Rule{"options", error, "the options file says what edsc does not know", "edsc"},
     Rule{"options-syntax", error, "the options file is not JSON", "edsc"},
+    Rule{"allow-comment", warning, "a comment \"; edsc:\" that is not understood", "edsc"},
+    Rule{"allow-unused", warning, "a silenced or allowed rule without a finding", "edsc"},
     Rule{"dictionary-size", error, "the dictionary is too large", "edsc"},
 };
 
+inline constexpr std::string_view fatal[] = {"unreadable-file", "empty-file",  "binary-file", "xml-file",
+                                             "xml-syntax",      "xml-profile", "no-objects",  "dictionary-size"};
+
 }  // namespace rule_table
+
+/// The rules whose errors leave no device: not even `--keep-going` goes on.
+[[nodiscard]] constexpr std::span<const std::string_view> fatal_rules() { return rule_table::fatal; }
 
 [[nodiscard]] constexpr std::span<const Rule> all_rules() { return rule_table::rows; }
 

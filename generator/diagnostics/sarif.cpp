@@ -7,6 +7,7 @@
 
 #include "diagnostics/place.hpp"
 #include "text/ascii.hpp"
+#include "text/counted.hpp"
 #include "text/source_file.hpp"
 
 namespace edsc {
@@ -48,6 +49,12 @@ json related_locations(const std::vector<Note>& notes) {
   return related;
 }
 
+json suppression_of(const Allowance& allowance) {
+  return {{"kind", allowance.in_source ? "inSource" : "external"},
+          {"justification", allowance.reason},
+          {"location", location_of(allowance.position)}};
+}
+
 }  // namespace
 
 SarifLog::SarifLog(std::string_view version, const std::vector<SarifRule>& rules) {
@@ -57,28 +64,37 @@ SarifLog::SarifLog(std::string_view version, const std::vector<SarifRule>& rules
     descriptors.push_back({{"id", rule.id},
                            {"shortDescription", {{"text", rule.description}}},
                            {"help", {{"text", rule.source}}},
+                           {"helpUri", rule.url},
                            {"defaultConfiguration", {{"level", to_string(rule.level)}}}});
   }
   driver_ = {{"name", "edsc"}, {"version", version}, {"rules", std::move(descriptors)}};
 }
 
+nlohmann::ordered_json SarifLog::result_of(const Diagnostic& diagnostic) const {
+  json result = {{"ruleId", diagnostic.rule}};
+  if (const auto at = rule_index_.find(diagnostic.rule); at != rule_index_.end()) result["ruleIndex"] = at->second;
+  result["level"] = to_string(diagnostic.severity);
+  result["message"] = {{"text", diagnostic.message}};
+  if (diagnostic.position.file != nullptr) result["locations"] = {location_of(diagnostic.position)};
+  if (json related = related_locations(diagnostic.notes); !related.empty()) {
+    result["relatedLocations"] = std::move(related);
+  }
+  if (diagnostic.places > 1) result["occurrenceCount"] = diagnostic.places;
+  result["suppressions"] = json::array();
+  return result;
+}
+
 void SarifLog::add(const Diagnostics& diagnostics) {
-  for (const Diagnostic& diagnostic : diagnostics.all()) {
-    json result = {{"ruleId", diagnostic.rule}};
-    if (const auto at = rule_index_.find(diagnostic.rule); at != rule_index_.end()) result["ruleIndex"] = at->second;
-    result["level"] = to_string(diagnostic.severity);
-    result["message"] = {{"text", diagnostic.message}};
-    if (diagnostic.position.file != nullptr) result["locations"] = {location_of(diagnostic.position)};
-    if (json related = related_locations(diagnostic.notes); !related.empty()) {
-      result["relatedLocations"] = std::move(related);
-    }
-    if (diagnostic.places > 1) result["occurrenceCount"] = diagnostic.places;
+  for (const Diagnostic& diagnostic : diagnostics.all()) results_.push_back(result_of(diagnostic));
+  for (const Diagnostics::Allowed& allowed : diagnostics.allowed()) {
+    json result = result_of(allowed.diagnostic);
+    result["suppressions"].push_back(suppression_of(diagnostics.allowances()[allowed.allowance]));
     results_.push_back(std::move(result));
   }
   for (const Diagnostics::Suppressed& suppressed : diagnostics.suppressed()) {
     json notification = {
         {"level", "note"},
-        {"message", {{"text", fmt::format("{} more findings of {}", suppressed.count, suppressed.rule)}}},
+        {"message", {{"text", fmt::format("{} of {}", counted(suppressed.count, "more finding"), suppressed.rule)}}},
         {"associatedRule", {{"id", suppressed.rule}}}};
     if (suppressed.file != nullptr) notification["locations"] = {location_of(Position{suppressed.file})};
     notifications_.push_back(std::move(notification));

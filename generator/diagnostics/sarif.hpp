@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <string>
 #include <string_view>
 #include <unordered_map>
 #include <vector>
@@ -16,6 +17,7 @@ struct SarifRule {
   Severity level;
   std::string_view description;
   std::string_view source;  ///< the clause
+  std::string url;          ///< of its documentation
 };
 
 /// One run over any number of files. A file name may hold what is not UTF-8: dump the document with
@@ -30,6 +32,8 @@ class SarifLog {
   [[nodiscard]] nlohmann::ordered_json document() const;
 
  private:
+  [[nodiscard]] nlohmann::ordered_json result_of(const Diagnostic& diagnostic) const;
+
   nlohmann::ordered_json driver_;
   std::unordered_map<std::string_view, std::size_t> rule_index_;
   nlohmann::ordered_json results_ = nlohmann::ordered_json::array();

@@ -41,7 +41,7 @@ Comments read_comments(const SourceFile& source, const IniSection& section, Diag
     }
     const std::optional<std::uint32_t> number = number_behind(line_prefix, key);
     return number ? KeyMatch{true, &numbered_field(comments.text, *number)} : KeyMatch{};
-  });
+  }, count_key);
   check_count(source, section, comments, diagnostics);
   return comments;
 }

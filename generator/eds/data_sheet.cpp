@@ -23,6 +23,7 @@
 #include "eds/section_name.hpp"
 #include "eds/tools.hpp"
 #include "text/source_file.hpp"
+#include "text/suggestion.hpp"
 
 namespace edsc {
 namespace {
@@ -138,12 +139,18 @@ class DataSheetReader {
                          fmt::format("{} names no object: {}", quote(section.name), name.remark));
     } else if (name.kind == SectionKind::unknown) {
       diagnostics_.warning("unknown-section", position,
-                           fmt::format("CiA 306 knows no section {}; it is left out", quote(section.name)));
+                           fmt::format("CiA 306 knows no section {}; it is left out{}", quote(section.name),
+                                       similar_section(section.name)));
     } else if (name.has_short_index) {
       diagnostics_.warning(
           "section-name", position,
           fmt::format("an index has four digits; {} is taken for {:04X}h", quote(section.name), name.index));
     }
+  }
+
+  [[nodiscard]] std::string similar_section(std::string_view name) const {
+    const bool is_listed = !diagnostics_.counts_only("unknown-section", Severity::warning, &source_);
+    return is_listed ? did_you_mean(name, known_section_names(name)) : std::string{};
   }
 
   void place_single(const IniSection& section, SectionKind kind) {
@@ -170,7 +177,7 @@ class DataSheetReader {
     place_fields(file_info_keys, place_of(section), sheet_.file_info);
     if (section != nullptr) {
       read_keys(source_, *section, diagnostics_,
-                [&](std::string_view key) { return find_key(file_info_keys, key, sheet_.file_info); });
+                [&](std::string_view key) { return find_key(file_info_keys, key, sheet_.file_info); }, file_info_keys);
     }
   }
 
@@ -183,7 +190,7 @@ class DataSheetReader {
       read_keys(source_, *section, diagnostics_, [&](std::string_view key) {
         const KeyMatch match = find_key(device_info_keys, key, sheet_.device_info);
         return match.is_known ? match : find_baud_rate(key);
-      });
+      }, device_info_keys);
     }
   }
 
@@ -212,7 +219,8 @@ class DataSheetReader {
     place_fields(commissioning_keys, place_of(section), sheet_.commissioning);
     if (section != nullptr) {
       read_keys(source_, *section, diagnostics_,
-                [&](std::string_view key) { return find_key(commissioning_keys, key, sheet_.commissioning); });
+                [&](std::string_view key) { return find_key(commissioning_keys, key, sheet_.commissioning); },
+                commissioning_keys);
     }
   }
 

@@ -8,6 +8,7 @@
 
 #include "diagnostics/quote.hpp"
 #include "text/ascii.hpp"
+#include "text/suggestion.hpp"
 
 namespace edsc {
 
@@ -32,10 +33,11 @@ std::optional<std::uint32_t> number_behind(std::string_view prefix, std::string_
 }
 
 void report_unknown_key(const SourceFile& source, const IniSection& section, const IniEntry& entry,
-                        Diagnostics& diagnostics) {
-  diagnostics.warning(
-      "unknown-key", key_position(source, entry),
-      fmt::format("CiA 306 knows no key {} in section {}; it is left out", quote(entry.key), quote(section.name)));
+                        std::span<const std::string_view> known, Diagnostics& diagnostics) {
+  const bool is_listed = !diagnostics.counts_only("unknown-key", Severity::warning, &source);
+  diagnostics.warning("unknown-key", key_position(source, entry),
+                      fmt::format("CiA 306 knows no key {} in section {}; it is left out{}", quote(entry.key),
+                                  quote(section.name), is_listed ? did_you_mean(entry.key, known) : ""));
 }
 
 }  // namespace edsc

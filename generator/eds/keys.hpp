@@ -54,16 +54,28 @@ void place_fields(std::span<const KeyRow<Struct>> table, const Position& positio
 /// The number behind `prefix`: 3 in `Line3`. Nothing for any other key.
 [[nodiscard]] std::optional<std::uint32_t> number_behind(std::string_view prefix, std::string_view key);
 
+/// `known` are the keys of the section: the message names one that is similar.
 void report_unknown_key(const SourceFile& source, const IniSection& section, const IniEntry& entry,
-                        Diagnostics& diagnostics);
+                        std::span<const std::string_view> known, Diagnostics& diagnostics);
 
-/// Puts each value where `find` says its key belongs; `find` takes a key and gives a KeyMatch.
-template <typename Find>
-void read_keys(const SourceFile& source, const IniSection& section, Diagnostics& diagnostics, Find find) {
+inline void append_names(std::vector<std::string_view>& names, std::string_view name) { names.push_back(name); }
+
+template <typename Struct>
+void append_names(std::vector<std::string_view>& names, std::span<const KeyRow<Struct>> table) {
+  for (const KeyRow<Struct>& row : table) names.push_back(row.name);
+}
+
+/// Puts each value where `find` says its key belongs; `find` takes a key and gives a KeyMatch. `known` are names and tables
+/// of the keys that it finds.
+template <typename Find, typename... Known>
+void read_keys(const SourceFile& source, const IniSection& section, Diagnostics& diagnostics, Find find,
+               const Known&... known) {
   for (const IniEntry& entry : section.entries) {
     const KeyMatch match = find(entry.key);
     if (!match.is_known) {
-      report_unknown_key(source, section, entry, diagnostics);
+      std::vector<std::string_view> names;
+      (append_names(names, known), ...);
+      report_unknown_key(source, section, entry, names, diagnostics);
     } else if (match.field != nullptr && match.field->present) {
       report_duplicate_key(source, entry, match.field->position, diagnostics);
     } else if (match.field != nullptr) {

@@ -79,7 +79,8 @@ class ModuleReader {
     if (section.name.kind == SectionKind::module_info) {
       has_info_ = true;
       place_fields(info_keys, section_position(source_, keys), module_);
-      read_keys(source_, keys, diagnostics_, [&](std::string_view key) { return find_key(info_keys, key, module_); });
+      read_keys(source_, keys, diagnostics_, [&](std::string_view key) { return find_key(info_keys, key, module_); },
+                info_keys);
     } else if (section.name.kind == SectionKind::module_comments) {
       module_.comments = read_comments(source_, keys, diagnostics_);
     } else if (section.name.kind == SectionKind::module_fixed_objects) {
@@ -99,7 +100,7 @@ class ModuleReader {
     read_keys(source_, section, diagnostics_, [&](std::string_view key) {
       const KeyMatch match = find_entry_key(key, extension);
       return match.is_known ? match : find_key(extension_keys, key, extension);
-    });
+    }, entry_key_table(), extension_keys);
   }
 
   const SourceFile& source_;
@@ -146,7 +147,7 @@ Modules read_modules(const SourceFile& source, const ModuleSections& sections, D
   if (sections.supported != nullptr) {
     read_keys(source, *sections.supported, diagnostics, [&](std::string_view key) {
       return equal_ignoring_case(key, module_count_key) ? KeyMatch{true, &modules.nr_of_entries} : KeyMatch{};
-    });
+    }, module_count_key);
   }
   check_count(source, sections.supported, modules, diagnostics);
   if (sections.connected != nullptr) {

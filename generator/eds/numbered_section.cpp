@@ -12,6 +12,7 @@
 #include "eds/duplicates.hpp"
 #include "eds/keys.hpp"
 #include "eds/number.hpp"
+#include "text/counted.hpp"
 
 namespace edsc {
 namespace {
@@ -42,7 +43,7 @@ class NumberedSectionReader {
                            fmt::format("{} is taken for \"{}\"", quote(entry.key), count_key_.name));
       read_count(entry);
     } else {
-      report_unknown_key(source_, section_, entry, diagnostics_);
+      report_unknown_key(source_, section_, entry, {&count_key_.name, 1}, diagnostics_);
     }
   }
 
@@ -75,8 +76,8 @@ class NumberedSectionReader {
                            fmt::format("{} is missing in [{}]", count_key_.name, section_.name));
     } else if (count_ && *count_ != fields_.size()) {
       diagnostics_.warning(count_key_.rule, value_position(source_, *count_entry_),
-                           fmt::format("{} is {}, but the section has {} {}", count_key_.name, *count_, fields_.size(),
-                                       fields_.size() == 1 ? "entry" : "entries"));
+                           fmt::format("{} is {}, but the section has {}", count_key_.name, *count_,
+                                       counted(fields_.size(), "entry", "entries")));
     } else if (count_ && count_key_.numbers_count_up) {
       check_numbers();
     }

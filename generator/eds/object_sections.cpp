@@ -131,14 +131,14 @@ class ObjectReader {
     read_keys(source_, section, diagnostics_, [&](std::string_view key) {
       const KeyMatch match = find_entry_key(key, object);
       return match.is_known ? match : find_key<ObjectDescription>(object_keys, key, object);
-    });
+    }, entry_keys, object_keys);
   }
 
   void read_sub_object(const ObjectSection& section, SubObjectDescription& sub_object) {
     sub_object.sub_index = section.name.sub_index;
     place_entry(section_position(source_, *section.section), sub_object);
     read_keys(source_, *section.section, diagnostics_,
-              [&](std::string_view key) { return find_entry_key(key, sub_object); });
+              [&](std::string_view key) { return find_entry_key(key, sub_object); }, entry_keys);
   }
 
   std::vector<NumberedField> read_list(const IniSection& section) {
@@ -156,6 +156,8 @@ void place_entry(const Position& position, EntryDescription& entry) {
   entry.position = position;
   place_fields<EntryDescription>(entry_keys, position, entry);
 }
+
+std::span<const KeyRow<EntryDescription>> entry_key_table() { return entry_keys; }
 
 KeyMatch find_entry_key(std::string_view key, EntryDescription& entry) {
   return find_key<EntryDescription>(entry_keys, key, entry);

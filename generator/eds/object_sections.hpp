@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -34,5 +35,6 @@ void place_entry(const Position& position, EntryDescription& entry);
 
 /// The keys that objects, sub-objects and the extensions of modules share.
 [[nodiscard]] KeyMatch find_entry_key(std::string_view key, EntryDescription& entry);
+[[nodiscard]] std::span<const KeyRow<EntryDescription>> entry_key_table();
 
 }  // namespace edsc

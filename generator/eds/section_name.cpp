@@ -205,4 +205,14 @@ SectionName read_section_name(std::string_view name) {
   return read_numbered(name).value_or(result);
 }
 
+std::vector<std::string> known_section_names(std::string_view like) {
+  std::vector<std::string> names;
+  for (const FixedName& row : fixed_names) names.emplace_back(row.name);
+  const std::string_view digits = like.substr(0, std::min(like.size(), index_digits));
+  if (parse_hex(digits, index_digits)) {
+    for (const IndexSuffix& row : index_suffixes) names.push_back(std::string{digits}.append(row.suffix));
+  }
+  return names;
+}
+
 }  // namespace edsc

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace edsc {
 
@@ -55,5 +57,8 @@ struct NamedSection {
 
 /// Letter case is ignored.
 [[nodiscard]] SectionName read_section_name(std::string_view name);
+
+/// Names of sections, for a message about `like`; one that begins with an index may belong to a compact form.
+[[nodiscard]] std::vector<std::string> known_section_names(std::string_view like);
 
 }  // namespace edsc

@@ -79,6 +79,24 @@ std::optional<std::uint16_t> read_hex(std::string_view text, std::size_t most_di
 
 using FirstPlaces = std::unordered_map<std::uint16_t, Position>;
 
+SheetPart part_at(const XmlDocument& xml, pugi::xml_node element) {
+  const Position position = xml.position(element);
+  SheetPart part;
+  part.line = position.line;
+  part.column = position.column;
+  return part;
+}
+
+/// The element that begins after this one has ended; null when there is none.
+pugi::xml_node next_element(pugi::xml_node element) {
+  for (; element; element = element.parent()) {
+    for (pugi::xml_node next = element.next_sibling(); next; next = next.next_sibling()) {
+      if (next.type() == pugi::node_element) return next;
+    }
+  }
+  return {};
+}
+
 class ObjectListReader {
  public:
   ObjectListReader(XmlDocument& xml, ApplicationProcess& process) : xml_{xml}, process_{process} {}
@@ -254,6 +272,25 @@ class ObjectListReader {
 
 std::vector<ObjectDescription> read_object_list(XmlDocument& xml, pugi::xml_node list, ApplicationProcess& process) {
   return ObjectListReader{xml, process}.read(list);
+}
+
+SheetOutline outline_of(const XmlDocument& xml, pugi::xml_node list) {
+  SheetOutline outline{&xml.source(), {}, {}};
+  for_each_element(list, [&](pugi::xml_node object) {
+    SheetPart part = part_at(xml, object);
+    part.index = read_hex(find_attribute(object, "index").value(), 4);
+    if (part.index) part.sub_index = 0;
+    outline.parts.push_back(part);
+    for_each_element(object, [&](pugi::xml_node sub_object) {
+      SheetPart sub_part = part_at(xml, sub_object);
+      const auto sub_index = read_hex(find_attribute(sub_object, "subIndex").value(), 2);
+      sub_part.index = part.index;
+      if (sub_index) sub_part.sub_index = static_cast<std::uint8_t>(*sub_index);
+      outline.parts.push_back(sub_part);
+    });
+  });
+  if (const pugi::xml_node next = next_element(list)) outline.parts.push_back(part_at(xml, next));
+  return outline;
 }
 
 }  // namespace edsc

@@ -13,4 +13,7 @@ namespace edsc {
 [[nodiscard]] std::vector<ObjectDescription> read_object_list(XmlDocument& xml, pugi::xml_node list,
                                                               ApplicationProcess& process);
 
+/// Where the objects and their sub-objects are.
+[[nodiscard]] SheetOutline outline_of(const XmlDocument& xml, pugi::xml_node list);
+
 }  // namespace edsc

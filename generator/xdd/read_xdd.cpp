@@ -170,6 +170,7 @@ class XddReader {
     read_commissioning(xml_, parts_.commissioning, sheet_.commissioning);
     sheet_.is_dcf = sheet_.commissioning.present || ends_with_ignoring_case(xml_.source().name(), ".xdc");
     sheet_.dummy_usage = read_dummy_usage(xml_, parts_.dummy_usage);
+    xml_.diagnostics().set_outline(outline_of(xml_, parts_.object_list));
     ApplicationProcess process{xml_, parts_.application_process};
     sheet_.objects = read_object_list(xml_, parts_.object_list, process);
     list_objects();

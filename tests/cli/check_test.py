@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 import tempfile
@@ -110,6 +111,182 @@ class Silence(CheckTest):
         (self.folder / "example.options.json").write_text('{"silence": ["no-such-rule"]}', encoding="utf-8")
         returncode, findings = self.check(sheet)
         self.assertEqual((returncode, [d["rule"] for d in findings["diagnostics"]]), (INPUT_HAS_ERRORS, ["options"]))
+
+
+class Allow(CheckTest):
+    """Findings that are expected, with a scope and a reason: in the options file or as a comment."""
+
+    def allowed(self, sheet: str, *arguments: str) -> list[tuple]:
+        """(rule, line, kind, reason, line of the allowance) of each finding that is allowed."""
+        _, findings = self.check(sheet, *arguments)
+        self.assertEqual(len(findings["allowed_diagnostics"]), findings["allowed"])
+        return [(d["rule"], d["line"], d["allowance"]["kind"], d["allowance"]["reason"], d["allowance"]["line"])
+                for d in findings["allowed_diagnostics"]]
+
+    def options(self, *rows: dict) -> None:
+        text = json.dumps({"allow": rows}, indent=1)
+        (self.folder / "example.options.json").write_text(text, encoding="utf-8")
+
+    def line_of(self, text: str) -> int:
+        lines = (self.folder / "example.eds").read_text(encoding="utf-8").splitlines()
+        return lines.index(text) + 1
+
+    def commented(self, before: str, comment: str, *changes: tuple[str, str, str]) -> str:
+        return self.sheet(*changes, (before, f"{comment}\n{before}", ""))
+
+    def test_of_the_line_below_a_comment(self) -> None:
+        sheet = self.commented("SupportedObjects=12", "; edsc: allow object-list-count - of a tool", WARNING)
+        line = self.line_of("SupportedObjects=12")
+        self.assertEqual(self.allowed(sheet, "--strict"), [("object-list-count", line, "inSource", "of a tool", line - 1)])
+        self.assertEqual(self.run_edsc("check", sheet, "--strict").returncode, FINE)
+        elsewhere = self.commented("FileRevision=1", "; edsc: allow object-list-count - of a tool", WARNING)
+        returncode, findings = self.check(elsewhere, "--strict")
+        self.assertEqual((returncode, [d["rule"] for d in findings["diagnostics"]]),
+                         (INPUT_HAS_ERRORS, ["object-list-count", "allow-unused"]))
+        self.assertEqual(findings["diagnostics"][1]["line"], self.line_of("FileRevision=1") - 1)
+
+    def test_of_the_section_below_a_comment_and_of_the_file(self) -> None:
+        for before in ("[DeviceInfo]", "; The sheet"):
+            bad = (("BaudRate_10=0", "BaudRate_10=x", ""), ("BaudRate_20=0", "BaudRate_20=y", ""))
+            sheet = self.commented(before, "; edsc: allow device-info-flag - a reason\n\n; other words", *bad)
+            self.assertEqual([row[0] for row in self.allowed(sheet)], ["device-info-flag"] * 2)
+            self.assertEqual(self.check(sheet)[1]["diagnostics"], [])
+
+    def test_of_an_object_or_entry_in_the_options_file(self) -> None:
+        sheet = self.sheet(ERROR)
+        line = self.line_of("DefaultValue=fast")
+        text = (self.folder / sheet).read_text(encoding="utf-8")
+        index = text[:text.index("DefaultValue=fast")].rsplit("[", 1)[1].split("]")[0]
+        for scope in ({"object": f"{index}h"}, {"object": f"{index}h:00"}, {}):
+            self.options({"rule": "number-format", "reason": "not ours", **scope})
+            self.assertEqual([row[:4] for row in self.allowed(sheet)], [("number-format", line, "external", "not ours")])
+            self.assertEqual(self.check(sheet)[0], FINE)
+        self.options({"rule": "number-format", "reason": "not ours", "object": "1000h"})
+        returncode, findings = self.check(sheet)
+        self.assertEqual((returncode, [d["rule"] for d in findings["diagnostics"]]),
+                         (INPUT_HAS_ERRORS, ["number-format", "allow-unused"]))
+        self.assertTrue(findings["diagnostics"][1]["file"].endswith("example.options.json"))
+
+    def test_of_an_error_for_check_only(self) -> None:
+        sheet = self.sheet(ERROR)
+        self.options({"rule": "number-format", "reason": "not ours"})
+        self.assertEqual(self.check(sheet)[0], FINE)
+        result = self.run_edsc("generate", sheet, "-o", "out")
+        self.assertEqual(result.returncode, INPUT_HAS_ERRORS)
+        self.assertIn("[number-format]", result.stderr)
+
+    def test_of_a_warning_for_each_command(self) -> None:
+        self.options({"rule": "object-list-count", "reason": "of a tool"})
+        result = self.run_edsc("generate", self.sheet(WARNING), "-o", "out")
+        self.assertEqual((result.returncode, result.stderr), (FINE, ""))
+
+    def test_is_counted_in_the_text(self) -> None:
+        self.options({"rule": "object-list-count", "reason": "of a tool"}, {"rule": "file-name", "reason": "renamed"})
+        self.assertEqual(self.run_edsc("check", self.sheet(WARNING, NOTE)).stdout, "example.eds: 0 errors, 0 warnings, 2 allowed\n")
+
+    def test_of_more_findings_than_are_listed(self) -> None:
+        sheet = self.commented("; The sheet", "; edsc: allow stray-line - many", ("[Comments]", "[Comments]\n" + "stray\n" * 60, ""))
+        _, findings = self.check(sheet)
+        self.assertEqual((len(findings["allowed_diagnostics"]), findings["allowed"], findings["warnings"]), (50, 60, 0))
+
+    def test_of_an_xdd(self) -> None:
+        xdd = """<ISO15745ProfileContainer xmlns:xsi="x"><ISO15745Profile><ProfileBody><ApplicationLayers><CANopenObjectList>
+<CANopenObject index="2000" name="A" objectType="7" dataType="05" accessType="rw" defaultValue="x"/>
+<CANopenObject index="2001" name="B" objectType="9" subNumber="1"><CANopenSubObject subIndex="00" name="C" objectType="7"
+ dataType="05" accessType="ro" defaultValue="y"/></CANopenObject><CANopenObject index="2002" name="D" objectType="7" dataType="05"
+ accessType="rw" defaultValue="z"/></CANopenObjectList></ApplicationLayers></ProfileBody></ISO15745Profile></ISO15745ProfileContainer>
+"""
+        (self.folder / "example.xdd").write_text(xdd, encoding="utf-8")
+        for scope, lines in (({"object": "2000h"}, [2]), ({"object": "2001h"}, [4]), ({"object": "2001h:00"}, [4]),
+                             ({"object": "2002h"}, [5]), ({}, [2, 4, 5])):
+            self.options({"rule": "number-format", "reason": "not ours", **scope})
+            self.assertEqual([row[1] for row in self.allowed("example.xdd")], lines, scope)
+
+    def test_that_does_not_fire_is_reported(self) -> None:
+        (self.folder / "example.options.json").write_text(
+            '{"silence": ["object-list-count", "pdo-size"],\n "allow": [{"rule": "file-name", "reason": "renamed"}]}', encoding="utf-8")
+        sheet = self.commented("[DeviceInfo]", "; edsc: allow file-date - a tool", WARNING)
+        _, findings = self.check(sheet)
+        self.assertEqual([(d["rule"], d["severity"], d["line"], d["message"]) for d in findings["diagnostics"]], [
+            ("allow-unused", "warning", 1, 'there is no finding of "pdo-size" to which this applies'),
+            ("allow-unused", "warning", 2, 'there is no finding of "file-name" to which this applies'),
+            ("allow-unused", "warning", self.line_of("[DeviceInfo]") - 1, 'there is no finding of "file-date" to which this applies')])
+        self.assertEqual(self.run_edsc("generate", sheet, "-o", "out").stderr, "", "what check alone finds may be allowed")
+
+    def test_of_an_unknown_rule(self) -> None:
+        self.options({"rule": "pdo-sise", "reason": "a"})
+        returncode, findings = self.check(self.sheet())
+        self.assertEqual((returncode, [(d["rule"], d["message"]) for d in findings["diagnostics"]]),
+                         (INPUT_HAS_ERRORS, [("options", 'allow: no rule is called "pdo-sise"; did you mean "pdo-size"?')]))
+        (self.folder / "example.options.json").unlink()
+        for comment, message in (
+                ("; edsc: allow pdo-sise - a", 'no rule is called "pdo-sise"; did you mean "pdo-size"?'),
+                ("; edsc: allow pdo-size", 'missing reason: "; edsc: allow RULE - reason"'),
+                ("; edsc: alow pdo-size - a", 'a comment of edsc has the form "; edsc: allow RULE - reason"')):
+            returncode, findings = self.check(self.commented("[DeviceInfo]", comment))
+            self.assertEqual((returncode, [(d["rule"], d["message"]) for d in findings["diagnostics"]]),
+                             (FINE, [("allow-comment", message)]))
+        self.assertIn('no rule is called "pdo-sise"; did you mean "pdo-size"?',
+                      self.run_edsc("check", "example.eds", "--silence", "pdo-sise").stderr)
+
+    def test_stays_in_sarif(self) -> None:
+        self.options({"rule": "number-format", "reason": "not ours"})
+        sheet = self.commented("SupportedObjects=12", "; edsc: allow object-list-count - of a tool", WARNING, ERROR, NOTE)
+        results = self.sarif(sheet)["runs"][0]["results"]
+        found = {result["ruleId"]: [(one["kind"], one["justification"]) for one in result["suppressions"]] for result in results}
+        self.assertEqual(found, {"file-name": [], "object-list-count": [("inSource", "of a tool")],
+                                 "number-format": [("external", "not ours")]})
+        places = [one["location"]["physicalLocation"]["artifactLocation"]["uri"]
+                  for result in results for one in result["suppressions"]]
+        self.assertEqual(sorted(places), ["example.eds", "example.options.json"])
+
+    def test_stays_at_its_key_when_the_file_is_formatted(self) -> None:
+        sheet = self.commented("BaudRate_10=x", "; edsc: allow device-info-flag - of a tool", ("BaudRate_10=0", "BaudRate_10=x", ""))
+        self.assertEqual(self.run_edsc("format", sheet, "-o", "canonical.eds").returncode, FINE)
+        self.assertEqual([row[0] for row in self.allowed("canonical.eds")], ["device-info-flag"])
+
+
+class Documentation(CheckTest):
+    def test_of_a_rule(self) -> None:
+        result = self.run_edsc("check", "--explain", "pdo-length")
+        rule = json.loads(self.run_edsc("check", "--explain", "pdo-length", "--format", "json").stdout)
+        self.assertEqual(result.returncode, FINE)
+        self.assertEqual(set(rule), {"id", "severity", "severities", "meaning", "source", "url"})
+        self.assertEqual(result.stdout, f"pdo-length: {rule['severity']}\n{rule['meaning']}\nSource: {rule['source']}\n"
+                                        f"Documentation, with examples: {rule['url']}\n")
+        self.assertIn(rule, json.loads(self.run_edsc("check", "--list-rules", "--format", "json").stdout))
+
+    def test_of_an_unknown_rule(self) -> None:
+        result = self.run_edsc("check", "--explain", "pdo-lenght")
+        self.assertEqual(result.returncode, WRONG_USAGE)
+        self.assertIn('no rule is called "pdo-lenght"; did you mean "pdo-length"?', result.stderr)
+
+    def test_has_an_anchor_for_each_rule(self) -> None:
+        headings = set(re.findall(r"^## (.*)$", (SOURCE_DIR / "docs/rules.md").read_text(encoding="utf-8"), re.MULTILINE))
+        for rule in self.sarif(self.sheet())["runs"][0]["tool"]["driver"]["rules"]:
+            page, anchor = rule["helpUri"].rsplit("/", 1)[1].split("#")
+            self.assertEqual((page, anchor), ("rules.md", rule["id"]))
+            self.assertIn(anchor, headings)
+
+
+class Suggestions(CheckTest):
+    def messages(self, *changes: tuple[str, str, str]) -> list[str]:
+        return [d["message"] for d in self.check(self.sheet(*changes))[1]["diagnostics"]]
+
+    def test_of_a_key(self) -> None:
+        for key, hint in (("CreatedBye", '; did you mean "CreatedBy"?'), ("Colour", "")):
+            self.assertEqual(self.messages(("CreatedBy=edsc", f"CreatedBy=edsc\n{key}=edsc", "")),
+                             [f'CiA 306 knows no key "{key}" in section "FileInfo"; it is left out{hint}'])
+        self.assertTrue(any(message.endswith('in section "1000"; it is left out; did you mean "AccessType"?')
+                            for message in self.messages(("[1000]", "[1000]\nAccesType=ro", ""))))
+        self.assertTrue(any(message.endswith('did you mean "SupportedObjects"?')
+                            for message in self.messages(("[MandatoryObjects]", "[MandatoryObjects]\nSuportedObjects=3", ""))))
+
+    def test_of_a_section(self) -> None:
+        for section, hint in (("DeviceInfos", '; did you mean "DeviceInfo"?'), ("1003Vale", '; did you mean "1003Value"?'),
+                              ("Colours", "")):
+            self.assertEqual(self.messages(("[DeviceInfo]", f"[{section}]\n[DeviceInfo]", "")),
+                             [f'CiA 306 knows no section "{section}"; it is left out{hint}'])
 
 
 class Sarif(CheckTest):

@@ -163,6 +163,13 @@ class BadInput(CommandLine):
         line = text[:text.index("DataType=0x77")].count("\n") + 1
         self.refuse(self.write("type.eds", text), INPUT_HAS_ERRORS, f"type.eds:{line}:10: error:", "[data-type]")
 
+    def test_a_data_type_by_name(self) -> None:
+        for name, hint in (("float", ": REAL32 is 0x0008"), ("uint16_t", ": UNSIGNED16 is 0x0006"),
+                           ("Visible_String", ": VISIBLE_STRING is 0x0009"), ("thing", "")):
+            text = SMALL + f"[2000]\nParameterName=Value\nObjectType=7\nDataType={name}\nAccessType=rw\n"
+            self.expect(INPUT_HAS_ERRORS, self.edsc("check", self.write("type.eds", text)),
+                        f'DataType "{name}" is not a number{hint} [data-type]')
+
     def test_a_section_that_stands_twice(self) -> None:
         text = SMALL + "[1000]\nParameterName=Another\nObjectType=7\nDataType=5\nAccessType=rw\n"
         line = text[:text.rindex("[1000]")].count("\n") + 1
@@ -337,16 +344,50 @@ class Generate(CommandLine):
 
     def test_keep_going_leaves_out_what_is_wrong(self) -> None:
         result = self.edsc("generate", WRONG, "-o", self.output, "--keep-going", "--name", "wrong")
-        self.expect(FINE, result, "[pdo-size]")
+        self.expect(FINE, result, "warning: ", "[pdo-size]")
+        self.assertNotIn("error: ", result.stderr)
         self.assertIn("TPDO 1, 1800h and 1A00h: left out", (self.output / "wrong/pdo.hpp").read_text())
+
+    def test_refusal_names_the_way_to_go_on(self) -> None:
+        """Only where it helps: an options file is the user's own, and of a file without objects nothing is left."""
+        hint = "--keep-going (KEEP_GOING in CMake)"
+        self.assertTrue(self.edsc("generate", WRONG, "-o", self.output).stderr.endswith(
+            "edsc: nothing was generated. For a file that you cannot change, --keep-going (KEEP_GOING in CMake) generates the "
+            "rest of the device\n"))
+        options = self.write("wrong.json", '{"no_such_option": 1}')
+        for result in (self.edsc("generate", GOOD, "-o", self.output),
+                       self.edsc("generate", WRONG, "-o", self.output, "--options", options),
+                       self.edsc("generate", self.write("empty.eds", "[FileInfo]\n"), "-o", self.output)):
+            self.assertNotIn(hint, result.stderr)
+
+    def test_keep_going_refuses_what_is_not_the_fault_of_the_file(self) -> None:
+        options = self.write("wrong.json", '{"no_such_option": 1}')
+        self.expect(INPUT_HAS_ERRORS,
+                    self.edsc("generate", WRONG, "-o", self.output, "--keep-going", "--options", options), "error: no_such_option")
+        self.expect(INPUT_HAS_ERRORS, self.edsc("generate", self.write("empty.eds", "[FileInfo]\n"), "-o", self.output,
+                                                "--keep-going"), "error:", "[no-objects]")
+
+    def test_keep_going_makes_opaque_bytes_of_an_unknown_type(self) -> None:
+        """Of what only the maker knows, a master can still move the bytes: as a DOMAIN."""
+        for line in ("DataType=0x99", "DataType=float", "Denotation=x"):
+            sheet = self.write("odd.eds", SMALL + f"[2100]\nParameterName=Odd\nObjectType=7\n{line}\nAccessType=rw\n")
+            self.expect(INPUT_HAS_ERRORS, self.edsc("generate", sheet, "-o", self.output), "error: ", "[data-type]", "--keep-going")
+            result = self.edsc("generate", sheet, "-o", self.output, "--keep-going")
+            self.expect(FINE, result, "warning: ", "[data-type]")
+            self.assertNotIn("left out: ", result.stderr)
+            self.assertRegex((self.output / "odd/dictionary.hpp").read_text(), r"odd.*Domain")
+            device = json.loads(self.edsc("dump", sheet, "--keep-going").stdout)
+            entry = next(row for row in device["objects"] if row["index"] == 0x2100)["entries"][0]
+            self.assertEqual(entry["data_type"], "DOMAIN")
 
     def test_says_each_thing_that_is_left_out(self) -> None:
         wrong = self.write("wrong.eds", WRONG.read_text() + "[2100]\nParameterName=Odd\nObjectType=7\nDataType=0x99\n"
-                           "AccessType=rw\n[2101]\nParameterName=Even\nObjectType=7\nDataType=5\nAccessType=rw\n"
+                           "AccessType=rw\nDefaultValue=5\n[2101]\nParameterName=Even\nObjectType=7\nDataType=5\nAccessType=rw\n"
                            "DefaultValue=x\n")
         result = self.edsc("generate", wrong, "-o", self.output, "--keep-going")
         said = [line.split("left out: ")[1] for line in result.stderr.splitlines() if "left out: " in line]
-        self.assertEqual(said, ['2100h "Odd"', 'the DefaultValue of 2101h:00 "Even"', "the default mapping of TPDO 1"])
+        self.assertEqual(said, ['the DefaultValue of 2100h:00 "Odd"', 'the DefaultValue of 2101h:00 "Even"',
+                                "the default mapping of TPDO 1"])
 
     def test_says_that_a_pdo_with_a_restricted_cob_id_is_left_out(self) -> None:
         text = (FIXTURES / "pdo_device.eds").read_text()
@@ -447,6 +488,13 @@ class Check(CommandLine):
         good = self.write("good.eds", sheet.read_text().replace("HighLimit=10\n", "HighLimit=2000\n"))
         self.assertIn("below the low limit", self.edsc("write", nobody, "5", "2000h", "500", "--eds", good).stderr)
 
+    def test_keep_going_makes_warnings_of_errors(self) -> None:
+        self.expect(INPUT_HAS_ERRORS, self.edsc("check", WRONG), "error: ", "[pdo-size]")
+        result = self.edsc("check", WRONG, "--keep-going")
+        self.expect(FINE, result, "warning: ", "[pdo-size]", "left out: the default mapping of TPDO 1")
+        self.assertNotIn("error: ", result.stdout)
+        self.expect(INPUT_HAS_ERRORS, self.edsc("check", WRONG, "--keep-going", "--strict"))
+
     def test_takes_the_worst_of_several_files(self) -> None:
         self.expect(INPUT_HAS_ERRORS, self.edsc("check", GOOD, WRONG, GOOD))
         self.expect(WRONG_USAGE, self.edsc("check", WRONG, "missing.eds", GOOD))
@@ -464,7 +512,8 @@ class Check(CommandLine):
         result = self.edsc("check", WRONG, GOOD, "--format", "json")
         self.expect(INPUT_HAS_ERRORS, result)
         report = json.loads(result.stdout)
-        self.assertEqual(set(report), {"version", "diagnostics", "suppressed", "errors", "warnings", "notes"})
+        self.assertEqual(set(report), {"version", "diagnostics", "allowed_diagnostics", "suppressed", "errors", "warnings",
+                                       "notes", "allowed"})
         self.assertEqual((report["version"], report["errors"]), (1, 1))
         (finding,) = (row for row in report["diagnostics"] if row["severity"] == "error")
         self.assertEqual(set(finding), {"file", "line", "column", "length", "severity", "rule", "message", "notes"})

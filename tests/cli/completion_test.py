@@ -18,8 +18,8 @@ EDSC = Path(sys.argv[2]).resolve()
 KINDS = ("bash", "zsh", "man")
 GROUPS = {
     "EDS files": ["generate", "check", "dump", "format", "diff"],
-    "Bus": ["scan", "read", "write", "configure", "monitor", "nmt", "lss", "bus"],
-    "Logs": ["decode"],
+    "Bus": ["scan", "read", "write", "configure", "save", "monitor", "nmt", "lss", "bus"],
+    "Logs": ["record", "decode"],
     "Shell": ["completion"],
 }
 

@@ -258,7 +258,8 @@ INTRODUCTION = """# Rules
 
 What `edsc check` looks for. An error stops `edsc generate`; a warning says what is wrong or was assumed; a note is worth
 knowing, and fails nothing, not even with `--strict`. `--silence RULE` and `silence` in the [options file](options.md) drop a
-rule here; `generate` drops its warnings and notes only. `edsc check --list-rules` prints this table.
+rule here; `generate` drops its warnings and notes only. `allow` there, or a comment in the EDS, sets
+[expected findings](options.md#allowed-findings) aside. `edsc check --list-rules` prints this table, `--explain RULE` a row of it.
 
 The examples show what they change in a data sheet without findings: a line replaces the one with its key, a section that
 begins with `-` is taken away, `^` is where the finding stands. Made from `tests/rules/examples.txt`, and tried by

@@ -53,6 +53,42 @@ TEST(Diagnostics, DropSilencedErrorsForCheckOnly) {
   EXPECT_EQ(diagnostics.errors(), 2U);
 }
 
+TEST(Diagnostics, SetAllowedFindingsAside) {
+  const SourceFile file("a.eds", "x\n");
+  Diagnostics diagnostics;
+  diagnostics.set_outline({&file, {}, {}});
+  diagnostics.allow({"number-range", "because", {&file, 1, 1}, true, {}});
+  diagnostics.warning("number-range", {&file, 1, 1}, "expected");
+  diagnostics.error("number-range", {&file, 1, 1}, "an error stays");
+  EXPECT_EQ(diagnostics.allowed_findings(), 1U);
+  EXPECT_EQ(diagnostics.allowances()[0].findings, 1U);
+  EXPECT_EQ(diagnostics.errors(), 1U);
+  EXPECT_EQ(diagnostics.warnings(), 0U);
+  EXPECT_TRUE(diagnostics.any_silenced());
+}
+
+TEST(Diagnostics, SayWhichSilencedRulesHaveFired) {
+  Diagnostics diagnostics;
+  diagnostics.silence("number-range");
+  diagnostics.silence("data-type");
+  diagnostics.warning("data-type", {}, "dropped");
+  EXPECT_FALSE(diagnostics.has_silenced("number-range"));
+  EXPECT_TRUE(diagnostics.has_silenced("data-type"));
+}
+
+TEST(Diagnostics, KeepGoingInOneFile) {
+  const SourceFile foreign("a.eds", "x\n");
+  const SourceFile own("a.options.json", "x\n");
+  constexpr std::string_view fatal[] = {"no-objects"};
+  Diagnostics diagnostics;
+  diagnostics.keep_going(&foreign, fatal);
+  diagnostics.error("number-range", {&foreign, 1, 1}, "the maker's");
+  EXPECT_EQ(diagnostics.warnings(), 1U);
+  diagnostics.error("number-range", {&own, 1, 1}, "the user's");
+  diagnostics.error("no-objects", {&foreign, 1, 1}, "nothing is left");
+  EXPECT_EQ(diagnostics.errors(), 2U);
+}
+
 TEST(Diagnostics, CountWarningsAsErrorsWhenStrict) {
   Diagnostics diagnostics;
   diagnostics.warning("number-range", {}, "before");
@@ -282,9 +318,10 @@ TEST(PrintJson, HasAStableShape) {
        "message": "second", "notes": [{"file": "a.eds", "line": 1, "column": 2, "length": 4, "message": "first"}]},
       {"file": "a.eds", "line": 1, "column": 1, "length": 1, "severity": "error", "rule": "empty-file",
        "message": "whole", "notes": []}],
+    "allowed_diagnostics": [],
     "suppressed": [],
     "errors": 1,
-    "warnings": 1, "notes": 0})");
+    "warnings": 1, "notes": 0, "allowed": 0})");
   EXPECT_EQ(print_json(diagnostics), expected);
 }
 

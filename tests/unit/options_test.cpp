@@ -70,7 +70,46 @@ TEST(OptionsFile, ListsWhatTheApplicationSets) {
 
 TEST(OptionsFile, ListsRulesToSilence) {
   const ReadOptions read(R"({ "silence": ["sub-number", "object-type"] })");
-  EXPECT_EQ(read.options.silence, (std::vector<std::string>{"sub-number", "object-type"}));
+  ASSERT_EQ(read.options.silence.size(), 2U);
+  EXPECT_EQ(read.options.silence[0].rule, "sub-number");
+  EXPECT_EQ(read.options.silence[1].rule, "object-type");
+  EXPECT_EQ(read.options.silence[1].position.column, 29U);
+}
+
+TEST(OptionsFile, ListsAllowedFindings) {
+  const ReadOptions read(R"({ "allow": [
+{"rule": "pdo-empty", "reason": "mapped at \"start\""},
+{"rule": "live-default", "object": "6401h:03", "reason": "of the manual"}, {"object": "6040h", "rule": "a", "reason": "b"}] })");
+  EXPECT_TRUE(findings(read.diagnostics).empty());
+  ASSERT_EQ(read.options.allow.size(), 3U);
+  EXPECT_EQ(read.options.allow[0].rule, "pdo-empty");
+  EXPECT_EQ(read.options.allow[0].reason, "mapped at \"start\"");
+  EXPECT_EQ(read.options.allow[0].object, std::nullopt);
+  EXPECT_EQ(read.options.allow[0].position.line, 2U);
+  EXPECT_EQ(read.options.allow[1].object, (EntrySelector{0x6401, 3}));
+  EXPECT_EQ(read.options.allow[2].object, (EntrySelector{0x6040, std::nullopt}));
+}
+
+TEST(OptionsFile, RefusesAllowedFindingsWithoutRuleOrReason) {
+  for (const char* item : {R"("pdo-empty")", R"({"rule": "a"})", R"({"rule": "a", "reason": " "})", R"({"reason": "a"})",
+                           R"({"rule": 1, "reason": "a"})", R"({"rule": "a", "reason": "b", "object": "x"})",
+                           R"({"rule": "a", "reason": "b", "entry": "6040h"})"}) {
+    const ReadOptions read("{\"allow\": [" + std::string{item} + "]}");
+    EXPECT_EQ(read.diagnostics.errors(), 1U) << item;
+    EXPECT_TRUE(read.options.allow.empty()) << item;
+  }
+  EXPECT_EQ(ReadOptions(R"({"allow": {}})").diagnostics.errors(), 1U);
+}
+
+TEST(OptionsFile, NamesASimilarOption) {
+  const ReadOptions read(R"({ "setable": [], "sdo_timeot": 5, "colour": 1, "allow": [{"rul": "a"}] })");
+  std::string messages;
+  for (const Diagnostic& one : read.diagnostics.all()) messages += one.message + "\n";
+  EXPECT_EQ(messages,
+            "allow/rul: no such member; did you mean \"rule\"?\n"
+            "colour: no such option\n"
+            "sdo_timeot: no such option; did you mean \"sdo_timeout\"?\n"
+            "setable: no such option; did you mean \"settable\"?\n");
 }
 
 TEST(OptionsFile, SaysThatStringsEndWithAZero) {

@@ -32,15 +32,25 @@ TEST(Resolve, KnowsEveryBasicDataType) {
   }
 }
 
-TEST(Resolve, LeavesAnObjectOfAnUnknownDataTypeOut) {
-  const DeviceFromText text(var("2000", "Value", "0x0040"));
-  EXPECT_EQ(text.device.find(0x2000), nullptr);
+TEST(Resolve, MakesADomainOfAnObjectOfAnUnknownDataType) {
+  const DeviceFromText text(var("2000", "Value", "0x0040", "rw", "DefaultValue=5\n"));
+  EXPECT_EQ(text.entry(0x2000).type->type, DataType::domain);
+  EXPECT_FALSE(text.entry(0x2000).default_value);
+  EXPECT_EQ(rules_of(text.diagnostics), Rules{"data-type"});
   EXPECT_EQ(findings(text.diagnostics, "data-type"), (std::vector{error_at(4, 10, "data-type")}));
 }
 
-TEST(Resolve, LeavesAnObjectWithoutDataTypeOut) {
+TEST(Resolve, LeavesOutWhatServicesNeedOfAnUnknownDataType) {
+  EXPECT_EQ(DeviceFromText(var("1017", "Producer heartbeat time", "0x0040")).device.find(0x1017), nullptr);
+  const DeviceFromText text(group("2000", "Record", "0x9", 2) + var("2000sub0", "Count", "0x0040", "ro") +
+                            var("2000sub1", "Value", "0x0040"));
+  EXPECT_EQ(text.entry(0x2000, 0).type->type, DataType::unsigned8) << "supplied";
+  EXPECT_EQ(text.entry(0x2000, 1).type->type, DataType::domain);
+}
+
+TEST(Resolve, MakesADomainOfAnObjectWithoutDataType) {
   const DeviceFromText text("[2000]\nParameterName=Value\nObjectType=7\nAccessType=rw\n");
-  EXPECT_EQ(text.device.find(0x2000), nullptr);
+  EXPECT_EQ(text.entry(0x2000).type->type, DataType::domain);
   EXPECT_EQ(findings(text.diagnostics, "data-type"), (std::vector{error_at(1, 2, "data-type")}));
 }
 

@@ -70,7 +70,7 @@ TEST(TypeTable, GivesEachMemberOfAPredefinedRecordItsType) {
 TEST(TypeTable, HasNoMemberAfterTheLastOneOfAPredefinedRecord) {
   for (const PredefinedRecord& record : predefined_records) {
     const DeviceFromText text(record_of_type(record.code, record.beyond));
-    EXPECT_EQ(text.device.find(0x2000, static_cast<std::uint8_t>(record.beyond)), nullptr) << record.code;
+    EXPECT_EQ(text.entry(0x2000, static_cast<std::uint8_t>(record.beyond)).type->type, DataType::domain) << record.code;
     EXPECT_EQ(text.finding("data-type").severity, Severity::error) << record.code;
   }
 }
@@ -99,7 +99,7 @@ TEST(TypeTable, WarnsOfARangeWhoseTypeIsUnknown) {
     EXPECT_EQ(findings(text.diagnostics, "type-definition").size(), 1U) << type;
     EXPECT_EQ(text.finding("type-definition").severity, Severity::warning) << type;
     EXPECT_EQ(text.finding("data-type").severity, Severity::error) << type;
-    EXPECT_EQ(text.device.find(0x2000), nullptr) << type;
+    EXPECT_EQ(text.entry(0x2000).type->type, DataType::domain) << type;
   }
 }
 
@@ -110,7 +110,7 @@ TEST(TypeTable, WarnsOfADefstructWhoseMemberIsOfAnUnknownType) {
       "[0060sub1]\nParameterName=Position\nDataType=0x6\nDefaultValue=0x0099\n" +
       record_of_type("0x0060", 1));
   EXPECT_EQ(text.line_of("type-definition"), "DefaultValue=0x0099");
-  EXPECT_EQ(text.device.find(0x2000, 1), nullptr);
+  EXPECT_EQ(text.entry(0x2000, 1).type->type, DataType::domain);
 }
 
 // ---- object codes ----

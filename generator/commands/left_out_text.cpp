@@ -1,0 +1,28 @@
+#include "commands/left_out_text.hpp"
+
+#include <fmt/format.h>
+
+#include "diagnostics/excerpt.hpp"
+#include "diagnostics/place.hpp"
+#include "render/pdo_view.hpp"
+
+namespace edsc {
+
+std::vector<LeftOut> all_left_out(const LoadedDevice& loaded) {
+  std::vector<LeftOut> left_out = find_left_out(loaded.sheet, *loaded.device);
+  for (const Pdo& pdo : loaded.device->pdos) {
+    if (!pdo.broken && has_wrong_cob_id(pdo)) left_out.push_back({pdo.position, pdo_label(pdo)});
+  }
+  return left_out;
+}
+
+std::string left_out_text(const std::vector<LeftOut>& left_out) {
+  std::string text;
+  for (const LeftOut& one : left_out) {
+    const Place place = place_of(one.position);
+    text += fmt::format("{}:{}:{}: left out: {}\n", printable(place.file), place.line, place.column, one.what);
+  }
+  return text;
+}
+
+}  // namespace edsc

@@ -1,0 +1,82 @@
+/// Findings that a comment of the data sheet or its options file allows, each with a reason.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "diagnostics/position.hpp"
+
+namespace edsc {
+
+/// A part of a data sheet: a section, an element, or one line of them.
+struct SheetPart {
+  std::uint32_t line = 0;
+  std::uint32_t column = 0;
+  std::optional<std::uint16_t> index;     ///< of the object that the part describes
+  std::optional<std::uint8_t> sub_index;  ///< of its entry; 0 for the section of an object
+};
+
+/// Where the parts of a data sheet are.
+struct SheetOutline {
+  const SourceFile* file = nullptr;
+  std::vector<SheetPart> parts;  ///< in their order; each ends where the next one begins
+  std::vector<SheetPart> lines;  ///< lines that describe another object or entry than the part that they are in
+};
+
+/// What an allowance applies to.
+struct AllowanceScope {
+  enum class Kind : std::uint8_t { file, part, line, object, entry };
+
+  Kind kind = Kind::file;
+  std::uint32_t line = 0;  ///< of `part` its first one
+  std::uint16_t index = 0;
+  std::uint8_t sub_index = 0;
+
+  bool operator==(const AllowanceScope&) const = default;
+};
+
+struct Allowance {
+  std::string rule;
+  std::string reason;
+  Position position;  ///< where it is written
+  bool in_source = false;  ///< a comment of the data sheet; else a member of the options file
+  AllowanceScope scope;
+  std::size_t findings = 0;  ///< how many it applied to
+};
+
+/// The allowances of one data sheet.
+class Allowances {
+ public:
+  void set_outline(SheetOutline outline);
+  void add(Allowance allowance);
+
+  /// The place in `all()` of the first allowance of `rule` that applies to `position`, the narrowest scope first.
+  [[nodiscard]] std::optional<std::size_t> find(std::string_view rule, const Position& position) const;
+  void count_finding(std::size_t allowance) { ++all_[allowance].findings; }
+
+  [[nodiscard]] const std::vector<Allowance>& all() const { return all_; }
+
+ private:
+  struct Key {
+    std::string rule;
+    AllowanceScope scope;
+    bool operator==(const Key&) const = default;
+  };
+  struct KeyHash {
+    std::size_t operator()(const Key& key) const;
+  };
+
+  [[nodiscard]] std::optional<std::size_t> find(std::string_view rule, const AllowanceScope& scope) const;
+  [[nodiscard]] std::optional<std::size_t> find_object(std::string_view rule, const SheetPart& part) const;
+
+  SheetOutline outline_;
+  std::vector<Allowance> all_;
+  std::unordered_map<Key, std::size_t, KeyHash> places_;
+};
+
+}  // namespace edsc

@@ -1,0 +1,19 @@
+#include "diagnostics/unknown_rule.hpp"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "diagnostics/quote.hpp"
+#include "diagnostics/rule.hpp"
+#include "text/suggestion.hpp"
+
+namespace edsc {
+
+std::string unknown_rule(std::string_view id) {
+  std::vector<std::string_view> ids;
+  for (const Rule& rule : all_rules()) ids.push_back(rule.id);
+  return fmt::format("no rule is called {}{}", quote(id), did_you_mean(id, ids));
+}
+
+}  // namespace edsc
