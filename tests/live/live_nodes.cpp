@@ -79,7 +79,7 @@ void run(const std::string& address, NodeId node_id, std::uint32_t serial_number
       canopen::on_read<od::rounded_value>(
           [](auto& device) { return static_cast<std::uint16_t>(device.template get<od::rounded_value>() / 10 * 10); }),
       canopen::on_state([&](auto& device, canopen::NmtState) {
-        device.template set<od::identity_object::serial_number>(serial_number);
+        (void)device.template set<od::identity_object::serial_number>(serial_number);  // any value fits
         if (!up) std::printf("node %u is up\n", static_cast<unsigned>(node_id.value()));
         std::fflush(stdout);
         up = true;

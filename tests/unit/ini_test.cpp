@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <string>
 
 #include "diagnostic_matchers.hpp"
@@ -142,14 +141,12 @@ TEST(IniReader, FindsAKeyInAnyLetterCase) {
   EXPECT_EQ(section.find("Data"), nullptr);
 }
 
-TEST(IniReader, ReadsAMillionStrayLinesInNoTime) {
+TEST(IniReader, ReadsAMillionStrayLines) {
   std::string text = "[1000]\n";
   for (int line = 0; line < 1'000'000; ++line) {
     text += "junk\n";
   }
-  const auto start = std::chrono::steady_clock::now();
   const ReadLines read(std::move(text));
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));  // with sanitizers; 0.1 s without
   EXPECT_EQ(read.diagnostics.warnings(), 1'000'000U);
   EXPECT_EQ(read.diagnostics.all().size(), Diagnostics::most_per_rule);
 }

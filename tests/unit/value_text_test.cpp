@@ -142,8 +142,8 @@ Entry speed() {
   entry.name = "Speed setpoint";
   entry.type = &row(DataType::integer16);
   entry.unit = "rpm";
-  entry.low_limit = Value{static_cast<std::uint64_t>(-100), false, false, "", {}};
-  entry.high_limit = Value{3000, false, false, "", {}};
+  entry.low_limit = Value{static_cast<std::uint64_t>(-100), false, false, "", {}, {}};
+  entry.high_limit = Value{3000, false, false, "", {}, {}};
   return entry;
 }
 
