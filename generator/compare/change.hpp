@@ -14,6 +14,7 @@ namespace edsc {
 enum class ChangeId : std::uint8_t {
   identity,
   revision_major,
+  revision_unchanged,
   revision_minor,
   device_name,
   node_id,
@@ -37,12 +38,25 @@ enum class ChangeId : std::uint8_t {
   limit_read_only,
   default_value,
   service_cob_id,
+  service_disabled,
+  service_enabled,
+  sync_started,
+  sync_stopped,
+  time_started,
+  time_stopped,
+  time_ignored,
+  time_consumed,
+  frame_format,
+  sdo_dynamic,
+  cob_id_flag,
   heartbeat_slowed,
   pdo_removed,
   pdo_added,
   pdo_disabled,
   pdo_enabled,
   pdo_cob_id,
+  rtr_disabled,
+  rtr_enabled,
   pdo_transmission,
   pdo_timing,
   pdo_layout,
@@ -52,8 +66,9 @@ enum class ChangeId : std::uint8_t {
 struct ChangeKind {
   ChangeId id;
   std::string_view name;    ///< as `edsc diff` prints it; stable
-  bool breaks_master;       ///< what accesses the device by SDO, or is compiled against its generated code
+  bool breaks_master;       ///< what reads and writes the device by SDO, or supervises it
   bool breaks_pdo;          ///< what sends its RPDOs or receives its TPDOs
+  bool breaks_source;       ///< code that is compiled against the generated headers
   std::string_view what;    ///< is it that changed
   std::string_view reason;  ///< why it breaks somebody, or why not
 };
@@ -72,18 +87,31 @@ struct Change {
   Position new_position;
   bool breaks_master = false;
   bool breaks_pdo = false;
+  bool breaks_source = false;
 
-  [[nodiscard]] bool is_breaking() const { return breaks_master || breaks_pdo; }
+  [[nodiscard]] bool is_breaking() const { return breaks_master || breaks_pdo || breaks_source; }
 };
 
 /// What changed, from what to what, and what that means, in one sentence.
 [[nodiscard]] std::string message_of(const Change& change);
+
+/// Whom a comparison is for.
+enum class Audience : std::uint8_t {
+  all,
+  wire,    ///< masters and PDO partners: what has CAN frames in common with the device
+  source,  ///< code that is compiled against the generated headers
+};
 
 /// Collects changes; who is broken comes from the table, unless the place says otherwise.
 class Changes {
  public:
   Change& add(ChangeId id, std::string entry, std::string name, const Position& old_position,
               const Position& new_position);
+
+  /// Drops the changes that break somebody, but nobody of this audience; the others break nobody else from here on.
+  void keep(Audience audience);
+  /// Adds the changes of another device.
+  void append(Changes more);
 
   [[nodiscard]] const std::vector<Change>& all() const { return all_; }
   [[nodiscard]] std::size_t breaking() const;

@@ -12,6 +12,9 @@
 namespace edsc {
 namespace {
 
+constexpr std::uint16_t identity_object = 0x1018;
+constexpr std::uint8_t revision_sub_index = 3;
+
 using EntryNumber = std::pair<std::uint16_t, std::uint8_t>;
 
 /// Walks two ascending lists side by side: `one_side(before, after)` gets null for what the other list lacks.
@@ -44,6 +47,7 @@ class DeviceComparison {
         before_.objects, after_.objects, [](const Object& object) { return object.index; },
         [&](const Object* a, const Object* b) { compare_objects(a, b); });
     compare_pdos(before_, after_, changes_);
+    check_revision();
     return std::move(changes_);
   }
 
@@ -73,6 +77,36 @@ class DeviceComparison {
       const auto text = [](const auto& id) { return id ? fmt::format("{}", *id) : std::string{"none"}; };
       add_device_change(ChangeId::node_id, text(before_.node_id), text(after_.node_id));
     }
+  }
+
+  /// CiA 301, 7.5.2.19: the major revision is that of the CANopen behaviour. The configuration of a device (a DCF) is not
+  /// another revision of it, and revisions of different products have no order.
+  void check_revision() {
+    if (before_.information.commissioning || after_.information.commissioning) return;
+    if (identity_number(before_, 1) != identity_number(after_, 1)) return;
+    if (identity_number(before_, 2) != identity_number(after_, 2)) return;
+    const std::uint64_t old_revision = identity_number(before_, revision_sub_index);
+    const std::uint64_t new_revision = identity_number(after_, revision_sub_index);
+    const bool is_known = old_revision != 0 || new_revision != 0;
+    if (!is_known || new_revision >> 16 > old_revision >> 16) return;
+    const auto breaks_wire = [](const Change& change) { return change.breaks_master || change.breaks_pdo; };
+    if (std::ranges::none_of(changes_.all(), breaks_wire)) return;
+    const auto revision_position = [](const Device& device) {
+      const Entry* const entry = device.find(identity_object, revision_sub_index);
+      if (entry == nullptr) return Position{device.source};
+      return entry->default_value ? entry->default_value->position : entry->position;
+    };
+    Change& change = changes_.add(ChangeId::revision_unchanged, entry_label(identity_object, revision_sub_index), "",
+                                  revision_position(before_), revision_position(after_));
+    change.old_value = fmt::format("{}", old_revision >> 16);
+    if (new_revision >> 16 != old_revision >> 16) change.new_value = fmt::format("{}", new_revision >> 16);
+  }
+
+  /// Of 1018h; where it is missing, of [DeviceInfo].
+  static std::uint64_t identity_number(const Device& device, std::uint8_t sub_index) {
+    const Entry* const entry = device.find(identity_object, sub_index);
+    if (entry != nullptr && entry->default_value) return entry->default_value->bits;
+    return sub_index == 1 ? device.vendor_number : sub_index == 2 ? device.product_number : device.revision_number;
   }
 
   void compare_dummies() {

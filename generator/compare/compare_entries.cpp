@@ -6,8 +6,11 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "compare/compare_cob_ids.hpp"
 #include "compare/compare_pdos.hpp"
+#include "device/cob_id_parameter.hpp"
 
 namespace edsc {
 namespace {
@@ -16,7 +19,7 @@ using canopen::DataClass;
 using canopen::DataTypeRow;
 using canopen::Mappable;
 
-/// Entries whose default says what a device is, or where its services are found.
+/// Entries whose default says what a device is.
 struct SpecialDefault {
   std::uint16_t first, last;
   std::uint8_t first_sub_index, last_sub_index;
@@ -24,12 +27,8 @@ struct SpecialDefault {
 };
 
 constexpr SpecialDefault special_defaults[] = {
-    {0x1000, 0x1000, 0, 0, ChangeId::identity},        // device type
-    {0x1018, 0x1018, 1, 2, ChangeId::identity},        // vendor-ID, product code
-    {0x1005, 0x1005, 0, 0, ChangeId::service_cob_id},  // SYNC
-    {0x1012, 0x1012, 0, 0, ChangeId::service_cob_id},  // TIME
-    {0x1014, 0x1014, 0, 0, ChangeId::service_cob_id},  // EMCY
-    {0x1200, 0x12FF, 1, 2, ChangeId::service_cob_id},  // SDO servers and clients
+    {0x1000, 0x1000, 0, 0, ChangeId::identity},  // device type
+    {0x1018, 0x1018, 1, 2, ChangeId::identity},  // vendor-ID, product code
 };
 
 constexpr std::uint16_t producer_heartbeat_time = 0x1017;
@@ -72,6 +71,12 @@ long double highest(const DataTypeRow& type) {
   return std::ldexp(1.0L, type.kind == DataClass::signed_integer ? type.bits - 1 : type.bits) - 1.0L;
 }
 
+/// A string's type with the length that its DEFTYPE states.
+std::string sized_type(const Entry& entry) {
+  return entry.octets == 0 ? fmt::format("{} of any length", entry.type->name)
+                           : fmt::format("{} of {} bytes", entry.type->name, entry.octets);
+}
+
 class EntryComparison {
  public:
   EntryComparison(const Entry& before, const Entry& after, bool in_rpdo, Changes& changes)
@@ -84,6 +89,9 @@ class EntryComparison {
       add(ChangeId::data_type, before_.position, after_.position, std::string{before_.type->name},
           std::string{after_.type->name});
       return;  // values of different types are not compared
+    }
+    if (before_.octets != after_.octets) {
+      add(ChangeId::data_type, before_.position, after_.position, sized_type(before_), sized_type(after_));
     }
     if (is_number(*before_.type)) {
       compare_limit("low", before_.low_limit, after_.low_limit, lowest(*before_.type), true);
@@ -146,8 +154,21 @@ class EntryComparison {
   void compare_default() {
     if (same_value(before_.default_value, after_.default_value)) return;
     if (is_revision()) return compare_revision();
+    if (const CobIdParameter* const parameter = find_cob_id_parameter(before_.index, before_.sub_index)) {
+      return compare_cob_id(*parameter);
+    }
     add(default_change(), place_of(before_.default_value, before_), place_of(after_.default_value, after_),
         value_text(before_.default_value, *before_.type), value_text(after_.default_value, *after_.type));
+  }
+
+  void compare_cob_id(const CobIdParameter& parameter) {
+    const Position& old_place = place_of(before_.default_value, before_);
+    const Position& new_place = place_of(after_.default_value, after_);
+    for (CobIdChange& change :
+         compare_cob_ids(before_.default_value, after_.default_value, *before_.type, parameter.service)) {
+      Change& added = add(change.id, old_place, new_place, std::move(change.old_value), std::move(change.new_value));
+      if (change.id == ChangeId::frame_format) added.breaks_pdo = false;
+    }
   }
 
   [[nodiscard]] ChangeId default_change() const {

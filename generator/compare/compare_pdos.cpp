@@ -7,7 +7,9 @@
 #include <optional>
 #include <utility>
 
+#include "compare/compare_cob_ids.hpp"
 #include "compare/compare_entries.hpp"
+#include "device/cob_id_parameter.hpp"
 
 namespace edsc {
 namespace {
@@ -84,18 +86,25 @@ class PdoComparison {
 
   void compare_state() {
     if (is_on(before_) == is_on(after_)) return;
-    add(is_on(before_) ? ChangeId::pdo_disabled : ChangeId::pdo_enabled, before_.position, after_.position);
+    report(cob_id_sub_index, is_on(before_) ? ChangeId::pdo_disabled : ChangeId::pdo_enabled);
   }
 
-  /// But for the bit that says whether the PDO is on.
+  /// CAN-ID and flags, but for the bit that says whether the PDO is on.
   void compare_cob_id() {
-    auto old_id = default_of(parameter(before_, cob_id_sub_index));
-    auto new_id = default_of(parameter(after_, cob_id_sub_index));
-    for (auto* id : {&old_id, &new_id}) {
-      if (*id) (*id)->bits &= ~std::uint64_t{canopen::CobId::invalid_bit};
-    }
+    const Entry* const old_entry = parameter(before_, cob_id_sub_index);
+    const Entry* const new_entry = parameter(after_, cob_id_sub_index);
+    const auto old_id = default_of(old_entry);
+    const auto new_id = default_of(new_entry);
     if (same_value(old_id, new_id)) return;
-    report(cob_id_sub_index, is_used_ ? ChangeId::pdo_cob_id : ChangeId::default_value);
+    const canopen::DataTypeRow& type = old_entry != nullptr ? *old_entry->type : *new_entry->type;
+    const CobIdService service = after_.direction == PdoDirection::receive ? CobIdService::rpdo : CobIdService::tpdo;
+    for (CobIdChange& found : compare_cob_ids(old_id, new_id, type, service)) {
+      const ChangeId id = found.id == ChangeId::pdo_cob_id && !is_used_ ? ChangeId::default_value : found.id;
+      Change& change = add(id, old_id ? old_id->position : before_.position, new_id ? new_id->position : after_.position);
+      if (id == ChangeId::default_value && new_entry != nullptr) change.name = new_entry->name;
+      change.old_value = std::move(found.old_value);
+      change.new_value = std::move(found.new_value);
+    }
   }
 
   void compare_timing() {

@@ -1,6 +1,10 @@
 #include "compare/print_changes.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <string_view>
+#include <vector>
 
 #include "text/source_file.hpp"
 
@@ -18,10 +22,58 @@ nlohmann::ordered_json place_json(const Position& position) {
           {"column", position.line == 0 ? 0 : position.column}};
 }
 
-std::string_view verdict_of(const Change& change) {
-  if (change.breaks_master && change.breaks_pdo) return "breaks master and PDO partner";
-  if (change.breaks_master) return "breaks master";
-  return change.breaks_pdo ? "breaks PDO partner" : "compatible";
+std::vector<std::string_view> broken_by(const Change& change) {
+  std::vector<std::string_view> broken;
+  if (change.breaks_master) broken.push_back("master");
+  if (change.breaks_pdo) broken.push_back("PDO partner");
+  if (change.breaks_source) broken.push_back("source code");
+  return broken;
+}
+
+/// `breaks master and PDO partner`
+std::string verdict_of(const Change& change) {
+  const std::vector<std::string_view> broken = broken_by(change);
+  if (broken.empty()) return "compatible";
+  std::string text{"breaks "};
+  for (std::size_t i = 0; i < broken.size(); ++i) {
+    if (i > 0) text += i + 1 < broken.size() ? ", " : " and ";
+    text += broken[i];
+  }
+  return text;
+}
+
+/// Text as a cell of a table shows it: nothing in it is markup.
+std::string cell(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '<') {
+      out += "&lt;";
+    } else if (c == '&') {
+      out += "&amp;";
+    } else if (c == '\n' || c == '\r') {
+      out += ' ';
+    } else {
+      if (std::string_view{"\\`*_[]|~$>"}.find(c) != std::string_view::npos) out += '\\';
+      out += c;
+    }
+  }
+  return out;
+}
+
+std::string markdown_row(const Change& change) {
+  const std::string name = change.name.empty() ? "" : " " + cell(change.name);
+  const std::string line = change.new_position.line == 0 ? "-" : fmt::format("{}", change.new_position.line);
+  const std::vector<std::string_view> broken = broken_by(change);
+  return fmt::format("| {}{} | {} | {} | {} | `{}` |\n", change.entry, name, cell(message_of(change)),
+                     broken.empty() ? "-" : fmt::format("{}", fmt::join(broken, ", ")), line, kind_of(change.id).name);
+}
+
+std::string markdown_table(const Changes& changes, bool breaking) {
+  std::string rows;
+  for (const Change& change : changes.all()) {
+    if (change.is_breaking() == breaking) rows += markdown_row(change);
+  }
+  return "| Entry | Change | Breaks | Line | Kind |\n| --- | --- | --- | ---: | --- |\n" + rows;
 }
 
 nlohmann::ordered_json text_or_null(const std::string& text) {
@@ -32,6 +84,7 @@ nlohmann::ordered_json change_json(const Change& change) {
   nlohmann::ordered_json breaks = nlohmann::ordered_json::array();
   if (change.breaks_master) breaks.push_back("master");
   if (change.breaks_pdo) breaks.push_back("pdo");
+  if (change.breaks_source) breaks.push_back("source");
   return {{"kind", kind_of(change.id).name},
           {"entry", change.entry},
           {"name", change.name},
@@ -56,6 +109,19 @@ std::string changes_as_text(const Changes& changes, bool colour) {
   }
   return text +
          fmt::format("{} breaking, {} compatible\n", changes.breaking(), changes.all().size() - changes.breaking());
+}
+
+std::string changes_as_markdown(const Changes& changes, std::string_view before, std::string_view after) {
+  const std::size_t breaking = changes.breaking();
+  const std::size_t compatible = changes.all().size() - breaking;
+  std::string text = fmt::format("### {} against {}\n\n**{} breaking**, {} compatible\n", cell(after), cell(before), breaking,
+                                 compatible);
+  if (breaking > 0) text += "\n" + markdown_table(changes, true);
+  if (compatible > 0) {
+    text += fmt::format("\n<details>\n<summary>{} compatible</summary>\n\n{}\n</details>\n", compatible,
+                        markdown_table(changes, false));
+  }
+  return text;
 }
 
 nlohmann::ordered_json changes_as_json(const Changes& changes) {

@@ -1,8 +1,9 @@
-/// Changes as text for people, and as JSON for programs.
+/// Changes as text and Markdown for people, and as JSON for programs.
 #pragma once
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
 #include "compare/change.hpp"
 
@@ -10,6 +11,9 @@ namespace edsc {
 
 /// A line for each change, as compilers write them, and a summary.
 [[nodiscard]] std::string changes_as_text(const Changes& changes, bool colour);
+
+/// A heading, a table of the breaking changes and one of the others, folded: for a comment on a pull request.
+[[nodiscard]] std::string changes_as_markdown(const Changes& changes, std::string_view before, std::string_view after);
 
 /// `{"version": 1, "changes": [...], "breaking": n, "compatible": n}`: docs/command-line.md.
 [[nodiscard]] nlohmann::ordered_json changes_as_json(const Changes& changes);

@@ -21,6 +21,7 @@ std::string in_short(const Change& change) {
   text += " " + change.entry;
   if (change.breaks_master) text += " master";
   if (change.breaks_pdo) text += " pdo";
+  if (change.breaks_source) text += " source";
   return text;
 }
 
@@ -84,6 +85,7 @@ TEST(ChangeTable, StandsInTheDocuments) {
   for (const ChangeKind& kind : all_change_kinds()) {
     std::string who = kind.breaks_master ? "master" : "";
     if (kind.breaks_pdo) who += who.empty() ? "pdo" : ", pdo";
+    if (kind.breaks_source) who += who.empty() ? "source" : ", source";
     const std::string row =
         fmt::format("| `{}` | {} | {}: {} |\n", kind.name, who.empty() ? "-" : who, kind.what, kind.reason);
     EXPECT_NE(document.find(row), std::string::npos) << row;
@@ -96,7 +98,7 @@ TEST(Diff, FindsNothingBetweenADeviceAndItself) {
 
 TEST(Diff, KnowsObjectsThatCameAndWent) {
   EXPECT_EQ(compare(with(""), with("") + var("2001", "b", "5")), (List{"object-added 2001h"}));
-  EXPECT_EQ(compare(with("") + var("1FFF", "b", "5"), with("")), (List{"object-removed 1FFFh master"}));
+  EXPECT_EQ(compare(with("") + var("1FFF", "b", "5"), with("")), (List{"object-removed 1FFFh master source"}));
 }
 
 TEST(Diff, KnowsSubIndicesThatCameAndWent) {
@@ -104,38 +106,38 @@ TEST(Diff, KnowsSubIndicesThatCameAndWent) {
       group("2000", "a", "9", 2) + var("2000sub0", "n", "5", "ro", "DefaultValue=1\n") + var("2000sub1", "x", "5");
   const std::string two = one + var("2000sub2", "y", "5");
   EXPECT_EQ(compare(one, two), (List{"entry-added 2000h:02"}));
-  EXPECT_EQ(compare(two, one), (List{"entry-removed 2000h:02 master"}));
+  EXPECT_EQ(compare(two, one), (List{"entry-removed 2000h:02 master source"}));
 }
 
 TEST(Diff, BreaksAMasterByAnotherType) {
   EXPECT_EQ(compare(with("DefaultValue=1\n"), with("DefaultValue=2\n", "rw", "0x0007")),
-            (List{"data-type 2000h:00 master"}));
+            (List{"data-type 2000h:00 master source"}));
 }
 
 TEST(Diff, BreaksAMasterByAnotherObjectCode) {
   const std::string record = group("2000", "Speed", "9", 1) + var("2000sub0", "n", "6");
   const std::string array = group("2000", "Speed", "8", 1) + var("2000sub0", "n", "6");
-  EXPECT_EQ(compare(record, array), (List{"object-type 2000h master"}));
+  EXPECT_EQ(compare(record, array), (List{"object-type 2000h master source"}));
 }
 
 TEST(Diff, BreaksAMasterByAccessThatIsTakenAway) {
-  EXPECT_EQ(compare(with(""), with("", "ro")), (List{"access-reduced 2000h:00 master"}));
+  EXPECT_EQ(compare(with(""), with("", "ro")), (List{"access-reduced 2000h:00 master source"}));
   EXPECT_EQ(compare(with("", "ro"), with("")), (List{"access-extended 2000h:00"}));
-  EXPECT_EQ(compare(with("", "ro"), with("", "wo")), (List{"access-reduced 2000h:00 master"}));
+  EXPECT_EQ(compare(with("", "ro"), with("", "wo")), (List{"access-reduced 2000h:00 master source"}));
   EXPECT_EQ(compare(with("", "ro"), with("", "const")), (List{"access-other 2000h:00"}));
 }
 
 TEST(Diff, BreaksPdosByMappingThatIsTakenAway) {
-  EXPECT_EQ(compare(with("PDOMapping=1\n"), with("")), (List{"mapping-reduced 2000h:00 master pdo"}));
+  EXPECT_EQ(compare(with("PDOMapping=1\n"), with("")), (List{"mapping-reduced 2000h:00 master pdo source"}));
   EXPECT_EQ(compare(with(""), with("PDOMapping=1\n")), (List{"mapping-extended 2000h:00"}));
   EXPECT_EQ(compare(with("PDOMapping=1\n"), with("PDOMapping=1\n", "rww")),
-            (List{"access-other 2000h:00", "mapping-reduced 2000h:00 master pdo"}));
+            (List{"access-other 2000h:00", "mapping-reduced 2000h:00 master pdo source"}));
 }
 
 TEST(Diff, TellsNarrowedLimitsFromWidenedOnes) {
   EXPECT_EQ(compare(with("LowLimit=1\nHighLimit=9\n"), with("LowLimit=2\nHighLimit=10\n")),
-            (List{"limit-narrowed 2000h:00 master", "limit-widened 2000h:00"}));
-  EXPECT_EQ(compare(with(""), with("HighLimit=9\n")), (List{"limit-narrowed 2000h:00 master"}));
+            (List{"limit-narrowed 2000h:00 master source", "limit-widened 2000h:00"}));
+  EXPECT_EQ(compare(with(""), with("HighLimit=9\n")), (List{"limit-narrowed 2000h:00 master source"}));
   EXPECT_EQ(compare(with("HighLimit=9\n"), with("")), (List{"limit-widened 2000h:00"}));
   EXPECT_EQ(compare(with("", "ro"), with("HighLimit=9\n", "ro")), (List{"limit-read-only 2000h:00"}));
 }
@@ -161,6 +163,119 @@ TEST(Diff, KnowsDefaultsThatAMasterReliesOn) {
   EXPECT_EQ(change("1017", "Heartbeat", "100", "50"), (List{"default-value 1017h:00"}));
 }
 
+/// The changes from one default of a COB-ID to another.
+List compare_cob_ids(const char* index, const char* before, const char* after) {
+  return compare(var(index, "COB-ID", "7", "rw", "DefaultValue=" + std::string{before} + "\n"),
+                 var(index, "COB-ID", "7", "rw", "DefaultValue=" + std::string{after} + "\n"));
+}
+
+TEST(Diff, TellsTheFlagsOfACobIdFromItsCanId) {  // CiA 301, 7.5.2.5, 7.5.2.15, 7.5.2.17
+  // 1005h: bit 31 means nothing; bit 30: the device generates SYNC.
+  EXPECT_EQ(compare_cob_ids("1005", "0x80", "0x80000080"), (List{"cob-id-flag 1005h:00"}));
+  EXPECT_EQ(compare_cob_ids("1005", "0x80", "0x40000080"), (List{"sync-started 1005h:00 master pdo"}));
+  EXPECT_EQ(compare_cob_ids("1005", "0x40000080", "0x80"), (List{"sync-stopped 1005h:00 master pdo"}));
+  EXPECT_EQ(compare_cob_ids("1005", "0x80", "0x20000080"), (List{"frame-format 1005h:00 master"}));
+  EXPECT_EQ(compare_cob_ids("1005", "0x80000080", "0x81"),
+            (List{"service-cob-id 1005h:00 master", "cob-id-flag 1005h:00"}));
+  // 1012h: bit 31: consumes TIME; bit 30: produces TIME.
+  EXPECT_EQ(compare_cob_ids("1012", "0x80000100", "0x100"), (List{"time-ignored 1012h:00 master"}));
+  EXPECT_EQ(compare_cob_ids("1012", "0x100", "0x80000100"), (List{"time-consumed 1012h:00"}));
+  EXPECT_EQ(compare_cob_ids("1012", "0x100", "0x40000100"), (List{"time-started 1012h:00 master"}));
+  EXPECT_EQ(compare_cob_ids("1012", "0x40000100", "0x100"), (List{"time-stopped 1012h:00 master"}));
+  // 1014h: bit 31: EMCY does not exist; then its CAN-ID is nobody's.
+  EXPECT_EQ(compare_cob_ids("1014", "$NODEID+0x80", "$NODEID+0x80000080"), (List{"service-disabled 1014h:00 master"}));
+  EXPECT_EQ(compare_cob_ids("1014", "$NODEID+0x80000080", "$NODEID+0x80"), (List{"service-enabled 1014h:00"}));
+  EXPECT_EQ(compare_cob_ids("1014", "$NODEID+0x80", "0x85"), (List{"service-cob-id 1014h:00 master"}));
+  EXPECT_EQ(compare_cob_ids("1014", "0x80000081", "0x80000082"), (List{"default-value 1014h:00"}));
+}
+
+TEST(Diff, KnowsTheFlagsOfAnSdoServer) {  // CiA 301, 7.5.2.33
+  const auto server = [](const char* cob_id) {
+    return group("1201", "SDO server", "9", 3) + var("1201sub0", "n", "5", "ro", "DefaultValue=2\n") +
+           var("1201sub1", "request", "7", "rw", "DefaultValue=" + std::string{cob_id} + "\n") +
+           var("1201sub2", "answer", "7", "rw", "DefaultValue=0x5C1\n");
+  };
+  EXPECT_EQ(compare(server("0x6C1"), server("0x800006C1")), (List{"service-disabled 1201h:01 master"}));
+  EXPECT_EQ(compare(server("0x6C1"), server("0x400006C1")), (List{"sdo-dynamic 1201h:01"}));
+  EXPECT_EQ(compare(server("0x6C1"), server("0x6C2")), (List{"service-cob-id 1201h:01 master"}));
+}
+
+TEST(Diff, KnowsTheFlagsOfAPdo) {  // CiA 301, 7.5.2.35 and 7.5.2.37
+  const auto tpdo = [](const char* cob_id) { return pdo(cob_id, "255", {"0x20000010"}); };
+  const auto rpdo = [](const char* cob_id) { return pdo(cob_id, "255", {"0x20000010"}, false); };
+  EXPECT_EQ(compare(tpdo("0x181"), tpdo("0x40000181")), (List{"rtr-disabled TPDO 1 pdo"}));
+  EXPECT_EQ(compare(tpdo("0x40000181"), tpdo("0x181")), (List{"rtr-enabled TPDO 1"}));
+  EXPECT_EQ(compare(tpdo("0x181"), tpdo("0x20000181")), (List{"frame-format TPDO 1 master pdo"}));
+  EXPECT_EQ(compare(rpdo("0x201"), rpdo("0x40000201")), (List{"cob-id-flag RPDO 1"}));
+  EXPECT_EQ(compare(tpdo("0x80000181"), tpdo("0xC0000182")), (List{"default-value TPDO 1"}));
+  EXPECT_EQ(compare(tpdo("0x80000181"), tpdo("0x182")), (List{"pdo-enabled TPDO 1", "default-value TPDO 1"}));
+}
+
+TEST(Diff, NamesTheFlagAndShowsCanIds) {
+  const Compared flag(pdo("0x181", "255", {"0x20000010"}), pdo("0x40000181", "255", {"0x20000010"}));
+  EXPECT_EQ(message_of(flag.changes.all().front()),
+            "bit 30 (no remote frames) set 0x00000181 becomes 0x40000181: a partner that requests the PDO with a remote "
+            "frame gets no answer");
+  const Compared can_id(pdo("$NODEID+0x40000180", "255", {"0x20000010"}), pdo("0x40000281", "255", {"0x20000010"}));
+  EXPECT_EQ(message_of(can_id.changes.all().front()),
+            "CAN-ID $NODEID+0x180 becomes 0x281: the partner uses another one");
+}
+
+TEST(Diff, SeesAnotherLengthOfATypeOfTheSameNumber) {
+  const auto sheet = [](const char* bits) {
+    return "[0042]\nParameterName=Label\nObjectType=5\nDataType=9\nDefaultValue=" + std::string{bits} + "\n" +
+           var("2000", "Label", "0x42");
+  };
+  const Compared compared(sheet("64"), sheet("128"));
+  ASSERT_EQ(compared.short_list(), (List{"data-type 2000h:00 master source"}));
+  EXPECT_EQ(compared.changes.all().front().old_value, "VISIBLE_STRING of 8 bytes");
+  EXPECT_EQ(compared.changes.all().front().new_value, "VISIBLE_STRING of 16 bytes");
+}
+
+TEST(Diff, KeepsWhatConcernsAnAudience) {
+  const std::string before = var("2000", "Speed", "5") + var("2001", "b", "5");
+  const std::string after = var("2000", "Velocity", "5", "ro") + var("2001", "b", "5") + var("2002", "c", "5");
+  Compared wire(before, after);
+  wire.changes.keep(Audience::wire);
+  EXPECT_EQ(wire.short_list(), (List{"access-reduced 2000h:00 master", "object-added 2002h"}));
+  Compared source(before, after);
+  source.changes.keep(Audience::source);
+  EXPECT_EQ(source.short_list(),
+            (List{"identifier 2000h source", "access-reduced 2000h:00 source", "object-added 2002h"}));
+  Compared node_id(var("1014", "EMCY", "7", "rw", "DefaultValue=0x81\n"), var("1014", "EMCY", "7", "rw", "DefaultValue=0x82\n"));
+  node_id.changes.keep(Audience::source);
+  EXPECT_EQ(node_id.short_list(), List{});
+}
+
+/// 1018h with these numbers.
+std::string identity(const std::string& product, const std::string& revision) {
+  return group("1018", "Identity", "9", 4) + var("1018sub0", "n", "5", "ro", "DefaultValue=3\n") +
+         var("1018sub1", "Vendor-ID", "7", "ro", "DefaultValue=1\n") +
+         var("1018sub2", "Product code", "7", "ro", "DefaultValue=" + product + "\n") +
+         var("1018sub3", "Revision number", "7", "ro", "DefaultValue=" + revision + "\n");
+}
+
+TEST(Diff, WantsAHigherMajorRevisionForABreakingChange) {  // CiA 301, 7.5.2.19: bits 31..16
+  const std::string missing = "revision-unchanged 1018h:03 master";
+  const auto changed = [](const std::string& old_revision, const std::string& new_revision) {
+    return compare(identity("1", old_revision) + with("", "rw"), identity("1", new_revision) + with("", "ro")).back();
+  };
+  EXPECT_EQ(changed("0x00010002", "0x00010002"), missing);
+  EXPECT_EQ(changed("0x00010002", "0x00010003"), missing);
+  EXPECT_EQ(changed("0x00010002", "0x00020000"), "access-reduced 2000h:00 master source");
+  // Compatible changes, and those of the generated code alone, need none; revisions of another product have no order.
+  EXPECT_EQ(compare(identity("1", "0x10000") + with(""), identity("1", "0x10000") + with("") + var("2001", "b", "5")),
+            (List{"object-added 2001h"}));
+  EXPECT_EQ(compare(identity("1", "0x10000") + with(""), identity("1", "0x10000") + var("2000", "Velocity", "6")),
+            (List{"identifier 2000h source"}));
+  EXPECT_EQ(compare(identity("1", "0x10000") + with(""), identity("2", "0x10000") + with("")),
+            (List{"identity 1018h:02 master"}));
+  // The configuration of a node is not another revision of its device.
+  EXPECT_EQ(compare(identity("1", "0x10000") + with("", "rw"),
+                    "[DeviceComissioning]\nNodeName=a\n" + identity("1", "0x10000") + with("", "ro")),
+            (List{"access-reduced 2000h:00 master source"}));
+}
+
 TEST(Diff, TellsAMajorRevisionFromAMinorOne) {
   const auto revision = [](const char* number) {
     return "[DeviceInfo]\nRevisionNumber=" + std::string{number} + "\n" + with("");
@@ -178,14 +293,14 @@ TEST(Diff, ComparesTheDevicesOwnData) {
 
 TEST(Diff, ComparesDummiesAndNodeIds) {
   EXPECT_EQ(compare("[DummyUsage]\nDummy0005=1\n" + with(""), "[DummyUsage]\nDummy0005=0\nDummy0006=1\n" + with("")),
-            (List{"dummy-removed device master", "dummy-added device"}));
+            (List{"dummy-removed device master source", "dummy-added device"}));
   EXPECT_EQ(compare("[DeviceComissioning]\nNodeID=5\n" + with(""), "[DeviceComissioning]\nNodeID=6\n" + with("")),
             (List{"node-id device master pdo"}));
 }
 
 TEST(Diff, BreaksCodeByAnotherIdentifierOnly) {
   EXPECT_EQ(compare(var("2000", "Speed", "5"), var("2000", "speed", "5")), (List{"name 2000h"}));
-  EXPECT_EQ(compare(var("2000", "Speed", "5"), var("2000", "Velocity", "5")), (List{"identifier 2000h master"}));
+  EXPECT_EQ(compare(var("2000", "Speed", "5"), var("2000", "Velocity", "5")), (List{"identifier 2000h source"}));
 }
 
 TEST(Diff, FindsNothingInPdosThatAreTheSame) {
@@ -213,36 +328,36 @@ TEST(Diff, BreaksThePartnerByAnotherLayout) {
   const std::vector<std::string> speed{"0x20000010"};
   const std::vector<std::string> torque{"0x20010010"};
   const auto of_pdo = [](const List& list) { return list.back(); };
-  EXPECT_EQ(of_pdo(compare(mapped(speed, true), mapped(torque, true))), "pdo-layout TPDO 1 master pdo");
+  EXPECT_EQ(of_pdo(compare(mapped(speed, true), mapped(torque, true))), "pdo-layout TPDO 1 master pdo source");
   EXPECT_EQ(of_pdo(compare(mapped(speed, true), mapped({"0x20000010", "0x20010010"}, true))),
             "pdo-layout-extended TPDO 1");
   EXPECT_EQ(of_pdo(compare(mapped(speed, false), mapped({"0x20000010", "0x20010010"}, false))),
-            "pdo-layout RPDO 1 master pdo");
+            "pdo-layout RPDO 1 master pdo source");
 }
 
 TEST(Diff, SeesTheTypeOfWhatAPdoCarries) {
   const std::string before = pdo("$NODEID+0x180", "255", {"0x20000010"});
   std::string after = before;
   after.replace(after.rfind("DataType=6"), 10, "DataType=3");
-  EXPECT_EQ(compare(before, after), (List{"data-type 2000h:00 master", "pdo-layout TPDO 1 master pdo"}));
+  EXPECT_EQ(compare(before, after), (List{"data-type 2000h:00 master source", "pdo-layout TPDO 1 master pdo source"}));
 }
 
 TEST(Diff, HoldsTheSenderOfAnRpdoToItsLimits) {
   const std::string before = pdo("$NODEID+0x200", "255", {"0x20000010"}, false);
   std::string after = before;
   after.insert(after.rfind("[2001]"), "HighLimit=9\n");
-  EXPECT_EQ(compare(before, after), (List{"limit-narrowed 2000h:00 master pdo"}));
+  EXPECT_EQ(compare(before, after), (List{"limit-narrowed 2000h:00 master pdo source"}));
 }
 
 TEST(Diff, LeavesPartnersAloneOfAPdoThatIsOff) {
   EXPECT_EQ(compare(pdo("0x80000000", "255", {"0x20000010"}), pdo("0x80000000", "1", {"0x20010010"})),
-            (List{"default-value TPDO 1", "pdo-layout TPDO 1 master"}));
+            (List{"default-value TPDO 1", "pdo-layout TPDO 1 master source"}));
 }
 
 TEST(Diff, SaysWhatAndWhereInOneLine) {
   const Compared compared(with(""), "\n" + with("", "ro"));
   EXPECT_EQ(changes_as_text(compared.changes, false),
-            "new.eds:6: breaks master: 2000h:00 \"Speed\": access rw becomes ro: what was read or written is aborted "
+            "new.eds:6: breaks master and source code: 2000h:00 \"Speed\": access rw becomes ro: what was read or written is aborted "
             "[access-reduced] (was old.eds:5)\n1 breaking, 0 compatible\n");
 }
 
@@ -257,7 +372,7 @@ TEST(Diff, HasJsonForPrograms) {
   EXPECT_EQ(change["entry"], "2000h:00");
   EXPECT_EQ(change["old"], "rw");
   EXPECT_EQ(change["new"], "ro");
-  EXPECT_EQ(change["breaks"], nlohmann::ordered_json::array({"master"}));
+  EXPECT_EQ(change["breaks"], nlohmann::ordered_json::array({"master", "source"}));
   EXPECT_EQ(change["new_position"]["line"], 5);
   EXPECT_EQ(json["changes"][1]["breaks"], nlohmann::ordered_json::array());
 }

@@ -1,0 +1,110 @@
+#include "compare/compare_cob_ids.hpp"
+
+#include <fmt/format.h>
+
+#include <canopen/cob_id.hpp>
+#include <cstdint>
+
+#include "compare/compare_entries.hpp"
+
+namespace edsc {
+namespace {
+
+using canopen::CobId;
+using enum CobIdService;
+
+constexpr std::uint32_t bit_31 = CobId::invalid_bit;
+constexpr std::uint32_t bit_30 = CobId::no_rtr_bit;
+constexpr std::uint32_t bit_29 = CobId::extended_bit;
+constexpr std::uint32_t can_id_bits = 0x1FFF'FFFF;
+
+/// A flag of the COB-IDs of a service, and what it is to set or clear it.
+struct FlagRow {
+  CobIdService service;
+  std::uint32_t bit;
+  ChangeId when_set;
+  ChangeId when_cleared;
+};
+
+constexpr FlagRow flags[] = {
+    {sync, bit_31, ChangeId::cob_id_flag, ChangeId::cob_id_flag},
+    {sync, bit_30, ChangeId::sync_started, ChangeId::sync_stopped},
+    {time, bit_31, ChangeId::time_consumed, ChangeId::time_ignored},
+    {time, bit_30, ChangeId::time_started, ChangeId::time_stopped},
+    {emcy, bit_30, ChangeId::cob_id_flag, ChangeId::cob_id_flag},
+    {emcy_consumer, bit_30, ChangeId::cob_id_flag, ChangeId::cob_id_flag},
+    {sdo_server, bit_30, ChangeId::sdo_dynamic, ChangeId::sdo_dynamic},
+    {sdo_client, bit_30, ChangeId::sdo_dynamic, ChangeId::sdo_dynamic},
+    {rpdo, bit_30, ChangeId::cob_id_flag, ChangeId::cob_id_flag},
+    {tpdo, bit_30, ChangeId::rtr_disabled, ChangeId::rtr_enabled},
+};
+
+bool is_pdo(CobIdService service) { return service == rpdo || service == tpdo; }
+bool has_valid_bit(CobIdService service) { return service != sync && service != time; }
+
+std::string can_id_text(const Value& cob_id) {
+  const std::uint64_t can_id = cob_id.bits & can_id_bits;
+  if (cob_id.plus_node_id) return fmt::format("$NODEID+0x{:X}", can_id);
+  return (cob_id.bits & bit_29) != 0 ? fmt::format("0x{:08X}", can_id) : fmt::format("0x{:03X}", can_id);
+}
+
+class CobIdComparison {
+ public:
+  CobIdComparison(const Value& before, const Value& after, const canopen::DataTypeRow& type, CobIdService service)
+      : before_{before}, after_{after}, type_{type}, service_{service} {}
+
+  std::vector<CobIdChange> compare() {
+    const bool existed = exists(before_);
+    if (!is_pdo(service_) && existed != exists(after_)) {
+      add(existed ? ChangeId::service_disabled : ChangeId::service_enabled);
+    } else if (!existed) {
+      if (((before_.bits ^ after_.bits) & ~std::uint64_t{bit_31}) != 0 || before_.plus_node_id != after_.plus_node_id) {
+        add(ChangeId::default_value);
+      }
+    } else {
+      compare_can_ids();
+      compare_flags();
+    }
+    return std::move(changes_);
+  }
+
+ private:
+  [[nodiscard]] bool exists(const Value& cob_id) const {
+    return !has_valid_bit(service_) || (cob_id.bits & bit_31) == 0;
+  }
+
+  void compare_can_ids() {
+    const bool same_number = ((before_.bits ^ after_.bits) & can_id_bits) == 0;
+    if (same_number && before_.plus_node_id == after_.plus_node_id) return;
+    changes_.push_back({is_pdo(service_) ? ChangeId::pdo_cob_id : ChangeId::service_cob_id, can_id_text(before_),
+                        can_id_text(after_)});
+  }
+
+  void compare_flags() {
+    const std::uint64_t changed = before_.bits ^ after_.bits;
+    if ((changed & bit_29) != 0) add(ChangeId::frame_format);
+    for (const FlagRow& row : flags) {
+      if (row.service != service_ || (changed & row.bit) == 0) continue;
+      add((after_.bits & row.bit) != 0 ? row.when_set : row.when_cleared);
+    }
+  }
+
+  void add(ChangeId id) { changes_.push_back({id, value_text(before_, type_), value_text(after_, type_)}); }
+
+  const Value& before_;
+  const Value& after_;
+  const canopen::DataTypeRow& type_;
+  CobIdService service_;
+  std::vector<CobIdChange> changes_;
+};
+
+}  // namespace
+
+std::vector<CobIdChange> compare_cob_ids(const std::optional<Value>& before, const std::optional<Value>& after,
+                                         const canopen::DataTypeRow& type, CobIdService service) {
+  if (before && after) return CobIdComparison{*before, *after, type, service}.compare();
+  return {{is_pdo(service) ? ChangeId::pdo_cob_id : ChangeId::service_cob_id, value_text(before, type),
+           value_text(after, type)}};
+}
+
+}  // namespace edsc
