@@ -111,7 +111,7 @@ printf '%s\\n' "${{COMPREPLY[@]}}"
         self.assertEqual(self.complete("check", "--format", ""), {"text", "json", "sarif"})
         self.assertEqual(self.complete("check", "--format", "="), {"text", "json", "sarif"})
         self.assertEqual(self.complete("check", "--format", "=", "j"), {"json"})
-        self.assertEqual(self.complete("diff", "--format", ""), {"text", "json"})
+        self.assertEqual(self.complete("diff", "--format", ""), {"text", "json", "markdown"})
         self.assertEqual(self.complete("generate", "--node-id", ""), set())
         self.assertEqual(self.complete("completion", ""), set(KINDS))
 

@@ -1,0 +1,177 @@
+#!/usr/bin/env python3
+"""`edsc diff`: audiences, exit codes, Markdown, and files of git revisions.
+
+    diff_test.py SOURCE_DIR EDSC [unittest arguments]
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+from cli_test import FINE, INPUT_HAS_ERRORS, SMALL, SOURCE_DIR, WRONG_USAGE, CommandLine
+
+RENAMED = SMALL.replace("Producer heartbeat time", "Heartbeat")
+REDUCED = SMALL.replace("DataType=6\nAccessType=rw", "DataType=6\nAccessType=ro")
+ADDED = SMALL.replace("SupportedObjects=1\n1=0x1017", "SupportedObjects=2\n1=0x1017\n2=0x100D") + (
+    "[100D]\nParameterName=Life time factor\nObjectType=7\nDataType=5\nAccessType=rw\n")
+
+
+class ExitCodes(CommandLine):
+    def setUp(self) -> None:
+        super().setUp()
+        self.old = self.write("old.eds", SMALL)
+
+    def code(self, text: str, *options: object) -> int:
+        return self.edsc("diff", self.old, self.write("new.eds", text), *options).returncode
+
+    def test_say_whether_a_change_breaks(self) -> None:
+        for text, breaking, any_change in ((SMALL, 0, 0), (ADDED, 0, 1), (REDUCED, 1, 1)):
+            self.assertEqual(self.code(text), breaking)
+            self.assertEqual(self.code(text, "--fail-on", "breaking"), breaking)
+            self.assertEqual(self.code(text, "--fail-on", "any"), any_change)
+            self.assertEqual(self.code(text, "--fail-on", "never"), 0)
+
+    def test_follow_the_audience(self) -> None:
+        self.assertEqual(self.code(RENAMED), INPUT_HAS_ERRORS)
+        self.assertEqual(self.code(RENAMED, "--audience", "source"), INPUT_HAS_ERRORS)
+        self.assertEqual(self.code(RENAMED, "--audience", "wire"), FINE)
+
+    def test_of_the_wrong_number_of_files(self) -> None:
+        self.expect(WRONG_USAGE, self.edsc("diff", self.old), "two files are compared")
+        self.expect(WRONG_USAGE, self.edsc("diff", self.old, self.old, self.old), "two files are compared")
+        self.expect(WRONG_USAGE, self.edsc("diff", self.old, self.old, "--allow-new"), "--against")
+        self.expect(WRONG_USAGE, self.edsc("diff", self.old, "--against", "HEAD"), "expected git:REF, got HEAD")
+
+
+class Markdown(CommandLine):
+    def test_is_a_table_with_compatible_changes_folded(self) -> None:
+        old = self.write("old.eds", SMALL)
+        new = self.write("new.eds", ADDED.replace("DataType=6\nAccessType=rw", "DataType=6\nAccessType=ro"))
+        result = self.edsc("diff", old, new, "--format", "markdown")
+        self.expect(INPUT_HAS_ERRORS, result)
+        self.assertEqual(result.stdout, f"""### {self.shown(new)} against {self.shown(old)}
+
+**1 breaking**, 1 compatible
+
+| Entry | Change | Breaks | Line | Kind |
+| --- | --- | --- | ---: | --- |
+| 1017h:00 Producer heartbeat time | access rw becomes ro: what was read or written is aborted | master, source code | 29 | `access-reduced` |
+
+<details>
+<summary>1 compatible</summary>
+
+| Entry | Change | Breaks | Line | Kind |
+| --- | --- | --- | ---: | --- |
+| 100Dh Life time factor | object added: nobody uses it yet | - | 45 | `object-added` |
+
+</details>
+""")
+
+    @staticmethod
+    def shown(path: Path) -> str:
+        return str(path).replace("_", "\\_")
+
+    def test_holds_no_markup_of_the_file(self) -> None:
+        old = self.write("old.eds", SMALL)
+        new = self.write("new.eds", SMALL.replace("Error register", "a|b <b>`c`*d*$x$ [e](f)"))
+        table = self.edsc("diff", old, new, "--format", "markdown").stdout
+        self.assertIn("a\\|b &lt;b\\>\\`c\\`\\*d\\*\\$x\\$ \\[e\\](f)", table)
+
+    def test_of_two_equal_files_says_so(self) -> None:
+        old = self.write("old.eds", SMALL)
+        self.assertEqual(self.edsc("diff", old, old, "--format", "markdown").stdout,
+                         f"### {self.shown(old)} against {self.shown(old)}\n\n**0 breaking**, 0 compatible\n")
+
+
+class Git(CommandLine):
+    def setUp(self) -> None:
+        super().setUp()
+        self.environment = {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_SYSTEM": os.devnull, "GIT_AUTHOR_NAME": "a",
+                            "GIT_AUTHOR_EMAIL": "a@example.org", "GIT_COMMITTER_NAME": "a",
+                            "GIT_COMMITTER_EMAIL": "a@example.org", "GIT_CEILING_DIRECTORIES": str(self.folder.parent)}
+        for name in ("GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PREFIX"):  # of a hook that runs the tests
+            os.environ.pop(name, None)
+        self.git("init", "-q", "-b", "main")
+        (self.folder / "eds").mkdir()
+        self.sheet = self.write("eds/device.eds", SMALL)
+        self.git("add", ".")
+        self.git("commit", "-q", "-m", "one")
+
+    def git(self, *arguments: str) -> None:
+        subprocess.run(["git", *arguments], cwd=self.folder, check=True, env={**os.environ, **self.environment})
+
+    def against(self, revision: str, *arguments: object, **more: object) -> subprocess.CompletedProcess[str]:
+        return self.edsc("diff", "--against", f"git:{revision}", *arguments, environment=self.environment, **more)
+
+    def test_gives_the_file_of_a_revision(self) -> None:
+        self.expect(FINE, self.against("HEAD", "eds/device.eds"), "0 breaking, 0 compatible")
+        self.sheet.write_text(REDUCED)
+        self.expect(INPUT_HAS_ERRORS, self.against("HEAD", "eds/device.eds"),
+                    "eds/device.eds:28: breaks master and source code: 1017h:00", "(was HEAD:eds/device.eds:28)")
+        self.expect(INPUT_HAS_ERRORS, self.against("main", self.sheet), "access-reduced")
+        self.git("commit", "-q", "-a", "-m", "two")
+        self.expect(FINE, self.against("HEAD", self.sheet))
+        self.expect(INPUT_HAS_ERRORS, self.against("HEAD~1", self.sheet), "access-reduced")
+
+    def test_works_in_a_subfolder_and_from_elsewhere(self) -> None:
+        self.sheet.write_text(ADDED)
+        for folder, path in ((self.folder / "eds", "device.eds"), (Path("/"), self.sheet)):
+            result = subprocess.run([sys.argv[2], "diff", "--against", "git:HEAD", path], cwd=folder, text=True,
+                                    capture_output=True, timeout=30, env={**os.environ, **self.environment})
+            self.expect(FINE, result, "object-added", "0 breaking, 1 compatible")
+
+    def test_works_in_a_hook(self) -> None:
+        """git sets GIT_DIR there, relative to the top of the working tree."""
+        self.environment["GIT_DIR"] = ".git"
+        self.expect(FINE, self.against("HEAD", "eds/device.eds"), "0 breaking, 0 compatible")
+
+    def test_takes_the_options_of_the_revision(self) -> None:
+        options = self.write("eds/device.options.json", '{"names": {"1017": "beat"}}')
+        self.git("add", ".")
+        self.git("commit", "-q", "-m", "named")
+        self.expect(FINE, self.against("HEAD", self.sheet), "0 breaking, 0 compatible")
+        options.unlink()
+        self.expect(INPUT_HAS_ERRORS, self.against("HEAD", self.sheet), "[identifier]")
+
+    def test_takes_many_files(self) -> None:
+        other = self.write("eds/other.eds", SMALL)
+        self.git("add", ".")
+        self.git("commit", "-q", "-m", "two files")
+        self.sheet.write_text(ADDED)
+        other.write_text(REDUCED)
+        self.expect(INPUT_HAS_ERRORS, self.against("HEAD", self.sheet, other), "device.eds:45: compatible",
+                    "other.eds:28: breaks", "1 breaking, 1 compatible")
+        found = json.loads(self.against("HEAD", self.sheet, other, "--format", "json").stdout)
+        self.assertEqual([change["kind"] for change in found["changes"]], ["object-added", "access-reduced"])
+        self.assertEqual(self.against("HEAD", self.sheet, other, "--format", "markdown").stdout.count("### "), 2)
+
+    def test_says_what_is_missing(self) -> None:
+        new = self.write("eds/new.eds", SMALL)
+        self.expect(WRONG_USAGE, self.against("HEAD", new), "new.eds is not in the git revision HEAD")
+        self.expect(FINE, self.against("HEAD", new, "--allow-new"), "0 breaking, 0 compatible")
+        self.expect(FINE, self.against("HEAD", new, "--allow-new", "--format", "markdown"), "is new")
+        self.expect(WRONG_USAGE, self.against("nowhere", self.sheet), "git does not know a revision nowhere")
+        self.expect(WRONG_USAGE, self.against("nowhere", self.sheet, "--allow-new"), "does not know a revision nowhere")
+        self.expect(WRONG_USAGE, self.against("--output=x", self.sheet), "is not a git revision")
+        self.expect(WRONG_USAGE, self.against("HEAD", "eds/none.eds"), "none.eds is not in the git revision HEAD")
+        self.sheet.unlink()
+        self.expect(WRONG_USAGE, self.against("HEAD", self.sheet), "No such file")
+
+    def test_says_that_a_folder_is_not_in_a_repository(self) -> None:
+        shutil_free = self.folder / ".git"
+        shutil_free.rename(self.folder / "no-git")
+        self.expect(WRONG_USAGE, self.against("HEAD", self.sheet), "not a git repository")
+
+    def test_says_that_git_is_missing(self) -> None:
+        self.environment["PATH"] = str(self.folder)
+        self.expect(WRONG_USAGE, self.against("HEAD", self.sheet), "git cannot be started; is it installed and in PATH?")
+
+
+if __name__ == "__main__":
+    assert SOURCE_DIR
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]], verbosity=2)
