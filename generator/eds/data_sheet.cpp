@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
-#include <span>
 #include <unordered_map>
 #include <utility>
 
@@ -21,6 +20,7 @@
 #include "eds/object_lists.hpp"
 #include "eds/object_sections.hpp"
 #include "eds/section_name.hpp"
+#include "eds/sheet_keys.hpp"
 #include "eds/tools.hpp"
 #include "text/source_file.hpp"
 #include "text/suggestion.hpp"
@@ -28,61 +28,6 @@
 namespace edsc {
 namespace {
 
-constexpr KeyRow<FileInfo> file_info_rows[] = {
-    {"FileName", &FileInfo::file_name},
-    {"FileVersion", &FileInfo::file_version},
-    {"FileRevision", &FileInfo::file_revision},
-    {"EDSVersion", &FileInfo::eds_version},
-    {"Description", &FileInfo::description},
-    {"CreatedBy", &FileInfo::created_by},
-    {"CreationTime", &FileInfo::creation_time},
-    {"CreationDate", &FileInfo::creation_date},
-    {"ModificationTime", &FileInfo::modification_time},
-    {"ModificationDate", &FileInfo::modification_date},
-    {"ModifiedBy", &FileInfo::modified_by},
-    {"LastEDS", &FileInfo::last_eds},
-};
-
-constexpr KeyRow<DeviceInfo> device_info_rows[] = {
-    {"VendorName", &DeviceInfo::vendor_name},
-    {"VendorNumber", &DeviceInfo::vendor_number},
-    {"ProductName", &DeviceInfo::product_name},
-    {"ProductNumber", &DeviceInfo::product_number},
-    {"RevisionNumber", &DeviceInfo::revision_number},
-    {"OrderCode", &DeviceInfo::order_code},
-    {"SimpleBootUpMaster", &DeviceInfo::simple_boot_up_master},
-    {"SimpleBootUpSlave", &DeviceInfo::simple_boot_up_slave},
-    {"Granularity", &DeviceInfo::granularity},
-    {"DynamicChannelsSupported", &DeviceInfo::dynamic_channels_supported},
-    {"GroupMessaging", &DeviceInfo::group_messaging},
-    {"NrOfRXPDO", &DeviceInfo::nr_of_rx_pdo},
-    {"NrOfTXPDO", &DeviceInfo::nr_of_tx_pdo},
-    {"LSS_Supported", &DeviceInfo::lss_supported},
-    {"CompactPDO", &DeviceInfo::compact_pdo},
-    {"LSS_Master", &DeviceInfo::lss_master},
-    {"NG_Slave", &DeviceInfo::ng_slave},
-    {"NG_Master", &DeviceInfo::ng_master},
-    {"NrOfNG_MonitoredNodes", &DeviceInfo::nr_of_ng_monitored_nodes},
-    {"CANopenSafetySupported", &DeviceInfo::canopen_safety_supported},
-};
-
-constexpr KeyRow<DeviceCommissioning> commissioning_rows[] = {
-    {"NodeID", &DeviceCommissioning::node_id},
-    {"NodeName", &DeviceCommissioning::node_name},
-    {"Baudrate", &DeviceCommissioning::baudrate},
-    {"NetNumber", &DeviceCommissioning::net_number},
-    {"NetworkName", &DeviceCommissioning::network_name},
-    {"CANopenManager", &DeviceCommissioning::canopen_manager},
-    {"LSS_SerialNumber", &DeviceCommissioning::lss_serial_number},
-    {"NodeRefd", &DeviceCommissioning::node_refd},
-    {"NetRefd", &DeviceCommissioning::net_refd},
-};
-
-constexpr std::span<const KeyRow<FileInfo>> file_info_keys = file_info_rows;
-constexpr std::span<const KeyRow<DeviceInfo>> device_info_keys = device_info_rows;
-constexpr std::span<const KeyRow<DeviceCommissioning>> commissioning_keys = commissioning_rows;
-
-constexpr std::string_view baud_rate_prefix = "BaudRate_";
 constexpr std::string_view dummy_prefix = "Dummy";
 constexpr std::size_t dummy_digits = 4;
 constexpr std::uint16_t last_dummy = 0xFF;

@@ -10,39 +10,10 @@
 #include "eds/duplicates.hpp"
 #include "eds/keys.hpp"
 #include "eds/numbered_section.hpp"
+#include "eds/sheet_keys.hpp"
 
 namespace edsc {
 namespace {
-
-/// Keys of object and sub-object sections; the frequent ones first.
-constexpr KeyRow<EntryDescription> entry_rows[] = {
-    {"ParameterName", &EntryDescription::parameter_name},
-    {"ObjectType", &EntryDescription::object_type},
-    {"DataType", &EntryDescription::data_type},
-    {"AccessType", &EntryDescription::access_type},
-    {"DefaultValue", &EntryDescription::default_value},
-    {"PDOMapping", &EntryDescription::pdo_mapping},
-    {"LowLimit", &EntryDescription::low_limit},
-    {"HighLimit", &EntryDescription::high_limit},
-    {"ObjFlags", &EntryDescription::obj_flags},
-    {"ParameterValue", &EntryDescription::parameter_value},
-    {"Denotation", &EntryDescription::denotation},
-    {"UploadFile", &EntryDescription::upload_file},
-    {"DownloadFile", &EntryDescription::download_file},
-    {"ParamRefd", &EntryDescription::param_refd},
-    {"Unit", &EntryDescription::unit},
-    {"Factor", &EntryDescription::factor},
-    {"Description", &EntryDescription::description},
-};
-
-/// Keys of object sections only.
-constexpr KeyRow<ObjectDescription> object_rows[] = {
-    {"SubNumber", &ObjectDescription::sub_number},
-    {"CompactSubObj", &ObjectDescription::compact_sub_obj},
-};
-
-constexpr std::span<const KeyRow<EntryDescription>> entry_keys = entry_rows;
-constexpr std::span<const KeyRow<ObjectDescription>> object_keys = object_rows;
 
 constexpr CountKey nr_of_entries{"NrOfEntries", {}, "entry-count", false};
 constexpr CountKey object_links{"ObjectLinks", {}, "entry-count", true};

@@ -178,7 +178,9 @@ void ApplicationProcess::read_child(pugi::xml_node child, Parameter& parameter) 
     return;
   }
   for (const std::string_view silent : silent_elements) {
-    if (name == silent) return;
+    if (name != silent) continue;
+    if (name != "dataTypeIDRef" && name != "allowedValues") note_silent(xml_, child);
+    return;
   }
   if (name == "property") {
     read_property(child, parameter);

@@ -100,6 +100,19 @@ void report_unknown_element(XmlDocument& xml, pugi::xml_node element) {
                             local_name(element.parent())));
 }
 
+void note_silent(XmlDocument& xml, pugi::xml_node element) {
+  const bool says_something = element.first_attribute() || !std::string_view{element.text().get()}.empty() ||
+                              element.find_child([](pugi::xml_node child) { return child.type() == pugi::node_element; });
+  if (says_something) xml.note_not_in_eds(path_of(element), xml.position(element));
+}
+
+void note_silent(XmlDocument& xml, pugi::xml_node element, pugi::xml_attribute attribute) {
+  const std::string_view value = attribute.value();
+  if (value.empty() || value == "0" || equal_ignoring_case(value, "false")) return;
+  xml.note_not_in_eds(fmt::format("the attribute {} of {}", local_name(attribute), local_name(element)),
+                      xml.position(attribute));
+}
+
 void report_second(XmlDocument& xml, pugi::xml_attribute attribute, const Position& first) {
   xml.diagnostics().warning("duplicate-key", xml.position(attribute),
                             fmt::format("{} stands twice in this element; the first one counts", attribute.name()),

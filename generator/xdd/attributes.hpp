@@ -32,11 +32,16 @@ struct AttributeRow {
   std::string_view name;
   Field Struct::*field;
   Spelling spelling = Spelling::text;
+  bool is_structure = false;  ///< it says how the file is put together, not what the device is
 };
 
 void report_unknown_attribute(XmlDocument& xml, pugi::xml_node element, pugi::xml_attribute attribute);
 void report_unknown_element(XmlDocument& xml, pugi::xml_node element);
 void report_second(XmlDocument& xml, pugi::xml_attribute attribute, const Position& first);
+
+/// Notes an element or attribute that an EDS cannot express, unless it is empty or says no.
+void note_silent(XmlDocument& xml, pugi::xml_node element);
+void note_silent(XmlDocument& xml, pugi::xml_node element, pugi::xml_attribute attribute);
 
 /// Namespaces and schema locations: no attributes of CiA 311.
 [[nodiscard]] bool is_of_xml_itself(pugi::xml_attribute attribute);
@@ -60,9 +65,11 @@ void read_attributes(XmlDocument& xml, pugi::xml_node element, std::span<const A
     }
     if (known == nullptr) {
       report_unknown_attribute(xml, element, attribute);
-    } else if (known->field != nullptr && (target.*known->field).present) {
+    } else if (known->field == nullptr) {
+      if (!known->is_structure) note_silent(xml, element, attribute);
+    } else if ((target.*known->field).present) {
       report_second(xml, attribute, (target.*known->field).position);
-    } else if (known->field != nullptr) {
+    } else {
       target.*known->field = respell(xml, xml.value(attribute), known->spelling);
     }
   }

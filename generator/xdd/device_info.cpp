@@ -20,14 +20,14 @@ constexpr AttributeRow<FileInfo> file_info_rows[] = {
     {"fileName", &FileInfo::file_name},
     {"fileVersion", &FileInfo::file_version},
     {"fileCreator", &FileInfo::created_by},
-    {"formatName", nullptr},
-    {"formatVersion", nullptr},
+    {"formatName", nullptr, Spelling::text, true},
+    {"formatVersion", nullptr, Spelling::text, true},
     {"fileCreationDate", &FileInfo::creation_date, Spelling::date},
     {"fileCreationTime", &FileInfo::creation_time, Spelling::time},
     {"fileModificationDate", &FileInfo::modification_date, Spelling::date},
     {"fileModificationTime", &FileInfo::modification_time, Spelling::time},
     {"fileModifiedBy", &FileInfo::modified_by},
-    {"supportedLanguages", nullptr},
+    {"supportedLanguages", nullptr, Spelling::text, true},
     {"deviceClass", nullptr},
 };
 
@@ -104,7 +104,9 @@ void read_identity(XmlDocument& xml, pugi::xml_node identity, DeviceInfo& info) 
     });
     if (row == identity_elements.end()) {
       report_unknown_element(xml, child);
-    } else if (row->field != nullptr && !(info.*row->field).present) {
+    } else if (row->field == nullptr) {
+      if (row->name != "productText") note_silent(xml, child);  // its description is that of [FileInfo]
+    } else if (!(info.*row->field).present) {
       info.*row->field = respell(xml, xml.text(child), row->spelling);
     }
   });

@@ -23,10 +23,10 @@ using canopen::Mappable;
 
 /// Attributes of CANopenObject and CANopenSubObject.
 constexpr AttributeRow<EntryDescription> entry_rows[] = {
-    {"index", nullptr},
-    {"subIndex", nullptr},
-    {"subNumber", nullptr},
-    {"uniqueIDRef", nullptr},
+    {"index", nullptr, Spelling::text, true},
+    {"subIndex", nullptr, Spelling::text, true},
+    {"subNumber", nullptr, Spelling::text, true},
+    {"uniqueIDRef", nullptr, Spelling::text, true},
     {"name", &EntryDescription::parameter_name},
     {"objectType", &EntryDescription::object_type, Spelling::decimal},
     {"dataType", &EntryDescription::data_type, Spelling::hexadecimal},

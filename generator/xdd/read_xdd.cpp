@@ -72,6 +72,8 @@ class XddReader {
  public:
   XddReader(const SourceFile& source, Diagnostics& diagnostics) : xml_{source, diagnostics} { sheet_.source = &source; }
 
+  [[nodiscard]] std::vector<NotInEds> take_not_in_eds() { return xml_.take_not_in_eds(); }
+
   DataSheet read() {
     if (xml_.root()) find_profiles();
     if (parts_.object_list) {
@@ -137,7 +139,11 @@ class XddReader {
     for_each_element(parent, [&](pugi::xml_node child) {
       for (const PartRow& row : part_rows) {
         if (row.parent != local_name(parent) || row.name != local_name(child)) continue;
-        if (row.part != nullptr) take_part(child, parts_.*row.part);
+        if (row.part != nullptr) {
+          take_part(child, parts_.*row.part);
+        } else if (row.name != "identity") {  // that of ApplicationLayers repeats 1018h
+          note_silent(xml_, child);
+        }
         return;
       }
       report_unknown_element(xml_, child);
@@ -200,6 +206,11 @@ bool is_xml(const SourceFile& source) {
   return first != std::string_view::npos && text[first] == '<';
 }
 
-DataSheet read_xdd(const SourceFile& source, Diagnostics& diagnostics) { return XddReader{source, diagnostics}.read(); }
+DataSheet read_xdd(const SourceFile& source, Diagnostics& diagnostics, std::vector<NotInEds>* not_in_eds) {
+  XddReader reader{source, diagnostics};
+  DataSheet sheet = reader.read();
+  if (not_in_eds != nullptr) *not_in_eds = reader.take_not_in_eds();
+  return sheet;
+}
 
 }  // namespace edsc

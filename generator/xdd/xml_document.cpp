@@ -173,4 +173,8 @@ void XmlDocument::note_once(NoteRule rule, const std::string& what, const Positi
   if (warned_.insert(what).second) diagnostics_.note(rule, position, message);
 }
 
+void XmlDocument::note_not_in_eds(std::string what, const Position& position) {
+  if (noted_.insert(what).second) not_in_eds_.push_back({position, std::move(what)});
+}
+
 }  // namespace edsc

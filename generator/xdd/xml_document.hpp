@@ -8,9 +8,14 @@
 #include <string>
 #include <string_view>
 #include <unordered_set>
+#include <utility>
+#include <vector>
 
 #include "diagnostics/diagnostics.hpp"
 #include "eds/data_sheet.hpp"
+#include "xdd/not_in_eds.hpp"
+#include "eds/data_sheet.hpp"
+#include "xdd/not_in_eds.hpp"
 
 namespace edsc {
 
@@ -60,6 +65,10 @@ class XmlDocument {
   /// Warns of something that stands in the file often, the first time only; `what` tells such things apart.
   void note_once(NoteRule rule, const std::string& what, const Position& position, const std::string& message);
 
+  /// Notes that an EDS cannot express an element or attribute, such as `DeviceIdentity/deviceFamily`; each name once.
+  void note_not_in_eds(std::string what, const Position& position);
+  [[nodiscard]] std::vector<NotInEds> take_not_in_eds() { return std::move(not_in_eds_); }
+
  private:
   void parse();
   void find_root();
@@ -75,6 +84,8 @@ class XmlDocument {
   pugi::xml_node root_;
   std::shared_ptr<std::deque<std::string>> texts_ = std::make_shared<std::deque<std::string>>();
   std::unordered_set<std::string> warned_;
+  std::unordered_set<std::string> noted_;
+  std::vector<NotInEds> not_in_eds_;
 };
 
 }  // namespace edsc

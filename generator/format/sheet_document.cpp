@@ -1,0 +1,125 @@
+#include "format/sheet_document.hpp"
+
+#include <fmt/format.h>
+
+#include <span>
+#include <string_view>
+#include <utility>
+
+#include "eds/sheet_keys.hpp"
+#include "format/object_list_sections.hpp"
+#include "text/ascii.hpp"
+
+namespace edsc {
+namespace {
+
+/// Of CiA 306-1, whose sections these are.
+constexpr std::string_view eds_version = "4.0";
+
+/// The text in one line, with one blank between words of different lines.
+std::string one_line(std::string_view text) {
+  std::string line;
+  bool at_break = false;
+  for (const char c : text) {
+    const bool is_break = c == '\n' || c == '\r';
+    const bool is_blank = is_break || c == ' ' || c == '\t';
+    at_break = at_break || is_break;
+    if (at_break && is_blank) continue;
+    if (at_break) {
+      while (line.ends_with(' ') || line.ends_with('\t')) line.pop_back();
+      line += ' ';
+    }
+    at_break = false;
+    line += c;
+  }
+  return line;
+}
+
+class SheetWriter {
+ public:
+  SheetWriter(const DataSheet& sheet, const std::string& file_name) : sheet_(sheet), file_name_(file_name) {}
+
+  Document write() {
+    write_file_info();
+    write_device_info();
+    write_dummies();
+    if (sheet_.commissioning.present) {
+      add_section("DeviceComissioning");
+      put<DeviceCommissioning>(commissioning_keys, sheet_.commissioning);
+    }
+    for (const ObjectDescription& object : sheet_.objects) write_object(object);
+    renew_object_lists(document_, sheet_);
+    return std::move(document_);
+  }
+
+ private:
+  void add_section(std::string title) {
+    DocumentSection& section = document_.sections.emplace_back();
+    section.kind = read_section_name(title);
+    section.title = std::move(title);
+  }
+
+  void put(std::string_view key, std::string_view value) {
+    document_.sections.back().entries.push_back({{}, std::string{key}, one_line(value)});
+  }
+
+  template <typename Struct>
+  void put(std::span<const KeyRow<Struct>> keys, const Struct& source) {
+    for (const KeyRow<Struct>& row : keys) {
+      if (row.field != nullptr && (source.*row.field).present) put(row.name, (source.*row.field).text);
+    }
+  }
+
+  void write_file_info() {
+    FileInfo info = sheet_.file_info;
+    info.file_name.text = file_name_;
+    info.eds_version.text = eds_version;
+    info.file_name.present = info.eds_version.present = true;
+    add_section("FileInfo");
+    put<FileInfo>(file_info_keys, info);
+  }
+
+  void write_device_info() {
+    if (!sheet_.device_info.present && sheet_.device_info.baud_rates.empty()) return;
+    add_section("DeviceInfo");
+    put<DeviceInfo>(device_info_keys, sheet_.device_info);
+    for (const DeviceInfo::BaudRate& rate : sheet_.device_info.baud_rates) {
+      put(fmt::format("{}{}", baud_rate_prefix, rate.kbit_per_second), rate.field.text);
+    }
+  }
+
+  void write_dummies() {
+    if (sheet_.dummy_usage.empty()) return;
+    add_section("DummyUsage");
+    for (const NumberedField& dummy : sheet_.dummy_usage) {
+      put(fmt::format("Dummy{:04X}", dummy.number), dummy.field.text);
+    }
+  }
+
+  void write_object(const ObjectDescription& object) {
+    add_section(fmt::format("{:04X}", object.index));
+    put_entry(object);
+    put<ObjectDescription>(object_keys, object);
+    for (const SubObjectDescription& sub_object : object.sub_objects) {
+      add_section(fmt::format("{:04X}sub{:X}", object.index, sub_object.sub_index));
+      put_entry(sub_object);
+    }
+  }
+
+  void put_entry(EntryDescription entry) {
+    if (!sheet_.is_dcf) entry.parameter_value.present = false;
+    put<EntryDescription>(entry_keys, entry);
+  }
+
+  const DataSheet& sheet_;
+  const std::string& file_name_;
+  Document document_;
+};
+
+}  // namespace
+
+Document document_of(const DataSheet& sheet, const std::string& file_name) {
+  return SheetWriter(sheet, file_name).write();
+}
+
+}  // namespace edsc

@@ -1,0 +1,214 @@
+#!/usr/bin/env python3
+"""`edsc format`: many files, other nodes, and EDS files of XDD files; the hooks for pre-commit.
+
+    format_test.py SOURCE_DIR EDSC [unittest arguments]
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shlex
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+from cli_test import CLEAN, EDSC, FINE, INPUT_HAS_ERRORS, SMALL, SOURCE_DIR, WRONG_USAGE, CommandLine
+
+sys.path.insert(0, str(SOURCE_DIR / "tests/corpus"))
+from corpus_test import find_corpus  # noqa: E402
+
+XDD = SOURCE_DIR / "tests/fixtures/drive.xdd"
+XDC = SOURCE_DIR / "tests/fixtures/drive_node_5.xdc"
+
+
+class ManyFiles(CommandLine):
+    def setUp(self) -> None:
+        super().setUp()
+        self.rough = self.write("rough.eds", SMALL)
+        self.canonical = self.write("canonical.eds", self.edsc("format", self.rough).stdout)
+
+    def test_check_lists_those_that_are_not_canonical(self) -> None:
+        other = self.write("other.eds", SMALL.replace("=", " = "))
+        result = self.edsc("format", "--check", self.rough, self.canonical, other)
+        self.expect(INPUT_HAS_ERRORS, result, f"{self.rough}:", f"{other}:")
+        self.assertNotIn(str(self.canonical), result.stderr)
+        self.expect(FINE, self.edsc("format", "--check", self.canonical, self.canonical))
+
+    def test_check_takes_the_worst_of_several(self) -> None:
+        self.expect(WRONG_USAGE, self.edsc("format", "--check", self.rough, "none.eds", self.canonical), "rough", "none.eds")
+
+    def test_in_place_writes_each_file(self) -> None:
+        before = self.canonical.stat().st_mtime_ns
+        self.expect(FINE, self.edsc("format", "--in-place", self.rough, self.canonical))
+        self.assertEqual(self.rough.read_text(), self.canonical.read_text())
+        self.assertEqual(self.canonical.stat().st_mtime_ns, before)
+        self.expect(FINE, self.edsc("format", "-i", self.rough))
+
+    def test_in_place_leaves_a_file_with_errors_alone(self) -> None:
+        broken = self.write("broken.eds", "[1000\nParameterName=x\n")
+        self.expect(INPUT_HAS_ERRORS, self.edsc("format", "-i", broken, self.rough), "unterminated-section")
+        self.assertEqual(broken.read_text(), "[1000\nParameterName=x\n")
+        self.assertEqual(self.rough.read_text(), self.canonical.read_text())
+
+    def test_need_a_place_to_go_to(self) -> None:
+        self.expect(WRONG_USAGE, self.edsc("format", self.rough, self.canonical), "several files need --check or --in-place")
+        self.expect(WRONG_USAGE, self.edsc("format", "-i", "-"), "standard input cannot be written")
+        self.expect(WRONG_USAGE, self.edsc("format", "-i", self.rough, "-o", "x.eds"), "excludes")
+
+
+class AnotherNode(CommandLine):
+    """The values of a DCF that follow the node-ID go with it to another node."""
+
+    def make(self, node: int, source: Path, *options: object) -> str:
+        result = self.edsc("format", source, "--dcf", "--node-id", node, *options)
+        self.expect(FINE, result)
+        return result.stdout
+
+    def test_has_its_own_can_ids(self) -> None:
+        for options in ((), ("--all",)):
+            five = self.write("five.dcf", self.make(5, SOURCE_DIR / "eds/cpd.eds", *options))
+            seven = self.make(7, SOURCE_DIR / "eds/cpd.eds", *options)
+            self.assertEqual(self.make(7, five, *options), seven)
+
+    def test_keeps_flags_and_what_was_configured(self) -> None:
+        five = self.make(5, SOURCE_DIR / "eds/cpd.eds", "--all")
+        five = re.sub(r"(\[1800sub1\][^[]*ParameterValue=)0x\w+", r"\g<1>0xC0000185", five)
+        five = re.sub(r"(\[1017\][^[]*ParameterValue=)\w+", r"\g<1>1234", five)
+        moved = self.make(7, self.write("five.dcf", five))
+        self.assertRegex(moved, r"\[1800sub1\][^[]*ParameterValue=0xC0000187")
+        self.assertRegex(moved, r"\[1017\][^[]*ParameterValue=1234")
+        self.assertNotRegex(moved, r"\[1400sub1\][^[]*ParameterValue=0x\w")
+
+    def test_is_said_where_a_cob_id_stays(self) -> None:
+        five = self.make(5, SOURCE_DIR / "eds/cpd.eds", "--all")
+        five = re.sub(r"(\[1400sub1\][^[]*DefaultValue=)[^\n]*", r"\g<1>0x205", five)
+        five = re.sub(r"(\[1400sub1\][^[]*ParameterValue=)[^\n]*", r"\g<1>0x285", five)
+        result = self.edsc("format", self.write("five.dcf", five), "--dcf", "--node-id", 7)
+        self.assertIn("1400h:01 stays 0x00000285, a CAN-ID of node 5", result.stderr)
+        self.assertIn("[cob-id-node-id]", result.stderr)
+
+    def test_is_configured_by_its_concise_dcf(self) -> None:
+        five = self.write("five.dcf", self.make(5, SOURCE_DIR / "eds/cpd.eds", "--all"))
+        subprocess.run([EDSC, "format", five, "--concise", "--node-id", "7", "-o", self.folder / "seven.bin"], check=True)
+        self.assertEqual((self.folder / "seven.bin").read_bytes()[:4], bytes(4))
+
+
+def device_of(view: object) -> object:
+    """A dump without what an EDS and an XDD of the same device spell in their own way."""
+    if isinstance(view, dict):
+        return {key: device_of(value) for key, value in view.items()
+                if key not in ("line", "column", "source", "file_name", "eds_version") and not key.endswith("_line")}
+    if isinstance(view, list):
+        return [device_of(element) for element in view]
+    return " ".join(view.split()) if isinstance(view, str) else view
+
+
+class FromXdd(CommandLine):
+    def same_device(self, path: Path, suffix: str) -> subprocess.CompletedProcess[str]:
+        target = self.folder / f"{path.stem}{suffix}"
+        made = self.edsc("format", path, "-o", target)
+        self.expect(FINE, made)
+        self.expect(FINE, self.edsc("format", "--check", target))
+        dumps = [device_of(json.loads(self.edsc("dump", one, "--keep-going").stdout)) for one in (path, target)]
+        self.maxDiff = 4000
+        self.assertEqual(dumps[0], dumps[1])
+        compared = self.edsc("diff", path, target, "--keep-going", "--fail-on", "any")
+        self.expect(FINE, compared, "0 breaking, 0 compatible")
+        return made
+
+    def test_makes_an_eds(self) -> None:
+        made = self.same_device(XDD, ".eds")
+        text = (self.folder / "drive.eds").read_text()
+        for line in ("FileName=drive.eds", "EDSVersion=4.0", "[DummyUsage]", "DataType=0x0007", "DefaultValue=$NODEID+0x180"):
+            self.assertIn(line, text)
+        self.assertNotIn("ParameterValue", text)
+        self.assertIn("DeviceIdentity/deviceFamily cannot be expressed in the EDS; it is left out", made.stderr)
+        self.assertIn("the attribute selfStartingDevice of CANopenGeneralFeatures cannot be expressed", made.stderr)
+        self.assertIn("parameter/unit cannot be expressed", made.stderr)
+
+    def test_makes_a_dcf_of_an_xdc(self) -> None:
+        self.same_device(XDC, ".dcf")
+        text = (self.folder / "drive_node_5.dcf").read_text()
+        for line in ("[DeviceComissioning]", "NodeID=5", "ParameterValue=1000"):
+            self.assertIn(line, text)
+
+    def test_makes_no_eds_of_the_values_of_a_node(self) -> None:
+        self.expect(WRONG_USAGE, self.edsc("format", XDC, "-o", "axis.eds"), "name the output .dcf")
+        self.assertFalse((self.folder / "axis.eds").exists())
+
+    def test_makes_the_dcf_of_a_node(self) -> None:
+        dcf = self.folder / "drive.dcf"
+        self.expect(FINE, self.edsc("format", XDD, "--dcf", "--node-id", 7, "-o", dcf))
+        self.expect(FINE, self.edsc("diff", XDD, dcf, "--node-id", 7, "--keep-going"))
+        self.assertIn("NodeID=7", dcf.read_text())
+
+    def test_goes_to_standard_output(self) -> None:
+        result = self.edsc("format", XDD)
+        self.expect(FINE, result)
+        self.assertIn("FileName=drive.eds\n", result.stdout)
+
+    def test_has_no_canonical_form_of_its_own(self) -> None:
+        for option in ("--check", "--in-place"):
+            self.expect(INPUT_HAS_ERRORS, self.edsc("format", option, XDD), "does not have a canonical form")
+
+    def test_of_vendors(self) -> None:
+        corpus = find_corpus(SOURCE_DIR)
+        paths = sorted([*corpus.rglob("*.xdd"), *corpus.rglob("*.xdc")]) if corpus else []
+        if not paths:
+            self.skipTest("SKIPPED: no corpus; EDSC_CORPUS names one")
+        for path in paths:
+            with self.subTest(path=path):
+                self.same_device(path, ".dcf" if path.suffix == ".xdc" else ".eds")
+
+
+class Hooks(CommandLine):
+    """.pre-commit-hooks.yaml, as pre-commit would run its entries: with the names of the changed files behind them."""
+
+    def setUp(self) -> None:
+        super().setUp()
+        text = (SOURCE_DIR / ".pre-commit-hooks.yaml").read_text()
+        fields = re.compile(r"^[- ] (\w+): *(.*)$", re.MULTILINE)
+        self.hooks = {hook["id"]: hook for hook in
+                      (dict(fields.findall("- id:" + part)) for part in text.split("\n- id:")[1:])}
+        environment = {**os.environ, "GIT_CONFIG_GLOBAL": os.devnull}
+        for name in ("a.eds", "b.eds"):
+            self.write(name, self.edsc("format", CLEAN).stdout)
+        for command in ("init -q", "add .", "-c user.name=a -c user.email=a@example.org commit -q -m one"):
+            subprocess.run(["git", *command.split()], cwd=self.folder, check=True, env=environment)
+
+    def hook(self, name: str, *files: str) -> subprocess.CompletedProcess[str]:
+        entry = shlex.split(self.hooks[name]["entry"])
+        self.assertEqual(entry[0], "edsc")
+        for file in files:
+            self.assertRegex(file, self.hooks[name]["files"])
+        return self.edsc(*entry[1:], *files)
+
+    def test_all_are_complete(self) -> None:
+        self.assertEqual(set(self.hooks), {"edsc-check", "edsc-format", "edsc-format-check", "edsc-diff"})
+        for name, hook in self.hooks.items():
+            self.assertLessEqual({"id", "name", "entry", "language", "files"}, set(hook), name)
+            self.assertEqual(hook["language"], "system")
+            self.assertIsNone(re.search(hook["files"], "drive.options.json"))
+
+    def test_pass_on_good_files(self) -> None:
+        for name in self.hooks:
+            with self.subTest(hook=name):
+                self.expect(FINE, self.hook(name, "a.eds", "b.eds"))
+
+    def test_find_what_is_wrong(self) -> None:
+        rough = self.write("a.eds", "; a comment\n" + SMALL.replace("DataType=6\nAccessType=rw", "DataType=6\nAccessType=xy"))
+        before = rough.read_text()
+        self.expect(INPUT_HAS_ERRORS, self.hook("edsc-check", "a.eds", "b.eds"), "access-type")
+        self.expect(INPUT_HAS_ERRORS, self.hook("edsc-format-check", "a.eds", "b.eds"), "a.eds:")
+        self.assertEqual(rough.read_text(), before)
+        self.expect(FINE, self.hook("edsc-format", "a.eds", "b.eds"))
+        self.assertNotEqual(rough.read_text(), before)  # pre-commit stops when a hook changes a file
+        self.write("a.eds", self.edsc("format", CLEAN).stdout.replace("AccessType=rw", "AccessType=ro", 1))
+        self.expect(FINE, self.hook("edsc-diff", "a.eds", "b.eds"), "breaks master")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]], verbosity=2)
