@@ -15,6 +15,7 @@ if(TARGET edsc)
   install(FILES ${shell_files}/edsc.man DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 RENAME edsc.1 COMPONENT program)
   install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${document_dir}/edsc RENAME copyright COMPONENT program)
   install(FILES ${PROJECT_SOURCE_DIR}/docs/rules.md DESTINATION ${document_dir}/edsc COMPONENT program)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/schema DESTINATION ${CMAKE_INSTALL_DATADIR}/edsc COMPONENT program)
 endif()
 
 install(TARGETS edsc_runtime EXPORT edscTargets COMPONENT development)

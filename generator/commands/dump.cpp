@@ -5,6 +5,7 @@
 #include "commands/commands.hpp"
 #include "commands/load_device.hpp"
 #include "device/broken_pdos.hpp"
+#include "render/configured_view.hpp"
 #include "render/view.hpp"
 
 namespace edsc {
@@ -37,6 +38,7 @@ int dump(const Settings& settings) {
   nlohmann::ordered_json view;
   if (loaded->device) {
     view = device_view(*loaded->device);
+    separate_configured_values(loaded->sheet, *loaded->device, view);
     if (settings.cpp) view["cpp"] = cpp_view(*loaded->device, loaded->options, diagnostics);
   }
   print_findings(stderr, diagnostics, settings.color);

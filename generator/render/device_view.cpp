@@ -1,7 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
+#include <canopen/cob_id.hpp>
 
+#include "device/value.hpp"
+#include "render/configured_view.hpp"
 #include "render/information_view.hpp"
 #include "render/view.hpp"
 #include "text/source_file.hpp"
@@ -74,6 +78,27 @@ ordered_json entry_view(const Entry& entry) {
   return view;
 }
 
+/// A communication parameter and what a PDO calls it.
+struct PdoParameter {
+  std::uint8_t sub_index;
+  const char* key;
+};
+
+constexpr PdoParameter pdo_parameters[] = {
+    {1, "cob_id"}, {2, "transmission_type"}, {3, "inhibit_time"}, {5, "event_timer"}, {6, "sync_start_value"},
+};
+
+/// The defaults of the communication parameters that the device has.
+void add_pdo_parameters(const Pdo& pdo, ordered_json& view) {
+  for (const PdoParameter& parameter : pdo_parameters) {
+    const Entry* const entry = pdo.communication != nullptr ? pdo.communication->find(parameter.sub_index) : nullptr;
+    if (entry == nullptr || !entry->default_value) continue;
+    const Value& value = *entry->default_value;
+    if (parameter.sub_index == 1) view["valid"] = canopen::CobId{static_cast<std::uint32_t>(value.bits)}.valid();
+    view[parameter.key] = value_view(value, *entry->type);
+  }
+}
+
 ordered_json pdo_view(const Pdo& pdo) {
   ordered_json view;
   view["direction"] = pdo.direction == PdoDirection::receive ? "receive" : "transmit";
@@ -81,6 +106,7 @@ ordered_json pdo_view(const Pdo& pdo) {
   view["bits"] = pdo.bits();
   view["dynamic"] = pdo.dynamic;
   view["broken"] = pdo.broken;
+  add_pdo_parameters(pdo, view);
   view["line"] = pdo.position.line;
   ordered_json entries = ordered_json::array();
   unsigned offset = 0;
@@ -136,11 +162,46 @@ ordered_json object_view(const Object& object) {
   return view;
 }
 
+/// The fields of an entry; null where it is an element of a compact form whose value nothing overrides.
+struct ValueFields {
+  const Field* default_value = nullptr;
+  const Field* parameter_value = nullptr;
+};
+
+/// The values of the compact form of a DCF are what is configured (CiA 306-1, 5).
+ValueFields value_fields(const Entry& entry, const ObjectDescription& object, bool has_sub_indices) {
+  const auto sub = std::ranges::find(object.sub_objects, entry.sub_index, &SubObjectDescription::sub_index);
+  if (sub != object.sub_objects.end()) return {&sub->default_value, &sub->parameter_value};
+  if (!has_sub_indices) return {&object.default_value, &object.parameter_value};
+  const auto value = std::ranges::find(object.compact_values, entry.sub_index, &NumberedField::number);
+  if (entry.sub_index == 0 || value == object.compact_values.end()) return {};
+  return {&object.default_value, &value->field};
+}
+
+/// What CiA 301 gives the device stays its default.
+void separate(const Entry& entry, const ObjectDescription& object, const Device& device, ordered_json& row) {
+  const ValueFields fields = value_fields(entry, object, device.find(entry.index)->has_sub_indices());
+  if (fields.parameter_value == nullptr || !fields.parameter_value->present || fields.parameter_value->empty()) return;
+  if (!entry.default_value || !entry.default_value->clause.empty()) return;
+  Diagnostics ignored;
+  const auto default_value = parse_value(*fields.default_value, *entry.type, device.node_id, ignored);
+  ordered_json separated;
+  for (auto& [key, value] : row.items()) {
+    if (key != "default_value") {
+      separated[key] = std::move(value);
+      continue;
+    }
+    if (default_value) separated["default_value"] = value_view(*default_value, *entry.type);
+    separated["parameter_value"] = std::move(value);
+  }
+  row = std::move(separated);
+}
+
 }  // namespace
 
 ordered_json device_view(const Device& device) {
   ordered_json view;
-  view["schema"] = 1;
+  view["schema"] = 2;
   const std::string& path = device.source->name();
   view["source"] = path.substr(path.find_last_of('/') + 1);
   view["name"] = device.name;
@@ -162,6 +223,19 @@ ordered_json device_view(const Device& device) {
   for (const Pdo& pdo : device.pdos) pdos.push_back(pdo_view(pdo));
   view["pdos"] = std::move(pdos);
   return view;
+}
+
+void separate_configured_values(const DataSheet& sheet, const Device& device, ordered_json& view) {
+  if (!sheet.is_dcf) return;
+  for (ordered_json& object_row : view["objects"]) {
+    const auto index = object_row["index"].get<std::uint16_t>();
+    const auto object = std::ranges::lower_bound(sheet.objects, index, {}, &ObjectDescription::index);
+    if (object == sheet.objects.end() || object->index != index) continue;
+    for (ordered_json& row : object_row["entries"]) {
+      const Entry* const entry = device.find(index, row["sub_index"].get<std::uint8_t>());
+      if (entry != nullptr) separate(*entry, *object, device, row);
+    }
+  }
 }
 
 }  // namespace edsc

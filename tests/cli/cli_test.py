@@ -535,7 +535,7 @@ class Dump(CommandLine):
         result = self.edsc("dump", GOOD)
         self.expect(FINE, result)
         device = json.loads(result.stdout)
-        self.assertEqual(device["schema"], 1)
+        self.assertEqual(device["schema"], 2)
         self.assertEqual(device["name"], "every_type")
         self.assertEqual(device["product_name"], "Every type")
         objects = {row["index"]: row for row in device["objects"]}

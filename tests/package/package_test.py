@@ -30,6 +30,13 @@ class Arguments(PackageTest):
             self.assertIn(word.format(place), text)
 
 
+class Schemas(PackageTest):
+    def test_are_installed(self) -> None:
+        installed = self.install() / "share/edsc/schema"
+        for path in sorted((SOURCE_DIR / "docs/schema").iterdir()):
+            self.assertEqual((installed / path.name).read_bytes(), path.read_bytes())
+
+
 class CompilerCache(PackageTest):
     @unittest.skipUnless(shutil.which("ccache"), "SKIPPED: ccache is not installed")
     def test_dependencies_of_a_cached_object_are_those_of_this_copy_of_the_project(self) -> None:

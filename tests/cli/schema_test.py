@@ -1,0 +1,162 @@
+#!/usr/bin/env python3
+"""The schemas of docs/schema describe what edsc prints and reads: `edsc dump` over all EDS files, and the options files.
+
+    schema_test.py SOURCE_DIR EDSC [unittest arguments]
+
+The vendors' files are no part of this repository; without them (see corpus_test.py) that part is skipped.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import unittest
+from collections.abc import Iterable
+from pathlib import Path
+
+import jsonschema
+from cli_test import EDSC, FINE, FIXTURES, SMALL, SOURCE_DIR, CommandLine
+
+sys.path.insert(0, str(SOURCE_DIR / "tests/corpus"))
+from corpus_test import find_corpus  # noqa: E402
+
+SCHEMAS = SOURCE_DIR / "docs/schema"
+SUFFIXES = (".eds", ".dcf", ".xdd", ".xdc")
+TPDO = """[1800]
+ParameterName=TPDO communication parameter
+ObjectType=9
+SubNumber=5
+[1800sub0]
+ParameterName=Highest sub-index supported
+DataType=5
+AccessType=const
+DefaultValue=6
+[1800sub1]
+ParameterName=COB-ID
+DataType=7
+AccessType=rw
+DefaultValue=$NODEID+0x40000180
+[1800sub2]
+ParameterName=Transmission type
+DataType=5
+AccessType=rw
+DefaultValue=254
+ParameterValue=1
+[1800sub3]
+ParameterName=Inhibit time
+DataType=6
+AccessType=rw
+DefaultValue=10
+[1800sub5]
+ParameterName=Event timer
+DataType=6
+AccessType=rw
+DefaultValue=500
+[1A00]
+ParameterName=TPDO mapping parameter
+ObjectType=9
+SubNumber=1
+[1A00sub0]
+ParameterName=Number of mapped objects
+DataType=5
+AccessType=const
+DefaultValue=0
+"""
+
+
+def validator(name: str) -> jsonschema.Draft202012Validator:
+    return jsonschema.Draft202012Validator(json.loads((SCHEMAS / f"{name}.schema.json").read_text()))
+
+
+class Schemas(unittest.TestCase):
+    def test_are_schemas_with_a_name_of_their_own(self) -> None:
+        names = set()
+        for path in sorted(SCHEMAS.glob("*.json")):
+            schema = json.loads(path.read_text())
+            jsonschema.Draft202012Validator.check_schema(schema)
+            self.assertEqual(schema["$id"], f"urn:edsc:schema:{path.name.removesuffix('.schema.json')}")
+            names.add(schema["$id"])
+        self.assertGreaterEqual(len(names), 8)
+
+
+class Options(unittest.TestCase):
+    def test_files_of_this_repository_fit(self) -> None:
+        options = validator("options")
+        paths = [path for folder in ("eds", "tests", "examples") for path in (SOURCE_DIR / folder).rglob("*.options.json")]
+        self.assertGreaterEqual(len(paths), 15)
+        for path in paths:
+            with self.subTest(path=path):
+                options.validate(json.loads(path.read_text()))
+
+    def test_that_are_wrong_do_not(self) -> None:
+        for wrong in ({"no_such_member": 1}, {"settable": 1}, {"names": {"1017": "Not A Name"}}):
+            with self.assertRaises(jsonschema.ValidationError):
+                validator("options").validate(wrong)
+
+
+class Dump(CommandLine):
+    def check(self, paths: Iterable[Path], *options: str) -> int:
+        device = validator("device")
+        count = 0
+        for path in paths:
+            with self.subTest(path=path):
+                result = subprocess.run([EDSC, "dump", path, "--keep-going", *options], capture_output=True, timeout=120)
+                if result.stdout:
+                    device.validate(json.loads(result.stdout))
+                    count += 1
+        return count
+
+    def test_of_the_reference_devices_fits(self) -> None:
+        self.assertEqual(self.check((SOURCE_DIR / "eds").glob("*.eds")), 8)
+        self.assertEqual(self.check((SOURCE_DIR / "eds").glob("*.eds"), "--node-id", "5", "--cpp"), 8)
+
+    def test_of_the_fixtures_fits(self) -> None:
+        paths = [path for path in FIXTURES.iterdir() if path.suffix in SUFFIXES]
+        self.assertGreaterEqual(self.check(paths), 20)
+
+    def test_of_vendors_files_fits(self) -> None:
+        corpus = find_corpus(SOURCE_DIR)
+        if corpus is None:
+            self.skipTest("SKIPPED: no corpus; EDSC_CORPUS names one")
+        paths = sorted(path for path in corpus.rglob("*") if path.suffix.lower() in SUFFIXES)
+        self.assertGreaterEqual(self.check(paths), 130)
+
+    def dump(self, name: str, text: str, *options: str) -> dict:
+        result = self.edsc("dump", self.write(name, text), *options)
+        self.expect(FINE, result)
+        device = json.loads(result.stdout)
+        validator("device").validate(device)
+        return device
+
+    def test_shows_default_and_parameter_value_of_a_dcf(self) -> None:
+        text = SMALL.replace("DataType=6\nAccessType=rw", "DataType=6\nAccessType=rw\nDefaultValue=100\nParameterValue=200")
+        heartbeat = self.entry(self.dump("node.dcf", text), 0x1017, 0)
+        self.assertEqual((heartbeat["default_value"], heartbeat["parameter_value"]), (100, 200))
+        without_default = self.entry(self.dump("node.dcf", text.replace("DefaultValue=100\n", "")), 0x1017, 0)
+        self.assertNotIn("default_value", without_default)
+        self.assertEqual(without_default["parameter_value"], 200)
+        in_eds = self.entry(self.dump("node.eds", text), 0x1017, 0)
+        self.assertEqual(in_eds["default_value"], 100)
+        self.assertNotIn("parameter_value", in_eds)
+
+    def test_shows_the_communication_parameters_of_pdos(self) -> None:
+        text = SMALL + TPDO
+        pdo = self.dump("pdo.eds", text)["pdos"][0]
+        expected = {"valid": True, "cob_id": "$NODEID+0x40000180", "transmission_type": 254, "inhibit_time": 10,
+                    "event_timer": 500}
+        self.assertEqual({key: pdo[key] for key in expected}, expected)
+        self.assertNotIn("sync_start_value", pdo)
+        of_node = self.dump("pdo.dcf", text, "--node-id", "5")["pdos"][0]
+        self.assertEqual((of_node["cob_id"], of_node["transmission_type"]), (0x40000185, 1))
+        off = self.dump("pdo.eds", text.replace("$NODEID+0x40000180", "0x80000000"))["pdos"][0]
+        self.assertFalse(off["valid"])
+
+    @staticmethod
+    def entry(device: dict, index: int, sub_index: int) -> dict:
+        return next(entry for entry in next(one for one in device["objects"] if one["index"] == index)["entries"]
+                    if entry["sub_index"] == sub_index)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]], verbosity=2)
