@@ -13,7 +13,7 @@
 namespace edsc {
 namespace {
 
-struct KeyRow {
+struct SpelledKey {
   std::string_view name;
   ValueKind value = ValueKind::text;
   std::uint8_t hex_digits = 1;
@@ -24,13 +24,13 @@ constexpr std::uint8_t unsigned8 = 2;
 constexpr std::uint8_t unsigned16 = 4;
 constexpr std::uint8_t unsigned32 = 8;
 
-constexpr KeyRow file_info[] = {
+constexpr SpelledKey file_info[] = {
     {"FileName"},     {"FileVersion"}, {"FileRevision"},     {"EDSVersion"},       {"Description"}, {"CreationTime"},
     {"CreationDate"}, {"CreatedBy"},   {"ModificationTime"}, {"ModificationDate"}, {"ModifiedBy"},  {"LastEDS"},
 };
 
 /// BaudRate_N stands in the place of the row that ends in `#`.
-constexpr KeyRow device_info[] = {
+constexpr SpelledKey device_info[] = {
     {"VendorName"},
     {"VendorNumber", ValueKind::number, unsigned32},
     {"ProductName"},
@@ -54,7 +54,7 @@ constexpr KeyRow device_info[] = {
     {"CANopenSafetySupported"},
 };
 
-constexpr KeyRow commissioning[] = {
+constexpr SpelledKey commissioning[] = {
     {"NodeID", ValueKind::number, unsigned8},
     {"NodeName"},
     {"NodeRefd"},
@@ -66,19 +66,19 @@ constexpr KeyRow commissioning[] = {
     {"LSS_SerialNumber", ValueKind::number, unsigned32},
 };
 
-constexpr KeyRow dummy_usage[] = {{"Dummy%", ValueKind::number}};
+constexpr SpelledKey dummy_usage[] = {{"Dummy%", ValueKind::number}};
 
-constexpr KeyRow comments[] = {{"Lines"}, {"Line#"}};
+constexpr SpelledKey comments[] = {{"Lines"}, {"Line#"}};
 
-constexpr KeyRow object_list[] = {{"SupportedObjects", ValueKind::count}, {"#", ValueKind::number, unsigned16}};
+constexpr SpelledKey object_list[] = {{"SupportedObjects", ValueKind::count}, {"#", ValueKind::number, unsigned16}};
 
-constexpr KeyRow compact_values[] = {{"NrOfEntries", ValueKind::count}, {"#", ValueKind::typed}};
+constexpr SpelledKey compact_values[] = {{"NrOfEntries", ValueKind::count}, {"#", ValueKind::typed}};
 
-constexpr KeyRow object_links[] = {{"ObjectLinks", ValueKind::count}, {"#", ValueKind::number, unsigned16}};
+constexpr SpelledKey object_links[] = {{"ObjectLinks", ValueKind::count}, {"#", ValueKind::number, unsigned16}};
 
-constexpr KeyRow compact_texts[] = {{"NrOfEntries", ValueKind::count}, {"#"}};
+constexpr SpelledKey compact_texts[] = {{"NrOfEntries", ValueKind::count}, {"#"}};
 
-constexpr KeyRow object[] = {
+constexpr SpelledKey object[] = {
     {"ParameterName"},
     {"ObjectType", ValueKind::number},
     {"SubNumber", ValueKind::number, 1, false},
@@ -104,7 +104,7 @@ constexpr KeyRow object[] = {
 struct SectionRow {
   SectionKind kind;
   std::string_view title;  ///< of an object what follows the index
-  std::span<const KeyRow> keys;
+  std::span<const SpelledKey> keys;
 };
 
 constexpr SectionRow sections[] = {
@@ -143,7 +143,7 @@ struct RowMatch {
 };
 
 /// Whether a key is that of the row: `#` stands for a number, `%` for four hexadecimal digits.
-std::optional<RowMatch> match(const KeyRow& row, std::string_view key) {
+std::optional<RowMatch> match(const SpelledKey& row, std::string_view key) {
   const char last = row.name.back();
   if (last != '#' && last != '%') {
     return equal_ignoring_case(row.name, key) ? std::optional{RowMatch{std::string{row.name}, 0}} : std::nullopt;
@@ -165,7 +165,7 @@ std::optional<RowMatch> match(const KeyRow& row, std::string_view key) {
 KeySpelling spell_key(SectionKind section, std::string_view key) {
   const SectionRow* const known = find_section(section);
   std::uint32_t order = 0;
-  for (const KeyRow& row : known != nullptr ? known->keys : std::span<const KeyRow>{}) {
+  for (const SpelledKey& row : known != nullptr ? known->keys : std::span<const SpelledKey>{}) {
     const bool belongs_here = row.in_sub_objects || section != SectionKind::sub_object;
     if (const auto found = belongs_here ? match(row, key) : std::nullopt) {
       return {order + found->number, found->name, row.value, row.hex_digits, found->number, true};
