@@ -135,12 +135,15 @@ int format_file(const Settings& settings, const std::string& path) {
     fmt::print(stderr, "edsc: {}\n", error);
     return exit_wrong_usage;
   }
-  if (is_xml(*input.file) && (settings.check || settings.in_place)) {
-    fmt::print(stderr, "edsc: {}: an XDD or XDC does not have a canonical form; -o FILE makes an EDS or DCF of it\n", path);
-    return exit_input_has_errors;
-  }
   Diagnostics diagnostics;
-  if (is_xml(*input.file)) convert(settings, input, diagnostics);
+  if (is_xml(*input.file)) {
+    if (settings.check || settings.in_place) {
+      diagnostics.error("xml-file", {input.file.get()},
+                        "XML does not have a canonical form; -o FILE makes an EDS or DCF of an XDD or XDC");
+    } else {
+      convert(settings, input, diagnostics);
+    }
+  }
   if (input.has_values_for_eds) {
     fmt::print(stderr, "edsc: {}: an XDC has the values of one node, which an EDS does not have; name the output .dcf\n", path);
     return exit_wrong_usage;

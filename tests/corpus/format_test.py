@@ -119,10 +119,22 @@ def options_of(path: Path) -> tuple[str | Path, ...]:
 
 
 def configured(view: object) -> object:
-    """Without the sections that a DCF has of its own."""
+    """Without the sections that a DCF has of its own, and with the values that the device starts with."""
     if not isinstance(view, dict):
         return view
-    return {key: value for key, value in view.items() if key not in ("commissioning", "file_info")}
+    return {key: effective_values(value) for key, value in view.items() if key not in ("commissioning", "file_info")}
+
+
+def effective_values(view: object) -> object:
+    """Each ParameterValue in the place of the DefaultValue that it replaces."""
+    if isinstance(view, dict):
+        effective = {key: effective_values(value) for key, value in view.items()}
+        if "parameter_value" in effective:
+            effective["default_value"] = effective.pop("parameter_value")
+        return effective
+    if isinstance(view, list):
+        return [effective_values(element) for element in view]
+    return view
 
 
 def check_canonical(edsc: Path, path: Path, formatted: bytes, folder: Path) -> list[str]:

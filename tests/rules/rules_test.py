@@ -218,7 +218,7 @@ def run(edsc: Path, folder: Path, example: Example, kind: str, base: str) -> tup
         if any(line.column for line in options.lines):
             marked = options.lines
     command = block.option("command", "check")
-    arguments = {"check": [], "generate": ["-o", "out"], "format": ["-o", "out.eds"]}[command]
+    arguments = {"check": [], "generate": ["-o", "out"], "format": ["--check"]}[command]
     result = subprocess.run([edsc, command, file, *arguments], cwd=folder, capture_output=True, text=True, timeout=600)
     column = int(block.option("column", "0"))
     place = next((Place(n, column or line.column) for n, line in enumerate(marked, 1) if line.column), Place(1, 1))
