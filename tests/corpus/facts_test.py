@@ -87,6 +87,8 @@ def value_of(device: dict, fact: Fact) -> object:
         return found is not None
     if found is None:
         raise LookupError("there is no such entry")
+    if key == "default" and "parameter_value" in found:  # a DCF's value takes the place of the default
+        return found["parameter_value"]
     return found.get(MEMBERS.get(key, key), 0 if key == "obj_flags" else None)
 
 
