@@ -32,6 +32,10 @@ constexpr IoKind io_kinds[] = {
 
 constexpr std::uint32_t all_io_kinds = 0x000F'0000;
 
+// clang 14 crashes where a conditional expression looks up a rule.
+constexpr AnyRule missing_object{"profile-401-object"};
+constexpr AnyRule unnamed_kind{"io-kinds"};
+
 void check_io_modules(const RuleContext& context, const Entry& device_type) {
   const auto bits = static_cast<std::uint32_t>(device_type.default_value->bits);
   if ((bits & all_io_kinds) == 0) {
@@ -47,7 +51,7 @@ void check_io_modules(const RuleContext& context, const Entry& device_type) {
                                                    kind.name, kind.bit, index_label(kind.usual))
                                      : fmt::format("there are objects of {}, but {} does not name them (bit {})",
                                                    kind.name, named(device_type), kind.bit);
-    context.report(said ? AnyRule{"profile-401-object"} : AnyRule{"io-kinds"}, default_place(device_type), message);
+    context.report(said ? missing_object : unnamed_kind, default_place(device_type), message);
   }
 }
 
