@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "fuzz.hpp"
+#include "steps.hpp"
 
 namespace edsc::fuzz {
 namespace {
@@ -18,9 +19,7 @@ using canopen::LssOutcome;
 using canopen::NodeId;
 using canopen::TimePoint;
 
-struct Bus {
-  unsigned room = 1000;
-  unsigned sent = 0;
+struct Bus : Room {
   std::uint8_t last = 0;  ///< command byte
 
   bool send(const Frame& frame) {
@@ -36,22 +35,12 @@ struct Bus {
       const bool has_word = (command >= 0x40 && command <= 0x4B);
       for (std::size_t i = has_word ? 5 : 3; i < 8; ++i) require(frame.data[i] == 0, "reserved bytes are 0");
     }
-    if (room == 0) return false;
+    if (!take()) return false;
     const bool follows = (command > 0x40 && command <= 0x43) || (command > 0x46 && command <= 0x4B);
     require(!follows || last + 1 == command, "the frames of a sequence come in order");
     last = command;
-    --room;
-    ++sent;
     return true;
   }
-};
-
-struct Step {
-  std::uint8_t what;
-  std::uint8_t choice;
-  std::array<std::uint8_t, 8> data;
-  std::uint8_t number;
-  std::uint8_t other;
 };
 
 constexpr std::uint8_t answers[] = {0x11, 0x13, 0x17, 0x44, 0x4F, 0x4F, 0x4F, 0x50, 0x5A, 0x5B, 0x5C, 0x5D, 0x5E};
@@ -89,9 +78,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Bus bus;
   Master master{bus};
   TimePoint now{};
-  for (; size >= sizeof(Step); data += sizeof(Step), size -= sizeof(Step)) {
-    Step step;
-    std::memcpy(&step, data, sizeof step);
+  for (const Step& step : Steps{data, size}) {
     bus.sent = 0;
     switch (step.what % 8) {
       case 0:

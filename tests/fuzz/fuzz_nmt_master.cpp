@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "fuzz.hpp"
+#include "steps.hpp"
 
 namespace edsc::fuzz {
 namespace {
@@ -28,10 +29,8 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t slave_count = 4;  // node-IDs 1 to 4; 3 is in the list without being a slave
 
-struct World {
+struct World : Room {
   std::array<NmtSlave, slave_count> slaves{};
-  unsigned room = 1000;
-  unsigned sent = 0;
   NodeId commanded{};  ///< by the application, in this step
   bool by_application = false;
   std::map<std::uint8_t, NmtState> told{};
@@ -70,10 +69,7 @@ struct Bus {
               "a master that boots a slave reads, and writes 1017h");
       require(specifier != 1 || world.slaves[(frame.id & 0x7F) - 1].heartbeat_time != 0, "who is guarded has no heartbeat");
     }
-    if (world.room == 0) return false;
-    --world.room;
-    ++world.sent;
-    return true;
+    return world.take();
   }
 };
 
@@ -115,14 +111,6 @@ struct Host {
     }
   }
   void boot_time_elapsed() const { require(!world.network_started, "somebody is missing when the time is over"); }
-};
-
-struct Step {
-  std::uint8_t what;
-  std::uint8_t choice;
-  std::array<std::uint8_t, 8> data;
-  std::uint8_t number;
-  std::uint8_t other;
 };
 
 constexpr NmtCommand commands[] = {NmtCommand::start, NmtCommand::stop, NmtCommand::enter_pre_operational,
@@ -192,9 +180,7 @@ class Run {
   void steps(const std::uint8_t* data, std::size_t size) {
     canopen::NmtMaster<Bus, slave_count, Host> master{bus, world.slaves, start_up, canopen::Duration{100ms},
                                                       Host{world}};
-    for (; size >= sizeof(Step); data += sizeof(Step), size -= sizeof(Step)) {
-      Step step;
-      std::memcpy(&step, data, sizeof step);
+    for (const Step& step : Steps{data, size}) {
       one(master, step);
       check(master);
     }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fuzz.hpp"
+#include "steps.hpp"
 
 namespace edsc::fuzz {
 namespace {
@@ -19,25 +20,11 @@ using canopen::AbortCode;
 using canopen::Frame;
 using canopen::TimePoint;
 
-struct Bus {
-  unsigned room = 1000;
-  unsigned sent = 0;
-
+struct Bus : Room {
   bool send(const Frame& frame) {
     require(frame.id == 0x605 && frame.size == 8 && !frame.extended && !frame.remote, "requests go to the node");
-    if (room == 0) return false;
-    --room;
-    ++sent;
-    return true;
+    return take();
   }
-};
-
-struct Step {
-  std::uint8_t what;
-  std::uint8_t choice;
-  std::array<std::uint8_t, 8> data;
-  std::uint8_t number;
-  std::uint8_t other;
 };
 
 using Remote = canopen::RemoteNode<sample::Device, Bus>;
@@ -130,9 +117,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   TimePoint now{};
   std::vector<std::uint8_t> memory;
   std::uint8_t entry = 0;
-  for (; size >= sizeof(Step); data += sizeof(Step), size -= sizeof(Step)) {
-    Step step;
-    std::memcpy(&step, data, sizeof step);
+  for (const Step& step : Steps{data, size}) {
     bus.sent = 0;
     switch (step.what % 8) {
       case 0:

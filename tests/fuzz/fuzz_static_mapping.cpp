@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "fuzz.hpp"
+#include "steps.hpp"
 
 namespace edsc::fuzz {
 namespace {
@@ -26,24 +27,15 @@ using canopen::TimePoint;
 
 struct Bus {
   std::vector<Frame> sent{};
-  unsigned room = 1000;
+  Room room{};
   bool send(const Frame& frame) {
     require(frame.size <= 8 && !frame.remote, "data frames have up to eight bytes");
     const bool own = frame.id == 0x585 || frame.id == 0x705;
     require(frame.extended || own || !is_restricted(frame.id), "no service uses a restricted CAN-ID");
-    if (room == 0) return false;
-    --room;
+    if (!room.take()) return false;
     sent.push_back(frame);
     return true;
   }
-};
-
-struct Step {
-  std::uint8_t what;
-  std::uint8_t choice;
-  std::array<std::uint8_t, 8> data;
-  std::uint8_t number;
-  std::uint8_t other;
 };
 
 // Entries that exist in both and are no mapping.
@@ -107,9 +99,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   TimePoint now{};
   dynamic_node.start(now);
   static_node.start(now);
-  for (; size >= sizeof(Step); data += sizeof(Step), size -= sizeof(Step)) {
-    Step step;
-    std::memcpy(&step, data, sizeof step);
+  for (const Step& step : Steps{data, size}) {
     switch (step.what % 8) {
       case 0:
       case 1:
@@ -139,7 +129,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                 "both take the same");
         break;
       }
-      default: dynamic_bus.room = static_bus.room = (step.choice & 3) == 0 ? step.number & 3u : 1000; break;
+      default: dynamic_bus.room.room = static_bus.room.room = (step.choice & 3) == 0 ? step.number & 3u : 1000; break;
     }
     require(dynamic_bus.sent.size() <= 400, "what a node sends at once is bounded");
     require(dynamic_bus.sent == static_bus.sent, "both send the same frames");
