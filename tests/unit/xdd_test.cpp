@@ -214,8 +214,8 @@ TEST(XddParameter, SpellsTheAccessAsAnEdsDoes) {
                                   {"write", "wo"},           {"readWrite", "rw"},
                                   {"readWriteInput", "rwr"}, {"readWriteOutput", "rww"}};
   for (const AccessCase& one : cases) {
-    const ReadXdd read(Profile{referring_object, parameter("<INT/>", "access='" + std::string{one.word} + "'"), "", ""});
-    EXPECT_EQ(read.object().access_type.text, one.access_type);
+    const ReadXdd document(Profile{referring_object, parameter("<INT/>", "access='" + std::string{one.word} + "'"), "", ""});
+    EXPECT_EQ(document.object().access_type.text, one.access_type);
   }
   const ReadXdd none(Profile{referring_object, parameter("<INT/>", "access='noAccess'"), "", ""});
   EXPECT_EQ(none.object().access_type.text, "ro");
