@@ -1,13 +1,17 @@
 /// edsc: the compiler for CANopen Electronic Data Sheets.
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <cstdio>
 #include <exception>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "commands/commands.hpp"
-#include "diagnostics/excerpt.hpp"
+#include "commands/output.hpp"
 #include "diagnostics/quote.hpp"
+#include "text/printable.hpp"
 #include "text/suggestion.hpp"
 
 namespace {
@@ -43,14 +47,21 @@ bool report_unknown_command(const CLI::App& app) {
   for (const CLI::App* const command : commands_of(app)) names.push_back(command->get_name());
   const auto words = app.remaining(false);
   if (names.empty() || words.empty() || words.front().starts_with('-')) return false;
-  fmt::print(stderr, "{}: unknown command {}{}\n", app.get_parent() == nullptr ? "edsc" : "edsc " + app.get_name(),
-             edsc::printable(edsc::quote(words.front())), edsc::did_you_mean(words.front(), names));
+  edsc::print_visibly(stderr, "{}: unknown command {}{}\n", app.get_parent() == nullptr ? "edsc" : "edsc " + app.get_name(),
+                      edsc::quote(words.front()), edsc::did_you_mean(words.front(), names));
   return true;
+}
+
+/// What standard output does not take is reported at the end.
+int report(const std::exception& problem) {
+  if (std::ferror(stdout) == 0) edsc::print_visibly(stderr, "edsc: {}\n", problem.what());
+  return edsc::exit_wrong_usage;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  edsc::occupy_standard_descriptors();
   CLI::App app{"edsc compiles CANopen Electronic Data Sheets (EDS, DCF) to checked C++20."};
   app.name("edsc");
   app.set_version_flag("--version", "edsc " EDSC_VERSION);
@@ -61,14 +72,19 @@ int main(int argc, char** argv) {
     row.add(app, exit_code);
     app.get_subcommands([](CLI::App*) { return true; }).back()->group(row.group);
   }
+  int output_error = 0;
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& problem) {
     if (report_unknown_command(app)) return edsc::exit_wrong_usage;
-    return app.exit(problem) == 0 ? edsc::exit_fine : edsc::exit_wrong_usage;
+    errno = 0;
+    exit_code = app.exit(problem) == 0 ? edsc::exit_fine : edsc::exit_wrong_usage;
+    output_error = errno;
+  } catch (const std::system_error& problem) {
+    output_error = problem.code().value();
+    exit_code = report(problem);
   } catch (const std::exception& problem) {
-    fmt::print(stderr, "edsc: {}\n", problem.what());
-    return edsc::exit_wrong_usage;
+    exit_code = report(problem);
   }
-  return exit_code;
+  return edsc::finish_output(output_error) ? exit_code : edsc::exit_wrong_usage;
 }

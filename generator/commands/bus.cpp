@@ -8,6 +8,8 @@
 #include "bus_server/bus_server.hpp"
 #include "bus_server/candump_line.hpp"
 #include "commands/commands.hpp"
+#include "commands/output.hpp"
+#include "text/printable.hpp"
 
 namespace edsc {
 namespace {
@@ -62,15 +64,15 @@ int serve(const Settings& settings) {
   const EndingSignals signals;
   BusEvents events;
   events.on_frame = [&settings](const canopen::Frame& frame, const std::string& bus, socketcand::TimeStamp time) {
-    if (settings.log) fmt::print("{}\n", candump_line(frame, bus, time));
+    if (settings.log) print_visibly(stdout, "{}\n", candump_line(frame, bus, time));
   };
-  events.on_trouble = [](const std::string& message) { fmt::print(stderr, "edsc bus: {}\n", message); };
+  events.on_trouble = [](const std::string& message) { print_visibly(stderr, "edsc bus: {}\n", message); };
   BusServer server{address, settings.buses, settings.limits, std::move(events)};
   for (const std::string& bus : settings.buses) {
-    fmt::print(settings.log ? stderr : stdout, "socketcand:{}/{}\n", to_text(server.address()), bus);
+    print_visibly(settings.log ? stderr : stdout, "socketcand:{}/{}\n", to_text(server.address()), bus);
   }
   while (!stop) {
-    std::fflush(stdout);
+    flush_output();
     server.turn(std::chrono::minutes{1}, signals.while_waiting());
   }
   return exit_fine;

@@ -12,6 +12,7 @@
 #include "diagnostics/rule.hpp"
 #include "diagnostics/sarif.hpp"
 #include "diagnostics/unknown_rule.hpp"
+#include "text/printable.hpp"
 
 namespace edsc {
 namespace {
@@ -55,7 +56,7 @@ int explain(const Rule& rule, const std::string& format) {
     fmt::print("{}: {}\n{}\nSource: {}\nDocumentation, with examples: {}\n", rule.id, to_string(rule.severity),
                rule.meaning, rule.source, url_of(rule));
   } else {
-    fmt::print("{}\n", to_json(rule).dump(2));
+    fmt::print("{}\n", json_text(to_json(rule)));
   }
   return exit_fine;
 }
@@ -64,11 +65,11 @@ int list_rules(const std::string& format) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (const Rule& rule : all_rules()) {
     if (format == "text") {
-      fmt::print("{:<28} {:<8} {} ({})\n", rule.id, to_string(rule.severity), rule.meaning, rule.source);
+      print_visibly(stdout, "{:<28} {:<8} {} ({})\n", rule.id, to_string(rule.severity), rule.meaning, rule.source);
     }
     rows.push_back(to_json(rule));
   }
-  if (format != "text") fmt::print("{}\n", rows.dump(2));
+  if (format != "text") fmt::print("{}\n", json_text(rows));
   return exit_fine;
 }
 
@@ -92,9 +93,8 @@ class Report {
   }
 
   void finish() const {
-    constexpr auto replace = nlohmann::json::error_handler_t::replace;
-    if (format_ == "json") fmt::print("{}\n", json_.dump(2, ' ', false, replace));
-    if (format_ == "sarif") fmt::print("{}\n", sarif_.document().dump(2, ' ', false, replace));
+    if (format_ == "json") fmt::print("{}\n", json_text(json_));
+    if (format_ == "sarif") fmt::print("{}\n", json_text(sarif_.document()));
   }
 
  private:
@@ -130,7 +130,7 @@ int check(const Settings& settings) {
   if (settings.list_rules) return list_rules(settings.format);
   if (!settings.explained_rule.empty()) return explain(*find_rule(settings.explained_rule), settings.format);
   if (settings.paths.empty()) {
-    fmt::print(stderr, "edsc check: FILE is required\n");
+    print_visibly(stderr, "edsc check: FILE is required\n");
     return exit_wrong_usage;
   }
   int exit_code = exit_fine;

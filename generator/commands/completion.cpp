@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <memory>
+
 #include "commands/command_description.hpp"
 #include "commands/commands.hpp"
 

@@ -18,6 +18,7 @@
 #include "live/live_bus.hpp"
 #include "live/progress_line.hpp"
 #include "text/counted.hpp"
+#include "text/printable.hpp"
 
 namespace edsc {
 namespace {
@@ -98,7 +99,7 @@ LiveEntry entry_or_address(const Device* device, std::uint16_t index, std::uint8
 }
 
 bool refuse(const std::string& sentence) {
-  fmt::print(stderr, "edsc: {}\n", sentence);
+  print_visibly(stderr, "edsc: {}\n", sentence);
   return false;
 }
 
@@ -198,7 +199,7 @@ std::string written_by(const ConfigurationStep& step) {
 
 void print_steps(const std::vector<ConfigurationStep>& steps) {
   for (const ConfigurationStep& step : steps) {
-    fmt::print("{:<10}  {}{}\n", verb_of(step.kind), title(step.entry), written_by(step));
+    print_visibly(stdout, "{:<10}  {}{}\n", verb_of(step.kind), title(step.entry), written_by(step));
   }
 }
 
@@ -218,7 +219,7 @@ void print_withheld(const Work& work, bool compared) {
     const std::string what = compared ? change_text(change)
                                       : title(change.value.entry) + " = " +
                                             shown(change.value.entry, change.value.bytes);
-    fmt::print(stderr, "edsc: not written, the node's own node-ID or bit rate: {} (--node-id-and-bit-rate writes it)\n",
+    print_visibly(stderr, "edsc: not written, the node's own node-ID or bit rate: {} (--node-id-and-bit-rate writes it)\n",
                what);
   }
 }
@@ -263,9 +264,9 @@ std::string place_of_value(const ConfigurationValue* value) {
 void print_failures(const ConfigurationResult& result, const Ending& ending) {
   for (const ConfigurationFailure& failure : result.failures) {
     const std::string wanted = failure.value == nullptr ? "" : " = " + shown(failure.entry, failure.value->bytes);
-    fmt::print(stderr, "{}{}{}: {}\n", place_of_value(failure.value), title(failure.entry), wanted, failure.what);
+    print_visibly(stderr, "{}{}{}: {}\n", place_of_value(failure.value), title(failure.entry), wanted, failure.what);
   }
-  for (const std::string& problem : ending.problems) fmt::print(stderr, "edsc: {}\n", problem);
+  for (const std::string& problem : ending.problems) print_visibly(stderr, "edsc: {}\n", problem);
 }
 
 std::string compared_text(const Work& work) {
@@ -292,7 +293,7 @@ void print_summary(const Settings& settings, const Configuration& configuration,
   if (!work.withheld.empty()) text += fmt::format(", {} not written (node-ID, bit rate)", work.withheld.size());
   if (ending.time_written) text += ", 1020h written";
   if (ending.stored) text += ", stored";
-  fmt::print("{}\n", text);
+  print_visibly(stdout, "{}\n", text);
 }
 
 Json entry_json(const LiveEntry& entry, const ConfigurationValue* value) {
@@ -349,7 +350,7 @@ void print_json(const Settings& settings, const Configuration& configuration, co
     row["text"] = failure.what;
     json["failures"].push_back(std::move(row));
   }
-  fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+  fmt::print("{}\n", json_text(json));
 }
 
 /// Behind all values: when they were made, and that they stay.
@@ -430,7 +431,7 @@ int configure(LiveBus& bus, const Settings& settings, const Configuration& confi
   Ending ending;
   if (!is_right_device(bus, node, settings, configuration, ending)) return exit_device_failed;
   if (!ending.not_compared.empty()) {
-    fmt::print(stderr, "edsc: node {}: not compared: {}\n", settings.node, ending.not_compared);
+    print_visibly(stderr, "edsc: node {}: not compared: {}\n", settings.node, ending.not_compared);
   }
   ConfigurationHooks hooks{{}, [&] { return watch.restarted(); }};
   /// Shows how far the work is, as long as it lasts.
@@ -451,14 +452,14 @@ int configure(LiveBus& bus, const Settings& settings, const Configuration& confi
   const bool text = settings.format == "text";
   const auto steps = plan_configuration(work->values, configuration.device());
   if (text) {
-    for (const Change& change : work->changes) fmt::print("{}\n", change_text(change));
+    for (const Change& change : work->changes) print_visibly(stdout, "{}\n", change_text(change));
     std::fflush(stdout);
   }
   print_withheld(*work, !settings.all);
   ending.nothing_differs = !settings.all && work->changes.empty() && work->withheld.empty();
   ConfigurationResult result;
   if (settings.dry_run) {
-    if (text && !steps.empty()) fmt::print("steps:\n");
+    if (text && !steps.empty()) print_visibly(stdout, "steps:\n");
     if (text) print_steps(steps);
   } else {
     if (!steps.empty() && !settings.keep_state) enter_pre_operational(bus, node);

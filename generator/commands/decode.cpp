@@ -14,6 +14,7 @@
 #include "decode/log_reader.hpp"
 #include "device/broken_pdos.hpp"
 #include "eds/number.hpp"
+#include "text/printable.hpp"
 
 namespace edsc {
 namespace {
@@ -133,7 +134,7 @@ void write_all(int descriptor, std::string& text) {
     const ssize_t count = ::write(descriptor, rest.data(), rest.size());
     if (count < 0 && errno == EINTR) continue;
     if (count < 0 && errno == EPIPE) throw OutputClosed{};
-    if (count < 0) throw Refused{fmt::format("the output cannot be written: {}", std::strerror(errno))};
+    if (count < 0) throw Refused{fmt::format("cannot write to standard output: {}", std::strerror(errno))};
     rest.remove_prefix(static_cast<std::size_t>(count));
   }
   text.clear();
@@ -211,7 +212,7 @@ int decode(const Settings& settings) {
     const Nodes nodes = load_nodes(settings);
     return decode_log(settings, nodes);
   } catch (const Refused& refused) {
-    fmt::print(stderr, "edsc decode: {}\n", refused.sentence);
+    print_visibly(stderr, "edsc decode: {}\n", refused.sentence);
     return exit_wrong_usage;
   } catch (const OutputClosed&) {
     return exit_fine;

@@ -9,6 +9,7 @@
 #include "commands/load_device.hpp"
 #include "compare/compare_devices.hpp"
 #include "compare/print_changes.hpp"
+#include "text/printable.hpp"
 
 namespace edsc {
 namespace {
@@ -89,7 +90,7 @@ std::optional<std::vector<Pair>> load_pairs(const Settings& settings) {
     if (committed.source) {
       pair.before = load_committed(std::move(committed.source), revision, path, settings);
     } else if (!committed.is_missing || !settings.allow_new) {
-      fmt::print(stderr, "edsc: {}\n", committed.error);
+      print_visibly(stderr, "edsc: {}\n", committed.error);
     }
     pair.after = load(path, settings);
     const bool is_new = committed.is_missing && settings.allow_new;
@@ -123,7 +124,7 @@ int diff(const Settings& settings) {
     all.append(std::move(pair.changes));
   }
   if (settings.format == "json") {
-    fmt::print("{}\n", changes_as_json(all).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    fmt::print("{}\n", json_text(changes_as_json(all)));
   } else if (settings.format == "text") {
     fmt::print("{}", changes_as_text(all, settings.color.on(stdout)));
   }

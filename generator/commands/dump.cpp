@@ -7,6 +7,7 @@
 #include "device/broken_pdos.hpp"
 #include "render/configured_view.hpp"
 #include "render/view.hpp"
+#include "text/printable.hpp"
 
 namespace edsc {
 namespace {
@@ -45,7 +46,7 @@ int dump(const Settings& settings) {
   if (loaded->unreadable) return exit_wrong_usage;
   const bool failed = !loaded->device || is_incomplete(diagnostics);
   if (!failed) {
-    fmt::print("{}\n", view.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    fmt::print("{}\n", json_text(view));
   }
   return failed ? exit_input_has_errors : exit_fine;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "commands/commands.hpp"
+#include "commands/output.hpp"
 #include "device/resolve.hpp"
 #include "format/canonical_form.hpp"
 #include "format/concise_dcf.hpp"
@@ -13,6 +14,7 @@
 #include "format/sheet_document.hpp"
 #include "render/write_files.hpp"
 #include "text/ini.hpp"
+#include "text/printable.hpp"
 #include "text/source_file.hpp"
 #include "xdd/read_xdd.hpp"
 
@@ -109,19 +111,17 @@ int check(const SourceFile& source, const std::string& text) {
   if (source.is_verbatim() && source.text() == text) return exit_fine;
   const auto [in_file, in_text] = std::ranges::mismatch(source.text(), text);
   const auto line = std::count(source.text().begin(), in_file, '\n') + 1;
-  fmt::print(stderr, "{}:{}: the canonical form differs from here on\n", source.name(), line);
+  print_visibly(stderr, "{}:{}: the canonical form differs from here on\n", source.name(), line);
   return exit_input_has_errors;
 }
 
 int write(const std::string& path, std::string content) {
   if (path.empty()) {
-    const bool written =
-        std::fwrite(content.data(), 1, content.size(), stdout) == content.size() && std::fflush(stdout) == 0;
-    if (!written) fmt::print(stderr, "edsc: standard output cannot be written\n");
-    return written ? exit_fine : exit_wrong_usage;
+    write_output(content);
+    return exit_fine;
   }
   if (const std::string problem = write_files({{path, std::move(content)}}); !problem.empty()) {
-    fmt::print(stderr, "edsc: {}\n", problem);
+    print_visibly(stderr, "edsc: {}\n", problem);
     return exit_wrong_usage;
   }
   return exit_fine;
@@ -132,7 +132,7 @@ int format_file(const Settings& settings, const std::string& path) {
   std::string error;
   input.file = read_source_file(path, error);
   if (!input.file) {
-    fmt::print(stderr, "edsc: {}\n", error);
+    print_visibly(stderr, "edsc: {}\n", error);
     return exit_wrong_usage;
   }
   Diagnostics diagnostics;
@@ -145,7 +145,7 @@ int format_file(const Settings& settings, const std::string& path) {
     }
   }
   if (input.has_values_for_eds) {
-    fmt::print(stderr, "edsc: {}: an XDC has the values of one node, which an EDS does not have; name the output .dcf\n", path);
+    print_visibly(stderr, "edsc: {}: an XDC has the values of one node, which an EDS does not have; name the output .dcf\n", path);
     return exit_wrong_usage;
   }
   if (diagnostics.errors() == 0) read(settings, input, diagnostics);

@@ -11,6 +11,7 @@
 #include "render/render.hpp"
 #include "render/view.hpp"
 #include "render/write_files.hpp"
+#include "text/printable.hpp"
 
 namespace edsc {
 namespace {
@@ -133,11 +134,11 @@ int generate(const Settings& settings) {
   }
 
   if (const std::string problem = write_files(files); !problem.empty()) {
-    fmt::print(stderr, "edsc: {}\n", problem);
+    print_visibly(stderr, "edsc: {}\n", problem);
     return exit_wrong_usage;
   }
   if (settings.verbose) {
-    for (const OutputFile& file : files) fmt::print("{}\n", file.path);
+    for (const OutputFile& file : files) print_visibly(stdout, "{}\n", file.path);
   }
   return exit_fine;
 }

@@ -11,7 +11,7 @@ namespace edsc {
 struct GitFile {
   std::unique_ptr<SourceFile> source;  ///< null when it cannot be read
   bool is_missing = false;             ///< the revision is known and does not have the file
-  std::string error;                   ///< a sentence, when there is no source
+  std::string error;                   ///< message for the user; empty if there is a source
 };
 
 /// Reads `path`, which need not exist now, from `revision` of the repository that its folder is in.

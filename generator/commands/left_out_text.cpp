@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "diagnostics/excerpt.hpp"
 #include "diagnostics/place.hpp"
 #include "render/pdo_view.hpp"
+#include "text/printable.hpp"
 
 namespace edsc {
 
@@ -20,7 +20,7 @@ std::string left_out_text(const std::vector<LeftOut>& left_out) {
   std::string text;
   for (const LeftOut& one : left_out) {
     const Place place = place_of(one.position);
-    text += fmt::format("{}:{}:{}: left out: {}\n", printable(place.file), place.line, place.column, one.what);
+    text += fmt::format("{}:{}:{}: left out: {}\n", printable(place.file), place.line, place.column, printable(one.what));
   }
   return text;
 }

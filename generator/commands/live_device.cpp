@@ -9,9 +9,9 @@
 
 #include "commands/commands.hpp"
 #include "decode/find_entry.hpp"
-#include "diagnostics/excerpt.hpp"
 #include "live/identity.hpp"
 #include "text/counted.hpp"
+#include "text/printable.hpp"
 
 namespace edsc {
 namespace {
@@ -49,7 +49,7 @@ std::unique_ptr<LoadedDevice> load_live_device(const std::string& path, std::uin
   auto loaded = load_device(settings, diagnostics);
   if (loaded->device) {
     if (diagnostics.errors() > 0) {
-      fmt::print(stderr, "edsc: {}: {}; what is wrong is left out (\"edsc check --keep-going\" lists it)\n",
+      print_visibly(stderr, "edsc: {}: {}; what is wrong is left out (\"edsc check --keep-going\" lists it)\n",
                  printable(path), counted(diagnostics.errors(), "error"));
     }
     return loaded;
@@ -94,7 +94,7 @@ NodeCheck check_node(SdoAccess& node, const Device& device, const std::string& p
 
 void report_broken_block(const LiveEntry& entry, const SdoOutcome& outcome) {
   if (outcome.block_failure.empty()) return;
-  fmt::print(stderr, "edsc: {}: the block transfer broke: {}; trying segments\n", title(entry), outcome.block_failure);
+  print_visibly(stderr, "edsc: {}: the block transfer broke: {}; trying segments\n", title(entry), outcome.block_failure);
 }
 
 bool read_bytes(const std::string& path, std::vector<std::uint8_t>& bytes, std::string& problem) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -119,7 +120,7 @@ bool can_keep_going(const LoadedDevice& loaded, const Diagnostics& diagnostics) 
 void report_unused_allowances(const LoadedDevice& loaded, Diagnostics& diagnostics) {
   const auto report = [&](std::string_view rule, const Position& position) {
     if (find_rule(rule) == nullptr) return;
-    diagnostics.warning("allow-unused", position, fmt::format("there is no finding of {} to which this applies", quote(rule)));
+    diagnostics.warning("allow-unused", position, fmt::format("no finding of {} matches", quote(rule)));
   };
   for (const SilencedRule& one : loaded.options.silence) {
     if (!diagnostics.has_silenced(one.rule)) report(one.rule, one.position);

@@ -4,8 +4,10 @@
 
 #include "commands/commands.hpp"
 #include "commands/live_options.hpp"
+#include "commands/output.hpp"
 #include "live/exit_code.hpp"
 #include "live/lss_session.hpp"
+#include "text/printable.hpp"
 
 namespace edsc {
 namespace {
@@ -44,7 +46,7 @@ using Json = nlohmann::ordered_json;
 using Step = std::function<int(LssSession&, const Settings&)>;
 
 int failed(std::string_view service, const LssResult& result) {
-  fmt::print(stderr, "edsc: {}: {}\n", service, result.failure);
+  print_visibly(stderr, "edsc: {}: {}\n", service, result.failure);
   return exit_device_failed;
 }
 
@@ -59,7 +61,7 @@ Json address_json(const LssAddress& address) {
           {"serial_number", address.serial_number}};
 }
 
-void print(const Json& json) { fmt::print("{}\n", json.dump(2)); }
+void print(const Json& json) { fmt::print("{}\n", json_text(json)); }
 
 LssAddress address_of(const Settings& settings) {
   return {settings.vendor.value_or(0), settings.product.value_or(0), settings.revision.value_or(0),
@@ -94,7 +96,7 @@ int inquire(LssSession& session, const Settings& settings) {
     json["node_id"] = has_node_id ? Json(node_id.value) : Json(nullptr);
     print(json);
   } else {
-    fmt::print("{}, {}\n", to_text(address),
+    print_visibly(stdout, "{}, {}\n", to_text(address),
                !node_id.done() ? "node-ID not told"
                : has_node_id   ? fmt::format("node-ID {}", node_id.value)
                                : "no node-ID");
@@ -130,8 +132,8 @@ int fastscan(LssSession& session, const Settings& settings) {
   const auto show = [&](const LssAddress& address) {
     found.push_back(address);
     if (!text) return;
-    fmt::print("{}\n", to_text(address));
-    std::fflush(stdout);
+    print_visibly(stdout, "{}\n", to_text(address));
+    flush_output();
   };
   try {
     result = session.find_unconfigured(show, address_of(settings), known_numbers(settings));
@@ -178,7 +180,7 @@ int assign(LssSession& session, const Settings& settings) {
   if (settings.format == "json") {
     print({{"version", 1}, {"address", address_json(address)}, {"node_id", settings.node_id}});
   } else {
-    fmt::print("{}: node-ID {}{}\n", to_text(address), settings.node_id, settings.store ? ", stored" : "");
+    print_visibly(stdout, "{}: node-ID {}{}\n", to_text(address), settings.node_id, settings.store ? ", stored" : "");
   }
   return exit_fine;
 }

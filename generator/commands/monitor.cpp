@@ -5,6 +5,7 @@
 #include "commands/commands.hpp"
 #include "commands/live_device.hpp"
 #include "commands/live_options.hpp"
+#include "commands/output.hpp"
 #include "decode/decoder.hpp"
 #include "decode/print_message.hpp"
 #include "live/exit_code.hpp"
@@ -12,6 +13,7 @@
 #include "live/monitor_view.hpp"
 #include "live/terminal.hpp"
 #include "text/counted.hpp"
+#include "text/printable.hpp"
 
 namespace edsc {
 namespace {
@@ -73,9 +75,9 @@ class Monitor {
     while (!Interruption::noted()) {
       take_frames(between_pictures, [this](const Message& message) {
         const std::string who = message.node_id == 0 ? "" : fmt::format("node {} ", message.node_id);
-        fmt::print("{:>12.6f}  {:<9} {}{}\n", static_cast<double>(now_us_) / 1e6, service_label(message), who,
+        print_visibly(stdout, "{:>12.6f}  {:<9} {}{}\n", static_cast<double>(now_us_) / 1e6, service_label(message), who,
                    message.text);
-        std::fflush(stdout);
+        flush_output();
       });
     }
     return exit_fine;
@@ -91,9 +93,7 @@ class Monitor {
     }
     state_.end(now_us_);
     if (format == "json") {
-      fmt::print(
-          "{}\n",
-          monitor_json(state_, view_, now_us_).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+      fmt::print("{}\n", json_text(monitor_json(state_, view_, now_us_)));
     } else {
       for (const std::string& line : monitor_lines(state_, view_, now_us_)) fmt::print("{}\n", line);
     }

@@ -8,6 +8,7 @@
 #include "live/exit_code.hpp"
 #include "live/live_bus.hpp"
 #include "live/nmt_text.hpp"
+#include "text/printable.hpp"
 
 namespace edsc {
 namespace {
@@ -47,7 +48,7 @@ class Confirmation {
     return confirmed_;
   }
 
-  /// What is known of a node that has not confirmed its state.
+  /// Why the state is not confirmed: the last state that the node reported, or that it sent nothing.
   [[nodiscard]] std::string reason() const {
     if (told_) return fmt::format("its last message says {}", nmt_state_text(*told_));
     if (settings_.command->leads_to == canopen::NmtState::initialisation) return "it has sent no boot-up message";
@@ -68,8 +69,8 @@ int run_nmt(const Settings& settings) {
     bus.send_all(canopen::nmt_frame(settings.command->command, canopen::NodeId{settings.node}));
     bus.listen(canopen::from_milliseconds(10));  // the port may still hold the frame
     if (settings.wait_ms == 0 || confirmation.comes_in_time()) return int{exit_fine};
-    fmt::print(stderr, "edsc: node {} does not tell within {} ms that it is in {}: {}\n", settings.node,
-               settings.wait_ms, nmt_state_text(settings.command->leads_to), confirmation.reason());
+    print_visibly(stderr, "edsc: node {} did not report {} within {} ms: {}\n", settings.node,
+                  nmt_state_text(settings.command->leads_to), settings.wait_ms, confirmation.reason());
     return exit_device_failed;
   });
 }

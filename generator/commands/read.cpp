@@ -10,6 +10,7 @@
 #include "live/progress_line.hpp"
 #include "render/write_files.hpp"
 #include "text/counted.hpp"
+#include "text/printable.hpp"
 
 namespace edsc {
 namespace {
@@ -72,7 +73,7 @@ bool choose_entries(const Settings& settings, const Device* device, std::vector<
   for (const std::string& text : settings.objects) {
     NamedEntries named = name_entries(device, text);
     if (!named.problem.empty()) {
-      fmt::print(stderr, "edsc: {}\n", named.problem);
+      print_visibly(stderr, "edsc: {}\n", named.problem);
       return false;
     }
     for (LiveEntry& entry : named.entries) {
@@ -133,9 +134,9 @@ SdoOutcome read_entry(SdoAccess& node, const LiveEntry& entry, const Settings& s
 
 void print_line(const LiveEntry& entry, const SdoOutcome& outcome, bool raw) {
   if (outcome.done()) {
-    fmt::print("{} = {}\n", title(entry), raw ? hex_bytes(outcome.bytes) : value_of(entry, outcome.bytes));
+    print_visibly(stdout, "{} = {}\n", title(entry), raw ? hex_bytes(outcome.bytes) : value_of(entry, outcome.bytes));
   } else {
-    fmt::print(stderr, "edsc: {}: {}\n", title(entry), failure_text(outcome));
+    print_visibly(stderr, "edsc: {}: {}\n", title(entry), failure_text(outcome));
   }
 }
 
@@ -146,10 +147,10 @@ int save(const Settings& settings, const LiveEntry& entry, const SdoOutcome& out
   }
   const std::string problem = write_files({{settings.file, std::string{outcome.bytes.begin(), outcome.bytes.end()}}});
   if (!problem.empty()) {
-    fmt::print(stderr, "edsc: {}\n", problem);
+    print_visibly(stderr, "edsc: {}\n", problem);
     return exit_wrong_usage;
   }
-  fmt::print("{}: {} to {}\n", title(entry), counted(outcome.bytes.size(), "byte"), settings.file);
+  print_visibly(stdout, "{}: {} to {}\n", title(entry), counted(outcome.bytes.size(), "byte"), settings.file);
   return exit_fine;
 }
 
@@ -170,7 +171,7 @@ int read_entries(LiveBus& bus, const Settings& settings, const std::vector<Chose
     if (settings.format == "json") {
       json["entries"].push_back(as_json(entry, outcome, outcome.bytes));
     } else if (excused) {
-      fmt::print("{}: no value\n", title(entry));
+      print_visibly(stdout, "{}: no value\n", title(entry));
     } else {
       print_line(entry, outcome, settings.raw);
     }
@@ -178,11 +179,11 @@ int read_entries(LiveBus& bus, const Settings& settings, const std::vector<Chose
     silent = outcome.end == SdoEnd::no_answer ? silent + 1 : 0;
     heard = heard || silent == 0;
     if (silent >= (heard ? most_silent : 1) && i + 1 != entries.size()) {
-      fmt::print(stderr, "edsc: node {} does not answer: {} more not read\n", settings.node, entries.size() - i - 1);
+      print_visibly(stderr, "edsc: node {} does not answer: {} more not read\n", settings.node, entries.size() - i - 1);
       break;
     }
   }
-  if (settings.format == "json") fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+  if (settings.format == "json") fmt::print("{}\n", json_text(json));
   return exit_code;
 }
 
@@ -195,7 +196,7 @@ int run_read(const Settings& settings) {
   std::vector<Chosen> entries;
   if (!choose_entries(settings, loaded ? &*loaded->device : nullptr, entries)) return exit_wrong_usage;
   if (!settings.file.empty() && entries.size() != 1) {
-    fmt::print(stderr, "edsc: --file takes the value of one entry, not of {}\n", entries.size());
+    print_visibly(stderr, "edsc: --file takes the value of one entry, not of {}\n", entries.size());
     return exit_wrong_usage;
   }
   return with_bus(settings.bus, [&](LiveBus& bus) { return read_entries(bus, settings, entries); });

@@ -6,12 +6,14 @@
 #include <chrono>
 #include <cstring>
 #include <memory>
+#include <system_error>
 
 #include "bus_server/candump_line.hpp"
 #include "commands/commands.hpp"
 #include "commands/live_options.hpp"
 #include "live/exit_code.hpp"
 #include "live/live_bus.hpp"
+#include "text/printable.hpp"
 
 namespace edsc {
 namespace {
@@ -51,10 +53,10 @@ std::string bad_interface(const std::string& name) {
 /// The time of day at which a frame was received, never before that of the frame before.
 class Clock {
  public:
-  socketcand::TimeStamp at(canopen::TimePoint received) {
+  socketcand::TimeStamp at(canopen::TimePoint received, canopen::TimePoint now) {
     timespec time{};
     ::clock_gettime(CLOCK_REALTIME, &time);
-    const auto age = std::chrono::microseconds{(LiveBus::now() - received).count()};
+    const auto age = std::chrono::microseconds{(now - received).count()};
     std::int64_t present = std::int64_t{time.tv_sec} * 1'000'000 + time.tv_nsec / 1000 - age.count();
     last_ = std::max(last_, present);
     return {static_cast<std::time_t>(last_ / 1'000'000), static_cast<std::int32_t>(last_ % 1'000'000)};
@@ -98,7 +100,7 @@ class Recorder {
   static constexpr std::chrono::milliseconds look_again{100};
 
   bool write(const canopen::Frame& frame) {
-    const std::string line = candump_line(frame, interface_, clock_.at(bus_.received_at())) + "\n";
+    const std::string line = candump_line(frame, interface_, clock_.at(bus_.received_at(), LiveBus::now())) + "\n";
     ++frames_;
     return std::fwrite(line.data(), 1, line.size(), file_) == line.size();
   }
@@ -113,22 +115,23 @@ class Recorder {
 
 int record(LiveBus& bus, const Settings& settings, std::FILE* file) {
   Recorder recorder{bus, settings, file};
-  const auto tell = [&] {
-    if (!settings.output.empty()) fmt::print("{} frames to {}\n", recorder.frames(), settings.output);
+  const auto report = [&] {
+    if (!settings.output.empty()) print_visibly(stdout, "{} frames to {}\n", recorder.frames(), settings.output);
   };
   try {
     errno = 0;
     if (!recorder.run()) {
-      fmt::print(stderr, "edsc: {}: {}\n", settings.output.empty() ? "standard output" : settings.output,
-                 errno != 0 ? std::strerror(errno) : "cannot be written");
+      // main reports what standard output does not take
+      if (settings.output.empty()) throw std::system_error{errno, std::generic_category(), "standard output"};
+      print_visibly(stderr, "edsc: {}: {}\n", settings.output, errno != 0 ? std::strerror(errno) : "cannot be written");
       return exit_wrong_usage;
     }
   } catch (const BusLost&) {
     std::fflush(file);
-    tell();
+    report();
     throw;
   }
-  tell();
+  report();
   return exit_fine;
 }
 
@@ -137,7 +140,7 @@ int run_record(const Settings& settings) {
     if (settings.output.empty()) return record(bus, settings, stdout);
     const std::unique_ptr<std::FILE, Close> file{std::fopen(settings.output.c_str(), "we")};
     if (file) return record(bus, settings, file.get());
-    fmt::print(stderr, "edsc: {}: {}\n", settings.output, std::strerror(errno));
+    print_visibly(stderr, "edsc: {}: {}\n", settings.output, std::strerror(errno));
     return int{exit_wrong_usage};
   });
 }

@@ -8,6 +8,7 @@
 #include "commands/commands.hpp"
 #include "commands/live_device.hpp"
 #include "commands/live_options.hpp"
+#include "commands/output.hpp"
 #include "device/index_range.hpp"
 #include "device/resolve.hpp"
 #include "format/canonical_form.hpp"
@@ -20,6 +21,7 @@
 #include "live/progress_line.hpp"
 #include "live/read_configuration.hpp"
 #include "render/write_files.hpp"
+#include "text/printable.hpp"
 
 namespace edsc {
 namespace {
@@ -58,7 +60,7 @@ struct Saved {
 };
 
 bool fail(const std::string& sentence) {
-  fmt::print(stderr, "edsc: {}\n", sentence);
+  print_visibly(stderr, "edsc: {}\n", sentence);
   return false;
 }
 
@@ -185,7 +187,7 @@ Json rows_of(const std::vector<Missing>& missing) {
 }
 
 void report(const Settings& settings, const Saved& saved) {
-  for (const Missing& one : saved.missing) fmt::print(stderr, "edsc: {}: {}\n", title(one.entry), one.what);
+  for (const Missing& one : saved.missing) print_visibly(stderr, "edsc: {}: {}\n", title(one.entry), one.what);
   if (settings.format == "json") {
     Json json{{"version", 1},
               {"node_id", settings.node},
@@ -197,7 +199,7 @@ void report(const Settings& settings, const Saved& saved) {
     for (const LiveEntry& entry : saved.found.process_data) {
       json["process_data"].push_back({{"index", entry.index}, {"sub_index", entry.sub_index}, {"name", entry.name}});
     }
-    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+    fmt::print("{}\n", json_text(json));
     return;
   }
   std::string text = fmt::format("node {}: {} entries read, {} values saved", settings.node,
@@ -205,7 +207,7 @@ void report(const Settings& settings, const Saved& saved) {
   if (!settings.output.empty()) text += " to " + settings.output;
   if (!saved.found.process_data.empty()) text += fmt::format(", {} left out (process data)", saved.found.process_data.size());
   if (!saved.missing.empty()) text += fmt::format(", {} not saved", saved.missing.size());
-  fmt::print(settings.output.empty() ? stderr : stdout, "{}\n", text);
+  print_visibly(settings.output.empty() ? stderr : stdout, "{}\n", text);
 }
 
 /// False when the file cannot be written.
@@ -214,9 +216,8 @@ bool write_text(const Settings& settings, const Saved& saved) {
     const std::string problem = write_files({{settings.output, saved.text}});
     return problem.empty() || fail(problem);
   }
-  const bool written = std::fwrite(saved.text.data(), 1, saved.text.size(), stdout) == saved.text.size() &&
-                       std::fflush(stdout) == 0;
-  return written || fail("standard output cannot be written");
+  write_output(saved.text);
+  return true;
 }
 
 int save(LiveBus& bus, const Settings& settings, const LoadedDevice& loaded) {
@@ -234,7 +235,7 @@ int save(LiveBus& bus, const Settings& settings, const LoadedDevice& loaded) {
       return exit_device_failed;
     }
     if (!check.not_compared.empty()) {
-      fmt::print(stderr, "edsc: node {}: not compared: {}\n", settings.node, check.not_compared);
+      print_visibly(stderr, "edsc: node {}: not compared: {}\n", settings.node, check.not_compared);
     }
   }
   Saved saved;

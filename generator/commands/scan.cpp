@@ -13,7 +13,7 @@
 #include "live/lss_session.hpp"
 #include "live/nmt_text.hpp"
 #include "live/text_table.hpp"
-#include "text/utf8.hpp"
+#include "text/printable.hpp"
 
 namespace edsc {
 namespace {
@@ -56,13 +56,6 @@ Identity identity_of(const FoundNode& node) {
 
 std::string hex_or_dash(std::optional<std::uint32_t> number) { return number ? fmt::format("{:08X}h", *number) : "-"; }
 
-/// Text of a device, which may be any bytes.
-std::string shown(const std::string& bytes) {
-  std::string text;
-  for (const char c : bytes) text += static_cast<unsigned char>(c) < 0x20 || c == 0x7F ? '.' : c;
-  return is_utf8(text) ? text : "?";
-}
-
 bool fits(Fit fit) { return fit == Fit::same || fit == Fit::minor_revision || fit == Fit::major_revision; }
 
 std::string fits_text(const FoundNode& node, const std::vector<Candidate>& candidates) {
@@ -104,7 +97,7 @@ void print_misfits(const std::vector<FoundNode>& nodes, const std::vector<Candid
   for (const Candidate& candidate : candidates) {
     const auto nearest = nearest_misfit(nodes, candidate);
     if (!nearest) continue;
-    fmt::print("{} fits no node; node {}{}: {}\n", candidate.path, nearest->node->node_id,
+    print_visibly(stdout, "{} fits no node; node {}{}: {}\n", candidate.path, nearest->node->node_id,
                nodes.size() > 1 ? " is nearest" : "",
                identity_differences(candidate.identity, identity_of(*nearest->node)));
   }
@@ -123,7 +116,7 @@ void print_text(const Findings& found, const std::vector<Candidate>& candidates,
     row.push_back(!node.answers_sdo  ? "no answer over SDO"
                   : node.device_type ? fmt::format("{:08X}h {}", *node.device_type, profile_text(*node.device_type))
                                      : "-");
-    row.push_back(node.name ? shown(*node.name) : "-");
+    row.push_back(node.name ? *node.name : "-");
     if (!candidates.empty()) row.push_back(fits_text(node, candidates));
     table.add(std::move(row));
   }
@@ -134,7 +127,7 @@ void print_text(const Findings& found, const std::vector<Candidate>& candidates,
   }
   print_misfits(found.nodes, candidates);
   for (const canopen::LssAddress& address : found.unconfigured) {
-    fmt::print("without node-ID: {}\n", to_text(address));
+    print_visibly(stdout, "without node-ID: {}\n", to_text(address));
   }
 }
 
@@ -150,7 +143,7 @@ Json as_json(const FoundNode& node, const std::vector<Candidate>& candidates) {
   json["product_code"] = number_or_null(node.product_code);
   json["revision_number"] = number_or_null(node.revision_number);
   json["serial_number"] = number_or_null(node.serial_number);
-  json["name"] = node.name ? Json(shown(*node.name)) : Json(nullptr);
+  json["name"] = node.name ? Json(*node.name) : Json(nullptr);
   json["data_sheets"] = Json::array();
   json["misfits"] = Json::array();
   for (const Candidate& candidate : candidates) {
@@ -178,7 +171,7 @@ void print_json(const Findings& found, const std::vector<Candidate>& candidates)
                                     {"revision_number", address.revision_number},
                                     {"serial_number", address.serial_number}});
   }
-  fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+  fmt::print("{}\n", json_text(json));
 }
 
 /// False when a data sheet cannot be read, which is then told.
@@ -230,11 +223,11 @@ int run_scan(Settings settings) {
     }
     show();
     if (!found.lss_failure.empty()) {
-      fmt::print(stderr, "edsc: fastscan: {}\n", found.lss_failure);
+      print_visibly(stderr, "edsc: fastscan: {}\n", found.lss_failure);
       return exit_device_failed;
     }
     if (!found.nodes.empty() || !found.unconfigured.empty()) return int{exit_fine};
-    fmt::print(stderr, "edsc: no node answers on {}\n", settings.bus);
+    print_visibly(stderr, "edsc: no node answers on {}\n", settings.bus);
     return exit_device_failed;
   });
 }

@@ -8,6 +8,7 @@
 #include "live/live_bus.hpp"
 #include "live/progress_line.hpp"
 #include "text/counted.hpp"
+#include "text/printable.hpp"
 
 namespace edsc {
 namespace {
@@ -77,7 +78,7 @@ SdoOutcome download(SdoAccess& node, const LiveEntry& entry, const Settings& set
 }
 
 int failed(const LiveEntry& entry, std::string_view what) {
-  fmt::print(stderr, "edsc: {}: {}\n", title(entry), what);
+  print_visibly(stderr, "edsc: {}: {}\n", title(entry), what);
   return exit_device_failed;
 }
 
@@ -95,9 +96,9 @@ int write_entry(LiveBus& bus, const Settings& settings, const LiveEntry& entry,
   }
   const std::string verified = settings.verify ? ", verified" : "";
   if (settings.file.empty()) {
-    fmt::print("{} = {}{}\n", title(entry), settings.raw ? hex_bytes(bytes) : value_of(entry, bytes), verified);
+    print_visibly(stdout, "{} = {}{}\n", title(entry), settings.raw ? hex_bytes(bytes) : value_of(entry, bytes), verified);
   } else {
-    fmt::print("{}: {} from {}{}\n", title(entry), counted(bytes.size(), "byte"),
+    print_visibly(stdout, "{}: {} from {}{}\n", title(entry), counted(bytes.size(), "byte"),
                settings.file, verified);
   }
   return exit_fine;
@@ -119,7 +120,7 @@ int run_write(const Settings& settings) {
     problem = value.problem;
   }
   if (!problem.empty()) {
-    fmt::print(stderr, "edsc: {}\n", problem);
+    print_visibly(stderr, "edsc: {}\n", problem);
     return exit_wrong_usage;
   }
   return with_bus(settings.bus,

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "text/printable.hpp"
 #include "text/source_file.hpp"
 
 namespace edsc {
@@ -45,13 +46,11 @@ std::string verdict_of(const Change& change) {
 /// Text as a cell of a table shows it: nothing in it is markup.
 std::string cell(std::string_view text) {
   std::string out;
-  for (const char c : text) {
+  for (const char c : printable(text)) {
     if (c == '<') {
       out += "&lt;";
     } else if (c == '&') {
       out += "&amp;";
-    } else if (c == '\n' || c == '\r') {
-      out += ' ';
     } else {
       if (std::string_view{"\\`*_[]|~$>"}.find(c) != std::string_view::npos) out += '\\';
       out += c;
@@ -103,9 +102,10 @@ std::string changes_as_text(const Changes& changes, bool colour) {
   for (const Change& change : changes.all()) {
     const std::string_view start = !colour ? "" : change.is_breaking() ? "\x1B[1;31m" : "\x1B[1;32m";
     const std::string name = change.name.empty() ? "" : fmt::format(" \"{}\"", change.name);
-    text += fmt::format("{}: {}{}{}: {}{}: {} [{}] (was {})\n", place_text(change.new_position), start,
-                        verdict_of(change), colour ? "\x1B[0m" : "", change.entry, name, message_of(change),
-                        kind_of(change.id).name, place_text(change.old_position));
+    text += fmt::format("{}: {}{}{}: {}{}: {} [{}] (was {})\n", printable(place_text(change.new_position)), start,
+                        verdict_of(change), colour ? "\x1B[0m" : "", change.entry, printable(name),
+                        printable(message_of(change)), kind_of(change.id).name,
+                        printable(place_text(change.old_position)));
   }
   return text +
          fmt::format("{} breaking, {} compatible\n", changes.breaking(), changes.all().size() - changes.breaking());

@@ -7,6 +7,7 @@
 
 #include "decode/value_text.hpp"
 #include "text/counted.hpp"
+#include "text/printable.hpp"
 
 namespace edsc {
 namespace {
@@ -26,7 +27,8 @@ LogDecoder::LogDecoder(const std::vector<KnownNode>& nodes, NodeLabels labels, L
 
 void LogDecoder::complain(std::size_t line_number, std::string_view what, std::string& complaints) {
   if (++complaints_ > most_complaints) return;
-  fmt::format_to(std::back_inserter(complaints), "{}:{}: {}\n", settings_.log_name, line_number, what);
+  fmt::format_to(std::back_inserter(complaints), "{}:{}: {}\n", printable(settings_.log_name), line_number,
+                 printable(what));
 }
 
 /// Times that begin with 0 and go back are differences: they are added up from then on.
@@ -79,10 +81,11 @@ void LogDecoder::finish(std::string& complaints) {
   const auto open = decoder_.open_transfers();
   summary_.set_open_transfers(open.size());
   for (const std::string& transfer : open) {
-    fmt::format_to(std::back_inserter(complaints), "{}: {} was not finished\n", settings_.log_name, transfer);
+    fmt::format_to(std::back_inserter(complaints), "{}: {} was not finished\n", printable(settings_.log_name),
+                   printable(transfer));
   }
   if (complaints_ > most_complaints) {
-    fmt::format_to(std::back_inserter(complaints), "{}: {} like {}\n", settings_.log_name,
+    fmt::format_to(std::back_inserter(complaints), "{}: {} like {}\n", printable(settings_.log_name),
                    counted(complaints_ - most_complaints, "more line"), complaints_ - most_complaints == 1 ? "this" : "these");
   }
 }

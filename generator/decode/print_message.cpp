@@ -10,6 +10,7 @@
 
 #include "decode/append.hpp"
 #include "decode/value_text.hpp"
+#include "text/printable.hpp"
 #include "text/utf8.hpp"
 
 namespace edsc {
@@ -179,7 +180,7 @@ void NodeLabels::set_name(std::uint8_t node_id, std::string_view name) {
 void NodeLabels::pad() {
   std::size_t width = std::string_view{"node 12 "}.size();
   for (std::size_t id = 1; id < padded_.size(); ++id) {
-    padded_[id] = fmt::format("node {} {}", id, names_[id]);
+    padded_[id] = fmt::format("node {} {}", id, printable(names_[id]));
     if (names_[id].empty()) continue;
     padded_[id] += ' ';
     width = std::max(width, count_code_points(padded_[id]));
@@ -205,7 +206,7 @@ void append_text(std::string& out, const LogLine& line, const Message& message, 
     out += ' ';
   }
   if (!line.interface.empty()) {
-    out += line.interface;
+    append_printable(out, line.interface);
     out += ' ';
   }
   std::size_t begin = out.size();
@@ -217,7 +218,7 @@ void append_text(std::string& out, const LogLine& line, const Message& message, 
   append_label(out, message);
   pad_to(out, begin, label_width);
   out += labels.padded(message.node_id);
-  out += message.text;
+  append_printable(out, message.text);
   while (out.ends_with(' ')) out.pop_back();
   if (colored) out += no_color;
   out += '\n';
@@ -271,13 +272,15 @@ void append_json_string(std::string& out, std::string_view text) {
     if (c == '"' || c == '\\') {
       out += '\\';
       out += c;
-    } else if (static_cast<unsigned char>(c) < 0x20) {
-      out += "\\u00";
-      append_hex_byte(out, static_cast<std::uint8_t>(c));
     } else if (length == 0) {
       out += "\\uFFFD";
-    } else {
+    } else if (first_sequence(text.substr(at)).is_visible) {
       out.append(text, at, length);
+    } else {
+      for (const char16_t unit : to_utf16(text.substr(at, length))) {
+        out += "\\u";
+        append_hex(out, unit, 4);
+      }
     }
     at += std::max<std::size_t>(length, 1);
   }

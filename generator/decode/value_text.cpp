@@ -16,6 +16,7 @@
 #include "text/ascii.hpp"
 #include "text/counted.hpp"
 #include "text/ini.hpp"
+#include "text/printable.hpp"
 #include "text/utf8.hpp"
 
 namespace edsc {
@@ -356,19 +357,19 @@ void append_quoted(std::string& out, std::string_view text) {
   out += '"';
   for (std::size_t at = 0; at < text.size();) {
     const auto c = static_cast<unsigned char>(text[at]);
-    const std::size_t length = utf8_sequence_length(text.substr(at));
+    const auto [length, is_visible] = first_sequence(text.substr(at));
     if (c == '"' || c == '\\') {
       out += '\\';
       out += static_cast<char>(c);
-      ++at;
-    } else if (c < 0x20 || c == 0x7F || length == 0) {
-      out += "\\x";
-      append_hex_byte(out, c);
-      ++at;
-    } else {
+    } else if (is_visible) {
       out += text.substr(at, length);
-      at += length;
+    } else {
+      for (const char byte : text.substr(at, length)) {
+        out += "\\x";
+        append_hex_byte(out, static_cast<std::uint8_t>(byte));
+      }
     }
+    at += length;
   }
   out += '"';
 }

@@ -9,10 +9,6 @@
 
 namespace edsc {
 
-/// `text` with each control character replaced by `?`, so that a file cannot write to the terminal; a tab becomes a
-/// blank.
-[[nodiscard]] std::string printable(std::string_view text);
-
 struct Excerpt {
   static constexpr std::size_t most_columns = 120;
 

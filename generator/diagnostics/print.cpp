@@ -11,6 +11,7 @@
 #include "diagnostics/excerpt.hpp"
 #include "diagnostics/place.hpp"
 #include "text/counted.hpp"
+#include "text/printable.hpp"
 #include "text/source_file.hpp"
 
 namespace edsc {

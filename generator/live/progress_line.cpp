@@ -1,4 +1,5 @@
 #include "live/progress_line.hpp"
+#include "text/printable.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -16,14 +17,14 @@ constexpr std::chrono::milliseconds between{100};
 ProgressLine::ProgressLine() : terminal_{isatty(fileno(stderr)) != 0}, next_{Clock::now() + before_the_first} {}
 
 ProgressLine::~ProgressLine() {
-  if (shown_) fmt::print(stderr, "\r\x1B[K");
+  if (shown_) print_visibly(stderr, "\r\x1B[K");
 }
 
 bool ProgressLine::due() const { return terminal_ && Clock::now() >= next_; }
 
 void ProgressLine::show(const std::string& text) {
   if (!due()) return;
-  fmt::print(stderr, "\r{}\x1B[K", text);
+  print_visibly(stderr, "\r{}\x1B[K", text);
   std::fflush(stderr);
   shown_ = true;
   next_ = Clock::now() + between;

@@ -5,13 +5,18 @@
 #include <string>
 #include <vector>
 
+#include "text/printable.hpp"
+
 namespace edsc {
 
 /// Rows of cells; each column is as wide as its widest cell, with two blanks between columns and none at the end of a
-/// line. Characters are counted as code points of UTF-8.
+/// line. Cells are made printable. Characters are counted as code points of UTF-8.
 class TextTable {
  public:
-  void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
+  void add(std::vector<std::string> row) {
+    for (std::string& cell : row) cell = printable(cell);
+    rows_.push_back(std::move(row));
+  }
 
   [[nodiscard]] std::vector<std::string> lines() const {
     std::vector<std::size_t> widths;

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
 
+#include "text/printable.hpp"
 #include "text/utf8.hpp"
 
 namespace edsc {
@@ -57,27 +59,6 @@ std::string utf16_string(std::string_view text) {
   return out + "\"";
 }
 
-/// Characters that change the direction of the text behind them, and the trigraph of the backslash.
-constexpr std::string_view hidden_texts[] = {
-    "\xE2\x80\xAA",
-    "\xE2\x80\xAB",
-    "\xE2\x80\xAC",
-    "\xE2\x80\xAD",
-    "\xE2\x80\xAE",
-    "\xE2\x81\xA6",
-    "\xE2\x81\xA7",
-    "\xE2\x81\xA8",
-    "\xE2\x81\xA9",
-    "??"
-    "/",
-};
-
-void remove_hidden(std::string& text) {
-  for (const std::string_view hidden : hidden_texts) {
-    if (text.ends_with(hidden)) text.resize(text.size() - hidden.size());
-  }
-}
-
 }  // namespace
 
 std::string cpp_literal(const Value& value, const canopen::DataTypeRow& type) {
@@ -123,12 +104,14 @@ std::string cpp_string(std::string_view text) {
 }
 
 std::string cpp_comment(std::string_view text) {
-  std::string out;
-  out.reserve(text.size());
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    out += byte < 0x20 || byte == 0x7F ? ' ' : c == '\\' ? '/' : c;
-    if (byte >= 0x80 || c == '/' || c == '\\') remove_hidden(out);
+  constexpr std::string_view backslash_trigraph =
+      "??"
+      "/";
+  std::string out = printable(text);
+  std::ranges::replace(out, '\\', '/');
+  for (std::size_t at = 0; (at = out.find(backslash_trigraph, at)) != std::string::npos;) {
+    out.erase(at, backslash_trigraph.size());
+    at -= std::min(at, backslash_trigraph.size());  // what is left may be another one
   }
   return out;
 }

@@ -17,7 +17,7 @@ namespace edsc {
 /// `"text"` with all that is not plain ASCII escaped.
 [[nodiscard]] std::string cpp_string(std::string_view text);
 
-/// Text that may stand behind `//`: one line, no trailing backslash, no control or direction-changing characters.
+/// Text that may stand behind `//`: one line, no backslash; printable.
 [[nodiscard]] std::string cpp_comment(std::string_view text);
 
 /// The bytes of a string value as the wire carries them: UNICODE_STRINGs are UTF-16, low byte first.

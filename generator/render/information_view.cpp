@@ -1,5 +1,7 @@
 #include "render/information_view.hpp"
 
+#include <string_view>
+
 namespace edsc {
 namespace {
 

@@ -10,6 +10,7 @@
 
 #include "diagnostics/diagnostics.hpp"
 #include "diagnostics/print.hpp"
+#include "text/printable.hpp"
 
 namespace edsc::fuzz {
 
@@ -28,7 +29,12 @@ inline void require(bool holds, const char* what) {
 inline void print(const Diagnostics& diagnostics) {
   std::string text;
   print_text(text, diagnostics, true);
-  require(text.find_first_of("\r\t") == std::string::npos, "findings hold no control characters of the file");
+  for (std::size_t end = 0; (end = text.find("\x1B[")) != std::string::npos;) {
+    text.erase(end, text.find('m', end) - end + 1);  // of edsc itself
+  }
+  for (std::string_view rest = text; !rest.empty(); rest.remove_prefix(first_sequence(rest).length)) {
+    require(rest.front() == '\n' || first_sequence(rest).is_visible, "findings hold no hidden characters of the file");
+  }
 }
 
 }  // namespace edsc::fuzz

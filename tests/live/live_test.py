@@ -326,7 +326,7 @@ class Silence(LiveTest):
     def test_an_abort_of_another_entry_is_no_refusal(self) -> None:
         answers = {"605 40 17 10 00 00 00 00 00": ["585 80 00 00 00 05 00 04 05"]}
         self.network.device(lambda frame: answers.get(frame, []))
-        self.expect(self.edsc("read", 5, "1017h", "--timeout", 100), FAILED,
+        self.expect(self.edsc("read", 5, "1017h", "--timeout", 1000), FAILED,
                     stderr="edsc: 1017h:00: no answer, but an abort of 0000h:00: 0504 0005h, out of memory\n")
 
     def test_a_block_transfer_that_breaks_is_tried_by_segments(self) -> None:
@@ -401,7 +401,7 @@ class Silence(LiveTest):
             with self.subTest(name), Network(EDSC, LIVE_NODES) as network:
                 self.network = network
                 network.device(lambda frame, known=answers: known.get(frame, []))
-                self.expect(self.edsc("read", 5, "log", "--eds", "device.eds", "--timeout", 100), FINE,
+                self.expect(self.edsc("read", 5, "log", "--eds", "device.eds", "--timeout", 1000), FINE,
                             "2001h:00 Log = 01 02 03 04 05 06 07 08 09 (9 bytes)\n")
 
 
@@ -1005,17 +1005,17 @@ class Nmt(LiveTest):
     def test_it_waits_for_the_boot_up_message(self) -> None:
         self.expect(self.edsc("nmt", "reset-node", 5, "--wait", 5000), FINE)
         self.expect(self.edsc("nmt", "reset-node", 9, "--wait", 50), FAILED,
-                    stderr="edsc: node 9 does not tell within 50 ms that it is in boot-up: it has sent no boot-up message\n")
+                    stderr="edsc: node 9 did not report boot-up within 50 ms: it has sent no boot-up message\n")
 
     def test_it_says_why_no_heartbeat_may_come(self) -> None:
         self.expect(self.edsc("nmt", "start", 5, "--wait", 50), FAILED,
-                    stderr="edsc: node 5 does not tell within 50 ms that it is in operational: it has sent no heartbeat; "
+                    stderr="edsc: node 5 did not report operational within 50 ms: it has sent no heartbeat; "
                            f"1017h may be 0 (edsc read {self.network.address} 5 1017h --type u16)\n")
         self.edsc("write", 6, "1017h", 10, "--type", "u16")
         self.expect(self.edsc("nmt", "stop", 6, "--wait", 5000), FINE)
         self.network.device(lambda frame: ["707 7F"] if frame == "000 01 07" else [])
         self.expect(self.edsc("nmt", "start", 7, "--wait", 1000), FAILED,
-                    stderr="edsc: node 7 does not tell within 1000 ms that it is in operational: its last message says "
+                    stderr="edsc: node 7 did not report operational within 1000 ms: its last message says "
                            "pre-operational\n")
 
     def test_wrong_usage(self) -> None:
@@ -1055,7 +1055,7 @@ class Lss(LiveTest):
         self.expect(self.lss("fastscan"), FAILED, stderr="edsc: fastscan: no device without node-ID answers\n")
 
     def test_a_scan_with_fastscan(self) -> None:
-        found = self.expect_json(self.edsc("scan", "--nodes", 9, "--listen", 0, "--timeout", 20, "--lss", "--format", "json"),
+        found = self.expect_json(self.edsc("scan", "--nodes", 9, "--listen", 0, "--timeout", 20, "--lss", "--step", 200, "--format", "json"),
                                  "scan.schema.json")
         self.assertEqual([device["serial_number"] for device in found["unconfigured"]], [0x101])
 
@@ -1134,7 +1134,7 @@ class FastscanSlave:
 
 class FastscanOfSlavesThatAnswerAlways(LiveTest):
     nodes = ()
-    numbers = ("--step", 40, "fastscan", "--vendor", "93h", "--product", 2, "--revision", 3)
+    numbers = ("--step", 200, "fastscan", "--vendor", "93h", "--product", 2, "--revision", 3)
     shown = "vendor-ID 00000093h, product code 00000002h, revision 00000003h, serial number {:08X}h"
 
     def slaves(self, *serials: int, always: bool = False) -> None:
@@ -1159,7 +1159,7 @@ class FastscanOfSlavesThatAnswerAlways(LiveTest):
 
     def test_what_was_found_is_shown_on_an_interruption(self) -> None:
         for arguments in (("lss", *self.numbers), ("lss", *self.numbers, "--format", "json"),
-                          ("scan", "--nodes", 9, "--listen", 0, "--timeout", 20, "--lss", "--step", 60)):
+                          ("scan", "--nodes", 9, "--listen", 0, "--timeout", 20, "--lss", "--step", 200)):
             with self.subTest(arguments), Network(EDSC, LIVE_NODES) as network:
                 self.network = network
                 self.slaves(0x15011234, 0x15011238)
@@ -1188,8 +1188,8 @@ class Monitor(LiveTest):
         self.edsc("write", 5, "1017h", 40, "--type", "u16")
 
     def test_a_summary_as_json(self) -> None:
-        process = self.start("monitor", "--node", "5=device.eds", "--once", 0.6, "--bit-rate", 500, "--format", "json")
-        time.sleep(0.2)
+        process = self.start("monitor", "--node", "5=device.eds", "--once", 4, "--bit-rate", 500, "--format", "json")
+        time.sleep(1.5)  # until it listens
         self.edsc("nmt", "start", 5)
         client = self.network.client()
         client.send("086 30 81 11 00 00 00 00 00")

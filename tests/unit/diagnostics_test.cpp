@@ -255,10 +255,21 @@ TEST(PrintText, LetsNoControlCharacterThrough) {
   Diagnostics diagnostics;
   diagnostics.error("number-range", {&file, 1, 1, 1}, "it says \x1B[0m");
   EXPECT_EQ(printed(diagnostics),
-            "a?.eds:1:1: error: it says ?[0m [number-range]\n"
-            "    1 | a b?[31m??\n"
+            "a<U+001B>.eds:1:1: error: it says <U+001B>[0m [number-range]\n"
+            "    1 | a b<U+001B>[31m<U+007F><U+009B>\n"
             "      | ^\n"
-            "a?.eds: 1 error, 0 warnings\n");
+            "a<U+001B>.eds: 1 error, 0 warnings\n");
+}
+
+TEST(PrintText, PutsTheCaretBelowWhatIsShown) {
+  const SourceFile file("a.eds", "a\u202E=\u009Bx\n");
+  Diagnostics diagnostics;
+  diagnostics.error("number-range", {&file, 1, 6, 3}, "here");
+  EXPECT_TRUE(printed(diagnostics)
+                  .starts_with("a.eds:1:4: error: here [number-range]\n"
+                               "    1 | a<U+202E>=<U+009B>x\n"
+                               "      |           ^~~~~~~~~\n"))
+      << printed(diagnostics);
 }
 
 TEST(PrintText, ColoursOnDemand) {

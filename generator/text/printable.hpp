@@ -1,0 +1,64 @@
+/// Text of files and devices, made safe for a terminal, a comment or a viewer of JSON: control characters and characters
+/// that change the direction of text are visible, and have no effect.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+namespace edsc {
+
+/// True for a code point that a terminal or editor obeys or hides instead of showing it: C0 and C1 controls, marks of
+/// bidirectional text, separators of lines, other invisible format characters. The joiners of Indic and Persian
+/// scripts are not among them.
+[[nodiscard]] bool is_hidden(char32_t code_point);
+
+/// The UTF-8 sequence that `text` begins with: its length, and whether it is to be shown as it is. A byte that begins no
+/// well-formed sequence is one of length 1 that is not.
+struct Sequence {
+  std::size_t length = 0;
+  bool is_visible = false;
+};
+[[nodiscard]] Sequence first_sequence(std::string_view text);
+
+/// `text` with hidden code points as `<U+202E>`, bytes that are not UTF-8 as `<9B>`, and a blank for a tab or
+/// line end.
+[[nodiscard]] std::string printable(std::string_view text);
+void append_printable(std::string& out, std::string_view text);
+
+/// Valid JSON with hidden code points as \u202E. Equal to `json` for every reader.
+[[nodiscard]] std::string printable_json(std::string json);
+
+/// A value of nlohmann::json as text for people and programs. What is not UTF-8 becomes U+FFFD.
+template <typename Json>
+[[nodiscard]] std::string json_text(const Json& json) {
+  return printable_json(json.dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
+namespace detail {
+
+template <typename Value>
+using Printed = std::conditional_t<std::is_convertible_v<const Value&, std::string_view>, std::string, Value>;
+
+template <typename Value>
+Printed<Value> printed(const Value& value) {
+  if constexpr (std::is_convertible_v<const Value&, std::string_view>) {
+    return printable(value);
+  } else {
+    return value;
+  }
+}
+
+}  // namespace detail
+
+/// fmt::print() with each text among `values` made printable: for messages that hold names, values or paths.
+template <typename... Values>
+void print_visibly(std::FILE* stream, fmt::format_string<detail::Printed<std::decay_t<Values>>...> format,
+                   const Values&... values) {
+  fmt::print(stream, format, detail::printed<std::decay_t<Values>>(values)...);
+}
+
+}  // namespace edsc
