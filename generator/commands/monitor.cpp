@@ -55,7 +55,7 @@ class Monitor {
   Monitor(LiveBus& bus, const Settings& settings, const std::vector<KnownNode>& known)
       : bus_{bus}, decoder_{known}, view_{settings.bus, settings.bit_rate, false} {
     for (const KnownNode& node : known) state_.set_name(node.node_id, node.device->product_name);
-    begin_ = last_ = LiveBus::now();
+    begin_ = last_ = bus_.now();
     state_.start(0);
   }
 
@@ -104,9 +104,9 @@ class Monitor {
   /// Takes frames for this time and tells of those that are news.
   template <class OnNews>
   void take_frames(canopen::Duration span, OnNews on_news) {
-    const canopen::TimePoint end = LiveBus::now() + span;
-    for (canopen::TimePoint present = LiveBus::now(); present < end && !Interruption::noted();
-         present = LiveBus::now()) {
+    const canopen::TimePoint end = bus_.now() + span;
+    for (canopen::TimePoint present = bus_.now(); present < end && !Interruption::noted();
+         present = bus_.now()) {
       const auto frame = bus_.receive(end - present);
       advance();
       if (!frame) continue;
@@ -119,7 +119,7 @@ class Monitor {
 
   /// A TimePoint wraps after 71 minutes; this does not.
   void advance() {
-    const canopen::TimePoint present = LiveBus::now();
+    const canopen::TimePoint present = bus_.now();
     now_us_ += (present - last_).count();
     last_ = present;
   }

@@ -42,9 +42,9 @@ class Confirmation {
 
   [[nodiscard]] bool comes_in_time() {
     constexpr canopen::Duration look_again = canopen::from_milliseconds(10);
-    const canopen::TimePoint begin = LiveBus::now();
+    const canopen::TimePoint begin = bus_.now();
     const canopen::Duration span{settings_.wait_ms * 1000U};
-    while (!confirmed_ && LiveBus::now() - begin < span) bus_.listen(look_again);
+    while (!confirmed_ && bus_.now() - begin < span) bus_.listen(look_again);
     return confirmed_;
   }
 

@@ -100,7 +100,7 @@ class Recorder {
   static constexpr std::chrono::milliseconds look_again{100};
 
   bool write(const canopen::Frame& frame) {
-    const std::string line = candump_line(frame, interface_, clock_.at(bus_.received_at(), LiveBus::now())) + "\n";
+    const std::string line = candump_line(frame, interface_, clock_.at(bus_.received_at(), bus_.now())) + "\n";
     ++frames_;
     return std::fwrite(line.data(), 1, line.size(), file_) == line.size();
   }

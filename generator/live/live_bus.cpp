@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <canopen/port/host_bus.hpp>
 #include <system_error>
 
 #include "live/exit_code.hpp"
+#include "text/printable.hpp"
 
 namespace edsc {
 namespace {
@@ -17,11 +19,27 @@ constexpr Duration look_at_interruption = canopen::from_milliseconds(50);
 constexpr Duration longest_refusal = canopen::from_milliseconds(2000);
 constexpr Duration try_again = canopen::from_milliseconds(1);
 
+class HostPort final : public BusPort {
+ public:
+  explicit HostPort(const std::string& address) : bus_{address} {}
+
+  bool send(const Frame& frame) override { return bus_.send(frame); }
+  std::optional<Frame> receive(Duration timeout) override { return bus_.receive(timeout); }
+  TimePoint now() const override { return canopen::HostBus::now(); }
+  TimePoint received_at() const override { return bus_.received_at(); }
+  int file_descriptor() const override { return bus_.file_descriptor(); }
+
+ private:
+  canopen::HostBus bus_;
+};
+
 }  // namespace
+
+LiveBus::LiveBus(const std::string& address) : port_{std::make_unique<HostPort>(address)} {}
 
 bool LiveBus::send(const Frame& frame) {
   try {
-    if (bus_.send(frame)) {
+    if (port_->send(frame)) {
       refused_since_.reset();
       return true;
     }
@@ -49,7 +67,7 @@ std::optional<Frame> LiveBus::receive(Duration timeout) {
     const Duration left = end > present ? end - present : Duration{0};
     std::optional<Frame> frame;
     try {
-      frame = bus_.receive(std::min(left, look_at_interruption));
+      frame = port_->receive(std::min(left, look_at_interruption));
     } catch (const std::system_error& problem) {
       throw BusLost{problem.what()};
     }
@@ -75,10 +93,10 @@ int with_bus(const std::string& address, const std::function<int(LiveBus&)>& com
   try {
     return command(bus);
   } catch (const BusLost& problem) {
-    fmt::print(stderr, "edsc: {}: the bus is lost: {}\n", address, problem.what());
+    print_visibly(stderr, "edsc: {}: the bus is lost: {}\n", address, problem.what());
     return exit_device_failed;
   } catch (const Interrupted&) {
-    fmt::print(stderr, "edsc: interrupted\n");
+    print_visibly(stderr, "edsc: interrupted\n");
     return exit_interrupted;
   }
 }

@@ -3,12 +3,13 @@
 
 #include <algorithm>
 #include <canopen/frame.hpp>
-#include <canopen/port/host_bus.hpp>
 #include <canopen/time.hpp>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "live/interruption.hpp"
 
@@ -19,11 +20,32 @@ struct BusLost : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A HostBus that tells when it is lost: by what the port says, or by taking no frame for two seconds.
+/// What a LiveBus sends and receives with: the ports of the host, or a bus in simulated time.
+class BusPort {
+ public:
+  BusPort() = default;
+  BusPort(const BusPort&) = delete;
+  BusPort& operator=(const BusPort&) = delete;
+  virtual ~BusPort() = default;
+
+  /// False when there is no room now. Throws std::system_error when the bus is lost, as `receive` does.
+  [[nodiscard]] virtual bool send(const canopen::Frame& frame) = 0;
+  /// The next frame, or nothing when none comes within this time.
+  [[nodiscard]] virtual std::optional<canopen::Frame> receive(canopen::Duration timeout) = 0;
+  [[nodiscard]] virtual canopen::TimePoint now() const = 0;
+  /// When the last frame that `receive` gave was received.
+  [[nodiscard]] virtual canopen::TimePoint received_at() const = 0;
+  /// Readable when there is something to do.
+  [[nodiscard]] virtual int file_descriptor() const = 0;
+};
+
+/// A bus that reports when it is lost: by what the port says, or by taking no frame for two seconds.
 class LiveBus {
  public:
-  /// Throws std::invalid_argument for a malformed address, std::system_error for what cannot be opened.
-  explicit LiveBus(const std::string& address) : bus_{address} {}
+  /// A port of the host: canopen::HostBus. Throws std::invalid_argument for a malformed address, std::system_error for
+  /// what cannot be opened.
+  explicit LiveBus(const std::string& address);
+  explicit LiveBus(std::unique_ptr<BusPort> port) : port_{std::move(port)} {}
 
   /// False when there is no room now.
   [[nodiscard]] bool send(const canopen::Frame& frame);
@@ -37,16 +59,16 @@ class LiveBus {
   /// Hands frames to `on_frame` for this time. Throws Interrupted, BusLost.
   void listen(canopen::Duration span);
 
-  [[nodiscard]] static canopen::TimePoint now() { return canopen::HostBus::now(); }
-  [[nodiscard]] int file_descriptor() const { return bus_.file_descriptor(); }
-  /// When the last frame that `receive` gave has come.
-  [[nodiscard]] canopen::TimePoint received_at() const { return bus_.received_at(); }
+  [[nodiscard]] canopen::TimePoint now() const { return port_->now(); }
+  [[nodiscard]] int file_descriptor() const { return port_->file_descriptor(); }
+  /// When the last frame that `receive` gave was received.
+  [[nodiscard]] canopen::TimePoint received_at() const { return port_->received_at(); }
 
   /// Called with every frame that is received.
   std::function<void(const canopen::Frame&, canopen::TimePoint now)> on_frame;
 
  private:
-  canopen::HostBus bus_;
+  std::unique_ptr<BusPort> port_;
   std::optional<canopen::TimePoint> refused_since_;
 };
 
@@ -57,11 +79,11 @@ void run(LiveBus& bus, Client& client, Cancel cancel) {
   constexpr canopen::Duration try_again{1'000};
   bool cancelled = false;
   while (client.busy()) {
-    const canopen::TimePoint present = LiveBus::now();
+    const canopen::TimePoint present = bus.now();
     const std::optional<canopen::TimePoint> deadline = client.next_deadline();
     const canopen::Duration wait = deadline && *deadline > present ? *deadline - present : try_again;
-    if (const std::optional<canopen::Frame> frame = bus.receive(wait)) client.on_frame(*frame, LiveBus::now());
-    client.on_time(LiveBus::now());
+    if (const std::optional<canopen::Frame> frame = bus.receive(wait)) client.on_frame(*frame, bus.now());
+    client.on_time(bus.now());
     if (Interruption::noted() && !cancelled) {
       cancelled = true;
       if (!cancel()) return;

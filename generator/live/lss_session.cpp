@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <string_view>
 
 namespace edsc {
 namespace {
@@ -37,7 +38,7 @@ std::string LssSession::refusal(Service service) const {
 
 template <class Begin>
 LssResult LssSession::perform(Service service, Begin begin) {
-  (void)begin(LiveBus::now());
+  (void)begin(bus_.now());
   bool interrupted = false;
   run(bus_, master_, [&] {
     interrupted = true;

@@ -44,7 +44,7 @@ constexpr Question questions[] = {
 class Interview {
  public:
   Interview(LiveBus& bus, FoundNode& node, Duration timeout)
-      : node_{node}, client_{bus, NodeId{node.node_id}, timeout} {
+      : bus_{bus}, node_{node}, client_{bus, NodeId{node.node_id}, timeout} {
     ask();
   }
 
@@ -62,13 +62,13 @@ class Interview {
     go_on();
   }
 
-  void cancel() { client_.cancel(canopen::AbortCode::general, LiveBus::now()); }
+  void cancel() { client_.cancel(canopen::AbortCode::general, bus_.now()); }
 
   [[nodiscard]] bool over() const { return next_ == std::size(questions); }
   [[nodiscard]] std::optional<TimePoint> next_deadline() const { return client_.next_deadline(); }
 
  private:
-  void ask() { (void)client_.upload(questions[next_].index, questions[next_].sub_index, memory_, LiveBus::now()); }
+  void ask() { (void)client_.upload(questions[next_].index, questions[next_].sub_index, memory_, bus_.now()); }
 
   /// A node that is silent once is not asked again.
   void go_on() {
@@ -91,6 +91,7 @@ class Interview {
     node_.*question.number = number;
   }
 
+  LiveBus& bus_;
   FoundNode& node_;
   std::array<std::uint8_t, 256> memory_{};
   canopen::SdoClient<LiveBus> client_;
@@ -104,18 +105,18 @@ class Scan {
   }
 
   void run() {
-    const TimePoint begin = LiveBus::now();
+    const TimePoint begin = bus_.now();
     std::size_t next = 0;
     while (next != settings_.nodes.size() || !running_.empty() || waits_for_heartbeats(begin)) {
       while (next != settings_.nodes.size() && running_.size() < most_at_once) {
         running_.emplace_back(bus_, nodes_[settings_.nodes[next++]], Duration{settings_.timeout_ms * 1000U});
       }
       if (const auto frame = bus_.receive(wait())) on_frame(*frame);
-      for (Interview& interview : running_) interview.on_time(LiveBus::now());
+      for (Interview& interview : running_) interview.on_time(bus_.now());
       running_.remove_if([](const Interview& interview) { return interview.over(); });
       if (running_.empty() && next == settings_.nodes.size() && !asked_all_) {
         asked_all_ = true;
-        asked_at_ = LiveBus::now();
+        asked_at_ = bus_.now();
       }
       if (Interruption::noted()) interrupt();
     }
@@ -132,7 +133,7 @@ class Scan {
 
  private:
   [[nodiscard]] Duration wait() const {
-    const TimePoint now = LiveBus::now();
+    const TimePoint now = bus_.now();
     Duration shortest = look_again;
     for (const Interview& interview : running_) {
       const auto deadline = interview.next_deadline();
@@ -142,7 +143,7 @@ class Scan {
   }
 
   void on_frame(const Frame& frame) {
-    for (Interview& interview : running_) interview.on_frame(frame, LiveBus::now());
+    for (Interview& interview : running_) interview.on_frame(frame, bus_.now());
     const auto message = canopen::error_control_message(frame);
     if (!message) return;
     FoundNode& node = nodes_[message->node_id.value()];
@@ -150,7 +151,7 @@ class Scan {
   }
 
   [[nodiscard]] bool waits_for_heartbeats(TimePoint begin) const {
-    const TimePoint now = LiveBus::now();
+    const TimePoint now = bus_.now();
     if (now - begin < Duration{settings_.listen_ms * 1000U}) return true;
     for (const FoundNode& node : nodes_) {
       const std::uint32_t heartbeat = node.heartbeat_ms.value_or(0);

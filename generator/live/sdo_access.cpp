@@ -113,13 +113,13 @@ SdoAccess::SdoAccess(LiveBus& bus, canopen::NodeId node, SdoSettings settings)
 /// Gives the client what has come, and what comes within this time.
 void SdoAccess::take_frames(Duration span) {
   constexpr unsigned at_most = 10'000;  // a bus may bring frames without end
-  const canopen::TimePoint end = LiveBus::now() + span;
+  const canopen::TimePoint end = bus_.now() + span;
   for (unsigned i = 0; i != at_most; ++i) {
-    const canopen::TimePoint present = LiveBus::now();
+    const canopen::TimePoint present = bus_.now();
     const auto frame = bus_.receive(present < end ? end - present : Duration{0});
-    if (frame) client_.on_frame(*frame, LiveBus::now());
+    if (frame) client_.on_frame(*frame, bus_.now());
     if (Interruption::noted()) throw Interrupted{};
-    if (!frame && LiveBus::now() >= end) return;
+    if (!frame && bus_.now() >= end) return;
   }
 }
 
@@ -128,7 +128,7 @@ SdoOutcome SdoAccess::finish(std::uint32_t entry, bool block) {
   bool interrupted = false;
   run(bus_, observed, [&] {
     interrupted = true;
-    client_.cancel(AbortCode::general, LiveBus::now());
+    client_.cancel(AbortCode::general, bus_.now());
     return true;
   });
   if (interrupted) throw Interrupted{};
@@ -189,7 +189,7 @@ SdoOutcome SdoAccess::upload(std::uint16_t index, std::uint8_t sub_index, SdoTra
   };
   SdoOutcome outcome = transfer(how, canopen::sdo::multiplexer(index, sub_index), [&] {
     bytes.clear();
-    (void)client_.upload(index, sub_index, canopen::sink_of(take), LiveBus::now());
+    (void)client_.upload(index, sub_index, canopen::sink_of(take), bus_.now());
   });
   if (too_long) outcome.max_bytes = bytes.limit();
   if (outcome.done()) outcome.bytes = bytes.take();
@@ -200,7 +200,7 @@ SdoOutcome SdoAccess::download(std::uint16_t index, std::uint8_t sub_index, std:
                                SdoTransfer how, const SdoProgress& progress) {
   const std::uint32_t entry = canopen::sdo::multiplexer(index, sub_index);
   if (!progress || value.size() <= 4) {
-    return transfer(how, entry, [&] { (void)client_.download(index, sub_index, value, LiveBus::now()); });
+    return transfer(how, entry, [&] { (void)client_.download(index, sub_index, value, bus_.now()); });
   }
   auto give = [&](std::uint32_t offset, std::span<std::uint8_t> room) -> canopen::Result<std::uint32_t> {
     const auto size = std::min(room.size(), value.size() - offset);
@@ -210,7 +210,7 @@ SdoOutcome SdoAccess::download(std::uint16_t index, std::uint8_t sub_index, std:
   };
   return transfer(how, entry, [&] {
     (void)client_.download(index, sub_index, canopen::source_of(give, static_cast<std::uint32_t>(value.size())),
-                           LiveBus::now());
+                           bus_.now());
   });
 }
 
