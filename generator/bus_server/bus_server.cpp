@@ -115,7 +115,7 @@ void BusServer::welcome() {
   }
   client->refuse("too many clients");
   static_cast<void>(client->flush());
-  say(*client, "too many clients");
+  report(*client, "too many clients");
 }
 
 /// Takes what the client says. False when it is to leave.
@@ -135,7 +135,7 @@ bool BusServer::answer(BusClient& client, ClientRequest request) {
     case ClientRequest::nothing: return true;
     case ClientRequest::open_bus: return open_bus(client);
     case ClientRequest::send_frame: deliver(client); return true;
-    case ClientRequest::leave: say(client, client.leaves_because()); return false;
+    case ClientRequest::leave: report(client, client.leaves_because()); return false;
   }
   return true;
 }
@@ -144,7 +144,7 @@ bool BusServer::open_bus(BusClient& client) {
   const auto found = std::find(buses_.begin(), buses_.end(), client.wanted_bus());
   if (found == buses_.end()) {
     client.refuse("could not open bus");
-    say(client, "there is no bus \"" + client.wanted_bus() + "\"");
+    report(client, "there is no bus \"" + client.wanted_bus() + "\"");
     return false;
   }
   client.opened(static_cast<std::size_t>(found - buses_.begin()));
@@ -178,18 +178,18 @@ void BusServer::flush() {
   std::erase_if(clients_, [&](const std::unique_ptr<BusClient>& client) {
     if (!client->flush()) return true;
     if (client->backlog() > limits_.backlog) {
-      say(*client, "it reads too slowly: " + std::to_string(client->backlog()) + " bytes wait for it");
+      report(*client, "it reads too slowly: " + std::to_string(client->backlog()) + " bytes wait for it");
       return true;
     }
     if (client->bus() || now - client->since() < limits_.handshake) return false;
     client->refuse("no bus was opened in time");
     static_cast<void>(client->flush());
-    say(*client, "it has not opened a bus for " + std::to_string(limits_.handshake.count()) + " ms");
+    report(*client, "it has not opened a bus for " + std::to_string(limits_.handshake.count()) + " ms");
     return true;
   });
 }
 
-void BusServer::say(const BusClient& client, const std::string& message) const {
+void BusServer::report(const BusClient& client, const std::string& message) const {
   events_.on_trouble("client " + client.name() + " is sent away: " + message);
 }
 

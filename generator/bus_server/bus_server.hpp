@@ -58,7 +58,7 @@ class BusServer {
   void deliver(const BusClient& sender);
   [[nodiscard]] std::chrono::milliseconds until_handshake_ends(std::chrono::milliseconds at_most) const;
   void flush();
-  void say(const BusClient& client, const std::string& message) const;
+  void report(const BusClient& client, const std::string& message) const;
 
   ListenAddress address_;
   std::vector<std::string> buses_;
