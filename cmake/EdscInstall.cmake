@@ -14,7 +14,11 @@ if(TARGET edsc)
   install(FILES ${shell_files}/edsc.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions RENAME _edsc COMPONENT program)
   install(FILES ${shell_files}/edsc.man DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 RENAME edsc.1 COMPONENT program)
   install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${document_dir}/edsc RENAME copyright COMPONENT program)
-  install(FILES ${PROJECT_SOURCE_DIR}/docs/rules.md DESTINATION ${document_dir}/edsc COMPONENT program)
+  # The documents with what they refer to, as in the sources; the schemas also where editors and scripts look for them.
+  install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION ${document_dir}/edsc
+          COMPONENT program)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs ${PROJECT_SOURCE_DIR}/examples ${PROJECT_SOURCE_DIR}/eds
+          DESTINATION ${document_dir}/edsc COMPONENT program)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/schema DESTINATION ${CMAKE_INSTALL_DATADIR}/edsc COMPONENT program)
 endif()
 

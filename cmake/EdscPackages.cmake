@@ -2,7 +2,10 @@
 # libedsc-dev_VERSION_all.deb with what is compiled for a device.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME edsc)
-set(CPACK_PACKAGE_CONTACT "Seed 57085386 maintainers <maintainers@users.noreply.h-seed-57085386.example>")
+# Who makes the packages: `-DEDSC_MAINTAINER="Name <address>"`.
+set(EDSC_MAINTAINER "Seed 57085386 maintainers <maintainers@users.noreply.h-seed-57085386.example>"
+    CACHE STRING "Maintainer of the Debian packages")
+set(CPACK_PACKAGE_CONTACT ${EDSC_MAINTAINER})
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_COMPONENTS_ALL program development)
 set(CPACK_STRIP_FILES ON)

@@ -10,6 +10,7 @@
 
 #include "commands/commands.hpp"
 #include "commands/output.hpp"
+#include "commit.hpp"
 #include "diagnostics/quote.hpp"
 #include "text/printable.hpp"
 #include "text/suggestion.hpp"
@@ -64,7 +65,7 @@ int main(int argc, char** argv) {
   edsc::occupy_standard_descriptors();
   CLI::App app{"edsc compiles CANopen Electronic Data Sheets (EDS, DCF) to checked C++20."};
   app.name("edsc");
-  app.set_version_flag("--version", "edsc " EDSC_VERSION);
+  app.set_version_flag("--version", "edsc " EDSC_VERSION EDSC_COMMIT);
   app.require_subcommand(1);
   app.footer("'edsc COMMAND --help' shows a command's options and examples.");
   int exit_code = edsc::exit_fine;

@@ -269,7 +269,7 @@ class WrongUsage(CommandLine):
                 self.expect(FINE, result, "Examples:", f"  edsc {command} ")
 
     def test_version(self) -> None:
-        self.assertRegex(self.edsc("--version").stdout, r"^edsc \d+\.\d+\.\d+\n$")
+        self.assertRegex(self.edsc("--version").stdout, r"^edsc \d+\.\d+\.\d+( \(commit [0-9a-f]{12}( with changes)?\))?\n$")
 
 
 class Generate(CommandLine):

@@ -69,6 +69,10 @@ class Ways(unittest.TestCase):
     def document(self, section: str, number: int) -> str:
         return run("bash", "-euc", blocks(section, "sh")[number], folder=self.sources)
 
+    @staticmethod
+    def in_sources(path: str) -> Path:
+        return SOURCE_DIR / path.replace("doc/edsc/", "").replace("edsc/schema", "docs/schema")
+
     def built(self) -> None:
         """Once: edsc by the document's first commands, installed."""
         if not self.prefix.exists():
@@ -104,6 +108,9 @@ class Ways(unittest.TestCase):
         self.nothing_to_do(self.sources / "build/valve")
         for path in ("bash-completion/completions/edsc", "zsh/site-functions/_edsc", "man/man1/edsc.1"):
             self.assertIn("edsc", (self.prefix / "share" / path).read_text())
+        for path in ("doc/edsc/README.md", "doc/edsc/docs/install.md", "doc/edsc/examples/project/valve.eds",
+                     "doc/edsc/eds/rk5c.eds", "edsc/schema/options.schema.json"):
+            self.assertEqual((self.prefix / "share" / path).read_bytes(), self.in_sources(path).read_bytes(), path)
 
     @unittest.skipIf(WITHOUT_ARM, WITHOUT_ARM)
     def test_installed_for_a_cortex_m(self) -> None:
@@ -167,7 +174,8 @@ class Ways(unittest.TestCase):
                  for package in (program, development)]
         self.assertEqual(files[0] & files[1], set())
         self.assertLessEqual({"./usr/bin/edsc", "./usr/share/man/man1/edsc.1.gz", "./usr/share/doc/edsc/copyright",
-                              "./usr/share/bash-completion/completions/edsc"}, files[0])
+                              "./usr/share/bash-completion/completions/edsc", "./usr/share/doc/edsc/docs/install.md",
+                              "./usr/share/edsc/schema/options.schema.json"}, files[0])
         root = self.folder / "root"
         for package in (program, development):
             run("dpkg-deb", "-x", package, root)
