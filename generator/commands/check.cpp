@@ -8,6 +8,7 @@
 #include "commands/commands.hpp"
 #include "commands/left_out_text.hpp"
 #include "commands/load_device.hpp"
+#include "diagnostics/place.hpp"
 #include "diagnostics/print.hpp"
 #include "diagnostics/rule.hpp"
 #include "diagnostics/sarif.hpp"
@@ -88,8 +89,14 @@ class Report {
     }
   }
 
-  void add_left_out(const std::vector<LeftOut>& left_out) const {
+  /// SARIF has no place for it; there, findings of `--keep-going` say what is left out.
+  void add_left_out(const std::vector<LeftOut>& left_out) {
     if (format_ == "text") fmt::print("{}", left_out_text(left_out));
+    for (const LeftOut& one : left_out) {
+      const Place place = place_of(one.position);
+      json_["left_out"].push_back(
+          {{"file", place.file}, {"line", place.line}, {"column", place.column}, {"what", one.what}});
+    }
   }
 
   void finish() const {
@@ -120,6 +127,7 @@ class Report {
                           {"diagnostics", nlohmann::json::array()},
                           {"allowed_diagnostics", nlohmann::json::array()},
                           {"suppressed", nlohmann::json::array()},
+                          {"left_out", nlohmann::json::array()},
                           {"errors", 0},
                           {"warnings", 0},
                           {"notes", 0},

@@ -158,5 +158,30 @@ class Dump(CommandLine):
                     if entry["sub_index"] == sub_index)
 
 
+class OfCheckAndDiff(CommandLine):
+    def check(self, *arguments: object) -> dict:
+        found = json.loads(self.edsc("check", "--format", "json", *arguments).stdout)
+        validator("check").validate(found)
+        return found
+
+    def test_findings_of_all_files_fit(self) -> None:
+        found = self.check(*sorted((SOURCE_DIR / "eds").glob("*.eds")), *sorted(FIXTURES.glob("*.eds")))
+        self.assertTrue(found["diagnostics"])
+
+    def test_allowed_findings_and_what_is_left_out_fit(self) -> None:
+        text = SMALL.replace("DataType=6\nAccessType=rw", "DataType=6\nAccessType=rw\nDefaultValue=x").replace(
+            "[1017]", "; edsc: allow unknown-key - known\n[1017]\nColour=red")
+        found = self.check(self.write("small.eds", text), "--keep-going")
+        self.assertEqual([row["what"] for row in found["left_out"]], ['the DefaultValue of 1017h:00 "Producer heartbeat time"'])
+        self.assertEqual([row["allowance"]["reason"] for row in found["allowed_diagnostics"]], ["known"])
+
+    def test_of_diff_fits(self) -> None:
+        sheets = sorted(FIXTURES.glob("*.eds"))[:6]
+        for one, other in zip(sheets, sheets[1:]):
+            changes = json.loads(self.edsc("diff", one, other, "--format", "json", "--keep-going").stdout)
+            validator("diff").validate(changes)
+            self.assertEqual(changes["breaking"] + changes["compatible"], len(changes["changes"]))
+
+
 if __name__ == "__main__":
     unittest.main(argv=[sys.argv[0], *sys.argv[3:]], verbosity=2)
