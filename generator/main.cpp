@@ -1,10 +1,12 @@
 /// edsc: the compiler for CANopen Electronic Data Sheets.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <exception>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -53,6 +55,19 @@ bool report_unknown_command(const CLI::App& app) {
   return true;
 }
 
+/// What CLI11 says of arguments, which may hold anything.
+std::string failure_message(const CLI::App* app, const CLI::Error& problem) {
+  const std::string message = CLI::FailureMessage::simple(app, problem);
+  std::string shown;
+  for (std::size_t begin = 0; begin < message.size();) {
+    const std::size_t end = std::min(message.find('\n', begin), message.size());
+    edsc::append_printable(shown, std::string_view{message}.substr(begin, end - begin));
+    shown += '\n';
+    begin = end + 1;
+  }
+  return shown;
+}
+
 /// What standard output does not take is reported at the end.
 int report(const std::exception& problem) {
   if (std::ferror(stdout) == 0) edsc::print_visibly(stderr, "edsc: {}\n", problem.what());
@@ -66,6 +81,7 @@ int main(int argc, char** argv) {
   CLI::App app{"edsc compiles CANopen Electronic Data Sheets (EDS, DCF) to checked C++20."};
   app.name("edsc");
   app.set_version_flag("--version", "edsc " EDSC_VERSION EDSC_COMMIT);
+  app.failure_message(failure_message);
   app.require_subcommand(1);
   app.footer("'edsc COMMAND --help' shows a command's options and examples.");
   int exit_code = edsc::exit_fine;

@@ -89,6 +89,7 @@ class OfFiles(HiddenTextTest):
         self.assertIn("Other text<U+009B>", self.edsc("diff", "device.eds", "newer.eds"))
         changes = json.loads(self.edsc("diff", "device.eds", "newer.eds", "--format", "json"))
         self.assertIn(f"Other text{HOSTILE}", [change["name"] for change in changes["changes"]])
+        self.assertIn("&lt;U+202E\\>", self.edsc("diff", "device.eds", "newer.eds", "--format", "markdown"))
 
     def test_a_file_with_an_escape_sequence(self) -> None:
         (self.folder / "escape.eds").write_text(sheet("5").replace("ParameterName=Text", "ParameterName=\x1b[2JText"))
@@ -102,6 +103,13 @@ class OfFiles(HiddenTextTest):
                         ("generate", name, "-o", "out"), ("check", f"missing{name}"), ("decode", f"missing{name}"),
                         ("generate", "device.eds", "-o", f"out{HOSTILE}", "--verbose")):
             self.edsc(*command)
+
+    def test_arguments(self) -> None:
+        for command in ((HOSTILE,), ("check", f"--{HOSTILE}"), ("check", "device.eds", "--format", HOSTILE),
+                        ("check", "--explain", HOSTILE), ("check", "device.eds", "--silence", HOSTILE),
+                        ("dump", "device.eds", "--node-id", HOSTILE), ("diff", "device.eds", "--against", HOSTILE),
+                        ("scan", HOSTILE), ("bus", "--listen", HOSTILE), ("decode", "-", "--node", HOSTILE)):
+            self.assertIn("<U+202E>", self.edsc(*command))
 
     def test_dump_is_the_same_device(self) -> None:
         device = json.loads(self.edsc("dump", "device.eds", "--cpp"))
