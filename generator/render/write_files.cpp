@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <canopen/port/descriptor.hpp>
 #include <cerrno>
 #include <charconv>
 #include <cstdio>
@@ -31,27 +32,10 @@ constexpr mode_t without_set_id = 0777;
 
 std::string reason() { return std::strerror(errno); }
 
-/// A file descriptor that is closed at the end.
-class Descriptor {
- public:
-  explicit Descriptor(int number = -1) : number_{number} {}
-  Descriptor(Descriptor&& other) noexcept : number_{std::exchange(other.number_, -1)} {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(number_, other.number_);
-    return *this;
-  }
-  ~Descriptor() {
-    if (number_ >= 0) ::close(number_);
-  }
+using canopen::Descriptor;
 
-  [[nodiscard]] explicit operator bool() const { return number_ >= 0; }
-  [[nodiscard]] int number() const { return number_; }
-  /// Some file systems report a full disk only now.
-  [[nodiscard]] bool close() { return ::close(std::exchange(number_, -1)) == 0 || errno == EINTR; }
-
- private:
-  int number_;
-};
+/// Some file systems report a full disk only now.
+bool closed(Descriptor& descriptor) { return descriptor.close() == 0 || errno == EINTR; }
 
 /// Waits where a descriptor does not take more bytes for now.
 bool write_all(int descriptor, std::string_view bytes) {
@@ -135,7 +119,7 @@ class Target {
       if (!opened) return problem();
     }
     if (!write_all(descriptor_.value_or(opened.number()), file_->content)) return problem();
-    return descriptor_ || opened.close() ? "" : problem();
+    return descriptor_ || closed(opened) ? "" : problem();
   }
 
   [[nodiscard]] std::string write_temporary() {
@@ -144,7 +128,7 @@ class Target {
     struct stat before {};
     exists_ = ::lstat(path_.c_str(), &before) == 0;
     if (exists_) keep_owner_and_mode(out.number(), before);
-    const bool written = write_all(out.number(), file_->content) && is_on_disk(out.number()) && out.close();
+    const bool written = write_all(out.number(), file_->content) && is_on_disk(out.number()) && closed(out);
     return written ? "" : problem();
   }
 
@@ -206,7 +190,7 @@ class Target {
     mode_t mode = before.st_mode & permission_bits;
     if (::fchown(descriptor, before.st_uid, before.st_gid) != 0) {
       mode &= without_set_id;  // set-ID bits of one user are not for another one
-      static_cast<void>(::fchown(descriptor, static_cast<uid_t>(-1), before.st_gid));
+      [[maybe_unused]] const int group_kept = ::fchown(descriptor, static_cast<uid_t>(-1), before.st_gid);
     }
     static_cast<void>(::fchmod(descriptor, mode));
   }

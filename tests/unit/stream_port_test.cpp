@@ -60,10 +60,10 @@ std::string read_some(int descriptor) {
 /// A device that is an SLCAN adapter and, behind it, node 5.
 class Device {
  public:
-  Device() : line_{::posix_openpt(O_RDWR | O_NOCTTY), "posix_openpt"} {
+  Device() : line_{canopen::opened(::posix_openpt(O_RDWR | O_NOCTTY), "posix_openpt")} {
     if (::grantpt(line_.number()) != 0 || ::unlockpt(line_.number()) != 0) canopen::throw_errno("pseudo-terminal");
     name_ = ::ptsname(line_.number());
-    keeper_ = Descriptor{::open(name_.c_str(), O_RDWR | O_NOCTTY), name_};
+    keeper_ = canopen::opened(::open(name_.c_str(), O_RDWR | O_NOCTTY), name_);
     termios settings{};
     ::tcgetattr(keeper_.number(), &settings);
     ::cfmakeraw(&settings);
@@ -217,7 +217,7 @@ TEST(SlcanPort, ThrowsWhenTheLineIsGone) {
 /// A server that says what it is told to say, and keeps what it hears.
 class Server {
  public:
-  Server() : listener_{::socket(AF_INET, SOCK_STREAM, 0), "socket"} {
+  Server() : listener_{canopen::opened(::socket(AF_INET, SOCK_STREAM, 0), "socket")} {
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
@@ -234,7 +234,7 @@ class Server {
     return "socketcand:127.0.0.1:" + std::to_string(port_) + "/" + bus;
   }
 
-  void accept() { client_ = Descriptor{::accept(listener_.number(), nullptr, nullptr), "accept"}; }
+  void accept() { client_ = canopen::opened(::accept(listener_.number(), nullptr, nullptr), "accept"); }
   void say(std::string_view text) const {
     EXPECT_EQ(::send(client_.number(), text.data(), text.size(), MSG_NOSIGNAL), static_cast<ssize_t>(text.size()));
   }

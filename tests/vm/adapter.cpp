@@ -70,7 +70,7 @@ class Device {
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
   std::signal(SIGTERM, [](int) { stop = true; });
-  canopen::Descriptor line{::posix_openpt(O_RDWR | O_NOCTTY), "posix_openpt"};
+  canopen::Descriptor line = canopen::opened(::posix_openpt(O_RDWR | O_NOCTTY), "posix_openpt");
   if (::grantpt(line.number()) != 0 || ::unlockpt(line.number()) != 0) return 1;
   std::printf("%s\n", ::ptsname(line.number()));
   std::fflush(stdout);

@@ -6,7 +6,6 @@
 #include <sys/epoll.h>
 #include <sys/timerfd.h>
 #include <time.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -14,8 +13,8 @@
 #include <optional>
 #include <string>
 #include <system_error>
-#include <utility>
 
+#include "canopen/port/descriptor.hpp"
 #include "canopen/time.hpp"
 
 namespace canopen {
@@ -41,34 +40,17 @@ namespace canopen {
   throw std::system_error{errno, std::generic_category(), what};
 }
 
-/// A file descriptor that is closed in the end.
-class Descriptor {
- public:
-  Descriptor() = default;
-  /// Throws when the call that opened it has failed.
-  Descriptor(int number, const std::string& what) : number_{number} {
-    if (number < 0) throw_errno(what);
-  }
-  Descriptor(Descriptor&& other) noexcept : number_{std::exchange(other.number_, -1)} {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(number_, other.number_);
-    return *this;
-  }
-  ~Descriptor() {
-    if (number_ >= 0) ::close(number_);
-  }
-
-  [[nodiscard]] int number() const { return number_; }
-
- private:
-  int number_ = -1;
-};
+/// The descriptor that a system call opened. Throws std::system_error when the call has failed.
+[[nodiscard]] inline Descriptor opened(int number, const std::string& what) {
+  if (number < 0) throw_errno(what);
+  return Descriptor{number};
+}
 
 class EventDescriptor {
  public:
   EventDescriptor()
-      : epoll_{::epoll_create1(EPOLL_CLOEXEC), "epoll_create1"},
-        timer_{::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC), "timerfd_create"} {
+      : epoll_{opened(::epoll_create1(EPOLL_CLOEXEC), "epoll_create1")},
+        timer_{opened(::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC), "timerfd_create")} {
     control(EPOLL_CTL_ADD, timer_.number(), EPOLLIN);
   }
 

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "canopen/crc16.hpp"
+#include "canopen/port/descriptor.hpp"
 #include "canopen/storage.hpp"
 
 namespace canopen {
@@ -73,21 +74,6 @@ class FileStorage {
   static constexpr std::array<std::uint8_t, 4> magic = {'E', 'D', 'S', 'P'};
   static constexpr std::uint16_t first_crc = 0xFFFF;
   static constexpr std::uint32_t header_bytes = 6;
-
-  /// A file descriptor that is closed in the end.
-  class Descriptor {
-   public:
-    explicit Descriptor(int number) : number_{number} {}
-    ~Descriptor() { static_cast<void>(close()); }
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-
-    [[nodiscard]] int number() const { return number_; }
-    [[nodiscard]] int close() { return number_ < 0 ? 0 : ::close(std::exchange(number_, -1)); }
-
-   private:
-    int number_;
-  };
 
   [[nodiscard]] std::string new_path() const { return path_ + ".new"; }
 

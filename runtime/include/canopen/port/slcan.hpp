@@ -50,7 +50,7 @@ class SlcanPort : public StreamPort<SlcanHost> {
   };
 
   [[nodiscard]] static Descriptor open_line(const std::string& device, std::uint32_t baud) {
-    Descriptor line{::open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC), device};
+    Descriptor line = opened(::open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC), device);
     termios settings{};
     if (::tcgetattr(line.number(), &settings) != 0) throw_errno(device);
     ::cfmakeraw(&settings);

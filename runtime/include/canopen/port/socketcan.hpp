@@ -160,7 +160,7 @@ class SocketCan {
   void open() {
     const unsigned index = ::if_nametoindex(interface_.c_str());
     if (index == 0) throw_errno("CAN interface \"" + interface_ + "\"");
-    Descriptor fresh{::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW), "socket"};
+    Descriptor fresh = opened(::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW), "socket");
     const can_err_mask_t errors = CAN_ERR_CRTL | CAN_ERR_BUSOFF | CAN_ERR_RESTARTED;
     set_option(fresh, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, errors);
     set_option(fresh, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, int{0});

@@ -54,7 +54,7 @@ class SocketcandPort : public StreamPort<SocketcandClient> {
     const std::unique_ptr<addrinfo, FreeAddresses> addresses{found};
     int problem = EHOSTUNREACH;
     for (const addrinfo* address = found; address != nullptr; address = address->ai_next) {
-      Descriptor stream{::socket(address->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0), "socket"};
+      Descriptor stream = opened(::socket(address->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0), "socket");
       problem = try_address(stream, *address);
       if (problem == 0) return stream;
     }
