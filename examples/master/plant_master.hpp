@@ -19,14 +19,16 @@
 #include <utility>
 #include <vector>
 
+/// Of the outputs, and the guard time.
+inline constexpr canopen::Duration usual_cycle = std::chrono::milliseconds{100};
+
 template <canopen::BlockingBus B>
 class PlantMaster {
  public:
   using Log = std::function<void(std::string_view line)>;
 
-  static constexpr canopen::Duration cycle = std::chrono::milliseconds{100};
-
-  PlantMaster(B& bus, Log log) : log_{std::move(log)}, master_{bus, slaves(), {canopen::nmt_start_up::no_slave_start}} {
+  PlantMaster(B& bus, Log log, canopen::Duration cycle = usual_cycle)
+      : log_{std::move(log)}, cycle_{cycle}, master_{bus, slaves(cycle), {canopen::nmt_start_up::no_slave_start}} {
     master_.on_configure = [this](canopen::NodeId node_id) { return configure(node_id); };
     master_.on_booted = [this](canopen::NodeId node_id, const canopen::BootResult& result) { booted(node_id, result); };
     master_.on_event = [this](canopen::NmtMasterEvent event, canopen::NodeId node_id, canopen::NmtState) {
@@ -41,7 +43,7 @@ class PlantMaster {
 
   /// One cycle: to be called again and again.
   void run_cycle() {
-    master_.poll(cycle);
+    master_.poll(cycle_);
     if (!running_) return;
     compare();
     write_outputs();
@@ -53,14 +55,18 @@ class PlantMaster {
   [[nodiscard]] unsigned differed() const { return differed_; }
 
  private:
-  static constexpr std::uint16_t guard_time = 100;  ///< ms
   static constexpr std::uint8_t life_time_factor = 3;
   static constexpr std::size_t nodes = 4;
 
-  [[nodiscard]] static std::vector<canopen::NmtSlave> slaves() {
+  /// ms
+  [[nodiscard]] static std::uint16_t guard_time(canopen::Duration cycle) {
+    return static_cast<std::uint16_t>(cycle.count() / 1000);
+  }
+
+  [[nodiscard]] static std::vector<canopen::NmtSlave> slaves(canopen::Duration cycle) {
     using namespace canopen::slave_assignment;
-    constexpr std::uint32_t assignment =
-        listed | boot | mandatory | std::uint32_t{life_time_factor} << 8 | std::uint32_t{guard_time} << 16;
+    const std::uint32_t assignment =
+        listed | boot | mandatory | std::uint32_t{life_time_factor} << 8 | std::uint32_t{guard_time(cycle)} << 16;
     std::vector<canopen::NmtSlave> list;
     for (std::uint8_t i = 1; i <= nodes; ++i) list.push_back({canopen::NodeId{i}, assignment});
     list[0].device_type = default_of<can_2057c::Device>();
@@ -105,8 +111,8 @@ class PlantMaster {
     }
   }
   template <class Device, class GuardTime, class LifeTimeFactor>
-  [[nodiscard]] static canopen::Result<void> guarded(canopen::MasterRemote<Device, B>& node) {
-    return all({node.template write<GuardTime>(guard_time), node.template write<LifeTimeFactor>(life_time_factor)});
+  [[nodiscard]] canopen::Result<void> guarded(canopen::MasterRemote<Device, B>& node) const {
+    return all({node.template write<GuardTime>(guard_time(cycle_)), node.template write<LifeTimeFactor>(life_time_factor)});
   }
   /// The first failure of several transfers.
   [[nodiscard]] static canopen::Result<void> all(std::initializer_list<canopen::Result<void>> results) {
@@ -178,6 +184,7 @@ class PlantMaster {
   }
 
   Log log_;
+  canopen::Duration cycle_;
   canopen::Master<B> master_;
   canopen::MasterRemote<can_2057c::Device, B> outputs_{master_, canopen::NodeId{1}};
   canopen::MasterRemote<can_2053c::Device, B> inputs_{master_, canopen::NodeId{2}};

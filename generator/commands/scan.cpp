@@ -195,6 +195,7 @@ void find_nodes(LiveBus& bus, const Settings& settings, Findings& found) {
   scan(bus, settings.scan, found.nodes);
   if (!settings.lss) return;
   canopen::LssTimeouts timeouts;
+  timeouts.answer = canopen::Duration{settings.scan.timeout_ms * 1000U};
   timeouts.fastscan_step = canopen::Duration{settings.lss_step_ms * 1000U};
   const LssResult result = LssSession{bus, timeouts}.find_unconfigured(
       [&](const canopen::LssAddress& address) { found.unconfigured.push_back(address); });

@@ -122,7 +122,7 @@ class Git(CommandLine):
         self.sheet.write_text(ADDED)
         for folder, path in ((self.folder / "eds", "device.eds"), (Path("/"), self.sheet)):
             result = subprocess.run([sys.argv[2], "diff", "--against", "git:HEAD", path], cwd=folder, text=True,
-                                    capture_output=True, timeout=30, env={**os.environ, **self.environment})
+                                    capture_output=True, timeout=600, env={**os.environ, **self.environment})
             self.expect(FINE, result, "object-added", "0 breaking, 1 compatible")
 
     def test_works_in_a_hook(self) -> None:

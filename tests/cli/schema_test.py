@@ -101,7 +101,7 @@ class Dump(CommandLine):
         count = 0
         for path in paths:
             with self.subTest(path=path):
-                result = subprocess.run([EDSC, "dump", path, "--keep-going", *options], capture_output=True, timeout=120)
+                result = subprocess.run([EDSC, "dump", path, "--keep-going", *options], capture_output=True, timeout=600)
                 if result.stdout:
                     device.validate(json.loads(result.stdout))
                     count += 1

@@ -29,7 +29,7 @@ NOT_RUN_HERE = {"./test.sh"}
 
 
 def run(command: str, folder: Path, environment: dict[str, str]) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(["bash", "-c", command], cwd=folder, env=environment, capture_output=True, text=True, timeout=600)
+    return subprocess.run(["bash", "-c", command], cwd=folder, env=environment, capture_output=True, text=True, timeout=3400)
 
 
 def check_commands(document: Path, text: str, folder: Path, environment: dict[str, str]) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import statistics
 import struct
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -19,7 +20,7 @@ ERROR_REGISTER, ERROR_HISTORY, EMCY_COB_ID = 0x1001, 0x1003, 0x1014
 INVALID, NO_REMOTE_FRAMES = 1 << 31, 1 << 30
 HARMLESS = {0x6040: 6, 0x6060: 1, 0x6098: 17}  # values that move no drive, and that drives know
 INPUTS = Path(__file__).with_name("inputs.tsv")
-PATIENCE = 10.0  # s, for what must come
+PATIENCE = 120.0  # s, for what must come
 SHORT = 0.04    # s, for what must not come
 
 
@@ -221,8 +222,8 @@ class Walk:
 
     def state(self, wanted: int) -> int | None:
         """The wanted state, once a heartbeat tells it; else the last one that came."""
-        state = None
-        for _ in range(10):  # the first ones may have been on their way
+        state, end = None, time.monotonic() + PATIENCE
+        while time.monotonic() < end:  # the first ones may have been on their way
             frame = self.wire.receive(0x700 + self.node_id, PATIENCE)
             if frame is None:
                 break
@@ -398,7 +399,7 @@ class Walk:
     def heartbeat(self) -> None:
         for milliseconds in (20, 50):
             self.write(PRODUCER_HEARTBEAT, 0, milliseconds)
-            for _ in range(4):  # a machine with much to do may let one measurement fail
+            for _ in range(100):  # a busy machine lets some measurements fail; a wrong period never fits
                 interval = self.heartbeat_interval()
                 if 0.7 * milliseconds <= interval <= 1.3 * milliseconds + 3:
                     interval = milliseconds

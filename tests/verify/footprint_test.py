@@ -30,7 +30,7 @@ def main() -> int:
     written = (source_dir / "docs/footprint.md").read_text(encoding="utf-8")
     printed = subprocess.run([sys.executable, source_dir / "bench/footprint/measure.py", edsc,
                               source_dir / "runtime/include", "--page"], check=True, capture_output=True, text=True,
-                             timeout=600).stdout
+                             timeout=3400).stdout
     print(printed)
     problems = list(difflib.unified_diff(FIGURE.sub("#", written).splitlines(), FIGURE.sub("#", printed).splitlines(),
                                          "docs/footprint.md", "printed", lineterm="", n=0))

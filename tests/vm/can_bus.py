@@ -36,13 +36,13 @@ class Bus:
             if problem.errno not in (errno.EAGAIN, errno.ENETDOWN):
                 raise
 
-    def ask(self, can_id: int, data: str, answer: int, seconds: float = 20.0) -> str:
+    def ask(self, can_id: int, data: str, answer: int, seconds: float = 300.0) -> str:
         """The first frame with the CAN-ID `answer` after this one has been sent."""
         self.drain()
         self.send(can_id, data)
         return self.receive(answer, seconds)
 
-    def receive(self, can_id: int, seconds: float = 20.0) -> str:
+    def receive(self, can_id: int, seconds: float = 300.0) -> str:
         """The next frame with this CAN-ID as hexadecimal digits; others are passed over."""
         end = time.monotonic() + seconds
         while (left := end - time.monotonic()) > 0:

@@ -25,7 +25,7 @@ std::vector<std::uint8_t> some_file() {
 }
 
 void talk(canopen::HostBus& bus, canopen::NodeId id, bool blocks) {
-  canopen::BlockingSdo sdo{bus, {.block_transfer = blocks}};
+  canopen::BlockingSdo sdo{bus, {.timeout = std::chrono::seconds{60}, .block_transfer = blocks}};
   auto node = sdo.remote<every_service::Device>(id);
   const auto name = node.read<od::manufacturer_device_name>();
   require(name && name->view() == "Every service", "the device name");

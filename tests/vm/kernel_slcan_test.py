@@ -52,7 +52,7 @@ def node_behind_an_adapter(vm_adapter: str) -> None:
 def frames_of(line: int, program: subprocess.Popen[str]) -> list[str]:
     """What comes over the line until the program has ended."""
     text = b""
-    while program.poll() is None or select.select([line], [], [], 0.1)[0]:
+    while program.poll() is None or select.select([line], [], [], 2.0)[0]:
         if select.select([line], [], [], 0.1)[0]:
             text += os.read(line, 256)
     return [found for found in text.decode().split("\r") if found.startswith("t")]

@@ -21,10 +21,20 @@ RESTARTED = ERROR | 0x100
 START = "01 05"
 
 
+def listeners() -> int:
+    """Sockets that take all frames of vcan0."""
+    with open("/proc/net/can/rcvlist_all", encoding="ascii") as file:
+        return len(re.findall(r"^ *vcan0 ", file.read(), re.M))
+
+
 def candump(seconds: float, *arguments: str) -> subprocess.Popen[str]:
+    """Ends after so many seconds without a frame."""
+    before = listeners()
     command = ["candump", "-L", "-T", str(int(seconds * 1000)), *arguments]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
-    time.sleep(0.3)
+    while listeners() == before:
+        assert process.poll() is None, "candump has ended"
+        time.sleep(0.05)
     return process
 
 
@@ -34,7 +44,7 @@ def frames_of(process: subprocess.Popen[str]) -> list[str]:
 
 
 def can_utils(bus: Bus) -> None:
-    dump = candump(0.4, "vcan0")
+    dump = candump(10.0, "vcan0")
     for frame in ("000#0105", "605#4000100000000000", "205#AA341200000000", "080#", "705#R", "606#4000100000000000"):
         run(f"cansend vcan0 {frame}")
     frames = frames_of(dump)
@@ -68,19 +78,19 @@ def error_frames(bus: Bus) -> None:
     expect("error passive", bus.ask(CONTROLLER, "00 10 00 00 00 00 00 00", 0x085), "20 81 11 00 00 00 00 00")
     expect("error active again", bus.ask(CONTROLLER, "00 08 00 00 00 00 00 00", 0x085), "00 00 00 00 00 00 00 00")
     expect("overrun", bus.ask(CONTROLLER, "00 01 00 00 00 00 00 00", 0x085), "10 81 11 00 00 00 00 00")
-    expect("no more of it for a second", bus.receive(0x085, 3), "00 00 00 00 00 00 00 00")
+    expect("no more of it for a second", bus.receive(0x085, 60), "00 00 00 00 00 00 00 00")
 
 
 def bus_off(bus: Bus, program: Program) -> None:
     expect("heartbeat every 50 ms", bus.ask(0x605, "2B 17 10 00 32 00 00 00", 0x585), "60 17 10 00 00 00 00 00")
     expect("in Operational", bus.receive(0x705), "05")
     bus.send(BUS_OFF, "00 00 00 00 00 00 00 00")
-    time.sleep(0.1)
+    time.sleep(2.0)
     while bus.receive(0x705, 0.01) != "nothing":
         pass
     before = program.cpu_seconds()
     expect("silence while the controller is off the bus", bus.receive(0x705, 0.6), "nothing")
-    expect("and rest", program.cpu_seconds() - before < 0.1, True)
+    expect("and rest", program.cpu_seconds() - before < 0.3, True)
     expect("what is told after bus-off", bus.ask(RESTARTED, "00 00 00 00 00 00 00 00", 0x085), "40 81 11 00 00 00 00 00")
     expect("and that it is over", bus.receive(0x085), "00 00 00 00 00 00 00 00")
     expect("bus-off is a communication error: Pre-operational", bus.receive(0x705), "7F")
@@ -90,14 +100,14 @@ def interface_down(bus: Bus, program: Program) -> None:
     run("ip link set vcan0 down")
     before = program.cpu_seconds()
     time.sleep(0.5)
-    expect("rest while the interface is down", program.cpu_seconds() - before < 0.1, True)
+    expect("rest while the interface is down", program.cpu_seconds() - before < 0.3, True)
     run("ip link set vcan0 up")
     expect("heartbeat when it is up again", bus.receive(0x705), "7F")
     run("ip link delete vcan0")
     time.sleep(0.5)
     before = program.cpu_seconds()
     time.sleep(0.5)
-    expect("rest while it is gone", program.cpu_seconds() - before < 0.1, True)
+    expect("rest while it is gone", program.cpu_seconds() - before < 0.3, True)
     run("ip link add vcan0 type vcan")
     run("ip link set vcan0 up")
     fresh = Bus("vcan0")

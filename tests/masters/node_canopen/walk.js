@@ -4,8 +4,8 @@
 const { Device, DataType, Eds, SdoCode, rawToType, typeToRaw } = require('canopen');
 
 const MASTER = 126, INVALID = 2 ** 31;
-const PATIENCE = 3000, SHORT = 40;  // ms, for what must come and for what must not
-const UPLOAD = 60000;               // ms, for all segments of a long value, such as the EDS in 1021h
+const PATIENCE = 120000, SHORT = 40;  // ms, for what must come and for what must not
+const UPLOAD = 600000;              // ms, for all segments of a long value, such as the EDS in 1021h
 const SIZES = { [DataType.INTEGER8]: 1, [DataType.INTEGER16]: 2, [DataType.INTEGER32]: 4, [DataType.UNSIGNED8]: 1,
   [DataType.UNSIGNED16]: 2, [DataType.UNSIGNED32]: 4 };
 const HARMLESS = { 0x6040: 6, 0x6060: 1, 0x6098: 17 };  // values that move no drive, and that drives know
