@@ -117,6 +117,19 @@ TEST(RequestInAWriteHandler, WaitsUntilTheBusHasTakenTheAnswer) {
   EXPECT_EQ(device.node.get<od::byte>(), 0);
 }
 
+TEST(RequestInAWriteHandler, GivesWayToANewerNmtCommand) {
+  auto device = with(canopen::on_write<od::byte>(
+      [](auto& node, std::uint8_t) { node.request(NmtCommand::start, canopen::TimePoint{}); }));
+  device.bus.room = 0;
+  device.ask(write_byte);
+  EXPECT_EQ(device.node.state(), canopen::NmtState::pre_operational) << "the answer is not sent";
+  device.ask("000 02 05");
+  EXPECT_EQ(device.node.state(), canopen::NmtState::stopped);
+  device.bus.room = 10;
+  device.pass(1s);
+  EXPECT_EQ(device.node.state(), canopen::NmtState::stopped);
+}
+
 TEST(RequestInAWriteHandler, OfAnRpdoComesAfterItsOtherObjects) {
   auto device = with(canopen::on_write<od::byte>(
       [](auto& node, std::uint8_t) { node.request(NmtCommand::reset_node, canopen::TimePoint{}); }));

@@ -2,12 +2,15 @@
 #include <gtest/gtest.h>
 #include <canopen/port/master.hpp>
 
+#include <array>
 #include <deque>
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "bench.hpp"
+#include "flooded_bus.hpp"
 
 namespace {
 
@@ -73,6 +76,37 @@ TEST(Master, StillTellsOfAFrameThatCameBeforeARequest) {
   ASSERT_TRUE(master.upload(NodeId{5}, 0x2000, 0));
   master.poll(0us);
   EXPECT_EQ(emergencies, 1);
+}
+
+TEST(Master, EndsATransferOnABusThatIsNeverSilent) {
+  bench::FloodedBus bus;
+  canopen::Master master{bus};
+  EXPECT_EQ(master.upload(NodeId{5}, 0x1000, 0).abort_code(), AbortCode::timeout);
+  EXPECT_EQ(bus.requests, 2u) << "the request and the abort";
+  EXPECT_LT(bus.time - TimePoint{}, 10s);
+}
+
+TEST(Master, GoesOnWithASlaveThatDoesNotLetItsCobIdsBeRead) {
+  ScriptedBus bus;
+  std::vector<canopen::NmtSlave> slaves(1);
+  slaves[0].node_id = NodeId{5};
+  slaves[0].assignment =
+      canopen::slave_assignment::listed | canopen::slave_assignment::boot | canopen::slave_assignment::mandatory;
+  canopen::Master master{bus, slaves};
+  bus.answers["605 40 00 10 00 00 00 00 00"] = "585 43 00 10 00 00 00 00 00";
+  bus.answers["605 40 18 10 01 00 00 00 00"] = "585 43 18 10 01 00 00 00 00";
+  bus.answers["605 23 00 18 01 81 01 00 80"] = "585 60 00 18 01 00 00 00 00";
+  bus.answers["605 40 00 18 01 00 00 00 00"] = "585 80 00 18 01 22 00 00 08";
+  const std::array<std::uint8_t, 4> off{0x81, 0x01, 0x00, 0x80};
+  master.on_configure = [&](NodeId node_id) { return master.download(node_id, 0x1800, 1, off); };
+  bool booted = false;
+  master.on_booted = [&](NodeId, const canopen::BootResult& result) {
+    booted = result == canopen::BootStatus::booted;
+  };
+  master.start();
+  bus.waiting.push_back(frame("705 00"));
+  for (int i = 0; i < 100 && !booted; ++i) master.poll(50ms);
+  EXPECT_TRUE(booted);
 }
 
 }  // namespace

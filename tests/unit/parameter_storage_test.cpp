@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <every_service/device.hpp>
 #include <longer_label/device.hpp>
 #include <stored_device/device.hpp>
 
@@ -632,6 +633,18 @@ TEST(StoreParameters, LetsAValueOf64BitsFollowTheNodeId) {
     other.start({});
     EXPECT_EQ(other.get<sample::od::unsigned64_value>(), value == 5 ? 9 : value);
   }
+}
+
+TEST(StoreParameters, GivesUpAnErrorBehaviourThatIsReserved) {
+  MemoryStorage storage;
+  const std::array<std::uint8_t, 1> reserved{3};
+  {
+    auto device = powered<every_service::Device>(storage);
+    ASSERT_EQ(device.node.set(0x1029, 1, reserved), canopen::ok) << "the application may";
+    ASSERT_EQ(device.node.save(), canopen::ok);
+  }
+  auto device = powered<every_service::Device>(storage);
+  EXPECT_EQ(device.ask("605 40 29 10 01 00 00 00 00"), "585 4F 29 10 01 00 00 00 00") << "the default";
 }
 
 // Verify configuration

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bench.hpp"
+#include "flooded_bus.hpp"
 
 namespace {
 
@@ -250,6 +251,26 @@ TEST(BlockingSdo, RefusesATransferToTheNodeThatItWaitsFor) {
   };
   EXPECT_EQ(plant.master.upload(NodeId{6}, 0x1000, 0).abort_code(), AbortCode::timeout);
   EXPECT_EQ(nested, AbortCode::no_resource);
+}
+
+TEST(BlockingSdo, RefusesATransferToTheNodeBeforeItsOwnHasReturned) {
+  Plant plant;
+  EXPECT_EQ(plant.device.set<od::integer24_value>(-5), canopen::ok);
+  AbortCode nested = canopen::ok;
+  plant.master.on_frame = [&](const canopen::Frame& frame, TimePoint) {  // also of the frame that ends the transfer
+    if (frame.id == 0x585) nested = plant.master.upload(NodeId{5}, 0x1000, 0).abort_code();
+  };
+  EXPECT_EQ(plant.drive.read<od::integer24_value>().value(), -5);
+  EXPECT_EQ(nested, AbortCode::no_resource);
+  EXPECT_EQ(plant.drive.read<od::integer24_value>().value(), -5) << "the next one may begin";
+}
+
+TEST(BlockingSdo, EndsOnABusThatIsNeverSilent) {
+  bench::FloodedBus bus;
+  canopen::BlockingSdo master{bus};
+  EXPECT_EQ(master.upload(NodeId{5}, 0x1000, 0).abort_code(), AbortCode::timeout);
+  EXPECT_EQ(bus.requests, 2u) << "the request and the abort";
+  EXPECT_LT(bus.time - TimePoint{}, 10s);
 }
 
 TEST(BlockingSdo, HandsOtherFramesOnWhileItWaits) {

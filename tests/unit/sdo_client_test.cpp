@@ -345,6 +345,23 @@ TEST(SdoClient, DoesNotWaitForAnotherEntry) {
   EXPECT_EQ(one.bus.take(), "605 40 00 10 00 00 00 00 00") << "the late answer has come during the other transfer";
 }
 
+TEST(SdoClient, TheLateAbortOfASegmentIsNotThatOfTheNextTransfer) {
+  bench::RecordingBus bus;
+  SdoClient<bench::RecordingBus> client{bus, NodeId{5}, 100ms};
+  std::array<std::uint8_t, 20> memory{};
+  EXPECT_TRUE(client.upload(0x1008, 0, memory, TimePoint{0ms}));
+  client.on_frame(frame("585 41 08 10 00 0A 00 00 00"), TimePoint{1ms});
+  client.on_time(TimePoint{101ms});
+  EXPECT_EQ(client.result(), AbortCode::timeout);
+  EXPECT_EQ(bus.take(), "605 40 08 10 00 00 00 00 00 | 605 60 00 00 00 00 00 00 00 | 605 80 08 10 00 00 00 04 05");
+  EXPECT_TRUE(client.upload(0x1008, 0, memory, TimePoint{102ms}));
+  client.on_frame(frame("585 80 08 10 00 00 00 04 05"), TimePoint{103ms});  // what the server says of the segment
+  EXPECT_TRUE(client.busy());
+  EXPECT_EQ(bus.take(), "605 40 08 10 00 00 00 00 00");
+  client.on_frame(frame("585 4B 08 10 00 41 42 00 00"), TimePoint{104ms});
+  EXPECT_EQ(client.result(), canopen::ok);
+}
+
 TEST(SdoClient, WaitsWhenSeveralRequestsAreNotAnswered) {
   Unanswered one;
   one.client.read<od::producer_heartbeat_time>(TimePoint{100ms});

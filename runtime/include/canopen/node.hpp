@@ -264,14 +264,14 @@ class Node {
 
   /// Stores parameters as "save" to this sub-index of 1010h does: 1 all, 2 those of 1000h..1FFFh, 3 of 6000h..9FFFh,
   /// 4 of 2000h..5FFFh. hardware: the storage has failed, or the range is not one of these.
-  AbortCode save(std::uint8_t sub_index = 1) requires(HandlerSet<Handlers...>::has_storage) {
+  [[nodiscard]] AbortCode save(std::uint8_t sub_index = 1) requires(HandlerSet<Handlers...>::has_storage) {
     const SectionSet sections = sections_of(sub_index);
     const bool saved = sections != 0 && parameters_.save(handlers_.storage(), sections, store_);
     return saved ? ok : AbortCode::hardware;
   }
 
   /// Gives up stored parameters as "load" to this sub-index of 1011h does: the next reset brings their defaults.
-  AbortCode restore(std::uint8_t sub_index = 1) requires(HandlerSet<Handlers...>::has_storage) {
+  [[nodiscard]] AbortCode restore(std::uint8_t sub_index = 1) requires(HandlerSet<Handlers...>::has_storage) {
     const SectionSet sections = sections_of(sub_index);
     const bool restored = sections != 0 && parameters_.restore(handlers_.storage(), sections, store_);
     return restored ? ok : AbortCode::hardware;
@@ -454,8 +454,9 @@ class Node {
     if (is_nmt_command(frame, node_id_)) carry_out(static_cast<NmtCommand>(frame.data[0]));
   }
 
-  /// Nothing for a code that is none.
+  /// Nothing for a code that is none. The newest command counts: what a handler has asked for before is over.
   [[gnu::noinline]] void carry_out(NmtCommand command) {
+    if constexpr (has_handlers) handling_.requested = 0;
     switch (command) {
       case NmtCommand::start: enter(NmtState::operational); break;
       case NmtCommand::stop: enter(NmtState::stopped); break;
@@ -1017,9 +1018,7 @@ class Node {
 
   /// What a handler has asked for, now that the SDO server has answered.
   void carry_out_requested() {
-    const auto command = static_cast<NmtCommand>(handling_.requested);
-    handling_.requested = 0;
-    carry_out(command);
+    carry_out(static_cast<NmtCommand>(handling_.requested));
     serve();
   }
 

@@ -13,6 +13,7 @@
 #include "canopen/cob_id.hpp"
 #include "canopen/communication_parameters.hpp"
 #include "canopen/dictionary.hpp"
+#include "canopen/error_behavior.hpp"
 #include "canopen/node_id.hpp"
 #include "canopen/object_store.hpp"
 #include "canopen/parameter_layout.hpp"
@@ -282,6 +283,8 @@ class ParameterStorage {
   };
   static constexpr std::uint8_t plain_value = 0;
   static constexpr std::uint8_t most_mapped = 64;
+  static constexpr std::uint8_t emcy_inhibit_time = 0xF7;
+  static constexpr std::uint8_t error_behavior = 0xF8;
   static constexpr std::uint8_t rpdo_transmission = 0xF9;
   static constexpr std::uint8_t tpdo_transmission = 0xFA;
   static constexpr std::uint8_t sync_start = 0xFB;
@@ -307,6 +310,8 @@ class ParameterStorage {
     if (tpdo && sub_index == pdo_parameter::sync_start) return sync_start;
     if (index == 0x1006) return sync_period;
     if (index == 0x1019) return sync_overflow;
+    if (index == 0x1029 && sub_index != 0) return error_behavior;
+    if (index == 0x1015 && Device::options.emcy_inhibit_time_step != 1) return emcy_inhibit_time;
     const bool mapping = sub_index == 0 && (is_rpdo_mapping(index) || is_tpdo_mapping(index));
     return mapping ? mapping_capacity(Device::dictionary, index) : plain_value;
   }
@@ -332,6 +337,9 @@ class ParameterStorage {
     for_each_checked([&](const Checked& row) { rows[i++] = row; });
     return rows;
   }();
+  [[nodiscard]] static consteval bool has_checked(std::uint8_t what) {
+    return std::ranges::any_of(checked, [what](const Checked& row) { return row.what == what; });
+  }
   static constexpr std::size_t communication_count = static_cast<std::size_t>(
       std::ranges::count_if(checked, [](const Checked& row) { return row.index < 0x2000; }));
 
@@ -359,7 +367,7 @@ class ParameterStorage {
       if (is_of_service(row)) return is_possible(row.what, entries.number(word));
     }
     const CobId value{entries.number(word) & (row.what == cob_id ? 0xFFFF'FFFF : CobId::identifier)};
-    return !value.valid() || may_be_written(value, true, true);
+    return !value.valid() || may_be_written(value, true, Device::options.pdo_extended_ids);
   }
 
   /// Whether the service of a parameter can take a value.
@@ -368,6 +376,12 @@ class ParameterStorage {
       case sync_period: return is_sync_period(value);
       case sync_overflow: return is_sync_overflow(value);
       case sync_start: return value <= highest_sync_counter;
+      case error_behavior:
+        if constexpr (has_checked(error_behavior)) return check_error_behavior(static_cast<std::uint8_t>(value)) == ok;
+        return true;
+      case emcy_inhibit_time:
+        if constexpr (has_checked(emcy_inhibit_time)) return value % Device::options.emcy_inhibit_time_step == 0;
+        return true;
       default:
         return check_transmission_type(Device::options, what == tpdo_transmission, static_cast<std::uint8_t>(value)) ==
                ok;

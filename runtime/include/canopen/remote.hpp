@@ -89,6 +89,9 @@ template <NumberObject O, ValueFor<O> V>
   return ok;
 }
 
+/// It is an SDO client of its own, and an SDO has one: not for a node that an NmtMaster or SdoQueue talks to. Two clients
+/// take each other's segments.
+///
 /// One transfer at a time: it begins with `read` or `write`, runs on frames and time until the node is no longer
 /// `busy()`, and leaves its `value()`, `data()` or `result()`.
 ///

@@ -332,6 +332,10 @@ class SdoClient {
       was_reset_ = false;
     } else if (state_ == State::block_uploading) {
       left_over_ = LeftOver::any;
+    } else if (left_over_ == LeftOver::none) {  // the server may still abort the transfer
+      left_over_ = LeftOver::entry;
+      late_entry_ = entry();
+      was_reset_ = false;
     }
     late_until_ = now_ + options_.timeout;
     abort(code);

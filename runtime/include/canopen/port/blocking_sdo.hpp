@@ -16,6 +16,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string_view>
 #include <type_traits>
@@ -159,26 +160,29 @@ class BlockingSdo {
       value.insert(value.end(), bytes.begin(), bytes.end());
       return ok;
     };
+    const Use use{*this, node};
+    if (!use.granted) return AbortCode::no_resource;
     SdoClient<B>& client = client_of(node);
     if (!client.upload(index, sub_index, sink_of(take), bus_.now())) return AbortCode::no_resource;
-    const Unfinished drop{*this, node};
     if (const AbortCode code = run(client); code != ok) return code;
     return value;
   }
 
   Result<void> download(NodeId node, std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> bytes) {
+    const Use use{*this, node};
+    if (!use.granted) return AbortCode::no_resource;
     SdoClient<B>& client = client_of(node);
     if (!client.download(index, sub_index, bytes, bus_.now())) return AbortCode::no_resource;
-    const Unfinished drop{*this, node};
     return run(client);
   }
 
   /// The value of an entry of up to eight bytes.
   [[nodiscard]] SdoAnswer read_number(NodeId node, std::uint16_t index, std::uint8_t sub_index,
                                       std::span<std::uint8_t> memory) {
+    const Use use{*this, node};
+    if (!use.granted) return {AbortCode::no_resource, {}};
     SdoClient<B>& client = client_of(node);
     if (!client.upload(index, sub_index, memory, bus_.now())) return {AbortCode::no_resource, {}};
-    const Unfinished drop{*this, node};
     const AbortCode result = run(client);
     return {result, client.data(), client.size_known()};
   }
@@ -219,21 +223,33 @@ class BlockingSdo {
   [[nodiscard]] const SdoClientOptions& options() const { return options_; }
 
  private:
+  /// Of a node by one call, until it has its result: `on_frame` may see the frame that ends the transfer before that.
   /// Drops a client whose transfer is not over when the bus throws: its memory is gone.
-  struct Unfinished {
-    BlockingSdo& sdo;
-    NodeId node;
-    ~Unfinished() {
-      const auto found = sdo.clients_.find(node.value());
-      if (found->second.busy()) sdo.clients_.erase(found);
+  struct Use {
+    Use(BlockingSdo& blocking_sdo, NodeId node_id)
+        : sdo{blocking_sdo}, node{node_id.value()}, granted{sdo.in_use_.insert(node).second} {}
+    Use(const Use&) = delete;
+    Use& operator=(const Use&) = delete;
+    ~Use() {
+      if (!granted) return;
+      sdo.in_use_.erase(node);
+      const auto found = sdo.clients_.find(node);
+      if (found != sdo.clients_.end() && found->second.busy()) sdo.clients_.erase(found);
     }
+
+    BlockingSdo& sdo;
+    std::uint8_t node;
+    bool granted;
   };
 
   /// The client of a node stays: it knows which answers of earlier transfers may still come. Those that have come since
   /// are taken first, so that none of them answers the next request.
   [[nodiscard]] SdoClient<B>& client_of(NodeId node) {
     SdoClient<B>& client = clients_.try_emplace(node.value(), bus_, node, options_).first->second;
-    while (const std::optional<Frame> frame = bus_.receive(Duration{0})) {
+    constexpr unsigned at_most = 1'000;  // a bus may bring frames without end
+    for (unsigned i = 0; i != at_most; ++i) {
+      const std::optional<Frame> frame = bus_.receive(Duration{0});
+      if (!frame) break;
       (void)take(*frame, nullptr);
       early_.push_back(*frame);
     }
@@ -254,6 +270,7 @@ class BlockingSdo {
   B& bus_;
   SdoClientOptions options_;
   std::map<std::uint8_t, SdoClient<B>> clients_;
+  std::set<std::uint8_t> in_use_;  ///< node-IDs
   std::deque<Frame> early_;  ///< read before the request was sent; `on_frame` has not seen them
 };
 

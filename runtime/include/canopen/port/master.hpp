@@ -160,29 +160,27 @@ class Master {
 
   /// The value of an entry; waits for it.
   [[nodiscard]] Result<std::vector<std::uint8_t>> upload(NodeId node_id, std::uint16_t index, std::uint8_t sub_index) {
-    Transfer& transfer = add({});
+    const Kept kept{*this};
+    Transfer& transfer = kept.transfer;
     const Result<void> submitted = submit_upload(transfer, node_id, index, sub_index);
     const Result<void> done = submitted ? wait_for(transfer) : submitted;
-    std::vector<std::uint8_t> value = std::move(transfer.bytes);
-    remove(transfer);
     if (!done) return done.abort_code();
-    return value;
+    return std::move(transfer.bytes);
   }
 
   /// Writes an entry; waits until it is written.
   Result<void> download(NodeId node_id, std::uint16_t index, std::uint8_t sub_index,
                         std::span<const std::uint8_t> bytes) {
-    Transfer& transfer = add({});
-    const Result<void> submitted = submit_download(transfer, node_id, index, sub_index, bytes);
-    const Result<void> done = submitted ? wait_for(transfer) : submitted;
-    remove(transfer);
-    return done;
+    const Kept kept{*this};
+    const Result<void> submitted = submit_download(kept.transfer, node_id, index, sub_index, bytes);
+    return submitted ? wait_for(kept.transfer) : submitted;
   }
 
   /// The value of an entry of up to eight bytes; waits for it.
   [[nodiscard]] SdoAnswer read_number(NodeId node_id, std::uint16_t index, std::uint8_t sub_index,
                                       std::span<std::uint8_t> memory) {
-    Transfer& transfer = add({});
+    const Kept kept{*this};
+    Transfer& transfer = kept.transfer;
     transfer.bytes.resize(memory.size());
     SdoRequest request = request_of(transfer, index, sub_index);
     request.memory = transfer.bytes;
@@ -190,9 +188,7 @@ class Master {
     const Result<void> done = submitted ? wait_for(transfer) : submitted;
     const std::size_t size = done ? transfer.size : 0;
     std::copy_n(transfer.bytes.begin(), size, memory.begin());
-    const SdoAnswer answer{done.abort_code(), memory.first(size), transfer.size_known};
-    remove(transfer);
-    return answer;
+    return {done.abort_code(), memory.first(size), transfer.size_known};
   }
 
   using UploadDone = std::function<void(const Result<std::vector<std::uint8_t>>&)>;
@@ -228,6 +224,7 @@ class Master {
   struct Host {
     Master& master;
     void happened(NmtMasterEvent event, NodeId node_id, NmtState state) {
+      if (event == NmtMasterEvent::boot_up) ++master.boots_[node_id.value() & 0x7F];
       if (event == NmtMasterEvent::boot_up) master.keep([&m = master, node_id] { m.read_cob_ids(node_id); });
       master.keep([&m = master, event, node_id, state] {
         if (m.on_event) m.on_event(event, node_id, state);
@@ -262,6 +259,7 @@ class Master {
     std::uint16_t index = 0;
     std::uint8_t sub_index = 0;
     bool download = false;
+    bool requested = false;  ///< the NMT master may have it
     bool over = false;
     bool size_known = true;
     AbortCode result = ok;
@@ -281,8 +279,9 @@ class Master {
 
   void keep(std::function<void()> what) { waiting_.push_back(std::move(what)); }
 
+  /// What waits now. Handlers that transfer accept frames, which may bring more for ever.
   void tell() {
-    while (!waiting_.empty()) {
+    for (std::size_t count = waiting_.size(); count != 0 && !waiting_.empty(); --count) {
       const std::function<void()> next = std::move(waiting_.front());
       waiting_.pop_front();
       next();
@@ -338,6 +337,23 @@ class Master {
     transfers_.remove_if([&transfer](const Transfer& other) { return &other == &transfer; });
   }
 
+  /// The transfer of a call that waits for it. When the bus throws, one that is not over stays until the master ends it.
+  struct Kept {
+    explicit Kept(Master& of) : master{of}, transfer{of.add({})} {}
+    Kept(const Kept&) = delete;
+    Kept& operator=(const Kept&) = delete;
+    ~Kept() {
+      if (transfer.over || !transfer.requested) {
+        master.remove(transfer);
+      } else {
+        transfer.done = [](Transfer&) {};
+      }
+    }
+
+    Master& master;
+    Transfer& transfer;
+  };
+
   [[nodiscard]] static SdoRequest request_of(Transfer& transfer, std::uint16_t index, std::uint8_t sub_index) {
     SdoRequest request;
     request.index = index;
@@ -382,8 +398,17 @@ class Master {
 
   /// Takes the frames that have come before it requests the transfer, so that none of them is taken for its answer.
   [[nodiscard]] Result<void> submit(NodeId node_id, const SdoRequest& request) {
-    while (const std::optional<Frame> frame = bus_.receive(Duration{0})) on_frame(*frame, bus_.now());
-    return nmt_.request(node_id, request, bus_.now());
+    constexpr unsigned at_most = 1'000;  // a bus may bring frames without end
+    for (unsigned i = 0; i != at_most; ++i) {
+      const std::optional<Frame> frame = bus_.receive(Duration{0});
+      if (!frame) break;
+      on_frame(*frame, bus_.now());
+    }
+    bool& requested = static_cast<Transfer*>(request.context)->requested;
+    requested = true;
+    const Result<void> submitted = nmt_.request(node_id, request, bus_.now());
+    requested = static_cast<bool>(submitted);
+    return submitted;
   }
 
   [[nodiscard]] Result<void> wait_for(const Transfer& transfer) {
@@ -428,8 +453,9 @@ class Master {
   /// The slave may have other COB-IDs than when they were read. A node answers in order: with the last one all are known.
   void after_configuration(NodeId node_id, Result<void> result) {
     if (!result) return nmt_.configured(node_id, result.abort_code(), bus_.now());
-    const bool reads = read_cob_ids(node_id, [this, node_id](AbortCode code) {
-      if (code == AbortCode::device_state) return;  // it has booted up again
+    const std::uint32_t boots = boots_[node_id.value() & 0x7F];
+    const bool reads = read_cob_ids(node_id, [this, node_id, boots](AbortCode code) {
+      if (boots != boots_[node_id.value() & 0x7F]) return;  // it has booted up again, and is configured anew
       nmt_.configured(node_id, code == AbortCode::timeout ? code : ok, bus_.now());
     });
     if (!reads) nmt_.configured(node_id, ok, bus_.now());
@@ -501,6 +527,7 @@ class Master {
   std::list<Transfer> transfers_;
   std::deque<PdoHandler> pdos_;
   std::map<std::pair<std::uint8_t, std::uint16_t>, std::uint32_t> cob_ids_;
+  std::array<std::uint32_t, 128> boots_{};          ///< boot-up messages, by node-ID
   std::array<std::uint8_t, 128> to_configure_{};  ///< calls of `on_configure` that wait, by node-ID
   std::deque<std::function<void()>> waiting_;
 };

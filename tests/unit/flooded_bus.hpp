@@ -1,0 +1,31 @@
+/// A bus that is not silent for a minute, of which no frame is an answer.
+#pragma once
+
+#include <canopen/frame.hpp>
+#include <canopen/time.hpp>
+#include <chrono>
+#include <optional>
+
+#include "bench.hpp"
+
+namespace bench {
+
+struct FloodedBus {
+  canopen::TimePoint time{};
+  unsigned requests = 0;  ///< SDO requests to node 5
+
+  bool send(const canopen::Frame& frame) {
+    if (frame.id == 0x605) ++requests;
+    return true;
+  }
+  std::optional<canopen::Frame> receive(canopen::Duration timeout) {
+    constexpr canopen::Duration between_frames{100};
+    const bool is_silent = time - canopen::TimePoint{} > std::chrono::minutes{1};
+    time = time + (is_silent ? timeout : between_frames);
+    if (is_silent) return std::nullopt;
+    return frame("185 01 02");
+  }
+  [[nodiscard]] canopen::TimePoint now() const { return time; }
+};
+
+}  // namespace bench
