@@ -131,11 +131,22 @@ void choose_values(const Settings& settings, const LoadedDevice& loaded, Saved& 
   }
 }
 
+/// The entries of which the ParameterValue in FILE does not count: those that `save` reads, and 1020h, which would have
+/// the date of FILE.
+std::set<const Entry*> known_entries(const Device& device) {
+  std::set<const Entry*> known;
+  for (const LiveEntry& entry : configuration_entries(device)) known.insert(entry.entry);
+  if (const Object* const date = device.find(0x1020)) {
+    for (const Entry& entry : date->entries) known.insert(&entry);
+  }
+  return known;
+}
+
 std::string dcf_text(const Settings& settings, const LoadedDevice& loaded, const ParameterValues& values) {
   Diagnostics ignored;
   const IniFile ini = parse_ini(*loaded.source, ignored);
   Document document = canonical_form(ini, loaded.sheet, *loaded.device);
-  make_dcf(document, loaded.sheet, *loaded.device, values, settings.bit_rate);
+  make_dcf(document, loaded.sheet, *loaded.device, {values, known_entries(*loaded.device)}, settings.bit_rate);
   return to_text(document);
 }
 

@@ -54,7 +54,7 @@ class DcfMaker {
     if (values == DcfValues::different) compare_with_defaults();
   }
 
-  DcfMaker(Document& document, const DataSheet& sheet, const Device& device, const ParameterValues& given,
+  DcfMaker(Document& document, const DataSheet& sheet, const Device& device, const GivenValues& given,
            std::optional<unsigned> bit_rate)
       : document_(document), sheet_(sheet), device_(device), values_(DcfValues::all), given_(&given), bit_rate_(bit_rate) {}
 
@@ -165,7 +165,7 @@ class DcfMaker {
   /// The elements of compact forms have their values in one section for each object.
   void write_compact_values() {
     std::map<std::uint16_t, std::vector<DocumentEntry>> compact;
-    for (const auto& [entry, text] : *given_) {
+    for (const auto& [entry, text] : given_->values) {
       const ObjectDescription* const object = find_object(sheet_, entry->index);
       if (object == nullptr || !is_element(*object, entry->sub_index)) continue;
       compact[entry->index].push_back({{}, fmt::format("{}", entry->sub_index), text});
@@ -199,9 +199,10 @@ class DcfMaker {
   }
 
   void configure_as_given(DocumentSection& section, std::uint8_t sub_index) {
-    const auto given = given_->find(device_.find(section.kind.index, sub_index));
-    if (given == given_->end()) return remove(section, "ParameterValue");
-    set(section, "ParameterValue", given->second);
+    const Entry* const entry = device_.find(section.kind.index, sub_index);
+    const auto given = given_->values.find(entry);
+    if (given != given_->values.end()) return set(section, "ParameterValue", given->second);
+    if (!sheet_.is_dcf || given_->known.contains(entry)) remove(section, "ParameterValue");
   }
 
   void configure(DocumentSection& section, std::uint8_t sub_index) {
@@ -250,7 +251,7 @@ class DcfMaker {
   const DataSheet& sheet_;
   const Device& device_;
   DcfValues values_;
-  const ParameterValues* given_ = nullptr;  ///< the ParameterValues; null: those that the file and `values_` say
+  const GivenValues* given_ = nullptr;  ///< the ParameterValues; null: those that the file and `values_` say
   std::optional<unsigned> bit_rate_;
   std::set<const Entry*> defaults_;  ///< with a ParameterValue that is the default
   std::set<std::uint16_t> whole_;    ///< mapping parameters of which all entries get a ParameterValue
@@ -262,9 +263,9 @@ void make_dcf(Document& document, const DataSheet& sheet, const Device& device, 
   DcfMaker(document, sheet, device, values).make();
 }
 
-void make_dcf(Document& document, const DataSheet& sheet, const Device& device, const ParameterValues& values,
+void make_dcf(Document& document, const DataSheet& sheet, const Device& device, const GivenValues& given,
               std::optional<unsigned> bit_rate) {
-  DcfMaker(document, sheet, device, values, bit_rate).make();
+  DcfMaker(document, sheet, device, given, bit_rate).make();
 }
 
 }  // namespace edsc

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "device/device.hpp"
@@ -26,8 +27,15 @@ void make_dcf(Document& document, const DataSheet& sheet, const Device& device, 
 /// ParameterValues as an EDS spells them, by entry. Of the elements of a compact form either all are there or none.
 using ParameterValues = std::map<const Entry*, std::string>;
 
-/// The same with these ParameterValues and no others, and with a bit rate in kbit/s where it is known.
-void make_dcf(Document& document, const DataSheet& sheet, const Device& device, const ParameterValues& values,
+/// What a node says its ParameterValues are.
+struct GivenValues {
+  ParameterValues values;
+  std::set<const Entry*> known;  ///< those of `values` and others, which get no ParameterValue
+};
+
+/// The same with the values of a node, and with a bit rate in kbit/s where it is known. A DCF keeps its ParameterValues
+/// of entries that are not known.
+void make_dcf(Document& document, const DataSheet& sheet, const Device& device, const GivenValues& given,
               std::optional<unsigned> bit_rate);
 
 }  // namespace edsc

@@ -871,6 +871,16 @@ class Save(LiveTest):
         self.assertEqual(self.edsc("save", 5, "device.eds", "-o", "axis.dcf").returncode, FINE)
         self.assertEqual(self.values_of("axis.dcf"), {"1A00sub0": "1", "1A00sub1": "0x60410010"})
 
+    def test_a_dcf_keeps_the_values_that_are_not_read(self) -> None:
+        text = SHEET.read_text() + "\n[DeviceComissioning]\nNodeID=5\n"
+        for section, value in (("2006", 77), ("2007", -5), ("2004", 1200), ("1020sub1", 15000), ("6040", 6)):
+            text, count = re.subn(rf"(\[{section}\][^\[]*?)PDOMapping", rf"\g<1>ParameterValue={value}\nPDOMapping", text)
+            self.assertEqual(count, 1)
+        (self.folder / "old.dcf").write_text(text)
+        result = self.edsc("save", 5, "old.dcf", "-o", "axis.dcf")
+        self.assertEqual((result.stderr, result.returncode), ("", FINE))
+        self.assertEqual(self.values_of("axis.dcf"), {"2004": "1000", "2006": "77", "2007": "-5"})
+
     def test_another_device(self) -> None:
         (self.folder / "other.eds").write_text(SHEET.read_text().replace("0x00001001", "0x00001002"))
         result = self.edsc("save", 5, "other.eds", "-o", "axis.dcf")

@@ -80,27 +80,29 @@ TEST(ParameterText, HasNoSpellingForWhatADcfCannotHold) {
   }
 }
 
-TEST(MakeDcf, WritesGivenValuesAndNoOthers) {
+TEST(MakeDcf, WritesGivenValuesAndKeepsThoseThatAreNotKnown) {
   const std::string text =
       "[FileInfo]\nFileName=a.eds\n[DeviceComissioning]\nNodeID=3\nBaudrate=125\n"
       "[2000]\nParameterName=A\nObjectType=7\nDataType=5\nAccessType=rw\nDefaultValue=1\nParameterValue=2\n"
       "[2001]\nParameterName=B\nObjectType=7\nDataType=5\nAccessType=rw\nDefaultValue=1\n"
+      "[2002]\nParameterName=D\nObjectType=7\nDataType=5\nAccessType=wo\nParameterValue=8\n"
       "[2010]\nParameterName=C\nObjectType=8\nDataType=5\nAccessType=rw\nDefaultValue=4\nCompactSubObj=3\n";
   const DeviceFromText dcf{text, {}, {"", std::uint8_t{5}}, "a.dcf"};
   Diagnostics ignored;
   Document document = canonical_form(parse_ini(dcf.source, ignored), dcf.sheet, dcf.device);
   make_dcf(document, dcf.sheet, dcf.device,
-           ParameterValues{{&dcf.entry(0x2001), "7"},
-                           {&dcf.entry(0x2010, 1), "4"},
-                           {&dcf.entry(0x2010, 2), "9"},
-                           {&dcf.entry(0x2010, 3), "4"}},
+           GivenValues{{{&dcf.entry(0x2001), "7"},
+                        {&dcf.entry(0x2010, 1), "4"},
+                        {&dcf.entry(0x2010, 2), "9"},
+                        {&dcf.entry(0x2010, 3), "4"}},
+                       {&dcf.entry(0x2000), &dcf.entry(0x2001)}},
            500u);
   const DeviceFromText made{to_text(document), {}, {"", std::uint8_t{5}}, "made.dcf"};
   std::string values;
   for (const ConfiguredValue& value : configured_values(made.sheet, made.device, ignored)) {
     values += entry_label(value.entry->index, value.entry->sub_index) + "=" + std::to_string(value.data[0]) + " ";
   }
-  EXPECT_EQ(values, "2001h:00=7 2010h:01=4 2010h:02=9 2010h:03=4 ") << to_text(document);
+  EXPECT_EQ(values, "2001h:00=7 2002h:00=8 2010h:01=4 2010h:02=9 2010h:03=4 ") << to_text(document);
   EXPECT_EQ(made.sheet.commissioning.node_id.text, "5");
   EXPECT_EQ(made.sheet.commissioning.baudrate.text, "500");
 }
