@@ -134,7 +134,7 @@ GitFile read_git_file(const std::string& revision, const std::string& path) {
     result.error = fmt::format("\"{}\" is not a git revision", revision);
     return result;
   }
-  auto shown = git({"show", "--no-textconv", revision + ":" + name});
+  auto shown = git({"show", "--no-textconv", revision + ":" + name, "--"});
   if (!shown) {
     result.error = "git cannot be started; is it installed and in PATH?";
     return result;

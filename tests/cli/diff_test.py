@@ -162,6 +162,15 @@ class Git(CommandLine):
         self.sheet.unlink()
         self.expect(WRONG_USAGE, self.against("HEAD", self.sheet), "No such file")
 
+    def test_takes_no_name_for_a_pattern(self) -> None:
+        committed = self.write("eds/[1].eds", SMALL)
+        self.git("add", ".")
+        self.git("commit", "-q", "-m", "brackets")
+        committed.write_text(REDUCED)
+        self.expect(INPUT_HAS_ERRORS, self.against("HEAD", committed), "1 breaking")
+        new = self.write("eds/new[2].eds", SMALL)
+        self.expect(WRONG_USAGE, self.against("HEAD", new), "new[2].eds is not in the git revision HEAD")
+
     def test_says_that_a_folder_is_not_in_a_repository(self) -> None:
         shutil_free = self.folder / ".git"
         shutil_free.rename(self.folder / "no-git")
