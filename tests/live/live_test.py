@@ -789,6 +789,11 @@ axis.dcf:{rounded}:16: error: 2009h:00 Rounded value = 7: reads back as 0
         self.expect(self.edsc("configure", 5, "device.eds"), WRONG_USAGE,
                     stderr='edsc: device.eds is no DCF: "edsc format --dcf" makes one of a data sheet\n')
 
+    def test_a_concise_dcf_with_a_write_only_value(self) -> None:
+        (self.folder / "axis.bin").write_bytes(struct.pack("<IHBIIHBIH", 2, 0x2006, 0, 4, 77, 0x2004, 0, 2, 1200))
+        result = self.edsc("configure", 5, "axis.bin", "--concise", "--all")
+        self.assertEqual((result.stdout, result.returncode), ("node 5: 2 of 2 values written, 1 verified\n", FINE), result.stderr)
+
     def test_as_json(self) -> None:
         path = self.only(x2004="4000")
         line = path.read_text().splitlines().index("ParameterValue=4000") + 1
