@@ -54,12 +54,15 @@ class ValueMover {
     Diagnostics ignored;
     const auto value = parse_value({line.value, {}, true}, *entry->type, std::nullopt, ignored);
     const auto default_value = parse_value(described.default_value, *entry->type, std::nullopt, ignored);
-    if (!value || entry->type->kind != canopen::DataClass::unsigned_integer) return;
+    const bool is_integer = entry->type->kind == canopen::DataClass::unsigned_integer ||
+                            entry->type->kind == canopen::DataClass::signed_integer;
+    if (!value || !is_integer) return;
     const bool is_cob_id = find_cob_id_parameter(index, sub_index) != nullptr;
-    const std::uint64_t compared = is_cob_id ? ~flag_bits : ~std::uint64_t{0};
+    const std::uint64_t bits = entry->type->bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << entry->type->bits) - 1;
+    const std::uint64_t compared = is_cob_id ? bits & ~flag_bits : bits;
     if (default_value && default_value->plus_node_id) {
       if (((value->bits ^ (default_value->bits + own_)) & compared) == 0) {
-        line.value = fmt::format("0x{:0{}X}", value->bits - own_ + node_id_, hex_digits_of(*entry->type));
+        line.value = fmt::format("0x{:0{}X}", (value->bits - own_ + node_id_) & bits, hex_digits_of(*entry->type));
       }
     } else if (is_cob_id && is_can_id_of_own_node(value->bits)) {
       diagnostics_.warning(

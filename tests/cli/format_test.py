@@ -82,6 +82,13 @@ class AnotherNode(CommandLine):
         self.assertRegex(moved, r"\[1017\][^[]*ParameterValue=1234")
         self.assertNotRegex(moved, r"\[1400sub1\][^[]*ParameterValue=0x\w")
 
+    def test_moves_signed_numbers_too(self) -> None:
+        """INTEGER16 $NODEID+0xFF00 is -251 for node 5 and -247 for node 9."""
+        five = self.make(5, SOURCE_DIR / "tests/fixtures/every_type.eds", "--all")
+        moved = self.make(9, self.write("five.dcf", five), "--all")
+        values = [re.search(r"\[2805\][^[]*ParameterValue=(\w+)\n", text)[1] for text in (five, moved)]
+        self.assertEqual(values, ["0xFF05", "0xFF09"])
+
     def test_is_said_where_a_cob_id_stays(self) -> None:
         five = self.make(5, SOURCE_DIR / "eds/cpd.eds", "--all")
         five = re.sub(r"(\[1400sub1\][^[]*DefaultValue=)[^\n]*", r"\g<1>0x205", five)
