@@ -37,6 +37,37 @@ constexpr CommandRow commands[] = {
     {"Shell", edsc::add_completion_command},
 };
 
+/// Stands before an argument that has brackets around it. Without it CLI11 takes `[a,b]` for a list of values wherever an
+/// option takes several.
+constexpr char literal = '\x01';
+
+std::string marked(std::string_view argument) {
+  const bool is_list = argument.starts_with('[') && argument.ends_with(']');
+  return (is_list || argument.starts_with(literal) ? std::string{literal} : std::string{}).append(argument);
+}
+
+std::string without_mark(std::string argument) {
+  if (argument.starts_with(literal)) argument.erase(0, 1);
+  return argument;
+}
+
+void take_marks_off(CLI::App& app) {
+  for (CLI::Option* const option : app.get_options()) {
+    if (option->get_items_expected_max() > 0) option->transform(without_mark);
+  }
+  for (CLI::App* const command : app.get_subcommands([](CLI::App*) { return true; })) take_marks_off(*command);
+}
+
+/// Parses the arguments, each as it is.
+void parse(CLI::App& app, int argc, char** argv) {
+  take_marks_off(app);
+  std::vector<std::string> arguments;
+  for (int i = 0; i < argc; ++i) arguments.push_back(marked(argv[i]));
+  std::vector<const char*> pointers;
+  for (const std::string& argument : arguments) pointers.push_back(argument.c_str());
+  app.parse(argc, pointers.data());
+}
+
 std::vector<const CLI::App*> commands_of(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App* one) { return !one->get_name().empty(); });
 }
@@ -50,14 +81,16 @@ bool report_unknown_command(const CLI::App& app) {
   for (const CLI::App* const command : commands_of(app)) names.push_back(command->get_name());
   const auto words = app.remaining(false);
   if (names.empty() || words.empty() || words.front().starts_with('-')) return false;
+  const std::string word = without_mark(words.front());
   edsc::print_visibly(stderr, "{}: unknown command {}{}\n", app.get_parent() == nullptr ? "edsc" : "edsc " + app.get_name(),
-                      edsc::quote(words.front()), edsc::did_you_mean(words.front(), names));
+                      edsc::quote(word), edsc::did_you_mean(word, names));
   return true;
 }
 
 /// What CLI11 says of arguments, which may hold anything.
 std::string failure_message(const CLI::App* app, const CLI::Error& problem) {
-  const std::string message = CLI::FailureMessage::simple(app, problem);
+  std::string message = CLI::FailureMessage::simple(app, problem);
+  for (std::size_t at = 0; (at = message.find("\x01[", at)) != std::string::npos;) message.erase(at, 1);
   std::string shown;
   for (std::size_t begin = 0; begin < message.size();) {
     const std::size_t end = std::min(message.find('\n', begin), message.size());
@@ -91,7 +124,7 @@ int main(int argc, char** argv) {
   }
   int output_error = 0;
   try {
-    app.parse(argc, argv);
+    parse(app, argc, argv);
   } catch (const CLI::ParseError& problem) {
     if (report_unknown_command(app)) return edsc::exit_wrong_usage;
     errno = 0;

@@ -113,6 +113,14 @@ class BadInput(CommandLine):
                 self.expect(exit_code, self.edsc(*arguments), *words)
         self.assertFalse(self.output.exists())
 
+    def test_brackets_are_part_of_a_name(self) -> None:
+        for command in ("check", "format", "dump"):
+            self.expect(WRONG_USAGE, self.edsc(command, "[z]"), "cannot read [z]: ")
+        self.write("[a,b]", SMALL)
+        self.expect(FINE, self.edsc("check", "[a,b]", "[a,b]"), "[a,b]: 0 errors")
+        self.expect(FINE, self.edsc("diff", "[a,b]", "[a,b]"), "0 breaking")
+        self.expect(WRONG_USAGE, self.edsc("[a]"), 'unknown command "[a]"')
+
     def test_a_missing_file(self) -> None:
         self.refuse("missing.eds", WRONG_USAGE, "missing.eds", "No such file", "[unreadable-file]")
 

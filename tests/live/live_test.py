@@ -417,6 +417,10 @@ class Write(LiveTest):
         self.expect(self.edsc("read", 5, "label", "speed", "--eds", "device.eds"), FINE,
                     '2002h:00 Label = "left axis"\n2004h:00 Speed = 1500 rpm\n')
 
+    def test_a_value_in_brackets_is_no_list(self) -> None:
+        self.expect(self.edsc("write", 5, "label", "--eds", "device.eds", "--timeout", PATIENCE_MS, "--", "[a,b]"), FINE, '2002h:00 Label = "[a,b]"\n')
+        self.expect(self.edsc("write", 5, "label", "[a]", "[b]", "--eds", "device.eds"), FINE, '2002h:00 Label = "[a] [b]"\n')
+
     def test_without_a_data_sheet(self) -> None:
         self.expect(self.edsc("write", 5, "1017h", "500", "--type", "u16"), FINE, "1017h:00 = 500 (01F4h)\n")
         self.expect(self.edsc("write", 5, "1017h", "--raw", "F4", "01"), FINE, "1017h:00 = F4 01\n")
