@@ -9,6 +9,7 @@
 #include "commands/load_device.hpp"
 #include "compare/compare_devices.hpp"
 #include "compare/print_changes.hpp"
+#include "diagnostics/rule.hpp"
 #include "text/printable.hpp"
 
 namespace edsc {
@@ -45,15 +46,16 @@ struct Pair {
 /// Null when there is nothing to compare; the errors are printed.
 std::unique_ptr<LoadedDevice> reported(std::unique_ptr<LoadedDevice> loaded, const Diagnostics& diagnostics,
                                        const Settings& settings) {
-  if (diagnostics.errors() == 0) return loaded;
-  print_findings(stderr, diagnostics, settings.color);
-  return loaded->device && settings.keep_going ? std::move(loaded) : nullptr;
+  if (diagnostics.errors() > 0 || settings.keep_going) print_findings(stderr, diagnostics, settings.color);
+  return loaded->device && diagnostics.errors() == 0 ? std::move(loaded) : nullptr;
 }
 
 std::unique_ptr<LoadedDevice> load(const std::string& path, const Settings& settings) {
   Diagnostics diagnostics;
   diagnostics.drop_notes();
-  auto loaded = load_device({path, "", "", settings.node_id}, diagnostics);
+  LoadSettings load{path, "", "", settings.node_id};
+  load.keep_going = settings.keep_going;
+  auto loaded = load_device(load, diagnostics);
   return reported(std::move(loaded), diagnostics, settings);
 }
 
@@ -64,6 +66,7 @@ std::unique_ptr<LoadedDevice> load_committed(std::unique_ptr<SourceFile> source,
   diagnostics.drop_notes();
   auto loaded = std::make_unique<LoadedDevice>();
   loaded->source = std::move(source);
+  if (settings.keep_going) diagnostics.keep_going(loaded->source.get(), fatal_rules());
   const std::string options_path = std::filesystem::path{path}.replace_extension(".options.json").string();
   loaded->options_source = read_git_file(revision, options_path).source;
   if (loaded->options_source) loaded->options = read_options(*loaded->options_source, diagnostics);

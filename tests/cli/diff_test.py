@@ -48,6 +48,22 @@ class ExitCodes(CommandLine):
         self.expect(WRONG_USAGE, self.edsc("diff", self.old, "--against", "HEAD"), "expected git:REF, got HEAD")
 
 
+class KeepGoing(CommandLine):
+    BROKEN = SMALL.replace("DataType=6", "DataType=99")
+
+    def test_compares_the_rest_of_files_with_errors(self) -> None:
+        old, new = self.write("old.eds", self.BROKEN), self.write("new.eds", self.BROKEN)
+        self.expect(WRONG_USAGE, self.edsc("diff", old, new), "error: ", "[data-type]")
+        self.expect(FINE, self.edsc("diff", old, new, "--keep-going"), "warning: ", "[data-type]", "0 breaking")
+
+    def test_stops_at_errors_in_the_options_file(self) -> None:
+        old, new = self.write("old.eds", SMALL), self.write("new.eds", SMALL)
+        self.write("new.options.json", '{"nonsense": 1}')
+        result = self.edsc("diff", old, new, "--keep-going")
+        self.expect(WRONG_USAGE, result, "new.options.json:1:", "error: ")
+        self.assertEqual(result.stdout, "")
+
+
 class Markdown(CommandLine):
     def test_is_a_table_with_compatible_changes_folded(self) -> None:
         old = self.write("old.eds", SMALL)
