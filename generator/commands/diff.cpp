@@ -112,7 +112,7 @@ void print(Pair& pair, const Settings& settings) {
   if (settings.format != "markdown") return;
   const std::string& after = pair.after->source->name();
   fmt::print("{}", pair.before ? changes_as_markdown(pair.changes, pair.before->source->name(), after)
-                               : fmt::format("### `{}` is new\n", after));
+                               : new_file_as_markdown(after));
 }
 
 int diff(const Settings& settings) {

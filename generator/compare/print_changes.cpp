@@ -124,6 +124,8 @@ std::string changes_as_markdown(const Changes& changes, std::string_view before,
   return text;
 }
 
+std::string new_file_as_markdown(std::string_view name) { return fmt::format("### {} is new\n", cell(name)); }
+
 nlohmann::ordered_json changes_as_json(const Changes& changes) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const Change& change : changes.all()) list.push_back(change_json(change));

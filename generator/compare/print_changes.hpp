@@ -15,6 +15,9 @@ namespace edsc {
 /// A heading, a table of the breaking changes and one of the others, folded: for a comment on a pull request.
 [[nodiscard]] std::string changes_as_markdown(const Changes& changes, std::string_view before, std::string_view after);
 
+/// The heading of a file that is new.
+[[nodiscard]] std::string new_file_as_markdown(std::string_view name);
+
 /// `{"version": 1, "changes": [...], "breaking": n, "compatible": n}`: docs/command-line.md.
 [[nodiscard]] nlohmann::ordered_json changes_as_json(const Changes& changes);
 

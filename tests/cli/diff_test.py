@@ -178,6 +178,12 @@ class Git(CommandLine):
         self.sheet.unlink()
         self.expect(WRONG_USAGE, self.against("HEAD", self.sheet), "No such file")
 
+    def test_shows_no_markup_of_the_name_of_a_new_file(self) -> None:
+        self.write("eds/a`b<i>.eds", SMALL)
+        result = self.against("HEAD", "eds/a`b<i>.eds", "--allow-new", "--format", "markdown")
+        self.expect(FINE, result)
+        self.assertEqual(result.stdout, "### eds/a\\`b&lt;i\\>.eds is new\n")
+
     def test_takes_no_name_for_a_pattern(self) -> None:
         committed = self.write("eds/[1].eds", SMALL)
         self.git("add", ".")
