@@ -71,9 +71,13 @@ void append_bytes(std::string& text, const Frame& frame, std::size_t first) {
 }
 
 void wrong_length(const Frame& frame, std::string_view right, Message& message) {
+  message.problem = true;
+  if (frame.remote) {
+    message.text += "a remote frame, not a frame with data";
+    return;
+  }
   fmt::format_to(std::back_inserter(message.text), "{}, not {}", counted(unsigned{frame.size}, "byte"),
                  right);
-  message.problem = true;
 }
 
 std::uint64_t word_of(const Frame& frame) {
