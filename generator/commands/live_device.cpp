@@ -99,9 +99,12 @@ void report_broken_block(const LiveEntry& entry, const SdoOutcome& outcome) {
 
 bool read_bytes(const std::string& path, std::vector<std::uint8_t>& bytes, std::string& problem) {
   errno = 0;
-  std::ifstream file{path, std::ios::binary};
-  if (file) bytes.assign(std::istreambuf_iterator<char>{file}, {});
-  if (file && !file.bad()) return true;
+  try {
+    std::ifstream file{path, std::ios::binary};
+    if (file) bytes.assign(std::istreambuf_iterator<char>{file}, {});
+    if (file && !file.bad()) return true;
+  } catch (const std::ios_base::failure&) {  // of a folder, which opens like a file
+  }
   problem = fmt::format("{}: {}", path, errno != 0 ? std::strerror(errno) : "cannot be read");
   return false;
 }

@@ -473,7 +473,8 @@ class Write(LiveTest):
                 (("1017h", "x", "--type", "u16"), "is no number"),
                 (("1017h", "70000", "--type", "u16"), "does not fit into UNSIGNED16"),
                 (("1018h", "1", "--eds", "device.eds"), "1018h"),
-                (("firmware", "--file", "missing", "--eds", "device.eds"), "missing: No such file")):
+                (("firmware", "--file", "missing", "--eds", "device.eds"), "missing: No such file"),
+                (("firmware", "--file", ".", "--eds", "device.eds"), "edsc: .: Is a directory")):
             with self.subTest(arguments=arguments):
                 result = self.edsc("write", 5, *arguments)
                 self.assertEqual((result.returncode, result.stdout), (WRONG_USAGE, ""))
@@ -804,6 +805,7 @@ axis.dcf:{rounded}:16: error: 2009h:00 Rounded value = 7: reads back as 0
         found = self.expect_json(self.edsc("configure", 5, "axis.dcf", "--format", "json"), "configure.schema.json", FAILED)
         self.assertEqual(found["failures"], [{"index": 0x2004, "sub_index": 0, "name": "Speed", "line": line,
                                               "text": "refused by the device: 0609 0031h, value too high"}])
+        self.expect(self.edsc("configure", 5, ".", "--concise"), WRONG_USAGE, stderr="edsc: .: Is a directory\n")
 
 
 FOREIGN = (f"[FileInfo]\nFileName=foreign.eds\nEDSVersion=4.0\n[DeviceInfo]\nVendorNumber=0x1234\nProductNumber=0x10001\n"
