@@ -41,7 +41,15 @@ struct ChosenTemplate {
   Template built_in;
   std::unique_ptr<SourceFile> replacement;
 
-  [[nodiscard]] std::string_view text() const { return replacement ? replacement->text() : built_in.text; }
+  /// Throws std::runtime_error with the name of the file that has a mistake.
+  [[nodiscard]] std::string rendered(const nlohmann::ordered_json& view) const {
+    if (!replacement) return render(built_in.text, view);
+    try {
+      return render(replacement->text(), view);
+    } catch (const std::runtime_error& problem) {
+      throw std::runtime_error{replacement->name() + ": " + problem.what()};
+    }
+  }
 };
 
 /// The built-in templates, each replaced by the file of the same name in `folder`, where there is one.
@@ -95,7 +103,7 @@ std::vector<OutputFile> render_all(const Settings& settings, LoadedDevice& loade
   if (loaded.options_source) inputs.push_back(loaded.options_source->name());
   for (const ChosenTemplate& one : templates) {
     if (one.built_in.file_name == stored_eds_header && view["stored_eds"].is_null()) continue;
-    files.push_back({(folder / one.built_in.file_name).string(), render(one.text(), view)});
+    files.push_back({(folder / one.built_in.file_name).string(), one.rendered(view)});
     if (one.replacement) inputs.push_back(one.replacement->name());
   }
   if (!settings.depfile.empty()) files.push_back({settings.depfile, depfile_text(settings.depfile_target, files, inputs)});

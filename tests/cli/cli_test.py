@@ -455,7 +455,8 @@ class Generate(CommandLine):
         self.expect(FINE, self.edsc("generate", GOOD, "-o", self.output, "--templates", templates))
         self.assertEqual((self.output / "every_type/pdo.hpp").read_text(), "// every_type\n")
         (templates / "pdo.hpp.mustache").write_text("{{#open}}\n")
-        self.expect(WRONG_USAGE, self.edsc("generate", GOOD, "-o", "other", "--templates", templates))
+        self.expect(WRONG_USAGE, self.edsc("generate", GOOD, "-o", "other", "--templates", templates),
+                    f"edsc: {templates}/pdo.hpp.mustache: ")
         self.assertFalse((self.folder / "other").exists())
 
 
