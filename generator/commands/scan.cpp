@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
+#include "commands/live_device.hpp"
 #include "commands/live_options.hpp"
-#include "commands/load_device.hpp"
 #include "live/device_profile.hpp"
 #include "live/exit_code.hpp"
 #include "live/identity.hpp"
@@ -174,18 +174,13 @@ void print_json(const Findings& found, const std::vector<Candidate>& candidates)
   fmt::print("{}\n", json_text(json));
 }
 
+constexpr std::uint8_t any_node = 1;  ///< the identity of a device does not depend on its node-ID
+
 /// False when a data sheet cannot be read, which is then told.
 bool load_candidates(const Settings& settings, std::vector<Candidate>& candidates) {
   for (const std::string& path : settings.sheets) {
-    Diagnostics diagnostics;
-    LoadSettings load;
-    load.path = path;
-    load.check = false;
-    const auto loaded = load_device(load, diagnostics);
-    if (!loaded->device) {
-      print_findings(stderr, diagnostics, settings.color);
-      return false;
-    }
+    const auto loaded = load_live_device(path, any_node);
+    if (!loaded) return false;
     candidates.push_back({path, identity_of(*loaded->device)});
   }
   return true;

@@ -144,6 +144,13 @@ node  state  vendor-ID  product    revision   serial     device type            
         self.assertEqual(self.expect_json(result, "scan.schema.json")["nodes"][0]["data_sheets"],
                          [{"file": "no_vendor.eds", "fit": "same device", "not_compared": ["vendor_id"]}])
 
+    def test_it_says_that_a_file_has_errors(self) -> None:
+        (self.folder / "broken.eds").write_text(SHEET.read_text().replace("DefaultValue=1000", "DefaultValue=fast"))
+        result = self.edsc("scan", "--nodes", "5", *self.fast, "--eds", "broken.eds")
+        self.assertEqual(result.stderr, 'edsc: broken.eds: 1 error; what is wrong is left out ("edsc check --keep-going" '
+                         "lists it)\n")
+        self.assertEqual(result.returncode, FINE)
+
     def test_it_asks_only_the_nodes_that_it_is_told(self) -> None:
         self.assertEqual(self.edsc("scan", "--nodes", "6..9", *self.fast).stdout.count("Live device"), 1)
         self.assertNotIn("605", [frame.split()[0] for frame in self.network.frames()])
