@@ -229,6 +229,15 @@ void enter_pre_operational(LiveBus& bus, const SdoAccess& node) {
   bus.listen(after_nmt);
 }
 
+/// Whether the DCF is one for this node, as far as it says so. A DCF for another one is reported.
+bool is_for_this_node(const Settings& settings, const Configuration& configuration) {
+  if (settings.force || !configuration.loaded) return true;
+  const auto meant = parse_unsigned(configuration.loaded->sheet.commissioning.node_id.text);
+  if (!meant || *meant == settings.node) return true;
+  return refuse(fmt::format("{} is for node {}, not for node {} (--force writes nevertheless)",
+                            settings.concise ? settings.sheet : settings.path, *meant, settings.node));
+}
+
 /// Whether the node is the device of the DCF, as far as both state it. What contradicts it is reported. A node that is
 /// silent may be in Stopped.
 bool is_right_device(LiveBus& bus, SdoAccess& node, const Settings& settings, const Configuration& configuration,
@@ -243,11 +252,6 @@ bool is_right_device(LiveBus& bus, SdoAccess& node, const Settings& settings, co
   if (configuration.device() == nullptr) {
     ending.not_compared = "identity (a concise DCF does not state it; --eds names the EDS of the device)";
     return true;
-  }
-  const auto meant = parse_unsigned(configuration.loaded->sheet.commissioning.node_id.text);
-  if (meant && *meant != settings.node) {
-    return refuse(fmt::format("{} is for node {}, not for node {} (--force writes nevertheless)", settings.path, *meant,
-                              settings.node));
   }
   const NodeCheck check =
       check_node(node, *configuration.device(), settings.concise ? settings.sheet : settings.path);
@@ -487,6 +491,7 @@ int run_configure(const Settings& settings) {
   Configuration configuration;
   const bool read = settings.concise ? read_concise(settings, configuration) : read_dcf(settings, configuration);
   if (!read) return exit_wrong_usage;
+  if (!is_for_this_node(settings, configuration)) return exit_device_failed;
   leave_out(configuration);
   if (settings.dry_run && settings.all) {
     const Work work = all_values(settings, configuration);

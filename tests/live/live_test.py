@@ -780,7 +780,14 @@ axis.dcf:{rounded}:16: error: 2009h:00 Rounded value = 7: reads back as 0
 
     def test_the_dcf_of_another_node(self) -> None:
         self.only(x2004="1200")
-        self.expect(self.edsc("configure", 6, "axis.dcf", "--timeout", 50), FAILED, stderr="edsc: node 6 does not answer\n")
+        for options in ((), ("--dry-run",), ("--dry-run", "--all")):
+            result = subprocess.run([EDSC, "configure", "socketcan:none", "6", "axis.dcf", *options], cwd=self.folder,
+                                    capture_output=True, text=True, timeout=600)
+            self.expect(result, FAILED,
+                        stderr="edsc: axis.dcf is for node 5, not for node 6 (--force writes nevertheless)\n")
+        self.expect(self.edsc("configure", 6, "axis.dcf", "--timeout", 50, "--force"), FAILED,
+                    stderr="edsc: node 6 does not answer\n")
+        self.assertEqual(self.edsc("configure", 6, "axis.dcf", "--dry-run", "--all", "--force").returncode, FINE)
         path = self.folder / "axis.dcf"
         path.write_text(path.read_text().replace("NodeID=5", "NodeID=7").replace("NodeId=5", "NodeId=7"))
         self.expect(self.edsc("configure", 5, "axis.dcf"), FAILED,
@@ -798,6 +805,7 @@ axis.dcf:{rounded}:16: error: 2009h:00 Rounded value = 7: reads back as 0
                     "node 5: 0 of 2 values differ\n")
         self.expect(self.edsc("configure", 5, "axis.dcf", "--concise"), WRONG_USAGE,
                     stderr="edsc: axis.dcf is no concise DCF: it is shorter or longer than it says\n")
+        self.expect(self.edsc("configure", 5, ".", "--concise"), WRONG_USAGE, stderr="edsc: .: Is a directory\n")
         self.expect(self.edsc("configure", 5, "device.eds"), WRONG_USAGE,
                     stderr='edsc: device.eds is no DCF: "edsc format --dcf" makes one of a data sheet\n')
 
@@ -812,7 +820,6 @@ axis.dcf:{rounded}:16: error: 2009h:00 Rounded value = 7: reads back as 0
         found = self.expect_json(self.edsc("configure", 5, "axis.dcf", "--format", "json"), "configure.schema.json", FAILED)
         self.assertEqual(found["failures"], [{"index": 0x2004, "sub_index": 0, "name": "Speed", "line": line,
                                               "text": "refused by the device: 0609 0031h, value too high"}])
-        self.expect(self.edsc("configure", 5, ".", "--concise"), WRONG_USAGE, stderr="edsc: .: Is a directory\n")
 
 
 FOREIGN = (f"[FileInfo]\nFileName=foreign.eds\nEDSVersion=4.0\n[DeviceInfo]\nVendorNumber=0x1234\nProductNumber=0x10001\n"
