@@ -152,7 +152,7 @@ void add_record_command(CLI::App& app, int& exit_code) {
   command->footer(examples);
   auto settings = std::make_shared<Settings>();
   add_bus_argument(*command, settings->bus);
-  command->add_option("-o,--output", settings->output, "file to write (default: standard output)")->type_name("FILE");
+  command->add_option("-o,--output", settings->output, "file to write; emptied at the start (default: standard output)")->type_name("FILE");
   command->add_option("--seconds", settings->seconds, "end after this time")->check(CLI::Range(0.01, 1e9));
   command->add_option("--count", settings->count, "end after so many frames")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 62));
