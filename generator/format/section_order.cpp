@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
+#include <string>
+#include <string_view>
 #include <unordered_map>
 #include <utility>
 
 #include "eds/object_lists.hpp"
+#include "text/ascii.hpp"
 
 namespace edsc {
 namespace {
@@ -53,6 +57,18 @@ Place place_of(const SectionName& name, const DataSheet& sheet) {
   return {list ? group_of_list(*list) + 1 : unlisted_objects, identity(name)};
 }
 
+bool is_for_edsc(const std::string& remark) {
+  return trim_left(std::string_view{remark}.substr(1)).starts_with("edsc:");
+}
+
+/// What `; edsc: allow` allows before the first section, it allows in the whole file: there it stays when another section
+/// becomes the first.
+void keep_at_top(Document& document) {
+  Remarks& remarks = document.sections.front().remarks;
+  std::ranges::copy_if(remarks, std::back_inserter(document.head), is_for_edsc);
+  std::erase_if(remarks, is_for_edsc);
+}
+
 }  // namespace
 
 void drop_second_sections(Document& document) {
@@ -79,6 +95,7 @@ void order_sections(Document& document, const DataSheet& sheet) {
     order.emplace_back(place_of(document.sections[i].kind, sheet), i);
   }
   std::sort(order.begin(), order.end());
+  if (!order.empty() && order.front().second != 0) keep_at_top(document);
   std::vector<DocumentSection> sorted;
   sorted.reserve(order.size());
   for (const auto& [place, i] : order) sorted.push_back(std::move(document.sections[i]));

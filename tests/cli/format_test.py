@@ -59,6 +59,17 @@ class ManyFiles(CommandLine):
         self.expect(WRONG_USAGE, self.edsc("format", "-i", self.rough, "-o", "x.eds"), "excludes")
 
 
+class Comments(CommandLine):
+    def test_that_allow_findings_of_the_file_stay_at_its_top(self) -> None:
+        first, rest = re.search(r"(\[FileInfo\].*?)(\[.*)", SMALL, re.DOTALL).groups()
+        path = self.write("a.eds", "; edsc: allow file-name - sent so\n; what follows\n" + rest + first)
+        result = self.edsc("format", path)
+        self.expect(FINE, result)
+        self.assertTrue(result.stdout.startswith("; edsc: allow file-name - sent so\n\n[FileInfo]\n"), result.stdout[:200])
+        self.assertIn("\n; what follows\n[DeviceInfo]\n", result.stdout)
+        self.assertEqual(self.edsc("format", self.write("b.eds", result.stdout)).stdout, result.stdout)
+
+
 class AnotherNode(CommandLine):
     """The values of a DCF that follow the node-ID go with it to another node."""
 
