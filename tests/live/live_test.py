@@ -1069,7 +1069,7 @@ class Lss(LiveTest):
     shown = "vendor-ID 00ABCDEFh, product code 00001001h, revision 00010002h, serial number 00000101h"
 
     def lss(self, *arguments: object) -> subprocess.CompletedProcess[str]:
-        return self.edsc("lss", "--timeout", 2000, "--step", 500, *arguments)
+        return self.edsc("lss", "--timeout", 2000, "--step", 200, *arguments)
 
     def test_assign_by_address(self) -> None:
         self.expect(self.lss("assign", *self.address, "--node-id", 7, "--store"), FINE,
@@ -1227,8 +1227,8 @@ class Monitor(LiveTest):
         self.edsc("write", 5, "1017h", 40, "--type", "u16")
 
     def test_a_summary_as_json(self) -> None:
-        self.edsc("write", 5, "1017h", 1000, "--type", "u16")
-        process = self.start("monitor", "--node", "5=device.eds", "--once", 15, "--bit-rate", 500, "--format", "json")
+        self.edsc("write", 5, "1017h", 200, "--type", "u16")
+        process = self.start("monitor", "--node", "5=device.eds", "--once", 15, "--bit-rate", 125, "--format", "json")
         time.sleep(4)  # until it listens
         self.edsc("nmt", "start", 5)
         client = self.network.client()

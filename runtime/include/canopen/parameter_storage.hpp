@@ -299,6 +299,9 @@ class ParameterStorage {
     return row.what > most_mapped && row.what < identifier;
   }
 
+  [[nodiscard]] static constexpr bool is_error_behavior(const Checked& row) { return row.what == error_behavior; }
+  [[nodiscard]] static constexpr bool is_emcy_inhibit_time(const Checked& row) { return row.what == emcy_inhibit_time; }
+
   [[nodiscard]] static constexpr std::uint8_t what_is(std::uint16_t index, std::uint8_t sub_index) {
     if (const CobIdEntries* const row = find_cob_id_entries(index, sub_index)) {
       return row->has_valid_bit ? cob_id : identifier;
@@ -337,9 +340,6 @@ class ParameterStorage {
     for_each_checked([&](const Checked& row) { rows[i++] = row; });
     return rows;
   }();
-  [[nodiscard]] static consteval bool has_checked(std::uint8_t what) {
-    return std::ranges::any_of(checked, [what](const Checked& row) { return row.what == what; });
-  }
   static constexpr std::size_t communication_count = static_cast<std::size_t>(
       std::ranges::count_if(checked, [](const Checked& row) { return row.index < 0x2000; }));
 
@@ -377,10 +377,14 @@ class ParameterStorage {
       case sync_overflow: return is_sync_overflow(value);
       case sync_start: return value <= highest_sync_counter;
       case error_behavior:
-        if constexpr (has_checked(error_behavior)) return check_error_behavior(static_cast<std::uint8_t>(value)) == ok;
+        if constexpr (std::ranges::any_of(checked, is_error_behavior)) {
+          return check_error_behavior(static_cast<std::uint8_t>(value)) == ok;
+        }
         return true;
       case emcy_inhibit_time:
-        if constexpr (has_checked(emcy_inhibit_time)) return value % Device::options.emcy_inhibit_time_step == 0;
+        if constexpr (std::ranges::any_of(checked, is_emcy_inhibit_time)) {
+          return value % Device::options.emcy_inhibit_time_step == 0;
+        }
         return true;
       default:
         return check_transmission_type(Device::options, what == tpdo_transmission, static_cast<std::uint8_t>(value)) ==
