@@ -22,7 +22,7 @@ void log(std::string_view line) {
   std::fflush(stdout);
 }
 
-/// Nothing where it is no cycle.
+/// A cycle of 10..10000 ms; std::nullopt if the text is not one.
 std::optional<canopen::Duration> cycle_of(std::string_view text) {
   std::uint32_t milliseconds = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), milliseconds);

@@ -144,7 +144,7 @@ bool BusServer::open_bus(BusClient& client) {
   const auto found = std::find(buses_.begin(), buses_.end(), client.wanted_bus());
   if (found == buses_.end()) {
     client.refuse("could not open bus");
-    report(client, "there is no bus \"" + client.wanted_bus() + "\"");
+    report(client, "bus \"" + client.wanted_bus() + "\" does not exist");
     return false;
   }
   client.opened(static_cast<std::size_t>(found - buses_.begin()));
@@ -184,13 +184,13 @@ void BusServer::flush() {
     if (client->bus() || now - client->since() < limits_.handshake) return false;
     client->refuse("no bus was opened in time");
     static_cast<void>(client->flush());
-    report(*client, "it has not opened a bus for " + std::to_string(limits_.handshake.count()) + " ms");
+    report(*client, "it did not open a bus within " + std::to_string(limits_.handshake.count()) + " ms");
     return true;
   });
 }
 
 void BusServer::report(const BusClient& client, const std::string& message) const {
-  events_.on_trouble("client " + client.name() + " is sent away: " + message);
+  events_.on_trouble("client " + client.name() + " is disconnected: " + message);
 }
 
 }  // namespace edsc

@@ -27,7 +27,7 @@ struct BusLimits {
 /// What the server tells of; none of them may be empty.
 struct BusEvents {
   std::function<void(const canopen::Frame&, const std::string& bus, socketcand::TimeStamp)> on_frame;
-  std::function<void(const std::string& message)> on_trouble;  ///< a client is sent away
+  std::function<void(const std::string& message)> on_trouble;  ///< a client is disconnected
 };
 
 /// Each bus hands every frame to all its clients but the sender, to all in the same order. It waits for none of them.

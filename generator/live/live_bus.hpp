@@ -28,7 +28,7 @@ class BusPort {
   BusPort& operator=(const BusPort&) = delete;
   virtual ~BusPort() = default;
 
-  /// False when there is no room now. Throws std::system_error when the bus is lost, as `receive` does.
+  /// False if the port cannot take the frame now. `send` and `receive` throw std::system_error if the bus is lost.
   [[nodiscard]] virtual bool send(const canopen::Frame& frame) = 0;
   /// The next frame, or nothing when none comes within this time.
   [[nodiscard]] virtual std::optional<canopen::Frame> receive(canopen::Duration timeout) = 0;

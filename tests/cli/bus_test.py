@@ -124,7 +124,7 @@ class BusCommand(unittest.TestCase):
                         break
                 time.sleep(0.1)
             _, _, complained = bus.end()
-        self.assertIn("is sent away: it has not opened a bus for 5000 ms", complained)
+        self.assertIn("is disconnected: it did not open a bus within 5000 ms", complained)
 
     def test_it_complains_about_bad_clients(self) -> None:
         with Bus("--clients", "1") as bus:
@@ -139,8 +139,8 @@ class BusCommand(unittest.TestCase):
             first.expect("< echo >")
             code, _, complained = bus.end()
             self.assertEqual(code, FINE)
-            self.assertRegex(complained, r"\Aedsc bus: client 127\.0\.0\.1:\d+ is sent away: element too long\n"
-                                         r"edsc bus: client 127\.0\.0\.1:\d+ is sent away: too many clients\n\Z")
+            self.assertRegex(complained, r"\Aedsc bus: client 127\.0\.0\.1:\d+ is disconnected: element too long\n"
+                                         r"edsc bus: client 127\.0\.0\.1:\d+ is disconnected: too many clients\n\Z")
 
     def test_what_it_refuses(self) -> None:
         with Bus() as bus:

@@ -242,7 +242,7 @@ TEST(BusServer, SendsAClientAwayThatReadsTooSlowly) {
     heard += static_cast<std::size_t>(std::count(got.begin(), got.end(), '>'));
   }
   ASSERT_EQ(bench.trouble.size(), 1u);
-  EXPECT_NE(bench.trouble[0].find("is sent away: it reads too slowly: "), std::string::npos) << bench.trouble[0];
+  EXPECT_NE(bench.trouble[0].find("is disconnected: it reads too slowly: "), std::string::npos) << bench.trouble[0];
   EXPECT_TRUE(bench.trouble[0].ends_with(" bytes wait for it")) << bench.trouble[0];
   EXPECT_EQ(bench.server.clients(), 2u);
   for (int i = 0; i < 10'000 && heard < sent; ++i) {
@@ -283,7 +283,7 @@ TEST(BusServer, SendsAClientAwayThatOpensWhatIsNotThere) {
   EXPECT_EQ(client.hear_up_to("bus >"), "< hi >< error could not open bus >");
   EXPECT_TRUE(client.closed());
   ASSERT_EQ(bench.trouble.size(), 1u);
-  EXPECT_TRUE(bench.trouble[0].ends_with("is sent away: there is no bus \"can7\"")) << bench.trouble[0];
+  EXPECT_TRUE(bench.trouble[0].ends_with("is disconnected: bus \"can7\" does not exist")) << bench.trouble[0];
 }
 
 TEST(BusServer, SendsAClientAwayWhoseElementHasNoEnd) {
@@ -319,7 +319,7 @@ TEST(BusServer, SendsSilentClientsAwayAndGivesTheirPlacesToOthers) {
   for (int i = 0; i < 10'000 && bench.trouble.size() < silent.size(); ++i) bench.server.turn(milliseconds{1});
   ASSERT_EQ(bench.trouble.size(), 64u);
   EXPECT_EQ(bench.server.clients(), 0u);
-  EXPECT_TRUE(bench.trouble[0].ends_with("is sent away: it has not opened a bus for 1000 ms")) << bench.trouble[0];
+  EXPECT_TRUE(bench.trouble[0].ends_with("is disconnected: it did not open a bus within 1000 ms")) << bench.trouble[0];
   EXPECT_EQ(silent[0]->hear_up_to("time >"), "< hi >< error no bus was opened in time >");
   EXPECT_TRUE(silent[0]->closed());
   Client other{bench};

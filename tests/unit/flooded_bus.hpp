@@ -1,7 +1,11 @@
 /// A bus that is not silent for a minute, of which no frame is an answer.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <canopen/abort_code.hpp>
 #include <canopen/frame.hpp>
+#include <canopen/node_id.hpp>
 #include <canopen/time.hpp>
 #include <chrono>
 #include <optional>
@@ -27,5 +31,15 @@ struct FloodedBus {
   }
   [[nodiscard]] canopen::TimePoint now() const { return time; }
 };
+
+/// `Sdo` is a BlockingSdo or Master on a FloodedBus.
+template <class Sdo>
+void expect_timeout_on_a_flooded_bus() {
+  FloodedBus bus;
+  Sdo sdo{bus};
+  EXPECT_EQ(sdo.upload(canopen::NodeId{5}, 0x1000, 0).abort_code(), canopen::AbortCode::timeout);
+  EXPECT_EQ(bus.requests, 2u) << "the request and the abort";
+  EXPECT_LT(bus.time - canopen::TimePoint{}, std::chrono::seconds{10});
+}
 
 }  // namespace bench

@@ -149,7 +149,7 @@ TEST(SlcanPort, HandsOverEachFrameOfOneRead) {
   device.write(std::string_view{"t1851AA\rt1851BB\rt1851CC\r"});
   for (const char* frame : {"185 AA", "185 BB", "185 CC"}) {
     pollfd readable{bus->file_descriptor(), POLLIN, 0};
-    ASSERT_EQ(::poll(&readable, 1, 60'000), 1) << frame << ": the descriptor tells of those that wait";
+    ASSERT_EQ(::poll(&readable, 1, 60'000), 1) << frame << ": the descriptor is readable while frames are queued";
     EXPECT_EQ(text_of(bus->receive(0us)), frame);
   }
   EXPECT_EQ(text_of(bus->receive(0us)), "none");

@@ -279,7 +279,7 @@ class Master {
 
   void keep(std::function<void()> what) { waiting_.push_back(std::move(what)); }
 
-  /// What waits now. Handlers that transfer accept frames, which may bring more for ever.
+  /// Calls the handlers that are queued now. A handler that transfers by SDO receives frames, which may queue more.
   void tell() {
     for (std::size_t count = waiting_.size(); count != 0 && !waiting_.empty(); --count) {
       const std::function<void()> next = std::move(waiting_.front());
