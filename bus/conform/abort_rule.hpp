@@ -1,0 +1,51 @@
+/// Which abort codes a case takes: those of CiA 301, and those that the test tool of CiA takes besides.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <canopen/abort_code.hpp>
+
+namespace edsc::conform {
+
+/// An abort code of the second column only passes with a warning. `none` fills the rows.
+struct AbortRule {
+  std::array<canopen::AbortCode, 3> standard;
+  std::array<canopen::AbortCode, 3> accepted;
+
+  [[nodiscard]] constexpr bool is_standard(canopen::AbortCode code) const { return contains(standard, code); }
+  [[nodiscard]] constexpr bool is_accepted(canopen::AbortCode code) const {
+    return is_standard(code) || contains(accepted, code);
+  }
+
+ private:
+  static constexpr bool contains(const std::array<canopen::AbortCode, 3>& codes, canopen::AbortCode code) {
+    return code != canopen::ok && std::find(codes.begin(), codes.end(), code) != codes.end();
+  }
+};
+
+namespace abort_rule {
+
+using Code = canopen::AbortCode;
+
+inline constexpr AbortRule no_object{{Code::no_object}, {Code::general}};
+inline constexpr AbortRule no_sub_index{{Code::no_sub_index}, {Code::general}};
+inline constexpr AbortRule read_only{{Code::read_only}, {Code::unsupported_access, Code::general}};
+inline constexpr AbortRule write_only{{Code::write_only}, {Code::unsupported_access, Code::general}};
+inline constexpr AbortRule command{{Code::command_specifier}, {Code::general}};
+inline constexpr AbortRule too_long{{Code::length_mismatch, Code::length_too_high}, {Code::general}};
+inline constexpr AbortRule too_short{{Code::length_mismatch, Code::length_too_low}, {Code::general}};
+inline constexpr AbortRule too_high{{Code::value_too_high, Code::invalid_value}, {Code::general}};
+inline constexpr AbortRule too_low{{Code::value_too_low, Code::invalid_value}, {Code::general}};
+inline constexpr AbortRule toggle_bit{{Code::toggle_bit}, {Code::general}};
+inline constexpr AbortRule block_size{{Code::block_size}, {Code::command_specifier, Code::general}};
+inline constexpr AbortRule sequence_number{{Code::sequence_number}, {Code::command_specifier, Code::general}};
+/// A mapping that is changed while the PDO is valid, or while its number of entries is not 0.
+inline constexpr AbortRule mapping_in_use{{Code::unsupported_access, Code::device_state},
+                                          {Code::not_mappable, Code::read_only, Code::general}};
+inline constexpr AbortRule mapping_too_long{{Code::pdo_length, Code::not_mappable},
+                                            {Code::unsupported_access, Code::no_object, Code::general}};
+inline constexpr AbortRule not_mappable{{Code::not_mappable}, {Code::no_object}};
+
+}  // namespace abort_rule
+
+}  // namespace edsc::conform

@@ -1,0 +1,88 @@
+/// The cases of the conformance test as a table: what each asks for, where the standard says so, and what it may do to a
+/// device.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace edsc::conform {
+
+class Dut;
+
+/// What a run may do to the device, from the least to the most. Each contains those before it.
+enum class Level : std::uint8_t {
+  read,           ///< reads, and requests that each device must refuse without being written
+  communication,  ///< writes 1000h to 1FFFh and puts back; NMT to this node
+  all,            ///< with everything that `Permission` names
+};
+
+/// What a case needs besides its level: the user allows it by an option of its own, or by `Level::all`.
+enum class Permission : std::uint8_t {
+  none = 0,
+  store = 1,        ///< 1010h and 1011h: `--store`
+  application = 2,  ///< writes 2000h and above: `--application`
+  outputs = 4,      ///< sends RPDOs and produces SYNC: `--outputs`
+};
+
+[[nodiscard]] constexpr Permission operator|(Permission a, Permission b) {
+  return static_cast<Permission>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
+}
+[[nodiscard]] constexpr bool includes(Permission all, Permission some) {
+  return (static_cast<unsigned>(all) & static_cast<unsigned>(some)) == static_cast<unsigned>(some);
+}
+
+struct PermissionRow {
+  Permission permission;
+  std::string_view option;
+};
+
+inline constexpr PermissionRow permission_options[] = {
+    {Permission::store, "--store"},
+    {Permission::application, "--application"},
+    {Permission::outputs, "--outputs"},
+};
+
+/// `run` ends normally where the device passes. What else it may come to, it says by a member of Dut.
+struct CaseRow {
+  std::string_view id;      ///< `2.5`: area and number
+  std::string_view title;   ///< what is asked, as a sentence
+  std::string_view clause;  ///< `CiA 301, 7.2.4.3.4`
+  Level level = Level::read;
+  Permission needs = Permission::none;
+  void (*run)(Dut&) = nullptr;
+};
+
+struct AreaRow {
+  std::string_view id;     ///< `2`: what the ids of its cases begin with
+  std::string_view title;  ///< `SDO`
+  std::span<const CaseRow> (*cases)();
+};
+
+/// The areas in the order in which they run.
+[[nodiscard]] std::span<const AreaRow> areas();
+
+/// All cases, area by area.
+[[nodiscard]] std::vector<const CaseRow*> all_cases();
+
+/// The area that a case belongs to.
+[[nodiscard]] const AreaRow& area_of(const CaseRow& row);
+
+/// Whether a pattern names the case: `2.5`, `3.*`, `*`.
+[[nodiscard]] bool matches(std::string_view pattern, std::string_view id);
+
+// One file for each area in cases/.
+[[nodiscard]] std::span<const CaseRow> sheet_cases();
+[[nodiscard]] std::span<const CaseRow> sdo_cases();
+[[nodiscard]] std::span<const CaseRow> pdo_cases();
+[[nodiscard]] std::span<const CaseRow> dictionary_cases();
+[[nodiscard]] std::span<const CaseRow> emergency_cases();
+[[nodiscard]] std::span<const CaseRow> sync_cases();
+[[nodiscard]] std::span<const CaseRow> error_control_cases();
+[[nodiscard]] std::span<const CaseRow> other_cases();
+[[nodiscard]] std::span<const CaseRow> state_cases();
+[[nodiscard]] std::span<const CaseRow> transition_cases();
+[[nodiscard]] std::span<const CaseRow> lss_cases();
+
+}  // namespace edsc::conform
