@@ -2,6 +2,7 @@
 /// device.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -17,6 +18,19 @@ enum class Level : std::uint8_t {
   communication,  ///< writes 1000h to 1FFFh and puts back; NMT to this node
   all,            ///< with everything that `Permission` names
 };
+
+struct LevelRow {
+  Level level;
+  std::string_view name;  ///< of `--level`, and in reports
+};
+
+inline constexpr LevelRow levels[] = {
+    {Level::read, "read"},
+    {Level::communication, "communication"},
+    {Level::all, "all"},
+};
+
+[[nodiscard]] constexpr const LevelRow& row_of(Level level) { return levels[static_cast<std::size_t>(level)]; }
 
 /// What a case needs besides its level: the user allows it by an option of its own, or by `Level::all`.
 enum class Permission : std::uint8_t {
