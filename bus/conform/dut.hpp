@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "conform/abort_rule.hpp"
+#include "conform/sheet_findings.hpp"
 #include "conform/stimuli.hpp"
 #include "conform/verdict.hpp"
 #include "device/device.hpp"
@@ -57,6 +58,8 @@ struct DutSettings {
   /// By how much times on the bus may differ from what the device promises, without the lag of the test itself.
   Duration tolerance = milliseconds{0};
   std::uint32_t seed = 1;
+  /// What `edsc check` finds in the EDS. Nothing when it was not checked.
+  std::optional<SheetFindings> findings{};
 };
 
 class Dut {
@@ -70,6 +73,7 @@ class Dut {
 
   [[nodiscard]] const Device& sheet() const { return sheet_; }
   [[nodiscard]] canopen::NodeId node() const { return settings_.node; }
+  [[nodiscard]] const std::optional<SheetFindings>& findings() const { return settings_.findings; }
   [[nodiscard]] bool has(std::uint16_t index, std::uint8_t sub_index = 0) const;
   [[nodiscard]] const Entry* entry(std::uint16_t index, std::uint8_t sub_index = 0) const;
   /// The entry; the case is not applicable where the data sheet does not have it.
@@ -104,6 +108,8 @@ class Dut {
   void write(std::uint16_t index, std::uint8_t sub_index, std::uint64_t number);
   /// Writes without remembering what was there: save, load and what a case undoes itself.
   [[nodiscard]] SdoOutcome command(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> value);
+  /// Reads the entry, which a case then writes by hand-made frames: it is put back when the case is over.
+  void remember(std::uint16_t index, std::uint8_t sub_index);
 
   /// One request to the default SDO server, and its next frame; nothing when none comes in time. The transfer that it
   /// leaves open is aborted when the case is over, or by `end_transfer`.
@@ -207,7 +213,6 @@ class Dut {
   using Key = std::pair<std::uint16_t, std::uint8_t>;
 
   void record(const canopen::Frame& frame, canopen::TimePoint at, bool sent);
-  void remember(std::uint16_t index, std::uint8_t sub_index);
   void remember_entry(const LiveEntry& entry);
   void remember_configuration();
   void take_frame(Duration longest);

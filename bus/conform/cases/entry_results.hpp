@@ -1,0 +1,51 @@
+/// Results of a case that tries many entries: it continues after a failure and names the first failed entries.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "conform/dut.hpp"
+
+namespace edsc::conform {
+
+class EntryResults {
+ public:
+  explicit EntryResults(Dut& dut) : dut_{dut} {}
+
+  /// The entry must have been read or written.
+  void expect_done(const LiveEntry& entry, const SdoOutcome& outcome);
+  /// The entry must have been refused with a code of the rule. `done` says what a bad device did: `written`.
+  void expect_abort(const LiveEntry& entry, const SdoOutcome& outcome, const AbortRule& rule, std::string_view done);
+  void add_failure(const LiveEntry& entry, std::string_view got);
+  void add_warning(const LiveEntry& entry, std::string_view text);
+  /// Counts an entry that was tried.
+  void count() { ++tried_; }
+
+  /// Whether the device has not answered several times in a row: the remaining entries are not tried.
+  [[nodiscard]] bool lost() const { return silent_ >= max_silent; }
+
+  /// Ends the case: it fails when an entry failed, and is not applicable when no entry was tried.
+  void finish(const std::string& expected, const std::string& why_none);
+
+ private:
+  static constexpr std::size_t max_named = 5;
+  static constexpr unsigned max_silent = 3;
+
+  struct List {
+    std::string text;  ///< the first `max_named`
+    std::size_t size = 0;
+
+    void add(const LiveEntry& entry, std::string_view what);
+    [[nodiscard]] std::string whole() const;
+  };
+
+  void note(const SdoOutcome& outcome);
+
+  Dut& dut_;
+  List failures_, warnings_;
+  std::size_t tried_ = 0;
+  unsigned silent_ = 0;
+};
+
+}  // namespace edsc::conform

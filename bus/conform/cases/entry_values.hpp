@@ -1,0 +1,42 @@
+/// Entries and values that several areas of cases need.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "conform/dut.hpp"
+
+namespace edsc::conform {
+
+/// ObjFlags of an entry or of its object (CiA 306-1, 4.6.3.2).
+inline constexpr std::uint32_t refuse_write_flag = 1;
+inline constexpr std::uint32_t refuse_read_flag = 2;
+[[nodiscard]] std::uint32_t flags_of(const Dut& dut, const LiveEntry& entry);
+
+[[nodiscard]] bool is_communication(const LiveEntry& entry);  ///< 1000h to 1FFFh
+[[nodiscard]] bool is_application(const LiveEntry& entry);    ///< 2000h and above
+[[nodiscard]] bool is_domain(const LiveEntry& entry);
+/// An integer or a REAL of the EDS.
+[[nodiscard]] bool is_number(const LiveEntry& entry);
+[[nodiscard]] bool is_readable(const LiveEntry& entry);
+[[nodiscard]] bool is_writable(const LiveEntry& entry);
+
+/// Whether the entry is a parameter of 1000h to 1FFFh that each device takes in Pre-operational when the value fits:
+/// times and transmission types. COB-IDs, mappings, inhibit times and SYNC parameters depend on other parameters.
+[[nodiscard]] bool is_plain_parameter(const LiveEntry& entry);
+
+/// The bits of a value, with the node-ID where the EDS adds it.
+[[nodiscard]] std::uint64_t bits_of(const Dut& dut, const Value& value);
+/// The bytes of the default value as an SDO transfers them. Nothing where the file states none, and for a DOMAIN.
+[[nodiscard]] std::optional<Bytes> default_bytes(const Dut& dut, const Entry& entry);
+
+/// The next value above the HighLimit or below the LowLimit. Nothing without the limit, and where the data type ends
+/// there.
+[[nodiscard]] std::optional<std::uint64_t> value_above_limit(const Dut& dut, const Entry& entry);
+[[nodiscard]] std::optional<std::uint64_t> value_below_limit(const Dut& dut, const Entry& entry);
+
+/// Refusals that depend on the state of the device or on other values: nothing is wrong with the request.
+[[nodiscard]] bool depends_on_state(canopen::AbortCode code);
+
+}  // namespace edsc::conform
