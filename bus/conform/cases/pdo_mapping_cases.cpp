@@ -1,0 +1,548 @@
+/// What PDOs carry (CiA 301, 7.5.2.36 and 7.5.2.38): the mapping that the device has, new ones, and what it must
+/// refuse.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <canopen/pdo_mapping.hpp>
+#include <iterator>
+
+#include "conform/cases/pdo_cases.hpp"
+
+namespace edsc::conform::pdo_area {
+namespace {
+
+using canopen::CobId;
+using canopen::DataClass;
+using canopen::Mappable;
+using Code = canopen::AbortCode;
+
+/// An object that does not exist or cannot be mapped: step 3 of the procedure.
+constexpr AbortRule wrong_object{{Code::not_mappable, Code::no_object}, {}};
+/// A mapping that is not possible: step 4 of the procedure.
+constexpr AbortRule wrong_mapping{{Code::pdo_length, Code::no_object},
+                                  {Code::not_mappable, Code::unsupported_access, Code::general}};
+/// A number of objects beyond what sub-index 0 can hold is also an invalid value.
+constexpr AbortRule wrong_count{{Code::pdo_length, Code::no_object, Code::value_too_high},
+                                {Code::not_mappable, Code::unsupported_access, Code::invalid_value}};
+
+Mappable direction_of(PdoDirection direction) {
+  return direction == PdoDirection::receive ? Mappable::rpdo : Mappable::tpdo;
+}
+
+std::string_view name_of(PdoDirection direction) { return direction == PdoDirection::receive ? "RPDO" : "TPDO"; }
+
+/// A PDO whose mapping the data sheet lets change, and the procedure to do so. It is put back as it was found.
+class Remapping {
+ public:
+  Remapping(Dut& dut, const Pdo& pdo, std::uint8_t capacity)
+      : dut_{dut},
+        pdo_{pdo},
+        communication_{pdo.communication->index},
+        mapping_{mapping_of(communication_)},
+        capacity_{capacity},
+        cob_id_{static_cast<std::uint32_t>(dut.read_number(communication_, cob_id_parameter))},
+        count_{static_cast<std::uint8_t>(dut.read_number(mapping_, 0))} {
+    for (std::uint8_t i = 1; i <= capacity; ++i) found_.push_back(dut.read_number(mapping_, i));
+  }
+
+  [[nodiscard]] const Pdo& pdo() const { return pdo_; }
+  [[nodiscard]] std::uint8_t capacity() const { return capacity_; }
+  [[nodiscard]] std::uint8_t found_count() const { return count_; }
+  [[nodiscard]] bool is_valid() const { return CobId{cob_id_}.valid(); }
+  /// Whether it is valid, or may be made valid as its CAN-ID can be used.
+  [[nodiscard]] bool can_be_valid() const {
+    return canopen::may_be_written(CobId{cob_id_ & ~CobId::invalid_bit}, true, true);
+  }
+  [[nodiscard]] std::vector<Mapped> found() const {
+    std::vector<Mapped> mapping;
+    for (std::size_t i = 0; i < std::min<std::size_t>(count_, found_.size()); ++i)
+      mapping.push_back(mapped_of(found_[i]));
+    return mapping;
+  }
+  [[nodiscard]] std::string entry_name(std::uint8_t position) const { return label(mapping_, position); }
+
+  // ---- the five steps ----
+
+  void disable() { dut_.write(communication_, cob_id_parameter, cob_id_ | CobId::invalid_bit); }
+  void clear() { dut_.write(mapping_, 0, 0); }
+  [[nodiscard]] SdoOutcome map(std::uint8_t position, const Mapped& mapped) {
+    return dut_.download(mapping_, position, mapped.value());
+  }
+  [[nodiscard]] SdoOutcome set_count(std::uint8_t count) { return dut_.download(mapping_, 0, count); }
+  void enable() { dut_.write(communication_, cob_id_parameter, cob_id_ & ~CobId::invalid_bit); }
+
+  void begin() {
+    disable();
+    clear();
+  }
+
+  /// Steps 1 to 4, which the device must take, and must have then.
+  void remap(const std::vector<Mapped>& mapping) {
+    begin();
+    std::uint8_t position = 0;
+    for (const Mapped& mapped : mapping) {
+      ++position;
+      dut_.expect_done(map(position, mapped), mapping_text(position, mapped));
+    }
+    const auto count = static_cast<std::uint8_t>(mapping.size());
+    dut_.expect_done(set_count(count), fmt::format("{} written to {}", count, label(mapping_, 0)));
+    dut_.expect_equal(dut_.read_number(mapping_, 0), count, label(mapping_, 0) + " after it was written");
+    for (position = 1; position <= count; ++position) {
+      dut_.expect_equal(dut_.read_number(mapping_, position), mapping[position - 1U].value(),
+                        label(mapping_, position) + " after it was written");
+    }
+  }
+
+  void put_back() {
+    begin();
+    for (std::uint8_t i = 1; i <= capacity_; ++i) {
+      if (dut_.read_number(mapping_, i) != found_[i - 1U]) dut_.write(mapping_, i, found_[i - 1U]);
+    }
+    if (count_ != 0) dut_.write(mapping_, 0, count_);
+    dut_.write(communication_, cob_id_parameter, cob_id_);
+  }
+
+  [[nodiscard]] std::string mapping_text(std::uint8_t position, const Mapped& mapped) const {
+    return fmt::format("{}: {} with {} bits written to {}", pdo_label(pdo_), label(mapped.index, mapped.sub_index),
+                       mapped.bits, label(mapping_, position));
+  }
+
+  void expect_unchanged(std::uint8_t sub_index, std::uint64_t value) {
+    dut_.expect_equal(dut_.read_number(mapping_, sub_index), value, label(mapping_, sub_index) + " after the refusal");
+  }
+
+ private:
+  Dut& dut_;
+  const Pdo& pdo_;
+  std::uint16_t communication_, mapping_;
+  std::uint8_t capacity_;
+  std::uint32_t cob_id_;
+  std::uint8_t count_;
+  std::vector<std::uint64_t> found_;  ///< sub-indices 1 to capacity
+};
+
+bool is_read_and_written(const Entry* entry) {
+  return entry != nullptr && canopen::readable(entry->access) && canopen::writable(entry->access);
+}
+
+/// How many objects the PDO can map; 0 where its mapping cannot be changed.
+std::uint8_t capacity_of(const Dut& dut, const Pdo& pdo) {
+  const std::uint16_t communication = pdo.communication->index;
+  const std::uint16_t mapping = mapping_of(communication);
+  if (!is_read_and_written(dut.entry(communication, cob_id_parameter)) || !is_read_and_written(dut.entry(mapping, 0)))
+    return 0;
+  std::uint8_t capacity = 0;
+  while (capacity < canopen::source_multiplexed - 1 &&
+         is_read_and_written(dut.entry(mapping, static_cast<std::uint8_t>(capacity + 1)))) {
+    ++capacity;
+  }
+  return std::min<std::uint8_t>(capacity, 64);
+}
+
+/// PDOs whose mapping can be changed. Not applicable where there is none.
+std::vector<Remapping> remappings(Dut& dut, std::initializer_list<PdoDirection> directions) {
+  std::vector<Remapping> found;
+  dut.enter(NmtState::pre_operational);
+  for (const PdoDirection direction : directions) {
+    for (const Pdo* pdo : dut.pdos(direction)) {
+      const std::uint8_t capacity = capacity_of(dut, *pdo);
+      if (capacity == 0) continue;
+      if (dut.read_number(mapping_of(pdo->communication->index), 0) >= canopen::source_multiplexed) continue;
+      found.emplace_back(dut, *pdo, capacity);
+    }
+  }
+  if (found.empty()) {
+    dut.not_applicable(fmt::format("the data sheet has no {} whose mapping and COB-ID are rw, and which is not an MPDO",
+                                   directions.size() == 1 ? name_of(*directions.begin()) : "PDO"));
+  }
+  return found;
+}
+
+std::vector<Remapping> all_remappings(Dut& dut) {
+  return remappings(dut, {PdoDirection::receive, PdoDirection::transmit});
+}
+
+// ---- objects ----
+
+/// As many bits as a mapping entry for it has; 0 where it has no fixed length that the device can map.
+std::uint8_t mapped_bits(const Dut& dut, const Entry& entry) {
+  const unsigned bits = entry.type == nullptr ? 0 : entry.type->bits;
+  const unsigned granularity = dut.sheet().information.capabilities.granularity.value_or(8);
+  return bits > 64 || (granularity != 0 && bits % granularity != 0) ? std::uint8_t{0} : static_cast<std::uint8_t>(bits);
+}
+
+template <class Condition>
+std::vector<Mapped> objects_where(const Dut& dut, Condition condition) {
+  std::vector<Mapped> found;
+  for (const Object& object : dut.sheet().objects) {
+    for (const Entry& entry : object.entries) {
+      const std::uint8_t bits = mapped_bits(dut, entry);
+      if (bits != 0 && entry.sub_index != 0xFF && condition(entry))
+        found.push_back({entry.index, entry.sub_index, bits});
+    }
+  }
+  return found;
+}
+
+std::vector<Mapped> mappable_objects(const Dut& dut, PdoDirection direction) {
+  return objects_where(dut, [direction](const Entry& entry) {
+    return entry.access != canopen::Access::constant && allows(entry.mappable(), direction_of(direction));
+  });
+}
+
+/// Some of them, for each PDO others, the same in each run with the same seed.
+std::vector<Mapped> some_of(Dut& dut, const std::vector<Mapped>& objects) {
+  constexpr std::size_t most = 4;
+  std::vector<Mapped> chosen;
+  std::ranges::sample(objects, std::back_inserter(chosen), most, dut.random());
+  return chosen;
+}
+
+}  // namespace
+
+// ---- the mapping that the device has ----
+
+namespace {
+
+void expect_mapped_object(Dut& dut, const Pdo& pdo, const std::string& where, const Mapped& mapped) {
+  const std::string what = fmt::format("{}: {:08X}h", where, mapped.value());
+  if (mapped.is_dummy()) {
+    const bool in_use = std::ranges::find(dut.sheet().dummies, mapped.index) != dut.sheet().dummies.end();
+    dut.expect(pdo.direction == PdoDirection::receive && in_use,
+               "an object of the data sheet, or in an RPDO one of its dummies", what);
+    return;
+  }
+  const Entry* const entry = dut.entry(mapped.index, mapped.sub_index);
+  dut.expect(entry != nullptr, "an object of the data sheet", what);
+  dut.expect(allows(entry->mappable(), direction_of(pdo.direction)),
+             fmt::format("an object that {} may carry: PDOMapping=1, and not {}", name_of(pdo.direction),
+                         pdo.direction == PdoDirection::receive ? "ro, rwr or const" : "wo or rww"),
+             fmt::format("{}, which is {} with PDOMapping={}", what, canopen::row_of(entry->access).name,
+                         entry->pdo_mapping ? 1 : 0));
+  const bool is_boolean = entry->type->kind == DataClass::boolean && mapped.bits == 8;
+  dut.expect(
+      entry->type->bits == 0 || entry->type->bits == mapped.bits || is_boolean,
+      fmt::format("{} with the {} bits of its data type", label(mapped.index, mapped.sub_index), entry->type->bits),
+      what);
+  if (!canopen::readable(entry->access)) return;
+  const Bytes bytes = dut.read(mapped.index, mapped.sub_index);
+  dut.expect(8 * bytes.size() >= mapped.bits,
+             fmt::format("{} with {} bits", label(mapped.index, mapped.sub_index), mapped.bits),
+             fmt::format("{} bytes", bytes.size()));
+}
+
+}  // namespace
+
+void mapping_fits_dictionary(Dut& dut) {
+  bool any = false;
+  for (const PdoDirection direction : {PdoDirection::receive, PdoDirection::transmit}) {
+    for (const Pdo* pdo : dut.pdos(direction)) {
+      const std::uint16_t index = mapping_of(pdo->communication->index);
+      if (!dut.has(index)) continue;
+      any = true;
+      const auto mapping = read_mapping(dut, pdo->communication->index);
+      if (!mapping) continue;
+      const unsigned highest = dut.sheet().find(index)->highest_sub_index();
+      dut.expect(mapping->size() <= highest, fmt::format("{} at most {}", label(index, 0), highest),
+                 fmt::format("{}", mapping->size()));
+      dut.expect(bits_of(*mapping) <= 64, pdo_label(*pdo) + " with 64 bits at most",
+                 fmt::format("{} bits", bits_of(*mapping)));
+      std::uint8_t position = 0;
+      for (const Mapped& mapped : *mapping) expect_mapped_object(dut, *pdo, label(index, ++position), mapped);
+    }
+  }
+  if (!any) dut.not_applicable("the data sheet has no mapping parameter");
+}
+
+// ---- a new mapping ----
+
+namespace {
+
+/// Another mapping than the present one, of objects that the data sheet lets the PDO carry: the present ones in the
+/// reverse order, or one that is not mapped yet.
+std::vector<Mapped> new_mapping(const Dut& dut, const Remapping& remapping) {
+  const std::vector<Mapped> present = remapping.found();
+  std::vector<Mapped> reversed{present.rbegin(), present.rend()};
+  std::erase_if(reversed, [](const Mapped& mapped) { return mapped.value() == 0; });
+  if (reversed != present && !reversed.empty() && bits_of(reversed) <= 64) return reversed;
+  for (const Mapped& mapped : mappable_objects(dut, remapping.pdo().direction)) {
+    if (std::ranges::find(present, mapped) == present.end()) return {mapped};
+  }
+  return reversed;
+}
+
+/// Gives the objects values that differ from each other, by a stimulus or, where that is allowed, by SDO.
+class DistinctValues {
+ public:
+  DistinctValues(Dut& dut, const std::vector<Mapped>& mapping) : dut_{dut} {
+    std::uint64_t salt = 0;
+    for (const Mapped& mapped : mapping) {
+      const Entry* const entry = dut.entry(mapped.index, mapped.sub_index);
+      if (mapped.index < 0x2000 || entry == nullptr || !canopen::readable(entry->access)) continue;
+      const Bytes present = dut.read(mapped.index, mapped.sub_index);
+      const auto value = other_value(dut, mapped, number_of(present), ++salt);
+      if (!value) continue;
+      const Bytes bytes = dut.bytes_of(mapped.index, mapped.sub_index, *value);
+      if (dut.stimuli().set(mapped.index, mapped.sub_index, bytes)) {
+        set_.push_back({mapped, present});
+      } else if (canopen::writable(entry->access) && dut.allowed(Permission::application)) {
+        (void)dut.download(mapped.index, mapped.sub_index, bytes);
+      }
+    }
+  }
+  DistinctValues(const DistinctValues&) = delete;
+  DistinctValues& operator=(const DistinctValues&) = delete;
+  ~DistinctValues() {
+    for (const auto& [mapped, present] : set_) (void)dut_.stimuli().set(mapped.index, mapped.sub_index, present);
+  }
+
+ private:
+  Dut& dut_;
+  std::vector<std::pair<Mapped, Bytes>> set_;
+};
+
+/// Makes the TPDO be sent, by its event timer or by SYNC; nothing where it supports neither.
+std::optional<SeenFrame> make_sent(Dut& dut, const Tpdo& tpdo) {
+  constexpr std::uint16_t timer_ms = 50;
+  const auto timer = static_cast<std::uint16_t>(within_limits(dut, tpdo.index, timer_parameter, timer_ms));
+  if (!configure(dut, tpdo, {.event_timer = timer})) {
+    dut.enter(NmtState::operational);
+    settle(dut, tpdo);
+    const auto seen = dut.wait_for(tpdo.frames(), to_answer + milliseconds{timer});
+    dut.expect(seen.has_value(), tpdo.name() + " with a new mapping, by its event timer", "no frame");
+    return seen;
+  }
+  if (!dut.has(0x1005) || configure(dut, tpdo, {.type = 1})) return std::nullopt;
+  SyncSource sync{dut};
+  dut.enter(NmtState::operational);
+  settle(dut, tpdo);
+  const std::vector<SeenFrame> frames = sync.send_and_collect(tpdo.frames());
+  dut.expect(!frames.empty(), tpdo.name() + " with a new mapping, at a SYNC", "no frame");
+  return frames.front();
+}
+
+/// A TPDO carries the newly mapped objects.
+void expect_sent_as_mapped(Dut& dut, const Remapping& remapping) {
+  const std::vector<Tpdo> all = tpdos(dut);
+  const auto tpdo = std::ranges::find(all, &remapping.pdo(), &Tpdo::pdo);
+  if (tpdo == all.end()) return;
+  const DistinctValues values{dut, tpdo->mapping};
+  const Image before = read_image(dut, tpdo->mapping);
+  const auto seen = make_sent(dut, *tpdo);
+  if (seen) expect_present_data(dut, *tpdo, *seen, before);
+  dut.enter(NmtState::pre_operational);
+  put_back(dut, *tpdo);
+}
+
+/// An RPDO writes the newly mapped objects.
+void expect_received_as_mapped(Dut& dut, Remapping& remapping, const std::vector<Mapped>& mapping) {
+  const std::uint16_t index = remapping.pdo().communication->index;
+  const auto cob_id = static_cast<std::uint32_t>(dut.read_number(index, cob_id_parameter));
+  if (dut.has(index, type_parameter) && dut.read_number(index, type_parameter) < 254) {
+    if (!canopen::writable(dut.entry(index, type_parameter)->access)) return;
+    dut.write(index, type_parameter, event_driven);
+  }
+  std::vector<std::uint64_t> values;
+  std::uint64_t salt = 0;
+  for (const Mapped& mapped : mapping) {
+    const Entry* const entry = dut.entry(mapped.index, mapped.sub_index);
+    if (entry == nullptr || mapped.index < 0x2000 || !is_read_and_written(entry)) return;
+    const std::uint64_t present = dut.read_number(mapped.index, mapped.sub_index);
+    dut.write(mapped.index, mapped.sub_index, present);  // so that it is put back
+    values.push_back(other_value(dut, mapped, present, ++salt).value_or(present));
+  }
+  const std::uint64_t data = pack(mapping, values);
+  Bytes bytes((bits_of(mapping) + 7) / 8);
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(data >> 8 * i);
+  dut.enter(NmtState::operational);
+  dut.send(make_frame(cob_id, bytes));
+  dut.pass_time(silence);
+  for (std::size_t i = 0; i < mapping.size(); ++i) {
+    dut.expect_equal(dut.read_number(mapping[i].index, mapping[i].sub_index), values[i],
+                     fmt::format("{} after {} with the new mapping has brought it",
+                                 label(mapping[i].index, mapping[i].sub_index), pdo_label(remapping.pdo())));
+  }
+  dut.enter(NmtState::pre_operational);
+}
+
+}  // namespace
+
+void takes_new_mapping(Dut& dut) {
+  std::vector<Remapping> all = all_remappings(dut);
+  bool any = false;
+  for (Remapping& remapping : all) {
+    const std::vector<Mapped> mapping = new_mapping(dut, remapping);
+    if (mapping.empty()) continue;
+    any = true;
+    remapping.remap(mapping);
+    if (remapping.is_valid()) {
+      remapping.enable();
+      if (remapping.pdo().direction == PdoDirection::transmit) {
+        expect_sent_as_mapped(dut, remapping);
+      } else if (dut.allowed(Permission::outputs | Permission::application)) {
+        expect_received_as_mapped(dut, remapping, mapping);
+      }
+    }
+    remapping.put_back();
+  }
+  if (!any) dut.not_applicable("the data sheet has no object that a PDO whose mapping is rw may carry");
+}
+
+// ---- without the procedure ----
+
+namespace {
+
+/// PDOs that are valid and map something; not applicable where none is.
+template <class Check>
+void for_each_active(Dut& dut, Check check) {
+  std::vector<Remapping> all = all_remappings(dut);
+  bool any = false;
+  for (Remapping& remapping : all) {
+    if (remapping.found_count() == 0 || !remapping.can_be_valid() || remapping.found_count() > remapping.capacity())
+      continue;
+    const std::vector<Mapped> mapping = new_mapping(dut, remapping);
+    if (mapping.empty()) continue;
+    any = true;
+    if (!remapping.is_valid()) remapping.enable();
+    check(remapping, mapping);
+    remapping.put_back();
+  }
+  if (!any) dut.not_applicable("no PDO whose mapping is rw maps an object and has a usable CAN-ID");
+}
+
+}  // namespace
+
+void refuses_entry_of_active_mapping(Dut& dut) {
+  for_each_active(dut, [&](Remapping& remapping, const std::vector<Mapped>& mapping) {
+    const SdoOutcome outcome = remapping.map(1, mapping.front());
+    dut.expect_abort(outcome, abort_rule::mapping_in_use,
+                     remapping.mapping_text(1, mapping.front()) + " while the PDO is valid");
+    remapping.expect_unchanged(1, remapping.found().front().value());
+  });
+}
+
+void refuses_mapping_of_valid_pdo(Dut& dut) {
+  for_each_active(dut, [&](Remapping& remapping, const std::vector<Mapped>& mapping) {
+    SdoOutcome outcome = remapping.set_count(0);
+    std::string what = "0 written to " + remapping.entry_name(0);
+    for (std::uint8_t i = 1; outcome.done() && i <= mapping.size(); ++i) {
+      outcome = remapping.map(i, mapping[i - 1U]);
+      what = remapping.mapping_text(i, mapping[i - 1U]);
+    }
+    if (outcome.done()) {
+      outcome = remapping.set_count(static_cast<std::uint8_t>(mapping.size()));
+      what = fmt::format("{} written to {}", mapping.size(), remapping.entry_name(0));
+    }
+    dut.expect_abort(outcome, abort_rule::mapping_in_use, what + " while the PDO is valid");
+  });
+}
+
+// ---- mappings that are not possible ----
+
+void refuses_too_many_objects(Dut& dut) {
+  for (Remapping& remapping : all_remappings(dut)) {
+    remapping.begin();
+    const auto count = static_cast<std::uint8_t>(remapping.capacity() + 1);
+    dut.expect_abort(
+        remapping.set_count(count), wrong_count,
+        fmt::format("{} written to {}, which has {} entries", count, remapping.entry_name(0), remapping.capacity()));
+    remapping.expect_unchanged(0, 0);
+    remapping.put_back();
+  }
+}
+
+void refuses_too_many_bits(Dut& dut) {
+  bool any = false;
+  for (Remapping& remapping : all_remappings(dut)) {
+    const std::vector<Mapped> objects = mappable_objects(dut, remapping.pdo().direction);
+    const auto longest = std::ranges::max_element(objects, {}, &Mapped::bits);
+    if (longest == objects.end() || longest->bits * remapping.capacity() <= 64) continue;
+    any = true;
+    remapping.begin();
+    std::uint8_t count = 0;
+    SdoOutcome outcome;
+    while (outcome.done() && count * longest->bits <= 64) outcome = remapping.map(++count, *longest);
+    const bool is_last = count * longest->bits > 64;
+    dut.expect(outcome.done() || is_last, remapping.mapping_text(count, *longest), outcome_text(outcome));
+    if (outcome.done()) outcome = remapping.set_count(count);
+    dut.expect_abort(outcome, wrong_mapping,
+                     fmt::format("{} with {} bits", pdo_label(remapping.pdo()), count * longest->bits));
+    remapping.expect_unchanged(0, 0);
+    remapping.put_back();
+  }
+  if (!any) dut.not_applicable("no mapping that the data sheet allows is longer than 64 bits");
+}
+
+// ---- which objects ----
+
+namespace {
+
+void takes_objects(Dut& dut, PdoDirection direction, const std::vector<Mapped>& objects, const char* none) {
+  std::vector<Remapping> all = remappings(dut, {direction});
+  if (objects.empty()) dut.not_applicable(none);
+  for (Remapping& remapping : all) {
+    for (const Mapped& mapped : some_of(dut, objects)) remapping.remap({mapped});
+    remapping.put_back();
+  }
+}
+
+/// The device refuses the entry or, at the latest, the mapping as a whole.
+void refuses_objects(Dut& dut, PdoDirection direction, const std::vector<Mapped>& objects, const char* none) {
+  std::vector<Remapping> all = remappings(dut, {direction});
+  if (objects.empty()) dut.not_applicable(none);
+  for (Remapping& remapping : all) {
+    for (const Mapped& mapped : some_of(dut, objects)) {
+      remapping.begin();
+      const SdoOutcome outcome = remapping.map(1, mapped);
+      if (outcome.done()) {
+        dut.expect_abort(remapping.set_count(1), wrong_mapping,
+                         remapping.mapping_text(1, mapped) + ", then 1 to " + remapping.entry_name(0));
+      } else {
+        dut.expect_abort(outcome, wrong_object, remapping.mapping_text(1, mapped));
+      }
+      remapping.expect_unchanged(0, 0);
+    }
+    remapping.put_back();
+  }
+}
+
+std::vector<Mapped> with_access(const Dut& dut, canopen::Access first, canopen::Access second) {
+  return objects_where(
+      dut, [=](const Entry& entry) { return entry.pdo_mapping && (entry.access == first || entry.access == second); });
+}
+
+std::vector<Mapped> outputs(const Dut& dut) { return with_access(dut, canopen::Access::rww, canopen::Access::wo); }
+std::vector<Mapped> inputs(const Dut& dut) { return with_access(dut, canopen::Access::rwr, canopen::Access::ro); }
+std::vector<Mapped> unmappable(const Dut& dut) {
+  return objects_where(dut, [](const Entry& entry) { return !entry.pdo_mapping; });
+}
+
+constexpr const char* no_output = "the data sheet has no object with PDOMapping=1 that is rww or wo";
+constexpr const char* no_input = "the data sheet has no object with PDOMapping=1 that is rwr or ro";
+constexpr const char* no_unmappable = "the data sheet has no object with PDOMapping=0";
+
+}  // namespace
+
+void takes_output_in_rpdo(Dut& dut) { takes_objects(dut, PdoDirection::receive, outputs(dut), no_output); }
+void refuses_input_in_rpdo(Dut& dut) { refuses_objects(dut, PdoDirection::receive, inputs(dut), no_input); }
+void refuses_unmappable_in_rpdo(Dut& dut) {
+  refuses_objects(dut, PdoDirection::receive, unmappable(dut), no_unmappable);
+}
+void takes_input_in_tpdo(Dut& dut) { takes_objects(dut, PdoDirection::transmit, inputs(dut), no_input); }
+void refuses_output_in_tpdo(Dut& dut) { refuses_objects(dut, PdoDirection::transmit, outputs(dut), no_output); }
+void refuses_unmappable_in_tpdo(Dut& dut) {
+  refuses_objects(dut, PdoDirection::transmit, unmappable(dut), no_unmappable);
+}
+
+void takes_dummy_in_rpdo(Dut& dut) {
+  std::vector<Mapped> dummies;
+  const unsigned granularity = dut.sheet().information.capabilities.granularity.value_or(8);
+  for (const std::uint16_t index : dut.sheet().dummies) {
+    if (index >= std::size(canopen::dummy_bits)) continue;
+    const std::uint8_t bits = canopen::dummy_bits[index];
+    if (bits != 0 && (granularity == 0 || bits % granularity == 0)) dummies.push_back({index, 0, bits});
+  }
+  takes_objects(dut, PdoDirection::receive, dummies, "the data sheet has no dummy object in [DummyUsage]");
+}
+
+}  // namespace edsc::conform::pdo_area
