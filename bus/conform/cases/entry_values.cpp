@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "device/value.hpp"
+#include "live/configuration_plan.hpp"
 #include "text/utf8.hpp"
 
 namespace edsc::conform {
@@ -89,6 +89,11 @@ bool is_plain_parameter(const LiveEntry& entry) {
     return entry.index >= row.first && entry.index <= row.last && entry.sub_index >= row.first_sub_index &&
            entry.sub_index <= row.last_sub_index;
   });
+}
+
+bool is_application_parameter(const Dut& dut, const LiveEntry& entry) {
+  if (!is_application(entry) || !is_readable(entry) || !is_writable(entry) || is_domain(entry)) return false;
+  return (flags_of(dut, entry) & (refuse_write_flag | refuse_read_flag)) == 0 && !sets_node_id_or_bit_rate(entry);
 }
 
 std::uint64_t bits_of(const Dut& dut, const Value& value) {

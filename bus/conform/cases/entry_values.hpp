@@ -9,7 +9,7 @@
 
 namespace edsc::conform {
 
-/// ObjFlags of an entry or of its object (CiA 306-1, 4.6.3.2).
+/// ObjFlags of an entry or of its object (CiA 306-1, 4.6.2).
 inline constexpr std::uint32_t refuse_write_flag = 1;
 inline constexpr std::uint32_t refuse_read_flag = 2;
 [[nodiscard]] std::uint32_t flags_of(const Dut& dut, const LiveEntry& entry);
@@ -25,6 +25,9 @@ inline constexpr std::uint32_t refuse_read_flag = 2;
 /// Whether the entry is a parameter of 1000h to 1FFFh that each device takes in Pre-operational when the value fits:
 /// times and transmission types. COB-IDs, mappings, inhibit times and SYNC parameters depend on other parameters.
 [[nodiscard]] bool is_plain_parameter(const LiveEntry& entry);
+/// Whether a run with the permission may write the entry of 2000h or above: not what ObjFlags keep tools from, and not
+/// the node-ID or the bit rate of the device.
+[[nodiscard]] bool is_application_parameter(const Dut& dut, const LiveEntry& entry);
 
 /// The bits of a value, with the node-ID where the EDS adds it.
 [[nodiscard]] std::uint64_t bits_of(const Dut& dut, const Value& value);

@@ -1,0 +1,343 @@
+/// Area 4: the object dictionary and its EDS (CiA 301, 7.4). Cases 4.1 and 4.2 are about 1000h to 1FFFh, 4.7 to 4.9 about
+/// 2000h and above, where ObjFlags say what tools must leave alone; the others are about all entries.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <canopen/abort_code.hpp>
+#include <canopen/access.hpp>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "conform/case.hpp"
+#include "conform/cases/entry_results.hpp"
+#include "conform/cases/entry_values.hpp"
+#include "conform/cases/sdo_frames.hpp"
+#include "conform/dut.hpp"
+#include "decode/value_text.hpp"
+#include "device/index_range.hpp"
+
+namespace edsc::conform {
+namespace dictionary_area {
+namespace {
+
+using canopen::Access;
+using canopen::AbortCode;
+
+constexpr std::uint16_t error_history = 0x1003;
+constexpr std::uint8_t structure = 0xFF;  ///< the sub-index that describes the structure of an object
+
+bool lacks_flag(const Dut& dut, const LiveEntry& entry, std::uint32_t flag) {
+  return (flags_of(dut, entry) & flag) == 0;
+}
+
+std::size_t type_bytes(const LiveEntry& entry) { return (entry.type->bits + 7U) / 8U; }
+
+// Reading
+
+/// Whether the entry may be read at all; of a DOMAIN, which may be long, only the first answer.
+SdoOutcome begin_upload(Dut& dut, const LiveEntry& entry) {
+  const auto answer = dut.exchange(sdo_frame(0x40, entry.index, entry.sub_index));
+  dut.end_transfer(entry.index, entry.sub_index);
+  SdoOutcome outcome;
+  if (!answer) outcome.end = SdoEnd::no_answer;
+  if (answer && (*answer)[0] == canopen::sdo::abort_command) {
+    outcome.end = SdoEnd::refused;
+    outcome.code = static_cast<AbortCode>(canopen::sdo::word_of(*answer));
+  }
+  return outcome;
+}
+
+SdoOutcome read_entry(Dut& dut, const LiveEntry& entry) {
+  return is_domain(entry) ? begin_upload(dut, entry) : dut.upload(entry.index, entry.sub_index);
+}
+
+/// Entries that have no value now: the rest of the error history (CiA 301, 7.5.2.4), a string or DOMAIN not yet written.
+bool may_have_no_value(const LiveEntry& entry) {
+  return entry.type->bits == 0 || (entry.index == error_history && entry.sub_index != 0);
+}
+
+void expect_readable(EntryResults& results, const LiveEntry& entry, const SdoOutcome& outcome) {
+  const bool refused = outcome.end == SdoEnd::refused;
+  if (refused && may_have_no_value(entry) && outcome.code == AbortCode::no_data) return;
+  if (refused && depends_on_state(outcome.code)) return results.add_warning(entry, failure_text(outcome));
+  results.expect_done(entry, outcome);
+  if (outcome.done() && entry.type->bits != 0 && outcome.bytes.size() != type_bytes(entry)) {
+    results.add_failure(entry, fmt::format("{} bytes, but {} has {}", outcome.bytes.size(), entry.type->name,
+                                           type_bytes(entry)));
+  }
+}
+
+using InArea = bool (*)(const LiveEntry&);
+
+/// Each entry that the EDS says is readable, with as many bytes as its type has.
+void read_entries(Dut& dut, InArea in_area, const std::string& none) {
+  EntryResults results{dut};
+  for (const LiveEntry& entry : dut.entries()) {
+    if (results.lost()) break;
+    if (!in_area(entry) || !is_readable(entry) || !lacks_flag(dut, entry, refuse_read_flag)) continue;
+    results.count();
+    expect_readable(results, entry, read_entry(dut, entry));
+  }
+  results.finish("each readable entry is read, with the bytes of its data type", none);
+}
+
+constexpr const char* no_application_entries = "the EDS has no such entry at 2000h or above";
+
+void read_communication_entries(Dut& dut) { read_entries(dut, is_communication, "the EDS has no readable entry"); }
+void read_application_entries(Dut& dut) { read_entries(dut, is_application, no_application_entries); }
+
+// Defaults
+
+/// Read-only values of 1000h to 1FFFh that are the same in each device of the product.
+struct ProductValue {
+  IndexRange objects;
+  std::uint8_t first_sub_index, last_sub_index;
+};
+
+constexpr ProductValue product_values[] = {
+    {{0x1000, 0x1000}, 0, 0},    // device type
+    {{0x1018, 0x1018}, 1, 3},    // vendor-ID, product code, revision number
+    {{0x1200, 0x127F}, 0, 254},  // COB-IDs of SDO servers
+    {{0x1400, 0x1BFF}, 0, 254},  // PDOs
+};
+
+bool is_serial_number(const LiveEntry& entry) { return entry.index == 0x1018 && entry.sub_index == 4; }
+
+/// The number of sub-indices; in a list that a device fills, sub-index 0 has another default.
+bool is_highest_sub_index(const Dut& dut, const LiveEntry& entry) {
+  const Object* object = dut.sheet().find(entry.index);
+  if (entry.sub_index != 0 || object == nullptr || !object->has_sub_indices()) return false;
+  return dut.default_of(entry.index, 0) == object->highest_sub_index();
+}
+
+/// Whether the value is a constant of the product: access const, or read-only and one of the above, or the number of
+/// sub-indices. Other values differ from their default in a device that is right: what it measures or counts, and what
+/// a user has written or stored. They have their default only after restoring, which other cases ask for.
+bool is_product_value(const Dut& dut, const LiveEntry& entry) {
+  const Access access = entry.entry->access;
+  if (is_serial_number(entry) || entry.index == error_history) return false;
+  if (access == Access::constant) return true;
+  if (access != Access::ro) return false;
+  if (is_highest_sub_index(dut, entry)) return true;
+  return std::ranges::any_of(product_values, [&](const ProductValue& row) {
+    return entry.index >= row.objects.first && entry.index <= row.objects.last &&
+           entry.sub_index >= row.first_sub_index && entry.sub_index <= row.last_sub_index;
+  });
+}
+
+/// Text with what may follow it: devices fill a VISIBLE_STRING with 00h or spaces, and files lose spaces.
+Bytes trimmed(const LiveEntry& entry, Bytes bytes) {
+  const auto is_fill = [](std::uint8_t byte) { return byte == 0 || byte == ' '; };
+  if (entry.type->type == canopen::DataType::visible_string) {
+    while (!bytes.empty() && is_fill(bytes.back())) bytes.pop_back();
+  }
+  return bytes;
+}
+
+void compare_defaults(Dut& dut, InArea in_area, const std::string& none) {
+  EntryResults results{dut};
+  for (const LiveEntry& entry : dut.entries()) {
+    if (results.lost()) break;
+    if (!in_area(entry) || !is_product_value(dut, entry)) continue;
+    const std::optional<Bytes> expected = default_bytes(dut, *entry.entry);
+    if (!expected || !lacks_flag(dut, entry, refuse_read_flag)) continue;
+    results.count();
+    const SdoOutcome outcome = dut.upload(entry.index, entry.sub_index);
+    results.expect_done(entry, outcome);
+    if (outcome.done() && trimmed(entry, outcome.bytes) != trimmed(entry, *expected)) {
+      results.add_failure(entry, fmt::format("{} instead of {}", value_of(entry, outcome.bytes),
+                                             value_of(entry, *expected)));
+    }
+  }
+  results.finish("each constant has the DefaultValue of the EDS", none);
+}
+
+void compare_communication_defaults(Dut& dut) {
+  compare_defaults(dut, is_communication, "the EDS has no constant with a DefaultValue");
+}
+void compare_application_defaults(Dut& dut) { compare_defaults(dut, is_application, no_application_entries); }
+
+// Access that the entry does not allow
+
+/// A value that fits the entry: what it has, so that a device which takes it changes nothing.
+Bytes fitting_value(Dut& dut, const LiveEntry& entry) {
+  SdoOutcome present = dut.upload(entry.index, entry.sub_index);
+  if (present.done() && !present.bytes.empty()) return std::move(present.bytes);
+  return Bytes(entry.type->bits == 0 ? 1 : type_bytes(entry));
+}
+
+/// Those of 2000h and above only where the run may write them.
+void write_read_only_entries(Dut& dut) {
+  EntryResults results{dut};
+  for (const LiveEntry& entry : dut.entries()) {
+    if (results.lost()) break;
+    const bool allowed = is_communication(entry) || dut.allowed(Permission::application);
+    if (!allowed || is_writable(entry) || !is_readable(entry) || is_domain(entry)) continue;
+    results.count();
+    const Bytes value = fitting_value(dut, entry);
+    results.expect_abort(entry, dut.command(entry.index, entry.sub_index, value), abort_rule::read_only, "written");
+  }
+  results.finish("each write of a read-only entry is refused with 0601 0002h", "the EDS has no read-only entry");
+}
+
+void read_write_only_entries(Dut& dut) {
+  EntryResults results{dut};
+  for (const LiveEntry& entry : dut.entries()) {
+    if (results.lost()) break;
+    if (is_readable(entry) || !is_writable(entry)) continue;
+    results.count();
+    results.expect_abort(entry, begin_upload(dut, entry), abort_rule::write_only, "read");
+  }
+  results.finish("each read of a write-only entry is refused with 0601 0001h", "the EDS has no write-only entry");
+}
+
+// Sub-index FFh
+
+/// Structures of CiA 301, table 44, that the objects of the communication profile have.
+struct Structure {
+  IndexRange objects;
+  std::uint8_t data_type;
+};
+
+constexpr Structure structures[] = {
+    {{0x1018, 0x1018}, 0x23}, {{0x1200, 0x12FF}, 0x22}, {{0x1400, 0x15FF}, 0x20},
+    {{0x1600, 0x17FF}, 0x21}, {{0x1800, 0x19FF}, 0x20}, {{0x1A00, 0x1BFF}, 0x21},
+};
+
+/// The data type of an ARRAY is that of its elements; that of a RECORD is known for some objects.
+std::optional<unsigned> data_type_of(const Object& object) {
+  const Entry* first = object.find(1);
+  if (object.type == ObjectType::array && first != nullptr && first->type != nullptr)
+    return static_cast<unsigned>(first->type->type);
+  for (const Structure& row : structures) {
+    if (object.index >= row.objects.first && object.index <= row.objects.last) return row.data_type;
+  }
+  return std::nullopt;
+}
+
+/// UNSIGNED32: object code in bits 0 to 7, data type in bits 8 to 15, 0 above.
+void check_structure(EntryResults& results, const Object& object, const LiveEntry& entry, const Bytes& bytes) {
+  const auto value = static_cast<std::uint32_t>(number_of(bytes));
+  const auto code = static_cast<unsigned>(object.type);
+  const std::optional<unsigned> type = data_type_of(object);
+  const bool same_type = !type || ((value >> 8) & 0xFF) == *type;
+  if (bytes.size() == 4 && (value & 0xFF) == code && same_type && (value >> 16) == 0) return;
+  results.add_failure(entry, fmt::format("{}, but the object code is {:02X}h{}", hex_bytes(bytes), code,
+                                         type ? fmt::format(" and the data type {:02X}h", *type) : ""));
+}
+
+void check_structures(Dut& dut) {
+  EntryResults results{dut};
+  for (const Object& object : dut.sheet().objects) {
+    if (results.lost()) break;
+    if (!object.has_sub_indices()) continue;
+    const LiveEntry entry{object.index, structure, object.find(structure), nullptr, object.name};
+    const SdoOutcome outcome = dut.upload(object.index, structure);
+    const bool missing = outcome.end == SdoEnd::refused && entry.entry == nullptr;
+    if (missing) continue;
+    results.count();
+    results.expect_done(entry, outcome);
+    if (outcome.done()) check_structure(results, object, entry, outcome.bytes);
+  }
+  results.finish("each sub-index FFh has the object code and the data type of its object",
+                 "no object has a sub-index FFh");
+}
+
+// Limits and writing back
+
+/// A refusal that depends on other values does not fail the case.
+void expect_written(EntryResults& results, const LiveEntry& entry, const SdoOutcome& outcome, std::string_view what) {
+  if (outcome.end == SdoEnd::refused && depends_on_state(outcome.code))
+    return results.add_warning(entry, fmt::format("{}: {}", what, failure_text(outcome)));
+  if (outcome.end != SdoEnd::refused) return results.expect_done(entry, outcome);
+  results.add_failure(entry, fmt::format("{}: {}", what, failure_text(outcome)));
+}
+
+/// One limit: the next value beyond it is refused, and the limit itself is taken and read back.
+void try_limit(Dut& dut, EntryResults& results, const LiveEntry& entry, const Value& limit,
+               const std::optional<std::uint64_t>& beyond, const AbortRule& rule, std::string_view name) {
+  if (beyond) {
+    const Bytes value = dut.bytes_of(entry.index, entry.sub_index, *beyond);
+    results.expect_abort(entry, dut.download(entry.index, entry.sub_index, value), rule,
+                         fmt::format("{} written, which is beyond the {}", value_of(entry, value), name));
+  }
+  const Bytes value = dut.bytes_of(entry.index, entry.sub_index, bits_of(dut, limit));
+  const SdoOutcome outcome = dut.download(entry.index, entry.sub_index, value);
+  expect_written(results, entry, outcome, name);
+  if (!outcome.done() || entry.entry->pdo_mapping) return;
+  const SdoOutcome after = dut.upload(entry.index, entry.sub_index);
+  if (after.done() && after.bytes != value) {
+    results.add_failure(entry, fmt::format("{} written, then {}", value_of(entry, value), value_of(entry, after.bytes)));
+  }
+}
+
+void try_limits(Dut& dut) {
+  EntryResults results{dut};
+  for (const LiveEntry& entry : dut.entries()) {
+    if (results.lost()) break;
+    const Entry& row = *entry.entry;
+    const bool may_be_written = is_plain_parameter(entry) || is_application_parameter(dut, entry);
+    if (!may_be_written || !is_number(entry) || (!row.low_limit && !row.high_limit)) continue;
+    const SdoOutcome before = dut.upload(entry.index, entry.sub_index);
+    if (!before.done()) continue;  // cases 4.1 and 4.7
+    results.count();
+    if (row.high_limit)
+      try_limit(dut, results, entry, *row.high_limit, value_above_limit(dut, row), abort_rule::too_high, "HighLimit");
+    if (row.low_limit)
+      try_limit(dut, results, entry, *row.low_limit, value_below_limit(dut, row), abort_rule::too_low, "LowLimit");
+    // At once: an output does not stay at its limit while the other entries are tried.
+    (void)dut.command(entry.index, entry.sub_index, before.bytes);
+  }
+  results.finish("values beyond the limits of the EDS are refused, and the limits are taken",
+                 "the EDS has no writable entry with limits");
+}
+
+/// The value that was read. What can be mapped may change meanwhile and is not compared.
+void write_back(Dut& dut) {
+  EntryResults results{dut};
+  for (const LiveEntry& entry : dut.entries()) {
+    if (results.lost()) break;
+    if (!is_application_parameter(dut, entry)) continue;
+    const SdoOutcome before = dut.upload(entry.index, entry.sub_index);
+    if (!before.done()) continue;  // case 4.7
+    results.count();
+    const SdoOutcome written = dut.command(entry.index, entry.sub_index, before.bytes);
+    expect_written(results, entry, written, "the value read before");
+    if (!written.done() || entry.entry->pdo_mapping) continue;
+    const SdoOutcome after = dut.upload(entry.index, entry.sub_index);
+    if (after.done() && after.bytes != before.bytes) {
+      results.add_failure(entry, fmt::format("{} written, then {}", value_of(entry, before.bytes),
+                                             value_of(entry, after.bytes)));
+    }
+  }
+  results.finish("each writable entry takes the value that was read", no_application_entries);
+}
+
+constexpr Permission none = Permission::none;
+
+constexpr CaseRow rows[] = {
+    {"4.1", "Each readable entry of 1000h to 1FFFh is read", "CiA 301, 7.4.5", Level::read, none,
+     read_communication_entries},
+    {"4.2", "Constants of 1000h to 1FFFh have the values of the EDS", "CiA 306-1, 4.6.2", Level::read, none,
+     compare_communication_defaults},
+    {"4.3", "Each write of a read-only entry is refused", "CiA 301, 7.4.5", Level::communication, none,
+     write_read_only_entries},
+    {"4.4", "Each read of a write-only entry is refused", "CiA 301, 7.4.5", Level::read, none, read_write_only_entries},
+    {"4.5", "Sub-index FFh describes its object", "CiA 301, 7.4.4", Level::read, none, check_structures},
+    {"4.6", "Limits of the EDS hold", "CiA 306-1, 4.6.2", Level::communication, Permission::application, try_limits},
+    {"4.7", "Each readable entry of 2000h and above is read", "CiA 301, 7.4.5", Level::read, none,
+     read_application_entries},
+    {"4.8", "Constants of 2000h and above have the values of the EDS", "CiA 306-1, 4.6.2", Level::read, none,
+     compare_application_defaults},
+    {"4.9", "Each writable entry of 2000h and above takes the value that it has", "CiA 301, 7.4.5",
+     Level::communication, Permission::application, write_back},
+};
+
+}  // namespace
+}  // namespace dictionary_area
+
+std::span<const CaseRow> dictionary_cases() { return dictionary_area::rows; }
+
+}  // namespace edsc::conform
