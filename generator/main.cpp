@@ -32,7 +32,8 @@ constexpr CommandRow commands[] = {
     {"Bus", edsc::add_read_command},           {"Bus", edsc::add_write_command},
     {"Bus", edsc::add_configure_command},      {"Bus", edsc::add_save_command},
     {"Bus", edsc::add_monitor_command},        {"Bus", edsc::add_nmt_command},
-    {"Bus", edsc::add_lss_command},            {"Bus", edsc::add_bus_command},
+    {"Bus", edsc::add_lss_command},            {"Bus", edsc::add_conform_command},
+    {"Bus", edsc::add_bus_command},
     {"Logs", edsc::add_record_command},        {"Logs", edsc::add_decode_command},
     {"Shell", edsc::add_completion_command},
 };

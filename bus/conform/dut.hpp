@@ -212,6 +212,7 @@ class Dut {
  private:
   using Key = std::pair<std::uint16_t, std::uint8_t>;
 
+  [[nodiscard]] LiveEntry live(std::uint16_t index, std::uint8_t sub_index) const;
   void record(const canopen::Frame& frame, canopen::TimePoint at, bool sent);
   void remember_entry(const LiveEntry& entry);
   void remember_configuration();
@@ -239,6 +240,9 @@ class Dut {
   bool was_reset_ = false;
   bool state_changed_ = false;
   bool transfer_open_ = false;
+  bool guarded_ = false;     ///< the state is asked for by remote frames
+  Mark next_answer_ = 0;     ///< of `answer`
+  Mark last_match_ = 0;      ///< of `wait_for`
   std::optional<canopen::NmtState> found_state_;  ///< before the run
 };
 
@@ -246,7 +250,9 @@ class Dut {
 [[nodiscard]] std::string label(std::uint16_t index, std::uint8_t sub_index);
 /// The number of at most eight bytes, low byte first.
 [[nodiscard]] std::uint64_t number_of(std::span<const std::uint8_t> bytes);
-/// `0609 0011h, sub-index does not exist`, `no answer`, `written`.
+/// `0609 0011h, sub-index does not exist`, `no answer`, `done`, `the value 01 02`.
 [[nodiscard]] std::string outcome_text(const SdoOutcome& outcome);
+/// The same of an answer to `exchange`.
+[[nodiscard]] std::string answer_text(const std::optional<canopen::sdo::Data>& answer);
 
 }  // namespace edsc::conform

@@ -33,6 +33,7 @@ void add_read_command(CLI::App& app, int& exit_code);
 void add_write_command(CLI::App& app, int& exit_code);
 void add_configure_command(CLI::App& app, int& exit_code);
 void add_save_command(CLI::App& app, int& exit_code);
+void add_conform_command(CLI::App& app, int& exit_code);
 void add_monitor_command(CLI::App& app, int& exit_code);
 void add_record_command(CLI::App& app, int& exit_code);
 void add_nmt_command(CLI::App& app, int& exit_code);

@@ -4,6 +4,7 @@ namespace edsc {
 namespace {
 
 volatile std::sig_atomic_t noted_signal = 0;
+int uninterrupted = 0;  ///< how many Uninterrupted live
 
 }  // namespace
 
@@ -22,6 +23,9 @@ Interruption::~Interruption() {
   sigaction(SIGTERM, &before_term_, nullptr);
 }
 
-bool Interruption::noted() { return noted_signal != 0; }
+bool Interruption::noted() { return noted_signal != 0 && uninterrupted == 0; }
+
+Uninterrupted::Uninterrupted() { ++uninterrupted; }
+Uninterrupted::~Uninterrupted() { --uninterrupted; }
 
 }  // namespace edsc

@@ -24,4 +24,14 @@ class Interruption {
   struct sigaction before_term_ {};
 };
 
+/// As long as it lives, an interruption is not noted: for what a command does to leave a device as it was. The second
+/// signal ends the program all the same.
+class Uninterrupted {
+ public:
+  Uninterrupted();
+  ~Uninterrupted();
+  Uninterrupted(const Uninterrupted&) = delete;
+  Uninterrupted& operator=(const Uninterrupted&) = delete;
+};
+
 }  // namespace edsc

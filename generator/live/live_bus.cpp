@@ -41,6 +41,7 @@ bool LiveBus::send(const Frame& frame) {
   try {
     if (port_->send(frame)) {
       refused_since_.reset();
+      if (on_sent) on_sent(frame, now());
       return true;
     }
   } catch (const std::system_error& problem) {

@@ -66,6 +66,8 @@ class LiveBus {
 
   /// Called with every frame that is received.
   std::function<void(const canopen::Frame&, canopen::TimePoint now)> on_frame;
+  /// Called with every frame that the port has taken.
+  std::function<void(const canopen::Frame&, canopen::TimePoint now)> on_sent;
 
  private:
   std::unique_ptr<BusPort> port_;

@@ -1,0 +1,121 @@
+#include "conform/run_cases.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "live/identity.hpp"
+#include "live/interruption.hpp"
+
+namespace edsc::conform {
+namespace {
+
+/// What the run may not do of all that the case needs; empty: nothing.
+std::string missing_permission(const CaseRow& row, const DutSettings& settings) {
+  if (row.level > settings.level) {
+    return fmt::format("needs --level {}", row_of(row.level).name);
+  }
+  for (const PermissionRow& option : permission_options) {
+    if (includes(row.needs, option.permission) && !includes(settings.permissions, option.permission)) {
+      return fmt::format("needs {}", option.option);
+    }
+  }
+  return {};
+}
+
+bool is_selected(const CaseRow& row, const std::vector<std::string>& only) {
+  return only.empty() || std::ranges::any_of(only, [&](const std::string& pattern) { return matches(pattern, row.id); });
+}
+
+/// Runs the case and puts the device back. Throws Interrupted and BusLost when that is done, as far as it can be.
+CaseResult run_case(const CaseRow& row, Dut& dut) {
+  CaseResult result;
+  result.row = &row;
+  dut.begin_case(row);
+  try {
+    row.run(dut);
+  } catch (CaseEnd& end) {
+    result.verdict = end.verdict;
+    result.reason = std::move(end.reason);
+    result.expected = std::move(end.expected);
+    result.got = std::move(end.got);
+  }
+  dut.end_case(result);
+  return result;
+}
+
+void run_selected(const std::vector<const CaseRow*>& rows, Dut& dut, const RunSettings& settings, RunReport& report) {
+  for (std::size_t i = 0; i != rows.size(); ++i) {
+    settings.began(*rows[i], i, rows.size());
+    CaseResult result;
+    if (std::string missing = missing_permission(*rows[i], settings.dut); !missing.empty()) {
+      result.row = rows[i];
+      result.verdict = Verdict::not_run;
+      result.reason = std::move(missing);
+    } else {
+      result = run_case(*rows[i], dut);
+    }
+    report.not_put_back.insert(report.not_put_back.end(), result.not_put_back.begin(), result.not_put_back.end());
+    report.cases.push_back(std::move(result));
+    settings.ended(report.cases.back());
+  }
+}
+
+std::string identity_text(const Identity& identity) {
+  std::string text;
+  const auto add = [&text](std::string_view name, const std::optional<std::uint32_t>& number) {
+    if (!number) return;
+    text += fmt::format("{}{} {:04X} {:04X}h", text.empty() ? "" : ", ", name, *number >> 16, *number & 0xFFFF);
+  };
+  add("device type", identity.device_type);
+  add("vendor-ID", identity.vendor_id);
+  add("product code", identity.product_code);
+  add("revision number", identity.revision_number);
+  add("serial number", identity.serial_number);
+  return text;
+}
+
+/// Who answers there; false where nobody does.
+bool find_device(LiveBus& bus, const Device& sheet, const DutSettings& settings, RunReport& report) {
+  SdoAccess access{bus, settings.node, settings.sdo};
+  const SdoOutcome answer = access.upload(0x1000, 0);
+  if (answer.end == SdoEnd::no_answer) {
+    report.lost = fmt::format("node {} does not answer", settings.node.value());
+    return false;
+  }
+  const Identity found = read_identity(access);
+  report.read_identity = identity_text(found);
+  report.identity = identity_differences(identity_of(sheet), found);
+  return true;
+}
+
+}  // namespace
+
+void run_cases(LiveBus& bus, const Device& sheet, Stimuli& stimuli, const RunSettings& settings, RunReport& report) {
+  report.node = settings.dut.node.value();
+  report.level = settings.dut.level;
+  report.permissions = settings.dut.permissions;
+  report.seed = settings.dut.seed;
+  std::vector<const CaseRow*> rows = all_cases();
+  std::erase_if(rows, [&](const CaseRow* row) { return !is_selected(*row, settings.only); });
+  try {
+    if (!find_device(bus, sheet, settings.dut, report)) return;
+    Dut dut{bus, sheet, stimuli, settings.dut};
+    try {
+      dut.find_state();
+      run_selected(rows, dut, settings, report);
+    } catch (const Interrupted&) {
+      report.interrupted = true;
+      const std::vector<std::string> left = dut.put_back();
+      report.not_put_back.insert(report.not_put_back.end(), left.begin(), left.end());
+    } catch (const CaseEnd&) {
+      report.lost = "the device does not tell its state";
+    }
+  } catch (const BusLost& problem) {
+    report.lost = fmt::format("the bus is lost: {}", problem.what());
+  } catch (const Interrupted&) {
+    report.interrupted = true;
+  }
+}
+
+}  // namespace edsc::conform

@@ -1,0 +1,28 @@
+/// Runs the cases of the conformance test at one device.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "conform/case.hpp"
+#include "conform/dut.hpp"
+#include "conform/verdict.hpp"
+
+namespace edsc::conform {
+
+struct RunSettings {
+  DutSettings dut;
+  std::vector<std::string> only;  ///< patterns such as `3.*`; empty: all cases
+  /// Before and behind each case that runs.
+  std::function<void(const CaseRow& row, std::size_t done, std::size_t of)> began = [](const CaseRow&, std::size_t,
+                                                                                     std::size_t) {};
+  std::function<void(const CaseResult& result)> ended = [](const CaseResult&) {};
+};
+
+/// Fills what a run finds out: `cases`, what was not put back, and why it ended early. An interruption and a lost bus end
+/// it; the device is put back before, as far as it can be.
+void run_cases(LiveBus& bus, const Device& sheet, Stimuli& stimuli, const RunSettings& settings, RunReport& report);
+
+}  // namespace edsc::conform

@@ -1,0 +1,208 @@
+#include <fmt/format.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <memory>
+
+#include "commands/commands.hpp"
+#include "commands/live_options.hpp"
+#include "commands/load_device.hpp"
+#include "conform/run_cases.hpp"
+#include "live/exit_code.hpp"
+#include "live/live_bus.hpp"
+#include "live/progress_line.hpp"
+#include "text/counted.hpp"
+#include "text/printable.hpp"
+
+namespace edsc {
+namespace {
+
+using conform::CaseResult;
+using conform::CaseRow;
+using conform::Level;
+using conform::Permission;
+using conform::RunReport;
+using conform::Verdict;
+
+constexpr const char* examples = R"(Examples:
+  edsc conform socketcan:can0 5 drive.eds                          reads, and requests that a device must refuse
+  edsc conform socketcan:can0 5 drive.eds --level communication    writes 1000h to 1FFFh, too, and puts back
+  edsc conform socketcan:can0 5 drive.eds --level all --html report.html
+  edsc conform socketcan:can0 5 drive.eds --only 3.* --only 2.5    some cases
+  edsc conform socketcan:can0 5 drive.eds --stimulus 5.4="ssh bench pull-sensor-plug"
+  edsc conform --list                                              what is asked, with the clause)";
+
+struct Settings {
+  std::string bus;
+  std::uint8_t node = 0;
+  std::string sheet;
+  std::string level = "read";
+  bool store = false, application = false, outputs = false;
+  std::vector<std::string> only;
+  std::vector<std::string> stimuli;
+  bool list = false;
+  bool quiet = false;
+  std::uint32_t seed = 1;
+  SdoSettings sdo;
+  ColorOption color;
+};
+
+/// By how much a time on a real bus may differ from what a device promises: half of what a tick of 100 Hz takes, and the
+/// frames before it on the wire.
+constexpr canopen::Duration live_tolerance = canopen::from_milliseconds(10);
+
+/// Commands of the user that act on the device, one for each case.
+class CommandStimuli final : public conform::Stimuli {
+ public:
+  explicit CommandStimuli(const std::vector<std::string>& options) {
+    for (const std::string& option : options) {
+      const std::size_t equals = option.find('=');
+      commands_[option.substr(0, equals)] = option.substr(equals + 1);
+    }
+  }
+
+  void begin_case(std::string_view id) override { case_ = id; }
+  bool set(std::uint16_t, std::uint8_t, std::span<const std::uint8_t>) override { return run("change"); }
+  bool emergency(std::uint16_t, std::uint8_t) override { return run("error"); }
+  bool emergency_over(std::uint8_t) override { return run("error_over"); }
+  bool power_cycle() override { return run("power_cycle"); }
+
+ private:
+  /// The command finds in EDSC_STIMULUS what is asked for.
+  bool run(const char* what) {
+    const auto found = commands_.find(case_);
+    if (found == commands_.end()) return false;
+    ::setenv("EDSC_STIMULUS", what, 1);
+    return std::system(found->second.c_str()) == 0;  // NOLINT(cert-env33-c): the user's own command line
+  }
+
+  std::map<std::string, std::string, std::less<>> commands_;
+  std::string case_;
+};
+
+Permission permissions_of(const Settings& settings, Level level) {
+  Permission all = Permission::none;
+  if (settings.store || level == Level::all) all = all | Permission::store;
+  if (settings.application || level == Level::all) all = all | Permission::application;
+  if (settings.outputs || level == Level::all) all = all | Permission::outputs;
+  return all;
+}
+
+int list_cases() {
+  for (const conform::AreaRow& area : conform::areas()) {
+    fmt::print("{} {}\n", area.id, area.title);
+    for (const CaseRow& row : area.cases()) {
+      std::string needs;
+      for (const conform::PermissionRow& option : conform::permission_options) {
+        if (includes(row.needs, option.permission)) needs += fmt::format(" {}", option.option);
+      }
+      fmt::print("  {:<6} {} ({}; {}{})\n", row.id, row.title, row.clause,
+                 row_of(row.level).name, needs);
+    }
+  }
+  return exit_fine;
+}
+
+void print_case(const CaseResult& result) {
+  print_visibly(stdout, "{:<6} {:<20} {}\n", result.row->id, conform::row_of(result.verdict).text, result.row->title);
+  if (!result.reason.empty()) print_visibly(stdout, "         {}\n", result.reason);
+  if (!result.expected.empty()) print_visibly(stdout, "         expected {}\n         got {}\n", result.expected, result.got);
+}
+
+/// The device of the data sheet and what `edsc check` finds in it. Null when the file cannot be read as one; the reason is
+/// printed.
+std::unique_ptr<LoadedDevice> load_sheet(const Settings& settings, conform::SheetFindings& findings) {
+  Diagnostics diagnostics;
+  diagnostics.drop_notes();
+  LoadSettings load;
+  load.path = settings.sheet;
+  load.node_id = settings.node;
+  auto loaded = load_device(load, diagnostics);
+  findings = conform::sheet_findings(diagnostics);
+  if (loaded->device) return loaded;
+  print_findings(stderr, diagnostics, settings.color);
+  return nullptr;
+}
+
+int run_conform(const Settings& settings) {
+  conform::SheetFindings findings;
+  const auto loaded = load_sheet(settings, findings);
+  if (!loaded) return exit_wrong_usage;
+  const conform::LevelRow& level = *std::ranges::find(conform::levels, settings.level, &conform::LevelRow::name);
+  return with_bus(settings.bus, [&](LiveBus& bus) {
+    CommandStimuli stimuli{settings.stimuli};
+    conform::RunSettings run;
+    run.dut.node = canopen::NodeId{settings.node};
+    run.dut.sdo = settings.sdo;
+    run.dut.level = level.level;
+    run.dut.permissions = permissions_of(settings, level.level);
+    run.dut.tolerance = live_tolerance;
+    run.dut.seed = settings.seed;
+    run.dut.findings = findings;
+    run.only = settings.only;
+    ProgressLine progress;
+    run.began = [&](const CaseRow& row, std::size_t done, std::size_t of) {
+      if (progress.due()) progress.show(fmt::format("case {} of {}: {} {}", done + 1, of, row.id, row.title));
+    };
+    run.ended = [&](const CaseResult& result) {
+      if (!settings.quiet) print_case(result);
+    };
+    RunReport report;
+    report.bus = settings.bus;
+    report.sheet = settings.sheet;
+    conform::run_cases(bus, *loaded->device, stimuli, run, report);
+    for (const conform::VerdictRow& row : conform::verdicts) {
+      print_visibly(stdout, "{} {}\n", report.count(row.verdict), row.text);
+    }
+    if (!report.lost.empty()) print_visibly(stderr, "edsc: {}\n", report.lost);
+    if (report.interrupted) {
+      print_visibly(stderr, "edsc: interrupted\n");
+      return int{exit_interrupted};
+    }
+    return report.passed() ? int{exit_fine} : int{exit_device_failed};
+  });
+}
+
+}  // namespace
+
+void add_conform_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("conform", "test whether a node behaves as CiA 301 and its data sheet say");
+  command->footer(examples);
+  auto settings = std::make_shared<Settings>();
+  auto* bus = add_bus_argument(*command, settings->bus);
+  auto* node = add_node_argument(*command, settings->node);
+  auto* sheet = command->add_option("FILE", settings->sheet, "data sheet of the node: EDS, DCF, XDD or XDC")->required();
+  command->add_option("--level", settings->level, "what may be done to the node: read, communication or all")
+      ->check(CLI::IsMember({"read", "communication", "all"}))
+      ->capture_default_str();
+  command->add_flag("--store", settings->store, "store and restore parameters (1010h, 1011h), and put back");
+  command->add_flag("--application", settings->application, "write 2000h and above, and put back");
+  command->add_flag("--outputs", settings->outputs, "send RPDOs and SYNC: outputs may move");
+  command->add_option("--only", settings->only, "cases to run: 2.5 or 3.*; may be given more than once")->type_name("CASE");
+  command->add_option("--stimulus", settings->stimuli, "command that acts on the node in a case: 5.4=COMMAND")
+      ->type_name("CASE=COMMAND")
+      ->check([](const std::string& text) {
+        return text.find('=') != std::string::npos ? std::string{} : "\"" + text + "\" is not CASE=COMMAND";
+      });
+  command->add_option("--seed", settings->seed, "of the accesses that are chosen by lot")->capture_default_str();
+  command->add_flag("--quiet", settings->quiet, "print the result alone");
+  add_timeout_option(*command, settings->sdo.timeout_ms);
+  settings->color.add_to(*command);
+  command->add_flag_callback(
+      "--list", [settings] { settings->list = true; }, "list the cases and what they need, and end");
+  for (CLI::Option* option : {bus, node, sheet}) option->required(false);
+  command->callback([settings, bus, node, sheet, &exit_code] {
+    if (settings->list) {
+      exit_code = list_cases();
+      return;
+    }
+    for (const CLI::Option* option : {bus, node, sheet}) {
+      if (option->count() == 0) throw CLI::RequiredError(option->get_name());
+    }
+    exit_code = run_conform(*settings);
+  });
+}
+
+}  // namespace edsc

@@ -1,0 +1,10 @@
+/// The good device of these tests: one that has every service.
+#pragma once
+
+#include <canopen/port/simulated_node.hpp>
+
+namespace edsc::conform {
+
+[[nodiscard]] canopen::MakeSimulatedNode every_service_device();
+
+}  // namespace edsc::conform
