@@ -4,6 +4,7 @@
 #include <atomic>
 #include <canopen/node.hpp>
 #include <canopen/port/host_bus.hpp>
+#include <canopen/port/memory_storage.hpp>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -13,7 +14,6 @@
 #include <thread>
 #include <vector>
 
-#include "unit/memory_storage.hpp"
 
 namespace od = live_device::od;
 
@@ -63,7 +63,7 @@ struct Memory {
 
 void run(const std::string& address, NodeId node_id, std::uint32_t serial_number) {
   canopen::HostBus bus{address};
-  bench::MemoryStorage storage;
+  canopen::MemoryStorage storage;
   LssPort lss{node_id};
   Memory memory;
   bool up = false;

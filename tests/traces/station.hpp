@@ -3,6 +3,7 @@
 
 #include <array>
 #include <canopen/node.hpp>
+#include <canopen/port/memory_storage.hpp>
 #include <deque>
 #include <memory>
 #include <optional>
@@ -13,7 +14,6 @@
 #include <vector>
 
 #include "trace.hpp"
-#include "unit/memory_storage.hpp"
 
 namespace trace {
 
@@ -77,7 +77,7 @@ struct LssMemory {
 /// What outlives power-off.
 struct Memory {
   LssMemory lss;
-  bench::MemoryStorage storage;
+  canopen::MemoryStorage storage;
 };
 
 /// The handlers that a device has its parameters stored with and is configured with, where it does either.

@@ -1,10 +1,10 @@
 /// Manual 004: the position sensor RK5C as node 5.
 #include <gtest/gtest.h>
 
+#include <canopen/port/memory_storage.hpp>
 #include <rk5c/device.hpp>
 
 #include "manual_bench.hpp"
-#include "memory_storage.hpp"
 
 namespace {
 
@@ -353,7 +353,7 @@ constexpr canopen::LssOptions lss{
 struct Memory {
   canopen::NodeId node_id{5};
   canopen::LssBitTiming bit_timing{0, 4};  // 125 kbit/s
-  bench::MemoryStorage parameters;
+  canopen::MemoryStorage parameters;
 };
 
 struct Port {
@@ -394,7 +394,7 @@ struct LssSensor {
   Port port;
   bench::RecordingBus bus;
   canopen::TimePoint now{};
-  canopen::Node<rk5c::Device, bench::RecordingBus, canopen::StoredIn<bench::MemoryStorage>,
+  canopen::Node<rk5c::Device, bench::RecordingBus, canopen::StoredIn<canopen::MemoryStorage>,
                 canopen::LssHandler<lss, Port>>
       node;
 };

@@ -3,16 +3,16 @@
 
 #include <algorithm>
 #include <array>
+#include <canopen/port/memory_storage.hpp>
 #include <every_service/device.hpp>
 #include <longer_label/device.hpp>
 #include <stored_device/device.hpp>
 
 #include "bench.hpp"
-#include "memory_storage.hpp"
 
 namespace {
 
-using bench::MemoryStorage;
+using canopen::MemoryStorage;
 using canopen::AbortCode;
 using canopen::NodeId;
 using canopen::Storing;

@@ -1,17 +1,17 @@
 /// Store and restore as the manuals of the reference devices have it.
 #include <gtest/gtest.h>
 
+#include <canopen/port/memory_storage.hpp>
 #include <can_2057c/device.hpp>
 #include <cpc_tc1/device.hpp>
 #include <cpd/device.hpp>
 #include <rk5c/device.hpp>
 
 #include "bench.hpp"
-#include "memory_storage.hpp"
 
 namespace {
 
-using bench::MemoryStorage;
+using canopen::MemoryStorage;
 
 template <class Device, class... Handlers>
 using Powered = bench::Bench<Device, canopen::StoredIn<MemoryStorage>, Handlers...>;

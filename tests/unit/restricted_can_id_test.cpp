@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <canopen/accepted_frames.hpp>
+#include <cstring>
 #include <every_service/device.hpp>
 #include <settable_sdo/device.hpp>
 #include <vector>
 
 #include "bench.hpp"
-#include "memory_storage.hpp"
 
 namespace {
 

@@ -2,15 +2,15 @@
 /// and EMCY 6300h reports it.
 #include <gtest/gtest.h>
 
+#include <canopen/port/memory_storage.hpp>
 #include <cstring>
 #include <every_service/device.hpp>
 
 #include "bench.hpp"
-#include "memory_storage.hpp"
 
 namespace {
 
-using bench::MemoryStorage;
+using canopen::MemoryStorage;
 namespace od = every_service::od;
 using Device = bench::Bench<every_service::Device, canopen::StoredIn<MemoryStorage>>;
 
@@ -129,7 +129,7 @@ TEST(StoredServiceParameters, ThatCouldNotBeWrittenLeaveTheDefault) {
   for (const Value& row : {Value{0x1400, 2, 241}, Value{0x1400, 2, 252}, Value{0x1400, 2, 253}, Value{0x1800, 2, 241},
                            Value{0x1800, 2, 251}, Value{0x1800, 6, 241}, Value{0x1006, 0, 0x8000'0000},
                            Value{0x1019, 0, 1}, Value{0x1019, 0, 241}}) {
-    bench::MemoryStorage nothing;
+    canopen::MemoryStorage nothing;
     Device fresh{canopen::stored_in(nothing)};
     MemoryStorage storage = stored({row});
     Device device{canopen::stored_in(storage)};
