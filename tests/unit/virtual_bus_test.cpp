@@ -13,6 +13,7 @@
 namespace {
 
 using bench::frame;
+using canopen::Duration;
 using canopen::Frame;
 using canopen::TimePoint;
 using canopen::VirtualBus;
@@ -209,6 +210,51 @@ TEST(VirtualBus, DeadlinesAreServedInTheOrderInWhichEndpointsWereAttached) {
   }
   bus.run_for(3ms);
   EXPECT_EQ(order, "012345678");
+}
+
+TEST(VirtualBus, TimePassesUntilAConditionHolds) {
+  VirtualBus bus{1'000'000};
+  auto& device = bus.attach();
+  auto& tester = bus.attach();
+  std::string received;
+  tester.on_frame = [&](const Frame& frame, TimePoint) { received = bench::text(frame); };
+  const auto any = [&] { return !received.empty(); };
+  tester.send(frame("081"));          // 47 us; not received by its sender
+  device.send(frame("181 01"));       // 55 us after it
+  device.send(frame("281 01 02 03"));
+  bus.run_until(any, 1ms);
+  EXPECT_EQ(received, "181 01");
+  EXPECT_EQ(bus.now(), TimePoint{Duration{102}});
+  received.clear();
+  bus.run_until(any, Duration{10});
+  EXPECT_EQ(received, "");
+  EXPECT_EQ(bus.now(), TimePoint{Duration{112}});
+  bus.run_until(any, 1ms);
+  EXPECT_EQ(received, "281 01 02 03");
+  EXPECT_EQ(bus.elapsed(), 173u);
+}
+
+TEST(VirtualBus, FramesOfAnEndpointWithoutPowerAreLost) {
+  VirtualBus bus{1'000'000};
+  Log log{bus};
+  auto& device = bus.attach();
+  auto& tester = bus.attach();
+  device.send(frame("081"));
+  device.send(frame("181"));
+  tester.send(frame("281"));
+  bus.run_for(Duration{10});  // 081 is on the wire
+  device.discard();
+  device.send(frame("381"));
+  bus.run_for(1ms);
+  EXPECT_EQ(log.lines, (Lines{"57: 281", "104: 381"}));
+}
+
+TEST(VirtualBus, ElapsedTimeDoesNotWrap) {
+  VirtualBus bus;
+  bus.run_for(Duration{0x8000'0000});
+  bus.run_for(Duration{0x8000'0000});
+  EXPECT_EQ(bus.elapsed(), 0x1'0000'0000u);
+  EXPECT_EQ(bus.now(), TimePoint{});
 }
 
 TEST(VirtualBus, TimeBeginsAtZeroAgain) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -44,6 +45,14 @@ class VirtualBus {
       if (waiting_.size() == 1) bus_.waits(*this);
       deadline_changed();
       return true;
+    }
+
+    /// Discards the frames that wait and the one on the wire, as a device that loses its power does.
+    void discard() {
+      waiting_.clear();
+      bus_.waits(*this);
+      if (bus_.on_wire_ && bus_.on_wire_->sender == this) bus_.on_wire_.reset();
+      deadline_changed();
     }
 
     /// Has the bus ask for the deadline again. Needed in one case only: `on_time` of another endpoint has changed it.
@@ -99,6 +108,9 @@ class VirtualBus {
 
   [[nodiscard]] TimePoint now() const { return TimePoint{Duration{static_cast<std::uint32_t>(now_)}}; }
 
+  /// Microseconds since the bus was made. Does not wrap.
+  [[nodiscard]] std::uint64_t elapsed() const { return now_ - start_; }
+
   /// How long this frame occupies the wire.
   [[nodiscard]] Duration duration_of(const Frame& frame) const {
     if (bit_rate_ == 0) return Duration{0};
@@ -112,6 +124,19 @@ class VirtualBus {
     while (step(end)) {
     }
     now_ = std::max(now_, end);
+  }
+
+  /// Lets time pass as `run_for` does, at most until `done()` is true after a frame or a deadline: then time stands at that
+  /// moment.
+  template <std::predicate Done>
+  void run_until(Done done, Duration span) {
+    const Time end = now_ + span.count();
+    all_deadlines_changed();
+    while (!done()) {
+      if (step(end)) continue;
+      now_ = std::max(now_, end);
+      return;
+    }
   }
 
   /// Delivers all frames that wait, and those that they cause, without waiting for deadlines. Gives up after
@@ -220,7 +245,8 @@ class VirtualBus {
   KeyTree deadlines_;                  ///< a Time for each endpoint, except for those in `outdated_`
   std::vector<std::size_t> outdated_;  ///< places of endpoints that have to be asked
   std::optional<OnWire> on_wire_;
-  Time now_ = Time{1} << 32;
+  static constexpr Time start_ = Time{1} << 32;
+  Time now_ = start_;
   Time wire_free_ = now_;
   std::uint32_t bit_rate_ = 0;
 };
