@@ -20,7 +20,8 @@ from support.compilers import ARM_GCC, CLANG, GCC, Compiler, compile_only, in_pa
 PARTS_OF_A_DEVICE = ("/dictionary.hpp", "/pdo.hpp")  # a device.hpp includes them: all compilers see them there
 # For an operating system, whose errors they throw.
 HOSTED_ONLY = ("port/descriptor.hpp", "port/event_descriptor.hpp", "port/file_storage.hpp", "port/host_bus.hpp",
-               "port/host_loop.hpp", "port/slcan.hpp", "port/socketcan.hpp", "port/socketcand.hpp", "port/stream_port.hpp")
+               "port/host_loop.hpp", "port/simulated_device.hpp", "port/slcan.hpp", "port/socketcan.hpp",
+               "port/socketcand.hpp", "port/stream_port.hpp")
 
 
 @dataclass(frozen=True)

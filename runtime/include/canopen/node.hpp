@@ -9,6 +9,7 @@
 #include <cstring>
 #include <optional>
 #include <span>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -1080,6 +1081,14 @@ class Node {
 template <class Device, Bus B, class... Handlers>
 [[nodiscard]] constexpr Node<Device, B, Handlers...> make_node(B& bus, NodeId node_id, Handlers... handlers) {
   return Node<Device, B, Handlers...>{bus, node_id, std::move(handlers)...};
+}
+
+/// The same with the handlers in a tuple, as a function that makes all handlers of an application returns them:
+///     auto pump_node = canopen::make_node<pump::Device>(bus, canopen::NodeId{5}, application.handlers());
+template <class Device, Bus B, class... Handlers>
+[[nodiscard]] constexpr Node<Device, B, Handlers...> make_node(B& bus, NodeId node_id, std::tuple<Handlers...> handlers) {
+  return std::apply(
+      [&](Handlers&... handler) { return Node<Device, B, Handlers...>{bus, node_id, std::move(handler)...}; }, handlers);
 }
 
 /// The same for a node whose node-ID comes with `start`.
