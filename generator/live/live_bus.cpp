@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "live/exit_code.hpp"
+#include "live/simulated_port.hpp"
 #include "text/printable.hpp"
 
 namespace edsc {
@@ -33,9 +34,14 @@ class HostPort final : public BusPort {
   canopen::HostBus bus_;
 };
 
+std::unique_ptr<BusPort> open_port(const std::string& address) {
+  if (SimulatedPort::is_address(address)) return std::make_unique<SimulatedPort>(address);
+  return std::make_unique<HostPort>(address);
+}
+
 }  // namespace
 
-LiveBus::LiveBus(const std::string& address) : port_{std::make_unique<HostPort>(address)} {}
+LiveBus::LiveBus(const std::string& address) : port_{open_port(address)} {}
 
 bool LiveBus::send(const Frame& frame) {
   try {
@@ -90,8 +96,8 @@ void LiveBus::listen(Duration span) {
 
 int with_bus(const std::string& address, const std::function<int(LiveBus&)>& command) {
   const Interruption interruption;
-  LiveBus bus{address};
   try {
+    LiveBus bus{address};
     return command(bus);
   } catch (const BusLost& problem) {
     print_visibly(stderr, "edsc: {}: the bus is lost: {}\n", address, problem.what());

@@ -42,8 +42,8 @@ class BusPort {
 /// A bus that reports when it is lost: by what the port says, or by taking no frame for two seconds.
 class LiveBus {
  public:
-  /// A port of the host: canopen::HostBus. Throws std::invalid_argument for a malformed address, std::system_error for
-  /// what cannot be opened.
+  /// A port of the host, canopen::HostBus, or a SimulatedPort. Throws std::invalid_argument for a malformed address, another
+  /// std::runtime_error for what cannot be opened.
   explicit LiveBus(const std::string& address);
   explicit LiveBus(std::unique_ptr<BusPort> port) : port_{std::move(port)} {}
 
