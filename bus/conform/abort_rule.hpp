@@ -46,6 +46,18 @@ inline constexpr AbortRule mapping_too_long{{Code::pdo_length, Code::not_mappabl
                                             {Code::unsupported_access, Code::no_object, Code::general}};
 inline constexpr AbortRule not_mappable{{Code::not_mappable}, {Code::no_object}};
 
+/// A value that the object does not take, whatever its state.
+inline constexpr AbortRule value{{Code::invalid_value, Code::value_too_high, Code::value_too_low}, {Code::general}};
+/// A value that the object does not take now.
+inline constexpr AbortRule state{{Code::device_state}, {Code::general}};
+/// A node that another entry of 1016h watches.
+inline constexpr AbortRule duplicate{{Code::parameter_incompatible}, {Code::general}};
+/// A write to 1010h or 1011h that brings another signature: 0800 002xh.
+inline constexpr AbortRule signature{{Code::not_stored, Code::local_control, Code::device_state},
+                                     {Code::no_dictionary, Code::no_data, Code::general}};
+/// An entry of 1003h behind the number of errors.
+inline constexpr AbortRule no_error{{Code::no_data}, {Code::general}};
+
 }  // namespace abort_rule
 
 }  // namespace edsc::conform

@@ -22,7 +22,9 @@ using canopen::NmtState;
 using canopen::TimePoint;
 namespace sdo = canopen::sdo;
 
-constexpr std::uint16_t heartbeat_time = 0x1017, guard_time = 0x100C;
+constexpr std::uint16_t heartbeat_time = 0x1017, guard_time = 0x100C, verify_configuration = 0x1020;
+/// The sub-indices of 1020h: it goes behind all others, as the device sets it to 0 where one of those changes.
+constexpr std::uint8_t verified[] = {1, 2};
 constexpr std::uint64_t watched_heartbeat_ms = 100;
 
 /// What a device may take to follow an NMT command. CiA 301 gives no limit.
@@ -156,7 +158,11 @@ SdoOutcome Dut::download(std::uint16_t index, std::uint8_t sub_index, std::uint6
 }
 
 SdoOutcome Dut::command(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> value) {
-  return sdo_.download(index, sub_index, value);
+  constexpr unsigned to_store_ms = 5000;  // a device may erase a page of flash before it answers
+  sdo_.set_timeout(std::max(settings_.sdo.timeout_ms, to_store_ms));
+  SdoOutcome outcome = sdo_.download(index, sub_index, value);
+  sdo_.set_timeout(settings_.sdo.timeout_ms);
+  return outcome;
 }
 
 Bytes Dut::bytes_of(std::uint16_t index, std::uint8_t sub_index, std::uint64_t number) const {
@@ -257,6 +263,36 @@ SdoOutcome Dut::download_segmented(std::uint16_t index, std::uint8_t sub_index, 
   }
   if (outcome.done() || outcome.end == SdoEnd::refused) transfer_open_ = false;
   return outcome;
+}
+
+// ---- all values at once ----
+
+Dut::Values Dut::values() {
+  Values found;
+  NodeConfiguration configuration =
+      read_configuration(sdo_, sheet_, configuration_entries(sheet_), [](std::size_t) {});
+  for (ReadValue& value : configuration.values) {
+    found[{value.entry.index, value.entry.sub_index}] = std::move(value.bytes);
+  }
+  for (const std::uint8_t sub_index : verified) {
+    if (!has(verify_configuration, sub_index)) continue;
+    const SdoOutcome outcome = upload(verify_configuration, sub_index);
+    if (outcome.done()) found[{verify_configuration, sub_index}] = outcome.bytes;
+  }
+  return found;
+}
+
+void Dut::restore(const Values& wanted) {
+  Values parameters = wanted;
+  for (const std::uint8_t sub_index : verified) parameters.erase({verify_configuration, sub_index});
+  for (std::string& left : restore_values(parameters, true)) warn(std::move(left));
+  for (const std::uint8_t sub_index : verified) {
+    const auto found = wanted.find({verify_configuration, sub_index});
+    if (found == wanted.end() || upload(verify_configuration, sub_index).bytes == found->second) continue;
+    if (!command(verify_configuration, sub_index, found->second).done()) {
+      warn(label(verify_configuration, sub_index) + " could not be restored");
+    }
+  }
 }
 
 // ---- frames ----
@@ -534,7 +570,7 @@ void Dut::remember_configuration() {
   for (const auto& [key, bytes] : changed_) configuration_[key] = bytes;
 }
 
-std::vector<std::string> Dut::restore_values(const std::map<Key, Bytes>& wanted) {
+std::vector<std::string> Dut::restore_values(const Values& wanted, bool application) {
   std::vector<ConfigurationValue> values;
   for (const auto& [key, bytes] : wanted) values.push_back({live(key.first, key.second), bytes, {}});
   bool restarted = false;
@@ -544,10 +580,10 @@ std::vector<std::string> Dut::restore_values(const std::map<Key, Bytes>& wanted)
   std::vector<bool> differs;
   std::vector<std::string> left;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const bool application = values[i].entry.index >= 0x2000 && !allowed(Permission::application);
+    const bool kept = values[i].entry.index >= 0x2000 && !application;
     const bool changed = comparison.values[i].differs && comparison.values[i].known();
-    differs.push_back(changed && !application);
-    if (changed && application) {
+    differs.push_back(changed && !kept);
+    if (changed && kept) {
       left.push_back(fmt::format("{} was {} and is lost by a reset; it is not written without --application",
                                  title(values[i].entry), value_of(values[i].entry, values[i].bytes)));
     }
@@ -571,7 +607,7 @@ std::vector<std::string> Dut::put_back() {
   if (was_reset_) {
     for (const auto& [key, bytes] : configuration_) wanted[key] = bytes;
   }
-  if (!wanted.empty()) left = restore_values(wanted);
+  if (!wanted.empty()) left = restore_values(wanted, allowed(Permission::application));
   if (state_changed_ && found_state_ && *found_state_ != NmtState::pre_operational) enter(*found_state_);
   changed_.clear();
   was_reset_ = state_changed_ = false;

@@ -125,6 +125,17 @@ class Dut {
   [[nodiscard]] SdoOutcome download_segmented(std::uint16_t index, std::uint8_t sub_index,
                                               std::span<const std::uint8_t> value);
 
+  // ---- all values at once ----
+
+  using Key = std::pair<std::uint16_t, std::uint8_t>;
+  using Values = std::map<Key, Bytes>;
+
+  /// What the device holds in the entries that "save" may store, 1020h among them.
+  [[nodiscard]] Values values();
+  /// Writes those that differ now, of the application as well, and remembers nothing. What cannot be written is a
+  /// warning.
+  void restore(const Values& values);
+
   // ---- frames ----
 
   /// A place in the record of frames.
@@ -210,14 +221,12 @@ class Dut {
   [[nodiscard]] std::uint64_t lag() const { return lag_; }
 
  private:
-  using Key = std::pair<std::uint16_t, std::uint8_t>;
-
   [[nodiscard]] LiveEntry live(std::uint16_t index, std::uint8_t sub_index) const;
   void record(const canopen::Frame& frame, canopen::TimePoint at, bool sent);
   void remember_entry(const LiveEntry& entry);
   void remember_configuration();
   void take_frame(Duration longest);
-  [[nodiscard]] std::vector<std::string> restore_values(const std::map<Key, Bytes>& values);
+  [[nodiscard]] std::vector<std::string> restore_values(const Values& values, bool application);
 
   LiveBus& bus_;
   const Device& sheet_;

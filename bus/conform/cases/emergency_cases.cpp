@@ -1,7 +1,206 @@
-#include "conform/case.hpp"
+/// Emergency (CiA 301, 7.2.7): the error register 1001h, the history 1003h, and the EMCY that an error causes.
+#include <fmt/format.h>
+
+#include <canopen/error_register.hpp>
+
+#include "conform/cases/setup.hpp"
 
 namespace edsc::conform {
+namespace emergency_area {
+namespace {
 
-std::span<const CaseRow> emergency_cases() { return {}; }
+using canopen::CobId;
+using canopen::ErrorRegister;
+using canopen::NmtCommand;
+using canopen::NmtState;
+
+constexpr std::uint16_t error_register = 0x1001, error_history = 0x1003, emcy = 0x1014;
+constexpr std::uint16_t generic_error = 0x1000;
+constexpr auto generic_bit = static_cast<std::uint8_t>(ErrorRegister::generic);
+
+/// What a device may take to send an EMCY. The longest inhibit time of 1015h comes to 6.5 s; this is a usual one.
+constexpr Duration to_report = milliseconds{1000};
+
+/// An error that the device has now.
+struct Raised {
+  std::uint32_t cob_id = 0;  ///< 1014h:00
+  std::uint16_t code = 0;
+  bool by_stimulus = false;
+  Dut::Mark since = 0;       ///< before the error
+  SeenFrame message;
+};
+
+struct ShortRpdo {
+  std::uint32_t can_id = 0;
+  bool synchronous = false;
+};
+
+/// A valid RPDO that maps something, preferably one whose length the device looks at as soon as it comes.
+std::optional<ShortRpdo> find_rpdo(Dut& dut) {
+  std::optional<ShortRpdo> found;
+  for (const Pdo* pdo : dut.pdos(PdoDirection::receive)) {
+    if (pdo->mapping == nullptr) continue;
+    const CobId cob_id{static_cast<std::uint32_t>(dut.read_number(pdo->communication->index, 1))};
+    const std::uint64_t mapped = dut.read_number(pdo->mapping->index);
+    if (!cob_id.valid() || mapped == 0 || mapped > 64) continue;
+    const bool synchronous = dut.read_number(pdo->communication->index, 2) <= 240;
+    if (!found || found->synchronous) found = ShortRpdo{cob_id.can_id(), synchronous};
+  }
+  return found;
+}
+
+/// By a stimulus, else by an RPDO without data (8210h, CiA 301, 7.2.7.1, table 26).
+Raised raise(Dut& dut) {
+  Raised error{emcy_cob_id(dut), generic_error, true, dut.mark(), {}};
+  if (!dut.stimuli().emergency(generic_error, generic_bit)) {
+    const std::optional<ShortRpdo> rpdo = find_rpdo(dut);
+    if (!rpdo) dut.inconclusive("the device has no valid RPDO: the case needs a stimulus that causes an error");
+    dut.need_permission(Permission::outputs);
+    dut.enter(NmtState::operational);
+    error = {error.cob_id, canopen::emergency_code::pdo_length, false, dut.mark(), {}};
+    dut.send(rpdo->can_id, {});
+    if (rpdo->synchronous && dut.has(0x1005)) {
+      dut.send(static_cast<std::uint32_t>(dut.read_number(0x1005)) & 0x1FFF'FFFF, {});
+    }
+  }
+  const auto seen = dut.wait_for(Dut::with_cob_id(error.cob_id), to_report, error.since);
+  dut.expect(seen.has_value(), fmt::format("an EMCY with code {:04X}h", error.code), "none");
+  error.message = *seen;
+  return error;
+}
+
+/// The error goes again, and with it the EMCYs that say so.
+void end_error(Dut& dut, const Raised& error) {
+  if (error.by_stimulus && dut.stimuli().emergency_over(generic_bit)) return dut.pass_time(milliseconds{50});
+  dut.reset(NmtCommand::reset_communication);
+}
+
+template <class Check>
+void with_error(Dut& dut, Check check) {
+  const Raised error = raise(dut);
+  try {
+    check(error);
+  } catch (const CaseEnd&) {
+    end_error(dut, error);
+    throw;
+  }
+  end_error(dut, error);
+}
+
+/// The EMCY that the device has sent last: the error may be over by now.
+SeenFrame last_message(Dut& dut, const Raised& error) {
+  dut.pass_time(milliseconds{100});
+  return dut.received_since(error.since, Dut::with_cob_id(error.cob_id)).back();
+}
+
+/// Bit 6 is reserved, and each error sets the generic bit.
+void expect_well_formed(Dut& dut, std::uint64_t bits, const std::string& what) {
+  dut.expect((bits & 0x40) == 0, what + ": bit 6, which is reserved, is 0", fmt::format("{:02X}h", bits));
+  dut.expect(bits == 0 || (bits & generic_bit) != 0, what + ": bit 0 is set as soon as another bit is",
+             fmt::format("{:02X}h", bits));
+}
+
+void cob_id(Dut& dut) {
+  expect_default_cob_id(dut, emcy, 0x80U + dut.node().value());
+  dut.expect((dut.read_number(emcy) & CobId::no_rtr_bit) == 0, "1014h:00: bit 30, which is reserved, is 0", "1");
+}
+
+void read_register(Dut& dut) {
+  dut.need(error_register);
+  const Bytes value = dut.read(error_register);
+  dut.expect_equal(value.size(), 1, "bytes of 1001h:00");
+  expect_well_formed(dut, value[0], "1001h:00");
+}
+
+void read_history(Dut& dut) {
+  dut.need(error_history, 1);
+  const std::uint64_t count = dut.read_number(error_history);
+  dut.expect(count == 0 || dut.has(error_history, static_cast<std::uint8_t>(count)),
+             "1003h:00: at most as many errors as there are sub-indices", std::to_string(count));
+  for (std::uint8_t i = 1; i <= count; ++i) {
+    const std::uint64_t error = dut.read_number(error_history, i);
+    dut.expect((error & 0xFFFF'FFFF) != 0, label(error_history, i) + ": an error, as 1003h:00 counts it", "0");
+  }
+  const auto behind = static_cast<std::uint8_t>(count + 1);
+  if (!dut.has(error_history, behind)) return;
+  const SdoOutcome outcome = dut.upload(error_history, behind);
+  if (outcome.done() && number_of(outcome.bytes) == 0) {
+    dut.warn(label(error_history, behind) + " is 0; CiA 301 has 0800 0024h, as there is no such error");
+  } else {
+    dut.expect_abort(outcome, abort_rule::no_error, label(error_history, behind) + ", where there is no error");
+  }
+}
+
+void force_message(Dut& dut) {
+  with_error(dut, [&dut](const Raised& error) {
+    const canopen::Frame& message = error.message.frame;
+    dut.expect_equal(message.size, 8, "bytes of the EMCY");
+    const std::uint16_t code = emergency_code_of(message);
+    const bool may_be_any = error.by_stimulus && !dut.simulated();  // a command of the user causes what it can
+    if (may_be_any) {
+      dut.expect(code != 0, "an EMCY with the code of an error", "0000h");
+    } else {
+      dut.expect_equal(code, error.code, "the emergency error code");
+    }
+    expect_well_formed(dut, message.data[2], "the error register in the EMCY");
+    if (message.data[2] == 0) dut.warn("the EMCY of an error says 00h for the error register; CiA 301 sets bit 0");
+    (void)last_message(dut, error);
+    const auto sent = dut.received_since(error.since, emcy_with_code(error.cob_id, code));
+    dut.expect_equal(sent.size(), 1, "EMCYs for one error");
+    if (!error.by_stimulus) return;
+    const Dut::Mark since = dut.mark();
+    if (!dut.stimuli().emergency_over(generic_bit)) return;
+    const auto over = dut.wait_for(emcy_with_code(error.cob_id, canopen::emergency_code::reset), to_report, since);
+    dut.expect(over.has_value(), "an EMCY with code 0000h when the error is over", "none");
+  });
+}
+
+void register_follows(Dut& dut) {
+  dut.need(error_register);
+  with_error(dut, [&dut](const Raised& error) {
+    const std::uint64_t bits = last_message(dut, error).frame.data[2];
+    const std::uint64_t read = dut.read_number(error_register);
+    expect_well_formed(dut, read, "1001h:00");
+    dut.expect_equal(read, bits, "1001h:00, as the last EMCY says it");
+  });
+}
+
+void history_follows(Dut& dut) {
+  dut.need(error_history, 1);
+  const std::uint64_t count = dut.read_number(error_history);
+  const std::uint64_t newest = count == 0 ? 0 : dut.read_number(error_history, 1);
+  with_error(dut, [&](const Raised& error) {
+    const std::uint16_t code = emergency_code_of(error.message.frame);
+    const bool over = emergency_code_of(last_message(dut, error).frame) != code;
+    const std::uint64_t recorded = dut.read_number(error_history);
+    dut.expect(recorded >= 1, "1003h:00: at least the error of the EMCY", "0");
+    std::uint8_t place = 1;
+    // A device may record the end of an error as well.
+    if (over && (dut.read_number(error_history, 1) & 0xFFFF) == 0 && recorded >= 2) place = 2;
+    dut.expect_equal(dut.read_number(error_history, place) & 0xFFFF, code, label(error_history, place) + ", bits 0 to 15");
+    ++place;
+    if (count == 0 || recorded != count + 1 || !dut.has(error_history, place)) return;
+    dut.expect_equal(dut.read_number(error_history, place), newest, label(error_history, place) + ", the error before");
+  });
+}
+
+constexpr CaseRow rows[] = {
+    {"5.1", "1014h holds the default COB-ID of EMCY", "CiA 301, 7.5.2.17", Level::read, Permission::none, cob_id},
+    {"5.2", "The error register 1001h can be read and sets bit 0 with each other bit", "CiA 301, 7.5.2.2", Level::read,
+     Permission::none, read_register},
+    {"5.3", "The history 1003h has as many errors as its sub-index 0 says", "CiA 301, 7.5.2.4", Level::read,
+     Permission::none, read_history},
+    {"5.4", "An error sends one EMCY with its code", "CiA 301, 7.2.7.1 and 7.2.7.3", Level::communication,
+     Permission::none, force_message},
+    {"5.5", "The error register 1001h is the one of the last EMCY", "CiA 301, 7.2.7.3.1 and 7.5.2.2",
+     Level::communication, Permission::none, register_follows},
+    {"5.6", "The history 1003h begins with the error of the last EMCY", "CiA 301, 7.5.2.4", Level::communication,
+     Permission::none, history_follows},
+};
+
+}  // namespace
+}  // namespace emergency_area
+
+std::span<const CaseRow> emergency_cases() { return emergency_area::rows; }
 
 }  // namespace edsc::conform

@@ -1,7 +1,456 @@
-#include "conform/case.hpp"
+/// LSS (CiA 305): node-ID and bit timing over the bus.
+#include <fmt/format.h>
+
+#include <canopen/lss_protocol.hpp>
+
+#include "conform/cases/setup.hpp"
 
 namespace edsc::conform {
+namespace lss_area {
+namespace {
 
-std::span<const CaseRow> lss_cases() { return {}; }
+using canopen::Frame;
+using canopen::LssState;
+using canopen::NmtCommand;
+using canopen::NmtState;
+using canopen::NodeId;
+namespace lss = canopen::lss;
+using lss::Command;
+
+constexpr std::uint16_t identity = 0x1018;
+/// What a slave may take to answer. CiA 305 gives no limit.
+constexpr Duration to_answer = milliseconds{200};
+constexpr Duration to_store = milliseconds{2000};
+
+/// The LSS slave of the device. It waits again, and has its node-ID, when the object goes.
+class Slave {
+ public:
+  explicit Slave(Dut& dut) : dut_{dut} {
+    if (!dut.sheet().information.capabilities.lss_supported.value_or(false)) {
+      dut.not_applicable("the data sheet says that the device does not have LSS (LSS_Supported)");
+    }
+    dut.enter(NmtState::pre_operational);
+    for (std::uint8_t i = 0; i < 4; ++i) {
+      dut.need(identity, static_cast<std::uint8_t>(i + 1));
+      numbers_[i] = static_cast<std::uint32_t>(dut.read_number(identity, static_cast<std::uint8_t>(i + 1)));
+    }
+    // Older slaves are served in Stopped only.
+    if (!try_select(numbers_)) dut.enter(NmtState::stopped);
+    wait();
+  }
+
+  [[nodiscard]] const std::array<std::uint32_t, 4>& numbers() const { return numbers_; }
+
+  void send(Command command, std::uint32_t word = 0) const {
+    dut_.send(lss::make_frame(lss::request_id, command, word));
+  }
+  /// The next message of a slave with this command.
+  [[nodiscard]] std::optional<Frame> answer(Command command, Dut::Mark since, Duration span = to_answer) const {
+    const auto found = dut_.wait_for(
+        [command](const Frame& frame) {
+          return lss::is_lss(frame, lss::response_id) && frame.data[0] == static_cast<std::uint8_t>(command);
+        },
+        span, since);
+    return found ? std::optional{found->frame} : std::nullopt;
+  }
+  /// A request whose answer has the same command.
+  [[nodiscard]] std::optional<Frame> ask(Command command, std::uint32_t word = 0, Duration span = to_answer) const {
+    const Dut::Mark since = dut_.mark();
+    send(command, word);
+    return answer(command, since, span);
+  }
+
+  /// A value that the slave says of itself: an inquire service.
+  void expect_says(Command command, std::uint32_t expected, const std::string& what) const {
+    const auto said = ask(command);
+    dut_.expect(said.has_value(), "an answer with " + what, "none");
+    dut_.expect_equal(lss::word_of(*said), expected, what);
+  }
+  /// A configure service is answered with this error code.
+  void expect_error(Command command, std::uint32_t word, std::uint8_t expected, const std::string& what) const {
+    const auto said = ask(command, word);
+    dut_.expect(said.has_value(), "an answer to " + what, "none");
+    dut_.expect_equal(said->data[1], expected, "the error code for " + what);
+  }
+
+  [[nodiscard]] bool try_select(const std::array<std::uint32_t, 4>& numbers) const {
+    return in_sequence(Command::select_vendor_id, numbers, Command::selected);
+  }
+  void select() const {
+    dut_.expect(try_select(numbers_), "an answer (44h) to switch state selective with the numbers of 1018h", "none");
+  }
+
+  /// Identify remote slave: `low` and `high` of revision and serial number.
+  [[nodiscard]] bool identifies(std::uint32_t product_code, std::pair<std::uint32_t, std::uint32_t> revision,
+                                std::pair<std::uint32_t, std::uint32_t> serial) const {
+    const std::uint32_t words[] = {numbers_[0],    product_code, revision.first, revision.second,
+                                   serial.first, serial.second};
+    return in_sequence(Command::identify_vendor_id, words, Command::identified);
+  }
+
+  /// All slaves wait, as they do without a master at work.
+  void wait() const {
+    send(Command::switch_state_global, static_cast<std::uint32_t>(LssState::waiting));
+    dut_.pass_time(milliseconds{20});
+  }
+
+  void configure(NodeId node) const {
+    expect_error(Command::configure_node_id, node.value(), 0, fmt::format("configure node-ID {}", node.value()));
+  }
+
+ private:
+  bool in_sequence(Command first, std::span<const std::uint32_t> words, Command last) const {
+    const Dut::Mark since = dut_.mark();
+    auto command = static_cast<std::uint8_t>(first);
+    for (const std::uint32_t word : words) send(static_cast<Command>(command++), word);
+    return answer(last, since).has_value();
+  }
+
+  Dut& dut_;
+  std::array<std::uint32_t, 4> numbers_{};
+};
+
+/// Runs a case with the slave in the configuration state; afterwards it waits.
+template <class Check>
+void with_slave(Dut& dut, Check check) {
+  const Slave slave{dut};
+  try {
+    slave.select();
+    check(slave);
+  } catch (const CaseEnd&) {
+    slave.wait();
+    throw;
+  }
+  slave.wait();
+}
+
+void need_silent_bus(Dut& dut) {
+  if (hears_other_nodes(dut, milliseconds{1200})) {
+    dut.inconclusive("other nodes are on the bus, which the service reaches as well: conclusive where the device is alone");
+  }
+}
+
+void select(Dut& dut) {
+  const Slave slave{dut};
+  for (std::uint8_t i = 0; i < 4; ++i) {
+    auto other = slave.numbers();
+    other[i] ^= 1;
+    dut.expect(!slave.try_select(other), fmt::format("no answer to another number than that of {}", label(identity, static_cast<std::uint8_t>(i + 1))), "one");
+    dut.expect(!slave.ask(Command::inquire_node_id), "no answer to inquire node-ID in the waiting state", "one");
+  }
+  with_slave(dut, [&dut](const Slave& selected) {
+    selected.expect_says(Command::inquire_node_id, dut.node().value(), "the node-ID");
+  });
+}
+
+void switch_global(Dut& dut) {
+  need_silent_bus(dut);
+  const Slave slave{dut};
+  const Dut::Mark since = dut.mark();
+  slave.send(Command::switch_state_global, static_cast<std::uint32_t>(LssState::configuration));
+  slave.expect_says(Command::inquire_node_id, dut.node().value(), "the node-ID");
+  slave.wait();
+  dut.expect(!slave.answer(Command::switch_state_global, since, milliseconds{1}), "no answer to switch state global", "one");
+  dut.expect(!slave.ask(Command::inquire_node_id), "no answer to inquire node-ID in the waiting state", "one");
+}
+
+void inquire_identity(Dut& dut) {
+  with_slave(dut, [](const Slave& slave) {
+    constexpr std::string_view names[] = {"the vendor-ID", "the product code", "the revision number", "the serial number"};
+    for (std::uint8_t i = 0; i < 4; ++i) {
+      const auto command = static_cast<Command>(static_cast<std::uint8_t>(Command::inquire_vendor_id) + i);
+      slave.expect_says(command, slave.numbers()[i], std::string{names[i]});
+    }
+  });
+}
+
+void inquire_node_id(Dut& dut) {
+  with_slave(dut, [&dut](const Slave& slave) {
+    slave.expect_says(Command::inquire_node_id, dut.node().value(), "the node-ID");
+  });
+}
+
+void waiting(Dut& dut) {
+  const Slave slave{dut};
+  for (const Command command : {Command::inquire_vendor_id, Command::inquire_node_id, Command::configure_node_id,
+                                Command::configure_bit_timing}) {
+    // 0 is neither a node-ID nor, as a word of 4 bytes with FFh, a bit rate: nothing would change.
+    const std::uint32_t word = command == Command::configure_bit_timing ? 0xFF7F : 0;
+    dut.expect(!slave.ask(command, word), fmt::format("no answer to {:02X}h in the waiting state", static_cast<unsigned>(command)), "one");
+  }
+}
+
+void identify(Dut& dut) {
+  const Slave slave{dut};
+  const auto [vendor, product, revision, serial] = slave.numbers();
+  constexpr std::uint32_t major = 0x1'0000;
+  const auto expect_identified = [&](bool expected, bool got, const std::string& what) {
+    dut.expect(got == expected, (expected ? "an answer (4Fh) to " : "no answer to ") + what, got ? "one" : "none");
+  };
+  constexpr std::pair<std::uint32_t, std::uint32_t> each{0, 0xFFFF'FFFF};
+  const std::pair own_revision{revision, revision}, own_serial{serial, serial};
+  expect_identified(true, slave.identifies(product, each, each), "all revision and serial numbers");
+  expect_identified(true, slave.identifies(product, own_revision, own_serial), "its revision and serial number");
+  expect_identified(false, slave.identifies(product ^ 1, each, each), "another product code");
+  if (serial != 0xFFFF'FFFF) {
+    expect_identified(false, slave.identifies(product, each, {serial + 1, 0xFFFF'FFFF}), "higher serial numbers");
+  }
+  if (serial != 0) expect_identified(false, slave.identifies(product, each, {0, serial - 1}), "lower serial numbers");
+  if (revision < 0xFFFF'0000) {
+    expect_identified(false, slave.identifies(product, {revision + major, 0xFFFF'FFFF}, each), "higher revision numbers");
+  }
+  if (revision >= major) {
+    expect_identified(false, slave.identifies(product, {0, revision - major}, each), "lower revision numbers");
+  }
+}
+
+void identify_non_configured(Dut& dut) {
+  const Slave slave{dut};
+  const Dut::Mark since = dut.mark();
+  slave.send(Command::identify_non_configured);
+  const auto answer = slave.answer(Command::identified_non_configured, since);
+  dut.expect(!answer, "no answer to identify non-configured remote slave from a device with a node-ID", "one");
+}
+
+/// Bits BitCheck to 31 of one number.
+struct Scan {
+  std::uint32_t number = 0;
+  std::uint8_t bit_check = 0, sub = 0, next = 0;
+};
+
+/// Whether a slave answers to a step of Fastscan.
+bool scan(Dut& dut, const Slave& slave, const Scan& step) {
+  Frame frame = lss::make_frame(lss::request_id, Command::fastscan, step.number);
+  frame.data[5] = step.bit_check;
+  frame.data[6] = step.sub;
+  frame.data[7] = step.next;
+  const Dut::Mark since = dut.mark();
+  dut.send(frame);
+  return slave.answer(Command::identified, since).has_value();
+}
+
+void fastscan_configured(Dut& dut) {
+  const Slave slave{dut};
+  dut.expect(!scan(dut, slave, {0, lss::fastscan_reset, 0, 0}), "no answer to Fastscan from a device with a node-ID", "one");
+}
+
+/// The slave gets a node-ID while it has none, and starts.
+void give_node_id(Dut& dut, const Slave& slave) {
+  slave.configure(dut.node());
+  const Dut::Mark since = dut.mark();
+  slave.wait();
+  dut.expect(dut.wait_for(dut.boot_up(), milliseconds{5000}, since).has_value(), "a boot-up message with the new node-ID", "none");
+  dut.pass_time(milliseconds{50});
+}
+
+/// Runs a case while the device has no node-ID. Only where no other node is on the bus.
+template <class Check>
+void without_node_id(Dut& dut, Check check) {
+  need_silent_bus(dut);
+  const Slave slave{dut};
+  const Dut::Mark before = dut.mark();
+  slave.send(Command::identify_non_configured);
+  if (slave.answer(Command::identified_non_configured, before)) dut.inconclusive("another LSS slave without node-ID is on the bus");
+  slave.select();
+  const auto taken = slave.ask(Command::configure_node_id, canopen::unconfigured_node_id.value());
+  dut.expect(taken.has_value(), "an answer to configure node-ID 255", "none");
+  slave.wait();
+  if (taken->data[1] != 0) dut.not_applicable("the device does not give up its node-ID: it refuses 255");
+  dut.enter(NmtState::pre_operational);
+  const Dut::Mark since = dut.mark();
+  dut.nmt(NmtCommand::reset_communication);
+  dut.pass_time(milliseconds{500});
+  const auto put_back = [&] {
+    slave.send(Command::switch_state_global, static_cast<std::uint32_t>(LssState::configuration));
+    give_node_id(dut, slave);
+  };
+  try {
+    dut.expect(dut.received_since(since, dut.boot_up()).empty(), "no boot-up message without node-ID", "one");
+    check(slave);
+  } catch (const CaseEnd&) {
+    put_back();
+    throw;
+  }
+  put_back();
+}
+
+void unconfigured(Dut& dut) {
+  without_node_id(dut, [&dut](const Slave& slave) {
+    const Dut::Mark since = dut.mark();
+    slave.send(Command::identify_non_configured);
+    const auto answer = slave.answer(Command::identified_non_configured, since);
+    dut.expect(answer.has_value(), "an answer (50h) to identify non-configured remote slave", "none");
+    slave.select();
+    slave.expect_says(Command::inquire_node_id, canopen::unconfigured_node_id.value(), "the node-ID");
+  });
+}
+
+void fastscan(Dut& dut) {
+  without_node_id(dut, [&dut](const Slave& slave) {
+    const auto expect_answer = [&](const Scan& step, bool expected) {
+      const bool got = scan(dut, slave, step);
+      dut.expect(got == expected,
+                 fmt::format("{} to Fastscan for {:08X}h from bit {} on (LSSSub {})", expected ? "an answer" : "no answer",
+                             step.number, step.bit_check, step.sub),
+                 got ? "one" : "none");
+    };
+    expect_answer({0, lss::fastscan_reset, 0, 0}, true);
+    for (std::uint8_t sub = 0; sub < 4; ++sub) {
+      const std::uint32_t number = slave.numbers()[sub];
+      for (const std::uint8_t bit : std::initializer_list<std::uint8_t>{31, 16, 8}) {
+        const std::uint32_t above = number & ~((std::uint32_t{1} << bit) - 1);
+        expect_answer({above, bit, sub, sub}, true);
+        expect_answer({above ^ std::uint32_t{1} << bit, bit, sub, sub}, false);
+      }
+      const auto next = static_cast<std::uint8_t>((sub + 1) % 4);
+      expect_answer({number ^ 1, 0, sub, next}, false);
+      expect_answer({number, 0, sub, next}, true);
+    }
+    slave.expect_says(Command::inquire_node_id, canopen::unconfigured_node_id.value(),
+                      "the node-ID in the configuration state, to which Fastscan leads");
+  });
+}
+
+void wrong_node_id(Dut& dut) {
+  with_slave(dut, [&dut](const Slave& slave) {
+    for (const std::uint8_t node : {std::uint8_t{0}, std::uint8_t{128}, std::uint8_t{254}}) {
+      slave.expect_error(Command::configure_node_id, node, 1, fmt::format("configure node-ID {}", node));
+    }
+    slave.expect_says(Command::inquire_node_id, dut.node().value(), "the node-ID");
+    slave.configure(dut.node());
+  });
+}
+
+/// A node-ID counts from the next reset of the communication on. The old one is put back in the same way.
+void new_node_id(Dut& dut) {
+  const NodeId own = dut.node(), other = free_node_id(dut);
+  const Slave slave{dut};
+  const auto starts = [&dut](NodeId node, Dut::Mark since) {
+    const auto boot_up = dut.wait_for(Dut::with_id(0x700U + node.value()), milliseconds{5000}, since);
+    dut.pass_time(milliseconds{50});
+    return boot_up && boot_up->frame.size == 1 && boot_up->frame.data[0] == 0;
+  };
+  const auto configure = [&slave](NodeId node) {
+    slave.select();
+    slave.configure(node);
+    slave.wait();
+  };
+  bool moved = false;
+  const auto put_back = [&] {
+    configure(own);
+    if (!moved) return;
+    const Dut::Mark since = dut.mark();
+    dut.send(0, Bytes{static_cast<std::uint8_t>(NmtCommand::reset_communication), other.value()});
+    dut.expect(starts(own, since), fmt::format("a boot-up message of node {} again", own.value()), "none");
+  };
+  configure(other);
+  try {
+    slave.select();
+    slave.expect_says(Command::inquire_node_id, own.value(), "the node-ID before a reset of the communication");
+    slave.wait();
+    dut.enter(NmtState::pre_operational);
+    const Dut::Mark since = dut.mark();
+    dut.nmt(NmtCommand::reset_communication);
+    moved = starts(other, since);
+    dut.expect(moved, fmt::format("a boot-up message of node {}, as LSS has configured it", other.value()), "none");
+    slave.select();
+    slave.expect_says(Command::inquire_node_id, other.value(), "the node-ID after a reset of the communication");
+    slave.wait();
+  } catch (const CaseEnd&) {
+    put_back();
+    throw;
+  }
+  put_back();
+}
+
+/// Reserved places of table 0, and reserved tables.
+void wrong_bit_timing(Dut& dut) {
+  with_slave(dut, [](const Slave& slave) {
+    for (const auto& [table, index] : {std::pair{0, 5}, std::pair{0, 10}, std::pair{0, 255}, std::pair{1, 0}, std::pair{127, 0}}) {
+      slave.expect_error(Command::configure_bit_timing, static_cast<std::uint32_t>(table | index << 8), 1,
+                         fmt::format("configure bit timing of table {}, index {}", table, index));
+    }
+  });
+}
+
+/// What is stored is what the device works with already.
+void store(Dut& dut) {
+  with_slave(dut, [&dut](const Slave& slave) {
+    slave.configure(dut.node());
+    const auto stored = slave.ask(Command::store_configuration, 0, to_store);
+    dut.expect(stored.has_value(), "an answer to store configuration", "none");
+    if (stored->data[1] == 1) dut.not_applicable("the device does not store its node-ID and bit rate: error code 1");
+    dut.expect_equal(stored->data[1], 0, "the error code for store configuration");
+    slave.wait();
+    dut.enter(NmtState::pre_operational);
+    const Dut::Mark since = dut.mark();
+    if (dut.stimuli().power_cycle()) {
+      dut.expect(dut.wait_for(dut.boot_up(), milliseconds{5000}, since).has_value(), "a boot-up message after power-on", "none");
+      dut.pass_time(milliseconds{50});
+    } else {
+      dut.reset(NmtCommand::reset_node);
+    }
+    slave.select();
+    slave.expect_says(Command::inquire_node_id, dut.node().value(), "the node-ID that is stored");
+  });
+}
+
+/// The bit rate stays: the device is silent for one delay after the first one, and then answers again.
+void activate(Dut& dut) {
+  constexpr Duration delay = milliseconds{200};
+  const auto from_device = [](const Frame& frame) { return frame.id != 0; };
+  with_slave(dut, [&](const Slave& slave) {
+    const Dut::Mark since = dut.mark();
+    slave.send(Command::activate_bit_timing, delay.count() / 1000);
+    dut.expect(!slave.answer(Command::activate_bit_timing, since, delay / 2), "no answer to activate bit timing", "one");
+    dut.pass_time(delay - delay / 4);
+    const Dut::Mark silent = dut.mark();
+    slave.send(Command::inquire_node_id);
+    dut.pass_time(delay / 2);
+    dut.expect(dut.received_since(silent, from_device).empty(), "no frame during the second delay", "one");
+    dut.pass_time(delay);
+    slave.wait();
+    dut.enter(NmtState::pre_operational);
+    (void)dut.read_number(0x1000);
+  });
+}
+
+constexpr CaseRow rows[] = {
+    {"11.1", "Switch state selective selects a device by all four numbers of 1018h", "CiA 305, switch state selective",
+     Level::communication, Permission::none, select},
+    {"11.2", "Switch state global leads to the configuration state and back, without answer",
+     "CiA 305, switch state global", Level::communication, Permission::none, switch_global},
+    {"11.3", "Inquire identity answers with the numbers of 1018h", "CiA 305, inquire identity", Level::communication,
+     Permission::none, inquire_identity},
+    {"11.4", "Inquire node-ID answers with the node-ID", "CiA 305, inquire node-ID", Level::communication,
+     Permission::none, inquire_node_id},
+    {"11.5", "In the waiting state configuration and inquiry are not answered", "CiA 305, LSS states",
+     Level::communication, Permission::none, waiting},
+    {"11.6", "Identify remote slave is answered by devices within the ranges", "CiA 305, identify remote slave",
+     Level::communication, Permission::none, identify},
+    {"11.7", "A device with node-ID does not answer identify non-configured remote slave",
+     "CiA 305, identify non-configured remote slave", Level::communication, Permission::none, identify_non_configured},
+    {"11.8", "A device with node-ID does not answer Fastscan", "CiA 305, Fastscan", Level::communication,
+     Permission::none, fastscan_configured},
+    {"11.9", "A device without node-ID answers identify non-configured remote slave, and starts as it gets one",
+     "CiA 305, identify non-configured remote slave", Level::communication, Permission::none, unconfigured},
+    {"11.10", "Fastscan finds a device without node-ID by the numbers of 1018h", "CiA 305, Fastscan",
+     Level::communication, Permission::none, fastscan},
+    {"11.11", "Configure node-ID refuses 0 and 128 with error code 1", "CiA 305, configure node-ID",
+     Level::communication, Permission::none, wrong_node_id},
+    {"11.12", "A new node-ID counts after a reset of the communication", "CiA 305, configure node-ID",
+     Level::communication, Permission::none, new_node_id},
+    {"11.13", "Configure bit timing refuses reserved tables and indices with error code 1",
+     "CiA 305, configure bit timing parameters", Level::communication, Permission::none, wrong_bit_timing},
+    {"11.14", "Store configuration keeps the node-ID", "CiA 305, store configuration", Level::communication,
+     Permission::store, store},
+    {"11.15", "After activate bit timing the device is silent for the second delay", "CiA 305, activate bit timing",
+     Level::communication, Permission::store, activate},
+};
+
+}  // namespace
+}  // namespace lss_area
+
+std::span<const CaseRow> lss_cases() { return lss_area::rows; }
 
 }  // namespace edsc::conform

@@ -1,7 +1,71 @@
-#include "conform/case.hpp"
+/// NMT services (CiA 301, 7.2.8.2.1): each leads from each state to the right one.
+#include <fmt/format.h>
+
+#include "conform/cases/setup.hpp"
 
 namespace edsc::conform {
+namespace transition_area {
+namespace {
 
-std::span<const CaseRow> transition_cases() { return {}; }
+using canopen::NmtCommand;
+using canopen::NmtState;
+
+/// Inconclusive where the device cannot say in which state it is.
+void need_state(Dut& dut) {
+  if (!dut.watch_state()) {
+    dut.inconclusive("the data sheet has no heartbeat and no node guarding: the device does not say its state");
+  }
+}
+
+/// Goes to a state, and from there to another one, without a boot-up message.
+void expect_transition(Dut& dut, NmtState from, NmtState to) {
+  dut.enter(from);
+  dut.expect_state(from);
+  const Dut::Mark since = dut.mark();
+  dut.enter(to);
+  dut.expect_state(to);
+  dut.expect(dut.received_since(since, dut.boot_up()).empty(),
+             fmt::format("no boot-up message from {} to {}", to_text(from), to_text(to)), "one");
+}
+
+void resets(Dut& dut) {
+  for (const NmtCommand command : {NmtCommand::reset_node, NmtCommand::reset_communication}) {
+    for (const NmtState from : {NmtState::pre_operational, NmtState::operational, NmtState::stopped}) {
+      dut.enter(NmtState::pre_operational);
+      need_state(dut);
+      dut.enter(from);
+      dut.expect_state(from);
+      expect_one_boot_up(dut, command);
+      const NmtState expected = state_after_boot_up(dut);
+      need_state(dut);
+      dut.expect_state(expected);
+    }
+  }
+}
+
+/// From each other state, and from the state itself.
+template <NmtState to>
+void service(Dut& dut) {
+  need_state(dut);
+  for (const NmtState from : {NmtState::pre_operational, NmtState::operational, NmtState::stopped, to}) {
+    expect_transition(dut, from, to);
+  }
+}
+
+constexpr CaseRow rows[] = {
+    {"10.1", "Reset node and reset communication lead from each state to a boot-up message and to Pre-operational",
+     "CiA 301, 7.2.8.2.1.4, 7.2.8.2.1.5 and 7.3.2", Level::communication, Permission::none, resets},
+    {"10.2", "Enter pre-operational leads from each state to Pre-operational", "CiA 301, 7.2.8.2.1.6 and 7.3.2",
+     Level::communication, Permission::none, service<NmtState::pre_operational>},
+    {"10.3", "Start remote node leads from each state to Operational", "CiA 301, 7.2.8.2.1.2 and 7.3.2",
+     Level::communication, Permission::none, service<NmtState::operational>},
+    {"10.4", "Stop remote node leads from each state to Stopped", "CiA 301, 7.2.8.2.1.3 and 7.3.2",
+     Level::communication, Permission::none, service<NmtState::stopped>},
+};
+
+}  // namespace
+}  // namespace transition_area
+
+std::span<const CaseRow> transition_cases() { return transition_area::rows; }
 
 }  // namespace edsc::conform
