@@ -39,13 +39,14 @@ std::size_t type_bytes(const LiveEntry& entry) { return (entry.type->bits + 7U) 
 /// Whether the entry may be read at all; of a DOMAIN, which may be long, only the first answer.
 SdoOutcome begin_upload(Dut& dut, const LiveEntry& entry) {
   const auto answer = dut.exchange(sdo_frame(0x40, entry.index, entry.sub_index));
-  dut.end_transfer(entry.index, entry.sub_index);
   SdoOutcome outcome;
-  if (!answer) outcome.end = SdoEnd::no_answer;
   if (answer && (*answer)[0] == canopen::sdo::abort_command) {
     outcome.end = SdoEnd::refused;
     outcome.code = static_cast<AbortCode>(canopen::sdo::word_of(*answer));
+    return outcome;
   }
+  if (!answer) outcome.end = SdoEnd::no_answer;
+  dut.end_transfer(entry.index, entry.sub_index);
   return outcome;
 }
 
