@@ -2,24 +2,38 @@
 
 #include <memory>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "commands/load_device.hpp"
+#include "conform/sheet_findings.hpp"
 #include "every_service_device.hpp"
 #include "simulation_port.hpp"
 
 namespace edsc::conform {
 namespace {
 
-const Device& every_service_sheet() {
-  static const std::unique_ptr<LoadedDevice> loaded = [] {
-    Diagnostics diagnostics;
-    LoadSettings settings;
-    settings.path = EDSC_SOURCE_DIR "/tests/fixtures/every_service.eds";
-    settings.node_id = Wire::node_id;
-    return load_device(settings, diagnostics);
-  }();
-  if (!loaded->device) throw std::runtime_error{"every_service.eds cannot be read"};
-  return *loaded->device;
+struct Sheet {
+  std::unique_ptr<LoadedDevice> loaded;
+  SheetFindings findings;
+};
+
+Sheet load_sheet(const Mutant& mutant) {
+  LoadSettings settings;
+  settings.path = EDSC_SOURCE_DIR "/tests/fixtures/every_service.eds";
+  settings.node_id = Wire::node_id;
+  Diagnostics diagnostics;
+  Sheet sheet{load_device(settings, diagnostics), sheet_findings(diagnostics)};
+  if (mutant.of_eds) {
+    std::string text{sheet.loaded->source->text()};
+    mutant.of_eds(text);
+    sheet.loaded->source = std::make_unique<SourceFile>(settings.path, std::move(text));
+    Diagnostics of_change;
+    resolve_and_check(*sheet.loaded, settings, of_change);
+    sheet.findings = sheet_findings(of_change);
+  }
+  if (!sheet.loaded->device) throw std::runtime_error{"every_service.eds cannot be read"};
+  return sheet;
 }
 
 }  // namespace
@@ -34,8 +48,10 @@ RunReport run_every_service(const Mutant& mutant, const std::vector<std::string>
   settings.dut.level = Level::all;
   settings.dut.permissions = Permission::store | Permission::application | Permission::outputs;
   settings.only = only;
+  const Sheet sheet = load_sheet(mutant);
+  settings.dut.findings = sheet.findings;
   RunReport report;
-  run_cases(bus, every_service_sheet(), stimuli, settings, report);
+  run_cases(bus, *sheet.loaded->device, stimuli, settings, report);
   return report;
 }
 

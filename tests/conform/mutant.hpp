@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -40,6 +41,7 @@ struct Mutant {
   std::string_view name;  ///< `abort-code-of-missing-sub-index`
   Change of_answers;      ///< frames of the device; empty: none changes
   Change of_requests;     ///< frames of the test
+  std::function<void(std::string& eds)> of_eds{};  ///< the text of the EDS, before the test reads it
 };
 
 // One table for each file of cases.

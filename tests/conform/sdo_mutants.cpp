@@ -3,6 +3,7 @@
 #include <canopen/sdo_protocol.hpp>
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -138,6 +139,24 @@ Mutant device_type_in_segment(std::string_view name, std::uint8_t segment) {
           }};
 }
 
+/// Each answer to a read of 1000h:00 comes twice.
+Mutant answered_twice() {
+  return {"device-type-twice",
+          [](Wire& wire, Frame& frame) {
+            if (is_answer(frame) && frame.data[0] == 0x43 && names(frame, 0x1000, 0)) wire.send(frame);
+          },
+          {}};
+}
+
+/// A default value of the EDS is not a number.
+Mutant wrong_default_in_eds() {
+  return {"eds-with-an-error", {}, {}, [](std::string& eds) {
+            constexpr std::string_view key = "DefaultValue=";
+            const std::size_t at = eds.find(key, eds.find("\n[1017]"));
+            eds.replace(at + key.size(), 1, "zero");
+          }};
+}
+
 /// The toggle bit of upload requests is not looked at.
 Mutant toggle_bit_ignored() {
   return {"toggle-bit-ignored",
@@ -190,6 +209,7 @@ std::vector<Mutant> expedited() {
   return {
       device_type_in_segment("device-type-in-a-segment", 0x07),
       device_type_in_segment("device-type-in-a-segment-with-toggle", 0x17),
+      answered_twice(),
       upload_gives("device-type-of-one-byte", 0x1000, 0, 0x4F, 0),
       upload_gives("device-type-of-another-profile", 0x1000, 0, 0x43, 0x0002'0192),
       download_gives("parameters-not-writable",
@@ -227,7 +247,7 @@ std::vector<Mutant> expedited() {
 
 std::vector<Mutant> segmented() {
   return {
-      answers("upload-of-another-sub-index", 0x40, 0xE0, [](Data& data) { ++data[3]; }),
+      answers("segmented-upload-of-another-sub-index", 0x41, 0xFF, [](Data& data) { ++data[3]; }),
       answers("download-segment-toggle", 0x20, 0xE0, [](Data& data) { data[0] ^= sdo::toggle; }),
       requests("segment-written-as-0", 0x0B, 0xFF, [](Data& data) { data = {data[0]}; }),
       answers("indicated-size-too-high", 0x41, 0xFF, [](Data& data) { ++data[4]; }),
@@ -276,6 +296,7 @@ std::vector<Mutant> blocks() {
 
 std::vector<Mutant> dictionary() {
   return {
+      wrong_default_in_eds(),
       upload_gives("sdo-server-of-no-eds", 0x1205, 0, 0x4F, 2),
       server_not_reset(),
       upload_gives("sdo-client-of-no-eds", 0x1283, 0, 0x4F, 3),
