@@ -18,7 +18,10 @@ std::optional<std::uint8_t> parse_node(const std::string& text) {
 }  // namespace
 
 CLI::Option* add_bus_argument(CLI::App& command, std::string& bus) {
-  return command.add_option("BUS", bus, "socketcan:can0, slcan:/dev/ttyACM0 or socketcand:127.0.0.1:29536/vcan0")
+  return command
+      .add_option("BUS", bus,
+                  "socketcan:can0, slcan:/dev/ttyACM0, socketcand:127.0.0.1:29536/vcan0, or "
+                  "simulated:PROGRAM@NODE-ID for a device in simulated time")
       ->required();
 }
 

@@ -1,0 +1,44 @@
+/// Devices in simulated time for simulated_test.py and simulated_port_test.cpp.
+#include <array>
+#include <canopen/port/simulated_device.hpp>
+#include <cstdint>
+#include <cstdio>
+#include <every_service/device.hpp>
+#include <live_device/device.hpp>
+#include <tuple>
+
+namespace od = live_device::od;
+
+namespace {
+
+/// Moves with the target velocity, in increments per millisecond, up to the maximum speed.
+class Motor {
+ public:
+  auto handlers() {
+    return std::tuple{canopen::on_write<od::target_velocity>([this](auto& node, std::int32_t velocity) {
+      if (velocity > node.template get<od::maximum_speed>()) return canopen::AbortCode::value_too_high;
+      std::printf("velocity %d\n", static_cast<int>(velocity));  // not on the standard output of the protocol
+      velocity_ = velocity;
+      return canopen::ok;
+    })};
+  }
+  void start(auto& node) { static_cast<void>(node.template set<od::producer_heartbeat_time>(500)); }
+  void tick(auto& node, canopen::TimePoint now) {
+    if (now.since_start().count() % 1000 != 0) std::printf("tick at %u\n", static_cast<unsigned>(now.since_start().count()));
+    const std::int32_t position = node.template get<od::position_actual_value>();
+    static_cast<void>(node.template set<od::position_actual_value>(position + velocity_));
+  }
+
+ private:
+  std::int32_t velocity_ = 0;
+};
+
+constexpr std::array<canopen::SimulatedDevice, 3> devices = {{
+    {"live", &canopen::make_simulated_node<live_device::Device>},
+    {"motor", &canopen::make_simulated_node<live_device::Device, Motor>},
+    {"every_service", &canopen::make_simulated_node<every_service::Device>},
+}};
+
+}  // namespace
+
+int main(int argc, char** argv) { return canopen::simulate_devices(argc, argv, devices); }
