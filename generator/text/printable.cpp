@@ -23,6 +23,7 @@ constexpr CodePoints hidden_code_points[] = {
     {0x2060, 0x206F},    // invisible operators, isolates, deprecated format characters
     {0xFEFF, 0xFEFF},    // ZERO WIDTH NO-BREAK SPACE
     {0xFFF9, 0xFFFB},    // interlinear annotation
+    {0xFFFE, 0xFFFF},    // noncharacters, which XML does not allow
     {0xE0001, 0xE0001},  // LANGUAGE TAG
     {0xE0020, 0xE007F},  // tags
 };
