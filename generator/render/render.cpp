@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "render/json_context.hpp"
+#include "text/printable.hpp"
 
 namespace edsc {
 namespace {
@@ -43,17 +44,27 @@ struct Output {
   }
 };
 
-}  // namespace
-
-std::string render(std::string_view text, const nlohmann::ordered_json& view) {
+std::string render_escaped(std::string_view text, const nlohmann::ordered_json& view,
+                           const kainjow::mustache::mustache::escape_handler& escape) {
   kainjow::mustache::mustache filler{without_section_lines(text)};
   if (!filler.is_valid()) throw std::runtime_error{filler.error_message()};
-  filler.set_custom_escape([](const std::string& plain) { return plain; });
+  filler.set_custom_escape(escape);
   JsonContext context{view};
   Output out;
   filler.render(context, out);
   if (!filler.is_valid()) throw std::runtime_error{filler.error_message()};
   return std::move(out.text);
+}
+
+}  // namespace
+
+std::string render(std::string_view text, const nlohmann::ordered_json& view) {
+  return render_escaped(text, view, [](const std::string& plain) { return plain; });
+}
+
+std::string render_html(std::string_view text, const nlohmann::ordered_json& view) {
+  return render_escaped(text, view,
+                        [](const std::string& plain) { return kainjow::mustache::html_escape(printable(plain)); });
 }
 
 }  // namespace edsc

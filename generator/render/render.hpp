@@ -17,7 +17,13 @@ struct Template {
 /// The templates of the generated headers, in the order in which their files are written.
 [[nodiscard]] const std::vector<Template>& built_in_templates();
 
+/// The templates of reports in HTML, in templates/html.
+[[nodiscard]] const std::vector<Template>& report_templates();
+
 /// Fills a template. Throws std::runtime_error with a message when the template itself is wrong.
 [[nodiscard]] std::string render(std::string_view text, const nlohmann::ordered_json& view);
+
+/// The same for HTML: each value becomes printable, and <, >, &, " and ' in it become entities.
+[[nodiscard]] std::string render_html(std::string_view text, const nlohmann::ordered_json& view);
 
 }  // namespace edsc
