@@ -36,18 +36,9 @@ struct Close {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
-/// The name of the interface in each line: `can0`, `vcan0`, `ttyACM0`.
-std::string interface_of(const std::string& bus) {
-  constexpr std::size_t max_length = 15;  // of a Linux interface
-  std::string name = bus.substr(0, bus.find('@'));
-  name.erase(0, name.find_last_of("/:") + 1);
-  return name.empty() || name.size() > max_length ? "can0" : name;
-}
-
 std::string bad_interface(const std::string& name) {
-  const bool good = !name.empty() && name.size() <= 15 &&
-                    std::all_of(name.begin(), name.end(), [](unsigned char c) { return c > ' ' && c < 0x7F; });
-  return good ? "" : fmt::format("\"{}\" is not the name of an interface: up to 15 characters without blanks", name);
+  if (is_interface_name(name)) return "";
+  return fmt::format("\"{}\" is not the name of an interface: up to 15 characters without blanks", name);
 }
 
 /// The time of day at which a frame was received, never before that of the frame before.
