@@ -1,0 +1,28 @@
+/// The frames of a case, decoded as `edsc decode` does.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "conform/verdict.hpp"
+#include "decode/message.hpp"
+#include "device/device.hpp"
+
+namespace edsc::conform {
+
+/// Calls `use` with each frame of the case, in the order of the bus. The message is valid until `use` returns. PDOs are
+/// decoded by the mapping of the EDS and what the case itself has written since.
+void decode_frames(const CaseResult& result, std::uint8_t node, const Device& sheet,
+                   const std::function<void(const SeenFrame&, const Message&)>& use);
+
+/// The last frames of a case, a line each without a line end: `12.003481 TX 605 40 08 10 ... SDO >    node 5  read ...`.
+/// A line that counts the frames before them is the first one.
+[[nodiscard]] std::vector<std::string> frame_lines(const CaseResult& result, std::uint8_t node, const Device& sheet,
+                                                   std::size_t max_frames);
+
+/// Sent or received by the test.
+[[nodiscard]] constexpr std::string_view direction_text(const SeenFrame& seen) { return seen.sent ? "TX" : "RX"; }
+
+}  // namespace edsc::conform

@@ -1,0 +1,49 @@
+/// What all reports of a run have in common.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "conform/verdict.hpp"
+
+namespace edsc::conform {
+
+/// `3 of 127 cases failed; 101 passed, 20 not applicable, 3 not run`
+[[nodiscard]] std::string result_sentence(const RunReport& run);
+
+/// `level communication with store and outputs`
+[[nodiscard]] std::string level_text(const RunReport& run);
+
+/// What else keeps a run from passing: unused deviations, what could not be put back, an early end.
+[[nodiscard]] std::vector<std::string> run_problems(const RunReport& run);
+
+/// How many cases of an area came to each verdict, in the order of `verdicts`.
+struct AreaCount {
+  const AreaRow* area = nullptr;
+  std::array<std::size_t, std::size(verdicts)> of_verdict{};
+  std::size_t cases = 0;
+};
+/// The areas that have run, in the order in which they ran.
+[[nodiscard]] std::vector<AreaCount> count_by_area(const RunReport& run);
+
+/// The longest that the test itself was late, microseconds.
+[[nodiscard]] std::uint64_t max_lag(const RunReport& run);
+
+/// `store`, `outputs`: the options without their dashes.
+[[nodiscard]] std::vector<std::string_view> permission_names(Permission permissions);
+
+/// What a case came to, in one line: `expected 0602 0000h...; got no answer`, `not applicable: 1017h:00 does not exist...`.
+[[nodiscard]] std::string message_of(const CaseResult& result);
+
+/// Seconds since the run began: `12.003481`.
+[[nodiscard]] std::string time_text(std::uint64_t microseconds);
+
+/// How long something took: `0.4 ms`, `1.204 s`.
+[[nodiscard]] std::string duration_text(std::uint64_t microseconds);
+
+}  // namespace edsc::conform

@@ -1,0 +1,16 @@
+/// The report of a run as JUnit XML, for continuous integration.
+#pragma once
+
+#include <string>
+
+#include "conform/verdict.hpp"
+#include "device/device.hpp"
+
+namespace edsc::conform {
+
+/// A testsuite for each area. Cases that are not applicable, deviate as declared, are inconclusive or were not run are
+/// skipped, with the reason. The testsuite "run" fails where the run as a whole does: an unused deviation, values that
+/// could not be put back, an early end.
+[[nodiscard]] std::string junit_report(const RunReport& run, const Device& sheet);
+
+}  // namespace edsc::conform
