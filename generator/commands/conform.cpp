@@ -13,6 +13,7 @@
 #include "live/exit_code.hpp"
 #include "live/live_bus.hpp"
 #include "live/progress_line.hpp"
+#include "live/simulated_port.hpp"
 #include "text/counted.hpp"
 #include "text/printable.hpp"
 
@@ -82,6 +83,26 @@ class CommandStimuli final : public conform::Stimuli {
   std::string case_;
 };
 
+/// A simulated device is acted on through its program.
+class SimulatedStimuli final : public conform::Stimuli {
+ public:
+  explicit SimulatedStimuli(SimulatedPort& port) : port_{port} {}
+
+  bool set(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> value) override {
+    return port_.set(index, sub_index, value) == canopen::ok;
+  }
+  bool emergency(std::uint16_t code, std::uint8_t error_register) override {
+    return port_.emergency(code, canopen::ErrorRegister{error_register});
+  }
+  bool emergency_over(std::uint8_t error_register) override {
+    return port_.emergency_over(canopen::ErrorRegister{error_register});
+  }
+  bool power_cycle() override { return port_.power_cycle(); }
+
+ private:
+  SimulatedPort& port_;
+};
+
 Permission permissions_of(const Settings& settings, Level level) {
   Permission all = Permission::none;
   if (settings.store || level == Level::all) all = all | Permission::store;
@@ -132,13 +153,19 @@ int run_conform(const Settings& settings) {
   if (!loaded) return exit_wrong_usage;
   const conform::LevelRow& level = *std::ranges::find(conform::levels, settings.level, &conform::LevelRow::name);
   return with_bus(settings.bus, [&](LiveBus& bus) {
-    CommandStimuli stimuli{settings.stimuli};
+    auto* const simulated = dynamic_cast<SimulatedPort*>(&bus.port());
+    std::unique_ptr<conform::Stimuli> stimuli;
+    if (simulated != nullptr) {
+      stimuli = std::make_unique<SimulatedStimuli>(*simulated);
+    } else {
+      stimuli = std::make_unique<CommandStimuli>(settings.stimuli);
+    }
     conform::RunSettings run;
     run.dut.node = canopen::NodeId{settings.node};
     run.dut.sdo = settings.sdo;
     run.dut.level = level.level;
     run.dut.permissions = permissions_of(settings, level.level);
-    run.dut.tolerance = live_tolerance;
+    run.dut.tolerance = simulated != nullptr ? canopen::Duration{0} : live_tolerance;
     run.dut.seed = settings.seed;
     run.dut.findings = findings;
     run.only = settings.only;
@@ -152,7 +179,7 @@ int run_conform(const Settings& settings) {
     RunReport report;
     report.bus = settings.bus;
     report.sheet = settings.sheet;
-    conform::run_cases(bus, *loaded->device, stimuli, run, report);
+    conform::run_cases(bus, *loaded->device, *stimuli, run, report);
     for (const conform::VerdictRow& row : conform::verdicts) {
       print_visibly(stdout, "{} {}\n", report.count(row.verdict), row.text);
     }

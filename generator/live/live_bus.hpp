@@ -59,6 +59,9 @@ class LiveBus {
   /// Hands frames to `on_frame` for this time. Throws Interrupted, BusLost.
   void listen(canopen::Duration span);
 
+  /// What it sends and receives with.
+  [[nodiscard]] BusPort& port() { return *port_; }
+
   [[nodiscard]] canopen::TimePoint now() const { return port_->now(); }
   [[nodiscard]] int file_descriptor() const { return port_->file_descriptor(); }
   /// When the last frame that `receive` gave was received.

@@ -1,0 +1,226 @@
+#!/usr/bin/env python3
+"""Every sheet that generates becomes a device that passes the conformance test, in simulated time.
+
+    conform_test.py SOURCE_DIR EDSC WORK_DIR [--compiler CXX] [--flags FLAGS] [--launcher "PROGRAM ARGUMENT..."]
+                    [--only TEXT]... [--case PATTERN]...
+
+Each EDS, DCF and XDD of the corpus, of eds/ and of the tests' fixtures is generated and compiled with a node, several of
+them to a program, and `edsc conform --level all` runs at it. A sheet that `edsc generate` refuses is generated with
+--keep-going; its device has to pass, too, but for case 1.0, which is about the sheet itself.
+
+The corpus lies in the folder EDSC_CORPUS, or in ../shared/eds-corpus beside the repository; without one the sheets of the
+repository are tested alone. One sheet by hand:
+
+    conform_test.py . build/test/generator/edsc build/conform --only cpd.eds
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import hashlib
+import json
+import os
+import re
+import resource
+import shlex
+import subprocess
+import sys
+from collections import Counter
+from dataclasses import dataclass, field
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from support.compilers import SKIPPED, in_parallel  # noqa: E402
+
+NODE_ID = 5
+SHEETS_PER_PROGRAM = 12
+FLAGS = "-std=c++20 -O0 -w -fno-exceptions -fno-rtti"
+SHOWN = 6  # problems of one sheet
+MAIN = """#include <canopen/port/simulated_device.hpp>
+
+int main(int argc, char** argv) {{
+  const canopen::SimulatedDevice devices[] = {{{devices}}};
+  return canopen::simulate_devices(argc, argv, devices);
+}}
+"""
+
+
+@dataclass
+class Job:
+    path: Path
+    title: str
+    name: str = ""  # its namespace; empty where nothing is generated
+    program: Path | None = None
+    refused: bool = False
+    verdicts: Counter = field(default_factory=Counter)
+    problems: list[str] = field(default_factory=list)
+
+
+def corpus_of(source_dir: Path) -> list[Job]:
+    corpus = Path(os.environ.get("EDSC_CORPUS", source_dir.parent / "shared/eds-corpus"))
+    if not (corpus / "manifest.tsv").is_file():
+        print("SKIPPED: no corpus; EDSC_CORPUS names one. The sheets of the repository are tested alone")
+        return []
+    with (corpus / "manifest.tsv").open(newline="", encoding="utf-8") as manifest:
+        return [Job(corpus / row["path"], row["path"]) for row in csv.DictReader(manifest, delimiter="\t")]
+
+
+def own_sheets(source_dir: Path) -> list[Job]:
+    found = [*sorted((source_dir / "eds").glob("*.eds")), *sorted((source_dir / "tests/fixtures").glob("*.eds"))]
+    return [Job(path, str(path.relative_to(source_dir))) for path in found]
+
+
+def node_id_of(path: Path) -> int:
+    """That of a DCF, whose values are for this one; 5 of an EDS."""
+    found = re.search(rb"(?im)^\s*NodeID\s*=\s*(0x[0-9a-f]+|[0-9]+)", path.read_bytes())
+    node_id = int(found[1], 0) if found and path.suffix.lower() == ".dcf" else 0
+    return node_id if 1 <= node_id <= 127 else NODE_ID
+
+
+class Driver:
+    def __init__(self, arguments: argparse.Namespace) -> None:
+        self.arguments = arguments
+        self.edsc = arguments.edsc.resolve()
+        self.source_dir = arguments.source_dir.resolve()
+        self.work = arguments.work_dir.resolve()
+        self.work.mkdir(parents=True, exist_ok=True)
+        self.compiler = [*shlex.split(arguments.launcher), *shlex.split(arguments.compiler), *shlex.split(arguments.flags)]
+        # Relative to the folder where the compiler runs, so that ccache finds it for another clone.
+        self.include = [f"-I{os.path.relpath(self.source_dir / 'runtime/include', self.work)}", "-Igenerated"]
+
+    def generate(self, job: Job) -> None:
+        job.name = "d" + hashlib.sha256(job.title.encode()).hexdigest()[:10]
+        command = [self.edsc, "generate", job.path, "-o", self.work / "generated", "--name", job.name, "--color", "never"]
+        result = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=600)
+        device = self.work / "generated" / job.name / "device.hpp"
+        if result.returncode == 1:
+            job.refused = True
+            device.unlink(missing_ok=True)  # that of an earlier run
+            result = subprocess.run([*command, "--keep-going"], capture_output=True, text=True, errors="replace", timeout=600)
+        if result.returncode not in (0, 1):
+            job.problems.append(f"edsc generate ends with {result.returncode}")
+        if not device.is_file():
+            job.name = ""
+
+    def compile(self, source: str) -> str:
+        """What the compiler says when it fails."""
+        command = [*self.compiler, *self.include, "-c", source, "-o", Path(source).with_suffix(".o").name]
+        result = subprocess.run(command, cwd=self.work, capture_output=True, text=True, errors="replace")
+        return "" if result.returncode == 0 else result.stderr or f"exit code {result.returncode}"
+
+    def write_and_compile(self, name: str, text: str) -> str:
+        (self.work / f"{name}.cpp").write_text(text, encoding="utf-8")
+        return self.compile(f"{name}.cpp")
+
+    def program_of(self, jobs: list[Job], name: str) -> Path | None:
+        """None: it does not compile."""
+        makers = [f"std::unique_ptr<canopen::SimulatedNode> make_{job.name}(canopen::SimulatedBus&, canopen::SimulatedMemory&)"
+                  for job in jobs]
+        nodes = ["#include <canopen/port/simulated_node.hpp>", *(f"#include <{job.name}/device.hpp>" for job in jobs)]
+        nodes += [f"{maker.replace('&', '& bus', 1).replace('SimulatedMemory&', 'SimulatedMemory& memory')} "
+                  f"{{ return canopen::make_simulated_node<{job.name}::Device>(bus, memory); }}"
+                  for job, maker in zip(jobs, makers)]
+        rows = ", ".join(f'{{"{job.name}", make_{job.name}}}' for job in jobs)
+        main = MAIN.format(devices=rows).replace("\n\nint", "\n\n" + "\n".join(f"{maker};" for maker in makers) + "\n\nint")
+        error = self.write_and_compile(name, "\n".join(nodes) + "\n") or self.write_and_compile(f"{name}_main", main)
+        if not error:
+            link = [*self.compiler, f"{name}.o", f"{name}_main.o", "-o", name]
+            result = subprocess.run(link, cwd=self.work, capture_output=True, text=True)
+            error = result.stderr if result.returncode else ""
+        if error and len(jobs) == 1:
+            jobs[0].problems.append("does not compile: " + first_error(error))
+        return None if error else self.work / name
+
+    def build(self, jobs: list[Job]) -> None:
+        name = "conform_" + hashlib.sha256(" ".join(job.name for job in jobs).encode()).hexdigest()[:10]
+        if program := self.program_of(jobs, name):
+            for job in jobs:
+                job.program = program
+        elif len(jobs) > 1:
+            for job in jobs:
+                self.build([job])
+
+    def run(self, job: Job) -> None:
+        node_id = node_id_of(job.path)
+        report = self.work / f"{job.name}.json"
+        report.unlink(missing_ok=True)
+        command = [self.edsc, "conform", f"simulated:{job.program}@{node_id},{job.name}", str(node_id), job.path, "--level", "all",
+                   "--quiet", "--json", report, *(f"--only={case}" for case in self.arguments.case)]
+        result = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=600)
+        if not report.is_file():
+            job.problems.append(f"edsc conform ends with {result.returncode}: {result.stderr.strip()[-300:]}")
+            return
+        job.problems += problems_in(json.loads(report.read_text(encoding="utf-8")), job)
+
+
+def problems_in(report: dict, job: Job) -> list[str]:
+    problems = []
+    for case in report["cases"]:
+        job.verdicts[case["verdict"]] += 1
+        if case["verdict"] == "failed" and not (job.refused and case["id"] == "1.0"):
+            problems.append(f"{case['id']} {case['title']}: expected {case['expected']}; got {case['got']}")
+        problems += [f"{case['id']} not put back: {text}" for text in case.get("not_put_back", [])]
+    if report.get("lost"):
+        problems.append(report["lost"])
+    return problems
+
+
+def cpu_seconds() -> float:
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+
+
+def first_error(text: str) -> str:
+    return next((line for line in text.splitlines() if "error:" in line), text[:300])
+
+
+def arguments_of() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("source_dir", type=Path)
+    parser.add_argument("edsc", type=Path)
+    parser.add_argument("work_dir", type=Path)
+    parser.add_argument("--compiler", default="g++")
+    parser.add_argument("--flags", default=FLAGS)
+    parser.add_argument("--launcher", default="")
+    parser.add_argument("--only", action="append", default=[], help="sheets whose path holds this, or one of several")
+    parser.add_argument("--case", action="append", default=[], help="cases, as of edsc conform --only")
+    return parser.parse_args()
+
+
+def main() -> int:
+    arguments = arguments_of()
+    driver = Driver(arguments)
+    jobs = [job for job in [*own_sheets(driver.source_dir), *corpus_of(driver.source_dir)]
+            if not arguments.only or any(text in job.title for text in arguments.only)]
+    if not jobs:
+        print(f"SKIPPED: no sheet whose path holds {' or '.join(arguments.only)}")
+        return SKIPPED
+    in_parallel(driver.generate, jobs)
+    generated = [job for job in jobs if job.name]
+    groups = [generated[first:first + SHEETS_PER_PROGRAM] for first in range(0, len(generated), SHEETS_PER_PROGRAM)]
+    in_parallel(driver.build, groups)
+    before = cpu_seconds()
+    in_parallel(driver.run, [job for job in generated if job.program])
+    spent = cpu_seconds() - before
+    total: Counter = Counter()
+    for job in jobs:
+        total += job.verdicts
+        how = " (refused, --keep-going)" if job.refused else ""
+        passed = f"{job.verdicts['passed']} passed" if job.name else "nothing is generated"
+        if not job.problems:
+            print(f"{job.title}{how}: {passed}")
+        else:
+            print(f"{job.title}{how}: {len(job.problems)} problems")
+            for problem in job.problems[:SHOWN]:
+                print(f"    {problem[:400]}")
+    conform = sum(not job.problems for job in generated)
+    refused = sum(job.refused for job in generated)
+    print(f"{conform} of {len(generated)} devices conform ({refused} of them in spite of errors); {len(jobs)} sheets; "
+          + ", ".join(f"{count} {verdict}" for verdict, count in sorted(total.items()))
+          + f"; {spent:.1f} s of CPU after compilation")
+    return 1 if any(job.problems for job in jobs) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
