@@ -73,6 +73,8 @@ function(edsc_add_dictionary target)
   add_custom_target(${target}_headers DEPENDS ${stamp})
 
   add_library(${target} INTERFACE)
+  # For edsc_add_conformance_test.
+  set_target_properties(${target} PROPERTIES EDSC_NAMESPACE ${arg_NAMESPACE} EDSC_EDS ${eds} EDSC_NODE_ID "${arg_NODE_ID}")
   add_dependencies(${target} ${target}_headers)
   target_include_directories(${target} INTERFACE ${output_dir})
   target_link_libraries(${target} INTERFACE edsc::runtime)

@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 import sys
@@ -28,6 +29,56 @@ class Arguments(PackageTest):
         for name, place in (("fixed", "rom"), ("mapped", "ram")):
             text = (project.build_dir / f"edsc/{name}/{name}/dictionary.hpp").read_text()
             self.assertIn(word.format(place), text)
+
+
+class Conformance(PackageTest):
+    def test_is_a_test_of_the_project(self) -> None:
+        """In which the device does what its application does, at the node-ID that its dictionary or DCF has."""
+        calls = """
+enable_testing()
+edsc_add_conformance_test(valve_conforms valve APPLICATION valve_application.hpp shop::Valve ARGUMENTS --only "1.*")
+edsc_add_dictionary(fixed EDS valve.eds NODE_ID 0x0C)
+edsc_add_conformance_test(fixed_conforms fixed LEVEL read DEVIATIONS deviations.json)
+edsc_add_dictionary(axis EDS axis.dcf)
+edsc_add_conformance_test(axis_conforms axis LEVEL read)
+edsc_add_conformance_test(other_conforms axis LEVEL read NODE_ID 8)
+"""
+        project = Project(self.folder / "project", more=calls)
+        (project.source / "deviations.json").touch()
+        (project.source / "axis.dcf").write_text(project.sheet.read_text() + "\n[DeviceComissioning]\nNodeID=0x7\n")
+        (project.source / "valve_application.hpp").write_text(APPLICATION)
+        prefix = self.install()
+        project.configure(f"-DCMAKE_PREFIX_PATH={prefix}")
+        tests = json.loads(run("ctest", "--test-dir", project.build_dir, "--show-only=json-v1"))["tests"]
+        commands = {test["name"]: test["command"][1:] for test in tests}
+        sheet, build = project.sheet, project.build_dir
+        self.assertEqual(commands, {
+            "valve_conforms": ["conform", f"simulated:{build}/valve_conforms@5", "5", f"{sheet}", "--level", "all", "--store",
+                               "--application", "--outputs", "--only", "1.*"],
+            "fixed_conforms": ["conform", f"simulated:{build}/fixed_conforms@12", "12", f"{sheet}", "--level", "read",
+                               "--deviations", f"{project.source}/deviations.json"],
+            "axis_conforms": ["conform", f"simulated:{build}/axis_conforms@7", "7", f"{project.source}/axis.dcf",
+                              "--level", "read"],
+            "other_conforms": ["conform", f"simulated:{build}/other_conforms@8", "8", f"{project.source}/axis.dcf",
+                               "--level", "read"]})
+        project.build("valve_conforms")
+        edsc = prefix / "bin/edsc"
+        self.assertIn(" = 17 ", run(edsc, "read", f"simulated:{build}/valve_conforms@5", 5, "opening", "--eds", sheet))
+        project.configure()
+        self.assertIn("no work to do", project.build("valve_conforms"))
+
+
+APPLICATION = """#include <canopen/node.hpp>
+#include <tuple>
+#include <valve/device.hpp>
+
+namespace shop {
+struct Valve {
+  auto handlers() { return std::tuple<>{}; }
+  void start(auto& node) { static_cast<void>(node.template set<valve::od::opening>(17)); }
+};
+}  // namespace shop
+"""
 
 
 class Schemas(PackageTest):
@@ -64,7 +115,14 @@ class Mistakes(PackageTest):
                 ("edsc_add_dictionary(other EDS none.eds)", "does not exist"),
                 ("edsc_add_dictionary(other EDS valve.eds NAME x)", "unknown arguments: NAME"),
                 ("edsc_add_firmware(other EDS valve.eds SOURCES main.cpp)", "BOARD is missing"),
-                ("edsc_add_firmware(other EDS valve.eds BOARD b SOURCES main.cpp)", "build is for the host"))):
+                ("edsc_add_firmware(other EDS valve.eds BOARD b SOURCES main.cpp)", "build is for the host"),
+                ("edsc_add_conformance_test(test none)", "there is no target none"),
+                ("edsc_add_conformance_test(test valve_test)", "is not a library"),
+                ("edsc_add_conformance_test(test valve EDS valve.eds)", "unknown arguments: EDS"),
+                ("edsc_add_conformance_test(test valve NODE_ID 128)", "128 is not a node-ID"),
+                ("edsc_add_conformance_test(test valve APPLICATION main.cpp)", "takes a header and a class"),
+                ("edsc_add_conformance_test(test valve APPLICATION none.hpp Valve)", "none.hpp does not exist"),
+                ("edsc_add_conformance_test(test valve DEVIATIONS none.json)", "none.json does not exist"))):
             with self.subTest(call=call), self.assertRaisesRegex(AssertionError, words):
                 Project(self.folder / f"project {number}", more=f"\n{call}\n").configure(f"-DCMAKE_PREFIX_PATH={prefix}")
 

@@ -1,0 +1,112 @@
+include(${CMAKE_CURRENT_LIST_DIR}/EdscAddDictionary.cmake)
+
+# edsc_add_conformance_test(NAME DICTIONARY [APPLICATION header type] [NODE_ID n] [LEVEL level] [DEVIATIONS file]
+#                           [ARGUMENTS argument...])
+#
+# Adds a test NAME to CTest: the conformance test of `edsc conform` at the device of DICTIONARY, which edsc_add_dictionary has
+# made, in simulated time. The device is compiled as the program NAME, with a storage in memory and, where it has LSS, with
+# an LSS port.
+#
+#   edsc_add_dictionary(pump EDS pump.eds)
+#   enable_testing()
+#   edsc_add_conformance_test(pump_conforms pump APPLICATION pump_application.hpp PumpApplication)
+#
+# APPLICATION  a header and a class in it, with the handlers of the device: what it has is said in
+#              canopen/port/simulated_device.hpp. Sources and libraries that it needs are added to the target NAME, with
+#              target_sources and target_link_libraries.
+# NODE_ID      of the device; by default that of the dictionary or of its DCF, else 5.
+# LEVEL        read, communication or all, which is the default: a device in memory cannot do any harm.
+# DEVIATIONS   a file that declares which cases deviate, and why.
+# ARGUMENTS    of `edsc conform` besides, such as --junit or --only.
+#
+# In a cross build there is no test: the device is not compiled for the machine that runs edsc.
+function(edsc_add_conformance_test name dictionary)
+  cmake_parse_arguments(PARSE_ARGV 2 arg "" "NODE_ID;LEVEL;DEVIATIONS" "APPLICATION;ARGUMENTS")
+  set(call "edsc_add_conformance_test(${name})")
+  if(arg_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "${call}: unknown arguments: ${arg_UNPARSED_ARGUMENTS}")
+  endif()
+  if(NOT TARGET ${dictionary})
+    message(FATAL_ERROR "${call}: there is no target ${dictionary}")
+  endif()
+  get_target_property(namespace ${dictionary} EDSC_NAMESPACE)
+  get_target_property(sheet ${dictionary} EDSC_EDS)
+  if(NOT namespace OR NOT sheet)
+    message(FATAL_ERROR "${call}: ${dictionary} is not a library of edsc_add_dictionary")
+  endif()
+  if(CMAKE_CROSSCOMPILING)
+    message(VERBOSE "${call}: not added in a cross build")
+    return()
+  endif()
+
+  if(NOT arg_NODE_ID)
+    get_target_property(arg_NODE_ID ${dictionary} EDSC_NODE_ID)
+  endif()
+  if(NOT arg_NODE_ID)
+    edsc_node_id_of_file(${sheet} arg_NODE_ID)
+  endif()
+  if(NOT arg_NODE_ID)
+    set(arg_NODE_ID 5)
+  endif()
+  math(EXPR node_id "${arg_NODE_ID}")
+  if(node_id LESS 1 OR node_id GREATER 127)
+    message(FATAL_ERROR "${call}: ${arg_NODE_ID} is not a node-ID from 1 to 127")
+  endif()
+
+  set(include "")
+  set(application "")
+  if(DEFINED arg_APPLICATION)
+    list(LENGTH arg_APPLICATION count)
+    if(NOT count EQUAL 2)
+      message(FATAL_ERROR "${call}: APPLICATION takes a header and a class, not: ${arg_APPLICATION}")
+    endif()
+    list(GET arg_APPLICATION 0 header)
+    list(GET arg_APPLICATION 1 application)
+    cmake_path(ABSOLUTE_PATH header BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+    if(NOT EXISTS ${header})
+      message(FATAL_ERROR "${call}: ${header} does not exist")
+    endif()
+    set(include "#include \"${header}\"\n")
+    string(PREPEND application ", ")
+  endif()
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/edsc/${name}.cpp)
+  file(CONFIGURE OUTPUT ${source} @ONLY CONTENT [[
+// Made by edsc_add_conformance_test.
+#include <canopen/port/simulated_device.hpp>
+#include <@namespace@/device.hpp>
+@include@
+int main(int argc, char** argv) { return canopen::simulate_device<@namespace@::Device@application@>(argc, argv); }
+]])
+  add_executable(${name} ${source})
+  target_link_libraries(${name} PRIVATE ${dictionary})
+
+  if(NOT arg_LEVEL)
+    set(arg_LEVEL all)
+  endif()
+  set(arguments --level ${arg_LEVEL})
+  if(arg_LEVEL STREQUAL all)
+    list(APPEND arguments --store --application --outputs)
+  endif()
+  if(arg_DEVIATIONS)
+    cmake_path(ABSOLUTE_PATH arg_DEVIATIONS BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} OUTPUT_VARIABLE deviations)
+    if(NOT EXISTS ${deviations})
+      message(FATAL_ERROR "${call}: ${deviations} does not exist")
+    endif()
+    list(APPEND arguments --deviations ${deviations})
+  endif()
+  add_test(NAME ${name} COMMAND $<TARGET_FILE:edsc::edsc> conform "simulated:$<TARGET_FILE:${name}>@${node_id}" ${node_id}
+                                ${sheet} ${arguments} ${arg_ARGUMENTS})
+endfunction()
+
+# The node-ID that a DCF or XDC gives to its device; empty where it does not.
+function(edsc_node_id_of_file file result)
+  file(READ ${file} text)
+  set(number "(0[xX][0-9A-Fa-f]+|[0-9]+)")
+  set(node_id "")
+  if(text MATCHES "(^|\n)[ \t]*[Nn][Oo][Dd][Ee][Ii][Dd][ \t]*=[ \t]*${number}")
+    set(node_id ${CMAKE_MATCH_2})
+  elseif(text MATCHES "<([A-Za-z]+:)?deviceCommissioning[^>]*[ \t\r\n]nodeID=\"${number}\"")
+    set(node_id ${CMAKE_MATCH_2})
+  endif()
+  set(${result} ${node_id} PARENT_SCOPE)
+endfunction()
