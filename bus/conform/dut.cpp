@@ -615,8 +615,12 @@ std::vector<std::string> Dut::put_back() {
 }
 
 void Dut::find_state() {
-  if (settings_.level == Level::read || !watch_state()) return;
-  found_state_ = state();
+  if (settings_.level == Level::read) return;
+  try {
+    if (watch_state()) found_state_ = state();
+  } catch (const CaseEnd&) {
+    // 1017h cannot be used as the data sheet says: cases will find out.
+  }
   (void)put_back();
 }
 

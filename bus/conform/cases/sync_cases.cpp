@@ -89,13 +89,20 @@ void count_tpdos(Dut& dut) {
 void no_producer(Dut& dut) {
   const std::uint32_t cob_id = stop_sync(dut);
   dut.need_writable(sync_period);
+  dut.pass_time(milliseconds{50});
+  const auto expect_none = [&dut, cob_id](Dut::Mark since, const std::string& when) {
+    const std::size_t seen = syncs_since(dut, since, cob_id, period * 10).size();
+    dut.expect(seen == 0, "no SYNC " + when, std::to_string(seen));
+  };
+  const Dut::Mark consumes = dut.mark();
   dut.write(sync_period, 0, period.count());
-  expect_silence(dut, cob_id, "while bit 30 of 1005h:00 is 0");
+  expect_none(consumes, "while bit 30 of 1005h:00 is 0");
   dut.write(sync_period, 0, 0);
+  const Dut::Mark without_period = dut.mark();
   if (!can_produce_sync(dut, cob_id)) return;
   dut.write(sync_cob_id, 0, cob_id | canopen::CobId::no_rtr_bit);
   dut.expect_equal(dut.read_number(sync_cob_id), cob_id | canopen::CobId::no_rtr_bit, "1005h:00");
-  expect_silence(dut, cob_id, "while 1006h:00 is 0");
+  expect_none(without_period, "while 1006h:00 is 0");
 }
 
 void invalid_overflow(Dut& dut) {
