@@ -175,7 +175,8 @@ void write_read_only_entries(Dut& dut) {
   for (const LiveEntry& entry : dut.entries()) {
     if (results.lost()) break;
     const bool allowed = is_communication(entry) || dut.allowed(Permission::application);
-    if (!allowed || is_writable(entry) || !is_readable(entry) || is_domain(entry)) continue;
+    const bool flagged = (flags_of(dut, entry) & (refuse_write_flag | refuse_read_flag)) != 0;
+    if (!allowed || flagged || is_writable(entry) || !is_readable(entry) || is_domain(entry)) continue;
     results.count();
     const Bytes value = fitting_value(dut, entry);
     results.expect_abort(entry, dut.command(entry.index, entry.sub_index, value), abort_rule::read_only, "written");
@@ -187,7 +188,7 @@ void read_write_only_entries(Dut& dut) {
   EntryResults results{dut};
   for (const LiveEntry& entry : dut.entries()) {
     if (results.lost()) break;
-    if (is_readable(entry) || !is_writable(entry)) continue;
+    if (is_readable(entry) || !is_writable(entry) || !lacks_flag(dut, entry, refuse_read_flag)) continue;
     results.count();
     results.expect_abort(entry, begin_upload(dut, entry), abort_rule::write_only, "read");
   }

@@ -110,8 +110,9 @@ void write_read_only(Dut& dut) {
 }
 
 void read_write_only(Dut& dut) {
-  const Entries entries = draw(dut, entries_with(dut, [](const LiveEntry& e) {
-                                 return is_writable(e) && !is_readable(e);
+  const Entries entries = draw(dut, entries_with(dut, [&](const LiveEntry& e) {
+                                 const bool flagged = (flags_of(dut, e) & refuse_read_flag) != 0;
+                                 return is_writable(e) && !is_readable(e) && !flagged;
                                }));
   if (entries.empty()) dut.not_applicable("the EDS has no write-only entry");
   const LiveEntry& entry = entries.front();
@@ -382,6 +383,7 @@ void read_sdo_parameter(Dut& dut, const Object& object, ParameterValues& values)
     const Bytes& value = values[{entry.index, entry.sub_index}] = dut.read(entry.index, entry.sub_index);
     if (object.index <= last_server) expect_usable(dut, entry, number_of(value));
   }
+  if (!object.has_sub_indices()) return;
   const std::uint64_t highest = dut.default_of(object.index, 0).value_or(object.highest_sub_index());
   dut.expect_equal(dut.read_number(object.index), highest, label(object.index, 0));
 }
