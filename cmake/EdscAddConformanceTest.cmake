@@ -19,7 +19,8 @@ include(${CMAKE_CURRENT_LIST_DIR}/EdscAddDictionary.cmake)
 # DEVIATIONS   a file that declares which cases deviate, and why.
 # ARGUMENTS    of `edsc conform` besides, such as --junit or --only.
 #
-# In a cross build there is no test: the device is not compiled for the machine that runs edsc.
+# `ctest -L conformance` runs the tests of this kind. There is none where BUILD_TESTING is off, nor in a cross build, as the device
+# is not compiled for the machine that runs edsc then.
 function(edsc_add_conformance_test name dictionary)
   cmake_parse_arguments(PARSE_ARGV 2 arg "" "NODE_ID;LEVEL;DEVIATIONS" "APPLICATION;ARGUMENTS")
   set(call "edsc_add_conformance_test(${name})")
@@ -34,8 +35,8 @@ function(edsc_add_conformance_test name dictionary)
   if(NOT namespace OR NOT sheet)
     message(FATAL_ERROR "${call}: ${dictionary} is not a library of edsc_add_dictionary")
   endif()
-  if(CMAKE_CROSSCOMPILING)
-    message(VERBOSE "${call}: not added in a cross build")
+  if(CMAKE_CROSSCOMPILING OR (DEFINED BUILD_TESTING AND NOT BUILD_TESTING))
+    message(VERBOSE "${call}: not added")
     return()
   endif()
 
@@ -96,6 +97,7 @@ int main(int argc, char** argv) { return canopen::simulate_device<@namespace@::D
   endif()
   add_test(NAME ${name} COMMAND $<TARGET_FILE:edsc::edsc> conform "simulated:$<TARGET_FILE:${name}>@${node_id}" ${node_id}
                                 ${sheet} ${arguments} ${arg_ARGUMENTS})
+  set_tests_properties(${name} PROPERTIES LABELS conformance)
 endfunction()
 
 # The node-ID that a DCF or XDC gives to its device; empty where it does not.

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <pump/device.hpp>
 
-namespace od = pump::od;
+#include "pump_application.hpp"
 
 int main() {
   canopen::VirtualBus bus;
@@ -14,16 +14,13 @@ int main() {
     if (frame.id == 0x185) std::printf("pressure %u mbar\n", unsigned{pump::Tpdo1::get<0>(frame.data)});
   };
 
-  auto node = canopen::make_node<pump::Device>(
-      port, canopen::NodeId{5},  // an SDO write or RPDO 1 with a new speed comes here
-      canopen::on_write<od::speed_setpoint>([](auto& pump, std::uint16_t speed) {
-        pump.template set<od::pressure>(static_cast<std::uint16_t>(speed / 4));  // TPDO 1 goes out
-      }));
+  PumpApplication application;
+  auto node = canopen::make_node<pump::Device>(port, canopen::NodeId{5}, application.handlers());
   bus.connect(port, node);
 
   node.start(bus.now());
   master.send({.id = 0x000, .size = 2, .data = {0x01, 0x05}});                               // NMT: start node 5
   master.send({.id = 0x205, .size = pump::Rpdo1::size, .data = pump::Rpdo1::pack(1'680)});  // RPDO 1
   bus.settle();
-  return node.get<od::pressure>() == 420 ? 0 : 1;
+  return node.get<pump::od::pressure>() == 420 ? 0 : 1;
 }

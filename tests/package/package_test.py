@@ -66,6 +66,7 @@ edsc_add_conformance_test(other_conforms axis LEVEL read NODE_ID 8)
         self.assertIn(" = 17 ", run(edsc, "read", f"simulated:{build}/valve_conforms@5", 5, "opening", "--eds", sheet))
         project.configure()
         self.assertIn("no work to do", project.build("valve_conforms"))
+        self.assertIn("100% tests passed", run("ctest", "--test-dir", project.build_dir, "-R", "valve_conforms"))
 
 
 APPLICATION = """#include <canopen/node.hpp>

@@ -237,8 +237,10 @@ class Ways(unittest.TestCase):
         """Nothing of edsc is compiled, and its folder has a blank in its path."""
         sources = self.folder / "the sources"
         copy_sources(sources)
-        project = Project(self.folder / "a program", f'add_subdirectory("{sources}" edsc)')
+        conformance = "\nenable_testing()\nedsc_add_conformance_test(valve_conforms valve)\n"
+        project = Project(self.folder / "a program", f'add_subdirectory("{sources}" edsc)', conformance)
         self.check_host(project, f"-DEDSC_EXECUTABLE={EDSC}")
+        self.assertIn("100% tests passed", run("ctest", "--test-dir", project.build_dir, "-L", "conformance"))
         self.assertNotIn("edsc_compiler", (project.build_dir / "build.ninja").read_text())
         if not WITHOUT_ARM:
             project = Project(self.folder / "program arm", f'add_subdirectory("{sources}" edsc)')
