@@ -15,10 +15,11 @@ namespace edsc::conform {
 struct RunSettings {
   DutSettings dut;
   std::vector<std::string> only;  ///< patterns such as `3.*`; empty: all cases
-  /// Before and behind each case that runs.
+  /// Before each case.
   std::function<void(const CaseRow& row, std::size_t done, std::size_t of)> began = [](const CaseRow&, std::size_t,
                                                                                      std::size_t) {};
-  std::function<void(const CaseResult& result)> ended = [](const CaseResult&) {};
+  /// It may change the result, which is then in the report.
+  std::function<void(CaseResult& result)> ended = [](CaseResult&) {};
 };
 
 /// Fills what a run finds out: `cases`, what was not put back, and why it ended early. An interruption and a lost bus end

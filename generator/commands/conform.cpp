@@ -7,14 +7,23 @@
 #include <memory>
 
 #include "commands/commands.hpp"
+#include "commands/live_device.hpp"
 #include "commands/live_options.hpp"
 #include "commands/load_device.hpp"
+#include "commands/output.hpp"
+#include "conform/deviations.hpp"
+#include "conform/report_html.hpp"
+#include "conform/report_json.hpp"
+#include "conform/report_junit.hpp"
+#include "conform/report_log.hpp"
+#include "conform/report_text.hpp"
 #include "conform/run_cases.hpp"
+#include "conform/sha256.hpp"
 #include "live/exit_code.hpp"
 #include "live/live_bus.hpp"
 #include "live/progress_line.hpp"
 #include "live/simulated_port.hpp"
-#include "text/counted.hpp"
+#include "render/write_files.hpp"
 #include "text/printable.hpp"
 
 namespace edsc {
@@ -43,6 +52,7 @@ struct Settings {
   bool store = false, application = false, outputs = false;
   std::vector<std::string> only;
   std::vector<std::string> stimuli;
+  std::string deviations, html, junit, json, log;
   bool list = false;
   bool quiet = false;
   std::uint32_t seed = 1;
@@ -111,25 +121,17 @@ Permission permissions_of(const Settings& settings, Level level) {
   return all;
 }
 
-int list_cases() {
+void list_cases() {
   for (const conform::AreaRow& area : conform::areas()) {
     fmt::print("{} {}\n", area.id, area.title);
     for (const CaseRow& row : area.cases()) {
-      std::string needs;
+      std::string needs = fmt::format("--level {}", row_of(row.level).name);
       for (const conform::PermissionRow& option : conform::permission_options) {
         if (includes(row.needs, option.permission)) needs += fmt::format(" {}", option.option);
       }
-      fmt::print("  {:<6} {} ({}; {}{})\n", row.id, row.title, row.clause,
-                 row_of(row.level).name, needs);
+      fmt::print("  {:<6} {} ({}; {})\n", row.id, row.title, row.clause, needs);
     }
   }
-  return exit_fine;
-}
-
-void print_case(const CaseResult& result) {
-  print_visibly(stdout, "{:<6} {:<20} {}\n", result.row->id, conform::row_of(result.verdict).text, result.row->title);
-  if (!result.reason.empty()) print_visibly(stdout, "         {}\n", result.reason);
-  if (!result.expected.empty()) print_visibly(stdout, "         expected {}\n         got {}\n", result.expected, result.got);
 }
 
 /// The device of the data sheet and what `edsc check` finds in it. Null when the file cannot be read as one; the reason is
@@ -147,47 +149,112 @@ std::unique_ptr<LoadedDevice> load_sheet(const Settings& settings, conform::Shee
   return nullptr;
 }
 
+/// SHA-256 of the file's bytes; empty where it cannot be read again, as standard input.
+std::string hash_of_file(const std::string& path) {
+  std::vector<std::uint8_t> bytes;
+  std::string problem;
+  if (!read_bytes(path, bytes, problem)) return {};
+  return conform::sha256({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+/// The file of declared deviations, which their positions point into.
+struct DeclaredDeviations {
+  std::unique_ptr<SourceFile> source;
+  std::vector<conform::Deviation> all;
+};
+
+/// Nothing when there is an error in the file, which is printed.
+std::optional<DeclaredDeviations> load_deviations(const Settings& settings) {
+  DeclaredDeviations declared;
+  if (settings.deviations.empty()) return declared;
+  std::string problem;
+  declared.source = read_source_file(settings.deviations, problem);
+  if (!declared.source) {
+    print_visibly(stderr, "edsc: {}\n", problem);
+    return std::nullopt;
+  }
+  Diagnostics diagnostics;
+  declared.all = conform::read_deviations(*declared.source, diagnostics);
+  print_findings(stderr, diagnostics, settings.color);
+  if (diagnostics.errors() > 0) return std::nullopt;
+  return declared;
+}
+
+/// A report in a file, and the option that names it.
+struct ReportFile {
+  std::string Settings::* path;
+  std::string (*make)(const RunReport& run, const Device& sheet);
+};
+
+constexpr ReportFile report_files[] = {
+    {&Settings::html, conform::html_report},
+    {&Settings::junit, conform::junit_report},
+    {&Settings::json, conform::json_report},
+    {&Settings::log, [](const RunReport& run, const Device&) { return conform::candump_log(run); }},
+};
+
+/// False when one of them cannot be written; the reason is printed.
+bool write_reports(const Settings& settings, const RunReport& report, const Device& sheet) {
+  std::vector<OutputFile> files;
+  for (const ReportFile& row : report_files) {
+    if (!(settings.*row.path).empty()) files.push_back({settings.*row.path, row.make(report, sheet)});
+  }
+  const std::string problem = write_files(files);
+  if (!problem.empty()) print_visibly(stderr, "edsc: {}\n", problem);
+  return problem.empty();
+}
+
+/// Runs the cases with what they come to on standard output as it comes.
+void run_and_print(LiveBus& bus, const Settings& settings, const LoadedDevice& loaded, conform::RunSettings& run,
+                   const DeclaredDeviations& deviations, RunReport& report) {
+  auto* const simulated = dynamic_cast<SimulatedPort*>(&bus.port());
+  std::unique_ptr<conform::Stimuli> stimuli;
+  if (simulated != nullptr) {
+    stimuli = std::make_unique<SimulatedStimuli>(*simulated);
+  } else {
+    stimuli = std::make_unique<CommandStimuli>(settings.stimuli);
+    run.dut.tolerance = live_tolerance;
+  }
+  const conform::TextReport text{report, *loaded.device, settings.color.on(stdout)};
+  ProgressLine progress;
+  run.began = [&](const CaseRow& row, std::size_t done, std::size_t of) {
+    if (done == 0 && !settings.quiet) write_output(text.head());
+    if (progress.due()) progress.show(fmt::format("case {} of {}: {} {}", done + 1, of, row.id, row.title));
+  };
+  run.ended = [&](CaseResult& result) {
+    conform::apply_deviations(deviations.all, result);
+    const bool shown = !settings.quiet || result.verdict == Verdict::failed;
+    if (shown) write_output(text.of(result));
+  };
+  conform::run_cases(bus, *loaded.device, *stimuli, run, report);
+  conform::find_unused_deviations(deviations.all, report);
+  write_output(text.summary());
+}
+
 int run_conform(const Settings& settings) {
   conform::SheetFindings findings;
   const auto loaded = load_sheet(settings, findings);
-  if (!loaded) return exit_wrong_usage;
-  const conform::LevelRow& level = *std::ranges::find(conform::levels, settings.level, &conform::LevelRow::name);
+  const auto deviations = load_deviations(settings);
+  if (!loaded || !deviations) return exit_wrong_usage;
+  conform::RunSettings run;
+  run.dut.node = canopen::NodeId{settings.node};
+  run.dut.sdo = settings.sdo;
+  run.dut.level = std::ranges::find(conform::levels, settings.level, &conform::LevelRow::name)->level;
+  run.dut.permissions = permissions_of(settings, run.dut.level);
+  run.dut.seed = settings.seed;
+  run.dut.findings = std::move(findings);
+  run.only = settings.only;
+  RunReport report;
+  report.bus = settings.bus;
+  report.sheet = settings.sheet;
+  report.sheet_hash = hash_of_file(settings.sheet);
+  report.product = loaded->device->product_name;
+  report.vendor = loaded->device->vendor_name;
+  report.version = EDSC_VERSION;
   return with_bus(settings.bus, [&](LiveBus& bus) {
-    auto* const simulated = dynamic_cast<SimulatedPort*>(&bus.port());
-    std::unique_ptr<conform::Stimuli> stimuli;
-    if (simulated != nullptr) {
-      stimuli = std::make_unique<SimulatedStimuli>(*simulated);
-    } else {
-      stimuli = std::make_unique<CommandStimuli>(settings.stimuli);
-    }
-    conform::RunSettings run;
-    run.dut.node = canopen::NodeId{settings.node};
-    run.dut.sdo = settings.sdo;
-    run.dut.level = level.level;
-    run.dut.permissions = permissions_of(settings, level.level);
-    run.dut.tolerance = simulated != nullptr ? canopen::Duration{0} : live_tolerance;
-    run.dut.seed = settings.seed;
-    run.dut.findings = findings;
-    run.only = settings.only;
-    ProgressLine progress;
-    run.began = [&](const CaseRow& row, std::size_t done, std::size_t of) {
-      if (progress.due()) progress.show(fmt::format("case {} of {}: {} {}", done + 1, of, row.id, row.title));
-    };
-    run.ended = [&](const CaseResult& result) {
-      if (!settings.quiet) print_case(result);
-    };
-    RunReport report;
-    report.bus = settings.bus;
-    report.sheet = settings.sheet;
-    conform::run_cases(bus, *loaded->device, *stimuli, run, report);
-    for (const conform::VerdictRow& row : conform::verdicts) {
-      print_visibly(stdout, "{} {}\n", report.count(row.verdict), row.text);
-    }
-    if (!report.lost.empty()) print_visibly(stderr, "edsc: {}\n", report.lost);
-    if (report.interrupted) {
-      print_visibly(stderr, "edsc: interrupted\n");
-      return int{exit_interrupted};
-    }
+    run_and_print(bus, settings, *loaded, run, *deviations, report);
+    if (!write_reports(settings, report, *loaded->device)) return int{exit_wrong_usage};
+    if (report.interrupted) return int{exit_interrupted};
     return report.passed() ? int{exit_fine} : int{exit_device_failed};
   });
 }
@@ -213,8 +280,14 @@ void add_conform_command(CLI::App& app, int& exit_code) {
       ->check([](const std::string& text) {
         return text.find('=') != std::string::npos ? std::string{} : "\"" + text + "\" is not CASE=COMMAND";
       });
+  command->add_option("--deviations", settings->deviations, "declared deviations of the node, with their reasons: a JSON file")
+      ->type_name("FILE");
+  command->add_option("--html", settings->html, "write the report as one HTML file")->type_name("FILE");
+  command->add_option("--junit", settings->junit, "write it as JUnit XML")->type_name("FILE");
+  command->add_option("--json", settings->json, "write it as JSON")->type_name("FILE");
+  command->add_option("--log", settings->log, "write the frames as a candump log")->type_name("FILE");
   command->add_option("--seed", settings->seed, "of the accesses that are chosen by lot")->capture_default_str();
-  command->add_flag("--quiet", settings->quiet, "print the result alone");
+  command->add_flag("--quiet", settings->quiet, "print failures and the result alone");
   add_timeout_option(*command, settings->sdo.timeout_ms);
   settings->color.add_to(*command);
   command->add_flag_callback(
@@ -222,7 +295,8 @@ void add_conform_command(CLI::App& app, int& exit_code) {
   for (CLI::Option* option : {bus, node, sheet}) option->required(false);
   command->callback([settings, bus, node, sheet, &exit_code] {
     if (settings->list) {
-      exit_code = list_cases();
+      list_cases();
+      exit_code = exit_fine;
       return;
     }
     for (const CLI::Option* option : {bus, node, sheet}) {

@@ -7,6 +7,7 @@
 
 #include "commands/load_device.hpp"
 #include "conform/sheet_findings.hpp"
+#include "conform/sheet_findings.hpp"
 #include "every_service_device.hpp"
 #include "simulation_port.hpp"
 
@@ -47,6 +48,7 @@ RunReport run_every_service(const Mutant& mutant, const std::vector<std::string>
   settings.dut.node = canopen::NodeId{Wire::node_id};
   settings.dut.level = Level::all;
   settings.dut.permissions = Permission::store | Permission::application | Permission::outputs;
+  settings.dut.findings = every_service_sheet().findings;
   settings.only = only;
   const Sheet sheet = load_sheet(mutant);
   settings.dut.findings = sheet.findings;

@@ -157,7 +157,7 @@ BlockValue upload_by_blocks(Dut& dut, std::uint16_t index, std::uint8_t sub_inde
   }
   const SdoFrame end = expect_command(dut, answer, sdo::block_upload_end, sdo::block_end_mask,
                                       "the end of a block upload of " + label(index, sub_index));
-  value.bytes.resize(value.bytes.size() - ((end[0] >> 2) & 7U));
+  value.bytes.erase(value.bytes.end() - ((end[0] >> 2) & 7), value.bytes.end());
   expect_size(dut, initiate, sdo::block_size_indicated, value.bytes.size(), index, sub_index);
   if (how.crc && (initiate[0] & sdo::crc_supported) != 0) {
     const unsigned crc = canopen::crc16_ccitt(0, value.bytes);
