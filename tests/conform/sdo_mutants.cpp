@@ -205,6 +205,21 @@ bool is_of(const Frame& frame, std::uint8_t command, std::uint16_t index, std::u
   return frame.data[0] == command && names(frame, index, sub_index) && sdo::word_of(frame.data) == word;
 }
 
+/// A transmission type of four bytes is refused, but the device changes it.
+Mutant refused_and_changed() {
+  return {"refused-values-change-the-entry",
+          {},
+          [](Wire& wire, Frame& frame) {
+            const std::uint16_t index = sdo::index_of(frame.data);
+            const bool is_type = (index & 0xFE00) == 0x1800 && frame.data[3] == 2;
+            if (!is_download(frame) || frame.data[0] != 0x23 || !is_type) return;
+            Frame change = frame;
+            change.data = bytes_of(0x2F, sdo::multiplexer_of(frame.data), frame.data[4] == 1 ? 2 : 1);
+            wire.request(change);
+            answer(wire, abort_of(frame, AbortCode::length_too_high));
+          }};
+}
+
 std::vector<Mutant> expedited() {
   return {
       device_type_in_segment("device-type-in-a-segment", 0x07),
@@ -238,6 +253,7 @@ std::vector<Mutant> expedited() {
                        return frame.data[0] == 0x2F && (wide || sdo::index_of(frame.data) == 0x1016);
                      },
                      canopen::ok),
+      refused_and_changed(),
       accepted("values-above-the-limit-taken", AbortCode::value_too_high),
       accepted("values-below-the-limit-taken", AbortCode::value_too_low),
       abort_code("code-of-value-too-low", AbortCode::value_too_low, AbortCode::length_mismatch),
@@ -254,6 +270,7 @@ std::vector<Mutant> segmented() {
       answers("upload-segment-toggle", 0x00, 0xE0, [](Data& data) { data[0] ^= sdo::toggle; }),
       answers("last-segment-one-byte-less", 0x01, 0xE1, [](Data& data) { data[0] = static_cast<std::uint8_t>(data[0] + 2); }),
       toggle_bit_ignored(),
+      requests("toggle-bit-of-downloads-ignored", 0x1B, 0xFF, [](Data& data) { data[0] = 0x0B; }),
       abort_code("code-of-toggle-bit", AbortCode::toggle_bit, AbortCode::command_specifier),
   };
 }
@@ -286,6 +303,10 @@ std::vector<Mutant> blocks() {
       requests("block-sequence-128-taken", 0xA2, 0xFF,
                [](Data& data) {
                  if (data[1] == 128) data[1] = 1;
+               }),
+      requests("lost-block-not-sent-again", 0xA2, 0xFF,
+               [](Data& data) {
+                 if (data[1] == 0) data[1] = 2;
                }),
       requests("block-of-127-segments-always", 0xA0, 0xE3,
                [](Data& data) {

@@ -262,8 +262,14 @@ void try_limit(Dut& dut, EntryResults& results, const LiveEntry& entry, const Va
                const std::optional<std::uint64_t>& beyond, const AbortRule& rule, std::string_view name) {
   if (beyond) {
     const Bytes value = dut.bytes_of(entry.index, entry.sub_index, *beyond);
+    const SdoOutcome before = dut.upload(entry.index, entry.sub_index);
     results.expect_abort(entry, dut.download(entry.index, entry.sub_index, value), rule,
                          fmt::format("{} written, which is beyond the {}", value_of(entry, value), name));
+    const SdoOutcome after = dut.upload(entry.index, entry.sub_index);
+    if (!entry.entry->pdo_mapping && before.done() && after.done() && after.bytes != before.bytes) {
+      results.add_failure(entry, fmt::format("{} refused, but {} stored", value_of(entry, value),
+                                             value_of(entry, after.bytes)));
+    }
   }
   const Bytes value = dut.bytes_of(entry.index, entry.sub_index, bits_of(dut, limit));
   const SdoOutcome outcome = dut.download(entry.index, entry.sub_index, value);

@@ -104,7 +104,7 @@ void read_and_write(Dut& dut) {
                  "no entry of 1000h to 1FFFh can be written without an effect on others");
 }
 
-/// With the value that the device has: one that takes it changes nothing.
+/// With the value that the device has: if it takes the value, nothing changes.
 void write_read_only(Dut& dut) {
   dut.expect_abort(dut.download(device_type, 0, dut.read(device_type)), abort_rule::read_only, "write of 1000h:00");
 }
@@ -137,14 +137,28 @@ void unknown_command(Dut& dut) {
 
 // Lengths and limits
 
+/// The value is refused, and the entry keeps what it has. What can be mapped may change by itself.
+void expect_refused(Dut& dut, const LiveEntry& entry, const Bytes& value, const AbortRule& rule,
+                    const std::string& what) {
+  const Bytes before = dut.read(entry.index, entry.sub_index);
+  dut.expect_abort(dut.download(entry.index, entry.sub_index, value), rule, what + " to " + title(entry));
+  if (entry.entry->pdo_mapping) return;
+  const Bytes after = dut.read(entry.index, entry.sub_index);
+  dut.expect(after == before, title(entry) + " as before: " + hex_bytes(before), hex_bytes(after));
+}
+
+void expect_refused(Dut& dut, const LiveEntry& entry, std::uint64_t value, const AbortRule& rule,
+                    const std::string& what) {
+  expect_refused(dut, entry, dut.bytes_of(entry.index, entry.sub_index, value), rule, what);
+}
+
 void write_too_long(Dut& dut) {
   const Entries entries = draw(dut, numbers_with(dut, [](const LiveEntry& e) { return e.type->bits <= 16; }));
   if (entries.empty()) dut.not_applicable("the EDS has no writable number of one or two bytes");
   for (const LiveEntry& entry : entries) {
     Bytes value = dut.read(entry.index, entry.sub_index);
     value.resize(4);
-    dut.expect_abort(dut.download(entry.index, entry.sub_index, value), abort_rule::too_long,
-                     "4 bytes to " + title(entry));
+    expect_refused(dut, entry, value, abort_rule::too_long, "4 bytes");
   }
 }
 
@@ -155,18 +169,8 @@ void write_too_short(Dut& dut) {
   for (const LiveEntry& entry : entries) {
     Bytes value = dut.read(entry.index, entry.sub_index);
     value.resize(1);
-    dut.expect_abort(dut.download(entry.index, entry.sub_index, value), abort_rule::too_short,
-                     "1 byte to " + title(entry));
+    expect_refused(dut, entry, value, abort_rule::too_short, "1 byte");
   }
-}
-
-/// A value that is refused; what the entry has does not change. What can be mapped may change by itself.
-void expect_refused(Dut& dut, const LiveEntry& entry, std::uint64_t value, const AbortRule& rule, const std::string& what) {
-  const Bytes before = dut.read(entry.index, entry.sub_index);
-  dut.expect_abort(dut.download(entry.index, entry.sub_index, value), rule, what + " to " + title(entry));
-  if (entry.entry->pdo_mapping) return;
-  const Bytes after = dut.read(entry.index, entry.sub_index);
-  dut.expect(after == before, title(entry) + " as before: " + hex_bytes(before), hex_bytes(after));
 }
 
 /// Limits of the EDS, else those of CiA 301: 1003h:00 takes only 0, and transmission type 241 is reserved.
@@ -291,10 +295,16 @@ std::uint64_t other_time(Dut& dut, std::uint16_t index) {
   dut.inconclusive("the limits of " + label(index, 0) + " leave none of 0, 100, 250, 500 and 1000 ms");
 }
 
+/// A wrong toggle bit is refused, and the value is not stored.
 template <std::uint16_t Index>
 void write_segmented(Dut& dut) {
   const std::uint64_t value = other_time(dut, Index);
-  download_by_segments(dut, Index, 0, dut.bytes_of(Index, 0, value));
+  const std::uint64_t before = dut.read_number(Index);
+  const Bytes bytes = dut.bytes_of(Index, 0, value);
+  dut.expect_abort(download_with_wrong_toggle(dut, Index, 0, bytes), abort_rule::toggle_bit,
+                   "a first segment with toggle bit 1");
+  dut.expect_equal(dut.read_number(Index), before, label(Index, 0) + " after a wrong toggle bit");
+  download_by_segments(dut, Index, 0, bytes);
   dut.expect_equal(dut.read_number(Index), value, label(Index, 0));
 }
 
@@ -305,11 +315,13 @@ void read_short_value_in_block(Dut& dut) {
   dut.expect(value.bytes == dut.read(device_type), "the 4 bytes of 1000h:00", hex_bytes(value.bytes));
 }
 
-/// In one block and in blocks of one segment.
+/// In one block, in blocks of one segment, and with a block that is sent again.
 void read_long_value_in_blocks(Dut& dut, bool crc) {
   const LiveEntry entry = need_long_entry(dut);
-  for (const std::uint8_t block_size : {sdo::largest_block, std::uint8_t{1}}) {
-    const BlockValue value = upload_by_blocks(dut, entry.index, entry.sub_index, {crc, block_size});
+  const BlockTransfer transfers[] = {
+      {crc, sdo::largest_block, false}, {crc, 1, false}, {crc, sdo::largest_block, true}};
+  for (const BlockTransfer& transfer : transfers) {
+    const BlockValue value = upload_by_blocks(dut, entry.index, entry.sub_index, transfer);
     if (crc && !value.crc_checked) dut.not_applicable("the device does not generate a CRC");
     expect_length(dut, entry, value.bytes.size());
     const bool constant = entry.entry->access == canopen::Access::constant;

@@ -33,6 +33,23 @@ SdoFrame segment_of(std::uint8_t command, std::span<const std::uint8_t> bytes) {
   return frame;
 }
 
+/// The segment of a download that begins at this byte of the value.
+SdoFrame download_segment(std::uint8_t toggle, std::span<const std::uint8_t> value, std::size_t at) {
+  const auto piece = value.subspan(at, std::min<std::size_t>(sdo::segment_bytes, value.size() - at));
+  const bool last = at + piece.size() == value.size();
+  return segment_of(static_cast<std::uint8_t>(toggle | (sdo::segment_bytes - piece.size()) << 1 |
+                                              (last ? sdo::last_segment : 0)),
+                    piece);
+}
+
+void initiate_download(Dut& dut, std::uint16_t index, std::uint8_t sub_index, std::size_t size) {
+  dut.remember(index, sub_index);
+  const SdoFrame request = sdo_frame(0x21, index, sub_index, static_cast<std::uint32_t>(size));
+  const SdoFrame answer = expect_command(dut, dut.exchange(request), 0x60, 0xFF,
+                                         "an answer to initiate download of " + label(index, sub_index));
+  expect_multiplexer(dut, answer, index, sub_index);
+}
+
 /// Of a size that is indicated.
 void expect_size(Dut& dut, const SdoFrame& initiate, std::uint8_t indicated, std::size_t size, std::uint16_t index,
                  std::uint8_t sub_index) {
@@ -101,20 +118,18 @@ Bytes upload_by_segments(Dut& dut, std::uint16_t index, std::uint8_t sub_index) 
   return bytes;
 }
 
+std::optional<SdoFrame> download_with_wrong_toggle(Dut& dut, std::uint16_t index, std::uint8_t sub_index,
+                                                   std::span<const std::uint8_t> value) {
+  initiate_download(dut, index, sub_index, value.size());
+  return dut.exchange(download_segment(sdo::toggle, value, 0));
+}
+
 void download_by_segments(Dut& dut, std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> value) {
-  dut.remember(index, sub_index);
-  const auto size = static_cast<std::uint32_t>(value.size());
-  const std::string initiate = "an answer to initiate download of " + label(index, sub_index);
-  const SdoFrame answer = expect_command(dut, dut.exchange(sdo_frame(0x21, index, sub_index, size)), 0x60, 0xFF, initiate);
-  expect_multiplexer(dut, answer, index, sub_index);
+  initiate_download(dut, index, sub_index, value.size());
   std::uint8_t toggle = 0;
   for (std::size_t at = 0; at < value.size(); at += sdo::segment_bytes, toggle ^= sdo::toggle) {
-    const auto piece = value.subspan(at, std::min<std::size_t>(sdo::segment_bytes, value.size() - at));
-    const bool last = at + piece.size() == value.size();
-    const auto command = static_cast<std::uint8_t>(toggle | (sdo::segment_bytes - piece.size()) << 1 |
-                                                   (last ? sdo::last_segment : 0));
-    expect_command(dut, dut.exchange(segment_of(command, piece)), static_cast<std::uint8_t>(0x20 | toggle), 0xFF,
-                   fmt::format("an answer to the segment of {} after {} bytes", label(index, sub_index), at));
+    expect_command(dut, dut.exchange(download_segment(toggle, value, at)), static_cast<std::uint8_t>(0x20 | toggle),
+                   0xFF, fmt::format("an answer to the segment of {} after {} bytes", label(index, sub_index), at));
   }
 }
 
@@ -139,6 +154,7 @@ BlockValue upload_by_blocks(Dut& dut, std::uint16_t index, std::uint8_t sub_inde
   BlockValue value;
   std::optional<SdoFrame> answer = dut.exchange(sdo_frame(sdo::block_upload_start));
   std::uint8_t sequence = 0;
+  std::size_t confirmed = 0;  // bytes
   for (bool last = false; !last;) {
     const std::string expected = fmt::format("segment {} of a block of {}", ++sequence, label(index, sub_index));
     const SdoFrame segment = expect_command(dut, answer, sequence, sdo::sequence_mask, expected);
@@ -150,10 +166,15 @@ BlockValue upload_by_blocks(Dut& dut, std::uint16_t index, std::uint8_t sub_inde
       continue;
     }
     SdoFrame confirm = sdo_frame(sdo::block_upload_confirm);
-    confirm[1] = sequence;
+    confirm[1] = how.first_lost ? 0 : sequence;
     confirm[2] = how.block_size;
     answer = dut.exchange(confirm);
     sequence = 0;
+    if (how.first_lost) {
+      value.bytes.resize(confirmed);
+      how.first_lost = last = false;
+    }
+    confirmed = value.bytes.size();
   }
   const SdoFrame end = expect_command(dut, answer, sdo::block_upload_end, sdo::block_end_mask,
                                       "the end of a block upload of " + label(index, sub_index));

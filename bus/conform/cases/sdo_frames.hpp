@@ -30,12 +30,16 @@ SdoFrame initiate_upload(Dut& dut, std::uint16_t index, std::uint8_t sub_index);
 
 /// Uploads expedited or in segments, as the device chooses: toggle bits, sizes and the last segment must be right.
 Bytes upload_by_segments(Dut& dut, std::uint16_t index, std::uint8_t sub_index);
+/// The answer to a segment whose toggle bit is 1 though it is the first of a download.
+std::optional<SdoFrame> download_with_wrong_toggle(Dut& dut, std::uint16_t index, std::uint8_t sub_index,
+                                                   std::span<const std::uint8_t> value);
 /// Downloads in segments, also what fits into one frame. The value is put back when the case is over.
 void download_by_segments(Dut& dut, std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> value);
 
 struct BlockTransfer {
   bool crc = false;
   std::uint8_t block_size = canopen::sdo::largest_block;  ///< segments of a sub-block
+  bool first_lost = false;  ///< the first sub-block is confirmed with 0, so that the device sends it again
 };
 
 /// Initiates a block upload. The case is not applicable where the device refuses it with 0504 0001h.
