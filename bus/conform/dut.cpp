@@ -459,6 +459,9 @@ void Dut::expect_state(NmtState expected) {
 void Dut::fail(std::string expected, std::string got) {
   throw CaseEnd{Verdict::failed, {}, std::move(expected), std::move(got)};
 }
+void Dut::fail_by_sheet(std::string_view rule, std::string expected, std::string got) {
+  throw CaseEnd{Verdict::failed, {}, std::move(expected), std::move(got), std::string{rule}};
+}
 void Dut::not_applicable(std::string reason) { throw CaseEnd{Verdict::not_applicable, std::move(reason), {}, {}}; }
 void Dut::inconclusive(std::string reason) { throw CaseEnd{Verdict::inconclusive, std::move(reason), {}, {}}; }
 

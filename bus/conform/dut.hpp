@@ -48,6 +48,7 @@ struct CaseEnd {
   std::string reason;
   std::string expected;
   std::string got;
+  std::string rule{};  ///< of `edsc check`, which tells the same of the data sheet
 };
 
 struct DutSettings {
@@ -55,8 +56,10 @@ struct DutSettings {
   SdoSettings sdo;
   Level level = Level::read;
   Permission permissions = Permission::none;
-  /// By how much times on the bus may differ from what the device promises, without the lag of the test itself.
-  Duration tolerance = milliseconds{0};
+  bool simulated = false;  ///< time passes only while the test waits
+  /// By how much times on the bus may differ from what the device promises, without the lag of the test itself. In
+  /// simulated time too, frames wait for others on the wire.
+  Duration tolerance = microseconds{500};
   std::uint32_t seed = 1;
   /// What `edsc check` finds in the EDS. Nothing when it was not checked.
   std::optional<SheetFindings> findings{};
@@ -181,6 +184,8 @@ class Dut {
   // ---- verdicts ----
 
   [[noreturn]] void fail(std::string expected, std::string got);
+  /// The device cannot pass, since its data sheet promises what no device keeps: a rule of `edsc check` says so.
+  [[noreturn]] void fail_by_sheet(std::string_view rule, std::string expected, std::string got);
   void expect(bool condition, const std::string& expected, const std::string& got) {
     if (!condition) fail(expected, got);
   }
@@ -202,7 +207,7 @@ class Dut {
 
   /// By how much a time may differ now: the tolerance of the run and the lag of the test.
   [[nodiscard]] Duration tolerance() const;
-  [[nodiscard]] bool simulated() const { return settings_.tolerance == Duration{0}; }
+  [[nodiscard]] bool simulated() const { return settings_.simulated; }
 
   // ---- what acts on the device from outside the bus ----
 

@@ -69,7 +69,11 @@ std::vector<std::string_view> permission_names(Permission permissions) {
 }
 
 std::string message_of(const CaseResult& result) {
-  if (result.verdict == Verdict::failed) return fmt::format("expected {}; got {}", result.expected, result.got);
+  if (result.verdict == Verdict::failed) {
+    std::string text = fmt::format("expected {}; got {}", result.expected, result.got);
+    if (!result.rule.empty()) text += fmt::format("; the data sheet says so: rule {} of edsc check", result.rule);
+    return text;
+  }
   const std::string_view text = row_of(result.verdict).text;
   const std::string& reason = result.verdict == Verdict::deviates ? result.deviation : result.reason;
   return reason.empty() ? std::string{text} : fmt::format("{}: {}", text, reason);

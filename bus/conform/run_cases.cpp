@@ -39,6 +39,7 @@ CaseResult run_case(const CaseRow& row, Dut& dut) {
     result.reason = std::move(end.reason);
     result.expected = std::move(end.expected);
     result.got = std::move(end.got);
+    result.rule = std::move(end.rule);
   }
   dut.end_case(result);
   return result;

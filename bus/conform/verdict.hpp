@@ -54,6 +54,7 @@ struct CaseResult {
   std::string reason;    ///< why it is none of passed and failed: `1017h:00 does not exist in the data sheet`
   std::string expected;  ///< of a failure: `0609 0011h, sub-index does not exist`
   std::string got;       ///< of a failure: `no answer within 500 ms`
+  std::string rule;      ///< of `edsc check`: the data sheet promises what no device keeps; empty: it does not
   std::vector<std::string> warnings;  ///< what passes, but is not what CiA 301 says
   std::vector<SeenFrame> frames;
   std::string deviation;                ///< the reason that the file of deviations gives

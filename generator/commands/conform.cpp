@@ -209,6 +209,7 @@ void run_and_print(LiveBus& bus, const Settings& settings, const LoadedDevice& l
                    const DeclaredDeviations& deviations, RunReport& report) {
   auto* const simulated = dynamic_cast<SimulatedPort*>(&bus.port());
   std::unique_ptr<conform::Stimuli> stimuli;
+  run.dut.simulated = simulated != nullptr;
   if (simulated != nullptr) {
     stimuli = std::make_unique<SimulatedStimuli>(*simulated);
   } else {

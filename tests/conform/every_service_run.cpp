@@ -46,9 +46,9 @@ RunReport run_every_service(const Mutant& mutant, const std::vector<std::string>
   LiveBus bus{std::make_unique<SimulationPort>(simulation, mutant)};
   RunSettings settings;
   settings.dut.node = canopen::NodeId{Wire::node_id};
+  settings.dut.simulated = true;
   settings.dut.level = Level::all;
   settings.dut.permissions = Permission::store | Permission::application | Permission::outputs;
-  settings.dut.findings = every_service_sheet().findings;
   settings.only = only;
   const Sheet sheet = load_sheet(mutant);
   settings.dut.findings = sheet.findings;

@@ -323,7 +323,9 @@ void set_guarding(Dut& dut, std::uint16_t milliseconds_between, std::uint8_t fac
 
 void one_of_both(Dut& dut) {
   const bool guarding = dut.has(guard_time) && dut.has(life_time_factor);
-  dut.expect(guarding || dut.has(producer_time), "1017h, or 100Ch and 100Dh", "the data sheet has neither");
+  if (!guarding && !dut.has(producer_time)) {
+    dut.fail_by_sheet("error-control", "1017h, or 100Ch and 100Dh", "the data sheet has neither");
+  }
   for (const std::uint16_t index : {guard_time, life_time_factor, producer_time}) {
     if (dut.has(index)) (void)dut.read_number(index);
   }

@@ -162,10 +162,14 @@ void expect_one_boot_up(Dut& dut, NmtCommand command) {
 }
 
 NmtState state_after_boot_up(Dut& dut) {
-  constexpr std::uint64_t does_not_start = 1U << 2;  // CiA 302-2: bit 2 of 1F80h
+  constexpr std::uint64_t is_master = 1U << 0, does_not_start = 1U << 2;  // CiA 302-2: bits of 1F80h
   const Entry* const startup = dut.entry(nmt_startup);
   if (startup == nullptr || !canopen::readable(startup->access)) return NmtState::pre_operational;
-  return (dut.read_number(nmt_startup) & does_not_start) != 0 ? NmtState::pre_operational : NmtState::operational;
+  const std::uint64_t bits = dut.read_number(nmt_startup);
+  if ((bits & is_master) != 0 && dut.watch_state()) {
+    return dut.state().value_or(NmtState::pre_operational);  // an NMT master starts when its network has booted
+  }
+  return (bits & does_not_start) != 0 ? NmtState::pre_operational : NmtState::operational;
 }
 
 }  // namespace edsc::conform
