@@ -7,7 +7,6 @@
 
 #include "commands/load_device.hpp"
 #include "conform/sheet_findings.hpp"
-#include "conform/sheet_findings.hpp"
 #include "every_service_device.hpp"
 #include "simulation_port.hpp"
 

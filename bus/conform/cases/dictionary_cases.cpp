@@ -257,20 +257,22 @@ void expect_written(EntryResults& results, const LiveEntry& entry, const SdoOutc
   results.add_failure(entry, fmt::format("{}: {}", what, failure_text(outcome)));
 }
 
-/// One limit: the next value beyond it is refused, and the limit itself is taken and read back.
-void try_limit(Dut& dut, EntryResults& results, const LiveEntry& entry, const Value& limit,
-               const std::optional<std::uint64_t>& beyond, const AbortRule& rule, std::string_view name) {
-  if (beyond) {
-    const Bytes value = dut.bytes_of(entry.index, entry.sub_index, *beyond);
-    const SdoOutcome before = dut.upload(entry.index, entry.sub_index);
-    results.expect_abort(entry, dut.download(entry.index, entry.sub_index, value), rule,
-                         fmt::format("{} written, which is beyond the {}", value_of(entry, value), name));
-    const SdoOutcome after = dut.upload(entry.index, entry.sub_index);
-    if (!entry.entry->pdo_mapping && before.done() && after.done() && after.bytes != before.bytes) {
-      results.add_failure(entry, fmt::format("{} refused, but {} stored", value_of(entry, value),
-                                             value_of(entry, after.bytes)));
-    }
+/// A value beyond a limit is refused and not stored.
+void try_beyond(Dut& dut, EntryResults& results, const LiveEntry& entry, std::uint64_t beyond, const AbortRule& rule,
+                std::string_view name) {
+  const Bytes value = dut.bytes_of(entry.index, entry.sub_index, beyond);
+  const SdoOutcome before = dut.upload(entry.index, entry.sub_index);
+  results.expect_abort(entry, dut.download(entry.index, entry.sub_index, value), rule,
+                       fmt::format("{} written, which is beyond the {}", value_of(entry, value), name));
+  const SdoOutcome after = dut.upload(entry.index, entry.sub_index);
+  if (!entry.entry->pdo_mapping && before.done() && after.done() && after.bytes != before.bytes) {
+    results.add_failure(entry, fmt::format("{} refused, but {} stored", value_of(entry, value),
+                                           value_of(entry, after.bytes)));
   }
+}
+
+/// The limit itself is taken and read back.
+void try_limit(Dut& dut, EntryResults& results, const LiveEntry& entry, const Value& limit, std::string_view name) {
   const Bytes value = dut.bytes_of(entry.index, entry.sub_index, bits_of(dut, limit));
   const SdoOutcome outcome = dut.download(entry.index, entry.sub_index, value);
   expect_written(results, entry, outcome, name);
@@ -279,6 +281,11 @@ void try_limit(Dut& dut, EntryResults& results, const LiveEntry& entry, const Va
   if (after.done() && after.bytes != value) {
     results.add_failure(entry, fmt::format("{} written, then {}", value_of(entry, value), value_of(entry, after.bytes)));
   }
+}
+
+/// Such a value cannot be written back, so that the entry keeps it.
+std::string outside_limits(const LiveEntry& entry, const Bytes& bytes) {
+  return fmt::format("{} is outside the limits {} of the EDS", value_of(entry, bytes), limits_text(*entry.entry));
 }
 
 void try_limits(Dut& dut) {
@@ -291,10 +298,15 @@ void try_limits(Dut& dut) {
     const SdoOutcome before = dut.upload(entry.index, entry.sub_index);
     if (!before.done()) continue;  // cases 4.1 and 4.7
     results.count();
-    if (row.high_limit)
-      try_limit(dut, results, entry, *row.high_limit, value_above_limit(dut, row), abort_rule::too_high, "HighLimit");
-    if (row.low_limit)
-      try_limit(dut, results, entry, *row.low_limit, value_below_limit(dut, row), abort_rule::too_low, "LowLimit");
+    const auto above = value_above_limit(dut, row), below = value_below_limit(dut, row);
+    if (above) try_beyond(dut, results, entry, *above, abort_rule::too_high, "HighLimit");
+    if (below) try_beyond(dut, results, entry, *below, abort_rule::too_low, "LowLimit");
+    if (!is_within_limits(dut, row, before.bytes)) {
+      results.add_warning(entry, outside_limits(entry, before.bytes));
+      continue;
+    }
+    if (row.high_limit) try_limit(dut, results, entry, *row.high_limit, "HighLimit");
+    if (row.low_limit) try_limit(dut, results, entry, *row.low_limit, "LowLimit");
     // At once: an output does not stay at its limit while the other entries are tried.
     (void)dut.command(entry.index, entry.sub_index, before.bytes);
   }
@@ -311,6 +323,10 @@ void write_back(Dut& dut) {
     const SdoOutcome before = dut.upload(entry.index, entry.sub_index);
     if (!before.done()) continue;  // case 4.7
     results.count();
+    if (!is_within_limits(dut, *entry.entry, before.bytes)) {
+      results.add_warning(entry, outside_limits(entry, before.bytes));
+      continue;
+    }
     const SdoOutcome written = dut.command(entry.index, entry.sub_index, before.bytes);
     expect_written(results, entry, written, "the value read before");
     if (!written.done() || entry.entry->pdo_mapping) continue;

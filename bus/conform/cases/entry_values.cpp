@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "device/value.hpp"
 #include "live/configuration_plan.hpp"
 #include "text/utf8.hpp"
 
@@ -123,6 +124,16 @@ std::optional<std::uint64_t> value_above_limit(const Dut& dut, const Entry& entr
 std::optional<std::uint64_t> value_below_limit(const Dut& dut, const Entry& entry) {
   if (!entry.low_limit || entry.type == nullptr) return std::nullopt;
   return next_value(*entry.type, bits_of(dut, *entry.low_limit), false);
+}
+
+bool is_within_limits(const Dut& dut, const Entry& entry, std::span<const std::uint8_t> bytes) {
+  if (entry.type == nullptr || entry.type->bits == 0) return true;
+  std::uint64_t value = number_of(bytes);
+  const bool negative = entry.type->kind == DataClass::signed_integer && ((value >> (entry.type->bits - 1)) & 1) != 0;
+  if (negative) value |= least(*entry.type);
+  const bool too_high = entry.high_limit && is_less(*entry.type, bits_of(dut, *entry.high_limit), value);
+  const bool too_low = entry.low_limit && is_less(*entry.type, value, bits_of(dut, *entry.low_limit));
+  return !too_high && !too_low;
 }
 
 bool depends_on_state(canopen::AbortCode code) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "conform/dut.hpp"
@@ -38,6 +39,9 @@ inline constexpr std::uint32_t refuse_read_flag = 2;
 /// there.
 [[nodiscard]] std::optional<std::uint64_t> value_above_limit(const Dut& dut, const Entry& entry);
 [[nodiscard]] std::optional<std::uint64_t> value_below_limit(const Dut& dut, const Entry& entry);
+
+/// Whether the limits of the EDS allow a value. One that they do not allow cannot be written back.
+[[nodiscard]] bool is_within_limits(const Dut& dut, const Entry& entry, std::span<const std::uint8_t> bytes);
 
 /// Refusals that depend on the state of the device or on other values: nothing is wrong with the request.
 [[nodiscard]] bool depends_on_state(canopen::AbortCode code);

@@ -17,7 +17,6 @@
 #include "conform/cases/entry_values.hpp"
 #include "conform/cases/sdo_frames.hpp"
 #include "conform/dut.hpp"
-#include "device/value.hpp"
 
 namespace edsc::conform {
 namespace sdo_area {
@@ -90,7 +89,7 @@ void read_and_write(Dut& dut) {
     results.count();
     const SdoOutcome before = dut.upload(entry.index, entry.sub_index);
     results.expect_done(entry, before);
-    if (!before.done()) continue;
+    if (!before.done() || !is_within_limits(dut, *entry.entry, before.bytes)) continue;
     const SdoOutcome written = dut.download(entry.index, entry.sub_index, before.bytes);
     results.expect_done(entry, written);
     if (!written.done()) continue;
@@ -288,9 +287,7 @@ std::uint64_t other_time(Dut& dut, std::uint16_t index) {
     dut.write(other, 0, 0);
   const std::uint64_t present = dut.read_number(index);
   for (const std::uint64_t value : {1000U, 500U, 250U, 100U, 0U}) {
-    const bool too_high = entry.high_limit && is_less(*entry.type, bits_of(dut, *entry.high_limit), value);
-    const bool too_low = entry.low_limit && is_less(*entry.type, value, bits_of(dut, *entry.low_limit));
-    if (value != present && !too_high && !too_low) return value;
+    if (value != present && is_within_limits(dut, entry, dut.bytes_of(index, 0, value))) return value;
   }
   dut.inconclusive("the limits of " + label(index, 0) + " leave none of 0, 100, 250, 500 and 1000 ms");
 }
