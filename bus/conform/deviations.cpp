@@ -17,7 +17,7 @@
 namespace edsc::conform {
 namespace {
 
-using nlohmann::json;
+using json = nlohmann::ordered_json;  // errors in the order of the file
 
 constexpr std::array<std::string_view, 2> file_members = {"$schema", "deviations"};
 constexpr std::array<std::string_view, 4> deviation_members = {"case", "object", "reason", "source"};

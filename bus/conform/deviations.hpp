@@ -1,6 +1,7 @@
 /// Declared deviations: where a device does not do what CiA 301 says, on purpose, and what its manual says about it.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>

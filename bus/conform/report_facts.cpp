@@ -47,8 +47,10 @@ std::vector<std::string> run_problems(const RunReport& run) {
 }
 
 std::string result_sentence(const RunReport& run) {
-  std::string text =
-      run.cases.empty() ? "no case ran" : fmt::format("{} of {} failed", run.count(Verdict::failed), counted(run.cases.size(), "case"));
+  if (run.cases.empty()) return "no case ran";
+  const std::size_t failed = run.count(Verdict::failed);
+  const std::string cases = counted(run.cases.size(), "case");
+  std::string text = failed == 0 ? fmt::format("none of {} failed", cases) : fmt::format("{} of {} failed", failed, cases);
   std::string_view separator = "; ";
   for (const VerdictRow& row : verdicts) {
     const std::size_t count = run.count(row.verdict);

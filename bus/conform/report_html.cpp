@@ -80,6 +80,7 @@ json case_view(const CaseResult& result, const RunReport& run, const Device& she
           {"clause", row.clause},
           {"expected", shown(result.expected)},
           {"got", shown(result.got)},
+          {"rule", shown(result.rule)},
           {"warnings", result.warnings},
           {"not_put_back", result.not_put_back},
           {"lag", duration_text(result.lag)},

@@ -36,7 +36,8 @@ std::size_t RunReport::count(Verdict verdict) const {
 }
 
 bool RunReport::passed() const {
-  return count(Verdict::failed) == 0 && unused_deviations.empty() && not_put_back.empty() && !interrupted && lost.empty();
+  return !cases.empty() && count(Verdict::failed) == 0 && unused_deviations.empty() && not_put_back.empty() &&
+         !interrupted && lost.empty();
 }
 
 std::string repeat_command(const RunReport& run, const CaseRow& row) {

@@ -84,7 +84,7 @@ struct RunReport {
   std::string lost;  ///< why the run ended early: the bus is lost, or the device does not answer
 
   [[nodiscard]] std::size_t count(Verdict verdict) const;
-  /// No case failed, no deviation is unused, nothing is left changed and the run reached its end.
+  /// Cases ran and none failed, no deviation is unused, nothing is left changed and the run reached its end.
   [[nodiscard]] bool passed() const;
 };
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
@@ -225,10 +226,14 @@ void run_and_print(LiveBus& bus, const Settings& settings, const LoadedDevice& l
   run.ended = [&](CaseResult& result) {
     conform::apply_deviations(deviations.all, result);
     const bool shown = !settings.quiet || result.verdict == Verdict::failed;
-    if (shown) write_output(text.of(result));
+    if (!shown) return;
+    progress.hide();
+    write_output(text.of(result));
+    flush_output();
   };
   conform::run_cases(bus, *loaded.device, *stimuli, run, report);
   conform::find_unused_deviations(deviations.all, report);
+  progress.hide();
   write_output(text.summary());
 }
 
@@ -275,9 +280,18 @@ void add_conform_command(CLI::App& app, int& exit_code) {
   command->add_flag("--store", settings->store, "store and restore parameters (1010h, 1011h), and put back");
   command->add_flag("--application", settings->application, "write 2000h and above, and put back");
   command->add_flag("--outputs", settings->outputs, "send RPDOs and SYNC: outputs may move");
-  command->add_option("--only", settings->only, "cases to run: 2.5 or 3.*; may be given more than once")->type_name("CASE");
+  command->add_option("--only", settings->only, "cases to run: 2.5 or 3.*; may be given more than once")
+      ->type_name("CASE")
+      ->allow_extra_args(false)
+      ->check([](const std::string& pattern) {
+        const auto rows = conform::all_cases();
+        const bool names_one =
+            std::ranges::any_of(rows, [&](const CaseRow* row) { return conform::matches(pattern, row->id); });
+        return names_one ? std::string{} : "no case is \"" + pattern + "\"; --list prints them";
+      });
   command->add_option("--stimulus", settings->stimuli, "command that acts on the node in a case: 5.4=COMMAND")
       ->type_name("CASE=COMMAND")
+      ->allow_extra_args(false)
       ->check([](const std::string& text) {
         return text.find('=') != std::string::npos ? std::string{} : "\"" + text + "\" is not CASE=COMMAND";
       });

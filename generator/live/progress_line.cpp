@@ -16,9 +16,7 @@ constexpr std::chrono::milliseconds between{100};
 
 ProgressLine::ProgressLine() : terminal_{isatty(fileno(stderr)) != 0}, next_{Clock::now() + before_the_first} {}
 
-ProgressLine::~ProgressLine() {
-  if (shown_) print_visibly(stderr, "\r\x1B[K");
-}
+ProgressLine::~ProgressLine() { hide(); }
 
 bool ProgressLine::due() const { return terminal_ && Clock::now() >= next_; }
 
@@ -28,6 +26,13 @@ void ProgressLine::show(const std::string& text) {
   std::fflush(stderr);
   shown_ = true;
   next_ = Clock::now() + between;
+}
+
+void ProgressLine::hide() {
+  if (!shown_) return;
+  print_visibly(stderr, "\r\x1B[K");
+  std::fflush(stderr);
+  shown_ = false;
 }
 
 }  // namespace edsc

@@ -17,6 +17,8 @@ class ProgressLine {
   /// Whether it is time to show something new.
   [[nodiscard]] bool due() const;
   void show(const std::string& text);
+  /// Before something else is printed.
+  void hide();
 
  private:
   using Clock = std::chrono::steady_clock;

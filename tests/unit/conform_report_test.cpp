@@ -132,6 +132,7 @@ TEST(ConformRun, PassesWithoutFailureAndProblem) {
   EXPECT_EQ(run.count(Verdict::failed), 1u);
   run.cases.erase(run.cases.begin() + 1);
   EXPECT_TRUE(run.passed());
+  EXPECT_FALSE(RunReport{}.passed()) << "no case ran";
   for (auto spoil : {+[](RunReport& r) { r.unused_deviations.emplace_back("3.7"); },
                      +[](RunReport& r) { r.not_put_back.emplace_back("1017h:00"); },
                      +[](RunReport& r) { r.interrupted = true; }, +[](RunReport& r) { r.lost = "the bus is lost"; }}) {
