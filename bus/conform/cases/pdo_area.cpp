@@ -423,14 +423,25 @@ bool Event::set(const Candidate& candidate, bool changed) {
 }
 
 bool Event::apply() {
-  while (!works_ && !candidates_.empty()) {
-    works_ = set(candidates_.front(), true);
-    if (works_) return is_changed_ = true;
+  while (!candidates_.empty() && !set(candidates_.front(), !is_changed_)) {
+    if (works_) return false;
     candidates_.erase(candidates_.begin());
   }
-  if (!works_ || !set(candidates_.front(), !is_changed_)) return false;
+  if (candidates_.empty()) return false;
+  works_ = true;
   is_changed_ = !is_changed_;
   return true;
+}
+
+bool Event::use_next() {
+  for (std::size_t next = 1; works_ && next < candidates_.size(); ++next) {
+    if (!set(candidates_[next], false)) continue;
+    if (is_changed_) (void)set(candidates_.front(), false);
+    is_changed_ = false;
+    candidates_.erase(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(next));
+    return true;
+  }
+  return false;
 }
 
 std::string Event::object() const {

@@ -168,6 +168,9 @@ class Event {
 
   /// The other value each time. False where no stimulus changes any of the objects.
   [[nodiscard]] bool apply();
+  /// Another object from now on, as a change of the last one is not an event. False where there is none: the last one
+  /// stays.
+  [[nodiscard]] bool use_next();
   [[nodiscard]] std::string object() const;  ///< that `apply` has changed
 
  private:

@@ -68,15 +68,17 @@ void scan(Dut& dut, const ParameterRange& range) {
 
 /// Sub-index 4 does not exist, unless the data sheet has it.
 void expect_no_reserved_parameter(Dut& dut) {
+  std::string reserved;
   for (const Pdo* pdo : dut.pdos(PdoDirection::transmit)) {
     const std::uint16_t index = pdo->communication->index;
+    const std::string name = label(index, reserved_parameter);
     if (dut.has(index, reserved_parameter)) {
-      dut.warn(label(index, reserved_parameter) + " is in the data sheet; CiA 301 reserves it");
+      reserved += reserved.empty() ? name : ", " + name;
     } else {
-      dut.expect_abort(dut.upload(index, reserved_parameter), abort_rule::no_sub_index,
-                       label(index, reserved_parameter));
+      dut.expect_abort(dut.upload(index, reserved_parameter), abort_rule::no_sub_index, name);
     }
   }
+  if (!reserved.empty()) dut.warn("the data sheet has what CiA 301 reserves: " + reserved);
 }
 
 /// Each CAN-ID has one producer, and one meaning.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <canopen/pdo_mapping.hpp>
+#include <functional>
 #include <iterator>
 
 #include "conform/cases/pdo_cases.hpp"
@@ -19,11 +20,11 @@ using Code = canopen::AbortCode;
 /// An object that does not exist or cannot be mapped: step 3 of the procedure.
 constexpr AbortRule wrong_object{{Code::not_mappable, Code::no_object}, {}};
 /// A mapping that is not possible: step 4 of the procedure.
-constexpr AbortRule wrong_mapping{{Code::pdo_length, Code::no_object},
-                                  {Code::not_mappable, Code::unsupported_access, Code::general}};
-/// A number of objects beyond what sub-index 0 can hold is also an invalid value.
-constexpr AbortRule wrong_count{{Code::pdo_length, Code::no_object, Code::value_too_high},
-                                {Code::not_mappable, Code::unsupported_access, Code::invalid_value}};
+constexpr AbortRule wrong_mapping{{Code::pdo_length, Code::no_object, Code::not_mappable},
+                                  {Code::unsupported_access, Code::general}};
+/// A number of objects that sub-index 0 cannot hold may also be an invalid value.
+constexpr AbortRule wrong_count{{Code::pdo_length, Code::no_object, Code::not_mappable},
+                                {Code::unsupported_access, Code::invalid_value, Code::value_too_high}};
 
 Mappable direction_of(PdoDirection direction) {
   return direction == PdoDirection::receive ? Mappable::rpdo : Mappable::tpdo;
@@ -451,26 +452,51 @@ void refuses_too_many_objects(Dut& dut) {
   }
 }
 
+namespace {
+
+/// Objects of more than 64 bits together, as few as can be; the same ones again where there are not enough. Nothing
+/// where the PDO cannot map so many.
+std::vector<Mapped> too_long_mapping(const Dut& dut, const Remapping& remapping) {
+  std::vector<Mapped> objects = mappable_objects(dut, remapping.pdo().direction);
+  std::ranges::stable_sort(objects, std::ranges::greater{}, &Mapped::bits);
+  std::vector<Mapped> mapping;
+  for (std::size_t i = 0; !objects.empty() && bits_of(mapping) <= 64; ++i) {
+    if (mapping.size() == remapping.capacity()) return {};
+    mapping.push_back(objects[i % objects.size()]);
+  }
+  return mapping;
+}
+
+}  // namespace
+
 void refuses_too_many_bits(Dut& dut) {
+  std::string reason = "no mapping that the data sheet allows is longer than 64 bits";
   bool any = false;
   for (Remapping& remapping : all_remappings(dut)) {
-    const std::vector<Mapped> objects = mappable_objects(dut, remapping.pdo().direction);
-    const auto longest = std::ranges::max_element(objects, {}, &Mapped::bits);
-    if (longest == objects.end() || longest->bits * remapping.capacity() <= 64) continue;
-    any = true;
+    const std::vector<Mapped> mapping = too_long_mapping(dut, remapping);
+    if (mapping.empty()) continue;
     remapping.begin();
     std::uint8_t count = 0;
     SdoOutcome outcome;
-    while (outcome.done() && count * longest->bits <= 64) outcome = remapping.map(++count, *longest);
-    const bool is_last = count * longest->bits > 64;
-    dut.expect(outcome.done() || is_last, remapping.mapping_text(count, *longest), outcome_text(outcome));
-    if (outcome.done()) outcome = remapping.set_count(count);
-    dut.expect_abort(outcome, wrong_mapping,
-                     fmt::format("{} with {} bits", pdo_label(remapping.pdo()), count * longest->bits));
-    remapping.expect_unchanged(0, 0);
+    while (outcome.done() && count < mapping.size()) {
+      outcome = remapping.map(static_cast<std::uint8_t>(count + 1), mapping[count]);
+      ++count;
+    }
+    const bool is_again = std::ranges::count(mapping, mapping[count - 1U]) > 1;
+    if (!outcome.done() && count < mapping.size() && is_again) {
+      reason = fmt::format("{} does not map {} twice", pdo_label(remapping.pdo()), objects_text({mapping[count - 1U]}));
+    } else {
+      dut.expect(outcome.done() || count == mapping.size(), remapping.mapping_text(count, mapping[count - 1U]),
+                 outcome_text(outcome));
+      if (outcome.done()) outcome = remapping.set_count(count);
+      dut.expect_abort(outcome, wrong_mapping,
+                       fmt::format("{} with {} bits", pdo_label(remapping.pdo()), bits_of(mapping)));
+      remapping.expect_unchanged(0, 0);
+      any = true;
+    }
     remapping.put_back();
   }
-  if (!any) dut.not_applicable("no mapping that the data sheet allows is longer than 64 bits");
+  if (!any) dut.not_applicable(reason);
 }
 
 // ---- which objects ----
