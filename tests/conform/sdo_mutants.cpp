@@ -28,7 +28,8 @@ bool is_answer(const Frame& frame) { return frame.id == answer_id && frame.size 
 
 Data bytes_of(std::uint8_t command, std::uint32_t multiplexer, std::uint32_t word) {
   Data data{command};
-  sdo::put_multiplexer(data, static_cast<std::uint16_t>(multiplexer >> 8), static_cast<std::uint8_t>(multiplexer >> 24));
+  sdo::put_multiplexer(data, static_cast<std::uint16_t>(multiplexer >> 8),
+                       static_cast<std::uint8_t>(multiplexer >> 24));
   sdo::put_word(data, word);
   return data;
 }
@@ -82,9 +83,7 @@ Mutant accepted(std::string_view name, AbortCode code) {
 /// An upload that is answered with four bytes, or with an abort.
 Mutant upload_gives(std::string_view name, std::uint16_t index, std::uint8_t sub_index, std::uint8_t command,
                     std::uint32_t word) {
-  return {name,
-          {},
-          [=](Wire& wire, Frame& frame) {
+  return {name, {}, [=](Wire& wire, Frame& frame) {
             if (is_upload(frame) && names(frame, index, sub_index))
               answer(wire, bytes_of(command, sdo::multiplexer(index, sub_index), word));
           }};
@@ -96,12 +95,10 @@ Mutant upload_refused(std::string_view name, std::uint16_t index, std::uint8_t s
 
 /// A download to these entries that is answered without being done: with an abort, or with a confirmation (`none`).
 Mutant download_gives(std::string_view name, std::function<bool(const Frame&)> condition, AbortCode code) {
-  return {name,
-          {},
-          [=](Wire& wire, Frame& frame) {
+  return {name, {}, [=](Wire& wire, Frame& frame) {
             if (!is_download(frame) || !condition(frame)) return;
-            answer(wire, code == canopen::ok ? bytes_of(0x60, sdo::multiplexer_of(frame.data), 0)
-                                             : abort_of(frame, code));
+            answer(wire,
+                   code == canopen::ok ? bytes_of(0x60, sdo::multiplexer_of(frame.data), 0) : abort_of(frame, code));
           }};
 }
 
@@ -115,9 +112,7 @@ Mutant answers(std::string_view name, std::uint8_t command, std::uint8_t mask, s
 }
 
 Mutant requests(std::string_view name, std::uint8_t command, std::uint8_t mask, std::function<void(Data&)> change) {
-  return {name,
-          {},
-          [=](Wire&, Frame& frame) {
+  return {name, {}, [=](Wire&, Frame& frame) {
             if (is_request(frame) && (frame.data[0] & mask) == command) change(frame.data);
           }};
 }
@@ -126,9 +121,7 @@ Mutant requests(std::string_view name, std::uint8_t command, std::uint8_t mask, 
 
 /// 1000h:00 comes in a segment, whose command byte is given.
 Mutant device_type_in_segment(std::string_view name, std::uint8_t segment) {
-  return {name,
-          {},
-          [segment, open = false](Wire& wire, Frame& frame) mutable {
+  return {name, {}, [segment, open = false](Wire& wire, Frame& frame) mutable {
             if (!is_request(frame)) return;
             if (is_upload(frame) && names(frame, 0x1000, 0)) {
               open = true;
@@ -159,9 +152,7 @@ Mutant wrong_default_in_eds() {
 
 /// The toggle bit of upload requests is not looked at.
 Mutant toggle_bit_ignored() {
-  return {"toggle-bit-ignored",
-          {},
-          [next = std::uint8_t{0}](Wire&, Frame& frame) mutable {
+  return {"toggle-bit-ignored", {}, [next = std::uint8_t{0}](Wire&, Frame& frame) mutable {
             if (!is_request(frame)) return;
             if (frame.data[0] == 0x40) next = 0x60;
             if ((frame.data[0] & 0xE0) != 0x60) return;
@@ -181,17 +172,16 @@ Mutant block_sequence_from_2() {
 
 /// 1201h:01 keeps what was written when communication is reset.
 Mutant server_not_reset() {
-  return {"sdo-server-not-reset",
-          {},
-          [written = std::uint32_t{0}, was_reset = false](Wire& wire, Frame& frame) mutable {
-            if (frame.id == 0 && frame.data[0] == 0x82) was_reset = written != 0;
-            if (is_download(frame) && names(frame, 0x1201, 1)) {
-              written = sdo::word_of(frame.data);
-              was_reset = false;
-            }
-            if (was_reset && is_upload(frame) && names(frame, 0x1201, 1))
-              answer(wire, bytes_of(0x43, sdo::multiplexer(0x1201, 1), written));
-          }};
+  return {
+      "sdo-server-not-reset", {}, [written = std::uint32_t{0}, was_reset = false](Wire& wire, Frame& frame) mutable {
+        if (frame.id == 0 && frame.data[0] == 0x82) was_reset = written != 0;
+        if (is_download(frame) && names(frame, 0x1201, 1)) {
+          written = sdo::word_of(frame.data);
+          was_reset = false;
+        }
+        if (was_reset && is_upload(frame) && names(frame, 0x1201, 1))
+          answer(wire, bytes_of(0x43, sdo::multiplexer(0x1201, 1), written));
+      }};
 }
 
 bool is_short_parameter(const Frame& frame) {
@@ -207,9 +197,7 @@ bool is_of(const Frame& frame, std::uint8_t command, std::uint16_t index, std::u
 
 /// A transmission type of four bytes is refused, but the device changes it.
 Mutant refused_and_changed() {
-  return {"refused-values-change-the-entry",
-          {},
-          [](Wire& wire, Frame& frame) {
+  return {"refused-values-change-the-entry", {}, [](Wire& wire, Frame& frame) {
             const std::uint16_t index = sdo::index_of(frame.data);
             const bool is_type = (index & 0xFE00) == 0x1800 && frame.data[3] == 2;
             if (!is_download(frame) || frame.data[0] != 0x23 || !is_type) return;
@@ -227,10 +215,11 @@ std::vector<Mutant> expedited() {
       answered_twice(),
       upload_gives("device-type-of-one-byte", 0x1000, 0, 0x4F, 0),
       upload_gives("device-type-of-another-profile", 0x1000, 0, 0x43, 0x0002'0192),
-      download_gives("parameters-not-writable",
-                     [](const Frame& frame) { return is_short_parameter(frame) && frame.data[3] == 2; },
-                     AbortCode::read_only),
-      download_gives("device-type-writable", [](const Frame& frame) { return names(frame, 0x1000, 0); }, canopen::ok),
+      download_gives(
+          "parameters-not-writable", [](const Frame& frame) { return is_short_parameter(frame) && frame.data[3] == 2; },
+          AbortCode::read_only),
+      download_gives(
+          "device-type-writable", [](const Frame& frame) { return names(frame, 0x1000, 0); }, canopen::ok),
       abort_code("code-of-read-only", AbortCode::read_only, AbortCode::no_object),
       upload_gives("write-only-entry-readable", 0x200C, 0, 0x43, 0),
       abort_code("code-of-write-only", AbortCode::write_only, AbortCode::read_only),
@@ -242,17 +231,18 @@ std::vector<Mutant> expedited() {
          if (is_request(frame) && frame.data[0] == 0xE0) wire.drop();
        }},
       abort_code("code-of-unknown-command", AbortCode::command_specifier, AbortCode::no_object),
-      download_gives("too-long-values-taken",
-                     [](const Frame& frame) { return frame.data[0] == 0x23 && is_short_parameter(frame); },
-                     canopen::ok),
-      download_gives("too-short-values-taken",
-                     [](const Frame& frame) {
-                       const bool one_byte_type = sdo::index_of(frame.data) == 0x100D || frame.data[3] == 2 ||
-                                                  sdo::index_of(frame.data) == 0x1029;
-                       const bool wide = is_short_parameter(frame) && !one_byte_type;
-                       return frame.data[0] == 0x2F && (wide || sdo::index_of(frame.data) == 0x1016);
-                     },
-                     canopen::ok),
+      download_gives(
+          "too-long-values-taken",
+          [](const Frame& frame) { return frame.data[0] == 0x23 && is_short_parameter(frame); }, canopen::ok),
+      download_gives(
+          "too-short-values-taken",
+          [](const Frame& frame) {
+            const bool one_byte_type =
+                sdo::index_of(frame.data) == 0x100D || frame.data[3] == 2 || sdo::index_of(frame.data) == 0x1029;
+            const bool wide = is_short_parameter(frame) && !one_byte_type;
+            return frame.data[0] == 0x2F && (wide || sdo::index_of(frame.data) == 0x1016);
+          },
+          canopen::ok),
       refused_and_changed(),
       accepted("values-above-the-limit-taken", AbortCode::value_too_high),
       accepted("values-below-the-limit-taken", AbortCode::value_too_low),
@@ -268,7 +258,8 @@ std::vector<Mutant> segmented() {
       requests("segment-written-as-0", 0x0B, 0xFF, [](Data& data) { data = {data[0]}; }),
       answers("indicated-size-too-high", 0x41, 0xFF, [](Data& data) { ++data[4]; }),
       answers("upload-segment-toggle", 0x00, 0xE0, [](Data& data) { data[0] ^= sdo::toggle; }),
-      answers("last-segment-one-byte-less", 0x01, 0xE1, [](Data& data) { data[0] = static_cast<std::uint8_t>(data[0] + 2); }),
+      answers("last-segment-one-byte-less", 0x01, 0xE1,
+              [](Data& data) { data[0] = static_cast<std::uint8_t>(data[0] + 2); }),
       toggle_bit_ignored(),
       requests("toggle-bit-of-downloads-ignored", 0x1B, 0xFF, [](Data& data) { data[0] = 0x0B; }),
       abort_code("code-of-toggle-bit", AbortCode::toggle_bit, AbortCode::command_specifier),
@@ -283,8 +274,7 @@ std::vector<Mutant> blocks() {
       answers("block-crc-wrong", 0xC1, 0xE3, [](Data& data) { data[1] ^= 1; }),
       answers("block-confirms-no-segment", 0xA2, 0xFF, [](Data& data) { data[1] = 0; }),
       answers("block-end-not-confirmed", 0xA1, 0xFF, [](Data& data) { data[0] = 0xA3; }),
-      requests("block-segment-written-as-0", 0x81, 0xFF,
-               [](Data& data) { data = {data[0]}; }),
+      requests("block-segment-written-as-0", 0x81, 0xFF, [](Data& data) { data = {data[0]}; }),
       {"block-crc-not-compared",
        [](Wire&, Frame& frame) {
          const bool crc = is_answer(frame) && frame.data[0] == abort_byte &&
@@ -324,15 +314,17 @@ std::vector<Mutant> dictionary() {
       upload_refused("parameter-not-readable", 0x1007, 0, AbortCode::hardware),
       upload_gives("parameter-of-one-byte", 0x1006, 0, 0x4F, 0),
       upload_gives("product-code-of-another-product", 0x1018, 2, 0x43, 5),
-      download_gives("serial-number-writable", [](const Frame& frame) { return names(frame, 0x1018, 4); }, canopen::ok),
+      download_gives(
+          "serial-number-writable", [](const Frame& frame) { return names(frame, 0x1018, 4); }, canopen::ok),
       upload_gives("structure-of-an-array", 0x1018, 0xFF, 0x43, 0x2308),
-      download_gives("high-limit-refused", [](const Frame& frame) { return is_of(frame, 0x2F, 0x2005, 0, 100); },
-                     AbortCode::value_too_high),
+      download_gives(
+          "high-limit-refused", [](const Frame& frame) { return is_of(frame, 0x2F, 0x2005, 0, 100); },
+          AbortCode::value_too_high),
       upload_gives("application-entry-of-four-bytes", 0x2003, 0, 0x43, 0),
       upload_refused("application-entry-not-readable", 0x200D, 0, AbortCode::unsupported_access),
       upload_gives("highest-sub-index-of-application", 0x2002, 0, 0x4F, 4),
-      download_gives("text-not-writable", [](const Frame& frame) { return names(frame, 0x2006, 0); },
-                     AbortCode::read_only),
+      download_gives(
+          "text-not-writable", [](const Frame& frame) { return names(frame, 0x2006, 0); }, AbortCode::read_only),
   };
 }
 

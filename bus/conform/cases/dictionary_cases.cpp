@@ -1,5 +1,5 @@
-/// Area 4: the object dictionary and its EDS (CiA 301, 7.4). Cases 4.1 and 4.2 are about 1000h to 1FFFh, 4.7 to 4.9 about
-/// 2000h and above, where ObjFlags say what tools must leave alone; the others are about all entries.
+/// Area 4: the object dictionary and its EDS (CiA 301, 7.4). Cases 4.1 and 4.2 are about 1000h to 1FFFh, 4.7 to 4.9
+/// about 2000h and above, where ObjFlags say what tools must leave alone; the others are about all entries.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,8 +22,8 @@ namespace edsc::conform {
 namespace dictionary_area {
 namespace {
 
-using canopen::Access;
 using canopen::AbortCode;
+using canopen::Access;
 
 constexpr std::uint16_t error_history = 0x1003;
 constexpr std::uint8_t structure = 0xFF;  ///< the sub-index that describes the structure of an object
@@ -54,7 +54,8 @@ SdoOutcome read_entry(Dut& dut, const LiveEntry& entry) {
   return is_domain(entry) ? begin_upload(dut, entry) : dut.upload(entry.index, entry.sub_index);
 }
 
-/// Entries that have no value now: the rest of the error history (CiA 301, 7.5.2.4), a string or DOMAIN not yet written.
+/// Entries that have no value now: the rest of the error history (CiA 301, 7.5.2.4), a string or DOMAIN not yet
+/// written.
 bool may_have_no_value(const LiveEntry& entry) {
   return entry.type->bits == 0 || (entry.index == error_history && entry.sub_index != 0);
 }
@@ -65,8 +66,8 @@ void expect_readable(EntryResults& results, const LiveEntry& entry, const SdoOut
   if (refused && depends_on_state(outcome.code)) return results.add_warning(entry, failure_text(outcome));
   results.expect_done(entry, outcome);
   if (outcome.done() && entry.type->bits != 0 && outcome.bytes.size() != type_bytes(entry)) {
-    results.add_failure(entry, fmt::format("{} bytes, but {} has {}", outcome.bytes.size(), entry.type->name,
-                                           type_bytes(entry)));
+    results.add_failure(
+        entry, fmt::format("{} bytes, but {} has {}", outcome.bytes.size(), entry.type->name, type_bytes(entry)));
   }
 }
 
@@ -148,8 +149,8 @@ void compare_defaults(Dut& dut, InArea in_area, const std::string& none) {
     const SdoOutcome outcome = dut.upload(entry.index, entry.sub_index);
     results.expect_done(entry, outcome);
     if (outcome.done() && trimmed(entry, outcome.bytes) != trimmed(entry, *expected)) {
-      results.add_failure(entry, fmt::format("{} instead of {}", value_of(entry, outcome.bytes),
-                                             value_of(entry, *expected)));
+      results.add_failure(entry,
+                          fmt::format("{} instead of {}", value_of(entry, outcome.bytes), value_of(entry, *expected)));
     }
   }
   results.finish("each constant has the DefaultValue of the EDS", none);
@@ -266,8 +267,8 @@ void try_beyond(Dut& dut, EntryResults& results, const LiveEntry& entry, std::ui
                        fmt::format("{} written, which is beyond the {}", value_of(entry, value), name));
   const SdoOutcome after = dut.upload(entry.index, entry.sub_index);
   if (!entry.entry->pdo_mapping && before.done() && after.done() && after.bytes != before.bytes) {
-    results.add_failure(entry, fmt::format("{} refused, but {} stored", value_of(entry, value),
-                                           value_of(entry, after.bytes)));
+    results.add_failure(entry,
+                        fmt::format("{} refused, but {} stored", value_of(entry, value), value_of(entry, after.bytes)));
   }
 }
 
@@ -279,13 +280,15 @@ void try_limit(Dut& dut, EntryResults& results, const LiveEntry& entry, const Va
   if (!outcome.done() || entry.entry->pdo_mapping) return;
   const SdoOutcome after = dut.upload(entry.index, entry.sub_index);
   if (after.done() && after.bytes != value) {
-    results.add_failure(entry, fmt::format("{} written, then {}", value_of(entry, value), value_of(entry, after.bytes)));
+    results.add_failure(entry,
+                        fmt::format("{} written, then {}", value_of(entry, value), value_of(entry, after.bytes)));
   }
 }
 
 /// Such a value cannot be written back, so that the entry keeps it.
 std::string outside_limits(const LiveEntry& entry, const Bytes& bytes) {
-  return fmt::format("{} is outside the limits {} of the EDS", value_of(entry, bytes), limits_text(*entry.entry));
+  return fmt::format("{} is outside the limits {} of the EDS and is not written back", value_of(entry, bytes),
+                     limits_text(*entry.entry));
 }
 
 void try_limits(Dut& dut) {
@@ -332,8 +335,8 @@ void write_back(Dut& dut) {
     if (!written.done() || entry.entry->pdo_mapping) continue;
     const SdoOutcome after = dut.upload(entry.index, entry.sub_index);
     if (after.done() && after.bytes != before.bytes) {
-      results.add_failure(entry, fmt::format("{} written, then {}", value_of(entry, before.bytes),
-                                             value_of(entry, after.bytes)));
+      results.add_failure(
+          entry, fmt::format("{} written, then {}", value_of(entry, before.bytes), value_of(entry, after.bytes)));
     }
   }
   results.finish("each writable entry takes the value that was read", no_application_entries);

@@ -13,9 +13,7 @@ std::string EntryResults::List::whole() const {
   return size <= max_named ? text : fmt::format("{}; and {} more", text, size - max_named);
 }
 
-void EntryResults::note(const SdoOutcome& outcome) {
-  silent_ = outcome.end == SdoEnd::no_answer ? silent_ + 1 : 0;
-}
+void EntryResults::note(const SdoOutcome& outcome) { silent_ = outcome.end == SdoEnd::no_answer ? silent_ + 1 : 0; }
 
 void EntryResults::expect_done(const LiveEntry& entry, const SdoOutcome& outcome) {
   note(outcome);

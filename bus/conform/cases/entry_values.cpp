@@ -139,7 +139,8 @@ bool is_within_limits(const Dut& dut, const Entry& entry, std::span<const std::u
 bool depends_on_state(canopen::AbortCode code) {
   using canopen::AbortCode;
   constexpr std::array codes = {AbortCode::parameter_incompatible, AbortCode::internal_incompatibility,
-                                AbortCode::maximum_less_than_minimum, AbortCode::local_control, AbortCode::device_state};
+                                AbortCode::maximum_less_than_minimum, AbortCode::local_control,
+                                AbortCode::device_state};
   return std::ranges::find(codes, code) != codes.end();
 }
 

@@ -62,9 +62,8 @@ template <typename Condition>
 Entries numbers_with(Dut& dut, Condition condition) {
   Entries found = entries_with(dut, [&](const LiveEntry& e) { return is_plain_parameter(e) && condition(e); });
   if (!found.empty()) return found;
-  found = entries_with(dut, [&](const LiveEntry& e) {
-    return is_application_parameter(dut, e) && is_number(e) && condition(e);
-  });
+  found = entries_with(
+      dut, [&](const LiveEntry& e) { return is_application_parameter(dut, e) && is_number(e) && condition(e); });
   if (!found.empty()) dut.need_permission(Permission::application);
   return found;
 }
@@ -240,7 +239,8 @@ bool is_segmented(Dut& dut, const LiveEntry& entry) {
 /// One whose value has more than four bytes now; constants first, so that reading twice gives the same.
 LiveEntry need_long_entry(Dut& dut) {
   Entries entries = long_entries(dut);
-  std::ranges::stable_partition(entries, [](const LiveEntry& e) { return e.entry->access == canopen::Access::constant; });
+  std::ranges::stable_partition(entries,
+                                [](const LiveEntry& e) { return e.entry->access == canopen::Access::constant; });
   for (const LiveEntry& entry : entries) {
     if (is_segmented(dut, entry)) return entry;
   }

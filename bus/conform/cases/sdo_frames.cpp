@@ -12,7 +12,7 @@ namespace {
 namespace sdo = canopen::sdo;
 
 constexpr std::uint8_t command_mask = 0xE0;
-constexpr std::uint8_t size_mask = 0x0C;             ///< expedited: n
+constexpr std::uint8_t size_mask = 0x0C;                 ///< expedited: n
 constexpr std::size_t max_bytes = std::size_t{1} << 16;  ///< of a value that a case reads frame by frame
 
 canopen::AbortCode abort_code(const SdoFrame& frame) { return static_cast<canopen::AbortCode>(sdo::word_of(frame)); }
@@ -24,7 +24,9 @@ void expect_multiplexer(Dut& dut, const SdoFrame& answer, std::uint16_t index, s
              "an answer for " + label(index, sub_index), hex_bytes(answer));
 }
 
-void append(Bytes& bytes, std::span<const std::uint8_t> piece) { bytes.insert(bytes.end(), piece.begin(), piece.end()); }
+void append(Bytes& bytes, std::span<const std::uint8_t> piece) {
+  bytes.insert(bytes.end(), piece.begin(), piece.end());
+}
 
 /// The bytes of a segment that come next; all other bytes are 0.
 SdoFrame segment_of(std::uint8_t command, std::span<const std::uint8_t> bytes) {
@@ -37,9 +39,9 @@ SdoFrame segment_of(std::uint8_t command, std::span<const std::uint8_t> bytes) {
 SdoFrame download_segment(std::uint8_t toggle, std::span<const std::uint8_t> value, std::size_t at) {
   const auto piece = value.subspan(at, std::min<std::size_t>(sdo::segment_bytes, value.size() - at));
   const bool last = at + piece.size() == value.size();
-  return segment_of(static_cast<std::uint8_t>(toggle | (sdo::segment_bytes - piece.size()) << 1 |
-                                              (last ? sdo::last_segment : 0)),
-                    piece);
+  return segment_of(
+      static_cast<std::uint8_t>(toggle | (sdo::segment_bytes - piece.size()) << 1 | (last ? sdo::last_segment : 0)),
+      piece);
 }
 
 void initiate_download(Dut& dut, std::uint16_t index, std::uint8_t sub_index, std::size_t size) {
@@ -136,7 +138,8 @@ void download_by_segments(Dut& dut, std::uint16_t index, std::uint8_t sub_index,
 SdoFrame initiate_block_upload(Dut& dut, std::uint16_t index, std::uint8_t sub_index, BlockTransfer how) {
   const auto command = static_cast<std::uint8_t>(sdo::block_upload_initiate | (how.crc ? sdo::crc_supported : 0));
   const auto answer = dut.exchange(sdo_frame(command, index, sub_index, how.block_size));
-  if (answer && is_abort(*answer) && abort_code(*answer) == canopen::AbortCode::command_specifier) no_block_transfer(dut);
+  if (answer && is_abort(*answer) && abort_code(*answer) == canopen::AbortCode::command_specifier)
+    no_block_transfer(dut);
   constexpr std::uint8_t no_other_bits = 0xFF & ~(sdo::crc_supported | sdo::block_size_indicated);
   const SdoFrame initiate = expect_command(dut, answer, sdo::block_upload_answer, no_other_bits,
                                            "an answer to initiate block upload of " + label(index, sub_index));
@@ -160,7 +163,8 @@ BlockValue upload_by_blocks(Dut& dut, std::uint16_t index, std::uint8_t sub_inde
     const SdoFrame segment = expect_command(dut, answer, sequence, sdo::sequence_mask, expected);
     append(value.bytes, std::span{segment}.subspan(1));
     last = (segment[0] & sdo::last_block_segment) != 0;
-    dut.expect(value.bytes.size() <= max_bytes, "a last segment", fmt::format("{} bytes without one", value.bytes.size()));
+    dut.expect(value.bytes.size() <= max_bytes, "a last segment",
+               fmt::format("{} bytes without one", value.bytes.size()));
     if (!last && sequence != how.block_size) {
       answer = dut.answer();
       continue;
@@ -198,7 +202,8 @@ std::optional<SdoFrame> download_by_block(Dut& dut, std::uint16_t index, std::ui
   const auto command = static_cast<std::uint8_t>(sdo::block_download_initiate | sdo::block_size_indicated |
                                                  (checked ? sdo::crc_supported : 0));
   const auto answer = dut.exchange(sdo_frame(command, index, sub_index, static_cast<std::uint32_t>(value.size())));
-  if (answer && is_abort(*answer) && abort_code(*answer) == canopen::AbortCode::command_specifier) no_block_transfer(dut);
+  if (answer && is_abort(*answer) && abort_code(*answer) == canopen::AbortCode::command_specifier)
+    no_block_transfer(dut);
   constexpr std::uint8_t no_crc_bit = 0xFF & ~sdo::crc_supported;
   const SdoFrame initiate = expect_command(dut, answer, sdo::block_download_answer, no_crc_bit,
                                            "an answer to initiate block download of " + label(index, sub_index));
@@ -217,8 +222,8 @@ std::optional<SdoFrame> download_by_block(Dut& dut, std::uint16_t index, std::ui
       dut.request(segment);
       continue;
     }
-    const SdoFrame confirm = expect_command(dut, dut.exchange(segment), sdo::block_download_confirm, 0xFF,
-                                            "the confirmation of the block");
+    const SdoFrame confirm =
+        expect_command(dut, dut.exchange(segment), sdo::block_download_confirm, 0xFF, "the confirmation of the block");
     dut.expect_equal(confirm[1], sequence, "the confirmed sequence number");
   }
   const auto unused = static_cast<unsigned>(sequence * sdo::segment_bytes - value.size());
