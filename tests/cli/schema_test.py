@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The schemas of docs/schema describe what edsc prints and reads: `edsc dump` over all EDS files, and the options files.
+"""The schemas of docs/schema describe what edsc prints and reads: `edsc dump` over all EDS files, options files and files of
+deviations.
 
     schema_test.py SOURCE_DIR EDSC [unittest arguments]
 
@@ -93,6 +94,21 @@ class Options(unittest.TestCase):
         for wrong in ({"no_such_member": 1}, {"settable": 1}, {"names": {"1017": "Not A Name"}}):
             with self.assertRaises(jsonschema.ValidationError):
                 validator("options").validate(wrong)
+
+
+class Deviations(unittest.TestCase):
+    def test_files_of_this_repository_fit(self) -> None:
+        paths = [path for folder in ("eds", "tests", "examples") for path in (SOURCE_DIR / folder).rglob("*.deviations.json")]
+        self.assertGreaterEqual(len(paths), 1)
+        for path in paths:
+            with self.subTest(path=path):
+                validator("deviations").validate(json.loads(path.read_text()))
+
+    def test_that_are_wrong_do_not(self) -> None:
+        for wrong in ({"case": "3.7"}, {"case": "3.*", "reason": "x"}, {"case": "3.7", "reason": " "},
+                      {"case": "3.7", "reason": "x", "object": "speed"}, {"case": "3.7", "reason": "x", "why": "y"}):
+            with self.assertRaises(jsonschema.ValidationError):
+                validator("deviations").validate({"deviations": [wrong]})
 
 
 class Dump(CommandLine):
