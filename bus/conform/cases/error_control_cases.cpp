@@ -75,8 +75,8 @@ void toggle(Dut& dut) {
   for (int round = 0; round < 2; ++round) {
     dut.reset(NmtCommand::reset_communication);
     need_guarding(dut);
-    const NmtState state = state_after_boot_up(dut);
-    for (const bool bit : {false, true, false, true}) expect_guarded(dut, state, bit);
+    dut.enter(NmtState::pre_operational);
+    for (const bool bit : {false, true, false, true}) expect_guarded(dut, NmtState::pre_operational, bit);
   }
 }
 

@@ -161,15 +161,15 @@ void expect_one_boot_up(Dut& dut, NmtCommand command) {
   dut.expect_equal(dut.received_since(since, dut.boot_up()).size(), 1, "boot-up messages after a reset");
 }
 
-NmtState state_after_boot_up(Dut& dut) {
+void expect_state_after_boot_up(Dut& dut) {
   constexpr std::uint64_t is_master = 1U << 0, does_not_start = 1U << 2;  // CiA 302-2: bits of 1F80h
   const Entry* const startup = dut.entry(nmt_startup);
-  if (startup == nullptr || !canopen::readable(startup->access)) return NmtState::pre_operational;
-  const std::uint64_t bits = dut.read_number(nmt_startup);
-  if ((bits & is_master) != 0 && dut.watch_state()) {
-    return dut.state().value_or(NmtState::pre_operational);  // an NMT master starts when its network has booted
+  if (startup != nullptr && canopen::readable(startup->access)) {
+    const std::uint64_t bits = dut.read_number(nmt_startup);
+    const bool may_start = (bits & is_master) != 0 || (bits & does_not_start) == 0;
+    if (may_start && dut.state() == NmtState::operational) return;
   }
-  return (bits & does_not_start) != 0 ? NmtState::pre_operational : NmtState::operational;
+  dut.expect_state(NmtState::pre_operational);
 }
 
 }  // namespace edsc::conform

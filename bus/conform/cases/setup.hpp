@@ -51,7 +51,8 @@ void start_sync(Dut& dut, std::uint32_t cob_id, Duration period);
 
 /// Resets the device and fails where it does not send exactly one boot-up message.
 void expect_one_boot_up(Dut& dut, canopen::NmtCommand command);
-/// The NMT state that a device has after its boot-up message: Operational where 1F80h lets it start by itself.
-[[nodiscard]] canopen::NmtState state_after_boot_up(Dut& dut);
+/// Fails where a device that says its state is not Pre-operational after its boot-up message. Operational is as good
+/// where 1F80h lets it start by itself.
+void expect_state_after_boot_up(Dut& dut);
 
 }  // namespace edsc::conform

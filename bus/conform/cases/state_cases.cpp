@@ -93,8 +93,7 @@ void boot_up(Dut& dut) {
 
 void pre_operational(Dut& dut) {
   expect_one_boot_up(dut, NmtCommand::reset_node);
-  const NmtState first = state_after_boot_up(dut);
-  if (dut.watch_state()) dut.expect_state(first);
+  if (dut.watch_state()) expect_state_after_boot_up(dut);
   dut.enter(NmtState::pre_operational);
   expect_services(dut, start_services(dut), NmtState::pre_operational);
 }

@@ -36,9 +36,8 @@ void resets(Dut& dut) {
       dut.enter(from);
       dut.expect_state(from);
       expect_one_boot_up(dut, command);
-      const NmtState expected = state_after_boot_up(dut);
       need_state(dut);
-      dut.expect_state(expected);
+      expect_state_after_boot_up(dut);
     }
   }
 }
