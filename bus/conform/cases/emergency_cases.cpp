@@ -42,7 +42,7 @@ std::optional<ShortRpdo> find_rpdo(Dut& dut) {
     if (pdo->mapping == nullptr) continue;
     const CobId cob_id{static_cast<std::uint32_t>(dut.read_number(pdo->communication->index, 1))};
     const std::uint64_t mapped = dut.read_number(pdo->mapping->index);
-    if (!cob_id.valid() || mapped == 0 || mapped > 64) continue;
+    if (!canopen::is_usable(cob_id.value()) || mapped == 0 || mapped > 64) continue;
     const bool synchronous = dut.read_number(pdo->communication->index, 2) <= 240;
     if (!found || found->synchronous) found = ShortRpdo{cob_id.can_id(), synchronous};
   }
@@ -78,13 +78,7 @@ void end_error(Dut& dut, const Raised& error) {
 template <class Check>
 void with_error(Dut& dut, Check check) {
   const Raised error = raise(dut);
-  try {
-    check(error);
-  } catch (const CaseEnd&) {
-    end_error(dut, error);
-    throw;
-  }
-  end_error(dut, error);
+  and_undo([&] { check(error); }, [&] { end_error(dut, error); });
 }
 
 /// The EMCY that the device has sent last: the error may be over by now.

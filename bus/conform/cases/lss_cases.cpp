@@ -114,14 +114,11 @@ class Slave {
 template <class Check>
 void with_slave(Dut& dut, Check check) {
   const Slave slave{dut};
-  try {
+  const auto selected = [&] {
     slave.select();
     check(slave);
-  } catch (const CaseEnd&) {
-    slave.wait();
-    throw;
-  }
-  slave.wait();
+  };
+  and_undo(selected, [&] { slave.wait(); });
 }
 
 void need_silent_bus(Dut& dut) {
@@ -257,21 +254,18 @@ void without_node_id(Dut& dut, Check check) {
   slave.wait();
   if (taken->data[1] != 0) dut.not_applicable("the device does not give up its node-ID: it refuses 255");
   dut.enter(NmtState::pre_operational);
-  const Dut::Mark since = dut.mark();
-  dut.nmt(NmtCommand::reset_communication);
-  dut.pass_time(milliseconds{500});
-  const auto put_back = [&] {
+  const auto unconfigured = [&] {
+    const Dut::Mark since = dut.mark();
+    dut.nmt(NmtCommand::reset_communication);
+    dut.pass_time(milliseconds{500});
+    dut.expect(dut.received_since(since, dut.boot_up()).empty(), "no boot-up message without node-ID", "one");
+    check(slave);
+  };
+  const auto configure = [&] {
     slave.send(Command::switch_state_global, static_cast<std::uint32_t>(LssState::configuration));
     give_node_id(dut, slave);
   };
-  try {
-    dut.expect(dut.received_since(since, dut.boot_up()).empty(), "no boot-up message without node-ID", "one");
-    check(slave);
-  } catch (const CaseEnd&) {
-    put_back();
-    throw;
-  }
-  put_back();
+  and_undo(unconfigured, configure);
 }
 
 void unconfigured(Dut& dut) {
@@ -336,15 +330,15 @@ void new_node_id(Dut& dut) {
     slave.wait();
   };
   bool moved = false;
-  const auto put_back = [&] {
+  const auto move_back = [&] {
     configure(own);
-    if (!moved) return;
     const Dut::Mark since = dut.mark();
     dut.send(0, Bytes{static_cast<std::uint8_t>(NmtCommand::reset_communication), other.value()});
+    if (!moved) return;
     dut.expect(starts(own, since), fmt::format("a boot-up message of node {} again", own.value()), "none");
   };
-  configure(other);
-  try {
+  const auto move = [&] {
+    configure(other);
     slave.select();
     slave.expect_says(Command::inquire_node_id, own.value(), "the node-ID before a reset of the communication");
     slave.wait();
@@ -356,11 +350,8 @@ void new_node_id(Dut& dut) {
     slave.select();
     slave.expect_says(Command::inquire_node_id, other.value(), "the node-ID after a reset of the communication");
     slave.wait();
-  } catch (const CaseEnd&) {
-    put_back();
-    throw;
-  }
-  put_back();
+  };
+  and_undo(move, move_back);
 }
 
 /// Reserved places of table 0, and reserved tables.
@@ -397,6 +388,9 @@ void store(Dut& dut) {
 
 /// The bit rate stays: the device is silent for one delay after the first one, and then answers again.
 void activate(Dut& dut) {
+  if (dut.sheet().information.capabilities.baud_rates.size() < 2) {
+    dut.not_applicable("the data sheet does not name two bit rates");
+  }
   constexpr Duration delay = milliseconds{200};
   const auto from_device = [](const Frame& frame) { return frame.id != 0; };
   with_slave(dut, [&](const Slave& slave) {

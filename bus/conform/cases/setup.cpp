@@ -112,7 +112,7 @@ std::optional<std::uint32_t> set_up_tpdo(Dut& dut, std::uint8_t transmission_typ
     if (pdo->multiplexed || pdo->mapping == nullptr || !dut.has(index, parameter::transmission_type)) continue;
     const CobId cob_id{static_cast<std::uint32_t>(dut.read_number(index, parameter::cob_id))};
     const std::uint64_t mapped = dut.read_number(pdo->mapping->index);
-    if (!cob_id.valid() || mapped == 0 || mapped > 64) continue;
+    if (!canopen::is_usable(cob_id.value()) || mapped == 0 || mapped > 64) continue;
 
     const auto set = [&](std::uint8_t sub_index, std::uint64_t value) {
       if (!dut.has(index, sub_index)) return value == 0;

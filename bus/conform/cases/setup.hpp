@@ -6,8 +6,25 @@
 #include <string>
 
 #include "conform/dut.hpp"
+#include "live/interruption.hpp"
 
 namespace edsc::conform {
+
+/// Does what undoes a step of a case, however the case ends: at an interruption as well.
+template <class Check, class Undo>
+void and_undo(Check check, Undo undo) {
+  try {
+    check();
+  } catch (const CaseEnd&) {
+    undo();
+    throw;
+  } catch (const Interrupted&) {
+    const Uninterrupted uninterrupted;
+    undo();
+    throw;
+  }
+  undo();
+}
 
 /// The COB-ID that an object has by default: that of the data sheet, else the standard one. Another one fails where it
 /// is a restricted one or cannot be written; else somebody may have configured it, and the case is inconclusive.

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "conform/dut.hpp"
+#include "conform/cases/setup.hpp"
 
 namespace edsc::conform {
 
@@ -41,18 +41,12 @@ void with_storage(Dut& dut, std::uint8_t sub_index, Check check) {
   dut.reset(canopen::NmtCommand::reset_node);
   const Dut::Values before = dut.values();
   const Storage storage{dut, sub_index};
-  const auto put_back = [&] {
+  const auto store_again = [&] {
     dut.enter(canopen::NmtState::pre_operational);
     dut.restore(before);
     storage.save();
   };
-  try {
-    check(storage);
-  } catch (const CaseEnd&) {
-    put_back();
-    throw;
-  }
-  put_back();
+  and_undo([&] { check(storage); }, store_again);
 }
 
 }  // namespace edsc::conform
