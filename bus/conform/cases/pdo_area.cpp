@@ -137,6 +137,12 @@ std::optional<std::string> enable(Dut& dut, const Tpdo& tpdo, std::optional<bool
 
 }  // namespace
 
+void fail_value(Dut& dut, std::uint16_t index, std::uint8_t sub_index, std::uint64_t value, std::string_view rule,
+                const std::string& expected, const std::string& got) {
+  if (dut.default_of(index, sub_index) == value) dut.fail_by_sheet(rule, expected, got);
+  dut.fail(expected, got);
+}
+
 // ---- mapping ----
 
 Mapped mapped_of(std::uint64_t value) {
@@ -159,9 +165,51 @@ std::optional<std::vector<Mapped>> read_mapping(Dut& dut, std::uint16_t communic
   const std::uint64_t count = dut.read_number(index, 0);
   if (count >= canopen::source_multiplexed) return std::nullopt;
   for (std::uint64_t i = 1; i <= count; ++i) {
-    mapping.push_back(mapped_of(dut.read_number(index, static_cast<std::uint8_t>(i))));
+    const auto sub_index = static_cast<std::uint8_t>(i);
+    mapping.push_back(is_readable(dut, index, sub_index) ? mapped_of(dut.read_number(index, sub_index)) : Mapped{});
   }
   return mapping;
+}
+
+bool may_carry(PdoDirection direction, const Entry& entry) {
+  const bool receives = direction == PdoDirection::receive;
+  return allows(entry.mappable(), receives ? canopen::Mappable::rpdo : canopen::Mappable::tpdo);
+}
+
+std::optional<MappingFault> fault_of(const Dut& dut, PdoDirection direction, const Mapped& mapped) {
+  const bool receives = direction == PdoDirection::receive;
+  const std::string got = fmt::format("{:08X}h", mapped.value());
+  if (mapped.value() == 0) return MappingFault{"pdo-mapping-gap", "a mapped object, as sub-index 0 counts it", got};
+  if (mapped.is_dummy()) {
+    const bool in_use = std::ranges::find(dut.sheet().dummies, mapped.index) != dut.sheet().dummies.end();
+    if (receives && in_use) return std::nullopt;
+    return MappingFault{"pdo-dummy", "an object, or in an RPDO a dummy of [DummyUsage]", got};
+  }
+  const Entry* const entry = dut.entry(mapped.index, mapped.sub_index);
+  if (entry == nullptr) return MappingFault{"pdo-object", "an object of the data sheet", got};
+  if (!may_carry(direction, *entry)) {
+    return MappingFault{entry->pdo_mapping ? "pdo-direction" : "pdo-mappable",
+                        receives ? "an object with PDOMapping=1 that is rw, rww or wo"
+                                 : "an object with PDOMapping=1 that is rw, rwr, ro or const",
+                        fmt::format("{}, which is {} with PDOMapping={}", got, canopen::row_of(entry->access).name,
+                                    entry->pdo_mapping ? 1 : 0)};
+  }
+  const bool is_boolean_byte = entry->type->kind == DataClass::boolean && mapped.bits == 8;
+  if (entry->type->bits == 0 || entry->type->bits == mapped.bits || is_boolean_byte) return std::nullopt;
+  return MappingFault{
+      "pdo-length",
+      fmt::format("{} with the {} bits of its data type", label(mapped.index, mapped.sub_index), entry->type->bits),
+      got};
+}
+
+std::optional<std::string> reason_against(const Dut& dut, const Pdo& pdo, const std::vector<Mapped>& mapping) {
+  for (const Mapped& mapped : mapping) {
+    if (const auto fault = fault_of(dut, pdo.direction, mapped)) {
+      return fmt::format("{} maps {}, which the data sheet does not let it carry", pdo_label(pdo), fault->got);
+    }
+  }
+  if (bits_of(mapping) > 64) return pdo_label(pdo) + " maps more than 64 bits";
+  return std::nullopt;
 }
 
 std::string objects_text(const std::vector<Mapped>& mapping) {
@@ -251,8 +299,10 @@ std::vector<Tpdo> tpdos(Dut& dut) {
     auto mapping = read_mapping(dut, tpdo.index);
     if (!mapping) {
       reason = label + " is a multiplex PDO";
-    } else if (mapping->empty() || bits_of(*mapping) == 0 || bits_of(*mapping) > 64) {
-      reason = label + " maps nothing that fits into a frame";
+    } else if (auto why = reason_against(dut, *pdo, *mapping)) {
+      reason = *why;
+    } else if (mapping->empty()) {
+      reason = label + " maps nothing";
     } else if (!canopen::may_be_written(CobId{tpdo.cob_id}, true, true)) {
       reason = fmt::format("{} has no usable CAN-ID: its COB-ID is {:08X}h", label, tpdo.found_cob_id);
     } else if (!CobId{tpdo.found_cob_id}.valid() && !is_writable(dut, tpdo.index, cob_id_parameter)) {

@@ -29,6 +29,10 @@ inline constexpr Duration to_answer = milliseconds{500};
 /// How long nothing must come for nothing to come at all.
 inline constexpr Duration silence = milliseconds{100};
 
+/// Fails for a value of an entry: by the data sheet where that is its default, as the rule of `edsc check` says, too.
+[[noreturn]] void fail_value(Dut& dut, std::uint16_t index, std::uint8_t sub_index, std::uint64_t value,
+                             std::string_view rule, const std::string& expected, const std::string& got);
+
 // ---- mapping ----
 
 /// An entry of a mapping parameter.
@@ -52,6 +56,19 @@ struct Mapped {
 [[nodiscard]] std::optional<std::vector<Mapped>> read_mapping(Dut& dut, std::uint16_t communication);
 /// `2000h:00 and 2001h:00`
 [[nodiscard]] std::string objects_text(const std::vector<Mapped>& mapping);
+
+/// Why the data sheet does not let a PDO carry an entry of its mapping.
+struct MappingFault {
+  std::string_view rule;  ///< of `edsc check`
+  std::string expected;
+  std::string got;
+};
+[[nodiscard]] std::optional<MappingFault> fault_of(const Dut& dut, PdoDirection direction, const Mapped& mapped);
+/// Why the mapping that a PDO has is none: `TPDO 1 maps 6041h:00, ...`. Nothing when it is one, also of no objects.
+[[nodiscard]] std::optional<std::string> reason_against(const Dut& dut, const Pdo& pdo,
+                                                        const std::vector<Mapped>& mapping);
+/// An entry whose PDOMapping and access let a PDO of this direction carry it.
+[[nodiscard]] bool may_carry(PdoDirection direction, const Entry& entry);
 
 /// The data of a PDO as SDO reads it from the mapped objects, and which of its bits are known.
 struct Image {

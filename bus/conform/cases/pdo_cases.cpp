@@ -21,14 +21,21 @@ constexpr ParameterRange transmit_range{PdoDirection::transmit, 0x1800, 512};
 /// A valid PDO has a CAN-ID that CiA 301, 7.3.5 leaves to it.
 void expect_legal_cob_id(Dut& dut, std::uint16_t index, std::uint32_t cob_id) {
   const CobId parsed{cob_id};
-  dut.expect(!parsed.valid() || canopen::may_be_written(parsed, true, true),
+  if (!parsed.valid() || canopen::may_be_written(parsed, true, true)) return;
+  fail_value(dut, index, cob_id_parameter, cob_id, "cob-id-restricted",
              label(index, cob_id_parameter) + " with a CAN-ID that CiA 301 does not restrict",
              fmt::format("{:08X}h", cob_id));
 }
 
+void expect_legal_type(Dut& dut, const ParameterRange& range, std::uint16_t index, std::uint64_t type) {
+  const bool receives = range.direction == PdoDirection::receive;
+  if (canopen::transmission_type_is_legal(receives, static_cast<std::uint32_t>(type))) return;
+  fail_value(dut, index, type_parameter, type, "pdo-transmission-type",
+             label(index, type_parameter) + " with a transmission type that is not reserved", fmt::format("{}", type));
+}
+
 /// 1400h or 1800h of the data sheet: all its parameters can be read, and say what they may say.
 void expect_communication_parameter(Dut& dut, const ParameterRange& range, const Object& object) {
-  const bool receives = range.direction == PdoDirection::receive;
   for (const Entry& entry : object.entries) {
     if (!canopen::readable(entry.access)) continue;
     const std::uint64_t value = dut.read_number(entry.index, entry.sub_index);
@@ -39,8 +46,7 @@ void expect_communication_parameter(Dut& dut, const ParameterRange& range, const
     } else if (entry.sub_index == cob_id_parameter) {
       expect_legal_cob_id(dut, entry.index, static_cast<std::uint32_t>(value));
     } else if (entry.sub_index == type_parameter) {
-      dut.expect(canopen::transmission_type_is_legal(receives, static_cast<std::uint32_t>(value)),
-                 name + " with a transmission type that is not reserved", fmt::format("{}", value));
+      expect_legal_type(dut, range, entry.index, value);
     }
   }
 }
@@ -90,8 +96,11 @@ void expect_distinct_cob_ids(Dut& dut) {
     const CobId cob_id{static_cast<std::uint32_t>(dut.read_number(entry->index, cob_id_parameter))};
     if (!cob_id.valid()) continue;
     const auto [user, is_new] = users.emplace(cob_id.value() & CobId::identifier, pdo_label(*pdo));
-    dut.expect(is_new, pdo_label(*pdo) + " with a CAN-ID of its own",
-               fmt::format("{:X}h, as {} has", cob_id.can_id(), user->second));
+    if (!is_new) {
+      fail_value(dut, entry->index, cob_id_parameter, cob_id.value(), "cob-id-twice",
+                 pdo_label(*pdo) + " with a CAN-ID of its own",
+                 fmt::format("{:X}h, as {} has", cob_id.can_id(), user->second));
+    }
   }
 }
 

@@ -13,8 +13,6 @@ namespace edsc::conform::pdo_area {
 namespace {
 
 using canopen::CobId;
-using canopen::DataClass;
-using canopen::Mappable;
 using Code = canopen::AbortCode;
 
 /// An object that does not exist or cannot be mapped: step 3 of the procedure.
@@ -25,10 +23,6 @@ constexpr AbortRule wrong_mapping{{Code::pdo_length, Code::no_object, Code::not_
 /// A number of objects that sub-index 0 cannot hold may also be an invalid value.
 constexpr AbortRule wrong_count{{Code::pdo_length, Code::no_object, Code::not_mappable},
                                 {Code::unsupported_access, Code::invalid_value, Code::value_too_high}};
-
-Mappable direction_of(PdoDirection direction) {
-  return direction == PdoDirection::receive ? Mappable::rpdo : Mappable::tpdo;
-}
 
 std::string_view name_of(PdoDirection direction) { return direction == PdoDirection::receive ? "RPDO" : "TPDO"; }
 
@@ -140,22 +134,27 @@ std::uint8_t capacity_of(const Dut& dut, const Pdo& pdo) {
   return std::min<std::uint8_t>(capacity, 64);
 }
 
-/// PDOs whose mapping can be changed. Not applicable where there is none.
+/// PDOs whose mapping can be changed, and put back. Not applicable where there is none.
 std::vector<Remapping> remappings(Dut& dut, std::initializer_list<PdoDirection> directions) {
   std::vector<Remapping> found;
+  std::string reason = fmt::format("the data sheet has no {} whose mapping and COB-ID are rw",
+                                   directions.size() == 1 ? name_of(*directions.begin()) : "PDO");
   dut.enter(NmtState::pre_operational);
   for (const PdoDirection direction : directions) {
     for (const Pdo* pdo : dut.pdos(direction)) {
-      const std::uint8_t capacity = capacity_of(dut, *pdo);
+      const std::uint8_t capacity = pdo->dynamic ? capacity_of(dut, *pdo) : std::uint8_t{0};
       if (capacity == 0) continue;
-      if (dut.read_number(mapping_of(pdo->communication->index), 0) >= canopen::source_multiplexed) continue;
-      found.emplace_back(dut, *pdo, capacity);
+      const auto mapping = read_mapping(dut, pdo->communication->index);
+      if (!mapping) {
+        reason = pdo_label(*pdo) + " is a multiplex PDO";
+      } else if (auto why = reason_against(dut, *pdo, *mapping)) {
+        reason = *why;
+      } else {
+        found.emplace_back(dut, *pdo, capacity);
+      }
     }
   }
-  if (found.empty()) {
-    dut.not_applicable(fmt::format("the data sheet has no {} whose mapping and COB-ID are rw, and which is not an MPDO",
-                                   directions.size() == 1 ? name_of(*directions.begin()) : "PDO"));
-  }
+  if (found.empty()) dut.not_applicable(reason);
   return found;
 }
 
@@ -187,7 +186,7 @@ std::vector<Mapped> objects_where(const Dut& dut, Condition condition) {
 
 std::vector<Mapped> mappable_objects(const Dut& dut, PdoDirection direction) {
   return objects_where(dut, [direction](const Entry& entry) {
-    return entry.access != canopen::Access::constant && allows(entry.mappable(), direction_of(direction));
+    return entry.access != canopen::Access::constant && may_carry(direction, entry);
   });
 }
 
@@ -205,27 +204,14 @@ std::vector<Mapped> some_of(Dut& dut, const std::vector<Mapped>& objects) {
 
 namespace {
 
-void expect_mapped_object(Dut& dut, const Pdo& pdo, const std::string& where, const Mapped& mapped) {
-  const std::string what = fmt::format("{}: {:08X}h", where, mapped.value());
-  if (mapped.is_dummy()) {
-    const bool in_use = std::ranges::find(dut.sheet().dummies, mapped.index) != dut.sheet().dummies.end();
-    dut.expect(pdo.direction == PdoDirection::receive && in_use,
-               "an object of the data sheet, or in an RPDO one of its dummies", what);
-    return;
+/// The object of a mapping entry, which the data sheet may map by default.
+void expect_mapped_object(Dut& dut, const Pdo& pdo, std::uint16_t index, std::uint8_t position, const Mapped& mapped) {
+  const std::string where = label(index, position);
+  if (const auto fault = fault_of(dut, pdo.direction, mapped)) {
+    fail_value(dut, index, position, mapped.value(), fault->rule, where + " with " + fault->expected, fault->got);
   }
   const Entry* const entry = dut.entry(mapped.index, mapped.sub_index);
-  dut.expect(entry != nullptr, "an object of the data sheet", what);
-  dut.expect(allows(entry->mappable(), direction_of(pdo.direction)),
-             fmt::format("an object that {} may carry: PDOMapping=1, and not {}", name_of(pdo.direction),
-                         pdo.direction == PdoDirection::receive ? "ro, rwr or const" : "wo or rww"),
-             fmt::format("{}, which is {} with PDOMapping={}", what, canopen::row_of(entry->access).name,
-                         entry->pdo_mapping ? 1 : 0));
-  const bool is_boolean = entry->type->kind == DataClass::boolean && mapped.bits == 8;
-  dut.expect(
-      entry->type->bits == 0 || entry->type->bits == mapped.bits || is_boolean,
-      fmt::format("{} with the {} bits of its data type", label(mapped.index, mapped.sub_index), entry->type->bits),
-      what);
-  if (!canopen::readable(entry->access)) return;
+  if (mapped.is_dummy() || !canopen::readable(entry->access)) return;
   const Bytes bytes = dut.read(mapped.index, mapped.sub_index);
   dut.expect(8 * bytes.size() >= mapped.bits,
              fmt::format("{} with {} bits", label(mapped.index, mapped.sub_index), mapped.bits),
@@ -244,12 +230,16 @@ void mapping_fits_dictionary(Dut& dut) {
       const auto mapping = read_mapping(dut, pdo->communication->index);
       if (!mapping) continue;
       const unsigned highest = dut.sheet().find(index)->highest_sub_index();
-      dut.expect(mapping->size() <= highest, fmt::format("{} at most {}", label(index, 0), highest),
-                 fmt::format("{}", mapping->size()));
-      dut.expect(bits_of(*mapping) <= 64, pdo_label(*pdo) + " with 64 bits at most",
-                 fmt::format("{} bits", bits_of(*mapping)));
+      if (mapping->size() > highest) {
+        fail_value(dut, index, 0, mapping->size(), "pdo-mapping-count",
+                   fmt::format("{} at most {}", label(index, 0), highest), fmt::format("{}", mapping->size()));
+      }
       std::uint8_t position = 0;
-      for (const Mapped& mapped : *mapping) expect_mapped_object(dut, *pdo, label(index, ++position), mapped);
+      for (const Mapped& mapped : *mapping) expect_mapped_object(dut, *pdo, index, ++position, mapped);
+      if (const unsigned bits = bits_of(*mapping); bits > 64) {
+        fail_value(dut, index, 0, pdo->bits() == bits ? mapping->size() : 0, "pdo-size",
+                   pdo_label(*pdo) + " with 64 bits at most", fmt::format("{} bits", bits));
+      }
     }
   }
   if (!any) dut.not_applicable("the data sheet has no mapping parameter");
@@ -264,8 +254,7 @@ namespace {
 std::vector<Mapped> new_mapping(const Dut& dut, const Remapping& remapping) {
   const std::vector<Mapped> present = remapping.found();
   std::vector<Mapped> reversed{present.rbegin(), present.rend()};
-  std::erase_if(reversed, [](const Mapped& mapped) { return mapped.value() == 0; });
-  if (reversed != present && !reversed.empty() && bits_of(reversed) <= 64) return reversed;
+  if (reversed != present) return reversed;
   for (const Mapped& mapped : mappable_objects(dut, remapping.pdo().direction)) {
     if (std::ranges::find(present, mapped) == present.end()) return {mapped};
   }
