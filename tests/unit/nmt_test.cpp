@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <canopen/port/memory_storage.hpp>
+#include <self_starting/device.hpp>
 #include <vector>
 
 #include "bench.hpp"
@@ -16,6 +18,37 @@ TEST(Nmt, SendsTheBootUpMessageAndEntersPreOperationalAtPowerOn) {
   auto node = canopen::make_node<sample::Device>(bus, canopen::NodeId{5});
   EXPECT_EQ(node.state(), NmtState::initialisation);
   node.start(canopen::TimePoint{});
+  EXPECT_EQ(bus.take(), "705 00");
+  EXPECT_EQ(node.state(), NmtState::pre_operational);
+}
+
+TEST(Nmt, EntersOperationalByItselfWhere1F80hSaysSo) {
+  bench::RecordingBus bus;
+  auto node = canopen::make_node<self_starting::Device>(bus, canopen::NodeId{5});
+  node.start(canopen::TimePoint{});
+  EXPECT_TRUE(bus.take().starts_with("705 00")) << "the boot-up message is the first frame";
+  EXPECT_EQ(node.state(), NmtState::operational);
+  for (const char* const reset : {"000 81 05", "000 82 05"}) {
+    node.on_frame(bench::frame("000 80 05"), canopen::TimePoint{});
+    EXPECT_EQ(node.state(), NmtState::pre_operational);
+    bus.take();
+    node.on_frame(bench::frame(reset), canopen::TimePoint{});
+    EXPECT_TRUE(bus.take().starts_with("705 00"));
+    EXPECT_EQ(node.state(), NmtState::operational);
+  }
+}
+
+TEST(Nmt, WaitsForTheMasterWhereStored1F80hSaysSo) {
+  bench::RecordingBus bus;
+  canopen::MemoryStorage storage;
+  auto node = canopen::make_node<self_starting::Device>(bus, canopen::NodeId{5}, canopen::stored_in(storage));
+  node.start(canopen::TimePoint{});
+  bus.take();
+  node.on_frame(bench::frame("605 23 80 1F 00 04 00 00 00"), canopen::TimePoint{});
+  EXPECT_EQ(bus.take(), "585 60 80 1F 00 00 00 00 00");
+  node.on_frame(bench::frame("605 23 10 10 01 73 61 76 65"), canopen::TimePoint{});
+  EXPECT_EQ(bus.take(), "585 60 10 10 01 00 00 00 00");
+  node.on_frame(bench::frame("000 81 05"), canopen::TimePoint{});
   EXPECT_EQ(bus.take(), "705 00");
   EXPECT_EQ(node.state(), NmtState::pre_operational);
 }

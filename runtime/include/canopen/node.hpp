@@ -533,6 +533,17 @@ class Node {
     if (!node_id_.valid()) return;
     heartbeat_.boot_up();
     enter(NmtState::pre_operational);
+    if (starts_itself()) enter(NmtState::operational);
+  }
+
+  /// 1F80h of a device that is not an NMT master: whether it enters Operational without a command (CiA 302-2).
+  [[nodiscard]] bool starts_itself() const {
+    if constexpr (Device::dictionary.has(0x1F80, 0)) {
+      constexpr std::uint32_t master = 1U << 0, no_self_start = 1U << 2;
+      return (store_.template number<0x1F80, 0>() & (master | no_self_start)) == 0;
+    } else {
+      return false;
+    }
   }
 
   void data_set_error() {
