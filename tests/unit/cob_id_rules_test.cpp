@@ -187,8 +187,8 @@ TEST(CobIdTables, AgreeOnEachEntryOfTheCommunicationProfile) {
       const auto number = static_cast<std::uint16_t>(index);
       const auto sub = static_cast<std::uint8_t>(sub_index);
       const CobIdParameter* const known = find_cob_id_parameter(number, sub);
-      const canopen::CobIdEntries* const used = canopen::find_cob_id_entries(number, sub);
-      if (used != nullptr) {
+      const std::optional<canopen::CobIdEntries> used = canopen::find_cob_id_entries(number, sub);
+      if (used) {
         ASSERT_NE(known, nullptr) << std::hex << index << ":" << sub_index;
         EXPECT_EQ(used->has_valid_bit, known->has_valid_bit) << std::hex << index << ":" << sub_index;
       } else if (known != nullptr) {

@@ -158,7 +158,7 @@ void restricted_can_ids(Dut& dut) {
   bool any = false;
   for (const LiveEntry& live : dut.entries()) {
     const Entry& entry = *live.entry;
-    const bool holds_cob_id = canopen::find_cob_id_entries(entry.index, entry.sub_index) != nullptr;
+    const bool holds_cob_id = canopen::find_cob_id_entries(entry.index, entry.sub_index).has_value();
     if (!holds_cob_id || !canopen::writable(entry.access) || !canopen::readable(entry.access)) continue;
     any = true;
     expect_restricted_refused(dut, entry);

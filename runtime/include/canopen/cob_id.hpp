@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <span>
 
 #include "canopen/node_id.hpp"
@@ -136,14 +137,15 @@ inline constexpr CobIdEntries cob_id_entries[] = {
     {0x1201, 0x127F, 1, 2, true},  {0x1400, 0x15FF, 1, 1, true},  {0x1800, 0x19FF, 1, 1, true},
 };
 
-/// The row of an entry; null when it holds no COB-ID.
-[[nodiscard]] constexpr const CobIdEntries* find_cob_id_entries(std::uint16_t index, std::uint8_t sub_index) {
+/// The row of an entry; nothing when it does not hold a COB-ID. By value: g++ with -fsanitize=undefined compares no address
+/// with null at compile time (GCC bug 71962).
+[[nodiscard]] constexpr std::optional<CobIdEntries> find_cob_id_entries(std::uint16_t index, std::uint8_t sub_index) {
   for (const CobIdEntries& row : cob_id_entries) {
     const bool fits = index >= row.first && index <= row.last && sub_index >= row.first_sub_index &&
                       sub_index <= row.last_sub_index;
-    if (fits) return &row;
+    if (fits) return row;
   }
-  return nullptr;
+  return std::nullopt;
 }
 
 /// Why an 11-bit CAN-ID may not be used by a configurable object; null when it may.

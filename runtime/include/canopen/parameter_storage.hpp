@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <type_traits>
 
@@ -303,7 +304,7 @@ class ParameterStorage {
   [[nodiscard]] static constexpr bool is_emcy_inhibit_time(const Checked& row) { return row.what == emcy_inhibit_time; }
 
   [[nodiscard]] static constexpr std::uint8_t what_is(std::uint16_t index, std::uint8_t sub_index) {
-    if (const CobIdEntries* const row = find_cob_id_entries(index, sub_index)) {
+    if (const std::optional<CobIdEntries> row = find_cob_id_entries(index, sub_index)) {
       return row->has_valid_bit ? cob_id : identifier;
     }
     const bool tpdo = is_tpdo_communication(index);
