@@ -38,8 +38,7 @@ bool is_readable(const Dut& dut, std::uint16_t index, std::uint8_t sub_index) {
 }
 
 std::string access_text(const Entry& entry) {
-  return fmt::format("{} is {} in the data sheet", label(entry.index, entry.sub_index),
-                     canopen::row_of(entry.access).name);
+  return fmt::format("{} is {} in the EDS", label(entry.index, entry.sub_index), canopen::row_of(entry.access).name);
 }
 
 /// The values of an integer: the lowest, and how many there are above it.
@@ -82,7 +81,7 @@ std::optional<std::string> set_parameter(Dut& dut, const Tpdo& tpdo, std::uint8_
   if (present_parameter(dut, tpdo.index, sub_index) == value) return std::nullopt;
   const std::string name = label(tpdo.index, sub_index);
   const Entry* const entry = dut.entry(tpdo.index, sub_index);
-  if (entry == nullptr) return name + " does not exist in the data sheet";
+  if (entry == nullptr) return name + " does not exist in the EDS";
   if (!canopen::writable(entry->access)) return access_text(*entry);
   if (within_limits(dut, tpdo.index, sub_index, value) != value) {
     return fmt::format("the limits of {} do not allow {}", name, value);
@@ -186,7 +185,7 @@ std::optional<MappingFault> fault_of(const Dut& dut, PdoDirection direction, con
     return MappingFault{"pdo-dummy", "an object, or in an RPDO a dummy of [DummyUsage]", got};
   }
   const Entry* const entry = dut.entry(mapped.index, mapped.sub_index);
-  if (entry == nullptr) return MappingFault{"pdo-object", "an object of the data sheet", got};
+  if (entry == nullptr) return MappingFault{"pdo-object", "an object of the EDS", got};
   if (!may_carry(direction, *entry)) {
     return MappingFault{entry->pdo_mapping ? "pdo-direction" : "pdo-mappable",
                         receives ? "an object with PDOMapping=1 that is rw, rww or wo"
@@ -205,7 +204,7 @@ std::optional<MappingFault> fault_of(const Dut& dut, PdoDirection direction, con
 std::optional<std::string> reason_against(const Dut& dut, const Pdo& pdo, const std::vector<Mapped>& mapping) {
   for (const Mapped& mapped : mapping) {
     if (const auto fault = fault_of(dut, pdo.direction, mapped)) {
-      return fmt::format("{} maps {}, which the data sheet does not let it carry", pdo_label(pdo), fault->got);
+      return fmt::format("{} maps {}, which the EDS does not let it carry", pdo_label(pdo), fault->got);
     }
   }
   if (bits_of(mapping) > 64) return pdo_label(pdo) + " maps more than 64 bits";
@@ -280,44 +279,49 @@ std::optional<std::uint64_t> other_value(const Dut& dut, const Mapped& mapped, s
 
 std::string Tpdo::name() const { return fmt::format("{} (CAN-ID {:X}h)", pdo_label(*pdo), CobId{cob_id}.can_id()); }
 
+std::optional<Tpdo> read_tpdo(Dut& dut, const Pdo& pdo, std::string& reason) {
+  Tpdo tpdo;
+  tpdo.pdo = &pdo;
+  tpdo.index = pdo.communication->index;
+  const std::string name = pdo_label(pdo);
+  const auto skip = [&reason](std::string why) {
+    reason = std::move(why);
+    return std::nullopt;
+  };
+  if (!is_readable(dut, tpdo.index, cob_id_parameter)) return skip(name + " has no COB-ID in the EDS");
+  tpdo.found_cob_id = static_cast<std::uint32_t>(dut.read_number(tpdo.index, cob_id_parameter));
+  tpdo.cob_id = tpdo.found_cob_id & ~CobId::invalid_bit;
+  if (!tpdo.was_valid() && !is_writable(dut, tpdo.index, cob_id_parameter)) {
+    return skip(name + " is not valid, and cannot be made valid");
+  }
+  if (!canopen::may_be_written(CobId{tpdo.cob_id}, true, true)) {
+    return skip(fmt::format("{} has no usable CAN-ID: its COB-ID is {:08X}h", name, tpdo.found_cob_id));
+  }
+  auto mapping = read_mapping(dut, tpdo.index);
+  if (!mapping) return skip(name + " is a multiplex PDO");
+  if (mapping->empty()) return skip(name + " maps nothing");
+  if (auto why = reason_against(dut, pdo, *mapping)) return skip(std::move(*why));
+  tpdo.mapping = std::move(*mapping);
+  for (const std::uint8_t sub_index : {type_parameter, inhibit_parameter, timer_parameter, sync_start_parameter}) {
+    if (is_readable(dut, tpdo.index, sub_index)) tpdo.found[sub_index] = dut.read_number(tpdo.index, sub_index);
+  }
+  return tpdo;
+}
+
 std::vector<Tpdo> tpdos(Dut& dut) {
+  dut.enter(NmtState::pre_operational);
   std::vector<Tpdo> found;
-  std::vector<std::uint32_t> others;  // COB-IDs of those that are valid
-  std::string reason = "the data sheet has no TPDO";
+  std::string reason = "the EDS has no TPDO";
   for (const Pdo* pdo : dut.pdos(PdoDirection::transmit)) {
-    Tpdo tpdo;
-    tpdo.pdo = pdo;
-    tpdo.index = pdo->communication->index;
-    const std::string label = pdo_label(*pdo);
-    if (!is_readable(dut, tpdo.index, cob_id_parameter)) {
-      reason = label + " has no COB-ID in the data sheet";
-      continue;
-    }
-    tpdo.found_cob_id = static_cast<std::uint32_t>(dut.read_number(tpdo.index, cob_id_parameter));
-    tpdo.cob_id = tpdo.found_cob_id & ~CobId::invalid_bit;
-    if (CobId{tpdo.found_cob_id}.valid()) others.push_back(tpdo.cob_id & CobId::identifier);
-    auto mapping = read_mapping(dut, tpdo.index);
-    if (!mapping) {
-      reason = label + " is a multiplex PDO";
-    } else if (auto why = reason_against(dut, *pdo, *mapping)) {
-      reason = *why;
-    } else if (mapping->empty()) {
-      reason = label + " maps nothing";
-    } else if (!canopen::may_be_written(CobId{tpdo.cob_id}, true, true)) {
-      reason = fmt::format("{} has no usable CAN-ID: its COB-ID is {:08X}h", label, tpdo.found_cob_id);
-    } else if (!CobId{tpdo.found_cob_id}.valid() && !is_writable(dut, tpdo.index, cob_id_parameter)) {
-      reason = label + " is not valid, and cannot be made valid";
-    } else {
-      tpdo.mapping = std::move(*mapping);
-      for (const std::uint8_t sub_index : {type_parameter, inhibit_parameter, timer_parameter, sync_start_parameter}) {
-        if (is_readable(dut, tpdo.index, sub_index)) tpdo.found[sub_index] = dut.read_number(tpdo.index, sub_index);
-      }
-      found.push_back(std::move(tpdo));
-    }
+    if (auto tpdo = read_tpdo(dut, *pdo, reason)) found.push_back(std::move(*tpdo));
+  }
+  std::vector<std::uint32_t> in_use;
+  for (const Tpdo& tpdo : found) {
+    if (tpdo.was_valid()) in_use.push_back(tpdo.cob_id & CobId::identifier);
   }
   std::erase_if(found, [&](const Tpdo& tpdo) {
-    const bool is_valid = CobId{tpdo.found_cob_id}.valid();
-    const bool is_shared = std::ranges::count(others, tpdo.cob_id & CobId::identifier) > (is_valid ? 1 : 0);
+    const auto users = std::ranges::count(in_use, tpdo.cob_id & CobId::identifier);
+    const bool is_shared = users > (tpdo.was_valid() ? 1 : 0);
     if (is_shared) reason = tpdo.name() + " shares its CAN-ID with another TPDO";
     return is_shared;
   });

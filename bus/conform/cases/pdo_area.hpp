@@ -29,7 +29,7 @@ inline constexpr Duration to_answer = milliseconds{500};
 /// How long nothing must come for nothing to come at all.
 inline constexpr Duration silence = milliseconds{100};
 
-/// Fails for a value of an entry: by the data sheet where that is its default, as the rule of `edsc check` says, too.
+/// Fails for a value of an entry: by the EDS where that is its default, as the rule of `edsc check` says, too.
 [[noreturn]] void fail_value(Dut& dut, std::uint16_t index, std::uint8_t sub_index, std::uint64_t value,
                              std::string_view rule, const std::string& expected, const std::string& got);
 
@@ -57,7 +57,7 @@ struct Mapped {
 /// `2000h:00 and 2001h:00`
 [[nodiscard]] std::string objects_text(const std::vector<Mapped>& mapping);
 
-/// Why the data sheet does not let a PDO carry an entry of its mapping.
+/// Why the EDS does not let a PDO carry an entry of its mapping.
 struct MappingFault {
   std::string_view rule;  ///< of `edsc check`
   std::string expected;
@@ -95,12 +95,15 @@ struct Tpdo {
   std::vector<Mapped> mapping;
   std::map<std::uint8_t, std::uint64_t> found;  ///< sub-indices 2 and above of the communication parameter
 
+  [[nodiscard]] bool was_valid() const { return canopen::CobId{found_cob_id}.valid(); }
   [[nodiscard]] std::uint8_t size() const { return static_cast<std::uint8_t>((bits_of(mapping) + 7) / 8); }
   [[nodiscard]] Dut::Match frames() const { return Dut::with_cob_id(cob_id); }
   [[nodiscard]] std::string name() const;  ///< `TPDO 1 (CAN-ID 181h)`
 };
 
-/// Those that can be tested. The case is not applicable where there is none.
+/// Nothing where it cannot be tested; `reason` then says why.
+[[nodiscard]] std::optional<Tpdo> read_tpdo(Dut& dut, const Pdo& pdo, std::string& reason);
+/// Those that can be tested, in Pre-operational. The case is not applicable where there is none.
 [[nodiscard]] std::vector<Tpdo> tpdos(Dut& dut);
 
 /// What a case asks of a TPDO. Event-driven ones have no inhibit time and no event timer unless the case asks for them.
@@ -113,12 +116,12 @@ struct Transmission {
 };
 
 /// Makes the TPDO so, in Pre-operational or Operational. Nothing when that is done, else why the device does not
-/// support it: `1800h:05 does not exist in the data sheet`. The TPDO is then as it was found.
+/// support it: `1800h:05 does not exist in the EDS`. The TPDO is then as it was found.
 [[nodiscard]] std::optional<std::string> configure(Dut& dut, const Tpdo& tpdo, const Transmission& wanted);
 /// Puts the parameters back as they were found.
 void put_back(Dut& dut, const Tpdo& tpdo);
 
-/// A value for an entry that its limits in the data sheet allow, as near to this one as can be.
+/// A value for an entry that its limits in the EDS allow, as near to this one as can be.
 [[nodiscard]] std::uint64_t within_limits(const Dut& dut, std::uint16_t index, std::uint8_t sub_index,
                                           std::uint64_t value);
 

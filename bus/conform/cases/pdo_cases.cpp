@@ -34,7 +34,7 @@ void expect_legal_type(Dut& dut, const ParameterRange& range, std::uint16_t inde
              label(index, type_parameter) + " with a transmission type that is not reserved", fmt::format("{}", type));
 }
 
-/// 1400h or 1800h of the data sheet: all its parameters can be read, and say what they may say.
+/// 1400h or 1800h of the EDS: all its parameters can be read, and say what they may say.
 void expect_communication_parameter(Dut& dut, const ParameterRange& range, const Object& object) {
   for (const Entry& entry : object.entries) {
     if (!canopen::readable(entry.access)) continue;
@@ -51,12 +51,11 @@ void expect_communication_parameter(Dut& dut, const ParameterRange& range, const
   }
 }
 
-/// A PDO that the data sheet does not have, the device does not have.
+/// A PDO that the EDS does not have, the device does not have.
 void expect_no_pdo(Dut& dut, std::uint16_t index, canopen::AbortCode& known) {
   const SdoOutcome outcome = dut.upload(index, cob_id_parameter);
   if (outcome.end == SdoEnd::refused && outcome.code == known) return;
-  dut.expect_abort(outcome, abort_rule::no_object,
-                   label(index, cob_id_parameter) + ", which the data sheet does not have");
+  dut.expect_abort(outcome, abort_rule::no_object, label(index, cob_id_parameter) + ", which the EDS does not have");
   known = outcome.code;
 }
 
@@ -72,7 +71,7 @@ void scan(Dut& dut, const ParameterRange& range) {
   }
 }
 
-/// Sub-index 4 does not exist, unless the data sheet has it.
+/// Sub-index 4 does not exist, unless the EDS has it.
 void expect_no_reserved_parameter(Dut& dut) {
   std::string reserved;
   for (const Pdo* pdo : dut.pdos(PdoDirection::transmit)) {
@@ -84,7 +83,7 @@ void expect_no_reserved_parameter(Dut& dut) {
       dut.expect_abort(dut.upload(index, reserved_parameter), abort_rule::no_sub_index, name);
     }
   }
-  if (!reserved.empty()) dut.warn("the data sheet has what CiA 301 reserves: " + reserved);
+  if (!reserved.empty()) dut.warn("the EDS has what CiA 301 reserves: " + reserved);
 }
 
 /// Each CAN-ID has one producer, and one meaning.

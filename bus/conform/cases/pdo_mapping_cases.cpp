@@ -26,7 +26,7 @@ constexpr AbortRule wrong_count{{Code::pdo_length, Code::no_object, Code::not_ma
 
 std::string_view name_of(PdoDirection direction) { return direction == PdoDirection::receive ? "RPDO" : "TPDO"; }
 
-/// A PDO whose mapping the data sheet lets change, and the procedure to do so. It is put back as it was found.
+/// A PDO whose mapping the EDS lets change, and the procedure to do so. It is put back as it was found.
 class Remapping {
  public:
   Remapping(Dut& dut, const Pdo& pdo, std::uint8_t capacity)
@@ -137,7 +137,7 @@ std::uint8_t capacity_of(const Dut& dut, const Pdo& pdo) {
 /// PDOs whose mapping can be changed, and put back. Not applicable where there is none.
 std::vector<Remapping> remappings(Dut& dut, std::initializer_list<PdoDirection> directions) {
   std::vector<Remapping> found;
-  std::string reason = fmt::format("the data sheet has no {} whose mapping and COB-ID are rw",
+  std::string reason = fmt::format("the EDS has no {} whose mapping and COB-ID are rw",
                                    directions.size() == 1 ? name_of(*directions.begin()) : "PDO");
   dut.enter(NmtState::pre_operational);
   for (const PdoDirection direction : directions) {
@@ -204,7 +204,7 @@ std::vector<Mapped> some_of(Dut& dut, const std::vector<Mapped>& objects) {
 
 namespace {
 
-/// The object of a mapping entry, which the data sheet may map by default.
+/// The object of a mapping entry, which the EDS may map by default.
 void expect_mapped_object(Dut& dut, const Pdo& pdo, std::uint16_t index, std::uint8_t position, const Mapped& mapped) {
   const std::string where = label(index, position);
   if (const auto fault = fault_of(dut, pdo.direction, mapped)) {
@@ -242,14 +242,14 @@ void mapping_fits_dictionary(Dut& dut) {
       }
     }
   }
-  if (!any) dut.not_applicable("the data sheet has no mapping parameter");
+  if (!any) dut.not_applicable("the EDS has no mapping parameter");
 }
 
 // ---- a new mapping ----
 
 namespace {
 
-/// Another mapping than the present one, of objects that the data sheet lets the PDO carry: the present ones in the
+/// Another mapping than the present one, of objects that the EDS lets the PDO carry: the present ones in the
 /// reverse order, or one that is not mapped yet.
 std::vector<Mapped> new_mapping(const Dut& dut, const Remapping& remapping) {
   const std::vector<Mapped> present = remapping.found();
@@ -313,9 +313,9 @@ std::optional<SeenFrame> make_sent(Dut& dut, const Tpdo& tpdo) {
 
 /// A TPDO carries the newly mapped objects.
 void expect_sent_as_mapped(Dut& dut, const Remapping& remapping) {
-  const std::vector<Tpdo> all = tpdos(dut);
-  const auto tpdo = std::ranges::find(all, &remapping.pdo(), &Tpdo::pdo);
-  if (tpdo == all.end()) return;
+  std::string reason;
+  const auto tpdo = read_tpdo(dut, remapping.pdo(), reason);
+  if (!tpdo) return;
   const DistinctValues values{dut, tpdo->mapping};
   const Image before = read_image(dut, tpdo->mapping);
   const auto seen = make_sent(dut, *tpdo);
@@ -375,7 +375,7 @@ void takes_new_mapping(Dut& dut) {
     }
     remapping.put_back();
   }
-  if (!any) dut.not_applicable("the data sheet has no object that a PDO whose mapping is rw may carry");
+  if (!any) dut.not_applicable("the EDS has no object that a PDO whose mapping is rw may carry");
 }
 
 // ---- without the procedure ----
@@ -459,7 +459,7 @@ std::vector<Mapped> too_long_mapping(const Dut& dut, const Remapping& remapping)
 }  // namespace
 
 void refuses_too_many_bits(Dut& dut) {
-  std::string reason = "no mapping that the data sheet allows is longer than 64 bits";
+  std::string reason = "no mapping that the EDS allows is longer than 64 bits";
   bool any = false;
   for (Remapping& remapping : all_remappings(dut)) {
     const std::vector<Mapped> mapping = too_long_mapping(dut, remapping);
@@ -532,9 +532,9 @@ std::vector<Mapped> unmappable(const Dut& dut) {
   return objects_where(dut, [](const Entry& entry) { return !entry.pdo_mapping; });
 }
 
-constexpr const char* no_output = "the data sheet has no object with PDOMapping=1 that is rww or wo";
-constexpr const char* no_input = "the data sheet has no object with PDOMapping=1 that is rwr or ro";
-constexpr const char* no_unmappable = "the data sheet has no object with PDOMapping=0";
+constexpr const char* no_output = "the EDS has no object with PDOMapping=1 that is rww or wo";
+constexpr const char* no_input = "the EDS has no object with PDOMapping=1 that is rwr or ro";
+constexpr const char* no_unmappable = "the EDS has no object with PDOMapping=0";
 
 }  // namespace
 
@@ -557,7 +557,7 @@ void takes_dummy_in_rpdo(Dut& dut) {
     const std::uint8_t bits = canopen::dummy_bits[index];
     if (bits != 0 && (granularity == 0 || bits % granularity == 0)) dummies.push_back({index, 0, bits});
   }
-  takes_objects(dut, PdoDirection::receive, dummies, "the data sheet has no dummy object in [DummyUsage]");
+  takes_objects(dut, PdoDirection::receive, dummies, "the EDS has no dummy object in [DummyUsage]");
 }
 
 }  // namespace edsc::conform::pdo_area

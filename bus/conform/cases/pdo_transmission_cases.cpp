@@ -240,7 +240,7 @@ void sends_on_event(Dut& dut) {
 
 namespace {
 
-/// A period that the data sheet allows.
+/// A period that the EDS allows.
 std::uint16_t timer_of(const Dut& dut, const Tpdo& tpdo) {
   constexpr std::uint16_t wanted_ms = 100;
   return static_cast<std::uint16_t>(within_limits(dut, tpdo.index, timer_parameter, wanted_ms));
@@ -332,12 +332,14 @@ void expect_each_nth(Dut& dut, const Tpdo& tpdo, SyncSource& sync, unsigned n) {
 }  // namespace
 
 void sends_at_each_nth_sync(Dut& dut) {
+  dut.enter(NmtState::pre_operational);
   SyncSource sync{dut};
   for_each_tpdo(dut, {{.type = 1}, {.type = 3}},
                 [&](const Tpdo& tpdo, const Transmission& wanted) { expect_each_nth(dut, tpdo, sync, wanted.type); });
 }
 
 void sends_at_sync_after_event(Dut& dut) {
+  dut.enter(NmtState::pre_operational);
   SyncSource sync{dut};
   std::optional<Tpdo> without_stimulus;
   bool any = false;
@@ -386,6 +388,7 @@ SyncStart sync_start_of(const SyncSource& sync) {
 }  // namespace
 
 void sends_from_sync_start_value(Dut& dut) {
+  dut.enter(NmtState::pre_operational);
   SyncSource sync{dut, SyncSource::Counter::enabled};
   const SyncStart start = sync_start_of(sync);
   for_each_tpdo(dut, {{.type = 1, .sync_start = start.value}}, [&](const Tpdo& tpdo, const Transmission&) {
@@ -413,7 +416,6 @@ namespace {
 std::vector<Tpdo> configure_all(Dut& dut, const Transmission& wanted) {
   Tested tested{dut};
   std::vector<Tpdo> done;
-  dut.enter(NmtState::pre_operational);
   for (Tpdo& tpdo : tpdos(dut)) {
     if (tested.configured(tpdo, wanted)) done.push_back(std::move(tpdo));
   }
