@@ -40,7 +40,6 @@ class CountedText {
     return *this;
   }
   friend bool operator==(const CountedText& a, const CountedText& b) { return a.at_ == b.at_; }
-  friend bool operator!=(const CountedText& a, const CountedText& b) { return a.at_ != b.at_; }
 
  private:
   const char* at_;
@@ -110,7 +109,8 @@ class DeviationsReader {
   }
 
   void deviations(const json& value) {
-    const bool valid = value.is_array() && std::ranges::all_of(value, [](const json& item) { return item.is_object(); });
+    const bool valid =
+        value.is_array() && std::ranges::all_of(value, [](const json& item) { return item.is_object(); });
     if (!valid || value.size() != rows_.size()) {
       return error(position_of("deviations"),
                    R"(expected an array of objects: [{"case": "3.7", "object": "1800h:02", "reason": "..."}])");

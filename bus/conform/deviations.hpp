@@ -24,8 +24,8 @@ struct Deviation {
 /// Reads a file as docs/schema/deviations.schema.json says. Anything else in it is an error, at its line and column.
 [[nodiscard]] std::vector<Deviation> read_deviations(const SourceFile& source, Diagnostics& diagnostics);
 
-/// A failed case that is declared becomes `deviates`. A declaration with an object does not apply to a failure that names
-/// other entries only.
+/// A failed case that is declared becomes `deviates`. A declaration with an object does not apply to a failure that
+/// names other entries only.
 void apply_deviations(std::span<const Deviation> deviations, CaseResult& result);
 
 /// Fills `unused_deviations`: declarations whose case has passed.

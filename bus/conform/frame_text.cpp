@@ -26,7 +26,8 @@ std::vector<std::string> frame_lines(const CaseResult& result, std::uint8_t node
                                      std::size_t max_frames) {
   std::vector<std::string> lines;
   std::size_t left_out = result.frames.size() - std::min(result.frames.size(), max_frames);
-  if (left_out > 0) lines.push_back(fmt::format("{} not shown; --log writes all frames", counted(left_out, "earlier frame")));
+  if (left_out > 0)
+    lines.push_back(fmt::format("{} not shown; --log writes all frames", counted(left_out, "earlier frame")));
   const NodeLabels labels;
   const std::size_t width = result.frames.empty() ? 0 : time_text(result.frames.back().at).size();
   decode_frames(result, node, sheet, [&](const SeenFrame& seen, const Message& message) {

@@ -17,8 +17,8 @@ namespace edsc::conform {
 void decode_frames(const CaseResult& result, std::uint8_t node, const Device& sheet,
                    const std::function<void(const SeenFrame&, const Message&)>& use);
 
-/// The last frames of a case, a line each without a line end: `12.003481 TX 605 40 08 10 ... SDO >    node 5  read ...`.
-/// A line that counts the frames before them is the first one.
+/// The last frames of a case, a line each without a line end: `12.003481 TX 705 05    HEART    node 5  operational`. A
+/// line that counts the frames before them is the first one.
 [[nodiscard]] std::vector<std::string> frame_lines(const CaseResult& result, std::uint8_t node, const Device& sheet,
                                                    std::size_t max_frames);
 

@@ -30,6 +30,7 @@ std::uint64_t max_lag(const RunReport& run) {
 std::string level_text(const RunReport& run) {
   std::string text = fmt::format("level {}", row_of(run.level).name);
   std::string_view separator = " with ";
+  if (run.level == Level::all) return text;
   for (const std::string_view name : permission_names(run.permissions)) {
     text.append(separator).append(name);
     separator = " and ";
@@ -39,7 +40,8 @@ std::string level_text(const RunReport& run) {
 
 std::vector<std::string> run_problems(const RunReport& run) {
   std::vector<std::string> problems;
-  for (const std::string& unused : run.unused_deviations) problems.push_back(fmt::format("unused deviation: {}", unused));
+  for (const std::string& unused : run.unused_deviations)
+    problems.push_back(fmt::format("unused deviation: {}", unused));
   for (const std::string& left : run.not_put_back) problems.push_back(fmt::format("not put back: {}", left));
   if (run.interrupted) problems.emplace_back("the run was interrupted");
   if (!run.lost.empty()) problems.push_back(fmt::format("the run ended early: {}", run.lost));
@@ -50,7 +52,8 @@ std::string result_sentence(const RunReport& run) {
   if (run.cases.empty()) return "no case ran";
   const std::size_t failed = run.count(Verdict::failed);
   const std::string cases = counted(run.cases.size(), "case");
-  std::string text = failed == 0 ? fmt::format("none of {} failed", cases) : fmt::format("{} of {} failed", failed, cases);
+  std::string text =
+      failed == 0 ? fmt::format("none of {} failed", cases) : fmt::format("{} of {} failed", failed, cases);
   std::string_view separator = "; ";
   for (const VerdictRow& row : verdicts) {
     const std::size_t count = run.count(row.verdict);

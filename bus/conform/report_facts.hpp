@@ -37,7 +37,8 @@ struct AreaCount {
 /// `store`, `outputs`: the options without their dashes.
 [[nodiscard]] std::vector<std::string_view> permission_names(Permission permissions);
 
-/// What a case came to, in one line: `expected 0602 0000h...; got no answer`, `not applicable: 1017h:00 does not exist...`.
+/// What a case came to, in one line: `expected 0602 0000h...; got no answer`, `not applicable: 1017h:00 does not
+/// exist...`.
 [[nodiscard]] std::string message_of(const CaseResult& result);
 
 /// Seconds since the run began: `12.003481`.

@@ -38,7 +38,9 @@ json frame_view(const SeenFrame& seen, const Message& message) {
           {"data", data_text(seen.frame)},
           {"service", service_label(message)},
           {"meaning", message.text},
-          {"frame_class", message.problem ? "failed" : received ? "received" : "sent"}};
+          {"frame_class", message.problem ? "failed"
+                          : received      ? "received"
+                                          : "sent"}};
 }
 
 json frames_view(const CaseResult& result, const RunReport& run, const Device& sheet) {

@@ -33,9 +33,8 @@ json frame_object(const SeenFrame& seen, const Message& message) {
 json case_object(const CaseResult& result, const RunReport& run, const Device& sheet) {
   const CaseRow& row = *result.row;
   json frames = json::array();
-  decode_frames(result, run.node, sheet, [&](const SeenFrame& seen, const Message& message) {
-    frames.push_back(frame_object(seen, message));
-  });
+  decode_frames(result, run.node, sheet,
+                [&](const SeenFrame& seen, const Message& message) { frames.push_back(frame_object(seen, message)); });
   return {{"id", row.id},
           {"area", area_of(row).id},
           {"title", row.title},
@@ -59,7 +58,9 @@ json case_object(const CaseResult& result, const RunReport& run, const Device& s
 
 json area_object(const AreaCount& count) {
   json object = {{"id", count.area->id}, {"title", count.area->title}};
-  for (const VerdictRow& row : verdicts) object[std::string{row.name}] = count.of_verdict[static_cast<std::size_t>(row.verdict)];
+  for (const VerdictRow& row : verdicts) {
+    object[std::string{row.name}] = count.of_verdict[static_cast<std::size_t>(row.verdict)];
+  }
   return object;
 }
 
@@ -72,28 +73,29 @@ std::string json_report(const RunReport& run, const Device& sheet) {
   for (const AreaCount& count : count_by_area(run)) areas.push_back(area_object(count));
   json cases = json::array();
   for (const CaseResult& result : run.cases) cases.push_back(case_object(result, run, sheet));
-  const json report = {{"version", 1},
-                       {"edsc", run.version},
-                       {"passed", run.passed()},
-                       {"bus", run.bus},
-                       {"node_id", run.node},
-                       {"eds",
-                        {{"file", run.sheet},
-                         {"sha256", text_or_null(run.sheet_hash)},
-                         {"vendor", run.vendor},
-                         {"product", run.product}}},
-                       {"identity", {{"read", text_or_null(run.read_identity)}, {"differences", text_or_null(run.identity)}}},
-                       {"level", row_of(run.level).name},
-                       {"permissions", permission_names(run.permissions)},
-                       {"seed", run.seed},
-                       {"max_lag_us", max_lag(run)},
-                       {"interrupted", run.interrupted},
-                       {"ended_early", text_or_null(run.lost)},
-                       {"unused_deviations", run.unused_deviations},
-                       {"not_put_back", run.not_put_back},
-                       {"verdicts", std::move(totals)},
-                       {"areas", std::move(areas)},
-                       {"cases", std::move(cases)}};
+  const json report = {
+      {"version", 1},
+      {"edsc", run.version},
+      {"passed", run.passed()},
+      {"bus", run.bus},
+      {"node_id", run.node},
+      {"eds",
+       {{"file", run.sheet},
+        {"sha256", text_or_null(run.sheet_hash)},
+        {"vendor", run.vendor},
+        {"product", run.product}}},
+      {"identity", {{"read", text_or_null(run.read_identity)}, {"differences", text_or_null(run.identity)}}},
+      {"level", row_of(run.level).name},
+      {"permissions", permission_names(run.permissions)},
+      {"seed", run.seed},
+      {"max_lag_us", max_lag(run)},
+      {"interrupted", run.interrupted},
+      {"ended_early", text_or_null(run.lost)},
+      {"unused_deviations", run.unused_deviations},
+      {"not_put_back", run.not_put_back},
+      {"verdicts", std::move(totals)},
+      {"areas", std::move(areas)},
+      {"cases", std::move(cases)}};
   return json_text(report) + '\n';
 }
 

@@ -172,7 +172,8 @@ std::string junit_report(const RunReport& run, const Device& sheet) {
   SuiteCounts all = add_run(suites, run);
   for (const AreaCount& count : count_by_area(run)) {
     const SuiteCounts counts = counts_of(count, run);
-    all = {all.tests + counts.tests, all.failures + counts.failures, all.skipped + counts.skipped, all.took + counts.took};
+    all = {all.tests + counts.tests, all.failures + counts.failures, all.skipped + counts.skipped,
+           all.took + counts.took};
     add_area(suites, count, run, sheet);
   }
   set_counts(suites, all);

@@ -10,8 +10,8 @@ std::string candump_log(const RunReport& run) {
   std::string log;
   for (const CaseResult& result : run.cases) {
     for (const SeenFrame& seen : result.frames) {
-      log += candump_line(seen.frame, interface, {static_cast<std::int64_t>(seen.at / second),
-                                                  static_cast<std::int32_t>(seen.at % second)});
+      log += candump_line(seen.frame, interface,
+                          {static_cast<std::int64_t>(seen.at / second), static_cast<std::int32_t>(seen.at % second)});
       log += '\n';
     }
   }

@@ -56,8 +56,9 @@ std::string TextReport::head() const {
 std::string TextReport::of(const CaseResult& result) const {
   const CaseRow& row = *result.row;
   const VerdictRow& verdict = row_of(result.verdict);
-  std::string out = fmt::format("{:<{}}{}{}", row.id, id_width,
-                                colored(verdict.text, color_ ? color_of(result.verdict) : "", verdict_width), row.title);
+  std::string out =
+      fmt::format("{:<{}}{}{}", row.id, id_width,
+                  colored(verdict.text, color_ ? color_of(result.verdict) : "", verdict_width), row.title);
   if (!result.reason.empty()) fmt::format_to(std::back_inserter(out), " ({})", printable(result.reason));
   out += '\n';
   append_detail(out, "reason", result.deviation);
@@ -77,7 +78,7 @@ std::string TextReport::of(const CaseResult& result) const {
   return out;
 }
 
-std::string TextReport::summary() const {
+std::string TextReport::table() const {
   const std::vector<AreaCount> areas = count_by_area(run_);
   std::vector<const VerdictRow*> columns;
   for (const VerdictRow& row : verdicts) {
@@ -102,7 +103,11 @@ std::string TextReport::summary() const {
                [&](Verdict verdict) { return count.of_verdict[static_cast<std::size_t>(verdict)]; });
   }
   append_row("", "all", run_.cases.size(), [&](Verdict verdict) { return run_.count(verdict); });
+  return out;
+}
 
+std::string TextReport::summary() const {
+  std::string out = run_.cases.empty() ? std::string{} : table();
   out += '\n';
   if (!run_.read_identity.empty()) append_detail(out, "identity", run_.read_identity);
   append_detail(out, "differs", run_.identity);

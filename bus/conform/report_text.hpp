@@ -25,6 +25,8 @@ class TextReport {
   [[nodiscard]] std::string summary() const;
 
  private:
+  [[nodiscard]] std::string table() const;
+
   const RunReport& run_;
   const Device& sheet_;
   bool color_;

@@ -43,8 +43,7 @@ bool RunReport::passed() const {
 std::string repeat_command(const RunReport& run, const CaseRow& row) {
   const Level level = std::max(run.level, row.level);
   const Permission permissions = run.permissions | row.needs;
-  std::string command =
-      fmt::format("edsc conform {} {} {}", shell_word(run.bus), run.node, shell_word(run.sheet));
+  std::string command = fmt::format("edsc conform {} {} {}", shell_word(run.bus), run.node, shell_word(run.sheet));
   if (level != Level::read) fmt::format_to(std::back_inserter(command), " --level {}", row_of(level).name);
   for (const PermissionRow& permission : permission_options) {
     if (level == Level::all || !includes(permissions, permission.permission)) continue;

@@ -26,15 +26,17 @@ namespace {
 
 using ::edsc::DeviceFromText;
 
-constexpr CaseRow read_row{"2.6", "A missing object is refused", "CiA 301, 7.2.4.3.17", Level::read, Permission::none,
+constexpr CaseRow read_row{"2.6",  "A missing object is refused", "CiA 301, 7.2.4.3.17", Level::read, Permission::none,
                            nullptr};
-constexpr CaseRow guarding_row{"2.14", "100Ch is written in segments", "CiA 301, 7.2.4.3.3", Level::communication,
-                               Permission::none, nullptr};
-constexpr CaseRow sync_row{"3.7", "A TPDO of type 0 is sent after an event", "CiA 301, 7.5.2.37",
-                           Level::communication, Permission::none, nullptr};
-constexpr CaseRow save_row{"8.4", "Values are restored", "CiA 301, 7.5.2.14", Level::communication, Permission::store,
+constexpr CaseRow guarding_row{
+    "2.14", "100Ch is written in segments", "CiA 301, 7.2.4.3.3", Level::communication, Permission::none, nullptr};
+constexpr CaseRow sync_row{
+    "3.7",  "A TPDO of type 0 is sent after an event", "CiA 301, 7.5.2.37", Level::communication, Permission::none,
+    nullptr};
+constexpr CaseRow save_row{"8.4",  "Values are restored", "CiA 301, 7.5.2.14", Level::communication, Permission::store,
                            nullptr};
-constexpr CaseRow outputs_row{"5.4", "An emergency is sent", "CiA 301, 7.2.7", Level::read, Permission::outputs, nullptr};
+constexpr CaseRow outputs_row{"5.4",       "An emergency is sent", "CiA 301, 7.2.7",
+                              Level::read, Permission::outputs,    nullptr};
 
 const DeviceFromText& sheet() {
   static const DeviceFromText sheet{"[DeviceInfo]\nVendorName=Maker\nProductName=Pump\n" +
@@ -97,7 +99,8 @@ RunReport every_verdict() {
 }
 
 /// What a hostile device or EDS may make a text hold.
-const std::string hostile = std::string{"<b>&\"'\x1B[31m\x07\x9B\xFF\r\n{{bus}} ]]> \xE2\x80\xAE \xEF\xBF\xBF"} + '\0' + "--></script>";
+const std::string hostile =
+    std::string{"<b>&\"'\x1B[31m\x07\x9B\xFF\r\n{{bus}} ]]> \xE2\x80\xAE \xEF\xBF\xBF"} + '\0' + "--></script>";
 
 RunReport hostile_run() {
   RunReport run = every_verdict();
@@ -149,7 +152,8 @@ TEST(ConformRun, NamesTheCommandThatRepeatsACase) {
   EXPECT_EQ(repeat_command(run, outputs_row),
             "edsc conform socketcan:can0 5 eds/pump.eds --level communication --store --outputs --only 5.4 --seed 7");
   run.level = Level::all;
-  EXPECT_EQ(repeat_command(run, save_row), "edsc conform socketcan:can0 5 eds/pump.eds --level all --only 8.4 --seed 7");
+  EXPECT_EQ(repeat_command(run, save_row),
+            "edsc conform socketcan:can0 5 eds/pump.eds --level all --only 8.4 --seed 7");
   run.level = Level::read;
   run.permissions = Permission::none;
   run.sheet = "my pump's.eds";
@@ -161,16 +165,17 @@ TEST(ConformRun, NamesTheCommandThatRepeatsACase) {
 TEST(ConformText, ShowsOfAFailureAllThatIsNeededToRepeatIt) {
   const RunReport run = every_verdict();
   const TextReport report{run, sheet().device, false};
-  EXPECT_EQ(report.of(run.cases[1]),
-            "2.6    failed                A missing object is refused\n"
-            "       clause        CiA 301, 7.2.4.3.17\n"
-            "       expected      0602 0000h, object does not exist\n"
-            "       got           0609 0011h, sub-index does not exist\n"
-            "       frames        12.003481 TX 605 40 04 10 00 00 00 00 00 SDO >    node 5  read 1004h:00\n"
-            "                     12.004000 RX 585 80 04 10 00 11 00 09 06 SDO <    node 5  abort 0609 0011h sub-index does "
-            "not exist, read of 1004h:00, 0.519 ms\n"
-            "       repeat with   edsc conform socketcan:can0 5 eds/pump.eds --level communication --store --only 2.6 "
-            "--seed 7\n");
+  EXPECT_EQ(
+      report.of(run.cases[1]),
+      "2.6    failed                A missing object is refused\n"
+      "       clause        CiA 301, 7.2.4.3.17\n"
+      "       expected      0602 0000h, object does not exist\n"
+      "       got           0609 0011h, sub-index does not exist\n"
+      "       frames        12.003481 TX 605 40 04 10 00 00 00 00 00 SDO >    node 5  read 1004h:00\n"
+      "                     12.004000 RX 585 80 04 10 00 11 00 09 06 SDO <    node 5  abort 0609 0011h sub-index does "
+      "not exist, read of 1004h:00, 0.519 ms\n"
+      "       repeat with   edsc conform socketcan:can0 5 eds/pump.eds --level communication --store --only 2.6 "
+      "--seed 7\n");
 }
 
 TEST(ConformText, HasALineForEachOtherCase) {
@@ -204,7 +209,8 @@ TEST(ConformText, ShortensLongListsOfFrames) {
   failed.frames.assign(100, seen(5'000'000, false, 0x705, {0x05}));
   failed.frames.back() = seen(6'000'000, false, 0x705, {0x7F});
   const std::string text = TextReport{run, sheet().device, false}.of(failed);
-  EXPECT_NE(text.find("frames        80 earlier frames not shown; --log writes all frames\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("frames        80 earlier frames not shown; --log writes all frames\n"), std::string::npos)
+      << text;
   EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(text, '\n')), 4 + 1 + TextReport::max_frames + 1);
   EXPECT_NE(text.find("6.000000 RX 705 7F"), std::string::npos) << text;
 }
@@ -224,6 +230,25 @@ TEST(ConformText, SumsUpByArea) {
             "       own lag       0.1 ms at most\n"
             "       problem       unused deviation: pump.json:4: case 8.4 passed: restored after a power cycle\n"
             "failed: 1 of 3 cases failed; 1 passed, 1 not applicable\n");
+}
+
+TEST(ConformText, SaysWhyNoCaseRan) {
+  RunReport run;
+  run.lost = "node 5 does not answer";
+  EXPECT_EQ((TextReport{run, sheet().device, false}.summary()),
+            "\n"
+            "       own lag       0.0 ms at most\n"
+            "       problem       the run ended early: node 5 does not answer\n"
+            "failed: no case ran\n");
+}
+
+TEST(ConformText, NamesWhatTheRunMayDo) {
+  RunReport run = every_verdict();
+  EXPECT_EQ(level_text(run), "level communication with store");
+  run.permissions = Permission::store | Permission::outputs;
+  EXPECT_EQ(level_text(run), "level communication with store and outputs");
+  run.level = Level::all;
+  EXPECT_EQ(level_text(run), "level all");
 }
 
 TEST(ConformText, ShowsHostileBytesWithoutEffect) {
@@ -303,8 +328,7 @@ TEST(ConformJunit, SaysWhatFailedAndWhyOthersAreSkipped) {
   const auto skipped = [&](const char* name) {
     return std::string{junit.test(name).child("skipped").attribute("message").value()};
   };
-  EXPECT_EQ(skipped("2.14 100Ch is written in segments"),
-            "not applicable: 100Ch:00 does not exist in the data sheet");
+  EXPECT_EQ(skipped("2.14 100Ch is written in segments"), "not applicable: 100Ch:00 does not exist in the data sheet");
   EXPECT_EQ(skipped("3.7 A TPDO of type 0 is sent after an event"),
             "deviates as declared: sent at every SYNC (manual, page 12)");
   EXPECT_EQ(skipped("5.4 An emergency is sent"), "not run: needs --outputs");
@@ -327,10 +351,13 @@ TEST(ConformJunit, FailsWhereTheRunAsAWholeDoes) {
 TEST(ConformJunit, EscapesHostileBytes) {
   const std::string text = junit_report(hostile_run(), sheet().device);
   expect_harmless(text);
-  EXPECT_EQ(text.find("&#"), std::string::npos) << "a character that XML 1.0 does not allow stays one when it is escaped";
+  EXPECT_EQ(text.find("&#"), std::string::npos)
+      << "a character that XML 1.0 does not allow stays one when it is escaped";
   const Junit junit{text};
-  EXPECT_EQ(std::string{junit.test("2.14 100Ch is written in segments").child("skipped").attribute("message").value()}.substr(0, 31),
-            "not applicable: <b>&\"'<U+001B>[");
+  EXPECT_EQ(
+      std::string{junit.test("2.14 100Ch is written in segments").child("skipped").attribute("message").value()}.substr(
+          0, 31),
+      "not applicable: <b>&\"'<U+001B>[");
 }
 
 // ---- HTML ----
@@ -382,8 +409,12 @@ TEST(ConformLog, IsReadByTheDecoder) {
 
 TEST(ConformLog, NamesAnInterfaceWhateverTheBusIs) {
   RunReport run = every_verdict();
-  for (const auto& [bus, interface] : std::vector<std::pair<std::string, std::string>>{
-           {"slcan:/dev/ttyACM0@500000", "ttyACM0"}, {"socketcand:[::1]:29536/vcan1", "vcan1"}, {hostile, "script>"}, {"socketcan:an interface", "can0"}, {"", "can0"}}) {
+  for (const auto& [bus, interface] :
+       std::vector<std::pair<std::string, std::string>>{{"slcan:/dev/ttyACM0@500000", "ttyACM0"},
+                                                        {"socketcand:[::1]:29536/vcan1", "vcan1"},
+                                                        {hostile, "script>"},
+                                                        {"socketcan:an interface", "can0"},
+                                                        {"", "can0"}}) {
     run.bus = bus;
     EXPECT_NE(candump_log(run).find(" " + interface + " 605#"), std::string::npos) << bus;
   }
@@ -423,8 +454,10 @@ TEST(ConformDeviations, AreReadStrictly) {
   const std::pair<const char*, const char*> wrong[] = {
       {"[]", "1:1: expected one JSON object"},
       {"{}", "1:1: missing member deviations"},
-      {R"({"deviations": 1})", R"(1:2: expected an array of objects: [{"case": "3.7", "object": "1800h:02", "reason": "..."}])"},
-      {R"({"deviations": [1]})", R"(1:2: expected an array of objects: [{"case": "3.7", "object": "1800h:02", "reason": "..."}])"},
+      {R"({"deviations": 1})",
+       R"(1:2: expected an array of objects: [{"case": "3.7", "object": "1800h:02", "reason": "..."}])"},
+      {R"({"deviations": [1]})",
+       R"(1:2: expected an array of objects: [{"case": "3.7", "object": "1800h:02", "reason": "..."}])"},
       {"{\"deviations\": [],\n \"more\": 1}", "2:2: unknown member more"},
       {R"({"deviation": []})", "1:2: unknown member deviation; did you mean \"deviations\"?"},
       {R"({"deviations": [{"case": "3.7"}]})", "1:17: missing member reason"},
