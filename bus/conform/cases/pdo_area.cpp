@@ -277,7 +277,9 @@ std::optional<std::uint64_t> other_value(const Dut& dut, const Mapped& mapped, s
 
 // ---- a TPDO ----
 
-std::string Tpdo::name() const { return fmt::format("{} (CAN-ID {:X}h)", pdo_label(*pdo), CobId{cob_id}.can_id()); }
+std::string Tpdo::name() const {
+  return fmt::format("{} ({:04X}h, CAN-ID {:X}h)", pdo_label(*pdo), index, CobId{cob_id}.can_id());
+}
 
 std::optional<Tpdo> read_tpdo(Dut& dut, const Pdo& pdo, std::string& reason) {
   Tpdo tpdo;

@@ -98,7 +98,7 @@ struct Tpdo {
   [[nodiscard]] bool was_valid() const { return canopen::CobId{found_cob_id}.valid(); }
   [[nodiscard]] std::uint8_t size() const { return static_cast<std::uint8_t>((bits_of(mapping) + 7) / 8); }
   [[nodiscard]] Dut::Match frames() const { return Dut::with_cob_id(cob_id); }
-  [[nodiscard]] std::string name() const;  ///< `TPDO 1 (CAN-ID 181h)`
+  [[nodiscard]] std::string name() const;  ///< `TPDO 1 (1800h, CAN-ID 181h)`
 };
 
 /// Nothing where it cannot be tested; `reason` then says why.
