@@ -239,8 +239,8 @@ bool is_segmented(Dut& dut, const LiveEntry& entry) {
 /// One whose value has more than four bytes now; constants first, so that reading twice gives the same.
 LiveEntry need_long_entry(Dut& dut) {
   Entries entries = long_entries(dut);
-  std::ranges::stable_partition(entries,
-                                [](const LiveEntry& e) { return e.entry->access == canopen::Access::constant; });
+  const auto is_constant = [](const LiveEntry& e) { return e.entry->access == canopen::Access::constant; };
+  std::stable_partition(entries.begin(), entries.end(), is_constant);
   for (const LiveEntry& entry : entries) {
     if (is_segmented(dut, entry)) return entry;
   }
@@ -436,9 +436,10 @@ void read_servers_after_reset(Dut& dut) {
     (void)dut.download(server->index, 1, value);
   }
   dut.reset(canopen::NmtCommand::reset_communication);
-  for (const auto& [entry, bytes] : read_sdo_parameters(dut, first_server, last_server)) {
-    const auto text = [&](const Bytes& value) { return label(entry.first, entry.second) + " " + hex_bytes(value); };
-    dut.expect(bytes == before.at(entry), text(before.at(entry)) + ", as after the last reset", text(bytes));
+  for (const auto& [key, bytes] : read_sdo_parameters(dut, first_server, last_server)) {
+    const std::string entry = label(key.first, key.second) + " ";
+    const Bytes& wanted = before.at(key);
+    dut.expect(bytes == wanted, entry + hex_bytes(wanted) + ", as after the last reset", entry + hex_bytes(bytes));
   }
 }
 
