@@ -109,7 +109,8 @@ std::optional<std::uint32_t> set_up_tpdo(Dut& dut, std::uint8_t transmission_typ
   namespace parameter = canopen::pdo_parameter;
   for (const Pdo* pdo : dut.pdos(PdoDirection::transmit)) {
     const std::uint16_t index = pdo->communication->index;
-    if (pdo->multiplexed || pdo->mapping == nullptr || !dut.has(index, parameter::transmission_type)) continue;
+    if (pdo->multiplexed || pdo->broken || pdo->mapping == nullptr) continue;
+    if (!dut.has(index, parameter::transmission_type)) continue;
     const CobId cob_id{static_cast<std::uint32_t>(dut.read_number(index, parameter::cob_id))};
     const std::uint64_t mapped = dut.read_number(pdo->mapping->index);
     if (!canopen::is_usable(cob_id.value()) || mapped == 0 || mapped > 64) continue;
