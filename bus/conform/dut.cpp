@@ -95,14 +95,14 @@ bool Dut::has(std::uint16_t index, std::uint8_t sub_index) const { return entry(
 
 const Entry& Dut::need(std::uint16_t index, std::uint8_t sub_index) {
   const Entry* const found = entry(index, sub_index);
-  if (found == nullptr) not_applicable(label(index, sub_index) + " does not exist in the data sheet");
+  if (found == nullptr) not_applicable(label(index, sub_index) + " does not exist in the EDS");
   return *found;
 }
 
 const Entry& Dut::need_writable(std::uint16_t index, std::uint8_t sub_index) {
   const Entry& found = need(index, sub_index);
   if (!canopen::writable(found.access)) {
-    not_applicable(fmt::format("{} is {} in the data sheet", label(index, sub_index), canopen::row_of(found.access).name));
+    not_applicable(fmt::format("{} is {} in the EDS", label(index, sub_index), canopen::row_of(found.access).name));
   }
   return found;
 }

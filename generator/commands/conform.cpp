@@ -268,7 +268,7 @@ int run_conform(const Settings& settings) {
 }  // namespace
 
 void add_conform_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("conform", "test whether a node behaves as CiA 301 and its data sheet say");
+  CLI::App* command = app.add_subcommand("conform", "test whether a node behaves as CiA 301 and its EDS say");
   command->footer(examples);
   auto settings = std::make_shared<Settings>();
   auto* bus = add_bus_argument(*command, settings->bus);

@@ -90,7 +90,7 @@ RunReport every_verdict() {
   run.cases.push_back(result_of(save_row, Verdict::passed));
   run.cases.back().warnings = {"0800 0000h in place of 0601 0002h"};
   run.cases.push_back(failure(read_row, "0602 0000h, object does not exist", "0609 0011h, sub-index does not exist"));
-  run.cases.push_back(result_of(guarding_row, Verdict::not_applicable, "100Ch:00 does not exist in the data sheet"));
+  run.cases.push_back(result_of(guarding_row, Verdict::not_applicable, "100Ch:00 does not exist in the EDS"));
   run.cases.push_back(result_of(sync_row, Verdict::deviates));
   run.cases.back().deviation = "sent at every SYNC (manual, page 12)";
   run.cases.push_back(result_of(sync_row, Verdict::inconclusive, "needs a stimulus"));
@@ -178,6 +178,17 @@ TEST(ConformText, ShowsOfAFailureAllThatIsNeededToRepeatIt) {
       "--seed 7\n");
 }
 
+TEST(ConformReports, NameTheRuleThatReportsAFailureInTheEds) {
+  RunReport run = every_verdict();
+  run.cases[1].rule = "sync-missing";
+  const std::string text = TextReport{run, sheet().device, false}.of(run.cases[1]);
+  EXPECT_NE(text.find("       EDS           rule sync-missing of edsc check reports it\n"), std::string::npos) << text;
+  for (const std::string& report : {html_report(run, sheet().device), junit_report(run, sheet().device)}) {
+    EXPECT_NE(report.find("rule sync-missing of edsc check reports it"), std::string::npos);
+  }
+  EXPECT_EQ(nlohmann::json::parse(json_report(run, sheet().device))["cases"][1]["rule"], "sync-missing");
+}
+
 TEST(ConformText, HasALineForEachOtherCase) {
   const RunReport run = every_verdict();
   const TextReport report{run, sheet().device, false};
@@ -185,7 +196,7 @@ TEST(ConformText, HasALineForEachOtherCase) {
             "8.4    passed                Values are restored\n"
             "       warning       0800 0000h in place of 0601 0002h\n");
   EXPECT_EQ(report.of(run.cases[2]),
-            "2.14   not applicable        100Ch is written in segments (100Ch:00 does not exist in the data sheet)\n");
+            "2.14   not applicable        100Ch is written in segments (100Ch:00 does not exist in the EDS)\n");
   EXPECT_EQ(report.of(run.cases[3]),
             "3.7    deviates as declared  A TPDO of type 0 is sent after an event\n"
             "       reason        sent at every SYNC (manual, page 12)\n");
@@ -328,7 +339,7 @@ TEST(ConformJunit, SaysWhatFailedAndWhyOthersAreSkipped) {
   const auto skipped = [&](const char* name) {
     return std::string{junit.test(name).child("skipped").attribute("message").value()};
   };
-  EXPECT_EQ(skipped("2.14 100Ch is written in segments"), "not applicable: 100Ch:00 does not exist in the data sheet");
+  EXPECT_EQ(skipped("2.14 100Ch is written in segments"), "not applicable: 100Ch:00 does not exist in the EDS");
   EXPECT_EQ(skipped("3.7 A TPDO of type 0 is sent after an event"),
             "deviates as declared: sent at every SYNC (manual, page 12)");
   EXPECT_EQ(skipped("5.4 An emergency is sent"), "not run: needs --outputs");
