@@ -39,10 +39,9 @@ FLAGS = "-std=c++20 -O0 -w -fno-exceptions -fno-rtti"
 SHOWN = 6  # problems of one sheet
 MAIN = """#include <canopen/port/simulated_device.hpp>
 
-int main(int argc, char** argv) {{
-  const canopen::SimulatedDevice devices[] = {{{devices}}};
-  return canopen::simulate_devices(argc, argv, devices);
-}}
+extern const std::span<const canopen::SimulatedDevice> devices;
+
+int main(int argc, char** argv) { return canopen::simulate_devices(argc, argv, devices); }
 """
 
 
@@ -103,29 +102,23 @@ class Driver:
         if not device.is_file():
             job.name = ""
 
-    def compile(self, source: str) -> str:
+    def write_and_compile(self, name: str, text: str) -> str:
         """What the compiler says when it fails."""
-        command = [*self.compiler, *self.include, "-c", source, "-o", Path(source).with_suffix(".o").name]
+        (self.work / f"{name}.cpp").write_text(text, encoding="utf-8")
+        command = [*self.compiler, *self.include, "-c", f"{name}.cpp", "-o", f"{name}.o"]
         result = subprocess.run(command, cwd=self.work, capture_output=True, text=True, errors="replace")
         return "" if result.returncode == 0 else result.stderr or f"exit code {result.returncode}"
 
-    def write_and_compile(self, name: str, text: str) -> str:
-        (self.work / f"{name}.cpp").write_text(text, encoding="utf-8")
-        return self.compile(f"{name}.cpp")
-
     def program_of(self, jobs: list[Job], name: str) -> Path | None:
         """None: it does not compile."""
-        makers = [f"std::unique_ptr<canopen::SimulatedNode> make_{job.name}(canopen::SimulatedBus&, canopen::SimulatedMemory&)"
-                  for job in jobs]
-        nodes = ["#include <canopen/port/simulated_node.hpp>", *(f"#include <{job.name}/device.hpp>" for job in jobs)]
-        nodes += [f"{maker.replace('&', '& bus', 1).replace('SimulatedMemory&', 'SimulatedMemory& memory')} "
-                  f"{{ return canopen::make_simulated_node<{job.name}::Device>(bus, memory); }}"
-                  for job, maker in zip(jobs, makers)]
-        rows = ", ".join(f'{{"{job.name}", make_{job.name}}}' for job in jobs)
-        main = MAIN.format(devices=rows).replace("\n\nint", "\n\n" + "\n".join(f"{maker};" for maker in makers) + "\n\nint")
-        error = self.write_and_compile(name, "\n".join(nodes) + "\n") or self.write_and_compile(f"{name}_main", main)
+        lines = ["#include <canopen/port/simulated_node.hpp>", *(f"#include <{job.name}/device.hpp>" for job in jobs)]
+        rows = ", ".join(f'{{"{job.name}", canopen::make_simulated_node<{job.name}::Device>}}' for job in jobs)
+        lines += [f"static constexpr canopen::SimulatedDevice all[] = {{{rows}}};",
+                  "extern const std::span<const canopen::SimulatedDevice> devices;",
+                  "const std::span<const canopen::SimulatedDevice> devices{all};"]
+        error = self.write_and_compile(name, "\n".join(lines) + "\n")
         if not error:
-            link = [*self.compiler, f"{name}.o", f"{name}_main.o", "-o", name]
+            link = [*self.compiler, f"{name}.o", "main.o", "-o", name]
             result = subprocess.run(link, cwd=self.work, capture_output=True, text=True)
             error = result.stderr if result.returncode else ""
         if error and len(jobs) == 1:
@@ -196,6 +189,9 @@ def main() -> int:
     if not jobs:
         print(f"SKIPPED: no sheet whose path holds {' or '.join(arguments.only)}")
         return SKIPPED
+    if error := driver.write_and_compile("main", MAIN):
+        print(error)
+        return 1
     in_parallel(driver.generate, jobs)
     generated = [job for job in jobs if job.name]
     groups = [generated[first:first + SHEETS_PER_PROGRAM] for first in range(0, len(generated), SHEETS_PER_PROGRAM)]

@@ -167,8 +167,8 @@ void expect_state_after_boot_up(Dut& dut) {
   const Entry* const startup = dut.entry(nmt_startup);
   if (startup != nullptr && canopen::readable(startup->access)) {
     const std::uint64_t bits = dut.read_number(nmt_startup);
-    const bool may_start = (bits & is_master) != 0 || (bits & does_not_start) == 0;
-    if (may_start && dut.state() == NmtState::operational) return;
+    if ((bits & is_master) != 0 && dut.state() == NmtState::operational) return;
+    if ((bits & (is_master | does_not_start)) == 0) return dut.expect_state(NmtState::operational);
   }
   dut.expect_state(NmtState::pre_operational);
 }

@@ -72,12 +72,6 @@
 
 namespace canopen {
 
-/// One of the devices that a program simulates.
-struct SimulatedDevice {
-  std::string_view name;  ///< no blanks
-  MakeSimulatedNode make;
-};
-
 namespace simulation_detail {
 
 template <class T>

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -170,5 +171,11 @@ template <class Device, class Application = NoApplication>
 [[nodiscard]] std::unique_ptr<SimulatedNode> make_simulated_node(SimulatedBus& bus, SimulatedMemory& memory) {
   return std::make_unique<simulation_detail::NodeOf<Device, Application>>(bus, memory);
 }
+
+/// One of the devices that a program simulates.
+struct SimulatedDevice {
+  std::string_view name;  ///< no blanks
+  MakeSimulatedNode make;
+};
 
 }  // namespace canopen
