@@ -18,7 +18,7 @@ EDSC = Path(sys.argv[2]).resolve()
 KINDS = ("bash", "zsh", "man")
 GROUPS = {
     "EDS files": ["generate", "check", "dump", "format", "diff"],
-    "Bus": ["scan", "read", "write", "configure", "save", "monitor", "nmt", "lss", "bus"],
+    "Bus": ["scan", "read", "write", "configure", "save", "monitor", "nmt", "lss", "conform", "bus"],
     "Logs": ["record", "decode"],
     "Shell": ["completion"],
 }
