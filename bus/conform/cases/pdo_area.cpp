@@ -313,9 +313,11 @@ std::optional<Tpdo> read_tpdo(Dut& dut, const Pdo& pdo, std::string& reason) {
 std::vector<Tpdo> tpdos(Dut& dut) {
   dut.enter(NmtState::pre_operational);
   std::vector<Tpdo> found;
-  std::string reason = "the EDS has no TPDO";
+  std::string reason;
   for (const Pdo* pdo : dut.pdos(PdoDirection::transmit)) {
-    if (auto tpdo = read_tpdo(dut, *pdo, reason)) found.push_back(std::move(*tpdo));
+    std::string why;
+    if (auto tpdo = read_tpdo(dut, *pdo, why)) found.push_back(std::move(*tpdo));
+    if (reason.empty()) reason = why;
   }
   std::vector<std::uint32_t> in_use;
   for (const Tpdo& tpdo : found) {
@@ -327,7 +329,7 @@ std::vector<Tpdo> tpdos(Dut& dut) {
     if (is_shared) reason = tpdo.name() + " shares its CAN-ID with another TPDO";
     return is_shared;
   });
-  if (found.empty()) dut.not_applicable(reason);
+  if (found.empty()) dut.not_applicable(reason.empty() ? "the EDS has no TPDO" : reason);
   return found;
 }
 
