@@ -33,6 +33,15 @@ std::optional<std::uint8_t> node_of(const Frame& frame) {
 
 bool anything(const Frame&) { return true; }
 
+/// Whether the first entries of a mapping parameter name objects of the data sheet.
+bool maps_objects(Dut& dut, std::uint16_t index, std::uint8_t count) {
+  for (std::uint8_t i = 1; i <= count; ++i) {
+    const std::uint64_t mapped = dut.read_number(index, i);
+    if (!dut.has(static_cast<std::uint16_t>(mapped >> 16), static_cast<std::uint8_t>(mapped >> 8))) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 void expect_default_cob_id(Dut& dut, std::uint16_t index, std::uint32_t standard) {
@@ -114,6 +123,7 @@ std::optional<std::uint32_t> set_up_tpdo(Dut& dut, std::uint8_t transmission_typ
     const CobId cob_id{static_cast<std::uint32_t>(dut.read_number(index, parameter::cob_id))};
     const std::uint64_t mapped = dut.read_number(pdo->mapping->index);
     if (!canopen::is_usable(cob_id.value()) || mapped == 0 || mapped > 64) continue;
+    if (!maps_objects(dut, pdo->mapping->index, static_cast<std::uint8_t>(mapped))) continue;
 
     const auto set = [&](std::uint8_t sub_index, std::uint64_t value) {
       if (!dut.has(index, sub_index)) return value == 0;
