@@ -457,6 +457,7 @@ void Dut::expect_state(NmtState expected) {
 // ---- verdicts ----
 
 void Dut::fail(std::string expected, std::string got) {
+  failed_ = mark();
   throw CaseEnd{Verdict::failed, {}, std::move(expected), std::move(got)};
 }
 void Dut::fail_by_sheet(std::string_view rule, std::string expected, std::string got) {
@@ -523,6 +524,7 @@ void Dut::begin_case(const CaseRow& row) {
   warnings_.clear();
   lag_ = 0;
   next_answer_ = 0;
+  failed_.reset();
   case_began_ = now();
   random_.seed(seed_of(settings_.seed, row.id));
   stimuli_.begin_case(row.id);
@@ -535,6 +537,7 @@ void Dut::end_case(CaseResult& result) {
   result.lag = lag_;
   result.warnings = std::move(warnings_);
   result.frames = frames_;
+  result.until_failure = failed_;
   result.not_put_back = put_back();
 }
 

@@ -254,6 +254,7 @@ class Dut {
   bool was_reset_ = false;
   bool state_changed_ = false;
   bool transfer_open_ = false;
+  std::optional<Mark> failed_;  ///< where the case failed
   bool guarded_ = false;     ///< the state is asked for by remote frames
   Mark next_answer_ = 0;     ///< of `answer`
   Mark last_match_ = 0;      ///< of `wait_for`

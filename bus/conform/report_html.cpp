@@ -44,7 +44,7 @@ json frame_view(const SeenFrame& seen, const Message& message) {
 }
 
 json frames_view(const CaseResult& result, const RunReport& run, const Device& sheet) {
-  std::size_t left_out = result.frames.size() - std::min(result.frames.size(), max_html_frames);
+  std::size_t left_out = result.judged_frames().size() - std::min(result.judged_frames().size(), max_html_frames);
   json frames = json::array();
   decode_frames(result, run.node, sheet, [&](const SeenFrame& seen, const Message& message) {
     if (left_out > 0) {
@@ -87,8 +87,8 @@ json case_view(const CaseResult& result, const RunReport& run, const Device& she
           {"not_put_back", result.not_put_back},
           {"lag", duration_text(result.lag)},
           {"repeat", repeat_command(run, row)},
-          {"remark", shown(frames_remark(result.frames.size()))},
-          {"has_frames", !result.frames.empty()},
+          {"remark", shown(frames_remark(result.judged_frames().size()))},
+          {"has_frames", !result.judged_frames().empty()},
           {"frames", frames_view(result, run, sheet)}};
 }
 

@@ -5,6 +5,7 @@
 #include <canopen/time.hpp>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -57,11 +58,17 @@ struct CaseResult {
   std::string rule;      ///< of `edsc check`: the data sheet promises what no device keeps; empty: it does not
   std::vector<std::string> warnings;  ///< what passes, but is not what CiA 301 says
   std::vector<SeenFrame> frames;
+  std::optional<std::size_t> until_failure;  ///< how many frames came before it; the others put the device back
   std::string deviation;                ///< the reason that the file of deviations gives
   std::vector<std::string> not_put_back;  ///< what the case changed and could not put back
   std::uint64_t began = 0;              ///< microseconds since the run began
   std::uint64_t took = 0;               ///< microseconds
   std::uint64_t lag = 0;                ///< the longest that the test itself was late, microseconds
+
+  /// The frames that the verdict is about.
+  [[nodiscard]] std::span<const SeenFrame> judged_frames() const {
+    return std::span{frames}.first(until_failure.value_or(frames.size()));
+  }
 };
 
 /// A run as its reports show it.
