@@ -6,7 +6,8 @@
 
 Each EDS, DCF and XDD of the corpus, of eds/ and of the tests' fixtures is generated and compiled with a node, several of
 them to a program, and `edsc conform --level all` runs at it. A sheet that `edsc generate` refuses is generated with
---keep-going; its device has to pass, too, but for case 1.0, which is about the sheet itself.
+--keep-going; its device has to pass, too, but for case 1.0, which is about the sheet itself. What NAME.deviations.json beside
+a sheet declares has to fail.
 
 The corpus lies in the folder EDSC_CORPUS, or in ../shared/eds-corpus beside the repository; without one the sheets of the
 repository are tested alone. One sheet by hand:
@@ -140,6 +141,9 @@ class Driver:
         report.unlink(missing_ok=True)
         command = [self.edsc, "conform", f"simulated:{job.program}@{node_id},{job.name}", str(node_id), job.path, "--level", "all",
                    "--quiet", "--json", report, *(f"--only={case}" for case in self.arguments.case)]
+        deviations = job.path.with_suffix(".deviations.json")
+        if deviations.is_file():
+            command += ["--deviations", deviations]
         result = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=600)
         if not report.is_file():
             job.problems.append(f"edsc conform ends with {result.returncode}: {result.stderr.strip()[-300:]}")
@@ -154,8 +158,9 @@ def problems_in(report: dict, job: Job) -> list[str]:
         if case["verdict"] == "failed" and not (job.refused and case["id"] == "1.0"):
             problems.append(f"{case['id']} {case['title']}: expected {case['expected']}; got {case['got']}")
         problems += [f"{case['id']} not put back: {text}" for text in case.get("not_put_back", [])]
-    if report.get("lost"):
-        problems.append(report["lost"])
+    problems += [f"unused deviation: {text}" for text in report.get("unused_deviations", [])]
+    if report["ended_early"]:
+        problems.append(report["ended_early"])
     return problems
 
 
