@@ -1,0 +1,237 @@
+#!/usr/bin/env python3
+"""edsc conform at the reference devices: each runnable node on a bus of its own, all cases, in real time.
+
+    reference_test.py SOURCE_DIR EDSC NODES_DIR [--only NAME]... [--keep FOLDER]
+
+Each case passes, fails as NAME.deviations.json beside the EDS declares, is not applicable, or is inconclusive for a reason
+that `ALLOWED` gives. Lines on the standard input of a node are the stimuli. A node on a busy computer may be late, which the
+test cannot tell from a slow device: a case that fails runs again alone, and fails when it fails `TRIES` times.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+NODE_ID = 5
+TRIES = 4
+LIMIT = 1200.0  # seconds, for what hangs
+LATE = re.compile(r"the test itself was late by")
+
+EVENTS = ("3.4", "3.7", "3.10", "3.13", "3.16", "3.19")
+ERRORS = ("5.4", "5.5", "5.6", "9.2", "9.3", "9.4")
+POWER = ("8.2", "8.6")
+
+
+# Each on a bus of its own, as most of the time goes by waiting.
+PARTS = (("1.*", "2.*", "3.*", "4.*", "5.*", "6.*", "8.*"), ("7.*", "9.*", "10.*", "11.*"))
+
+
+@dataclass(frozen=True)
+class Device:
+    """`tested`: cases that apply, at least. The others are lines that act on the node; `changes` take turns."""
+    tested: int
+    changes: tuple[tuple[str, ...], ...] = ()
+    error: str = ""
+    error_over: str = ""
+
+    def lines(self) -> dict[str, list[str]]:
+        """By the value of EDSC_STIMULUS, with the turn of a change."""
+        found = {"power_cycle": ["power-cycle"]}
+        found |= {f"change{i}": list(lines) for i, lines in enumerate(self.changes)}
+        if self.error:
+            found |= {"error": [self.error], "error_over": [self.error_over]}
+        return found
+
+
+MODULE_ERROR = {"error": "fault eeprom", "error_over": "fault over"}
+DEVICES = {
+    "can_2017c": Device(89, (("analogue 1 5.0", "analogue 5 5.0"), ("analogue 1 2.0", "analogue 5 2.0")), **MODULE_ERROR),
+    "can_2024c": Device(74, **MODULE_ERROR),
+    "can_2053c": Device(97, (("digital 1 0x55",), ("digital 1 0xAA",)), **MODULE_ERROR),
+    "can_2057c": Device(73, **MODULE_ERROR),
+    "cpc_tc1": Device(106),
+    "cpd": Device(101),
+    "ezd_1136": Device(96),
+    "rk5c": Device(76, (("position 1 12345",), ("position 1 23456",)), "hardware bad", "hardware good"),
+}
+# Cases that may be inconclusive, and why.
+ALLOWED: dict[str, dict[tuple[str, ...], str]] = {
+    name: {EVENTS: "no line changes what its TPDO 1 carries and is not an error"} for name in ("cpc_tc1", "cpd", "ezd_1136")
+}
+
+
+@dataclass
+class Outcome:
+    name: str
+    problems: list[str] = field(default_factory=list)
+    verdicts: Counter = field(default_factory=Counter)
+    again: list[str] = field(default_factory=list)
+    seconds: float = 0.0
+
+    def add(self, other: Outcome) -> None:
+        self.problems += other.problems
+        self.verdicts += other.verdicts
+        self.again += other.again
+        self.seconds = max(self.seconds, other.seconds)
+
+
+def quoted_lines(lines: list[str]) -> str:
+    return f"printf '%s\\n' {' '.join(map(shlex.quote, lines))} > lines"
+
+
+def stimulus_script(device: Device) -> str:
+    """A shell script that writes the lines for EDSC_STIMULUS to the node; exit code 1 where there are none."""
+    rows = [f"{what}) {quoted_lines(lines)} ;;" for what, lines in device.lines().items()]
+    return "\n".join(['cd "$(dirname "$0")" || exit 1', 'what=$EDSC_STIMULUS', 'if [ "$what" = change ]; then',
+                      '  if [ -e odd ]; then rm odd; what=change0; else : > odd; what=change1; fi', 'fi',
+                      'case $what in', *rows, '*) exit 1 ;;', 'esac', ''])
+
+
+class Bench:
+    """A node on a bus of `edsc bus`, in a folder of its own."""
+
+    def __init__(self, edsc: Path, node: Path, folder: Path, device: Device) -> None:
+        folder.mkdir(parents=True)
+        self.edsc, self.folder = edsc, folder
+        self.processes: list[subprocess.Popen] = []
+        self.script = folder / "stimulus"
+        self.script.write_text(stimulus_script(device), encoding="utf-8")
+        os.mkfifo(folder / "lines")
+        self.lines = os.open(folder / "lines", os.O_RDWR)  # so that it never ends
+        bus = subprocess.Popen([edsc, "bus", "--listen", "127.0.0.1:0"], text=True, stdout=subprocess.PIPE)
+        self.processes.append(bus)
+        self.address = bus.stdout.readline().strip()
+        self.log = folder / "node.log"
+        with self.log.open("w") as log:
+            self.processes.append(subprocess.Popen([node, self.address, "--node-id", str(NODE_ID)], stdin=self.lines, stdout=log))
+        end = time.monotonic() + LIMIT
+        while "pre-operational" not in self.log.read_text(encoding="utf-8"):
+            assert self.processes[-1].poll() is None and time.monotonic() < end, f"{node} does not start"
+            time.sleep(0.05)
+
+    def conform(self, sheet: Path, report: Path, *options: object) -> dict:
+        command = [self.edsc, "conform", self.address, NODE_ID, sheet, "--level", "all", "--timeout", 2000, "--quiet", "--json",
+                   report, *(f"--stimulus={case}=sh {shlex.quote(str(self.script))}" for case in (*EVENTS, *ERRORS, *POWER)),
+                   *options]
+        result = subprocess.run([*map(str, command)], capture_output=True, text=True, timeout=LIMIT)
+        assert report.is_file(), f"edsc conform ends with {result.returncode}: {result.stderr}"
+        return json.loads(report.read_text(encoding="utf-8"))
+
+    def close(self) -> None:
+        for process in reversed(self.processes):
+            process.terminate()
+        for process in reversed(self.processes):
+            process.wait(LIMIT)
+        self.processes[0].stdout.close()
+        os.close(self.lines)
+
+
+def case_problems(report: dict, name: str) -> dict[str, str]:
+    """By case, those that another try may mend."""
+    allowed = {case for cases in ALLOWED.get(name, {}) for case in cases}
+    problems = {}
+    for case in report["cases"]:
+        verdict = case["verdict"]
+        if verdict == "failed":
+            problems[case["id"]] = f"{case['title']}: expected {case['expected']}; got {case['got']}"
+        elif verdict == "inconclusive" and case["id"] not in allowed and not LATE.search(case["reason"]):
+            problems[case["id"]] = f"{case['title']}: inconclusive: {case['reason']}"
+        elif verdict == "passed" and case["id"] in allowed:
+            problems[case["id"]] = f"{case['title']}: passed, and is listed here as one that may be inconclusive"
+        elif verdict == "not_run":
+            problems[case["id"]] = f"{case['title']}: not run: {case['reason']}"
+    for text in report["unused_deviations"]:
+        problems[re.search(r"case (\S+) passed", text)[1]] = f"unused deviation: {text}"
+    return problems
+
+
+def run_problems(report: dict) -> list[str]:
+    problems = [f"not put back: {text}" for text in report["not_put_back"]]
+    if report["ended_early"]:
+        problems.append(report["ended_early"])
+    return problems
+
+
+def patterns(cases: Iterable[str]) -> list[str]:
+    return [f"--only={case}" for case in cases]
+
+
+def test_part(name: str, part: tuple[str, ...], source_dir: Path, edsc: Path, nodes: Path, folder: Path) -> Outcome:
+    outcome = Outcome(name)
+    began = time.monotonic()
+    sheet = source_dir / "eds" / f"{name.replace('_', '-')}.eds"
+    deviations = sheet.with_suffix(".deviations.json")
+    options = ["--deviations", deviations] if deviations.is_file() else []
+    bench = Bench(edsc, nodes / name, folder, DEVICES[name])
+    try:
+        report = bench.conform(sheet, folder / "report.json", *options, *patterns(part))
+        outcome.verdicts = Counter(case["verdict"] for case in report["cases"])
+        problems = case_problems(report, name)
+        outcome.problems += run_problems(report)
+        for again in range(1, TRIES):
+            if not problems:
+                break
+            outcome.again += problems
+            report = bench.conform(sheet, folder / f"report-{again}.json", *options, *patterns(problems))
+            outcome.problems += run_problems(report)
+            problems = case_problems(report, name)
+        outcome.problems += [f"{case} {text}" for case, text in problems.items()]
+    finally:
+        bench.close()
+    outcome.seconds = time.monotonic() - began
+    return outcome
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("source_dir", type=Path)
+    parser.add_argument("edsc", type=Path)
+    parser.add_argument("nodes", type=Path, help="the folder of the nodes' programs")
+    parser.add_argument("--only", action="append", choices=[*DEVICES], help="this device, or one of several")
+    parser.add_argument("--keep", type=Path, help="a new folder for the reports")
+    arguments = parser.parse_args()
+    folder = arguments.keep or Path(tempfile.mkdtemp(prefix="edsc-conform-"))
+    began = time.monotonic()
+    outcomes = {name: Outcome(name) for name in arguments.only or DEVICES}
+    tasks = [(name, part) for name in outcomes for part in range(len(PARTS))]
+
+    def test(task: tuple[str, int]) -> Outcome:
+        name, part = task
+        return test_part(name, PARTS[part], arguments.source_dir.resolve(), arguments.edsc.resolve(), arguments.nodes.resolve(),
+                         folder / f"{name}-{part}")
+
+    try:
+        with ThreadPoolExecutor(len(tasks)) as pool:
+            for outcome in pool.map(test, tasks):
+                outcomes[outcome.name].add(outcome)
+    finally:
+        if not arguments.keep:
+            shutil.rmtree(folder)
+    for outcome in outcomes.values():
+        tested = outcome.verdicts.total() - outcome.verdicts["not_applicable"]
+        if tested < DEVICES[outcome.name].tested:
+            outcome.problems.append(f"{tested} cases apply, expected {DEVICES[outcome.name].tested}")
+        counts = ", ".join(f"{count} {verdict}" for verdict, count in sorted(outcome.verdicts.items()))
+        print(f"{outcome.name}: {counts}; {outcome.seconds:.1f} s" + (f"; again: {', '.join(outcome.again)}" if outcome.again else ""))
+        for problem in outcome.problems:
+            print(f"    {problem}")
+    print(f"{time.monotonic() - began:.1f} s")
+    return 1 if any(outcome.problems for outcome in outcomes.values()) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
