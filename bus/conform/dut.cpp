@@ -461,6 +461,7 @@ void Dut::fail(std::string expected, std::string got) {
   throw CaseEnd{Verdict::failed, {}, std::move(expected), std::move(got)};
 }
 void Dut::fail_by_sheet(std::string_view rule, std::string expected, std::string got) {
+  failed_ = mark();
   throw CaseEnd{Verdict::failed, {}, std::move(expected), std::move(got), std::string{rule}};
 }
 void Dut::not_applicable(std::string reason) { throw CaseEnd{Verdict::not_applicable, std::move(reason), {}, {}}; }
