@@ -11,25 +11,19 @@ test cannot tell from a slow device: a case that fails runs again alone, and fai
 from __future__ import annotations
 
 import argparse
-import json
-import os
 import re
 import shlex
 import shutil
-import subprocess
 import sys
 import tempfile
 import time
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-NODE_ID = 5
-TRIES = 4
-LIMIT = 1200.0  # seconds, for what hangs
-LATE = re.compile(r"the test itself was late by")
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from bench import LATE, NODE_ID, TRIES, Bench, patterns, run_problems  # noqa: E402
 
 EVENTS = ("3.4", "3.7", "3.10", "3.13", "3.16", "3.19")
 ERRORS = ("5.4", "5.5", "5.6", "9.2", "9.3", "9.4")
@@ -101,45 +95,6 @@ def stimulus_script(device: Device) -> str:
                       'case $what in', *rows, '*) exit 1 ;;', 'esac', ''])
 
 
-class Bench:
-    """A node on a bus of `edsc bus`, in a folder of its own."""
-
-    def __init__(self, edsc: Path, node: Path, folder: Path, device: Device) -> None:
-        folder.mkdir(parents=True)
-        self.edsc, self.folder = edsc, folder
-        self.processes: list[subprocess.Popen] = []
-        self.script = folder / "stimulus"
-        self.script.write_text(stimulus_script(device), encoding="utf-8")
-        os.mkfifo(folder / "lines")
-        self.lines = os.open(folder / "lines", os.O_RDWR)  # so that it never ends
-        bus = subprocess.Popen([edsc, "bus", "--listen", "127.0.0.1:0"], text=True, stdout=subprocess.PIPE)
-        self.processes.append(bus)
-        self.address = bus.stdout.readline().strip()
-        self.log = folder / "node.log"
-        with self.log.open("w") as log:
-            self.processes.append(subprocess.Popen([node, self.address, "--node-id", str(NODE_ID)], stdin=self.lines, stdout=log))
-        end = time.monotonic() + LIMIT
-        while "pre-operational" not in self.log.read_text(encoding="utf-8"):
-            assert self.processes[-1].poll() is None and time.monotonic() < end, f"{node} does not start"
-            time.sleep(0.05)
-
-    def conform(self, sheet: Path, report: Path, *options: object) -> dict:
-        command = [self.edsc, "conform", self.address, NODE_ID, sheet, "--level", "all", "--timeout", 2000, "--quiet", "--json",
-                   report, *(f"--stimulus={case}=sh {shlex.quote(str(self.script))}" for case in (*EVENTS, *ERRORS, *POWER)),
-                   *options]
-        result = subprocess.run([*map(str, command)], capture_output=True, text=True, timeout=LIMIT)
-        assert report.is_file(), f"edsc conform ends with {result.returncode}: {result.stderr}"
-        return json.loads(report.read_text(encoding="utf-8"))
-
-    def close(self) -> None:
-        for process in reversed(self.processes):
-            process.terminate()
-        for process in reversed(self.processes):
-            process.wait(LIMIT)
-        self.processes[0].stdout.close()
-        os.close(self.lines)
-
-
 def case_problems(report: dict, name: str) -> dict[str, str]:
     """By case, those that another try may mend."""
     allowed = {case for cases in ALLOWED.get(name, {}) for case in cases}
@@ -159,25 +114,18 @@ def case_problems(report: dict, name: str) -> dict[str, str]:
     return problems
 
 
-def run_problems(report: dict) -> list[str]:
-    problems = [f"not put back: {text}" for text in report["not_put_back"]]
-    if report["ended_early"]:
-        problems.append(report["ended_early"])
-    return problems
-
-
-def patterns(cases: Iterable[str]) -> list[str]:
-    return [f"--only={case}" for case in cases]
-
-
 def test_part(name: str, part: tuple[str, ...], source_dir: Path, edsc: Path, nodes: Path, folder: Path) -> Outcome:
     outcome = Outcome(name)
     began = time.monotonic()
     sheet = source_dir / "eds" / f"{name.replace('_', '-')}.eds"
     deviations = sheet.with_suffix(".deviations.json")
     options = ["--deviations", deviations] if deviations.is_file() else []
-    bench = Bench(edsc, nodes / name, folder, DEVICES[name])
+    bench = Bench(edsc, folder)
     try:
+        bench.start_node([nodes / name], ["--node-id", NODE_ID], "pre-operational")
+        script = folder / "stimulus"
+        script.write_text(stimulus_script(DEVICES[name]), encoding="utf-8")
+        options += [f"--stimulus={case}=sh {shlex.quote(str(script))}" for case in (*EVENTS, *ERRORS, *POWER)]
         report = bench.conform(sheet, folder / "report.json", *options, *patterns(part))
         outcome.verdicts = Counter(case["verdict"] for case in report["cases"])
         problems = case_problems(report, name)
