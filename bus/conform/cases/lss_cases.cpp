@@ -405,7 +405,8 @@ void activate(Dut& dut) {
     dut.pass_time(delay);
     slave.wait();
     dut.enter(NmtState::pre_operational);
-    (void)dut.read_number(0x1000);
+    const SdoOutcome outcome = dut.upload(0x1000);
+    dut.expect(outcome.end != SdoEnd::no_answer, "an answer to an SDO request afterwards", outcome_text(outcome));
   });
 }
 

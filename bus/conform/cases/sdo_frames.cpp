@@ -148,6 +148,7 @@ SdoFrame initiate_block_upload(Dut& dut, std::uint16_t index, std::uint8_t sub_i
 }
 
 void need_block_upload(Dut& dut) {
+  dut.need(0x1000);
   (void)initiate_block_upload(dut, 0x1000, 0, {});
   dut.end_transfer(0x1000, 0);
 }
