@@ -117,6 +117,7 @@ inline constexpr Rule rows[] = {
     Rule{"sub-index-0-type", warning, "sub-index 0 is not UNSIGNED8", "CiA 301, 7.4.4"},
     Rule{"sub-index-0-access", warning, "sub-index 0 can be written, or not be read", "CiA 301, 7.4.4"},
     Rule{"sub-index-0-value", warning, "sub-index 0 is not the highest sub-index", "CiA 301, 7.4.4"},
+    Rule{"sub-index-255", warning, "sub-index FFh does not describe its object", "CiA 301, 7.4.4"},
     Rule{"compact-sub-obj", error, "CompactSubObj is not a number of 0..254", "CiA 306-1, 4.6.2.6", warning},
     Rule{"entry-count", warning, "NrOfEntries differs from the number of entries", "CiA 306-1, 4.6.2.6"},
     Rule{"compact-entry", warning, "an entry of [HHHHName], [HHHHValue] or [HHHHDenotation] is for no sub-index", "CiA 306-1, 4.6.2.6"},

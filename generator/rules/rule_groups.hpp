@@ -15,7 +15,7 @@ void check_objects(const RuleContext& context);
 void check_presence(const RuleContext& context);
 /// The communication profile's objects against CiA 301.
 void check_standard_objects(const RuleContext& context);
-/// Sub-index 0 of ARRAYs and RECORDs.
+/// Sub-indices 0 and FFh of ARRAYs and RECORDs.
 void check_sub_index_0(const RuleContext& context);
 /// Keys of single entries.
 void check_entries(const RuleContext& context);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "device/index_range.hpp"
+#include "device/object_structure.hpp"
 #include "rules/rule_groups.hpp"
 
 namespace edsc {
@@ -37,11 +38,30 @@ void check_count(const RuleContext& context, const Object& object) {
   check_value(context, object, count);
 }
 
+/// Sub-index FFh without a default is 0 in the device.
+void check_structure(const RuleContext& context, const Object& object) {
+  const Entry* entry = object.find(structure_sub_index);
+  if (entry == nullptr) return;
+  if (entry->type->type != canopen::DataType::unsigned32) {
+    return context.report("sub-index-255", context.place_of(*entry, &EntryDescription::data_type),
+                          fmt::format("{} is {}; sub-index FFh is UNSIGNED32 and describes its object",
+                                      named(*entry), entry->type->name));
+  }
+  const ObjectStructure structure = structure_of(object);
+  const std::uint64_t value = entry->default_value ? entry->default_value->bits : 0;
+  if (structure.matches(value)) return;
+  context.report("sub-index-255", entry->default_value ? entry->default_value->position : entry->position,
+                 fmt::format("{} is 0x{:X} by default, but the structure of the object is {}", named(*entry), value,
+                             structure.text()));
+}
+
 }  // namespace
 
 void check_sub_index_0(const RuleContext& context) {
   for (const Object& object : context.device.objects) {
-    if (object.has_sub_indices() && !object.entries.empty()) check_count(context, object);
+    if (!object.has_sub_indices() || object.entries.empty()) continue;
+    check_count(context, object);
+    check_structure(context, object);
   }
 }
 

@@ -17,6 +17,7 @@
 #include "conform/dut.hpp"
 #include "decode/value_text.hpp"
 #include "device/index_range.hpp"
+#include "device/object_structure.hpp"
 
 namespace edsc::conform {
 namespace dictionary_area {
@@ -26,7 +27,6 @@ using canopen::AbortCode;
 using canopen::Access;
 
 constexpr std::uint16_t error_history = 0x1003;
-constexpr std::uint8_t structure = 0xFF;  ///< the sub-index that describes the structure of an object
 
 bool lacks_flag(const Dut& dut, const LiveEntry& entry, std::uint32_t flag) {
   return (flags_of(dut, entry) & flag) == 0;
@@ -198,37 +198,17 @@ void read_write_only_entries(Dut& dut) {
 
 // Sub-index FFh
 
-/// Structures of CiA 301, table 44, that the objects of the communication profile have.
-struct Structure {
-  IndexRange objects;
-  std::uint8_t data_type;
-};
-
-constexpr Structure structures[] = {
-    {{0x1018, 0x1018}, 0x23}, {{0x1200, 0x12FF}, 0x22}, {{0x1400, 0x15FF}, 0x20},
-    {{0x1600, 0x17FF}, 0x21}, {{0x1800, 0x19FF}, 0x20}, {{0x1A00, 0x1BFF}, 0x21},
-};
-
-/// The data type of an ARRAY is that of its elements; that of a RECORD is known for some objects.
-std::optional<unsigned> data_type_of(const Object& object) {
-  const Entry* first = object.find(1);
-  if (object.type == ObjectType::array && first != nullptr && first->type != nullptr)
-    return static_cast<unsigned>(first->type->type);
-  for (const Structure& row : structures) {
-    if (object.index >= row.objects.first && object.index <= row.objects.last) return row.data_type;
-  }
-  return std::nullopt;
-}
-
-/// UNSIGNED32: object code in bits 0 to 7, data type in bits 8 to 15, 0 above.
-void check_structure(EntryResults& results, const Object& object, const LiveEntry& entry, const Bytes& bytes) {
-  const auto value = static_cast<std::uint32_t>(number_of(bytes));
-  const auto code = static_cast<unsigned>(object.type);
-  const std::optional<unsigned> type = data_type_of(object);
-  const bool same_type = !type || ((value >> 8) & 0xFF) == *type;
-  if (bytes.size() == 4 && (value & 0xFF) == code && same_type && (value >> 16) == 0) return;
-  results.add_failure(entry, fmt::format("{}, but the object code is {:02X}h{}", hex_bytes(bytes), code,
-                                         type ? fmt::format(" and the data type {:02X}h", *type) : ""));
+/// Fails by the EDS where that describes another structure.
+void expect_described(Dut& dut, const Object& object) {
+  const Entry* entry = object.find(structure_sub_index);
+  if (entry == nullptr) return;
+  const ObjectStructure structure = structure_of(object);
+  const std::uint64_t value = entry->default_value ? entry->default_value->bits : 0;
+  if (entry->type->type == canopen::DataType::unsigned32 && structure.matches(value)) return;
+  dut.fail_by_sheet(
+      "sub-index-255",
+      fmt::format("{} of the EDS: UNSIGNED32 with {}", label(object.index, structure_sub_index), structure.text()),
+      fmt::format("{} with {:X}h", entry->type->name, value));
 }
 
 void check_structures(Dut& dut) {
@@ -236,13 +216,17 @@ void check_structures(Dut& dut) {
   for (const Object& object : dut.sheet().objects) {
     if (results.lost()) break;
     if (!object.has_sub_indices()) continue;
-    const LiveEntry entry{object.index, structure, object.find(structure), nullptr, object.name};
-    const SdoOutcome outcome = dut.upload(object.index, structure);
+    const LiveEntry entry{object.index, structure_sub_index, object.find(structure_sub_index), nullptr, object.name};
+    const SdoOutcome outcome = dut.upload(object.index, structure_sub_index);
     const bool missing = outcome.end == SdoEnd::refused && entry.entry == nullptr;
     if (missing) continue;
     results.count();
     results.expect_done(entry, outcome);
-    if (outcome.done()) check_structure(results, object, entry, outcome.bytes);
+    const ObjectStructure expected = structure_of(object);
+    if (outcome.done() && (outcome.bytes.size() != 4 || !expected.matches(number_of(outcome.bytes)))) {
+      expect_described(dut, object);
+      results.add_failure(entry, fmt::format("{}, but the object has {}", hex_bytes(outcome.bytes), expected.text()));
+    }
   }
   results.finish("each sub-index FFh has the object code and the data type of its object",
                  "no object has a sub-index FFh");

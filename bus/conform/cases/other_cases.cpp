@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <canopen/cob_id.hpp>
+#include <canopen/cob_id_check.hpp>
 
 #include "conform/cases/setup.hpp"
 #include "conform/cases/storage_setup.hpp"
@@ -160,6 +161,12 @@ void restricted_can_ids(Dut& dut) {
     const Entry& entry = *live.entry;
     const bool holds_cob_id = canopen::find_cob_id_entries(entry.index, entry.sub_index).has_value();
     if (!holds_cob_id || !canopen::writable(entry.access) || !canopen::readable(entry.access)) continue;
+    const auto present = static_cast<std::uint32_t>(dut.read_number(entry.index, entry.sub_index));
+    if (!canopen::is_legal({entry.index, entry.sub_index, present})) {
+      dut.warn(fmt::format("{} is {:08X}h, which could not be put back; it was not tried",
+                           label(entry.index, entry.sub_index), present));
+      continue;
+    }
     any = true;
     expect_restricted_refused(dut, entry);
   }

@@ -138,7 +138,7 @@ std::optional<std::string> enable(Dut& dut, const Tpdo& tpdo, std::optional<bool
 
 void fail_value(Dut& dut, std::uint16_t index, std::uint8_t sub_index, std::uint64_t value, std::string_view rule,
                 const std::string& expected, const std::string& got) {
-  if (dut.default_of(index, sub_index) == value) dut.fail_by_sheet(rule, expected, got);
+  if (dut.default_of(index, sub_index).value_or(0) == value) dut.fail_by_sheet(rule, expected, got);
   dut.fail(expected, got);
 }
 

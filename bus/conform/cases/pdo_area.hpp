@@ -29,7 +29,8 @@ inline constexpr Duration to_answer = milliseconds{500};
 /// How long nothing must come for nothing to come at all.
 inline constexpr Duration silence = milliseconds{100};
 
-/// Fails for a value of an entry: by the EDS where that is its default, as the rule of `edsc check` says, too.
+/// Fails for a value of an entry: by the EDS where that is its default (0 without one), as the rule of `edsc check`
+/// says, too.
 [[noreturn]] void fail_value(Dut& dut, std::uint16_t index, std::uint8_t sub_index, std::uint64_t value,
                              std::string_view rule, const std::string& expected, const std::string& got);
 

@@ -415,6 +415,10 @@ void read_sdo_parameter(Dut& dut, const Object& object, ParameterValues& values)
     if (object.index <= last_server) expect_usable(dut, entry, number_of(value));
   }
   if (!object.has_sub_indices()) return;
+  if (const Entry* count = object.find(0); count != nullptr && count->type->type != canopen::DataType::unsigned8) {
+    dut.fail_by_sheet("sub-index-0-type", label(object.index, 0) + " as UNSIGNED8 in the EDS",
+                      std::string{count->type->name});
+  }
   const std::uint64_t highest = dut.default_of(object.index, 0).value_or(object.highest_sub_index());
   dut.expect_equal(dut.read_number(object.index), highest, label(object.index, 0));
 }
