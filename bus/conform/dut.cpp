@@ -577,13 +577,28 @@ void Dut::remember_configuration() {
   for (const auto& [key, bytes] : changed_) configuration_[key] = bytes;
 }
 
+namespace {
+
+/// The first ones, and how many others there are.
+std::string titles_of(const std::vector<ConfigurationValue>& values) {
+  constexpr std::size_t max_named = 8;
+  std::string text;
+  for (std::size_t i = 0; i < values.size() && i < max_named; ++i) {
+    text += (i == 0 ? "" : ", ") + title(values[i].entry);
+  }
+  if (values.size() > max_named) text += fmt::format(" and {} more", values.size() - max_named);
+  return text;
+}
+
+}  // namespace
+
 std::vector<std::string> Dut::restore_values(const Values& wanted, bool application) {
   std::vector<ConfigurationValue> values;
   for (const auto& [key, bytes] : wanted) values.push_back({live(key.first, key.second), bytes, {}});
   bool restarted = false;
   const ConfigurationHooks hooks{[](std::size_t, std::size_t) {}, [&restarted] { return restarted; }};
   const Comparison comparison = compare_configuration(sdo_, values, hooks);
-  if (comparison.lost) return {"the device does not answer: nothing could be put back"};
+  if (comparison.lost) return {"the device does not answer: nothing could be put back of " + titles_of(values)};
   std::vector<bool> differs;
   std::vector<std::string> left;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -621,14 +636,14 @@ std::vector<std::string> Dut::put_back() {
   return left;
 }
 
-void Dut::find_state() {
-  if (settings_.level == Level::read) return;
+std::vector<std::string> Dut::find_state() {
+  if (settings_.level == Level::read) return {};
   try {
     if (watch_state()) found_state_ = state();
   } catch (const CaseEnd&) {
     // 1017h cannot be used as the data sheet says: cases will find out.
   }
-  (void)put_back();
+  return put_back();
 }
 
 std::string answer_text(const std::optional<sdo::Data>& data) {

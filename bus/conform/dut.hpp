@@ -221,8 +221,8 @@ class Dut {
   void end_case(CaseResult& result);
   /// Puts back what was changed and not yet put back: at an interruption, and at the end. Answers what could not be.
   std::vector<std::string> put_back();
-  /// The NMT state in which the run has found the device, as far as it was told.
-  void find_state();
+  /// The NMT state in which the run has found the device, as far as it was told. Answers what could not be put back.
+  [[nodiscard]] std::vector<std::string> find_state();
   [[nodiscard]] std::uint64_t lag() const { return lag_; }
 
  private:

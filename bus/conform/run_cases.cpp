@@ -103,7 +103,7 @@ void run_cases(LiveBus& bus, const Device& sheet, Stimuli& stimuli, const RunSet
     if (!find_device(bus, sheet, settings.dut, report)) return;
     Dut dut{bus, sheet, stimuli, settings.dut};
     try {
-      dut.find_state();
+      report.not_put_back = dut.find_state();
       run_selected(rows, dut, settings, report);
     } catch (const Interrupted&) {
       report.interrupted = true;

@@ -55,8 +55,8 @@ class Bench:
             time.sleep(0.05)
         return node
 
-    def command(self, sheet: Path, report: Path, *options: object, level: str = "all") -> list[str]:
-        return [*map(str, (self.edsc, "conform", self.address, NODE_ID, sheet, "--level", level, "--timeout", 2000, "--json",
+    def command(self, sheet: Path, report: Path, *options: object, level: str = "all", timeout_ms: int = 2000) -> list[str]:
+        return [*map(str, (self.edsc, "conform", self.address, NODE_ID, sheet, "--level", level, "--timeout", timeout_ms, "--json",
                            report, *options))]
 
     def conform(self, sheet: Path, report: Path, *options: object, level: str = "all") -> dict:
