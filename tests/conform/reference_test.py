@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """edsc conform at the reference devices: each runnable node on a bus of its own, all cases, in real time.
 
-    reference_test.py SOURCE_DIR EDSC NODES_DIR [--only NAME]... [--keep FOLDER]
+    reference_test.py SOURCE_DIR EDSC NODES_DIR [--only NAME]... [--bus ADDRESS] [--keep FOLDER]
 
 Each case passes, fails as NAME.deviations.json beside the EDS declares, is not applicable, or is inconclusive for a reason
 that `ALLOWED` gives. Lines on the standard input of a node are the stimuli. A node on a busy computer may be late, which the
-test cannot tell from a slow device: a case that fails runs again alone, and fails when it fails `TRIES` times.
+test cannot tell from a slow device: a case that fails runs again alone, and fails when it fails `TRIES` times. With --bus the
+nodes run one after the other on this bus, such as socketcan:vcan0.
 """
 
 from __future__ import annotations
@@ -114,13 +115,14 @@ def case_problems(report: dict, name: str) -> dict[str, str]:
     return problems
 
 
-def test_part(name: str, part: tuple[str, ...], source_dir: Path, edsc: Path, nodes: Path, folder: Path) -> Outcome:
+def test_part(name: str, part: tuple[str, ...], source_dir: Path, edsc: Path, nodes: Path, folder: Path,
+              address: str) -> Outcome:
     outcome = Outcome(name)
     began = time.monotonic()
     sheet = source_dir / "eds" / f"{name.replace('_', '-')}.eds"
     deviations = sheet.with_suffix(".deviations.json")
     options = ["--deviations", deviations] if deviations.is_file() else []
-    bench = Bench(edsc, folder)
+    bench = Bench(edsc, folder, address)
     try:
         bench.start_node([nodes / name], ["--node-id", NODE_ID], "pre-operational")
         script = folder / "stimulus"
@@ -150,20 +152,22 @@ def main() -> int:
     parser.add_argument("edsc", type=Path)
     parser.add_argument("nodes", type=Path, help="the folder of the nodes' programs")
     parser.add_argument("--only", action="append", choices=[*DEVICES], help="this device, or one of several")
+    parser.add_argument("--bus", default="", help="address of a bus without other nodes")
     parser.add_argument("--keep", type=Path, help="a new folder for the reports")
     arguments = parser.parse_args()
     folder = arguments.keep or Path(tempfile.mkdtemp(prefix="edsc-conform-"))
     began = time.monotonic()
     outcomes = {name: Outcome(name) for name in arguments.only or DEVICES}
-    tasks = [(name, part) for name in outcomes for part in range(len(PARTS))]
+    parts = (("*",),) if arguments.bus else PARTS
+    tasks = [(name, part) for name in outcomes for part in range(len(parts))]
 
     def test(task: tuple[str, int]) -> Outcome:
         name, part = task
-        return test_part(name, PARTS[part], arguments.source_dir.resolve(), arguments.edsc.resolve(), arguments.nodes.resolve(),
-                         folder / f"{name}-{part}")
+        return test_part(name, parts[part], arguments.source_dir.resolve(), arguments.edsc.resolve(), arguments.nodes.resolve(),
+                         folder / f"{name}-{part}", arguments.bus)
 
     try:
-        with ThreadPoolExecutor(len(tasks)) as pool:
+        with ThreadPoolExecutor(1 if arguments.bus else len(tasks)) as pool:
             for outcome in pool.map(test, tasks):
                 outcomes[outcome.name].add(outcome)
     finally:
