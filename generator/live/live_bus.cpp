@@ -16,7 +16,6 @@ using canopen::Duration;
 using canopen::Frame;
 using canopen::TimePoint;
 
-constexpr Duration look_at_interruption = canopen::from_milliseconds(50);
 constexpr Duration longest_refusal = canopen::from_milliseconds(2000);
 constexpr Duration try_again = canopen::from_milliseconds(1);
 
@@ -66,6 +65,7 @@ void LiveBus::send_all(const Frame& frame) {
 
 std::optional<Frame> LiveBus::receive(Duration timeout) {
   const TimePoint end = now() + std::min(timeout, canopen::longest_span);
+  const Duration longest_at_once = port_->longest_at_once();
   for (;;) {
     if (refused_since_ && now() - *refused_since_ > longest_refusal) {
       throw BusLost{"it takes no frames: nobody acknowledges them, or the controller is off"};
@@ -74,7 +74,7 @@ std::optional<Frame> LiveBus::receive(Duration timeout) {
     const Duration left = end > present ? end - present : Duration{0};
     std::optional<Frame> frame;
     try {
-      frame = port_->receive(std::min(left, look_at_interruption));
+      frame = port_->receive(std::min(left, longest_at_once));
     } catch (const std::system_error& problem) {
       throw BusLost{problem.what()};
     }
@@ -82,7 +82,7 @@ std::optional<Frame> LiveBus::receive(Duration timeout) {
       if (on_frame) on_frame(*frame, now());
       return frame;
     }
-    if (left <= look_at_interruption || Interruption::noted()) return std::nullopt;
+    if (left <= longest_at_once || Interruption::noted()) return std::nullopt;
   }
 }
 

@@ -37,6 +37,8 @@ class BusPort {
   [[nodiscard]] virtual canopen::TimePoint received_at() const = 0;
   /// Readable when there is something to do.
   [[nodiscard]] virtual int file_descriptor() const = 0;
+  /// How long `receive` may wait at once: an interruption is noted behind it.
+  [[nodiscard]] virtual canopen::Duration longest_at_once() const { return canopen::from_milliseconds(50); }
 };
 
 /// A bus that reports when it is lost: by what the port says, or by taking no frame for two seconds.

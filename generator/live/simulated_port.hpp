@@ -41,6 +41,8 @@ class SimulatedPort final : public BusPort {
   [[nodiscard]] canopen::TimePoint received_at() const override { return received_at_; }
   /// Of the connection to the program. Not readable between two calls.
   [[nodiscard]] int file_descriptor() const override { return connection_.number(); }
+  /// Seconds of simulated time take the program less than a millisecond.
+  [[nodiscard]] canopen::Duration longest_at_once() const override { return canopen::from_milliseconds(10'000); }
 
   // What the bus does not do. No time passes: frames that wait are on their way with the next `receive`. Nothing or false:
   // the program cannot do it.
