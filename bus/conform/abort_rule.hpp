@@ -55,7 +55,7 @@ inline constexpr AbortRule duplicate{{Code::parameter_incompatible}, {Code::gene
 /// A write to 1010h or 1011h that brings another signature: 0800 002xh.
 inline constexpr AbortRule signature{{Code::not_stored, Code::local_control, Code::device_state},
                                      {Code::no_dictionary, Code::no_data, Code::general}};
-/// An entry of 1003h behind the number of errors.
+/// An entry of 1003h that 1003h:00 does not count.
 inline constexpr AbortRule no_error{{Code::no_data}, {Code::general}};
 
 }  // namespace abort_rule

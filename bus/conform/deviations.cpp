@@ -82,7 +82,7 @@ class DeviationsReader {
   std::optional<json> parse() {
     const std::string_view text = source_.text();
     const char* taken = text.data();
-    const char* token = text.data();  // not behind the begin of the next one
+    const char* token = text.data();  // at the begin of the next one, or before it
     const auto note_place = [&](int depth, json::parse_event_t event, json& parsed) {
       while (token < taken && std::string_view{" \t\r\n,:"}.find(*token) != std::string_view::npos) ++token;
       const Position position = position_at(static_cast<std::size_t>(token - text.data()));

@@ -595,8 +595,7 @@ std::string titles_of(const std::vector<ConfigurationValue>& values) {
 std::vector<std::string> Dut::restore_values(const Values& wanted, bool application) {
   std::vector<ConfigurationValue> values;
   for (const auto& [key, bytes] : wanted) values.push_back({live(key.first, key.second), bytes, {}});
-  bool restarted = false;
-  const ConfigurationHooks hooks{[](std::size_t, std::size_t) {}, [&restarted] { return restarted; }};
+  const ConfigurationHooks hooks{[](std::size_t, std::size_t) {}, [] { return false; }};
   const Comparison comparison = compare_configuration(sdo_, values, hooks);
   if (comparison.lost) return {"the device does not answer: nothing could be put back of " + titles_of(values)};
   std::vector<bool> differs;

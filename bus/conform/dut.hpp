@@ -48,7 +48,7 @@ struct CaseEnd {
   std::string reason;
   std::string expected;
   std::string got;
-  std::string rule{};  ///< of `edsc check`, which tells the same of the data sheet
+  std::string rule{};  ///< of `edsc check` that finds the same in the EDS
 };
 
 struct DutSettings {
@@ -174,11 +174,11 @@ class Dut {
   void reset(canopen::NmtCommand command);
   /// Start, stop or pre-operational, and time for the device to follow.
   void enter(canopen::NmtState state);
-  /// Makes the device tell its state: a heartbeat of at most 100 ms, or node guarding. False where it has neither.
+  /// Turns on a heartbeat of at most 100 ms, or takes node guarding. False if the device has neither.
   bool watch_state();
-  /// What the device tells next; nothing where it tells nothing. `watch_state` comes before.
+  /// The state in the next message of error control; std::nullopt if none comes. Call `watch_state` first.
   std::optional<canopen::NmtState> state();
-  /// Fails where the device is in another state, or tells none.
+  /// Fails if the next message of error control has another state, or none comes.
   void expect_state(canopen::NmtState state);
 
   // ---- verdicts ----
@@ -216,7 +216,7 @@ class Dut {
 
   // ---- of the runner ----
 
-  /// What has not been put back is said in the result. Throws Interrupted, BusLost.
+  /// The result names what could not be put back. Throws Interrupted, BusLost.
   void begin_case(const CaseRow& row);
   void end_case(CaseResult& result);
   /// Puts back what was changed and not yet put back: at an interruption, and at the end. Answers what could not be.

@@ -109,8 +109,6 @@ void run_cases(LiveBus& bus, const Device& sheet, Stimuli& stimuli, const RunSet
       report.interrupted = true;
       const std::vector<std::string> left = dut.put_back();
       report.not_put_back.insert(report.not_put_back.end(), left.begin(), left.end());
-    } catch (const CaseEnd&) {
-      report.lost = "the device does not tell its state";
     }
   } catch (const BusLost& problem) {
     report.lost = fmt::format("the bus is lost: {}", problem.what());

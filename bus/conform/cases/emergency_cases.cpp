@@ -115,13 +115,13 @@ void read_history(Dut& dut) {
     const std::uint64_t error = dut.read_number(error_history, i);
     dut.expect((error & 0xFFFF'FFFF) != 0, label(error_history, i) + ": an error, as 1003h:00 counts it", "0");
   }
-  const auto behind = static_cast<std::uint8_t>(count + 1);
-  if (!dut.has(error_history, behind)) return;
-  const SdoOutcome outcome = dut.upload(error_history, behind);
+  const auto next = static_cast<std::uint8_t>(count + 1);
+  if (!dut.has(error_history, next)) return;
+  const SdoOutcome outcome = dut.upload(error_history, next);
   if (outcome.done() && number_of(outcome.bytes) == 0) {
-    dut.warn(label(error_history, behind) + " is 0; CiA 301 has 0800 0024h, as there is no such error");
+    dut.warn(label(error_history, next) + " is 0; CiA 301 has 0800 0024h, since 1003h:00 does not count it");
   } else {
-    dut.expect_abort(outcome, abort_rule::no_error, label(error_history, behind) + ", where there is no error");
+    dut.expect_abort(outcome, abort_rule::no_error, label(error_history, next) + ", which 1003h:00 does not count");
   }
 }
 

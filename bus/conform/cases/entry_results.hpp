@@ -22,7 +22,7 @@ class EntryResults {
   /// Counts an entry that was tried.
   void count() { ++tried_; }
 
-  /// Whether the device has not answered several times in a row: the remaining entries are not tried.
+  /// The device was silent several times in a row: the case does not try the remaining entries.
   [[nodiscard]] bool lost() const { return silent_ >= max_silent; }
 
   /// Ends the case: it fails when an entry failed, and is not applicable when no entry was tried.

@@ -173,12 +173,12 @@ void expect_one_boot_up(Dut& dut, NmtCommand command) {
 }
 
 void expect_state_after_boot_up(Dut& dut) {
-  constexpr std::uint64_t is_master = 1U << 0, does_not_start = 1U << 2;  // CiA 302-2: bits of 1F80h
+  using canopen::nmt_start_up::master, canopen::nmt_start_up::no_self_start;
   const Entry* const startup = dut.entry(nmt_startup);
   if (startup != nullptr && canopen::readable(startup->access)) {
     const std::uint64_t bits = dut.read_number(nmt_startup);
-    if ((bits & is_master) != 0 && dut.state() == NmtState::operational) return;
-    if ((bits & (is_master | does_not_start)) == 0) return dut.expect_state(NmtState::operational);
+    if ((bits & master) != 0 && dut.state() == NmtState::operational) return;
+    if ((bits & (master | no_self_start)) == 0) return dut.expect_state(NmtState::operational);
   }
   dut.expect_state(NmtState::pre_operational);
 }

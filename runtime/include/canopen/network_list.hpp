@@ -7,22 +7,12 @@
 
 #include "canopen/dictionary.hpp"
 #include "canopen/heartbeat_consumer.hpp"
+#include "canopen/nmt.hpp"
 #include "canopen/node_id.hpp"
 #include "canopen/object_store.hpp"
 #include "canopen/time.hpp"
 
 namespace canopen {
-
-/// Bits of NMT start-up 1F80h.
-namespace nmt_start_up {
-inline constexpr std::uint32_t master = 0x01;          ///< this device is the NMT master
-inline constexpr std::uint32_t start_all = 0x02;       ///< slaves are started by one command to all, not one by one
-inline constexpr std::uint32_t no_self_start = 0x04;   ///< the master's own device is not started with the network
-inline constexpr std::uint32_t no_slave_start = 0x08;  ///< slaves are not started: the application does it
-inline constexpr std::uint32_t reset_all = 0x10;       ///< a mandatory slave that is lost: all nodes are reset
-inline constexpr std::uint32_t flying_master = 0x20;
-inline constexpr std::uint32_t stop_all = 0x40;  ///< a mandatory slave that is lost: all nodes are stopped
-}  // namespace nmt_start_up
 
 /// Bits of NMT slave assignment 1F81h. Bits 15..8 are the life time factor, bits 31..16 the guard time in ms.
 namespace slave_assignment {

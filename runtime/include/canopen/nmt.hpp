@@ -38,6 +38,17 @@ enum class NmtCommand : std::uint8_t {
   reset_communication = 130,
 };
 
+/// Bits of NMT start-up 1F80h (CiA 302-2).
+namespace nmt_start_up {
+inline constexpr std::uint32_t master = 0x01;          ///< this device is the NMT master
+inline constexpr std::uint32_t start_all = 0x02;       ///< slaves are started by one command to all, not one by one
+inline constexpr std::uint32_t no_self_start = 0x04;   ///< this device does not enter Operational by itself
+inline constexpr std::uint32_t no_slave_start = 0x08;  ///< slaves are not started: the application does it
+inline constexpr std::uint32_t reset_all = 0x10;       ///< a mandatory slave that is lost: all nodes are reset
+inline constexpr std::uint32_t flying_master = 0x20;
+inline constexpr std::uint32_t stop_all = 0x40;  ///< a mandatory slave that is lost: all nodes are stopped
+}  // namespace nmt_start_up
+
 /// Pre-operational and Operational: their codes are the odd ones.
 [[nodiscard]] constexpr bool serves_sdo(NmtState state) { return (static_cast<unsigned>(state) & 1) != 0; }
 

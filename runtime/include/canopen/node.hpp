@@ -539,8 +539,8 @@ class Node {
   /// 1F80h of a device that is not an NMT master: whether it enters Operational without a command (CiA 302-2).
   [[nodiscard]] bool starts_itself() const {
     if constexpr (Device::dictionary.has(0x1F80, 0)) {
-      constexpr std::uint32_t master = 1U << 0, no_self_start = 1U << 2;
-      return (store_.template number<0x1F80, 0>() & (master | no_self_start)) == 0;
+      constexpr std::uint32_t waits = nmt_start_up::master | nmt_start_up::no_self_start;
+      return (store_.template number<0x1F80, 0>() & waits) == 0;
     } else {
       return false;
     }
