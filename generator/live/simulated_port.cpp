@@ -11,11 +11,10 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
+#include <canopen/port/simulation_codec.hpp>
 #include <chrono>
 #include <csignal>
 #include <cstring>
-#include <iterator>
 #include <stdexcept>
 #include <system_error>
 #include <thread>
@@ -23,6 +22,9 @@
 #include "live/interruption.hpp"
 
 namespace edsc {
+
+namespace simulation = canopen::simulation;
+
 namespace {
 
 using canopen::AbortCode;
@@ -31,7 +33,6 @@ using canopen::Frame;
 using canopen::TimePoint;
 
 constexpr std::string_view scheme = "simulated:";
-constexpr std::string_view greeting = "edsc-simulation 1";
 constexpr std::size_t longest_line = 4096;
 constexpr timeval longest_wait{0, 100'000};
 constexpr int waits_after_interruption = 10;
@@ -43,21 +44,13 @@ struct SimulatedAddress {
   std::string name;
 };
 
-template <typename Number>
-std::optional<Number> parse_number(std::string_view text, int base) {
-  Number value = 0;
-  const char* const last = text.data() + text.size();
-  const auto [end, error] = std::from_chars(text.data(), last, value, base);
-  return error == std::errc{} && end == last ? std::optional{value} : std::nullopt;
-}
-
 SimulatedAddress parse_address(const std::string& address) {
   const std::string_view rest = std::string_view{address}.substr(scheme.size());
   const std::size_t at = rest.rfind('@');
   if (at != std::string_view::npos && at != 0) {
     const std::string_view device = rest.substr(at + 1);
     const std::size_t comma = std::min(device.find(','), device.size());
-    const auto node_id = parse_number<unsigned>(device.substr(0, comma), 10);
+    const auto node_id = simulation::number(device.substr(0, comma), 10, 255U);
     const std::string_view name = device.substr(std::min(comma + 1, device.size()));
     const bool good_node_id = node_id && ((*node_id >= 1 && *node_id <= 127) || *node_id == 255);
     const bool good_name = name.find_first_of(" \n") == std::string_view::npos && (comma == device.size()) == name.empty();
@@ -65,46 +58,6 @@ SimulatedAddress parse_address(const std::string& address) {
   }
   throw std::invalid_argument{
       fmt::format("\"{}\" is not a simulation: write simulated:PROGRAM@NODE-ID[,NAME]", address)};
-}
-
-/// `CAN-ID[X][R] BYTES`
-std::string text_of(const Frame& frame) {
-  std::string text = frame.extended ? fmt::format("{:08X}X", frame.id) : fmt::format("{:03X}", frame.id);
-  if (frame.remote) return fmt::format("{}R {}", text, frame.size);
-  if (frame.size != 0) text += ' ';
-  for (std::size_t i = 0; i < frame.size; ++i) fmt::format_to(std::back_inserter(text), "{:02X}", frame.data.at(i));
-  return text;
-}
-
-std::optional<Frame> parse_frame(std::string_view text) {
-  Frame frame;
-  const std::size_t blank = std::min(text.find(' '), text.size());
-  std::string_view id = text.substr(0, blank);
-  const std::string_view rest = text.substr(std::min(blank + 1, text.size()));
-  if (id.ends_with('R')) {
-    frame.remote = true;
-    id.remove_suffix(1);
-  }
-  if (id.ends_with('X')) {
-    frame.extended = true;
-    id.remove_suffix(1);
-  }
-  const auto can_id = parse_number<std::uint32_t>(id, 16);
-  if (!can_id || *can_id > (frame.extended ? 0x1FFF'FFFFU : 0x7FFU)) return std::nullopt;
-  frame.id = *can_id;
-  if (frame.remote) {
-    const auto length = parse_number<std::uint8_t>(rest, 10);
-    if (!length || *length > 8) return std::nullopt;
-    frame.size = *length;
-    return frame;
-  }
-  if (rest.size() % 2 != 0 || rest.size() > 16) return std::nullopt;
-  for (std::size_t i = 0; i < rest.size(); i += 2) {
-    const auto byte = parse_number<std::uint8_t>(rest.substr(i, 2), 16);
-    if (!byte) return std::nullopt;
-    frame.data.at(frame.size++) = *byte;
-  }
-  return frame;
 }
 
 std::string end_text(int status) {
@@ -124,7 +77,7 @@ SimulatedPort::SimulatedPort(const std::string& address) {
   start(parsed.program);
   try {
     const std::string line = read_line();
-    if (line != greeting) lost(line);
+    if (line != simulation::greeting) lost(line);
     if (!ask(fmt::format("node {}{}{}", parsed.node_id, parsed.name.empty() ? "" : " ", parsed.name))) {
       throw BusLost{fmt::format("the program does not have a device \"{}\"", parsed.name)};
     }
@@ -224,7 +177,9 @@ std::string SimulatedPort::read_line() {
 }
 
 bool SimulatedPort::send(const Frame& frame) {
-  requests_ += "send " + text_of(frame) + "\n";
+  requests_ += "send ";
+  simulation::append_frame(requests_, frame);
+  requests_ += '\n';
   if (requests_.size() > most_requests) flush();
   return true;
 }
@@ -234,12 +189,12 @@ std::optional<Frame> SimulatedPort::receive(Duration timeout) {
   requests_ += fmt::format("run {}\n", std::min(timeout, canopen::longest_span).count());
   flush();
   const std::string line = read_line();
-  const std::size_t blank = std::min(line.find(' '), line.size());
-  const auto time = parse_number<std::uint64_t>(std::string_view{line}.substr(0, blank), 10);
+  std::string_view words = line;
+  const auto time = simulation::number(simulation::take_word(words), 10, UINT64_MAX);
   if (!time || *time < now_us_) lost(line);
   now_us_ = *time;
-  if (blank == line.size()) return std::nullopt;
-  const auto frame = parse_frame(std::string_view{line}.substr(blank + 1));
+  if (words.empty()) return std::nullopt;
+  const auto frame = simulation::parse_frame(words);
   if (!frame) lost(line);
   received_at_ = now();
   return frame;
@@ -255,7 +210,7 @@ std::optional<AbortCode> SimulatedPort::ask(const std::string& request) {
   if (line == "ok") return canopen::ok;
   if (line == "no") return std::nullopt;
   if (line.starts_with(refused)) {
-    const auto code = parse_number<std::uint32_t>(std::string_view{line}.substr(refused.size()), 16);
+    const auto code = simulation::number(std::string_view{line}.substr(refused.size()), 16, UINT32_MAX);
     if (code && *code != 0) return AbortCode{*code};
   }
   lost(line);
@@ -264,7 +219,7 @@ std::optional<AbortCode> SimulatedPort::ask(const std::string& request) {
 std::optional<AbortCode> SimulatedPort::set(std::uint16_t index, std::uint8_t sub_index,
                                             std::span<const std::uint8_t> bytes) {
   std::string request = fmt::format("set {:04X} {:02X} ", index, sub_index);
-  for (const std::uint8_t byte : bytes) fmt::format_to(std::back_inserter(request), "{:02X}", byte);
+  simulation::append_bytes(request, bytes);
   return ask(request);
 }
 

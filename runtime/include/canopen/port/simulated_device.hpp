@@ -28,23 +28,7 @@
 /// A device whose dictionary has 1010h or 1011h gets a storage in memory, and one with LSS a port that stores node-ID and bit
 /// rate, where the handlers do not bring their own.
 ///
-/// The protocol, version 1, is lines of text with words separated by one blank. CAN-IDs, indices, codes and bytes are
-/// hexadecimal, all else decimal. The program begins with `edsc-simulation 1`. It obeys
-///
-///     node NODE-ID [NAME]          a new bus of 1 Mbit/s, a new node with empty storage, power-on at time 0
-///     send CAN-ID[X] [BYTES]       another participant sends a data frame; X: 29 bits
-///     send CAN-ID[X]R LENGTH       the same with a remote frame
-///     run MICROSECONDS             lets this time pass, at most until the device has sent a frame. The answer is the time since
-///                                  `node` in us, and the frame: `TIME` or `TIME CAN-ID[X] [BYTES]` or `TIME CAN-ID[X]R LENGTH`
-///     set INDEX SUB BYTES          the application sets an object, bytes as SDO sends them
-///     emergency CODE REGISTER      the application reports an error with these bits of 1001h
-///     emergency_over REGISTER      the error has gone
-///     power_cycle                  off and on; storage is kept
-///
-/// `send` does not have an answer. That of `node` is `ok`, or `no` from a program that does not have this device. The last four
-/// answer `ok`, `refused ABORT-CODE`, or `no` from a program that cannot do it, and let no time pass. The program ends with its
-/// input, with exit code 0, or with 2 at a line that is not one of these.
-/// What the application prints on standard output goes to standard error.
+/// The protocol is in `simulation_codec.hpp`. What the application prints on standard output goes to standard error.
 #pragma once
 
 #include <fcntl.h>
@@ -52,7 +36,6 @@
 
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -60,13 +43,13 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "canopen/frame.hpp"
 #include "canopen/lss_protocol.hpp"
 #include "canopen/node_id.hpp"
 #include "canopen/port/descriptor.hpp"
 #include "canopen/port/simulated_node.hpp"
+#include "canopen/port/simulation_codec.hpp"
 #include "canopen/port/virtual_bus.hpp"
 #include "canopen/time.hpp"
 
@@ -74,85 +57,8 @@ namespace canopen {
 
 namespace simulation_detail {
 
-template <class T>
-[[nodiscard]] std::optional<T> number(std::string_view text, int base, T max) {
-  T value = 0;
-  const char* const last = text.data() + text.size();
-  const auto [end, error] = std::from_chars(text.data(), last, value, base);
-  if (error != std::errc{} || end != last || value > max) return std::nullopt;
-  return value;
-}
-
-/// The words of a line.
-class Words {
- public:
-  explicit Words(std::string_view line) : rest_{line} {}
-
-  /// Empty after the last one.
-  std::string_view next() {
-    const std::size_t blank = rest_.find(' ');
-    const std::string_view word = rest_.substr(0, blank);
-    rest_ = blank == std::string_view::npos ? std::string_view{} : rest_.substr(blank + 1);
-    return word;
-  }
-  [[nodiscard]] bool at_end() const { return rest_.empty(); }
-
- private:
-  std::string_view rest_;
-};
-
-/// False for what is not pairs of hexadecimal digits.
-[[nodiscard]] inline bool append_bytes(std::vector<std::uint8_t>& bytes, std::string_view digits) {
-  if (digits.size() % 2 != 0) return false;
-  for (std::size_t i = 0; i < digits.size(); i += 2) {
-    const auto byte = number<std::uint8_t>(digits.substr(i, 2), 16, 0xFF);
-    if (!byte) return false;
-    bytes.push_back(*byte);
-  }
-  return true;
-}
-
-[[nodiscard]] inline std::optional<Frame> parse_frame(Words words) {
-  Frame frame;
-  std::string_view id = words.next();
-  if (id.ends_with('R')) {
-    frame.remote = true;
-    id.remove_suffix(1);
-  }
-  if (id.ends_with('X')) {
-    frame.extended = true;
-    id.remove_suffix(1);
-  }
-  const auto can_id = number<std::uint32_t>(id, 16, frame.extended ? 0x1FFF'FFFF : 0x7FF);
-  const std::string_view rest = words.next();
-  if (!can_id || !words.at_end()) return std::nullopt;
-  frame.id = *can_id;
-  if (frame.remote) {
-    const auto length = number<std::uint8_t>(rest, 10, 8);
-    frame.size = length.value_or(0);
-    return length ? std::optional{frame} : std::nullopt;
-  }
-  std::vector<std::uint8_t> bytes;
-  if (!append_bytes(bytes, rest) || bytes.size() > frame.data.size()) return std::nullopt;
-  for (const std::uint8_t byte : bytes) frame.data[frame.size++] = byte;
-  return frame;
-}
-
-inline void append_frame(std::string& text, const Frame& frame) {
-  constexpr std::string_view digits = "0123456789ABCDEF";
-  for (int shift = frame.extended ? 28 : 8; shift >= 0; shift -= 4) text += digits[(frame.id >> shift) & 0xF];
-  if (frame.extended) text += 'X';
-  if (frame.remote) {
-    text += "R ";
-    text += digits[frame.size];
-    return;
-  }
-  if (frame.size != 0) text += ' ';
-  for (std::size_t i = 0; i < frame.size; ++i) {
-    text += digits[frame.data[i] >> 4];
-    text += digits[frame.data[i] & 0xF];
-  }
-}
+using simulation::number;
+using simulation::take_word;
 
 /// A device on a bus of its own, and another participant that sends.
 class Simulation final : public SimulatedBus {
@@ -211,28 +117,27 @@ class Session {
 
   /// Appends the answer; false when the line is malformed.
   [[nodiscard]] bool obey(std::string_view line, std::string& answer) {
-    Words words{line};
-    const std::string_view command = words.next();
-    if (command == "node") return make_node(words, answer);
+    const std::string_view command = take_word(line);
+    if (command == "node") return make_node(line, answer);
     if (!simulation_) return false;
-    if (command == "run") return run(words, answer);
+    if (command == "run") return run(line, answer);
     if (command == "send") {
-      const std::optional<Frame> frame = parse_frame(words);
+      const std::optional<Frame> frame = simulation::parse_frame(line);
       if (frame) simulation_->send_to_device(*frame);
       return frame.has_value();
     }
-    if (command == "set") return set(words, answer);
+    if (command == "set") return set(line, answer);
     if (command == "emergency") {
-      const auto code = number<std::uint16_t>(words.next(), 16, 0xFFFF);
-      const auto bits = number<std::uint8_t>(words.next(), 16, 0xFF);
-      if (!code || !bits || !words.at_end()) return false;
+      const auto code = number<std::uint16_t>(take_word(line), 16, 0xFFFF);
+      const auto bits = number<std::uint8_t>(line, 16, 0xFF);
+      if (!code || !bits) return false;
       simulation_->node().emergency(*code, ErrorRegister{*bits});
     } else if (command == "emergency_over") {
-      const auto bits = number<std::uint8_t>(words.next(), 16, 0xFF);
-      if (!bits || !words.at_end()) return false;
+      const auto bits = number<std::uint8_t>(line, 16, 0xFF);
+      if (!bits) return false;
       simulation_->node().emergency_over(ErrorRegister{*bits});
     } else if (command == "power_cycle") {
-      if (!words.at_end()) return false;
+      if (!line.empty()) return false;
       simulation_->power_cycle();
     } else {
       return false;
@@ -242,10 +147,10 @@ class Session {
   }
 
  private:
-  [[nodiscard]] bool make_node(Words words, std::string& answer) {
-    const auto node_id = number<std::uint8_t>(words.next(), 10, 255);
-    const std::string_view name = words.next();
-    if (!node_id || !words.at_end()) return false;
+  [[nodiscard]] bool make_node(std::string_view words, std::string& answer) {
+    const auto node_id = number<std::uint8_t>(take_word(words), 10, 255);
+    const std::string_view name = take_word(words);
+    if (!node_id || !words.empty()) return false;
     if (!NodeId{*node_id}.valid() && NodeId{*node_id} != unconfigured_node_id) return false;
     for (const SimulatedDevice& device : devices_) {
       if (!name.empty() && name != device.name) continue;
@@ -257,25 +162,25 @@ class Session {
     return true;
   }
 
-  [[nodiscard]] bool run(Words words, std::string& answer) {
-    const auto span = number<std::uint32_t>(words.next(), 10, longest_span.count());
-    if (!span || !words.at_end()) return false;
+  [[nodiscard]] bool run(std::string_view words, std::string& answer) {
+    const auto span = number<std::uint32_t>(words, 10, longest_span.count());
+    if (!span) return false;
     const std::optional<Frame> frame = simulation_->run(Duration{*span});
     answer += std::to_string(simulation_->elapsed());
     if (frame) {
       answer += ' ';
-      append_frame(answer, *frame);
+      simulation::append_frame(answer, *frame);
     }
     answer += '\n';
     return true;
   }
 
-  [[nodiscard]] bool set(Words words, std::string& answer) {
-    const auto index = number<std::uint16_t>(words.next(), 16, 0xFFFF);
-    const auto sub_index = number<std::uint8_t>(words.next(), 16, 0xFF);
-    std::vector<std::uint8_t> bytes;
-    if (!append_bytes(bytes, words.next()) || !index || !sub_index || !words.at_end()) return false;
-    const AbortCode code = simulation_->node().set(*index, *sub_index, bytes);
+  [[nodiscard]] bool set(std::string_view words, std::string& answer) {
+    const auto index = number<std::uint16_t>(take_word(words), 16, 0xFFFF);
+    const auto sub_index = number<std::uint8_t>(take_word(words), 16, 0xFF);
+    const auto bytes = simulation::parse_bytes(words);
+    if (!index || !sub_index || !bytes) return false;
+    const AbortCode code = simulation_->node().set(*index, *sub_index, *bytes);
     if (code == ok) {
       answer += "ok\n";
     } else {
@@ -302,7 +207,8 @@ class Session {
 
 /// Lines of standard input until it ends. Answers are written when there is no line left to obey.
 [[nodiscard]] inline int serve(Session& session, int output, const char* program) {
-  std::string answer = "edsc-simulation 1\n";
+  std::string answer{simulation::greeting};
+  answer += '\n';
   std::string input;
   std::array<char, 4096> piece;
   for (;;) {
