@@ -602,7 +602,12 @@ std::vector<std::string> Dut::restore_values(const Values& wanted, bool applicat
   std::vector<std::string> left;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const bool kept = values[i].entry.index >= 0x2000 && !application;
-    const bool changed = comparison.values[i].differs && comparison.values[i].known();
+    const ComparedValue& compared = comparison.values[i];
+    const bool changed = compared.differs && compared.known();
+    if (compared.differs && !compared.known()) {
+      left.push_back(fmt::format("{} was {} and cannot be read any more: {}", title(values[i].entry),
+                                 value_of(values[i].entry, values[i].bytes), outcome_text(compared.found)));
+    }
     differs.push_back(changed && !kept);
     if (changed && kept) {
       left.push_back(fmt::format("{} was {} and is lost by a reset; it is not written without --application",

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "conform/cases/entry_values.hpp"
 #include "conform/frame_text.hpp"
 #include "conform/report_facts.hpp"
 #include "text/printable.hpp"
@@ -50,6 +51,27 @@ std::string TextReport::head() const {
   append_detail(out, "SHA-256", run_.sheet_hash);
   append_detail(out, "node", fmt::format("{} on {}", run_.node, run_.bus));
   append_detail(out, "test", fmt::format("{}, seed {}, edsc {}", level_text(run_), run_.seed, run_.version));
+  return out;
+}
+
+std::string TextReport::application_objects() const {
+  constexpr std::size_t width = 90;
+  if (!includes(run_.permissions, Permission::application) || run_.level == Level::read) return {};
+  std::string out, line;
+  std::string_view name = "writes";
+  const auto end_line = [&] {
+    append_detail(out, name, line);
+    name = "";
+    line.clear();
+  };
+  for (const Object& object : sheet_.objects) {
+    const auto is_written = [&](const Entry& entry) { return is_application_parameter(sheet_, live_entry(object, entry)); };
+    if (std::ranges::none_of(object.entries, is_written)) continue;
+    const std::string text = fmt::format("{:04X}h {}", object.index, object.name);
+    if (!line.empty() && line.size() + text.size() > width) end_line();
+    line += (line.empty() ? "" : ", ") + text;
+  }
+  end_line();
   return out;
 }
 

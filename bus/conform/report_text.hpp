@@ -18,6 +18,8 @@ class TextReport {
 
   /// What is tested: device, EDS, bus, level.
   [[nodiscard]] std::string head() const;
+  /// The objects of 2000h and above that --application writes; empty where the run may not.
+  [[nodiscard]] std::string application_objects() const;
   /// A line with id, verdict and title; of a failure also the clause, what was expected, what came, the frames and the
   /// command that repeats the case.
   [[nodiscard]] std::string of(const CaseResult& result) const;

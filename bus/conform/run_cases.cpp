@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "conform/drive.hpp"
 #include "live/identity.hpp"
 #include "live/interruption.hpp"
 
@@ -76,7 +77,18 @@ std::string identity_text(const Identity& identity) {
   return text;
 }
 
-/// Who answers there; false where nobody does.
+/// Throws RunRefused for a drive that may move when the test does what it may do.
+void refuse_enabled_drive(SdoAccess& node, const Device& sheet, const Identity& found, const DutSettings& settings) {
+  const bool writes = includes(settings.permissions, Permission::application) && settings.level != Level::read;
+  if (settings.simulated || (!writes && !includes(settings.permissions, Permission::outputs))) return;
+  const std::string reason = why_drive_may_move(node, sheet, found);
+  if (reason.empty()) return;
+  throw RunRefused{fmt::format("node {} is a drive (device type 402) that may move, as {}. Disable it, or leave out --outputs, "
+                               "--application and --level all",
+                               settings.node.value(), reason)};
+}
+
+/// Reads who answers there; false if nobody does.
 bool find_device(LiveBus& bus, const Device& sheet, const DutSettings& settings, RunReport& report) {
   SdoAccess access{bus, settings.node, settings.sdo};
   const SdoOutcome answer = access.upload(0x1000, 0);
@@ -87,6 +99,7 @@ bool find_device(LiveBus& bus, const Device& sheet, const DutSettings& settings,
   const Identity found = read_identity(access);
   report.read_identity = identity_text(found);
   report.identity = identity_differences(identity_of(sheet), found);
+  refuse_enabled_drive(access, sheet, found, settings);
   return true;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -22,8 +23,13 @@ struct RunSettings {
   std::function<void(CaseResult& result)> ended = [](CaseResult&) {};
 };
 
+/// The run would do what is dangerous with this device; nothing was written yet.
+struct RunRefused : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 /// Fills what a run finds out: `cases`, what was not put back, and why it ended early. An interruption and a lost bus end
-/// it; the device is put back before, as far as it can be.
+/// it; the device is put back before, as far as it can be. Throws RunRefused.
 void run_cases(LiveBus& bus, const Device& sheet, Stimuli& stimuli, const RunSettings& settings, RunReport& report);
 
 }  // namespace edsc::conform

@@ -220,7 +220,7 @@ void run_and_print(LiveBus& bus, const Settings& settings, const LoadedDevice& l
   const conform::TextReport text{report, *loaded.device, settings.color.on(stdout)};
   ProgressLine progress;
   run.began = [&](const CaseRow& row, std::size_t done, std::size_t of) {
-    if (done == 0 && !settings.quiet) write_output(text.head());
+    if (done == 0 && !settings.quiet) write_output(text.head() + (run.dut.simulated ? "" : text.application_objects()));
     if (progress.due()) progress.show(fmt::format("case {} of {}: {} {}", done + 1, of, row.id, row.title));
   };
   run.ended = [&](CaseResult& result) {

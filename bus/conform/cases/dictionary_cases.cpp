@@ -29,7 +29,7 @@ using canopen::Access;
 constexpr std::uint16_t error_history = 0x1003;
 
 bool lacks_flag(const Dut& dut, const LiveEntry& entry, std::uint32_t flag) {
-  return (flags_of(dut, entry) & flag) == 0;
+  return (flags_of(dut.sheet(), entry) & flag) == 0;
 }
 
 std::size_t type_bytes(const LiveEntry& entry) { return (entry.type->bits + 7U) / 8U; }
@@ -176,7 +176,7 @@ void write_read_only_entries(Dut& dut) {
   for (const LiveEntry& entry : dut.entries()) {
     if (results.lost()) break;
     const bool allowed = is_communication(entry) || dut.allowed(Permission::application);
-    const bool flagged = (flags_of(dut, entry) & (refuse_write_flag | refuse_read_flag)) != 0;
+    const bool flagged = (flags_of(dut.sheet(), entry) & (refuse_write_flag | refuse_read_flag)) != 0;
     if (!allowed || flagged || is_writable(entry) || !is_readable(entry) || is_domain(entry)) continue;
     results.count();
     const Bytes value = fitting_value(dut, entry);
@@ -280,7 +280,7 @@ void try_limits(Dut& dut) {
   for (const LiveEntry& entry : dut.entries()) {
     if (results.lost()) break;
     const Entry& row = *entry.entry;
-    const bool may_be_written = is_plain_parameter(entry) || is_application_parameter(dut, entry);
+    const bool may_be_written = is_plain_parameter(entry) || is_application_parameter(dut.sheet(), entry);
     if (!may_be_written || !is_number(entry) || (!row.low_limit && !row.high_limit)) continue;
     const SdoOutcome before = dut.upload(entry.index, entry.sub_index);
     if (!before.done()) continue;  // cases 4.1 and 4.7
@@ -306,7 +306,7 @@ void write_back(Dut& dut) {
   EntryResults results{dut};
   for (const LiveEntry& entry : dut.entries()) {
     if (results.lost()) break;
-    if (!is_application_parameter(dut, entry)) continue;
+    if (!is_application_parameter(dut.sheet(), entry)) continue;
     const SdoOutcome before = dut.upload(entry.index, entry.sub_index);
     if (!before.done()) continue;  // case 4.7
     results.count();

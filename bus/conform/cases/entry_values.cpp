@@ -66,8 +66,8 @@ void append_number(Bytes& bytes, std::uint64_t number, unsigned bits) {
 
 }  // namespace
 
-std::uint32_t flags_of(const Dut& dut, const LiveEntry& entry) {
-  const Object* object = dut.sheet().find(entry.index);
+std::uint32_t flags_of(const Device& sheet, const LiveEntry& entry) {
+  const Object* object = sheet.find(entry.index);
   return (entry.entry == nullptr ? 0 : entry.entry->obj_flags) | (object == nullptr ? 0 : object->obj_flags);
 }
 
@@ -92,9 +92,9 @@ bool is_plain_parameter(const LiveEntry& entry) {
   });
 }
 
-bool is_application_parameter(const Dut& dut, const LiveEntry& entry) {
+bool is_application_parameter(const Device& sheet, const LiveEntry& entry) {
   if (!is_application(entry) || !is_readable(entry) || !is_writable(entry) || is_domain(entry)) return false;
-  return (flags_of(dut, entry) & (refuse_write_flag | refuse_read_flag)) == 0 && !sets_node_id_or_bit_rate(entry);
+  return (flags_of(sheet, entry) & (refuse_write_flag | refuse_read_flag)) == 0 && !sets_node_id_or_bit_rate(entry);
 }
 
 std::uint64_t bits_of(const Dut& dut, const Value& value) {

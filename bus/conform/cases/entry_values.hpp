@@ -13,7 +13,7 @@ namespace edsc::conform {
 /// ObjFlags of an entry or of its object (CiA 306-1, 4.6.2).
 inline constexpr std::uint32_t refuse_write_flag = 1;
 inline constexpr std::uint32_t refuse_read_flag = 2;
-[[nodiscard]] std::uint32_t flags_of(const Dut& dut, const LiveEntry& entry);
+[[nodiscard]] std::uint32_t flags_of(const Device& sheet, const LiveEntry& entry);
 
 [[nodiscard]] bool is_communication(const LiveEntry& entry);  ///< 1000h to 1FFFh
 [[nodiscard]] bool is_application(const LiveEntry& entry);    ///< 2000h and above
@@ -28,7 +28,7 @@ inline constexpr std::uint32_t refuse_read_flag = 2;
 [[nodiscard]] bool is_plain_parameter(const LiveEntry& entry);
 /// Whether a run with the permission may write the entry of 2000h or above: not what ObjFlags keep tools from, and not
 /// the node-ID or the bit rate of the device.
-[[nodiscard]] bool is_application_parameter(const Dut& dut, const LiveEntry& entry);
+[[nodiscard]] bool is_application_parameter(const Device& sheet, const LiveEntry& entry);
 
 /// The bits of a value, with the node-ID where the EDS adds it.
 [[nodiscard]] std::uint64_t bits_of(const Dut& dut, const Value& value);

@@ -63,7 +63,7 @@ Entries numbers_with(Dut& dut, Condition condition) {
   Entries found = entries_with(dut, [&](const LiveEntry& e) { return is_plain_parameter(e) && condition(e); });
   if (!found.empty()) return found;
   found = entries_with(
-      dut, [&](const LiveEntry& e) { return is_application_parameter(dut, e) && is_number(e) && condition(e); });
+      dut, [&](const LiveEntry& e) { return is_application_parameter(dut.sheet(), e) && is_number(e) && condition(e); });
   if (!found.empty()) dut.need_permission(Permission::application);
   return found;
 }
@@ -124,7 +124,7 @@ void write_read_only(Dut& dut) {
 
 void read_write_only(Dut& dut) {
   const Entries entries = draw(dut, entries_with(dut, [&](const LiveEntry& e) {
-                                 const bool flagged = (flags_of(dut, e) & refuse_read_flag) != 0;
+                                 const bool flagged = (flags_of(dut.sheet(), e) & refuse_read_flag) != 0;
                                  return is_writable(e) && !is_readable(e) && !flagged;
                                }));
   if (entries.empty()) dut.not_applicable("the EDS has no write-only entry");
@@ -243,7 +243,7 @@ void expect_length(Dut& dut, const LiveEntry& entry, std::size_t size) {
 Entries long_entries(const Dut& dut) {
   return entries_with(dut, [&](const LiveEntry& entry) {
     if (!is_readable(entry) || entry.type == nullptr || is_domain(entry)) return false;
-    return (entry.type->bits == 0 || entry.type->bits > 32) && (flags_of(dut, entry) & refuse_read_flag) == 0;
+    return (entry.type->bits == 0 || entry.type->bits > 32) && (flags_of(dut.sheet(), entry) & refuse_read_flag) == 0;
   });
 }
 
