@@ -54,7 +54,7 @@ ExternalProject_Add(
   BUILD_BYPRODUCTS ${host_program}
   USES_TERMINAL_BUILD ON)
 # Built again when a file of it has changed, and asked of nothing else.
-file(GLOB_RECURSE host_files ${PROJECT_SOURCE_DIR}/generator/* ${PROJECT_SOURCE_DIR}/bus/*
+file(GLOB_RECURSE host_files ${PROJECT_SOURCE_DIR}/generator/* ${PROJECT_SOURCE_DIR}/bus/* ${PROJECT_SOURCE_DIR}/cli/*
      ${PROJECT_SOURCE_DIR}/templates/* ${PROJECT_SOURCE_DIR}/runtime/*)
 ExternalProject_Add_StepDependencies(edsc_host build ${PROJECT_SOURCE_DIR}/CMakeLists.txt ${host_files})
 add_executable(edsc::edsc IMPORTED GLOBAL)

@@ -1,5 +1,5 @@
 # Writes OUTPUT: TEMPLATES and REPORT_TEMPLATES (lists of *.mustache files) as string literals. Run with cmake -P.
-set(text "#include \"render/render.hpp\"\n\nnamespace edsc {\n")
+set(text "#include \"backend/render.hpp\"\n\nnamespace edsc {\n")
 
 function(embed function)
   set(code "\nconst std::vector<Template>& ${function}() {\n  static const std::vector<Template> templates = {\n")

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "conform/verdict.hpp"
-#include "decode/find_entry.hpp"
 #include "diagnostics/diagnostics.hpp"
 #include "text/source_file.hpp"
+#include "values/find_entry.hpp"
 
 namespace edsc::conform {
 

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "device/device.hpp"
-#include "live/identity.hpp"
-#include "live/sdo_access.hpp"
+#include "online/identity.hpp"
+#include "online/sdo_access.hpp"
 
 namespace edsc::conform {
 

@@ -8,10 +8,10 @@
 #include <canopen/sdo_client.hpp>
 #include <cstring>
 
-#include "live/configuration_plan.hpp"
-#include "live/configure_node.hpp"
-#include "live/interruption.hpp"
-#include "live/read_configuration.hpp"
+#include "configure/configuration_plan.hpp"
+#include "configure/configure_node.hpp"
+#include "configure/read_configuration.hpp"
+#include "online/interruption.hpp"
 
 namespace edsc::conform {
 namespace {

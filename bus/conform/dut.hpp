@@ -31,9 +31,9 @@
 #include "conform/stimuli.hpp"
 #include "conform/verdict.hpp"
 #include "device/device.hpp"
-#include "live/live_bus.hpp"
-#include "live/live_entry.hpp"
-#include "live/sdo_access.hpp"
+#include "online/live_bus.hpp"
+#include "online/live_entry.hpp"
+#include "online/sdo_access.hpp"
 
 namespace edsc::conform {
 

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "backend/render.hpp"
 #include "conform/frame_text.hpp"
 #include "conform/report_facts.hpp"
-#include "decode/append.hpp"
 #include "decode/print_message.hpp"
-#include "render/render.hpp"
 #include "text/counted.hpp"
+#include "values/append.hpp"
 
 namespace edsc::conform {
 namespace {

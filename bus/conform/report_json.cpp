@@ -4,8 +4,8 @@
 
 #include "conform/frame_text.hpp"
 #include "conform/report_facts.hpp"
-#include "decode/append.hpp"
 #include "text/printable.hpp"
+#include "values/append.hpp"
 
 namespace edsc::conform {
 namespace {

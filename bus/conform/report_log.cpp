@@ -1,6 +1,6 @@
 #include "conform/report_log.hpp"
 
-#include "bus_server/candump_line.hpp"
+#include "server/candump_line.hpp"
 
 namespace edsc::conform {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "conform/drive.hpp"
-#include "live/identity.hpp"
-#include "live/interruption.hpp"
+#include "online/identity.hpp"
+#include "online/interruption.hpp"
 
 namespace edsc::conform {
 namespace {

@@ -9,8 +9,8 @@
 #include "device/type_name.hpp"
 #include "device/value.hpp"
 #include "diagnostics/quote.hpp"
+#include "eds/ini.hpp"
 #include "eds/number.hpp"
-#include "text/ini.hpp"
 
 namespace edsc {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "device/device.hpp"
 #include "eds/data_sheet.hpp"
-#include "text/ini.hpp"
+#include "eds/ini.hpp"
 
 namespace edsc {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "text/ini.hpp"
+#include "eds/ini.hpp"
 
 namespace edsc {
 namespace {

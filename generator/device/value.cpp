@@ -8,9 +8,9 @@
 #include <string>
 
 #include "diagnostics/quote.hpp"
+#include "eds/ini.hpp"
 #include "eds/number.hpp"
 #include "text/ascii.hpp"
-#include "text/ini.hpp"
 
 namespace edsc {
 namespace {

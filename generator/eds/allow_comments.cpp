@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <optional>
 
+#include "eds/ini.hpp"
 #include "eds/number.hpp"
 #include "eds/section_name.hpp"
 #include "text/ascii.hpp"
-#include "text/ini.hpp"
 #include "text/source_file.hpp"
 
 namespace edsc {

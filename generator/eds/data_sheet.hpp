@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "diagnostics/diagnostics.hpp"
-#include "text/ini.hpp"
+#include "eds/ini.hpp"
 
 namespace edsc {
 

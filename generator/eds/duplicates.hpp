@@ -2,7 +2,7 @@
 #pragma once
 
 #include "diagnostics/diagnostics.hpp"
-#include "text/ini.hpp"
+#include "eds/ini.hpp"
 
 namespace edsc {
 

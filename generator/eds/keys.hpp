@@ -10,7 +10,7 @@
 #include "diagnostics/diagnostics.hpp"
 #include "eds/data_sheet.hpp"
 #include "eds/duplicates.hpp"
-#include "text/ini.hpp"
+#include "eds/ini.hpp"
 
 namespace edsc {
 

@@ -5,8 +5,8 @@
 
 #include "diagnostics/diagnostics.hpp"
 #include "eds/data_sheet.hpp"
+#include "eds/ini.hpp"
 #include "eds/section_name.hpp"
-#include "text/ini.hpp"
 
 namespace edsc {
 

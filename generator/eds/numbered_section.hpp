@@ -6,7 +6,7 @@
 
 #include "diagnostics/diagnostics.hpp"
 #include "eds/data_sheet.hpp"
-#include "text/ini.hpp"
+#include "eds/ini.hpp"
 
 namespace edsc {
 

@@ -5,9 +5,9 @@
 #include <optional>
 #include <span>
 
+#include "eds/ini.hpp"
 #include "eds/number.hpp"
 #include "text/ascii.hpp"
-#include "text/ini.hpp"
 
 namespace edsc {
 namespace {

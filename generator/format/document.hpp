@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "eds/ini.hpp"
 #include "eds/section_name.hpp"
-#include "text/ini.hpp"
 
 namespace edsc {
 

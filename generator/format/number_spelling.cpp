@@ -7,9 +7,9 @@
 #include <charconv>
 #include <optional>
 
+#include "eds/ini.hpp"
 #include "eds/number.hpp"
 #include "text/ascii.hpp"
-#include "text/ini.hpp"
 
 namespace edsc {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "diagnostics/quote.hpp"
-#include "text/ini.hpp"
+#include "eds/ini.hpp"
 #include "xdd/attributes.hpp"
 
 namespace edsc {

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "eds/data_sheet.hpp"
-#include "text/ini.hpp"
+#include "eds/ini.hpp"
 #include "xdd/xml_document.hpp"
 
 namespace edsc {

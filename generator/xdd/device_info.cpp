@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "diagnostics/quote.hpp"
+#include "eds/ini.hpp"
 #include "eds/number.hpp"
-#include "text/ini.hpp"
 #include "xdd/attributes.hpp"
 
 namespace edsc {

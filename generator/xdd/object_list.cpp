@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "diagnostics/quote.hpp"
+#include "eds/ini.hpp"
 #include "eds/number.hpp"
-#include "text/ini.hpp"
 #include "xdd/attributes.hpp"
 
 namespace edsc {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "diagnostics/quote.hpp"
+#include "eds/ini.hpp"
 #include "eds/object_lists.hpp"
-#include "text/ini.hpp"
 #include "text/source_file.hpp"
 #include "xdd/application_process.hpp"
 #include "xdd/attributes.hpp"

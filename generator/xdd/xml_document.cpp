@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "diagnostics/quote.hpp"
+#include "eds/ini.hpp"
 #include "text/ascii.hpp"
-#include "text/ini.hpp"
 #include "text/source_file.hpp"
 
 namespace edsc {

@@ -5,9 +5,9 @@
 #include <string>
 #include <utility>
 
-#include "commands/load_device.hpp"
 #include "conform/sheet_findings.hpp"
 #include "every_service_device.hpp"
+#include "load/load_device.hpp"
 #include "simulation_port.hpp"
 
 namespace edsc::conform {

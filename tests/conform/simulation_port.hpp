@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "conform/stimuli.hpp"
-#include "live/live_bus.hpp"
 #include "mutant.hpp"
+#include "online/live_bus.hpp"
 
 namespace edsc::conform {
 

@@ -2,8 +2,8 @@
 /// the same.
 #include <cstdlib>
 
-#include "bus_server/socketcand_text.hpp"
 #include "canopen/port/socketcand_codec.hpp"
+#include "server/socketcand_text.hpp"
 
 namespace {
 

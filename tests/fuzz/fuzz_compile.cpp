@@ -2,10 +2,10 @@
 ///
 /// An input is a data sheet; one that begins with `{` is an options file, a line `%%` and a data sheet. Every other
 /// length stands for a node-ID. Every fourth is rendered: that takes most of the time, and finds the least.
-#include "commands/load_device.hpp"
+#include "backend/cpp/view.hpp"
+#include "backend/render.hpp"
 #include "fuzz.hpp"
-#include "render/render.hpp"
-#include "render/view.hpp"
+#include "load/load_device.hpp"
 
 namespace edsc::fuzz {
 namespace {

@@ -2,9 +2,9 @@
 /// (node 7).
 #include <nlohmann/json.hpp>
 
-#include "commands/load_device.hpp"
 #include "decode/log_decoder.hpp"
 #include "fuzz.hpp"
+#include "load/load_device.hpp"
 #include "text/utf8.hpp"
 
 namespace edsc::fuzz {

@@ -6,15 +6,15 @@
 
 #include <span>
 
-#include "commands/load_device.hpp"
+#include "configure/configuration_plan.hpp"
+#include "configure/configure_node.hpp"
+#include "configure/read_configuration.hpp"
 #include "decode/decoder.hpp"
 #include "format/configured_values.hpp"
-#include "live/configuration_plan.hpp"
-#include "live/configure_node.hpp"
-#include "live/monitor_view.hpp"
-#include "live/read_configuration.hpp"
-#include "live/scan.hpp"
 #include "live_port.hpp"
+#include "load/load_device.hpp"
+#include "monitor/monitor_view.hpp"
+#include "online/scan.hpp"
 
 namespace edsc::fuzz {
 namespace {

@@ -1,8 +1,8 @@
 /// Bytes -> text -> INI lines.
 #include <nlohmann/json.hpp>
 
+#include "eds/ini.hpp"
 #include "fuzz.hpp"
-#include "text/ini.hpp"
 #include "text/source_file.hpp"
 #include "text/utf8.hpp"
 

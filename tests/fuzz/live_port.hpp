@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "fuzz.hpp"
-#include "live/live_bus.hpp"
+#include "online/live_bus.hpp"
 #include "steps.hpp"
 
 namespace edsc::fuzz {

@@ -61,7 +61,7 @@ class SampleProject(unittest.TestCase):
                          "adds 0 once less\n")
         cls.project = Project(
             root=cls.root, include_folders=("include",), equivalents=known,
-            areas=(Area("all", "include/", (Program("sample_test", ("include/",), ("{build}/sample_test",),
+            areas=(Area("all", ("include/",), (Program("sample_test", ("include/",), ("{build}/sample_test",),
                                                     ("sample_test",)),), mutates_constexpr_variables=True),))
         cls.exit_code, cls.output = cls.check()
         assert cls.exit_code == 1, cls.output

@@ -25,7 +25,7 @@ class Area:
     """Files whose mutants are in one build."""
 
     name: str
-    folder: str
+    folders: tuple[str, ...]
     programs: tuple[Program, ...]
     cmake_options: tuple[str, ...] = ()
     excluded: tuple[str, ...] = ()
@@ -33,7 +33,7 @@ class Area:
     mutates_constexpr_variables: bool = False
 
     def has(self, file: str) -> bool:
-        return file.startswith(self.folder) and not file.startswith(self.excluded)
+        return file.startswith(self.folders) and not file.startswith(self.excluded)
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,8 @@ class Project:
     equivalents: Path | None = None
 
     def files(self, under: tuple[str, ...]) -> list[str]:
-        paths = (path for area in self.areas for path in (self.root / area.folder).rglob("*.[ch]pp"))
+        paths = (path for area in self.areas for folder in area.folders
+                 for path in (self.root / folder).rglob("*.[ch]pp"))
         names = sorted(str(path.relative_to(self.root)) for path in paths)
         return [name for name in names if name.startswith(under) and self.area_of(name) is not None]
 
@@ -67,19 +68,23 @@ def script(name: str, path: str, *tests: str) -> Program:
 
 RUNTIME = "runtime/include/canopen/"
 
+HOST = ("generator/", "bus/", "cli/")
+
 # Fast programs first: the first that fails is the last one to run.
-GENERATOR_PROGRAMS = (
-    gtest("decode_tests", "generator/decode/", "generator/text/", "generator/device/"),
-    gtest("live_tests", "generator/live/"),
-    gtest("bus_server_tests", "generator/bus_server/"),
+HOST_PROGRAMS = (
+    gtest("decode_tests", "bus/decode/", "bus/values/", "generator/text/", "generator/device/"),
+    gtest("live_tests", "bus/configure/", "bus/monitor/", "bus/online/"),
+    gtest("bus_server_tests", "bus/server/"),
     gtest("generator_tests", "generator/"),
+    Program("conform_mutants", ("bus/conform/",),
+            ("{build}/tests/conform_mutants", "{source}/tests/conform/mutants.tsv"), ("conform_mutants",)),
     script("golden", "golden/golden_test.py", "generator/"),
-    script("check", "cli/check_test.py", "generator/"),
-    script("decode", "decode/decode_test.py", "generator/decode/", "generator/commands/"),
-    script("completion", "cli/completion_test.py", "generator/commands/"),
-    script("rules", "rules/rules_test.py", "generator/rules/", "generator/eds/", "generator/xdd/",
+    script("check", "cli/check_test.py", "generator/", "cli/"),
+    script("decode", "decode/decode_test.py", "bus/decode/", "bus/values/", "cli/"),
+    script("completion", "cli/completion_test.py", "cli/completion/"),
+    script("rules", "rules/rules_test.py", "generator/lint/", "generator/eds/", "generator/xdd/",
            "generator/diagnostics/"),
-    script("cli", "cli/cli_test.py", "generator/"),
+    script("cli", "cli/cli_test.py", *HOST),
 )
 RUNTIME_PROGRAMS = (
     gtest("profile_tests", f"{RUNTIME}profile/"),
@@ -97,16 +102,16 @@ NO_WARNINGS = "-DCMAKE_CXX_FLAGS=-O1 -w"
 
 def edsc_project(root: Path, edsc: Path | None) -> Project:
     """`edsc` generates the code for tests of the runtime; without it, it is built from the copy with the mutants."""
-    generator = Area(
-        "generator", "generator/", GENERATOR_PROGRAMS,
+    host = Area(
+        "host", HOST, HOST_PROGRAMS,
         # Each source is compiled alone, as for the test preset: those without a mutant come from the compiler's cache.
         cmake_options=("-DCMAKE_BUILD_TYPE=Release", "-DEDSC_UNITY_BUILD=OFF", "-DEDSC_BUILD_EXAMPLES=OFF"),
         mutates_constexpr_variables=True)
     given = () if edsc is None else (f"-DEDSC_EXECUTABLE={edsc.resolve()}", "-DEDSC_HOST_PRESET=given")
     runtime = Area(
-        "runtime", "runtime/include/", RUNTIME_PROGRAMS,
+        "runtime", ("runtime/include/",), RUNTIME_PROGRAMS,
         cmake_options=("-DCMAKE_BUILD_TYPE=None", NO_WARNINGS, "-DEDSC_BUILD_EXAMPLES=OFF", *given),
         # The sockets of the kernel are tested in a virtual machine.
         excluded=(f"{RUNTIME}port/socketcan.hpp",))
-    return Project(root, (generator, runtime), ("generator", "runtime/include"),
+    return Project(root, (host, runtime), ("generator", "bus", "cli", "runtime/include"),
                    root / "tests/mutation/equivalents.tsv")

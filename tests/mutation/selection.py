@@ -40,7 +40,7 @@ def changed_lines(root: Path, reference: str, folders: list[str]) -> dict[str, s
 
 
 def select_changed(project: Project, reference: str, under: tuple[str, ...]) -> list[Mutation]:
-    lines = changed_lines(project.root, reference, [area.folder for area in project.areas])
+    lines = changed_lines(project.root, reference, [folder for area in project.areas for folder in area.folders])
     return [mutation for file in project.files(under) if lines.get(file)
             for mutation in mutations_of(project, file) if mutation.line in lines[file]]
 

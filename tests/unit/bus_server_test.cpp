@@ -1,5 +1,5 @@
 /// The bus server: what it answers to its clients, and what it lets them do to each other.
-#include "bus_server/bus_server.hpp"
+#include "server/bus_server.hpp"
 
 #include <gtest/gtest.h>
 #include <netinet/in.h>
@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "bus_server/candump_line.hpp"
+#include "server/candump_line.hpp"
 
 namespace {
 

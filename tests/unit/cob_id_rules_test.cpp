@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "backend/cpp/view.hpp"
 #include "device/cob_id_parameter.hpp"
 #include "device_from_text.hpp"
-#include "render/view.hpp"
 
 namespace edsc {
 namespace {

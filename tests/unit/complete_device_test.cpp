@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "backend/cpp/view.hpp"
 #include "device_from_text.hpp"
-#include "render/view.hpp"
 
 namespace edsc {
 namespace {

@@ -1,5 +1,5 @@
 /// The order in which the values of a DCF go to a node.
-#include "live/configuration_plan.hpp"
+#include "configure/configuration_plan.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "configure/configure_node.hpp"
 #include "device_from_text.hpp"
 #include "format/concise_dcf.hpp"
-#include "live/configure_node.hpp"
 
 namespace edsc {
 namespace {

@@ -1,4 +1,4 @@
-#include "render/cpp_text.hpp"
+#include "backend/cpp/cpp_text.hpp"
 
 #include <gtest/gtest.h>
 

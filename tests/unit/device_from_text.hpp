@@ -14,8 +14,8 @@
 #include "device/resolve.hpp"
 #include "diagnostic_matchers.hpp"
 #include "eds/data_sheet.hpp"
-#include "rules/check_device.hpp"
-#include "text/ini.hpp"
+#include "eds/ini.hpp"
+#include "lint/check_device.hpp"
 #include "text/source_file.hpp"
 
 namespace edsc {

@@ -4,8 +4,8 @@
 
 #include <string>
 
+#include "backend/cpp/memory_layout.hpp"
 #include "device_from_text.hpp"
-#include "render/memory_layout.hpp"
 
 namespace edsc {
 namespace {

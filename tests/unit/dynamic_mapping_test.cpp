@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
+#include "backend/cpp/memory_layout.hpp"
+#include "backend/cpp/view.hpp"
 #include "device_from_text.hpp"
-#include "render/memory_layout.hpp"
-#include "render/view.hpp"
 
 namespace edsc {
 namespace {

@@ -1,8 +1,8 @@
-#include "decode/find_entry.hpp"
+#include "values/find_entry.hpp"
 
 #include <gtest/gtest.h>
 
-#include "commands/load_device.hpp"
+#include "load/load_device.hpp"
 
 namespace edsc {
 namespace {

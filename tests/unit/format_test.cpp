@@ -6,13 +6,13 @@
 
 #include <string>
 
+#include "backend/cpp/view.hpp"
 #include "device/resolve.hpp"
 #include "device_from_text.hpp"
+#include "eds/ini.hpp"
 #include "format/key_table.hpp"
 #include "format/make_dcf.hpp"
 #include "format/number_spelling.hpp"
-#include "render/view.hpp"
-#include "text/ini.hpp"
 #include "text/source_file.hpp"
 
 namespace edsc {

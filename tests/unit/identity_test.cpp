@@ -1,5 +1,5 @@
 /// Who a device is by its file, and how many bytes an upload may have.
-#include "live/identity.hpp"
+#include "online/identity.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "device_from_text.hpp"
-#include "live/sdo_access.hpp"
+#include "online/sdo_access.hpp"
 
 namespace edsc {
 namespace {

@@ -1,4 +1,4 @@
-#include "text/ini.hpp"
+#include "eds/ini.hpp"
 
 #include <gtest/gtest.h>
 

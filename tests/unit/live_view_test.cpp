@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "live/identity.hpp"
-#include "live/live_entry.hpp"
-#include "live/monitor_view.hpp"
-#include "live/text_table.hpp"
+#include "monitor/monitor_view.hpp"
+#include "monitor/text_table.hpp"
+#include "online/identity.hpp"
+#include "online/live_entry.hpp"
 
 namespace edsc {
 namespace {

@@ -1,5 +1,5 @@
 /// Which ARRAYs share one word for all elements.
-#include "render/memory_layout.hpp"
+#include "backend/cpp/memory_layout.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "decode/value_text.hpp"
 #include "device_from_text.hpp"
-#include "rules/rule_groups.hpp"
+#include "lint/rule_groups.hpp"
+#include "values/value_text.hpp"
 
 namespace edsc {
 namespace {

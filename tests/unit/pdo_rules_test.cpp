@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "device_from_text.hpp"
-#include "rules/rule_groups.hpp"
+#include "lint/rule_groups.hpp"
 
 namespace edsc {
 namespace {

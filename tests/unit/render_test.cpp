@@ -1,4 +1,4 @@
-#include "render/render.hpp"
+#include "backend/render.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "backend/cpp/view.hpp"
 #include "device_from_text.hpp"
-#include "render/view.hpp"
 
 namespace edsc {
 namespace {

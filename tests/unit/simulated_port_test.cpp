@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "live/simulated_port.hpp"
+#include "online/simulated_port.hpp"
 
 namespace edsc {
 namespace {

@@ -1,6 +1,6 @@
 /// The server's text of the socketcand protocol: elements, and the frames in them; the client's codec reads and writes
 /// the same.
-#include "bus_server/socketcand_text.hpp"
+#include "server/socketcand_text.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "backend/cpp/view.hpp"
 #include "device/stored_eds.hpp"
 #include "device_from_text.hpp"
-#include "render/view.hpp"
 #include "text/gzip.hpp"
 
 namespace edsc {

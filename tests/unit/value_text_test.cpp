@@ -1,4 +1,4 @@
-#include "decode/value_text.hpp"
+#include "values/value_text.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "render/write_files.hpp"
+#include "text/write_files.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

@@ -7,11 +7,11 @@
 #include <string_view>
 #include <utility>
 
+#include "backend/cpp/view.hpp"
 #include "device/resolve.hpp"
 #include "diagnostic_matchers.hpp"
-#include "render/view.hpp"
-#include "rules/check_device.hpp"
-#include "text/ini.hpp"
+#include "eds/ini.hpp"
+#include "lint/check_device.hpp"
 #include "text/source_file.hpp"
 
 namespace edsc {

@@ -15,9 +15,9 @@
 #include "conform/cases/entry_values.hpp"
 #include "conform/cases/sdo_frames.hpp"
 #include "conform/dut.hpp"
-#include "decode/value_text.hpp"
 #include "device/index_range.hpp"
 #include "device/object_structure.hpp"
+#include "values/value_text.hpp"
 
 namespace edsc::conform {
 namespace dictionary_area {

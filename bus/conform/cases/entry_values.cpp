@@ -8,8 +8,8 @@
 #include <cmath>
 #include <limits>
 
+#include "configure/configuration_plan.hpp"
 #include "device/value.hpp"
-#include "live/configuration_plan.hpp"
 #include "text/utf8.hpp"
 
 namespace edsc::conform {

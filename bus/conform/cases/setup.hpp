@@ -6,7 +6,7 @@
 #include <string>
 
 #include "conform/dut.hpp"
-#include "live/interruption.hpp"
+#include "online/interruption.hpp"
 
 namespace edsc::conform {
 

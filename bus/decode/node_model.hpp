@@ -1,0 +1,94 @@
+/// A node as its data sheet, and what a log has written to it since, make it: CAN-IDs and PDO layouts.
+#pragma once
+
+#include <canopen/cob_id.hpp>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "device/device.hpp"
+#include "values/drive_words.hpp"
+
+namespace edsc {
+
+/// Where a PDO carries an object.
+struct PdoField {
+  std::uint16_t index = 0;
+  std::uint8_t sub_index = 0;
+  std::uint8_t offset = 0;  ///< in bits
+  std::uint8_t bits = 0;
+  bool dummy = false;
+  DriveWord drive_word = DriveWord::none;
+  const Entry* entry = nullptr;                ///< null: a dummy, or the device has no such entry
+  const canopen::DataTypeRow* type = nullptr;  ///< null where neither is known
+  std::string name;                            ///< `Statusword`
+};
+
+struct PdoLayout {
+  PdoDirection direction = PdoDirection::receive;
+  std::uint16_t number = 1;
+  canopen::CobId cob_id;
+  bool multiplexed = false;
+  unsigned bits = 0;
+  std::vector<PdoField> fields;
+};
+
+/// A pair of CAN-IDs that an SDO server uses.
+struct SdoServerIds {
+  canopen::CobId request;   ///< client to server
+  canopen::CobId response;  ///< server to client
+};
+
+/// `Identity object, Vendor-ID`; of a DCF the user's own name.
+[[nodiscard]] std::string display_name(const Object& object, const Entry& entry);
+
+class NodeModel {
+ public:
+  /// The device must stay. Its formulas have to be resolved for this node-ID.
+  NodeModel(std::uint8_t node_id, const Device& device);
+
+  [[nodiscard]] std::uint8_t node_id() const { return node_id_; }
+  [[nodiscard]] const Device& device() const { return *device_; }
+  /// The low word of the device type 1000h: 402 of a drive.
+  [[nodiscard]] std::uint16_t profile() const { return profile_; }
+
+  [[nodiscard]] const std::vector<PdoLayout>& pdos() const { return pdos_; }
+  [[nodiscard]] std::optional<canopen::CobId> sync() const { return cob_id(0x1005); }
+  [[nodiscard]] std::optional<canopen::CobId> time() const { return cob_id(0x1012); }
+  [[nodiscard]] std::optional<canopen::CobId> emcy() const { return cob_id(0x1014); }
+  /// The servers from 1201h on; the default SDO is every node's.
+  [[nodiscard]] std::vector<SdoServerIds> further_sdo_servers() const;
+
+  /// `Statusword, 16 bits`: what a value of a mapping parameter names.
+  [[nodiscard]] std::string mapped_name(std::uint32_t mapping) const;
+
+  /// An SDO has written or read a value, low byte first. True: CAN-IDs or layouts are others now.
+  [[nodiscard]] bool learn(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> value,
+                           bool written);
+
+  /// The node has been reset: what was not stored is gone. True: CAN-IDs or layouts are others now.
+  [[nodiscard]] bool reset();
+
+ private:
+  using Key = std::uint32_t;
+  using Parameters = std::map<Key, std::uint32_t>;
+
+  [[nodiscard]] std::optional<std::uint32_t> parameter(std::uint16_t index, std::uint8_t sub_index) const;
+  [[nodiscard]] std::optional<canopen::CobId> cob_id(std::uint16_t index) const;
+  [[nodiscard]] canopen::CobId pdo_cob_id(const Pdo& pdo) const;
+  [[nodiscard]] PdoField field(std::uint32_t mapping) const;
+  void lay_out(std::size_t pdo);
+  void lay_out_all();
+
+  std::uint8_t node_id_;
+  std::uint16_t profile_ = 0;
+  const Device* device_;
+  std::vector<PdoLayout> pdos_;  ///< as those of the device
+  Parameters written_;           ///< what differs from the data sheet
+  Parameters stored_;            ///< what of that will be there after a reset
+};
+
+}  // namespace edsc

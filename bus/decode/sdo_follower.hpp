@@ -1,0 +1,106 @@
+/// Follows the SDO transfers of one server: expedited, segmented and by blocks (CiA 301, 7.2.4.3.3 to 7.2.4.3.17).
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <canopen/sdo_protocol.hpp>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "decode/message.hpp"
+#include "decode/node_model.hpp"
+#include "values/drive_words.hpp"
+
+namespace edsc {
+
+class SdoFollower {
+ public:
+  /// Bytes of a value that are kept to be shown; of longer ones only their number is known.
+  static constexpr std::size_t most_kept = 1024;
+
+  /// Says in `message` what a frame of the client or server does. `model` may be null: objects have no names then. The
+  /// values of the message stand until the next frame.
+  void request(const TimedFrame& frame, const NodeModel* model, Message& message);
+  void response(const TimedFrame& frame, const NodeModel* model, Message& message);
+
+  /// A transfer is going on.
+  [[nodiscard]] bool open() const { return phase_ != Phase::idle; }
+  /// `read of 1008h:00 Manufacturer device name after 7 bytes`
+  [[nodiscard]] std::string description() const;
+
+  /// The finished transfer's value, all of it. Empty where it is longer than what is kept, or part of it is not known.
+  [[nodiscard]] std::span<const std::uint8_t> whole_value() const;
+
+ private:
+  enum class Phase : std::uint8_t {
+    idle,
+    asked,           ///< initiated by the client
+    segments,        ///< initiated by both
+    block_answered,  ///< block upload: the client has to start
+    block_running,   ///< a sub-block
+    block_last,      ///< its last segment has been sent
+    block_ending,    ///< all is confirmed
+    block_ended,     ///< the sender has said so
+  };
+
+  void begin(const TimedFrame& frame, const NodeModel* model, bool download, bool block, Message& message);
+  void initiate_download(const TimedFrame& frame, const NodeModel* model, Message& message);
+  void initiate_block_download(const TimedFrame& frame, const NodeModel* model, Message& message);
+  void initiate_block_upload(const TimedFrame& frame, const NodeModel* model, Message& message);
+  void upload_answer(const TimedFrame& frame, Message& message);
+  void segment(const TimedFrame& frame, bool from_client, Message& message);
+  void segment_confirmed(const TimedFrame& frame, bool last, Message& message);
+  void block_segment(const canopen::sdo::Data& data, Message& message);
+  void block_confirmed(const canopen::sdo::Data& data, Message& message);
+  void block_end(const canopen::sdo::Data& data, Message& message);
+  void block_upload_command(const TimedFrame& frame, const NodeModel* model, Message& message);
+  void block_download_answer(const TimedFrame& frame, Message& message);
+  void block_upload_answer(const TimedFrame& frame, Message& message);
+  void abort(const TimedFrame& frame, Message& message);
+  void finish(const TimedFrame& frame, Message& message);
+  void stray(std::string_view what, Message& message);
+
+  void append(std::span<const std::uint8_t> bytes);
+  [[nodiscard]] std::span<const std::uint8_t> expedited_value(const canopen::sdo::Data& data) const;
+  /// The value of a mapping parameter; 0 where the transfer is about another object.
+  [[nodiscard]] std::uint32_t mapped_object() const;
+  void flush_held(std::size_t bytes);
+  void put_value(Message& message) const;
+  void put_part(std::uint32_t offset, std::uint32_t bytes, bool last, Message& message) const;
+  void put_duration(const TimedFrame& frame, Message& message) const;
+  void put_transfer(TransferStep step, Message& message) const;
+
+  Phase phase_ = Phase::idle;
+  bool download_ = false;
+  bool expedited_ = false;
+  bool last_seen_ = false;
+  bool complete_ = true;  ///< no part is missing in the log
+  bool has_start_ = false;
+  bool client_crc_ = false, crc_used_ = false;
+  bool toggle_ = false;  ///< of the segment that is to come
+  std::uint16_t index_ = 0;
+  std::uint8_t sub_index_ = 0;
+  std::int64_t start_ = 0;  ///< us
+  std::optional<std::uint32_t> announced_;
+  std::uint32_t total_ = 0;
+  std::uint16_t crc_ = 0;
+  const NodeModel* model_ = nullptr;
+  const Entry* entry_ = nullptr;  ///< null where no data sheet knows it
+  DriveWord drive_word_ = DriveWord::none;
+  std::string name_;   ///< `Manufacturer device name`
+  std::string label_;  ///< `1008h:00 Manufacturer device name`
+  std::vector<std::uint8_t> kept_;
+
+  // A sub-block counts when it is confirmed: until then its segments may come again.
+  static constexpr std::size_t segment_bytes = canopen::sdo::segment_bytes;
+  std::array<std::uint8_t, canopen::sdo::largest_block * segment_bytes> block_{};
+  std::bitset<canopen::sdo::largest_block + 1> seen_;
+  std::uint8_t highest_ = 0;  ///< sequence number
+  bool holds_ = false;        ///< the last confirmed segment: the end of a block transfer cuts it
+  std::array<std::uint8_t, segment_bytes> held_{};
+};
+
+}  // namespace edsc

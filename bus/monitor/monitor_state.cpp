@@ -1,0 +1,142 @@
+#include "monitor/monitor_state.hpp"
+
+#include <canopen/port/virtual_bus.hpp>
+
+#include "online/nmt_text.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr std::int64_t second_us = 1'000'000;
+
+}  // namespace
+
+void Rate::take(double seconds) {
+  per_second_ = seconds > 0 ? static_cast<double>(total_ - taken_) / seconds : 0;
+  taken_ = total_;
+}
+
+bool MonitorState::add(const canopen::Frame& frame, const Message& message, std::int64_t now_us) {
+  frames_.count();
+  bits_.count(canopen::bits_on_wire(frame));
+  switch (message.service) {
+    case Service::boot_up:
+    case Service::heartbeat:
+    case Service::guarding: return add_state(message, now_us);
+    case Service::tpdo:
+    case Service::rpdo: return add_pdo(message, now_us);
+    case Service::emcy: {
+      MonitoredNode& node = node_of(message.node_id);
+      ++node.emergencies;
+      node.emergency = message.text;
+      node.error_code = message.error_code;
+      node.emergency_us = now_us;
+      return true;
+    }
+    case Service::sync:
+    case Service::time: {
+      const auto [row, first] = others_.try_emplace(canopen::cob_id_of(frame));
+      row->second.count();
+      return first;
+    }
+    case Service::sdo: return message.step == TransferStep::finished || message.step == TransferStep::aborted;
+    case Service::nmt: add_command(frame); return true;
+    case Service::lss:
+    case Service::error_frame: return true;
+    case Service::unknown: {
+      const auto [row, first] = others_.try_emplace(canopen::cob_id_of(frame));
+      row->second.count();
+      return first;
+    }
+  }
+  return false;
+}
+
+MonitoredNode& MonitorState::node_of(std::uint8_t node_id) {
+  const auto [node, is_new] = nodes_.try_emplace(node_id);
+  if (is_new) node->second.assumed = commanded_[node_id & 0x7F];
+  return node->second;
+}
+
+/// A node does not confirm an NMT command: where it leads to is assumed until error control says it.
+void MonitorState::add_command(const canopen::Frame& frame) {
+  if (frame.remote || frame.size < 2 || frame.data[1] >= commanded_.size()) return;
+  for (const NmtCommandText& row : nmt_command_texts) {
+    if (static_cast<std::uint8_t>(row.command) != frame.data[0]) continue;
+    const bool resets = row.leads_to == canopen::NmtState::initialisation;
+    const std::string_view state = resets ? "" : nmt_state_text(row.leads_to);
+    const std::uint8_t node_id = frame.data[1];
+    for (std::size_t id = 1; id < commanded_.size(); ++id) {
+      if (node_id != 0 && id != node_id) continue;
+      commanded_[id] = state;
+      if (nodes_.contains(static_cast<std::uint8_t>(id))) assume(static_cast<std::uint8_t>(id), state);
+    }
+  }
+}
+
+void MonitorState::assume(std::uint8_t node_id, std::string_view state) {
+  MonitoredNode& node = node_of(node_id);
+  node.assumed = node.state == state ? "" : state;
+}
+
+bool MonitorState::add_state(const Message& message, std::int64_t now_us) {
+  if (message.state.empty() || message.node_id == 0) return false;
+  commanded_[message.node_id & 0x7F].clear();
+  MonitoredNode& node = node_of(message.node_id);
+  const bool booted = message.service == Service::boot_up;
+  const bool was_late = node.is_late(now_us);
+  if (node.heard_us && !booted) node.interval_us = now_us - *node.heard_us;
+  if (booted || was_late) node.interval_us = 0;
+  node.heard_us = now_us;
+  if (!booted) ++node.heartbeats;
+  const bool changed = booted || was_late || node.state != message.state;
+  node.state = message.state;
+  node.assumed.clear();
+  return changed;
+}
+
+bool MonitorState::add_pdo(const Message& message, std::int64_t now_us) {
+  // A node sends PDOs in Operational only.
+  if (message.service == Service::tpdo && message.node_id != 0) {
+    assume(message.node_id, nmt_state_text(canopen::NmtState::operational));
+  }
+  MonitoredPdo& pdo = pdos_[{message.node_id, message.service == Service::tpdo, message.number}];
+  pdo.frames.count();
+  pdo.seen_us = now_us;
+  if (pdo.text == message.text && pdo.frames.total() > 1) return false;
+  pdo.text = message.text;
+  pdo.values.clear();
+  for (const MessageValue& value : message.values) {
+    if (value.text_end < value.text_begin || value.text_end > message.text.size()) continue;
+    pdo.values.emplace_back(value.name, message.text.substr(value.text_begin, value.text_end - value.text_begin));
+  }
+  return true;
+}
+
+void MonitorState::pass(std::int64_t now_us) {
+  if (now_us - tick_us_ < second_us) return;
+  take_rates(static_cast<double>(now_us - tick_us_) / second_us);
+  tick_us_ = now_us;
+}
+
+void MonitorState::end(std::int64_t now_us) {
+  const auto all = [&](Rate& rate) {
+    Rate whole;
+    whole.count(rate.total());
+    whole.take(static_cast<double>(now_us - start_us()) / second_us);
+    rate = whole;
+  };
+  all(frames_);
+  all(bits_);
+  for (auto& [key, pdo] : pdos_) all(pdo.frames);
+  for (auto& [cob_id, rate] : others_) all(rate);
+}
+
+void MonitorState::take_rates(double seconds) {
+  frames_.take(seconds);
+  bits_.take(seconds);
+  for (auto& [key, pdo] : pdos_) pdo.frames.take(seconds);
+  for (auto& [cob_id, rate] : others_) rate.take(seconds);
+}
+
+}  // namespace edsc

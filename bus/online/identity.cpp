@@ -1,0 +1,125 @@
+#include "online/identity.hpp"
+
+#include <fmt/format.h>
+
+#include <cstring>
+
+#include "online/sdo_access.hpp"
+
+namespace edsc {
+namespace {
+
+struct Number {
+  std::string_view name, key;
+  std::optional<std::uint32_t> Identity::*value;
+  Fit difference;
+  bool usual = true;  ///< every EDS should state it
+};
+
+constexpr Number numbers[] = {
+    {"device type", "device_type", &Identity::device_type, Fit::other},
+    {"vendor-ID", "vendor_id", &Identity::vendor_id, Fit::other},
+    {"product code", "product_code", &Identity::product_code, Fit::other},
+    {"revision number", "revision_number", &Identity::revision_number, Fit::major_revision},
+    {"serial number", "serial_number", &Identity::serial_number, Fit::other, false},
+};
+
+std::optional<std::uint32_t> default_of(const Device& device, std::uint16_t index, std::uint8_t sub_index) {
+  const Entry* entry = device.find(index, sub_index);
+  if (entry == nullptr || !entry->default_value || entry->default_value->plus_node_id) return std::nullopt;
+  return static_cast<std::uint32_t>(entry->default_value->bits);
+}
+
+std::optional<std::uint32_t> unless_zero(std::optional<std::uint32_t> number, std::uint32_t otherwise = 0) {
+  if (number.value_or(0) == 0) number = otherwise;
+  return *number == 0 ? std::nullopt : number;
+}
+
+std::optional<std::uint32_t> read_word(SdoAccess& node, std::uint16_t index, std::uint8_t sub_index) {
+  std::uint32_t number = 0;
+  const SdoOutcome outcome = node.upload(index, sub_index, SdoTransfer::segmented, {}, sizeof number);
+  if (!outcome.done() || outcome.bytes.size() != sizeof number) return std::nullopt;
+  std::memcpy(&number, outcome.bytes.data(), sizeof number);
+  return number;
+}
+
+bool differs(std::optional<std::uint32_t> a, std::optional<std::uint32_t> b) { return a && b && *a != *b; }
+
+}  // namespace
+
+Identity identity_of(const Device& device) {
+  Identity identity;
+  identity.device_type = unless_zero(default_of(device, 0x1000, 0));
+  identity.vendor_id = unless_zero(default_of(device, 0x1018, 1), device.vendor_number);
+  identity.product_code = unless_zero(default_of(device, 0x1018, 2), device.product_number);
+  identity.revision_number = unless_zero(default_of(device, 0x1018, 3), device.revision_number);
+  if (const auto& commissioning = device.information.commissioning) {
+    identity.serial_number = unless_zero(commissioning->lss_serial_number);
+  }
+  return identity;
+}
+
+Identity read_identity(SdoAccess& node) {
+  return {read_word(node, 0x1000, 0), read_word(node, 0x1018, 1), read_word(node, 0x1018, 2),
+          read_word(node, 0x1018, 3), read_word(node, 0x1018, 4)};
+}
+
+std::string_view to_text(Fit fit) {
+  switch (fit) {
+    case Fit::same: return "same device";
+    case Fit::minor_revision: return "other minor revision";
+    case Fit::major_revision: return "other major revision";
+    case Fit::other: return "other device";
+    case Fit::unknown: return "not known";
+  }
+  return {};
+}
+
+Fit compare_identity(const Identity& sheet, const Identity& device) {
+  Fit fit = Fit::unknown;
+  for (const Number& number : numbers) {
+    const auto expected = sheet.*number.value, found = device.*number.value;
+    if (!expected || !found) continue;
+    if (*expected == *found) {
+      if (fit == Fit::unknown) fit = Fit::same;
+      continue;
+    }
+    if (number.difference == Fit::other) return Fit::other;
+    fit = (*expected >> 16) == (*found >> 16) ? Fit::minor_revision : Fit::major_revision;
+  }
+  return fit;
+}
+
+std::string identity_differences(const Identity& sheet, const Identity& device) {
+  std::string text;
+  for (const Number& number : numbers) {
+    if (!differs(sheet.*number.value, device.*number.value)) continue;
+    text += fmt::format("{}{} is {:08X}h, expected {:08X}h", text.empty() ? "" : "; ", number.name, *(device.*number.value),
+                        *(sheet.*number.value));
+  }
+  return text;
+}
+
+unsigned count_differences(const Identity& sheet, const Identity& device) {
+  unsigned count = 0;
+  for (const Number& number : numbers) count += differs(sheet.*number.value, device.*number.value) ? 1 : 0;
+  return count;
+}
+
+std::vector<NotCompared> not_compared(const Identity& sheet, const Identity& device) {
+  std::vector<NotCompared> missing;
+  for (const Number& number : numbers) {
+    const bool in_sheet = (sheet.*number.value).has_value(), in_device = (device.*number.value).has_value();
+    if ((in_sheet && in_device) || (!number.usual && !in_sheet)) continue;
+    missing.push_back({number.name, number.key, in_sheet});
+  }
+  return missing;
+}
+
+std::string names_of(const std::vector<NotCompared>& numbers) {
+  std::string text;
+  for (const NotCompared& number : numbers) text += fmt::format("{}{}", text.empty() ? "" : ", ", number.name);
+  return text;
+}
+
+}  // namespace edsc

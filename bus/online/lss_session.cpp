@@ -1,0 +1,175 @@
+#include "online/lss_session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <string_view>
+
+namespace edsc {
+namespace {
+
+using canopen::LssAddress;
+using canopen::LssOutcome;
+using canopen::LssState;
+
+/// As many slaves as a network can have.
+constexpr std::size_t most_slaves = 127;
+
+}  // namespace
+
+std::string LssSession::refusal(Service service) const {
+  const canopen::LssError error = master_.error();
+  if (error.code == canopen::lss::implementation_specific) {
+    return fmt::format("refused: error {} of the manufacturer's own", error.specific);
+  }
+  std::string_view text = "an error that CiA 305 does not know";
+  if (service == Service::configure_node_id && error == canopen::lss::node_id_out_of_range) {
+    text = "the node-ID is out of the slave's range";
+  } else if (service == Service::configure_bit_timing && error == canopen::lss::bit_timing_not_supported) {
+    text = "the slave does not have this bit rate";
+  } else if (service == Service::store && error == canopen::lss::store_not_supported) {
+    text = "the slave does not store its configuration";
+  } else if (service == Service::store && error == canopen::lss::storage_access_error) {
+    text = "the slave cannot access its storage";
+  }
+  return fmt::format("refused: error {}, {}", error.code, text);
+}
+
+template <class Begin>
+LssResult LssSession::perform(Service service, Begin begin) {
+  (void)begin(bus_.now());
+  bool interrupted = false;
+  run(bus_, master_, [&] {
+    interrupted = true;
+    return false;
+  });
+  if (interrupted) {
+    (void)bus_.send(canopen::lss::make_frame(canopen::lss::request_id, canopen::lss::Command::switch_state_global,
+                                             static_cast<std::uint32_t>(LssState::waiting)));
+    throw Interrupted{};
+  }
+  switch (master_.outcome()) {
+    case LssOutcome::done: return {"", master_.value()};
+    case LssOutcome::refused: return {refusal(service), 0};
+    case LssOutcome::no_answer: return {"no answer", 0};
+  }
+  return {};
+}
+
+LssResult LssSession::switch_state(LssState state) {
+  return perform(Service::other, [&](auto now) { return master_.switch_state_global(state, now); });
+}
+
+LssResult LssSession::select(const LssAddress& address) {
+  return perform(Service::other, [&](auto now) { return master_.switch_state_selective(address, now); });
+}
+
+LssResult LssSession::inquire_address(LssAddress& address) {
+  struct Inquiry {
+    bool (canopen::LssMaster<LiveBus>::*begin)(canopen::TimePoint);
+    std::uint32_t LssAddress::*number;
+  };
+  using Master = canopen::LssMaster<LiveBus>;
+  constexpr Inquiry inquiries[] = {
+      {&Master::inquire_vendor_id, &LssAddress::vendor_id},
+      {&Master::inquire_product_code, &LssAddress::product_code},
+      {&Master::inquire_revision_number, &LssAddress::revision_number},
+      {&Master::inquire_serial_number, &LssAddress::serial_number},
+  };
+  for (const Inquiry& inquiry : inquiries) {
+    const LssResult result = perform(Service::other, [&](auto now) { return (master_.*inquiry.begin)(now); });
+    if (!result.done()) return result;
+    address.*inquiry.number = result.value;
+  }
+  return {};
+}
+
+LssResult LssSession::inquire_node_id() {
+  LssResult result = perform(Service::other, [&](auto now) { return master_.inquire_node_id(now); });
+  result.value &= 0xFF;
+  return result;
+}
+
+LssResult LssSession::configure_node_id(std::uint8_t node_id) {
+  return perform(Service::configure_node_id,
+                 [&](auto now) { return master_.configure_node_id(canopen::NodeId{node_id}, now); });
+}
+
+LssResult LssSession::configure_bit_rate(unsigned kbit) {
+  std::uint8_t index = canopen::lss::automatic_bit_rate;
+  if (kbit != 0) {
+    const auto* rate = std::ranges::find(canopen::lss::bit_rates, kbit);
+    index = static_cast<std::uint8_t>(rate - std::begin(canopen::lss::bit_rates));
+  }
+  return perform(Service::configure_bit_timing, [&](auto now) {
+    return master_.configure_bit_timing({0, index}, now);
+  });
+}
+
+LssResult LssSession::activate(std::uint16_t delay_ms) {
+  return perform(Service::other, [&](auto now) {
+    return master_.activate_bit_timing(std::chrono::duration<std::uint16_t, std::milli>{delay_ms}, now);
+  });
+}
+
+LssResult LssSession::store() {
+  return perform(Service::store, [&](auto now) { return master_.store_configuration(now); });
+}
+
+LssResult LssSession::identify_non_configured() {
+  return perform(Service::other, [&](auto now) { return master_.identify_non_configured_remote_slave(now); });
+}
+
+LssResult LssSession::fastscan(LssAddress& address, std::uint8_t known) {
+  LssResult result = perform(Service::other, [&](auto now) { return master_.fastscan(address, known, now); });
+  if (result.done()) address = master_.address();
+  return result;
+}
+
+LssResult LssSession::fastscan_above(LssAddress& address, std::uint8_t known) {
+  LssResult result = perform(Service::other, [&](auto now) { return master_.fastscan_above(address, known, now); });
+  if (result.done()) address = master_.address();
+  return result;
+}
+
+LssResult LssSession::confirm(const LssAddress& address) {
+  LssAddress inquired;
+  const std::string expected = to_text(address);
+  if (const LssResult result = inquire_address(inquired); !result.done()) {
+    return {fmt::format("found {}, but no slave with this address answers an inquiry ({})", expected, result.failure), 0};
+  }
+  if (inquired == address) return {};
+  return {fmt::format("found {}, but the slave in configuration state has {}", expected, to_text(inquired)), 0};
+}
+
+std::string LssSession::reason_for_silence() {
+  if (!identify_non_configured().done()) return "no device without node-ID answers";
+  return "a device without node-ID answers LSS, but not Fastscan, which it may not have; \"edsc lss BUS state "
+         "configuration\" and \"inquire\", with no other device on the bus, tell its numbers for \"assign\"";
+}
+
+LssResult LssSession::find_unconfigured(const std::function<void(const LssAddress&)>& found, const LssAddress& among,
+                                        std::uint8_t known) {
+  switch_state(LssState::waiting);
+  LssAddress address = among;
+  LssResult result = fastscan(address, known);
+  for (std::size_t count = 0; result.done() && count != most_slaves; ++count) {
+    const LssAddress last = address;
+    const LssResult confirmed = confirm(address);
+    switch_state(LssState::waiting);
+    if (!confirmed.done()) return confirmed;
+    found(address);
+    result = fastscan_above(address, known);
+    if (result.done() && address == last) return {"found " + to_text(address) + " again", 0};
+  }
+  switch_state(LssState::waiting);
+  return {};
+}
+
+std::string to_text(const LssAddress& address) {
+  return fmt::format("vendor-ID {:08X}h, product code {:08X}h, revision {:08X}h, serial number {:08X}h",
+                     address.vendor_id, address.product_code, address.revision_number, address.serial_number);
+}
+
+}  // namespace edsc

@@ -1,0 +1,190 @@
+#include "online/scan.hpp"
+
+#include <algorithm>
+#include <array>
+#include <canopen/error_control.hpp>
+#include <canopen/sdo_client.hpp>
+#include <cstring>
+#include <list>
+
+namespace edsc {
+namespace {
+
+using canopen::Duration;
+using canopen::Frame;
+using canopen::NodeId;
+using canopen::TimePoint;
+
+/// Nodes that are asked at the same time: few enough for the answers to come in time at 20 kbit/s.
+constexpr std::size_t most_at_once = 16;
+/// A heartbeat that comes more seldom is not waited for.
+constexpr std::uint32_t longest_heartbeat_ms = 5'000;
+constexpr Duration look_again = canopen::from_milliseconds(5);
+
+/// What is read of a node: a number of up to 32 bits, or its name.
+struct Question {
+  std::uint16_t index;
+  std::uint8_t sub_index;
+  std::size_t size;  ///< bytes; the answer need not tell
+  std::optional<std::uint32_t> FoundNode::*number;
+};
+
+/// The first one shows that the node is there.
+constexpr Question questions[] = {
+    {0x1000, 0, 4, &FoundNode::device_type},
+    {0x1018, 1, 4, &FoundNode::vendor_id},
+    {0x1018, 2, 4, &FoundNode::product_code},
+    {0x1018, 3, 4, &FoundNode::revision_number},
+    {0x1018, 4, 4, &FoundNode::serial_number},
+    {0x1017, 0, 2, &FoundNode::heartbeat_ms},
+    {0x1008, 0, 0, nullptr},
+};
+
+/// The questions to one node, one after the other.
+class Interview {
+ public:
+  Interview(LiveBus& bus, FoundNode& node, Duration timeout)
+      : bus_{bus}, node_{node}, client_{bus, NodeId{node.node_id}, timeout} {
+    ask();
+  }
+
+  void on_frame(const Frame& frame, TimePoint now) {
+    if (!frame.extended && !frame.remote && frame.size == 8 &&
+        frame.id == canopen::default_sdo(NodeId{node_.node_id}).response.can_id()) {
+      node_.answers_sdo = true;
+    }
+    client_.on_frame(frame, now);
+    go_on();
+  }
+
+  void on_time(TimePoint now) {
+    client_.on_time(now);
+    go_on();
+  }
+
+  void cancel() { client_.cancel(canopen::AbortCode::general, bus_.now()); }
+
+  [[nodiscard]] bool over() const { return next_ == std::size(questions); }
+  [[nodiscard]] std::optional<TimePoint> next_deadline() const { return client_.next_deadline(); }
+
+ private:
+  void ask() { (void)client_.upload(questions[next_].index, questions[next_].sub_index, memory_, bus_.now()); }
+
+  /// A node that is silent once is not asked again.
+  void go_on() {
+    if (over() || client_.busy()) return;
+    if (client_.result() == canopen::ok) take(questions[next_]);
+    const bool silent = client_.result() == canopen::AbortCode::timeout;
+    next_ = silent ? std::size(questions) : next_ + 1;
+    if (!over()) ask();
+  }
+
+  void take(const Question& question) {
+    const auto bytes = client_.data();
+    if (question.number == nullptr) {
+      node_.name.emplace(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+      while (!node_.name->empty() && node_.name->back() == '\0') node_.name->pop_back();
+      return;
+    }
+    std::uint32_t number = 0;
+    std::memcpy(&number, bytes.data(), std::min(bytes.size(), question.size));
+    node_.*question.number = number;
+  }
+
+  LiveBus& bus_;
+  FoundNode& node_;
+  std::array<std::uint8_t, 256> memory_{};
+  canopen::SdoClient<LiveBus> client_;
+  std::size_t next_ = 0;
+};
+
+class Scan {
+ public:
+  Scan(LiveBus& bus, const ScanSettings& settings) : bus_{bus}, settings_{settings} {
+    for (const std::uint8_t node_id : settings.nodes) nodes_[node_id].node_id = node_id;
+  }
+
+  void run() {
+    const TimePoint begin = bus_.now();
+    std::size_t next = 0;
+    while (next != settings_.nodes.size() || !running_.empty() || waits_for_heartbeats(begin)) {
+      while (next != settings_.nodes.size() && running_.size() < most_at_once) {
+        running_.emplace_back(bus_, nodes_[settings_.nodes[next++]], Duration{settings_.timeout_ms * 1000U});
+      }
+      if (const auto frame = bus_.receive(wait())) on_frame(*frame);
+      for (Interview& interview : running_) interview.on_time(bus_.now());
+      running_.remove_if([](const Interview& interview) { return interview.over(); });
+      if (running_.empty() && next == settings_.nodes.size() && !asked_all_) {
+        asked_all_ = true;
+        asked_at_ = bus_.now();
+      }
+      if (Interruption::noted()) interrupt();
+    }
+  }
+
+  [[nodiscard]] std::vector<FoundNode> found() const {
+    std::vector<FoundNode> found;
+    for (const std::uint8_t node_id : settings_.nodes) {
+      const FoundNode& node = nodes_[node_id];
+      if (node.answers_sdo || node.state) found.push_back(node);
+    }
+    return found;
+  }
+
+ private:
+  [[nodiscard]] Duration wait() const {
+    const TimePoint now = bus_.now();
+    Duration shortest = look_again;
+    for (const Interview& interview : running_) {
+      const auto deadline = interview.next_deadline();
+      if (deadline) shortest = std::min(shortest, *deadline > now ? *deadline - now : Duration{0});
+    }
+    return shortest;
+  }
+
+  void on_frame(const Frame& frame) {
+    for (Interview& interview : running_) interview.on_frame(frame, bus_.now());
+    const auto message = canopen::error_control_message(frame);
+    if (!message) return;
+    FoundNode& node = nodes_[message->node_id.value()];
+    node.state = message->state;
+  }
+
+  [[nodiscard]] bool waits_for_heartbeats(TimePoint begin) const {
+    const TimePoint now = bus_.now();
+    if (now - begin < Duration{settings_.listen_ms * 1000U}) return true;
+    for (const FoundNode& node : nodes_) {
+      const std::uint32_t heartbeat = node.heartbeat_ms.value_or(0);
+      if (node.state || heartbeat == 0 || heartbeat > longest_heartbeat_ms) continue;
+      if (now - asked_at_ < Duration{heartbeat * 1500U}) return true;
+    }
+    return false;
+  }
+
+  void interrupt() {
+    for (Interview& interview : running_) interview.cancel();
+    throw Interrupted{};
+  }
+
+  LiveBus& bus_;
+  const ScanSettings& settings_;
+  std::array<FoundNode, 128> nodes_{};
+  std::list<Interview> running_;
+  bool asked_all_ = false;
+  TimePoint asked_at_{};
+};
+
+}  // namespace
+
+void scan(LiveBus& bus, const ScanSettings& settings, std::vector<FoundNode>& found) {
+  Scan scan{bus, settings};
+  try {
+    scan.run();
+  } catch (...) {
+    found = scan.found();
+    throw;
+  }
+  found = scan.found();
+}
+
+}  // namespace edsc

@@ -1,0 +1,196 @@
+#include "server/bus_server.hpp"
+
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+namespace edsc {
+namespace {
+
+/// How much one client may say before the next one is heard.
+constexpr std::size_t bytes_a_turn = 4096;
+
+[[noreturn]] void fail(const std::string& what) { throw std::system_error{errno, std::generic_category(), what}; }
+
+socketcand::TimeStamp present() {
+  timespec time{};
+  ::clock_gettime(CLOCK_REALTIME, &time);
+  return {time.tv_sec, static_cast<std::int32_t>(time.tv_nsec / 1000)};
+}
+
+void set_option(int socket, int level, int option) {
+  const int on = 1;
+  static_cast<void>(::setsockopt(socket, level, option, &on, sizeof on));
+}
+
+ListenAddress address_of(const sockaddr_storage& address, socklen_t size) {
+  std::array<char, NI_MAXHOST> host{};
+  std::array<char, NI_MAXSERV> port{};
+  if (::getnameinfo(reinterpret_cast<const sockaddr*>(&address), size, host.data(), host.size(), port.data(),
+                    port.size(), NI_NUMERICHOST | NI_NUMERICSERV) != 0)
+    return {"?", 0};
+  return {host.data(), static_cast<std::uint16_t>(std::stoul(port.data()))};
+}
+
+}  // namespace
+
+BusServer::BusServer(const ListenAddress& address, std::vector<std::string> buses, BusLimits limits, BusEvents events)
+    : address_{address}, buses_{std::move(buses)}, limits_{limits}, events_{std::move(events)} {
+  try {
+    listen();
+  } catch (...) {
+    if (listener_ >= 0) ::close(listener_);
+    throw;
+  }
+}
+
+BusServer::~BusServer() { ::close(listener_); }
+
+void BusServer::listen() {
+  addrinfo hints{};
+  hints.ai_socktype = SOCK_STREAM;
+  hints.ai_flags = AI_PASSIVE | AI_NUMERICSERV;
+  addrinfo* found = nullptr;
+  const std::string where = "listening at " + to_text(address_);
+  if (const int error = ::getaddrinfo(address_.host.c_str(), std::to_string(address_.port).c_str(), &hints, &found);
+      error != 0)
+    throw std::runtime_error{where + ": " + ::gai_strerror(error)};
+  const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> first{found, &::freeaddrinfo};
+  listener_ = ::socket(first->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  if (listener_ < 0) fail(where);
+  set_option(listener_, SOL_SOCKET, SO_REUSEADDR);
+  if (::bind(listener_, first->ai_addr, first->ai_addrlen) != 0 || ::listen(listener_, SOMAXCONN) != 0) fail(where);
+  sockaddr_storage bound{};
+  socklen_t size = sizeof bound;
+  if (::getsockname(listener_, reinterpret_cast<sockaddr*>(&bound), &size) != 0) fail(where);
+  address_.port = address_of(bound, size).port;
+}
+
+void BusServer::turn(std::chrono::milliseconds wait, const sigset_t* signals) {
+  std::vector<pollfd> ready{{listener_, POLLIN, 0}};
+  for (const auto& client : clients_) {
+    ready.push_back({client->socket(), static_cast<short>(POLLIN | (client->backlog() > 0 ? POLLOUT : 0)), 0});
+  }
+  wait = until_handshake_ends(wait);
+  const timespec span{wait.count() / 1000, wait.count() % 1000 * 1'000'000};
+  const int count = ::ppoll(ready.data(), ready.size(), &span, signals);
+  if (count < 0 && errno != EINTR) fail("poll");
+  if (count < 0) return;
+  std::vector<std::unique_ptr<BusClient>> leaving;
+  for (std::size_t i = 1; i < ready.size(); ++i) {
+    auto& client = clients_[i - 1];
+    const bool heard = (ready[i].revents & (POLLIN | POLLHUP | POLLERR)) != 0;
+    if (!heard || hear(*client)) continue;
+    static_cast<void>(client->flush());
+    leaving.push_back(std::move(client));
+  }
+  std::erase(clients_, nullptr);
+  if (ready[0].revents != 0) welcome();
+  flush();
+}
+
+void BusServer::welcome() {
+  sockaddr_storage from{};
+  socklen_t size = sizeof from;
+  const int socket = ::accept4(listener_, reinterpret_cast<sockaddr*>(&from), &size, SOCK_NONBLOCK | SOCK_CLOEXEC);
+  if (socket < 0 && (errno == EAGAIN || errno == EINTR || errno == ECONNABORTED)) return;
+  if (socket < 0) fail("accept");
+  set_option(socket, IPPROTO_TCP, TCP_NODELAY);
+  auto client = std::make_unique<BusClient>(socket, to_text(address_of(from, size)));
+  if (clients_.size() < limits_.clients) {
+    client->put("< hi >");
+    clients_.push_back(std::move(client));
+    return;
+  }
+  client->refuse("too many clients");
+  static_cast<void>(client->flush());
+  report(*client, "too many clients");
+}
+
+/// Takes what the client says. False when it is to leave.
+bool BusServer::hear(BusClient& client) {
+  std::array<char, bytes_a_turn> bytes{};
+  const ssize_t size = ::recv(client.socket(), bytes.data(), bytes.size(), 0);
+  if (size < 0) return errno == EAGAIN || errno == EINTR;
+  set_option(client.socket(), IPPROTO_TCP, TCP_QUICKACK);  // else a client without TCP_NODELAY waits for it
+  for (ssize_t i = 0; i < size; ++i) {
+    if (!answer(client, client.take(bytes[static_cast<std::size_t>(i)]))) return false;
+  }
+  return size > 0;
+}
+
+bool BusServer::answer(BusClient& client, ClientRequest request) {
+  switch (request) {
+    case ClientRequest::nothing: return true;
+    case ClientRequest::open_bus: return open_bus(client);
+    case ClientRequest::send_frame: deliver(client); return true;
+    case ClientRequest::leave: report(client, client.leaves_because()); return false;
+  }
+  return true;
+}
+
+bool BusServer::open_bus(BusClient& client) {
+  const auto found = std::find(buses_.begin(), buses_.end(), client.wanted_bus());
+  if (found == buses_.end()) {
+    client.refuse("could not open bus");
+    report(client, "bus \"" + client.wanted_bus() + "\" does not exist");
+    return false;
+  }
+  client.opened(static_cast<std::size_t>(found - buses_.begin()));
+  return true;
+}
+
+void BusServer::deliver(const BusClient& sender) {
+  const auto time = present();
+  const auto text = socketcand::received_text(sender.frame(), time);
+  for (const auto& client : clients_) {
+    if (client && client.get() != &sender && client->listens() && client->bus() == sender.bus())
+      client->put(text.view());
+  }
+  events_.on_frame(sender.frame(), buses_[*sender.bus()], time);
+}
+
+/// How long to wait before the next client has had its time to open a bus.
+std::chrono::milliseconds BusServer::until_handshake_ends(std::chrono::milliseconds at_most) const {
+  const auto now = Clock::now();
+  for (const auto& client : clients_) {
+    if (client->bus()) continue;
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(client->since() + limits_.handshake - now);
+    at_most = std::clamp(left, std::chrono::milliseconds{0}, at_most);
+  }
+  return at_most;
+}
+
+/// Sends what is on its way. Clients that are lost, that read too slowly or that open no bus are disconnected.
+void BusServer::flush() {
+  const auto now = Clock::now();
+  std::erase_if(clients_, [&](const std::unique_ptr<BusClient>& client) {
+    if (!client->flush()) return true;
+    if (client->backlog() > limits_.backlog) {
+      report(*client, "it reads too slowly: " + std::to_string(client->backlog()) + " bytes wait for it");
+      return true;
+    }
+    if (client->bus() || now - client->since() < limits_.handshake) return false;
+    client->refuse("no bus was opened in time");
+    static_cast<void>(client->flush());
+    report(*client, "it did not open a bus within " + std::to_string(limits_.handshake.count()) + " ms");
+    return true;
+  });
+}
+
+void BusServer::report(const BusClient& client, const std::string& message) const {
+  events_.on_trouble("client " + client.name() + " is disconnected: " + message);
+}
+
+}  // namespace edsc

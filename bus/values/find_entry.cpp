@@ -1,0 +1,257 @@
+#include "values/find_entry.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <utility>
+#include <vector>
+
+#include "device/identifier.hpp"
+#include "eds/ini.hpp"
+#include "eds/number.hpp"
+#include "text/ascii.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr std::size_t most_suggestions = 3;
+constexpr std::size_t most_listed = 8;  ///< sub-indices in a sentence
+
+/// `2`, `0x2`, `02h`; behind an index with an h all digits are hexadecimal.
+std::optional<std::uint8_t> parse_sub_index(std::string_view text, bool hexadecimal) {
+  if (text.ends_with('h') || text.ends_with('H')) {
+    hexadecimal = true;
+    text.remove_suffix(1);
+  }
+  if (text.starts_with("0x") || text.starts_with("0X")) {
+    hexadecimal = true;
+    text.remove_prefix(2);
+  }
+  unsigned number = 0;
+  const char* const end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, number, hexadecimal ? 16 : 10);
+  if (parsed.ec != std::errc{} || parsed.ptr != end || number > 0xFF) return std::nullopt;
+  return static_cast<std::uint8_t>(number);
+}
+
+bool same_name(std::string_view text, std::string_view identifier, std::string_view name) {
+  return equal_ignoring_case(text, identifier) || equal_ignoring_case(text, name) ||
+         (!text.empty() && to_snake_case(text) == identifier);
+}
+
+const Object* find_object(const Device& device, std::string_view text) {
+  const auto same = [&](const Object& object) { return same_name(text, object.identifier, object.name); };
+  const auto at = std::ranges::find_if(device.objects, same);
+  return at != device.objects.end() ? &*at : nullptr;
+}
+
+const Entry* find_in(const Object& object, std::string_view text) {
+  const auto same = [&](const Entry& entry) { return same_name(text, entry.identifier, entry.name); };
+  const auto at = std::ranges::find_if(object.entries, same);
+  if (at != object.entries.end()) return &*at;
+  const auto sub_index = parse_sub_index(text, false);
+  return sub_index ? object.find(*sub_index) : nullptr;
+}
+
+FoundEntry found(const Object& object, const Entry* entry = nullptr) {
+  if (entry == nullptr && !object.has_sub_indices() && !object.entries.empty()) entry = &object.entries.front();
+  return {&object, entry, ""};
+}
+
+FoundEntry no_entry(std::string sentence) { return {nullptr, nullptr, std::move(sentence)}; }
+
+std::string sub_indices_of(const Object& object) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(object.entries.size(), most_listed); ++i) {
+    const Entry& entry = object.entries[i];
+    text += fmt::format("{}{} {}", i == 0 ? "" : ", ", entry_label(entry.index, entry.sub_index), entry.identifier);
+  }
+  if (object.entries.size() > most_listed) {
+    const Entry& last = object.entries.back();
+    text += fmt::format(" ... {} {}", entry_label(last.index, last.sub_index), last.identifier);
+  }
+  return text;
+}
+
+// Near misses
+
+/// How many letters have to be put in, left out or changed; more than `most` count as `most` + 1.
+std::size_t distance(std::string_view a, std::string_view b, std::size_t most) {
+  if (std::max(a.size(), b.size()) - std::min(a.size(), b.size()) > most) return most + 1;
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t changed = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, changed}));
+    }
+  }
+  return std::min(row[b.size()], most + 1);
+}
+
+/// What comes nearest to a name: few other letters first, then what contains it.
+class Suggestions {
+ public:
+  explicit Suggestions(std::string_view text)
+      : wanted_{to_snake_case(text)}, most_{std::max<std::size_t>(2, wanted_.size() / 4)} {}
+
+  void consider(std::string_view identifier, std::string label) {
+    if (wanted_.empty()) return;
+    std::size_t cost = distance(wanted_, identifier, most_);
+    const bool inside = wanted_.size() >= 3 && identifier.find(wanted_) != std::string_view::npos;
+    if (cost > most_ && !inside) return;
+    if (cost > most_) cost = most_ + identifier.size();
+    rows_.emplace_back(cost, std::move(label));
+  }
+
+  /// `; did you mean a or b?`
+  [[nodiscard]] std::string text() {
+    std::ranges::stable_sort(rows_, {}, &Row::first);
+    const auto same = [](const Row& a, const Row& b) { return a.second == b.second; };
+    rows_.erase(std::unique(rows_.begin(), rows_.end(), same), rows_.end());
+    if (rows_.empty()) return "";
+    std::string out = "; did you mean ";
+    const std::size_t count = std::min(rows_.size(), most_suggestions);
+    for (std::size_t i = 0; i < count; ++i) {
+      out += i == 0 ? "" : i + 1 == count ? " or " : ", ";
+      out += rows_[i].second;
+    }
+    return out + "?";
+  }
+
+ private:
+  using Row = std::pair<std::size_t, std::string>;
+
+  std::string wanted_;
+  std::size_t most_;
+  std::vector<Row> rows_;
+};
+
+std::string near_names(const Device& device, std::string_view text) {
+  Suggestions suggestions{text};
+  for (const Object& object : device.objects) {
+    suggestions.consider(object.identifier, fmt::format("{} ({})", object.identifier, index_label(object.index)));
+    if (!object.has_sub_indices()) continue;
+    for (const Entry& entry : object.entries) {
+      if (entry.sub_index == 0) continue;
+      const std::string label = entry_title(object, entry);
+      suggestions.consider(entry.identifier, label);
+      suggestions.consider(fmt::format("{}_{}", object.identifier, entry.identifier), label);
+    }
+  }
+  return suggestions.text();
+}
+
+/// The neighbours of an index that is not there.
+std::string near_indices(const Device& device, std::uint16_t index) {
+  const auto above = std::ranges::upper_bound(device.objects, index, {}, &Object::index);
+  std::string text;
+  const auto add = [&](const Object& object) {
+    text += fmt::format("{}{} {}", text.empty() ? "; next to it are " : " and ", index_label(object.index),
+                        object.identifier);
+  };
+  if (above != device.objects.begin()) add(*std::prev(above));
+  if (above != device.objects.end()) add(*above);
+  return text;
+}
+
+FoundEntry by_address(const Device& device, const EntryAddress& address) {
+  const Object* object = device.find(address.index);
+  if (object == nullptr) {
+    return no_entry(
+        fmt::format("the device has no object {}{}", index_label(address.index), near_indices(device, address.index)));
+  }
+  if (!address.sub_index) return found(*object);
+  const Entry* entry = object->find(*address.sub_index);
+  if (entry == nullptr) {
+    return no_entry(fmt::format("{} \"{}\" has no sub-index {:02X}h; it has {}", index_label(object->index),
+                               object->name, *address.sub_index, sub_indices_of(*object)));
+  }
+  return found(*object, entry);
+}
+
+/// `identity_object.vendor_id`, `identity_object:1`, `Identity object, Vendor-ID`, `read_input_8_bit[1]`: every place
+/// where the name may end is tried, for names hold all of these characters themselves.
+std::optional<FoundEntry> by_both_names(const Device& device, std::string_view text) {
+  for (std::size_t at = text.find_first_of(".,:[<"); at != std::string_view::npos;
+       at = text.find_first_of(".,:[<", at + 1)) {
+    const Object* object = find_object(device, trim(text.substr(0, at)));
+    if (object == nullptr) continue;
+    std::string_view rest = text.substr(at + 1);
+    if ((text[at] == '[' && rest.ends_with(']')) || (text[at] == '<' && rest.ends_with('>'))) rest.remove_suffix(1);
+    if (text[at] == ':' && rest.starts_with(':')) rest.remove_prefix(1);
+    if (const Entry* entry = find_in(*object, trim(rest))) return found(*object, entry);
+    return no_entry(fmt::format("{} \"{}\" has no entry \"{}\"; it has {}", index_label(object->index), object->name,
+                               trim(rest), sub_indices_of(*object)));
+  }
+  return std::nullopt;
+}
+
+/// The name of a sub-index alone.
+FoundEntry by_entry_name(const Device& device, std::string_view text) {
+  std::vector<FoundEntry> matches;
+  for (const Object& object : device.objects) {
+    if (!object.has_sub_indices()) continue;
+    for (const Entry& entry : object.entries) {
+      if (same_name(text, entry.identifier, entry.name)) matches.push_back(found(object, &entry));
+    }
+  }
+  if (matches.size() == 1) return matches.front();
+  if (matches.empty()) return no_entry(fmt::format("the device has no object \"{}\"{}", text, near_names(device, text)));
+  std::string sentence = fmt::format("\"{}\" may be", text);
+  for (std::size_t i = 0; i < std::min(matches.size(), most_suggestions); ++i) {
+    sentence += fmt::format("{} {}", i == 0 ? "" : " or", entry_title(*matches[i].object, *matches[i].entry));
+  }
+  if (matches.size() > most_suggestions) sentence += fmt::format(" or {} more", matches.size() - most_suggestions);
+  return no_entry(std::move(sentence));
+}
+
+}  // namespace
+
+std::optional<EntryAddress> parse_entry_address(std::string_view text) {
+  text = trim(text);
+  const std::size_t colon = text.find(':');
+  std::string_view index_text = text.substr(0, colon);
+  bool hexadecimal = true;
+  if (index_text.starts_with("0x") || index_text.starts_with("0X")) {
+    index_text.remove_prefix(2);
+    hexadecimal = false;
+  } else if (index_text.ends_with('h') || index_text.ends_with('H')) {
+    index_text.remove_suffix(1);
+  }
+  if (index_text.size() != 4) return std::nullopt;
+  const auto index = parse_hex(index_text, 4);
+  if (!index) return std::nullopt;
+  if (colon == std::string_view::npos) return EntryAddress{*index, std::nullopt};
+  const auto sub_index = parse_sub_index(text.substr(colon + 1), hexadecimal);
+  if (!sub_index) return std::nullopt;
+  return EntryAddress{*index, sub_index};
+}
+
+FoundEntry find_entry(const Device& device, std::string_view text) {
+  text = trim(text);
+  if (const Object* object = find_object(device, text)) return found(*object);
+  if (const auto address = parse_entry_address(text)) return by_address(device, *address);
+  if (auto both = by_both_names(device, text)) return *std::move(both);
+  return by_entry_name(device, text);
+}
+
+FoundEntry find_one_entry(const Device& device, std::string_view text) {
+  FoundEntry result = find_entry(device, text);
+  if (result.ok() && result.entry == nullptr) {
+    result.problem = fmt::format("{} \"{}\" has sub-indices: {}", index_label(result.object->index),
+                                 result.object->name, sub_indices_of(*result.object));
+  }
+  return result;
+}
+
+std::string entry_title(const Object& object, const Entry& entry) {
+  const std::string label = entry_label(entry.index, entry.sub_index);
+  if (!object.has_sub_indices()) return fmt::format("{} {}", label, object.identifier);
+  return fmt::format("{} {}.{}", label, object.identifier, entry.identifier);
+}
+
+}  // namespace edsc

@@ -1,0 +1,99 @@
+#include <fmt/format.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <atomic>
+#include <system_error>
+
+#include "commands/commands.hpp"
+#include "server/bus_server.hpp"
+#include "server/candump_line.hpp"
+#include "shared/exit_code.hpp"
+#include "shared/output.hpp"
+#include "text/printable.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr const char* examples = R"(Examples:
+  edsc bus                                  a bus at socketcand:127.0.0.1:29536/vcan0, until Ctrl-C
+  edsc bus --bus vcan0 --bus vcan1          two of them
+  edsc bus --log > bus.log                  and all frames as a log for edsc decode; the address is on standard error
+  edsc bus --listen 127.0.0.1:0             at a port that is free; the first line says which)";
+
+struct Settings {
+  std::string listen = to_text(ListenAddress{});
+  std::vector<std::string> buses{"vcan0"};
+  BusLimits limits;
+  bool log = false;
+};
+
+std::atomic<bool> stop{false};
+
+/// SIGINT and SIGTERM end the command; they come while it waits, and at no other time.
+class EndingSignals {
+ public:
+  EndingSignals() {
+    struct sigaction action {};
+    action.sa_handler = [](int) { stop = true; };
+    sigset_t ending{};
+    sigemptyset(&ending);
+    for (const int signal : {SIGINT, SIGTERM}) {
+      sigaction(signal, &action, nullptr);
+      sigaddset(&ending, signal);
+    }
+    sigprocmask(SIG_BLOCK, &ending, &while_waiting_);
+    for (const int signal : {SIGINT, SIGTERM}) sigdelset(&while_waiting_, signal);
+  }
+
+  [[nodiscard]] const sigset_t* while_waiting() const { return &while_waiting_; }
+
+ private:
+  sigset_t while_waiting_{};
+};
+
+/// A bus's name is a word of at most 15 letters that fits into an address and into a line of candump.
+std::string bad_bus_name(const std::string& name) {
+  const bool good = !name.empty() && name.size() <= 15 && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return c > ' ' && c < 0x7F && c != '<' && c != '>' && c != '/';
+  });
+  return good ? "" : fmt::format("\"{}\" is no name of a bus: up to 15 characters without blanks, <, > and /", name);
+}
+
+int serve(const Settings& settings) {
+  const ListenAddress address = parse_listen_address(settings.listen);
+  const EndingSignals signals;
+  BusEvents events;
+  events.on_frame = [&settings](const canopen::Frame& frame, const std::string& bus, socketcand::TimeStamp time) {
+    if (settings.log) print_visibly(stdout, "{}\n", candump_line(frame, bus, time));
+  };
+  events.on_trouble = [](const std::string& message) { print_visibly(stderr, "edsc bus: {}\n", message); };
+  BusServer server{address, settings.buses, settings.limits, std::move(events)};
+  for (const std::string& bus : settings.buses) {
+    print_visibly(settings.log ? stderr : stdout, "socketcand:{}/{}\n", to_text(server.address()), bus);
+  }
+  while (!stop) {
+    flush_output();
+    server.turn(std::chrono::minutes{1}, signals.while_waiting());
+  }
+  return exit_fine;
+}
+
+}  // namespace
+
+void add_bus_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("bus", "virtual CAN buses on this machine, for socketcand clients");
+  command->footer(examples);
+  auto settings = std::make_shared<Settings>();
+  command->add_option("--listen", settings->listen, "HOST:PORT; port 0: one that is free")->capture_default_str();
+  command->add_option("--bus", settings->buses, "name of a bus; may be given several times")
+      ->check(bad_bus_name)
+      ->capture_default_str();
+  command->add_option("--clients", settings->limits.clients, "how many may be connected at once")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_flag("--log", settings->log, "print all frames as lines of candump -L, and the addresses on standard error");
+  command->callback([settings, &exit_code] { exit_code = serve(*settings); });
+}
+
+}  // namespace edsc

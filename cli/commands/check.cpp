@@ -1,0 +1,196 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+#include "commands/commands.hpp"
+#include "diagnostics/place.hpp"
+#include "diagnostics/print.hpp"
+#include "diagnostics/rule.hpp"
+#include "diagnostics/sarif.hpp"
+#include "diagnostics/unknown_rule.hpp"
+#include "load/load_device.hpp"
+#include "shared/common_options.hpp"
+#include "shared/exit_code.hpp"
+#include "shared/left_out_text.hpp"
+#include "text/printable.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr const char* examples = R"(Examples:
+  edsc check eds/*.eds                    findings as a compiler shows them; exit code 1 when there are errors
+  edsc check drive.eds --format json      the same for a program
+  edsc check eds/*.eds --format sarif     the same for a code review (SARIF 2.1.0)
+  edsc check drive.eds --strict           warnings count as errors
+  edsc check --list-rules                 every rule with its meaning
+  edsc check --explain pdo-length         one rule, and where it is documented)";
+
+struct Settings {
+  std::vector<std::string> paths;
+  std::string options_path;
+  std::string format = "text";
+  std::vector<std::string> silence;
+  std::optional<std::uint8_t> node_id;
+  bool strict = false;
+  bool keep_going = false;
+  bool list_rules = false;
+  std::string explained_rule;
+  ColorOption color;
+};
+
+std::string url_of(const Rule& rule) { return fmt::format("{}rules.md#{}", EDSC_DOCS_URL, rule.id); }
+
+nlohmann::ordered_json to_json(const Rule& rule) {
+  nlohmann::ordered_json severities = {to_string(rule.severity)};
+  if (rule.mildest != rule.severity) severities.push_back(to_string(rule.mildest));
+  return {{"id", rule.id},
+          {"severity", to_string(rule.severity)},
+          {"severities", severities},
+          {"meaning", rule.meaning},
+          {"source", rule.source},
+          {"url", url_of(rule)}};
+}
+
+int explain(const Rule& rule, const std::string& format) {
+  if (format == "text") {
+    fmt::print("{}: {}\n{}\nSource: {}\nDocumentation, with examples: {}\n", rule.id, to_string(rule.severity),
+               rule.meaning, rule.source, url_of(rule));
+  } else {
+    fmt::print("{}\n", json_text(to_json(rule)));
+  }
+  return exit_fine;
+}
+
+int list_rules(const std::string& format) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const Rule& rule : all_rules()) {
+    if (format == "text") {
+      print_visibly(stdout, "{:<28} {:<8} {} ({})\n", rule.id, to_string(rule.severity), rule.meaning, rule.source);
+    }
+    rows.push_back(to_json(rule));
+  }
+  if (format != "text") fmt::print("{}\n", json_text(rows));
+  return exit_fine;
+}
+
+/// Findings of one file after the other, in one of the formats.
+class Report {
+ public:
+  Report(std::string format, const ColorOption& color) : format_{std::move(format)}, color_{color} {}
+
+  void add(const Diagnostics& diagnostics) {
+    if (format_ == "text") {
+      print_findings(stdout, diagnostics, color_, true);
+    } else if (format_ == "sarif") {
+      sarif_.add(diagnostics);
+    } else {
+      add_json(print_json(diagnostics));
+    }
+  }
+
+  /// SARIF has no place for it; there, findings of `--keep-going` say what is left out.
+  void add_left_out(const std::vector<LeftOut>& left_out) {
+    if (format_ == "text") fmt::print("{}", left_out_text(left_out));
+    for (const LeftOut& one : left_out) {
+      const Place place = place_of(one.position);
+      json_["left_out"].push_back(
+          {{"file", place.file}, {"line", place.line}, {"column", place.column}, {"what", one.what}});
+    }
+  }
+
+  void finish() const {
+    if (format_ == "json") fmt::print("{}\n", json_text(json_));
+    if (format_ == "sarif") fmt::print("{}\n", json_text(sarif_.document()));
+  }
+
+ private:
+  static std::vector<SarifRule> sarif_rules() {
+    std::vector<SarifRule> rules;
+    for (const Rule& rule : all_rules()) rules.push_back({rule.id, rule.severity, rule.meaning, rule.source, url_of(rule)});
+    return rules;
+  }
+
+  void add_json(const nlohmann::json& one) {
+    for (const char* list : {"diagnostics", "allowed_diagnostics", "suppressed"}) {
+      for (const auto& row : one[list]) json_[list].push_back(row);
+    }
+    for (const char* count : {"errors", "warnings", "notes", "allowed"}) {
+      json_[count] = json_[count].get<std::size_t>() + one[count].get<std::size_t>();
+    }
+  }
+
+  std::string format_;
+  const ColorOption& color_;
+  SarifLog sarif_{EDSC_VERSION, sarif_rules()};
+  nlohmann::json json_ = {{"version", 1},
+                          {"diagnostics", nlohmann::json::array()},
+                          {"allowed_diagnostics", nlohmann::json::array()},
+                          {"suppressed", nlohmann::json::array()},
+                          {"left_out", nlohmann::json::array()},
+                          {"errors", 0},
+                          {"warnings", 0},
+                          {"notes", 0},
+                          {"allowed", 0}};
+};
+
+int check(const Settings& settings) {
+  if (settings.list_rules) return list_rules(settings.format);
+  if (!settings.explained_rule.empty()) return explain(*find_rule(settings.explained_rule), settings.format);
+  if (settings.paths.empty()) {
+    print_visibly(stderr, "edsc check: FILE is required\n");
+    return exit_wrong_usage;
+  }
+  int exit_code = exit_fine;
+  Report report{settings.format, settings.color};
+  for (const std::string& path : settings.paths) {
+    Diagnostics diagnostics;
+    if (settings.strict) diagnostics.treat_warnings_as_errors();
+    diagnostics.silence_errors();
+    for (const std::string& rule : settings.silence) diagnostics.silence(rule);
+    LoadSettings load{path, settings.options_path, "", settings.node_id};
+    load.keep_going = settings.keep_going;
+    const auto loaded = load_device(load, diagnostics);
+    if (!loaded->unreadable) report_unused_allowances(*loaded, diagnostics);
+    report.add(diagnostics);
+    if (settings.keep_going && loaded->device) report.add_left_out(all_left_out(*loaded));
+    if (diagnostics.errors() > 0) exit_code = std::max<int>(exit_code, exit_input_has_errors);
+    if (loaded->unreadable) exit_code = exit_wrong_usage;
+  }
+  report.finish();
+  return exit_code;
+}
+
+/// CLI11's form: what is wrong, or nothing.
+std::string check_rule(const std::string& id) {
+  if (find_rule(id) != nullptr) return {};
+  return fmt::format("{} (see --list-rules)", unknown_rule(id));
+}
+
+}  // namespace
+
+void add_check_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("check", "say what is wrong with data sheets");
+  command->footer(examples);
+  auto settings = std::make_shared<Settings>();
+  command->add_option("FILE", settings->paths, "EDS, DCF, XDD or XDC files");
+  command->add_option("--format", settings->format, "text, json or sarif")
+      ->check(CLI::IsMember({"text", "json", "sarif"}))
+      ->capture_default_str();
+  command->add_option("--options", settings->options_path,
+                      "options file (default: FILE's name with .options.json, if there)");
+  add_node_id_option(*command, settings->node_id);
+  command->add_option("--silence", settings->silence, "a rule that is not reported; may be given more than once")
+      ->allow_extra_args(false)
+      ->check(check_rule);
+  command->add_flag("--keep-going", settings->keep_going, keep_going_help);
+  command->add_flag("--strict", settings->strict, "warnings count as errors; notes do not");
+  command->add_flag("--list-rules", settings->list_rules, "list the rules and end");
+  command->add_option("--explain", settings->explained_rule, "describe a rule and end")->check(check_rule);
+  settings->color.add_to(*command);
+  command->callback([settings, &exit_code] { exit_code = check(*settings); });
+}
+
+}  // namespace edsc

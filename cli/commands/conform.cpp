@@ -1,0 +1,326 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <memory>
+
+#include "commands/commands.hpp"
+#include "conform/deviations.hpp"
+#include "conform/report_html.hpp"
+#include "conform/report_json.hpp"
+#include "conform/report_junit.hpp"
+#include "conform/report_log.hpp"
+#include "conform/report_text.hpp"
+#include "conform/run_cases.hpp"
+#include "conform/sha256.hpp"
+#include "load/load_device.hpp"
+#include "monitor/progress_line.hpp"
+#include "online/live_bus.hpp"
+#include "online/simulated_port.hpp"
+#include "shared/common_options.hpp"
+#include "shared/exit_code.hpp"
+#include "shared/live_device.hpp"
+#include "shared/live_options.hpp"
+#include "shared/output.hpp"
+#include "shared/with_bus.hpp"
+#include "text/printable.hpp"
+#include "text/write_files.hpp"
+
+namespace edsc {
+namespace {
+
+using conform::CaseResult;
+using conform::CaseRow;
+using conform::Level;
+using conform::Permission;
+using conform::RunReport;
+using conform::Verdict;
+
+constexpr const char* examples = R"(Examples:
+  edsc conform socketcan:can0 5 drive.eds                          reads, and requests that a device must refuse
+  edsc conform socketcan:can0 5 drive.eds --level communication    writes 1000h to 1FFFh, too, and puts back
+  edsc conform socketcan:can0 5 drive.eds --level all --html report.html
+  edsc conform socketcan:can0 5 drive.eds --only 3.* --only 2.5    some cases
+  edsc conform socketcan:can0 5 drive.eds --stimulus 5.4="ssh bench pull-sensor-plug"
+  edsc conform --list                                              what is asked, with the clause)";
+
+struct Settings {
+  std::string bus;
+  std::uint8_t node = 0;
+  std::string sheet;
+  std::string level = "read";
+  bool store = false, application = false, outputs = false;
+  std::vector<std::string> only;
+  std::vector<std::string> stimuli;
+  std::string deviations, html, junit, json, log;
+  bool list = false;
+  bool quiet = false;
+  std::uint32_t seed = 1;
+  SdoSettings sdo;
+  ColorOption color;
+};
+
+/// By how much a time on a real bus may differ from what a device promises: half of what a tick of 100 Hz takes, and the
+/// frames before it on the wire.
+constexpr canopen::Duration live_tolerance = canopen::from_milliseconds(10);
+
+/// Commands of the user that act on the device, one for each case.
+class CommandStimuli final : public conform::Stimuli {
+ public:
+  explicit CommandStimuli(const std::vector<std::string>& options) {
+    for (const std::string& option : options) {
+      const std::size_t equals = option.find('=');
+      commands_[option.substr(0, equals)] = option.substr(equals + 1);
+    }
+  }
+
+  void begin_case(std::string_view id) override { case_ = id; }
+  bool set(std::uint16_t, std::uint8_t, std::span<const std::uint8_t>) override { return run("change"); }
+  bool emergency(std::uint16_t, std::uint8_t) override { return run("error"); }
+  bool emergency_over(std::uint8_t) override { return run("error_over"); }
+  bool power_cycle() override { return run("power_cycle"); }
+
+ private:
+  /// The command finds in EDSC_STIMULUS what is asked for.
+  bool run(const char* what) {
+    const auto found = commands_.find(case_);
+    if (found == commands_.end()) return false;
+    ::setenv("EDSC_STIMULUS", what, 1);
+    return std::system(found->second.c_str()) == 0;  // NOLINT(cert-env33-c): the user's own command line
+  }
+
+  std::map<std::string, std::string, std::less<>> commands_;
+  std::string case_;
+};
+
+/// A simulated device is acted on through its program.
+class SimulatedStimuli final : public conform::Stimuli {
+ public:
+  explicit SimulatedStimuli(SimulatedPort& port) : port_{port} {}
+
+  bool set(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> value) override {
+    return port_.set(index, sub_index, value) == canopen::ok;
+  }
+  bool emergency(std::uint16_t code, std::uint8_t error_register) override {
+    return port_.emergency(code, canopen::ErrorRegister{error_register});
+  }
+  bool emergency_over(std::uint8_t error_register) override {
+    return port_.emergency_over(canopen::ErrorRegister{error_register});
+  }
+  bool power_cycle() override { return port_.power_cycle(); }
+
+ private:
+  SimulatedPort& port_;
+};
+
+Permission permissions_of(const Settings& settings, Level level) {
+  Permission all = Permission::none;
+  if (settings.store || level == Level::all) all = all | Permission::store;
+  if (settings.application || level == Level::all) all = all | Permission::application;
+  if (settings.outputs || level == Level::all) all = all | Permission::outputs;
+  return all;
+}
+
+void list_cases() {
+  for (const conform::AreaRow& area : conform::areas()) {
+    fmt::print("{} {}\n", area.id, area.title);
+    for (const CaseRow& row : area.cases()) {
+      std::string needs = fmt::format("--level {}", row_of(row.level).name);
+      for (const conform::PermissionRow& option : conform::permission_options) {
+        if (includes(row.needs, option.permission)) needs += fmt::format(" {}", option.option);
+      }
+      fmt::print("  {:<6} {} ({}; {})\n", row.id, row.title, row.clause, needs);
+    }
+  }
+}
+
+/// The device of the data sheet and what `edsc check` finds in it. Null when the file cannot be read as one; the reason is
+/// printed.
+std::unique_ptr<LoadedDevice> load_sheet(const Settings& settings, conform::SheetFindings& findings) {
+  Diagnostics diagnostics;
+  diagnostics.drop_notes();
+  LoadSettings load;
+  load.path = settings.sheet;
+  load.node_id = settings.node;
+  auto loaded = load_device(load, diagnostics);
+  findings = conform::sheet_findings(diagnostics);
+  if (loaded->device) return loaded;
+  print_findings(stderr, diagnostics, settings.color);
+  return nullptr;
+}
+
+/// SHA-256 of the file's bytes; empty where it cannot be read again, as standard input.
+std::string hash_of_file(const std::string& path) {
+  std::vector<std::uint8_t> bytes;
+  std::string problem;
+  if (!read_bytes(path, bytes, problem)) return {};
+  return conform::sha256({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+/// The file of declared deviations, which their positions point into.
+struct DeclaredDeviations {
+  std::unique_ptr<SourceFile> source;
+  std::vector<conform::Deviation> all;
+};
+
+/// Nothing when there is an error in the file, which is printed.
+std::optional<DeclaredDeviations> load_deviations(const Settings& settings) {
+  DeclaredDeviations declared;
+  if (settings.deviations.empty()) return declared;
+  std::string problem;
+  declared.source = read_source_file(settings.deviations, problem);
+  if (!declared.source) {
+    print_visibly(stderr, "edsc: {}\n", problem);
+    return std::nullopt;
+  }
+  Diagnostics diagnostics;
+  declared.all = conform::read_deviations(*declared.source, diagnostics);
+  print_findings(stderr, diagnostics, settings.color);
+  if (diagnostics.errors() > 0) return std::nullopt;
+  return declared;
+}
+
+/// A report in a file, and the option that names it.
+struct ReportFile {
+  std::string Settings::* path;
+  std::string (*make)(const RunReport& run, const Device& sheet);
+};
+
+constexpr ReportFile report_files[] = {
+    {&Settings::html, conform::html_report},
+    {&Settings::junit, conform::junit_report},
+    {&Settings::json, conform::json_report},
+    {&Settings::log, [](const RunReport& run, const Device&) { return conform::candump_log(run); }},
+};
+
+/// False when one of them cannot be written; the reason is printed.
+bool write_reports(const Settings& settings, const RunReport& report, const Device& sheet) {
+  std::vector<OutputFile> files;
+  for (const ReportFile& row : report_files) {
+    if (!(settings.*row.path).empty()) files.push_back({settings.*row.path, row.make(report, sheet)});
+  }
+  const std::string problem = write_files(files);
+  if (!problem.empty()) print_visibly(stderr, "edsc: {}\n", problem);
+  return problem.empty();
+}
+
+/// Runs the cases with what they come to on standard output as it comes.
+void run_and_print(LiveBus& bus, const Settings& settings, const LoadedDevice& loaded, conform::RunSettings& run,
+                   const DeclaredDeviations& deviations, RunReport& report) {
+  auto* const simulated = dynamic_cast<SimulatedPort*>(&bus.port());
+  std::unique_ptr<conform::Stimuli> stimuli;
+  run.dut.simulated = simulated != nullptr;
+  if (simulated != nullptr) {
+    stimuli = std::make_unique<SimulatedStimuli>(*simulated);
+  } else {
+    stimuli = std::make_unique<CommandStimuli>(settings.stimuli);
+    run.dut.tolerance = live_tolerance;
+  }
+  const conform::TextReport text{report, *loaded.device, settings.color.on(stdout)};
+  ProgressLine progress;
+  run.began = [&](const CaseRow& row, std::size_t done, std::size_t of) {
+    if (done == 0 && !settings.quiet) write_output(text.head() + (run.dut.simulated ? "" : text.application_objects()));
+    if (progress.due()) progress.show(fmt::format("case {} of {}: {} {}", done + 1, of, row.id, row.title));
+  };
+  run.ended = [&](CaseResult& result) {
+    conform::apply_deviations(deviations.all, result);
+    const bool shown = !settings.quiet || result.verdict == Verdict::failed;
+    if (!shown) return;
+    progress.hide();
+    write_output(text.of(result));
+    flush_output();
+  };
+  conform::run_cases(bus, *loaded.device, *stimuli, run, report);
+  conform::find_unused_deviations(deviations.all, report);
+  progress.hide();
+  write_output(text.summary());
+}
+
+int run_conform(const Settings& settings) {
+  conform::SheetFindings findings;
+  const auto loaded = load_sheet(settings, findings);
+  const auto deviations = load_deviations(settings);
+  if (!loaded || !deviations) return exit_wrong_usage;
+  conform::RunSettings run;
+  run.dut.node = canopen::NodeId{settings.node};
+  run.dut.sdo = settings.sdo;
+  run.dut.level = std::ranges::find(conform::levels, settings.level, &conform::LevelRow::name)->level;
+  run.dut.permissions = permissions_of(settings, run.dut.level);
+  run.dut.seed = settings.seed;
+  run.dut.findings = std::move(findings);
+  run.only = settings.only;
+  RunReport report;
+  report.bus = settings.bus;
+  report.sheet = settings.sheet;
+  report.sheet_hash = hash_of_file(settings.sheet);
+  report.product = loaded->device->product_name;
+  report.vendor = loaded->device->vendor_name;
+  report.version = EDSC_VERSION;
+  return with_bus(settings.bus, [&](LiveBus& bus) {
+    run_and_print(bus, settings, *loaded, run, *deviations, report);
+    if (!write_reports(settings, report, *loaded->device)) return int{exit_wrong_usage};
+    if (report.interrupted) return int{exit_interrupted};
+    return report.passed() ? int{exit_fine} : int{exit_device_failed};
+  });
+}
+
+}  // namespace
+
+void add_conform_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("conform", "test whether a node behaves as CiA 301 and its EDS say");
+  command->footer(examples);
+  auto settings = std::make_shared<Settings>();
+  auto* bus = add_bus_argument(*command, settings->bus);
+  auto* node = add_node_argument(*command, settings->node);
+  auto* sheet = command->add_option("FILE", settings->sheet, "data sheet of the node: EDS, DCF, XDD or XDC")->required();
+  command->add_option("--level", settings->level, "what may be done to the node: read, communication or all")
+      ->check(CLI::IsMember({"read", "communication", "all"}))
+      ->capture_default_str();
+  command->add_flag("--store", settings->store, "store and restore parameters (1010h, 1011h), and put back");
+  command->add_flag("--application", settings->application, "write 2000h and above, and put back");
+  command->add_flag("--outputs", settings->outputs, "send RPDOs and SYNC: outputs may move");
+  command->add_option("--only", settings->only, "cases to run: 2.5 or 3.*; may be given more than once")
+      ->type_name("CASE")
+      ->allow_extra_args(false)
+      ->check([](const std::string& pattern) {
+        const auto rows = conform::all_cases();
+        const bool names_one =
+            std::ranges::any_of(rows, [&](const CaseRow* row) { return conform::matches(pattern, row->id); });
+        return names_one ? std::string{} : "no case is \"" + pattern + "\"; --list prints them";
+      });
+  command->add_option("--stimulus", settings->stimuli, "command that acts on the node in a case: 5.4=COMMAND")
+      ->type_name("CASE=COMMAND")
+      ->allow_extra_args(false)
+      ->check([](const std::string& text) {
+        return text.find('=') != std::string::npos ? std::string{} : "\"" + text + "\" is not CASE=COMMAND";
+      });
+  command->add_option("--deviations", settings->deviations, "declared deviations of the node, with their reasons: a JSON file")
+      ->type_name("FILE");
+  command->add_option("--html", settings->html, "write the report as one HTML file")->type_name("FILE");
+  command->add_option("--junit", settings->junit, "write it as JUnit XML")->type_name("FILE");
+  command->add_option("--json", settings->json, "write it as JSON")->type_name("FILE");
+  command->add_option("--log", settings->log, "write the frames as a candump log")->type_name("FILE");
+  command->add_option("--seed", settings->seed, "of the accesses that are chosen by lot")->capture_default_str();
+  command->add_flag("--quiet", settings->quiet, "print failures and the result alone");
+  add_timeout_option(*command, settings->sdo.timeout_ms);
+  settings->color.add_to(*command);
+  command->add_flag_callback(
+      "--list", [settings] { settings->list = true; }, "list the cases and what they need, and end");
+  for (CLI::Option* option : {bus, node, sheet}) option->required(false);
+  command->callback([settings, bus, node, sheet, &exit_code] {
+    if (settings->list) {
+      list_cases();
+      exit_code = exit_fine;
+      return;
+    }
+    for (const CLI::Option* option : {bus, node, sheet}) {
+      if (option->count() == 0) throw CLI::RequiredError(option->get_name());
+    }
+    exit_code = run_conform(*settings);
+  });
+}
+
+}  // namespace edsc

@@ -1,0 +1,183 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include "commands/commands.hpp"
+#include "compare/compare_devices.hpp"
+#include "compare/print_changes.hpp"
+#include "diagnostics/rule.hpp"
+#include "load/load_device.hpp"
+#include "shared/common_options.hpp"
+#include "shared/exit_code.hpp"
+#include "shared/git_file.hpp"
+#include "text/printable.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr const char* examples = R"(Examples:
+  edsc diff drive-1.0.eds drive-1.1.eds                  what changed, and whom it breaks; exit code 1 when it breaks anybody
+  edsc diff drive-1.0.eds drive-1.1.eds --format json    the same for a program
+  edsc diff drive.eds axis1.dcf --node-id 5              a DCF against its EDS, both as node 5
+  edsc diff --against git:main drive.eds --format markdown    a comment for a pull request
+  edsc diff --against git:HEAD --fail-on any eds/*.eds   exit code 1 when a device is not as it was committed)";
+
+constexpr std::string_view git_prefix = "git:";
+
+struct Settings {
+  std::vector<std::string> files;
+  std::string against;
+  std::string format = "text";
+  std::string audience = "all";
+  std::string fail_on = "breaking";
+  std::optional<std::uint8_t> node_id;
+  bool allow_new = false;
+  bool keep_going = false;
+  ColorOption color;
+};
+
+/// Two versions of a device; `before` is null for a file that is new.
+struct Pair {
+  std::unique_ptr<LoadedDevice> before;
+  std::unique_ptr<LoadedDevice> after;
+  Changes changes;
+};
+
+/// Null when there is nothing to compare; the errors are printed.
+std::unique_ptr<LoadedDevice> reported(std::unique_ptr<LoadedDevice> loaded, const Diagnostics& diagnostics,
+                                       const Settings& settings) {
+  if (diagnostics.errors() > 0 || settings.keep_going) print_findings(stderr, diagnostics, settings.color);
+  return loaded->device && diagnostics.errors() == 0 ? std::move(loaded) : nullptr;
+}
+
+std::unique_ptr<LoadedDevice> load(const std::string& path, const Settings& settings) {
+  Diagnostics diagnostics;
+  diagnostics.drop_notes();
+  LoadSettings load{path, "", "", settings.node_id};
+  load.keep_going = settings.keep_going;
+  auto loaded = load_device(load, diagnostics);
+  return reported(std::move(loaded), diagnostics, settings);
+}
+
+/// The device of a source file, with the options file that the same revision has beside it.
+std::unique_ptr<LoadedDevice> load_committed(std::unique_ptr<SourceFile> source, const std::string& revision,
+                                             const std::string& path, const Settings& settings) {
+  Diagnostics diagnostics;
+  diagnostics.drop_notes();
+  auto loaded = std::make_unique<LoadedDevice>();
+  loaded->source = std::move(source);
+  if (settings.keep_going) diagnostics.keep_going(loaded->source.get(), fatal_rules());
+  const std::string options_path = std::filesystem::path{path}.replace_extension(".options.json").string();
+  loaded->options_source = read_git_file(revision, options_path).source;
+  if (loaded->options_source) loaded->options = read_options(*loaded->options_source, diagnostics);
+  for (const SilencedRule& silenced : loaded->options.silence) diagnostics.silence(silenced.rule);
+  resolve_and_check(*loaded, {path, "", "", settings.node_id}, diagnostics);
+  return reported(std::move(loaded), diagnostics, settings);
+}
+
+/// The pairs to compare; nothing when one of the files cannot be used, which is printed.
+std::optional<std::vector<Pair>> load_pairs(const Settings& settings) {
+  std::vector<Pair> pairs;
+  if (settings.against.empty()) {
+    Pair& pair = pairs.emplace_back();
+    pair.before = load(settings.files.front(), settings);
+    pair.after = load(settings.files.back(), settings);
+    if (!pair.before || !pair.after) return std::nullopt;
+    return pairs;
+  }
+  const std::string revision = settings.against.substr(git_prefix.size());
+  bool failed = false;
+  for (const std::string& path : settings.files) {
+    Pair pair;
+    GitFile committed = read_git_file(revision, path);
+    if (committed.source) {
+      pair.before = load_committed(std::move(committed.source), revision, path, settings);
+    } else if (!committed.is_missing || !settings.allow_new) {
+      print_visibly(stderr, "edsc: {}\n", committed.error);
+    }
+    pair.after = load(path, settings);
+    const bool is_new = committed.is_missing && settings.allow_new;
+    failed = failed || !pair.after || (!pair.before && !is_new);
+    pairs.push_back(std::move(pair));
+  }
+  return failed ? std::nullopt : std::optional{std::move(pairs)};
+}
+
+Audience audience_of(const Settings& settings) {
+  if (settings.audience == "wire") return Audience::wire;
+  return settings.audience == "source" ? Audience::source : Audience::all;
+}
+
+void print(Pair& pair, const Settings& settings) {
+  if (settings.format != "markdown") return;
+  const std::string& after = pair.after->source->name();
+  fmt::print("{}", pair.before ? changes_as_markdown(pair.changes, pair.before->source->name(), after)
+                               : new_file_as_markdown(after));
+}
+
+int diff(const Settings& settings) {
+  auto pairs = load_pairs(settings);
+  if (!pairs) return exit_wrong_usage;
+  Changes all;
+  for (Pair& pair : *pairs) {
+    if (pair.before) pair.changes = compare_devices(*pair.before->device, *pair.after->device);
+    pair.changes.keep(audience_of(settings));
+    if (&pair != &pairs->front() && settings.format == "markdown") fmt::print("\n");
+    print(pair, settings);
+    all.append(std::move(pair.changes));
+  }
+  if (settings.format == "json") {
+    fmt::print("{}\n", json_text(changes_as_json(all)));
+  } else if (settings.format == "text") {
+    fmt::print("{}", changes_as_text(all, settings.color.on(stdout)));
+  }
+  const bool fails = settings.fail_on == "any"        ? !all.all().empty()
+                     : settings.fail_on == "breaking" ? all.breaking() > 0
+                                                      : false;
+  return fails ? exit_input_has_errors : exit_fine;
+}
+
+void check_files(const Settings& settings) {
+  if (settings.against.empty() && settings.files.size() != 2) {
+    throw CLI::ValidationError("FILE", "two files are compared, OLD and NEW; --against git:REF takes any number");
+  }
+  if (settings.against.empty() && settings.allow_new) throw CLI::RequiresError("--allow-new", "--against");
+}
+
+}  // namespace
+
+void add_diff_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("diff", "compare two EDS files; report breaking changes");
+  command->footer(examples);
+  auto settings = std::make_shared<Settings>();
+  command->add_option("FILE", settings->files, "OLD and NEW, each an EDS, DCF, XDD or XDC; with --against NEW files")
+      ->required();
+  command->add_option("--against", settings->against, "git:REF: compare each FILE with the one of this git revision")
+      ->check([](const std::string& value) {
+        const bool is_git = value.starts_with(git_prefix) && value.size() > git_prefix.size();
+        return is_git ? std::string{} : fmt::format("expected git:REF, got {}", value);
+      });
+  command->add_flag("--allow-new", settings->allow_new, "with --against: a FILE that REF does not have is new");
+  command->add_option("--format", settings->format, "text, json or markdown")
+      ->check(CLI::IsMember({"text", "json", "markdown"}))
+      ->capture_default_str();
+  command
+      ->add_option("--audience", settings->audience,
+                   "leave out changes that break others only: wire (masters, PDO partners), source (C++ code)")
+      ->check(CLI::IsMember({"all", "wire", "source"}))
+      ->capture_default_str();
+  command->add_option("--fail-on", settings->fail_on, "which changes give exit code 1")
+      ->check(CLI::IsMember({"breaking", "any", "never"}))
+      ->capture_default_str();
+  add_node_id_option(*command, settings->node_id);
+  command->add_flag("--keep-going", settings->keep_going, "compare in spite of errors; what is wrong is left out");
+  settings->color.add_to(*command);
+  command->callback([settings, &exit_code] {
+    check_files(*settings);
+    exit_code = diff(*settings);
+  });
+}
+
+}  // namespace edsc

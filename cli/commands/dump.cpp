@@ -1,0 +1,71 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "backend/cpp/configured_view.hpp"
+#include "backend/cpp/view.hpp"
+#include "commands/commands.hpp"
+#include "device/broken_pdos.hpp"
+#include "load/load_device.hpp"
+#include "shared/common_options.hpp"
+#include "shared/exit_code.hpp"
+#include "text/printable.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr const char* examples = R"(Examples:
+  edsc dump drive.eds                                      the resolved device as JSON
+  edsc dump drive.eds --node-id 5 | jq '.objects[].name'   formulas as numbers; the names of all objects
+  edsc dump drive.eds --cpp                                also what the C++ templates see)";
+
+struct Settings {
+  LoadSettings load;
+  bool cpp = false;
+  ColorOption color;
+};
+
+/// A broken PDO is shown as such; with any other error, part of the data sheet is missing or assumed.
+bool is_incomplete(const Diagnostics& diagnostics) {
+  return std::ranges::any_of(diagnostics.all(), [](const Diagnostic& one) {
+    return one.severity == Severity::error && !is_broken_pdo_rule(one.rule);
+  });
+}
+
+int dump(const Settings& settings) {
+  Diagnostics diagnostics;
+  diagnostics.drop_notes();
+  LoadSettings load = settings.load;
+  load.check = false;
+  const auto loaded = load_device(load, diagnostics);
+  nlohmann::ordered_json view;
+  if (loaded->device) {
+    view = device_view(*loaded->device);
+    separate_configured_values(loaded->sheet, *loaded->device, view);
+    if (settings.cpp) view["cpp"] = cpp_view(*loaded->device, loaded->options, diagnostics);
+  }
+  print_findings(stderr, diagnostics, settings.color);
+  if (loaded->unreadable) return exit_wrong_usage;
+  const bool failed = !loaded->device || is_incomplete(diagnostics);
+  if (!failed) {
+    fmt::print("{}\n", json_text(view));
+  }
+  return failed ? exit_input_has_errors : exit_fine;
+}
+
+}  // namespace
+
+void add_dump_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("dump", "the resolved device as JSON");
+  command->footer(examples);
+  auto settings = std::make_shared<Settings>();
+  command->add_option("FILE", settings->load.path, "EDS, DCF, XDD or XDC")->required();
+  add_node_id_option(*command, settings->load.node_id);
+  command->add_option("--options", settings->load.options_path, "options file (default: FILE's name with .options.json, if there)");
+  command->add_flag("--cpp", settings->cpp, "add the view of the C++ templates");
+  command->add_flag("--keep-going", settings->load.keep_going, keep_going_help);
+  settings->color.add_to(*command);
+  command->callback([settings, &exit_code] { exit_code = dump(*settings); });
+}
+
+}  // namespace edsc

@@ -1,0 +1,213 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
+#include "commands/commands.hpp"
+#include "device/resolve.hpp"
+#include "eds/ini.hpp"
+#include "format/canonical_form.hpp"
+#include "format/concise_dcf.hpp"
+#include "format/make_dcf.hpp"
+#include "format/move_values.hpp"
+#include "format/sheet_document.hpp"
+#include "shared/common_options.hpp"
+#include "shared/exit_code.hpp"
+#include "shared/output.hpp"
+#include "text/printable.hpp"
+#include "text/source_file.hpp"
+#include "text/write_files.hpp"
+#include "xdd/read_xdd.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr const char* examples = R"(Examples:
+  edsc format drive.eds                                    the canonical form, on standard output
+  edsc format drive.eds -o drive.eds                       in place
+  edsc format --in-place eds/*.eds                         the same for many files
+  edsc format --check eds/*.eds                            exit code 1 when one of them is not canonical
+  edsc format drive.eds --dcf --node-id 5 -o axis1.dcf     the DCF of node 5
+  edsc format drive.eds --dcf --node-id 5 --all            the same with a ParameterValue for each writable entry
+  edsc format axis1.dcf --dcf --node-id 7 -o axis2.dcf     the same configuration for node 7
+  edsc format drive.xdd -o drive.eds                       an EDS of an XDD
+  edsc format axis1.xdc -o axis1.dcf                       a DCF of an XDC
+  edsc format axis1.dcf --concise -o axis1.bin             what a master downloads to it (object 1F22h))";
+
+struct Settings {
+  std::vector<std::string> paths;
+  std::string output;
+  std::optional<std::uint8_t> node_id;
+  bool check = false;
+  bool in_place = false;
+  bool dcf = false;
+  bool all = false;
+  bool concise = false;
+  ColorOption color;
+};
+
+/// What these rules say is left out, stays in the text.
+constexpr std::string_view rules_of_what_stays[] = {"unknown-key", "unknown-section"};
+
+/// A data sheet with its lines. Values are not judged here: that is `edsc check`.
+struct Input {
+  std::unique_ptr<SourceFile> file;    ///< as it was read
+  std::unique_ptr<SourceFile> source;  ///< null when the file itself is an EDS or DCF
+  IniFile ini;
+  DataSheet sheet;
+  Device device;
+  bool has_values_for_eds = false;  ///< an XDC, whose values an EDS cannot hold, and an EDS is wanted
+
+  [[nodiscard]] const SourceFile& text() const { return source ? *source : *file; }
+};
+
+void read(const Settings& settings, Input& input, Diagnostics& diagnostics) {
+  for (const std::string_view rule : rules_of_what_stays) diagnostics.silence(std::string{rule});
+  input.ini = parse_ini(input.text(), diagnostics);
+  if (input.ini.sections.empty()) return;
+  input.sheet = read_data_sheet(input.ini, diagnostics);
+  Diagnostics ignored;
+  input.device = resolve_device(input.sheet, {}, {"", settings.node_id}, ignored);
+}
+
+/// Turns an XDD into the text of an EDS, an XDC into that of a DCF. What is lost is noted.
+void convert(const Settings& settings, Input& input, Diagnostics& diagnostics) {
+  std::vector<NotInEds> not_in_eds;
+  const DataSheet sheet = read_xdd(*input.file, diagnostics, &not_in_eds);
+  if (sheet.objects.empty()) return;
+  const std::string_view format = sheet.is_dcf ? "DCF" : "EDS";
+  for (const NotInEds& lost : not_in_eds) {
+    diagnostics.note("xml-element", lost.position,
+                     fmt::format("{} cannot be expressed in the {}; it is left out", lost.what, format));
+  }
+  input.has_values_for_eds = sheet.is_dcf && ends_with_ignoring_case(settings.output, ".eds");
+  std::filesystem::path path = settings.output.empty() ? settings.paths.front() : settings.output;
+  if (settings.output.empty()) path.replace_extension(sheet.is_dcf ? ".dcf" : ".eds");
+  input.source = std::make_unique<SourceFile>(sheet.is_dcf && !sheet.commissioning.present ? "converted.dcf" : "converted.eds",
+                                              to_text(document_of(sheet, path.filename().string())));
+}
+
+std::string canonical_text(const Settings& settings, const Input& input) {
+  Document document = canonical_form(input.ini, input.sheet, input.device);
+  if (settings.dcf) {
+    make_dcf(document, input.sheet, input.device, settings.all ? DcfValues::all : DcfValues::different);
+  }
+  return to_text(document);
+}
+
+/// The values of a DCF are those of its own node: those that follow the node-ID become the ones of another node first.
+void move_to_node(const Settings& settings, Input& input, Diagnostics& diagnostics) {
+  if (!settings.node_id || !input.sheet.commissioning.present) return;
+  Diagnostics ignored;
+  const Device before = resolve_device(input.sheet, {}, {}, ignored);
+  if (!before.node_id || before.node_id == settings.node_id) return;
+  Document document = canonical_form(input.ini, input.sheet, input.device);
+  move_values(document, input.sheet, before, *settings.node_id, diagnostics);
+  const std::string name = input.text().name();
+  input.source = std::make_unique<SourceFile>(name, to_text(document));
+  read(settings, input, ignored);
+}
+
+int check(const SourceFile& source, const std::string& text) {
+  if (source.is_verbatim() && source.text() == text) return exit_fine;
+  const auto [in_file, in_text] = std::ranges::mismatch(source.text(), text);
+  const auto line = std::count(source.text().begin(), in_file, '\n') + 1;
+  print_visibly(stderr, "{}:{}: the canonical form differs from here on\n", source.name(), line);
+  return exit_input_has_errors;
+}
+
+int write(const std::string& path, std::string content) {
+  if (path.empty()) {
+    write_output(content);
+    return exit_fine;
+  }
+  if (const std::string problem = write_files({{path, std::move(content)}}); !problem.empty()) {
+    print_visibly(stderr, "edsc: {}\n", problem);
+    return exit_wrong_usage;
+  }
+  return exit_fine;
+}
+
+int format_file(const Settings& settings, const std::string& path) {
+  Input input;
+  std::string error;
+  input.file = read_source_file(path, error);
+  if (!input.file) {
+    print_visibly(stderr, "edsc: {}\n", error);
+    return exit_wrong_usage;
+  }
+  Diagnostics diagnostics;
+  if (is_xml(*input.file)) {
+    if (settings.check || settings.in_place) {
+      diagnostics.error("xml-file", {input.file.get()},
+                        "XML does not have a canonical form; -o FILE makes an EDS or DCF of an XDD or XDC");
+    } else {
+      convert(settings, input, diagnostics);
+    }
+  }
+  if (input.has_values_for_eds) {
+    print_visibly(stderr, "edsc: {}: an XDC has the values of one node, which an EDS does not have; name the output .dcf\n", path);
+    return exit_wrong_usage;
+  }
+  if (diagnostics.errors() == 0) read(settings, input, diagnostics);
+  if (diagnostics.errors() == 0) move_to_node(settings, input, diagnostics);
+  std::string content;
+  if (diagnostics.errors() == 0) {
+    content = settings.concise ? concise_dcf(input.sheet, input.device, diagnostics) : canonical_text(settings, input);
+  }
+  print_findings(stderr, diagnostics, settings.color);
+  if (diagnostics.errors() > 0) return exit_input_has_errors;
+  if (settings.check) return check(*input.file, content);
+  return write(settings.in_place ? path : settings.output, std::move(content));
+}
+
+int format(const Settings& settings) {
+  int worst = exit_fine;
+  for (const std::string& path : settings.paths) worst = std::max(worst, format_file(settings, path));
+  return worst;
+}
+
+void check_usage(const Settings& settings) {
+  if (settings.node_id && !settings.dcf && !settings.concise) {
+    throw CLI::RequiresError("--node-id", "--dcf or --concise");
+  }
+  if (settings.paths.size() > 1 && !settings.check && !settings.in_place) {
+    throw CLI::ValidationError("FILE", "several files need --check or --in-place");
+  }
+  if (settings.in_place && std::ranges::find(settings.paths, "-") != settings.paths.end()) {
+    throw CLI::ValidationError("--in-place", "standard input cannot be written");
+  }
+}
+
+}  // namespace
+
+void add_format_command(CLI::App& app, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("format", "write an EDS or DCF in canonical form; make DCFs; convert XDD and XDC");
+  command->footer(examples);
+  auto settings = std::make_shared<Settings>();
+  command->add_option("FILE", settings->paths, "EDS, DCF, XDD or XDC; - is standard input")->required();
+  auto* output =
+      command->add_option("-o,--output", settings->output, "file to write; may be FILE (default: standard output)");
+  auto* in_place = command->add_flag("-i,--in-place", settings->in_place, "write each FILE itself");
+  auto* check = command->add_flag("--check", settings->check,
+                                  "write nothing; list each FILE that is not canonical; exit code 1 when there is one");
+  auto* dcf = command->add_flag("--dcf", settings->dcf,
+                                "make a DCF: [DeviceComissioning], and the ParameterValues that differ from defaults");
+  auto* all = command->add_flag("--all", settings->all, "with --dcf: a ParameterValue for each writable entry");
+  auto* concise = command->add_flag("--concise", settings->concise,
+                                    "write the concise DCF: what differs from the defaults, as object 1F22h holds it");
+  add_node_id_option(*command, settings->node_id);
+  settings->color.add_to(*command);
+  check->excludes(output)->excludes(dcf)->excludes(concise)->excludes(in_place);
+  in_place->excludes(output)->excludes(dcf)->excludes(concise);
+  dcf->excludes(concise)->needs("--node-id");
+  all->needs(dcf);
+  command->callback([settings, &exit_code] {
+    check_usage(*settings);
+    exit_code = format(*settings);
+  });
+}
+
+}  // namespace edsc

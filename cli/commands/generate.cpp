@@ -1,0 +1,183 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+
+#include "backend/cpp/view.hpp"
+#include "backend/render.hpp"
+#include "commands/commands.hpp"
+#include "device/identifier.hpp"
+#include "load/load_device.hpp"
+#include "shared/common_options.hpp"
+#include "shared/exit_code.hpp"
+#include "shared/left_out_text.hpp"
+#include "text/printable.hpp"
+#include "text/write_files.hpp"
+
+namespace edsc {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* examples = R"(Examples:
+  edsc generate eds/drive.eds -o build/generated           headers for namespace drive
+  edsc generate drive.eds -o out --name axis1 --node-id 5  a second one, with its node-ID fixed
+  edsc generate vendor.eds -o out --keep-going             leave out what is wrong in a bought device's file)";
+
+/// Only a device that keeps its data sheet has this one.
+constexpr std::string_view stored_eds_header = "stored_eds.hpp";
+
+struct Settings {
+  LoadSettings load;
+  std::string output;
+  std::string depfile;
+  std::string depfile_target;
+  std::string templates;
+  bool verbose = false;
+  ColorOption color;
+};
+
+/// A template's text, and the file it came from when it is not the built-in one.
+struct ChosenTemplate {
+  Template built_in;
+  std::unique_ptr<SourceFile> replacement;
+
+  /// Throws std::runtime_error with the name of the file that has a mistake.
+  [[nodiscard]] std::string rendered(const nlohmann::ordered_json& view) const {
+    if (!replacement) return render(built_in.text, view);
+    try {
+      return render(replacement->text(), view);
+    } catch (const std::runtime_error& problem) {
+      throw std::runtime_error{replacement->name() + ": " + problem.what()};
+    }
+  }
+};
+
+/// The built-in templates, each replaced by the file of the same name in `folder`, where there is one.
+std::vector<ChosenTemplate> choose_templates(const std::string& folder) {
+  std::vector<ChosenTemplate> chosen;
+  for (const Template& built_in : built_in_templates()) {
+    ChosenTemplate one{built_in, nullptr};
+    const fs::path path = fs::path{folder} / (std::string{built_in.file_name} + ".mustache");
+    if (!folder.empty() && fs::exists(path)) {
+      std::string error;
+      one.replacement = read_source_file(path.string(), error);
+      if (!one.replacement) throw std::runtime_error{path.string() + ": " + error};
+    }
+    chosen.push_back(std::move(one));
+  }
+  return chosen;
+}
+
+/// A path in a make rule: blanks, dollars and hashes escaped.
+std::string make_path(std::string_view path) {
+  std::string out;
+  for (const char c : path) {
+    if (c == ' ' || c == '#') out += '\\';
+    if (c == '$') out += '$';
+    out += c;
+  }
+  return out;
+}
+
+/// A make rule: `target`, or the outputs where that is empty, depend on the inputs.
+std::string depfile_text(const std::string& target, const std::vector<OutputFile>& outputs,
+                         const std::vector<std::string>& inputs) {
+  std::string text = make_path(target);
+  for (const OutputFile& output : outputs) {
+    if (target.empty()) text += fmt::format("{}{}", text.empty() ? "" : " ", make_path(output.path));
+  }
+  text += ":";
+  for (const std::string& input : inputs) text += " \\\n  " + make_path(input);
+  return text + "\n";
+}
+
+/// Takes sheet and device away as soon as the view is made: large ones take more memory than their files.
+std::vector<OutputFile> render_all(const Settings& settings, LoadedDevice& loaded, Diagnostics& diagnostics) {
+  const auto templates = choose_templates(settings.templates);
+  loaded.sheet = {};
+  const auto view = cpp_view(*loaded.device, loaded.options, diagnostics);
+  const fs::path folder = fs::path{settings.output} / loaded.device->name;
+  loaded.device.reset();
+  std::vector<OutputFile> files;
+  std::vector<std::string> inputs{settings.load.path};
+  if (loaded.options_source) inputs.push_back(loaded.options_source->name());
+  for (const ChosenTemplate& one : templates) {
+    if (one.built_in.file_name == stored_eds_header && view["stored_eds"].is_null()) continue;
+    files.push_back({(folder / one.built_in.file_name).string(), one.rendered(view)});
+    if (one.replacement) inputs.push_back(one.replacement->name());
+  }
+  if (!settings.depfile.empty()) files.push_back({settings.depfile, depfile_text(settings.depfile_target, files, inputs)});
+  return files;
+}
+
+/// Where all errors are in the file of another manufacturer.
+constexpr const char* keep_going_hint =
+    "edsc: nothing was generated. For a file that you cannot change, --keep-going (KEEP_GOING in CMake) generates the rest of the "
+    "device";
+
+/// Whether each finding is listed with its place.
+bool lists_all(const Diagnostics& diagnostics) {
+  return diagnostics.suppressed().empty() &&
+         std::ranges::none_of(diagnostics.all(), [](const Diagnostic& one) { return one.unnamed > 0; });
+}
+
+int generate(const Settings& settings) {
+  Diagnostics diagnostics;
+  diagnostics.drop_notes();
+  const auto loaded = load_device(settings.load, diagnostics);
+  std::vector<OutputFile> files;
+  std::vector<LeftOut> left_out;
+  const bool is_device = loaded->device.has_value();
+  if (is_device) left_out = all_left_out(*loaded);
+  const bool has_hint = can_keep_going(*loaded, diagnostics);
+  if (is_device && diagnostics.errors() == 0) files = render_all(settings, *loaded, diagnostics);
+  print_findings(stderr, diagnostics, settings.color);
+  if (loaded->unreadable) return exit_wrong_usage;
+  if (!is_device || diagnostics.errors() > 0) {
+    if (has_hint && files.empty()) fmt::print(stderr, "{}\n", keep_going_hint);
+    return exit_input_has_errors;
+  }
+  if (settings.load.keep_going || diagnostics.any_silenced() || !lists_all(diagnostics)) {
+    fmt::print(stderr, "{}", left_out_text(left_out));
+  }
+
+  if (const std::string problem = write_files(files); !problem.empty()) {
+    print_visibly(stderr, "edsc: {}\n", problem);
+    return exit_wrong_usage;
+  }
+  if (settings.verbose) {
+    for (const OutputFile& file : files) print_visibly(stdout, "{}\n", file.path);
+  }
+  return exit_fine;
+}
+
+}  // namespace
+
+void add_generate_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("generate", "C++ headers for one device");
+  command->footer(examples);
+  auto settings = std::make_shared<Settings>();
+  command->add_option("FILE", settings->load.path, "EDS, DCF, XDD or XDC")->required();
+  command->add_option("-o,--output", settings->output, "folder; the headers go to its subfolder NAME")->required();
+  command->add_option("--name", settings->load.name, "C++ namespace (default: the file's name)")
+      ->check([](const std::string& name) {
+        if (!name.empty() && to_namespace(name) == name) return std::string{};
+        return fmt::format("a namespace in snake_case is wanted, not \"{}\"; \"{}\" is one", name, to_namespace(name));
+      });
+  add_node_id_option(*command, settings->load.node_id);
+  command->add_option("--options", settings->load.options_path, "options file (default: FILE's name with .options.json, if there)");
+  command->add_flag("--static-mapping", settings->load.static_mapping,
+                    "no PDO can be mapped over the bus: smaller firmware");
+  command->add_option("--templates", settings->templates, "folder with templates that replace the built-in ones")
+      ->check(CLI::ExistingDirectory);
+  command->add_option("--depfile", settings->depfile, "write what the headers depend on, for make and ninja");
+  command->add_option("--depfile-target", settings->depfile_target, "what depends on them there (default: the headers)");
+  command->add_flag("--keep-going", settings->load.keep_going, keep_going_help);
+  command->add_flag("-v,--verbose", settings->verbose, "name the files that are written");
+  settings->color.add_to(*command);
+  command->callback([settings, &exit_code] { exit_code = generate(*settings); });
+}
+
+}  // namespace edsc

@@ -1,0 +1,193 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "commands/commands.hpp"
+#include "decode/decoder.hpp"
+#include "decode/print_message.hpp"
+#include "monitor/monitor_view.hpp"
+#include "monitor/terminal.hpp"
+#include "online/live_bus.hpp"
+#include "shared/common_options.hpp"
+#include "shared/exit_code.hpp"
+#include "shared/live_device.hpp"
+#include "shared/live_options.hpp"
+#include "shared/output.hpp"
+#include "shared/with_bus.hpp"
+#include "text/counted.hpp"
+#include "text/printable.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr const char* examples = R"(Examples:
+  edsc monitor socketcan:can0                                     a table of the nodes; q ends
+  edsc monitor socketcan:can0 --node 5=drive.eds --node 3=io.eds  PDO values by name
+  edsc monitor socketcan:can0 --node 5=drive.eds | tee log        a line for each change
+  edsc monitor socketcan:can0 --once 10 --bit-rate 500            ten seconds, then one table with the bus load
+  edsc monitor socketcan:can0 --once 10 --format json             for a program)";
+
+struct Settings {
+  std::string bus;
+  std::vector<std::string> nodes;
+  std::optional<double> once_seconds;
+  std::optional<unsigned> bit_rate;
+  std::string format = "text";
+  ColorOption color;
+};
+
+/// `5=drive.eds`
+struct NodeFile {
+  std::uint8_t node_id = 0;
+  std::string path;
+};
+
+std::optional<NodeFile> parse_node_file(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const auto node_id = parse_count(text.substr(0, equals), 127);
+  if (equals == std::string::npos || equals + 1 == text.size() || node_id.value_or(0) == 0) return std::nullopt;
+  return NodeFile{static_cast<std::uint8_t>(*node_id), text.substr(equals + 1)};
+}
+
+constexpr canopen::Duration between_pictures = canopen::from_milliseconds(100);
+
+/// The bus from now on, in words.
+class Monitor {
+ public:
+  Monitor(LiveBus& bus, const Settings& settings, const std::vector<KnownNode>& known)
+      : bus_{bus}, decoder_{known}, view_{settings.bus, settings.bit_rate, false} {
+    for (const KnownNode& node : known) state_.set_name(node.node_id, node.device->product_name);
+    begin_ = last_ = bus_.now();
+    state_.start(0);
+  }
+
+  /// A table that is drawn ten times a second, until q or Ctrl-C.
+  int show_table(bool colour) {
+    view_.colour = colour;
+    Terminal terminal;
+    while (!Interruption::noted() && terminal.key() != 'q') {
+      take_frames(between_pictures, [](const Message&) {});
+      terminal.draw(picture());
+    }
+    return exit_fine;
+  }
+
+  /// A line for each change, until Ctrl-C.
+  int print_changes() {
+    while (!Interruption::noted()) {
+      take_frames(between_pictures, [this](const Message& message) {
+        const std::string who = message.node_id == 0 ? "" : fmt::format("node {} ", message.node_id);
+        print_visibly(stdout, "{:>12.6f}  {:<9} {}{}\n", static_cast<double>(now_us_) / 1e6, service_label(message), who,
+                   message.text);
+        flush_output();
+      });
+    }
+    return exit_fine;
+  }
+
+  /// What came in so many seconds; Ctrl-C shortens them.
+  int print_once(double seconds, const std::string& format) {
+    const auto end_us = static_cast<std::int64_t>(seconds * 1e6);
+    while (!Interruption::noted() && now_us_ < end_us) {
+      const std::int64_t left = end_us - now_us_;
+      take_frames(std::min(between_pictures, canopen::Duration{static_cast<std::uint32_t>(left)}),
+                  [](const Message&) {});
+    }
+    state_.end(now_us_);
+    if (format == "json") {
+      fmt::print("{}\n", json_text(monitor_json(state_, view_, now_us_)));
+    } else {
+      for (const std::string& line : monitor_lines(state_, view_, now_us_)) fmt::print("{}\n", line);
+    }
+    return exit_fine;
+  }
+
+ private:
+  /// Takes frames for this time and tells of those that are news.
+  template <class OnNews>
+  void take_frames(canopen::Duration span, OnNews on_news) {
+    const canopen::TimePoint end = bus_.now() + span;
+    for (canopen::TimePoint present = bus_.now(); present < end && !Interruption::noted();
+         present = bus_.now()) {
+      const auto frame = bus_.receive(end - present);
+      advance();
+      if (!frame) continue;
+      decoder_.decode({*frame, true, now_us_}, message_);
+      if (state_.add(*frame, message_, now_us_)) on_news(message_);
+    }
+    advance();
+    state_.pass(now_us_);
+  }
+
+  /// A TimePoint wraps after 71 minutes; this does not.
+  void advance() {
+    const canopen::TimePoint present = bus_.now();
+    now_us_ += (present - last_).count();
+    last_ = present;
+  }
+
+  [[nodiscard]] std::vector<std::string> picture() const {
+    const Terminal::Size size = Terminal::size();
+    std::vector<std::string> lines = monitor_lines(state_, view_, now_us_);
+    lines.front() += "  (q ends)";
+    if (lines.size() > size.rows) {
+      const std::size_t hidden = lines.size() - size.rows + 1;
+      lines.resize(size.rows - 1);
+      lines.push_back(fmt::format("... {}", counted(hidden, "more line")));
+    }
+    for (std::string& line : lines) line = cut_to_width(line, size.columns);
+    return lines;
+  }
+
+  LiveBus& bus_;
+  Decoder decoder_;
+  MonitorView view_;
+  MonitorState state_;
+  Message message_;
+  canopen::TimePoint begin_, last_;
+  std::int64_t now_us_ = 0;
+};
+
+int run_monitor(const Settings& settings) {
+  std::vector<std::unique_ptr<LoadedDevice>> devices;
+  std::vector<KnownNode> known;
+  for (const std::string& text : settings.nodes) {
+    const auto node = parse_node_file(text);
+    devices.push_back(load_live_device(node->path, node->node_id));
+    if (!devices.back()) return exit_wrong_usage;
+    known.push_back({node->node_id, &*devices.back()->device});
+  }
+  return with_bus(settings.bus, [&](LiveBus& bus) {
+    Monitor monitor{bus, settings, known};
+    if (settings.once_seconds) return monitor.print_once(*settings.once_seconds, settings.format);
+    return Terminal::is_there() ? monitor.show_table(settings.color.on(stdout)) : monitor.print_changes();
+  });
+}
+
+}  // namespace
+
+void add_monitor_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("monitor", "nodes, states, PDO values, rates and load of a bus, live");
+  command->footer(examples);
+  auto settings = std::make_shared<Settings>();
+  add_bus_argument(*command, settings->bus);
+  command->add_option("--node", settings->nodes, "node-ID and its data sheet; may be given more than once")
+      ->type_name("ID=FILE")
+      ->allow_extra_args(false)
+      ->check([](const std::string& text) {
+        return parse_node_file(text) ? std::string{} : "\"" + text + "\" is not a node-ID, = and a file";
+      });
+  auto* once =
+      command->add_option("--once", settings->once_seconds, "seconds to listen for before one table is printed")
+          ->check(CLI::Range(0.01, 86'400.0));
+  command->add_option("--bit-rate", settings->bit_rate, "kbit/s of the bus, for its load (without stuff bits)")
+      ->check(CLI::Range(5, 1000));
+  add_format_option(*command, settings->format);
+  settings->color.add_to(*command);
+  command->callback([settings, once, &exit_code] {
+    if (settings->format == "json" && once->count() == 0) throw CLI::RequiresError("--format json", "--once");
+    exit_code = run_monitor(*settings);
+  });
+}
+
+}  // namespace edsc

@@ -1,0 +1,237 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "commands/commands.hpp"
+#include "monitor/progress_line.hpp"
+#include "online/live_bus.hpp"
+#include "shared/exit_code.hpp"
+#include "shared/live_device.hpp"
+#include "shared/live_options.hpp"
+#include "shared/with_bus.hpp"
+#include "text/counted.hpp"
+#include "text/printable.hpp"
+#include "text/write_files.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr const char* examples = R"(Examples:
+  edsc read socketcan:can0 5 position_actual_value --eds drive.eds    by name, in the units of the data sheet
+  edsc read socketcan:can0 5 6064h identity_object.vendor_id --eds drive.eds
+  edsc read socketcan:can0 5 1018h --eds drive.eds                    all entries of an object
+  edsc read socketcan:can0 5 --all --eds drive.eds --format json      all that can be read
+  edsc read socketcan:can0 5 1018h:02 --type u32                      without data sheet
+  edsc read socketcan:can0 5 1021h --eds drive.eds --file stored.eds  a DOMAIN to a file)";
+
+struct Settings {
+  std::string bus;
+  std::uint8_t node = 0;
+  std::vector<std::string> objects;
+  std::string sheet;
+  const canopen::DataTypeRow* type = nullptr;
+  std::string format = "text";
+  std::string file;
+  bool raw = false;
+  bool all = false;
+  bool block = false;
+  bool segmented = false;
+  SdoSettings sdo;
+};
+
+using Json = nlohmann::ordered_json;
+
+/// So many entries without an answer in a row, and the node is taken for gone.
+constexpr unsigned most_silent = 3;
+
+/// An entry to read.
+struct Chosen {
+  LiveEntry entry;
+  bool by_object = false;  ///< as one of its object: not each of them need have a value now
+};
+
+/// All that tools may read (ObjFlags, CiA 306-1, 4.6.3.2): of DOMAINs only those that are asked for.
+std::vector<Chosen> all_entries(const Device& device) {
+  constexpr std::uint32_t no_read = 2;
+  std::vector<Chosen> entries;
+  for (const Object& object : device.objects) {
+    for (const Entry& entry : object.entries) {
+      const bool flagged = ((entry.obj_flags | object.obj_flags) & no_read) != 0;
+      if (!canopen::readable(entry.access) || flagged) continue;
+      if (entry.type != nullptr && entry.type->kind == canopen::DataClass::domain) continue;
+      entries.push_back({live_entry(object, entry), true});
+    }
+  }
+  return entries;
+}
+
+/// False when an object is not known, which is then told.
+bool choose_entries(const Settings& settings, const Device* device, std::vector<Chosen>& entries) {
+  if (settings.all) {
+    entries = all_entries(*device);
+    return true;
+  }
+  for (const std::string& text : settings.objects) {
+    NamedEntries named = name_entries(device, text);
+    if (!named.problem.empty()) {
+      print_visibly(stderr, "edsc: {}\n", named.problem);
+      return false;
+    }
+    for (LiveEntry& entry : named.entries) {
+      if (settings.type != nullptr) set_type(entry, *settings.type);
+      entries.push_back({std::move(entry), named.entries.size() > 1});
+    }
+  }
+  return true;
+}
+
+/// What sub-index 0 of the object that is being read says.
+class EntryCount {
+ public:
+  void take(const LiveEntry& entry, const SdoOutcome& outcome) {
+    if (entry.sub_index != 0) return;
+    index_ = entry.index;
+    count_ = outcome.done() && outcome.bytes.size() == 1 ? std::optional{outcome.bytes.front()} : std::nullopt;
+  }
+
+  /// Whether the entry is above it.
+  [[nodiscard]] bool leaves_out(const LiveEntry& entry) const {
+    return count_ && entry.index == index_ && entry.sub_index > *count_;
+  }
+
+ private:
+  std::uint16_t index_ = 0;
+  std::optional<std::uint8_t> count_;
+};
+
+/// 1003h has as many entries as its sub-index 0 says (CiA 301, 7.5.2.4); of the others none is read.
+bool has_no_entry(const Chosen& chosen, const EntryCount& count) {
+  constexpr std::uint16_t error_history = 0x1003;
+  return chosen.by_object && chosen.entry.index == error_history && count.leaves_out(chosen.entry);
+}
+
+/// Whether the device may refuse to read the entry without being at fault: it has no value now, or it is a mapping
+/// entry above the number of mapped objects.
+bool may_be_refused(const Chosen& chosen, const EntryCount& count, const SdoOutcome& outcome) {
+  if (!chosen.by_object || outcome.end != SdoEnd::refused) return false;
+  const unsigned range = chosen.entry.index & 0xFE00U;
+  return outcome.code == canopen::AbortCode::no_data ||
+         ((range == 0x1600 || range == 0x1A00) && count.leaves_out(chosen.entry));
+}
+
+SdoOutcome read_value(SdoAccess& node, const LiveEntry& entry, const Settings& settings) {
+  ProgressLine progress;
+  const bool block = !settings.segmented && (settings.block || best_transfer(entry) == SdoTransfer::block);
+  return upload(node, entry, block ? SdoTransfer::block : SdoTransfer::segmented, [&](std::size_t done, std::size_t) {
+    if (progress.due()) progress.show(fmt::format("{}: {}", title(entry), counted(done, "byte")));
+  });
+}
+
+SdoOutcome read_entry(SdoAccess& node, const LiveEntry& entry, const Settings& settings) {
+  SdoOutcome outcome = read_value(node, entry, settings);
+  report_broken_block(entry, outcome);
+  return outcome;
+}
+
+void print_line(const LiveEntry& entry, const SdoOutcome& outcome, bool raw) {
+  if (outcome.done()) {
+    print_visibly(stdout, "{} = {}\n", title(entry), raw ? hex_bytes(outcome.bytes) : value_of(entry, outcome.bytes));
+  } else {
+    print_visibly(stderr, "edsc: {}: {}\n", title(entry), failure_text(outcome));
+  }
+}
+
+int save(const Settings& settings, const LiveEntry& entry, const SdoOutcome& outcome) {
+  if (!outcome.done()) {
+    print_line(entry, outcome, false);
+    return exit_device_failed;
+  }
+  const std::string problem = write_files({{settings.file, std::string{outcome.bytes.begin(), outcome.bytes.end()}}});
+  if (!problem.empty()) {
+    print_visibly(stderr, "edsc: {}\n", problem);
+    return exit_wrong_usage;
+  }
+  print_visibly(stdout, "{}: {} to {}\n", title(entry), counted(outcome.bytes.size(), "byte"), settings.file);
+  return exit_fine;
+}
+
+int read_entries(LiveBus& bus, const Settings& settings, const std::vector<Chosen>& entries) {
+  SdoAccess node{bus, canopen::NodeId{settings.node}, settings.sdo};
+  Json json{{"version", 1}, {"node_id", settings.node}, {"entries", Json::array()}};
+  int exit_code = exit_fine;
+  unsigned silent = 0;
+  bool heard = false;
+  EntryCount count;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const LiveEntry& entry = entries[i].entry;
+    if (has_no_entry(entries[i], count)) continue;
+    const SdoOutcome outcome = read_entry(node, entry, settings);
+    if (!settings.file.empty()) return save(settings, entry, outcome);
+    count.take(entry, outcome);
+    const bool excused = may_be_refused(entries[i], count, outcome);
+    if (settings.format == "json") {
+      json["entries"].push_back(as_json(entry, outcome, outcome.bytes));
+    } else if (excused) {
+      print_visibly(stdout, "{}: no value\n", title(entry));
+    } else {
+      print_line(entry, outcome, settings.raw);
+    }
+    if (!outcome.done() && !excused) exit_code = exit_device_failed;
+    silent = outcome.end == SdoEnd::no_answer ? silent + 1 : 0;
+    heard = heard || silent == 0;
+    if (silent >= (heard ? most_silent : 1) && i + 1 != entries.size()) {
+      print_visibly(stderr, "edsc: node {} does not answer: {} more not read\n", settings.node, entries.size() - i - 1);
+      break;
+    }
+  }
+  if (settings.format == "json") fmt::print("{}\n", json_text(json));
+  return exit_code;
+}
+
+int run_read(const Settings& settings) {
+  std::unique_ptr<LoadedDevice> loaded;
+  if (!settings.sheet.empty()) {
+    loaded = load_live_device(settings.sheet, settings.node);
+    if (!loaded) return exit_wrong_usage;
+  }
+  std::vector<Chosen> entries;
+  if (!choose_entries(settings, loaded ? &*loaded->device : nullptr, entries)) return exit_wrong_usage;
+  if (!settings.file.empty() && entries.size() != 1) {
+    print_visibly(stderr, "edsc: --file takes the value of one entry, not of {}\n", entries.size());
+    return exit_wrong_usage;
+  }
+  return with_bus(settings.bus, [&](LiveBus& bus) { return read_entries(bus, settings, entries); });
+}
+
+}  // namespace
+
+void add_read_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("read", "read objects of a node over SDO");
+  command->footer(examples);
+  auto settings = std::make_shared<Settings>();
+  add_bus_argument(*command, settings->bus);
+  add_node_argument(*command, settings->node);
+  auto* objects = command->add_option("OBJECT", settings->objects, "6064h, 1018h:02, or a name of the data sheet");
+  auto* sheet =
+      command->add_option("--eds", settings->sheet, "data sheet of the node: EDS, DCF, XDD or XDC")->type_name("FILE");
+  auto* all = command->add_flag("--all", settings->all, "all entries that the data sheet lets read, but no DOMAINs");
+  all->needs(sheet)->excludes(objects);
+  add_type_option(*command, settings->type);
+  add_format_option(*command, settings->format);
+  auto* raw = command->add_flag("--raw", settings->raw, "values as bytes");
+  auto* file =
+      command->add_option("--file", settings->file, "write the bytes of one entry to this file")->type_name("FILE");
+  file->excludes(all)->excludes(raw);
+  auto* block = command->add_flag("--block", settings->block, "block transfer also for what is not a DOMAIN");
+  command->add_flag("--segmented", settings->segmented, "no block transfer")->excludes(block);
+  command->add_option("--max-bytes", settings->sdo.max_bytes, "longest value of a type without a fixed size")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 30))
+      ->capture_default_str();
+  add_timeout_option(*command, settings->sdo.timeout_ms);
+  command->callback([settings, &exit_code] {
+    if (!settings->all && settings->objects.empty()) throw CLI::RequiresError("OBJECT or --all", 1);
+    exit_code = run_read(*settings);
+  });
+}
+
+}  // namespace edsc

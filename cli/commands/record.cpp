@@ -1,0 +1,156 @@
+#include <fmt/format.h>
+#include <time.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <memory>
+#include <system_error>
+
+#include "commands/commands.hpp"
+#include "online/live_bus.hpp"
+#include "server/candump_line.hpp"
+#include "shared/exit_code.hpp"
+#include "shared/live_options.hpp"
+#include "shared/with_bus.hpp"
+#include "text/printable.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr const char* examples = R"(Examples:
+  edsc record socketcan:can0 -o bus.log                      until Ctrl-C; decode, canplayer and log2asc read it
+  edsc record slcan:/dev/ttyACM0@500000 -o bus.log --seconds 60
+  edsc record socketcand:127.0.0.1:29536/vcan0 --count 1000  on standard output
+  edsc record socketcan:can0 | edsc decode --node 5=drive.eds -)";
+
+struct Settings {
+  std::string bus;
+  std::string output;
+  std::string interface;
+  std::optional<double> seconds;
+  std::optional<std::uint64_t> count;
+};
+
+struct Close {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
+std::string bad_interface(const std::string& name) {
+  if (is_interface_name(name)) return "";
+  return fmt::format("\"{}\" is not the name of an interface: up to 15 characters without blanks", name);
+}
+
+/// The time of day at which a frame was received, never before that of the frame before.
+class Clock {
+ public:
+  socketcand::TimeStamp at(canopen::TimePoint received, canopen::TimePoint now) {
+    timespec time{};
+    ::clock_gettime(CLOCK_REALTIME, &time);
+    const auto age = std::chrono::microseconds{(now - received).count()};
+    std::int64_t present = std::int64_t{time.tv_sec} * 1'000'000 + time.tv_nsec / 1000 - age.count();
+    last_ = std::max(last_, present);
+    return {static_cast<std::time_t>(last_ / 1'000'000), static_cast<std::int32_t>(last_ % 1'000'000)};
+  }
+
+ private:
+  std::int64_t last_ = 0;
+};
+
+/// The frames of a bus to a file.
+class Recorder {
+ public:
+  Recorder(LiveBus& bus, const Settings& settings, std::FILE* file)
+      : bus_{bus},
+        settings_{settings},
+        interface_{settings.interface.empty() ? interface_of(settings.bus) : settings.interface},
+        file_{file} {}
+
+  /// False when the file cannot be written.
+  bool run() {
+    using namespace std::chrono;
+    const auto end = steady_clock::now() + duration_cast<steady_clock::duration>(
+                                               duration<double>{settings_.seconds.value_or(max_seconds)});
+    while (!Interruption::noted() && frames_ != settings_.count) {
+      const auto left = duration_cast<milliseconds>(end - steady_clock::now());
+      if (left <= milliseconds{0}) break;
+      std::optional<canopen::Frame> frame = bus_.receive(canopen::Duration{0});
+      if (!frame) {
+        if (std::fflush(file_) != 0) return false;
+        frame = bus_.receive(canopen::Duration{static_cast<std::uint32_t>(std::min(left, look_again).count()) * 1000U});
+      }
+      if (frame && !write(*frame)) return false;
+    }
+    return std::fflush(file_) == 0;
+  }
+
+  [[nodiscard]] std::uint64_t frames() const { return frames_; }
+
+ private:
+  static constexpr double max_seconds = 1e9;
+  static constexpr std::chrono::milliseconds look_again{100};
+
+  bool write(const canopen::Frame& frame) {
+    const std::string line = candump_line(frame, interface_, clock_.at(bus_.received_at(), bus_.now())) + "\n";
+    ++frames_;
+    return std::fwrite(line.data(), 1, line.size(), file_) == line.size();
+  }
+
+  LiveBus& bus_;
+  const Settings& settings_;
+  std::string interface_;
+  std::FILE* file_;
+  Clock clock_;
+  std::uint64_t frames_ = 0;
+};
+
+int record(LiveBus& bus, const Settings& settings, std::FILE* file) {
+  Recorder recorder{bus, settings, file};
+  const auto report = [&] {
+    if (!settings.output.empty()) print_visibly(stdout, "{} frames to {}\n", recorder.frames(), settings.output);
+  };
+  try {
+    errno = 0;
+    if (!recorder.run()) {
+      // main reports what standard output does not take
+      if (settings.output.empty()) throw std::system_error{errno, std::generic_category(), "standard output"};
+      print_visibly(stderr, "edsc: {}: {}\n", settings.output, errno != 0 ? std::strerror(errno) : "cannot be written");
+      return exit_wrong_usage;
+    }
+  } catch (const BusLost&) {
+    std::fflush(file);
+    report();
+    throw;
+  }
+  report();
+  return exit_fine;
+}
+
+int run_record(const Settings& settings) {
+  return with_bus(settings.bus, [&](LiveBus& bus) {
+    if (settings.output.empty()) return record(bus, settings, stdout);
+    const std::unique_ptr<std::FILE, Close> file{std::fopen(settings.output.c_str(), "we")};
+    if (file) return record(bus, settings, file.get());
+    print_visibly(stderr, "edsc: {}: {}\n", settings.output, std::strerror(errno));
+    return int{exit_wrong_usage};
+  });
+}
+
+}  // namespace
+
+void add_record_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("record", "write the frames of a bus as a candump log");
+  command->footer(examples);
+  auto settings = std::make_shared<Settings>();
+  add_bus_argument(*command, settings->bus);
+  command->add_option("-o,--output", settings->output, "file to write; emptied at the start (default: standard output)")->type_name("FILE");
+  command->add_option("--seconds", settings->seconds, "end after this time")->check(CLI::Range(0.01, 1e9));
+  command->add_option("--count", settings->count, "end after so many frames")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 62));
+  command->add_option("--interface", settings->interface, "name of the interface in the log (default: that of BUS)")
+      ->check(bad_interface);
+  command->callback([settings, &exit_code] { exit_code = run_record(*settings); });
+}
+
+}  // namespace edsc

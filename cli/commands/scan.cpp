@@ -1,0 +1,259 @@
+#include "online/scan.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "commands/commands.hpp"
+#include "monitor/text_table.hpp"
+#include "online/device_profile.hpp"
+#include "online/identity.hpp"
+#include "online/lss_session.hpp"
+#include "online/nmt_text.hpp"
+#include "shared/common_options.hpp"
+#include "shared/exit_code.hpp"
+#include "shared/live_device.hpp"
+#include "shared/live_options.hpp"
+#include "shared/with_bus.hpp"
+#include "text/printable.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr const char* examples = R"(Examples:
+  edsc scan socketcan:can0                                   all nodes that answer or send heartbeats
+  edsc scan socketcan:can0 --nodes 1..10 --listen 3000       some of them; three seconds for slow heartbeats
+  edsc scan socketcan:can0 --eds drive.eds --eds io.eds      and which data sheet fits each
+  edsc scan slcan:/dev/ttyACM0 --lss                         and the devices without node-ID, by LSS Fastscan
+  edsc scan socketcand:127.0.0.1:29536/vcan0 --format json   for a program)";
+
+struct Settings {
+  std::string bus;
+  std::string nodes = "1..127";
+  ScanSettings scan;
+  std::vector<std::string> sheets;
+  bool lss = false;
+  unsigned lss_step_ms = 20;
+  std::string format = "text";
+  ColorOption color;
+};
+
+/// A data sheet that devices are compared with.
+struct Candidate {
+  std::string path;
+  Identity identity;
+};
+
+struct Findings {
+  std::vector<FoundNode> nodes;
+  std::vector<canopen::LssAddress> unconfigured;
+  std::string lss_failure;
+};
+
+using Json = nlohmann::ordered_json;
+
+Identity identity_of(const FoundNode& node) {
+  return {node.device_type, node.vendor_id, node.product_code, node.revision_number, node.serial_number};
+}
+
+std::string hex_or_dash(std::optional<std::uint32_t> number) { return number ? fmt::format("{:08X}h", *number) : "-"; }
+
+bool fits(Fit fit) { return fit == Fit::same || fit == Fit::minor_revision || fit == Fit::major_revision; }
+
+std::string fits_text(const FoundNode& node, const std::vector<Candidate>& candidates) {
+  std::string text;
+  for (const Candidate& candidate : candidates) {
+    const Fit fit = compare_identity(candidate.identity, identity_of(node));
+    if (!fits(fit)) continue;
+    text += (text.empty() ? "" : ", ") + candidate.path;
+    std::string remark{fit == Fit::same ? "" : to_text(fit)};
+    if (const auto missing = not_compared(candidate.identity, identity_of(node)); !missing.empty()) {
+      remark += fmt::format("{}{} not compared", remark.empty() ? "" : "; ", names_of(missing));
+    }
+    if (!remark.empty()) text += fmt::format(" ({})", remark);
+  }
+  return text.empty() ? "none" : text;
+}
+
+/// A node that is not the device of a file, but the most similar one.
+struct Nearest {
+  const FoundNode* node = nullptr;
+  unsigned differences = 0;
+};
+
+/// Nothing where the file fits a node, or no node states a number.
+std::optional<Nearest> nearest_misfit(const std::vector<FoundNode>& nodes, const Candidate& candidate) {
+  std::optional<Nearest> nearest;
+  for (const FoundNode& node : nodes) {
+    const Identity identity = identity_of(node);
+    if (fits(compare_identity(candidate.identity, identity))) return std::nullopt;
+    const unsigned differences = count_differences(candidate.identity, identity);
+    if (differences == 0 || (nearest && nearest->differences <= differences)) continue;
+    nearest = Nearest{&node, differences};
+  }
+  return nearest;
+}
+
+/// Why files fit no node.
+void print_misfits(const std::vector<FoundNode>& nodes, const std::vector<Candidate>& candidates) {
+  for (const Candidate& candidate : candidates) {
+    const auto nearest = nearest_misfit(nodes, candidate);
+    if (!nearest) continue;
+    print_visibly(stdout, "{} fits no node; node {}{}: {}\n", candidate.path, nearest->node->node_id,
+               nodes.size() > 1 ? " is nearest" : "",
+               identity_differences(candidate.identity, identity_of(*nearest->node)));
+  }
+}
+
+void print_text(const Findings& found, const std::vector<Candidate>& candidates, bool colour) {
+  TextTable table;
+  std::vector<std::string> head{"node", "state", "vendor-ID", "product", "revision", "serial", "device type", "name"};
+  if (!candidates.empty()) head.emplace_back("data sheet");
+  table.add(std::move(head));
+  for (const FoundNode& node : found.nodes) {
+    std::vector<std::string> row{
+        fmt::format("{:>4}", node.node_id), std::string{node.state ? nmt_state_text(*node.state) : "-"},
+        hex_or_dash(node.vendor_id),        hex_or_dash(node.product_code),
+        hex_or_dash(node.revision_number),  hex_or_dash(node.serial_number)};
+    row.push_back(!node.answers_sdo  ? "no answer over SDO"
+                  : node.device_type ? fmt::format("{:08X}h {}", *node.device_type, profile_text(*node.device_type))
+                                     : "-");
+    row.push_back(node.name ? *node.name : "-");
+    if (!candidates.empty()) row.push_back(fits_text(node, candidates));
+    table.add(std::move(row));
+  }
+  const std::vector<std::string> lines = table.lines();
+  for (std::size_t i = found.nodes.empty() ? lines.size() : 0; i < lines.size(); ++i) {
+    const bool bold = colour && i == 0;
+    fmt::print("{}{}{}\n", bold ? "\x1B[1m" : "", lines[i], bold ? "\x1B[0m" : "");
+  }
+  print_misfits(found.nodes, candidates);
+  for (const canopen::LssAddress& address : found.unconfigured) {
+    print_visibly(stdout, "without node-ID: {}\n", to_text(address));
+  }
+}
+
+Json number_or_null(std::optional<std::uint32_t> number) { return number ? Json(*number) : Json(nullptr); }
+
+Json as_json(const FoundNode& node, const std::vector<Candidate>& candidates) {
+  Json json{{"node_id", node.node_id}};
+  json["state"] = node.state ? Json(nmt_state_text(*node.state)) : Json(nullptr);
+  json["answers_sdo"] = node.answers_sdo;
+  json["device_type"] = number_or_null(node.device_type);
+  json["profile"] = node.device_type ? Json(*node.device_type & 0xFFFF) : Json(nullptr);
+  json["vendor_id"] = number_or_null(node.vendor_id);
+  json["product_code"] = number_or_null(node.product_code);
+  json["revision_number"] = number_or_null(node.revision_number);
+  json["serial_number"] = number_or_null(node.serial_number);
+  json["name"] = node.name ? Json(*node.name) : Json(nullptr);
+  json["data_sheets"] = Json::array();
+  json["misfits"] = Json::array();
+  for (const Candidate& candidate : candidates) {
+    const Fit fit = compare_identity(candidate.identity, identity_of(node));
+    if (!fits(fit)) {
+      const std::string differences = identity_differences(candidate.identity, identity_of(node));
+      json["misfits"].push_back({{"file", candidate.path}, {"differences", differences}});
+      continue;
+    }
+    Json sheet{{"file", candidate.path}, {"fit", to_text(fit)}, {"not_compared", Json::array()}};
+    for (const NotCompared& number : not_compared(candidate.identity, identity_of(node))) {
+      sheet["not_compared"].push_back(number.key);
+    }
+    json["data_sheets"].push_back(std::move(sheet));
+  }
+  return json;
+}
+
+void print_json(const Findings& found, const std::vector<Candidate>& candidates) {
+  Json json{{"version", 1}, {"nodes", Json::array()}, {"unconfigured", Json::array()}};
+  for (const FoundNode& node : found.nodes) json["nodes"].push_back(as_json(node, candidates));
+  for (const canopen::LssAddress& address : found.unconfigured) {
+    json["unconfigured"].push_back({{"vendor_id", address.vendor_id},
+                                    {"product_code", address.product_code},
+                                    {"revision_number", address.revision_number},
+                                    {"serial_number", address.serial_number}});
+  }
+  fmt::print("{}\n", json_text(json));
+}
+
+constexpr std::uint8_t any_node = 1;  ///< the identity of a device does not depend on its node-ID
+
+/// False when a data sheet cannot be read, which is then told.
+bool load_candidates(const Settings& settings, std::vector<Candidate>& candidates) {
+  for (const std::string& path : settings.sheets) {
+    const auto loaded = load_live_device(path, any_node);
+    if (!loaded) return false;
+    candidates.push_back({path, identity_of(*loaded->device)});
+  }
+  return true;
+}
+
+void find_nodes(LiveBus& bus, const Settings& settings, Findings& found) {
+  scan(bus, settings.scan, found.nodes);
+  if (!settings.lss) return;
+  canopen::LssTimeouts timeouts;
+  timeouts.answer = canopen::Duration{settings.scan.timeout_ms * 1000U};
+  timeouts.fastscan_step = canopen::Duration{settings.lss_step_ms * 1000U};
+  const LssResult result = LssSession{bus, timeouts}.find_unconfigured(
+      [&](const canopen::LssAddress& address) { found.unconfigured.push_back(address); });
+  found.lss_failure = result.failure;
+}
+
+int run_scan(Settings settings) {
+  settings.scan.nodes = parse_node_list(settings.nodes);
+  std::vector<Candidate> candidates;
+  if (!load_candidates(settings, candidates)) return exit_wrong_usage;
+  return with_bus(settings.bus, [&](LiveBus& bus) {
+    Findings found;
+    const auto show = [&] {
+      if (settings.format == "json") {
+        print_json(found, candidates);
+      } else {
+        print_text(found, candidates, settings.color.on(stdout));
+      }
+      std::fflush(stdout);
+    };
+    try {
+      find_nodes(bus, settings, found);
+    } catch (...) {
+      show();  // what was found so far
+      throw;
+    }
+    show();
+    if (!found.lss_failure.empty()) {
+      print_visibly(stderr, "edsc: fastscan: {}\n", found.lss_failure);
+      return exit_device_failed;
+    }
+    if (!found.nodes.empty() || !found.unconfigured.empty()) return int{exit_fine};
+    print_visibly(stderr, "edsc: no node answers on {}\n", settings.bus);
+    return exit_device_failed;
+  });
+}
+
+}  // namespace
+
+void add_scan_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("scan", "which nodes are on a bus, and who they are");
+  command->footer(examples);
+  auto settings = std::make_shared<Settings>();
+  add_bus_argument(*command, settings->bus);
+  command->add_option("--nodes", settings->nodes, "node-IDs to ask: 1..127, or a list such as 1,3,8..20")
+      ->check([](const std::string& text) {
+        return parse_node_list(text).empty() ? "\"" + text + "\" is no list of node-IDs" : std::string{};
+      })
+      ->capture_default_str();
+  add_timeout_option(*command, settings->scan.timeout_ms);
+  command->add_option("--listen", settings->scan.listen_ms, "ms to listen to heartbeats for, at least")
+      ->check(CLI::Range(0, 600'000))
+      ->capture_default_str();
+  command->add_option("--eds", settings->sheets, "data sheet to compare with; may be given more than once")
+      ->allow_extra_args(false)
+      ->type_name("FILE");
+  auto* lss = command->add_flag("--lss", settings->lss, "find devices without node-ID by LSS Fastscan, too");
+  add_step_option(*command, settings->lss_step_ms)->needs(lss);
+  add_format_option(*command, settings->format);
+  settings->color.add_to(*command);
+  command->callback([settings, &exit_code] { exit_code = run_scan(*settings); });
+}
+
+}  // namespace edsc

@@ -1,0 +1,50 @@
+#include "shared/output.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <iostream>
+#include <system_error>
+
+namespace edsc {
+namespace {
+
+constexpr const char* problem = "cannot write to standard output";
+
+bool flushed() {
+  std::cout.flush();
+  return std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout;
+}
+
+}  // namespace
+
+void occupy_standard_descriptors() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) continue;
+    // The lowest free number is this one. Open for the other direction: use of it fails, as of the closed one.
+    if (::open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY) < 0) return;
+  }
+}
+
+bool finish_output(int error_number) {
+  errno = error_number;
+  if (flushed()) return true;
+  fmt::print(stderr, "edsc: {}{}{}\n", problem, errno == 0 ? "" : ": ", errno == 0 ? "" : std::strerror(errno));
+  return false;
+}
+
+void write_output(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) {
+    throw std::system_error{errno, std::generic_category(), problem};
+  }
+}
+
+void flush_output() {
+  if (!flushed()) throw std::system_error{errno, std::generic_category(), problem};
+}
+
+}  // namespace edsc

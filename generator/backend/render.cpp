@@ -1,0 +1,70 @@
+#include "backend/render.hpp"
+
+#include <algorithm>
+#include <kainjow/mustache.hpp>
+#include <stdexcept>
+
+#include "backend/json_context.hpp"
+#include "text/printable.hpp"
+
+namespace edsc {
+namespace {
+
+/// Whether a line holds one section tag and nothing else.
+bool is_section_line(std::string_view line) {
+  const std::size_t begin = line.find_first_not_of(' ');
+  if (begin == std::string_view::npos || !line.substr(begin).starts_with("{{")) return false;
+  if (!line.ends_with("}}") || line.find("}}") != line.size() - 2) return false;
+  return line.size() > begin + 2 && std::string_view{"#/^!"}.find(line[begin + 2]) != std::string_view::npos;
+}
+
+/// Lines that hold only a section tag leave nothing behind, not even an empty line, also where the section is empty.
+std::string without_section_lines(std::string_view text) {
+  std::string out;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, end);
+    if (is_section_line(line)) {
+      out += line.substr(line.find('{'));
+    } else {
+      out += line;
+      if (end < text.size()) out += '\n';
+    }
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return out;
+}
+
+/// What the library writes to.
+struct Output {
+  std::string text;
+  Output& operator<<(const std::string& part) {
+    text += part;
+    return *this;
+  }
+};
+
+std::string render_escaped(std::string_view text, const nlohmann::ordered_json& view,
+                           const kainjow::mustache::mustache::escape_handler& escape) {
+  kainjow::mustache::mustache filler{without_section_lines(text)};
+  if (!filler.is_valid()) throw std::runtime_error{filler.error_message()};
+  filler.set_custom_escape(escape);
+  JsonContext context{view};
+  Output out;
+  filler.render(context, out);
+  if (!filler.is_valid()) throw std::runtime_error{filler.error_message()};
+  return std::move(out.text);
+}
+
+}  // namespace
+
+std::string render(std::string_view text, const nlohmann::ordered_json& view) {
+  return render_escaped(text, view, [](const std::string& plain) { return plain; });
+}
+
+std::string render_html(std::string_view text, const nlohmann::ordered_json& view) {
+  return render_escaped(text, view,
+                        [](const std::string& plain) { return kainjow::mustache::html_escape(printable(plain)); });
+}
+
+}  // namespace edsc

@@ -1,0 +1,25 @@
+#include "lint/check_device.hpp"
+
+#include "lint/rule_groups.hpp"
+
+namespace edsc {
+
+void check_device(const Device& device, const DataSheet& sheet, const Options& options, Diagnostics& diagnostics) {
+  const RuleContext context{device, sheet, options, diagnostics};
+  check_file(context);
+  check_device_info(context);
+  check_objects(context);
+  check_presence(context);
+  check_standard_objects(context);
+  check_sub_index_0(context);
+  check_entries(context);
+  check_communication_values(context);
+  check_cob_ids(context);
+  check_pdo_communication(context);
+  check_pdo_mapping(context);
+  check_mpdos(context);
+  check_profile(context);
+  check_names(context);
+}
+
+}  // namespace edsc

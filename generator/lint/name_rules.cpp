@@ -1,0 +1,132 @@
+#include <fmt/format.h>
+
+#include <string_view>
+#include <unordered_map>
+
+#include "device/identifier.hpp"
+#include "lint/rule_groups.hpp"
+#include "lint/standard_objects.hpp"
+#include "text/ascii.hpp"
+
+namespace edsc {
+namespace {
+
+/// A thing with a name: an object of the device, or an entry of an object.
+struct Named {
+  std::string label;
+  const std::string& name;
+  const std::string& identifier;
+  Position position;
+};
+
+/// Names of one scope, and which came first. Filled when the first name that had to be changed is found.
+class Scope {
+ public:
+  [[nodiscard]] bool filled() const { return !first_.empty(); }
+  void add(std::string_view identifier, Position position, std::string label) {
+    first_.try_emplace(std::string{identifier}, std::make_pair(position, std::move(label)));
+  }
+  [[nodiscard]] const std::pair<Position, std::string>* find(const std::string& identifier) const {
+    const auto at = first_.find(identifier);
+    return at == first_.end() ? nullptr : &at->second;
+  }
+
+ private:
+  std::unordered_map<std::string, std::pair<Position, std::string>> first_;
+};
+
+/// Whether the identifier looks as if it was not what the name alone gives: cheap, and wrong now and then.
+bool may_be_changed(std::string_view identifier) {
+  if (identifier.empty() || identifier.back() == '_' || identifier.starts_with("n_")) return true;
+  if (identifier.starts_with("object_") || identifier.starts_with("sub_")) return true;
+  const std::size_t suffix = identifier.rfind('_');
+  if (suffix == std::string_view::npos) return false;
+  for (const char c : identifier.substr(suffix + 1)) {
+    if (!is_hex_digit(c)) return false;
+  }
+  return true;
+}
+
+/// `fill` adds all names of the scope, the changed ones too.
+template <typename Fill>
+void check_name(const RuleContext& context, const Named& named, Scope& scope, Fill fill) {
+  if (named.name.empty() || !may_be_changed(named.identifier)) return;
+  const std::string wanted = to_snake_case(named.name);
+  if (wanted.empty()) {
+    context.report("name-empty", named.position,
+                   fmt::format("{} \"{}\" has no letter that C++ knows; it is called {}", named.label, named.name,
+                               named.identifier));
+    return;
+  }
+  if (wanted != named.identifier) {
+    if (!scope.filled()) fill(scope);
+    const auto* first = scope.find(wanted);
+    std::vector<Note> notes;
+    if (first != nullptr) notes.push_back({first->first, fmt::format("{} is called so", first->second)});
+    context.report("name-twice", named.position,
+                   fmt::format("{} \"{}\" would be {} in C++, as another is; it is called {}", named.label, named.name,
+                               wanted, named.identifier),
+                   std::move(notes));
+  } else if (wanted.back() == '_') {
+    context.report("name-reserved", named.position,
+                   fmt::format("{} \"{}\" is a word of C++ or of the generated code; it is called {}", named.label,
+                               named.name, wanted));
+  } else if (wanted.starts_with("n_") && is_digit(wanted[2])) {
+    context.report("name-digit", named.position,
+                   fmt::format("{} \"{}\" begins with a digit; it is called {}", named.label, named.name, wanted));
+  }
+}
+
+bool named_by_options(const RuleContext& context, std::uint16_t index, std::uint8_t sub_index) {
+  return context.options.names.contains({index, sub_index});
+}
+
+Position name_place(const EntryDescription* description, const Position& section) {
+  return description != nullptr && description->parameter_name.present ? description->parameter_name.position : section;
+}
+
+/// CiA 301 itself gives all PDO parameters one name, and all SDO parameters.
+bool is_one_of_many(std::uint16_t index) {
+  const StandardObject* standard = find_standard_object(index);
+  return standard != nullptr && standard->first != standard->last;
+}
+
+/// The elements of an ARRAY are called by their numbers.
+void check_entry_names(const RuleContext& context, const Object& object) {
+  Scope scope;
+  const auto fill = [&](Scope& names) {
+    for (const Entry& entry : object.entries) {
+      names.add(entry.identifier, context.place_of(entry, &EntryDescription::parameter_name),
+                entry_label(entry.index, entry.sub_index));
+    }
+  };
+  for (const Entry& entry : object.entries) {
+    const bool count_without_name = entry.sub_index == 0 && entry.name == object.name;
+    if (!may_be_changed(entry.identifier) || count_without_name) continue;
+    if (named_by_options(context, entry.index, entry.sub_index)) continue;
+    const Position place = context.place_of(entry, &EntryDescription::parameter_name);
+    check_name(context, {entry_label(entry.index, entry.sub_index), entry.name, entry.identifier, place}, scope, fill);
+  }
+}
+
+}  // namespace
+
+void check_names(const RuleContext& context) {
+  Scope scope;
+  const auto fill = [&](Scope& names) {
+    for (const Object& object : context.device.objects) {
+      names.add(object.identifier, name_place(context.describe(object.index), object.position),
+                index_label(object.index));
+    }
+  };
+  for (const Object& object : context.device.objects) {
+    if (is_one_of_many(object.index)) continue;
+    if (may_be_changed(object.identifier) && !named_by_options(context, object.index, 0)) {
+      const Position place = name_place(context.describe(object.index), object.position);
+      check_name(context, {index_label(object.index), object.name, object.identifier, place}, scope, fill);
+    }
+    if (object.type == ObjectType::record) check_entry_names(context, object);
+  }
+}
+
+}  // namespace edsc

@@ -1,0 +1,36 @@
+#include <fmt/format.h>
+
+#include "device/value.hpp"
+#include "lint/rule_groups.hpp"
+
+namespace edsc {
+namespace {
+
+/// CiA 301, 7.5.2: objects that every device has.
+constexpr std::uint16_t mandatory_indices[] = {0x1000, 0x1001, 0x1018};
+
+/// A default that CiA 301 gives is not a mistake of the file.
+void check_default(const RuleContext& context, const Entry& entry) {
+  if (!entry.default_value || entry.default_value->plus_node_id || !entry.default_value->clause.empty()) return;
+  const std::uint64_t value = entry.default_value->bits;
+  const bool below = entry.low_limit && is_less(*entry.type, value, entry.low_limit->bits);
+  const bool above = entry.high_limit && is_less(*entry.type, entry.high_limit->bits, value);
+  if (!below && !above) return;
+  context.report("default-outside-limits", entry.default_value->position,
+                 fmt::format("the default of {} is {} its limit", named(entry), below ? "below" : "above"));
+}
+
+}  // namespace
+
+void check_objects(const RuleContext& context) {
+  for (const std::uint16_t index : mandatory_indices) {
+    if (context.device.find(index) != nullptr) continue;
+    context.report("mandatory-object", context.whole_file(),
+                   fmt::format("{} is missing: every device has it", index_label(index)));
+  }
+  for (const Object& object : context.device.objects) {
+    for (const Entry& entry : object.entries) check_default(context, entry);
+  }
+}
+
+}  // namespace edsc

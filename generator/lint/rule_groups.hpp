@@ -1,0 +1,37 @@
+/// The rules beyond those of single values and mappings, grouped by what they look at.
+#pragma once
+
+#include "lint/rule_context.hpp"
+
+namespace edsc {
+
+/// [FileInfo], [DummyUsage], [DeviceComissioning], encoding and line lengths.
+void check_file(const RuleContext& context);
+/// [DeviceInfo], alone and against the objects.
+void check_device_info(const RuleContext& context);
+/// Mandatory objects, and defaults against limits.
+void check_objects(const RuleContext& context);
+/// Objects that others need, and indices that nobody should use.
+void check_presence(const RuleContext& context);
+/// The communication profile's objects against CiA 301.
+void check_standard_objects(const RuleContext& context);
+/// Sub-indices 0 and FFh of ARRAYs and RECORDs.
+void check_sub_index_0(const RuleContext& context);
+/// Keys of single entries.
+void check_entries(const RuleContext& context);
+/// Values of the communication profile that are no COB-IDs.
+void check_communication_values(const RuleContext& context);
+/// COB-IDs, alone and against each other.
+void check_cob_ids(const RuleContext& context);
+/// PDO communication parameters, and that each PDO has both of its parameters.
+void check_pdo_communication(const RuleContext& context);
+/// PDO mapping parameters as a whole; single entries are checked by mark_broken_pdos().
+void check_pdo_mapping(const RuleContext& context);
+/// Multiplex PDOs and their lists.
+void check_mpdos(const RuleContext& context);
+/// What the device profile of 1000h asks for.
+void check_profile(const RuleContext& context);
+/// Names as C++ identifiers.
+void check_names(const RuleContext& context);
+
+}  // namespace edsc

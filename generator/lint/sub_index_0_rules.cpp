@@ -1,0 +1,68 @@
+#include <fmt/format.h>
+
+#include "device/index_range.hpp"
+#include "device/object_structure.hpp"
+#include "lint/rule_groups.hpp"
+
+namespace edsc {
+namespace {
+
+/// Objects whose sub-index 0 is not the highest sub-index, but a number that changes: errors, mapped objects.
+bool counts(std::uint16_t index) { return index == 0x1003 || contains(mapping_parameters, index); }
+
+void check_value(const RuleContext& context, const Object& object, const Entry& count) {
+  if (!count.default_value || counts(object.index)) return;
+  const std::uint64_t value = count.default_value->bits;
+  const std::uint8_t highest = object.highest_sub_index();
+  if (value == highest) return;
+  context.report(
+      "sub-index-0-value", count.default_value->position,
+      fmt::format("{} says that {} is the highest sub-index; {} is described", named(count), value, highest));
+}
+
+void check_count(const RuleContext& context, const Object& object) {
+  const Entry& count = object.entries.front();
+  if (count.sub_index != 0) return;
+  if (count.type->type != canopen::DataType::unsigned8) {
+    context.report("sub-index-0-type", context.place_of(count, &EntryDescription::data_type),
+                   fmt::format("{} is {}; sub-index 0 is UNSIGNED8", named(count), count.type->name), {},
+                   std::string{count.type->name});
+  }
+  const bool may_change = counts(object.index);
+  if (!canopen::readable(count.access) || (canopen::writable(count.access) && !may_change)) {
+    context.report("sub-index-0-access", count.access_position,
+                   fmt::format("{} has access {}; {}", named(count), canopen::row_of(count.access).name,
+                               may_change ? "it can be read" : "the highest sub-index is const or ro"),
+                   {}, std::string{canopen::row_of(count.access).name});
+  }
+  check_value(context, object, count);
+}
+
+/// Sub-index FFh without a default is 0 in the device.
+void check_structure(const RuleContext& context, const Object& object) {
+  const Entry* entry = object.find(structure_sub_index);
+  if (entry == nullptr) return;
+  if (entry->type->type != canopen::DataType::unsigned32) {
+    return context.report("sub-index-255", context.place_of(*entry, &EntryDescription::data_type),
+                          fmt::format("{} is {}; sub-index FFh is UNSIGNED32 and describes its object",
+                                      named(*entry), entry->type->name));
+  }
+  const ObjectStructure structure = structure_of(object);
+  const std::uint64_t value = entry->default_value ? entry->default_value->bits : 0;
+  if (structure.matches(value)) return;
+  context.report("sub-index-255", entry->default_value ? entry->default_value->position : entry->position,
+                 fmt::format("{} is 0x{:X} by default, but the structure of the object is {}", named(*entry), value,
+                             structure.text()));
+}
+
+}  // namespace
+
+void check_sub_index_0(const RuleContext& context) {
+  for (const Object& object : context.device.objects) {
+    if (!object.has_sub_indices() || object.entries.empty()) continue;
+    check_count(context, object);
+    check_structure(context, object);
+  }
+}
+
+}  // namespace edsc

@@ -1,0 +1,146 @@
+#include "load/load_device.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "device/resolve.hpp"
+#include "diagnostics/quote.hpp"
+#include "diagnostics/rule.hpp"
+#include "diagnostics/unknown_rule.hpp"
+#include "eds/allow_comments.hpp"
+#include "eds/ini.hpp"
+#include "lint/check_device.hpp"
+#include "xdd/read_xdd.hpp"
+
+namespace edsc {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The options file that goes with a data sheet: `drive.options.json` beside `drive.eds`.
+std::string options_path_of(const LoadSettings& settings) {
+  if (!settings.options_path.empty()) return settings.options_path;
+  const fs::path beside = fs::path{settings.path}.replace_extension(".options.json");
+  std::error_code error;
+  return fs::is_regular_file(beside, error) ? beside.string() : "";
+}
+
+std::unique_ptr<SourceFile> read_or_report(const std::string& path, LoadedDevice& loaded, Diagnostics& diagnostics) {
+  std::string error;
+  auto file = read_source_file(path, error);
+  if (!file) {
+    file = std::make_unique<SourceFile>(path, std::string{});
+    diagnostics.error("unreadable-file", Position{file.get()}, error);
+    loaded.unreadable = true;
+  }
+  return file;
+}
+
+void read_options_file(const std::string& path, LoadedDevice& loaded, Diagnostics& diagnostics) {
+  if (path.empty()) return;
+  loaded.options_source = read_or_report(path, loaded, diagnostics);
+  if (loaded.unreadable) return;
+  loaded.options = read_options(*loaded.options_source, diagnostics);
+  for (const SilencedRule& silenced : loaded.options.silence) {
+    if (find_rule(silenced.rule) == nullptr) {
+      diagnostics.error("options", silenced.position, "silence: " + unknown_rule(silenced.rule));
+    }
+    diagnostics.silence(silenced.rule);
+  }
+}
+
+void allow_by_options(const LoadedDevice& loaded, Diagnostics& diagnostics) {
+  for (const AllowedFindings& allowed : loaded.options.allow) {
+    if (find_rule(allowed.rule) == nullptr) {
+      diagnostics.error("options", allowed.position, "allow: " + unknown_rule(allowed.rule));
+      continue;
+    }
+    Allowance allowance{allowed.rule, allowed.reason, allowed.position, false, {}};
+    if (allowed.object) {
+      const bool is_entry = allowed.object->sub_index.has_value();
+      allowance.scope.kind = is_entry ? AllowanceScope::Kind::entry : AllowanceScope::Kind::object;
+      allowance.scope.index = allowed.object->index;
+      allowance.scope.sub_index = allowed.object->sub_index.value_or(0);
+    }
+    diagnostics.allow(std::move(allowance));
+  }
+}
+
+void allow_by_comment(const AllowComment& comment, Diagnostics& diagnostics) {
+  const auto warning = [&](std::string message) {
+    diagnostics.warning("allow-comment", comment.position, std::move(message));
+  };
+  if (comment.rule.empty()) return warning("a comment of edsc has the form \"; edsc: allow RULE - reason\"");
+  if (find_rule(comment.rule) == nullptr) return warning(unknown_rule(comment.rule));
+  if (comment.reason.empty()) return warning("missing reason: \"; edsc: allow RULE - reason\"");
+  if (!comment.has_target) return warning("no key or section follows to which this comment applies");
+  diagnostics.allow({std::string{comment.rule}, std::string{comment.reason}, comment.position, true, comment.scope});
+}
+
+/// Registers what the options and comments of the data sheet allow. The parts of an XDD are known when it is read.
+void allow_findings(const LoadedDevice& loaded, Diagnostics& diagnostics) {
+  allow_by_options(loaded, diagnostics);
+  diagnostics.set_outline({loaded.source.get(), {}, {}});
+  if (is_xml(*loaded.source)) return;
+  const bool has_comments = loaded.source->text().find("edsc:") != std::string_view::npos;
+  if (!has_comments && loaded.options.allow.empty()) return;
+  AllowComments found = find_allow_comments(*loaded.source);
+  diagnostics.set_outline(std::move(found.outline));
+  for (const AllowComment& comment : found.comments) allow_by_comment(comment, diagnostics);
+}
+
+}  // namespace
+
+std::unique_ptr<LoadedDevice> load_device(const LoadSettings& settings, Diagnostics& diagnostics) {
+  auto loaded = std::make_unique<LoadedDevice>();
+  loaded->source = read_or_report(settings.path, *loaded, diagnostics);
+  if (loaded->unreadable) return loaded;
+  if (settings.keep_going) diagnostics.keep_going(loaded->source.get(), fatal_rules());
+  read_options_file(options_path_of(settings), *loaded, diagnostics);
+  if (loaded->unreadable) return loaded;
+  if (settings.static_mapping) loaded->options.static_mapping.all = true;
+  resolve_and_check(*loaded, settings, diagnostics);
+  return loaded;
+}
+
+bool can_keep_going(const LoadedDevice& loaded, const Diagnostics& diagnostics) {
+  const auto is_final = [&](const Diagnostic& one) {
+    return one.severity == Severity::error && (one.position.file != loaded.source.get() ||
+                                               std::ranges::find(fatal_rules(), one.rule) != fatal_rules().end());
+  };
+  return loaded.device && std::ranges::none_of(diagnostics.all(), is_final);
+}
+
+void report_unused_allowances(const LoadedDevice& loaded, Diagnostics& diagnostics) {
+  const auto report = [&](std::string_view rule, const Position& position) {
+    if (find_rule(rule) == nullptr) return;
+    diagnostics.warning("allow-unused", position, fmt::format("no finding of {} matches", quote(rule)));
+  };
+  for (const SilencedRule& one : loaded.options.silence) {
+    if (!diagnostics.has_silenced(one.rule)) report(one.rule, one.position);
+  }
+  const std::vector<Allowance> allowances = diagnostics.allowances();
+  for (const Allowance& one : allowances) {
+    if (one.findings == 0) report(one.rule, one.position);
+  }
+}
+
+void resolve_and_check(LoadedDevice& loaded, const LoadSettings& settings, Diagnostics& diagnostics) {
+  allow_findings(loaded, diagnostics);
+  loaded.sheet = is_xml(*loaded.source) ? read_xdd(*loaded.source, diagnostics)
+                                         : read_data_sheet(parse_ini(*loaded.source, diagnostics), diagnostics);
+  if (loaded.sheet.objects.empty()) return;
+  if (is_xml(*loaded.source) && loaded.options.stored_eds != StoredEds::of_application) {
+    diagnostics.error("options", Position{loaded.source.get()}, "option stored_eds: 1021h holds an EDS, which this is not");
+  }
+  loaded.device = resolve_device(loaded.sheet, loaded.options, {settings.name, settings.node_id}, diagnostics);
+  if (settings.check) check_device(*loaded.device, loaded.sheet, loaded.options, diagnostics);
+}
+
+}  // namespace edsc
