@@ -1,0 +1,97 @@
+#!/usr/bin/env python3
+"""The include graph of generator/, bus/ and cli/ is the one of docs/architecture.md, and nothing includes upward.
+
+    includes_test.py SOURCE_DIR [unittest arguments]
+
+The page has a table of modules, each with the modules that it may include. A module is below all that include it.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+import unittest
+from collections import defaultdict
+from graphlib import TopologicalSorter
+from pathlib import Path
+
+SOURCE_DIR = Path(sys.argv[1]).resolve()
+TOPS = ("generator", "bus", "cli")
+INCLUDE = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
+ROW = re.compile(r"^\| `((?:generator|bus|cli)(?:/\w+)?)/?` \| (.*?) \|", re.MULTILINE)
+MAX_FILES = 25
+# Folders that have more files; they may not grow.
+LARGE = {"generator/device": 48, "generator/eds": 29, "generator/format": 26, "bus/conform": 33, "bus/conform/cases": 26}
+
+
+def module_of(path: Path) -> str:
+    """`bus/conform` of bus/conform/cases/setup.cpp, `cli` of cli/main.cpp."""
+    return "/".join(path.relative_to(SOURCE_DIR).parts[:-1][:2])
+
+
+def sources() -> list[Path]:
+    return [path for top in TOPS for path in sorted((SOURCE_DIR / top).rglob("*.[ch]pp"))]
+
+
+def found_includes() -> dict[str, dict[str, str]]:
+    """By module, the modules that it includes, each with a file that does."""
+    known = {path.relative_to(SOURCE_DIR / path.relative_to(SOURCE_DIR).parts[0]).as_posix(): module_of(path)
+             for path in sources()}
+    found: dict[str, dict[str, str]] = defaultdict(dict)
+    for path in sources():
+        module = module_of(path)
+        found[module]
+        for name in INCLUDE.findall(path.read_text(encoding="utf-8")):
+            other = known.get(name)
+            if other is not None and other != module:
+                found[module].setdefault(other, f"{path.relative_to(SOURCE_DIR)} includes {name}")
+    return dict(found)
+
+
+def documented_includes() -> dict[str, set[str]]:
+    page = (SOURCE_DIR / "docs/architecture.md").read_text(encoding="utf-8")
+    return {module: set(re.findall(r"`([\w/]+)`", cell)) for module, cell in ROW.findall(page)}
+
+
+class Includes(unittest.TestCase):
+    maxDiff = None
+
+    def test_names_of_headers_are_unique(self) -> None:
+        names = [path.relative_to(SOURCE_DIR / path.relative_to(SOURCE_DIR).parts[0]).as_posix() for path in sources()]
+        self.assertEqual(sorted(names), sorted(set(names)))
+
+    def test_each_include_between_modules_is_documented(self) -> None:
+        documented, found = documented_includes(), found_includes()
+        self.assertEqual(sorted(documented), sorted(found), "modules of docs/architecture.md and of the tree")
+        undocumented = [text for module, others in found.items() for other, text in others.items()
+                        if other not in documented[module]]
+        self.assertEqual(undocumented, [])
+
+    def test_each_documented_include_exists(self) -> None:
+        found = found_includes()
+        stale = [f"{module} -> {other}" for module, others in documented_includes().items() for other in sorted(others)
+                 if other not in found.get(module, {})]
+        self.assertEqual(stale, [])
+
+    def test_nothing_includes_upward(self) -> None:
+        documented = documented_includes()
+        tuple(TopologicalSorter(documented).static_order())  # raises CycleError with the cycle
+        rank = {top: place for place, top in enumerate(TOPS)}
+        upward = [f"{module} -> {other}" for module, others in documented.items() for other in others
+                  if rank[other.split("/")[0]] > rank[module.split("/")[0]]]
+        self.assertEqual(upward, [])
+
+    def test_the_runtime_includes_itself_alone(self) -> None:
+        names = {f"{path.relative_to(SOURCE_DIR)}: {name}"
+                 for path in (SOURCE_DIR / "runtime/include").rglob("*.hpp")
+                 for name in INCLUDE.findall(path.read_text(encoding="utf-8")) if not name.startswith("canopen/")}
+        self.assertEqual(names, set())
+
+    def test_folders_stay_small(self) -> None:
+        counts = {folder.relative_to(SOURCE_DIR).as_posix(): sum(entry.is_file() for entry in folder.iterdir())
+                  for top in TOPS for folder in [SOURCE_DIR / top, *(SOURCE_DIR / top).rglob("*")] if folder.is_dir()}
+        self.assertEqual({folder: count for folder, count in counts.items() if count > LARGE.get(folder, MAX_FILES)}, {})
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]])
