@@ -3,24 +3,23 @@ include(${CMAKE_CURRENT_LIST_DIR}/EdscAddDictionary.cmake)
 # edsc_add_conformance_test(NAME DICTIONARY [APPLICATION header type] [NODE_ID n] [LEVEL level] [DEVIATIONS file]
 #                           [ARGUMENTS argument...])
 #
-# Adds a test NAME to CTest: the conformance test of `edsc conform` at the device of DICTIONARY, which edsc_add_dictionary has
-# made, in simulated time. The device is compiled as the program NAME, with a storage in memory and, where it has LSS, with
-# an LSS port.
+# Adds the test NAME to CTest: the conformance test of `edsc conform` on the device of DICTIONARY, a target of
+# edsc_add_dictionary, in simulated time. The device is compiled as the program NAME, with a storage in memory and, if it has
+# LSS, with an LSS port.
 #
 #   edsc_add_dictionary(pump EDS pump.eds)
 #   enable_testing()
 #   edsc_add_conformance_test(pump_conforms pump APPLICATION pump_application.hpp PumpApplication)
 #
-# APPLICATION  a header and a class in it, with the handlers of the device: what it has is said in
-#              canopen/port/simulated_device.hpp. Sources and libraries that it needs are added to the target NAME, with
-#              target_sources and target_link_libraries.
-# NODE_ID      of the device; by default that of the dictionary or of its DCF, else 5.
-# LEVEL        read, communication or all, which is the default: a device in memory cannot do any harm.
+# APPLICATION  a header and its class with the handlers of the device; canopen/port/simulated_device.hpp describes the class.
+#              Add sources and libraries that it needs to the target NAME, with target_sources and target_link_libraries.
+# NODE_ID      node-ID of the device; default: that of the dictionary or of its DCF, else 5.
+# LEVEL        read, communication or all (default: a simulated device cannot cause damage).
 # DEVIATIONS   a file that declares which cases deviate, and why.
-# ARGUMENTS    of `edsc conform` besides, such as --junit or --only.
+# ARGUMENTS    further arguments of `edsc conform`, such as --junit or --only.
 #
-# `ctest -L conformance` runs the tests of this kind. There is none where BUILD_TESTING is off, nor in a cross build, as the device
-# is not compiled for the machine that runs edsc then.
+# `ctest -L conformance` runs these tests. They are not added if BUILD_TESTING is off, nor in a cross build, whose devices are
+# not compiled for the machine that runs edsc.
 function(edsc_add_conformance_test name dictionary)
   cmake_parse_arguments(PARSE_ARGV 2 arg "" "NODE_ID;LEVEL;DEVIATIONS" "APPLICATION;ARGUMENTS")
   set(call "edsc_add_conformance_test(${name})")
@@ -100,7 +99,7 @@ int main(int argc, char** argv) { return canopen::simulate_device<@namespace@::D
   set_tests_properties(${name} PROPERTIES LABELS conformance)
 endfunction()
 
-# The node-ID that a DCF or XDC gives to its device; empty where it does not.
+# Returns the node-ID of a DCF or XDC; empty if the file does not have one.
 function(edsc_node_id_of_file file result)
   file(READ ${file} text)
   set(number "(0[xX][0-9A-Fa-f]+|[0-9]+)")

@@ -2,19 +2,19 @@ cmake_policy(VERSION 3.25) # the depfile is read as CMake 3.20 and later do
 
 # edsc_add_dictionary(TARGET EDS file [NAMESPACE name] [NODE_ID n] [OPTIONS file] [STATIC_MAPPING] [KEEP_GOING])
 #
-# Makes TARGET an INTERFACE library whose headers are generated at build time from an EDS or DCF:
+# Adds the INTERFACE library TARGET, whose headers are generated at build time from an EDS or DCF:
 #
 #   edsc_add_dictionary(cpc_tc1 EDS eds/cpc-tc1.eds)
 #   target_link_libraries(drive PRIVATE cpc_tc1)        # #include <cpc_tc1/device.hpp>
 #
-# NAMESPACE      C++ namespace and include folder; TARGET by default.
-# NODE_ID        turns $NODEID formulas into numbers.
-# OPTIONS        options file; NAME.options.json beside the data sheet by default, if it is there.
-# STATIC_MAPPING makes constants of all mapping parameters: no PDO can be mapped over the bus, and the image is smaller.
-# KEEP_GOING     for the file of a bought device, which you cannot change: its errors are warnings, and what is wrong is left
-#                out and named (edsc generate --keep-going).
+# NAMESPACE      C++ namespace and include folder; default: TARGET.
+# NODE_ID        resolves $NODEID formulas.
+# OPTIONS        options file; default: NAME.options.json beside the EDS, if it exists.
+# STATIC_MAPPING makes all mapping parameters constant: PDOs cannot be mapped over the bus, and the image is smaller.
+# KEEP_GOING     for the file of a purchased device, which you cannot change: its errors are warnings, and invalid items are
+#                omitted and reported (edsc generate --keep-going).
 #
-# The headers are made again when the data sheet, its options file, a template or edsc itself changes.
+# The headers are regenerated when the EDS, its options file, a template or edsc itself changes.
 function(edsc_add_dictionary target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "STATIC_MAPPING;KEEP_GOING" "EDS;NAMESPACE;NODE_ID;OPTIONS" "")
   if(arg_UNPARSED_ARGUMENTS)
@@ -53,14 +53,14 @@ function(edsc_add_dictionary target)
     list(APPEND arguments --options ${options})
     list(APPEND dependencies ${options})
   else()
-    # An options file that appears later is seen at the next configure; one that is there is in the depfile.
+    # A new options file is detected at the next configure; an existing one is in the depfile.
     string(REGEX REPLACE "\\.[^.]*$" ".options.json" options ${eds})
     if(EXISTS ${options})
       list(APPEND dependencies ${options})
     endif()
   endif()
 
-  # edsc leaves unchanged headers alone, so that nothing is compiled again in vain; the stamp is what ninja compares.
+  # edsc does not write unchanged headers, to avoid needless recompilation; ninja compares the stamp.
   add_custom_command(
     OUTPUT ${stamp}
     BYPRODUCTS ${headers}

@@ -4,20 +4,21 @@ include(${CMAKE_CURRENT_LIST_DIR}/EdscAddDictionary.cmake)
 #                   [FLASH_LIMIT bytes] [RAM_LIMIT bytes])
 #
 # Makes an image for a Cortex-M from an EDS or DCF and sources with a `main`, in a build with a toolchain file for it:
-# TARGET.elf, .hex and .bin, TARGET.map, and TARGET.report.txt with the bytes of symbols and of the data sheet's objects.
+# TARGET.elf, .hex and .bin, TARGET.map, and TARGET.report.txt with the sizes of symbols and of the objects of the EDS.
 #
 #   edsc_add_firmware(drive EDS drive.eds BOARD mps2-an385 NODE_ID 5 SOURCES main.cpp FLASH_LIMIT 16000)
 #
-# BOARD        one of the folders in boards/ beside this file, or a folder with the same files (docs/porting.md).
-# NAMESPACE    of the dictionary; the name of the data sheet by default, cpc_tc1 for cpc-tc1.eds.
-# NODE_ID      is told to the sources as EDSC_NODE_ID.
-# FLASH_LIMIT  an image that is larger is an error, which names what is large. RAM_LIMIT: the same, without the stack.
+# BOARD        a folder in boards/ beside this file, or another folder with the same files (docs/porting.md).
+# NAMESPACE    of the dictionary; default: from the file name of the EDS, cpc_tc1 for cpc-tc1.eds.
+# NODE_ID      also defined for the sources as EDSC_NODE_ID.
+# FLASH_LIMIT  bytes; a larger image is an error, which lists the largest symbols and objects.
+# RAM_LIMIT    the same for RAM, without the stack.
 # NODE_ID, OPTIONS and STATIC_MAPPING are those of edsc_add_dictionary.
 #
 # Without CMAKE_BUILD_TYPE, and without -O in CMAKE_CXX_FLAGS, images are compiled with -Os.
 #
-# The sources know EDSC_DEVICE, the device's type, and EDSC_DEVICE_HEADER, what to include for it. There is no heap: what
-# calls malloc or operator new does not link.
+# The macros EDSC_DEVICE, the device type, and EDSC_DEVICE_HEADER, its header, are defined for the sources. There is no heap:
+# code that calls malloc or operator new does not link.
 function(edsc_add_firmware target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "STATIC_MAPPING" "EDS;BOARD;NAMESPACE;NODE_ID;OPTIONS;FLASH_LIMIT;RAM_LIMIT" "SOURCES")
   if(arg_UNPARSED_ARGUMENTS)
@@ -80,12 +81,12 @@ function(edsc_add_firmware target)
     VERBATIM)
 endfunction()
 
-# edsc_add_board(BOARD VARIABLE): the target with a board's start-up, drivers and flags for all that is linked with it; its
-# name goes into VARIABLE. The board's folder has
-#   board.cmake  sets board_cpu, the value of -mcpu, and board_sources, which define what board.hpp declares; where they are
-#                not 2048 and 4 bytes, also board_flash_page and board_flash_word
-#   memory.ld    tells where `flash` and `ram` are
-# Headers in the folder are found by the program, too.
+# edsc_add_board(BOARD VARIABLE) adds a target with the start-up code and drivers of a board, and the flags for everything that
+# is linked with it; VARIABLE is set to its name. The board's folder has
+#   board.cmake  sets board_cpu, the value of -mcpu, and board_sources, which define the functions of board.hpp; also
+#                board_flash_page and board_flash_word if they are not 2048 and 4 bytes
+#   memory.ld    defines the memory regions `flash` and `ram`
+# The folder is also an include folder of the program.
 function(edsc_add_board board variable)
   set(folder ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/boards/${board})
   if(NOT EXISTS ${folder}/board.cmake)
@@ -117,13 +118,13 @@ function(edsc_add_board board variable)
   target_link_libraries(${target} PUBLIC edsc::runtime)
   target_compile_options(${target} PUBLIC ${cpu} -ffunction-sections -fdata-sections -fno-exceptions -fno-rtti
                                           -fno-threadsafe-statics)
-  # Without any -O, the image would be five times as large.
+  # Without -O the image would be five times as large.
   if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES AND NOT CMAKE_CXX_FLAGS MATCHES "(^| )-O")
     message(STATUS "edsc_add_firmware: CMAKE_BUILD_TYPE is not set: images are compiled with -Os")
     target_compile_options(${target} PUBLIC -Os)
   endif()
   set(no_heap malloc calloc realloc free _malloc_r _calloc_r _realloc_r _free_r)
-  list(TRANSFORM no_heap PREPEND -Wl,--wrap=) # and there is no __wrap_malloc
+  list(TRANSFORM no_heap PREPEND -Wl,--wrap=) # __wrap_malloc does not exist
   target_link_options(
     ${target} PUBLIC ${cpu} -nostartfiles -nostdlib -Wl,--gc-sections ${no_heap} -L${folder} -T${boards}/sections.ld)
   target_link_libraries(${target} PUBLIC -Wl,--start-group -lc_nano -lgcc -Wl,--end-group)

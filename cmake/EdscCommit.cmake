@@ -1,7 +1,7 @@
-# cmake -DSOURCE_DIR=folder -DOUTPUT=commit.hpp -P EdscCommit.cmake: writes what `edsc --version` says of the commit.
+# cmake -DSOURCE_DIR=folder -DOUTPUT=commit.hpp -P EdscCommit.cmake: writes the commit that `edsc --version` prints.
 #
-# Sources that are not a git working tree of their own have none: those of an archive, also below another project's working tree.
-# A working tree with changes says so. OUTPUT is not touched when it would not change.
+# It is empty if SOURCE_DIR is not the root of a git working tree, as with an archive, also inside the working tree of another
+# project. Uncommitted changes are indicated. OUTPUT is not written if it would not change.
 set(commit "")
 find_program(GIT git)
 if(GIT AND EXISTS ${SOURCE_DIR}/.git)

@@ -1,9 +1,9 @@
-# Makes the imported or built target edsc::edsc: the compiler that runs on this machine.
+# Provides the imported or built target edsc::edsc: the program edsc for this machine.
 #
-# - EDSC_EXECUTABLE names one that is there already; a project that has edsc as a part then compiles none.
-# - EDSC_HOST_PRESET names a preset of this project whose build has it, and is brought up to date.
-# - In a build for this machine it is built here.
-# - In a cross build it is built for the host, in a build of its own, with what EDSC_HOST_ARGUMENTS adds to its cmake.
+# - EDSC_EXECUTABLE names an existing program; a project that contains edsc then does not compile it.
+# - EDSC_HOST_PRESET names a preset of this project whose build has the program; that build is brought up to date.
+# - In a build for this machine, the program is built here.
+# - In a cross build, the program is built for the host, in a separate build with EDSC_HOST_ARGUMENTS as further arguments.
 
 if(TARGET edsc::edsc)
   return()
@@ -35,7 +35,7 @@ include(ExternalProject)
 set(EDSC_HOST_ARGUMENTS "" CACHE STRING "further arguments of cmake when edsc is built for the host of a cross build")
 set(host_build ${CMAKE_BINARY_DIR}/edsc-host)
 set(host_program ${host_build}/program/edsc)
-# What the environment says is for the target's compiler.
+# These environment variables are for the target's compiler.
 set(host_cmake ${CMAKE_COMMAND} -E env)
 foreach(variable IN ITEMS CMAKE_TOOLCHAIN_FILE CC CXX CPPFLAGS CFLAGS CXXFLAGS LDFLAGS)
   list(APPEND host_cmake --unset=${variable})
@@ -53,7 +53,7 @@ ExternalProject_Add(
   INSTALL_COMMAND ""
   BUILD_BYPRODUCTS ${host_program}
   USES_TERMINAL_BUILD ON)
-# Built again when a file of it has changed, and asked of nothing else.
+# The host build runs only after one of its files has changed.
 file(GLOB_RECURSE host_files ${PROJECT_SOURCE_DIR}/generator/* ${PROJECT_SOURCE_DIR}/bus/* ${PROJECT_SOURCE_DIR}/cli/*
      ${PROJECT_SOURCE_DIR}/templates/* ${PROJECT_SOURCE_DIR}/runtime/*)
 ExternalProject_Add_StepDependencies(edsc_host build ${PROJECT_SOURCE_DIR}/CMakeLists.txt ${host_files})

@@ -1,6 +1,6 @@
-# What `cmake --install` puts where, in two components: `program`, and `development` with the runtime's headers and the CMake
-# package. The headers have a folder of their own, so that a cross build that is told of it sees no other header of the host;
-# the CMake package is the same on all machines and looks for the program that runs on this one.
+# The files of `cmake --install`, in two components: `program`, and `development` with the runtime's headers and the CMake
+# package. The headers have a separate folder, so that a cross build that uses this folder does not find other host headers.
+# The CMake package is the same on all machines and searches for the program of the machine that it is used on.
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_DATADIR}/cmake/edsc)
@@ -14,7 +14,8 @@ if(TARGET edsc)
   install(FILES ${shell_files}/edsc.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions RENAME _edsc COMPONENT program)
   install(FILES ${shell_files}/edsc.man DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 RENAME edsc.1 COMPONENT program)
   install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${document_dir}/edsc RENAME copyright COMPONENT program)
-  # The documents with what they refer to, as in the sources; the schemas also where editors and scripts look for them.
+  # The documents and the files that they refer to, in the layout of the sources; the schemas also in a folder for editors and
+  # scripts.
   install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION ${document_dir}/edsc
           COMPONENT program)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs ${PROJECT_SOURCE_DIR}/examples ${PROJECT_SOURCE_DIR}/eds

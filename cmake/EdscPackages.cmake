@@ -1,8 +1,8 @@
-# The Debian packages, by the target `package` or cpack: edsc_VERSION_ARCHITECTURE.deb with the program, and
-# libedsc-dev_VERSION_all.deb with what is compiled for a device.
+# The Debian packages, made by the target `package` or cpack: edsc_VERSION_ARCHITECTURE.deb with the program, and
+# libedsc-dev_VERSION_all.deb with the files to compile a device.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME edsc)
-# Who makes the packages: `-DEDSC_MAINTAINER="Name <address>"`.
+# The maintainer of the packages: `-DEDSC_MAINTAINER="Name <address>"`.
 set(EDSC_MAINTAINER "Seed 57085386 maintainers <maintainers@users.noreply.h-seed-57085386.example>"
     CACHE STRING "Maintainer of the Debian packages")
 set(CPACK_PACKAGE_CONTACT ${EDSC_MAINTAINER})
@@ -17,9 +17,9 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME edsc)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION devel)
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON) # asks dpkg-shlibdeps, of dpkg-dev, and file
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON) # needs dpkg-shlibdeps (package dpkg-dev) and file
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS libedsc-dev)
-set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "") # CPack would put it before each of the descriptions
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "") # CPack would prepend it to each description
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "${PROJECT_DESCRIPTION}
 It makes checked C++20 of EDS, DCF and XDD files: a constexpr object dictionary,
 typed access to every object and PDO codecs. Its other commands check, format

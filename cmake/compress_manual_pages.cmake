@@ -1,4 +1,4 @@
-# Run by cpack over the files of each package: manual pages are compressed, as Debian has them.
+# Run by cpack on the files of each package: compresses manual pages, as Debian requires.
 file(GLOB_RECURSE pages ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/*.1)
 foreach(page IN LISTS pages)
   execute_process(COMMAND gzip -9 -n ${page} COMMAND_ERROR_IS_FATAL ANY)

@@ -1,4 +1,4 @@
-# Bare-metal Arm with GCC. EDSC_ARM_CPU says which core; the Cortex-M0+ by default.
+# Bare-metal Arm with GCC. EDSC_ARM_CPU selects the core (default: Cortex-M0+).
 #
 #   cmake -B build --toolchain cmake/toolchains/arm-none-eabi.cmake -DEDSC_ARM_CPU=cortex-m4
 set(CMAKE_SYSTEM_NAME Generic)
@@ -9,14 +9,14 @@ list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES EDSC_ARM_CPU)
 
 set(CMAKE_C_COMPILER arm-none-eabi-gcc)
 set(CMAKE_CXX_COMPILER arm-none-eabi-g++)
-set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)  # nothing links before there is a linker script
+set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)  # linking needs a linker script
 
 set(flags "-mcpu=${EDSC_ARM_CPU} -mthumb -ffunction-sections -fdata-sections")
 set(CMAKE_C_FLAGS_INIT "${flags}")
 set(CMAKE_ASM_FLAGS_INIT "${flags}")
 set(CMAKE_CXX_FLAGS_INIT "${flags} -fno-exceptions -fno-rtti -fno-threadsafe-statics")
 set(CMAKE_EXE_LINKER_FLAGS_INIT "-Wl,--gc-sections")
-set(CMAKE_CXX_FLAGS_RELEASE "-Os -DNDEBUG" CACHE STRING "flags of a release") # an _INIT would stand before an -O3
+set(CMAKE_CXX_FLAGS_RELEASE "-Os -DNDEBUG" CACHE STRING "flags of a release") # CMake would add -O3 after an _INIT value
 
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
 set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
