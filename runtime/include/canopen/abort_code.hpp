@@ -41,7 +41,7 @@ enum class AbortCode : std::uint32_t {
   no_data = 0x0800'0024,
 };
 
-/// What a handler answers when all is well.
+/// No error; a handler returns it to accept an access.
 inline constexpr AbortCode ok = AbortCode::none;
 
 struct AbortCodeText {

@@ -11,8 +11,8 @@ enum class Access : std::uint8_t {
   ro,
   wo,
   rw,
-  rwr,  ///< read and write, process input: a TPDO carries it
-  rww,  ///< read and write, process output: an RPDO carries it
+  rwr,  ///< read and write, process input: TPDO-mappable
+  rww,  ///< read and write, process output: RPDO-mappable
   constant,
 };
 
@@ -20,8 +20,8 @@ struct AccessRow {
   Access access;
   bool readable;      ///< by SDO
   bool writable;      ///< by SDO
-  bool in_tpdo;       ///< a TPDO may carry it
-  bool in_rpdo;       ///< an RPDO may carry it
+  bool in_tpdo;       ///< may be mapped into a TPDO
+  bool in_rpdo;       ///< may be mapped into an RPDO
   std::string_view name;  ///< as an EDS spells it
 };
 
@@ -38,14 +38,14 @@ inline constexpr AccessRow access_rows[] = {
 [[nodiscard]] constexpr bool readable(Access access) { return row_of(access).readable; }
 [[nodiscard]] constexpr bool writable(Access access) { return row_of(access).writable; }
 
-/// In which PDOs an object may be mapped.
+/// PDO directions that an object may be mapped into.
 enum class Mappable : std::uint8_t { no = 0, tpdo = 1, rpdo = 2, both = 3 };
 
 [[nodiscard]] constexpr bool allows(Mappable mappable, Mappable direction) {
   return (static_cast<std::uint8_t>(mappable) & static_cast<std::uint8_t>(direction)) != 0;
 }
 
-/// The mapping attribute that follows from PDOMapping=1 and an access type.
+/// Returns the mapping attribute of an entry with PDOMapping=1 and this access type.
 [[nodiscard]] constexpr Mappable mappable_by(Access access) {
   const AccessRow& row = row_of(access);
   return static_cast<Mappable>((row.in_tpdo ? 1 : 0) | (row.in_rpdo ? 2 : 0));

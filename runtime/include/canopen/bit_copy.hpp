@@ -1,14 +1,14 @@
-/// Values of 1..64 bits at any bit of a PDO, where place and length are known at run time only: a mapping that was
-/// changed over the bus (CiA 301, 7.5.2.36). Low bit first.
+/// Copies values of 1..64 bits to and from any bit position of a PDO whose layout is known only at run time: a mapping
+/// that was changed over the bus (CiA 301, 7.5.2.36). Least significant bit first.
 ///
-/// In words of 32 bits and byte by byte: small controllers have neither shifts of 64 bits nor unaligned loads.
+/// Uses 32-bit words and single bytes: small controllers do not have 64-bit shifts or unaligned loads.
 #pragma once
 
 #include <cstdint>
 
 namespace canopen {
 
-/// Puts the low `bits` bits (0..64) of `value` at bit `at` of `data`. The other bits of `data` stay.
+/// Writes the low `bits` bits (0..64) of `value` at bit `at` of `data`. The other bits of `data` do not change.
 constexpr void put_bits(std::uint8_t* data, unsigned at, unsigned bits, std::uint64_t value) {
   auto low = static_cast<std::uint32_t>(value);
   auto high = static_cast<std::uint32_t>(value >> 32);
@@ -25,7 +25,7 @@ constexpr void put_bits(std::uint8_t* data, unsigned at, unsigned bits, std::uin
   }
 }
 
-/// The `bits` bits (0..64) from bit `at` of `data` on.
+/// Returns `bits` bits (0..64) of `data`, starting at bit `at`.
 [[nodiscard]] constexpr std::uint64_t take_bits(const std::uint8_t* data, unsigned at, unsigned bits) {
   std::uint32_t low = 0;
   std::uint32_t high = 0;

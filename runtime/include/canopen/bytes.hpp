@@ -12,8 +12,8 @@ namespace canopen {
 
 namespace bytes_detail {
 
-/// The library's memcpy and memset would take hundreds of bytes of an image. The fence keeps a compiler from making them
-/// of these loops.
+/// Copies byte by byte: the library's memcpy and memset would add hundreds of bytes to an image. The fence keeps the
+/// compiler from turning these loops into calls of them.
 [[gnu::noinline]] inline void copy_by_loop(std::uint8_t* to, const std::uint8_t* from, std::size_t size) {
   for (const std::uint8_t* const end = to + size; to != end;) {
     *to++ = *from++;
@@ -39,7 +39,7 @@ inline void copy_bytes(void* to, const void* from, std::size_t size) {
   }
 }
 
-/// Copies few bytes, for which a call of memcpy would take longer.
+/// Copies a small number of bytes, for which a call of memcpy would take longer.
 inline void copy_few_bytes(std::uint8_t* to, const std::uint8_t* from, std::size_t size) {
   if constexpr (prefers_size) {
     bytes_detail::copy_by_loop(to, from, size);

@@ -39,9 +39,9 @@ enum class DataClass : std::uint8_t { boolean, unsigned_integer, signed_integer,
 struct DataTypeRow {
   DataType type;
   DataClass kind;
-  std::uint8_t bits;  ///< on the wire; 0 where the length varies
+  std::uint8_t bits;  ///< on the wire; 0: variable length
   std::string_view name;      ///< as CiA 301 spells it
-  std::string_view cpp_type;  ///< what an application sees; of a string the element's template
+  std::string_view cpp_type;  ///< type that an application uses; for a string, its class template
 };
 
 inline constexpr DataTypeRow data_types[] = {
@@ -72,7 +72,7 @@ inline constexpr DataTypeRow data_types[] = {
     {DataType::domain, DataClass::domain, 0, "DOMAIN", "canopen::Domain"},
 };
 
-/// The row of a data type index of an object dictionary (0001h..001Bh); null when it is not a basic type.
+/// Returns the row of a basic data type by its index in the object dictionary (0001h..001Bh); null if it is not one.
 [[nodiscard]] constexpr const DataTypeRow* find_data_type(std::uint32_t index) {
   for (const auto& row : data_types) {
     if (static_cast<std::uint32_t>(row.type) == index) return &row;

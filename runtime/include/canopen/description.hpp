@@ -1,4 +1,4 @@
-/// Names of entries, for tools that show a bus to people.
+/// Names of entries, for tools that display them.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +15,13 @@ struct EntryDescription {
   std::uint8_t sub_index;
   DataType type;
   std::string_view object;  ///< name of the object
-  std::string_view entry;   ///< name of the entry in an array or record; empty in a VAR
+  std::string_view entry;   ///< name of the sub-index in an ARRAY or RECORD; empty for a VAR
 
-  /// What to call it where one name has to do.
+  /// Returns the entry's name, or the object's if the entry does not have one.
   [[nodiscard]] constexpr std::string_view name() const { return entry.empty() ? object : entry; }
 };
 
-/// The description of an entry in a table sorted by index and sub-index; null when there is none.
+/// Finds an entry in a table sorted by index and sub-index; null if it does not exist.
 [[nodiscard]] constexpr const EntryDescription* find_description(std::span<const EntryDescription> rows,
                                                                  std::uint16_t index, std::uint8_t sub_index) {
   const std::uint32_t key = object_key(index, sub_index);

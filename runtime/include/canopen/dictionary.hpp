@@ -1,8 +1,8 @@
 /// The object dictionary in flash: sorted constexpr tables, and the search by index and sub-index.
 ///
-/// One 32-bit word describes one entry. A VAR is its own entry; the word of an ARRAY or RECORD names a group, whose words
-/// for the sub-indices may be shared by all groups of the same shape. Indices stand in runs of neighbours, so that the
-/// search touches one pair of 16-bit numbers per run and not one per index.
+/// Each entry is described by one 32-bit word. A VAR is its own entry; the word of an ARRAY or RECORD refers to a
+/// group, whose words for the sub-indices may be shared by all groups of the same shape. Indices are stored in runs of
+/// consecutive numbers: the search reads one pair of 16-bit numbers per run instead of one per index.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,9 @@ namespace entry {
 
 using Word = std::uint32_t;
 
-// Bits 0..15: where the value is: an offset into RAM or flash, or the value itself.
-// Bits 16..19: bytes of the value; of the special class, which one.
-// Bits 20..21: class. Bits 22..23: place. Bits 24..28: rights and limits. Bits 30..31: kind.
+// Bits 0..15: location of the value: an offset in RAM or flash, or the value itself.
+// Bits 16..19: size of the value in bytes; in the special class, which type.
+// Bits 20..21: class. Bits 22..23: place. Bits 24..28: access rights and limits. Bits 30..31: kind.
 inline constexpr Word offset_mask = 0xFFFF;
 inline constexpr unsigned size_shift = 16;
 inline constexpr unsigned class_shift = 20;
@@ -50,23 +50,23 @@ inline constexpr Word i56 = type_word(Class::signed_integer, 7);
 inline constexpr Word i64 = type_word(Class::signed_integer, 8);
 inline constexpr Word r32 = type_word(Class::real, 4);
 inline constexpr Word r64 = type_word(Class::real, 8);
-inline constexpr Word time48 = u48;  ///< TIME_OF_DAY and TIME_DIFFERENCE lie in memory as on the wire
+inline constexpr Word time48 = u48;  ///< TIME_OF_DAY and TIME_DIFFERENCE have the same layout in memory and on the wire
 inline constexpr Word visible_string = type_word(Class::special, 0);  ///< a StringStorage of text
-inline constexpr Word octet_string = type_word(Class::special, 3);    ///< a StringStorage of bytes, UNICODE_STRINGs too
+inline constexpr Word octet_string = type_word(Class::special, 3);    ///< a StringStorage of bytes, also UNICODE_STRING
 inline constexpr Word domain = type_word(Class::special, 1);   ///< a Domain
 inline constexpr Word boolean = type_word(Class::special, 2);  ///< a bool: one byte, 0 or 1
 
-// Rights.
+// Access rights.
 inline constexpr Word readable = Word{1} << 24;
 inline constexpr Word writable = Word{1} << 25;
 inline constexpr Word tpdo = Word{1} << 26;
 inline constexpr Word rpdo = Word{1} << 27;
-inline constexpr Word limited = Word{1} << 28;  ///< a row in the table of limits, for strings the capacity
+inline constexpr Word limited = Word{1} << 28;  ///< has a row in the table of limits; of a string, its capacity
 inline constexpr Word ro = readable;
 inline constexpr Word wo = writable;
 inline constexpr Word rw = readable | writable;
 
-// Kinds and places: each row of a table names exactly one.
+// Kinds and places: each row of a table has exactly one.
 [[nodiscard]] constexpr Word var_at(Place place) {
   return (static_cast<Word>(Kind::var) << kind_shift) | (static_cast<Word>(place) << place_shift);
 }
@@ -89,7 +89,7 @@ inline constexpr Word gap = 0;  ///< a sub-index of a record that does not exist
 }
 [[nodiscard]] constexpr bool is_domain(Word word) { return type_of(word) == domain; }
 [[nodiscard]] constexpr bool is_boolean(Word word) { return type_of(word) == boolean; }
-/// Bytes of the value as SDO carries it; 0 where that varies.
+/// Bytes of the value as SDO transfers it; 0: variable length.
 [[nodiscard]] constexpr std::uint8_t wire_bytes(Word word) {
   if (class_of(word) != Class::special) return size_of(word);
   return is_boolean(word) ? std::uint8_t{1} : std::uint8_t{0};
@@ -97,14 +97,15 @@ inline constexpr Word gap = 0;  ///< a sub-index of a record that does not exist
 
 }  // namespace entry
 
-/// Neighbouring indices: the first one, and where its word stands in the table of entries.
+/// Consecutive indices: the first one, and the position of its word in the table of entries.
 struct Run {
   std::uint16_t first;
   std::uint16_t position;
 };
 
-/// An ARRAY or RECORD: where its values are and where the words of its sub-indices begin. The words' offsets count from
-/// `ram` or `rom`. Of an array the second word serves all elements, `stride` bytes apart; of a record `stride` is 0.
+/// Location of an ARRAY's or RECORD's values and of the words of its sub-indices. Their offsets are relative to
+/// `ram` or `rom`. In an array the second word serves all elements, which are `stride` bytes apart; `stride` of a
+/// record is 0.
 struct Group {
   std::uint16_t ram;
   std::uint16_t rom;
@@ -113,27 +114,27 @@ struct Group {
   std::uint8_t stride;
 };
 
-/// index << 8 | sub-index: how the table of limits is sorted. The elements of an array stand under sub-index 1.
+/// index << 8 | sub-index: the sort key of the table of limits. All elements of an array share sub-index 1.
 [[nodiscard]] constexpr std::uint32_t object_key(std::uint16_t index, std::uint8_t sub_index) {
   return (static_cast<std::uint32_t>(index) << 8) | sub_index;
 }
 
-/// Lowest and highest value of an entry of up to 32 bits, as two's complement or REAL32 bits where the type is signed or real.
-/// Of a string: 0 and its capacity in bytes.
+/// Lowest and highest value of an entry of up to 32 bits, as two's complement for signed types and as REAL32 bits for
+/// real ones. Of a string: 0 and its capacity in bytes.
 struct Limits {
   std::uint32_t key;
   std::uint32_t low;
   std::uint32_t high;
 };
 
-/// The same for wider types.
+/// Lowest and highest value of an entry of more than 32 bits.
 struct WideLimits {
   std::uint32_t key;
   std::uint64_t low;
   std::uint64_t high;
 };
 
-/// A value in RAM whose default has the node-ID added at each reset.
+/// A value in RAM to whose default value the node-ID is added at each reset.
 struct NodeIdRelative {
   std::uint16_t offset;
   std::uint16_t size;  ///< bytes
@@ -141,7 +142,7 @@ struct NodeIdRelative {
 
 namespace dictionary_detail {
 
-/// Where the row with this key stands in a table sorted by key; at its end when there is none.
+/// Returns the position of a row in a table sorted by key; the table's size if it does not exist.
 template <class Row>
 [[nodiscard]] constexpr std::size_t position_of_key(std::span<const Row> rows, std::uint32_t key) {
   std::size_t low = 0;
@@ -157,7 +158,7 @@ template <class Row>
   return low < rows.size() && rows[low].key == key ? low : rows.size();
 }
 
-/// The row with this key; null when there is none.
+/// Finds a row by its key; null if it does not exist.
 template <class Row>
 [[nodiscard]] constexpr const Row* find_by_key(std::span<const Row> rows, std::uint32_t key) {
   const std::size_t position = position_of_key(rows, key);
@@ -175,24 +176,24 @@ template <class Row>
 }  // namespace dictionary_detail
 
 struct Dictionary {
-  std::span<const Run> runs;  ///< ascending, and a last one {0xFFFF, number of entries} that ends the search
+  std::span<const Run> runs;  ///< ascending; the last one, {0xFFFF, number of entries}, ends the search
   std::span<const entry::Word> entries;
   std::span<const Group> groups;
   std::span<const entry::Word> subs;
   std::span<const Limits> limits;
   std::span<const WideLimits> wide_limits;
-  const void* constants;  ///< what `rom` offsets count from
-  bool zero_terminated_strings = false;  ///< VISIBLE_STRINGs go out with a trailing 00h, as manual 003 shows
+  const void* constants;  ///< base of `rom` offsets
+  bool zero_terminated_strings = false;  ///< VISIBLE_STRINGs are sent with a trailing 00h, as in manual 003
 
   static constexpr entry::Word no_object = 0;
   static constexpr entry::Word no_sub_index = 1;
 
-  /// The entry's word with its offset resolved, or `no_object`, or `no_sub_index`.
+  /// Finds the word of an entry, with its offset resolved; `no_object` or `no_sub_index` if it does not exist.
   [[nodiscard]] constexpr entry::Word find(std::uint16_t index, std::uint8_t sub_index) const {
     return sub_word(find_index(index), sub_index);
   }
 
-  /// The same for an index whose word is known.
+  /// Finds the word of a sub-index, for an index whose word is known.
   [[nodiscard]] constexpr entry::Word sub_word(entry::Word word, std::uint8_t sub_index) const {
     const entry::Kind kind = entry::kind_of(word);
     if (kind <= entry::Kind::var) return sub_index == 0 || word == no_object ? word : no_sub_index;
@@ -208,10 +209,10 @@ struct Dictionary {
     return sub + base + (sub_index - of_array) * group.stride;
   }
 
-  /// The word of an index as it stands in the table; `no_object` where there is none.
+  /// Finds the word of an index as it is in the table; `no_object` if it does not exist.
   [[nodiscard]] constexpr entry::Word find_index(std::uint16_t index) const {
     const Run* run = runs.data();
-    for (std::size_t left = runs.size() - 1; left > 1;) {  // the last run is the end mark
+    for (std::size_t left = runs.size() - 1; left > 1;) {  // the last run is the end marker
       const std::size_t half = left / 2;
       if (run[half].first <= index) run += half;
       left -= half;
@@ -219,9 +220,9 @@ struct Dictionary {
     return word_in(*run, index);
   }
 
-  /// The word of an index that stands in this run or nowhere.
+  /// Finds the word of an index that only this run can contain.
   [[nodiscard]] constexpr entry::Word word_in(const Run& run, std::uint16_t index) const {
-    // An index before the first run is far behind its end.
+    // For an index before the first run, the position is far past the end of the run.
     const std::uint32_t position = run.position + static_cast<std::uint32_t>(index) - run.first;
     return position < (&run + 1)->position ? entries[position] : no_object;
   }
@@ -231,7 +232,7 @@ struct Dictionary {
     return find(index, sub_index) > no_sub_index;
   }
 
-  /// Whether the bus can write an entry of these indices.
+  /// Whether any entry with an index in this range can be written over the bus.
   [[nodiscard]] constexpr bool takes_writes(std::uint16_t first, std::uint16_t last) const {
     for (unsigned index = first; index <= last; ++index) {
       const entry::Word word = find_index(static_cast<std::uint16_t>(index));
@@ -245,7 +246,7 @@ struct Dictionary {
     return false;
   }
 
-  /// Calls `visit(index, sub_index, word)` for each entry, in ascending order; words with their offset resolved.
+  /// Calls `visit(index, sub_index, word)` for each entry, in ascending order, with the offset of the word resolved.
   template <class Visit>
   constexpr void for_each_entry(Visit&& visit) const {
     for (std::size_t run = 0; run + 1 < runs.size(); ++run) {
@@ -267,8 +268,8 @@ struct Dictionary {
     return dictionary_detail::find_by_key(wide_limits, key);
   }
 
-  /// What the search relies on: runs in order and without overlap that cover the entries, groups inside their table,
-  /// limits sorted. Generated code asserts it.
+  /// Whether the tables are as the search requires: runs in order, without overlap, covering the entries; groups inside
+  /// their table; limits sorted. Generated code asserts it.
   [[nodiscard]] constexpr bool well_formed() const {
     if (runs.empty() || runs.back().first != 0xFFFF || runs.back().position != entries.size()) return false;
     if (runs.front().position != 0) return false;

@@ -1,4 +1,5 @@
-/// DOMAINs that the application gives and takes piece by piece while SDO transfers them: no memory holds them whole.
+/// DOMAINs that the application reads or writes piece by piece while SDO transfers them, without a buffer for the whole
+/// value.
 ///
 ///     canopen::on_domain_read<od::log_file>([&](std::uint32_t offset, std::span<std::uint8_t> bytes) {
 ///       return flash.read(offset, bytes);  // how many bytes there were; fewer than asked for: the end
@@ -35,9 +36,9 @@ struct DomainWriteHandler {
   [[no_unique_address]] F call;
 };
 
-/// Called for each piece of an upload: `handler(offset, bytes)` or `handler(node, offset, bytes)` fills the bytes and
-/// answers how many there were, or an AbortCode as a Result. Fewer than asked for are the last. A piece that was lost
-/// on the bus is asked for again.
+/// Calls `handler(offset, bytes)` or `handler(node, offset, bytes)` for each piece of an upload. The handler fills the
+/// bytes and returns how many there are, or an AbortCode, as a Result. Fewer bytes than requested end the value. A
+/// piece that was lost on the bus is requested again.
 template <DictionaryObject O, class F>
 [[nodiscard]] constexpr DomainReadHandler<O, F> on_domain_read(F handler) {
   static_assert(std::is_same_v<typename O::type, Domain>, "only a DOMAIN is read piece by piece");
@@ -45,9 +46,9 @@ template <DictionaryObject O, class F>
   return {std::move(handler)};
 }
 
-/// Called for each piece of a download, once and in order: `handler(offset, bytes, last)` or `handler(node, offset,
-/// bytes, last)`. An AbortCode other than `ok` ends the transfer; no answer is a yes. The last piece comes when the
-/// transfer is good; what broke off has none, and the next download begins at offset 0 again.
+/// Calls `handler(offset, bytes, last)` or `handler(node, offset, bytes, last)` for each piece of a download, once and
+/// in order. An AbortCode other than `ok` aborts the transfer; a handler that returns void accepts the piece. The last
+/// piece is passed only if the transfer has succeeded; after an aborted one, the next download starts at offset 0.
 template <DictionaryObject O, class F>
 [[nodiscard]] constexpr DomainWriteHandler<O, F> on_domain_write(F handler) {
   static_assert(std::is_same_v<typename O::type, Domain>, "only a DOMAIN is written piece by piece");
@@ -67,7 +68,7 @@ inline constexpr bool is_writer = false;
 template <class O, class F>
 inline constexpr bool is_writer<DomainWriteHandler<O, F>> = true;
 
-/// Calls with the arguments, with the node before them if the callable wants it.
+/// Calls `handler` with the arguments, and with the node first if it does not accept them alone.
 template <class F, class Node, class... Arguments>
 constexpr decltype(auto) call(F& handler, [[maybe_unused]] Node& node, Arguments... arguments) {
   if constexpr (std::is_invocable_v<F&, Arguments...>) {
@@ -81,10 +82,10 @@ constexpr decltype(auto) call(F& handler, [[maybe_unused]] Node& node, Arguments
 
 }  // namespace domain_detail
 
-/// What an SDO server asks of those of a node's handlers that stream DOMAINs: the functions of DomainStreamHooks.
+/// Those handlers of a node that stream DOMAINs, as an SDO server calls them: the functions of DomainStreamHooks.
 template <class... Handlers>
 struct DomainHandlerSet {
-  /// Whether there are any: without them a server has no code for streams.
+  /// Whether such handlers exist; if not, a server does not contain code for streams.
   static constexpr bool any =
       ((domain_detail::is_reader<Handlers> || domain_detail::is_writer<Handlers>) || ... || false);
 

@@ -1,5 +1,5 @@
-/// The search for an entry at run time. How an index is found is chosen at compile time for each dictionary: by its runs of
-/// neighbours, or by a perfect hash, which takes fewer instructions and mostly more bytes.
+/// The run-time search for an entry. The method is chosen at compile time for each dictionary: by runs of consecutive
+/// indices, or by a perfect hash, which takes fewer instructions and usually more bytes.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace entry_search {
 
 using entry::Word;
 
-/// The last run that does not begin behind the index, by as many steps for each index.
+/// Finds the last run that begins at or before the index, in the same number of steps for every index.
 template <class Device>
 struct ByRuns {
   static constexpr const Dictionary& dictionary = Device::dictionary;
@@ -40,9 +40,9 @@ struct ByRuns {
   }
 };
 
-/// A perfect hash by displacement: the high bits of a product name a bucket, the bits below it are a place in a circle of
-/// slots, and the bucket's displacement moves it to where no other index is. Only the first slots are used, a few more than
-/// there are indices.
+/// A perfect hash by displacement: the high bits of a product select a bucket, the bits below them a position in a ring
+/// of slots, and the displacement of the bucket moves that position to a slot that no other index uses. Only the first
+/// slots are used, slightly more than there are indices.
 template <class Device>
 struct ByHash {
   static constexpr const Dictionary& dictionary = Device::dictionary;
@@ -66,15 +66,15 @@ struct ByHash {
   struct Table {
     bool found = false;
     std::uint32_t multiplier = 0;
-    std::array<std::uint16_t, slots> indices{};  ///< of each slot; while it is made, 0 where there is none
+    std::array<std::uint16_t, slots> indices{};  ///< index in each slot; 0 for a free slot while the table is built
     std::array<Displacement, buckets> displacements{};
     std::array<Word, used_slots> words{};
   };
 
  private:
-  /// The indices bucket by bucket.
+  /// The indices, grouped by bucket.
   struct Buckets {
-    std::uint16_t ends[buckets]{};  ///< where each ends among the entries
+    std::uint16_t ends[buckets]{};  ///< position after the last entry of each bucket
     std::uint16_t indices[count]{};
     Word words[count]{};
   };
@@ -103,7 +103,7 @@ struct ByHash {
     }
   }
 
-  /// Whether all indices of a bucket find free slots with a displacement; they are put there then.
+  /// Places all indices of a bucket in free slots with this displacement; false if a slot is taken.
   static constexpr bool put(Table& made, const Buckets& filled, std::uint32_t begin, std::uint32_t end,
                             std::uint32_t displacement) {
     for (std::uint32_t i = begin; i < end; ++i) {
@@ -119,7 +119,7 @@ struct ByHash {
     return true;
   }
 
-  /// The largest buckets first. One with a single index takes the next free slot.
+  /// Builds a table, largest buckets first. The index of a bucket with a single one takes the next free slot.
   static constexpr Table table_by(std::uint32_t multiplier, std::uint32_t& tries) {
     Table made;
     made.multiplier = multiplier;
@@ -147,7 +147,7 @@ struct ByHash {
         made.displacements[bucket] = static_cast<Displacement>(displacement);
       }
     }
-    // An index is never looked for in a slot that is not its own.
+    // Unused slots get an index that is never looked up in them.
     for (std::uint16_t& index : made.indices) {
       if (index == 0) index = filled.indices[0];
     }
@@ -156,7 +156,8 @@ struct ByHash {
   }
 
  public:
-  /// Some multipliers are tried, as two indices of a bucket may have the same place, for as long as compilers take it.
+  /// Two indices of a bucket may have the same position. Other multipliers are then tried, up to a number of steps that
+  /// compilers accept.
   static constexpr Table table = [] {
     Table made;
     std::uint32_t tries = 8192 + 4 * count;
@@ -174,10 +175,10 @@ struct ByHash {
   }
 };
 
-/// More indices take a compiler long to lay out.
+/// Maximum number of indices: with more of them, the table takes too long to compile.
 inline constexpr std::size_t most_hashed = 1024;
 
-/// Whether a hash is there and pays: by its speed, or where it takes less flash.
+/// Whether a hash exists and is worthwhile: for speed, or if it takes less flash.
 template <class Device, bool Fast>
 [[nodiscard]] constexpr bool by_hash() {
   if constexpr (Device::dictionary.entries.size() <= most_hashed && Device::dictionary.runs.size() > 4 &&
@@ -190,7 +191,7 @@ template <class Device, bool Fast>
 
 }  // namespace entry_search
 
-/// The search of a device. Code that is compiled for size has another one.
+/// The search of a device. Code that is compiled for size may use another one.
 template <class Device, bool Fast = !prefers_size>
 using EntrySearch = std::conditional_t<entry_search::by_hash<Device, Fast>(), entry_search::ByHash<Device>,
                                        entry_search::ByRuns<Device>>;

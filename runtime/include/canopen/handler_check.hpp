@@ -1,4 +1,4 @@
-/// Checks the handlers of a node where the node is declared: a handler that can never be called does not compile. The
+/// Checks the handlers of a node at its declaration: a handler that can never be called does not compile. The
 /// compiler's message names the object.
 #pragma once
 
@@ -21,7 +21,7 @@ inline constexpr bool is_service_handler =
     is_of<H, StateHandler> || is_of<H, SyncHandler> || is_of<H, TimeHandler> || is_of<H, HeartbeatHandler> ||
     is_of<H, LifeGuardingHandler> || is_of<H, EmergencyHandler> || is_of<H, ErrorHandler> || is_of<H, RpdoHandler>;
 
-/// Whether a node knows a type as a handler, a storage or an LSS port.
+/// Whether a node accepts a type as a handler, a storage or an LSS port.
 template <class H>
 inline constexpr bool is_handler = is_access_handler<H> || is_service_handler<H> || domain_detail::is_reader<H> ||
                                    domain_detail::is_writer<H> || storage_detail::is_stored_in<H> ||
@@ -35,7 +35,7 @@ struct KnownHandler {
   static constexpr bool is_good = true;
 };
 
-/// What a handler is called for.
+/// The event that a handler is called for.
 enum class Called : std::uint8_t { by_service, on_upload, on_download };
 
 template <class H>
@@ -49,7 +49,7 @@ inline constexpr Called called<WriteHandler<O, F>> = Called::on_download;
 template <class O, class F>
 inline constexpr Called called<DomainWriteHandler<O, F>> = Called::on_download;
 
-/// Whether two handlers are called for the same.
+/// Whether two handlers are called for the same event of the same object.
 template <class H, class Other>
 [[nodiscard]] constexpr bool is_same_call() {
   if constexpr (called<H> == called<Other> && called<H> != Called::by_service) {
@@ -59,7 +59,7 @@ template <class H, class Other>
   }
 }
 
-/// The handlers of one object: what calls them, its entry in the device's dictionary, and how many there are.
+/// The handlers of one object: the event they are called for, its entry in the device's dictionary, and their number.
 template <class Object, class Label, Called When, entry::Word Entry, std::size_t Count>
 struct ObjectHandler {
   static constexpr bool exists = Entry > Dictionary::no_sub_index;
@@ -86,7 +86,7 @@ template <class Device, class H, class... Handlers>
 
 }  // namespace handler_detail
 
-/// Whether each of these handlers can be called in a node of this device; does not compile when one cannot.
+/// Whether each of these handlers can be called in a node of this device; does not compile if one cannot.
 template <class Device, class... Handlers>
 [[nodiscard]] constexpr bool checked_handlers() {
   return (true && ... && handler_detail::check_handler<Device, Handlers, Handlers...>());

@@ -1,5 +1,5 @@
-/// What the application does when the bus reads or writes an object or the NMT state changes: callables kept by value
-/// in the node and found by comparing numbers, without heap and without indirect calls.
+/// Handlers of the application for reads and writes of objects, NMT states and other events: callables that the node
+/// keeps by value and finds by comparing numbers, without heap or indirect calls.
 ///
 ///     auto drive = canopen::make_node<Device>(bus, NodeId{5},
 ///         canopen::on_write<od::controlword>([](std::uint16_t command) { return accept(command); }),
@@ -76,68 +76,70 @@ struct RpdoHandler {
   [[no_unique_address]] F call;
 };
 
-/// Called with a value that SDO or an RPDO brings, before it is stored: `handler(value)` or `handler(node, value)`. An
-/// AbortCode other than `ok` refuses the value; no answer is a yes. Of a DOMAIN the value is the memory that has been
-/// filled already.
+/// Calls `handler(value)` or `handler(node, value)` with a value received by SDO or an RPDO, before it is stored. An
+/// AbortCode other than `ok` rejects the value; a handler that returns void accepts it. For a DOMAIN the value is the
+/// memory that has already been filled.
 template <DictionaryObject O, class F>
 [[nodiscard]] constexpr WriteHandler<O, F> on_write(F handler) {
   return {std::move(handler)};
 }
 
-/// Called before an SDO upload: `handler()` or `handler(node)`. It may set the object through the node, or answer its
-/// value, or an AbortCode.
+/// Calls `handler()` or `handler(node)` before an SDO upload. It may set the object through the node, or return its
+/// value or an AbortCode.
 template <DictionaryObject O, class F>
 [[nodiscard]] constexpr ReadHandler<O, F> on_read(F handler) {
   return {std::move(handler)};
 }
 
-/// Called with each NMT state that the node enters: `handler(state)` or `handler(node, state)`. Initialisation comes at
-/// start and at each reset, when the default values have been taken.
+/// Calls `handler(state)` or `handler(node, state)` with each NMT state that the node enters. Initialisation is
+/// reported at start and at each reset, after the default values have been set.
 template <class F>
 [[nodiscard]] constexpr StateHandler<F> on_state(F handler) {
   return {std::move(handler)};
 }
 
-/// Called at each SYNC in Pre-operational and Operational, when synchronous TPDOs have been sent and synchronous RPDOs
-/// taken over: `handler(counter)` or `handler(node, counter)`. The counter is 0 where the network counts no SYNCs.
+/// Calls `handler(counter)` or `handler(node, counter)` at each SYNC in Pre-operational and Operational, after
+/// synchronous TPDOs have been sent and synchronous RPDOs applied. The counter is 0 if the network does not use it.
 template <class F>
 [[nodiscard]] constexpr SyncHandler<F> on_sync(F handler) {
   return {std::move(handler)};
 }
 
-/// Called with the time of day that TIME brings: `handler(TimeOfDay)` or `handler(node, TimeOfDay)`.
+/// Calls `handler(TimeOfDay)` or `handler(node, TimeOfDay)` with the time of day that a TIME frame contains.
 template <class F>
 [[nodiscard]] constexpr TimeHandler<F> on_time_of_day(F handler) {
   return {std::move(handler)};
 }
 
-/// Called with what happens to the nodes of 1016h: `handler(HeartbeatEvent, NodeId, NmtState)`, or with the node before.
+/// Calls `handler(HeartbeatEvent, NodeId, NmtState)`, optionally with the node first, with the events of the nodes in
+/// 1016h.
 template <class F>
 [[nodiscard]] constexpr HeartbeatHandler<F> on_heartbeat(F handler) {
   return {std::move(handler)};
 }
 
-/// Called when the life time of node guarding has elapsed (true) and when a request has come again (false):
-/// `handler(bool)` or `handler(node, bool)`.
+/// Calls `handler(bool)` or `handler(node, bool)` when the life time of node guarding has elapsed (true) and when a
+/// request is received again (false).
 template <class F>
 [[nodiscard]] constexpr LifeGuardingHandler<F> on_life_guarding(F handler) {
   return {std::move(handler)};
 }
 
-/// Called with the EMCYs of 1028h: `handler(ConsumedEmergency)` or `handler(node, ConsumedEmergency)`.
+/// Calls `handler(ConsumedEmergency)` or `handler(node, ConsumedEmergency)` with the EMCYs of 1028h.
 template <class F>
 [[nodiscard]] constexpr EmergencyHandler<F> on_emergency(F handler) {
   return {std::move(handler)};
 }
 
-/// Called with the code of each error that this node reports by EMCY, whether a service has found it or the application
-/// has called `emergency`: `handler(std::uint16_t)` or `handler(node, std::uint16_t)`. The EMCY may be sent later.
+/// Calls `handler(std::uint16_t)` or `handler(node, std::uint16_t)` with the emergency error code of each error that
+/// this node reports by EMCY, whether a service has detected it or the application has called `emergency`. The EMCY may
+/// be sent later.
 template <class F>
 [[nodiscard]] constexpr ErrorHandler<F> on_error(F handler) {
   return {std::move(handler)};
 }
 
-/// Called with what happens to an RPDO: `handler(event, number)` or `handler(node, event, number)`.
+/// Calls `handler(event, number)` or `handler(node, event, number)` with each event of an RPDO.
 template <class F>
 [[nodiscard]] constexpr RpdoHandler<F> on_rpdo(F handler) {
   return {std::move(handler)};
@@ -145,7 +147,7 @@ template <class F>
 
 namespace handler_detail {
 
-/// Calls with the arguments, with the node before them if the callable wants it.
+/// Calls `handler` with the arguments, and with the node first if it does not accept them alone.
 template <class F, class Node, class... Arguments>
 constexpr decltype(auto) call(F& handler, [[maybe_unused]] Node& node, const Arguments&... arguments) {
   if constexpr (std::is_invocable_v<F&, const Arguments&...>) {
@@ -156,7 +158,7 @@ constexpr decltype(auto) call(F& handler, [[maybe_unused]] Node& node, const Arg
   }
 }
 
-/// The value in the bytes of an SDO download.
+/// Returns the value in the bytes of an SDO download.
 template <DictionaryObject O>
 [[nodiscard]] typename O::type value_from(std::span<std::uint8_t> bytes) {
   using T = typename O::type;
@@ -193,7 +195,7 @@ inline constexpr bool is_access_handler<WriteHandler<O, F>> = true;
 template <class O, class F>
 inline constexpr bool is_access_handler<ReadHandler<O, F>> = true;
 
-/// Whether a handler is of a kind, such as SyncHandler.
+/// Whether a handler is of this kind, such as SyncHandler.
 template <class Handler, template <class> class Kind>
 inline constexpr bool is_of = false;
 template <class F, template <class> class Kind>
@@ -241,13 +243,13 @@ class HandlerSet {
   template <DictionaryObject O>
   static constexpr bool handles_write = (handler_detail::is_write_handler_of<Handlers, O> || ...);
 
-  /// Whether any handler is called when an object is read or written.
+  /// Whether any handler is called when an object is read or written over the bus.
   static constexpr bool has_access_handlers = (handler_detail::is_access_handler<Handlers> || ...);
 
-  /// The same for an object known by number.
+  /// Whether the object with this key has a write handler.
   [[nodiscard]] static bool handles([[maybe_unused]] std::uint32_t key) { return ((key == handler_detail::written_key<Handlers>) || ...); }
 
-  /// Asks the write handlers of `O`.
+  /// Calls the write handlers of `O`; returns the first abort code.
   template <DictionaryObject O, class Node>
   AbortCode before_write([[maybe_unused]] Node& node, [[maybe_unused]] const typename O::type& value) {
     AbortCode code = ok;
@@ -259,7 +261,7 @@ class HandlerSet {
     return code;
   }
 
-  /// Asks the write handlers of the object with this number.
+  /// Calls the write handlers of the object with this key; returns the first abort code.
   template <class Node>
   AbortCode before_write(Node& node, std::uint32_t key, std::span<std::uint8_t> bytes) {
     AbortCode code = ok;
@@ -267,7 +269,7 @@ class HandlerSet {
     return code;
   }
 
-  /// Asks the read handlers of the object with this number.
+  /// Calls the read handlers of the object with this key; returns the first abort code.
   template <class Node>
   AbortCode before_read(Node& node, std::uint32_t key) {
     AbortCode code = ok;
@@ -275,7 +277,7 @@ class HandlerSet {
     return code;
   }
 
-  /// Whether a handler of this type is among them.
+  /// Whether a handler of this type is in the set.
   template <class H>
   static constexpr bool has = (std::is_same_v<H, Handlers> || ...);
 

@@ -1,4 +1,4 @@
-/// An object of the dictionary as a C++ type: what the generated od:: types are made of.
+/// An object of the dictionary as a C++ type: the base of the generated od:: types.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace canopen {
 
-/// Bits of a value on the wire where its C++ type says it all; 0 for strings and domains.
+/// Bits of a value on the wire that follow from its C++ type; 0 for strings and domains.
 template <class T>
 inline constexpr std::uint16_t wire_bits = std::is_arithmetic_v<T> ? sizeof(T) * 8 : 0;
 template <>
@@ -20,8 +20,8 @@ inline constexpr std::uint16_t wire_bits<TimeOfDay> = 48;
 template <>
 inline constexpr std::uint16_t wire_bits<TimeDifference> = 48;
 
-/// Index, sub-index, type and rights of one entry. A generated type derives from it and adds the name, limits and
-/// default value that the data sheet gives.
+/// Index, sub-index, type and access rights of one entry. A generated type derives from it and adds the name, limits
+/// and default value of the EDS.
 template <std::uint16_t Index, std::uint8_t SubIndex, class T, Access A, Mappable M = Mappable::no,
           std::uint16_t Bits = wire_bits<T>>
 struct Object {
@@ -33,7 +33,7 @@ struct Object {
   static constexpr std::uint16_t bits = Bits;
 };
 
-/// Anything with an object's attributes.
+/// A type with the attributes of an object.
 template <class O>
 concept DictionaryObject = requires {
   typename O::type;
@@ -43,7 +43,7 @@ concept DictionaryObject = requires {
   { O::mappable } -> std::convertible_to<Mappable>;
 };
 
-/// The lowest and highest value an object takes: what its data sheet says, else what its bits can hold.
+/// Lowest and highest value of an object: the limits of the EDS, otherwise the range of its bits.
 template <class O>
 [[nodiscard]] constexpr typename O::type low_limit() {
   using T = typename O::type;

@@ -24,12 +24,12 @@ class ObjectStore;
 
 namespace entry {
 
-/// Which kinds of entries a dictionary has: code for others is left out of an image.
+/// Kinds of entries that a dictionary has; code for the others is omitted from an image.
 struct Kinds {
   bool strings_in_ram = false;
   bool domains = false;
   bool booleans = false;
-  bool padded = false;  ///< numbers of 24, 40, 48 or 56 bits in RAM, in the next wider type
+  bool padded = false;  ///< numbers of 24, 40, 48 or 56 bits in RAM, stored in the next wider type
   bool constants = false;
   bool negative_immediates = false;
 };
@@ -51,7 +51,8 @@ struct Kinds {
 
 }  // namespace entry
 
-/// The entries of one node by number: what an SDO server works on. A reference to an ObjectStore, to be copied freely.
+/// Access to the entries of one node by index and sub-index, as an SDO server needs it. A reference to an ObjectStore,
+/// cheap to copy.
 template <class Device>
 class EntryAccess {
  public:
@@ -61,13 +62,13 @@ class EntryAccess {
 
   [[nodiscard]] static constexpr const Dictionary& dictionary() { return Device::dictionary; }
 
-  /// As Dictionary::find, whose code is in the image once.
+  /// Finds the word of an entry as Dictionary::find does, with one copy of the code in an image.
   [[nodiscard, gnu::noinline]] static entry::Word find(std::uint16_t index, std::uint8_t sub_index) {
     return Device::dictionary.sub_word(EntrySearch<Device>::find(index), sub_index);
   }
 
-  /// The bytes of an entry as SDO sends them. Immediate values are put into `scratch`, others are seen in place.
-  /// Of an unbound domain: no bytes, and a null pointer.
+  /// Returns the bytes of an entry as SDO sends them. Immediate values are copied to `scratch`, others are referenced
+  /// in place. An unbound domain: no bytes, null pointer.
   [[nodiscard]] std::span<const std::uint8_t> read(entry::Word word, std::span<std::uint8_t, 8> scratch) const {
     if (is_immediate(word)) {
       const std::uint32_t value = immediate_value(word);
@@ -89,21 +90,21 @@ class EntryAccess {
     return {where, bytes_of(word)};
   }
 
-  /// An unsigned value of up to 32 bits.
+  /// Returns an unsigned value of up to 32 bits.
   [[nodiscard]] std::uint32_t number(entry::Word word) const { return number_of(store_, word); }
 
-  /// The same for an entry that exists.
+  /// Returns an unsigned value of up to 32 bits; the entry must exist.
   [[nodiscard]] std::uint32_t number(std::uint16_t index, std::uint8_t sub_index) const {
     return number_of(store_, find(index, sub_index));
   }
 
-  /// The same for an entry that is known at compile time.
+  /// Returns an unsigned value of up to 32 bits of an entry that is known at compile time.
   template <std::uint16_t Index, std::uint8_t SubIndex>
   [[nodiscard]] std::uint32_t number() const {
     return store_->template number<Index, SubIndex>();
   }
 
-  /// An unsigned value of `Size` bytes at an offset in RAM.
+  /// Returns an unsigned value of `Size` bytes at an offset in RAM.
   template <std::uint8_t Size>
   [[nodiscard]] std::uint32_t number_at(std::size_t offset) const {
     const std::uint8_t* const where = reinterpret_cast<const std::uint8_t*>(store_) + offset;
@@ -116,39 +117,39 @@ class EntryAccess {
     }
   }
 
-  /// The memory behind a DOMAIN.
+  /// Returns the memory of a DOMAIN.
   [[nodiscard]] Domain domain(entry::Word word) const { return load<Domain>(ram(word)); }
 
-  /// Where an entry lies in RAM.
+  /// Returns the address of an entry in RAM.
   [[nodiscard]] std::uint8_t* ram(entry::Word word) const {
     return reinterpret_cast<std::uint8_t*>(store_) + entry::offset_of(word);
   }
 
-  /// Where an entry lies among the constants.
+  /// Returns the address of an entry in the constants.
   [[nodiscard]] static const std::uint8_t* constant(entry::Word word) {
     return static_cast<const std::uint8_t*>(Device::dictionary.constants) + entry::offset_of(word);
   }
 
-  /// Says how many bytes of a DOMAIN's memory are its value.
+  /// Sets the number of bytes of a DOMAIN's memory that are its value.
   void resize_domain(entry::Word word, std::uint32_t size) const {
     Domain resized = domain(word);
     resized.size = size;
     store(ram(word), resized);
   }
 
-  /// What speaks against writing these bytes: their length, then their value. CiA 301, 7.2.4.3.17.
+  /// Checks whether these bytes may be written: their length, then their value (CiA 301, 7.2.4.3.17).
   [[nodiscard, gnu::noinline]] AbortCode check(std::uint16_t index, std::uint8_t sub_index, entry::Word word,
                                                std::span<const std::uint8_t> bytes) const {
     if (const AbortCode length = check_length(index, sub_index, word, bytes.size()); length != ok) return length;
     return check_value(index, sub_index, word, bytes);
   }
 
-  /// The same for bytes whose length fits.
+  /// Checks the value of bytes whose length is correct.
   [[nodiscard]] static AbortCode check_value([[maybe_unused]] std::uint16_t index,
                                              [[maybe_unused]] std::uint8_t sub_index, entry::Word word,
                                              [[maybe_unused]] std::span<const std::uint8_t> bytes) {
     if (entry::place_of(word) != entry::Place::ram)
-      return AbortCode::not_stored;  // a command, such as 1010h's, of no service
+      return AbortCode::not_stored;  // a command such as 1010h that no service handles
     if constexpr (kinds.booleans) {
       if (entry::is_boolean(word)) return bytes[0] > 1 ? AbortCode::invalid_value : ok;
     }
@@ -159,7 +160,7 @@ class EntryAccess {
     return ok;
   }
 
-  /// Whether a value of this length fits the entry.
+  /// Checks whether a value of this length fits the entry.
   [[nodiscard]] AbortCode check_length(std::uint16_t index, std::uint8_t sub_index, entry::Word word,
                                        std::size_t length) const {
     const std::size_t fixed = bytes_of(word);
@@ -167,7 +168,7 @@ class EntryAccess {
     return length > longest(index, sub_index, word) ? AbortCode::length_too_high : ok;
   }
 
-  /// Bytes of the longest value that the entry takes.
+  /// Returns the maximum length of a value of the entry, in bytes.
   [[nodiscard]] std::uint32_t longest([[maybe_unused]] std::uint16_t index, [[maybe_unused]] std::uint8_t sub_index,
                                       entry::Word word) const {
     if constexpr (kinds.strings_in_ram) {
@@ -189,7 +190,7 @@ class EntryAccess {
     return true;
   }
 
-  /// Stores bytes that `check` let pass into an entry in RAM.
+  /// Stores bytes that `check` has accepted in an entry in RAM.
   void write(entry::Word word, std::span<const std::uint8_t> bytes) const {
     std::uint8_t* where = ram(word);
     const std::size_t size = bytes.size();
@@ -201,20 +202,20 @@ class EntryAccess {
       resize_domain(word, static_cast<std::uint32_t>(size));
       where = domain(word).data;
     } else if (kinds.padded && (size & (size - 1)) != 0) {
-      return extend(word, where, bytes, size == 3 ? 4 : 8);  // such numbers lie in the next wider type
+      return extend(word, where, bytes, size == 3 ? 4 : 8);  // such numbers are stored in the next wider type
     }
     const std::uint8_t* from = bytes.data();
-    if (where == from) return;  // a download in several frames has put a DOMAIN's bytes in place already
+    if (where == from) return;  // a download in several frames has already written a DOMAIN's bytes
     copy_few_bytes(where, from, size);
   }
 
-  /// Bytes that a string entry can hold.
+  /// Returns the capacity of a string entry in bytes.
   [[nodiscard]] static std::uint32_t capacity(std::uint16_t index, std::uint8_t sub_index) {
     const Limits* row = Device::dictionary.find_limits(object_key(index, limits_sub_index(index, sub_index)));
     return row == nullptr ? 0 : row->high;
   }
 
-  /// Bytes of a value as SDO carries it; 0 where that varies.
+  /// Returns the bytes of a value as SDO transfers it; 0: variable length.
   [[nodiscard]] static constexpr std::uint8_t bytes_of(entry::Word word) {
     if constexpr (kinds.booleans) return entry::wire_bytes(word);
     return entry::class_of(word) != entry::Class::special ? entry::size_of(word) : std::uint8_t{0};
@@ -224,7 +225,7 @@ class EntryAccess {
   [[nodiscard]] static constexpr bool is_domain(entry::Word word) { return kinds.domains && entry::is_domain(word); }
 
  private:
-  /// In an image once, with the address of the values in a register.
+  /// One copy in an image, with the address of the values in a register.
   [[nodiscard, gnu::noinline]] static std::uint32_t number_of(ObjectStore<Device>* store, entry::Word word) {
     const EntryAccess entries{*store};
     if (is_immediate(word)) return entries.immediate_value(word);
@@ -237,12 +238,12 @@ class EntryAccess {
   static constexpr bool has_limits = !Device::dictionary.limits.empty() || !Device::dictionary.wide_limits.empty();
   static constexpr std::size_t string_header = sizeof(std::uint16_t);
 
-  /// Whether a 00h follows the text: there is room for it behind the capacity then.
+  /// Whether a 00h follows the text; its storage then has one more byte than the capacity.
   [[nodiscard]] static bool is_terminated(entry::Word word) {
     return Device::dictionary.zero_terminated_strings && entry::type_of(word) == entry::visible_string;
   }
 
-  /// A value that lies in memory as its C++ type: at an address that is one of it.
+  /// Loads a value that is stored as its C++ type, at an address aligned for it.
   template <class T>
   [[nodiscard]] static T load(const std::uint8_t* where) {
     T value;
@@ -254,7 +255,7 @@ class EntryAccess {
     std::memcpy(std::assume_aligned<alignof(T)>(where), &value, sizeof value);
   }
 
-  /// Sign extended.
+  /// Stores a number in a wider type, sign-extended if it is signed.
   static void extend(entry::Word word, std::uint8_t* where, std::span<const std::uint8_t> bytes, std::size_t to) {
     const bool negative = entry::class_of(word) == entry::Class::signed_integer && (bytes.back() & 0x80) != 0;
     for (std::size_t i = 0; i < to; ++i) {
@@ -268,7 +269,7 @@ class EntryAccess {
     return (word & (entry::Word{2} << entry::place_shift)) != 0;
   }
 
-  /// Of one that is not immediate.
+  /// Returns the address of a value that is not immediate.
   [[nodiscard]] const std::uint8_t* address(entry::Word word) const {
     if (kinds.constants && entry::place_of(word) == entry::Place::rom) return constant(word);
     return ram(word);
@@ -312,7 +313,7 @@ class EntryAccess {
     return value < sortable(word, row->low) ? AbortCode::value_too_low : ok;
   }
 
-  /// A number that sorts among unsigned ones as the value does among its like: no floating-point library is needed.
+  /// Maps a value to an unsigned number with the same order: no floating-point library is needed.
   template <class Raw>
   [[nodiscard]] static Raw sortable(entry::Word word, Raw raw) {
     constexpr Raw sign = Raw{1} << (sizeof(Raw) * 8 - 1);
@@ -336,13 +337,13 @@ class EntryAccess {
   ObjectStore<Device>* store_;
 };
 
-/// The values of one device, and typed access to them. `Device` is what edsc generates.
+/// The values of one device, and typed access to them. `Device` is generated by edsc.
 template <class Device>
 class ObjectStore {
  public:
   constexpr ObjectStore() = default;
 
-  /// The value of an object, whatever its access on the bus.
+  /// Returns the value of an object, whatever its access type.
   template <DictionaryObject O>
   [[nodiscard]] typename O::type get() const {
     constexpr entry::Word word = word_of<O>();
@@ -360,7 +361,7 @@ class ObjectStore {
     }
   }
 
-  /// Sets an object that lives in RAM. Says whether the value has changed.
+  /// Sets an object in RAM. Returns whether its value has changed.
   template <DictionaryObject O>
   bool set(const typename O::type& value) {
     constexpr entry::Word word = word_of<O>();
@@ -376,7 +377,7 @@ class ObjectStore {
     return entry::place_of(word_of<O>()) == entry::Place::ram;
   }
 
-  /// The unsigned value of an entry that exists, by number: what services use that know the object and not its type.
+  /// Returns the unsigned value of an entry that must exist, for services that know the object but not its type.
   template <std::uint16_t Index, std::uint8_t SubIndex>
   [[nodiscard]] std::uint32_t number() const {
     constexpr entry::Word word = Device::dictionary.find(Index, SubIndex);
@@ -390,7 +391,7 @@ class ObjectStore {
     }
   }
 
-  /// Default values for 1000h..1FFFh, with the node-ID added where the data sheet says so.
+  /// Sets 1000h..1FFFh to their default values, with the node-ID added where the EDS says so.
   void reset_communication(NodeId node_id) {
     node_id_ = node_id;
     const BoundDomains bound = bound_domains();
@@ -399,7 +400,7 @@ class ObjectStore {
     add_node_id(Device::node_id_relative_communication());
   }
 
-  /// Default values for 2000h..9FFFh, with the node-ID added where the data sheet says so.
+  /// Sets 2000h..FFFFh to their default values, with the node-ID added where the EDS says so.
   void reset_application(NodeId node_id) {
     node_id_ = node_id;
     const BoundDomains bound = bound_domains();
@@ -449,7 +450,7 @@ class ObjectStore {
     return offsets;
   }();
 
-  /// The application binds a DOMAIN to memory once: a reset keeps that.
+  /// The memory to which the application has bound each DOMAIN; a reset keeps it.
   using BoundDomains = std::array<Domain, domain_count>;
   [[nodiscard]] BoundDomains bound_domains() {
     BoundDomains bound{};
@@ -473,7 +474,7 @@ class ObjectStore {
     }
   }
 
-  typename Device::Values values_{};  ///< first: offsets count from here
+  typename Device::Values values_{};  ///< first: offsets are relative to it
   NodeId node_id_{};
 };
 

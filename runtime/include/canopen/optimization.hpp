@@ -1,9 +1,10 @@
-/// What an image is compiled for.
+/// The optimization goal of an image: size or speed.
 #pragma once
 
 namespace canopen {
 
-/// Small rather than fast, as -Os says. All files of an image have to be compiled alike: inline functions are in it once.
+/// True if compiled for size (-Os). All files of an image must be compiled alike: the linker keeps one copy of an
+/// inline function.
 #ifdef __OPTIMIZE_SIZE__
 inline constexpr bool prefers_size = true;
 #else

@@ -1,4 +1,4 @@
-/// A value, or the SDO abort code that says why there is none.
+/// A value, or the SDO abort code that explains why it is missing.
 #pragma once
 
 #include <utility>
@@ -13,18 +13,18 @@ template <class T>
 class [[nodiscard]] Result {
  public:
   constexpr Result(T value) : value_{std::move(value)} {}  // NOLINT(google-explicit-constructor): a value is a result
-  /// `code` is not `ok`.
+  /// `code` must not be `ok`.
   constexpr Result(AbortCode code) : abort_code_{code} {}  // NOLINT(google-explicit-constructor): so is a refusal
 
   [[nodiscard]] constexpr bool has_value() const { return abort_code_ == ok; }
   constexpr explicit operator bool() const { return has_value(); }
 
-  /// The value; one made by its default constructor where there is none.
+  /// Returns the value; a default-constructed one if it is missing.
   [[nodiscard]] constexpr const T& value() const { return value_; }
   constexpr const T& operator*() const { return value_; }
   constexpr const T* operator->() const { return &value_; }
 
-  /// Why there is no value; `ok` when there is one.
+  /// Returns the reason for a missing value; `ok` if there is a value.
   [[nodiscard]] constexpr AbortCode abort_code() const { return abort_code_; }
 
  private:
@@ -32,7 +32,7 @@ class [[nodiscard]] Result {
   AbortCode abort_code_ = ok;
 };
 
-/// What a write comes to: done, or an abort code.
+/// The result of a write: success, or an abort code.
 template <>
 class [[nodiscard]] Result<void> {
  public:

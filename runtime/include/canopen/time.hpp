@@ -6,10 +6,10 @@
 
 namespace canopen {
 
-/// A span of time, 0 us to 71 minutes. Other std::chrono durations convert to it.
+/// A duration, 0 us to 71 minutes. Other std::chrono durations convert to it.
 using Duration = std::chrono::duration<std::uint32_t, std::micro>;
 
-/// A moment since start. It wraps every 71 minutes; two moments compare rightly as long as they are less than half of
+/// A point in time since start. It wraps every 71 minutes: comparisons are valid if two points are less than half of
 /// that apart.
 class TimePoint {
  public:
@@ -21,7 +21,7 @@ class TimePoint {
   friend constexpr TimePoint operator+(TimePoint time, Duration span) {
     return TimePoint{Duration{time.microseconds_ + span.count()}};
   }
-  /// How long `later` is behind `earlier`.
+  /// Returns the time from `earlier` to `later`.
   friend constexpr Duration operator-(TimePoint later, TimePoint earlier) {
     return Duration{later.microseconds_ - earlier.microseconds_};
   }
@@ -39,24 +39,24 @@ class TimePoint {
   std::uint32_t microseconds_ = 0;
 };
 
-/// Whether a moment that is one period ahead at most is yet to come. It may be over for longer than moments compare, as
-/// what is due waits for room on the bus.
+/// Whether `due`, set at most one period ahead, is still ahead. It may have passed longer ago than comparisons allow,
+/// because what is due may wait for room on the bus.
 [[nodiscard]] constexpr bool is_within(TimePoint due, Duration period, TimePoint now) {
   return (due - now).count() - 1u < period.count();
 }
 
-/// The longest time that may pass until a moment that others are compared with: 35 minutes.
+/// Maximum time between two points that are compared: 35 minutes.
 inline constexpr Duration longest_span{0x7FFF'FFFF};
 
-/// Whether a moment that is one event or inhibit time ahead at most is yet to come: of 65,535 units of so many us.
+/// Whether `due`, set at most one event or inhibit time ahead, is still ahead: at most 65,535 times `unit` us.
 [[nodiscard]] constexpr bool is_ahead(TimePoint due, std::uint32_t unit, TimePoint now) {
   return is_within(due, Duration{0xFFFF * unit}, now);
 }
 
-/// A time as 1017h or 1800h:05 hold it.
+/// Converts a time in ms, as in 1017h or 1800h:05.
 [[nodiscard]] constexpr Duration from_milliseconds(std::uint16_t count) { return Duration{count * 1000u}; }
 
-/// A time as 1015h holds it, and 1800h:03 by default: in units of 100 us.
+/// Converts a time in units of 100 us, as in 1015h and, by default, 1800h:03.
 [[nodiscard]] constexpr Duration from_hundred_microseconds(std::uint16_t count) { return Duration{count * 100u}; }
 
 }  // namespace canopen

@@ -1,4 +1,4 @@
-/// C++ types of those values that are not plain numbers.
+/// C++ types of values that are not plain numbers.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace canopen {
 
-/// TIME_OF_DAY (CiA 301, 7.1.6.5): 48 bits, laid out in memory as on the wire.
+/// TIME_OF_DAY (CiA 301, 7.1.6.5): 48 bits, with the same layout in memory and on the wire.
 struct TimeOfDay {
   std::uint32_t milliseconds = 0;  ///< after midnight, 28 bits
   std::uint16_t days = 0;          ///< since 1 January 1984
@@ -26,7 +26,7 @@ struct TimeDifference {
   friend constexpr bool operator==(TimeDifference, TimeDifference) = default;
 };
 
-/// What all strings share: a length and room for `Capacity` bytes. The dictionary finds both behind one offset.
+/// Common base of all strings: a length and up to `Capacity` bytes, which the dictionary accesses at one offset.
 template <std::size_t Capacity>
 struct StringStorage {
   static_assert(Capacity <= 0xFFFF);
@@ -40,7 +40,7 @@ struct StringStorage {
 template <std::size_t Capacity>
 struct VisibleString : StringStorage<Capacity> {
   constexpr VisibleString() = default;
-  /// Text longer than the capacity is cut.
+  /// Truncates text that is longer than the capacity.
   constexpr VisibleString(std::string_view text) {  // NOLINT(google-explicit-constructor): text is what it is made of
     while (this->size < text.size() && this->size < Capacity) {
       this->bytes[this->size] = static_cast<std::uint8_t>(text[this->size]);
@@ -60,7 +60,7 @@ struct OctetString : StringStorage<Capacity> {
   constexpr OctetString() = default;
   constexpr OctetString(std::initializer_list<std::uint8_t> octets)
       : OctetString{std::span<const std::uint8_t>{octets.begin(), octets.size()}} {}
-  /// Bytes beyond the capacity are cut.
+  /// Truncates bytes beyond the capacity.
   constexpr OctetString(std::span<const std::uint8_t> octets) {  // NOLINT(google-explicit-constructor)
     while (this->size < octets.size() && this->size < Capacity) {
       this->bytes[this->size] = octets[this->size];
@@ -71,11 +71,11 @@ struct OctetString : StringStorage<Capacity> {
   [[nodiscard]] constexpr std::span<const std::uint8_t> view() const { return {this->bytes.data(), this->size}; }
 };
 
-/// UNICODE_STRING: UTF-16 code units, low byte first; the capacity counts bytes.
+/// UNICODE_STRING: UTF-16 code units, low byte first. The capacity is in bytes.
 template <std::size_t Capacity>
 struct UnicodeString : StringStorage<Capacity> {
   constexpr UnicodeString() = default;
-  /// Units beyond the capacity are cut.
+  /// Truncates code units beyond the capacity.
   constexpr UnicodeString(std::u16string_view text) {  // NOLINT(google-explicit-constructor)
     for (const char16_t unit : text) {
       if (this->size + 2u > Capacity) break;
@@ -86,11 +86,11 @@ struct UnicodeString : StringStorage<Capacity> {
   }
 };
 
-/// DOMAIN: memory of the application's, read and written over SDO as a whole. Unbound until the application says where.
+/// DOMAIN: memory of the application, which SDO reads and writes as a whole. Unbound until the application sets `data`.
 struct Domain {
   std::uint8_t* data = nullptr;
   std::uint32_t size = 0;      ///< bytes that an upload sends
-  std::uint32_t capacity = 0;  ///< bytes that a download may bring; 0: none
+  std::uint32_t capacity = 0;  ///< bytes that a download may write; 0: none
 };
 
 }  // namespace canopen
