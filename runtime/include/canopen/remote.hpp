@@ -1,4 +1,4 @@
-/// A device on the bus as its master sees it: its objects by their generated types, over SDO.
+/// A device on the bus as its master sees it: typed access to its objects over SDO.
 ///
 ///     canopen::RemoteNode<cpc_tc1::Device, Bus> drive{bus, canopen::NodeId{5}};
 ///     drive.write<od::controlword>(0x0F, now);                      // frames and time go to drive until it is not
@@ -25,7 +25,7 @@
 
 namespace canopen {
 
-/// A string object: its value has a capacity.
+/// A string object: its value type has a capacity.
 template <class O>
 concept StringObject = DictionaryObject<O> && requires {
   O::type::capacity();
@@ -43,11 +43,11 @@ concept NumberObject = DictionaryObject<O> && O::bits >
 template <class O, class Device>
 concept ObjectOf = DictionaryObject<O> && Device::dictionary.has(O::index, O::sub_index);
 
-/// An object that SDO reads.
+/// An object that SDO can read.
 template <class O>
 concept RemoteReadable = DictionaryObject<O> && readable(O::access);
 
-/// An object that SDO writes.
+/// An object that SDO can write.
 template <class O>
 concept RemoteWritable = DictionaryObject<O> && writable(O::access);
 
@@ -61,14 +61,14 @@ concept Number = Integer<V> || std::floating_point<V>;
 
 }  // namespace remote_detail
 
-/// A value that an object may be given: of its own type, an integer for an integer, any number for a REAL.
+/// A value that can be written to an object: of the same type, an integer to an integer, any number to a REAL.
 template <class V, class O>
 concept ValueFor = NumberObject<O> &&
     (std::same_as<V, typename O::type> || (remote_detail::Integer<V> && remote_detail::Integer<typename O::type>) ||
      (remote_detail::Number<V> && std::floating_point<typename O::type>));
 
-/// Whether a value is within the range of the object's type and its limits: value_too_high, value_too_low, or
-/// invalid_value for a REAL with limits that is not a number.
+/// Checks a value against the range of the object's type and its limits: value_too_high, value_too_low, or
+/// invalid_value for a NaN written to a REAL with limits.
 template <NumberObject O, ValueFor<O> V>
 [[nodiscard]] constexpr AbortCode check_value(V value) {
   using T = typename O::type;
@@ -89,49 +89,49 @@ template <NumberObject O, ValueFor<O> V>
   return ok;
 }
 
-/// It is an SDO client of its own, and an SDO has one: not for a node that an NmtMaster or SdoQueue talks to. Two clients
-/// take each other's segments.
+/// Typed SDO client of one node. An SDO has one client, so do not use it for a node that an NmtMaster or SdoQueue
+/// accesses: two clients receive each other's segments.
 ///
-/// One transfer at a time: it begins with `read` or `write`, runs on frames and time until the node is no longer
-/// `busy()`, and leaves its `value()`, `data()` or `result()`.
+/// One transfer at a time: `read` or `write` starts it, frames and time are passed in until the node is no longer
+/// `busy()`, then `value()`, `data()` or `result()` return its outcome.
 ///
-/// An object that the device does not have, that the bus may not read or write, or a value of a type that loses
-/// something does not compile; neither does a constant outside the limits in `write<O, value>(now)`.
+/// The following do not compile: an object that the device does not have, one that SDO cannot read or write, a value of
+/// a type that cannot be converted without loss, and a constant outside the limits in `write<O, value>(now)`.
 template <class Device, Bus B>
 class RemoteNode {
  public:
   constexpr RemoteNode(B& can_bus, NodeId node_id, SdoClientOptions options = {})
       : client_{can_bus, node_id, options} {}
 
-  /// Begins to read an object whose `value<O>()` is asked for then. Refused with 060A 0023h while busy.
+  /// Starts to read an object; `value<O>()` then returns it. 060A 0023h while busy.
   template <NumberObject O>
   requires ObjectOf<O, Device> && RemoteReadable<O> Result<void> read(TimePoint now) {
     return begun(client_.template read<O>(now));
   }
 
-  /// Begins to read a string or DOMAIN into memory; `data()` tells its bytes then.
+  /// Starts to read a string or DOMAIN into memory; `data()` then returns its bytes.
   template <DictionaryObject O>
   requires ObjectOf<O, Device> && RemoteReadable<O> &&
       (StringObject<O> || DomainObject<O>)Result<void> read(std::span<std::uint8_t> memory, TimePoint now) {
     return begun(client_.upload(O::index, O::sub_index, memory, now));
   }
 
-  /// Begins to write an object. A value outside the limits is refused at once and goes nowhere.
+  /// Starts to write an object. A value outside the limits is rejected at once and not sent.
   template <NumberObject O, ValueFor<O> V>
   requires ObjectOf<O, Device> && RemoteWritable<O> Result<void> write(V value, TimePoint now) {
     if (const AbortCode code = check_value<O>(value); code != ok) return code;
     return begun(client_.template write<O>(static_cast<typename O::type>(value), now));
   }
 
-  /// Begins to write a constant.
+  /// Starts to write a constant.
   template <NumberObject O, auto Value>
   requires ObjectOf<O, Device> && RemoteWritable<O> && ValueFor<decltype(Value), O> Result<void> write(TimePoint now) {
     static_assert(check_value<O>(Value) == ok, "this value is outside the limits of the object");
     return begun(client_.template write<O>(static_cast<typename O::type>(Value), now));
   }
 
-  /// Begins to write a string or DOMAIN from memory. A string longer than the object holds is refused at once with 0607
-  /// 0012h.
+  /// Starts to write a string or DOMAIN from memory. A string longer than the capacity of the object is rejected at
+  /// once with 0607 0012h.
   template <DictionaryObject O>
   requires ObjectOf<O, Device> && RemoteWritable<O> &&
       (StringObject<O> || DomainObject<O>)Result<void> write(std::span<const std::uint8_t> bytes, TimePoint now) {
@@ -141,7 +141,7 @@ class RemoteNode {
     return begun(client_.download(O::index, O::sub_index, bytes, now));
   }
 
-  /// What `read<O>` has brought, or why there is nothing. 060A 0023h while busy.
+  /// Returns the value that `read<O>` has read, or why it is missing. 060A 0023h while busy.
   template <NumberObject O>
   [[nodiscard]] Result<typename O::type> value() {
     if (busy()) return AbortCode::no_resource;
@@ -149,10 +149,10 @@ class RemoteNode {
     return client_.result();
   }
 
-  /// The bytes of the string or DOMAIN that has been read.
+  /// Returns the bytes of the string or DOMAIN that has been read.
   [[nodiscard]] std::span<const std::uint8_t> data() const { return client_.data(); }
 
-  /// How the last transfer ended.
+  /// Returns how the last transfer ended.
   [[nodiscard]] Result<void> result() const { return client_.result(); }
 
   [[nodiscard]] bool busy() const { return client_.busy(); }
@@ -160,7 +160,7 @@ class RemoteNode {
   void on_time(TimePoint now) { client_.on_time(now); }
   [[nodiscard]] std::optional<TimePoint> next_deadline() const { return client_.next_deadline(); }
 
-  /// For entries by number, and for transfers piece by piece.
+  /// Returns the client, for access by index and sub-index and for transfers piece by piece.
   [[nodiscard]] SdoClient<B>& sdo() { return client_; }
 
  private:

@@ -23,50 +23,51 @@
 
 namespace canopen {
 
-/// The two COB-IDs of an SDO, as 1200h or 1280h hold them.
+/// The two COB-IDs of an SDO, as in 1200h or 1280h.
 struct SdoChannel {
   CobId request;   ///< client to server
   CobId response;  ///< server to client
 };
 
-/// The default SDO of a node.
+/// Returns the default SDO of a node.
 [[nodiscard]] constexpr SdoChannel default_sdo(NodeId server) {
   return {CobId{std::uint32_t{function_code::sdo_request} + server.value()},
           CobId{std::uint32_t{function_code::sdo_response} + server.value()}};
 }
 
 struct SdoClientOptions {
-  /// A server that is silent for this long ends the transfer with 0504 0000h, which it is told. Half a second is longer
-  /// than the erasure of a page of flash, which some servers answer after.
+  /// A transfer is aborted with 0504 0000h if the server does not respond for this time. Half a second is longer than
+  /// erasing a page of flash, which some servers do before they respond.
   Duration timeout = std::chrono::milliseconds{500};
-  /// Longer values are transferred in blocks; by segments, from then on, when the server has no block transfer.
+  /// Values longer than `block_threshold` are transferred in blocks; in segments from then on if the server does not
+  /// support block transfer.
   bool block_transfer = false;
-  /// Bytes up to which a value is not worth a block transfer.
+  /// Maximum size in bytes of a value that is transferred without blocks.
   std::uint8_t block_threshold = 28;
-  /// Segments of a sub-block of an upload, 1..127.
+  /// Segments per sub-block of an upload, 1..127.
   std::uint8_t block_size = sdo::largest_block;
-  /// Sub-blocks in a row of which nothing comes through before the transfer ends with 0504 0003h.
+  /// Consecutive sub-blocks without progress that are tolerated; one more ends the transfer with 0504 0003h.
   std::uint8_t block_retries = 3;
-  /// Block transfers have a CRC when the server supports it.
+  /// Block transfers use a CRC if the server supports it.
   bool crc = true;
 };
 
-/// Where the bytes of an upload go that no memory holds whole: each once and in order. The last piece of a block upload
-/// comes when its CRC is right. An AbortCode other than `ok` ends the transfer.
+/// Receives the bytes of an upload that no buffer holds as a whole, each byte once and in order. The last piece of a
+/// block upload is passed after its CRC has been checked. An AbortCode other than `ok` ends the transfer.
 struct SdoSink {
   AbortCode (*take)(void* context, std::uint32_t offset, std::span<const std::uint8_t> bytes, bool last) = nullptr;
   void* context = nullptr;
 };
 
-/// Where the bytes of a download come from that no memory holds whole: fills the bytes and answers how many there were.
-/// Fewer than asked for are the last. A piece that was lost on the bus is asked for again.
+/// Provides the bytes of a download that no buffer holds as a whole: fills `bytes` and returns how many there are.
+/// Fewer bytes than requested end a value of unknown size. A piece that was lost on the bus is requested again.
 struct SdoSource {
   Result<std::uint32_t> (*give)(void* context, std::uint32_t offset, std::span<std::uint8_t> bytes) = nullptr;
   void* context = nullptr;
   std::uint32_t size = sdo::unknown_size;  ///< bytes, if known
 };
 
-/// A sink that calls `callable(offset, bytes, last)`, which must stay until the transfer is over.
+/// Returns a sink that calls `callable(offset, bytes, last)`, which must exist until the transfer has ended.
 template <class F>
 [[nodiscard]] SdoSink sink_of(F& callable) {
   return {[](void* context, std::uint32_t offset, std::span<const std::uint8_t> bytes, bool last) -> AbortCode {
@@ -75,7 +76,7 @@ template <class F>
           &callable};
 }
 
-/// A source that calls `callable(offset, bytes)`, which must stay until the transfer is over.
+/// Returns a source that calls `callable(offset, bytes)`, which must exist until the transfer has ended.
 template <class F>
 [[nodiscard]] SdoSource source_of(F& callable, std::uint32_t size = sdo::unknown_size) {
   return {[](void* context, std::uint32_t offset, std::span<std::uint8_t> bytes) -> Result<std::uint32_t> {
@@ -84,19 +85,20 @@ template <class F>
           &callable, size};
 }
 
-/// Reads and writes the dictionary of one remote node through one of its SDO servers. Begin a transfer, hand in frames
-/// and time until it is no longer `busy()`, then look at `result()` and, after an upload, at `data()`.
+/// Reads and writes the object dictionary of one remote node through one of its SDO servers. Start a transfer, pass in
+/// frames and time until the client is no longer `busy()`, then check `result()` and, after an upload, `data()`.
 ///
-/// An upload fills, and a download reads, memory of the caller's that must stay until the transfer is over. A server that
-/// sends more bytes than it has announced ends the upload with 0607 0012h, a segment without bytes that is not the last
-/// one with 0607 0013h. One that announces no size is bounded by the memory, or by the sink.
+/// An upload fills, and a download reads, memory of the caller that must exist until the transfer has ended. An upload
+/// ends with 0607 0012h if the server sends more bytes than it has announced, and with 0607 0013h at a segment without
+/// bytes that is not the last one. If the server does not announce a size, the memory or the sink limits it.
 ///
-/// An SDO has one client: two of them take each other's answers. Use one client for a node and keep it, since it knows
-/// which answers may still come. SDO does not number its transfers; only the index and sub-index of initiate answers and
-/// aborts (the multiplexer) tell to which request they belong. Those of another entry are ignored, as are segments before
-/// the own transfer has begun. After a transfer that ended without its answer, by a timeout or `cancel`:
-///   - another entry is requested at once: answers of one server arrive in the order of the requests;
-///   - the same entry is requested when the late answer has arrived, or after another timeout;
+/// An SDO has one client: two of them would receive each other's responses. Use one client per node and keep it,
+/// because it knows which responses may still arrive. SDO does not number its transfers; only the index and sub-index
+/// of initiate responses and aborts (the multiplexer) identify the request. Responses for another entry are ignored, as
+/// are segments before the client's own transfer has started. After a transfer that ended without its response, by a
+/// timeout or `cancel`:
+///   - another entry is requested at once: responses of one server arrive in the order of the requests;
+///   - the same entry is requested after the late response has arrived, or after another timeout;
 ///   - after the segments of a block upload, which may have any content, nothing is requested for another timeout.
 template <Bus B>
 class SdoClient {
@@ -108,7 +110,7 @@ class SdoClient {
   constexpr SdoClient(B& can_bus, NodeId server, Duration timeout)
       : SdoClient{can_bus, server, SdoClientOptions{.timeout = timeout}} {}
 
-  /// Begins to read an entry into `memory`. 0504 0005h: the value is longer than that. False while busy.
+  /// Starts to read an entry into `memory`. 0504 0005h: the value is longer than that. Returns false while busy.
   bool upload(std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> memory, TimePoint now) {
     if (busy()) return false;
     memory_ = memory;
@@ -117,7 +119,7 @@ class SdoClient {
     return true;
   }
 
-  /// Begins to read an entry piece by piece.
+  /// Starts to read an entry piece by piece. Returns false while busy.
   bool upload(std::uint16_t index, std::uint8_t sub_index, SdoSink sink, TimePoint now) {
     if (busy()) return false;
     memory_ = {};
@@ -126,7 +128,7 @@ class SdoClient {
     return true;
   }
 
-  /// Begins to write an entry. False while busy.
+  /// Starts to write an entry. Returns false while busy.
   bool download(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> bytes, TimePoint now) {
     if (busy()) return false;
     memory_ = {};
@@ -136,7 +138,7 @@ class SdoClient {
     return true;
   }
 
-  /// Begins to write an entry piece by piece.
+  /// Starts to write an entry piece by piece. Returns false while busy.
   bool download(std::uint16_t index, std::uint8_t sub_index, SdoSource source, TimePoint now) {
     if (busy()) return false;
     memory_ = {};
@@ -146,11 +148,12 @@ class SdoClient {
     return true;
   }
 
-  /// Begins to read an object of a generated dictionary; `value()` gives it. Strings and DOMAINs need `upload`.
+  /// Starts to read an object of a generated dictionary; `value()` returns it. Strings and DOMAINs need `upload`.
   template <DictionaryObject O>
   requires(O::bits > 0) bool read(TimePoint now) { return upload(O::index, O::sub_index, number_, now); }
 
-  /// The value that `read<O>` brought; the abort code of the transfer, or 0607 0010h when its length is another one.
+  /// Returns the value that `read<O>` has read; empty if the transfer has failed or, with `result()` 0607 0010h, if its
+  /// length is wrong.
   template <DictionaryObject O>
   requires(O::bits > 0) [[nodiscard]] std::optional<typename O::type> value() {
     if (busy() || result_ != ok) return std::nullopt;
@@ -162,7 +165,7 @@ class SdoClient {
     return handler_detail::value_from<O>(std::span{number_}.first(size));
   }
 
-  /// Begins to write an object of a generated dictionary.
+  /// Starts to write an object of a generated dictionary.
   template <DictionaryObject O>
   requires(O::bits > 0) bool write(const typename O::type& value, TimePoint now) {
     if (busy()) return false;
@@ -171,25 +174,26 @@ class SdoClient {
     return download(O::index, O::sub_index, std::span{number_}.first((O::bits + 7u) / 8u), now);
   }
 
-  /// Ends the transfer with an abort code, which is sent to the server if the server knows of the transfer.
+  /// Ends the transfer with an abort code, which is sent to the server unless the first request has not been sent yet.
   void cancel(AbortCode code, TimePoint now) {
     now_ = now;
     if (state_ != State::idle) give_up(code);
     flush();
   }
 
-  /// The server has been reset: its boot-up message has arrived. Ends the transfer with 0800 0022h. Answers to requests
-  /// from before the reset do not arrive after the boot-up message, so the same entry can be requested again at once.
+  /// Reports that the boot-up message of the server has arrived. Ends the transfer with 0800 0022h. Responses to
+  /// requests from before the reset do not arrive after the boot-up message, so the same entry can be requested
+  /// again at once.
   void server_reset(TimePoint now) {
     cancel(AbortCode::device_state, now);
     if (left_over_ == LeftOver::any) left_over_ = LeftOver::none;
     was_reset_ = true;
   }
 
-  /// Other options from the next transfer on; not while busy.
+  /// Sets the options of the next transfers; not while busy.
   void set_options(const SdoClientOptions& options) { options_ = options; }
 
-  /// Takes an answer of the server; other frames are ignored.
+  /// Accepts a response of the server; other frames are ignored.
   void on_frame(const Frame& frame, TimePoint now) {
     now_ = now;
     if (frame.remote || frame.size != 8) return;
@@ -204,9 +208,8 @@ class SdoClient {
     }
   }
 
-  /// Sends what found no room, and ends a transfer whose server is silent; an abort that finds no room for as long as the
-  /// timeout is dropped. To be called at `next_deadline()`, and when
-  /// the bus has room again.
+  /// Sends what could not be sent yet, and ends a transfer whose server does not respond; an abort that cannot be sent
+  /// within the timeout is dropped. Call it at `next_deadline()`, and when the bus has room again.
   void on_time(TimePoint now) {
     now_ = now;
     const bool waits = held();
@@ -215,44 +218,44 @@ class SdoClient {
     flush();
     if (held() || now < deadline_) return;
     if (state_ == State::idle) {
-      has_request_ = false;  // an abort that has found no room: the server is silent by now
+      has_request_ = false;  // an abort that could not be sent within the timeout
       return;
     }
     if (state_ == State::block_uploading && sequence_ != 0) {
-      confirm_sub_block();  // what is lost comes again
+      confirm_sub_block();  // the server repeats what was lost
     } else {
       give_up(AbortCode::timeout);
     }
     flush();
   }
 
-  /// When `on_time` has something to do: not later than the last time told while a frame waits for room on the bus.
+  /// Returns when `on_time` is next due; while a frame waits for room on the bus, the time of the last call.
   [[nodiscard]] std::optional<TimePoint> next_deadline() const {
     if (held()) return late_until_;
     if (has_request_) return now_;
     return state_ == State::idle ? std::nullopt : std::optional{deadline_};
   }
 
-  /// Whether a transfer runs, or its abort waits for room on the bus.
+  /// Whether a transfer is running, or its abort waits for room on the bus.
   [[nodiscard]] bool busy() const { return state_ != State::idle || has_request_; }
 
-  /// Not busy, and no answer of an earlier transfer is expected any more: another client may use the SDO.
+  /// Whether the client is not busy and no response of an earlier transfer is expected: another client may use the SDO.
   [[nodiscard]] bool settled(TimePoint now) const {
     return !busy() && (left_over_ == LeftOver::none || !is_late_answer_due(now));
   }
 
-  /// When the answer that an earlier transfer left over counts as lost.
+  /// Returns when the late response of an earlier transfer counts as lost.
   [[nodiscard]] std::optional<TimePoint> settled_at() const {
     return left_over_ == LeftOver::none ? std::nullopt : std::optional{late_until_};
   }
 
-  /// How the last transfer ended: `ok`, or the abort code of either side.
+  /// Returns how the last transfer ended: `ok`, or the abort code of either side.
   [[nodiscard]] AbortCode result() const { return result_; }
 
-  /// Whether the server has told the size of the value that it has sent, which an expedited answer need not do.
+  /// Whether the server has indicated the size of the value that it has sent; an expedited response need not do so.
   [[nodiscard]] bool size_known() const { return size_ != sdo::unknown_size; }
 
-  /// What an upload that ended well has brought into memory; empty after a download.
+  /// Returns the bytes that a successful upload has read into memory; empty after a download.
   [[nodiscard]] std::span<const std::uint8_t> data() const {
     return memory_.empty() ? memory_ : memory_.first(position_);
   }
@@ -265,18 +268,18 @@ class SdoClient {
     initiating_download,
     downloading,
     initiating_block_upload,
-    block_uploading,      ///< takes segments
+    block_uploading,      ///< receives segments
     block_upload_ending,  ///< waits for the CRC
     initiating_block_download,
-    block_downloading,      ///< sends a sub-block, then waits until it is confirmed
-    block_download_ending,  ///< waits for the last word of the server
+    block_downloading,      ///< sends a sub-block, then waits for its confirmation
+    block_download_ending,  ///< waits for the final response of the server
   };
 
-  /// The answer that a transfer without one has left over.
+  /// The late response that an earlier transfer is still waiting for.
   enum class LeftOver : std::uint8_t {
     none,
-    entry,  ///< an initiate answer or abort, of `late_entry_`
-    any,    ///< segments of a block upload, or several initiate answers
+    entry,  ///< an initiate response or abort, of `late_entry_`
+    any,    ///< segments of a block upload, or several initiate responses
   };
 
   void begin(std::uint16_t index, std::uint8_t sub_index) {
@@ -294,19 +297,19 @@ class SdoClient {
            state_ == State::initiating_block_upload || state_ == State::initiating_block_download;
   }
 
-  /// Whether the first request waits since an answer of an earlier transfer could be taken for its own.
+  /// Whether the first request waits because a late response could be mistaken for its response.
   [[nodiscard]] bool held() const {
     if (!has_request_ || !is_initiating() || left_over_ == LeftOver::none) return false;
     return left_over_ == LeftOver::any || (late_entry_ == entry() && !was_reset_);
   }
 
-  /// Whether an answer is the one that an earlier transfer has left over. The answers of a server that was reset belong
-  /// to the transfer that runs.
+  /// Whether a response is the late one of an earlier transfer. The responses of a server that was reset belong to the
+  /// running transfer.
   [[nodiscard]] bool take_left_over(const sdo::Data& answer) {
     if (left_over_ != LeftOver::entry || !names_some_entry(answer)) return false;
     if (sdo::multiplexer_of(answer) != late_entry_) return false;
     if (was_reset_ && is_initiating() && late_entry_ == entry()) {
-      was_reset_ = false;  // the next one with this entry is the answer to the other request
+      was_reset_ = false;  // the next one with this entry is the response to the other request
       return false;
     }
     left_over_ = LeftOver::none;
@@ -315,13 +318,13 @@ class SdoClient {
 
   [[nodiscard]] bool is_late_answer_due(TimePoint now) const { return is_within(late_until_, options_.timeout, now); }
 
-  /// The first request has waited long enough.
+  /// Sends the first request, which has waited long enough.
   void release() {
     deadline_ = now_ + options_.timeout;
     flush();
   }
 
-  /// Ends a transfer whose last request is not answered. A server that knows nothing of it is not told.
+  /// Ends a transfer whose last request has not been answered. If the server does not know of it, nothing is sent.
   void give_up(AbortCode code) {
     const bool started = !(is_initiating() && has_request_);
     if (!started) return finish(code);
@@ -416,7 +419,7 @@ class SdoClient {
     abort(AbortCode::command_specifier);
   }
 
-  /// Whether an answer has an index and sub-index: initiate answers and aborts.
+  /// Whether a response contains an index and sub-index: initiate responses and aborts.
   [[nodiscard]] static bool names_some_entry(const sdo::Data& answer) {
     switch (sdo::server_command(answer[0])) {
       case sdo::ServerCommand::initiate_upload:
@@ -447,7 +450,7 @@ class SdoClient {
     }
   }
 
-  /// The server has no block transfer, or none for this entry.
+  /// The server does not support block transfer, in general or for this entry.
   void fall_back(AbortCode code) {
     block_refused_ = code == AbortCode::command_specifier;
     restart();
@@ -476,7 +479,7 @@ class SdoClient {
     request(0x60);
   }
 
-  /// Looks at the size that the server announces.
+  /// Checks the size that the server announces.
   [[nodiscard]] bool room_for(bool size_indicated, const sdo::Data& answer) {
     if (!size_indicated) return true;
     size_ = sdo::word_of(answer);
@@ -501,7 +504,7 @@ class SdoClient {
     } else if (last && size_ != sdo::unknown_size && position_ + size != size_) {
       code = AbortCode::length_mismatch;
     } else if (size == 0 && !last) {
-      code = AbortCode::length_too_low;  // a transfer of such segments has no end
+      code = AbortCode::length_too_low;  // a transfer of such segments would not end
     } else if (sink_.take != nullptr) {
       code = sink_.take(sink_.context, position_, {from, size}, last);
     } else if (size > memory_.size() - position_) {
@@ -554,7 +557,7 @@ class SdoClient {
     request_[0] = static_cast<std::uint8_t>(toggle_ | ((sdo::segment_bytes - *size) << 1) | (last_ ? 1 : 0));
   }
 
-  /// Puts the next bytes of a download behind the command byte; nothing when the source has ended the transfer.
+  /// Writes the next bytes of a download after the command byte; empty if the source has ended the transfer.
   [[nodiscard]] std::optional<std::uint32_t> fetch() {
     std::uint32_t size = std::min(size_ - position_, sdo::segment_bytes);
     if (source_.give != nullptr) {
@@ -592,8 +595,8 @@ class SdoClient {
     request(sdo::block_upload_start);
   }
 
-  /// A segment in its order is taken, another one is only looked at for the end of its sub-block. The last one waits
-  /// until the end tells how much of it counts.
+  /// Accepts the next segment in sequence; another one is only checked for the end of its sub-block. The last segment
+  /// is held until the end of the transfer indicates how many of its bytes are valid.
   void take_block_segment(const sdo::Data& answer) {
     const auto sequence = static_cast<std::uint8_t>(answer[0] & sdo::sequence_mask);
     const bool last = (answer[0] & sdo::last_block_segment) != 0;
@@ -620,7 +623,7 @@ class SdoClient {
     sequence_ = 0;
   }
 
-  /// Counts the sub-blocks in a row of which nothing has come through.
+  /// Counts consecutive sub-blocks without progress; false, with an abort, if there are too many.
   [[nodiscard]] bool progress(bool some) {
     failures_ = some ? std::uint8_t{0} : static_cast<std::uint8_t>(failures_ + 1);
     if (failures_ <= options_.block_retries) return true;
@@ -680,7 +683,8 @@ class SdoClient {
     }
   }
 
-  /// The server has taken the first segments of the sub-block. What is missing goes out again, in the next one.
+  /// The server has received the first segments of the sub-block. The missing ones are sent again, in the next
+  /// sub-block.
   void sub_block_confirmed(const sdo::Data& answer) {
     if (answer[1] > sequence_) return abort(AbortCode::sequence_number);
     const auto lost = static_cast<std::uint8_t>(sequence_ - answer[1]);
@@ -723,7 +727,7 @@ class SdoClient {
     deadline_ = now_ + options_.timeout;
   }
 
-  /// Sends the request that waits, and of a block download as many segments as there is room for.
+  /// Sends the pending request, and during a block download as many segments as the bus has room for.
   void flush() {
     while (has_request_ && !held()) {
       Frame frame{};
@@ -741,19 +745,19 @@ class SdoClient {
   B& bus_;
   SdoClientOptions options_;
   SdoChannel channel_;
-  std::span<std::uint8_t> memory_{};       ///< upload: where to
-  std::span<const std::uint8_t> bytes_{};  ///< download: where from
+  std::span<std::uint8_t> memory_{};       ///< upload: destination
+  std::span<const std::uint8_t> bytes_{};  ///< download: source
   SdoSink sink_{};
   SdoSource source_{};
   alignas(8) std::array<std::uint8_t, 8> number_{};
   alignas(4) sdo::Data request_{};
-  std::array<std::uint8_t, sdo::segment_bytes> last_segment_{};  ///< block upload: until its end tells how much counts
-  std::uint32_t size_ = sdo::unknown_size;                       ///< of the value, as far as it is known
+  std::array<std::uint8_t, sdo::segment_bytes> last_segment_{};  ///< block upload: until its valid bytes are known
+  std::uint32_t size_ = sdo::unknown_size;                       ///< of the value, if known
   std::uint32_t position_ = 0;
   std::uint32_t late_entry_ = 0;
   TimePoint now_{};
   TimePoint deadline_{};
-  TimePoint late_until_{};  ///< when what is left over counts as lost
+  TimePoint late_until_{};  ///< when the late response counts as lost
   AbortCode result_ = ok;
   std::uint16_t index_ = 0;
   std::uint16_t crc_ = 0;
@@ -763,13 +767,13 @@ class SdoClient {
   std::uint8_t toggle_ = 0;
   std::uint8_t block_size_ = 0;  ///< download: segments of this sub-block
   std::uint8_t sequence_ = 0;    ///< of the last segment
-  std::uint8_t repeated_ = 0;    ///< download: segments to come that the CRC counts already
-  std::uint8_t unused_ = 0;      ///< download: bytes of the last segment that hold no data
+  std::uint8_t repeated_ = 0;    ///< download: next segments that the CRC already includes
+  std::uint8_t unused_ = 0;      ///< download: unused bytes of the last segment
   std::uint8_t failures_ = 0;
-  bool last_ = false;     ///< download: the last bytes are on their way
-  bool checked_ = false;  ///< the CRC counts
+  bool last_ = false;     ///< download: no more bytes follow
+  bool checked_ = false;  ///< the CRC is used
   bool block_refused_ = false;
-  bool was_reset_ = false;  ///< the server, since the answer was left over
+  bool was_reset_ = false;  ///< the server has been reset since the late response was requested
   bool has_request_ = false;
 };
 

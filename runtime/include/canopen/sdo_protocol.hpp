@@ -1,4 +1,4 @@
-/// The bytes of SDO frames, as client and server both need them (CiA 301, 7.2.4.3.3 to 7.2.4.3.17).
+/// The bytes of SDO frames, for client and server (CiA 301, 7.2.4.3.3 to 7.2.4.3.17).
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@ namespace canopen::sdo {
 
 using Data = std::array<std::uint8_t, 8>;
 
-/// What a client asks for: bits 5..7 of byte 0.
+/// Client command specifier: bits 5..7 of byte 0.
 enum class ClientCommand : std::uint8_t {
   download_segment = 0,
   initiate_download = 1,
@@ -21,7 +21,7 @@ enum class ClientCommand : std::uint8_t {
   reserved = 7,
 };
 
-/// What a server answers: bits 5..7 of byte 0.
+/// Server command specifier: bits 5..7 of byte 0.
 enum class ServerCommand : std::uint8_t {
   upload_segment = 0,
   download_segment = 1,
@@ -40,16 +40,16 @@ inline constexpr std::uint8_t toggle = 0x10;          ///< segment: t
 inline constexpr std::uint8_t abort_command = 0x80;
 inline constexpr std::uint32_t segment_bytes = 7;
 
-// Block transfer (CiA 301, 7.2.4.3.9 to 7.2.4.3.16). While a sub-block runs, bit 7 of byte 0 tells the last segment and
-// the bits below hold the sequence number: there is no command then but the abort, whose sequence number would be 0.
+// Block transfer (CiA 301, 7.2.4.3.9 to 7.2.4.3.16). During a sub-block, bit 7 of byte 0 marks the last segment and the
+// bits below it are the sequence number: the only command is then the abort, whose sequence number would be 0.
 inline constexpr std::uint8_t crc_supported = 0x04;         ///< initiate: cc, sc
 inline constexpr std::uint8_t block_size_indicated = 0x02;  ///< initiate: s
 inline constexpr std::uint8_t last_block_segment = 0x80;    ///< segment: c
 inline constexpr std::uint8_t sequence_mask = 0x7F;
-inline constexpr std::uint8_t largest_block = 127;  ///< segments of a sub-block
+inline constexpr std::uint8_t largest_block = 127;  ///< segments per sub-block
 inline constexpr std::uint32_t unknown_size = 0xFFFF'FFFF;
 
-/// What a block upload request is: bits 0..1 of byte 0.
+/// Subcommand of a block upload request: bits 0..1 of byte 0.
 enum class BlockUpload : std::uint8_t { initiate = 0, end = 1, confirm = 2, start = 3 };
 
 // Byte 0 of the other messages of block transfers.
@@ -64,7 +64,7 @@ inline constexpr std::uint8_t block_download_end = 0xC1;         ///< client
 inline constexpr std::uint8_t block_download_answer = 0xA0;      ///< server
 inline constexpr std::uint8_t block_download_end_answer = 0xA1;  ///< server
 inline constexpr std::uint8_t block_download_confirm = 0xA2;     ///< server
-inline constexpr std::uint8_t block_end_mask = 0xE3;             ///< of an end command: all but n
+inline constexpr std::uint8_t block_end_mask = 0xE3;             ///< of an end command: all bits but n
 
 [[nodiscard]] constexpr ClientCommand client_command(std::uint8_t byte) {
   return static_cast<ClientCommand>(byte >> 5);
@@ -77,7 +77,7 @@ inline constexpr std::uint8_t block_end_mask = 0xE3;             ///< of an end 
   return static_cast<std::uint16_t>(data[1] | (data[2] << 8));
 }
 
-/// Index and sub-index where they stand in bytes 1..3 of a frame.
+/// Index and sub-index at their position in bytes 1..3 of a frame.
 [[nodiscard]] constexpr std::uint32_t multiplexer(std::uint16_t index, std::uint8_t sub_index) {
   return std::uint32_t{index} << 8 | std::uint32_t{sub_index} << 24;
 }
@@ -89,7 +89,7 @@ constexpr void put_multiplexer(Data& data, std::uint16_t index, std::uint8_t sub
   data[3] = sub_index;
 }
 
-/// Bytes 4..7 as a number: a size or an abort code.
+/// Returns bytes 4..7 as a number: a size or an abort code.
 [[nodiscard]] inline std::uint32_t word_of(const Data& data) {
   std::uint32_t word = 0;
   std::memcpy(&word, &data[4], sizeof word);

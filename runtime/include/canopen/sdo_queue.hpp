@@ -1,4 +1,4 @@
-/// SDO transfers to many nodes: a queue for each node, and a few clients that work on them.
+/// SDO transfers to many nodes: a queue for each node, served by a few clients.
 #pragma once
 
 #include <algorithm>
@@ -20,8 +20,8 @@ namespace canopen {
 /// How a transfer ended.
 struct SdoAnswer {
   AbortCode result = ok;               ///< `ok`, or the abort code of either side
-  std::span<const std::uint8_t> data;  ///< what an upload has brought into memory
-  bool size_known = true;              ///< false: the server did not say how many of these bytes are the value
+  std::span<const std::uint8_t> data;  ///< bytes that an upload has read into memory
+  bool size_known = true;              ///< false: the server did not indicate how many of these bytes are the value
 };
 
 /// One transfer to a node. Memory, sink and source are used until `done` has been called, which happens exactly once.
@@ -30,17 +30,17 @@ struct SdoRequest {
   std::uint16_t index = 0;
   std::uint8_t sub_index = 0;
   bool download = false;
-  std::span<std::uint8_t> memory{};       ///< upload without a sink: where to
-  std::span<const std::uint8_t> bytes{};  ///< download without a source: where from
+  std::span<std::uint8_t> memory{};       ///< upload without a sink: destination
+  std::span<const std::uint8_t> bytes{};  ///< download without a source: source
   SdoSink sink{};
   SdoSource source{};
   void (*done)(void* context, NodeId node, const SdoAnswer& answer) = nullptr;
   void* context = nullptr;
 };
 
-/// Transfers to one node run one after the other, in the order of `submit`; nodes are served at the same time, up to
-/// `Clients` of them. All requests to the default SDO of a node have to pass through one queue: two clients of one SDO
-/// take each other's answers. At most `Capacity` requests wait; one more is refused with 060A 0023h.
+/// Transfers to one node run one after the other, in the order of `submit`; up to `Clients` nodes are served at the
+/// same time. All requests to the default SDO of a node must use the same queue: two clients of one SDO receive each
+/// other's responses. At most `Capacity` requests wait; further ones are rejected with 060A 0023h.
 template <Bus B, std::size_t Clients, std::size_t Capacity>
 class SdoQueue {
  public:
@@ -48,7 +48,7 @@ class SdoQueue {
   SdoQueue(const SdoQueue&) = delete;
   SdoQueue& operator=(const SdoQueue&) = delete;
 
-  /// Appends a request to the queue of a node. 060A 0023h: `Capacity` requests wait; `done` is not called.
+  /// Appends a request to the queue of a node. 060A 0023h: `Capacity` requests are waiting; `done` is not called.
   Result<void> submit(NodeId node, const SdoRequest& request, TimePoint now) {
     if (count_ == Capacity) return AbortCode::no_resource;
     waiting_[count_++] = {request, node};
@@ -56,14 +56,14 @@ class SdoQueue {
     return ok;
   }
 
-  /// Ends all requests to a node that are in the queue now, the running one with an abort to the server, and calls their
-  /// `done` with this code.
+  /// Ends all queued requests to a node with this code and calls their `done`; the running one is aborted at
+  /// the server.
   void cancel(NodeId node, AbortCode code, TimePoint now) {
     end_all(node, code, now, [code, now](Client& client) { client.cancel(code, now); });
   }
 
-  /// The boot-up message of a node has arrived: what was requested is gone with the reset. Ends all its requests with
-  /// 0800 0022h.
+  /// Reports that the boot-up message of a node has arrived: the reset has discarded its requests. Ends all of them
+  /// with 0800 0022h.
   void node_reset(NodeId node, TimePoint now) {
     end_all(node, AbortCode::device_state, now, [now](Client& client) { client.server_reset(now); });
   }
@@ -76,7 +76,7 @@ class SdoQueue {
     finish(now);
   }
 
-  /// To be called at `next_deadline()`, and when the bus has room again.
+  /// Sends and times out transfers. Call it at `next_deadline()`, and when the bus has room again.
   void on_time(TimePoint now) {
     for (Channel& channel : channels_) {
       if (channel.client) channel.client->on_time(now);
@@ -84,7 +84,7 @@ class SdoQueue {
     finish(now);
   }
 
-  /// When `on_time` has something to do next; `wanted`: also when a client becomes free for another node.
+  /// Returns when `on_time` is next due; with `wanted`, also when a client becomes free for another node.
   [[nodiscard]] std::optional<TimePoint> next_deadline(bool wanted = false) const {
     std::optional<TimePoint> next;
     const auto consider = [&next](std::optional<TimePoint> other) {
@@ -98,7 +98,7 @@ class SdoQueue {
     return next;
   }
 
-  /// Whether a request to this node waits or runs.
+  /// Whether a request to this node is waiting or running.
   [[nodiscard]] bool busy(NodeId node) const {
     const Channel* const channel = find(node);
     if (channel != nullptr && channel->running) return true;
@@ -106,14 +106,14 @@ class SdoQueue {
                        [node](const Waiting& waiting) { return waiting.node == node; });
   }
 
-  /// Whether a request to this node would begin at once.
+  /// Whether a request to this node would start at once.
   [[nodiscard]] bool ready(NodeId node, TimePoint now) const {
     if (busy(node)) return false;
     if (find(node) != nullptr) return true;
     return std::any_of(channels_.begin(), channels_.end(), [now](const Channel& channel) { return channel.free(now); });
   }
 
-  /// Requests that wait, without those that run and those of one context.
+  /// Returns the number of waiting requests, without running ones and those with this context.
   [[nodiscard]] std::size_t waiting(const void* without = nullptr) const {
     const auto end = waiting_.begin() + static_cast<std::ptrdiff_t>(count_);
     return static_cast<std::size_t>(std::count_if(waiting_.begin(), end, [without](const Waiting& waiting) {
@@ -129,7 +129,7 @@ class SdoQueue {
     NodeId node{};
   };
 
-  /// A client stays with its node until another node needs it: it knows which answers may still come.
+  /// A client stays with its node until another node needs it, because it knows which responses may still arrive.
   struct Channel {
     std::optional<Client> client{};
     SdoRequest request{};
@@ -146,7 +146,7 @@ class SdoQueue {
     return nullptr;
   }
 
-  /// The channel that may begin a request to this node now.
+  /// Returns the channel that may start a request to this node now; null if none may.
   [[nodiscard]] Channel* channel_for(NodeId node, TimePoint now) {
     if (const Channel* const own = find(node)) {
       Channel& channel = channels_[static_cast<std::size_t>(own - channels_.data())];
@@ -163,7 +163,7 @@ class SdoQueue {
     return best;
   }
 
-  /// Begins what waits, in order, as far as nodes and clients are free.
+  /// Starts waiting requests, in order, as far as nodes and clients are free.
   void begin_waiting(TimePoint now) {
     for (std::size_t i = 0; i < count_;) {
       Channel* const channel = channel_for(waiting_[i].node, now);
@@ -189,7 +189,7 @@ class SdoQueue {
     }
   }
 
-  /// Takes a request out of the queue.
+  /// Removes a request from the queue.
   [[nodiscard]] Waiting take(std::size_t i) {
     const Waiting taken = waiting_[i];
     --count_;
@@ -197,7 +197,7 @@ class SdoQueue {
     return taken;
   }
 
-  /// Reports the transfers that are over, and begins the next ones.
+  /// Reports the transfers that have ended, and starts the next ones.
   void finish(TimePoint now) {
     for (Channel& channel : channels_) {
       if (!channel.running || channel.client->busy()) continue;
@@ -238,7 +238,7 @@ class SdoQueue {
   std::array<Channel, Clients> channels_{};
   std::array<Waiting, Capacity> waiting_{};
   std::size_t count_ = 0;
-  bool ending_ = false;  ///< requests are being ended: none begins
+  bool ending_ = false;  ///< requests are being ended: none may start
 };
 
 }  // namespace canopen

@@ -25,14 +25,14 @@
 
 namespace canopen {
 
-/// What a server asks of the node around it:
+/// Functions of the node that a server calls:
 ///   EntryAccess<Device> entries();
-///   AbortCode before_read(index, sub_index);            may refresh the value, or refuse
-///   AbortCode before_write(index, sub_index, bytes);    the bytes fit the entry; may refuse, or change them
+///   AbortCode before_read(index, sub_index);            may refresh the value, or reject the access
+///   AbortCode before_write(index, sub_index, bytes);    the bytes fit the entry; may reject or change them
 ///   void after_write(index, sub_index);
-///   AbortCode command(index, sub_index, bytes);         a write to an entry that is no variable, such as 1010h
-/// and, where it wants to be asked:
-///   bool is_new(word, bytes);                           after before_write: whether they are still to be stored
+///   AbortCode command(index, sub_index, bytes);         a write to an entry without a value, such as 1010h
+/// and, optionally:
+///   bool is_new(word, bytes);                           after before_write: whether they still need to be stored
 template <class T, class Device>
 concept SdoServerHooks = requires(T hooks, std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
   { hooks.entries() } -> std::same_as<EntryAccess<Device>>;
@@ -42,14 +42,14 @@ concept SdoServerHooks = requires(T hooks, std::uint16_t index, std::uint8_t sub
   { hooks.command(index, sub_index, bytes) } -> std::same_as<AbortCode>;
 };
 
-/// What it asks besides when the application streams DOMAINs, which then need no memory of their own:
-///   bool streams_upload(index, sub_index);      whether `read_domain` gives the bytes of this entry
+/// Further functions if the application streams DOMAINs, which then need no memory of their own:
+///   bool streams_upload(index, sub_index);      whether `read_domain` provides the bytes of this entry
 ///   Result<std::uint32_t> read_domain(index, sub_index, offset, bytes);
-///       fills `bytes` and says how many there were: fewer than asked for are the last. A lost block asks again.
-///   bool streams_download(index, sub_index);    whether `write_domain` takes the bytes of this entry
+///       fills `bytes` and returns how many there are: fewer than requested end the value. A lost block is read again.
+///   bool streams_download(index, sub_index);    whether `write_domain` accepts the bytes of this entry
 ///   AbortCode write_domain(index, sub_index, offset, bytes, last);
-///       each byte once and in order. `last` comes when the transfer is good, its CRC included; a transfer that breaks
-///       off has none, and the next one begins at offset 0 again.
+///       each byte once and in order. `last` is passed when the transfer has succeeded, including its CRC; an aborted
+///       transfer has none, and the next one starts at offset 0.
 template <class T, class Device>
 concept DomainStreamHooks = SdoServerHooks<T, Device> &&
     requires(T hooks, std::uint16_t index, std::uint8_t sub_index, std::uint32_t offset, std::span<std::uint8_t> into,
@@ -60,28 +60,28 @@ concept DomainStreamHooks = SdoServerHooks<T, Device> &&
   { hooks.write_domain(index, sub_index, offset, from, true) } -> std::same_as<AbortCode>;
 };
 
-/// One server, or one of several of a node: all that a transfer knows is in here. It takes requests of eight bytes and
-/// leaves at most one answer of eight bytes, which stays until it is sent. In a block upload the next segment is ready
-/// as soon as the one before is sent: a node sends answers until there is none, or until its bus is full.
+/// One SDO server of a node; it contains the whole state of a transfer. It accepts requests of eight bytes and holds at
+/// most one response of eight bytes until it has been sent. During a block upload the next segment is ready as soon as
+/// the one before has been sent: a node sends responses until none is left or its bus is full.
 ///
-/// Strings and DOMAINs are uploaded in place: what the application changes meanwhile is what goes out. Numbers are
-/// taken as they were when the upload began. A download is written when it is complete; only a DOMAIN fills up as it
-/// comes, and is empty until its last byte is there.
+/// Strings and DOMAINs are uploaded in place: changes by the application during the transfer are sent. Numbers are
+/// sampled at the start of the upload. A download is written when it is complete; only a DOMAIN is filled as bytes
+/// arrive, and is empty until its last byte has arrived.
 ///
-/// Block transfers are compiled in when `Device::options.sdo_block_transfer` says so; their initiate is answered with
-/// 0504 0001h otherwise. A new initiate ends the transfer before, except while the segments of a block download come:
-/// it cannot be told from them.
+/// Block transfer is compiled in with `Device::options.sdo_block_transfer`; otherwise its initiate is aborted with 0504
+/// 0001h. A new initiate ends the previous transfer, except during the segments of a block download, from which it
+/// cannot be distinguished.
 template <class Device>
 class SdoServer {
  public:
-  /// Takes a request. An answer that could not be sent yet is replaced.
+  /// Accepts a request. A response that has not been sent yet is replaced.
   void on_request(const std::array<std::uint8_t, 8>& request, SdoServerHooks<Device> auto&& hooks, TimePoint now) {
     if constexpr (has_timeout) last_activity_ = now;
     if (const AbortCode code = handle(request, hooks); code != ok) abort(code);
   }
 
-  /// Aborts a transfer whose client has been silent for too long (0504 0000h). A sub-block whose end is overdue for
-  /// half of that time is confirmed as far as it has come, so that the client repeats the rest.
+  /// Aborts a transfer whose client has not sent anything for too long (0504 0000h). A sub-block that stops for half of
+  /// that time is confirmed as far as it has been received, so that the client repeats the rest.
   void on_time([[maybe_unused]] TimePoint now) {
     if constexpr (has_timeout) {
       if (state_ == State::idle || now < last_activity_ + patience()) return;
@@ -92,7 +92,7 @@ class SdoServer {
     }
   }
 
-  /// When the client will have been silent for too long.
+  /// Returns when the timeout of the client elapses.
   [[nodiscard]] std::optional<TimePoint> next_deadline() const {
     if constexpr (has_timeout) {
       if (state_ != State::idle) return last_activity_ + patience();
@@ -100,11 +100,11 @@ class SdoServer {
     return std::nullopt;
   }
 
-  /// Whether an answer waits to be sent.
+  /// Whether a response is waiting to be sent.
   [[nodiscard]] bool has_reply() const { return has_reply_; }
   [[nodiscard]] const std::array<std::uint8_t, 8>& reply() const { return reply_; }
 
-  /// The answer has found its place in the controller: the next segment of a block upload takes its place.
+  /// Reports that the response has been passed to the controller: the next segment of a block upload replaces it.
   void reply_sent(SdoServerHooks<Device> auto&& hooks, [[maybe_unused]] TimePoint now) {
     if constexpr (has_timeout) last_activity_ = now;
     has_reply_ = false;
@@ -120,16 +120,16 @@ class SdoServer {
     has_reply_ = false;
   }
 
-  /// Whether the segments of a block download come, whose first byte is no command.
+  /// Whether segments of a block download are expected, whose first byte is not a command.
   [[nodiscard]] bool takes_segments() const { return has_block && state_ == State::block_downloading; }
 
-  /// Forgets the transfer and the answer.
+  /// Discards the transfer and the response.
   void reset() {
     state_ = State::idle;
     has_reply_ = false;
   }
 
-  /// The memory behind a DOMAIN is another one now, or another server writes it: a transfer from or to it ends.
+  /// Aborts a transfer of a DOMAIN that has been bound to other memory, or that another server writes now.
   void domain_rebound(std::uint16_t index, std::uint8_t sub_index) {
     if (state_ != State::idle && multiplexer_ == sdo::multiplexer(index, sub_index)) abort(AbortCode::not_stored);
   }
@@ -140,9 +140,9 @@ class SdoServer {
     uploading,
     downloading,
     block_upload_initiated,  ///< waits for the start
-    block_uploading,         ///< sends a sub-block, then waits until it is confirmed
-    block_upload_ending,     ///< waits for the last word of the client
-    block_downloading,       ///< takes segments
+    block_uploading,         ///< sends a sub-block, then waits for its confirmation
+    block_upload_ending,     ///< waits for the client to confirm the end
+    block_downloading,       ///< receives segments
     block_download_ending,   ///< waits for the CRC
   };
 
@@ -181,7 +181,7 @@ class SdoServer {
       if (command == sdo::ClientCommand::block_download && (request[0] & 1) != 0)
         return end_block_download(request, hooks);
     }
-    // An unknown command initiates nothing: its abort names the transfer that it ends.
+    // An unknown command does not start a transfer: its abort contains the multiplexer of the transfer that it ends.
     if (command == sdo::ClientCommand::reserved && state_ != State::idle) return AbortCode::command_specifier;
     begin(request);
     if (command == sdo::ClientCommand::initiate_upload) return initiate_upload(hooks);
@@ -203,7 +203,7 @@ class SdoServer {
   [[nodiscard]] std::uint16_t index() const { return static_cast<std::uint16_t>(multiplexer_ >> 8); }
   [[nodiscard]] std::uint8_t sub_index() const { return static_cast<std::uint8_t>(multiplexer_ >> 24); }
 
-  /// Finds the entry and its right; `refusal` answers where the right is missing.
+  /// Finds the entry and checks its access right; returns `refusal` if the right is missing.
   [[nodiscard]] AbortCode find(entry::Word right, AbortCode refusal) {
     word_ = EntryAccess<Device>::find(index(), sub_index());
     if (word_ == Dictionary::no_object) return AbortCode::no_object;
@@ -215,13 +215,13 @@ class SdoServer {
 
   // Upload
 
-  /// Finds an entry that may be read now.
+  /// Finds an entry that can be read now.
   [[nodiscard]] AbortCode find_readable(auto& hooks) {
     if (const AbortCode code = find(entry::readable, AbortCode::write_only); code != ok) return code;
     return hooks.before_read(index(), sub_index());
   }
 
-  /// The value to send, as `bytes_` and `size_`: of a streamed one a null pointer and `unknown_size`.
+  /// Sets `bytes_` and `size_` to the value to send: for a streamed one, a null pointer and `unknown_size`.
   template <class Hooks>
   [[nodiscard]] AbortCode open_upload(Hooks& hooks) {
     if constexpr (DomainStreamHooks<Hooks, Device>) {
@@ -237,7 +237,7 @@ class SdoServer {
     return ok;
   }
 
-  /// A number goes out in several frames: as it is now.
+  /// Copies a number that is sent in several frames, so that it does not change.
   void hold_number() {
     if (entry::class_of(word_) == entry::Class::special || bytes_ == buffer_.data()) return;
     copy_bytes(buffer_.data(), bytes_, size_);
@@ -257,7 +257,7 @@ class SdoServer {
     return ok;
   }
 
-  /// An expedited answer.
+  /// Sets an expedited response.
   void answer_value(std::uint32_t bytes, std::uint32_t value) {
     answer(Device::options.sdo_upload_size_indicated ? 0x43u | (4 - bytes) << 2 : 0x42u, value);
   }
@@ -273,13 +273,13 @@ class SdoServer {
     answer_with_size(0x40, sdo::size_indicated);
   }
 
-  /// An answer that tells the size, where it is known.
+  /// Sets a response that indicates the size, if it is known.
   void answer_with_size(unsigned command, unsigned indicated) {
     if (size_ == sdo::unknown_size) return answer(command);
     answer(command | indicated, size_);
   }
 
-  /// Puts the next bytes of an upload behind the command byte. Answers how many there were; `last` tells the end.
+  /// Writes the next bytes of an upload after the command byte. `size` is their number; `last` marks the end.
   template <class Hooks>
   [[nodiscard]] AbortCode fetch([[maybe_unused]] Hooks& hooks, std::uint32_t& size, bool& last) {
     if constexpr (DomainStreamHooks<Hooks, Device>) {
@@ -334,7 +334,7 @@ class SdoServer {
     return ok;
   }
 
-  /// Four bytes, of which the first ones are a value.
+  /// Accepts four bytes, of which the first `size` are the value.
   [[nodiscard]] AbortCode take_expedited(const std::uint8_t* bytes, std::uint32_t size, auto& hooks) {
     std::memcpy(buffer_.data(), bytes, 4);
     if (is_domain()) {
@@ -347,14 +347,15 @@ class SdoServer {
     return code != ok ? code : write({buffer_.data(), size}, hooks);
   }
 
-  /// Of an expedited download that does not tell: the entry's, and four bytes where that varies.
+  /// Returns the size of an expedited download that does not indicate it: that of the entry, or four bytes if it
+  /// is variable.
   [[nodiscard]] std::uint32_t size_unless_told() const {
     const std::uint32_t size = EntryAccess<Device>::bytes_of(word_);
     return size - 1u < 4u ? size : 4u;
   }
 
-  /// Where the bytes of a download go, as `bytes_`, and how many may come, as `size_`: of a streamed DOMAIN a null
-  /// pointer.
+  /// Sets `bytes_` to the destination of a download and `size_` to the number of bytes it may have: for a streamed
+  /// DOMAIN, a null pointer.
   template <class Hooks>
   [[nodiscard]] AbortCode prepare(std::uint32_t announced, Hooks& hooks) {
     size_ = size_indicated_ ? announced : sdo::unknown_size;
@@ -381,14 +382,14 @@ class SdoServer {
     return ok;
   }
 
-  /// Whether so many more bytes may come.
+  /// Checks whether this number of further bytes is accepted.
   [[nodiscard]] AbortCode check_room(std::uint32_t size) const {
     if (size <= size_ - position_) return ok;
     if (buffer_is_short && size_ == buffer_bytes && !size_indicated_ && !is_domain()) return AbortCode::out_of_memory;
     return AbortCode::length_too_high;
   }
 
-  /// Takes the next bytes of a download.
+  /// Accepts the next bytes of a download.
   template <class Hooks>
   [[nodiscard]] AbortCode store([[maybe_unused]] Hooks& hooks, const std::uint8_t* from, std::uint32_t size,
                                 [[maybe_unused]] bool last) {
@@ -420,7 +421,7 @@ class SdoServer {
     return ok;
   }
 
-  /// All bytes of a download are there.
+  /// Completes a download.
   template <class Hooks>
   [[nodiscard]] AbortCode finish(Hooks& hooks) {
     state_ = State::idle;
@@ -433,7 +434,7 @@ class SdoServer {
     return write({bytes_, position_}, hooks);
   }
 
-  /// Takes bytes whose length fits. "save" calls deeply: what a write of a value needs is not on the stack then.
+  /// Writes bytes whose length fits. "save" needs much stack, so writing a value has a stack frame of its own.
   [[nodiscard, gnu::noinline]] AbortCode write(std::span<std::uint8_t> bytes, auto& hooks) {
     if (entry::place_of(word_) != entry::Place::ram) return hooks.command(index(), sub_index(), bytes);
     if constexpr (takes_commands) return write_value_apart(bytes, hooks);
@@ -445,12 +446,12 @@ class SdoServer {
     return write_value(bytes, hooks);
   }
 
-  /// Writes a value, unless something speaks against it.
+  /// Writes a value, unless a check rejects it.
   [[nodiscard]] AbortCode write_value(std::span<std::uint8_t> bytes, auto& hooks) {
     const EntryAccess<Device> entries = hooks.entries();
     if (const AbortCode code = entries.check_value(index(), sub_index(), word_, bytes); code != ok) return code;
     if (const AbortCode code = hooks.before_write(index(), sub_index(), bytes); code != ok) return code;
-    // A handler may have bound a DOMAIN to other memory: the application has taken the bytes then.
+    // A handler may have bound a DOMAIN to other memory: the application has then taken the bytes.
     const bool in_place = !is_domain() || entries.domain(word_).data == bytes.data();
     if (in_place && is_new(bytes, hooks)) entries.write(word_, bytes);
     hooks.after_write(index(), sub_index());
@@ -465,12 +466,12 @@ class SdoServer {
     }
   }
 
-  /// Of an announced size the length has been looked at already.
+  /// If the size was announced, the length has already been checked.
   [[nodiscard]] AbortCode check_length(EntryAccess<Device> entries) const {
     return size_indicated_ ? ok : entries.check_length(index(), sub_index(), word_, position_);
   }
 
-  /// Whether the application gives or takes the bytes of this transfer.
+  /// Whether the application reads or writes the bytes of this transfer.
   template <class Hooks>
   [[nodiscard]] bool streamed([[maybe_unused]] const Hooks& hooks) const {
     if constexpr (DomainStreamHooks<Hooks, Device>) return bytes_ == nullptr;
@@ -501,7 +502,7 @@ class SdoServer {
     if (!set_block_size(request[4])) return AbortCode::block_size;
     if (const AbortCode code = find_readable(hooks); code != ok) return code;
     if (const AbortCode code = open_upload(hooks); code != ok) return code;
-    if (size_ <= request[5] && request[5] != 0) {  // the protocol switch threshold: 0 wants no other protocol
+    if (size_ <= request[5] && request[5] != 0) {  // protocol switch threshold; 0: no switch
       answer_upload();
       return ok;
     }
@@ -553,7 +554,8 @@ class SdoServer {
     block_.crc = crc16_ccitt(block_.crc, {bytes, size});
   }
 
-  /// The client has taken the first segments of the sub-block. What is missing goes out again, in the next one.
+  /// The client has received the first segments of the sub-block. The missing ones are sent again, in the next
+  /// sub-block.
   [[nodiscard]] AbortCode sub_block_confirmed(const std::array<std::uint8_t, 8>& request, auto& hooks) {
     if (request[1] > block_.sequence) return AbortCode::sequence_number;
     const auto lost = static_cast<std::uint8_t>(block_.sequence - request[1]);
@@ -590,8 +592,8 @@ class SdoServer {
     return ok;
   }
 
-  /// A segment in its order is taken, another one is only looked at for the end of its sub-block. How much of the last
-  /// one counts is not known before the end: it is laid down where it belongs, and counts then.
+  /// Accepts the next segment in sequence; another one is only checked for the end of its sub-block. How many bytes of
+  /// the last one are valid is not known before the end of the transfer: they are put in place, and counted then.
   [[nodiscard]] AbortCode take_block_segment(const std::array<std::uint8_t, 8>& request, auto& hooks) {
     const auto sequence = static_cast<std::uint8_t>(request[0] & sdo::sequence_mask);
     const bool last = (request[0] & sdo::last_block_segment) != 0;
@@ -633,7 +635,7 @@ class SdoServer {
     return ok;
   }
 
-  /// Whether part of a sub-block has come and its end has not.
+  /// Whether a sub-block has been received in part.
   [[nodiscard]] bool sub_block_begun() const { return state_ == State::block_downloading && block_.sequence != 0; }
 
   [[nodiscard]] Duration patience() const {
@@ -643,9 +645,9 @@ class SdoServer {
     return timeout;
   }
 
-  // Answers
+  // Responses
 
-  /// Seven bytes, the usual number, need no call where speed counts.
+  /// Seven bytes, the usual number, do not need a call if speed matters.
   static void copy(std::uint8_t* to, const std::uint8_t* from, std::uint32_t size) {
     if (!prefers_size && size == sdo::segment_bytes) return copy_bytes(to, from, sdo::segment_bytes);
     copy_bytes(to, from, size);
@@ -659,7 +661,7 @@ class SdoServer {
 
   void clear_reply(std::uint8_t command) { put_reply(command, 0); }
 
-  /// An answer that names the entry, and four more bytes.
+  /// Sets a response with the index, the sub-index and four more bytes.
   void answer(unsigned command, std::uint32_t word = 0) { put_reply(multiplexer_ | command, word); }
 
   void abort(AbortCode code) {
@@ -676,23 +678,23 @@ class SdoServer {
     std::uint16_t crc = 0;
     std::uint8_t size = 0;      ///< upload: segments of this sub-block
     std::uint8_t sequence = 0;  ///< of the last segment
-    std::uint8_t repeated = 0;  ///< upload: segments to come that the CRC counts already
-    std::uint8_t unused = 0;    ///< upload: bytes of the last segment that hold no data
-    bool last = false;          ///< upload: the last segment has been made
+    std::uint8_t repeated = 0;  ///< upload: next segments that the CRC already includes
+    std::uint8_t unused = 0;    ///< upload: unused bytes of the last segment
+    bool last = false;          ///< upload: the last segment has been built
     bool checked = false;       ///< the client uses the CRC
   };
 
-  // Bytes first: a Cortex-M0+ reaches those at offsets up to 31 in one instruction.
+  // Bytes first: a Cortex-M0+ accesses offsets up to 31 with one instruction.
   State state_ = State::idle;
   bool has_reply_ = false;
   std::uint8_t toggle_ = 0;
   bool size_indicated_ = false;
   [[no_unique_address]] std::conditional_t<has_block, Block, Nothing> block_{};
-  std::uint32_t multiplexer_ = 0;  ///< index and sub-index, where they stand in a frame
+  std::uint32_t multiplexer_ = 0;  ///< index and sub-index, at their position in a frame
   entry::Word word_ = 0;
-  std::uint8_t* bytes_ = nullptr;  ///< where the value begins; null: the application streams it
-  std::uint32_t size_ = 0;         ///< upload: bytes of the value; download: bytes that may come
-  std::uint32_t position_ = 0;     ///< the next byte
+  std::uint8_t* bytes_ = nullptr;  ///< start of the value; null: the application streams it
+  std::uint32_t size_ = 0;         ///< upload: bytes of the value; download: bytes that are accepted
+  std::uint32_t position_ = 0;     ///< of the next byte
   [[no_unique_address]] std::conditional_t<has_timeout, TimePoint, Nothing> last_activity_{};
   alignas(4) std::array<std::uint8_t, 8> reply_{};
   alignas(4) std::array<std::uint8_t, buffer_bytes> buffer_{};

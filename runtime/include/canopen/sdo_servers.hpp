@@ -22,8 +22,8 @@ inline constexpr std::uint16_t sdo_server_parameter = 0x1200;
 inline constexpr std::uint16_t last_sdo_server_parameter = 0x127F;
 
 /// The first server always exists, with the COB-IDs of the pre-defined connection set: CiA 301 fixes those of 1200h.
-/// Another one exists while both of its COB-IDs are usable; bit 30, "dynamically assigned", makes no difference. Servers
-/// share no state; a DOMAIN that one of them begins to write is taken from the others.
+/// Another one exists while both of its COB-IDs are usable; bit 30, "dynamically assigned", is ignored. Servers do not
+/// share state; a DOMAIN that one of them starts to write is no longer transferred by the others.
 template <class Device>
 class SdoServers {
  public:
@@ -35,7 +35,7 @@ class SdoServers {
     return servers;
   }();
 
-  /// Takes a frame that is a request to one of the servers; false when it is none. A request of another length than
+  /// Accepts a frame that is a request to one of the servers; returns false if it is not. A request whose length is not
   /// eight bytes is ignored.
   template <class Hooks>
   bool on_frame(ObjectStore<Device>& store, const Frame& frame, Hooks&& hooks, TimePoint now) {
@@ -57,7 +57,7 @@ class SdoServers {
     for (SdoServer<Device>& server : servers_) server.on_time(now);
   }
 
-  /// Sends the answers that wait. False when the bus had no room: they stay.
+  /// Sends pending responses. Returns false if the bus had no room; they remain pending.
   template <Bus B, class Hooks>
   [[nodiscard]] bool serve(ObjectStore<Device>& store, B& bus, Hooks&& hooks, TimePoint now) {
     for (std::size_t i = 0; i < count; ++i) {
@@ -108,7 +108,7 @@ class SdoServers {
     return rows;
   }();
 
-  /// As `cob_id_of` tells it of a frame; `invalid_bit` where this server has none that is usable.
+  /// Returns a COB-ID in the format of `cob_id_of`; `invalid_bit` if this server does not have a usable one.
   [[nodiscard]] static std::uint32_t cob_id_of_server(std::size_t i, std::uint8_t sub_index, ObjectStore<Device>& store) {
     if (i == 0) {
       const std::uint32_t base =
@@ -134,8 +134,8 @@ class SdoServers {
   std::array<SdoServer<Device>, count> servers_{};
 };
 
-/// What speaks against writing these bytes to a COB-ID of 1200h..127Fh. 0609 0030h: its CAN-ID changes while the channel
-/// is valid, or is a restricted one; another value for 1200h, which is fixed.
+/// Checks whether these bytes may be written to a COB-ID of 1200h..127Fh. 0609 0030h: its CAN-ID changes while the
+/// channel is valid, or is a restricted one; or a different value for 1200h, which is fixed.
 template <class Device>
 [[nodiscard]] AbortCode check_sdo_cob_id(EntryAccess<Device> entries, std::uint16_t index, std::uint8_t sub_index,
                                          std::span<const std::uint8_t> bytes) {
