@@ -1,4 +1,4 @@
-/// Storage in two pages of flash: a new image goes into the page that does not hold the present one.
+/// Storage in two pages of flash: a new image is written to the page that does not contain the present one.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 
 namespace canopen {
 
-/// Two pages, 0 and 1, of `page_size` bytes. What is erased can be written once, in words of `word_size` bytes: a power
-/// of two, 32 at most. Offsets and sizes of `write` are multiples of it. False is an error of the medium.
+/// Two pages, 0 and 1, of `page_size` bytes. After an erase each word can be written once; a word has `word_size`
+/// bytes, a power of two, 32 at most. Offsets and sizes of `write` are multiples of it. False: the medium has failed.
 template <class T>
 concept FlashPages = requires(T& pages, std::uint8_t page, std::uint32_t offset, std::span<const std::uint8_t> words,
                               std::span<std::uint8_t> to) {
@@ -25,9 +25,9 @@ concept FlashPages = requires(T& pages, std::uint8_t page, std::uint32_t offset,
   { pages.read(page, offset, to) } -> std::same_as<bool>;
 };
 
-/// A page holds a header and the image. The header is written last: until its last word is written, its checksum is
-/// wrong and the other page counts. So no loss of power leaves a newer header that is good before an image that is not:
-/// such a page is reported as damaged, and the older image counts. The pages must outlive the storage.
+/// Keeps a header and the image in each page. The header is written last: until its last word has been written, its
+/// checksum is wrong and the other page is used. So a power loss cannot leave a valid newer header before an invalid
+/// image: such a page is reported as damaged, and the older image is used. The pages must outlive the storage.
 template <FlashPages Pages>
 class FlashStorage {
  public:
@@ -38,7 +38,7 @@ class FlashStorage {
     page_ = 1;
     size_ = 0;
     erasures_ = 0;
-    std::uint32_t broken = 0;  // count of a page with a good header and a bad image
+    std::uint32_t broken = 0;  // count of a page with a valid header and an invalid image
     for (std::uint8_t page = 0; page < 2; ++page) {
       const StorageState found = look_into(page);
       if (found == StorageState::damaged && state == StorageState::empty) state = found;
@@ -59,7 +59,8 @@ class FlashStorage {
 
   [[nodiscard]] std::uint32_t size() const { return size_; }
 
-  /// How often the two pages have been erased, together. Of a cut of power in the middle of an image it is not known.
+  /// Returns how often the two pages have been erased in total. An erase whose image was cut off by a power loss is
+  /// not counted.
   [[nodiscard]] std::uint32_t erasures() const { return erasures_; }
 
   [[nodiscard]] bool read(std::uint32_t position, std::span<std::uint8_t> to) const {
@@ -92,7 +93,7 @@ class FlashStorage {
       if (!write_word(image_at + written_ - rest)) return false;
     }
     header_.crc = crc_of(header_);
-    if (!write_header() || look_into(spare()) != StorageState::whole) return false;  // the medium has not kept it
+    if (!write_header() || look_into(spare()) != StorageState::whole) return false;  // the medium has not stored it
     page_ = spare();
     size_ = header_.size;
     return true;
@@ -103,16 +104,16 @@ class FlashStorage {
   static_assert(word_size >= 1 && word_size <= 32 && (word_size & (word_size - 1)) == 0);
 
   struct Header {
-    std::uint32_t erasures = 0;  ///< of both pages; of two images the one with the higher number is the newer
+    std::uint32_t erasures = 0;  ///< of both pages; the image with the higher number is the newer one
     std::uint32_t size = 0;      ///< bytes of the image
     std::uint16_t image_crc = first_crc;
-    std::uint16_t crc = 0;  ///< of what stands before
+    std::uint16_t crc = 0;  ///< of the fields before it
   };
   static constexpr std::uint16_t first_crc = 0xFFFF;
   static constexpr std::uint32_t header_bytes = 12;
   static_assert(sizeof(Header) == header_bytes);
 
-  /// Where the image begins: behind the header, at a whole word.
+  /// Start of the image: after the header, at a word boundary.
   static constexpr std::uint32_t image_at = (header_bytes + word_size - 1) / word_size * word_size;
   static_assert(Pages::page_size > image_at && Pages::page_size % word_size == 0);
 
@@ -124,7 +125,7 @@ class FlashStorage {
 
   [[nodiscard]] bool write_word(std::uint32_t offset) { return pages_.write(spare(), offset, word_); }
 
-  // In functions of their own, whose buffers lie on the stack one after the other.
+  // Separate functions, so that their buffers are not on the stack at the same time.
   [[nodiscard, gnu::noinline]] bool write_header() const {
     std::array<std::uint8_t, image_at> bytes;
     bytes.fill(0xFF);
@@ -132,7 +133,7 @@ class FlashStorage {
     return pages_.write(spare(), 0, bytes);
   }
 
-  /// What a page holds; `header_` is its header then.
+  /// Returns the state of a page; `header_` is then its header.
   [[nodiscard, gnu::noinline]] StorageState look_into(std::uint8_t page) {
     const std::span<std::uint8_t> bytes{reinterpret_cast<std::uint8_t*>(&header_), sizeof header_};
     if (!pages_.read(page, 0, bytes)) return StorageState::damaged;
@@ -157,12 +158,12 @@ class FlashStorage {
   }
 
   Pages& pages_;
-  Header header_{};             ///< of the image in the making, or of the page that was looked into
-  std::uint32_t written_ = 0;  ///< bytes of it
+  Header header_{};             ///< of the image being written, or of the page that was checked
+  std::uint32_t written_ = 0;  ///< of the image being written
   std::uint32_t size_ = 0;     ///< of the present image
   std::uint32_t erasures_ = 0;
   alignas(8) std::array<std::uint8_t, word_size> word_{};
-  std::uint8_t page_ = 1;  ///< which holds the present image; at first page 0 is the spare one
+  std::uint8_t page_ = 1;  ///< page of the present image; at first page 0 is the spare one
 };
 
 }  // namespace canopen

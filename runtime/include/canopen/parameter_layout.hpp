@@ -1,5 +1,4 @@
-/// Which values of a device "save" keeps, and in which order they stand in storage: computed at compile time (CiA 301,
-/// 7.5.2.13).
+/// Which values of a device "save" stores, and their order in storage; computed at compile time (CiA 301, 7.5.2.13).
 #pragma once
 
 #include <array>
@@ -13,30 +12,31 @@
 
 namespace canopen {
 
-/// What is stored and restored together.
+/// Values that are stored and restored together.
 enum class ParameterSection : std::uint8_t {
   communication,  ///< 1000h..1FFFh
   manufacturer,   ///< 2000h..5FFFh
   application,    ///< 6000h..9FFFh
   other,          ///< A000h..FFFFh
-  with_node_id,   ///< entries whose stored value counts for the node-ID that it was stored with, and that "load" leaves
+  with_node_id,   ///< entries whose stored value is valid only for the node-ID it was stored with, and that "load" does
+                  ///< not affect
   configuration,  ///< 1020h
 };
 inline constexpr std::size_t parameter_sections = 6;
 
-/// Bit n stands for section n.
+/// Bit n is section n.
 using SectionSet = std::uint8_t;
 [[nodiscard]] constexpr SectionSet set_of(ParameterSection section) {
   return static_cast<SectionSet>(1u << static_cast<unsigned>(section));
 }
 inline constexpr SectionSet all_sections = (1u << parameter_sections) - 1;
 
-/// What the values of 1000h..1FFFh are in; a reset communication loads these.
+/// The sections of 1000h..1FFFh, which a reset communication loads.
 inline constexpr SectionSet communication_sections = set_of(ParameterSection::communication) |
                                                      set_of(ParameterSection::with_node_id) |
                                                      set_of(ParameterSection::configuration);
 
-/// What a sub-index of 1010h and 1011h names. Sub-indices that are not here are the application's.
+/// The sections of a sub-index of 1010h and 1011h. Sub-indices that are not listed belong to the application.
 struct ParameterRange {
   std::uint8_t sub_index;
   SectionSet sections;
@@ -55,7 +55,7 @@ inline constexpr ParameterRange parameter_ranges[] = {
   return 0;
 }
 
-/// Bytes of Values that are stored one after the other.
+/// Consecutive bytes of Values that are stored.
 struct StoredRun {
   std::uint16_t offset;
   std::uint16_t size;
@@ -84,7 +84,7 @@ struct IndexRange {
   std::uint16_t last;
 };
 
-/// Objects of the communication profile that can be written and are no parameters: errors, time stamps, commands.
+/// Writable objects of the communication profile that are not parameters: errors, time stamps, commands.
 inline constexpr IndexRange no_parameters[] = {
     {0x1001, 0x1003}, {0x1010, 0x1011}, {0x1013, 0x1013}, {0x1023, 0x1026}, {0x1F50, 0x1F57}, {0x1F82, 0x1F83},
 };
@@ -96,7 +96,8 @@ inline constexpr IndexRange no_parameters[] = {
   return true;
 }
 
-/// Written and read, and of no single direction: rww is an output of the process, rwr an input (CiA 306-1, 4.6.2).
+/// Whether an entry is readable and writable, and not process data: rww is a process output, rwr an input (CiA
+/// 306-1, 4.6.2).
 [[nodiscard]] constexpr bool has_access_of_parameter(entry::Word word) {
   const bool to_tpdo = (word & entry::tpdo) != 0;
   const bool from_rpdo = (word & entry::rpdo) != 0;
@@ -107,12 +108,12 @@ inline constexpr IndexRange no_parameters[] = {
   return (std::rotl(hash, 5) ^ word) * 0x9E37'79B1u;
 }
 
-/// Goes on with the limits of an entry. The elements of an array have theirs under sub-index 1.
+/// Adds the limits of an entry to the hash. The limits of array elements have sub-index 1.
 [[nodiscard]] constexpr std::uint32_t mix_limits(std::uint32_t hash, const Dictionary& dictionary, std::uint16_t index,
                                                  std::uint8_t sub_index) {
   const bool array = entry::kind_of(dictionary.find_index(index)) == entry::Kind::array;
   const std::uint32_t key = object_key(index, array && sub_index > 1 ? std::uint8_t{1} : sub_index);
-  // By position: with UBSan g++ 12 takes no pointer to a row of a table for a constant.
+  // By position: with UBSan, g++ 12 does not accept a pointer to a row of a table as a constant.
   const std::size_t narrow = dictionary_detail::position_of_key(dictionary.limits, key);
   if (narrow < dictionary.limits.size()) {
     hash = mix(mix(hash, dictionary.limits[narrow].low), dictionary.limits[narrow].high);
@@ -128,14 +129,15 @@ inline constexpr IndexRange no_parameters[] = {
 
 }  // namespace parameter_detail
 
-/// Stored are the entries in RAM that the bus reads and writes, but for DOMAINs, process data (access rww or rwr, or in
-/// a PDO of the data sheet) and what is no parameter by its nature; the options of the device say more.
+/// Selects the entries to store: those in RAM that are readable and writable over the bus, except DOMAINs, process data
+/// (access rww or rwr, or mapped into a PDO by the EDS) and objects that are not parameters. The options of the device
+/// can change this.
 template <class Device>
 class ParameterLayout {
   static constexpr std::size_t ram_bytes = sizeof(typename Device::Values);
   static_assert(ram_bytes <= 0xFFFF, "runs of stored values are counted with 16 bits");
 
-  // Whom a byte of Values belongs to: a section, or one of these.
+  // Owner of a byte of Values: a section, or one of these.
   static constexpr std::uint8_t padding = 0xFF;
   static constexpr std::uint8_t not_stored = 0xFE;
 
@@ -155,7 +157,7 @@ class ParameterLayout {
     return entries;
   }();
 
-  /// The objects that PDOs carry by the data sheet.
+  /// The objects that the EDS maps into PDOs.
   static constexpr auto carried = [] {
     std::array<std::uint32_t, entries_of<typename Device::Rpdos> + entries_of<typename Device::Tpdos>> keys{};
     std::size_t i = 0;
@@ -167,7 +169,7 @@ class ParameterLayout {
     return keys;
   }();
 
-  /// Whom the entries of an object belong to that are parameters.
+  /// Returns the owner of the entries of an object that are parameters.
   [[nodiscard]] static constexpr std::uint8_t parameter_owner(std::uint16_t index) {
     if (!parameter_detail::can_be_parameter(index)) return not_stored;
     return static_cast<std::uint8_t>(parameter_detail::section_of(index));
@@ -185,7 +187,7 @@ class ParameterLayout {
     return parameter_detail::has_access_of_parameter(word) ? as_parameter : not_stored;
   }
 
-  /// Says whom the bytes of an entry belong to.
+  /// Sets the owner of the bytes of an entry.
   static constexpr void give(std::uint8_t* bytes, std::uint16_t index, std::uint8_t sub_index, entry::Word word,
                              std::uint8_t owner) {
     std::uint8_t* const begin = bytes + entry::offset_of(word);
@@ -238,8 +240,7 @@ class ParameterLayout {
     return bytes;
   }();
 
-  /// Calls `visit(section, run)` for each run, in the order of memory. Padding between two values of a section is in
-  /// it.
+  /// Calls `visit(section, run)` for each run, in memory order. Padding between two values of a section belongs to it.
   template <class Visit>
   static constexpr void for_each_run(Visit&& visit) {
     const std::uint8_t* const bytes = owners.data();
@@ -255,7 +256,7 @@ class ParameterLayout {
   }
 
  public:
-  /// Where the runs of each section begin in `runs`.
+  /// Position in `runs` of the first run of each section.
   static constexpr std::array<std::uint16_t, parameter_sections + 1> firsts = [] {
     std::array<std::uint16_t, parameter_sections + 1> counts{};
     for_each_run([&](std::uint8_t section, StoredRun) { ++counts[section + 1u]; });
@@ -280,8 +281,8 @@ class ParameterLayout {
     return bytes;
   }();
 
-  /// What tells the stored bytes of each section from those of another dictionary: it follows from the entries, their
-  /// types, limits and places in storage.
+  /// Identifies the stored bytes of each section, so that those of another dictionary are not loaded: a hash of the
+  /// entries, their types, limits and positions in storage.
   static constexpr std::array<std::uint32_t, parameter_sections> signatures = [] {
     std::array<std::uint16_t, ram_bytes> places{};
     std::array<std::uint16_t, parameter_sections> next{};
@@ -313,7 +314,7 @@ class ParameterLayout {
            owners[entry::offset_of(word)] < parameter_sections;
   }
 
-  /// The same for an entry that lies in RAM, at run time.
+  /// The same at run time, for an entry in RAM.
   [[nodiscard]] static bool stores(entry::Word word) {
     const std::uint16_t offset = entry::offset_of(word);
     for (const StoredRun& run : runs) {

@@ -33,8 +33,8 @@ inline constexpr std::uint16_t verify_configuration = 0x1020;
 inline constexpr std::uint32_t save_signature = 0x6576'6173;  ///< "save"
 inline constexpr std::uint32_t load_signature = 0x6461'6F6C;  ///< "load"
 
-/// What speaks against a command to 1010h or 1011h: another signature, or that the data sheet's value has not bit 0
-/// set, "on command" (0800 0020h).
+/// Checks a command to 1010h or 1011h: rejects a wrong signature (by default 0800 0020h), and any command if the
+/// default value in the EDS does not have bit 0, "on command", set (0800 0020h).
 template <class Device>
 [[nodiscard]] AbortCode check_storage_command(EntryAccess<Device> entries, std::uint16_t index, std::uint8_t sub_index,
                                               std::span<const std::uint8_t> bytes) {
@@ -47,9 +47,9 @@ template <class Device>
   return on_command ? ok : AbortCode::not_stored;
 }
 
-/// The stored values of one device. An image holds one record for each section that is stored: a header, then the bytes
-/// of its values in the order of the layout. Records of another layout are passed over, and are gone with the next
-/// "save" or "load". A value that could not have been written over the bus leaves the default.
+/// The stored values of one device. An image contains one record for each stored section: a header, then the bytes of
+/// its values in the order of the layout. Records of another layout are ignored, and removed by the next "save" or
+/// "load". If a stored value could not have been written over the bus, the default value is used.
 template <class Device>
 class ParameterStorage {
  public:
@@ -59,38 +59,39 @@ class ParameterStorage {
   static constexpr bool has_configuration =
       Layout::stores(verify_configuration, 1) && Layout::stores(verify_configuration, 2);
 
-  /// Power-on.
+  /// Opens the storage at power-on.
   template <Storage S>
   void open(S& storage) {
     damaged_ = storage.open() == StorageState::damaged;
     restored_ = false;
   }
 
-  /// Whether stored values were lost since power-on, or some of them could not have been written and have their
-  /// defaults.
+  /// Whether stored values have been lost since power-on, or some of them could not have been written and were replaced
+  /// by default values.
   [[nodiscard]] bool damaged() const { return damaged_; }
 
-  /// Default values for 2000h..FFFFh, and over them what is stored.
+  /// Sets 2000h..FFFFh to their default values, then to the stored ones.
   template <Storage S>
   void reset_application(S& storage, ObjectStore<Device>& store, NodeId node_id) {
     reset<false>(storage, store, node_id);
   }
 
-  /// The same for 1000h..1FFFh.
+  /// Sets 1000h..1FFFh to their default values, then to the stored ones.
   template <Storage S>
   void reset_communication(S& storage, ObjectStore<Device>& store, NodeId node_id) {
     reset<true>(storage, store, node_id);
   }
 
-  /// Stores the values of some sections, and 1020h with them. What else is stored stays. False: nothing has changed in
-  /// storage.
+  /// Stores the values of some sections, and 1020h with them. Other stored sections are kept. False: storage has
+  /// not changed.
   template <Storage S>
   [[nodiscard]] bool save(S& storage, SectionSet sections, ObjectStore<Device>& store) {
     return rewrite(storage, sections | set_of(ParameterSection::configuration), 0, store);
   }
 
-  /// Gives some sections up, so that the next reset or, by the options, the next power-on brings their defaults. 1020h
-  /// is no longer true then: it goes too, and is 0 from now on. False: nothing has changed in storage.
+  /// Removes some sections from storage: the next reset or, depending on the options, the next power-on sets their
+  /// default values. As 1020h is then no longer valid, it is removed too, and becomes 0 at once. False: storage has
+  /// not changed.
   template <Storage S>
   [[nodiscard]] bool restore(S& storage, SectionSet sections, ObjectStore<Device>& store) {
     const unsigned given_up =
@@ -101,7 +102,8 @@ class ParameterStorage {
     return true;
   }
 
-  /// Whether an object belongs to the configuration that 1020h stands for: the bus can write it, and "save" stores it.
+  /// Whether an object belongs to the configuration that 1020h identifies: it is writable over the bus, and "save"
+  /// stores it.
   template <DictionaryObject O>
   static constexpr bool is_configuration = [] {
     if (!has_configuration || O::index == verify_configuration) return false;
@@ -109,7 +111,7 @@ class ParameterStorage {
     return (word & entry::writable) != 0 && Layout::stores(O::index, O::sub_index);
   }();
 
-  /// The configuration is not the one that 1020h stands for any more: it is 0 from now on.
+  /// Sets 1020h to 0, because the configuration is no longer the one that it identifies.
   static void clear_configuration([[maybe_unused]] ObjectStore<Device>& store) {
     if constexpr (has_configuration) {
       for (const std::uint8_t sub_index : {std::uint8_t{1}, std::uint8_t{2}}) {
@@ -119,7 +121,7 @@ class ParameterStorage {
     }
   }
 
-  /// These bytes are about to be written. Another value of a stored parameter clears 1020h.
+  /// Called before these bytes are written: if they change a stored parameter, 1020h becomes 0.
   static void before_write([[maybe_unused]] ObjectStore<Device>& store, [[maybe_unused]] std::uint16_t index,
                            [[maybe_unused]] std::uint8_t sub_index,
                            [[maybe_unused]] std::span<const std::uint8_t> bytes) {
@@ -133,18 +135,18 @@ class ParameterStorage {
   }
 
  private:
-  /// What stands before the values of a section. A signature counts together with the size.
+  /// Header of a section's values. A section is recognised by signature and size.
   struct Header {
     std::uint32_t signature;
     std::uint16_t size;     ///< bytes of the values
-    std::uint8_t node_id;   ///< what it was when they were stored
-    std::uint8_t given_up;  ///< 1: it counts until the next power-on
+    std::uint8_t node_id;   ///< node-ID when they were stored
+    std::uint8_t given_up;  ///< 1: valid until the next power-on
   };
   static_assert(sizeof(Header) == 8);
 
   /// A section of this device in storage.
   struct Record {
-    std::uint32_t position = 0;  ///< of its values; 0: it is not there
+    std::uint32_t position = 0;  ///< of its values; 0: does not exist
     std::uint8_t node_id = 0;
     std::uint8_t given_up = 0;
   };
@@ -155,8 +157,8 @@ class ParameterStorage {
     return reinterpret_cast<std::uint8_t*>(&store.values());
   }
 
-  /// The record of a section whose layout is this device's. It is looked for each time: all of them would take much of
-  /// the stack. False: storage could not be read.
+  /// Finds the record of a section that has this device's layout. It is looked up each time, because a table of all
+  /// records would take too much stack. False: storage could not be read.
   template <Storage S>
   [[nodiscard, gnu::noinline]] bool find(S& storage, std::size_t section, Record& record) const {
     record = {};
@@ -172,7 +174,7 @@ class ParameterStorage {
     return true;
   }
 
-  /// Whether storage could be read, and has nothing of some sections.
+  /// Whether storage could be read, and does not contain these sections.
   template <Storage S>
   [[nodiscard, gnu::noinline]] bool holds_none_of(S& storage, unsigned sections) const {
     Record record;
@@ -182,7 +184,7 @@ class ParameterStorage {
     return true;
   }
 
-  /// The same for an image without the sections in `given_up`, or in which they count for the last time.
+  /// The same for the image after the sections in `given_up` have been removed, or marked as valid until power-on.
   template <Storage S>
   [[nodiscard]] bool find_kept(S& storage, std::size_t section, unsigned given_up, Record& record) const {
     if (!find(storage, section, record)) return false;
@@ -196,7 +198,7 @@ class ParameterStorage {
     return true;
   }
 
-  /// Makes a new image: of the sections in `written` with the values as they are now, of others with what is stored.
+  /// Writes a new image: the sections in `written` with their present values, the others as they are stored.
   template <Storage S>
   [[nodiscard, gnu::noinline]] bool rewrite(S& storage, unsigned written, unsigned given_up,
                                             ObjectStore<Device>& store) const {
@@ -216,7 +218,7 @@ class ParameterStorage {
     return storage.commit();
   }
 
-  // In functions of their own, as their buffers would take stack while the image is committed.
+  // Separate functions, so that their buffers do not take stack while the image is committed.
   template <Storage S>
   [[nodiscard, gnu::noinline]] static bool write_present(S& storage, std::size_t section, ObjectStore<Device>& store) {
     return write_header(storage, section, {.node_id = store.node_id().value()}) &&
@@ -257,7 +259,7 @@ class ParameterStorage {
 
   // Loading
 
-  /// Wide enough for each value whose default follows the node-ID.
+  /// Whether a node-ID-dependent value is longer than four bytes.
   static constexpr bool has_wide_relative = [] {
     bool wide = false;
     for (const NodeIdRelative& row : Device::node_id_relative_communication()) wide = wide || row.size > 4;
@@ -276,11 +278,11 @@ class ParameterStorage {
 
   // Values that could not have been written
 
-  /// A stored entry that not all bytes are a value of, or sub-index 0 of a mapping parameter.
+  /// A stored entry that does not accept all bit patterns, or sub-index 0 of a mapping parameter.
   struct Checked {
     std::uint16_t index;
     std::uint8_t sub_index;
-    std::uint8_t what;  ///< one of these, or the objects that a mapping parameter has room for
+    std::uint8_t what;  ///< one of these, or the maximum number of objects of a mapping parameter
   };
   static constexpr std::uint8_t plain_value = 0;
   static constexpr std::uint8_t most_mapped = 64;
@@ -291,8 +293,8 @@ class ParameterStorage {
   static constexpr std::uint8_t sync_start = 0xFB;
   static constexpr std::uint8_t sync_period = 0xFC;
   static constexpr std::uint8_t sync_overflow = 0xFD;
-  static constexpr std::uint8_t cob_id = 0xFF;      ///< one that is not valid may be anything
-  static constexpr std::uint8_t identifier = 0xFE;  ///< the same, and bits 30 and 31 mean something else
+  static constexpr std::uint8_t cob_id = 0xFF;      ///< if it is not valid, any value is accepted
+  static constexpr std::uint8_t identifier = 0xFE;  ///< the same, but bits 30 and 31 have another meaning
   [[nodiscard]] static constexpr bool is_mapping(const Checked& row) {
     return row.what != plain_value && row.what <= most_mapped;
   }
@@ -348,7 +350,7 @@ class ParameterStorage {
   using Rows = std::array<std::uint8_t, (checked_count + 7) / 8>;
   [[nodiscard]] static bool is_row(const Rows& rows, std::size_t i) { return (rows[i / 8] >> i % 8 & 1) != 0; }
 
-  /// Whether the value of an entry could have been written.
+  /// Whether the value of an entry could have been written over the bus.
   [[nodiscard, gnu::noinline]] static bool is_possible(EntryAccess<Device> entries, const Checked& row) {
     const entry::Word word = EntryAccess<Device>::find(row.index, row.sub_index);
     const std::uint8_t* const at = entries.ram(word);
@@ -371,7 +373,7 @@ class ParameterStorage {
     return !value.valid() || may_be_written(value, true, Device::options.pdo_extended_ids);
   }
 
-  /// Whether the service of a parameter can take a value.
+  /// Whether the service of a parameter accepts a value.
   [[nodiscard]] static bool is_possible(std::uint8_t what, std::uint32_t value) {
     switch (what) {
       case sync_period: return is_sync_period(value);
@@ -406,7 +408,7 @@ class ParameterStorage {
                                         unsigned elements) {
     const entry::Word word = EntryAccess<Device>::find(index, sub_index);
     const std::size_t bytes = EntryAccess<Device>::bytes_of(word);
-    std::size_t size = (bytes <= 2 ? bytes : bytes <= 4 ? 4 : 8) * elements;  // in memory
+    std::size_t size = (bytes <= 2 ? bytes : bytes <= 4 ? 4 : 8) * elements;  // size in memory
     if (entry::is_string(word)) size = sizeof(std::uint16_t) + EntryAccess<Device>::capacity(index, sub_index);
     return offset - entry::offset_of(word) < size;
   }
@@ -416,7 +418,7 @@ class ParameterStorage {
     Communication ? store.reset_communication(node_id) : store.reset_application(node_id);
   }
 
-  /// Default values, and over them what is stored.
+  /// Sets default values, then the stored ones.
   template <bool Communication, Storage S>
   void reset(S& storage, ObjectStore<Device>& store, NodeId node_id) {
     constexpr std::size_t begin = Communication ? 0 : communication_count;
@@ -432,7 +434,7 @@ class ParameterStorage {
     }
   }
 
-  /// Loads again without the values of rows `first` to `end` that could not have been written.
+  /// Loads again without those values of rows `first` to `end` that could not have been written.
   template <bool Communication, Storage S>
   [[gnu::noinline]] void leave_out(S& storage, ObjectStore<Device>& store, NodeId node_id, std::size_t first,
                                    std::size_t end) {
@@ -442,7 +444,7 @@ class ParameterStorage {
     }
     reset_to_defaults<Communication>(store, node_id);
     for (std::size_t i = first; i < end; ++i) {
-      // A default that could not be written either is the data sheet's fault.
+      // A default value that could not have been written either is an error in the EDS.
       if (is_row(left_out, i) && is_possible(store.entries(), checked[i])) damaged_ = true;
     }
     if (!load<Communication>(storage, &left_out, store)) {
@@ -451,8 +453,8 @@ class ParameterStorage {
     }
   }
 
-  /// Puts what is stored in the place of the defaults, but for some rows of `checked`. False: storage could not be read,
-  /// and some values are not what they should be.
+  /// Replaces the default values by the stored ones, except some rows of `checked`. False: storage could not be read,
+  /// and some values are undefined.
   template <bool Communication, Storage S>
   [[nodiscard]] bool load(S& storage, const Rows* left_out, ObjectStore<Device>& store) const {
     if constexpr (Communication) {
@@ -474,8 +476,8 @@ class ParameterStorage {
     return true;
   }
 
-  /// A value that was the default of another node-ID is the default of this one: a COB-ID that follows the node-ID goes
-  /// on to follow it (CiA 305).
+  /// Loads a section. A value that was the default value for another node-ID becomes the one for this node-ID: a COB-ID
+  /// that depends on the node-ID continues to do so (CiA 305).
   template <Storage S>
   [[nodiscard]] static bool load_section(S& storage, std::size_t section, Record record,
                                          std::span<const NodeIdRelative> relative, const Rows* left_out,
@@ -507,7 +509,7 @@ class ParameterStorage {
     return true;
   }
 
-  /// Byte by byte: it is a rare case.
+  /// Reads byte by byte, because it is rarely needed.
   template <Storage S>
   [[nodiscard, gnu::noinline]] static bool read_others([[maybe_unused]] S& storage,
                                                        [[maybe_unused]] std::uint32_t position,

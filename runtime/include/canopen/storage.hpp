@@ -1,4 +1,4 @@
-/// What keeps parameters without power, as a node sees it: one image of bytes that is replaced as a whole.
+/// Non-volatile memory for parameters, as a node uses it: one image of bytes that is replaced as a whole.
 #pragma once
 
 #include <concepts>
@@ -8,24 +8,24 @@
 
 namespace canopen {
 
-/// What a storage holds when it is opened. Damaged: there was an image, and it cannot be read or its checksum is wrong;
-/// `size` and `read` give an older one, if there is one.
+/// Result of opening a storage. Damaged: an image exists, but cannot be read or has a wrong checksum; `size` and `read`
+/// then access an older one, if it exists.
 enum class StorageState : std::uint8_t { empty, whole, damaged };
 
-/// `begin`, `write` and `commit` make a new image. Whenever power is lost there is the old image or the new one; until
-/// `commit` `size` and `read` mean the old one. False is an error of the medium.
+/// `begin`, `write` and `commit` write a new image. After a power loss either the old or the new image exists; until
+/// `commit`, `size` and `read` access the old one. False: the medium has failed.
 template <class T>
 concept Storage = requires(T& storage, std::uint32_t number, std::span<std::uint8_t> to,
                            std::span<const std::uint8_t> from) {
   { storage.open() } -> std::same_as<StorageState>;    ///< looks for an image; once at power-on
-  { storage.size() } -> std::same_as<std::uint32_t>;   ///< bytes of the image; 0: there is none
-  { storage.read(number, to) } -> std::same_as<bool>;  ///< bytes of the image from a position on
-  { storage.begin(number) } -> std::same_as<bool>;     ///< a new image of so many bytes
-  { storage.write(from) } -> std::same_as<bool>;       ///< its next bytes
-  { storage.commit() } -> std::same_as<bool>;          ///< it is whole
+  { storage.size() } -> std::same_as<std::uint32_t>;   ///< bytes of the image; 0: none
+  { storage.read(number, to) } -> std::same_as<bool>;  ///< reads the image from a position on
+  { storage.begin(number) } -> std::same_as<bool>;     ///< starts a new image of this size
+  { storage.write(from) } -> std::same_as<bool>;       ///< appends bytes to it
+  { storage.commit() } -> std::same_as<bool>;          ///< completes it
 };
 
-/// The storage of a node, named among its handlers. It must outlive the node.
+/// The storage of a node, passed with its handlers. It must outlive the node.
 template <Storage S>
 struct StoredIn {
   S* storage;
@@ -38,7 +38,7 @@ template <Storage S>
   return {&storage};
 }
 
-/// A node without storage: 1010h and 1011h refuse what is written to them.
+/// A node without storage: 1010h and 1011h reject every write.
 struct NoStorage {};
 
 namespace storage_detail {
