@@ -1,5 +1,5 @@
-/// The frames that a node looks at, for the acceptance filters of a CAN controller or a socket. An image that does not
-/// ask for them has nothing of it.
+/// The frames that a node processes, for the acceptance filters of a CAN controller or a socket. An image that does not
+/// use this list does not contain any of it.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ namespace canopen {
 template <class Device, Bus B, class... Handlers>
 class Node;
 
-/// Frames of one CAN-ID, data or remote ones.
+/// All data or all remote frames with one CAN-ID.
 struct AcceptedFrame {
   std::uint32_t id = 0;
   bool extended = false;
@@ -35,13 +35,13 @@ namespace accepted_detail {
 
 enum class Source : std::uint8_t { sdo_request, sync, time, emergency, heartbeat, rpdo, tpdo };
 
-/// An entry of the dictionary that says which frames are accepted.
+/// An entry of the dictionary that determines which frames are accepted.
 struct Entry {
   Source source;
   entry::Word word;
 };
 
-/// The objects that tell of frames to be received (CiA 301, 7.5.2), by index and sub-index.
+/// Objects that define received frames (CiA 301, 7.5.2), by index and sub-index.
 struct Rule {
   std::uint16_t first;
   std::uint16_t last;
@@ -67,7 +67,7 @@ constexpr void for_each_source(const Dictionary& dictionary, Visit&& visit) {
   });
 }
 
-/// Calls `visit` with the frames that a number in an entry of this kind means, if any.
+/// Calls `visit` with the frames that the value of such an entry selects, if any.
 template <class Visit>
 void accept(Source source, std::uint32_t value, bool remote_frames, Visit&& visit) {
   const auto accepted = [&](std::uint32_t cob_id, bool remote) {
@@ -80,7 +80,7 @@ void accept(Source source, std::uint32_t value, bool remote_frames, Visit&& visi
   switch (source) {
     case Source::sync: return frames(value, false);
     case Source::time:
-      if (!cob_id.valid()) frames(value, false);  // here bit 31 says that TIME is consumed
+      if (!cob_id.valid()) frames(value, false);  // here bit 31 enables consuming TIME
       return;
     case Source::emergency:
     case Source::sdo_request:
@@ -115,9 +115,9 @@ inline constexpr std::array<Entry, source_count<Device>> sources = [] {
 
 }  // namespace accepted_detail
 
-/// Calls `visit(AcceptedFrame)` for all frames that this node does not ignore, some of them more than once, with its
-/// COB-IDs as they are now: they change with SDO writes, resets, LSS and the application. A node without node-ID
-/// listens to LSS alone.
+/// Calls `visit(AcceptedFrame)` for all frames that this node does not ignore, some of them more than once, with
+/// its present COB-IDs: they change with SDO writes, resets, LSS and the application. A node without node-ID
+/// accepts only LSS.
 template <class Device, Bus B, class... Handlers, class Visit>
 void for_each_accepted_frame(Node<Device, B, Handlers...>& node, Visit&& visit) {
   if constexpr (!std::is_void_v<typename lss_detail::Find<Handlers...>::type>) {
@@ -136,7 +136,7 @@ void for_each_accepted_frame(Node<Device, B, Handlers...>& node, Visit&& visit) 
   }
 }
 
-/// The most frames that it visits for a node of this device.
+/// Maximum number of frames for a node of this device.
 template <class Device>
 inline constexpr std::size_t most_accepted_frames = accepted_detail::source_count<Device> + 4;
 

@@ -1,4 +1,4 @@
-/// Which of two frames goes first on a CAN bus.
+/// Order of two frames in CAN arbitration.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 namespace canopen {
 
-/// What arbitration compares (ISO 11898-1), the most dominant one lowest: a base frame wins over an extended one with
-/// the same first 11 bits, a data frame over a remote one.
+/// Returns the value that arbitration compares (ISO 11898-1); the lowest is the most dominant: a base frame wins over
+/// an extended one with the same first 11 bits, a data frame over a remote one.
 [[nodiscard]] constexpr std::uint64_t arbitration_value(const Frame& frame) {
   const std::uint64_t base = frame.extended ? frame.id >> 18 : frame.id;
   const std::uint64_t rest = frame.extended ? frame.id & 0x3FFFF : 0;

@@ -1,4 +1,4 @@
-/// What a CAN controller tells about itself (ISO 11898-1), as a port reports it to its node.
+/// Status of a CAN controller (ISO 11898-1), as a port reports it to its node.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-/// Checks of the COB-IDs that a device starts with, while it is compiled: those of SYNC, TIME, EMCY and SDO. The PDOs
-/// have pdo_check.hpp.
+/// Compile-time checks of the COB-IDs of SYNC, TIME, EMCY and SDO that a device starts with. For PDOs, see
+/// pdo_check.hpp.
 ///
 ///     static_assert(canopen::checked_cob_ids<canopen::StartCobId{0x1014, 0x00, 0x80, true}>());
 ///
@@ -14,16 +14,16 @@
 
 namespace canopen {
 
-/// What an entry holds after a reset.
+/// Value of a COB-ID entry after a reset.
 struct StartCobId {
   std::uint16_t index;
   std::uint8_t sub_index;
-  std::uint32_t cob_id;       ///< without the node-ID where that is added
+  std::uint32_t cob_id;       ///< without the node-ID if that is added
   bool plus_node_id = false;  ///< the node-ID is added to the COB-ID
 };
 
-/// Whether the service that has its COB-ID at `index` may not use an 11-bit CAN-ID. An SDO client talks to the default
-/// SDO of other nodes; an EMCY on the CAN-ID of SYNC is a SYNC for all others.
+/// Whether the service with its COB-ID at `index` may not use an 11-bit CAN-ID. An SDO client uses the default SDO of
+/// other nodes; an EMCY with the CAN-ID of SYNC would be a SYNC for all others.
 [[nodiscard]] constexpr bool is_restricted_for(std::uint16_t index, std::uint32_t can_id) {
   constexpr std::uint32_t node_id = 0x7F;
   const std::uint32_t code = can_id & ~node_id;
@@ -33,9 +33,9 @@ struct StartCobId {
   return is_restricted(can_id);
 }
 
-/// Whether a device may start with a COB-ID: it has 11 bits or bit 29 says that it has 29, and its CAN-ID is free for
-/// the service, for each node-ID. The default SDO has that of its node (CiA 301, 7.3.5 and 7.5.2.33). A COB-ID that is
-/// off may be anything.
+/// Whether a device may start with a COB-ID: it has 11 bits, or 29 with bit 29 set, and the service may use its CAN-ID
+/// for every node-ID. The default SDO has that of its node (CiA 301, 7.3.5 and 7.5.2.33). An invalid COB-ID may have
+/// any value.
 [[nodiscard]] constexpr bool is_legal(const StartCobId& start) {
   constexpr std::uint32_t last_node_id = 127;
   const bool has_valid_bit = start.index != 0x1005 && start.index != 0x1012;
@@ -64,13 +64,13 @@ template <StartCobId C>
 struct Labelled {
   static constexpr std::uint16_t index = C.index;
   static constexpr std::uint8_t sub_index = C.sub_index;
-  /// Where the node-ID is added, that of node 1.
+  /// For node-ID 1, if the node-ID is added.
   static constexpr std::uint32_t can_id = (C.cob_id & 0x1FFF'FFFF) + (C.plus_node_id ? 1 : 0);
 };
 
 }  // namespace cob_id_detail
 
-/// Whether a device may start with these COB-IDs; does not compile when it may not.
+/// Whether a device may start with these COB-IDs; does not compile if it may not.
 template <StartCobId... C>
 [[nodiscard]] constexpr bool checked_cob_ids() {
   using namespace cob_id_detail;

@@ -1,4 +1,4 @@
-/// A CAN frame as the services see it.
+/// A CAN frame as the services use it.
 #pragma once
 
 #include <array>
@@ -12,10 +12,10 @@
 
 namespace canopen {
 
-/// A classic CAN data or remote frame. The data begin at a multiple of four, so that codecs may use whole words.
+/// A classic CAN data or remote frame. The data are aligned to four bytes, so that codecs can use whole words.
 struct Frame {
   std::uint32_t id = 0;   ///< 11 bits, or 29 with `extended`
-  std::uint8_t size = 0;  ///< number of data bytes, 0..8; of a remote frame the length asked for
+  std::uint8_t size = 0;  ///< number of data bytes, 0..8; of a remote frame, the requested length
   bool extended = false;
   bool remote = false;
   alignas(4) std::array<std::uint8_t, 8> data{};
@@ -29,24 +29,25 @@ struct Frame {
   }
 };
 
-/// The CAN-ID of a frame as a COB-ID holds it: bit 29 tells the extended ones.
+/// Returns the CAN-ID of a frame in the format of a COB-ID: bit 29 marks an extended one.
 [[nodiscard]] constexpr std::uint32_t cob_id_of(const Frame& frame) {
   return frame.id | (frame.extended ? std::uint32_t{0x2000'0000} : 0);
 }
 
-/// The CAN-ID of a COB-ID as a parameter holds it, without the bits above it.
+/// Returns the CAN-ID of a COB-ID, without the flag bits.
 [[nodiscard]] constexpr std::uint32_t can_id_of(std::uint32_t cob_id, bool extended) {
   const unsigned flags = extended ? 3 : 21;
   return cob_id << flags >> flags;
 }
 
-/// What a node sends through. `send` answers false when the controller has no room now; the frame is then not taken.
+/// The interface that a node sends through. `send` returns false if the controller has no room; the frame is
+/// then not sent.
 template <class T>
 concept Bus = requires(T& bus, const Frame& frame) {
   { bus.send(frame) } -> std::same_as<bool>;
 };
 
-/// The data bytes of a frame as they lie in memory.
+/// The data bytes of a frame as two words, in memory order.
 struct FrameWords {
   std::uint32_t first = 0;
   std::uint32_t second = 0;
@@ -61,7 +62,7 @@ static_assert(sizeof(FrameWords) == sizeof Frame::data);
   return words;
 }
 
-/// A frame with its data as words: no memory is cleared before it is filled.
+/// Returns a frame with its data as words: memory is not cleared before it is filled.
 [[nodiscard]] inline Frame make_frame(std::uint32_t id, std::uint8_t size, FrameWords words, bool extended = false,
                                       bool remote = false) {
   static_assert(std::endian::native == std::endian::little);
@@ -71,7 +72,7 @@ static_assert(sizeof(FrameWords) == sizeof Frame::data);
            byte(words.second, 0), byte(words.second, 8), byte(words.second, 16), byte(words.second, 24)}};
 }
 
-/// Sends the first of eight data bytes, which lie in memory as these two words, under a COB-ID as a parameter holds it.
+/// Sends the first `size` of eight data bytes, given as two words in memory order, with a COB-ID of the dictionary.
 template <Bus B>
 [[nodiscard, gnu::noinline]] bool send_words(B& bus, std::uint32_t cob_id, std::uint8_t size, std::uint32_t first,
                                              std::uint32_t second = 0) {
@@ -79,7 +80,7 @@ template <Bus B>
   return bus.send(make_frame(can_id_of(cob_id, extended), size, {first, second}, extended));
 }
 
-/// The same for a service whose COB-ID can be configured: where it is not usable nothing is sent, and nothing waits.
+/// The same for a service with a configurable COB-ID: if it is not usable, nothing is sent, and the result is true.
 template <Bus B>
 [[nodiscard, gnu::noinline]] bool send_configured(B& bus, std::uint32_t cob_id, std::uint8_t size, std::uint32_t first,
                                                   std::uint32_t second = 0) {

@@ -1,11 +1,11 @@
-/// Node-ID: a device's number on the bus.
+/// Node-ID of a device.
 #pragma once
 
 #include <cstdint>
 
 namespace canopen {
 
-/// 1..127 (CiA 301, 7.2.2). 0 means all nodes where a service allows it, 255 a device that has none yet (CiA 305).
+/// 1..127 (CiA 301, 7.2.2). 0 is all nodes if a service allows it, 255 a device without node-ID (CiA 305).
 class NodeId {
  public:
   constexpr NodeId() = default;

@@ -1,4 +1,4 @@
-/// Frames that wait for room on the bus, in the order in which arbitration would take them.
+/// Frames that wait for room on the bus, in the order of arbitration.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace canopen {
 
-/// Up to `Capacity` frames. Frames of one CAN-ID stay in their order.
+/// Queue of up to `Capacity` frames. Frames with the same CAN-ID keep their order.
 template <std::size_t Capacity>
 class SendQueue {
  public:
@@ -17,12 +17,12 @@ class SendQueue {
   [[nodiscard]] bool full() const { return count_ == Capacity; }
   [[nodiscard]] std::size_t size() const { return count_; }
 
-  /// The next one to be sent. Only where there is one.
+  /// Returns the next frame to be sent. The queue must not be empty.
   [[nodiscard]] const Frame& front() const { return frames_[count_ - 1]; }
   void pop() { --count_; }
   void clear() { count_ = 0; }
 
-  /// False: there is no room.
+  /// Adds a frame. Returns false if the queue is full.
   [[nodiscard]] bool push(const Frame& frame) {
     if (full()) return false;
     const std::uint64_t value = arbitration_value(frame);
@@ -34,7 +34,7 @@ class SendQueue {
   }
 
  private:
-  std::array<Frame, Capacity> frames_{};  ///< the last one goes first
+  std::array<Frame, Capacity> frames_{};  ///< the last one is sent first
   std::size_t count_ = 0;
 };
 
