@@ -1,4 +1,4 @@
-/// What a write to the communication parameters of a PDO has to obey (CiA 301, 7.5.2.35 and 7.5.2.37).
+/// Checks of writes to the communication parameters of a PDO (CiA 301, 7.5.2.35 and 7.5.2.37).
 #pragma once
 
 #include <cstdint>
@@ -22,12 +22,12 @@ namespace canopen {
   return index >> 9 == tpdo_indices.communication >> 9;
 }
 
-/// An inhibit time as 1800h..19FFh:03 hold it.
+/// Converts an inhibit time of 1800h..19FFh:03.
 [[nodiscard]] constexpr Duration inhibit_duration(const DeviceOptions& options, std::uint16_t count) {
   return Duration{std::uint32_t{count} * options.inhibit_time_unit};
 }
 
-/// 0609 0030h where the device has not what the COB-ID of a PDO asks for.
+/// Returns 0609 0030h if the COB-ID of a PDO requires a feature that the device does not have.
 [[nodiscard]] constexpr AbortCode check_pdo_features(const DeviceOptions& options, bool tpdo, CobId cob_id) {
   const auto [first, last] = options.pdo_reserved_can_ids;
   if (first <= last && cob_id.valid() && !cob_id.extended() && cob_id.can_id() >= first && cob_id.can_id() <= last)
@@ -38,7 +38,7 @@ namespace canopen {
   return ok;
 }
 
-/// 0609 0030h for reserved transmission types.
+/// Returns 0609 0030h for reserved transmission types.
 [[nodiscard]] constexpr AbortCode check_transmission_type(const DeviceOptions& options, bool tpdo, std::uint8_t type) {
   const Transmission transmission = transmission_of(type);
   if (transmission == Transmission::synchronous || transmission == Transmission::event_driven) return ok;
@@ -46,9 +46,9 @@ namespace canopen {
   return remote && transmission != Transmission::reserved ? ok : AbortCode::invalid_value;
 }
 
-/// What speaks against writing these bytes, whose length is right, to 1400h..15FFh or 1800h..19FFh. Bits of a COB-ID
-/// that the device does not let change are put back into `bytes`. 0604 0047h: the data sheet gives the parameter another
-/// type than CiA 301.
+/// Checks whether these bytes, whose length is correct, may be written to 1400h..15FFh or 1800h..19FFh. Bits of a
+/// COB-ID that the device does not allow to change are restored in `bytes`. 0604 0047h: in the EDS, the parameter does
+/// not have the type of CiA 301.
 template <class Device>
 [[nodiscard]] AbortCode check_pdo_parameter(EntryAccess<Device> entries, std::uint16_t index, std::uint8_t sub_index,
                                             std::span<std::uint8_t> bytes) {

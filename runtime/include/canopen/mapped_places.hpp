@@ -1,5 +1,5 @@
-/// Where the objects of dynamically mapped PDOs lie: looked up when a mapping is made, so that sending and receiving
-/// copy bytes.
+/// Locations of the objects of dynamically mapped PDOs: looked up when a mapping changes, so that transmission and
+/// reception only copy bytes.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 
 namespace canopen {
 
-/// Copies the 1..8 bytes of a value to or from a frame: in words where the processor has them at any address.
+/// Copies the 1..8 bytes of a value to or from a frame: in words if the processor supports them at any address.
 inline void copy_value(std::uint8_t* to, const std::uint8_t* from, unsigned bytes) {
   if constexpr (pdo_detail::unaligned_words) {
     if (bytes == 4) return static_cast<void>(std::memcpy(to, from, 4));
@@ -43,13 +43,13 @@ inline void copy_value(std::uint8_t* to, const std::uint8_t* from, unsigned byte
   }
 }
 
-/// The mappings of all PDOs of one direction. `Pdos` is a PdoList; those whose mapping is static have no part in it.
+/// The mappings of all PDOs of one direction. `Pdos` is a PdoList; PDOs with static mapping are not included.
 template <class Device, PdoIndices Indices, class Pdos>
 class MappedPlaces {
  public:
   static constexpr std::size_t count = Pdos::count;
 
-  /// Objects that the mapping of each PDO has room for; 0: static.
+  /// Maximum number of objects in the mapping of each PDO; 0: static.
   static constexpr std::array<std::uint8_t, count> capacities = [] {
     std::array<std::uint8_t, count> rows{};
     Pdos::for_each([&]<class Pdo, std::size_t I>() {
@@ -59,7 +59,7 @@ class MappedPlaces {
   }();
   static constexpr bool any = std::ranges::any_of(capacities, [](std::uint8_t capacity) { return capacity != 0; });
 
-  /// The same for the PDO with this mapping parameter.
+  /// Returns the same for the PDO with this mapping parameter.
   [[nodiscard]] static constexpr std::uint8_t capacity_of(std::uint16_t index) {
     const std::size_t place = place_of_pdo<Pdos>(index);
     return place < count ? capacities[place] : std::uint8_t{0};
@@ -68,8 +68,8 @@ class MappedPlaces {
   using Runs = MappedRun<Device>;
   using Place = typename Runs::Word;
 
-  /// Looks up the objects of a PDO. `watched(mapped)` says of one whether its value is not just stored. Answers the data
-  /// bytes of its frame; 0 when it carries nothing.
+  /// Looks up the objects of a PDO. `watched(mapped)` returns whether a new value of an object needs more than to be
+  /// stored. Returns the data bytes of the PDO's frame; 0 if it does not map anything.
   template <class Watched>
   std::uint8_t look_up(std::size_t pdo, [[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] Watched watched) {
     if constexpr (count != 0) {
@@ -89,7 +89,7 @@ class MappedPlaces {
     return 0;
   }
 
-  /// The mapping parameter of a PDO.
+  /// Returns the mapping parameter of a PDO.
   [[nodiscard]] static MappingParameter parameter(std::size_t pdo, EntryAccess<Device> entries) {
     if constexpr (Count::is_regular && First::is_regular) {
       const std::uint8_t* const base = entries.ram(0);
@@ -100,7 +100,7 @@ class MappedPlaces {
     }
   }
 
-  /// Whether a PDO carries an object.
+  /// Whether a PDO maps an object.
   [[nodiscard]] static bool carries(std::size_t pdo, EntryAccess<Device> entries, std::uint32_t key) {
     const MappingParameter mapping = parameter(pdo, entries);
     for (std::uint8_t i = 0; i < mapping.count() && i < capacity(pdo); ++i) {
@@ -112,7 +112,7 @@ class MappedPlaces {
   /// Whether the mapping of a PDO is dynamic.
   [[nodiscard]] static bool is_dynamic(std::size_t pdo) { return capacity(pdo) != 0; }
 
-  /// The runs of a PDO, which fill its frame.
+  /// Returns the runs of a PDO, which fill its frame.
   [[nodiscard]] const Place* of(std::size_t pdo) const { return &places_[first_of(pdo)]; }
   [[nodiscard]] Place* of(std::size_t pdo) { return &places_[first_of(pdo)]; }
 
@@ -120,7 +120,7 @@ class MappedPlaces {
   using Count = ParameterColumn<Device, Pdos, Indices.mapping, 0>;
   using First = ParameterColumn<Device, Pdos, Indices.mapping, 1>;
 
-  /// Where the places of each PDO begin.
+  /// Position of the first run of each PDO.
   static constexpr std::array<std::uint16_t, count + 1> firsts = [] {
     std::array<std::uint16_t, count + 1> rows{};
     for (std::size_t i = 0; i < count; ++i) {
@@ -130,7 +130,7 @@ class MappedPlaces {
     return rows;
   }();
 
-  /// Whether all PDOs have room for as many objects.
+  /// Whether all PDOs can map the same number of objects.
   static constexpr bool is_regular =
       count > 0 && std::ranges::all_of(capacities, [](std::uint8_t capacity) { return capacity == capacities[0]; });
 

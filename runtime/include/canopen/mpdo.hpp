@@ -1,11 +1,11 @@
-/// Multiplex PDOs (CiA 301, 7.2.2.5): a PDO that carries one object of up to 32 bits and says in its data which one.
+/// Multiplex PDOs (CiA 301, 7.2.2.5): a PDO with one object of up to 32 bits, which its data identify.
 ///
-///   byte 0        bit 7: 1 destination, 0 source addressing mode (DAM, SAM); bits 6..0: node-ID, of a DAM 0 for all
+///   byte 0        bit 7: 1 destination, 0 source addressing mode (DAM, SAM); bits 6..0: node-ID, in DAM 0 for all
 ///   bytes 1 to 3  index and sub-index: in DAM of the receiver's object, in SAM of the sender's
-///   bytes 4 to 7  the value, low byte first, zero behind a shorter one
+///   bytes 4 to 7  the value, low byte first, padded with zeros
 ///
-/// A PDO is one when sub-index 0 of its mapping parameter is 254 (SAM) or 255 (DAM). Its transmission type is 254 or
-/// 255; an event timer has no effect. Only devices with the option `mpdo` have any of it in their image.
+/// A PDO is multiplexed if sub-index 0 of its mapping parameter is 254 (SAM) or 255 (DAM). Its transmission type is 254
+/// or 255; an event timer has no effect. Only devices with the option `mpdo` have this code in their image.
 #pragma once
 
 #include <array>
@@ -29,14 +29,14 @@
 
 namespace canopen {
 
-/// Where a DAM-MPDO goes: an object of one node, or of all (node-ID 0).
+/// Destination of a DAM-MPDO: an object of one node, or of all nodes (node-ID 0).
 struct MpdoDestination {
   NodeId node_id;
   std::uint16_t index;
   std::uint8_t sub_index;
 };
 
-/// The data of an MPDO.
+/// The data bytes of an MPDO.
 class Mpdo {
  public:
   using Data = std::array<std::uint8_t, 8>;
@@ -79,13 +79,13 @@ struct ScannedObjects {
 
   Value value;
 
-  /// Consecutive sub-indices. A block of size 0 is one of a single object.
+  /// Number of consecutive sub-indices. A block of size 0 contains one object.
   [[nodiscard]] std::uint8_t size() const { return (value >> 24) != 0 ? static_cast<std::uint8_t>(value >> 24) : 1; }
   [[nodiscard]] std::uint16_t index() const { return static_cast<std::uint16_t>(value >> 8); }
   [[nodiscard]] std::uint8_t sub_index() const { return static_cast<std::uint8_t>(value); }
 };
 
-/// An element of an object dispatching list, 1FD0h..1FFFh: where the values of received SAM-MPDOs go.
+/// An element of an object dispatching list, 1FD0h..1FFFh: destination of the values of received SAM-MPDOs.
 struct DispatchedObjects {
   static constexpr std::uint16_t first_list = 0x1FD0;
   static constexpr std::uint16_t last_list = 0x1FFF;
@@ -100,7 +100,7 @@ struct DispatchedObjects {
   [[nodiscard]] std::uint8_t sender_sub_index() const { return static_cast<std::uint8_t>(value >> 8); }
   [[nodiscard]] std::uint8_t sender() const { return static_cast<std::uint8_t>(value); }
 
-  /// Whether an MPDO carries one of the objects; `offset()` says which.
+  /// Whether an MPDO contains one of the objects; `offset()` is its position.
   [[nodiscard]] bool match(const Mpdo& mpdo) const {
     return sender() == mpdo.node_id() && sender_index() == mpdo.index() && mpdo.sub_index() >= sender_sub_index() &&
            offset(mpdo) < size();
@@ -118,7 +118,7 @@ class MpdoLists {
     return index >= Element::first_list && index <= Element::last_list;
   }
 
-  /// Elements that an object of this kind has room for; 0: none, or of another type than CiA 301 says.
+  /// Returns how many elements an object can contain; 0: none, or it does not have the type of CiA 301.
   [[nodiscard]] static constexpr std::uint8_t capacity(std::uint16_t index) {
     const entry::Word count = Device::dictionary.find(index, 0);
     if (count <= Dictionary::no_sub_index || entry::wire_bytes(count) != 1) return 0;
@@ -139,8 +139,8 @@ class MpdoLists {
     return sum;
   }();
 
-  /// Calls `visit(element, index, sub_index)`, with the place in the list, for each element that is not empty, as far
-  /// as sub-index 0 of its list says.
+  /// Calls `visit(element, index, sub_index)`, with its position in the list, for each element that is not empty, up to
+  /// the number in sub-index 0 of its list.
   template <class Visit>
   static void for_each(EntryAccess<Device> entries, Visit&& visit) {
     for (const List& list : lists) {
@@ -158,7 +158,7 @@ class MpdoLists {
   struct List {
     entry::Word count;
     std::uint16_t index;
-    std::uint16_t begin;  ///< of its elements among all
+    std::uint16_t begin;  ///< position of its first element among all
     std::uint16_t end;
   };
 
@@ -196,8 +196,8 @@ class MpdoLists {
   }();
 };
 
-/// The PDOs of one direction that are MPDOs, or can be made some by SDO: `Pdos` is the device's list. One whose mapping
-/// is static is an MPDO when it has no layout.
+/// The PDOs of one direction that are MPDOs or can become one by SDO; `Pdos` is the device's list. With a static
+/// mapping, a PDO is an MPDO if it does not have a layout.
 template <class Device, PdoIndices Indices, class Pdos>
 class MultiplexedPdos {
   template <class Pdo>
@@ -210,7 +210,7 @@ class MultiplexedPdos {
   }
 
  public:
-  /// Where its parameters are; 0 or 1 stand for one that does not exist.
+  /// Location of its parameters; 0 or 1 is one that does not exist.
   struct Parameters {
     std::uint16_t number;
     entry::Word mapped_objects;
@@ -240,7 +240,7 @@ class MultiplexedPdos {
     return found;
   }();
 
-  /// The one with this communication or mapping parameter; null when it cannot be an MPDO.
+  /// Returns the one with this communication or mapping parameter; null if it cannot be an MPDO.
   [[nodiscard]] static const Parameters* with_parameter(std::uint16_t index) {
     for (const Parameters& row : rows) {
       if (((static_cast<unsigned>(row.number - 1) ^ index) & 0x1FF) == 0) return &row;
@@ -248,7 +248,7 @@ class MultiplexedPdos {
     return nullptr;
   }
 
-  /// `source_multiplexed`, `destination_multiplexed`, or a number of mapped objects.
+  /// Returns `source_multiplexed`, `destination_multiplexed`, or the number of mapped objects.
   [[nodiscard]] static std::uint32_t mode(EntryAccess<Device> entries, const Parameters& row) {
     return entries.number(row.mapped_objects);
   }
@@ -258,7 +258,7 @@ class MultiplexedPdos {
            transmission_of(entries.number(row.transmission_type)) == Transmission::event_driven;
   }
 
-  /// The first usable one of this mode; null when there is none.
+  /// Returns the first usable one with this mode; null if there is none.
   [[nodiscard]] static const Parameters* find(EntryAccess<Device> entries, std::uint8_t wanted) {
     for (const Parameters& row : rows) {
       if (mode(entries, row) == wanted && is_usable(entries.number(row.cob_id)) && event_driven(entries, row)) {
@@ -269,19 +269,18 @@ class MultiplexedPdos {
   }
 };
 
-/// All MPDOs of one device, with their parameters and lists as they are at the moment.
+/// All MPDOs of one device, with the present values of their parameters and lists.
 ///
-///   DAM consumer  writes the object of this device that the frame names. When there is none that an RPDO may carry,
-///   one
-///                 error 8230h begins; it is over with the next frame that finds its object.
-///   DAM producer  sends what the application gives it
+///   DAM consumer  writes the object of this device that the frame names. If no RPDO-mappable object exists there, the
+///                 error 8230h is reported; it ends with the next frame for an existing one.
+///   DAM producer  sends what the application passes to it
 ///   SAM producer  sends each object of the object scanner list that has a new value. A device has one.
-///   SAM consumer  writes the objects that the object dispatching list names for the sender's object
+///   SAM consumer  writes the objects that the object dispatching list assigns to the sender's object
 ///
-/// Objects of more than 32 bits have no part in it. A service asks the node around it (`host`):
+/// Objects of more than 32 bits are not supported. Functions of the node that the service calls (`host`):
 ///   take(index, sub_index, bytes)   a received value
 ///   happened(event, number)         `taken`, `too_short` or `length_right`
-///   destination_missing(missing)    the error 8230h begins, or is over
+///   destination_missing(missing)    the error 8230h begins or ends
 template <class Device>
 class MpdoService {
   using Rpdos = MultiplexedPdos<Device, rpdo_indices, typename Device::Rpdos>;
@@ -294,7 +293,7 @@ class MpdoService {
     return word > Dictionary::no_sub_index && (word & direction) != 0 && bytes >= 1 && bytes <= 4;
   }
 
-  /// Objects that a SAM-MPDO can carry.
+  /// Number of objects that a SAM-MPDO can contain.
   static constexpr std::size_t scannable = [] {
     std::size_t count = 0;
     if (!Device::options.mpdo) return count;
@@ -309,15 +308,15 @@ class MpdoService {
   static constexpr bool sends_source = sends_destination && Scanned::room > 0 && scannable > 0;
   static constexpr bool exists = receives || sends_destination;
 
-  /// DAM-MPDOs that may wait.
+  /// Maximum number of waiting DAM-MPDOs.
   static constexpr std::size_t depth = 4;
 
-  /// Nothing waits, and nothing is wrong.
+  /// Clears pending MPDOs and error conditions.
   void enter_operational() { *this = MpdoService{}; }
 
   // Consumers
 
-  /// Takes a frame for each MPDO that it is.
+  /// Passes a frame to every MPDO that receives it.
   template <class Host>
   void on_frame([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] const Frame& frame,
                 [[maybe_unused]] NodeId own, [[maybe_unused]] Host&& host) {
@@ -341,7 +340,7 @@ class MpdoService {
     if constexpr (receives) return consumer_.too_short;
     return false;
   }
-  /// Whether the last DAM-MPDO for this node found no object.
+  /// Whether the object of the last DAM-MPDO for this node does not exist.
   [[nodiscard]] bool destination_missing() const {
     if constexpr (receives) return consumer_.destination_missing;
     return false;
@@ -349,11 +348,11 @@ class MpdoService {
 
   // Producers
 
-  /// An object has a new value. True when it is to be sent.
+  /// Marks an object that has a new value. Returns whether it is to be sent.
   bool changed([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] std::uint16_t index,
                [[maybe_unused]] std::uint8_t sub_index) {
     if constexpr (sends_source) {
-      if (Scanned::contain(index)) source_.pending = {};  // the places of the objects have changed
+      if (Scanned::contain(index)) source_.pending = {};  // the positions of the objects have changed
       if (!Device::triggers_event(index, sub_index)) return false;
       if (Tpdos::find(entries, source_multiplexed) == nullptr) return false;
       std::size_t first = 0;
@@ -368,7 +367,8 @@ class MpdoService {
     return false;
   }
 
-  /// Gives a DAM-MPDO to be sent. False: this device has no valid DAM-TPDO now, or `depth` of them wait.
+  /// Queues a DAM-MPDO. Returns false if this device does not have a valid DAM-TPDO now, or `depth` of them
+  /// are waiting.
   [[nodiscard]] bool put(EntryAccess<Device> entries, const MpdoDestination& to, std::uint32_t value) {
     static_assert(sends_destination, "no TPDO of this device is a multiplex PDO or can be made one");
     if (destination_.waiting == depth || Tpdos::find(entries, destination_multiplexed) == nullptr) return false;
@@ -376,11 +376,11 @@ class MpdoService {
     return true;
   }
 
-  /// Sends what waits. False when the bus had no room: it stays.
+  /// Sends pending MPDOs. Returns false if the bus had no room; they remain pending.
   template <Bus B>
   bool serve([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] NodeId own, [[maybe_unused]] B& bus,
              [[maybe_unused]] TimePoint now) {
-    // Inhibit times end here, whether anything waits or not: later their ends would seem to lie ahead again.
+    // Inhibit times end here even if no MPDO is waiting: later, the end would seem to be ahead again.
     if constexpr (sends_destination) {
       if (destination_.inhibit.over(now) && destination_.waiting != 0 && !serve_destination(entries, bus, now))
         return false;
@@ -391,7 +391,7 @@ class MpdoService {
     return true;
   }
 
-  /// When the next one is to be sent; a moment not after `now` when one waits already.
+  /// Returns when the next MPDO is to be sent; not later than `now` if one is already waiting.
   [[nodiscard]] std::optional<TimePoint> next_deadline([[maybe_unused]] TimePoint now) const {
     std::optional<TimePoint> next;
     if constexpr (sends_destination) {
@@ -405,12 +405,12 @@ class MpdoService {
 
   // Parameters
 
-  /// What speaks against writing these bytes, whose length is right, to 1000h..1FFFh, beside what speaks against it in
+  /// Checks whether these bytes, whose length is correct, may be written to 1000h..1FFFh, in addition to the checks of
   /// other PDOs.
   ///   0604 0042h  254 or 255 mapped objects in a PDO of another transmission type, 254 without a list, or a second SAM
-  ///               producer (or what the device answers instead); a scanner list with more objects than there are
-  ///   0609 0030h  another transmission type for an MPDO, more elements than a list has
-  ///   0604 0041h  an element of a list names what does not exist, cannot be mapped or has more than 32 bits
+  ///               producer (or the abort code of the device options); a scanner list with more objects than there are
+  ///   0609 0030h  another transmission type for an MPDO, or more elements than the list can contain
+  ///   0604 0041h  an element of a list is an object that does not exist, cannot be mapped or has more than 32 bits
   [[nodiscard]] static AbortCode check(EntryAccess<Device> entries, std::uint16_t index, std::uint8_t sub_index,
                                        std::span<const std::uint8_t> bytes) {
     if (is_rpdo_communication(index) || is_rpdo_mapping(index)) {
@@ -435,7 +435,7 @@ class MpdoService {
     TimePoint end{};
     bool runs = false;
 
-    /// Whether one may be sent now.
+    /// Whether an MPDO may be sent now.
     [[nodiscard]] bool over(TimePoint now) {
       if (runs && !is_ahead(end, Device::options.inhibit_time_unit, now)) runs = false;
       return !runs;
@@ -461,8 +461,8 @@ class MpdoService {
     Inhibit inhibit{};
   };
   struct SourceProducer {
-    std::array<std::uint32_t, (scannable + 31) / 32> pending{};  ///< by the object's place in the scanner lists
-    std::size_t next = 0;  ///< where to look first, so that each object has its turn
+    std::array<std::uint32_t, (scannable + 31) / 32> pending{};  ///< by the object's position in the scanner lists
+    std::size_t next = 0;  ///< start of the next search, so that each object has its turn
     Inhibit inhibit{};
   };
 
@@ -501,7 +501,7 @@ class MpdoService {
     return taken;
   }
 
-  /// False when there is no such object that an MPDO may bring.
+  /// Writes a received value. Returns false if an MPDO cannot write this object.
   template <class Host>
   static bool take(EntryAccess<Device> entries, std::uint16_t index, std::uint8_t sub_index, const std::uint8_t* value,
                    Host& host) {
@@ -560,7 +560,7 @@ class MpdoService {
     return true;
   }
 
-  /// The lists name objects twice, or such as do not exist, where there are more of them than bits.
+  /// Marks the object at a position. Lists with duplicate or non-existing objects can have more positions than bits.
   [[nodiscard]] bool mark(std::size_t place) {
     if (place >= source_.pending.size() * 32) return false;
     source_.pending[place / 32] |= std::uint32_t{1} << place % 32;
@@ -573,7 +573,7 @@ class MpdoService {
     return any != 0;
   }
 
-  /// The place of a pending object, from `next` on and then from the beginning.
+  /// Returns the position of a pending object, from `next` on and then from the beginning.
   [[nodiscard]] std::size_t next_pending() const {
     std::size_t place = source_.next;
     for (;; ++place) {
@@ -582,7 +582,7 @@ class MpdoService {
     }
   }
 
-  /// The object at a place in the scanner lists, as a block of one.
+  /// Returns the object at a position in the scanner lists, as a block of one.
   [[nodiscard]] static ScannedObjects scanned_at(EntryAccess<Device> entries, std::size_t place) {
     ScannedObjects object{};
     std::size_t first = 0;

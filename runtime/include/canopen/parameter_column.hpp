@@ -1,5 +1,5 @@
-/// One sub-index of the communication parameters of all PDOs of a direction: most devices have them in records that lie
-/// one behind the other.
+/// One sub-index of the communication parameters of all PDOs of a direction; in most devices they are in equally
+/// spaced records.
 #pragma once
 
 #include <algorithm>
@@ -29,10 +29,10 @@ class ParameterColumn {
 
   [[nodiscard]] static constexpr bool is_there(entry::Word word) { return word > Dictionary::no_sub_index; }
 
-  /// Whether any PDO has it.
+  /// Whether any PDO has this sub-index.
   static constexpr bool exists = std::ranges::any_of(words, is_there);
 
-  /// Bytes from one to the next.
+  /// Distance in bytes between consecutive PDOs.
   static constexpr unsigned stride = [] {
     if constexpr (count > 1) {
       return static_cast<unsigned>(words[1] - words[0]);
@@ -41,7 +41,7 @@ class ParameterColumn {
     }
   }();
 
-  /// Whether all are values of one type in RAM, in equal distance.
+  /// Whether all are values of one type in RAM, equally spaced.
   static constexpr bool is_regular = [] {
     for (std::size_t i = 0; i < count; ++i) {
       if (!is_there(words[i]) || entry::place_of(words[i]) != entry::Place::ram) return false;
@@ -50,7 +50,7 @@ class ParameterColumn {
     return true;
   }();
 
-  /// The unsigned value for PDO `i` of the list; `missing` where that has none.
+  /// Returns the unsigned value for PDO `i` of the list; `missing` if it does not exist.
   [[nodiscard]] static std::uint32_t get(EntryAccess<Device> entries, std::size_t i, std::uint32_t missing) {
     if constexpr (!exists) {
       return missing;

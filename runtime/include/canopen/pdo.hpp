@@ -1,4 +1,4 @@
-/// PDO layouts as types: computed, checked and coded at compile time (CiA 301, 7.2.2).
+/// PDO layouts as types, which are computed, checked, packed and unpacked at compile time (CiA 301, 7.2.2).
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace canopen {
 
-/// An entry of an RPDO that carries nothing for this device (CiA 301, 7.4.7.1: indices 0001h..0008h).
+/// A dummy entry of an RPDO, which this device ignores (CiA 301, 7.4.7.1: indices 0001h..0008h).
 template <std::uint16_t DataTypeIndex, std::uint16_t Bits>
 struct Dummy {
   using type = std::uint64_t;
@@ -26,15 +26,15 @@ struct Dummy {
   static constexpr std::uint16_t bits = Bits;
 };
 
-/// An entry that takes more bits in a PDO than its type has: a BOOLEAN in a whole byte, as many devices send it.
+/// An entry that occupies more bits in a PDO than its type has: a BOOLEAN in a whole byte, as many devices send it.
 template <class O, std::uint16_t Bits>
 struct Padded : O {
   static_assert(Bits >= O::bits);
   static constexpr std::uint16_t bits = Bits;
 };
 
-/// An entry that carries a string in a fixed number of bytes: text is filled up with 00h and ends at the first one,
-/// octets are always as many.
+/// A string with a fixed number of bytes in a PDO: text is padded with 00h and ends at the first one, octet strings
+/// always have this length.
 template <class O, std::uint16_t Bytes>
 struct FixedString : O {
   static_assert(pdo_detail::StringValue<typename O::type>, "only a string has a length to be fixed");
@@ -45,15 +45,15 @@ struct FixedString : O {
 template <class O>
 inline constexpr bool is_dummy = O::index < 0x0020;
 
-/// Has a length that is known without a value: strings and domains have not.
+/// An object whose length does not depend on its value: not a string or DOMAIN.
 template <class O>
 concept FixedLength = DictionaryObject<O> &&(O::bits > 0);
 
-/// A TPDO may carry it: its data sheet says PDOMapping=1 and an access of ro, rw, rwr or const.
+/// An object that can be mapped into a TPDO: the EDS has PDOMapping=1 and access ro, rw, rwr or const.
 template <class O>
 concept TpdoMappable = DictionaryObject<O> && allows(O::mappable, Mappable::tpdo);
 
-/// An RPDO may carry it: its data sheet says PDOMapping=1 and an access of rw, rww or wo.
+/// An object that can be mapped into an RPDO: the EDS has PDOMapping=1 and access rw, rww or wo.
 template <class O>
 concept RpdoMappable = DictionaryObject<O> && allows(O::mappable, Mappable::rpdo);
 
@@ -71,7 +71,7 @@ struct MappedObject {
   static constexpr bool found = Layout::template maps<O>;
 };
 
-// One entry each, so that the compiler's message names the one that is wrong.
+// Checks one entry at a time, so that the compiler's message names the wrong one.
 
 template <class Number, class Label, class O, unsigned Begin>
 struct PdoEntry {
@@ -98,7 +98,7 @@ struct RpdoEntry {
   static constexpr bool fits = true;
 };
 
-/// Whether each object may be in a PDO of this direction.
+/// Whether each object can be mapped into a PDO of this direction.
 template <template <class, class, class> class EntryCheck, class Positions, class... Objects>
 struct Direction;
 template <template <class, class, class> class EntryCheck, std::size_t... I, class... Objects>
@@ -106,7 +106,7 @@ struct Direction<EntryCheck, std::index_sequence<I...>, Objects...> {
   static constexpr bool fits = (true && ... && EntryCheck<EntryNumber<I + 1>, LabelOf<Objects>, Objects>::fits);
 };
 
-/// First bit of each entry, and the end of the last.
+/// First bit of each entry, and the end of the last one.
 template <class... Objects>
 inline constexpr std::array<unsigned, sizeof...(Objects) + 1> offsets_of = [] {
   std::array<unsigned, sizeof...(Objects) + 1> at{};
@@ -115,7 +115,7 @@ inline constexpr std::array<unsigned, sizeof...(Objects) + 1> offsets_of = [] {
   return at;
 }();
 
-/// Whether each object has a length, and ends within the frame.
+/// Whether each object has a fixed length and ends within the frame.
 template <class Positions, class... Objects>
 struct Room;
 template <std::size_t... I, class... Objects>
@@ -126,11 +126,11 @@ struct Room<std::index_sequence<I...>, Objects...> {
 
 }  // namespace pdo_detail
 
-/// The layout of a PDO made of `Objects`, in their order, low bit first. Known without a dictionary: a master or an
-/// analyser uses it as well as the device.
+/// The layout of a PDO made of `Objects`, in their order, least significant bit first. It does not need a dictionary: a
+/// master or an analyser can use it as well as the device.
 ///
-/// Each function takes the data bytes of a frame, or the frame: that knows how its data are aligned, which spares
-/// instructions where words must be.
+/// Each function takes the data bytes of a frame, or the frame. The alignment of a frame's data is known, which saves
+/// instructions on processors that need aligned words.
 template <DictionaryObject... Objects>
 struct PdoLayout {
   static constexpr std::size_t entries = sizeof...(Objects);
@@ -142,18 +142,18 @@ struct PdoLayout {
   using Data = std::array<std::uint8_t, 8>;
   using Values = std::tuple<typename Objects::type...>;
 
-  /// First bit of each entry, and the end of the last.
+  /// First bit of each entry, and the end of the last one.
   static constexpr std::array<unsigned, entries + 1> offsets = pdo_detail::offsets_of<Objects...>;
 
   /// The object of entry `I`.
   template <std::size_t I>
   using Entry = std::tuple_element_t<I, std::tuple<Objects...>>;
 
-  /// Whether an object is among the entries.
+  /// Whether an object is mapped.
   template <class O>
   static constexpr bool maps = (pdo_detail::same_object<O, Objects> || ...);
 
-  /// Which entry carries an object, from 0; the first one if there are several.
+  /// Position of the entry that maps an object, from 0; the first one if there are several.
   template <class O>
   static constexpr std::size_t position_of = [] {
     static_assert(pdo_detail::MappedObject<PdoLayout, pdo_detail::LabelOf<O>, O>::found);
@@ -162,30 +162,30 @@ struct PdoLayout {
     return position;
   }();
 
-  /// The data bytes for these values.
+  /// Returns the data bytes for these values.
   [[nodiscard]] static constexpr Data pack(const typename Objects::type&... values) {
     Data data{};
     pack_aligned<1>(data, values...);
     return data;
   }
 
-  /// Puts these values into the first `size` bytes.
+  /// Writes these values to the first `size` bytes.
   static constexpr void pack_into(Data& data, const typename Objects::type&... values) {
     pack_aligned<1>(data, values...);
   }
 
-  /// The same for data at an address that is a multiple of four, as those of a frame are.
+  /// The same for data at an address that is a multiple of four, as in a frame.
   static constexpr void pack_into_words(Data& data, const typename Objects::type&... values) {
     pack_aligned<pdo_detail::frame_data_align>(data, values...);
   }
 
-  /// The same for a frame, whose length it sets.
+  /// The same for a frame; sets its length.
   static constexpr void pack_into(Frame& frame, const typename Objects::type&... values) {
     frame.size = size;
     pack_aligned<pdo_detail::frame_data_align>(frame.data, values...);
   }
 
-  /// The values in these data bytes.
+  /// Returns the values in these data bytes.
   [[nodiscard]] static constexpr Values unpack(const Data& data) {
     return unpack_aligned<1>(data, std::index_sequence_for<Objects...>{});
   }
@@ -193,7 +193,7 @@ struct PdoLayout {
     return unpack_aligned<pdo_detail::frame_data_align>(frame.data, std::index_sequence_for<Objects...>{});
   }
 
-  /// Entry `I` of these data bytes.
+  /// Returns the value of entry `I` of these data bytes.
   template <std::size_t I>
   [[nodiscard]] static constexpr typename Entry<I>::type get(const Data& data) {
     return get_aligned<I, 1>(data);
@@ -203,13 +203,13 @@ struct PdoLayout {
     return get_from_words<I>(frame.data);
   }
 
-  /// The same of data at an address that is a multiple of four.
+  /// The same for data at an address that is a multiple of four.
   template <std::size_t I>
   [[nodiscard]] static constexpr typename Entry<I>::type get_from_words(const Data& data) {
     return get_aligned<I, pdo_detail::frame_data_align>(data);
   }
 
-  /// The value of an object in these data bytes.
+  /// Returns the value of an object in these data bytes.
   template <DictionaryObject O>
   [[nodiscard]] static constexpr typename O::type get(const Data& data) {
     return get_aligned<position_of<O>, 1>(data);
@@ -219,7 +219,7 @@ struct PdoLayout {
     return get_aligned<position_of<O>, pdo_detail::frame_data_align>(frame.data);
   }
 
-  /// Gives entry `I` another value. All other bits stay.
+  /// Sets the value of entry `I`. All other bits keep their value.
   template <std::size_t I>
   static constexpr void set(Data& data, const typename Entry<I>::type& value) {
     pdo_detail::replace<offsets[I], Entry<I>::bits>(data, value);
@@ -229,7 +229,7 @@ struct PdoLayout {
     pdo_detail::replace<offsets[I], Entry<I>::bits, pdo_detail::frame_data_align>(frame.data, value);
   }
 
-  /// Gives an object another value. All other bits stay.
+  /// Sets the value of an object. All other bits keep their value.
   template <DictionaryObject O>
   static constexpr void set(Data& data, const typename O::type& value) {
     set<position_of<O>>(data, value);
@@ -239,7 +239,7 @@ struct PdoLayout {
     set<position_of<O>>(frame, value);
   }
 
-  /// Puts the value of entry `I` into data bytes where it is zero so far.
+  /// Sets the value of entry `I`, whose bits must be zero.
   template <std::size_t I>
   static constexpr void put(Data& data, const typename Entry<I>::type& value) {
     pdo_detail::put<offsets[I], Entry<I>::bits>(data, value);
@@ -287,7 +287,7 @@ struct PdoLayout {
   }
 };
 
-/// A PDO that a device sends.
+/// A PDO that a device transmits.
 template <DictionaryObject... Objects>
 struct Tpdo : PdoLayout<Objects...> {
   static_assert(pdo_detail::Direction<pdo_detail::TpdoEntry, std::index_sequence_for<Objects...>, Objects...>::fits);

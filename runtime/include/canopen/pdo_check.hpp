@@ -1,4 +1,4 @@
-/// Checks of a device's PDOs while it is compiled: of those that edsc generates and of mappings that a user writes.
+/// Compile-time checks of a device's PDOs: those that edsc generates, and mappings that a user writes.
 ///
 ///     static_assert(canopen::CheckedTpdo<drive::dictionary, 1, MyTpdo1, canopen::PdoParameters{.cob_id = 0x180,
 ///                                        .plus_node_id = true}>::holds);
@@ -23,8 +23,8 @@ namespace pdo_detail {
 /// Bits of the dummies 0001h to 0008h (CiA 301, 7.4.7.1).
 inline constexpr std::uint8_t dummy_bits[] = {0, 1, 8, 16, 32, 8, 16, 32, 32};
 
-/// Whether an entry of a mapping is as long as the object that the dictionary holds: a BOOLEAN may take a byte, a
-/// string as many bytes as it has room for.
+/// Whether the length of a mapping entry fits the object in the dictionary: a BOOLEAN may occupy a byte, a string up to
+/// its capacity.
 template <class O>
 [[nodiscard]] constexpr bool length_fits(entry::Word word) {
   if (entry::is_boolean(word)) return O::bits == 1 || O::bits == 8;
@@ -35,8 +35,8 @@ template <class O>
   }
 }
 
-// One entry or PDO each, so that the compiler's message names it. What an earlier assertion says, a later one does not
-// repeat.
+// One check per entry or PDO, so that the compiler's message names it. A failed assertion is not repeated by
+// later ones.
 
 template <const Dictionary& D, class Pdo, class Number, class Label, class O, unsigned End, unsigned Granularity>
 struct CheckedEntry {
@@ -76,7 +76,7 @@ struct CheckedEntry<D, Pdo, Number, Label, O, End, Granularity> {
   static constexpr bool holds = true;
 };
 
-/// The CAN-ID that a message shows: where the node-ID is added, that of node 1.
+/// Returns the CAN-ID for messages: that of node-ID 1, if the node-ID is added.
 [[nodiscard]] constexpr std::uint32_t shown_can_id(const PdoParameters& parameters) {
   return (parameters.cob_id & 0x1FFF'FFFF) + (parameters.plus_node_id ? 1 : 0);
 }
@@ -138,9 +138,9 @@ using NthOf = std::tuple_element_t<I, std::tuple<Checked...>>;
 
 }  // namespace pdo_detail
 
-/// `holds` when a layout may be TPDO `Number` of the device with this dictionary and, where they are given, with these
-/// communication parameters; does not compile when it may not. `Granularity` is the one of the data sheet: entries
-/// begin and end at multiples of so many bits.
+/// `holds` if a layout can be TPDO `Number` of the device with this dictionary and, if specified, with these
+/// communication parameters; does not compile if it cannot. `Granularity` is that of the EDS: entries begin and end at
+/// multiples of this number of bits.
 template <const Dictionary& D, std::uint16_t Number, class Layout, PdoParameters P = PdoParameters{},
           unsigned Granularity = 1>
 using CheckedTpdo = pdo_detail::CheckedPdo<D, TpdoNumber<Number>, Layout, P, Granularity>;
@@ -150,8 +150,8 @@ template <const Dictionary& D, std::uint16_t Number, class Layout, PdoParameters
           unsigned Granularity = 1>
 using CheckedRpdo = pdo_detail::CheckedPdo<D, RpdoNumber<Number>, Layout, P, Granularity>;
 
-/// Whether the valid ones among these CheckedTpdos and CheckedRpdos of a device have COB-IDs of their own; does not
-/// compile when two have the same, for whatever node-ID. Several RPDOs may have the same.
+/// Whether the valid ones among these CheckedTpdos and CheckedRpdos of a device have different COB-IDs for every
+/// node-ID; does not compile if two are equal. Several RPDOs may have the same COB-ID.
 template <class... Checked>
 [[nodiscard]] constexpr bool distinct_cob_ids() {
   if constexpr (constexpr CobIdClash clash = pdo_detail::clash_of<Checked...>; clash.found) {

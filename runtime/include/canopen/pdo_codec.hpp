@@ -1,5 +1,6 @@
-/// Values of 1..64 bits at a bit of a PDO that is known at compile time: plain loads and stores where the processor has
-/// them, shifts and masks elsewhere. Low bit first (CiA 301, 7.1).
+/// Copies values of 1..64 bits to and from a bit position of a PDO that is known at compile time: with plain loads
+/// and stores where the processor supports them, with shifts and masks elsewhere. Least significant bit first (CiA
+/// 301, 7.1).
 #pragma once
 
 #include <array>
@@ -16,11 +17,11 @@
 
 namespace canopen::pdo_detail {
 
-/// The bytes of a frame; all eight may be touched, whatever the length of the PDO.
+/// The data bytes of a frame; all eight may be accessed, whatever the length of the PDO.
 using Data = std::array<std::uint8_t, 8>;
 
-/// Whether the processor loads and stores words at any address, or only where they are aligned. A project may say so
-/// itself: 1 or 0.
+/// Whether the processor loads and stores words at any address, or only at aligned ones. A project may define
+/// it: 1 or 0.
 #ifdef CANOPEN_UNALIGNED_WORDS
 inline constexpr bool unaligned_words = CANOPEN_UNALIGNED_WORDS != 0;
 #elif defined(__x86_64__) || defined(__i386__) || defined(__ARM_FEATURE_UNALIGNED)
@@ -34,28 +35,28 @@ inline constexpr bool little_endian = std::endian::native == std::endian::little
   return bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
 }
 
-/// Wide enough for `Bits` bits: shifts of 64 bits are dear on small controllers.
+/// Unsigned integer with at least `Bits` bits: 64-bit shifts are expensive on small controllers.
 template <unsigned Bits>
 using Raw = std::conditional_t<(Bits <= 32), std::uint32_t, std::uint64_t>;
 
-/// Unsigned, of 1, 2, 4 or 8 bytes.
+/// Unsigned integer of 1, 2, 4 or 8 bytes.
 template <unsigned Bytes>
 using WordOf = std::conditional_t<
     Bytes == 1, std::uint8_t,
     std::conditional_t<Bytes == 2, std::uint16_t, std::conditional_t<Bytes == 4, std::uint32_t, std::uint64_t>>>;
 
-/// A value that is a string in the dictionary: of `T::size` bytes, the others of the entry are zero.
+/// A string value of the dictionary: `T::size` bytes; the remaining bytes of its entry are zero.
 template <class T>
 concept StringValue = requires(T value) {
   value.bytes[0];
   { value.size } -> std::convertible_to<std::size_t>;
 };
 
-/// Text ends at its first 00h; a string of octets is as long as its entry.
+/// Text, which ends at its first 00h; an octet string is as long as its entry.
 template <class T>
 concept TextValue = StringValue<T> && std::constructible_from<T, const char*>;
 
-/// The bits of a value as the wire carries them; above its type's, the sign goes on.
+/// Returns the bits of a value as on the wire; above those of its type, signed values are sign-extended.
 template <class T>
 [[nodiscard]] constexpr auto raw_of(const T& value) {
   if constexpr (std::is_same_v<T, float>) {
@@ -84,7 +85,7 @@ template <class T>
   }
 }
 
-/// A value whose low `Bits` bits count, whatever the others are.
+/// Returns a value whose low `Bits` bits are valid; the others are undefined.
 template <unsigned Bits, class T>
 [[nodiscard]] constexpr Raw<Bits> unmasked(const T& value) {
   if constexpr (Bits > 32) {
@@ -94,7 +95,7 @@ template <unsigned Bits, class T>
   }
 }
 
-/// The low `Bits` bits of a value, the others zero.
+/// Returns the low `Bits` bits of a value; the others are zero.
 template <unsigned Bits, class T>
 [[nodiscard]] constexpr Raw<Bits> masked(const T& value) {
   if constexpr (std::is_same_v<T, bool>) {
@@ -117,7 +118,7 @@ template <class T, unsigned Bits>
   return value;
 }
 
-/// A value from its `Bits` bits, the others of `raw` being zero.
+/// Returns a value from its `Bits` bits; the other bits of `raw` must be zero.
 template <class T, unsigned Bits>
 [[nodiscard]] constexpr T from_bits(std::uint64_t raw) {
   if constexpr (std::is_same_v<T, float>) {
@@ -141,13 +142,13 @@ template <class T, unsigned Bits>
 
 // ---- words in memory ----
 
-/// What divides the address of byte `offset` where that of byte 0 is a multiple of `align`.
+/// Returns the alignment of byte `offset` if byte 0 is aligned to `align`.
 [[nodiscard]] constexpr unsigned alignment_at(unsigned align, unsigned offset) {
   const unsigned both = align | offset;
   return both & (~both + 1);
 }
 
-/// Whether one word of `bytes` bytes may be loaded and stored at such an address. Two words of 4 make one of 8.
+/// Whether a word of `bytes` bytes may be loaded and stored with this alignment. Two words of 4 bytes replace one of 8.
 [[nodiscard]] constexpr bool is_word(unsigned bytes, unsigned align) {
   if (bytes == 1) return true;
   return little_endian && (unaligned_words || align >= (bytes < 4 ? bytes : 4));
@@ -169,7 +170,7 @@ inline void store_word(std::uint8_t* at, WordOf<Bytes> word) {
   std::memcpy(__builtin_assume_aligned(at, Align), &word, Bytes);
 }
 
-/// Stores the low `Bytes` bytes of a value, by the widest words that may be used.
+/// Stores the low `Bytes` bytes of a value with the widest words that are allowed.
 template <unsigned Bytes, unsigned Align, class Value>
 constexpr void store_bytes(std::uint8_t* at, Value value) {
   if constexpr (Bytes > 0) {
@@ -190,7 +191,7 @@ constexpr void store_bytes(std::uint8_t* at, Value value) {
 
 // ---- entries ----
 
-/// The word that an entry lies in, within the eight bytes; of 0 bytes where it must be put together byte by byte.
+/// The word within the eight bytes that contains an entry; 0 bytes if it must be accessed byte by byte.
 struct Window {
   unsigned first;  ///< byte
   unsigned bytes;
@@ -205,11 +206,11 @@ struct Window {
   return {at / 8, 0};
 }
 
-/// Bytes that `Bits` bits from bit `At` on touch.
+/// Indices of the bytes that contain `Bits` bits from bit `At` on.
 template <unsigned At, unsigned Bits>
 using TouchedBytes = std::make_index_sequence<(At % 8 + Bits + 7) / 8>;
 
-/// What byte `I` of a value that begins at bit `Shift` of byte 0 holds.
+/// Returns byte `I` of a value that begins at bit `Shift` of byte 0.
 template <unsigned Shift, std::size_t I, class Value>
 [[nodiscard]] constexpr std::uint8_t byte_of(Value value) {
   if constexpr (I == 0) {
@@ -219,7 +220,7 @@ template <unsigned Shift, std::size_t I, class Value>
   }
 }
 
-/// The bits of a value that stand in byte `I`, at their place in the value.
+/// Returns the bits of byte `I` at their position in the value.
 template <class Value, unsigned Shift, std::size_t I>
 [[nodiscard]] constexpr Value bits_of(std::uint8_t byte) {
   if constexpr (I == 0) {
@@ -238,7 +239,7 @@ template <unsigned At, unsigned Bits>
   (TouchedBytes<At, Bits>{}) & static_cast<Value>(mask(Bits));
 }
 
-/// The word to load for an entry among others: one that several share, where it does not fill a word of its own.
+/// Returns the word to load for an entry among others: a shared one if it does not fill a word of its own.
 [[nodiscard]] constexpr Window shared_window_of(unsigned at, unsigned bits, unsigned align) {
   const Window own = window_of(at, bits, align);
   const unsigned first = at / 32 * 4;
@@ -246,7 +247,7 @@ template <unsigned At, unsigned Bits>
   return shares ? Window{first, 4} : own;
 }
 
-/// The value of `Bits` bits from bit `At` on; `window` holds them.
+/// Returns the value of `Bits` bits from bit `At` on, which the window contains.
 template <class T, unsigned At, unsigned Bits, unsigned Align, unsigned First, unsigned Bytes>
 [[nodiscard]] T value_in_window(const Data& data) {
   const WordOf<Bytes> word = load_word<Bytes, alignment_at(Align, First)>(data.data() + First);
@@ -267,8 +268,8 @@ template <class T, unsigned At, unsigned Bits, unsigned Align, unsigned First, u
   }
 }
 
-/// The value of `Bits` bits from bit `At` on of data whose address is a multiple of `Align`; `Shared` when others are
-/// taken with it.
+/// Returns the value of `Bits` bits from bit `At` on, for data aligned to `Align`. `Shared`: other entries
+/// are read too.
 template <class T, unsigned At, unsigned Bits, unsigned Align = 1, bool Shared = false>
 [[nodiscard]] constexpr T value_at(const Data& data) {
   constexpr Window window = Shared ? shared_window_of(At, Bits, Align) : window_of(At, Bits, Align);
@@ -278,7 +279,7 @@ template <class T, unsigned At, unsigned Bits, unsigned Align = 1, bool Shared =
   return from_bits<T, Bits>(take_bytewise<At, Bits>(data.data()));
 }
 
-/// Puts the low `Bits` bits of a value at bit `At` of data where they are zero so far.
+/// Writes the low `Bits` bits of a value at bit `At` of data, where the bits must be zero.
 template <unsigned At, unsigned Bits, unsigned Align = 1, class T>
 constexpr void put(Data& data, const T& value) {
   const Raw<Bits> raw = masked<Bits>(value);
@@ -303,7 +304,7 @@ constexpr void replace_bytewise(Data& data, Raw<Bits> raw) {
   (TouchedBytes<At, Bits>{});
 }
 
-/// Puts the low `Bits` bits of a value at bit `At` of data in place of what stands there.
+/// Writes the low `Bits` bits of a value at bit `At` of data, replacing the bits there.
 template <unsigned At, unsigned Bits, unsigned Align = 1, class T>
 constexpr void replace(Data& data, const T& value) {
   constexpr Window window = window_of(At, Bits, Align);
@@ -327,7 +328,7 @@ constexpr void replace(Data& data, const T& value) {
 
 // ---- whole layouts ----
 
-/// Whole bytes that are stored at once: one entry that begins and ends between bytes, or several that share bytes.
+/// Whole bytes that are stored at once: one entry that begins and ends at a byte boundary, or several that share bytes.
 struct Chunk {
   unsigned first = 0;  ///< bit
   unsigned bits = 0;
@@ -338,8 +339,8 @@ struct Chunks {
   std::size_t count = 0;
 };
 
-/// The chunks of a layout from the first bit of each entry and the end of the last. What entries share is gathered in
-/// words of the processor.
+/// Returns the chunks of a layout, given the first bit of each entry and the end of the last one. Entries that share
+/// bytes are collected in words of the processor.
 template <std::size_t N>
 [[nodiscard]] constexpr Chunks chunks_of(const std::array<unsigned, N>& offsets) {
   constexpr unsigned word_bits = 8 * sizeof(std::size_t);
@@ -360,11 +361,12 @@ template <std::size_t N>
   return chunks;
 }
 
-/// Holds the bits of a chunk, and no more where a processor has such registers.
+/// Unsigned integer for the bits of a chunk, no wider than necessary.
 template <unsigned ChunkBits>
 using ChunkWord = std::conditional_t<(ChunkBits <= 8), std::uint8_t, Raw<ChunkBits>>;
 
-/// What an entry of `Bits` bits at bit `At` brings to the chunk of `ChunkBits` bits at bit `First`.
+/// Returns the bits that an entry of `Bits` bits at bit `At` contributes to the chunk of `ChunkBits` bits at
+/// bit `First`.
 template <unsigned At, unsigned Bits, unsigned First, unsigned ChunkBits, class T>
 [[nodiscard]] constexpr ChunkWord<ChunkBits> part_of_chunk([[maybe_unused]] const T& value) {
   using Word = ChunkWord<ChunkBits>;

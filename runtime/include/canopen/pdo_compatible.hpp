@@ -1,7 +1,7 @@
-/// Whether one device's RPDO understands another's TPDO: both layouts say the same of each bit that is used.
+/// Whether one device's RPDO can consume another's TPDO: both layouts agree on each bit that is used.
 ///
 ///     static_assert(canopen::compatible<drive::Tpdo2, plc::Rpdo1>);
-///     static_assert(canopen::CompatiblePdos<drive::Tpdo2, plc::Rpdo1>::hold);  // says which entry differs
+///     static_assert(canopen::CompatiblePdos<drive::Tpdo2, plc::Rpdo1>::hold);  // names the entry that differs
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ namespace canopen {
 
 namespace pdo_detail {
 
-/// What the bits of an entry mean; types of one kind and length are read alike.
+/// Meaning of an entry's bits; types of the same kind and length are compatible.
 enum class EntryKind : std::uint8_t { boolean, unsigned_integer, signed_integer, real, time, string };
 
 template <class T>
@@ -36,13 +36,13 @@ template <class T>
 
 enum class Link : std::uint8_t { fits, too_short, nothing_begins_there, other_length, other_kind };
 
-/// Stands in a message for the object that is not there.
+/// Placeholder in a message for a missing object.
 struct NoObject {
   static constexpr std::uint16_t index = 0;
   static constexpr std::uint8_t sub_index = 0;
 };
 
-/// The entry of a layout that begins at this bit; `entries` when none does.
+/// Returns the entry of a layout that begins at this bit; `entries` if none does.
 template <class Layout>
 [[nodiscard]] constexpr std::size_t entry_at(unsigned bit) {
   std::size_t i = 0;
@@ -59,8 +59,7 @@ template <class Layout, std::size_t I>
   }
 }
 
-/// Entry `I` of what is consumed beside that which is produced at its place. A dummy leaves its bits alone, whatever
-/// they are.
+/// Entry `I` of the consumer, and the producer's entry at the same bit. A dummy ignores its bits.
 template <class Produced, class Consumed, std::size_t I>
 struct LinkOf {
   using Consumer = typename Consumed::template Entry<I>;
@@ -88,7 +87,7 @@ template <class Produced, class Consumed>
   (std::make_index_sequence<Consumed::entries>{});
 }
 
-/// One entry of an RPDO, so that the compiler's message names both objects.
+/// Checks one entry of an RPDO, so that the compiler's message names both objects.
 template <class Number, class ConsumerLabel, class Consumer, class ProducerLabel, class Producer, Link L>
 struct CompatibleEntry {
   static_assert(L != Link::too_short, "PDO link: the TPDO ends before this entry of the RPDO does");
@@ -105,12 +104,12 @@ using CheckedLink = CompatibleEntry<EntryNumber<I + 1>, LabelOf<typename Link::C
 
 }  // namespace pdo_detail
 
-/// Whether every entry of the RPDO stands in the TPDO at the same bit, as long, and of the same kind: BOOLEAN,
-/// unsigned, signed, real, time or string. A dummy fits anything. The TPDO may be longer.
+/// Whether the TPDO has, for every entry of the RPDO, one at the same bit, of the same length and kind: BOOLEAN,
+/// unsigned, signed, real, time or string. A dummy is compatible with anything. The TPDO may be longer.
 template <class Produced, class Consumed>
 inline constexpr bool compatible = pdo_detail::all_links_fit<Produced, Consumed>();
 
-/// The same as a check whose message names the entry that differs, and the objects on both sides.
+/// The same check with a message that names the entry that differs and the objects on both sides.
 template <class Produced, class Consumed>
 struct CompatiblePdos {
   static constexpr bool hold = []<std::size_t... I>(std::index_sequence<I...>) {

@@ -1,4 +1,4 @@
-/// How compilers are made to name PDOs, entries and objects in their messages: as template arguments that print well.
+/// Types that make compilers name PDOs, entries and objects in their messages: template arguments that print well.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@ struct TpdoNumber {
   static constexpr bool receive = false;
 };
 
-/// From 1, as the sub-indices of a mapping parameter.
+/// Number of an entry from 1, like the sub-indices of a mapping parameter.
 template <std::size_t Number>
 struct EntryNumber {};
 

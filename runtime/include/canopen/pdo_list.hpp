@@ -1,4 +1,4 @@
-/// The PDOs of a device, by number, and where their parameters are in its dictionary.
+/// The PDOs of a device, by number, and the location of their parameters in its dictionary.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace canopen {
 
-/// Indices of the parameters of the first PDO of a direction (CiA 301, 7.5.2.35 to 7.5.2.38).
+/// Indices of the parameters of the first PDO of each direction (CiA 301, 7.5.2.35 to 7.5.2.38).
 struct PdoIndices {
   std::uint16_t communication;
   std::uint16_t mapping;
@@ -51,8 +51,8 @@ struct PdoList {
   }
 };
 
-/// How many objects the mapping of a PDO can be given by SDO; 0: the mapping is static. It is dynamic where the mapping
-/// parameter lies in RAM: the entries one behind the other, from sub-index 1 on.
+/// Returns how many objects can be mapped into a PDO by SDO; 0: the mapping is static. It is dynamic if the mapping
+/// parameter is in RAM, with consecutive entries from sub-index 1 on.
 [[nodiscard]] constexpr std::uint8_t mapping_capacity(const Dictionary& dictionary, std::uint16_t mapping) {
   const auto in_ram = [](entry::Word word) {
     return word > Dictionary::no_sub_index && entry::place_of(word) == entry::Place::ram;
@@ -85,7 +85,7 @@ struct Served<D, Indices, PdoList<Taken...>, PdoList<P, Rest...>> {
                                PdoList<Rest...>>::type;
 };
 
-/// Whether the PDOs of a list are those from 1 on.
+/// Whether the PDOs of a list are numbered from 1 without gaps.
 template <class Pdos>
 inline constexpr bool counts_from_one = [] {
   bool counts = true;
@@ -102,7 +102,7 @@ inline constexpr std::array<std::uint16_t, Pdos::count> numbers_of = [] {
 
 }  // namespace pdo_detail
 
-/// Number of the PDO at a place in a list.
+/// Returns the number of the PDO at a position in a list.
 template <class Pdos>
 [[nodiscard]] constexpr std::uint16_t number_of_pdo(std::size_t place) {
   if constexpr (pdo_detail::counts_from_one<Pdos>) {
@@ -112,8 +112,8 @@ template <class Pdos>
   }
 }
 
-/// Place in a list of the PDO whose communication or mapping parameter has this index; `Pdos::count` when there is
-/// none.
+/// Returns the position in a list of the PDO whose communication or mapping parameter has this index; `Pdos::count` if
+/// it does not exist.
 template <class Pdos>
 [[nodiscard]] constexpr std::size_t place_of_pdo(std::uint16_t index) {
   const std::size_t place = index & 0x1FFu;
@@ -126,7 +126,7 @@ template <class Pdos>
   }
 }
 
-/// Those PDOs of a list that carry something, or can be made to, and whose COB-ID is in the dictionary.
+/// The PDOs of a list that map an object, or can do so, and whose COB-ID is in the dictionary.
 template <const Dictionary& D, PdoIndices Indices, class List>
 using ServedPdos = typename pdo_detail::Served<D, Indices, PdoList<>, List>::type;
 

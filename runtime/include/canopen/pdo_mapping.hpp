@@ -1,5 +1,5 @@
-/// Dynamic mapping: which objects a PDO carries, changed by SDO while the device runs (CiA 301, 7.5.2.36 and 7.5.2.38).
-/// Only devices whose mapping parameters are writable have any of it in their image.
+/// Dynamic mapping: SDO changes the objects of a PDO at run time (CiA 301, 7.5.2.36 and 7.5.2.38). Only devices whose
+/// mapping parameters are writable have this code in their image.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@
 
 namespace canopen {
 
-/// One entry of a mapping parameter: index, sub-index and length in bits, from the high byte to the low one.
+/// One entry of a mapping parameter: index, sub-index and length in bits, from the high byte to the low byte.
 class MappedObject {
  public:
   constexpr explicit MappedObject(std::uint32_t value) : value_{value} {}
@@ -25,7 +25,7 @@ class MappedObject {
   [[nodiscard]] constexpr std::uint16_t index() const { return static_cast<std::uint16_t>(value_ >> 16); }
   [[nodiscard]] constexpr std::uint8_t sub_index() const { return static_cast<std::uint8_t>(value_ >> 8); }
   [[nodiscard]] constexpr std::uint8_t bits() const { return static_cast<std::uint8_t>(value_); }
-  [[nodiscard]] constexpr std::uint32_t key() const { return value_ >> 8; }  ///< as `object_key` makes it
+  [[nodiscard]] constexpr std::uint32_t key() const { return value_ >> 8; }  ///< in the format of `object_key`
   [[nodiscard]] constexpr bool empty() const { return value_ == 0; }
   [[nodiscard]] constexpr bool is_dummy() const { return index() < 0x20; }
 
@@ -33,8 +33,8 @@ class MappedObject {
   std::uint32_t value_;
 };
 
-/// Numbers of mapped objects that make a multiplex PDO of it (CiA 301, 7.2.2.5): in source and in destination addressing
-/// mode.
+/// Numbers of mapped objects that make the PDO a multiplex PDO (CiA 301, 7.2.2.5): in source and in destination
+/// addressing mode.
 inline constexpr std::uint8_t source_multiplexed = 254;
 inline constexpr std::uint8_t destination_multiplexed = 255;
 
@@ -47,9 +47,9 @@ inline constexpr std::uint8_t dummy_bits[] = {0, 1, 8, 16, 32, 8, 16, 32, 32};
 inline constexpr entry::Word not_mappable = 0;
 inline constexpr entry::Word mapped_dummy = 1;
 
-/// The word of an object that a PDO may carry: it exists, may be mapped in this direction, and has this length, a
-/// multiple of what the data sheet maps by (Granularity). A BOOLEAN has one bit, or eight. `mapped_dummy` for a dummy,
-/// `not_mappable` for all others.
+/// Returns the word of an object that can be mapped: it exists, is mappable in this direction, and has this length, a
+/// multiple of Granularity in the EDS. A BOOLEAN has one bit or eight. `mapped_dummy` for a dummy, `not_mappable` for
+/// all others.
 template <class Device>
 [[nodiscard, gnu::noinline]] entry::Word can_be_mapped(bool tpdo, MappedObject mapped) {
   const unsigned bits = mapped.bits();
@@ -64,17 +64,17 @@ template <class Device>
     return not_mappable;
   }
   const entry::Word word = EntryAccess<Device>::find(mapped.index(), mapped.sub_index());
-  if ((word & (tpdo ? entry::tpdo : entry::rpdo)) == 0) return not_mappable;  // so are those that do not exist
+  if ((word & (tpdo ? entry::tpdo : entry::rpdo)) == 0) return not_mappable;  // also if it does not exist
   if (entry::place_of(word) > entry::Place::rom) return not_mappable;  // an immediate value has no address
   if (EntryAccess<Device>::kinds.booleans && entry::is_boolean(word) && bits == 1) return word;
   return bits != 0 && bits == EntryAccess<Device>::bytes_of(word) * 8u ? word : not_mappable;
 }
 
-/// How a mapping is kept once it has been looked up: values that lie one behind the other in RAM as in the frame are
-/// one run, a word with their offset and length.
+/// A mapping after it has been looked up: values that are consecutive both in RAM and in the frame are one run, a word
+/// with their offset and length.
 template <class Device>
 struct MappedRun {
-  /// Whether an object of this device can stand at another place than a whole byte.
+  /// Whether an object of this device can begin within a byte.
   static constexpr bool has_bits = [] {
     bool has = (Device::dummies & 2) != 0;
     Device::dictionary.for_each_entry([&](std::uint16_t, std::uint8_t, entry::Word word) {
@@ -82,9 +82,9 @@ struct MappedRun {
     });
     return has;
   }();
-  static constexpr unsigned unit = has_bits ? 1 : 8;  ///< bits that a length counts in
+  static constexpr unsigned unit = has_bits ? 1 : 8;  ///< unit of lengths, in bits
 
-  /// Whether 12 bits hold the offsets of all objects that may be mapped.
+  /// Whether 12 bits are enough for the offsets of all mappable objects.
   static constexpr bool has_short_offsets = [] {
     bool has = true;
     Device::dictionary.for_each_entry([&](std::uint16_t, std::uint8_t, entry::Word word) {
@@ -98,9 +98,9 @@ struct MappedRun {
   static constexpr unsigned length_shift = sizeof(Word) == 2 ? 12 : 24;
   static constexpr Word offset_mask = static_cast<Word>((Word{1} << length_shift) - 1);
 
-  /// Not just values in RAM: a constant, or a value for which more is to be done than to store it.
+  /// Not only values in RAM: a constant, or a value that needs more than to be stored.
   static constexpr Word apart = static_cast<Word>(Word{1} << (8 * sizeof(Word) - 1));
-  static constexpr Word nothing = apart | offset_mask;  ///< a dummy; with the length left out
+  static constexpr Word nothing = apart | offset_mask;  ///< a dummy, without its length
 
   [[nodiscard]] static constexpr Word word_of(entry::Word word, unsigned bits) {
     const Word length = static_cast<Word>((bits / unit - 1) << length_shift);
@@ -112,7 +112,7 @@ struct MappedRun {
   }
   [[nodiscard]] static constexpr Word offset(Word run) { return run & offset_mask; }
 
-  /// Joins what lies one behind the other. Behind `bits` bits that end within a byte stands a dummy for the others.
+  /// Joins consecutive values. If `bits` is not a multiple of 8, a dummy fills the last byte.
   [[gnu::noinline]] static void join(Word* runs, unsigned count, unsigned bits) {
     Word* last = runs;
     for (const Word *run = runs + 1, *const end = runs + count; run != end; ++run) {
@@ -128,26 +128,26 @@ struct MappedRun {
   }
 };
 
-/// The mapping parameter of one PDO as it stands in RAM.
+/// The mapping parameter of one PDO in RAM.
 class MappingParameter {
  public:
-  /// Where sub-indices 0 and 1 lie.
+  /// Takes the addresses of sub-indices 0 and 1.
   MappingParameter(const std::uint8_t* count, const std::uint8_t* first) : count_{count}, first_{first} {}
 
   [[nodiscard]] std::uint8_t count() const { return *count_; }
 
-  /// Length of entry `i`, counted from 0.
+  /// Returns the length of entry `i`, counted from 0, in bits.
   [[nodiscard]] unsigned bits(std::size_t i) const { return first_[sizeof(std::uint32_t) * i]; }
 
-  /// Entry `i`, counted from 0.
+  /// Returns entry `i`, counted from 0.
   [[nodiscard]] MappedObject operator[](std::size_t i) const {
     std::uint32_t value;
     std::memcpy(&value, std::assume_aligned<alignof(std::uint32_t)>(first_ + sizeof value * i), sizeof value);
     return MappedObject{value};
   }
 
-  /// Bits of the first `count` objects together; 0 when they make no PDO: one of them cannot be mapped, or they are
-  /// longer than 64 bits.
+  /// Returns the total length of the first `count` objects in bits; 0 if the mapping is invalid: one of them cannot be
+  /// mapped, or they are longer than 64 bits.
   template <class Device>
   [[nodiscard, gnu::noinline]] std::uint8_t bits_of(bool tpdo, std::uint8_t count) const {
     unsigned bits = 0;
@@ -159,7 +159,7 @@ class MappingParameter {
     return static_cast<std::uint8_t>(bits);
   }
 
-  /// Puts down where the objects lie. Answers the bits that they take; 0 when they make no PDO.
+  /// Looks up the objects and stores their runs. Returns their total length in bits; 0 if the mapping is invalid.
   template <class Device>
   [[gnu::noinline]] std::uint8_t look_up(bool tpdo, typename MappedRun<Device>::Word* runs) const {
     const std::uint8_t bits = bits_of<Device>(tpdo, count());
@@ -175,20 +175,20 @@ class MappingParameter {
   const std::uint8_t* first_;
 };
 
-/// Whether the first `count` objects of a mapping parameter with room for `capacity` make a PDO, one of no objects
-/// included.
+/// Whether the first `count` objects of a mapping parameter for up to `capacity` objects are a valid mapping, including
+/// an empty one.
 template <class Device>
 [[nodiscard]] bool is_possible_mapping(MappingParameter mapping, bool tpdo, std::uint8_t count, std::uint8_t capacity) {
   if (count == 0 || (Device::options.mpdo && count >= source_multiplexed)) return true;
   return count <= capacity && mapping.bits_of<Device>(tpdo, count) != 0;
 }
 
-/// What speaks against writing these bytes, whose length is right, to a mapping parameter, which has room for
-/// `capacity` objects. A PDO is remapped in five steps: disable it by bit 31 of its COB-ID, set sub-index 0 to 0, write
-/// the entries, set sub-index 0 to their number, enable it.
+/// Checks whether these bytes, whose length is correct, may be written to a mapping parameter for up to `capacity`
+/// objects. A PDO is remapped in five steps: disable it with bit 31 of its COB-ID, set sub-index 0 to 0, write the
+/// entries, set sub-index 0 to their number, enable it.
 ///   0601 0000h  the PDO is valid, or sub-index 0 is not 0
 ///   0604 0041h  the object does not exist, cannot be mapped, or has another length
-///   0604 0042h  too many objects or bits, or one that cannot be mapped (or what the device answers instead)
+///   0604 0042h  too many objects or bits, or one that cannot be mapped (or the abort code of the device options)
 template <class Device>
 [[nodiscard]] AbortCode check_pdo_mapping(EntryAccess<Device> entries, std::uint8_t capacity, std::uint16_t index,
                                           std::uint8_t sub_index, std::span<const std::uint8_t> bytes) {

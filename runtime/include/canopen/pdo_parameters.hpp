@@ -1,5 +1,5 @@
-/// What the communication parameter of a PDO says after a reset, and what may be wrong with that (CiA 301, 7.5.2.35 and
-/// 7.5.2.37). The generator and the checks of pdo_check.hpp share it.
+/// The communication parameter of a PDO after a reset, and its possible errors (CiA 301, 7.5.2.35 and 7.5.2.37). Shared
+/// by the generator and pdo_check.hpp.
 #pragma once
 
 #include <cstddef>
@@ -11,20 +11,20 @@
 
 namespace canopen {
 
-/// The defaults stand for parameters that are not known, or not there.
+/// Default member values are used for parameters that are unknown or do not exist.
 struct PdoParameters {
-  std::uint32_t cob_id = CobId::invalid_bit;  ///< sub-index 1; without the node-ID where that is added
+  std::uint32_t cob_id = CobId::invalid_bit;  ///< sub-index 1; without the node-ID if that is added
   bool plus_node_id = false;                  ///< the node-ID is added to the COB-ID
   std::uint8_t transmission_type = 255;       ///< sub-index 2
   std::uint16_t inhibit_time = 0;             ///< sub-index 3, in 100 us
   std::uint16_t event_timer = 0;              ///< sub-index 5, in ms
-  bool compatibility_entry = false;           ///< sub-index 4 is there, though CiA 301 leaves it out
+  bool compatibility_entry = false;           ///< sub-index 4 exists, although CiA 301 does not use it
 };
 
 inline constexpr std::uint32_t highest_node_id = 127;
 
-/// Whether the COB-ID of a PDO may be used: 11 bits where bit 29 says so, and for no node-ID a restricted CAN-ID. One
-/// that is not valid may be anything.
+/// Whether the COB-ID of a PDO can be used: it has 11 bits unless bit 29 is set, and its CAN-ID is not restricted for
+/// any node-ID. An invalid COB-ID may have any value.
 [[nodiscard]] constexpr bool cob_id_is_legal(const PdoParameters& parameters) {
   const CobId cob_id{parameters.cob_id};
   if (!cob_id.valid() || cob_id.extended()) return true;
@@ -38,7 +38,7 @@ inline constexpr std::uint32_t highest_node_id = 127;
   return true;
 }
 
-/// Whether a transmission type is one of CiA 301: 0..240, 254 and 255, of a TPDO 252 and 253, too.
+/// Whether a transmission type is one of CiA 301: 0..240, 254 and 255; for a TPDO also 252 and 253.
 [[nodiscard]] constexpr bool transmission_type_is_legal(bool receive, std::uint32_t type) {
   if (type > 255) return false;
   switch (transmission_of(type)) {
@@ -51,24 +51,25 @@ inline constexpr std::uint32_t highest_node_id = 127;
   return false;
 }
 
-/// Whether the inhibit time counts: a TPDO of type 254 or 255 waits for it.
+/// Whether the inhibit time is used: by a TPDO of transmission type 254 or 255.
 [[nodiscard]] constexpr bool inhibit_time_is_used(bool receive, std::uint32_t type) {
   return !receive && transmission_of(type) == Transmission::event_driven;
 }
 
-/// Whether the event timer counts: it sends a TPDO of type 254 or 255, and watches an RPDO of any type.
+/// Whether the event timer is used: it triggers a TPDO of transmission type 254 or 255, and monitors an RPDO
+/// of any type.
 [[nodiscard]] constexpr bool event_timer_is_used(bool receive, std::uint32_t type) {
   return receive || transmission_of(type) == Transmission::event_driven;
 }
 
-/// The COB-ID of one PDO among those of its device.
+/// The COB-ID of one PDO of a device.
 struct PdoCobId {
   bool receive = false;
   std::uint32_t cob_id = CobId::invalid_bit;
   bool plus_node_id = false;
 };
 
-/// Two PDOs of a list that have the same CAN-ID, or would have it for some node-ID.
+/// Two PDOs of a list with the same CAN-ID, for at least one node-ID.
 struct CobIdClash {
   bool found = false;
   std::size_t first = 0;
@@ -77,10 +78,11 @@ struct CobIdClash {
 
 namespace pdo_detail {
 
-/// Which TPDO has a CAN-ID: its place in the list + 1. 29-bit CAN-IDs are few; they are compared one by one.
+/// Maps each CAN-ID to the TPDO that uses it: its position in the list + 1. 29-bit CAN-IDs are rare, and compared
+/// one by one.
 class TpdoCanIds {
  public:
-  /// The TPDO that has the CAN-ID of this PDO; 0 when there is none.
+  /// Returns the TPDO that uses the CAN-ID of this PDO; 0 if there is none.
   [[nodiscard]] constexpr std::size_t user_of(const PdoCobId& pdo) const {
     const std::uint32_t base = CobId{pdo.cob_id}.can_id();
     if (pdo.plus_node_id) {
@@ -115,7 +117,7 @@ class TpdoCanIds {
   for (std::size_t first = 0; first < count; ++first) {
     const PdoCobId& a = pdos[first];
     const PdoCobId& b = pdos[second];
-    const bool may_share = a.receive && b.receive;  // several RPDOs may take one frame
+    const bool may_share = a.receive && b.receive;  // several RPDOs may consume one frame
     if (first == second || may_share || !CobId{a.cob_id}.valid() || !CobId{a.cob_id}.extended()) continue;
     if (CobId{a.cob_id}.can_id() == CobId{b.cob_id}.can_id() && a.plus_node_id == b.plus_node_id) {
       return first < second ? CobIdClash{true, first, second} : CobIdClash{true, second, first};
@@ -126,8 +128,8 @@ class TpdoCanIds {
 
 }  // namespace pdo_detail
 
-/// The first two of `count` PDOs of a device that have the same CAN-ID: each frame has one producer. Several RPDOs may
-/// take the same frame. PDOs that are not valid have none.
+/// Finds the first two of `count` PDOs of a device with the same CAN-ID: each frame has one producer. Several RPDOs may
+/// consume the same frame. PDOs that are not valid are ignored.
 [[nodiscard]] constexpr CobIdClash find_cob_id_clash(const PdoCobId* pdos, std::size_t count) {
   pdo_detail::TpdoCanIds tpdos;
   for (const bool receive : {false, true}) {

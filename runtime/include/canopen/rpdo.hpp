@@ -1,4 +1,4 @@
-/// The PDOs that a device receives (CiA 301, 7.2.2).
+/// The RPDOs of a device (CiA 301, 7.2.2).
 #pragma once
 
 #include <algorithm>
@@ -24,26 +24,26 @@
 
 namespace canopen {
 
-/// What happens to an RPDO, by its number from 1.
+/// Events of an RPDO, reported with its number (from 1).
 enum class RpdoEvent : std::uint8_t {
-  taken,         ///< its values have been taken over
-  too_short,     ///< a frame has fewer bytes than are mapped; nothing was taken
-  timeout,       ///< no frame has come for its event timer
-  length_right,  ///< the first good frame after one that was too short
-  in_time,       ///< the first good frame after a timeout
+  taken,         ///< its values have been applied
+  too_short,     ///< a frame has fewer bytes than are mapped; it was ignored
+  timeout,       ///< no frame was received within its event timer
+  length_right,  ///< the first valid frame after one that was too short
+  in_time,       ///< the first valid frame after a timeout
 };
 
-/// All RPDOs of one device, with the parameters of 1400h and following as they are at the moment. Those of types 254
-/// and 255 are taken over at once, those of types 0..240 at the next SYNC. Of a frame longer than the mapping the first
-/// bytes are used, a shorter one is not taken. With an event timer (sub-index 5, ms) an RPDO is missed when it stays
-/// away for longer, from its first frame on.
+/// All RPDOs of one device, with the present values of 1400h and the following parameters. Those of transmission types
+/// 254 and 255 are applied at once, those of types 0..240 at the next SYNC. If a frame is longer than the mapping, its
+/// first bytes are used; a shorter one is ignored. The event timer (sub-index 5, ms) monitors the time between frames,
+/// from the first one on.
 ///
-/// A service asks the node around it (`host`, a reference to it that is copied freely):
+/// Functions of the node that the service calls (`host`, a reference to it, cheap to copy):
 ///   entries(), now()
-///   operational()                            a handler may end that
-///   window_over()                            whether those of types 0..240 come too late
-///   take<O>(value)                           a value for an object, where the mapping is static
-///   take(index, sub_index, bytes)            the same for one known by number
+///   operational()                            a handler may end this state
+///   window_over()                            whether RPDOs of types 0..240 are too late
+///   take<O>(value)                           a value for an object with static mapping
+///   take(index, sub_index, bytes)            the same by index and sub-index
 ///   happened(event, number)
 template <class Device>
 class RpdoService {
@@ -53,20 +53,20 @@ class RpdoService {
   static constexpr std::size_t count = Pdos::count;
   static constexpr bool has_dynamic_mapping = Mapped::any;
 
-  /// `watched(mapped)` says of an object whether more has to be done with its value than to store it.
+  /// `watched(mapped)` returns whether a new value of an object needs more than to be stored.
   template <class Watched>
   void enter_operational(EntryAccess<Device> entries, Watched watched) {
     for (std::size_t i = 0; i < count; ++i) activate(i, entries, watched);
   }
 
-  /// A communication or mapping parameter, 1400h..17FFh, has a new value, which counts at once.
+  /// Applies a new value of a communication or mapping parameter, 1400h..17FFh.
   template <class Watched>
   void parameter_changed(EntryAccess<Device> entries, std::uint16_t index, Watched watched) {
     const std::size_t i = place_of_pdo<Pdos>(index);
     if (i != count) activate(i, entries, watched);
   }
 
-  /// The mapping of a TPDO has changed: other objects are watched now.
+  /// Looks up the mappings again after that of a TPDO has changed: other objects are watched now.
   template <class Watched>
   void watch_again([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] Watched watched) {
     if constexpr (has_dynamic_mapping) {
@@ -76,13 +76,13 @@ class RpdoService {
     }
   }
 
-  /// Takes a frame for each RPDO that it is. `cob_id` is its own. False when it is none.
+  /// Passes a frame to every RPDO that receives it. `cob_id` is that of the frame. Returns false if there is none.
   template <class Host>
   [[gnu::noinline]] bool on_frame(const Frame& frame, std::uint32_t cob_id, Host host) {
     const std::size_t i = find(cob_id, host.entries(), std::make_index_sequence<count>{});
     if (i == count) return false;
     Slot& slot = slots_[i];
-    // One that waits for the SYNC, and nothing else, has the short way.
+    // Short path of an RPDO that only waits for the SYNC.
     const bool waits = (slot.flags & ~buffered) == at_sync && frame.size >= slot.size && !host.window_over();
     if (!waits) return receive_all(i, frame, cob_id, host);
     slot.data = frame.data;
@@ -90,7 +90,7 @@ class RpdoService {
     return true;
   }
 
-  /// A SYNC has come: what has been received since the last one counts now.
+  /// Applies what has been received since the last SYNC.
   template <class Host>
   void on_sync(Host host) {
     for (std::size_t i = 0; i < count && host.operational(); ++i) {
@@ -100,7 +100,7 @@ class RpdoService {
     }
   }
 
-  /// Tells of those that have stayed away.
+  /// Reports RPDOs whose event timer has elapsed.
   template <class Host>
   void on_time([[maybe_unused]] Host host) {
     if constexpr (has_event_timer) {
@@ -108,7 +108,7 @@ class RpdoService {
     }
   }
 
-  /// When the next one will have stayed away for too long.
+  /// Returns when the next event timer elapses.
   [[nodiscard]] std::optional<TimePoint> next_deadline() const {
     std::optional<TimePoint> next;
     if constexpr (has_event_timer) {
@@ -119,7 +119,7 @@ class RpdoService {
     return next;
   }
 
-  /// Conditions that RPDOs are in.
+  /// Error conditions of the RPDOs.
   struct Conditions {
     bool too_short;
     bool timeout;
@@ -134,15 +134,15 @@ class RpdoService {
   enum Flag : std::uint8_t {
     buffered = 1,   ///< data wait for a SYNC
     cut_short = 2,  ///< the last frame was too short
-    monitored = 4,  ///< deadline counts
+    monitored = 4,  ///< the deadline is valid
     missed = 8,     ///< the deadline has passed
     at_sync = 16,   ///< of types 0..240
     at_once = 32,   ///< of types 254 and 255
     timed = 64,     ///< its event timer is not 0
-    shared = 128,   ///< another one may have the same CAN-ID
+    shared = 128,   ///< another RPDO may have the same CAN-ID
   };
 
-  static constexpr std::uint8_t unmapped = 0xFF;  ///< as a size: no frame is long enough
+  static constexpr std::uint8_t unmapped = 0xFF;  ///< a size that no frame reaches
 
   using Data = std::array<std::uint8_t, 8>;
 
@@ -162,15 +162,16 @@ class RpdoService {
     alignas(4) Data data;
     [[no_unique_address]] std::conditional_t<has_event_timer, TimePoint, NoTime> deadline;
     std::uint8_t flags;
-    std::uint8_t size;  ///< data bytes that are mapped, or `unmapped`
+    std::uint8_t size;  ///< mapped data bytes, or `unmapped`
   };
 
-  /// As `cob_id_of` tells it of a frame: bit 30 of an RPDO means nothing, and no frame has bit 31.
+  /// Returns the COB-ID in the format of `cob_id_of`: bit 30 is ignored for an RPDO, and bit 31 is never set
+  /// in a frame.
   [[nodiscard]] static std::uint32_t cob_id_at(std::size_t i, EntryAccess<Device> entries) {
     return Column<pdo_parameter::cob_id>::get(entries, i, CobId::invalid_bit) & ~CobId::no_rtr_bit;
   }
 
-  /// The first one with a CAN-ID; `count` when there is none.
+  /// Returns the first RPDO with a CAN-ID; `count` if there is none.
   template <std::size_t... I>
   [[nodiscard]] static std::size_t find(std::uint32_t cob_id, EntryAccess<Device> entries, std::index_sequence<I...>) {
     constexpr std::size_t few = 8;
@@ -211,7 +212,7 @@ class RpdoService {
     return sizes[i];
   }
 
-  /// Takes a frame for RPDO `i` and those behind it that have the same CAN-ID.
+  /// Passes a frame to RPDO `i` and the following ones with the same CAN-ID.
   template <class Host>
   [[gnu::noinline]] bool receive_all(std::size_t i, const Frame& frame, std::uint32_t cob_id, Host host) {
     for (; i < count; ++i) {
@@ -233,7 +234,7 @@ class RpdoService {
     if ((slot.flags & at_once) != 0) take(i, frame.data, host);
   }
 
-  /// A frame is too short.
+  /// Handles a frame that is too short.
   template <class Host>
   void cut(std::size_t i, Host host) {
     if (slots_[i].size == unmapped) return;
@@ -242,7 +243,7 @@ class RpdoService {
     if (first) host.happened(RpdoEvent::too_short, number_of(i));
   }
 
-  /// A good frame ends what was wrong, and the time that it has taken.
+  /// Ends the error conditions after a valid frame, and reports an event timer that had elapsed before it.
   template <class Host>
   void settle(std::size_t i, Host host) {
     end(i, cut_short, RpdoEvent::length_right, host);
@@ -251,7 +252,7 @@ class RpdoService {
     slots_[i].flags &= static_cast<std::uint8_t>(~monitored);
   }
 
-  /// Tells that a condition is over, if it was there.
+  /// Ends a condition and reports it, if it was set.
   template <class Host>
   void end(std::size_t i, std::uint8_t condition, RpdoEvent event, Host host) {
     if ((slots_[i].flags & condition) == 0) return;
@@ -259,7 +260,7 @@ class RpdoService {
     host.happened(event, number_of(i));
   }
 
-  /// Tells of one that has stayed away.
+  /// Reports an RPDO whose event timer has elapsed.
   template <class Host>
   void check_deadline([[maybe_unused]] std::size_t i, [[maybe_unused]] Host host) {
     if constexpr (has_event_timer) {
@@ -278,7 +279,7 @@ class RpdoService {
     }
   }
 
-  /// In ms; 0 where there is none.
+  /// In ms; 0 if it does not exist.
   [[nodiscard]] static std::uint16_t event_timer(std::size_t i, EntryAccess<Device> entries) {
     return static_cast<std::uint16_t>(Column<pdo_parameter::event_timer>::get(entries, i, 0));
   }
@@ -332,7 +333,7 @@ class RpdoService {
     }
   }
 
-  /// Of the object that begins at a bit.
+  /// Passes on the value of the object that begins at a bit.
   template <class Host>
   [[gnu::noinline]] static void take_watched(std::size_t which, const Data& data, unsigned at, Host host) {
     const MappingParameter mapping = Mapped::parameter(which, host.entries());
@@ -344,7 +345,7 @@ class RpdoService {
     host.take(mapped.index(), mapped.sub_index(), std::span{bytes}.first((mapped.bits() + 7u) / 8u));
   }
 
-  /// Values from a bit of the data on; in the last byte the bits behind them are 0.
+  /// Copies values from a bit of the data on; unused bits of the last byte are 0.
   static void take_bits_into(std::uint8_t* to, const std::uint8_t* data, unsigned at, unsigned bits) {
     if (!Mapped::Runs::has_bits || ((at | bits) & 7) == 0) return copy_value(to, data + at / 8, bits / 8);
     const std::uint64_t value = take_bits(data, at, bits);

@@ -1,4 +1,4 @@
-/// The PDOs that a device sends (CiA 301, 7.2.2): when, and with which data.
+/// The TPDOs of a device (CiA 301, 7.2.2): when they are sent, and with which data.
 #pragma once
 
 #include <array>
@@ -22,16 +22,16 @@
 
 namespace canopen {
 
-/// All TPDOs of one device, with the parameters of 1800h and following as they are at the moment.
+/// All TPDOs of one device, with the present values of 1800h and the following parameters.
 ///
 ///   type 0         at the SYNC after a mapped object has changed
 ///   type 1..240    at every n-th SYNC, counted from the SYNC whose counter is the SYNC start value
-///   type 252       when a remote frame asks, with the data of the last SYNC
-///   type 253       when a remote frame asks
-///   type 254, 255  when a mapped object has changed, when the event timer has run out, and once on entering
-///                  Operational; never sooner after the last time than the inhibit time says
+///   type 252       on a remote frame, with the data of the last SYNC
+///   type 253       on a remote frame
+///   type 254, 255  when a mapped object has changed, when the event timer has elapsed, and once on entering
+///                  Operational; never within the inhibit time after the last transmission
 ///
-/// A remote frame is answered by every type where bit 30 of the COB-ID allows it.
+/// TPDOs of all types respond to a remote frame if bit 30 of their COB-ID allows it.
 template <class Device>
 class TpdoService {
  public:
@@ -48,7 +48,7 @@ class TpdoService {
     }
   }
 
-  /// `O` has a new value: those that carry it are to be sent. False when none does.
+  /// Marks the TPDOs that map `O` to be sent, because it has a new value. Returns false if there are none.
   template <DictionaryObject O>
   bool changed([[maybe_unused]] EntryAccess<Device> entries) {
     bool carried = false;
@@ -66,7 +66,7 @@ class TpdoService {
     return carried;
   }
 
-  /// The same for an object known by number only.
+  /// The same for an object that is known only by index and sub-index.
   void changed([[maybe_unused]] EntryAccess<Device> entries, std::uint16_t index, std::uint8_t sub_index) {
     if (!Device::triggers_event(index, sub_index)) return;
     const std::uint32_t key = object_key(index, sub_index);
@@ -80,7 +80,7 @@ class TpdoService {
     }
   }
 
-  /// Whether a TPDO carries an object now, or may be made to, so that `changed` has to hear of it.
+  /// Whether a TPDO maps an object now, or can do so: `changed` must be called for it.
   [[nodiscard]] static bool carries(EntryAccess<Device> entries, std::uint32_t key) {
     for (const std::uint32_t row : carriers) {
       if (row >> 8 == key) return true;
@@ -93,7 +93,7 @@ class TpdoService {
     return false;
   }
 
-  /// A communication or mapping parameter, 1800h..1BFFh, has a new value, which counts at once.
+  /// Applies a new value of a communication or mapping parameter, 1800h..1BFFh.
   void parameter_changed(ObjectStore<Device>& store, std::uint16_t index, std::uint8_t sub_index, TimePoint now) {
     const std::size_t i = place_of_pdo<Pdos>(index);
     if (i == count) return;
@@ -106,8 +106,8 @@ class TpdoService {
     activate(i, store, now);
   }
 
-  /// A SYNC has come: those that wait for it are sent where `now`, and else are due. Those of type 252 take their data.
-  /// False when any is due.
+  /// Handles a SYNC: the TPDOs that wait for it are sent if `now` is set, otherwise they become due. Those of type 252
+  /// sample their data. Returns false if any is due.
   template <Bus B>
   [[nodiscard]] bool on_sync(ObjectStore<Device>& store, B& bus, Sync sync, bool now) {
     for (std::size_t i = 0; i < count; ++i) {
@@ -122,14 +122,14 @@ class TpdoService {
     return now;
   }
 
-  /// The synchronous window is over: what the last SYNC wanted is not sent any more.
+  /// Discards the TPDOs of the last SYNC, because the synchronous window has elapsed.
   void miss_sync() {
     for (Slot& slot : slots_) {
       if (slot.type <= last_cyclic) slot.flags &= static_cast<std::uint8_t>(~due);
     }
   }
 
-  /// A remote frame asks for the TPDO with this CAN-ID.
+  /// Handles a remote frame that requests the TPDO with this CAN-ID.
   void on_remote(EntryAccess<Device> entries, std::uint32_t can_id) {
     if constexpr (Device::options.tpdo_remote_frames) {
       for (std::size_t i = 0; i < count; ++i) {
@@ -138,7 +138,7 @@ class TpdoService {
     }
   }
 
-  /// Sends what is due. False when the bus had no room: it stays due.
+  /// Sends what is due. Returns false if the bus had no room; the rest remains due.
   template <Bus B>
   bool serve(ObjectStore<Device>& store, B& bus, TimePoint now) {
     for (std::size_t i = 0; i < count; ++i) {
@@ -151,7 +151,7 @@ class TpdoService {
     return true;
   }
 
-  /// When the next one is to be sent; a moment not after `now` when one waits already.
+  /// Returns when the next TPDO is to be sent; not later than `now` if one is already waiting.
   [[nodiscard]] std::optional<TimePoint> next_deadline(TimePoint now) const {
     std::optional<TimePoint> next;
     for (const Slot& slot : slots_) {
@@ -168,12 +168,12 @@ class TpdoService {
  private:
   enum Flag : std::uint8_t {
     changed_bit = 2,    ///< a mapped object has a new value
-    due = 4,            ///< a SYNC wants it
-    timed = 8,          ///< event_due counts
-    inhibited = 16,     ///< inhibit_end counts
+    due = 4,            ///< due at a SYNC
+    timed = 8,          ///< event_due is valid
+    inhibited = 16,     ///< inhibit_end is valid
     event_driven = 32,  ///< of type 254 or 255
-    before_start = 64,  ///< the SYNC with the start value has not come yet
-    asked = 128,        ///< a remote frame wants it
+    before_start = 64,  ///< the SYNC with the start value has not been received yet
+    asked = 128,        ///< requested by a remote frame
   };
 
   static constexpr std::uint8_t last_cyclic = 240;
@@ -200,14 +200,14 @@ class TpdoService {
   };
 
   struct Slot {
-    Times times;  ///< of type 252, which has none, the data of the last SYNC
+    Times times;  ///< for type 252, which does not use them, the data of the last SYNC
     std::uint8_t flags;
     std::uint8_t type;
-    std::uint8_t syncs;  ///< SYNCs until it is due, of types 1..240
+    std::uint8_t syncs;  ///< types 1..240: SYNCs until it is due
     std::uint8_t size;   ///< data bytes
   };
 
-  /// Data bytes of those whose mapping is static.
+  /// Data bytes of TPDOs with static mapping.
   static constexpr std::array<std::uint8_t, count> sizes = [] {
     std::array<std::uint8_t, count> rows{};
     Pdos::for_each([&]<class Pdo, std::size_t I>() { rows[I] = Pdo::size; });
@@ -220,7 +220,7 @@ class TpdoService {
     return sum;
   }();
 
-  /// index << 16 | sub-index << 8 | position of the TPDO, for each object of a static mapping.
+  /// index << 16 | sub-index << 8 | position of the TPDO, for each statically mapped object.
   static constexpr std::array<std::uint32_t, mapped_objects> carriers = [] {
     static_assert(count <= 0x100);
     std::array<std::uint32_t, mapped_objects> rows{};
@@ -239,13 +239,13 @@ class TpdoService {
     return Column<pdo_parameter::cob_id>::get(entries, i, CobId::invalid_bit);
   }
 
-  /// One of the other parameters; 0 where there is none.
+  /// Returns one of the other parameters; 0 if it does not exist.
   template <std::uint8_t SubIndex>
   [[nodiscard]] static std::uint16_t parameter(std::size_t i, EntryAccess<Device> entries) {
     return static_cast<std::uint16_t>(Column<SubIndex>::get(entries, i, 0));
   }
 
-  /// Data bytes.
+  /// Looks up the mapping and returns its data bytes.
   std::uint8_t look_up(std::size_t i, [[maybe_unused]] EntryAccess<Device> entries) {
     if constexpr (has_dynamic_mapping) {
       if (Mapped::is_dynamic(i)) return places_.look_up(i, entries, [](MappedObject) { return false; });
@@ -274,7 +274,7 @@ class TpdoService {
     }
   }
 
-  /// Whether one of types 0..240 is to be sent at this SYNC.
+  /// Whether a TPDO of types 0..240 is to be sent at this SYNC.
   [[nodiscard]] bool wants_sync(std::size_t i, EntryAccess<Device> entries, Sync sync) {
     Slot& slot = slots_[i];
     if (slot.type == 0) return (slot.flags & changed_bit) != 0 || !Device::options.tpdo_acyclic_on_change;
@@ -290,7 +290,7 @@ class TpdoService {
     return true;
   }
 
-  /// Whether it is to be sent, but for the event timer.
+  /// Whether a TPDO is to be sent for any reason except its event timer.
   [[nodiscard]] static bool wanted(const Slot& slot) {
     if ((slot.flags & (due | asked)) != 0) return true;
     constexpr std::uint8_t event = event_driven | changed_bit;
@@ -302,8 +302,8 @@ class TpdoService {
     if ((slot.flags & event_driven) != 0) go_on_with_event_timer(slot, i, entries, now);
   }
 
-  /// The next time is one period after the last one, so that it does not drift: where that is over, or there was none,
-  /// one period from now.
+  /// Sets the event timer to one period after the last time, so that it does not drift; to one period from now if that
+  /// has passed or the timer was not running.
   [[gnu::noinline]] static void go_on_with_event_timer([[maybe_unused]] Slot& slot, [[maybe_unused]] std::size_t i,
                                                        [[maybe_unused]] EntryAccess<Device> entries,
                                                        [[maybe_unused]] TimePoint now) {
@@ -321,7 +321,7 @@ class TpdoService {
     return has_event_timer && (slot.flags & timed) != 0 && !is_ahead(slot.times.event_due, event_unit, now);
   }
 
-  /// Forgets an inhibit time that is over.
+  /// Whether the inhibit time is running; ends it if it has elapsed.
   [[nodiscard]] static bool is_inhibited(Slot& slot, TimePoint now) {
     if ((slot.flags & inhibited) == 0) return false;
     if (is_ahead(slot.times.inhibit_end, inhibit_unit, now)) return true;
@@ -361,7 +361,7 @@ class TpdoService {
     }
   }
 
-  /// Puts the values of the mapped objects into data that are zero so far, at an address that is a multiple of four.
+  /// Writes the values of the mapped objects to data, which must be zero and aligned to four bytes.
   void pack(std::size_t which, ObjectStore<Device>& store, Data& data) const {
     if constexpr (has_dynamic_mapping) {
       if (Mapped::is_dynamic(which)) pack_mapped(which, store.entries(), data);
@@ -404,8 +404,8 @@ class TpdoService {
     }
   }
 
-  /// The inhibit time begins, and the event timer starts again: from when it ran out, so that the period does not
-  /// drift, or from now.
+  /// Starts the inhibit time, and the event timer again: from when it elapsed, so that the period does not drift,
+  /// or from now.
   void sent(Slot& slot, std::size_t i, EntryAccess<Device> entries, TimePoint now) {
     slot.flags &= static_cast<std::uint8_t>(~(changed_bit | due | asked));
     if ((slot.flags & event_driven) == 0) return;
