@@ -1,4 +1,4 @@
-/// How the boot-up of an NMT slave ended (CiA 302-2, error status of the boot slave process).
+/// Result of the boot-up of an NMT slave (CiA 302-2, error status of the boot slave process).
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace canopen {
 
-/// The letters are those of CiA 302-2. G, H and I belong to program download, which this master does not do.
+/// The letters are those of CiA 302-2. G, H and I are for program download, which this master does not support.
 enum class BootStatus : char {
   booted = '0',
   not_listed = 'A',
@@ -54,11 +54,11 @@ inline constexpr BootStatusText boot_status_texts[] = {
 /// How a boot-up ended, and why.
 struct BootResult {
   BootStatus status = BootStatus::booted;
-  AbortCode abort_code = ok;   ///< of the SDO transfer that the status is about, or of the application's configuration
-  std::uint16_t index = 0;     ///< entry of that transfer, or of a number of the identity that differs; 0: none
+  AbortCode abort_code = ok;   ///< of the SDO transfer that caused the status, or of the application's configuration
+  std::uint16_t index = 0;     ///< entry of that transfer, or of the identity number that differs; 0: none
   std::uint8_t sub_index = 0;
-  std::uint32_t expected = 0;  ///< number of the identity by the network list
-  std::uint32_t seen = 0;      ///< number of the identity that the node has, when `abort_code` is `ok`
+  std::uint32_t expected = 0;  ///< identity number in the network list
+  std::uint32_t seen = 0;      ///< identity number of the node, if `abort_code` is `ok`
 
   constexpr operator BootStatus() const { return status; }  // NOLINT(google-explicit-constructor): the short form
 };

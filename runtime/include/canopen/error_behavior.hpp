@@ -1,4 +1,4 @@
-/// Error behaviour 1029h: the NMT state that a serious error leads to (CiA 301, 7.5.2.32).
+/// Error behaviour 1029h: the NMT state after a serious error (CiA 301, 7.5.2.32).
 #pragma once
 
 #include <cstdint>
@@ -8,15 +8,15 @@
 
 namespace canopen {
 
-/// What an error class of 1029h asks for. Sub-index 1 is the class of communication errors: bus off, a life guarding
-/// event, a heartbeat event; a device without 1029h does as with 0.
+/// Reaction to an error class of 1029h. Sub-index 1 is the class of communication errors: bus-off, life guarding event,
+/// heartbeat event; a device without 1029h reacts as with 0.
 enum class ErrorBehavior : std::uint8_t {
-  pre_operational = 0,  ///< from Operational to Pre-operational; other states stay
+  pre_operational = 0,  ///< from Operational to Pre-operational; other states do not change
   no_change = 1,
   stopped = 2,
 };
 
-/// The state after an error of a class, from the state that it finds. Values that CiA 301 reserves change nothing.
+/// Returns the state after an error of a class. Reserved values do not change the state.
 [[nodiscard]] constexpr NmtState state_after_error(NmtState state, std::uint8_t behavior) {
   if (state == NmtState::initialisation) return state;
   switch (static_cast<ErrorBehavior>(behavior)) {
@@ -27,7 +27,7 @@ enum class ErrorBehavior : std::uint8_t {
   return state;
 }
 
-/// What speaks against writing a class of 1029h. 0609 0030h: a reserved value; 128..255 are the manufacturer's.
+/// Checks a value for a class of 1029h. 0609 0030h: it is reserved; 128..255 are manufacturer-specific.
 [[nodiscard]] constexpr AbortCode check_error_behavior(std::uint8_t behavior) {
   const bool reserved = behavior > static_cast<std::uint8_t>(ErrorBehavior::stopped) && behavior < 0x80;
   return reserved ? AbortCode::invalid_value : ok;

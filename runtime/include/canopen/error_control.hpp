@@ -1,5 +1,5 @@
-/// Error control messages: what a node tells on 700h + node-ID by boot-up, heartbeat or node guarding (CiA
-/// 301, 7.2.8.3.2).
+/// Error control messages of a node with CAN-ID 700h + node-ID: boot-up, heartbeat and node guarding (CiA 301,
+/// 7.2.8.3.2).
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,15 @@
 
 namespace canopen {
 
-/// One message: one byte. `initialisation` is the boot-up message.
+/// One message of one byte. `initialisation` is the boot-up message.
 struct ErrorControlMessage {
   NodeId node_id;
   NmtState state;
-  bool toggle;  ///< bit 7: alternates in the answers of node guarding, 0 in heartbeats and boot-up messages
+  bool toggle;  ///< bit 7: alternates in guarding responses, 0 in heartbeats and boot-up messages
 };
 
-/// The message that a frame brings; nothing when it is another one, of another length, or tells a state that CiA 301
-/// does not know.
+/// Returns the message in a frame; empty if it is a different frame, has a different length, or contains a state that
+/// is not defined by CiA 301.
 [[nodiscard]] constexpr std::optional<ErrorControlMessage> error_control_message(const Frame& frame) {
   if (frame.extended || frame.remote || frame.size != 1) return std::nullopt;
   if (frame.id <= function_code::error_control || frame.id > function_code::error_control + 0x7Fu) return std::nullopt;
@@ -35,8 +35,8 @@ struct ErrorControlMessage {
   return std::nullopt;
 }
 
-/// The state that a node has told last, in a byte that is 0 while it has told none: services that have one for each
-/// node begin as zeroes.
+/// The last state that a node reported, in a byte that is 0 if it has not reported one: services with one per node are
+/// initialised to zeros.
 class LastState {
  public:
   constexpr LastState() = default;
@@ -45,7 +45,7 @@ class LastState {
 
   [[nodiscard]] constexpr bool known() const { return code_ != 0; }
 
-  /// Initialisation while none is known.
+  /// Initialisation if it is not known.
   [[nodiscard]] constexpr NmtState state() const {
     return code_ <= boot_up ? NmtState::initialisation : static_cast<NmtState>(code_);
   }

@@ -12,22 +12,22 @@
 
 namespace canopen {
 
-/// What a node sends on 700h + node-ID: one byte, its state. Periods are those of 1017h; 0 is off.
+/// Sends the NMT state in one byte with CAN-ID 700h + node-ID. Periods are those of 1017h; 0: off.
 class HeartbeatProducer {
  public:
-  /// The boot-up message is due. It counts as the first heartbeat.
+  /// Makes the boot-up message due. It counts as the first heartbeat.
   void boot_up() {
     boot_up_due_ = true;
     running_ = false;
   }
 
-  /// 1017h has been written: the first heartbeat is due at once, the next ones every period.
+  /// Handles a write to 1017h: the first heartbeat is due at once, the next ones after each period.
   void set_period(Duration period, TimePoint now) {
     running_ = period.count() != 0;
     due_ = now;
   }
 
-  /// Sends the boot-up message or a heartbeat when it is due. False when the bus had no room: it stays due.
+  /// Sends the boot-up message or a heartbeat if it is due. Returns false if the bus had no room; it remains due.
   template <Bus B>
   bool serve(B& bus, NodeId node_id, NmtState state, Duration period, TimePoint now) {
     if (boot_up_due_) {
@@ -41,14 +41,14 @@ class HeartbeatProducer {
     boot_up_due_ = false;
     running_ = period.count() != 0;
     due_ = due_ + period;
-    if (!is_within(due_, period, now)) due_ = now + period;  // served so late that whole periods are missing
+    if (!is_within(due_, period, now)) due_ = now + period;  // called so late that whole periods are missing
     return true;
   }
 
-  /// Whether the boot-up message still waits to be sent.
+  /// Whether the boot-up message is waiting to be sent.
   [[nodiscard]] bool boot_up_due() const { return boot_up_due_; }
 
-  /// When the next heartbeat is due.
+  /// Returns when the next heartbeat is due.
   [[nodiscard]] std::optional<TimePoint> next_deadline() const { return running_ ? std::optional{due_} : std::nullopt; }
 
  private:

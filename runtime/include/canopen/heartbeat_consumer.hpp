@@ -1,4 +1,4 @@
-/// Heartbeat consumer (CiA 301, 7.2.8.3.2.2): watches the nodes that 1016h names.
+/// Heartbeat consumer (CiA 301, 7.2.8.3.2.2): monitors the nodes in 1016h.
 #pragma once
 
 #include <array>
@@ -16,16 +16,16 @@
 
 namespace canopen {
 
-/// What happens to a watched node.
+/// Events of a monitored node.
 enum class HeartbeatEvent : std::uint8_t {
-  started,        ///< its first heartbeat: it is watched from now on
-  state_changed,  ///< a heartbeat tells another NMT state than the last one
+  started,        ///< its first heartbeat: it is monitored from now on
+  state_changed,  ///< a heartbeat contains a different NMT state than the previous one
   boot_up,        ///< its boot-up message
-  lost,           ///< no heartbeat for its time: the heartbeat event of CiA 301, EMCY 8130h
+  lost,           ///< no heartbeat within its time: the heartbeat event of CiA 301, EMCY 8130h
   back,           ///< the first heartbeat after it was lost
 };
 
-/// An entry of 1016h (CiA 301, 7.5.2.14): node-ID in bits 23..16, time in ms in bits 15..0.
+/// An entry of 1016h (CiA 301, 7.5.2.19): node-ID in bits 23..16, time in ms in bits 15..0.
 class ConsumerHeartbeatTime {
  public:
   constexpr ConsumerHeartbeatTime() = default;
@@ -37,29 +37,29 @@ class ConsumerHeartbeatTime {
   [[nodiscard]] constexpr NodeId node_id() const { return NodeId{static_cast<std::uint8_t>(value_ >> 16)}; }
   [[nodiscard]] constexpr std::uint16_t milliseconds() const { return static_cast<std::uint16_t>(value_); }
 
-  /// Whether it watches a node: its time is not 0, its node-ID 1..127.
+  /// Whether it monitors a node: its time is not 0, and its node-ID is 1..127.
   [[nodiscard]] constexpr bool used() const { return milliseconds() != 0 && node_id().valid(); }
 
  private:
   std::uint32_t value_ = 0;
 };
 
-/// How many nodes a device's 1016h can name.
+/// Returns how many nodes a device's 1016h can contain.
 [[nodiscard]] constexpr std::size_t consumer_heartbeat_times(const Dictionary& dictionary) {
   std::size_t count = 0;
   while (count < 127 && dictionary.has(0x1016, static_cast<std::uint8_t>(count + 1))) ++count;
   return count;
 }
 
-/// Watches up to `Count` nodes, with eight bytes of RAM for each. A node is watched from its first heartbeat on; a
-/// boot-up message alone does not start that, as a node sends one with its heartbeat off, too. While the node is
-/// watched a boot-up message counts as a heartbeat.
+/// Monitors up to `Count` nodes, with eight bytes of RAM for each. A node is monitored from its first heartbeat on; a
+/// boot-up message alone does not start it, because a node sends one even if its heartbeat is off. While the node is
+/// monitored, a boot-up message counts as a heartbeat.
 ///
-/// Events go to the node around it: `host.happened(HeartbeatEvent, NodeId, NmtState)`, with the state last told.
+/// Events are reported to the node: `host.happened(HeartbeatEvent, NodeId, NmtState)`, with the last reported state.
 template <std::size_t Count>
 class HeartbeatConsumer {
  public:
-  /// What speaks against writing an entry, counted from 0. 0604 0043h: another one watches the same node.
+  /// Checks an entry, counted from 0, before it is written. 0604 0043h: another entry has the same node-ID.
   [[nodiscard]] AbortCode check(std::size_t entry, ConsumerHeartbeatTime time) const {
     if (!time.used()) return ok;
     for (std::size_t i = 0; i < Count; ++i) {
@@ -68,7 +68,7 @@ class HeartbeatConsumer {
     return ok;
   }
 
-  /// An entry, counted from 0, has a new value: its node is unknown until its next heartbeat.
+  /// Sets an entry, counted from 0: its node is unknown until its next heartbeat.
   void configure(std::size_t entry, ConsumerHeartbeatTime time) {
     entries_[entry] = Entry{};
     if (!time.used()) return;
@@ -76,7 +76,7 @@ class HeartbeatConsumer {
     entries_[entry].milliseconds = time.milliseconds();
   }
 
-  /// The same for all entries, from 1016h.
+  /// Sets all entries from 1016h.
   template <class Device>
   void configure(EntryAccess<Device> entries) {
     for (std::size_t i = 0; i < Count; ++i) {
@@ -85,7 +85,7 @@ class HeartbeatConsumer {
     }
   }
 
-  /// Takes a message of any node. Answers to guarding requests that have bit 7 set are no heartbeats.
+  /// Processes a message of any node. Guarding responses with bit 7 set are not heartbeats.
   template <class Host>
   void on_message(const ErrorControlMessage& message, TimePoint now, Host&& host) {
     if (message.toggle) return;
@@ -100,7 +100,7 @@ class HeartbeatConsumer {
     if (event) host.happened(*event, message.node_id, message.state);
   }
 
-  /// Tells of the nodes whose time is over.
+  /// Reports nodes whose time has elapsed.
   template <class Host>
   void on_time(TimePoint now, Host&& host) {
     for (Entry& entry : entries_) {
@@ -118,7 +118,7 @@ class HeartbeatConsumer {
     return next;
   }
 
-  /// Whether a node is lost and has not come back.
+  /// Whether any node is lost and has not come back.
   [[nodiscard]] bool any_lost() const {
     for (const Entry& entry : entries_) {
       if (entry.lost) return true;
@@ -126,7 +126,7 @@ class HeartbeatConsumer {
     return false;
   }
 
-  /// The state that a watched node told last; nothing before its first heartbeat and while it is lost.
+  /// Returns the last state that a monitored node reported; empty before its first heartbeat and while it is lost.
   [[nodiscard]] std::optional<NmtState> state_of(NodeId node_id) const {
     for (const Entry& entry : entries_) {
       if (entry.node_id == node_id.value() && entry.watched()) return entry.last.state();

@@ -1,4 +1,4 @@
-/// The NMT slaves that an NMT master looks after: what 1F80h to 1F89h tell (CiA 302-2).
+/// The slaves that an NMT master manages, from 1F80h to 1F89h (CiA 302-2).
 #pragma once
 
 #include <cstddef>
@@ -17,12 +17,12 @@ namespace canopen {
 /// Bits of NMT slave assignment 1F81h. Bits 15..8 are the life time factor, bits 31..16 the guard time in ms.
 namespace slave_assignment {
 inline constexpr std::uint32_t listed = 0x01;      ///< the node is a slave of this master
-inline constexpr std::uint32_t boot = 0x04;        ///< it is started, and booted again whenever it boots up
-inline constexpr std::uint32_t mandatory = 0x08;   ///< the network starts only with it
-inline constexpr std::uint32_t keep_alive = 0x10;  ///< no reset when it is Operational already
+inline constexpr std::uint32_t boot = 0x04;        ///< it is started, and booted again after each boot-up message
+inline constexpr std::uint32_t mandatory = 0x08;   ///< the network is started only with it
+inline constexpr std::uint32_t keep_alive = 0x10;  ///< it is not reset if it is already Operational
 }  // namespace slave_assignment
 
-/// One slave. A number of its identity that is 0 is not compared.
+/// One slave. An identity number of 0 is not compared.
 struct NmtSlave {
   NodeId node_id;
   std::uint32_t assignment = 0;       ///< 1F81h
@@ -31,31 +31,31 @@ struct NmtSlave {
   std::uint32_t product_code = 0;     ///< 1F86h, compared with 1018h:02
   std::uint32_t revision_number = 0;  ///< 1F87h, compared with 1018h:03
   std::uint32_t serial_number = 0;    ///< 1F88h, compared with 1018h:04
-  /// ms without a heartbeat after which the slave is lost, as 1016h has it. During boot-up 1017h of the slave is written
-  /// with half of it when it is 0 or too long for that. 0: guarded with the times of `assignment`.
+  /// Time in ms without a heartbeat after which the slave is lost, as in 1016h. During boot-up, half of it is written
+  /// to 1017h of the slave if that is 0 or too long. 0: guarding with the times of `assignment`.
   std::uint16_t heartbeat_time = 0;
-  /// Concise DCF as 1F22h has it: written to the slave each time it boots. It must outlive the master.
+  /// Concise DCF as in 1F22h, written to the slave at each boot-up. It must outlive the master.
   std::span<const std::uint8_t> concise_dcf{};
 
   [[nodiscard]] constexpr bool has(std::uint32_t bit) const { return (assignment & bit) != 0; }
   [[nodiscard]] constexpr std::uint8_t life_time_factor() const { return static_cast<std::uint8_t>(assignment >> 8); }
   [[nodiscard]] constexpr std::uint16_t guard_time() const { return static_cast<std::uint16_t>(assignment >> 16); }
 
-  /// Whether a loss of the slave is noticed, by heartbeat or guarding.
+  /// Whether a loss of the slave is detected, by heartbeat or guarding.
   [[nodiscard]] constexpr bool watched() const { return heartbeat_time != 0 || guard_time() != 0; }
 };
 
-/// What counts for all of them.
+/// Settings for all slaves.
 struct NmtStartUp {
   std::uint32_t bits = 0;  ///< 1F80h
-  Duration boot_time{0};   ///< 1F89h: what the mandatory slaves have to boot up, up to half an hour; 0: for ever
+  Duration boot_time{0};   ///< 1F89h: time for the mandatory slaves to boot up, up to half an hour; 0: unlimited
 
   [[nodiscard]] constexpr bool has(std::uint32_t bit) const { return (bits & bit) != 0; }
 };
 
 namespace network_list_detail {
 
-/// An entry of up to 32 bits; 0 where the dictionary has none.
+/// Returns an entry of up to 32 bits; 0 if it does not exist.
 template <class Device>
 [[nodiscard]] std::uint32_t number_or_zero(EntryAccess<Device> entries, std::uint16_t index, std::uint8_t sub_index) {
   const entry::Word word = entries.find(index, sub_index);
@@ -64,7 +64,7 @@ template <class Device>
 
 }  // namespace network_list_detail
 
-/// 1F80h and 1F89h of a dictionary. A boot time above half an hour counts as half an hour.
+/// Reads 1F80h and 1F89h. A boot time above half an hour counts as half an hour.
 template <class Device>
 [[nodiscard]] NmtStartUp read_start_up(EntryAccess<Device> entries) {
   using network_list_detail::number_or_zero;
@@ -73,8 +73,8 @@ template <class Device>
   return {number_or_zero(entries, 0x1F80, 0), Duration{(milliseconds < half_hour ? milliseconds : half_hour) * 1000u}};
 }
 
-/// Fills `slaves` with the nodes that 1F81h lists, in ascending order, and says how many there are: more than fit is a
-/// list that is too small.
+/// Fills `slaves` with the nodes that 1F81h lists, in ascending order, and returns their number. If it is greater than
+/// the size of `slaves`, the rest is missing.
 template <class Device>
 std::size_t read_network_list(EntryAccess<Device> entries, std::span<NmtSlave> slaves) {
   using network_list_detail::number_or_zero;

@@ -1,4 +1,4 @@
-/// NMT master: commands, boot-up of a list of slaves, and the watch over them (CiA 301, 7.2.8; CiA 302-2).
+/// NMT master: commands, boot-up of a list of slaves, and their error control (CiA 301, 7.2.8; CiA 302-2).
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@
 
 namespace canopen {
 
-/// A command to one node, or to all with node-ID 0.
+/// Returns the frame of a command to one node, or to all nodes with node-ID 0.
 [[nodiscard]] constexpr Frame nmt_frame(NmtCommand command, NodeId node_id) {
   Frame frame{};
   frame.id = function_code::nmt;
@@ -37,15 +37,16 @@ namespace canopen {
   return frame;
 }
 
-/// What the master sees of a slave.
+/// Events of a slave.
 enum class NmtMasterEvent : std::uint8_t {
   boot_up,           ///< its boot-up message
-  state_changed,     ///< it tells a state for the first time, or another one than before
-  unexpected_state,  ///< guarding: a state that it has not been commanded to
-  toggle_error,      ///< guarding: an answer with the toggle bit of the one before
-  lost,              ///< no heartbeat, or no answer to guarding, for its time
-  back,              ///< the first one after that
-  not_watched,       ///< it has booted, and its loss will not be noticed: neither heartbeat nor guarding is in the list
+  state_changed,     ///< its first state, or a different one
+  unexpected_state,  ///< guarding: a state other than the one commanded
+  toggle_error,      ///< guarding: a response with the same toggle bit as the previous one
+  lost,              ///< no heartbeat or guarding response within its time
+  back,              ///< the first one after it was lost
+  not_watched,       ///< it has booted, but its loss will not be detected: the list has no heartbeat and no guarding
+                     ///< times for it
 };
 
 [[nodiscard]] constexpr std::string_view to_text(NmtMasterEvent event) {
@@ -61,7 +62,7 @@ enum class NmtMasterEvent : std::uint8_t {
   return "unknown event";
 }
 
-/// One number of a slave's identity: where it is read, what it is compared with, how a difference is told.
+/// One number of a slave's identity: the entry to read, the expected value, and the boot status if it differs.
 struct IdentityCheck {
   std::uint16_t index;
   std::uint8_t sub_index;
@@ -69,7 +70,7 @@ struct IdentityCheck {
   BootStatus failure;
 };
 
-/// In the order of the boot-up process. The first one is read in any case: it shows that the node is there.
+/// In the order of the boot-up process. The first one is always read, to check whether the node responds.
 inline constexpr IdentityCheck identity_checks[] = {
     {0x1000, 0, &NmtSlave::device_type, BootStatus::device_type},
     {0x1018, 1, &NmtSlave::vendor_id, BootStatus::vendor_id},
@@ -78,34 +79,34 @@ inline constexpr IdentityCheck identity_checks[] = {
     {0x1018, 4, &NmtSlave::serial_number, BootStatus::serial_number},
 };
 
-/// Boots up to `Count` slaves and watches them (CiA 302-2, boot NMT slave). Each is reset, and when its boot-up message
-/// has arrived, or after a second, as the message may have been missed:
-///   1. identified over SDO; a wrong identity ends the boot-up until the next boot-up message,
+/// Boots up to `Count` slaves and monitors them (CiA 302-2, boot NMT slave). Each slave is reset. After its boot-up
+/// message, or after a second because the message may have been missed, it is
+///   1. identified by SDO; a wrong identity ends the boot-up until the next boot-up message,
 ///   2. configured: its concise DCF (1F22h) is written, then the application configures it,
-///   3. told its heartbeat time: where the list has one, 1017h is read, and written when it is 0 or too long,
-///   4. watched by heartbeat or guarding, and
+///   3. given its heartbeat time: if the list has one, 1017h is read, and written if it is 0 or too long,
+///   4. monitored by heartbeat or guarding, and
 ///   5. started.
-/// A slave that does not answer is asked again every second, and commanded to Pre-operational before, as a slave in
-/// Stopped does not answer. One with `keep_alive` that is found Operational is not reset or configured; to find that it
-/// needs a heartbeat or guarding. The network is started when all mandatory slaves have booted; slaves that come later are
-/// booted as they come.
+/// A slave that does not respond is tried again every second, after a command to enter Pre-operational, because SDO is
+/// not available in Stopped. A slave with `keep_alive` that is already Operational is not reset or configured;
+/// detecting this requires heartbeat or guarding. The network is started when all mandatory slaves have booted; later
+/// slaves are booted when they appear.
 ///
-/// The master and the application share the SDO of a slave: `request` appends a transfer to the queue of its node, where
-/// the boot-up has its turn as well. Up to `Clients` nodes are served at the same time; `Requests` of the application may
-/// wait. The boot-up message of a slave ends all requests to it with 0800 0022h.
+/// The master and the application share the SDO of a slave: `request` appends a transfer to the queue of its node,
+/// which the boot-up uses as well. Up to `Clients` nodes are served at the same time; up to `Requests` requests of the
+/// application may wait. The boot-up message of a slave ends all requests to it with 0800 0022h.
 ///
-/// The application around it (`Host`) is told:
-///   happened(NmtMasterEvent, NodeId, NmtState)   with the state last told
-///   configure(NodeId)                            optional: configure the slave now, in as many requests as it takes, and
-///                                                call `configured` then; called again when the slave has booted up again
-///   booted(NodeId, BootResult)                   how a boot-up ended; no_response: the slave is asked again. A Host may
-///                                                take a BootStatus instead
+/// Functions of the application that the master calls (`Host`):
+///   happened(NmtMasterEvent, NodeId, NmtState)   with the last reported state
+///   configure(NodeId)                            optional: configure the slave now, with any number of requests, then
+///                                                call `configured`; called again after the next boot-up of the slave
+///   booted(NodeId, BootResult)                   how a boot-up ended; no_response: the slave is tried again. A Host
+///                                                may accept a BootStatus instead
 ///   network_started()                            unless 1F80h forbids it, the master's own device may be started now
-///   boot_time_elapsed()                          a mandatory slave is missing; it is still waited for
+///   boot_time_elapsed()                          a mandatory slave is missing; the master keeps waiting for it
 template <Bus B, std::size_t Count, class Host, std::size_t Requests = 4, std::size_t Clients = (Count < 4 ? Count : 4)>
 class NmtMaster {
  public:
-  /// Of `slaves` the first `Count` are looked after; they must outlive the master. 1F81h bit 0 has to be set in those
+  /// Manages the first `Count` of `slaves`, which must outlive the master. Bit 0 of 1F81h must be set in the slaves
   /// that are to be booted.
   constexpr NmtMaster(B& can_bus, std::span<const NmtSlave> slaves, NmtStartUp start_up, SdoClientOptions options,
                       Host host)
@@ -120,7 +121,7 @@ class NmtMaster {
   NmtMaster(const NmtMaster&) = delete;
   NmtMaster& operator=(const NmtMaster&) = delete;
 
-  /// Begins the boot-up: resets the communication of all nodes, or of each slave that is not to be kept alive.
+  /// Starts the boot-up: resets the communication of all nodes, or of each slave that is not to be kept alive.
   void start(TimePoint now) {
     now_ = now;
     const bool reset_each = std::ranges::any_of(slaves_, [](const NmtSlave& slave) {
@@ -139,15 +140,15 @@ class NmtMaster {
     serve();
   }
 
-  /// Resets the communication of one slave and boots it again, after its failure for instance.
+  /// Resets the communication of one slave and boots it again, for instance after a failure.
   void boot(NodeId node_id, TimePoint now) {
     now_ = now;
     if (const std::optional<std::size_t> i = find(node_id)) reset(*i, NmtCommand::reset_communication);
     serve();
   }
 
-  /// The application has configured a slave, after `configure` of the host: `ok`, or why it could not. Without effect
-  /// when the slave has been lost, reset or has booted up since.
+  /// Reports that the application has configured a slave, after `configure` of the host: `ok`, or the abort code. Has
+  /// no effect if the slave has been lost, reset or booted up in the meantime.
   void configured(NodeId node_id, AbortCode result, TimePoint now) {
     now_ = now;
     const std::optional<std::size_t> i = find(node_id);
@@ -162,14 +163,15 @@ class NmtMaster {
     serve();
   }
 
-  /// Appends a transfer of the application to the queue of a node, listed or not. Memory stays in use until `done` has
-  /// been called, which is with 0800 0022h when a slave of the list boots up. 060A 0023h: `Requests` of them wait already.
+  /// Appends a transfer of the application to the queue of a node, listed or not. Its memory is used until `done`
+  /// has been called, which happens with 0800 0022h if a slave of the list boots up. 060A 0023h: `Requests` are
+  /// already waiting.
   Result<void> request(NodeId node_id, const SdoRequest& what, TimePoint now) {
     if (sdo_.waiting(this) >= Requests) return AbortCode::no_resource;
     return sdo_.submit(node_id, what, now);
   }
 
-  /// Sends a command to one node, or to all with node-ID 0. False when the bus had no room: it is not sent.
+  /// Sends a command to one node, or to all nodes with node-ID 0. Returns false if the bus had no room; it is not sent.
   bool command(NmtCommand command, NodeId node_id) {
     if (!bus_.send(nmt_frame(command, node_id))) return false;
     for (std::size_t i = 0; i < slaves_.size(); ++i) {
@@ -178,7 +180,7 @@ class NmtMaster {
     return true;
   }
 
-  /// Takes a frame from the bus.
+  /// Processes a frame from the bus.
   void on_frame(const Frame& frame, TimePoint now) {
     now_ = now;
     sdo_.on_frame(frame, now);
@@ -186,7 +188,7 @@ class NmtMaster {
     serve();
   }
 
-  /// Lets time pass. To be called at `next_deadline()` and when the bus has room again.
+  /// Processes elapsed time. Call it at `next_deadline()` and when the bus has room again.
   void on_time(TimePoint now) {
     now_ = now;
     sdo_.on_time(now);
@@ -198,7 +200,7 @@ class NmtMaster {
     serve();
   }
 
-  /// When `on_time` has something to do next.
+  /// Returns when `on_time` is next due.
   [[nodiscard]] std::optional<TimePoint> next_deadline() const {
     if (all_command_) return now_;
     std::optional<TimePoint> next = heartbeats_.next_deadline();
@@ -220,19 +222,19 @@ class NmtMaster {
   /// Whether all mandatory slaves have booted.
   [[nodiscard]] bool network_started() const { return network_started_; }
 
-  /// How the last boot-up of a slave ended; nothing before that.
+  /// Returns how the last boot-up of a slave ended; empty before that.
   [[nodiscard]] std::optional<BootStatus> status(NodeId node_id) const {
     const std::optional<std::size_t> i = find(node_id);
     return i ? entries_[*i].status : std::nullopt;
   }
 
-  /// The state that a slave told last by heartbeat or guarding; nothing when it is unknown or lost.
+  /// Returns the last state that a slave reported by heartbeat or guarding; empty if it is unknown or lost.
   [[nodiscard]] std::optional<NmtState> state(NodeId node_id) const {
     const std::optional<std::size_t> i = find(node_id);
     return i ? state_of(*i) : std::nullopt;
   }
 
-  /// Whether a node, listed or not, has sent a boot-up message since the master was built.
+  /// Whether a node, listed or not, has sent a boot-up message since the master was constructed.
   [[nodiscard]] bool has_booted(NodeId node_id) const {
     return (boot_ups_[node_id.value() / 32u] >> (node_id.value() % 32u) & 1u) != 0;
   }
@@ -242,29 +244,29 @@ class NmtMaster {
   static constexpr std::size_t checks = std::size(identity_checks);
 
   enum class Step : std::uint8_t {
-    idle,                    ///< not begun, or ended
-    waiting,                 ///< for a boot-up message, or to be asked without one
-    identifying,             ///< `check` is the number that is read, or is next to be read
-    downloading,             ///< the entry of the concise DCF at `position`
-    configuring,             ///< the application does
-    reading_heartbeat_time,  ///< 1017h
+    idle,                    ///< not started, or ended
+    waiting,                 ///< for a boot-up message, or for the next attempt without one
+    identifying,             ///< reading the number `check`, or about to read it
+    downloading,             ///< writing the entry of the concise DCF at `position`
+    configuring,             ///< by the application
+    reading_heartbeat_time,  ///< of 1017h
     writing_heartbeat_time,
-    starting_error_control,  ///< for the first heartbeat or answer
+    starting_error_control,  ///< waiting for the first heartbeat or guarding response
   };
 
   struct Entry {
     TimePoint deadline{};
-    std::array<std::uint8_t, 4> number{};  ///< that is read or written
-    std::uint32_t position = 0;            ///< in the concise DCF, of the entry that is written
-    std::uint32_t left = 0;                ///< entries of the concise DCF that are not written yet
-    std::optional<NmtCommand> command{};   ///< waits to be sent
+    std::array<std::uint8_t, 4> number{};  ///< read or written value
+    std::uint32_t position = 0;            ///< of the entry of the concise DCF that is being written
+    std::uint32_t left = 0;                ///< remaining entries of the concise DCF
+    std::optional<NmtCommand> command{};   ///< waiting to be sent
     std::optional<BootStatus> status{};
     Step step = Step::idle;
     std::uint8_t check = 0;
     bool asked = false;      ///< a request of the master is in the queue
-    bool dropped = false;    ///< its answer does not matter any more
-    bool booted_up = false;  ///< its boot-up message has come: it is asked before those that are silent
-    bool silent = false;     ///< it has not answered
+    bool dropped = false;    ///< its response will be ignored
+    bool booted_up = false;  ///< its boot-up message has been received: it is served before slaves that do not respond
+    bool silent = false;     ///< it has not responded
     bool was_reset = false;
     bool beats_in_time = false;  ///< 1017h is shorter than the consumer's time
     bool complete = false;  ///< has booted and is not lost
@@ -284,13 +286,13 @@ class NmtMaster {
     return false;
   }
 
-  /// Hands the events of heartbeats and guarding on.
+  /// Forwards the events of heartbeats and guarding.
   struct Watch {
     NmtMaster& master;
 
     void happened(HeartbeatEvent event, NodeId node_id, NmtState state) {
       switch (event) {
-        case HeartbeatEvent::boot_up: return;  // told for all nodes, watched or not
+        case HeartbeatEvent::boot_up: return;  // reported for all nodes, monitored or not
         case HeartbeatEvent::started:
         case HeartbeatEvent::state_changed: return master.tell(NmtMasterEvent::state_changed, node_id, state);
         case HeartbeatEvent::back: return master.tell(NmtMasterEvent::back, node_id, state);
@@ -329,7 +331,7 @@ class NmtMaster {
     return beats(i) ? heartbeats_.state_of(slaves_[i].node_id) : guards_[i].state();
   }
 
-  /// All slaves from the start, after a command to all nodes where there is one.
+  /// Starts all slaves from the beginning, after a command to all nodes if there is one.
   void begin(std::optional<NmtCommand> to_all) {
     booting_ = true;
     network_started_ = false;
@@ -349,7 +351,7 @@ class NmtMaster {
     check_network();
   }
 
-  // The steps of one slave
+  // The boot-up steps of one slave
 
   void wait(std::size_t i) {
     entries_[i].step = Step::waiting;
@@ -357,12 +359,12 @@ class NmtMaster {
     entries_[i].deadline = now_ + retry_time;
   }
 
-  /// The slave is watched from its next heartbeat on.
+  /// Monitors the slave from its next heartbeat on.
   void watch_heartbeat(std::size_t i) {
     heartbeats_.configure(i, ConsumerHeartbeatTime{slaves_[i].node_id, slaves_[i].heartbeat_time});
   }
 
-  /// A slave that is being reset or booted may be silent. One that is lost still comes back.
+  /// Stops monitoring a slave that is being reset or booted. One that is lost is still reported when it comes back.
   void stop_watching(std::size_t i) {
     guards_[i].stop();
     if (heartbeats_.state_of(slaves_[i].node_id)) watch_heartbeat(i);
@@ -385,7 +387,7 @@ class NmtMaster {
     entries_[i].complete = false;
   }
 
-  /// A slave that has not answered may be in Stopped. One that may have to be kept alive is not commanded.
+  /// Tries a slave again that has not responded; it may be in Stopped. A slave that may be kept alive gets no command.
   void ask_again(std::size_t i) {
     const bool may_be_operational = slaves_[i].has(slave_assignment::keep_alive) && !entries_[i].was_reset;
     if (entries_[i].silent && !may_be_operational && !entries_[i].command) {
@@ -394,7 +396,7 @@ class NmtMaster {
     identify(i);
   }
 
-  /// Whether the slave may be Operational from before the master's start, which is looked at before anything is changed.
+  /// Whether the slave may have been Operational since before the master's start; checked before anything is changed.
   [[nodiscard]] bool may_be_kept_alive(std::size_t i) const {
     return slaves_[i].has(slave_assignment::keep_alive) && !entries_[i].was_reset && !entries_[i].booted_up;
   }
@@ -408,7 +410,7 @@ class NmtMaster {
     if (!dcf_data(i)) finish(i, {BootStatus::configuration, AbortCode::length_mismatch});
   }
 
-  /// The bytes of the present entry of the concise DCF; nothing when the DCF is shorter than it says.
+  /// Returns the bytes of the present entry of the concise DCF; empty if the DCF is too short.
   [[nodiscard]] std::optional<std::span<const std::uint8_t>> dcf_data(std::size_t i) const {
     constexpr std::size_t head = 7;
     const std::span<const std::uint8_t> dcf = slaves_[i].concise_dcf;
@@ -440,7 +442,7 @@ class NmtMaster {
     entries_[i].step = Step::reading_heartbeat_time;
   }
 
-  /// Two heartbeats in the consumer's time leave room for one that is late or lost on the way.
+  /// Two heartbeats within the consumer time tolerate one that is late or lost.
   void heartbeat_time_read(std::size_t i, const SdoAnswer& answer) {
     const std::uint32_t consumer = slaves_[i].heartbeat_time;
     const std::uint32_t producer = number_of(answer.data.first(std::min<std::size_t>(answer.data.size(), 2)));
@@ -452,8 +454,8 @@ class NmtMaster {
     entries_[i].step = Step::writing_heartbeat_time;
   }
 
-  /// The slave starts its period anew, so it is watched from its next heartbeat on. One that refuses may keep a time of
-  /// its own that is short enough.
+  /// Monitors the slave from its next heartbeat on, because it restarts its period. A slave that rejects the write may
+  /// keep its own time if that is short enough.
   void heartbeat_time_written(std::size_t i, const SdoAnswer& answer) {
     if (answer.result == ok) {
       watch_heartbeat(i);
@@ -468,10 +470,10 @@ class NmtMaster {
     entries_[i].deadline = now_ + from_milliseconds(slaves_[i].heartbeat_time);
     if (!is_guarded(i)) return;
     guards_[i].start(slaves_[i].node_id, slaves_[i].guard_time(), slaves_[i].life_time_factor(), now_);
-    entries_[i].deadline = now_ + Duration{0x7FFF'FFFF};  // the guard tells
+    entries_[i].deadline = now_ + Duration{0x7FFF'FFFF};  // guarding reports a loss
   }
 
-  /// Looks whether a slave in this step is heard of, or its time is over.
+  /// Checks whether the slave has been heard, or its time has elapsed.
   void check_error_control(std::size_t i) {
     const std::optional<NmtState> state = state_of(i);
     const bool heard = state && *state != NmtState::initialisation;
@@ -503,12 +505,12 @@ class NmtMaster {
     check_network();
   }
 
-  /// Whether a slave is in a step before its error control.
+  /// Whether a slave is in a step before error control.
   [[nodiscard]] bool is_being_booted(std::size_t i) const {
     return entries_[i].step >= Step::identifying && entries_[i].step < Step::starting_error_control;
   }
 
-  /// The network starts when no mandatory slave is missing.
+  /// Starts the network if no mandatory slave is missing.
   void check_network() {
     if (network_started_) return;
     for (std::size_t i = 0; i < slaves_.size(); ++i) {
@@ -521,7 +523,7 @@ class NmtMaster {
     host_.network_started();
   }
 
-  // What slaves tell
+  // Messages of slaves
 
   void on_message(const ErrorControlMessage& message) {
     const bool boot_up = message.state == NmtState::initialisation && !message.toggle;
@@ -539,11 +541,11 @@ class NmtMaster {
     if (boot_up) return on_boot_up(*i);
     const bool is_silent = entries_[*i].step == Step::waiting || entries_[*i].step == Step::identifying;
     if (message.state == NmtState::stopped && is_silent && !entries_[*i].command) {
-      reset(*i, NmtCommand::reset_communication);  // which it has missed: it does not answer in Stopped
+      reset(*i, NmtCommand::reset_communication);  // it has missed the reset: it does not respond to SDO in Stopped
     }
   }
 
-  /// A slave that was booted already is booted again where 1F81h says so.
+  /// Boots a slave again that was already booted, if 1F81h says so.
   void on_boot_up(std::size_t i) {
     Entry& entry = entries_[i];
     if (entry.command == NmtCommand::start || entry.command == NmtCommand::enter_pre_operational) entry.command.reset();
@@ -560,10 +562,11 @@ class NmtMaster {
     }
   }
 
-  /// A slave is lost (CiA 302-2, error handling): all nodes are stopped or reset, or the slave alone is reset.
+  /// Handles the loss of a slave (CiA 302-2, error handling): all nodes are stopped or reset, or only the
+  /// slave is reset.
   void on_lost(NodeId node_id, NmtState state) {
     const std::optional<std::size_t> i = find(node_id);
-    if (i && is_being_booted(*i)) return watch_heartbeat(*i);  // its heartbeat is not set up yet
+    if (i && is_being_booted(*i)) return watch_heartbeat(*i);  // its heartbeat has not been set up yet
     tell(NmtMasterEvent::lost, node_id, state);
     if (!i) return;
     if (entries_[*i].step == Step::starting_error_control) {
@@ -587,9 +590,9 @@ class NmtMaster {
 
   // SDO
 
-  /// Puts a request of each slave that needs one into the queue as soon as it can begin, or has to wait for the
-  /// application's at its node: first those whose boot-up message has come, and in turn, so that slaves that are silent
-  /// do not take all clients from the others.
+  /// Queues a request for each slave that needs one, as soon as it can start, or only has to wait for requests of the
+  /// application to its node: first slaves whose boot-up message has been received, and in rotation, so that slaves
+  /// that do not respond do not occupy all clients.
   void serve_sdo() {
     const std::size_t first = next_;
     for (const bool booted_up : {true, false}) {
@@ -623,7 +626,7 @@ class NmtMaster {
     return request;
   }
 
-  /// Index and sub-index of the present request.
+  /// Returns the index and sub-index of the present request.
   [[nodiscard]] std::pair<std::uint16_t, std::uint8_t> entry_of(std::size_t i) const {
     if (entries_[i].step == Step::identifying) {
       const IdentityCheck& check = identity_checks[entries_[i].check];
@@ -655,7 +658,7 @@ class NmtMaster {
     }
   }
 
-  /// What a transfer of the master has failed with.
+  /// Returns the result of a failed transfer of the master.
   [[nodiscard]] BootResult failure(std::size_t i, BootStatus status, const SdoAnswer& answer) const {
     const auto [index, sub_index] = entry_of(i);
     return {status, answer.result, index, sub_index};
@@ -689,7 +692,7 @@ class NmtMaster {
     retry(i, failure(i, BootStatus::no_response, answer));
   }
 
-  /// A slave that is silent is asked again after a while.
+  /// Schedules the next attempt for a slave that does not respond.
   void retry(std::size_t i, const BootResult& result) {
     entries_[i].booted_up = false;
     entries_[i].silent = true;
@@ -719,7 +722,7 @@ class NmtMaster {
     serve_sdo();
   }
 
-  /// Sends the commands that wait; what finds no room stays.
+  /// Sends waiting commands; those for which the bus has no room keep waiting.
   void send_commands() {
     if (all_command_) {
       if (!command(*all_command_, NodeId{})) return;
@@ -750,9 +753,9 @@ class NmtMaster {
   std::array<NodeGuardingMaster, Count> guards_{};
   HeartbeatConsumer<Count> heartbeats_{};
   SdoQueue<B, Clients, Count + Requests> sdo_;
-  std::array<std::uint32_t, 4> boot_ups_{};  ///< a bit for each node
-  std::optional<NmtCommand> all_command_{};  ///< to all nodes: waits to be sent
-  std::size_t next_ = 0;                     ///< the slave that is asked next, where it has something to be asked
+  std::array<std::uint32_t, 4> boot_ups_{};  ///< one bit per node
+  std::optional<NmtCommand> all_command_{};  ///< to all nodes, waiting to be sent
+  std::size_t next_ = 0;                     ///< the slave whose turn is next
   TimePoint boot_deadline_{};
   TimePoint now_{};
   bool booting_ = false;  ///< `start` has been called
@@ -760,7 +763,7 @@ class NmtMaster {
   bool boot_time_runs_ = false;
 };
 
-/// A master of up to `Count` slaves:
+/// Returns a master of up to `Count` slaves:
 ///     auto master = canopen::make_nmt_master<8>(bus, slaves, start_up, 500ms, host);
 template <std::size_t Count, Bus B, class Host>
 [[nodiscard]] constexpr NmtMaster<B, Count, Host> make_nmt_master(B& bus, std::span<const NmtSlave> slaves,

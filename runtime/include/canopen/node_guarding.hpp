@@ -1,4 +1,4 @@
-/// Node guarding and life guarding (CiA 301, 7.2.8.3.2.1): the node that is guarded, and the NMT master that guards it.
+/// Node guarding and life guarding (CiA 301, 7.2.8.3.2.1): the guarded node, and the NMT master that guards it.
 #pragma once
 
 #include <cstdint>
@@ -13,22 +13,23 @@
 
 namespace canopen {
 
-/// Whether a frame is a guarding request for this node: a remote frame on 700h + node-ID, of whatever length.
+/// Whether a frame is a guarding request for this node: a remote frame with CAN-ID 700h + node-ID, of any length.
 [[nodiscard]] constexpr bool is_guarding_request(const Frame& frame, NodeId node_id) {
   return frame.remote && !frame.extended && frame.id == function_code::error_control + std::uint32_t{node_id.value()};
 }
 
-/// The slave's side: answers the requests with state and toggle bit, and watches that they come. The first one starts
-/// life guarding; when none comes for the guard time 100Ch times the life time factor 100Dh, both not 0, there is a
-/// life guarding event: EMCY 8130h. It is over with the next request.
+/// The slave's side: responds to requests with state and toggle bit, and monitors them. The first one starts life
+/// guarding; if none is received for the guard time 100Ch times the life time factor 100Dh, both not 0, a life guarding
+/// event occurs: EMCY 8130h. It ends with the next request.
 ///
-/// A node guards or beats, never both: while 1017h is not 0 requests are not handed in here and find no answer.
+/// A node uses either guarding or heartbeat: while 1017h is not 0, requests are not passed to this class or answered.
 class NodeGuardingSlave {
  public:
-  /// Communication has been reset, or 1017h says heartbeat now: nothing is answered or watched, the toggle bit is 0.
+  /// Resets the state, after a reset of communication or when 1017h enables the heartbeat: nothing is sent or
+  /// monitored, the toggle bit is 0.
   void reset() { *this = NodeGuardingSlave{}; }
 
-  /// Takes a request. The answer goes out with `serve`, one for requests that come before it could.
+  /// Processes a request. `serve` sends the response; requests that are received before share it.
   void on_request(std::uint16_t guard_time, std::uint8_t life_time_factor, TimePoint now) {
     answer_due_ = true;
     failed_ = false;
@@ -36,7 +37,7 @@ class NodeGuardingSlave {
     deadline_ = now + from_milliseconds(guard_time);
   }
 
-  /// 100Ch or 100Dh has been written. With a 0 life guarding ends, and with it its event; other values count from the
+  /// Handles a write to 100Ch or 100Dh. If either is 0, life guarding and its event end; other values are used from the
   /// next request or guard time on.
   void configure(std::uint16_t guard_time, std::uint8_t life_time_factor) {
     if (guard_time != 0 && life_time_factor != 0) return;
@@ -44,7 +45,7 @@ class NodeGuardingSlave {
     failed_ = false;
   }
 
-  /// Sends the answer when one is due. False when the bus had no room: it stays due.
+  /// Sends the response if one is due. Returns false if the bus had no room; it remains due.
   template <Bus B>
   bool serve(B& bus, NodeId node_id, NmtState state) {
     if (!answer_due_) return true;
@@ -58,7 +59,8 @@ class NodeGuardingSlave {
     return true;
   }
 
-  /// True: the life time has just elapsed. It is counted in guard times, as it may be longer than `TimePoint` can tell.
+  /// Returns true if the life time has just elapsed. It is counted in guard times, because it may be too long for
+  /// `TimePoint`.
   [[nodiscard]] bool on_time(std::uint16_t guard_time, TimePoint now) {
     while (left_ != 0 && now >= deadline_) {
       deadline_ = deadline_ + from_milliseconds(guard_time);
@@ -72,38 +74,39 @@ class NodeGuardingSlave {
     return left_ != 0 ? std::optional{deadline_} : std::nullopt;
   }
 
-  /// Whether an answer waits to be sent.
+  /// Whether a response is waiting to be sent.
   [[nodiscard]] bool has_answer() const { return answer_due_; }
 
-  /// Whether the life time has elapsed and no request has come since.
+  /// Whether the life time has elapsed and no request has been received since.
   [[nodiscard]] bool failed() const { return failed_; }
 
  private:
   TimePoint deadline_{};   ///< end of the present guard time
-  std::uint8_t left_ = 0;  ///< guard times until the life time is over, the present one included; 0: not watched
+  std::uint8_t left_ = 0;  ///< remaining guard times of the life time, including the present one; 0: not monitored
   bool toggle_ = false;
   bool answer_due_ = false;
   bool failed_ = false;
 };
 
-/// What happens to a guarded node.
+/// Events of a guarded node.
 enum class GuardingEvent : std::uint8_t {
-  started,           ///< its first answer
-  state_changed,     ///< an answer tells another NMT state than the last one
+  started,           ///< its first response
+  state_changed,     ///< a response contains a different NMT state than the previous one
   boot_up,           ///< its boot-up message
-  toggle_error,      ///< an answer with the toggle bit of the one before: it counts as not received
+  toggle_error,      ///< a response with the same toggle bit as the previous one; it is ignored
   unexpected_state,  ///< node guarding event: the state is not the one that the master has commanded
-  lost,              ///< node guarding event: no answer for the life time
-  back,              ///< the first answer after it was lost
+  lost,              ///< node guarding event: no response within the life time
+  back,              ///< the first response after it was lost
 };
 
-/// The master's side, for one node: a request every guard time. The node is lost when `life_time_factor` requests in a
-/// row are not answered, which is the life time after the first of them; it is asked on. A factor of 0 counts as 1.
+/// The master's side, for one node: sends a request every guard time. The node is lost if it does not respond to
+/// `life_time_factor` consecutive requests, which is the life time after the first of them; requests continue. A factor
+/// of 0 counts as 1.
 ///
-/// Events go to the master around it: `host.happened(GuardingEvent, NodeId, NmtState)`, with the state last told.
+/// Events are reported to the master: `host.happened(GuardingEvent, NodeId, NmtState)`, with the last reported state.
 class NodeGuardingMaster {
  public:
-  /// Begins to guard: the first request is due at once. The guard time is in ms, 1..65535.
+  /// Starts guarding: the first request is due at once. The guard time is in ms, 1..65535.
   void start(NodeId node_id, std::uint16_t guard_time, std::uint8_t life_time_factor, TimePoint now) {
     *this = NodeGuardingMaster{};
     node_id_ = node_id;
@@ -113,17 +116,17 @@ class NodeGuardingMaster {
     due_ = now;
   }
 
-  /// No requests any more.
+  /// Stops sending requests.
   void stop() { running_ = false; }
 
-  /// The node has been commanded to be in this state: answers to later requests are compared with it.
+  /// Sets the state that the node has been commanded to enter: responses to later requests are compared with it.
   void expect(NmtState state) {
     expected_ = LastState{state};
     comparable_ = false;
     unexpected_ = false;
   }
 
-  /// Takes a message of any node.
+  /// Processes a message of any node.
   template <class Host>
   void on_message(const ErrorControlMessage& message, Host&& host) {
     if (!running_ || message.node_id != node_id_) return;
@@ -136,13 +139,13 @@ class NodeGuardingMaster {
     take_state(message.state, host);
   }
 
-  /// Tells of a request without an answer, and sends the next one, when it is due. False when the bus had no room: it
-  /// stays due.
+  /// Reports a request without a response, and sends the next one, if it is due. Returns false if the bus had no room;
+  /// it remains due.
   template <Bus B, class Host>
   bool serve(B& bus, TimePoint now, Host&& host) {
     if (!running_ || now < due_) return true;
     if (awaiting_) miss(host);
-    if (!running_) return true;  // what the host made of a lost node
+    if (!running_) return true;  // the host may have stopped guarding a lost node
     Frame frame{};
     frame.id = function_code::error_control + std::uint32_t{node_id_.value()};
     frame.size = 1;
@@ -151,13 +154,13 @@ class NodeGuardingMaster {
     awaiting_ = true;
     comparable_ = true;
     due_ = due_ + from_milliseconds(guard_time_);
-    if (now >= due_) due_ = now + from_milliseconds(guard_time_);  // served so late that whole guard times are missing
+    if (now >= due_) due_ = now + from_milliseconds(guard_time_);  // called so late that whole guard times are missing
     return true;
   }
 
   [[nodiscard]] std::optional<TimePoint> next_deadline() const { return running_ ? std::optional{due_} : std::nullopt; }
 
-  /// The state that the node told last; nothing before its first answer and while it is lost.
+  /// Returns the last state that the node reported; empty before its first response and while it is lost.
   [[nodiscard]] std::optional<NmtState> state() const {
     if (!running_ || lost_ || !last_.known()) return std::nullopt;
     return last_.state();
@@ -169,7 +172,7 @@ class NodeGuardingMaster {
     host.happened(event, node_id_, last_.state());
   }
 
-  /// The toggle bit begins with 0 again (CiA 301: it is reset with the communication).
+  /// Handles the boot-up message. The toggle bit starts with 0 again (CiA 301: it is reset with the communication).
   template <class Host>
   void booted(Host&& host) {
     toggle_known_ = true;
@@ -209,14 +212,14 @@ class NodeGuardingMaster {
   std::uint16_t guard_time_ = 0;
   NodeId node_id_{};
   std::uint8_t life_time_factor_ = 0;
-  std::uint8_t missed_ = 0;  ///< requests without an answer since the last answer
+  std::uint8_t missed_ = 0;  ///< requests without a response since the last response
   LastState last_{};
   LastState expected_{};
   bool running_ = false;
   bool awaiting_ = false;
-  bool toggle_ = false;  ///< what the next answer has to have
+  bool toggle_ = false;  ///< expected in the next response
   bool toggle_known_ = false;
-  bool comparable_ = false;  ///< the present request is later than the command
+  bool comparable_ = false;  ///< the present request was sent after the command
   bool unexpected_ = false;
   bool lost_ = false;
 };
