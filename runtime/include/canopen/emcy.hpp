@@ -1,4 +1,4 @@
-/// EMCY producer (CiA 301, 7.2.7): errors that appear and go, the error register 1001h and the history 1003h.
+/// EMCY producer (CiA 301, 7.2.7): errors that appear and disappear, the error register 1001h and the history 1003h.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace canopen {
 /// The manufacturer-specific bytes of an EMCY.
 using EmergencyInfo = std::array<std::uint8_t, 5>;
 
-/// Errors that the services find by themselves. All of them are communication errors.
+/// Errors that services detect. All of them are communication errors.
 enum class ServiceError : std::uint8_t {
   pdo_length,
   rpdo_timeout,
@@ -46,29 +46,29 @@ inline constexpr std::uint16_t service_error_codes[] = {
     emergency_code::bus_off,
 };
 
-/// One device's errors. Each error that appears is sent once, with the register as it is then, and goes into the
-/// history; each one that goes is sent as code 0000h with what is left in the register. Messages wait, in order, while
-/// the bus has no room, the inhibit time 1015h runs or the node is not in a state for them; of more than `depth` that
-/// wait the last one is overwritten, and counted.
+/// The errors of one device. Each error that appears is sent once, with the present register, and recorded in the
+/// history; each one that disappears is sent as code 0000h with the remaining register. Messages wait, in order, while
+/// the bus has no room, the inhibit time 1015h runs or the NMT state does not allow them; if more than `depth` are
+/// waiting, the last one is overwritten and counted.
 template <class Device>
 class EmergencyProducer {
  public:
   static constexpr std::size_t depth = 4;
 
-  /// An error has appeared. `bits` stay set in the register until `gone` names them.
+  /// Reports an error. `bits` remain set in the register until they are passed to `gone`.
   void appeared(ObjectStore<Device>& store, std::uint16_t code, ErrorRegister bits, const EmergencyInfo& info) {
     application_bits_ |= held_by(bits);
     note(store, code, info);
   }
 
-  /// An error that has been reported already holds these bits of the register.
+  /// Sets bits of the register for an error that has already been reported.
   void hold(ObjectStore<Device>& store, ErrorRegister bits) {
     application_bits_ |= static_cast<std::uint8_t>(bits);
     if constexpr (has_register) store_register(store, error_register());
   }
 
-  /// An error has gone, and with it these bits of the register; those that another error holds are not to be named. False:
-  /// there was no such error.
+  /// Reports that an error has disappeared, and clears its bits of the register; do not pass bits of another error.
+  /// Returns false if there was no such error.
   bool gone(ObjectStore<Device>& store, ErrorRegister bits) {
     const std::uint8_t held = held_by(bits);
     if ((application_bits_ & (held == unnamed ? 0xFF : held)) == 0) return false;
@@ -77,14 +77,14 @@ class EmergencyProducer {
     return true;
   }
 
-  /// A service has found an error.
+  /// Reports an error that a service has detected.
   void appeared(ObjectStore<Device>& store, ServiceError error) {
     service_errors_ |= bit_of(error);
     const std::uint8_t row = static_cast<std::uint8_t>(error);
     note(store, service_error_codes[row], has_info ? infos[row] : no_info);
   }
 
-  /// What a service has found is over. False: it was not there.
+  /// Ends an error that a service has detected. Returns false if it was not present.
   bool gone(ObjectStore<Device>& store, ServiceError error) {
     if ((service_errors_ & bit_of(error)) == 0) return false;
     service_errors_ &= static_cast<std::uint8_t>(~bit_of(error));
@@ -92,15 +92,16 @@ class EmergencyProducer {
     return true;
   }
 
-  /// Whether the bus can write 1014h or 1015h.
+  /// Whether 1014h or 1015h is writable over the bus.
   static constexpr bool has_parameters = (Device::dictionary.find(0x1014, 0) & entry::writable) != 0 ||
                                          (Device::dictionary.find(0x1015, 0) & entry::writable) != 0;
 
-  /// What speaks against writing these bytes to 1014h or 1015h (CiA 301, 7.5.2.17 and 7.5.2.18). Bits of 1014h that the
-  /// device does not let change are put back into `bytes`.
-  ///   0609 0030h  1014h: the CAN-ID changes while EMCY is valid, is a restricted one, also where the device keeps
-  ///               some of its bits, or has 29 bits where the device takes 11; bit 30 is 1. 1015h: no multiple of what the device counts in
-  ///   0604 0047h  the data sheet gives the object another type than CiA 301
+  /// Checks whether these bytes may be written to 1014h or 1015h (CiA 301, 7.5.2.17 and 7.5.2.18). Bits of 1014h that
+  /// the device does not allow to change are restored in `bytes`.
+  ///   0609 0030h  1014h: the CAN-ID changes while EMCY is valid, is a restricted one, also if the device keeps some
+  ///               of its bits, or has 29 bits although the device supports 11; bit 30 is 1.
+  ///               1015h: not a multiple of the device's step
+  ///   0604 0047h  in the EDS, the object does not have the type of CiA 301
   [[nodiscard]] static AbortCode check(EntryAccess<Device> entries, std::uint16_t index,
                                        std::span<std::uint8_t> bytes) {
     if (index == 0x1015) {
@@ -123,7 +124,7 @@ class EmergencyProducer {
     return may_change(from, after, Device::options.pdo_extended_ids) ? ok : AbortCode::invalid_value;
   }
 
-  /// No error, and none to be told (CiA 301, 7.2.7.1: what a reset does).
+  /// Clears all errors and waiting messages (CiA 301, 7.2.7.1: effect of a reset).
   void reset() {
     waiting_ = 0;
     application_bits_ = 0;
@@ -131,7 +132,7 @@ class EmergencyProducer {
     inhibit_ = {};
   }
 
-  /// A reset is asked for: its EMCY, where the device has one. It is lost when the bus has no room.
+  /// Sends the EMCY before a requested reset, if the device has one. It is lost if the bus has no room.
   template <Bus B>
   void announce_reset([[maybe_unused]] const ObjectStore<Device>& store, [[maybe_unused]] B& bus) const {
     if constexpr (has_cob_id && Device::options.reset_emergency != 0) {
@@ -142,17 +143,17 @@ class EmergencyProducer {
     }
   }
 
-  /// EMCYs that found no room among those that wait, since power-on; 65,535 stands for more.
+  /// Returns the number of EMCYs lost since power-on because too many were waiting; at most 65,535.
   [[nodiscard]] std::uint16_t lost() const { return lost_; }
 
-  /// Only the last message that waits is to be sent.
+  /// Discards all waiting messages except the last one.
   void keep_last() {
     if (waiting_ == 0) return;
     first_ = place(waiting_ - 1u);
     waiting_ = 1;
   }
 
-  /// Sends what waits. False when the bus had no room: it stays.
+  /// Sends waiting messages. Returns false if the bus had no room; they keep waiting.
   template <Bus B>
   bool serve(const ObjectStore<Device>& store, B& bus, TimePoint now) {
     if constexpr (has_cob_id) {
@@ -168,7 +169,7 @@ class EmergencyProducer {
     return true;
   }
 
-  /// When the next one is to be sent; a moment not after `now` when one waits already.
+  /// Returns when the next message is to be sent; not later than `now` if one can already be sent.
   [[nodiscard]] std::optional<TimePoint> next_deadline(TimePoint now) const {
     if (waiting_ == 0) return std::nullopt;
     if constexpr (has_inhibit_time) {
@@ -189,7 +190,7 @@ class EmergencyProducer {
   static constexpr bool has_cob_id = Device::dictionary.has(0x1014, 0);
   static constexpr bool has_inhibit_time = Device::dictionary.has(0x1015, 0);
 
-  /// The history is served where 1003h lies in RAM, count and elements.
+  /// The history is served if count and elements of 1003h are in RAM.
   static constexpr entry::Word history_count = Device::dictionary.find(0x1003, 0);
   static constexpr entry::Word history_first = Device::dictionary.find(0x1003, 1);
   static constexpr bool has_history = history_first > Dictionary::no_sub_index &&
@@ -202,7 +203,7 @@ class EmergencyProducer {
     return capacity;
   }();
 
-  /// Stands in `application_bits_` for errors that set the generic bit alone and do not name it. CiA 301 has no such bit.
+  /// Bit of `application_bits_` for errors that only set the generic bit. CiA 301 does not define such a bit.
   static constexpr std::uint8_t unnamed = 0x40;
 
   [[nodiscard]] static constexpr std::uint8_t held_by(ErrorRegister bits) {
@@ -213,7 +214,7 @@ class EmergencyProducer {
     return static_cast<std::uint8_t>(1u << static_cast<std::uint8_t>(error));
   }
 
-  /// 1001h as the errors make it: the generic bit is set whenever there is one.
+  /// Returns 1001h for the present errors: the generic bit is set whenever there is one.
   [[nodiscard]] std::uint8_t error_register() const {
     const auto bits = static_cast<std::uint8_t>(
         application_bits_ | (service_errors_ != 0 ? static_cast<std::uint8_t>(ErrorRegister::communication) : 0));
@@ -223,7 +224,7 @@ class EmergencyProducer {
 
   static constexpr EmergencyInfo no_info{};
 
-  /// What the EMCYs of service errors carry; one for all where a device says nothing.
+  /// Manufacturer-specific bytes of the EMCYs of service errors; zero if the device does not define them.
   static constexpr auto infos = [] {
     std::array<EmergencyInfo, std::size(service_error_codes)> rows{};
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = Device::emergency_info(service_error_codes[i]);
@@ -248,7 +249,7 @@ class EmergencyProducer {
     }
   }
 
-  /// Where the message is that comes so many behind the first one.
+  /// Returns the position of the message that is `behind` places after the first one.
   [[nodiscard]] std::uint8_t place(unsigned behind) const { return static_cast<std::uint8_t>((first_ + behind) % depth); }
 
   [[nodiscard]] static FrameWords message_of(std::uint16_t code, std::uint8_t bits, const EmergencyInfo& info) {
@@ -265,8 +266,8 @@ class EmergencyProducer {
     if constexpr (entry::place_of(word) == entry::Place::ram) *store.entries().ram(word) = bits;
   }
 
-  /// Puts an error in front of the history: code in the low half, the first two bytes of the information in the high
-  /// one. The oldest one makes room.
+  /// Adds an error to the front of the history: code in the low half, the first two bytes of the information in the
+  /// high half. The oldest one is removed if necessary.
   static void remember([[maybe_unused]] ObjectStore<Device>& store, [[maybe_unused]] std::uint16_t code,
                        [[maybe_unused]] const EmergencyInfo& info) {
     if constexpr (has_history) {
@@ -293,7 +294,7 @@ class EmergencyProducer {
     }
   }
 
-  /// Forgets an inhibit time that is over.
+  /// Whether the inhibit time is running; ends it if it has elapsed.
   [[nodiscard]] bool is_inhibited([[maybe_unused]] TimePoint now) {
     if constexpr (has_inhibit_time) {
       inhibit_.runs = inhibit_.runs && is_ahead(inhibit_.end, inhibit_unit, now);
@@ -303,7 +304,7 @@ class EmergencyProducer {
   }
 
   std::uint8_t waiting_ = 0;
-  std::uint8_t first_ = 0;  ///< place of the first one that waits
+  std::uint8_t first_ = 0;  ///< position of the first waiting message
   std::uint8_t application_bits_ = 0;
   std::uint8_t service_errors_ = 0;
   std::uint16_t lost_ = 0;

@@ -1,4 +1,4 @@
-/// EMCY consumer (CiA 301, 7.2.7 and 7.5.2.28): the errors that other nodes tell.
+/// EMCY consumer (CiA 301, 7.2.7 and 7.5.2.31): the errors that other nodes report.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace canopen {
 
-/// What an EMCY says. Code 0000h: an error is gone, and the register tells what is left.
+/// Content of an EMCY. Code 0000h: an error has disappeared, and the register shows the remaining ones.
 struct EmergencyMessage {
   std::uint16_t code;
   ErrorRegister error_register;
@@ -22,7 +22,7 @@ struct EmergencyMessage {
   friend constexpr bool operator==(const EmergencyMessage&, const EmergencyMessage&) = default;
 };
 
-/// The message in a frame; nothing when it has less than eight bytes.
+/// Returns the message in a frame; empty if it has less than eight bytes.
 [[nodiscard]] constexpr std::optional<EmergencyMessage> emergency_message(const Frame& frame) {
   if (frame.remote || frame.size < 8) return std::nullopt;
   EmergencyMessage message{static_cast<std::uint16_t>(frame.data[0] | (frame.data[1] << 8)),
@@ -32,13 +32,13 @@ struct EmergencyMessage {
   return message;
 }
 
-/// A message, and the sub-index of 1028h that names its sender: by CiA 301 the sender's node-ID.
+/// A message, and the sub-index of 1028h for its sender: in CiA 301, the sender's node-ID.
 struct ConsumedEmergency {
   std::uint8_t sub_index;
   EmergencyMessage message;
 };
 
-/// Takes EMCYs whose COB-IDs stand in 1028h.
+/// Receives the EMCYs whose COB-IDs are in 1028h.
 template <class Device>
 class EmergencyConsumer {
  public:
@@ -69,11 +69,11 @@ class EmergencyConsumer {
 
 struct EmergencyCodeText {
   std::uint16_t code;
-  std::uint16_t mask;  ///< the bits of a code that count
+  std::uint16_t mask;  ///< the bits of a code that are compared
   std::string_view text;
 };
 
-/// Emergency error codes and their classes (CiA 301, 7.2.7.1, table 26); the first row that fits counts.
+/// Emergency error codes and their classes (CiA 301, 7.2.7.1, table 26); the first matching row is used.
 inline constexpr EmergencyCodeText emergency_code_texts[] = {
     {0x0000, 0xFF00, "no error"},
     {0x1000, 0xFF00, "generic error"},
@@ -113,7 +113,7 @@ inline constexpr EmergencyCodeText emergency_code_texts[] = {
     {0xFF00, 0xFF00, "device specific"},
 };
 
-/// The meaning of an emergency error code, for people.
+/// Returns the meaning of an emergency error code as text.
 [[nodiscard]] constexpr std::string_view emergency_text(std::uint16_t code) {
   for (const EmergencyCodeText& row : emergency_code_texts) {
     if ((code & row.mask) == row.code) return row.text;

@@ -1,4 +1,4 @@
-/// SYNC (CiA 301, 7.2.5): the message that synchronous PDOs wait for, consumed and produced.
+/// SYNC (CiA 301, 7.2.5), which synchronous PDOs wait for: consumer and producer.
 #pragma once
 
 #include <cstdint>
@@ -16,28 +16,28 @@
 
 namespace canopen {
 
-/// A SYNC message that has been received.
+/// A received SYNC message.
 struct Sync {
-  std::uint8_t counter;  ///< 1..240; 0: the network counts no SYNCs
-  bool good;             ///< its length is the one that 1019h asks for
+  std::uint8_t counter;  ///< 1..240; 0: the network does not use the counter
+  bool good;             ///< its length is the one that 1019h requires
 };
 
 inline constexpr std::uint8_t highest_sync_counter = 240;
 
-/// Whether 1006h or 1007h holds a time: not 0, which is off, and not longer than moments can be apart.
+/// Whether 1006h or 1007h contains a time: not 0, which is off, and not longer than two points in time can be apart.
 [[nodiscard]] constexpr bool is_span(Duration span) { return span.count() - 1u < longest_span.count(); }
 
-/// Whether 1006h may hold a time, 0 included.
+/// Whether 1006h accepts a value, including 0.
 [[nodiscard]] constexpr bool is_sync_period(std::uint32_t microseconds) {
   return microseconds <= longest_span.count();
 }
 
-/// Whether 1019h may hold a counter overflow value: 0, or 2 to 240 (CiA 301, 7.5.2.22).
+/// Whether 1019h accepts a counter overflow value: 0, or 2 to 240 (CiA 301, 7.5.2.22).
 [[nodiscard]] constexpr bool is_sync_overflow(std::uint32_t value) {
   return value != 1 && value <= highest_sync_counter;
 }
 
-/// Takes the SYNC of 1005h. With a counter overflow value in 1019h other than 0 it has one data byte, else none.
+/// Receives the SYNC of 1005h. It has one data byte if the counter overflow value in 1019h is not 0, otherwise none.
 template <class Device>
 class SyncConsumer {
  public:
@@ -48,21 +48,21 @@ class SyncConsumer {
   [[nodiscard]] static bool takes([[maybe_unused]] const ObjectStore<Device>& store,
                                   [[maybe_unused]] std::uint32_t cob_id) {
     if constexpr (exists) {
-      // Bits 30 and 31 of 1005h are not of the CAN-ID.
+      // Bits 30 and 31 of 1005h do not belong to the CAN-ID.
       return (store.template number<0x1005, 0>() ^ cob_id) << 2 == 0;
     } else {
       return false;
     }
   }
 
-  /// What a SYNC brings. A device without 1019h does not look at the length.
+  /// Returns the content of a SYNC. A device without 1019h does not check the length.
   [[nodiscard]] static Sync sync_of(const ObjectStore<Device>& store, const Frame& frame) {
     const std::uint8_t overflow = overflow_of(store);
     if (!has_overflow) return Sync{0, true};
     return Sync{overflow != 0 ? frame.data[0] : std::uint8_t{0}, frame.size == (overflow != 0 ? 1 : 0)};
   }
 
-  /// 1019h; 0: SYNCs are not counted.
+  /// Returns 1019h; 0: the counter is not used.
   [[nodiscard]] static std::uint8_t overflow_of([[maybe_unused]] const ObjectStore<Device>& store) {
     if constexpr (has_overflow) {
       return static_cast<std::uint8_t>(store.template number<0x1019, 0>());
@@ -72,7 +72,7 @@ class SyncConsumer {
   }
 };
 
-/// Sends the SYNC of 1005h every 1006h microseconds where bit 30 of 1005h says so, counting up to 1019h.
+/// Sends the SYNC of 1005h every 1006h microseconds if bit 30 of 1005h is set, with a counter up to 1019h.
 template <class Device>
 class SyncProducer {
  public:
@@ -81,9 +81,8 @@ class SyncProducer {
       (entry::place_of(Device::dictionary.find(0x1005, 0)) == entry::Place::ram ||
        entry::place_of(Device::dictionary.find(0x1006, 0)) == entry::Place::ram);
 
-  /// 1005h or 1006h has a new value, or the node has entered a state in which SYNCs are sent: the first one comes one
-  /// period later. The counter begins with 1 where `restart` says so (after Stopped and at boot-up) and where producing
-  /// begins.
+  /// Handles a new value of 1005h or 1006h, or a state in which SYNCs are sent: the first one is due one period later.
+  /// The counter starts with 1 if `restart` is set (after Stopped and at boot-up) and when production starts.
   [[gnu::noinline]] void start(const ObjectStore<Device>& store, TimePoint now, bool restart) {
     const Duration period = period_of(store);
     const std::uint32_t cob_id = store.template number<0x1005, 0>();
@@ -96,7 +95,7 @@ class SyncProducer {
 
   void stop() { running_ = false; }
 
-  /// Sends a SYNC that is due; a producer consumes its own. False when none is due or the bus has no room.
+  /// Sends a SYNC that is due; a producer consumes its own. Returns false if none is due or the bus had no room.
   template <Bus B>
   [[nodiscard]] bool serve(const ObjectStore<Device>& store, B& bus, TimePoint now) {
     if (!running_ || is_within(due_, period_of(store), now)) return false;
@@ -107,11 +106,11 @@ class SyncProducer {
     counter_ = counter;
     const Duration period = period_of(store);
     due_ = due_ + period;
-    if (!is_within(due_, period, now)) due_ = now + period;  // served so late that whole periods are missing
+    if (!is_within(due_, period, now)) due_ = now + period;  // called so late that whole periods are missing
     return true;
   }
 
-  /// The SYNC that has been sent last.
+  /// Returns the last SYNC that has been sent.
   [[nodiscard]] Sync last(const ObjectStore<Device>& store) const {
     return Sync{SyncConsumer<Device>::overflow_of(store) != 0 ? counter_ : std::uint8_t{0}, true};
   }
@@ -128,7 +127,7 @@ class SyncProducer {
   bool running_ = false;
 };
 
-/// The synchronous window of 1007h: PDOs that a SYNC asks for are sent and taken over in it or not at all.
+/// The synchronous window of 1007h: the PDOs of a SYNC are sent and applied within it or not at all.
 template <class Device>
 class SyncWindow {
  public:
@@ -141,7 +140,7 @@ class SyncWindow {
     }
   }
 
-  /// Whether the last SYNC's window is over. It stays so until the next SYNC, half an hour at most.
+  /// Whether the window of the last SYNC has elapsed. It remains so until the next SYNC, for half an hour at most.
   [[nodiscard]] bool over([[maybe_unused]] TimePoint now) const {
     if constexpr (exists) {
       return window_.limited && now > window_.end;
@@ -159,12 +158,12 @@ class SyncWindow {
   [[no_unique_address]] std::conditional_t<exists, Window, Nothing> window_{};
 };
 
-/// What speaks against writing these bytes to 1005h, 1006h or 1019h (CiA 301, 7.5.2.5, 7.5.2.6 and 7.5.2.22). Bits of
-/// 1005h that the device does not let change are put back into `bytes`.
-///   0609 0030h  1005h: the device produces no SYNC; the CAN-ID changes while it does; a restricted CAN-ID.
+/// Checks whether these bytes may be written to 1005h, 1006h or 1019h (CiA 301, 7.5.2.5, 7.5.2.6 and 7.5.2.22). Bits of
+/// 1005h that the device does not allow to change are restored in `bytes`.
+///   0609 0030h  1005h: the device cannot produce SYNC; the CAN-ID changes while it does; a restricted CAN-ID.
 ///               1019h: 1 or more than 240
 ///   0609 0031h  1006h: more than 35 minutes
-///   0604 0047h  1005h: the data sheet gives it another type than CiA 301
+///   0604 0047h  1005h: in the EDS, it does not have the type of CiA 301
 ///   0800 0022h  1019h: 1006h is not 0
 template <class Device>
 [[nodiscard]] AbortCode check_sync_parameter(EntryAccess<Device> entries, std::uint16_t index,

@@ -1,4 +1,4 @@
-/// TIME (CiA 301, 7.2.6): the time of day for all nodes of a network, consumed and produced.
+/// TIME (CiA 301, 7.2.6), the time of day for all nodes of a network: consumer and producer.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +15,14 @@
 
 namespace canopen {
 
-/// The TIME of 1012h: bit 31 says that this device consumes it, bit 30 that it produces it.
+/// The TIME of 1012h: bit 31 enables this device to consume it, bit 30 to produce it.
 template <class Device>
 class TimeStamp {
  public:
   static constexpr bool exists = Device::dictionary.has(0x1012, 0);
   static constexpr std::uint8_t size = 6;
 
-  /// The time in a frame; nothing when it is no TIME message for this device, or a shorter one.
+  /// Returns the time in a frame; empty if it is not a TIME message for this device, or is too short.
   [[nodiscard]] static std::optional<TimeOfDay> take(const ObjectStore<Device>& store, const Frame& frame) {
     if constexpr (exists) {
       const std::uint32_t cob_id = store.template number<0x1012, 0>();
@@ -38,7 +38,7 @@ class TimeStamp {
     return std::nullopt;
   }
 
-  /// Sends the time of day. False when this device does not produce TIME, or the bus had no room.
+  /// Sends the time of day. Returns false if this device does not produce TIME, or the bus had no room.
   template <Bus B>
   [[nodiscard]] static bool send(const ObjectStore<Device>& store, B& bus, TimeOfDay time) {
     static_assert(exists, "this device has no 1012h");
@@ -57,8 +57,8 @@ class TimeStamp {
   static constexpr std::uint32_t produce_bit = 0x4000'0000;
 };
 
-/// What speaks against writing these bytes to 1012h (CiA 301, 7.5.2.15). 0609 0030h: the CAN-ID changes while TIME is
-/// consumed or produced, is a restricted one, or has 29 bits where the device takes 11.
+/// Checks whether these bytes may be written to 1012h (CiA 301, 7.5.2.15). 0609 0030h: the CAN-ID changes while TIME is
+/// consumed or produced, is a restricted one, or has 29 bits although the device supports 11.
 template <class Device>
 [[nodiscard]] AbortCode check_time_parameter(EntryAccess<Device> entries, std::span<const std::uint8_t> bytes) {
   constexpr std::uint32_t in_use = 0xC000'0000;

@@ -1,4 +1,4 @@
-/// When a PDO is sent or taken over: sub-index 02h of its communication parameter (CiA 301, 7.5.2.35 and 7.5.2.37).
+/// When a PDO is sent or applied: sub-index 02h of its communication parameter (CiA 301, 7.5.2.35 and 7.5.2.37).
 #pragma once
 
 #include <cstdint>
@@ -7,10 +7,10 @@ namespace canopen {
 
 enum class Transmission : std::uint8_t {
   synchronous,         ///< 0..240: at a SYNC
-  reserved,            ///< 241..251, of an RPDO up to 253
-  remote_synchronous,  ///< 252: sampled at a SYNC, sent when asked for
-  remote,              ///< 253: sent when asked for
-  event_driven,        ///< 254, 255: sent or taken over at once
+  reserved,            ///< 241..251, for an RPDO up to 253
+  remote_synchronous,  ///< 252: sampled at a SYNC, sent on request
+  remote,              ///< 253: sent on request
+  event_driven,        ///< 254, 255: sent or applied at once
 };
 
 [[nodiscard]] constexpr Transmission transmission_of(std::uint32_t transmission_type) {
