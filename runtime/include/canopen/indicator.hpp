@@ -1,4 +1,4 @@
-/// RUN and ERR indicators (CiA 303-3): which pattern tells what, and when a pattern is lit.
+/// RUN and ERR indicators (CiA 303-3): their patterns, and when a pattern is lit.
 #pragma once
 
 #include <array>
@@ -22,19 +22,20 @@ enum class IndicatorPattern : std::uint8_t {
   on,
 };
 
-/// A pattern as times: so many flashes, each lit and then dark for `flash`, the last one dark for `pause`; then again.
+/// Times of a pattern: `flashes` flashes, each lit and then dark for `flash`, the last one dark for `pause`;
+/// then repeated.
 struct IndicatorTiming {
   std::uint8_t flashes;
   std::uint16_t flash;  ///< ms
   std::uint16_t pause;  ///< ms; 0: always lit
 };
 
-/// One row for each pattern, in their order. Periods divide `indicator_cycle`.
+/// One row per pattern, in their order. All periods divide `indicator_cycle`.
 using IndicatorTimings = std::array<IndicatorTiming, 8>;
 
 inline constexpr Duration indicator_cycle = std::chrono::seconds{24};
 
-/// CiA 303-3: flickering with 10 Hz, blinking with 2.5 Hz, flashes of 200 ms and a second between their groups.
+/// CiA 303-3: flickering at 10 Hz, blinking at 2.5 Hz, flashes of 200 ms and one second between their groups.
 inline constexpr IndicatorTimings cia_303_3_timings{{
     {0, 0, 200},     // off
     {1, 50, 50},     // flickering
@@ -50,20 +51,20 @@ inline constexpr IndicatorTimings cia_303_3_timings{{
   return timings[static_cast<std::size_t>(pattern)];
 }
 
-/// After how long a pattern begins again.
+/// Returns the period of a pattern.
 [[nodiscard]] constexpr Duration period_of(const IndicatorTiming& timing) {
   const Duration dark_between =
       timing.flashes > 1 ? from_milliseconds(timing.flash) * (timing.flashes - 1u) : Duration{0};
   return from_milliseconds(timing.flash) * timing.flashes + dark_between + from_milliseconds(timing.pause);
 }
 
-/// What a pattern shows at a moment, and how long it will go on to; `left` is 0 when for ever.
+/// State of a pattern at one time, and how long it lasts; `left` is 0 if it does not end.
 struct IndicatorStep {
   bool lit;
   Duration left;
 };
 
-/// `phase` is the time since the pattern began.
+/// Returns the state of a pattern; `phase` is the time since the pattern began.
 [[nodiscard]] constexpr IndicatorStep indicator_step(const IndicatorTiming& timing, Duration phase) {
   if (timing.flashes == 0) return {false, Duration{0}};
   if (timing.pause == 0) return {true, Duration{0}};
@@ -78,14 +79,14 @@ struct IndicatorStep {
   return {lit, end - phase};
 }
 
-/// What the RUN indicator (green) shows besides the NMT state.
+/// What the RUN indicator (green) shows in addition to the NMT state.
 enum class IndicatorActivity : std::uint8_t {
   none,
   bit_rate_or_lss,   ///< bit rate detection or an LSS service is in progress
-  program_download,  ///< a program is downloaded
+  program_download,  ///< a program is being downloaded
 };
 
-/// The pattern of the RUN indicator.
+/// Returns the pattern of the RUN indicator.
 [[nodiscard]] constexpr IndicatorPattern run_pattern(NmtState state, IndicatorActivity activity) {
   switch (activity) {
     case IndicatorActivity::none: break;
@@ -101,15 +102,15 @@ enum class IndicatorActivity : std::uint8_t {
   return IndicatorPattern::off;
 }
 
-/// What the ERR indicator (red) tells. Values are bits of a set.
+/// Conditions that the ERR indicator (red) shows. Values are bits of a set.
 enum class IndicatorError : std::uint8_t {
   none = 0x00,
-  bit_rate_or_lss = 0x01,  ///< no error: flickers in turns with the RUN indicator
+  bit_rate_or_lss = 0x01,  ///< not an error: flickers alternately with the RUN indicator
   configuration = 0x02,    ///< the configuration is not valid
   warning_limit = 0x04,    ///< an error counter of the CAN controller has reached its warning limit
   error_control = 0x08,    ///< a guarding or heartbeat event
   sync = 0x10,             ///< no SYNC within the communication cycle period 1006h
-  event_timer = 0x20,      ///< an RPDO has missed its event timer
+  event_timer = 0x20,      ///< an RPDO was not received within its event timer
   bus_off = 0x40,
 };
 
@@ -122,7 +123,7 @@ struct IndicatorErrorPattern {
   IndicatorPattern pattern;
 };
 
-/// The most severe one first.
+/// The most severe condition first.
 inline constexpr IndicatorErrorPattern indicator_error_patterns[] = {
     {IndicatorError::bus_off, IndicatorPattern::on},
     {IndicatorError::event_timer, IndicatorPattern::quadruple_flash},
@@ -133,7 +134,7 @@ inline constexpr IndicatorErrorPattern indicator_error_patterns[] = {
     {IndicatorError::bit_rate_or_lss, IndicatorPattern::flickering},
 };
 
-/// The pattern of the ERR indicator: that of the most severe of these errors.
+/// Returns the pattern of the ERR indicator: that of the most severe condition.
 [[nodiscard]] constexpr IndicatorPattern error_pattern(IndicatorError errors) {
   for (const IndicatorErrorPattern& row : indicator_error_patterns) {
     if ((static_cast<std::uint8_t>(errors) & static_cast<std::uint8_t>(row.error)) != 0) return row.pattern;
@@ -141,23 +142,23 @@ inline constexpr IndicatorErrorPattern indicator_error_patterns[] = {
   return IndicatorPattern::off;
 }
 
-/// What a single indicator of two colours shows.
+/// State of a single two-colour indicator.
 enum class IndicatorColour : std::uint8_t { dark, green, red };
 
-/// Both indicators of a device. They run on one raster, ERR one flash behind RUN, so that they are lit in turns; a bus
-/// off beside a lit RUN is the one place where both are, and one of two colours shows red then.
+/// Both indicators of a device. They use one time base, ERR one flash after RUN, so that they are lit alternately; only
+/// bus-off and a lit RUN are shown at the same time, and a two-colour indicator is then red.
 ///
-/// `on_time` is to be called at least every half hour.
+/// Call `on_time` at least every half hour.
 template <const IndicatorTimings& Timings = cia_303_3_timings>
 class Indicators {
  public:
-  /// The patterns to be shown from now on.
+  /// Sets the patterns to show from now on.
   void show(IndicatorPattern run, IndicatorPattern error) {
     run_ = run;
     error_ = error;
   }
 
-  /// Keeps the raster near the present time.
+  /// Keeps the time base near the present time.
   void on_time(TimePoint now) {
     while (now - begin_ >= indicator_cycle) begin_ = begin_ + indicator_cycle;
   }
@@ -168,13 +169,13 @@ class Indicators {
   /// Whether the ERR indicator is lit.
   [[nodiscard]] bool error(TimePoint now) const { return error_step(now).lit; }
 
-  /// The same for one indicator of two colours.
+  /// Returns the same for a single two-colour indicator.
   [[nodiscard]] IndicatorColour colour(TimePoint now) const {
     if (error(now)) return IndicatorColour::red;
     return run(now) ? IndicatorColour::green : IndicatorColour::dark;
   }
 
-  /// When one of them changes; nothing when both stay as they are.
+  /// Returns when one of them changes; empty if neither will.
   [[nodiscard]] std::optional<TimePoint> next_deadline(TimePoint now) const {
     const Duration run = run_step(now).left;
     const Duration error = error_step(now).left;
@@ -191,7 +192,7 @@ class Indicators {
     return indicator_step(timing, now - begin_ + period_of(timing) - from_milliseconds(timing.flash));
   }
 
-  TimePoint begin_{};  ///< of the raster
+  TimePoint begin_{};  ///< of the time base
   IndicatorPattern run_ = IndicatorPattern::off;
   IndicatorPattern error_ = IndicatorPattern::off;
 };

@@ -1,10 +1,10 @@
-/// LSS in a node: what the application gives a slave, among the node's handlers.
+/// LSS in a node: the functions that the application provides to a slave, as one of the node's handlers.
 ///
 ///     struct Port {
-///       canopen::LssError accept(canopen::NodeId);           // or refuse a node-ID, 1..127 or 255
-///       canopen::LssError accept(canopen::LssBitTiming);     // or refuse a bit rate
+///       canopen::LssError accept(canopen::NodeId);           // or reject a node-ID, 1..127 or 255
+///       canopen::LssError accept(canopen::LssBitTiming);     // or reject a bit rate
 ///       canopen::LssError store(canopen::NodeId, canopen::LssBitTiming);
-///       canopen::LssBitTiming bit_timing();                  // the one that is stored
+///       canopen::LssBitTiming bit_timing();                  // the stored one
 ///       void stop_communication();
 ///       void start_communication(canopen::LssBitTiming);
 ///     };
@@ -23,7 +23,7 @@ struct LssHandler {
   Port* port;
 };
 
-/// Gives a node an LSS slave. The port must outlive the node.
+/// Adds an LSS slave to a node. The port must outlive the node.
 template <LssOptions Options = LssOptions{}, class Port>
 [[nodiscard]] constexpr LssHandler<Options, Port> configured_by_lss(Port& port) {
   return {&port};
@@ -36,7 +36,7 @@ inline constexpr bool is_handler = false;
 template <LssOptions Options, class Port>
 inline constexpr bool is_handler<LssHandler<Options, Port>> = true;
 
-/// The handler for LSS among others; void where there is none.
+/// Finds the LSS handler among others; void if there is none.
 template <class... Handlers>
 struct Find {
   using type = void;
@@ -50,7 +50,7 @@ struct Find<LssHandler<Options, Port>, Rest...> {
   using type = LssHandler<Options, Port>;
 };
 
-/// The slave that a handler makes; an empty class for none.
+/// The slave for a handler; an empty class if there is none.
 template <class Handler>
 struct SlaveOf {
   using type = LssSlave<Handler::options>;

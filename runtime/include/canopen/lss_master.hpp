@@ -1,4 +1,4 @@
-/// LSS master: finds slaves and gives them node-IDs and a bit rate (CiA 305), one service at a time.
+/// LSS master: finds slaves and configures their node-IDs and bit rate (CiA 305), one service at a time.
 #pragma once
 
 #include <array>
@@ -13,20 +13,20 @@
 
 namespace canopen {
 
-/// How long a master waits for answers. CiA 305 leaves that to it.
+/// How long a master waits for responses. CiA 305 does not define it.
 struct LssTimeouts {
-  /// A slave answers from its memory; two frames on a loaded bus take most of this. Identify services wait for it in
-  /// full, as several slaves may answer.
+  /// A slave responds from its memory; two frames on a loaded bus take most of this time. Identify services always wait
+  /// for all of it, because several slaves may respond.
   Duration answer = from_milliseconds(100);
-  /// Store configuration: a slave may have to erase a page of flash before it answers.
+  /// Store configuration: a slave may have to erase a page of flash before it responds.
   Duration store = from_milliseconds(1000);
-  /// Fastscan, each step. Always waited for in full, as several slaves may answer the same question. Long enough for
-  /// both frames at 20 kbit/s and more; 10 kbit/s needs 30 ms.
+  /// Each step of Fastscan. It is always waited for in full, because several slaves may respond to the same request.
+  /// Long enough for both frames at 20 kbit/s and more; 10 kbit/s needs 30 ms.
   Duration fastscan_step = from_milliseconds(20);
 };
 
-/// What identify remote slave asks for: one product, and ranges that hold their ends. Of the revision number a slave
-/// compares the upper 16 bits.
+/// Address range of identify remote slave: one product, and ranges that include their limits. A slave compares the
+/// upper 16 bits of the revision number.
 struct LssAddressRange {
   std::uint32_t vendor_id = 0;
   std::uint32_t product_code = 0;
@@ -37,25 +37,25 @@ struct LssAddressRange {
 };
 
 enum class LssOutcome : std::uint8_t {
-  done,       ///< answered well, or sent if there is no answer to it
-  refused,    ///< the slave's answer is an error: see `error()`
-  no_answer,  ///< no slave has answered in time, or the bus had no room
+  done,       ///< successful response, or sent if the service has no response
+  refused,    ///< the slave's response is an error: see `error()`
+  no_answer,  ///< no slave has responded in time, or the bus had no room
 };
 
-/// Begin a service, hand in frames and time until it is no longer `busy()`, then look at `outcome()`. A service that is
-/// begun while busy is not taken: false.
+/// Start a service, pass in frames and time until the master is no longer `busy()`, then check `outcome()`. A service
+/// that is started while busy is not executed and returns false.
 template <Bus B>
 class LssMaster {
  public:
   constexpr explicit LssMaster(B& can_bus, LssTimeouts timeouts = {}) : bus_{can_bus}, timeouts_{timeouts} {}
 
-  /// Puts all slaves into this state. No answer.
+  /// Switches all slaves to this state. No response.
   bool switch_state_global(LssState state, TimePoint now) {
     return begin(lss::Command::switch_state_global, static_cast<std::uint32_t>(state), lss::Command::none, Duration{0},
                  now);
   }
 
-  /// Puts the slave with this address into the configuration state.
+  /// Switches the slave with this address to the configuration state.
   bool switch_state_selective(const LssAddress& address, TimePoint now) {
     if (busy()) return false;
     words_ = {address.vendor_id, address.product_code, address.revision_number, address.serial_number};
@@ -63,38 +63,39 @@ class LssMaster {
                           now);
   }
 
-  /// To the slave in configuration state: 1..127, or 255 to take its node-ID away.
+  /// Configures the node-ID of the slave in configuration state: 1..127, or 255 to remove it.
   bool configure_node_id(NodeId node_id, TimePoint now) {
     return begin(lss::Command::configure_node_id, node_id.value(), now);
   }
 
-  /// To the slave in configuration state. It uses the bit rate after `activate_bit_timing`, or when it is stored and
-  /// the power comes back.
+  /// Configures the bit rate of the slave in configuration state. It is used after `activate_bit_timing`, or after it
+  /// has been stored and power has been switched off and on.
   bool configure_bit_timing(LssBitTiming bit_timing, TimePoint now) {
     const std::uint32_t word = bit_timing.table | static_cast<std::uint32_t>(bit_timing.index) << 8;
     return begin(lss::Command::configure_bit_timing, word, now);
   }
 
-  /// Makes all slaves in configuration state use their new bit rate. No answer. They go on for one delay, and are
-  /// silent for another one, in which the master's own controller has to change over. Done when both delays are over.
+  /// Activates the new bit rate of all slaves in configuration state. No response. They continue for one delay and
+  /// are silent for another one, during which the master's own controller must switch over. Done when both delays
+  /// have elapsed.
   bool activate_bit_timing(std::chrono::duration<std::uint16_t, std::milli> switch_delay, TimePoint now) {
     return begin(lss::Command::activate_bit_timing, switch_delay.count(), lss::Command::none,
                  Duration{switch_delay.count() * 2000u}, now);
   }
 
-  /// Makes the slave in configuration state keep its node-ID and bit rate.
+  /// Makes the slave in configuration state store its node-ID and bit rate.
   bool store_configuration(TimePoint now) {
     return begin(lss::Command::store_configuration, 0, lss::Command::store_configuration, timeouts_.store, now);
   }
 
-  /// Ask the slave in configuration state; `value()` is the answer.
+  /// Inquires a value of the slave in configuration state; `value()` returns it.
   bool inquire_vendor_id(TimePoint now) { return begin(lss::Command::inquire_vendor_id, 0, now); }
   bool inquire_product_code(TimePoint now) { return begin(lss::Command::inquire_product_code, 0, now); }
   bool inquire_revision_number(TimePoint now) { return begin(lss::Command::inquire_revision_number, 0, now); }
   bool inquire_serial_number(TimePoint now) { return begin(lss::Command::inquire_serial_number, 0, now); }
   bool inquire_node_id(TimePoint now) { return begin(lss::Command::inquire_node_id, 0, now); }
 
-  /// Asks whether there are slaves with such an address, in whatever state. Done: one at least.
+  /// Asks whether slaves with such an address exist, in any state. Done: at least one does.
   bool identify_remote_slave(const LssAddressRange& range, TimePoint now) {
     if (busy()) return false;
     words_ = {range.vendor_id,         range.product_code,      range.revision_number_low, range.revision_number_high,
@@ -103,18 +104,18 @@ class LssMaster {
                           lss::Command::identified, now);
   }
 
-  /// Asks whether there are slaves without node-ID. Done: one at least.
+  /// Asks whether slaves without node-ID exist. Done: at least one does.
   bool identify_non_configured_remote_slave(TimePoint now) {
     return begin(lss::Command::identify_non_configured, 0, lss::Command::identified_non_configured, timeouts_.answer,
                  now);
   }
 
-  /// Finds one slave without node-ID and puts it into the configuration state; `address()` is its address. With several
-  /// slaves it finds the one with the lowest numbers. 133 steps.
+  /// Finds one slave without node-ID and switches it to the configuration state; `address()` is its address. If there
+  /// are several slaves, it finds the one with the lowest numbers. 133 steps.
   bool fastscan(TimePoint now) { return fastscan({}, 0, now); }
 
-  /// The same among those slaves whose first `known` numbers, 0..4, are those of `address`: 33 steps less for each, one
-  /// more to check it.
+  /// The same for slaves whose first `known` numbers, 0..4, are those of `address`: 33 steps fewer for each, one more
+  /// to check it.
   bool fastscan(const LssAddress& address, std::uint8_t known, TimePoint now) {
     if (busy() || known > 4) return false;
     words_ = {address.vendor_id, address.product_code, address.revision_number, address.serial_number};
@@ -125,9 +126,9 @@ class LssMaster {
     return true;
   }
 
-  /// Finds the slave without node-ID with the lowest address above this one, and puts it into the configuration state.
-  /// With the address that was found last it finds the next one, while all slaves stay without node-ID; they have to be
-  /// in the waiting state. Up to 140 steps more than a fastscan.
+  /// Finds the slave without node-ID with the lowest address above this one, and switches it to the configuration
+  /// state. With the address found last, it finds the next slave, as long as all slaves remain without node-ID; they
+  /// must be in the waiting state. Up to 140 steps more than a Fastscan.
   bool fastscan_above(const LssAddress& address, std::uint8_t known, TimePoint now) {
     if (!fastscan(address, known, now)) return false;
     branch_ = 4;
@@ -135,7 +136,7 @@ class LssMaster {
     return true;
   }
 
-  /// Takes an answer; other frames are ignored.
+  /// Accepts a response; other frames are ignored.
   void on_frame(const Frame& frame, [[maybe_unused]] TimePoint now) {
     if (!busy() || to_send_ <= last_ || !lss::is_lss(frame, lss::response_id)) return;
     if (answer_ == lss::Command::none || frame.data[0] != static_cast<std::uint8_t>(answer_)) return;
@@ -145,7 +146,7 @@ class LssMaster {
     finish(reports_error() && frame.data[1] != 0 ? LssOutcome::refused : LssOutcome::done);
   }
 
-  /// Sends what found no room, goes on with a fastscan, and ends a service whose answer has not come.
+  /// Sends what could not be sent yet, continues a Fastscan, and ends a service whose response has not been received.
   void on_time(TimePoint now) {
     flush(now);
     if (!busy() || now < deadline_) return;
@@ -154,25 +155,25 @@ class LssMaster {
     finish(answered_ || answer_ == lss::Command::none ? LssOutcome::done : LssOutcome::no_answer);
   }
 
-  /// When `on_time` has something to do next.
+  /// Returns when `on_time` is next due.
   [[nodiscard]] std::optional<TimePoint> next_deadline() const {
     return busy() ? std::optional{deadline_} : std::nullopt;
   }
 
   [[nodiscard]] bool busy() const { return busy_; }
 
-  /// How the last service ended.
+  /// Returns how the last service ended.
   [[nodiscard]] LssOutcome outcome() const { return outcome_; }
 
-  /// Why the slave has refused.
+  /// Returns why the slave has rejected the service.
   [[nodiscard]] LssError error() const {
     return {static_cast<std::uint8_t>(value_ & 0xFF), static_cast<std::uint8_t>(value_ >> 8 & 0xFF)};
   }
 
-  /// What an inquiry that is done has brought.
+  /// Returns the value of a successful inquiry.
   [[nodiscard]] std::uint32_t value() const { return value_; }
 
-  /// The slave that a fastscan has found.
+  /// Returns the address of the slave that a Fastscan has found.
   [[nodiscard]] LssAddress address() const { return {words_[0], words_[1], words_[2], words_[3]}; }
 
  private:
@@ -193,7 +194,7 @@ class LssMaster {
     return true;
   }
 
-  /// Sends the commands `first`..`last`, each with a word of its own, then waits.
+  /// Sends the commands `first`..`last`, each with its own word, then waits.
   void start(lss::Command first, lss::Command last, lss::Command answer, Duration wait, TimePoint now) {
     first_ = to_send_ = static_cast<std::uint8_t>(first);
     last_ = static_cast<std::uint8_t>(last);
@@ -206,7 +207,7 @@ class LssMaster {
     flush(now);
   }
 
-  /// The wait begins when the last frame has found room on the bus.
+  /// Sends pending frames. The wait starts when the bus has accepted the last one.
   void flush(TimePoint now) {
     if (!busy() || to_send_ > last_) return;
     for (; to_send_ <= last_; ++to_send_) {
@@ -240,14 +241,14 @@ class LssMaster {
            answer_ == lss::Command::store_configuration;
   }
 
-  /// Whether the time has to pass in full, lest an answer to this question is taken for one to the next.
+  /// Whether to wait for the full time, so that a response to this request is not taken for one to the next.
   [[nodiscard]] bool several_may_answer() const {
     return answer_ == lss::Command::identified || answer_ == lss::Command::identified_non_configured;
   }
 
   // Fastscan: for each number its bits from the highest on, then the whole number once more. Above an address: the
-  // address is followed up to a number, in which each 0 from the lowest bit on is asked for as a 1; where a slave
-  // answers, its lower bits and the other numbers are scanned as ever.
+  // address is followed up to a number in which each 0, from the lowest bit on, is requested as a 1; if a slave
+  // responds, its lower bits and the other numbers are scanned as usual.
 
   [[nodiscard]] bool scanning() const { return last_ == static_cast<std::uint8_t>(lss::Command::fastscan); }
 
@@ -262,7 +263,7 @@ class LssMaster {
         ++number_;
         begin_number();
       } else {
-        branch_ = number_ + 1;  // no slave has the number of the address, one above may be there
+        branch_ = number_ + 1;  // no slave has the number of the address, but one above it may exist
         climb();
       }
     } else if (branch_ != no_branch) {
@@ -297,7 +298,7 @@ class LssMaster {
     }
   }
 
-  /// Goes on with the number before, from the beginning.
+  /// Continues with the previous number, from its beginning.
   void climb() {
     if (branch_ <= known_) return finish(LssOutcome::no_answer);
     --branch_;
@@ -306,7 +307,7 @@ class LssMaster {
     confirming_ = false;
   }
 
-  /// From `bit_` on.
+  /// Searches a 0 from `bit_` on.
   void find_zero() {
     while (bit_ < 32 && (words_[number_] >> bit_ & 1) != 0) ++bit_;
     if (bit_ == 32) return climb();
@@ -317,7 +318,7 @@ class LssMaster {
 
   B& bus_;
   LssTimeouts timeouts_;
-  std::array<std::uint32_t, 6> words_{};  ///< of the commands first_..last_; of a fastscan the address
+  std::array<std::uint32_t, 6> words_{};  ///< of the commands first_..last_; in a Fastscan the address
   std::uint32_t value_ = 0;
   TimePoint deadline_{};
   Duration wait_{0};
@@ -330,7 +331,7 @@ class LssMaster {
   std::uint8_t number_ = 0;  ///< fastscan: LSSSub
   std::uint8_t bit_ = 0;     ///< fastscan: BitCheck
   std::uint8_t branch_ = no_branch;  ///< above an address: the number that differs from it
-  std::uint32_t asked_ = 0;          ///< the number with the other bit
+  std::uint32_t asked_ = 0;          ///< the number with the changed bit
   bool confirming_ = false;
   bool answered_ = false;
   bool busy_ = false;

@@ -1,4 +1,4 @@
-/// The bytes of LSS frames, as slave and master both need them (CiA 305).
+/// The bytes of LSS frames, for slave and master (CiA 305).
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@
 
 namespace canopen {
 
-/// The node-ID of a device that has none yet.
+/// The node-ID of a device that has not been configured.
 inline constexpr NodeId unconfigured_node_id{255};
 
-/// The four numbers of 1018h that tell a device from all others.
+/// The four numbers of 1018h that identify a device.
 struct LssAddress {
   std::uint32_t vendor_id = 0;
   std::uint32_t product_code = 0;
@@ -23,22 +23,21 @@ struct LssAddress {
   friend constexpr bool operator==(const LssAddress&, const LssAddress&) = default;
 };
 
-/// A bit rate by its place in a table.
+/// A bit rate by its position in a table.
 struct LssBitTiming {
-  std::uint8_t table = 0;  ///< 0: the rates of CiA 301, see `lss::bit_rates`; 128..255: the manufacturer's own
+  std::uint8_t table = 0;  ///< 0: the rates of CiA 301, see `lss::bit_rates`; 128..255: manufacturer-specific
   std::uint8_t index = 0;
 
   friend constexpr bool operator==(LssBitTiming, LssBitTiming) = default;
 };
 
-/// The states of a slave with the codes that switch state global carries.
+/// The states of a slave, with the codes of switch state global.
 enum class LssState : std::uint8_t { waiting = 0, configuration = 1 };
 
-/// How a slave ends configure node-ID, configure bit timing parameters and store configuration: bytes 1 and 2 of the
-/// answer.
+/// Result of configure node-ID, configure bit timing parameters and store configuration: bytes 1 and 2 of the response.
 struct LssError {
-  std::uint8_t code = 0;      ///< 0: well
-  std::uint8_t specific = 0;  ///< with code 255: what the manufacturer says
+  std::uint8_t code = 0;      ///< 0: success
+  std::uint8_t specific = 0;  ///< with code 255: manufacturer-specific code
 
   friend constexpr bool operator==(LssError, LssError) = default;
 };
@@ -48,28 +47,28 @@ namespace lss {
 inline constexpr std::uint16_t response_id = 0x7E4;  ///< slaves to master
 inline constexpr std::uint16_t request_id = 0x7E5;   ///< master to slaves
 
-/// Byte 0. An answer bears the command of its request where no row says otherwise.
+/// Byte 0. A response has the command of its request unless a row says otherwise.
 enum class Command : std::uint8_t {
   none = 0,
   switch_state_global = 0x04,
   configure_node_id = 0x11,
   configure_bit_timing = 0x13,
-  activate_bit_timing = 0x15,  ///< no answer
+  activate_bit_timing = 0x15,  ///< no response
   store_configuration = 0x17,
-  select_vendor_id = 0x40,  ///< switch state selective: four frames in this order, then an answer
+  select_vendor_id = 0x40,  ///< switch state selective: four frames in this order, then a response
   select_product_code = 0x41,
   select_revision_number = 0x42,
   select_serial_number = 0x43,
-  selected = 0x44,            ///< answer
-  identify_vendor_id = 0x46,  ///< identify remote slave: six frames in this order, then an answer
+  selected = 0x44,            ///< response
+  identify_vendor_id = 0x46,  ///< identify remote slave: six frames in this order, then a response
   identify_product_code = 0x47,
   identify_revision_number_low = 0x48,
   identify_revision_number_high = 0x49,
   identify_serial_number_low = 0x4A,
   identify_serial_number_high = 0x4B,
   identify_non_configured = 0x4C,
-  identified = 0x4F,                 ///< answer, also to fastscan
-  identified_non_configured = 0x50,  ///< answer
+  identified = 0x4F,                 ///< response, also to Fastscan
+  identified_non_configured = 0x50,  ///< response
   fastscan = 0x51,
   inquire_vendor_id = 0x5A,
   inquire_product_code = 0x5B,
@@ -85,17 +84,17 @@ inline constexpr LssError store_not_supported{1};
 inline constexpr LssError storage_access_error{2};
 inline constexpr std::uint8_t implementation_specific = 255;
 
-/// Fastscan: the value of BitCheck at which all slaves without node-ID answer and a scan begins.
+/// Fastscan: the value of BitCheck to which all slaves without node-ID respond, and which starts a scan.
 inline constexpr std::uint8_t fastscan_reset = 0x80;
 
-/// Bytes 1..4 as a number.
+/// Returns bytes 1..4 as a number.
 [[nodiscard]] inline std::uint32_t word_of(const Frame& frame) {
   std::uint32_t word = 0;
   std::memcpy(&word, &frame.data[1], sizeof word);
   return word;
 }
 
-/// A frame with a command and a number; its other bytes are 0.
+/// Returns a frame with a command and a number; its other bytes are 0.
 [[nodiscard]] inline Frame make_frame(std::uint16_t id, Command command, std::uint32_t word) {
   Frame frame{};
   frame.id = id;
@@ -105,7 +104,7 @@ inline constexpr std::uint8_t fastscan_reset = 0x80;
   return frame;
 }
 
-/// Whether a frame bears LSS in this direction: eight bytes, no more and no less.
+/// Whether a frame is an LSS frame in this direction, of exactly eight bytes.
 [[nodiscard]] constexpr bool is_lss(const Frame& frame, std::uint16_t id) {
   return frame.size == 8 && !frame.remote && frame.id == id && !frame.extended;
 }

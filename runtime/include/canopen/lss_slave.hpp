@@ -1,4 +1,4 @@
-/// LSS slave: node-ID and bit rate over the bus (CiA 305).
+/// LSS slave: configuration of node-ID and bit rate over the bus (CiA 305).
 #pragma once
 
 #include <concepts>
@@ -15,14 +15,14 @@
 
 namespace canopen {
 
-/// What a slave asks of the node around it:
+/// Functions of the node that a slave calls:
 ///   std::uint32_t identity(sub_index);      1018h:01..04
-///   LssError accept(node_id);               1..127 or 255, not active yet; may refuse
-///   LssError accept(bit_timing);            one that the options allow, not active yet; may refuse
-///   LssError store(node_id, bit_timing);    keeps both beyond power-off
-///   void reset_communication();             a device without node-ID has one now
+///   LssError accept(node_id);               1..127 or 255, not active yet; may reject it
+///   LssError accept(bit_timing);            one that the options allow, not active yet; may reject it
+///   LssError store(node_id, bit_timing);    stores both in non-volatile memory
+///   void reset_communication();             a device without node-ID has received one
 ///   void stop_communication();              leaves the bus
-///   void start_communication(bit_timing);   comes back to it
+///   void start_communication(bit_timing);   returns to the bus
 template <class T>
 concept LssSlaveHooks = requires(T hooks, std::uint8_t sub_index, NodeId node_id, LssBitTiming bit_timing) {
   { hooks.identity(sub_index) } -> std::same_as<std::uint32_t>;
@@ -34,24 +34,25 @@ concept LssSlaveHooks = requires(T hooks, std::uint8_t sub_index, NodeId node_id
   hooks.start_communication(bit_timing);
 };
 
-/// One slave. It knows the three node-IDs of a device: the persistent one, the pending one, which LSS configures, and
-/// the active one, which the device works with.
+/// One slave. It has the three node-IDs of a device: the persistent one, the pending one, which LSS configures, and the
+/// active one, which the device uses.
 ///
-/// It leaves at most one answer, which stays until the bus has room; a later one replaces it.
+/// It holds at most one response until the bus has room; a later one replaces it.
 template <LssOptions options = LssOptions{}>
 class LssSlave {
  public:
-  /// Power-on, with what is stored. The pending node-ID is the persistent one.
+  /// Power-on, with the stored values. The pending node-ID is the persistent one.
   void start(NodeId persistent, LssBitTiming bit_timing) {
     persistent_ = persistent;
     if constexpr (has_bit_timing) timing_.pending = bit_timing;
     reset_application();
   }
 
-  /// NMT reset application: what has not been stored is lost.
+  /// NMT reset application: values that have not been stored are lost.
   void reset_application() { pending_ = persistent_; }
 
-  /// NMT reset communication: the pending node-ID becomes active. Without one (255) a device stays in Initialisation.
+  /// NMT reset communication: the pending node-ID becomes active. Without node-ID (255), a device stays in
+  /// Initialisation.
   NodeId reset_communication() {
     active_ = pending_;
     fastscan_position_ = 0;
@@ -60,20 +61,20 @@ class LssSlave {
     return active_;
   }
 
-  /// The node is in this NMT state now. LSS is served in Pre-operational and Stopped, as the options say otherwise, and
-  /// in Initialisation without node-ID. In other states a slave is waiting.
+  /// Handles a new NMT state of the node. LSS is available in Pre-operational and Stopped, unless the options say
+  /// otherwise, and in Initialisation without node-ID. In other states the slave is waiting.
   void enter(NmtState state) {
     served_ = serves(state);
     if (!served_) wait();
   }
 
-  /// Takes a frame from the bus. One that is not a request of eight bytes is ignored.
+  /// Processes a frame from the bus. One that is not a request of eight bytes is ignored.
   void on_frame(const Frame& frame, LssSlaveHooks auto&& hooks, TimePoint now) {
     if (!lss::is_lss(frame, lss::request_id) || !served_ || silent()) return;
     handle(frame, hooks, now);
   }
 
-  /// Switches the bit rate when it is time.
+  /// Switches the bit rate when the delay has elapsed.
   void on_time([[maybe_unused]] LssSlaveHooks auto&& hooks, [[maybe_unused]] TimePoint now) {
     if constexpr (has_bit_timing) {
       if (timing_.phase == Phase::before_switch && now >= timing_.due) {
@@ -88,7 +89,7 @@ class LssSlave {
     }
   }
 
-  /// When `on_time` has something to do.
+  /// Returns when `on_time` is next due.
   [[nodiscard]] std::optional<TimePoint> next_deadline() const {
     if constexpr (has_bit_timing) {
       if (timing_.phase != Phase::none) return timing_.due;
@@ -96,7 +97,7 @@ class LssSlave {
     return std::nullopt;
   }
 
-  /// Whether the node may send nothing at all, as the bit rate is being switched.
+  /// Whether the node may not send anything because the bit rate is being switched.
   [[nodiscard]] bool silent() const {
     if constexpr (has_bit_timing) {
       return timing_.phase == Phase::silent;
@@ -105,10 +106,10 @@ class LssSlave {
     }
   }
 
-  /// Whether an answer waits to be sent.
+  /// Whether a response is waiting to be sent.
   [[nodiscard]] bool has_reply() const { return reply_ != lss::Command::none; }
 
-  /// Sends the answer if there is one. False when the bus had no room or the node is silent: it stays.
+  /// Sends the response, if any. Returns false if the bus had no room or the node is silent; the response is kept.
   template <Bus B>
   bool serve(B& bus) {
     if (!has_reply()) return true;
@@ -126,7 +127,7 @@ class LssSlave {
  private:
   static constexpr bool has_bit_timing = options.bit_rates != 0 || options.manufacturer_bit_timing;
 
-  /// The switch of the bit rate: it begins after one delay, and lasts another one.
+  /// Switching of the bit rate: starts after one delay, and takes another one.
   enum class Phase : std::uint8_t { none, before_switch, silent };
 
   struct Timing {
@@ -153,7 +154,7 @@ class LssSlave {
     expected_ = 0;
   }
 
-  /// Whether a service is served in the configuration state only.
+  /// Whether a service is available only in the configuration state.
   [[nodiscard]] static constexpr bool configures(lss::Command command) {
     return (command >= lss::Command::configure_node_id && command <= lss::Command::store_configuration) ||
            command >= lss::Command::inquire_vendor_id;
@@ -201,7 +202,8 @@ class LssSlave {
     }
   }
 
-  /// A device without node-ID that has got one leaves Initialisation when it is switched back to waiting.
+  /// Switches the state. A device without node-ID that has received one leaves Initialisation when it returns
+  /// to waiting.
   void switch_state(std::uint8_t mode, auto& hooks) {
     if (mode == static_cast<std::uint8_t>(LssState::configuration)) {
       state_ = LssState::configuration;
@@ -211,7 +213,7 @@ class LssSlave {
     }
   }
 
-  /// One frame of switch state selective or identify remote slave. All frames of either have to match in their order.
+  /// Compares one frame of switch state selective or identify remote slave. All frames must match, in their order.
   void compare(std::uint8_t command, std::uint8_t expected, std::uint32_t word, auto& hooks) {
     constexpr auto select = static_cast<std::uint8_t>(lss::Command::select_vendor_id);
     constexpr auto identify = static_cast<std::uint8_t>(lss::Command::identify_vendor_id);
@@ -229,8 +231,8 @@ class LssSlave {
     }
   }
 
-  /// What a frame of switch state selective or identify remote slave asks of a number of 1018h. Of the revision number
-  /// a range compares the major part, the upper 16 bits.
+  /// What a frame of switch state selective or identify remote slave requires of a number of 1018h. A range compares
+  /// the major part of the revision number, the upper 16 bits.
   struct Condition {
     std::uint8_t sub_index : 4;
     std::uint8_t at_least : 1;
@@ -238,7 +240,7 @@ class LssSlave {
     std::uint8_t major : 1;
   };
 
-  /// From command 40h on; 44h and 45h are none.
+  /// From command 40h on; 44h and 45h are not conditions.
   static constexpr Condition conditions[] = {
       {1, 1, 1, 0}, {2, 1, 1, 0}, {3, 1, 1, 0}, {4, 1, 1, 0}, {},           {},
       {1, 1, 1, 0}, {2, 1, 1, 0}, {3, 1, 0, 1}, {3, 0, 1, 1}, {4, 1, 0, 0}, {4, 0, 1, 0},
@@ -254,13 +256,13 @@ class LssSlave {
     return (own >= word || condition.at_least == 0) && (own <= word || condition.at_most == 0);
   }
 
-  /// A device that waits in Initialisation for its node-ID.
+  /// Whether the device waits in Initialisation for its node-ID.
   [[nodiscard]] bool unconfigured() const {
     return active_ == unconfigured_node_id && pending_ == unconfigured_node_id;
   }
 
-  /// Bits BitCheck..31 of one number of 1018h are asked for. With the last bit a slave goes on to the number LSSNext,
-  /// or, when that is a former one, to the configuration state.
+  /// Compares bits BitCheck..31 of one number of 1018h. After the last bit, a slave proceeds to the number LSSNext or,
+  /// if that is an earlier one, to the configuration state.
   void fastscan(const Frame& frame, std::uint32_t id_number, auto& hooks) {
     const std::uint8_t bit_check = frame.data[5];
     const std::uint8_t lss_sub = frame.data[6];
@@ -327,10 +329,10 @@ class LssSlave {
     answer(command, error.code | static_cast<std::uint32_t>(error.specific) << 8);
   }
 
-  std::uint32_t reply_word_ = 0;  ///< bytes 1..4 of the answer
+  std::uint32_t reply_word_ = 0;  ///< bytes 1..4 of the response
   [[no_unique_address]] std::conditional_t<has_bit_timing, Timing, NoTiming> timing_{};
   lss::Command reply_ = lss::Command::none;
-  std::uint8_t expected_ = 0;  ///< the command that goes on with switch state selective or identify remote slave
+  std::uint8_t expected_ = 0;  ///< next command of switch state selective or identify remote slave
   std::uint8_t fastscan_position_ = 0;
   LssState state_ = LssState::waiting;
   NodeId persistent_{};
