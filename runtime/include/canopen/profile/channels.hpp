@@ -1,4 +1,4 @@
-/// The channels of an I/O device: arrays of the dictionary whose elements belong to each other by their sub-index.
+/// The channels of an I/O device: arrays of the dictionary whose elements correspond to each other by sub-index.
 #pragma once
 
 #include <array>
@@ -12,17 +12,17 @@
 
 namespace canopen {
 
-/// The value of a BOOLEAN.
+/// Returns the value of a BOOLEAN.
 template <class Device>
 [[nodiscard]] bool is_true(EntryAccess<Device> entries, entry::Word word) {
   std::array<std::uint8_t, 8> scratch;
   return entries.read(word, scratch)[0] != 0;
 }
 
-/// An object with one element a channel, found while it compiles. A device that has not got it pays nothing for it.
+/// An object with one element per channel, found at compile time. It has no cost in a device without the object.
 template <class Device, std::uint16_t Index>
 struct ChannelObject {
-  /// Sub-indices from 1 on that exist.
+  /// Number of existing sub-indices, from 1 on.
   static constexpr std::uint8_t count = [] {
     std::uint8_t channels = 0;
     while (channels < 254 && Device::dictionary.has(Index, static_cast<std::uint8_t>(channels + 1))) ++channels;
@@ -38,7 +38,7 @@ struct ChannelObject {
     return result;
   }();
 
-  /// The value of a channel, counted from 0; `missing` where the device has no such object or no such element.
+  /// Returns the value of a channel, counted from 0; `missing` if the device does not have the object or the element.
   template <class T>
   [[nodiscard]] static T get([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] std::uint8_t channel,
                              T missing) {
@@ -48,7 +48,7 @@ struct ChannelObject {
     return missing;
   }
 
-  /// Sets a channel. `silently`: without the event that sends TPDOs.
+  /// Sets a channel. `silently`: without the event that triggers TPDOs.
   template <class Node, class T>
   static void set(Node& node, std::uint8_t channel, T value, bool silently = false) {
     static_assert(exists, "this device has no such object");

@@ -1,4 +1,4 @@
-/// Generic I/O modules (CiA 401): what happens between the terminals of a module and the objects of its dictionary.
+/// Generic I/O modules (CiA 401): transfers values between the terminals of a module and the objects of its dictionary.
 ///
 ///     canopen::DigitalInputs<can_2053c::Device> inputs;
 ///     canopen::DigitalOutputs<can_2057c::Device> outputs;
@@ -7,9 +7,9 @@
 ///     outputs.update(node, [](std::uint8_t block, std::uint8_t level) { write_port(block, level); });
 ///     outputs.fail(node);                                                   // communication is lost
 ///
-/// Objects that the data sheet has not got cost nothing. What is here are the blocks of eight digital channels and the
-/// analogue channels of 16 bits; channels grouped by 1, 16 or 32, counters, the interrupt source 6422h and the offsets
-/// and scales 6431h, 6432h, 6446h and 6447h are not.
+/// Objects that are not in the EDS have no cost. Supported are blocks of eight digital channels and 16-bit analogue
+/// channels. Not supported are channels grouped by 1, 16 or 32, counters, the interrupt source 6422h, and the offsets
+/// and scales 6431h, 6432h, 6446h and 6447h.
 #pragma once
 
 #include <array>
@@ -24,8 +24,8 @@
 
 namespace canopen {
 
-/// What makes outputs take their error values: the node is Stopped, by its master or by 1029h, or communication is
-/// lost. A life guarding event is one, too.
+/// Whether outputs take their error values: the node is Stopped, by its master or by 1029h, or communication is lost. A
+/// life guarding event is such a loss, too.
 [[nodiscard]] constexpr bool outputs_fail(NmtState entered) { return entered == NmtState::stopped; }
 [[nodiscard]] constexpr bool outputs_fail(HeartbeatEvent event) { return event == HeartbeatEvent::lost; }
 [[nodiscard]] constexpr bool outputs_fail(const BusStatus& status) { return status.state == BusState::off; }
@@ -43,9 +43,9 @@ class DigitalInputs {
  public:
   static constexpr std::uint8_t blocks = Value::count;
 
-  /// The levels of a block's terminals, bit 0 the lowest channel; blocks count from 0. A channel with its bit in 6003h
-  /// counts when two calls find it alike. A change sends TPDOs when 6005h and the masks 6006h to 6008h say so; a device
-  /// without them sends all.
+  /// Sets the levels of a block's terminals, bit 0 the lowest channel; blocks count from 0. A channel with its bit set
+  /// in 6003h changes when two consecutive calls report the same level. A change triggers TPDOs if 6005h and the masks
+  /// 6006h to 6008h allow it, or if the device does not have them.
   template <class Node>
   void sample([[maybe_unused]] Node& node, [[maybe_unused]] std::uint8_t block, [[maybe_unused]] std::uint8_t levels) {
     if constexpr (blocks > 0) {
@@ -61,8 +61,8 @@ class DigitalInputs {
  private:
   struct NoFilter {};
   struct Levels {
-    std::array<std::uint8_t, blocks> last{};  ///< as the terminals were at the last call
-    std::array<std::uint8_t, blocks> held{};  ///< as they count
+    std::array<std::uint8_t, blocks> last{};  ///< levels at the last call
+    std::array<std::uint8_t, blocks> held{};  ///< filtered levels
   };
 
   [[nodiscard]] std::uint8_t settled([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] std::uint8_t block,
@@ -109,9 +109,9 @@ class DigitalOutputs {
  public:
   static constexpr std::uint8_t blocks = Value::count;
 
-  /// Brings 6200h to the terminals, which begin low: `drive(block, levels)` is called for each block whose levels
-  /// change. Channels without their bit in 6208h stay as they are. To be called when the node has taken a frame or
-  /// time.
+  /// Transfers 6200h to the terminals, which are initially low: calls `drive(block, levels)` for each block
+  /// whose levels change. Channels whose bit in 6208h is 0 do not change. Call it after the node has processed a
+  /// frame or time.
   template <class Node, class Drive>
   void update([[maybe_unused]] Node& node, [[maybe_unused]] Drive&& drive) {
     const EntryAccess<Device> entries = node.entries();
@@ -126,8 +126,8 @@ class DigitalOutputs {
     }
   }
 
-  /// Channels whose bit in 6206h is 1 take their value of 6207h, and keep it until another one is written. A device
-  /// with neither object keeps its outputs.
+  /// Sets channels whose bit in 6206h is 1 to their value in 6207h, which they keep until another one is written. A
+  /// device with neither object keeps its outputs.
   template <class Node>
   void fail([[maybe_unused]] Node& node) {
     if constexpr (Value::exists && (ErrorMode::exists || ErrorValue::exists)) {
@@ -161,10 +161,10 @@ class AnalogueInputs {
  public:
   static constexpr std::uint8_t channels = Value::count;
 
-  /// What a channel has measured; channels count from 0. A change sends TPDOs when 6423h allows it and 6421h asks for
-  /// it: at or above the limit 6424h, below 6425h, and farther than 6426h to 6428h from the value that was told last.
-  /// Limits and deltas are numbers of the scale of 6401h. Where both kinds are asked for both have to hold. A device
-  /// without these objects sends all.
+  /// Sets the measured value of a channel; channels count from 0. A change triggers TPDOs if 6423h allows it and 6421h
+  /// selects it: at or above the limit 6424h, below 6425h, or by more than 6426h to 6428h from the value that triggered
+  /// last. Limits and deltas have the scale of 6401h. If limits and deltas are both selected, both conditions must be
+  /// met. A device without these objects sends every change.
   template <class Node>
   void sample([[maybe_unused]] Node& node, [[maybe_unused]] std::uint8_t channel, [[maybe_unused]] std::int16_t value) {
     if constexpr (channels > 0) {
@@ -241,8 +241,8 @@ class AnalogueOutputs {
  public:
   static constexpr std::uint8_t channels = Value::count;
 
-  /// Brings 6411h to the terminals, which begin at 0: `drive(channel, value)` is called for each channel that changes.
-  /// To be called when the node has taken a frame or time.
+  /// Transfers 6411h to the terminals, which are initially 0: calls `drive(channel, value)` for each channel that
+  /// changes. Call it after the node has processed a frame or time.
   template <class Node, class Drive>
   void update([[maybe_unused]] Node& node, [[maybe_unused]] Drive&& drive) {
     const EntryAccess<Device> entries = node.entries();
@@ -254,8 +254,8 @@ class AnalogueOutputs {
     }
   }
 
-  /// Channels whose 6443h is 1 take their value of 6444h, and keep it until another one is written. A device with
-  /// neither object keeps its outputs.
+  /// Sets channels whose 6443h is 1 to their value in 6444h, which they keep until another one is written. A device
+  /// with neither object keeps its outputs.
   template <class Node>
   void fail([[maybe_unused]] Node& node) {
     if constexpr (Value::exists && (ErrorMode::exists || ErrorValue::exists)) {

@@ -1,4 +1,4 @@
-/// A drive of CiA 402-2: device control and modes of operation between the objects of a node and an axis.
+/// A drive of CiA 402-2: device control and modes of operation, between the objects of a node and an axis.
 ///
 ///     MyAxis axis;
 ///     canopen::cia402::Drive<my_drive::Device, MyAxis> drive{axis};
@@ -8,7 +8,7 @@
 ///     drive.on_time(node, now);
 ///     node.on_time(now);
 ///
-/// Objects that the device has not are not asked for: what they would change stays at the default of the standard.
+/// Objects are optional: if the device does not have one, its default in the standard is used.
 #pragma once
 
 #include <algorithm>
@@ -33,11 +33,11 @@
 
 namespace canopen::cia402 {
 
-/// What an application may add, each where it has it:
-///     void operate(std::int8_t mode)              a step in a mode of the manufacturer's; it moves the axis
-///     std::uint16_t statusword(std::uint16_t)     the statusword with the manufacturer's bits
-///     void abort_connection(std::int16_t code)    communication is lost and 6007h is 1 or the manufacturer's: replaces
-///                                                 the fault of the profile
+/// Optional functions of an application:
+///     void operate(std::int8_t mode)              a step in a manufacturer-specific mode; it moves the axis
+///     std::uint16_t statusword(std::uint16_t)     returns the statusword with the manufacturer-specific bits
+///     void abort_connection(std::int16_t code)    communication is lost and 6007h is 1 or manufacturer-specific:
+///                                                 replaces the fault of the profile
 struct NoApplication {};
 
 template <class Device, Axis A, Options options = Options{}>
@@ -46,8 +46,8 @@ class Drive {
   /// The axis must outlive the drive.
   explicit constexpr Drive(A& moved_axis) : axis_{moved_axis} {}
 
-  /// A node of a drive has this handler. An error that the node reports goes into 603Fh. A heartbeat or life guarding
-  /// event and bus-off are a loss of communication, as NMT Stopped is: the next `on_time` does what 6007h says.
+  /// Handler that the node of a drive needs. An error that the node reports is written to 603Fh. A heartbeat or life
+  /// guarding event and bus-off are a loss of communication, as is NMT Stopped: the next `on_time` applies 6007h.
   struct ErrorTaker {
     Drive* drive;
     void operator()(auto& node, std::uint16_t code) const {
@@ -57,7 +57,7 @@ class Drive {
   };
   [[nodiscard]] constexpr ErrorHandler<ErrorTaker> error_handler() { return on_error(ErrorTaker{this}); }
 
-  /// Power-on, or a reset that starts the drive anew: transitions 0 and 1. The axis has no power.
+  /// Power-on, or a reset that restarts the drive: transitions 0 and 1. The axis has no power.
   void start() {
     axis_.enable(false);
     set_points_.clear();
@@ -71,7 +71,7 @@ class Drive {
     enter(State::switch_on_disabled);
   }
 
-  /// Follows the controlword and moves the axis. To be called after each frame that the node has taken and at
+  /// Processes the controlword and moves the axis. Call it after each frame that the node has processed and at
   /// `next_deadline`.
   template <class Node, class Application>
   void on_time(Node& node, TimePoint now, Application&& application) {
@@ -95,23 +95,23 @@ class Drive {
     on_time(node, now, NoApplication{});
   }
 
-  /// When the axis is to take its next step. Nothing: it rests without power.
+  /// Returns when the axis is to take its next step; empty if it is at rest without power.
   [[nodiscard]] std::optional<TimePoint> next_deadline() const {
     if (loss_ != Loss::none) return stepped_;
     return busy() ? std::optional{stepped_ + step_time} : std::nullopt;
   }
 
-  /// An error of the drive: transition 13, 603Fh and an EMCY. A fault reset ends it.
+  /// Reports an error of the drive: transition 13, 603Fh and an EMCY. A fault reset ends it.
   template <class Node>
   void fault(Node& node, std::uint16_t code, ErrorRegister bits, const EmergencyInfo& info = {}) {
     node.emergency(code, bits, info);
     signal_fault(node, bits);
   }
 
-  /// Errors that are there still: no fault reset (transition 15) as long as it is true.
+  /// Sets whether errors are still present: a fault reset (transition 15) is not possible meanwhile.
   void keep_fault(bool there) { fault_is_there_ = there; }
 
-  /// The drive stops by itself as the command quick stop does: transition 11.
+  /// Stops the drive like the command quick stop: transition 11.
   template <class Node>
   void quick_stop(Node& node) {
     if (state_ == State::operation_enabled) enter_quick_stop(node);
@@ -120,23 +120,23 @@ class Drive {
   void set_voltage_enabled(bool enabled) { voltage_enabled_ = enabled; }  ///< bit 4 of the statusword
   void set_warning(bool there) { warning_ = there; }                      ///< bit 7
 
-  /// The mode of a drive without 6060h.
+  /// Sets the mode of a drive without 6060h.
   void select(std::int8_t new_mode) requires(!Device::dictionary.has(0x6060, 0)) { selected_ = new_mode; }
 
-  /// Whether 6060h may have this value.
+  /// Whether 6060h accepts this value.
   [[nodiscard]] static constexpr bool supports(std::int8_t wanted) {
     return wanted == mode::none || has_mode(wanted) || (wanted < 0 && wanted >= options.lowest_mode);
   }
 
   [[nodiscard]] State state() const { return state_; }
   [[nodiscard]] std::int8_t mode() const { return mode_; }  ///< 6061h
-  /// Whether the motor runs in a mode: Operation Enabled, and neither halted nor on its way out of it.
+  /// Whether the motor operates in a mode: in Operation Enabled, not halted, and not leaving that state.
   [[nodiscard]] bool operates() const { return state_ == State::operation_enabled && !halted_ && !leaving_; }
   [[nodiscard]] bool halted() const { return halted_ && state_ == State::operation_enabled; }
   [[nodiscard]] bool target_reached() const { return reached_; }
-  [[nodiscard]] bool following_error() const { return following_error_; }   ///< 6065h for 6066h
-  [[nodiscard]] bool at_software_limit() const { return software_limit_; }  ///< 607Dh holds the axis
-  [[nodiscard]] bool at_limit_switch() const { return limit_switch_; }      ///< one is active
+  [[nodiscard]] bool following_error() const { return following_error_; }   ///< 6065h exceeded for 6066h
+  [[nodiscard]] bool at_software_limit() const { return software_limit_; }  ///< the axis is limited by 607Dh
+  [[nodiscard]] bool at_limit_switch() const { return limit_switch_; }      ///< a limit switch is active
   [[nodiscard]] const Homing& homing() const { return homing_; }
   [[nodiscard]] const SetPoints& set_points() const { return set_points_; }
 
@@ -152,7 +152,7 @@ class Drive {
   template <class O>
   static constexpr bool has = Device::dictionary.has(O::index, O::sub_index);
 
-  /// An object's value; `otherwise` where the device has not the object.
+  /// Returns the value of an object; `otherwise` if the device does not have it.
   template <class O, class Node>
   [[nodiscard]] static typename O::type value(const Node& node, typename O::type otherwise) {
     if constexpr (has<O>) {
@@ -167,7 +167,7 @@ class Drive {
     if constexpr (has<O>) static_cast<void>(node.template set<O>(new_value));
   }
 
-  /// Whether time matters to the axis.
+  /// Whether the axis depends on time.
   [[nodiscard]] bool busy() const { return has_power(state_) || axis_.moving(); }
 
   // Loss of communication
@@ -175,10 +175,10 @@ class Drive {
   enum class Loss : std::uint8_t {
     none,
     reported,  ///< by a service, with its EMCY
-    stopped,   ///< NMT Stopped: no service reports it
+    stopped,   ///< NMT Stopped, which is not reported by a service
   };
 
-  /// Does once for each loss what 6007h says (CiA 402-2, abort connection option code).
+  /// Applies 6007h once for each loss (CiA 402-2, abort connection option code).
   template <class Node, class Application>
   void watch_connection(Node& node, [[maybe_unused]] Application& application) {
     const bool stopped = node.state() == NmtState::stopped;
@@ -207,7 +207,7 @@ class Drive {
 
   // Device control
 
-  /// Transition 13, for an error that has been reported.
+  /// Executes transition 13 for an error that has been reported.
   template <class Node>
   void signal_fault(Node& node, ErrorRegister bits) {
     fault_bits_ = fault_bits_ | bits;
@@ -271,7 +271,7 @@ class Drive {
     if (command == Command::enable_operation && leaving_) resume();
   }
 
-  /// From Operation Enabled to a state without power, when the axis stands.
+  /// Leaves Operation Enabled for a state without power, once the axis is at standstill.
   template <class Node>
   void leave(Node& node, Braking braking, State to) {
     if (braking == Braking::none || !axis_.moving()) return enter(to);
@@ -281,7 +281,7 @@ class Drive {
     brake(node, braking);
   }
 
-  /// The axis goes on with what it was stopped in.
+  /// Continues the motion that was stopped.
   void resume() {
     leaving_ = changing_ = false;
     set_points_.start_again();
@@ -337,7 +337,7 @@ class Drive {
             value<object::ProfileDeceleration>(node, options.profile.deceleration)};
   }
 
-  /// A speed within 607Fh, of which 0 is no limit.
+  /// Returns a speed limited to 607Fh, where 0 is no limit.
   template <class Node>
   [[nodiscard]] static std::uint32_t at_most_allowed(const Node& node, std::uint32_t speed) {
     const std::uint32_t most = value<object::MaxProfileVelocity>(node, 0);
@@ -346,7 +346,7 @@ class Drive {
 
   // Modes of operation
 
-  /// Another mode begins when the axis stands; one that moves is stopped for it. True: it has begun.
+  /// Changes the mode when the axis is at standstill; a moving axis is stopped first. Returns whether it has changed.
   template <class Node>
   bool take_mode(Node& node) {
     const std::int8_t wanted = value<object::ModesOfOperation>(node, selected_);
@@ -489,7 +489,7 @@ class Drive {
     axis_.run_at(wanted, ramps);
   }
 
-  /// 60FFh within 607Fh, and 0 where a limit is in the way.
+  /// Returns 60FFh limited to 607Fh; 0 if a limit switch or software limit blocks the motion.
   template <class Node>
   [[nodiscard]] std::int32_t velocity_target(const Node& node) const {
     std::int32_t wanted = value<object::TargetVelocity>(node, 0);
@@ -529,12 +529,12 @@ class Drive {
 
   // Limits and windows
 
-  /// Whether a limit switch keeps the axis from going this way.
+  /// Whether a limit switch blocks motion in this direction.
   [[nodiscard]] static bool blocks(std::uint32_t inputs, std::int32_t direction) {
     return direction != 0 && (inputs & (direction > 0 ? input::positive_limit : input::negative_limit)) != 0;
   }
 
-  /// A position within 607Dh; without limits, and where the upper one is not above the lower one, as it is.
+  /// Returns a position limited to 607Dh; unchanged without limits, and if the upper one is not above the lower one.
   template <class Node>
   [[nodiscard]] static std::int32_t within_software_limits([[maybe_unused]] const Node& node, std::int32_t position) {
     if constexpr (has<object::MinPositionLimit> && has<object::MaxPositionLimit>) {
@@ -545,7 +545,7 @@ class Drive {
     return position;
   }
 
-  /// Whether the demand is at the software limit that lies this way, or beyond it.
+  /// Whether the demand is at or beyond the software limit in this direction.
   template <class Node>
   [[nodiscard]] bool software_limit_blocks(const Node& node, std::int32_t direction) const {
     const std::int32_t demand = axis_.position_demand();
@@ -553,7 +553,7 @@ class Drive {
            (direction < 0 && within_software_limits(node, most_negative) >= demand && demand != most_negative);
   }
 
-  /// Stops an axis that runs into a limit.
+  /// Stops an axis at a limit.
   template <class Node>
   void keep_limits(const Node& node) {
     const std::int32_t velocity = axis_.velocity_demand();
@@ -565,7 +565,7 @@ class Drive {
     }
   }
 
-  /// What bits 10 to 13 of the statusword tell, after a time.
+  /// Updates the conditions of bits 10 to 13 of the statusword after a time span.
   template <class Node>
   void watch_windows(const Node& node, Duration span) {
     const std::uint32_t lag = distance(axis_.position_demand(), axis_.position());
@@ -597,7 +597,7 @@ class Drive {
     }
   }
 
-  // What the bus sees
+  // Statusword and actual values
 
   [[nodiscard]] std::uint16_t mode_bits() const {
     const auto bit_if = [](bool there, std::uint16_t bit) { return there ? bit : std::uint16_t{0}; };
@@ -662,20 +662,20 @@ class Drive {
 
   A& axis_;
   State state_ = State::not_ready_to_switch_on;
-  State leave_to_ = State::switch_on_disabled;  ///< while `leaving_`
+  State leave_to_ = State::switch_on_disabled;  ///< valid while `leaving_`
   std::int8_t mode_ = options.initial_mode;
   std::int8_t selected_ = options.initial_mode;
-  std::uint16_t controlword_ = 0;  ///< that has been taken
+  std::uint16_t controlword_ = 0;  ///< the one processed last
   ErrorRegister fault_bits_{};
-  Loss loss_ = Loss::none;  ///< that 6007h has not yet answered
-  bool stopped_ = false;    ///< the NMT state when it was looked at last
+  Loss loss_ = Loss::none;  ///< to which 6007h has not been applied yet
+  bool stopped_ = false;    ///< whether the NMT state was Stopped at the last check
   bool fault_is_there_ = false;
   bool voltage_enabled_ = true;
   bool warning_ = false;
   bool remote_ = false;
   bool halted_ = false;
-  bool leaving_ = false;        ///< brakes to leave Operation Enabled
-  bool changing_ = false;       ///< brakes for another mode
+  bool leaving_ = false;        ///< decelerating to leave Operation Enabled
+  bool changing_ = false;       ///< decelerating to change the mode
   bool homing_starts_ = false;  ///< with the next step
   bool reached_ = true;
   bool resting_ = true;
@@ -691,8 +691,8 @@ class Drive {
   Lasting at_speed_{};
   Lasting at_rest_{};
   Lasting off_course_{};
-  TimePoint stepped_{};    ///< until here the axis has moved
-  TimePoint published_{};  ///< of the actual values
+  TimePoint stepped_{};    ///< the axis has moved up to this time
+  TimePoint published_{};  ///< when actual values were set last
 };
 
 }  // namespace canopen::cia402

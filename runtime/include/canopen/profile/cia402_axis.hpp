@@ -1,4 +1,4 @@
-/// What a drive of CiA 402 moves: power stage, trajectory, position and switches, in the units of the objects.
+/// The axis of a CiA 402 drive: power stage, trajectory, position and switches, in the units of the objects.
 #pragma once
 
 #include <concepts>
@@ -8,7 +8,7 @@
 
 namespace canopen::cia402 {
 
-/// What a movement keeps to: 6081h, 6083h and 6084h.
+/// Limits of a movement: 6081h, 6083h and 6084h.
 struct Profile {
   std::uint32_t velocity;
   std::uint32_t acceleration;
@@ -23,24 +23,24 @@ inline constexpr std::uint8_t positive_limit = 0x2;
 inline constexpr std::uint8_t home_switch = 0x4;
 }  // namespace input
 
-/// Commands take the place of those before them; ramps of 0 are as steep as the axis can.
+/// A command replaces the previous one; ramps of 0 are as steep as the axis allows.
 template <class T>
 concept Axis = requires(T& axis, const T& state, std::int32_t number, std::uint32_t deceleration,
                         const Profile& profile, bool on, Duration span) {
   axis.enable(on);                                     ///< power stage; off: the motor coasts
   axis.move_to(number, profile);                       ///< to a position
-  axis.run_at(number, profile);                        ///< with a velocity, limited by the ramps alone
+  axis.run_at(number, profile);                        ///< at a velocity, limited only by the ramps
   axis.stop(deceleration);                             ///< to standstill, under control
-  axis.follow(number);                                 ///< a position that is given anew with each step
-  axis.set_position(number);                           ///< where it is now has this position
-  axis.step(span);                                     ///< time passes; nothing to do where hardware moves by itself
-  { state.moving() } -> std::same_as<bool>;            ///< the trajectory has not come to its end
+  axis.follow(number);                                 ///< a position that is updated at each step
+  axis.set_position(number);                           ///< assigns this position to the present location
+  axis.step(span);                                     ///< elapsed time; has no effect if hardware moves by itself
+  { state.moving() } -> std::same_as<bool>;            ///< the trajectory has not ended
   { state.position() } -> std::same_as<std::int32_t>;  ///< actual
   { state.velocity() } -> std::same_as<std::int32_t>;  ///< actual
   { state.position_demand() } -> std::same_as<std::int32_t>;
   { state.velocity_demand() } -> std::same_as<std::int32_t>;
   { state.inputs() } -> std::same_as<std::uint32_t>;  ///< bits of `input`
-  { axis.index_pulse() } -> std::same_as<bool>;       ///< one has passed since this was asked last
+  { axis.index_pulse() } -> std::same_as<bool>;       ///< one has occurred since the last call
 };
 
 }  // namespace canopen::cia402

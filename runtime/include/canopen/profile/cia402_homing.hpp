@@ -1,4 +1,4 @@
-/// Homing methods as rows of a table, and the movement that they ask for (CiA 402-2, 11.2 to 11.4).
+/// Homing methods as rows of a table, and their movements (CiA 402-2, 11.2 to 11.4).
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@ namespace canopen::cia402 {
 
 struct HomingMethod {
   std::int8_t number;     ///< 6098h
-  std::int8_t direction;  ///< of the search; 0: home is where the axis is
-  std::uint8_t signal;    ///< bit of `input` that is searched and left again; 0: none
+  std::int8_t direction;  ///< of the search; 0: home is the present position
+  std::uint8_t signal;    ///< bit of `input` that is searched for and left again; 0: none
   bool index_pulse;       ///< home is the next index pulse after that
 };
 
@@ -29,7 +29,7 @@ inline constexpr HomingMethod homing_methods[] = {
     {37, 0, 0, false},
 };
 
-/// Nothing: there is no such method here.
+/// Finds a homing method; null if it is not supported.
 [[nodiscard]] constexpr const HomingMethod* homing_method(std::int8_t number) {
   for (const HomingMethod& row : homing_methods) {
     if (row.number == number) return &row;
@@ -37,7 +37,7 @@ inline constexpr HomingMethod homing_methods[] = {
   return nullptr;
 }
 
-/// What a homing takes from its objects.
+/// The parameters of a homing, from its objects.
 struct HomingParameters {
   std::int8_t method;          ///< 6098h
   std::uint32_t fast;          ///< 6099h:01, towards the switch
@@ -53,7 +53,7 @@ class Homing {
   [[nodiscard]] bool attained() const { return phase_ == Phase::attained; }
   [[nodiscard]] bool failed() const { return phase_ == Phase::failed; }
 
-  /// Begins. Fails where there is no such method or a speed that it needs is 0.
+  /// Starts homing. Fails if the method is not supported or a speed that it needs is 0.
   template <Axis A>
   void start(A& axis, const HomingParameters& parameters) {
     parameters_ = parameters;
@@ -74,7 +74,7 @@ class Homing {
     }
   }
 
-  /// To be called with each step of the axis.
+  /// Executes one step; call it with each step of the axis.
   template <Axis A>
   void step(A& axis) {
     switch (phase_) {
@@ -105,9 +105,9 @@ class Homing {
     }
   }
 
-  /// Ends it before home is attained, or forgets that it was.
+  /// Ends homing before home is attained, or resets that it was.
   void interrupt() { phase_ = Phase::idle; }
-  /// Ends it before home is attained.
+  /// Ends homing before home is attained.
   void interrupt_running() {
     if (running()) interrupt();
   }
@@ -120,7 +120,7 @@ class Homing {
     return (axis.inputs() & signal) != 0;
   }
 
-  /// A limit switch stands in the way.
+  /// Whether a limit switch blocks motion in this direction.
   template <Axis A>
   [[nodiscard]] static bool blocked(const A& axis, std::int32_t direction) {
     return active(axis, direction < 0 ? input::negative_limit : input::positive_limit);
@@ -132,7 +132,7 @@ class Homing {
                 Profile{speed, parameters_.acceleration, parameters_.acceleration});
   }
 
-  /// This is home. Zero is the home offset away from it.
+  /// Sets the home position, which is the home offset away from zero.
   template <Axis A>
   void arrive(A& axis) {
     axis.set_position(static_cast<std::int32_t>(-static_cast<std::int64_t>(parameters_.home_offset)));

@@ -1,4 +1,4 @@
-/// The objects of CiA 402 that the profile reads and writes, whatever a data sheet names them.
+/// The objects of CiA 402 that the profile reads and writes, independent of their names in an EDS.
 #pragma once
 
 #include <cstdint>

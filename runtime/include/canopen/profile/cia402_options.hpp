@@ -1,4 +1,4 @@
-/// Modes of operation, and what a drive does otherwise than CiA 402-2 says or leaves open.
+/// Modes of operation, and behaviour of a drive that differs from CiA 402-2 or that it leaves open.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace canopen::cia402 {
 
-/// Values of 6060h. Negative ones are the manufacturer's.
+/// Values of 6060h. Negative ones are manufacturer-specific.
 namespace mode {
 inline constexpr std::int8_t none = 0;
 inline constexpr std::int8_t profile_position = 1;
@@ -16,37 +16,37 @@ inline constexpr std::int8_t homing = 6;
 inline constexpr std::int8_t cyclic_synchronous_position = 8;
 }  // namespace mode
 
-/// The bit of a mode in 6502h.
+/// Returns the bit of a mode in 6502h.
 [[nodiscard]] constexpr std::uint32_t bit_of_mode(std::int8_t mode) {
   return mode >= 1 && mode <= 16 ? 1u << (mode - 1) : 0;
 }
 
 struct Options {
-  /// The modes that the drive has, as bits of 6502h. What is not among them is not in the image.
+  /// Supported modes, as bits of 6502h. Code for other modes is not in the image.
   std::uint32_t modes = bit_of_mode(mode::profile_position) | bit_of_mode(mode::profile_velocity) |
                         bit_of_mode(mode::homing) | bit_of_mode(mode::cyclic_synchronous_position);
-  /// The manufacturer's modes: from this one to -1. 0: none.
+  /// Manufacturer-specific modes: from this one to -1. 0: none.
   std::int8_t lowest_mode = 0;
   /// The mode of a drive without 6060h.
   std::int8_t initial_mode = mode::none;
-  /// The drive goes from Switch On Disabled to Ready To Switch On by itself.
+  /// The drive goes from Switch On Disabled to Ready To Switch On automatically.
   bool ready_without_shutdown = false;
-  /// Bit 10 of the statusword keeps its value until the motion of a new set-point or of a homing begins, with the next
-  /// step. If not, it falls with the command.
+  /// Bit 10 of the statusword keeps its value until the motion of a new set-point or of a homing starts, with the next
+  /// step. If false, it is reset with the command.
   bool target_reached_until_motion = false;
-  /// Bit 12 of the statusword tells in profile velocity that the speed is zero.
+  /// In profile velocity, bit 12 of the statusword indicates that the speed is zero.
   bool tells_speed_is_zero = true;
-  /// Bit 11 of the statusword tells of software limits, too. If not, of limit switches alone.
+  /// Bit 11 of the statusword also indicates software limits. If false, only limit switches.
   bool tells_software_limits = true;
-  /// A heartbeat or life guarding event and bus-off are a fault even while the axis has no power. If not, 6007h acts on
-  /// an axis with power only.
+  /// A heartbeat or life guarding event and bus-off are a fault even if the axis has no power. If false, 6007h applies
+  /// only to an axis with power.
   bool faults_without_power = false;
-  /// Steps that the axis takes at most to catch up when `on_time` was called late. Time beyond them is left out, so that
-  /// the axis does not jump and a call takes bounded time.
+  /// Maximum number of steps to catch up if `on_time` was called late. Time beyond them is skipped, so that the axis
+  /// does not jump and a call takes bounded time.
   std::uint16_t max_steps = 100;
   /// Time between two steps of the axis, in us.
   std::uint32_t step = 1'000;
-  /// How often actual values are set while the axis moves, in us. When it has come to rest they always are.
+  /// Interval in us at which actual values are set while the axis moves. They are always set when it has come to rest.
   std::uint32_t actual_values = 1'000;
   /// For a drive without 6081h, 6083h, 6084h.
   Profile profile{};

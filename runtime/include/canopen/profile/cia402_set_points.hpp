@@ -1,4 +1,4 @@
-/// The hand-shake of profile position mode: one set-point in progress, one behind it (CiA 402-2, 10.3.1).
+/// The handshake of profile position mode: one set-point in progress, one waiting (CiA 402-2, 10.3.1).
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@ struct SetPoint {
 
 class SetPoints {
  public:
-  /// The controlword has bit 4 anew: `set_point` goes on at once where the axis has none or bit 5 is set, else when the
-  /// present one is reached. Not taken while another one waits.
+  /// Processes a rising edge of bit 4 of the controlword: `set_point` starts at once if there is none or bit 5 is set,
+  /// otherwise when the present one has been reached. It is ignored while another one is waiting.
   void offer(const SetPoint& set_point, bool immediately) {
     if (active_ && !immediately && waits_) return;
     if (active_ && !immediately) {
@@ -30,30 +30,30 @@ class SetPoints {
     acknowledged_ = true;
   }
 
-  /// Bit 4 is 0: a further set-point may come as soon as there is room.
+  /// Processes bit 4 = 0: a further set-point is accepted as soon as there is room.
   void release() { acknowledged_ = false; }
 
-  /// Bit 12 of the statusword.
+  /// Returns bit 12 of the statusword.
   [[nodiscard]] bool acknowledge() const { return acknowledged_ || waits_; }
 
-  /// Whether the axis is under way to a set-point.
+  /// Whether the axis is moving to a set-point.
   [[nodiscard]] bool active() const { return active_; }
-  /// Where relative set-points count from while one is active.
+  /// Returns the reference of relative set-points while one is active.
   [[nodiscard]] std::int32_t last_target() const { return waits_ ? next_.target : present_.target; }
 
-  /// The present set-point, once, when the axis is to be told it.
+  /// Returns the present set-point once, when it is to be passed to the axis; otherwise null.
   [[nodiscard]] const SetPoint* to_start() {
     if (!start_) return nullptr;
     start_ = false;
     return &present_;
   }
-  /// Whether `to_start` has one.
+  /// Whether `to_start` returns a set-point.
   [[nodiscard]] bool starts() const { return start_; }
 
-  /// The axis is to be told the present set-point again, after a halt.
+  /// Makes `to_start` return the present set-point again, after a halt.
   void start_again() { start_ = active_; }
 
-  /// The present one is reached.
+  /// Reports that the present set-point has been reached.
   void reached() {
     active_ = waits_;
     if (!waits_) return;
@@ -62,7 +62,7 @@ class SetPoints {
     waits_ = false;
   }
 
-  /// Forgets all of them.
+  /// Discards all set-points.
   void clear() { *this = SetPoints{}; }
 
  private:
@@ -70,7 +70,7 @@ class SetPoints {
   SetPoint next_{};
   bool active_ = false;
   bool start_ = false;
-  bool waits_ = false;  ///< `next_` does
+  bool waits_ = false;  ///< `next_` is waiting
   bool acknowledged_ = false;
 };
 

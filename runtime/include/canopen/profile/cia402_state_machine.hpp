@@ -20,7 +20,7 @@ enum class State : std::uint8_t {
   fault,
 };
 
-/// Bits 0..3, 5 and 6 of the statusword in each state. Where the standard leaves bit 5 open it is 0 here.
+/// Bits 0..3, 5 and 6 of the statusword in each state. Bit 5 is 0 where the standard does not define it.
 inline constexpr std::array<std::uint16_t, 8> state_bits = {
     0x0000,  // not ready to switch on
     0x0040,  // switch on disabled
@@ -34,7 +34,7 @@ inline constexpr std::array<std::uint16_t, 8> state_bits = {
 
 [[nodiscard]] constexpr std::uint16_t bits_of(State state) { return state_bits[static_cast<std::size_t>(state)]; }
 
-/// Whether the standard says nothing of bit 5 of the statusword in this state.
+/// Whether the standard does not define bit 5 of the statusword in this state.
 [[nodiscard]] constexpr bool quick_stop_bit_is_open(State state) {
   return state == State::not_ready_to_switch_on || state == State::switch_on_disabled || state == State::fault ||
          state == State::fault_reaction_active;
@@ -46,13 +46,13 @@ inline constexpr std::array<std::uint16_t, 8> state_bits = {
          state == State::fault_reaction_active;
 }
 
-/// What bits 0..3 and 7 of the controlword ask for. The rising edge of bit 7, fault reset, is none of them.
+/// Commands in bits 0..3 and 7 of the controlword. Fault reset, the rising edge of bit 7, is not one of them.
 enum class Command : std::uint8_t {
   none,
   disable_voltage,
   quick_stop,
   shutdown,
-  switch_on,  ///< and disable operation: which one depends on the state
+  switch_on,  ///< also disable operation, depending on the state
   enable_operation,
 };
 
@@ -82,8 +82,8 @@ struct Transition {
   State to;
 };
 
-/// What commands do. Others come by themselves: 0 and 1 at power-on, 12 at the end of a quick stop, 13 and 14 with a
-/// fault, 15 with fault reset. Enable operation goes through Switched On.
+/// Transitions by commands. Others are automatic: 0 and 1 at power-on, 12 at the end of a quick stop, 13 and 14 with a
+/// fault, 15 with fault reset. Enable operation passes through Switched On.
 inline constexpr Transition transitions[] = {
     {2, State::switch_on_disabled, Command::shutdown, State::ready_to_switch_on},
     {3, State::ready_to_switch_on, Command::switch_on, State::switched_on},
@@ -102,7 +102,7 @@ inline constexpr Transition transitions[] = {
     {16, State::quick_stop_active, Command::enable_operation, State::operation_enabled},
 };
 
-/// Nothing: the command has no meaning in this state.
+/// Returns the transition of a command; null if it has no effect in this state.
 [[nodiscard]] constexpr const Transition* transition_of(State from, Command command) {
   for (const Transition& row : transitions) {
     if (row.from == from && row.command == command) return &row;

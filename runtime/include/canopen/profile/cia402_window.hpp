@@ -1,4 +1,4 @@
-/// Something that has to last for a time until it counts: 6067h and 6068h, 606Dh and 606Eh, 6065h and 6066h.
+/// A condition that must be true for a time: 6067h and 6068h, 606Dh and 606Eh, 6065h and 6066h.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@ namespace canopen::cia402 {
 
 class Lasting {
  public:
-  /// Time passes while it is so, or is not.
+  /// Adds a time during which the condition was true or not.
   void step(bool is_so, Duration span) {
     if (!is_so) {
       lasted_ = Duration{0};
@@ -19,7 +19,7 @@ class Lasting {
     if (there_ && lasted_ < longest) lasted_ += span;
     there_ = true;
   }
-  /// Whether it has been so for this many milliseconds.
+  /// Whether the condition has been true for this many milliseconds.
   [[nodiscard]] bool lasts(std::uint16_t milliseconds) const {
     return there_ && lasted_ >= from_milliseconds(milliseconds);
   }
@@ -31,7 +31,7 @@ class Lasting {
   bool there_ = false;
 };
 
-/// How far two positions or velocities are apart.
+/// Returns the distance of two positions or velocities.
 [[nodiscard]] constexpr std::uint32_t distance(std::int32_t a, std::int32_t b) {
   const std::uint32_t difference = static_cast<std::uint32_t>(a) - static_cast<std::uint32_t>(b);
   return a < b ? 0u - difference : difference;

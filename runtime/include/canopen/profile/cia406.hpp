@@ -1,4 +1,4 @@
-/// Encoders (CiA 406): measured values with a preset, steps of measuring, and the cyclic timer.
+/// Encoders (CiA 406): measured values with preset, measuring steps, and the cyclic timer.
 ///
 ///     canopen::Encoder<rk5c::Device> encoder;
 ///     auto sensor = canopen::make_node<rk5c::Device>(bus, id, canopen::cyclic_timer_sets_event_timer(),
@@ -6,7 +6,7 @@
 ///     encoder.measured(sensor, position, speed);           // each measuring cycle, in measuring steps
 ///     encoder.preset(value);                               // from the write handler of 6003h or 6010h
 ///
-/// Cams, scaling and code sequence by 6000h, and the diagnosis objects from 6500h on are not here.
+/// Not supported: cams, scaling and code sequence of 6000h, and the diagnostic objects from 6500h on.
 #pragma once
 
 #include <array>
@@ -20,8 +20,8 @@
 
 namespace canopen {
 
-/// One channel of an encoder. Its values are 6020h:Channel and 6030h:Channel of a multi-sensor device, and 6004h, which
-/// is that of the only channel of others.
+/// One channel of an encoder. Its values are 6020h:Channel and 6030h:Channel of a multi-sensor device, or 6004h for the
+/// only channel of other devices.
 template <class Device, std::uint8_t Channel = 1>
 class Encoder {
   static constexpr bool has_position = Device::dictionary.has(0x6020, Channel);
@@ -29,7 +29,7 @@ class Encoder {
   static constexpr bool has_speed = Device::dictionary.has(0x6030, Channel);
 
  public:
-  /// What the channel measures now, in measuring steps. The position that the device tells is that with the offset.
+  /// Sets the measured values, in measuring steps. The offset is added to the position in the objects.
   template <class Node>
   void measured(Node& node, std::int32_t position, std::int16_t speed) {
     static_assert(has_position || has_single_position, "this device has neither 6004h nor this channel of 6020h");
@@ -40,16 +40,16 @@ class Encoder {
     if constexpr (has_speed) set(node, 0x6030, Channel, speed);
   }
 
-  /// The present position is to be told as this value from the next `measured` on.
+  /// Sets the offset so that the present position has this value from the next `measured` on.
   void preset(std::int32_t value) {
     offset_ = static_cast<std::int32_t>(static_cast<std::uint32_t>(value) - static_cast<std::uint32_t>(measured_));
   }
 
-  /// What is added to the measured position: for the device to store.
+  /// Returns the offset that is added to the measured position, for the device to store.
   [[nodiscard]] std::int32_t offset() const { return offset_; }
   void set_offset(std::int32_t offset) { offset_ = offset; }
 
-  /// A length as measuring steps: 6005h:01 counts in nanometres. 0: no such object, or it is 0.
+  /// Converts a length to measuring steps: 6005h:01 is in nanometres. 0 if 6005h:01 is 0.
   template <class Node>
   [[nodiscard]] static std::int32_t position_steps(Node& node,
                                                    std::int64_t nanometres) requires(Device::dictionary.has(0x6005,
@@ -58,7 +58,7 @@ class Encoder {
     return step == 0 ? 0 : static_cast<std::int32_t>(nanometres / step);
   }
 
-  /// A speed as measuring steps: 6005h:02 counts in units of 0.01 mm/s.
+  /// Converts a speed to measuring steps: 6005h:02 is in units of 0.01 mm/s.
   template <class Node>
   [[nodiscard]] static std::int16_t speed_steps(Node& node,
                                                 std::int32_t hundredths) requires(Device::dictionary.has(0x6005, 2)) {
@@ -71,7 +71,7 @@ class Encoder {
     return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));
   }
 
-  /// TPDOs go out when the value is a new one.
+  /// TPDOs are triggered if the value has changed.
   template <class Node, class T>
   static void set(Node& node, std::uint16_t index, std::uint8_t sub_index, T value) {
     const entry::Word word = Device::dictionary.find(index, sub_index);
@@ -87,7 +87,7 @@ class Encoder {
 
 namespace cia406_detail {
 
-/// Gives a value that is written to one object to another one, too.
+/// Copies a value that is written to one object to another one.
 template <std::uint16_t Index, std::uint8_t SubIndex>
 struct Copy {
   void operator()(auto& node, std::uint16_t value) const {
@@ -104,7 +104,7 @@ using EventTimer = Object<0x1800, 0x05, std::uint16_t, Access::rw>;
 using CyclicTimerHandler = WriteHandler<cia406_detail::CyclicTimer, cia406_detail::Copy<0x1800, 5>>;
 using EventTimerHandler = WriteHandler<cia406_detail::EventTimer, cia406_detail::Copy<0x6200, 0>>;
 
-/// The cyclic timer 6200h and the event timer of TPDO 1 are one value, in ms: handlers for both.
+/// Handlers that keep the cyclic timer 6200h and the event timer of TPDO 1 equal, in ms.
 [[nodiscard]] constexpr CyclicTimerHandler cyclic_timer_sets_event_timer() { return {}; }
 [[nodiscard]] constexpr EventTimerHandler event_timer_sets_cyclic_timer() { return {}; }
 
