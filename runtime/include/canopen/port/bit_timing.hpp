@@ -1,4 +1,4 @@
-/// Bit timing of a CAN controller (ISO 11898-1): from its clock and the bit rate to what its registers hold.
+/// Bit timing of a CAN controller (ISO 11898-1): register values from clock and bit rate.
 #pragma once
 
 #include <cstdint>
@@ -6,15 +6,15 @@
 
 namespace canopen {
 
-/// What a controller can be set to, in time quanta.
+/// Limits of a controller, in time quanta.
 struct BitTimingRange {
-  std::uint16_t prescaler;          ///< 1 to this
-  std::uint16_t before_sample;      ///< time segment 1, with the propagation segment: 1 to this
-  std::uint16_t after_sample;       ///< time segment 2: 1 to this
-  std::uint16_t resynchronization;  ///< jump width: 1 to this
+  std::uint16_t prescaler;          ///< 1 to this value
+  std::uint16_t before_sample;      ///< time segment 1, including the propagation segment: 1 to this value
+  std::uint16_t after_sample;       ///< time segment 2: 1 to this value
+  std::uint16_t resynchronization;  ///< jump width: 1 to this value
 };
 
-/// A bit is one quantum, `before_sample` and `after_sample` long.
+/// Bit timing. A bit is one quantum, `before_sample` and `after_sample` long.
 struct BitTiming {
   std::uint16_t prescaler = 0;
   std::uint16_t before_sample = 0;
@@ -24,8 +24,8 @@ struct BitTiming {
   friend constexpr bool operator==(const BitTiming&, const BitTiming&) = default;
 };
 
-/// The timing with a sample point as near to 87.5 % as it can be, CiA 301's for all bit rates, and of several the one
-/// with the most quanta. Clock in Hz, rate in bit/s. Nothing: the clock gives no such rate.
+/// Returns the timing with the sample point closest to 87.5 %, which CiA 301 specifies for all bit rates; if there are
+/// several, the one with the most quanta. Clock in Hz, rate in bit/s. Empty: the rate cannot be derived from the clock.
 [[nodiscard]] constexpr std::optional<BitTiming> bit_timing(std::uint32_t clock, std::uint32_t bit_rate,
                                                             const BitTimingRange& range) {
   constexpr std::uint32_t fewest = 8;

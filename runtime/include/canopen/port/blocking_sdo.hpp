@@ -1,4 +1,4 @@
-/// SDO that waits for its answer, for programs on a host:
+/// Blocking SDO client for programs on a host:
 ///
 ///     canopen::SocketCan bus{"can0"};
 ///     canopen::BlockingSdo master{bus};
@@ -34,7 +34,7 @@
 
 namespace canopen {
 
-/// A bus that frames can be awaited on: SocketCan, VirtualBusPort.
+/// A bus with a blocking `receive`: SocketCan, VirtualBusPort.
 template <class T>
 concept BlockingBus = Bus<T> && requires(T& bus, Duration timeout) {
   { bus.receive(timeout) } -> std::same_as<std::optional<Frame>>;
@@ -44,8 +44,8 @@ concept BlockingBus = Bus<T> && requires(T& bus, Duration timeout) {
 template <class Device, BlockingBus B>
 class BlockingRemoteNode;
 
-/// The value of a number, or why the bytes of its entry are none: 0607 0010h when there are more or fewer. A server need
-/// not tell how many of the four bytes of an expedited answer count.
+/// Returns the value of a number, or why its bytes are not one: 0607 0010h if there are more or fewer. A server need
+/// not indicate how many of the four bytes of an expedited response are valid.
 template <NumberObject O>
 [[nodiscard]] Result<typename O::type> number_from(const SdoAnswer& answer) {
   if (answer.result != ok) return answer.result;
@@ -57,7 +57,7 @@ template <NumberObject O>
   return handler_detail::value_from<O>(std::span{bytes}.first(size));
 }
 
-/// The objects of a device by their generated types, over an `Sdo` that has
+/// Access to the objects of a device by their generated types, with an `Sdo` that has
 ///   read_number(NodeId, index, sub_index, memory) -> SdoAnswer
 ///   upload(NodeId, index, sub_index) -> Result<std::vector<std::uint8_t>>
 ///   download(NodeId, index, sub_index, bytes) -> Result<void>
@@ -67,7 +67,7 @@ class BlockingObjects {
  public:
   BlockingObjects(Sdo& sdo, NodeId node) : sdo_{sdo}, node_{node} {}
 
-  /// The value of a number.
+  /// Reads a number.
   template <NumberObject O>
   requires ObjectOf<O, Device> && RemoteReadable<O>
   [[nodiscard]] Result<typename O::type> read() {
@@ -75,7 +75,7 @@ class BlockingObjects {
     return number_from<O>(sdo_.read_number(node_, O::index, O::sub_index, memory));
   }
 
-  /// The value of a string. 0607 0012h: it is longer than the data sheet says.
+  /// Reads a string. 0607 0012h: it is longer than in the EDS.
   template <StringObject O>
   requires ObjectOf<O, Device> && RemoteReadable<O>
   [[nodiscard]] Result<typename O::type> read() {
@@ -92,12 +92,12 @@ class BlockingObjects {
     return text;
   }
 
-  /// The bytes of a DOMAIN.
+  /// Reads the bytes of a DOMAIN.
   template <DomainObject O>
   requires ObjectOf<O, Device> && RemoteReadable<O>
   [[nodiscard]] Result<std::vector<std::uint8_t>> read() { return sdo_.upload(node_, O::index, O::sub_index); }
 
-  /// Writes a number. A value outside the limits is refused without a frame.
+  /// Writes a number. A value outside the limits is rejected without sending a frame.
   template <NumberObject O, ValueFor<O> V>
   requires ObjectOf<O, Device> && RemoteWritable<O> Result<void> write(V value) {
     if (const AbortCode code = check_value<O>(value); code != ok) return code;
@@ -111,7 +111,7 @@ class BlockingObjects {
     return write_number<O>(static_cast<typename O::type>(Value));
   }
 
-  /// Writes a string or DOMAIN. 0607 0012h: the string is longer than the object holds.
+  /// Writes a string or DOMAIN. 0607 0012h: the string is longer than the capacity of the object.
   template <DictionaryObject O>
   requires ObjectOf<O, Device> && RemoteWritable<O> &&
       (StringObject<O> || DomainObject<O>)Result<void> write(std::span<const std::uint8_t> bytes) {
@@ -138,8 +138,8 @@ class BlockingObjects {
   NodeId node_;
 };
 
-/// Transfers by index and sub-index. What `receive` of the bus throws comes through. A transfer ends, also on a bus that
-/// takes no frame: with 0504 0000h after the timeout.
+/// Transfers by index and sub-index. Exceptions of the bus's `receive` are passed on. A transfer ends even on a bus
+/// that does not accept frames: with 0504 0000h after the timeout.
 template <BlockingBus B>
 class BlockingSdo {
  public:
@@ -147,11 +147,11 @@ class BlockingSdo {
 
   explicit BlockingSdo(B& can_bus, SdoClientOptions options = {}) : bus_{can_bus}, options_{options} {}
 
-  /// Called with every frame that comes while a transfer waits: heartbeats, PDOs, emergencies. A transfer to the same node
-  /// that it begins is refused with 060A 0023h.
+  /// Called with every frame that is received during a transfer: heartbeats, PDOs, EMCYs. A transfer to the same node
+  /// that it starts is rejected with 060A 0023h.
   std::function<void(const Frame&, TimePoint now)> on_frame;
 
-  /// The value of an entry. 0504 0005h: it is longer than `most` bytes.
+  /// Reads an entry. 0504 0005h: it is longer than `most` bytes.
   [[nodiscard]] Result<std::vector<std::uint8_t>> upload(NodeId node, std::uint16_t index, std::uint8_t sub_index,
                                                          std::size_t most = longest_upload) {
     std::vector<std::uint8_t> value;
@@ -176,7 +176,7 @@ class BlockingSdo {
     return run(client);
   }
 
-  /// The value of an entry of up to eight bytes.
+  /// Reads an entry of up to eight bytes.
   [[nodiscard]] SdoAnswer read_number(NodeId node, std::uint16_t index, std::uint8_t sub_index,
                                       std::span<std::uint8_t> memory) {
     const Use use{*this, node};
@@ -187,13 +187,13 @@ class BlockingSdo {
     return {result, client.data(), client.size_known()};
   }
 
-  /// A node by the types of its device. It must not outlive this.
+  /// Returns a node with the types of its device. It must not outlive this object.
   template <class Device>
   [[nodiscard]] BlockingRemoteNode<Device, B> remote(NodeId node) {
     return {*this, node};
   }
 
-  /// Waits until a transfer is over. `client` is an SdoClient or RemoteNode on this bus.
+  /// Waits until a transfer has ended. `client` is an SdoClient or RemoteNode on this bus.
   template <class Client>
   AbortCode run(Client& client) {
     constexpr Duration try_again{1'000};  // the bus had no room for a frame
@@ -223,8 +223,8 @@ class BlockingSdo {
   [[nodiscard]] const SdoClientOptions& options() const { return options_; }
 
  private:
-  /// Of a node by one call, until it has its result: `on_frame` may see the frame that ends the transfer before that.
-  /// Drops a client whose transfer is not over when the bus throws: its memory is gone.
+  /// Reserves a node for one call until it has its result: `on_frame` may see the frame that ends the transfer before
+  /// that. Discards a client whose transfer is not complete when the bus throws: its memory no longer exists.
   struct Use {
     Use(BlockingSdo& blocking_sdo, NodeId node_id)
         : sdo{blocking_sdo}, node{node_id.value()}, granted{sdo.in_use_.insert(node).second} {}
@@ -242,11 +242,12 @@ class BlockingSdo {
     bool granted;
   };
 
-  /// The client of a node stays: it knows which answers of earlier transfers may still come. Those that have come since
-  /// are taken first, so that none of them answers the next request.
+  /// Returns the client of a node, which is kept because it knows which responses of earlier transfers may still
+  /// arrive. Those that have arrived are processed first, so that they are not taken for the response to the
+  /// next request.
   [[nodiscard]] SdoClient<B>& client_of(NodeId node) {
     SdoClient<B>& client = clients_.try_emplace(node.value(), bus_, node, options_).first->second;
-    constexpr unsigned at_most = 1'000;  // a bus may bring frames without end
+    constexpr unsigned at_most = 1'000;  // the bus may receive frames continuously
     for (unsigned i = 0; i != at_most; ++i) {
       const std::optional<Frame> frame = bus_.receive(Duration{0});
       if (!frame) break;
@@ -256,8 +257,8 @@ class BlockingSdo {
     return client;
   }
 
-  /// Gives a frame to the clients of all nodes: a transfer that `on_frame` has begun may run inside of another one.
-  /// Whether `client` is one of them.
+  /// Passes a frame to the clients of all nodes, because a transfer that `on_frame` has started may run inside another
+  /// one. Returns whether `client` is one of them.
   bool take(const Frame& frame, const void* client) {
     bool is_one_of_them = false;
     for (auto& [node, one] : clients_) {
@@ -271,10 +272,10 @@ class BlockingSdo {
   SdoClientOptions options_;
   std::map<std::uint8_t, SdoClient<B>> clients_;
   std::set<std::uint8_t> in_use_;  ///< node-IDs
-  std::deque<Frame> early_;  ///< read before the request was sent; `on_frame` has not seen them
+  std::deque<Frame> early_;  ///< received before the request was sent; not yet passed to `on_frame`
 };
 
-/// A device on the bus by its generated types.
+/// A device on the bus, with its generated types.
 template <class Device, BlockingBus B>
 class BlockingRemoteNode : public BlockingObjects<Device, BlockingSdo<B>> {
  public:

@@ -1,4 +1,4 @@
-/// Frames that a VirtualBus loses, repeats, delays and brings in another order on their way to one endpoint. Host side.
+/// Frames that a VirtualBus loses, repeats, delays and reorders on the way to one endpoint. Host side.
 #pragma once
 
 #include <algorithm>
@@ -16,19 +16,19 @@
 
 namespace canopen {
 
-/// How often something happens to a frame, 0..1.
+/// Probability of each fault, 0..1.
 struct BusFaultRates {
   double lost = 0;
   double repeated = 0;
   double delayed = 0;
   Duration longest_delay = std::chrono::milliseconds{2};
-  /// A frame that is not delayed overtakes those that are, and what is repeated comes late. If not, frames keep their
-  /// order and are repeated at once, as CAN does it.
+  /// Frames that are not delayed overtake those that are, and repetitions arrive later. If false, frames keep their
+  /// order and are repeated at once, as on CAN.
   bool overtaking = false;
 };
 
-/// Stands between the bus and an endpoint whose callbacks are set. It must live as long as the bus. The same seed makes
-/// the same faults.
+/// Inserts faults between the bus and an endpoint whose callbacks are set. It must live as long as the bus. The same
+/// seed results in the same faults.
 class BusFaults {
  public:
   BusFaults(VirtualBus::Endpoint& endpoint, BusFaultRates fault_rates, std::uint32_t seed)
@@ -44,7 +44,7 @@ class BusFaults {
   BusFaults(const BusFaults&) = delete;
   BusFaults& operator=(const BusFaults&) = delete;
 
-  /// What counts from now on.
+  /// Rates from now on.
   BusFaultRates rates;
 
  private:
@@ -88,7 +88,7 @@ class BusFaults {
   std::function<void(const Frame&, TimePoint)> on_frame_;
   std::function<void(TimePoint)> on_time_;
   std::function<std::optional<TimePoint>()> next_deadline_;
-  std::vector<Held> held_;  ///< by the moment when they go on
+  std::vector<Held> held_;  ///< by the time at which they are passed on
   std::mt19937 random_;
 };
 

@@ -1,7 +1,7 @@
-/// The CAN controller bxCAN of STM32F0, F1, F2, F3, F4, F7 and L4. No operating system, no interrupts: a loop asks.
+/// The CAN controller bxCAN of STM32F0, F1, F2, F3, F4, F7 and L4. Polled, without operating system or interrupts.
 ///
 ///     canopen::BxCan<> bus{*reinterpret_cast<canopen::BxCanRegisters*>(0x4000'6400)};
-///     const bool up = bus.start(42'000'000, 500'000);  // the clock of APB1; clock and pins are on by then
+///     const bool up = bus.start(42'000'000, 500'000);  // the clock of APB1; clock and pins must be enabled
 ///     if (const auto frame = bus.receive()) node.on_frame(*frame, now);
 ///     if (const auto status = bus.status_change()) node.on_bus_status(*status, now);
 #pragma once
@@ -57,19 +57,19 @@ struct BxCanRegisters {
 };
 static_assert(sizeof(BxCanRegisters) == 0x320);
 
-/// The first controller of a chip: the filter banks of a second one lie in the registers of the first. `Registers` is
-/// another type in tests alone.
+/// The first controller of a chip: the filter banks of a second one are in the registers of the first. `Registers` is
+/// another type only in tests.
 template <class Registers = BxCanRegisters>
 class BxCan {
  public:
   static constexpr BitTimingRange range{1024, 16, 8, 4};
-  static constexpr std::size_t filter_banks = 14;  ///< that every chip has, for its first controller
+  static constexpr std::size_t filter_banks = 14;  ///< that every chip has for its first controller
 
   explicit constexpr BxCan(Registers& registers) : registers_{registers} {}
 
-  /// Goes on the bus, or changes the bit rate there, with what `accept` has been told, or all frames. `clock` in Hz is
-  /// that of the controller, `bit_rate` in bit/s. Frames that wait stay. False: the clock gives no such rate, or the
-  /// controller does not come up, as one without clock or with CAN_RX held low.
+  /// Goes on the bus, or changes the bit rate, with the frames selected by `accept`, or all frames. `clock` is that of
+  /// the controller in Hz, `bit_rate` is in bit/s. Waiting frames are kept. Returns false if the rate cannot be derived
+  /// from the clock, or the controller does not start, for instance without clock or with CAN_RX held low.
   [[nodiscard]] bool start(std::uint32_t clock, std::uint32_t bit_rate, BusMode mode = BusMode::normal) {
     const std::optional<BitTiming> timing = canopen::bit_timing(clock, bit_rate, range);
     if (!timing || !stop()) return false;
@@ -81,8 +81,8 @@ class BxCan {
     return wait_until([this] { return (registers_.master_status & (initialize | asleep)) == 0; });
   }
 
-  /// Leaves the bus when the frame that is on the wire has ended. Frames that wait stay until the next start. False:
-  /// the controller has no clock.
+  /// Leaves the bus when the frame on the wire has ended. Waiting frames are kept until the next start. Returns false
+  /// if the controller does not have a clock.
   bool stop() {
     registers_.master_control = initialize | recover_from_bus_off;  // awake, and mailboxes by identifier: TXFP is 0
     return wait_until([this] { return (registers_.master_status & (initialize | asleep)) == initialize; });
@@ -102,7 +102,7 @@ class BxCan {
     registers_.filter_master = registers_.filter_master & ~1u;
   }
 
-  /// Accepts these frames alone, two to a filter bank; all frames where there are more than the banks hold.
+  /// Accepts only these frames, two per filter bank; all frames if there are more than the banks can hold.
   void accept(std::span<const AcceptedFrame> frames) {
     if (frames.empty() || frames.size() > 2 * filter_banks) return accept_all();
     const std::size_t banks = (frames.size() + 1) / 2;
@@ -122,9 +122,9 @@ class BxCan {
     registers_.filter_master = registers_.filter_master & ~1u;
   }
 
-  /// Into a free mailbox. The controller sends the one with the lowest identifier first. Of two frames with the same
-  /// identifier the second waits until the first is gone: the order of equals is that of the mailboxes. False: no room,
-  /// not on the bus, or silent.
+  /// Writes a frame to a free mailbox. The controller sends the one with the lowest identifier first. Of two frames
+  /// with the same identifier, the second waits until the first has been sent, because equal ones are sent in mailbox
+  /// order. Returns false if there is no room, the controller is not on the bus, or it is silent.
   [[nodiscard]] bool send(const Frame& frame) {
     if ((registers_.master_status & initialize) != 0 || (registers_.bit_timing & silent) != 0) return false;
     const std::uint32_t empty = registers_.transmit_status >> 26 & 7;
@@ -147,8 +147,8 @@ class BxCan {
     return true;
   }
 
-  /// The next frame from receive FIFO 0, if there is one. While the release of the last frame is under way FMP still
-  /// counts it, and the mailbox still shows it.
+  /// Returns the next frame of receive FIFO 0, if any. While the last frame is being released, FMP still counts it, and
+  /// the mailbox still shows it.
   [[nodiscard]] std::optional<Frame> receive() {
     const std::uint32_t fifo = registers_.receive_fifo[0];
     if ((fifo & overrun) != 0) {
@@ -165,7 +165,7 @@ class BxCan {
     return frame;
   }
 
-  /// What the controller tells of itself, when it is another than at the last call.
+  /// Returns the status of the controller if it has changed since the last call.
   [[nodiscard]] std::optional<BusStatus> status_change() {
     const std::uint32_t errors = registers_.error_status;
     return report_.change((errors & 4) != 0 ? BusState::off : (errors & 2) != 0 ? BusState::passive : BusState::active);
@@ -184,7 +184,7 @@ class BxCan {
   static constexpr std::uint32_t overrun = 1 << 4;               // RFxR.FOVR
   static constexpr std::uint32_t release = 1 << 5;               // RFxR.RFOM
 
-  /// The identifier as mailboxes and filters hold it.
+  /// Returns the identifier in the format of mailboxes and filters.
   [[nodiscard]] static constexpr std::uint32_t word_of(std::uint32_t id, bool is_extended, bool is_remote) {
     return (is_extended ? id << 3 | extended : id << 21) | (is_remote ? remote : 0);
   }

@@ -1,4 +1,4 @@
-/// A file descriptor that has an owner. POSIX, host side.
+/// A file descriptor with an owner. POSIX, host side.
 #pragma once
 
 #include <unistd.h>
@@ -7,11 +7,11 @@
 
 namespace canopen {
 
-/// Closes its file descriptor at the end.
+/// Closes its file descriptor when destroyed.
 class Descriptor {
  public:
   Descriptor() = default;
-  /// `number` is what the call that opened it returned: nothing is open where that is negative.
+  /// `number` is the result of the call that opened it; nothing is open if it is negative.
   explicit Descriptor(int number) : number_{number} {}
   Descriptor(Descriptor&& other) noexcept : number_{std::exchange(other.number_, -1)} {}
   Descriptor& operator=(Descriptor&& other) noexcept {
@@ -23,7 +23,7 @@ class Descriptor {
   [[nodiscard]] explicit operator bool() const { return number_ >= 0; }
   [[nodiscard]] int number() const { return number_; }
 
-  /// What close(2) returns: some file systems report a full disk only now. 0 where nothing is open.
+  /// Returns the result of close(2): some file systems report a full disk only now. 0 if nothing is open.
   [[nodiscard]] int close() { return number_ < 0 ? 0 : ::close(std::exchange(number_, -1)); }
 
  private:

@@ -1,5 +1,5 @@
-/// One descriptor of the operating system that becomes readable when others have something to do, or at a moment: what
-/// a port gives to the poll loop of an application. Linux, host side.
+/// One descriptor of the operating system that becomes readable when others have events, or at a point in time: for the
+/// poll loop of an application. Linux, host side.
 #pragma once
 
 #include <poll.h>
@@ -19,7 +19,7 @@
 
 namespace canopen {
 
-/// CLOCK_MONOTONIC, cut to what a TimePoint holds.
+/// Returns CLOCK_MONOTONIC, truncated to a TimePoint.
 [[nodiscard]] inline TimePoint monotonic_now() {
   timespec time{};
   ::clock_gettime(CLOCK_MONOTONIC, &time);
@@ -35,12 +35,12 @@ namespace canopen {
   return result;
 }
 
-/// Throws what the last system call has said.
+/// Throws the error of the last system call.
 [[noreturn]] inline void throw_errno(const std::string& what) {
   throw std::system_error{errno, std::generic_category(), what};
 }
 
-/// The descriptor that a system call opened. Throws std::system_error when the call has failed.
+/// Returns the descriptor that a system call has opened. Throws std::system_error if the call has failed.
 [[nodiscard]] inline Descriptor opened(int number, const std::string& what) {
   if (number < 0) throw_errno(what);
   return Descriptor{number};
@@ -54,24 +54,25 @@ class EventDescriptor {
     control(EPOLL_CTL_ADD, timer_.number(), EPOLLIN);
   }
 
-  /// Readable when there is something to do.
+  /// Readable when there is an event.
   [[nodiscard]] int number() const { return epoll_.number(); }
 
-  /// From now on `descriptor` counts when it can be read, instead of the one before, which has been closed or will be.
+  /// Watches `descriptor` for reading, instead of the previous one, which has been or will be closed.
   void watch(int descriptor) {
     control(EPOLL_CTL_ADD, descriptor, EPOLLIN);
     watched_ = descriptor;
     waits_for_room_ = false;
   }
 
-  /// Whether it counts as well when it can be written.
+  /// Sets whether to watch it for writing as well.
   void wait_for_room(bool wanted) {
     if (wanted == waits_for_room_) return;
     control(EPOLL_CTL_MOD, watched_, wanted ? EPOLLIN | EPOLLOUT : EPOLLIN);
     waits_for_room_ = wanted;
   }
 
-  /// Readable from this moment on, until the next call. One that comes too early is not put off.
+  /// Makes it readable from this time on, until the next call. An alarm that is already set for an earlier
+  /// time is kept.
   void set_alarm(std::optional<TimePoint> at, TimePoint now) {
     const bool ringing = alarm_ && *alarm_ <= now;
     if (!at && !ringing) return;
@@ -84,7 +85,7 @@ class EventDescriptor {
     alarm_ = at;
   }
 
-  /// Waits until there is something to do with the descriptor, for this time at most.
+  /// Waits until the descriptor has an event, for this time at most.
   void wait(Duration timeout) const {
     pollfd waiting{watched_, static_cast<short>(waits_for_room_ ? POLLIN | POLLOUT : POLLIN), 0};
     const timespec span = to_timespec(timeout);

@@ -1,10 +1,10 @@
-/// The CAN controller FDCAN of STM32, Bosch's M_CAN: as in STM32G4, G0, H5, L5 and U5, whose message RAM is divided by
-/// the chip, and as in STM32H7, where it is divided by the driver. Classic CAN frames. No operating system, no
-/// interrupts: a loop asks.
+/// The CAN controller FDCAN of STM32, Bosch's M_CAN: as in STM32G4, G0, H5, L5 and U5, whose chip divides the message
+/// RAM, and as in STM32H7, where the driver divides it. Classic CAN frames. Polled, without operating system or
+/// interrupts.
 ///
 ///     canopen::FdcanG4 bus{*reinterpret_cast<canopen::FdcanG4Registers*>(0x4000'6400),
 ///                          reinterpret_cast<volatile std::uint32_t*>(0x4000'A400)};
-///     const bool up = bus.start(170'000'000, 500'000);  // its kernel clock; clock and pins are on by then
+///     const bool up = bus.start(170'000'000, 500'000);  // its kernel clock; clock and pins must be enabled
 ///     if (const auto frame = bus.receive()) node.on_frame(*frame, now);
 ///     if (const auto status = bus.status_change()) node.on_bus_status(*status, now);
 #pragma once
@@ -26,7 +26,7 @@ namespace fdcan {
 
 using Register = volatile std::uint32_t;
 
-/// What both kinds of chip begin with, up to 07Ch.
+/// Registers that both kinds of chip have, up to 07Ch.
 struct CommonRegisters {
   Register reserved_000[6];
   Register cccr;  ///< CC control, 018h
@@ -40,15 +40,15 @@ struct CommonRegisters {
   Register reserved_058[10];
 };
 
-/// Where one controller has its filters, its Rx FIFO 0 and its Tx queue: in words of the message RAM.
+/// Layout of a controller's filters, Rx FIFO 0 and Tx queue, in words of the message RAM.
 struct MessageRam {
-  std::uint16_t standard_filters;  ///< a word each
+  std::uint16_t standard_filters;  ///< one word each
   std::uint16_t extended_filters;  ///< two words each
   std::uint16_t received;          ///< elements of Rx FIFO 0
   std::uint16_t transmitted;       ///< elements of the Tx queue
-  std::uint16_t element;           ///< words of an element
+  std::uint16_t element;           ///< words per element
   std::uint16_t transmit;          ///< first word of the Tx queue
-  std::uint16_t size;              ///< words of all
+  std::uint16_t size;              ///< total size in words
 
   [[nodiscard]] constexpr std::uint16_t extended() const { return standard_filters; }
   [[nodiscard]] constexpr std::uint16_t receive() const {
@@ -56,7 +56,7 @@ struct MessageRam {
   }
 };
 
-/// GFC, RXGFC: frames that no filter takes are rejected, ANFS and ANFE. Remote frames go through the filters.
+/// GFC, RXGFC: frames that do not match a filter are rejected, ANFS and ANFE. Remote frames are filtered.
 inline constexpr std::uint32_t reject_others = 2 << 4 | 2 << 2;
 
 }  // namespace fdcan
@@ -106,13 +106,13 @@ struct FdcanH7Registers {
   fdcan::Register txefc;  ///< Tx event FIFO configuration, 0F0h
 };
 
-/// What differs from one kind of chip to the other: the registers, the message RAM and how it is divided.
+/// Differences between the kinds of chip: registers, message RAM and its layout.
 struct FdcanOfG4 {
   using Registers = FdcanG4Registers;
   static constexpr fdcan::MessageRam message_ram{28, 8, 3, 3, 18, 158, 212};
   static constexpr std::uint32_t lost = 1 << 2;  ///< IR.RF0L
 
-  /// Only how many filters there are can be chosen.
+  /// Only the number of filters can be configured.
   static void divide(auto& registers, std::uint32_t /*first_word*/) {
     registers.rxgfc = std::uint32_t{message_ram.extended_filters} << 24 |
                       std::uint32_t{message_ram.standard_filters} << 16 | fdcan::reject_others;
@@ -125,7 +125,7 @@ struct FdcanOfH7 {
   static constexpr fdcan::MessageRam message_ram{64, 16, 64, 16, 4, 352, 416};
   static constexpr std::uint32_t lost = 1 << 3;  ///< IR.RF0L
 
-  /// Start addresses stand as bytes, as their two lowest bits are none of the fields'. What is not used is empty.
+  /// Start addresses are in bytes, because their two lowest bits are not part of the fields. Unused parts are empty.
   static void divide(auto& registers, std::uint32_t first_word) {
     const auto place = [first_word](std::uint32_t elements, std::uint32_t word) {
       return elements << 16 | (first_word + word) * 4;
@@ -143,28 +143,29 @@ struct FdcanOfH7 {
   }
 };
 
-/// `Registers` is another type in tests alone.
+/// `Registers` is another type only in tests.
 template <class Chip, class Registers = typename Chip::Registers>
 class Fdcan {
  public:
   static constexpr BitTimingRange range{512, 256, 128, 128};
   static constexpr fdcan::MessageRam layout = Chip::message_ram;
-  /// Identifiers that `accept` can tell apart: two to a filter, and the last filter is for all frames.
+  /// Maximum number of identifiers for `accept`: two per filter; the last filter is for all frames.
   static constexpr std::size_t most_standard = 2 * (layout.standard_filters - 1);
   static constexpr std::size_t most_extended = 2 * (layout.extended_filters - 1);
 
-  /// `message_ram` is that of the chip; this controller's part of it begins with `first_word`: 0 for the first
+  /// `message_ram` is that of the chip; the part of this controller begins with `first_word`: 0 for the first
   /// controller, `layout.size` for the second one.
   constexpr Fdcan(Registers& registers, volatile std::uint32_t* message_ram, std::uint16_t first_word = 0)
       : registers_{registers}, ram_{message_ram}, first_word_{first_word} {}
 
-  /// Goes on the bus, or changes the bit rate there, with what `accept` has been told, or all frames. `clock` in Hz is
-  /// the kernel clock of the controller, `bit_rate` in bit/s. Frames that wait to be sent stay; those that have not
-  /// been received yet are lost. False: the clock gives no such rate, or the controller has no clock.
+  /// Goes on the bus, or changes the bit rate, with the frames selected by `accept`, or all frames. `clock` is the
+  /// kernel clock of the controller in Hz, `bit_rate` is in bit/s. Frames waiting for transmission are kept; those that
+  /// have not been read yet are lost. Returns false if the rate cannot be derived from the clock, or the controller
+  /// does not have a clock.
   [[nodiscard]] bool start(std::uint32_t clock, std::uint32_t bit_rate, BusMode mode = BusMode::normal) {
     const std::optional<BitTiming> timing = canopen::bit_timing(clock, bit_rate, range);
     if (!timing || !stop()) return false;
-    const std::uint32_t modes = mode == BusMode::silent ? silent : 0;  // FDOE and DAR 0: classic CAN, sent until it is
+    const std::uint32_t modes = mode == BusMode::silent ? silent : 0;  // FDOE, DAR 0: classic CAN, retransmission on
     registers_.common.cccr = initialize | change_enable;
     if (!wait_until([this] { return (registers_.common.cccr & change_enable) != 0; })) return false;
     registers_.common.nbtp = (timing->resynchronization - 1u) << 25 | (timing->prescaler - 1u) << 16 |
@@ -184,11 +185,11 @@ class Fdcan {
     return true;
   }
 
-  /// Leaves the bus when the frame that is on the wire has ended. Frames that wait to be sent stay until the next start
-  /// in normal mode. False: the controller has no clock.
+  /// Leaves the bus when the frame on the wire has ended. Frames waiting for transmission are kept until the next start
+  /// in normal mode. Returns false if the controller does not have a clock.
   ///
-  /// CCE clears the requests, and must not do so while the controller looks through them for the next one to be sent:
-  /// it would never send again. So they are cancelled first, and requested again in the end.
+  /// CCE clears the requests, which must not happen while the controller scans them for the next frame to send: it
+  /// would then never send again. They are therefore cancelled first, and requested again at the end.
   bool stop() {
     const std::uint32_t requested = registers_.txbrp;
     running_ = false;
@@ -198,7 +199,7 @@ class Fdcan {
       kept_ |= requested & ~registers_.txbto;
       if (!ended) return false;
     } else {
-      kept_ |= requested;  // in bus-off nothing is under way
+      kept_ |= requested;  // in bus-off no transmission is in progress
     }
     registers_.common.cccr = registers_.common.cccr | initialize;
     return wait_until([this] { return (registers_.common.cccr & initialize) != 0; });
@@ -213,9 +214,9 @@ class Fdcan {
     for (std::uint32_t i = 0; i + 1 < layout.extended_filters; ++i) set_extended(i, 0, 0);
   }
 
-  /// Accepts frames with these identifiers alone: the filters do not tell data from remote frames. All frames where
-  /// there are more than the filters hold. No frame is lost meanwhile: the last filters take all until the others
-  /// stand.
+  /// Accepts only frames with these identifiers; the filters do not distinguish data and remote frames. All frames if
+  /// there are more than the filters can hold. No frame is lost meanwhile: the last filters accept all frames until the
+  /// others have been set.
   void accept(std::span<const AcceptedFrame> frames) {
     accept_all();
     if (frames.empty()) return;
@@ -233,9 +234,9 @@ class Fdcan {
     set_extended(layout.extended_filters - 1u, 0, 0);
   }
 
-  /// Into the queue, from which the controller sends the frame with the lowest identifier first. Of two frames with the
-  /// same identifier the second waits until the first is gone: their order in the queue is not that of requests. False:
-  /// no room, not on the bus, or silent.
+  /// Writes a frame to the queue, from which the controller sends the frame with the lowest identifier first. Of two
+  /// frames with the same identifier, the second waits until the first has been sent, because the queue does not keep
+  /// the order of requests. Returns false if there is no room, the controller is not on the bus, or it is silent.
   [[nodiscard]] bool send(const Frame& frame) {
     if (!running_ || (registers_.common.cccr & (initialize | silent)) != 0) return false;
     const std::uint32_t id = frame.extended ? frame.id | extended : frame.id << 18;
@@ -257,7 +258,7 @@ class Fdcan {
     return true;
   }
 
-  /// The next frame from Rx FIFO 0, if there is one.
+  /// Returns the next frame of Rx FIFO 0, if any.
   [[nodiscard]] std::optional<Frame> receive() {
     const std::uint32_t fifo = registers_.rxf0s;
     if ((fifo & message_lost) != 0) {
@@ -277,8 +278,8 @@ class Fdcan {
     return frame;
   }
 
-  /// What the controller tells of itself, when it is another than at the last call. To be called in every round of the
-  /// loop: it is here that a controller in bus-off begins to recover, which takes it 129 times 11 recessive bits.
+  /// Returns the status of the controller if it has changed since the last call. Call it in every cycle of the loop: it
+  /// starts the recovery of a controller in bus-off, which takes 129 times 11 recessive bits.
   [[nodiscard]] std::optional<BusStatus> status_change() {
     const std::uint32_t status = registers_.common.psr;
     if ((status & bus_off) != 0 && running_ && (registers_.common.cccr & initialize) != 0) {
@@ -315,7 +316,7 @@ class Fdcan {
     words[1] = second;
   }
 
-  /// The identifier with this number; an odd one goes beside the one before it, which stood there twice.
+  /// Adds the identifier with this number; an odd one replaces the copy of the identifier before it.
   void add_standard(std::size_t number, std::uint32_t id) {
     volatile std::uint32_t& word = standard(static_cast<std::uint32_t>(number / 2));
     const std::uint32_t first = number % 2 == 0 ? two_of_them | into_fifo << 27 | id << 16 : word & ~all_standard;

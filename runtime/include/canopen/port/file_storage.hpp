@@ -1,4 +1,4 @@
-/// Storage in a file, for devices that run on Linux: a new image replaces the file as a whole.
+/// Storage in a file, for devices on Linux: a new image replaces the file as a whole.
 #pragma once
 
 #include <fcntl.h>
@@ -22,8 +22,8 @@
 
 namespace canopen {
 
-/// The file holds four letters, the checksum and the image. An image is written to PATH.new, brought to the disk and
-/// renamed: at any moment there is the old file or the new one.
+/// Storage in a file with four letters, the checksum and the image. An image is written to PATH.new, synchronised to
+/// disk and renamed: at any time either the old or the new file exists.
 class FileStorage {
  public:
   explicit FileStorage(std::string path) : path_{std::move(path)} {}
@@ -64,10 +64,10 @@ class FileStorage {
       return false;
     }
     image_ = std::move(fresh_);
-    return sync_folder();  // false: the new file stands, and a loss of power may bring the old one back
+    return sync_folder();  // false: the new file exists, but a power loss may restore the old one
   }
 
-  /// Why the last `open` or `commit` has failed. Without one where the file was read and its checksum is wrong.
+  /// Returns why the last `open` or `commit` has failed. Empty if the file was read, but its checksum is wrong.
   [[nodiscard]] std::error_code error() const { return error_; }
 
  private:
@@ -88,7 +88,7 @@ class FileStorage {
     return StorageState::damaged;
   }
 
-  /// Keeps the error of a system call. False: it has answered a negative number.
+  /// Records the error of a system call. Returns false if its result is negative.
   bool succeeded(int answer) {
     if (answer < 0) error_ = {errno, std::generic_category()};
     return answer >= 0;
@@ -125,7 +125,7 @@ class FileStorage {
     return true;
   }
 
-  /// Brings the new name to the disk.
+  /// Synchronises the new name to disk.
   bool sync_folder() {
     const std::size_t slash = path_.rfind('/');
     const std::string folder = slash == std::string::npos ? "." : slash == 0 ? "/" : path_.substr(0, slash);

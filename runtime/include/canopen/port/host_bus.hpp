@@ -1,4 +1,4 @@
-/// A CAN bus by its address, for programs on a host:
+/// A CAN bus selected by an address, for programs on a host:
 ///
 ///     canopen::HostBus bus{"socketcan:can0"};
 ///     auto drive = canopen::make_node<cpc_tc1::Device>(bus, canopen::NodeId{5});
@@ -24,51 +24,51 @@
 
 namespace canopen {
 
-/// The port that an address tells of. Its node must not outlive it.
+/// The port that an address selects. Its node must not outlive it.
 class HostBus {
  public:
   /// `socketcan:INTERFACE`, `slcan:DEVICE[@BIT-RATE[,BAUD]]` or `socketcand:HOST:PORT/INTERFACE`; BIT-RATE is that of
-  /// the CAN bus, BAUD that of the serial line. Throws std::invalid_argument, with a sentence, for what is no address,
-  /// and std::system_error for what cannot be opened.
+  /// the CAN bus, BAUD that of the serial line. Throws std::invalid_argument with a message if the address is invalid,
+  /// and std::system_error if it cannot be opened.
   explicit HostBus(const std::string& address) : port_{open(address)} {}
 
-  /// False when the bus has no room now; the frame is then not taken.
+  /// Sends a frame. Returns false if the bus has no room; the frame is then not sent.
   [[nodiscard]] bool send(const Frame& frame) {
     return std::visit([&](auto& port) { return port.send(frame); }, port_);
   }
 
-  /// The next frame, or nothing when none comes within this time. Throws std::system_error when the bus is lost.
+  /// Returns the next frame; empty if none is received within this time. Throws std::system_error if the bus is lost.
   [[nodiscard]] std::optional<Frame> receive(Duration timeout) {
     return std::visit([&](auto& port) { return port.receive(timeout); }, port_);
   }
 
-  /// Starts a node and runs it until `stop` is true, which is looked at ten times a second at least.
+  /// Starts a node and runs it until `stop` is true, which is checked at least ten times a second.
   template <class Node>
   void run(Node& node, const std::atomic<bool>& stop) {
     std::visit([&](auto& port) { port.run(node, stop); }, port_);
   }
 
-  /// Does what there is to do for a node that has been started, without waiting: to be called once after `node.start`
-  /// and whenever `file_descriptor` can be read.
+  /// Serves a node that has been started, without waiting: call it once after `node.start` and whenever
+  /// `file_descriptor` is readable.
   template <class Node>
   void serve(Node& node) {
     std::visit([&](auto& port) { port.serve(node); }, port_);
   }
 
-  /// When the last frame that `receive` gave has come.
+  /// Returns when the last frame returned by `receive` was received.
   [[nodiscard]] TimePoint received_at() const {
     return std::visit([](const auto& port) { return port.received_at(); }, port_);
   }
 
-  /// Frames that wait for room.
+  /// Returns the number of frames that wait for room.
   [[nodiscard]] std::size_t waiting() const {
     return std::visit([](const auto& port) { return port.waiting(); }, port_);
   }
 
-  /// CLOCK_MONOTONIC, cut to what a TimePoint holds.
+  /// Returns CLOCK_MONOTONIC, truncated to a TimePoint.
   [[nodiscard]] static TimePoint now() { return monotonic_now(); }
 
-  /// Readable when there is something to do, for a poll loop of the application's own.
+  /// Readable when there is an event, for the application's own poll loop.
   [[nodiscard]] int file_descriptor() const {
     return std::visit([](const auto& port) { return port.file_descriptor(); }, port_);
   }
@@ -100,7 +100,7 @@ class HostBus {
     return SlcanPort{device, options};
   }
 
-  /// What stands before and behind a character; all of it and nothing where the character is not there.
+  /// Returns the text before and after the character at `at`; all of it and an empty text if `at` is npos.
   [[nodiscard]] static std::pair<std::string, std::string> split(const std::string& text, std::size_t at) {
     if (at == std::string::npos) return {text, ""};
     return {text.substr(0, at), text.substr(at + 1)};

@@ -1,10 +1,10 @@
-/// How a node runs on a port of a host: the same for all of them. A port gives, besides `send`,
+/// Runs a node on a port of a host; common to all ports. A port provides, in addition to `send`,
 ///
-///     std::optional<PortEvent> take();                     // what has come, without waiting
+///     std::optional<PortEvent> take();                     // the next event, without waiting
 ///     std::optional<TimePoint> next_deadline();            // when `take` has something to do by itself
-///     Duration hold_off();                                 // how long to wait with a frame that found no room; 0: it
-///     did bool has_more();                                     // frames that no descriptor tells of wait for `take`
-///     TimePoint pass_time();                               // now, which no frame is before any more
+///     Duration hold_off();                                 // how long to wait after a rejected frame; 0: none
+///     bool has_more();                                     // frames wait that no descriptor reports
+///     TimePoint pass_time();                               // now; no later frame has an earlier time
 ///     EventDescriptor& events();
 #pragma once
 
@@ -22,9 +22,9 @@
 
 namespace canopen {
 
-/// A frame that has been received, or another state of the bus.
+/// A received frame, or a change of the bus status.
 struct PortEvent {
-  std::optional<Frame> frame;  ///< nothing: the status has changed
+  std::optional<Frame> frame;  ///< empty: the status has changed
   TimePoint time;
   BusStatus status;
 };
@@ -32,11 +32,11 @@ struct PortEvent {
 namespace host_loop {
 
 inline constexpr Duration look_at_stop{100'000};
-inline constexpr Duration try_again{1'000};     ///< after a frame that found no room
-inline constexpr Duration look_again{100'000};  ///< whether a bus that is off or down is back
-inline constexpr std::size_t burst = 64;        ///< frames between two looks at the deadlines
+inline constexpr Duration try_again{1'000};     ///< after a frame for which there was no room
+inline constexpr Duration look_again{100'000};  ///< interval of checks whether a bus that is off or down is back
+inline constexpr std::size_t burst = 64;        ///< maximum number of frames between two checks of the deadlines
 
-/// Hands over what has come, and lets time pass: until the moment that it tells.
+/// Passes events to the node, and the present time, which it returns.
 template <class Port, class Node>
 TimePoint serve_once(Port& port, Node& node) {
   if constexpr (requires { port.listen_for(node); }) port.listen_for(node);
@@ -54,7 +54,7 @@ TimePoint serve_once(Port& port, Node& node) {
   return now;
 }
 
-/// When there is something to do that no descriptor tells of.
+/// Returns the next event that does not make a descriptor readable.
 template <class Port, class Node>
 [[nodiscard]] std::optional<TimePoint> next_deadline(const Port& port, const Node& node, TimePoint now) {
   std::optional<TimePoint> next = node.next_deadline();
@@ -84,7 +84,7 @@ void run(Port& port, Node& node, const std::atomic<bool>& stop) {
   }
 }
 
-/// The next frame; nothing when none comes within this time. The port's descriptor can be read while more are there.
+/// Returns the next frame; empty if none is received within this time. The descriptor stays readable if there are more.
 template <class Port>
 [[nodiscard]] std::optional<Frame> receive(Port& port, Duration timeout) {
   const TimePoint end = monotonic_now() + timeout;
@@ -94,7 +94,7 @@ template <class Port>
         if (port.has_more()) port.events().set_alarm(event->time, monotonic_now());
         return event->frame;
       }
-      if (monotonic_now() >= end) break;  // the status may change without end
+      if (monotonic_now() >= end) break;  // the status may change continuously
     }
     const TimePoint now = monotonic_now();
     if (now >= end) {

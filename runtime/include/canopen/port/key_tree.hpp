@@ -1,4 +1,4 @@
-/// The smallest of many keys, each of which may change at any time. Host side.
+/// Finds the smallest of many keys, each of which may change at any time. Host side.
 #pragma once
 
 #include <algorithm>
@@ -9,16 +9,16 @@
 
 namespace canopen {
 
-/// A key for each place 0, 1, 2, ...; all operations but `resize` take logarithmic time. Equal keys are found in the
-/// order of their places.
+/// A key for each position 0, 1, 2, ...; all operations except `resize` take logarithmic time. Equal keys are found in
+/// the order of their positions.
 class KeyTree {
  public:
   using Key = std::uint64_t;
-  /// The key of a place that has none.
+  /// The key of a position that does not have one.
   static constexpr Key none = std::numeric_limits<Key>::max();
   static constexpr std::size_t no_place = std::numeric_limits<std::size_t>::max();
 
-  /// New places have no key.
+  /// Adds positions without a key.
   void resize(std::size_t places) {
     if (places <= leaves_) return;
     const std::vector<Key> old(least_.begin() + static_cast<std::ptrdiff_t>(leaves_), least_.end());
@@ -38,15 +38,15 @@ class KeyTree {
     }
   }
 
-  /// The smallest key; `none` when no place has one.
+  /// Returns the smallest key; `none` if no position has one.
   [[nodiscard]] Key least() const { return least_[1]; }
 
-  /// The first place from `from` on whose key is not above `key`; `no_place` when there is none.
+  /// Returns the first position from `from` on whose key is not greater than `key`; `no_place` if there is none.
   [[nodiscard]] std::size_t first_up_to(Key key, std::size_t from = 0) const {
     std::size_t at = leaves_ + from;
     if (from >= leaves_) return no_place;
     while (least_[at] > key) {
-      while (at % 2 == 1) at /= 2;  // a right branch: continue behind its parent
+      while (at % 2 == 1) at /= 2;  // a right branch: continue after its parent
       if (at == 0) return no_place;
       ++at;
     }
@@ -56,7 +56,7 @@ class KeyTree {
 
  private:
   std::size_t leaves_ = 1;  ///< a power of two
-  std::vector<Key> least_ = {none, none};  ///< of each subtree; the root is 1, the leaves are the last half
+  std::vector<Key> least_ = {none, none};  ///< of each subtree; root 1, leaves in the last half
 };
 
 }  // namespace canopen

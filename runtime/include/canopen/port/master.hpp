@@ -1,5 +1,5 @@
-/// A CANopen master for programs on a host: boots and watches its slaves, reads and writes their objects, and exchanges
-/// PDOs with them, all by the generated types of their devices.
+/// A CANopen master for programs on a host: boots and monitors its slaves, reads and writes their objects, and
+/// exchanges PDOs with them, with the generated types of their devices.
 ///
 ///     canopen::HostBus bus{"socketcan:can0"};
 ///     canopen::Master master{bus, slaves};
@@ -46,7 +46,7 @@ namespace canopen {
 
 namespace master_detail {
 
-/// The number of the one PDO in a list that has a layout; 0: none has, or several have.
+/// Number of the only PDO in a list with a layout; 0: none or several have it.
 template <class Layout, class List>
 inline constexpr std::uint16_t number_in = 0;
 template <class Layout, class... Pdos>
@@ -87,17 +87,17 @@ inline constexpr std::uint16_t number_in<Layout, PdoList<Pdos...>> =
 template <class Device, BlockingBus B>
 class MasterRemote;
 
-/// Handlers are called from `poll` alone, in the order in which things have happened. They may transfer by SDO, for
-/// which the master goes on watching its slaves; they may not call `poll`. What the bus throws comes through.
+/// Handlers are called only from `poll`, in the order of the events. They may use SDO transfers, during which the
+/// master continues to monitor its slaves; they may not call `poll`. Exceptions of the bus are passed on.
 ///
-/// All transfers to a node, of the application and of the boot-up, run one after the other (SdoQueue). The boot-up message
-/// of a slave of the list ends those that were requested before with 0800 0022h.
+/// All transfers to a node, of the application and of the boot-up, run one after the other (SdoQueue). The boot-up
+/// message of a slave of the list ends those that were requested before with 0800 0022h.
 template <BlockingBus B>
 class Master {
  public:
   static constexpr std::size_t max_slaves = 127;
-  static constexpr std::size_t max_requests = 64;  ///< of the application that wait; one more: 060A 0023h
-  static constexpr std::size_t max_nodes_at_once = 16;  ///< few enough for the answers to come in time at 20 kbit/s
+  static constexpr std::size_t max_requests = 64;  ///< of the application that may wait; further ones: 060A 0023h
+  static constexpr std::size_t max_nodes_at_once = 16;  ///< few enough for timely responses at 20 kbit/s
   static constexpr std::size_t max_upload = 16 * 1024 * 1024;  ///< bytes; 0504 0005h: a value is longer
 
   explicit Master(B& can_bus, std::vector<NmtSlave> slaves = {}, NmtStartUp start_up = {},
@@ -106,25 +106,25 @@ class Master {
   Master(const Master&) = delete;
   Master& operator=(const Master&) = delete;
 
-  /// The configuration step of a slave, after its identity and its concise DCF, and before its error control is started
-  /// (CiA 302-2): `ok`, or why it failed, which ends its boot-up with BootStatus::configuration. Without a value the
-  /// application goes on by itself, with `begin_upload` and `begin_download`, and calls `configured` at the end.
+  /// Configuration step of a slave, after its identity and its concise DCF, and before its error control is started
+  /// (CiA 302-2): `ok`, or why it failed, which ends its boot-up with BootStatus::configuration. If it returns no
+  /// value, the application continues with `begin_upload` and `begin_download`, and calls `configured` at the end.
   std::function<std::optional<Result<void>>(NodeId)> on_configure;
-  /// How the boot-up of a slave has ended.
+  /// Called when the boot-up of a slave has ended.
   std::function<void(NodeId, const BootResult&)> on_booted;
-  /// What the master sees of a slave, with the state last told.
+  /// Called with each event of a slave and the last reported state.
   std::function<void(NmtMasterEvent, NodeId, NmtState)> on_event;
-  /// All mandatory slaves have booted.
+  /// Called when all mandatory slaves have booted.
   std::function<void()> on_network_started;
-  /// Mandatory slaves are missing when the boot time 1F89h is over; they are still waited for.
+  /// Called when the boot time 1F89h elapses and mandatory slaves are missing; the master keeps waiting for them.
   std::function<void()> on_boot_time_elapsed;
-  /// The EMCY of a node that sends it at 80h + node-ID.
+  /// Called with the EMCYs of nodes that send them with CAN-ID 80h + node-ID.
   std::function<void(NodeId, const EmergencyMessage&)> on_emergency;
 
   /// Resets and boots the slaves.
   void start() { nmt_.start(bus_.now()); }
 
-  /// Takes what comes within this time, and tells it.
+  /// Receives frames for this time, and calls the handlers.
   void poll(Duration span) {
     const TimePoint end = bus_.now() + span;
     do {
@@ -134,31 +134,31 @@ class Master {
     } while (bus_.now() < end);
   }
 
-  /// The end of a configuration for which `on_configure` has returned no value. Without effect when the slave has booted
-  /// up again since.
+  /// Ends a configuration for which `on_configure` has returned no value. Has no effect if the slave has
+  /// booted up again.
   void configured(NodeId node_id, Result<void> result) {
     if (to_configure_[node_id.value() & 0x7F] == 0) after_configuration(node_id, result);
   }
 
-  /// An NMT command to one node, or to all with node-ID 0. False when the bus had no room.
+  /// Sends an NMT command to one node, or to all nodes with node-ID 0. Returns false if the bus had no room.
   bool command(NmtCommand command, NodeId node_id) { return nmt_.command(command, node_id); }
 
-  /// A slave that has failed is reset and booted again.
+  /// Resets and boots a slave again, for instance after a failure.
   void boot(NodeId node_id) { nmt_.boot(node_id, bus_.now()); }
 
-  /// SYNC, without a counter.
+  /// Sends SYNC without a counter.
   [[nodiscard]] bool send_sync() { return bus_.send({.id = 0x80}); }
 
-  /// The state that a slave has told last; nothing when it is unknown or lost.
+  /// Returns the last state that a slave reported; empty if it is unknown or lost.
   [[nodiscard]] std::optional<NmtState> state(NodeId node_id) const { return nmt_.state(node_id); }
 
-  /// A node by the types of its device. It must not outlive the master.
+  /// Returns a node with the types of its device. It must not outlive the master.
   template <class Device>
   [[nodiscard]] MasterRemote<Device, B> remote(NodeId node_id) {
     return {*this, node_id};
   }
 
-  /// The value of an entry; waits for it.
+  /// Reads an entry; waits for the result.
   [[nodiscard]] Result<std::vector<std::uint8_t>> upload(NodeId node_id, std::uint16_t index, std::uint8_t sub_index) {
     const Kept kept{*this};
     Transfer& transfer = kept.transfer;
@@ -168,7 +168,7 @@ class Master {
     return std::move(transfer.bytes);
   }
 
-  /// Writes an entry; waits until it is written.
+  /// Writes an entry; waits for the result.
   Result<void> download(NodeId node_id, std::uint16_t index, std::uint8_t sub_index,
                         std::span<const std::uint8_t> bytes) {
     const Kept kept{*this};
@@ -176,7 +176,7 @@ class Master {
     return submitted ? wait_for(kept.transfer) : submitted;
   }
 
-  /// The value of an entry of up to eight bytes; waits for it.
+  /// Reads an entry of up to eight bytes; waits for the result.
   [[nodiscard]] SdoAnswer read_number(NodeId node_id, std::uint16_t index, std::uint8_t sub_index,
                                       std::span<std::uint8_t> memory) {
     const Kept kept{*this};
@@ -194,7 +194,7 @@ class Master {
   using UploadDone = std::function<void(const Result<std::vector<std::uint8_t>>&)>;
   using DownloadDone = std::function<void(Result<void>)>;
 
-  /// Begins to read an entry; `done` is called from `poll`, exactly once unless this is refused: 060A 0023h.
+  /// Starts to read an entry; `done` is called from `poll`, exactly once unless this call is rejected: 060A 0023h.
   Result<void> begin_upload(NodeId node_id, std::uint16_t index, std::uint8_t sub_index, UploadDone done) {
     Transfer& transfer = add([done = std::move(done)](Transfer& ended) {
       if (!done) return;
@@ -207,7 +207,7 @@ class Master {
     return begun(transfer, submit_upload(transfer, node_id, index, sub_index));
   }
 
-  /// Begins to write a copy of these bytes to an entry.
+  /// Starts to write a copy of these bytes to an entry.
   Result<void> begin_download(NodeId node_id, std::uint16_t index, std::uint8_t sub_index,
                               std::span<const std::uint8_t> bytes, DownloadDone done) {
     Transfer& transfer = add([done = std::move(done)](Transfer& ended) {
@@ -220,7 +220,7 @@ class Master {
   template <class Device, BlockingBus Any>
   friend class MasterRemote;
 
-  /// Keeps what the NMT master tells until `poll`.
+  /// Queues the events of the NMT master until `poll`.
   struct Host {
     Master& master;
     void happened(NmtMasterEvent event, NodeId node_id, NmtState state) {
@@ -251,7 +251,7 @@ class Master {
     }
   };
 
-  /// A transfer in the queue. The master owns it, as it may outlive the call that waits for it when the bus throws.
+  /// A transfer in the queue. The master owns it, because it may outlive the call that waits for it if the bus throws.
   struct Transfer {
     Master* master = nullptr;
     std::vector<std::uint8_t> bytes;
@@ -259,19 +259,19 @@ class Master {
     std::uint16_t index = 0;
     std::uint8_t sub_index = 0;
     bool download = false;
-    bool requested = false;  ///< the NMT master may have it
+    bool requested = false;  ///< it has been passed to the NMT master
     bool over = false;
     bool size_known = true;
     AbortCode result = ok;
     std::size_t size = 0;
-    std::function<void(Transfer&)> done;  ///< called from `poll`; none: somebody waits
+    std::function<void(Transfer&)> done;  ///< called from `poll`; empty: a call is waiting
   };
 
   struct PdoHandler {
     std::uint8_t node_id;
     std::uint16_t index;    ///< of the communication parameter
-    std::uint32_t cob_id;   ///< with bit 29 for an extended frame; `no_cob_id`: the PDO is not valid
-    std::uint8_t size;      ///< bytes that it needs
+    std::uint32_t cob_id;   ///< bit 29 is set for extended frames; `no_cob_id`: the PDO is not valid
+    std::uint8_t size;      ///< bytes that it requires
     std::function<void(const Frame&)> call;
   };
 
@@ -279,7 +279,7 @@ class Master {
 
   void keep(std::function<void()> what) { waiting_.push_back(std::move(what)); }
 
-  /// Calls the handlers that are queued now. A handler that transfers by SDO receives frames, which may queue more.
+  /// Calls the handlers that are queued now. SDO transfers of a handler receive frames, which may queue more.
   void tell() {
     for (std::size_t count = waiting_.size(); count != 0 && !waiting_.empty(); --count) {
       const std::function<void()> next = std::move(waiting_.front());
@@ -288,7 +288,7 @@ class Master {
     }
   }
 
-  /// Accepts the next frame within this time, or several when the first one is not for the master.
+  /// Receives the next frame within this time, or several if the first one is not for the master.
   void receive(Duration timeout) {
     constexpr Duration try_again{1'000};  // the bus had no room for a frame
     const TimePoint end = bus_.now() + timeout;
@@ -337,7 +337,8 @@ class Master {
     transfers_.remove_if([&transfer](const Transfer& other) { return &other == &transfer; });
   }
 
-  /// The transfer of a call that waits for it. When the bus throws, one that is not over stays until the master ends it.
+  /// The transfer of a call that waits for it. If the bus throws, a transfer that has not ended is kept until the
+  /// master ends it.
   struct Kept {
     explicit Kept(Master& of) : master{of}, transfer{of.add({})} {}
     Kept(const Kept&) = delete;
@@ -396,9 +397,9 @@ class Master {
     return submit(node_id, request);
   }
 
-  /// Takes the frames that have come before it requests the transfer, so that none of them is taken for its answer.
+  /// Processes frames received before the request, so that none of them is taken for its response.
   [[nodiscard]] Result<void> submit(NodeId node_id, const SdoRequest& request) {
-    constexpr unsigned at_most = 1'000;  // a bus may bring frames without end
+    constexpr unsigned at_most = 1'000;  // the bus may receive frames continuously
     for (unsigned i = 0; i != at_most; ++i) {
       const std::optional<Frame> frame = bus_.receive(Duration{0});
       if (!frame) break;
@@ -416,13 +417,13 @@ class Master {
     return transfer.result;
   }
 
-  /// A transfer that is refused has no end to be told.
+  /// Removes a transfer that has been rejected, because its end is not reported.
   [[nodiscard]] Result<void> begun(Transfer& transfer, Result<void> submitted) {
     if (!submitted) remove(transfer);
     return submitted;
   }
 
-  /// A COB-ID that has been written counts from now on.
+  /// Applies a written COB-ID, and completes the transfer.
   void on_transfer(Transfer& ended) {
     if (ended.download && ended.result == ok && is_pdo_cob_id(ended.index, ended.sub_index) && ended.bytes.size() == 4) {
       set_cob_id(ended.node_id, ended.index, number_of(ended.bytes));
@@ -441,7 +442,7 @@ class Master {
     std::uint8_t& to_configure = to_configure_[node_id.value() & 0x7F];
     const std::uint8_t turn = to_configure;
     std::optional<Result<void>> result = Result<void>{};
-    if (turn == 1) {  // if not, it has booted up again
+    if (turn == 1) {  // otherwise, it has booted up again
       --to_configure;
       if (on_configure) result = on_configure(node_id);
       if (result && to_configure == 0) after_configuration(node_id, *result);
@@ -450,12 +451,12 @@ class Master {
     }
   }
 
-  /// The slave may have other COB-IDs than when they were read. A node answers in order: with the last one all are known.
+  /// Reads the COB-IDs of the slave, which may have changed. A node responds in order: the last one completes them.
   void after_configuration(NodeId node_id, Result<void> result) {
     if (!result) return nmt_.configured(node_id, result.abort_code(), bus_.now());
     const std::uint32_t boots = boots_[node_id.value() & 0x7F];
     const bool reads = read_cob_ids(node_id, [this, node_id, boots](AbortCode code) {
-      if (boots != boots_[node_id.value() & 0x7F]) return;  // it has booted up again, and is configured anew
+      if (boots != boots_[node_id.value() & 0x7F]) return;  // it has booted up again, and is configured again
       nmt_.configured(node_id, code == AbortCode::timeout ? code : ok, bus_.now());
     });
     if (!reads) nmt_.configured(node_id, ok, bus_.now());
@@ -475,7 +476,7 @@ class Master {
     return value;
   }
 
-  /// What a PDO communication parameter of a node holds, for handlers and for what is sent.
+  /// Sets the COB-ID of a PDO of a node, for handlers and for RPDOs that are sent.
   void set_cob_id(NodeId node_id, std::uint16_t index, std::uint32_t value) {
     const CobId parameter{value};
     const std::uint32_t extended = parameter.extended() ? std::uint32_t{0x2000'0000} : 0;
@@ -486,7 +487,7 @@ class Master {
     }
   }
 
-  /// Reads the COB-IDs of a node that are known, once more. `done`, if any, is called with the end of the last one; false:
+  /// Reads the known COB-IDs of a node again. `done`, if any, is called at the end of the last one; false:
   /// there are none.
   bool read_cob_ids(NodeId node_id, std::function<void(AbortCode)> done = {}) {
     std::vector<std::uint16_t> indices;
@@ -501,13 +502,13 @@ class Master {
         if (last && done) done(bytes.abort_code());
       };
       const bool begun = static_cast<bool>(begin_upload(node_id, index, pdo_parameter::cob_id, read));
-      if (!begun) cob_ids_[{node_id.value(), index}] = no_cob_id;  // not known, and read with the next boot-up
+      if (!begun) cob_ids_[{node_id.value(), index}] = no_cob_id;  // unknown; it is read at the next boot-up
       last_begun = last && begun;
     }
     return last_begun;
   }
 
-  /// The COB-ID of a PDO of a node, which is read where it is not known. 0800 0022h: the PDO is not valid.
+  /// Returns the COB-ID of a PDO of a node, which is read if unknown. 0800 0022h: the PDO is not valid.
   [[nodiscard]] Result<std::uint32_t> pdo_cob_id(NodeId node_id, std::uint16_t index) {
     const auto key = std::pair{node_id.value(), index};
     const auto known = cob_ids_.find(key);
@@ -528,11 +529,11 @@ class Master {
   std::deque<PdoHandler> pdos_;
   std::map<std::pair<std::uint8_t, std::uint16_t>, std::uint32_t> cob_ids_;
   std::array<std::uint32_t, 128> boots_{};          ///< boot-up messages, by node-ID
-  std::array<std::uint8_t, 128> to_configure_{};  ///< calls of `on_configure` that wait, by node-ID
+  std::array<std::uint8_t, 128> to_configure_{};  ///< pending calls of `on_configure`, by node-ID
   std::deque<std::function<void()>> waiting_;
 };
 
-/// A device on the bus by its generated types: its objects over SDO, its PDOs by their layouts.
+/// A device on the bus, with its generated types: its objects by SDO, its PDOs by their layouts.
 template <class Device, BlockingBus B>
 class MasterRemote {
  public:
@@ -540,12 +541,12 @@ class MasterRemote {
 
   [[nodiscard]] NodeId node_id() const { return node_id_; }
 
-  /// The value of an object.
+  /// Reads an object.
   template <DictionaryObject O>
   [[nodiscard]] auto read() {
     return objects().template read<O>();
   }
-  /// Writes an object. A value outside the limits is refused without a frame.
+  /// Writes an object. A value outside the limits is rejected without sending a frame.
   template <DictionaryObject O, class V>
   Result<void> write(V value) {
     return objects().template write<O>(value);
@@ -556,9 +557,9 @@ class MasterRemote {
     return objects().template write<O, Value>();
   }
 
-  /// From now on the handler is called with the values of each TPDO of this layout: `handler(values...)`. Its COB-ID is
-  /// read from the node, again when the node has booted up, and follows what is written to it through the master.
-  /// 0800 0022h: the PDO is not valid; the handler is not kept.
+  /// Calls the handler from now on with the values of each TPDO with this layout: `handler(values...)`. Its COB-ID is
+  /// read from the node, again after each boot-up, and updated when it is written through the master. 0800 0022h: the
+  /// PDO is not valid; the handler is discarded.
   template <class Layout, class F>
   Result<void> on_pdo(F handler) {
     const Result<std::uint32_t> cob_id = master_.pdo_cob_id(node_id_, tpdo_index<Layout>());
@@ -583,7 +584,7 @@ class MasterRemote {
     return master_.bus_.send(frame) ? ok : AbortCode::no_resource;
   }
 
-  /// Asks for a TPDO by a remote frame. 060A 0023h: the bus has no room.
+  /// Requests a TPDO with a remote frame. 060A 0023h: the bus has no room.
   template <class Layout>
   Result<void> request() {
     const Result<std::uint32_t> cob_id = master_.pdo_cob_id(node_id_, tpdo_index<Layout>());

@@ -10,9 +10,9 @@
 
 namespace canopen {
 
-/// Copying it copies what it holds. The members of type bool make it fail.
+/// Storage in memory. A copy has the same contents. The members of type bool make it fail.
 struct MemoryStorage {
-  std::vector<std::uint8_t> image;  ///< empty: nothing is stored
+  std::vector<std::uint8_t> image;  ///< empty: nothing has been stored
   std::vector<std::uint8_t> fresh;  ///< the image that is being written
   bool damaged = false;             ///< `open` reports a damaged image
   bool fails_to_read = false;

@@ -1,4 +1,4 @@
-/// An SLCAN adapter on a serial line of a host, or a pseudo-terminal.
+/// Port for an SLCAN adapter on a serial line of a host, or a pseudo-terminal.
 ///
 ///     canopen::SlcanPort bus{"/dev/ttyACM0", {.bit_rate = 500'000}};
 #pragma once
@@ -20,14 +20,14 @@
 namespace canopen {
 
 struct SlcanOptions {
-  std::uint32_t bit_rate = 0;  ///< of the CAN bus in bit/s, one of slcan::bit_rates; 0: the adapter has its own
-  std::uint32_t baud = 0;      ///< of the serial line in bit/s; 0: as it is, which USB adapters do not care for
+  std::uint32_t bit_rate = 0;  ///< of the CAN bus in bit/s, one of slcan::bit_rates; 0: set in the adapter
+  std::uint32_t baud = 0;      ///< of the serial line in bit/s; 0: unchanged, which USB adapters ignore
 };
 
 class SlcanPort : public StreamPort<SlcanHost> {
  public:
-  /// Opens the line and the adapter's channel, which is closed in the end. Throws std::system_error for a line that
-  /// cannot be opened and an adapter that refuses, and std::invalid_argument for rates that there are not.
+  /// Opens the line and the adapter's channel, which the destructor closes. Throws std::system_error if the line cannot
+  /// be opened or the adapter rejects a command, and std::invalid_argument if a rate is not supported.
   explicit SlcanPort(const std::string& device, SlcanOptions options = {})
       : StreamPort{open_line(device, options.baud), device} {
     const std::optional<std::uint8_t> code = slcan::bit_rate_code(options.bit_rate);

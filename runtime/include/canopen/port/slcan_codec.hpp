@@ -1,12 +1,12 @@
 /// SLCAN, the ASCII protocol of the Lawicel adapters: CAN frames as lines on a serial line. Both sides, for hosts and
-/// targets alike: no operating system, no heap.
+/// targets: no operating system, no heap.
 ///
 ///   t12320011<CR>          data frame 123h, 2 bytes 00 11        r1232<CR>       remote frame
 ///   T123456782AABB<CR>     the same with 29 bits                 R123456782<CR>
 ///
 /// Commands to the adapter: S0..S8 bit rate, sxxyy bit timing registers, O open, L open to listen only, C close,
 /// Mxxxxxxxx and mxxxxxxxx acceptance code and mask, Z0 and Z1 time stamps, F status flags, V version, N serial number.
-/// It answers <CR>, or <BEL> to what it refuses.
+/// The adapter responds with <CR>, or with <BEL> to a command that it rejects.
 #pragma once
 
 #include <array>
@@ -27,14 +27,14 @@ namespace slcan {
 inline constexpr char end = '\r';
 inline constexpr char refusal = '\a';
 
-/// Characters of the longest frame: a letter, identifier, length, data, time stamp and the end.
+/// Characters of the longest frame: letter, identifier, length, data, time stamp and end of line.
 inline constexpr std::size_t longest_line = 1 + 8 + 1 + 16 + 4 + 1;
 
-/// Of the commands S0..S8, in bit/s.
+/// Bit rates of the commands S0..S8, in bit/s.
 inline constexpr std::uint32_t bit_rates[] = {10'000,  20'000,  50'000,  100'000,  125'000,
                                               250'000, 500'000, 800'000, 1'000'000};
 
-/// The digit of the command S for a bit rate; nothing when there is none.
+/// Returns the digit of the command S for a bit rate; empty if there is none.
 [[nodiscard]] constexpr std::optional<std::uint8_t> bit_rate_code(std::uint32_t bit_rate) {
   for (std::uint8_t i = 0; i < std::size(bit_rates); ++i) {
     if (bit_rates[i] == bit_rate) return i;
@@ -42,7 +42,7 @@ inline constexpr std::uint32_t bit_rates[] = {10'000,  20'000,  50'000,  100'000
   return std::nullopt;
 }
 
-/// Status flags, as F tells them.
+/// Status flags of the command F.
 namespace flag {
 inline constexpr std::uint8_t receive_queue_full = 0x01;
 inline constexpr std::uint8_t send_queue_full = 0x02;
@@ -53,7 +53,7 @@ inline constexpr std::uint8_t arbitration_lost = 0x40;
 inline constexpr std::uint8_t bus_error = 0x80;
 }  // namespace flag
 
-/// The value of a hexadecimal digit; 16 for anything else.
+/// Returns the value of a hexadecimal digit; 16 for any other character.
 [[nodiscard]] constexpr std::uint8_t hex_value(char digit) {
   if (digit >= '0' && digit <= '9') return static_cast<std::uint8_t>(digit - '0');
   if (digit >= 'A' && digit <= 'F') return static_cast<std::uint8_t>(digit - 'A' + 10);
@@ -61,7 +61,7 @@ inline constexpr std::uint8_t bus_error = 0x80;
   return 16;
 }
 
-/// A number of up to eight hexadecimal digits; nothing when one of them is none.
+/// Returns a number of up to eight hexadecimal digits; empty if one of them is not a digit.
 [[nodiscard]] constexpr std::optional<std::uint32_t> hex_number(std::string_view digits) {
   std::uint32_t number = 0;
   for (const char digit : digits) {
@@ -72,13 +72,13 @@ inline constexpr std::uint8_t bus_error = 0x80;
   return digits.empty() || digits.size() > 8 ? std::nullopt : std::optional{number};
 }
 
-/// Writes a number with this many hexadecimal digits; the position behind them.
+/// Writes a number with this many hexadecimal digits; returns the position after them.
 constexpr char* put_hex(char* to, std::uint32_t number, unsigned digits) {
   for (unsigned i = digits; i-- > 0; ++to) *to = "0123456789ABCDEF"[(number >> (4 * i)) & 0xF];
   return to;
 }
 
-/// The line of a frame, its end included, and how long it is. With a time stamp in ms where one is given.
+/// Writes the line of a frame, including its end, and returns its length. With a time stamp in ms, if given.
 [[nodiscard]] constexpr std::size_t encode(const Frame& frame, std::span<char, longest_line> line,
                                            std::optional<std::uint16_t> milliseconds = std::nullopt) {
   char* to = line.data();
@@ -95,7 +95,7 @@ constexpr char* put_hex(char* to, std::uint32_t number, unsigned digits) {
   return static_cast<std::size_t>(to - line.data());
 }
 
-/// The frame of a line without its end; nothing when it is none. A time stamp behind it is passed over.
+/// Returns the frame of a line without its end; empty if it is not one. A time stamp after it is ignored.
 [[nodiscard]] constexpr std::optional<Frame> decode(std::string_view line) {
   if (line.empty()) return std::nullopt;
   Frame frame{};
@@ -124,11 +124,11 @@ constexpr char* put_hex(char* to, std::uint32_t number, unsigned digits) {
   return line.empty() || time_stamp ? std::optional{frame} : std::nullopt;
 }
 
-/// Puts characters together to lines. What is no letter or digit is rubbish, and so is what stands before it; of a line
-/// that is longer than any frame the beginning stays, which is no frame.
+/// Assembles characters to lines. Characters that are not letters or digits discard what precedes them; of a line that
+/// is longer than any frame, the beginning is kept, which is not a valid frame.
 class LineReader {
  public:
-  /// The line that this character ends, without it: valid until the next one. A <BEL> is a line of its own.
+  /// Returns the line that this character ends, without it; valid until the next call. A <BEL> is a line of its own.
   [[nodiscard]] std::optional<std::string_view> take(char character) {
     if (character == end || character == refusal) {
       const std::string_view line{text_.data(), size_};
@@ -153,7 +153,7 @@ class LineReader {
 
 }  // namespace slcan
 
-/// How a host asks for its channel.
+/// The channel settings of a host.
 struct SlcanChannel {
   enum class Rate : std::uint8_t { unspecified, code, registers };
 
@@ -165,14 +165,14 @@ struct SlcanChannel {
   friend constexpr bool operator==(const SlcanChannel&, const SlcanChannel&) = default;
 };
 
-/// The adapter's side. It stands between a serial line and a CAN controller, or a node in the same device:
+/// The adapter's side, between a serial line and a CAN controller, or a node in the same device:
 ///
 ///     struct Port {
 ///       void write(std::span<const char>);      // to the serial line
-///       bool open(const SlcanChannel&);         // goes on the bus, or refuses the bit rate
+///       bool open(const SlcanChannel&);         // goes on the bus, or rejects the bit rate
 ///       void close();                           // leaves it
 ///       bool send(const canopen::Frame&);       // a frame of the host; false: no room
-///       std::uint8_t status();                  // slcan::flag, those since the last call
+///       std::uint8_t status();                  // slcan::flag, those set since the last call
 ///     };
 class SlcanAdapter {
  public:
@@ -181,7 +181,7 @@ class SlcanAdapter {
 
   [[nodiscard]] constexpr bool is_open() const { return open_; }
 
-  /// Takes a character from the serial line. Answers what it ends.
+  /// Processes a character of the serial line, and responds to the line that it ends.
   template <class Port>
   void on_character(char character, Port& port) {
     const std::optional<std::string_view> line = reader_.take(character);
@@ -189,7 +189,7 @@ class SlcanAdapter {
     if (!serve(*line, port)) port.write({&slcan::refusal, 1});
   }
 
-  /// Takes a frame from the bus, for the host. One that it does not want is left out.
+  /// Passes a frame of the bus to the host, unless the host does not accept it.
   template <class Port>
   void on_frame(const Frame& frame, TimePoint now, Port& port) {
     if (!open_ || !accepts(frame)) return;
@@ -214,7 +214,7 @@ class SlcanAdapter {
   };
   static constexpr std::string_view version = "1013";  ///< hardware 1.0, software 1.3
 
-  /// False: refused.
+  /// Returns false if the command is rejected.
   template <class Port>
   [[nodiscard]] bool serve(std::string_view line, Port& port) {
     if (const std::optional<Frame> frame = slcan::decode(line)) {
@@ -258,7 +258,7 @@ class SlcanAdapter {
         if (number > 1) return false;
         time_stamps_ = number == 1;
         break;
-      case 'X': return number <= 1 && answer("", port);  // frames are never polled for
+      case 'X': return number <= 1 && answer("", port);  // frames are never polled
       case 'F':
         text[0] = 'F';
         slcan::put_hex(&text[1], port.status(), 2);
@@ -286,12 +286,13 @@ class SlcanAdapter {
     return true;
   }
 
-  /// The two filters that the code and the mask make in the controllers of such adapters (SJA1000, dual filter mode):
-  /// 16 bits each, from the left the identifier, of 11 bits with the remote bit behind it. A 1 in the mask: any.
+  /// Whether a frame passes the two filters of code and mask in the controllers of such adapters (SJA1000, dual
+  /// filter mode): 16 bits each, from the left the identifier, followed by the remote bit if it has 11 bits. A 1 in
+  /// the mask: any.
   [[nodiscard]] constexpr bool accepts(const Frame& frame) const {
     const std::uint32_t base = (frame.id << 5) | (frame.remote ? 0x10u : 0u);
     const std::uint32_t bits = frame.extended ? frame.id >> 13 : base;
-    const std::uint32_t counting = frame.extended ? 0xFFFF : 0xFFF0;  // data of base frames do not count
+    const std::uint32_t counting = frame.extended ? 0xFFFF : 0xFFF0;  // data of base frames are not compared
     for (const unsigned shift : {16u, 0u}) {
       const std::uint32_t fixed = ~(acceptance_mask_ >> shift) & counting;
       if (((bits ^ (acceptance_code_ >> shift)) & fixed) == 0) return true;
@@ -308,19 +309,19 @@ class SlcanAdapter {
   bool time_stamps_ = false;
 };
 
-/// The host's side: opens the channel of an adapter, and turns its lines into frames. What it wants to be written
-/// stands in `output`; frames are encoded with `encode`.
+/// The host's side: opens the channel of an adapter, and converts its lines to frames. `output` is what it needs to
+/// write; frames are encoded with `encode`.
 class SlcanHost {
  public:
   enum class State : std::uint8_t { connecting, open, refused };
   static constexpr std::size_t longest_message = slcan::longest_line;
   static constexpr std::string_view farewell = "C\r";
 
-  /// Begins to open the channel. Bit rate code 0..8; nothing: the adapter has its own. Answers that do not come within
-  /// half a second are done without: some adapters give none.
+  /// Starts to open the channel. Bit rate code 0..8; empty: set in the adapter. A missing response is ignored after
+  /// half a second, because some adapters do not send any.
   void start(std::optional<std::uint8_t> bit_rate_code, TimePoint now) {
     bit_rate_code_ = bit_rate_code;
-    put("\r\r\rC\r");  // whatever was begun, and a channel that is open, have an end
+    put("\r\r\rC\r");  // ends an unfinished command and an open channel
     enter(Step::closing, now + settling);
   }
 
@@ -329,13 +330,13 @@ class SlcanHost {
     return step_ == Step::refused ? State::refused : State::connecting;
   }
 
-  /// Why the channel was refused.
+  /// Returns why the channel was rejected.
   [[nodiscard]] std::string_view problem() const { return problem_; }
 
-  /// What the adapter tells of its controller.
+  /// Returns the status that the adapter reports.
   [[nodiscard]] BusStatus status() const { return status_; }
 
-  /// Takes a character from the adapter; the frame that it ends, if any.
+  /// Processes a character of the adapter; returns the frame that it ends, if any.
   [[nodiscard]] std::optional<Frame> on_character(char character, TimePoint now) {
     const std::optional<std::string_view> line = reader_.take(character);
     if (!line) return std::nullopt;
@@ -367,7 +368,7 @@ class SlcanHost {
 
   [[nodiscard]] std::optional<TimePoint> next_deadline() const { return deadline_; }
 
-  /// What is to be written before any frame. The caller says when that has been done.
+  /// Returns what must be written before any frame; call `output_taken` when that has been done.
   [[nodiscard]] std::string_view output() const { return {output_.data(), output_size_}; }
   void output_taken() { output_size_ = 0; }
 
@@ -378,8 +379,8 @@ class SlcanHost {
  private:
   enum class Step : std::uint8_t { closing, setting, opening, open, refused };
 
-  static constexpr Duration settling{100'000};  ///< for what is still on its way
-  static constexpr Duration patience{500'000};  ///< for an answer
+  static constexpr Duration settling{100'000};  ///< for data still in transit
+  static constexpr Duration patience{500'000};  ///< for a response
   static constexpr Duration between_flags{1'000'000};
   static constexpr std::uint8_t most_refusals = 3;
 
@@ -401,7 +402,8 @@ class SlcanHost {
     }
   }
 
-  /// A slow adapter's answer to what was before may look like one: only the third one is believed.
+  /// Handles a rejection. A slow adapter's response to earlier commands may look like one: only the third one
+  /// is accepted.
   void refuse(TimePoint now) {
     if (++refusals_ < most_refusals) {
       put("C\r");
@@ -411,7 +413,8 @@ class SlcanHost {
     enter(Step::refused, std::nullopt);
   }
 
-  /// A refusal: a frame did not find room, or worse. The flags tell, and are asked for until all is well again.
+  /// Handles a rejection, for instance of a frame without room. The flags show the cause, and are read until they
+  /// are clear.
   void on_status(std::string_view line, TimePoint now) {
     if (line[0] == slcan::refusal) {
       if (has_flags_ && !asked_) deadline_ = now;
@@ -426,7 +429,7 @@ class SlcanHost {
     if (status_ != BusStatus{}) deadline_ = now + between_flags;
   }
 
-  /// An adapter that knows no flags is not asked again.
+  /// Stops reading the flags of an adapter that does not support them.
   void forget_flags() {
     asked_ = has_flags_ = false;
     deadline_.reset();
@@ -448,7 +451,7 @@ class SlcanHost {
   std::string_view problem_;
   BusStatus status_;
   std::uint8_t refusals_ = 0;
-  bool asked_ = false;  ///< for flags, without an answer until now
+  bool asked_ = false;  ///< the flags have been requested, without a response so far
   bool has_flags_ = true;
 };
 

@@ -4,8 +4,8 @@
 ///     auto drive = canopen::make_node<cpc_tc1::Device>(bus, canopen::NodeId{5});
 ///     bus.run(drive, stop);
 ///
-/// In a poll loop of the application's own: `node.start(bus.now())`, then `bus.serve(node)` once, and again whenever
-/// `bus.file_descriptor()` can be read.
+/// In an application's own poll loop: `node.start(bus.now())`, then `bus.serve(node)` once, and again whenever
+/// `bus.file_descriptor()` is readable.
 #pragma once
 
 #include <linux/can.h>
@@ -38,18 +38,18 @@
 
 namespace canopen {
 
-/// One CAN interface, for one node or for an application that calls `receive`. Its own frames do not come back. Frames
-/// that the socket has no room for wait, the most urgent one in front. While the controller is bus-off, or the
-/// interface is down or gone, frames are refused and those that wait are lost; an interface that comes back, also as a
-/// new one of the same name, is used again.
+/// One CAN interface, for one node or for an application that calls `receive`. Its own frames are not received. Frames
+/// for which the socket has no room wait, the most urgent one first. While the controller is bus-off, or the interface
+/// is down or removed, frames are rejected and waiting ones are discarded; an interface that returns, even as a new one
+/// with the same name, is used again.
 class SocketCan {
  public:
   static constexpr std::size_t queue_capacity = 64;
 
-  /// Throws std::system_error when the interface does not exist or cannot be opened.
+  /// Throws std::system_error if the interface does not exist or cannot be opened.
   explicit SocketCan(const std::string& interface) : interface_{interface} { open(); }
 
-  /// False when the frame is not taken: as many wait as can, or the bus is off or down.
+  /// Sends a frame. Returns false if it is not accepted: the queue is full, or the bus is off or down.
   [[nodiscard]] bool send(const Frame& frame) {
     congested_ = down_ || status_.state == BusState::off;
     if (congested_) return false;
@@ -59,23 +59,23 @@ class SocketCan {
     return !congested_;
   }
 
-  /// The next frame, or nothing when none comes within this time. Throws std::system_error when the socket is broken.
+  /// Returns the next frame; empty if none is received within this time. Throws std::system_error if the socket fails.
   [[nodiscard]] std::optional<Frame> receive(Duration timeout) {
     accept_all();
     return host_loop::receive(*this, timeout);
   }
 
-  /// When the last frame that `receive` gave has come, by the kernel's clock.
+  /// Returns when the last frame returned by `receive` was received, by the kernel's clock.
   [[nodiscard]] TimePoint received_at() const { return last_; }
 
-  /// Starts a node and runs it until `stop` is true, which is looked at after each frame and deadline, and ten times a
-  /// second.
+  /// Starts a node and runs it until `stop` is true, which is checked after each frame and deadline, and ten
+  /// times a second.
   template <class Node>
   void run(Node& node, const std::atomic<bool>& stop) {
     host_loop::run(*this, node, stop);
   }
 
-  /// Does what there is to do for a node that has been started, without waiting.
+  /// Serves a node that has been started, without waiting.
   template <class Node>
   void serve(Node& node) {
     host_loop::serve(*this, node);
@@ -83,18 +83,18 @@ class SocketCan {
 
   [[nodiscard]] static TimePoint now() { return monotonic_now(); }
 
-  /// Readable when there is something to do, for a poll loop of the application's own.
+  /// Readable when there is an event, for the application's own poll loop.
   [[nodiscard]] int file_descriptor() const { return events_.number(); }
 
-  /// The CAN controller as its error frames tell of it.
+  /// Returns the status of the CAN controller, from its error frames.
   [[nodiscard]] const BusStatus& status() const { return status_; }
 
-  /// Frames that wait for room.
+  /// Returns the number of frames that wait for room.
   [[nodiscard]] std::size_t waiting() const { return queue_.size(); }
 
   // For host_loop.hpp.
 
-  /// Has the kernel keep back what the node ignores.
+  /// Makes the kernel discard frames that the node ignores.
   template <class Device, Bus B, class... Handlers>
   void listen_for(Node<Device, B, Handlers...>& node) {
     constexpr std::size_t most = most_accepted_frames<Device>;
@@ -117,7 +117,7 @@ class SocketCan {
         note_error(raw);
         ++read_;
       } else if (status_.state == BusState::off) {
-        status_.state = BusState::active;  // a controller that hears frames is on the bus
+        status_.state = BusState::active;  // a controller that receives frames is on the bus
       } else if (status_ == told_) {
         ++read_;
         return PortEvent{frame_of(raw), last_, status_};
@@ -152,7 +152,7 @@ class SocketCan {
 
  private:
   static constexpr std::size_t batch = 16;
-  static constexpr Duration overrun_span{1'000'000};  ///< so long after frames were lost they still are
+  static constexpr Duration overrun_span{1'000'000};  ///< how long a loss of frames is reported
   static constexpr int receive_buffer = 1 << 20;      ///< bytes; the kernel may give less
 
   // The interface
@@ -188,7 +188,7 @@ class SocketCan {
     reopen_at_ = now() + host_loop::look_again;
   }
 
-  /// Looks whether the interface is there and up. A new one of the same name needs a new socket.
+  /// Checks whether the interface exists and is up. A new one with the same name needs a new socket.
   void reopen() {
     const TimePoint present = now();
     if (present < reopen_at_) return;
@@ -199,7 +199,7 @@ class SocketCan {
       try {
         open();
       } catch (const std::system_error&) {
-        return;  // it has gone again
+        return;  // it has been removed again
       }
     }
     ifreq request{};
@@ -224,7 +224,7 @@ class SocketCan {
     return filter;
   }
 
-  /// They change seldom: the kernel is told when they do.
+  /// Sets the filters. They change rarely: the kernel is called only if they do.
   void accept(const can_filter* filters, std::size_t count) {
     const auto same = [](const can_filter& a, const can_filter& b) {
       return a.can_id == b.can_id && a.can_mask == b.can_mask;
@@ -247,7 +247,7 @@ class SocketCan {
 
   // Sending
 
-  /// False when the socket has no room, or the interface is down.
+  /// Returns false if the socket has no room, or the interface is down.
   [[nodiscard]] bool write(const Frame& frame) {
     can_frame raw{};
     raw.can_id = frame.id | (frame.extended ? CAN_EFF_FLAG : 0u) | (frame.remote ? CAN_RTR_FLAG : 0u);
@@ -260,7 +260,7 @@ class SocketCan {
     if (written == static_cast<ssize_t>(sizeof raw)) return true;
     switch (errno) {
       case EAGAIN: events_.wait_for_room(true); break;
-      case ENOBUFS:  // the queue of the interface is full: no descriptor tells when it is not
+      case ENOBUFS:  // the queue of the interface is full; no descriptor reports when it is not
         retry_ = true;
         retry_at_ = now() + host_loop::try_again;
         break;
@@ -287,7 +287,7 @@ class SocketCan {
 
   // Receiving
 
-  /// Reads what is there; false when that is nothing.
+  /// Reads available frames; false if there are none.
   [[nodiscard]] bool read_batch() {
     read_ = received_count_ = 0;
     std::array<iovec, batch> parts;
@@ -328,7 +328,7 @@ class SocketCan {
     return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
   }
 
-  /// One moment by two clocks.
+  /// The same time on two clocks.
   struct Clocks {
     std::int64_t real;  ///< CLOCK_REALTIME in ns
     TimePoint monotonic;
@@ -339,10 +339,10 @@ class SocketCan {
     return {nanoseconds(clock), now()};
   }
 
-  /// When a frame has come: the kernel's time stamp, brought to the clock of `now`. Counts frames that were lost before
-  /// it.
+  /// Returns when a frame was received: the kernel's time stamp, converted to the clock of `now`. Counts frames that
+  /// were lost before it.
   [[nodiscard]] TimePoint time_of(msghdr& message, const Clocks& clocks) {
-    constexpr std::int64_t most = 1'000'000'000;  // older ones tell that the clock was set
+    constexpr std::int64_t most = 1'000'000'000;  // older ones mean that the clock was set
     TimePoint time = clocks.monotonic;
     for (cmsghdr* part = CMSG_FIRSTHDR(&message); part != nullptr; part = CMSG_NXTHDR(&message, part)) {
       if (part->cmsg_level != SOL_SOCKET) continue;
@@ -374,7 +374,7 @@ class SocketCan {
 
   // Status
 
-  /// What an error frame says of the controller (linux/can/error.h).
+  /// Processes an error frame of the controller (linux/can/error.h).
   void note_error(const can_frame& raw) {
     constexpr std::uint8_t passive = CAN_ERR_CRTL_RX_PASSIVE | CAN_ERR_CRTL_TX_PASSIVE;
     constexpr std::uint8_t not_passive = CAN_ERR_CRTL_ACTIVE | CAN_ERR_CRTL_RX_WARNING | CAN_ERR_CRTL_TX_WARNING;
@@ -395,13 +395,13 @@ class SocketCan {
     overrun_end_ = time + overrun_span;
   }
 
-  /// Time does not go back: a frame may have come before the moment that the node was told last.
+  /// Keeps time from going back: a frame may have been received before the time last passed to the node.
   void advance(TimePoint time) {
     constexpr Duration most{2'000'000};
     if (last_ - time > most) last_ = time;
   }
 
-  /// Tells a status that has not been told yet.
+  /// Returns a status that has not been reported yet.
   [[nodiscard]] std::optional<PortEvent> status_event() {
     if (status_ == told_) return std::nullopt;
     if (status_.state == BusState::off) drop_queue();
@@ -419,25 +419,25 @@ class SocketCan {
   EventDescriptor events_;
   Descriptor socket_;
   unsigned index_ = 0;               ///< of the interface that the socket is bound to
-  std::vector<can_filter> filters_;  ///< none: every frame
+  std::vector<can_filter> filters_;  ///< empty: every frame
   SendQueue<queue_capacity> queue_;
 
   std::array<can_frame, batch> received_{};
   std::array<TimePoint, batch> times_{};
   std::size_t received_count_ = 0;
-  std::size_t read_ = 0;    ///< of them have been handed on
+  std::size_t read_ = 0;    ///< number of these that have been passed on
   TimePoint last_ = now();  ///< of the last frame
-  bool drained_ = false;    ///< the last ones of a batch that was not full: no more are there
-  std::uint32_t lost_ = 0;  ///< frames that found the socket full, as the kernel counts them
+  bool drained_ = false;    ///< the last batch was not full: there are no more frames
+  std::uint32_t lost_ = 0;  ///< frames for which the socket was full, counted by the kernel
 
   BusStatus status_{};
   BusStatus told_{};
   TimePoint overrun_end_{};
   TimePoint reopen_at_{};
   TimePoint retry_at_{};
-  bool retry_ = false;  ///< the interface had no room: not before retry_at_
+  bool retry_ = false;  ///< the interface had no room: wait until retry_at_
   bool down_ = false;
-  bool congested_ = false;  ///< the last frame found no room
+  bool congested_ = false;  ///< there was no room for the last frame
 };
 
 }  // namespace canopen

@@ -1,4 +1,4 @@
-/// A CAN bus that a socketcand server gives over TCP.
+/// A CAN bus of a socketcand server, over TCP.
 ///
 ///     canopen::SocketcandPort bus{"192.168.0.7", "29536", "can0"};
 #pragma once
@@ -24,8 +24,8 @@ namespace canopen {
 
 class SocketcandPort : public StreamPort<SocketcandClient> {
  public:
-  /// Connects, and opens a bus of the server in raw mode. Throws std::system_error for a server that does not answer or
-  /// refuses, and std::invalid_argument for a bus whose name has not 1 to 16 characters.
+  /// Connects, and opens a bus of the server in raw mode. Throws std::system_error if the server does not respond or
+  /// rejects the connection, and std::invalid_argument if the name of the bus does not have 1 to 16 characters.
   SocketcandPort(const std::string& host, const std::string& port, const std::string& bus)
       : StreamPort{connect_to(host, port), "socketcand at " + host + ":" + port} {
     const bool plain = bus.find_first_of(" <>") == std::string::npos;
@@ -61,7 +61,7 @@ class SocketcandPort : public StreamPort<SocketcandClient> {
     throw std::system_error{problem, std::generic_category(), name};
   }
 
-  /// 0: connected.
+  /// Returns 0 if connected, otherwise an errno.
   [[nodiscard]] static int try_address(const Descriptor& stream, const addrinfo& address) {
     if (::connect(stream.number(), address.ai_addr, address.ai_addrlen) != 0) {
       if (errno != EINPROGRESS) return errno;

@@ -1,5 +1,5 @@
-/// The client's side of socketcand, the ASCII protocol that gives a CAN bus to other machines, in raw mode: no
-/// operating system, no heap.
+/// The client's side of socketcand, the ASCII protocol that makes a CAN bus available to other machines, in raw mode:
+/// no operating system, no heap.
 ///
 ///     server                                client
 ///     < hi >                                < open can0 >
@@ -9,8 +9,8 @@
 ///     < rtr 123 23.424242 4 >               < sendrtr 123 4 >
 ///     < error 040 23.424242 >
 ///
-/// An identifier of eight digits has 29 bits. Remote frames and error frames are newer than the rest: a server that
-/// does not know them sends none, and answers `sendrtr` with `< error unknown command >`.
+/// An identifier of eight digits has 29 bits. Remote frames and error frames are later additions: a server that does
+/// not support them does not send any, and responds to `sendrtr` with `< error unknown command >`.
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ namespace socketcand {
 /// Characters of the longest message of a client.
 inline constexpr std::size_t longest_message = sizeof "< send 1FFFFFFF 8 00 11 22 33 44 55 66 77 >" - 1;
 
-/// Takes the next word off the front of a message; an empty one at its end.
+/// Removes the next word from the front of a message and returns it; empty at the end.
 [[nodiscard]] constexpr std::string_view take_word(std::string_view& text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
   std::size_t size = 0;
@@ -42,7 +42,7 @@ inline constexpr std::size_t longest_message = sizeof "< send 1FFFFFFF 8 00 11 2
   return word;
 }
 
-/// A message that asks the server to send a frame, and how long it is.
+/// Writes a message that makes the server send a frame, and returns its length.
 [[nodiscard]] constexpr std::size_t encode(const Frame& frame, std::span<char, longest_message> message) {
   char* to = message.data();
   for (const char character : frame.remote ? std::string_view{"< sendrtr "} : std::string_view{"< send "}) {
@@ -60,8 +60,8 @@ inline constexpr std::size_t longest_message = sizeof "< send 1FFFFFFF 8 00 11 2
   return static_cast<std::size_t>(to - message.data());
 }
 
-/// Reads identifier and data of `frame`, or identifier and length of `rtr`: what follows that word. Data bytes may
-/// stand together or apart.
+/// Reads identifier and data of `frame`, or identifier and length of `rtr`: the text after that word. Data bytes may be
+/// separated or not.
 [[nodiscard]] constexpr std::optional<Frame> decode(std::string_view text, bool remote) {
   Frame frame{};
   const std::string_view digits = take_word(text);
@@ -88,11 +88,11 @@ inline constexpr std::size_t longest_message = sizeof "< send 1FFFFFFF 8 00 11 2
   return frame;
 }
 
-/// Puts characters together to messages: what stands between `<` and `>`. A message that is cut short by another one,
-/// or longer than any that counts, is passed over.
+/// Assembles characters to messages: the text between `<` and `>`. A message that is interrupted by another one, or too
+/// long to be valid, is ignored.
 class MessageReader {
  public:
-  /// The message that this character ends: valid until the next one.
+  /// Returns the message that this character ends; valid until the next call.
   [[nodiscard]] std::optional<std::string_view> take(char character) {
     if (character == '<') {
       size_ = 0;
@@ -115,7 +115,7 @@ class MessageReader {
 
 }  // namespace socketcand
 
-/// One bus of a server. What the client wants to be written stands in `output`.
+/// One bus of a server. `output` is what the client needs to write.
 class SocketcandClient {
  public:
   enum class State : std::uint8_t { connecting, open, refused };
@@ -123,7 +123,8 @@ class SocketcandClient {
   static constexpr std::size_t longest_name = 16;
   static constexpr std::string_view farewell = "";
 
-  /// Waits for the server's greeting, and then opens a bus of up to 16 characters. The name must live as long.
+  /// Waits for the server's greeting, then opens a bus with a name of up to 16 characters. The name must outlive
+  /// the client.
   void start(std::string_view bus, TimePoint /*now*/) { bus_ = bus; }
 
   [[nodiscard]] State state() const {
@@ -131,13 +132,13 @@ class SocketcandClient {
     return step_ == Step::refused ? State::refused : State::connecting;
   }
 
-  /// Why the bus was refused.
+  /// Returns why the bus was rejected.
   [[nodiscard]] std::string_view problem() const { return {problem_.data(), problem_size_}; }
 
-  /// The controller of the bus, as far as the server's error frames tell of it: on or off the bus.
+  /// Returns the status of the bus's controller, from the server's error frames: on or off the bus.
   [[nodiscard]] BusStatus status() const { return status_; }
 
-  /// Takes a character from the server; the frame that it ends, if any.
+  /// Processes a character of the server; returns the frame that it ends, if any.
   [[nodiscard]] std::optional<Frame> on_character(char character, TimePoint /*now*/) {
     const std::optional<std::string_view> message = reader_.take(character);
     if (!message) return std::nullopt;
@@ -166,7 +167,7 @@ class SocketcandClient {
   void on_time(TimePoint /*now*/) {}
   [[nodiscard]] std::optional<TimePoint> next_deadline() const { return std::nullopt; }
 
-  /// What is to be written before any frame. The caller says when that has been done.
+  /// Returns what must be written before any frame; call `output_taken` when that has been done.
   [[nodiscard]] std::string_view output() const { return {output_.data(), output_size_}; }
   void output_taken() { output_size_ = 0; }
 
@@ -186,7 +187,7 @@ class SocketcandClient {
     step_ = Step::refused;
   }
 
-  /// The class of an error frame (linux/can/error.h) and a time; other errors are answers to what was sent.
+  /// Processes an error: the class of an error frame (linux/can/error.h) and a time; other errors are responses.
   void on_error(std::string_view text) {
     constexpr std::uint32_t bus_off = 0x040;
     constexpr std::uint32_t restarted = 0x100;

@@ -1,4 +1,4 @@
-/// A CAN bus at the other end of a byte stream: what the ports for SLCAN and socketcand share. Host side.
+/// A CAN bus accessed over a byte stream: common part of the ports for SLCAN and socketcand. Host side.
 #pragma once
 
 #include <sys/socket.h>
@@ -26,8 +26,8 @@
 
 namespace canopen {
 
-/// `Protocol` is SlcanHost or SocketcandClient. A stream that ends, or breaks, throws std::system_error: to connect
-/// again is for the application, which knows what was lost.
+/// `Protocol` is SlcanHost or SocketcandClient. If the stream ends or fails, std::system_error is thrown: reconnecting
+/// is left to the application, which knows what was lost.
 template <class Protocol>
 class StreamPort {
  public:
@@ -41,7 +41,7 @@ class StreamPort {
     }
   }
 
-  /// False when the frame is not taken: as many wait as can, or the bus is off.
+  /// Sends a frame. Returns false if it is not accepted: the queue is full, or the bus is off.
   [[nodiscard]] bool send(const Frame& frame) {
     congested_ = told_.state == BusState::off;
     if (congested_) return false;
@@ -51,19 +51,20 @@ class StreamPort {
     return !congested_;
   }
 
-  /// The next frame, or nothing when none comes within this time. Throws std::system_error when the stream has ended.
+  /// Returns the next frame; empty if none is received within this time. Throws std::system_error if the stream
+  /// has ended.
   [[nodiscard]] std::optional<Frame> receive(Duration timeout) { return host_loop::receive(*this, timeout); }
 
-  /// When the last frame that `receive` gave has come.
+  /// Returns when the last frame returned by `receive` was received.
   [[nodiscard]] TimePoint received_at() const { return present_; }
 
-  /// Starts a node and runs it until `stop` is true, which is looked at ten times a second at least.
+  /// Starts a node and runs it until `stop` is true, which is checked at least ten times a second.
   template <class Node>
   void run(Node& node, const std::atomic<bool>& stop) {
     host_loop::run(*this, node, stop);
   }
 
-  /// Does what there is to do for a node that has been started, without waiting.
+  /// Serves a node that has been started, without waiting.
   template <class Node>
   void serve(Node& node) {
     host_loop::serve(*this, node);
@@ -71,12 +72,12 @@ class StreamPort {
 
   [[nodiscard]] static TimePoint now() { return monotonic_now(); }
 
-  /// Readable when there is something to do, for a poll loop of the application's own.
+  /// Readable when there is an event, for the application's own poll loop.
   [[nodiscard]] int file_descriptor() const { return events_.number(); }
 
   [[nodiscard]] const BusStatus& status() const { return told_; }
 
-  /// Frames that wait for room.
+  /// Returns the number of frames that wait for room.
   [[nodiscard]] std::size_t waiting() const { return queue_.size(); }
 
   // For host_loop.hpp.
@@ -89,7 +90,7 @@ class StreamPort {
         if (frame) return PortEvent{frame, present_, told_};
         if (const auto changed = status_event()) return changed;
       }
-      // A stream may bring bytes without end and no frame: time must pass meanwhile.
+      // A stream may contain bytes continuously without a frame: time must pass meanwhile.
       if (reads == reads_at_once || !read_some()) break;
     }
     protocol_.on_time(pass_time());
@@ -107,14 +108,14 @@ class StreamPort {
   [[nodiscard]] EventDescriptor& events() { return events_; }
 
  protected:
-  /// `stream` does not block. `name` is for messages.
+  /// `stream` must be non-blocking. `stream_name` is for messages.
   StreamPort(Descriptor stream, std::string stream_name)
       : stream_{std::move(stream)}, is_socket_{is_socket(stream_)}, name_{std::move(stream_name)} {
     events_.watch(stream_.number());
   }
 
-  /// Waits until the protocol, which has been started, has opened the bus. Throws std::system_error when it does not
-  /// within this time.
+  /// Waits until the protocol, which has been started, has opened the bus. Throws std::system_error if it does not do
+  /// so within this time.
   void connect(Duration timeout) {
     const TimePoint end = now() + timeout;
     const auto connecting = [this] { return protocol_.state() == Protocol::State::connecting; };
@@ -134,13 +135,13 @@ class StreamPort {
       const std::string why{protocol_.problem()};
       throw std::system_error{std::make_error_code(std::errc::connection_refused), name_ + ": " + why};
     }
-    if (has_more()) events_.set_alarm(present_, now());  // the first frames are here
+    if (has_more()) events_.set_alarm(present_, now());  // the first frames have arrived
   }
 
   Protocol protocol_;
 
  private:
-  static constexpr std::size_t reads_at_once = 4;  ///< between two looks at the time
+  static constexpr std::size_t reads_at_once = 4;  ///< between two checks of the time
 
   [[nodiscard]] ssize_t write(std::string_view text) const {
     if (is_socket_) return ::send(stream_.number(), text.data(), text.size(), MSG_NOSIGNAL);
@@ -152,7 +153,7 @@ class StreamPort {
     return ::fstat(stream.number(), &status) == 0 && S_ISSOCK(status.st_mode);
   }
 
-  /// Writes what waits, as far as the stream has room.
+  /// Writes pending data, as far as the stream has room.
   void flush() {
     for (;;) {
       if (pending_.empty() && !next_message()) return events_.wait_for_room(false);
@@ -164,7 +165,7 @@ class StreamPort {
     }
   }
 
-  /// Puts the next message into `pending_`; false when there is none.
+  /// Moves the next message to `pending_`; false if there is none.
   [[nodiscard]] bool next_message() {
     if (const std::string_view output = protocol_.output(); !output.empty()) {
       pending_ = output;
@@ -177,7 +178,7 @@ class StreamPort {
     return !pending_.empty();
   }
 
-  /// Reads what is there; false when that is nothing.
+  /// Reads available bytes; false if there are none.
   [[nodiscard]] bool read_some() {
     const ssize_t count = ::read(stream_.number(), bytes_.data(), bytes_.size());
     read_ = count_ = 0;
@@ -190,7 +191,7 @@ class StreamPort {
     return true;
   }
 
-  /// Tells a status that has not been told yet.
+  /// Returns a status that has not been reported yet.
   [[nodiscard]] std::optional<PortEvent> status_event() {
     const BusStatus status = protocol_.status();
     if (status == told_) return std::nullopt;
@@ -204,13 +205,13 @@ class StreamPort {
   std::string name_;
   EventDescriptor events_;
   SendQueue<queue_capacity> queue_;
-  std::string pending_;  ///< of a message, what has not been written yet
+  std::string pending_;  ///< the part of a message that has not been written yet
   std::array<char, 1024> bytes_{};
   std::size_t count_ = 0;
-  std::size_t read_ = 0;  ///< of them have been looked at
+  std::size_t read_ = 0;  ///< number of these that have been processed
   TimePoint present_ = monotonic_now();
   BusStatus told_{};
-  bool congested_ = false;  ///< the last frame found no room
+  bool congested_ = false;  ///< there was no room for the last frame
 };
 
 }  // namespace canopen

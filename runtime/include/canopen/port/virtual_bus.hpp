@@ -1,4 +1,4 @@
-/// A CAN bus inside a process, with a time of its own: for tests, simulations and demonstrations. Host side.
+/// A CAN bus within a process, with its own time: for tests, simulations and demonstrations. Host side.
 #pragma once
 
 #include <algorithm>
@@ -19,26 +19,27 @@
 
 namespace canopen {
 
-/// Bits of a frame on the wire without stuff bits, from start of frame to the end of the intermission (ISO 11898-1).
+/// Returns the bits of a frame on the wire without stuff bits, from start of frame to the end of the intermission
+/// (ISO 11898-1).
 [[nodiscard]] constexpr std::uint32_t bits_on_wire(const Frame& frame) {
   const std::uint32_t data = frame.remote ? 0u : 8u * frame.size;
   return (frame.extended ? 67u : 47u) + data;
 }
 
-/// Endpoints are attached to it; each frame that one sends comes to all others, lowest CAN-ID first among those that
-/// wait. With a bit rate a frame takes its time on the wire; without one it takes none. Frames sent while others are
-/// delivered wait their turn: there is no recursion.
+/// A bus with endpoints: each frame that one sends is received by all others, lowest CAN-ID first among those that
+/// wait. With a bit rate, a frame takes its time on the wire; without one it takes none. Frames sent while others are
+/// delivered wait for their turn: there is no recursion.
 ///
-/// The bus asks an endpoint for its deadline when it may have changed: at the beginning of `run_for` and `settle`, after
-/// a frame has passed the wire, and after `on_time` or `send` of this endpoint. So an application may do with its
-/// nodes what it likes between two calls of `run_for`, and in everything that a frame causes. Only `on_time` of one
-/// endpoint that changes the node of another has to say so: `Endpoint::deadline_changed()`.
+/// The bus reads the deadline of an endpoint when it may have changed: at the beginning of `run_for` and `settle`,
+/// after a frame has been transmitted, and after `on_time` or `send` of this endpoint. An application may therefore use
+/// its nodes freely between two calls of `run_for`, and in all callbacks of a frame. Only if `on_time` of one endpoint
+/// changes the node of another, `Endpoint::deadline_changed()` must be called.
 class VirtualBus {
  public:
-  /// One participant: a Bus for what it sends. It lives as long as the bus and does not move.
+  /// One participant: a Bus for the frames it sends. It lives as long as the bus and does not move.
   class Endpoint {
    public:
-    /// Takes a frame into the endpoint's queue; false when `queue_limit` frames wait already.
+    /// Appends a frame to the endpoint's queue; false if `queue_limit` frames are already waiting.
     bool send(const Frame& frame) {
       if (waiting_.size() >= queue_limit) return false;
       waiting_.push_back(frame);
@@ -47,7 +48,7 @@ class VirtualBus {
       return true;
     }
 
-    /// Discards the frames that wait and the one on the wire, as a device that loses its power does.
+    /// Discards the waiting frames and the one on the wire, like a device that loses power.
     void discard() {
       waiting_.clear();
       bus_.waits(*this);
@@ -55,17 +56,17 @@ class VirtualBus {
       deadline_changed();
     }
 
-    /// Has the bus ask for the deadline again. Needed in one case only: `on_time` of another endpoint has changed it.
+    /// Makes the bus read the deadline again. Only needed if `on_time` of another endpoint has changed it.
     void deadline_changed() {
       if (!std::exchange(outdated_, true)) bus_.outdated_.push_back(place_);
     }
 
     /// Called with each frame that another endpoint has sent.
     std::function<void(const Frame&, TimePoint now)> on_frame;
-    /// Called when the time has come that `next_deadline` told.
+    /// Called when the time returned by `next_deadline` has come.
     std::function<void(TimePoint now)> on_time;
     std::function<std::optional<TimePoint>()> next_deadline;
-    /// Frames that may wait for the wire.
+    /// Maximum number of frames that wait for the wire.
     std::size_t queue_limit = 16;
 
    private:
@@ -74,15 +75,15 @@ class VirtualBus {
 
     VirtualBus& bus_;
     std::size_t place_;
-    bool outdated_ = false;  ///< the bus does not know the deadline
+    bool outdated_ = false;  ///< the bus must read the deadline again
     std::deque<Frame> waiting_;
   };
 
-  /// Called with each frame when it has passed the wire.
+  /// Called with each frame after its transmission.
   using Listener = std::function<void(const Frame&, TimePoint now)>;
 
   VirtualBus() = default;
-  /// Bits per second; 0: frames take no time.
+  /// Bit rate in bit/s; 0: frames take no time.
   explicit VirtualBus(std::uint32_t bit_rate) : bit_rate_{bit_rate} {}
   VirtualBus(const VirtualBus&) = delete;
   VirtualBus& operator=(const VirtualBus&) = delete;
@@ -96,7 +97,7 @@ class VirtualBus {
     return endpoint;
   }
 
-  /// Connects a node, built on this endpoint, with the frames and the time of the bus.
+  /// Connects a node, constructed with this endpoint, to the frames and the time of the bus.
   template <class Node>
   static void connect(Endpoint& endpoint, Node& node) {
     endpoint.on_frame = [&node](const Frame& frame, TimePoint now) { node.on_frame(frame, now); };
@@ -108,16 +109,16 @@ class VirtualBus {
 
   [[nodiscard]] TimePoint now() const { return TimePoint{Duration{static_cast<std::uint32_t>(now_)}}; }
 
-  /// Microseconds since the bus was made. Does not wrap.
+  /// Returns the microseconds since the bus was created. Does not wrap.
   [[nodiscard]] std::uint64_t elapsed() const { return now_ - start_; }
 
-  /// How long this frame occupies the wire.
+  /// Returns how long this frame occupies the wire.
   [[nodiscard]] Duration duration_of(const Frame& frame) const {
     if (bit_rate_ == 0) return Duration{0};
     return Duration{static_cast<std::uint32_t>(std::uint64_t{bits_on_wire(frame)} * 1'000'000 / bit_rate_)};
   }
 
-  /// Lets this time pass: frames and deadlines in their order, also those at the very end.
+  /// Lets this time pass: frames and deadlines in their order, including those at its end.
   void run_for(Duration span) {
     const Time end = now_ + span.count();
     all_deadlines_changed();
@@ -126,8 +127,7 @@ class VirtualBus {
     now_ = std::max(now_, end);
   }
 
-  /// Lets time pass as `run_for` does, at most until `done()` is true after a frame or a deadline: then time stands at that
-  /// moment.
+  /// Lets time pass like `run_for`, but stops when `done()` is true after a frame or a deadline.
   template <std::predicate Done>
   void run_until(Done done, Duration span) {
     const Time end = now_ + span.count();
@@ -139,8 +139,8 @@ class VirtualBus {
     }
   }
 
-  /// Delivers all frames that wait, and those that they cause, without waiting for deadlines. Gives up after
-  /// `most` frames, as two endpoints may answer each other for ever; says how many there were.
+  /// Delivers all waiting frames, and those that they cause, without waiting for deadlines. Stops after `most` frames,
+  /// because two endpoints may respond to each other indefinitely; returns their number.
   std::size_t settle(std::size_t most = 10'000) {
     all_deadlines_changed();
     std::size_t frames = 0;
@@ -154,7 +154,7 @@ class VirtualBus {
   }
 
  private:
-  /// Microseconds, beginning where a moment before the first one is not negative. The low 32 bits are the TimePoint.
+  /// Microseconds, with an offset so that earlier times are not negative. The low 32 bits are the TimePoint.
   using Time = KeyTree::Key;
 
   struct OnWire {
@@ -162,7 +162,7 @@ class VirtualBus {
     Frame frame;
   };
 
-  /// Does what is next until `end`; false when nothing is.
+  /// Executes the next event until `end`; false if there is none.
   bool step(Time end) {
     serve_deadlines();
     (void)begin_frame();
@@ -174,8 +174,8 @@ class VirtualBus {
     return true;
   }
 
-  /// Calls each endpoint whose time has come once. One that wants to be called again at once has to let time pass: it is
-  /// asked again in the next step.
+  /// Calls each endpoint whose time has come once. One that wants to be called again at once is called in the
+  /// next step.
   void serve_deadlines() {
     ask_for_deadlines();
     for (std::size_t i = 0; (i = deadlines_.first_up_to(now_, i)) != KeyTree::no_place; ++i) {
@@ -204,19 +204,19 @@ class VirtualBus {
     for (const auto& endpoint : endpoints_) endpoint->deadline_changed();
   }
 
-  /// Of a moment less than half of what a TimePoint counts away from now.
+  /// Converts a time that is less than half the range of TimePoint away from now.
   [[nodiscard]] Time time_of(TimePoint moment) const {
     const auto ahead = static_cast<std::int32_t>((moment - now()).count());
     return now_ + static_cast<Time>(std::int64_t{ahead});
   }
 
-  /// The endpoint's first waiting frame has become another one.
+  /// Updates arbitration after a change of the endpoint's first waiting frame.
   void waits(const Endpoint& endpoint) {
     const bool any = !endpoint.waiting_.empty();
     waiting_.set(endpoint.place_, any ? arbitration_value(endpoint.waiting_.front()) : KeyTree::none);
   }
 
-  /// Arbitration: the frame with the lowest CAN-ID takes the wire if it is free.
+  /// Starts the frame that wins arbitration, if the wire is free.
   bool begin_frame() {
     if (on_wire_) return true;
     if (waiting_.least() == KeyTree::none) return false;
@@ -241,9 +241,9 @@ class VirtualBus {
 
   std::vector<std::unique_ptr<Endpoint>> endpoints_;
   std::vector<Listener> listeners_;
-  KeyTree waiting_;                    ///< what arbitration compares of each endpoint's first frame
-  KeyTree deadlines_;                  ///< a Time for each endpoint, except for those in `outdated_`
-  std::vector<std::size_t> outdated_;  ///< places of endpoints that have to be asked
+  KeyTree waiting_;                    ///< arbitration value of each endpoint's first frame
+  KeyTree deadlines_;                  ///< a Time for each endpoint, except those in `outdated_`
+  std::vector<std::size_t> outdated_;  ///< positions of endpoints whose deadline must be read
   std::optional<OnWire> on_wire_;
   static constexpr Time start_ = Time{1} << 32;
   Time now_ = start_;

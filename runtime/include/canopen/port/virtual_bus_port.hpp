@@ -1,4 +1,4 @@
-/// A participant of a VirtualBus that waits for frames: time passes on the bus meanwhile. Host side.
+/// A participant of a VirtualBus that waits for frames, while time passes on the bus. Host side.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace canopen {
 
-/// It must live as long as the bus.
+/// Port on a VirtualBus. It must live as long as the bus.
 class VirtualBusPort {
  public:
   explicit VirtualBusPort(VirtualBus& bus) : bus_{bus}, endpoint_{bus.attach()} {
@@ -22,7 +22,7 @@ class VirtualBusPort {
 
   [[nodiscard]] bool send(const Frame& frame) { return endpoint_.send(frame); }
 
-  /// The next frame, or nothing when none comes within this time.
+  /// Returns the next frame; empty if none is received within this time.
   [[nodiscard]] std::optional<Frame> receive(Duration timeout) {
     constexpr Duration step{100};
     const TimePoint end = bus_.now() + timeout;
