@@ -23,7 +23,7 @@ struct DeviceOptions {
   RestrictedCanIds pdo_reserved_can_ids{1, 0};
   /// PDOs may have 29-bit CAN-IDs. If false, a write with bit 29 set is rejected: 0609 0030h.
   bool pdo_extended_ids = true;
-  /// TPDOs answer remote frames. If false, bit 30 of their COB-ID must be 1, and transmission types 252 and 253 are
+  /// TPDOs respond to remote frames. If false, bit 30 of their COB-ID must be 1, and transmission types 252 and 253 are
   /// rejected: 0609 0030h.
   bool tpdo_remote_frames = true;
   /// Bit 30 of 1800h..19FFh:01 may be 1. If false: 0609 0030h.

@@ -2,12 +2,12 @@
 /// value.
 ///
 ///     canopen::on_domain_read<od::log_file>([&](std::uint32_t offset, std::span<std::uint8_t> bytes) {
-///       return flash.read(offset, bytes);  // how many bytes there were; fewer than asked for: the end
+///       return flash.read(offset, bytes);  // number of bytes; fewer than requested: the end
 ///     }),
-///     canopen::on_domain_write<od::firmware>([&](std::uint32_t offset, std::span<const std::uint8_t> bytes, bool last)
-///     {
-///       return flash.program(offset, bytes) ? canopen::ok : canopen::AbortCode::hardware;
-///     })
+///     canopen::on_domain_write<od::firmware>(
+///         [&](std::uint32_t offset, std::span<const std::uint8_t> bytes, bool last) {
+///           return flash.program(offset, bytes) ? canopen::ok : canopen::AbortCode::hardware;
+///         })
 #pragma once
 
 #include <cstdint>

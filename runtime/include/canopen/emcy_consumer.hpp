@@ -22,7 +22,7 @@ struct EmergencyMessage {
   friend constexpr bool operator==(const EmergencyMessage&, const EmergencyMessage&) = default;
 };
 
-/// Returns the message in a frame; empty if it has less than eight bytes.
+/// Returns the message in a frame; empty if it has fewer than eight bytes.
 [[nodiscard]] constexpr std::optional<EmergencyMessage> emergency_message(const Frame& frame) {
   if (frame.remote || frame.size < 8) return std::nullopt;
   EmergencyMessage message{static_cast<std::uint16_t>(frame.data[0] | (frame.data[1] << 8)),

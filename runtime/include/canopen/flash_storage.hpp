@@ -26,8 +26,8 @@ concept FlashPages = requires(T& pages, std::uint8_t page, std::uint32_t offset,
 };
 
 /// Keeps a header and the image in each page. The header is written last: until its last word has been written, its
-/// checksum is wrong and the other page is used. So a power loss cannot leave a valid newer header before an invalid
-/// image: such a page is reported as damaged, and the older image is used. The pages must outlive the storage.
+/// checksum is wrong and the other page is used. So a power loss cannot leave a valid newer header with an invalid
+/// image; such a page is reported as damaged, and the older image is used. The pages must outlive the storage.
 template <FlashPages Pages>
 class FlashStorage {
  public:

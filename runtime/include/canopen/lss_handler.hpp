@@ -8,7 +8,8 @@
 ///       void stop_communication();
 ///       void start_communication(canopen::LssBitTiming);
 ///     };
-///     auto sensor = canopen::make_node<rk5c::Device>(bus, stored_node_id, canopen::configured_by_lss<rk5c::Device::lss_options>(port));
+///     auto sensor = canopen::make_node<rk5c::Device>(bus, stored_node_id,
+///                                                    canopen::configured_by_lss<rk5c::Device::lss_options>(port));
 #pragma once
 
 #include <tuple>

@@ -307,7 +307,7 @@ class LssMaster {
     confirming_ = false;
   }
 
-  /// Searches a 0 from `bit_` on.
+  /// Searches for a 0 from `bit_` on.
   void find_zero() {
     while (bit_ < 32 && (words_[number_] >> bit_ & 1) != 0) ++bit_;
     if (bit_ == 32) return climb();

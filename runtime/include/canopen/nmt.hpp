@@ -41,8 +41,7 @@ enum class NmtCommand : std::uint8_t {
 /// Bits of NMT start-up 1F80h (CiA 302-2).
 namespace nmt_start_up {
 inline constexpr std::uint32_t master = 0x01;          ///< this device is the NMT master
-inline constexpr std::uint32_t start_all = 0x02;       ///< slaves are started with one command to all nodes, not
-                                                       ///< individually
+inline constexpr std::uint32_t start_all = 0x02;       ///< slaves are started by one command to all nodes
 inline constexpr std::uint32_t no_self_start = 0x04;   ///< this device does not enter Operational by itself
 inline constexpr std::uint32_t no_slave_start = 0x08;  ///< slaves are not started: the application does it
 inline constexpr std::uint32_t reset_all = 0x10;       ///< all nodes are reset if a mandatory slave is lost

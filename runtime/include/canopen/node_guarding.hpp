@@ -29,7 +29,7 @@ class NodeGuardingSlave {
   /// monitored, the toggle bit is 0.
   void reset() { *this = NodeGuardingSlave{}; }
 
-  /// Processes a request. `serve` sends the response; requests that are received before share it.
+  /// Processes a request. `serve` sends the response; requests that are received before it is sent share it.
   void on_request(std::uint16_t guard_time, std::uint8_t life_time_factor, TimePoint now) {
     answer_due_ = true;
     failed_ = false;

@@ -1,8 +1,9 @@
 /// A device on the bus as its master sees it: typed access to its objects over SDO.
 ///
 ///     canopen::RemoteNode<cpc_tc1::Device, Bus> drive{bus, canopen::NodeId{5}};
-///     drive.write<od::controlword>(0x0F, now);                      // frames and time go to drive until it is not
-///     busy() if (const auto done = drive.result(); !done) log(to_text(done.abort_code()));
+///     drive.write<od::controlword>(0x0F, now);
+///     // pass frames and time to drive until it is not busy(), then
+///     if (const auto done = drive.result(); !done) log(to_text(done.abort_code()));
 #pragma once
 
 #include <concepts>

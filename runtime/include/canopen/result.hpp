@@ -14,7 +14,7 @@ class [[nodiscard]] Result {
  public:
   constexpr Result(T value) : value_{std::move(value)} {}  // NOLINT(google-explicit-constructor): a value is a result
   /// `code` must not be `ok`.
-  constexpr Result(AbortCode code) : abort_code_{code} {}  // NOLINT(google-explicit-constructor): so is a refusal
+  constexpr Result(AbortCode code) : abort_code_{code} {}  // NOLINT(google-explicit-constructor): so is an abort code
 
   [[nodiscard]] constexpr bool has_value() const { return abort_code_ == ok; }
   constexpr explicit operator bool() const { return has_value(); }

@@ -324,7 +324,7 @@ class SdoClient {
     flush();
   }
 
-  /// Ends a transfer whose last request has not been answered. If the server does not know of it, nothing is sent.
+  /// Ends a transfer whose last request has no response. If the server does not know of it, nothing is sent.
   void give_up(AbortCode code) {
     const bool started = !(is_initiating() && has_request_);
     if (!started) return finish(code);

@@ -41,7 +41,7 @@ template <std::size_t Capacity>
 struct VisibleString : StringStorage<Capacity> {
   constexpr VisibleString() = default;
   /// Truncates text that is longer than the capacity.
-  constexpr VisibleString(std::string_view text) {  // NOLINT(google-explicit-constructor): text is what it is made of
+  constexpr VisibleString(std::string_view text) {  // NOLINT(google-explicit-constructor): text converts to it
     while (this->size < text.size() && this->size < Capacity) {
       this->bytes[this->size] = static_cast<std::uint8_t>(text[this->size]);
       ++this->size;

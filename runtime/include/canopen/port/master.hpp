@@ -5,7 +5,7 @@
 ///     canopen::Master master{bus, slaves};
 ///     auto drive = master.remote<cpc_tc1::Device>(canopen::NodeId{5});
 ///     master.on_configure = [&](canopen::NodeId) { return drive.write<od::profile_velocity>(4'000); };
-///     master.on_booted = [&](canopen::NodeId node, const canopen::BootResult& result) { log(boot_text(node, result)); };
+///     master.on_booted = [&](canopen::NodeId node, const canopen::BootResult& end) { log(boot_text(node, end)); };
 ///     drive.on_pdo<cpc_tc1::Tpdo2>([](auto status, auto position) { ... });
 ///     master.start();
 ///     while (!stop) master.poll(100ms);

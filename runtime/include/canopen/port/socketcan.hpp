@@ -167,7 +167,7 @@ class SocketCan {
     set_option(fresh, SOL_SOCKET, SO_TIMESTAMPNS, int{1});
     set_option(fresh, SOL_SOCKET, SO_RXQ_OVFL, int{1});
     set_option(fresh, SOL_SOCKET, SO_RCVBUF, receive_buffer);
-    // Few frames of one socket wait in the kernel, where no other one overtakes them.
+    // Only few frames of one socket wait in the kernel, where none can overtake them.
     set_option(fresh, SOL_SOCKET, SO_SNDBUF, int{0});
     if (!filters_.empty()) set_filters(fresh);
     sockaddr_can address{};
