@@ -1,4 +1,4 @@
-/// What a node tells acceptance filters: neither a frame too few nor ones of a service that it has not.
+/// The frames that a node accepts: all that its services need, and none for a service that it does not have.
 #include <gtest/gtest.h>
 #include <canopen/accepted_frames.hpp>
 
@@ -54,7 +54,7 @@ TEST(AcceptedFrames, OfANodeWithoutNodeIdAreThoseOfNoService) {
   EXPECT_EQ(count, 0u);
 }
 
-/// A node does the same whether it sees the other frames or not.
+/// A node behaves the same whether or not it receives the other frames.
 TEST(AcceptedFrames, AreAllThatANodeLooksAt) {
   bench::Bench<every_service::Device> device;
   const std::set<std::string> accepted = accepted_by(device);

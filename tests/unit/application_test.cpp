@@ -1,4 +1,4 @@
-/// What the application does to its node: it sets objects, also from handlers, asks for NMT commands and reports errors.
+/// What the application does with its node: sets objects, also in handlers, requests NMT commands and reports errors.
 #include <gtest/gtest.h>
 
 #include <every_service/device.hpp>
@@ -83,7 +83,7 @@ TEST(WriteHandler, ThatSetsAnotherObjectLeavesItsOwnToTheWrite) {
   EXPECT_EQ(device.node.get<od::word>(), 9);
 }
 
-// Parameters of services, as SDO would have it
+// Parameters of services: the same rules as for SDO
 
 TEST(SetOfAParameter, ObeysTheRulesOfItsService) {
   Device device;

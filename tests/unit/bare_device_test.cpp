@@ -1,4 +1,4 @@
-/// A device whose sheet leaves its COB-IDs and transmission types open: it is the one that CiA 301 describes.
+/// A device whose EDS does not define its COB-IDs and transmission types: it uses the defaults of CiA 301.
 #include <gtest/gtest.h>
 
 #include <bare_device/device.hpp>

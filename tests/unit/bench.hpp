@@ -1,4 +1,4 @@
-/// A node on a bus that records, and frames written as a candump log shows them.
+/// A node on a bus that records frames; frames are written as in a candump log.
 #pragma once
 
 #include <canopen/node.hpp>
@@ -12,7 +12,7 @@
 
 namespace bench {
 
-/// "605 40 00 10 00 00 00 00 00": CAN-ID and data bytes. Of three characters the CAN-ID has 11 bits, of eight 29.
+/// "605 40 00 10 00 00 00 00 00": CAN-ID and data bytes. A CAN-ID of three characters has 11 bits, one of eight 29.
 /// "185 R 8" is a remote frame.
 inline canopen::Frame frame(const std::string& text) {
   std::istringstream words{text};
@@ -47,7 +47,7 @@ inline std::string text(const canopen::Frame& frame) {
 
 struct RecordingBus {
   std::deque<canopen::Frame> sent;
-  std::size_t room = std::numeric_limits<std::size_t>::max();  ///< frames that still find a place
+  std::size_t room = std::numeric_limits<std::size_t>::max();  ///< frames that the bus still accepts
 
   bool send(const canopen::Frame& frame) {
     if (room == 0) return false;
@@ -64,7 +64,7 @@ struct RecordingBus {
   }
 };
 
-/// A device with node-ID 5 that has been switched on at time 0; its boot-up message has been taken away.
+/// A device with node-ID 5, switched on at time 0; its boot-up message has been removed.
 template <class Device = sample::Device, class... Handlers>
 class Bench {
  public:
@@ -73,13 +73,13 @@ class Bench {
     bus.take();
   }
 
-  /// What the device sends because of this frame.
+  /// Returns what the device sends in response to this frame.
   std::string ask(const std::string& request) {
     node.on_frame(frame(request), now);
     return bus.take();
   }
 
-  /// What the device sends while this time passes: `on_time` is called at each deadline and at the end.
+  /// Returns what the device sends during this time: `on_time` is called at each deadline and at the end.
   std::string pass(canopen::Duration span) {
     const canopen::TimePoint end = now + span;
     while (const auto deadline = node.next_deadline()) {

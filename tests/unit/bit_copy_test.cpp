@@ -39,7 +39,7 @@ TEST(BitCopy, IsKnownWhileTheProgramIsCompiled) {
   static_assert(canopen::take_bits(Data{0x80, 0x01}.data(), 7, 2) == 3);
 }
 
-/// Each length at each bit against bits counted one by one.
+/// Compares each length at each bit position with bits that are counted one by one.
 TEST(BitCopy, PutsAndTakesEveryLengthAtEveryBit) {
   constexpr std::uint64_t value = 0x9E37'79B9'7F4A'7C15;
   constexpr Data before{0xA5, 0x5A, 0xC3, 0x3C, 0x96, 0x69, 0x0F, 0xF0};

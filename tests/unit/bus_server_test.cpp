@@ -1,4 +1,4 @@
-/// The bus server: what it answers to its clients, and what it lets them do to each other.
+/// The bus server: its answers to clients, and how it separates them from each other.
 #include "server/bus_server.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 using namespace edsc;
 using std::chrono::milliseconds;
 
-/// A server in this thread, and what it told.
+/// A server in this thread, its log and its messages.
 struct Bench {
   explicit Bench(BusLimits limits = {}, std::vector<std::string> buses = {"vcan0"})
       : server{{"127.0.0.1", 0},
@@ -29,7 +29,7 @@ struct Bench {
                 },
                 [this](const std::string& message) { trouble.push_back(message); }}} {}
 
-  /// The others have left, or do so in ten seconds.
+  /// Waits up to ten seconds until this many clients are connected.
   void expect_clients(std::size_t wanted) {
     for (int i = 0; i < 10'000 && server.clients() != wanted; ++i) server.turn(milliseconds{1});
     EXPECT_EQ(server.clients(), wanted);
@@ -40,7 +40,7 @@ struct Bench {
   BusServer server;
 };
 
-/// One connection; time stamps in what it gets are written T.
+/// One connection; time stamps in what it receives are replaced by T.
 class Client {
  public:
   explicit Client(Bench& bench, int receive_buffer = 0)
@@ -61,30 +61,30 @@ class Client {
     EXPECT_EQ(::send(socket_, text.data(), text.size(), MSG_NOSIGNAL), static_cast<ssize_t>(text.size()));
   }
 
-  /// What it gets until that ends with `wanted`, or for ten seconds.
+  /// Returns what it receives until that ends with `wanted`, for ten seconds at most.
   std::string hear_up_to(std::string_view wanted) {
     return hear_until([&](const std::string& heard) { return heard.ends_with(wanted); });
   }
 
-  /// So many elements, or what comes of them in ten seconds.
+  /// Returns what it receives until that has this many elements, for ten seconds at most.
   std::string hear_elements(std::ptrdiff_t wanted) {
     return hear_until([&](const std::string& heard) { return std::count(heard.begin(), heard.end(), '>') >= wanted; });
   }
 
-  /// What has come by now, after the server has done all that it has been told to.
+  /// Returns what has been received after the server has processed all requests.
   std::string hear() {
     for (int i = 0; i < 5; ++i) bench_.server.turn(milliseconds{1});
     return take();
   }
 
-  /// True when the server has closed the connection.
+  /// Returns true if the server has closed the connection.
   bool closed() {
     char byte = 0;
     static_cast<void>(hear_until([&](const std::string&) { return ::recv(socket_, &byte, 1, MSG_DONTWAIT) == 0; }));
     return ::recv(socket_, &byte, 1, MSG_DONTWAIT) == 0;
   }
 
-  /// Whatever has come, without a turn of the server.
+  /// Returns what has been received, without running the server.
   std::string take() {
     std::string bytes(65536, '\0');
     const ssize_t size = ::recv(socket_, bytes.data(), bytes.size(), MSG_DONTWAIT);
@@ -223,7 +223,7 @@ TEST(BusServer, CarriesMoreThanASocketHoldsWithoutLoss) {
   EXPECT_TRUE(bench.trouble.empty());
 }
 
-/// The server hears all others while one of them does not read, however long it has been connected.
+/// The server serves all other clients while one of them does not read, however long that one has been connected.
 TEST(BusServer, SendsAClientAwayThatReadsTooSlowly) {
   Bench bench{{64, 100'000, std::chrono::hours{1}}};
   Client sender{bench}, deaf{bench, 4096}, other{bench};

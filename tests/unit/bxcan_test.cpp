@@ -12,7 +12,7 @@ namespace {
 using canopen::BusState;
 using canopen::Frame;
 
-/// A controller that does at once what is asked of it.
+/// A controller that executes each request immediately.
 struct FakeController {
   struct Mailbox {
     std::uint32_t id = 0, length = 0, low = 0, high = 0;
@@ -20,7 +20,7 @@ struct FakeController {
   struct FilterBank {
     std::uint32_t id = 0, mask = 0;
   };
-  /// MSR: in initialisation when MCR asks for it, as soon as the frame on the wire has ended.
+  /// MSR: in initialisation mode if MCR requests it, after the frame on the wire has ended.
   struct Status {
     FakeController& controller;
     operator std::uint32_t() const {
@@ -29,7 +29,7 @@ struct FakeController {
       return controller.master_control & 1;
     }
   };
-  /// RF0R: 20h releases a frame, which takes a number of reads, and 10h takes back the overrun.
+  /// RF0R: 20h releases a frame, which takes some reads, and 10h clears the overrun.
   struct Fifo {
     FakeController& controller;
     operator std::uint32_t() const {
@@ -62,7 +62,7 @@ struct FakeController {
   bool lost = false;
   int wire_busy = 0;      ///< reads of MSR until the frame on the wire has ended
   int release_takes = 0;  ///< reads of RF0R
-  int releasing = 0;      ///< reads that are left of it
+  int releasing = 0;      ///< reads until the release is complete
   std::deque<Mailbox> waiting;
 
   std::uint32_t master_control = 0x0001'0002;  // asleep, as after a reset
@@ -93,7 +93,7 @@ TEST(BitTiming, HasTheSamplePointOfCia301) {
   EXPECT_EQ(canopen::bit_timing(8'000'000, 125'000, range), (canopen::BitTiming{4, 13, 2, 2}));  // 87.5 %
   EXPECT_EQ(canopen::bit_timing(8'000'000, 10'000, range), (canopen::BitTiming{50, 13, 2, 2}));
   EXPECT_EQ(canopen::bit_timing(36'000'000, 800'000, range),
-            (canopen::BitTiming{3, 12, 2, 2}));  // 86.7 %, with 5 it were 88.9 %
+            (canopen::BitTiming{3, 12, 2, 2}));  // 86.7 %, 88.9 % with prescaler 5
   EXPECT_EQ(canopen::bit_timing(8'000'000, 300'000, range), std::nullopt);
   EXPECT_EQ(canopen::bit_timing(4'000'000, 1'000'000, range), std::nullopt);  // four quanta
 }
@@ -135,13 +135,13 @@ TEST_F(BxCan, ChangesTheBitRateWhenTheWireIsFree) {
   controller.wire_busy = 5;
   EXPECT_TRUE(bus.stop());
   EXPECT_EQ(controller.wire_busy, 0);
-  EXPECT_FALSE(bus.send({.id = 0x701, .size = 1}));  // it is not on the bus
+  EXPECT_FALSE(bus.send({.id = 0x701, .size = 1}));  // the controller is not on the bus
   EXPECT_EQ(controller.bit_timing, 0x011C'0003u);
   ASSERT_TRUE(bus.start(8'000'000, 250'000));
   EXPECT_EQ(controller.bit_timing, 0x011C'0001u);
   EXPECT_EQ(controller.filter_list, 1u);  // as accepted before
   EXPECT_EQ(controller.filters[0].mask, 0x7E5u << 21);
-  EXPECT_EQ(controller.transmit[0].id, 0x7E4u << 21 | 1);  // still requested
+  EXPECT_EQ(controller.transmit[0].id, 0x7E4u << 21 | 1);  // transmission is still requested
   EXPECT_TRUE(bus.send({.id = 0x701, .size = 1}));
 }
 
@@ -177,13 +177,13 @@ TEST_F(BxCan, KeepsFramesOfTheSameIdentifierInOrder) {
   controller.transmit_status = 0x1800'0000;
   EXPECT_FALSE(bus.send({.id = 0x585, .size = 8, .data = {0x10}}));
   EXPECT_TRUE(bus.send({.id = 0x185, .size = 2}));
-  controller.transmit_status = 0x1C00'0000;  // both are gone
+  controller.transmit_status = 0x1C00'0000;  // both have been sent
   EXPECT_TRUE(bus.send({.id = 0x585, .size = 8, .data = {0x10}}));
 }
 
 TEST_F(BxCan, ReceivesInOrder) {
   EXPECT_EQ(bus.receive(), std::nullopt);
-  controller.arrive({0x605u << 21, 0xAB00'0108, 0x0010'0040, 0});  // a time stamp stands above the length
+  controller.arrive({0x605u << 21, 0xAB00'0108, 0x0010'0040, 0});  // with a time stamp above the length
   controller.arrive({0x1ABC'DEF0u << 3 | 4, 1, 0x7F, 0});
   controller.arrive({0x705u << 21 | 2, 1, 0, 0});
   EXPECT_EQ(bus.receive(), (Frame{.id = 0x605, .size = 8, .data = {0x40, 0x00, 0x10, 0x00, 0, 0, 0, 0}}));

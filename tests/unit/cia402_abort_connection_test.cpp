@@ -1,5 +1,5 @@
-/// What a drive does when communication is lost: 6007h, abort connection option code (CiA 402-2), with a motor that
-/// turns.
+/// The reaction of a drive to a loss of communication while the motor turns: 6007h, abort connection option code
+/// (CiA 402-2).
 #include <gtest/gtest.h>
 
 #include <canopen/bus_status.hpp>
@@ -23,7 +23,7 @@ constexpr auto emcy_error_control = "085 30 81 11 00 00 00 00 00";
 constexpr auto read_error_code = "605 40 3F 60 00 00 00 00 00";
 constexpr auto fault_reset = "605 2B 40 60 00 80 00 00 00";
 
-/// Profile velocity 1000, and what 6007h is.
+/// Runs at profile velocity 1000; `option` is the value of 6007h.
 struct RunningDrive : DriveBench {
   explicit RunningDrive(std::int16_t option = 1) {
     set<od::abort_connection_option_code>(option);
@@ -59,7 +59,7 @@ TEST(Cia402AbortConnection, IsAFaultWhenAHeartbeatIsLost) {
   EXPECT_EQ(drive.pass(3ms), emcy_error_control);  // one EMCY, and Pre-operational by 1029h: no TPDO
   drive.expect_fault();
   EXPECT_EQ(drive.ask(read_error_code), "585 4B 3F 60 00 30 81 00 00");
-  EXPECT_EQ(drive.ask(heartbeat_of_node_1), "085 00 00 11 00 00 00 00 00");  // the fault is left
+  EXPECT_EQ(drive.ask(heartbeat_of_node_1), "085 00 00 11 00 00 00 00 00");  // the fault remains
   EXPECT_EQ(drive.state(), State::fault);
   EXPECT_EQ(drive.ask(fault_reset), "585 60 40 60 00 00 00 00 00 | 085 00 00 00 00 00 00 00 00");
   EXPECT_EQ(drive.state(), State::switch_on_disabled);
@@ -71,7 +71,7 @@ TEST(Cia402AbortConnection, IsAFaultWhenAHeartbeatIsLateByOneFrame) {
   drive.ask(heartbeat_of_node_1);
   drive.pass(99ms);
   drive.now = drive.now + 2ms;
-  drive.app->node().on_time(drive.now);  // lost, and back before the drive is called
+  drive.app->node().on_time(drive.now);  // lost, and received again before the drive is called
   drive.app->node().on_frame(bench::frame(heartbeat_of_node_1), drive.now);
   ASSERT_TRUE(drive.app->drive().next_deadline());
   EXPECT_LE(*drive.app->drive().next_deadline(), drive.now);
@@ -100,8 +100,8 @@ TEST(Cia402AbortConnection, IsAFaultWhenTheControllerIsBusOff) {
 struct Row {
   std::int16_t option;
   State after;    ///< at once
-  State at_rest;  ///< when the axis stands
-  bool stays_on;  ///< the motor goes on as before
+  State at_rest;  ///< when the axis is at rest
+  bool stays_on;  ///< the motor continues as before
 };
 
 TEST(Cia402AbortConnection, DoesWhat6007hSays) {
@@ -144,7 +144,7 @@ TEST(Cia402AbortConnection, CountsOncePerLoss) {
   EXPECT_EQ(drive.state(), State::switch_on_disabled);
 }
 
-/// A manufacturer's drive with a reaction of its own.
+/// A manufacturer's drive with its own reaction.
 template <canopen::Bus B>
 class OwnReaction : public nodes::DriveNode<OwnReaction<B>, cia402_drive::Device, B, canopen::cia402::Options{}> {
   using Base = nodes::DriveNode<OwnReaction<B>, cia402_drive::Device, B, canopen::cia402::Options{}>;
@@ -175,14 +175,14 @@ TEST(Cia402Drive, CatchesUpABoundedTimeAfterAStall) {
   const std::int32_t before = drive.position();
   drive.now = drive.now + 60s;
   drive.app->on_time(drive.now);
-  EXPECT_EQ(drive.position() - before, 100);  // 100 steps of 1 ms at 1000/s
+  EXPECT_EQ(drive.position() - before, 100);  // 100 steps of 1 ms at 1000 increments per second
   drive.pass(1s);
   EXPECT_EQ(drive.position() - before, 1'100);
 }
 
 TEST(Cia402Drive, HasErrorsOfServicesIn603Fh) {
   DriveBench drive;
-  EXPECT_EQ(drive.ask("205 0F"), "085 10 82 11 00 00 00 00 00");  // an RPDO that is too short
+  EXPECT_EQ(drive.ask("205 0F"), "085 10 82 11 00 00 00 00 00");  // the RPDO is too short
   EXPECT_EQ(drive.ask(read_error_code), "585 4B 3F 60 00 10 82 00 00");
 }
 

@@ -1,5 +1,5 @@
-/// A drive with every object of CiA 402 that the profile looks at, and an axis of which 1 is one increment, one
-/// increment per second, one per second squared.
+/// A drive with every object of CiA 402 that the profile uses, and an axis whose units are one increment, one increment
+/// per second and one increment per second squared.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -32,11 +32,11 @@ class PlainDrive : public nodes::DriveNode<PlainDrive<B>, cia402_drive::Device, 
   [[nodiscard]] auto& device_control() { return this->drive_; }
 };
 
-/// Operational, its first TPDO1 taken away. TPDO1 is the statusword.
+/// Operational; the first TPDO1 has been removed. TPDO1 is the statusword.
 struct DriveBench : NodeBench<PlainDrive> {
   DriveBench() { ask(start); }
 
-  /// RPDO1: the controlword. What is sent because of it.
+  /// RPDO1: the controlword. Returns what the drive sends in response.
   std::string control(std::uint16_t word) { return ask(text({.id = 0x205, .size = 2, .data = bytes(word)})); }
   /// RPDO2: controlword and target position.
   std::string control(std::uint16_t word, std::int32_t target) {
@@ -45,7 +45,7 @@ struct DriveBench : NodeBench<PlainDrive> {
       frame.data[2 + i] = static_cast<std::uint8_t>(static_cast<std::uint32_t>(target) >> (8 * i));
     return ask(text(frame));
   }
-  /// An object as its application sets it.
+  /// Sets an object as the application does.
   template <class O>
   void set(typename O::type value) {
     EXPECT_EQ(app->node().template set<O>(value), canopen::ok);
@@ -61,13 +61,13 @@ struct DriveBench : NodeBench<PlainDrive> {
   [[nodiscard]] std::int32_t position() const { return app->axis().position(); }
   [[nodiscard]] std::int32_t velocity() const { return app->axis().velocity(); }
 
-  /// Operation Enabled in a mode.
+  /// Brings the drive to Operation Enabled in a mode.
   void enable(std::int8_t mode) {
     set<od::modes_of_operation>(mode);
     for (const int word : {0x06, 0x07, 0x0F}) control(static_cast<std::uint16_t>(word));
     EXPECT_EQ(state(), State::operation_enabled);
   }
-  /// The same, with the motor turning in profile velocity.
+  /// Also lets the motor turn in profile velocity.
   void run(std::int32_t velocity) {
     set<od::target_velocity>(velocity);
     enable(canopen::cia402::mode::profile_velocity);

@@ -1,4 +1,4 @@
-/// The modes of operation of CiA 402: bits of controlword and statusword as bytes, and where the axis goes.
+/// The modes of operation of CiA 402: controlword and statusword bits as bytes, and the motion of the axis.
 #include <gtest/gtest.h>
 
 #include "cia402_bench.hpp"
@@ -11,7 +11,7 @@ using bench::State;
 namespace od = bench::od;
 namespace mode = canopen::cia402::mode;
 
-// Profile position. 10'000 increments take 1.1 s with the ramps of the data sheet.
+// Profile position. 10'000 increments take 1.1 s with the ramps of the EDS.
 
 struct Positioning : DriveBench {
   Positioning() { enable(mode::profile_position); }
@@ -41,10 +41,10 @@ TEST(ProfilePosition, KeepsOneSetPointBehindTheOneInProgress) {
   drive.control(0x1F, 2'000);
   drive.control(0x0F);
   EXPECT_EQ(drive.control(0x1F, 1'000), "185 37 12");
-  EXPECT_EQ(drive.control(0x0F), "");         // bit 12 stays: there is no room
-  EXPECT_EQ(drive.control(0x1F, 9'000), "");  // not taken
+  EXPECT_EQ(drive.control(0x0F), "");         // bit 12 remains 1: the buffer is full
+  EXPECT_EQ(drive.control(0x1F, 9'000), "");  // ignored
   EXPECT_EQ(drive.control(0x0F), "");
-  EXPECT_EQ(drive.pass(400ms), "185 37 02");  // at 2'000 the next one goes on
+  EXPECT_EQ(drive.pass(400ms), "185 37 02");  // at 2'000 the next set-point starts
   EXPECT_EQ(drive.pass(1s), "185 37 06");
   EXPECT_EQ(drive.position(), 1'000);
 }
@@ -64,7 +64,7 @@ TEST(ProfilePosition, CountsFromTheLastTargetWithBit6) {
   Positioning drive;
   drive.control(0x5F, 1'000);
   drive.control(0x4F);
-  drive.control(0x5F, -300);  // behind the first
+  drive.control(0x5F, -300);  // after the first set-point
   drive.control(0x4F);
   drive.pass(2s);
   EXPECT_EQ(drive.position(), 700);
@@ -83,7 +83,7 @@ TEST(ProfilePosition, KeepsToVelocityAndRamps) {
   EXPECT_NEAR(drive.velocity(), 2'500, 60);
   drive.pass(100ms);
   EXPECT_EQ(drive.velocity(), 5'000);
-  drive.set<od::max_profile_velocity>(1'000);  // of the next set-point
+  drive.set<od::max_profile_velocity>(1'000);  // applies from the next set-point
   drive.control(0x2F);
   drive.control(0x3F, 10'000);
   drive.pass(500ms);
@@ -95,7 +95,7 @@ TEST(ProfilePosition, HaltsAndGoesOn) {
   drive.control(0x1F, 10'000);
   drive.pass(500ms);
   EXPECT_EQ(drive.control(0x11F), "");
-  EXPECT_EQ(drive.pass(200ms), "185 37 16");  // bit 10: it stands
+  EXPECT_EQ(drive.pass(200ms), "185 37 16");  // bit 10: the axis is at rest
   EXPECT_LT(drive.position(), 8'000);
   EXPECT_EQ(drive.control(0x1F), "185 37 12");
   EXPECT_EQ(drive.pass(1s), "185 37 16");
@@ -212,7 +212,7 @@ TEST(ProfileVelocity, StopsAtASoftwareLimitAndGoesBackOnly) {
   drive.set<od::target_velocity>(10'000);
   drive.enable(mode::profile_velocity);
   drive.pass(2s);
-  EXPECT_EQ(drive.statusword(), 0x1A37);  // bits 11 and 12, and not bit 10
+  EXPECT_EQ(drive.statusword(), 0x1A37);  // bits 11 and 12, not bit 10
   EXPECT_NEAR(drive.position(), 5'050, 60);
   drive.set<od::target_velocity>(-10'000);
   drive.pass(300ms);
@@ -224,8 +224,8 @@ TEST(ProfileVelocity, StopsAtASoftwareLimitAndGoesBackOnly) {
 
 struct Method {
   std::int8_t number;
-  std::int32_t place;  ///< of home, from where the axis was; switches at -5'000, 5'000 and, from there on, 2'000
-  std::int32_t near;   ///< how far it goes in a step
+  std::int32_t place;  ///< home, relative to the start; limit switches at -5'000 and 5'000, home switch from 2'000 on
+  std::int32_t near;   ///< distance of one step
 };
 
 TEST(Homing, FindsHomeByEachMethod) {
@@ -307,7 +307,7 @@ TEST(Homing, FailsWithoutAMethodWithoutASpeedAndAtTheOtherLimitSwitch) {
   drive.enable(mode::homing);
   drive.control(0x1F);  // method 0
   drive.pass(10ms);
-  EXPECT_EQ(drive.statusword(), 0x2637);  // bit 13, and it stands
+  EXPECT_EQ(drive.statusword(), 0x2637);  // bit 13, and the axis is at rest
   drive.control(0x0F);
   drive.set<od::homing_method>(17);
   drive.set<od::homing_speeds<1>>(0);
@@ -330,7 +330,7 @@ TEST(Homing, FailsWithoutAMethodWithoutASpeedAndAtTheOtherLimitSwitch) {
 TEST(CyclicSynchronousPosition, FollowsTheTargetPosition) {
   DriveBench drive;
   drive.enable(mode::cyclic_synchronous_position);
-  EXPECT_EQ(drive.statusword() & 0xFBFF, 0x1237);  // bit 12: it follows
+  EXPECT_EQ(drive.statusword() & 0xFBFF, 0x1237);  // bit 12: the drive follows
   for (std::int32_t target = 100; target <= 1'000; target += 100) {
     drive.control(0x0F, target);
     drive.pass(2ms);
@@ -366,7 +366,7 @@ TEST(Modes, AreShownIn6061hWhenTheyHaveBegun) {
   DriveBench drive;
   EXPECT_EQ(drive.ask("605 2F 60 60 00 03 00 00 00"), "585 60 60 60 00 00 00 00 00");
   EXPECT_EQ(drive.ask("605 40 61 60 00 00 00 00 00"), "585 4F 61 60 00 03 00 00 00");
-  drive.ask("605 2F 60 60 00 04 00 00 00");  // torque: the drive has it not
+  drive.ask("605 2F 60 60 00 04 00 00 00");  // torque: the drive does not have this mode
   EXPECT_EQ(drive.ask("605 40 61 60 00 00 00 00 00"), "585 4F 61 60 00 03 00 00 00");
 }
 
@@ -388,7 +388,7 @@ TEST(Modes, EndAHoming) {
   drive.control(0x1F);
   drive.pass(500ms);
   drive.set<od::modes_of_operation>(mode::profile_position);
-  drive.input("limit negative on");  // what it was looking for
+  drive.input("limit negative on");  // the switch that homing was looking for
   drive.pass(500ms);
   EXPECT_EQ(drive.velocity(), 0);
   EXPECT_EQ(drive.get<od::modes_of_operation_display>(), mode::profile_position);

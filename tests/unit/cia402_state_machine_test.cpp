@@ -14,7 +14,7 @@ struct Row {
   State from;
   std::uint16_t controlword;
   State to;
-  const char* frame;  ///< TPDO1; none where the statusword stays
+  const char* frame;  ///< TPDO1; empty if the statusword does not change
 };
 
 constexpr Row rows[] = {
@@ -69,7 +69,7 @@ constexpr Row rows[] = {
     {State::fault, 0x80, State::switch_on_disabled, "085 00 00 00 00 00 00 00 00 | 185 50 02"},  // 15
 };
 
-/// Brings a drive into a state, its statusword told.
+/// Brings a drive into a state; the frames of its statusword have been removed.
 void reach(DriveBench& drive, State state) {
   switch (state) {
     case State::not_ready_to_switch_on:
@@ -116,7 +116,7 @@ TEST(Cia402StateMachine, IsInSwitchOnDisabledAfterPowerOn) {
 }
 
 TEST(Cia402StateMachine, HasAStatuswordForEachState) {
-  constexpr std::uint16_t mask = 0x004F;  // bit 5 is open in some of them
+  constexpr std::uint16_t mask = 0x004F;  // bit 5 is undefined in some states
   constexpr std::uint16_t expected[] = {0x0000, 0x0040, 0x0001, 0x0003, 0x0007, 0x0007, 0x000F, 0x0008};
   for (std::size_t i = 0; i < std::size(expected); ++i) {
     EXPECT_EQ(canopen::cia402::bits_of(static_cast<State>(i)) & mask, expected[i]) << i;
@@ -173,10 +173,10 @@ TEST(Cia402StateMachine, TellsVoltageAndWarning) {
   EXPECT_EQ(drive.pass(1ms), "185 C0 02");
 }
 
-/// What an option code makes of a motor that turns with 10'000: states, the time until it stands, and frames.
+/// The effect of an option code on a motor that turns at 10'000: states and the time until it is at rest.
 struct Braking {
   std::int16_t code;
-  int milliseconds;  ///< until it stands; ramps are 100'000 and 1'000'000, and 50'000 without power
+  int milliseconds;  ///< until rest; ramps: 100'000 and 1'000'000; 50'000 without power
   State meanwhile;
   State then;
 };

@@ -12,7 +12,7 @@
 namespace edsc {
 namespace {
 
-/// A sheet with one COB-ID, in a VAR or as a sub-index of a RECORD.
+/// An EDS with one COB-ID, in a VAR or as a sub-index of a RECORD.
 std::string sheet_with_cob_id(std::string_view index, int sub_index, const std::string& value) {
   const std::string key = "DefaultValue=" + value + "\n";
   if (sub_index == 0) return var(index, "COB-ID", "0x7", "rw", key);
@@ -32,13 +32,13 @@ struct CobIdCase {
 // CiA 301, 7.3.5, table 41.
 const CobIdCase cob_id_cases[] = {
     {"1800", 1, "$NODEID+0x180", false},
-    {"1800", 1, "$NODEID+0x580", true},   // the device's own SDO answer
+    {"1800", 1, "$NODEID+0x580", true},   // the device's own SDO response
     {"1800", 1, "$NODEID+0x680", true},   // 6E0h for node 96
     {"1800", 1, "$NODEID+0x6C0", true},
     {"1800", 1, "0x180", true},
     {"1800", 1, "0x181", false},
     {"1800", 1, "0x40000705", true},      // heartbeat
-    {"1800", 1, "0x80000705", false},     // off
+    {"1800", 1, "0x80000705", false},     // not valid
     {"1800", 1, "0x20000705", false},     // 29 bits
     {"1400", 1, "0x7F", true},
     {"1400", 1, "0x80", false},
@@ -50,7 +50,7 @@ const CobIdCase cob_id_cases[] = {
     {"1201", 1, "$NODEID+0x600", true},   // the default SDO
     {"1201", 2, "$NODEID+0x540", true},   // 581h for node 65
     {"1201", 2, "$NODEID+0x4C0", false},
-    {"1280", 1, "0x605", false},          // a client talks to the default SDO of others
+    {"1280", 1, "0x605", false},          // a client uses the default SDO of other nodes
     {"1280", 2, "0x585", false},
     {"1280", 1, "0x701", true},
 };
@@ -79,7 +79,7 @@ TEST(CobIdRules, SayForWhichNodeIdsAFormulaIsRestricted) {
       << text.finding("cob-id-restricted").message;
 }
 
-/// The findings of `rule` in a sheet with this COB-ID of TPDO 1.
+/// The findings of `rule` in an EDS with this COB-ID of TPDO 1.
 std::vector<Finding> found_in_tpdo_1(const std::string& value, std::string_view rule,
                                      std::optional<std::uint8_t> node_id = std::nullopt, const std::string& more = "") {
   DeviceFromText text(sheet_with_cob_id("1800", 1, value) + more, {}, {"", node_id});
@@ -125,7 +125,7 @@ TEST(CobIdRules, SayWhatIsMeantByAFunctionCodeAlone) {
             "1800h:01 \"COB-ID\" is CAN-ID 180h, which is restricted (reserved); $NODEID+0x40000180 adds the node-ID");
 }
 
-/// The compiler refuses what the rule refuses.
+/// The compiler rejects what the rule rejects.
 TEST(CobIdRules, AreThoseOfTheCompiler) {
   for (const CobIdCase& row : cob_id_cases) {
     const DeviceFromText text(sheet_with_cob_id(row.index, row.sub_index, row.value));
@@ -144,7 +144,7 @@ TEST(CobIdRules, AreThoseOfTheCompiler) {
   }
 }
 
-// ---- what is generated in spite of errors ----
+// ---- headers that are generated in spite of errors ----
 
 TEST(CobIdRules, LeaveAPdoOutWhoseCobIdIsRestricted) {
   const std::string mapping = group("1A00", "Mapping", "0x9", 2) +
@@ -180,7 +180,7 @@ TEST(CobIdRules, GiveTheCompilerTheCobIdsOfTheServicesThatAreOn) {
   EXPECT_EQ(rows_of("$NODEID+0x580").size(), 1U) << "an error; with --keep-going the headers compile";
 }
 
-// The runtime and edsc have a table of COB-IDs each: for each entry both say the same.
+// The runtime and edsc each have a table of COB-IDs; both agree on every entry.
 TEST(CobIdTables, AgreeOnEachEntryOfTheCommunicationProfile) {
   for (unsigned index = 0x1000; index <= 0x1FFF; ++index) {
     for (unsigned sub_index = 0; sub_index <= 0xFF; ++sub_index) {
@@ -192,7 +192,7 @@ TEST(CobIdTables, AgreeOnEachEntryOfTheCommunicationProfile) {
         ASSERT_NE(known, nullptr) << std::hex << index << ":" << sub_index;
         EXPECT_EQ(used->has_valid_bit, known->has_valid_bit) << std::hex << index << ":" << sub_index;
       } else if (known != nullptr) {
-        // 1200h is what CiA 301 says; the others are not of a service that the runtime configures by COB-ID.
+        // CiA 301 fixes 1200h; the others do not belong to a service that the runtime configures by COB-ID.
         EXPECT_TRUE(index == 0x1200 || known->service == CobIdService::emcy_consumer ||
                     known->service == CobIdService::sdo_client)
             << std::hex << index << ":" << sub_index;

@@ -14,7 +14,7 @@ namespace {
 
 using Rules = std::vector<std::string>;
 
-/// A RECORD or ARRAY with sub-index 0 and UNSIGNED32s; `values` are their DefaultValues, "-" where there is none.
+/// A RECORD or ARRAY with sub-index 0 and UNSIGNED32s; `values` are their DefaultValues, "-" if there is none.
 std::string record(std::string_view index, const std::vector<std::string>& values, std::string_view type = "0x7") {
   const auto key = [](const std::string& value) { return value == "-" ? "" : "DefaultValue=" + value + "\n"; };
   const int highest = static_cast<int>(values.size());
@@ -36,7 +36,7 @@ std::string cob_id(const DeviceFromText& text, std::uint16_t index, std::uint8_t
   return out.str();
 }
 
-// ---- COB-IDs: CiA 301, 7.3.5, table 39 and 40 ----
+// ---- COB-IDs: CiA 301, 7.3.5, tables 39 and 40 ----
 
 struct Predefined {
   std::string index;
@@ -235,7 +235,7 @@ TEST(CompleteDevice, HasNoReservedValues) {
   EXPECT_EQ(rules_of(text.diagnostics), (Rules{"storage-capability", "sync-counter", "error-behavior"}));
 }
 
-// ---- defaults that no running device has ----
+// ---- defaults that a running device does not have ----
 
 std::vector<std::string> live_defaults(const std::string& sheet) {
   DeviceFromText text(sheet);

@@ -1,4 +1,4 @@
-/// The order in which the values of a DCF go to a node.
+/// The order in which the values of a DCF are written to a node.
 #include "configure/configuration_plan.hpp"
 
 #include <fmt/format.h>
@@ -64,7 +64,7 @@ TEST(ConfigurationPlan, ChangesAMappingWhileItsPdoIsOffAndItsNumberIsZero) {
                    "on 1800h:01 = 81 01 00 00"}));
 }
 
-/// A DCF with what differs from the defaults may name one entry of many: the others stay mapped.
+/// A DCF of values that differ from the defaults may contain one entry of a mapping; the other entries stay mapped.
 TEST(ConfigurationPlan, RestoresTheNumberOfMappedObjectsThatTheDcfDoesNotHave) {
   EXPECT_EQ(plan({{0x1600, 1, {8, 0, 0, 0x20}}, {0x1600, 2, {8, 0, 1, 0x20}}}),
             (Steps{"off 1400h:01", "clear 1600h:00", "1600h:01 = 08 00 00 20", "1600h:02 = 08 00 01 20",
@@ -110,7 +110,7 @@ TEST(ConfigurationPlan, WritesNodeIdAndBitRateAtLast) {
   EXPECT_EQ(steps.front().entry.index, 0x2002);
 }
 
-/// Names of objects in vendors' files; CiA 301 has no object for either.
+/// Names of objects in vendors' files; CiA 301 does not define an object for either.
 TEST(NodeIdAndBitRate, AreKnownByTheirName) {
   const auto sets = [](std::uint16_t index, std::string name) {
     const Entry entry;
@@ -134,7 +134,7 @@ TEST(NodeIdAndBitRate, AreKnownByTheirName) {
   EXPECT_TRUE(sets(0x100B, "Reserved"));
 }
 
-/// The values to write, of those that differ.
+/// The values that are written, given which ones differ.
 std::vector<std::string> to_write(const std::vector<Wanted>& wanted, const std::vector<bool>& differs) {
   std::vector<ConfigurationValue> values;
   for (const Wanted& value : wanted) {

@@ -1,4 +1,4 @@
-/// Reports of a conformance run that is made by hand: what they show, and what hostile bytes do to them.
+/// Reports of a hand-made conformance run: their content, also with hostile bytes.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -98,7 +98,7 @@ RunReport every_verdict() {
   return run;
 }
 
-/// What a hostile device or EDS may make a text hold.
+/// Text that a hostile device or EDS may contain.
 const std::string hostile =
     std::string{"<b>&\"'\x1B[31m\x07\x9B\xFF\r\n{{bus}} ]]> \xE2\x80\xAE \xEF\xBF\xBF"} + '\0' + "--></script>";
 
@@ -112,14 +112,14 @@ RunReport hostile_run() {
     result.reason = result.expected = result.got = result.deviation = hostile;
     result.warnings = result.not_put_back = {hostile};
   }
-  // An SDO download of these bytes, as its server has accepted it.
+  // An SDO download of these bytes that the server has accepted.
   run.cases.front().frames = {seen(1, true, 0x605, {0x23, 0x08, 0x10, 0, '<', 0x1B, '&', 0xFF}),
                               seen(2, false, 0x585, {0x60, 0x08, 0x10, 0, 0, 0, 0, 0})};
   run.unused_deviations = run.not_put_back = {hostile};
   return run;
 }
 
-/// Characters that a terminal obeys, bytes that are not UTF-8, and what XML 1.0 does not allow.
+/// Checks for control characters of a terminal, bytes that are not UTF-8, and characters that XML 1.0 forbids.
 void expect_harmless(std::string_view text) {
   EXPECT_TRUE(is_utf8(text));
   EXPECT_EQ(text.find("\xE2\x80\xAE"), std::string_view::npos);
@@ -127,7 +127,7 @@ void expect_harmless(std::string_view text) {
   for (const char c : text) EXPECT_TRUE(static_cast<unsigned char>(c) >= ' ' || c == '\n') << static_cast<int>(c);
 }
 
-// ---- what a run came to ----
+// ---- result of a run ----
 
 TEST(ConformRun, PassesWithoutFailureAndProblem) {
   RunReport run = every_verdict();

@@ -21,7 +21,7 @@ struct ReadSheet {
 
 using Findings = std::vector<Finding>;
 
-/// One object, listed, so that only what follows gives findings. Six lines.
+/// One listed object, so that only the text after it gives findings. Six lines.
 const std::string one_object =
     "[OptionalObjects]\n"
     "SupportedObjects=1\n"

@@ -1,4 +1,4 @@
-/// A device of a data sheet's text, all the way through the front end.
+/// A device that the whole front end reads from the text of an EDS.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@
 
 namespace edsc {
 
-/// Everything the device's positions point into lives here, too.
+/// Also owns everything that the positions of the device refer to.
 struct DeviceFromText {
   explicit DeviceFromText(std::string text, Options given = {}, ResolveSettings settings = {},
                           std::string file = "test.eds")
@@ -41,7 +41,7 @@ struct DeviceFromText {
     return *found;
   }
 
-  /// The first finding of a rule; a test fails without one.
+  /// The first finding of a rule; throws if there is none.
   [[nodiscard]] const Diagnostic& finding(std::string_view rule) const {
     for (const Diagnostic& diagnostic : diagnostics.all()) {
       if (diagnostic.rule == rule) return diagnostic;
@@ -55,10 +55,10 @@ struct DeviceFromText {
   }
 };
 
-/// Rules that speak of the object lists and of mandatory objects: short fixtures have neither.
+/// Rules about object lists and mandatory objects: short fixtures have neither.
 inline const std::vector<std::string> list_rules = {"object-not-listed", "mandatory-object"};
 
-/// The ids of all rules that have fired, each once, in the order in which they fired.
+/// The ids of all rules with a finding, each once, in the order of their first finding.
 inline std::vector<std::string> rules_of(const Diagnostics& diagnostics) {
   std::vector<std::string> rules;
   for (const Diagnostic& diagnostic : diagnostics.all()) {
@@ -84,7 +84,7 @@ inline std::string var(std::string_view index, std::string_view name, std::strin
   return text.append(more);
 }
 
-/// The section of a RECORD or ARRAY without its sub-objects; `sub_objects` is what SubNumber says.
+/// The section of a RECORD or ARRAY without its sub-objects; `sub_objects` is the value of SubNumber.
 inline std::string group(std::string_view index, std::string_view name, std::string_view object_type, int sub_objects) {
   std::string text{"["};
   text.append(index).append("]\nParameterName=").append(name).append("\nObjectType=").append(object_type);

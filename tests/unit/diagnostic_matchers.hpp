@@ -1,4 +1,4 @@
-/// What the tests of the generator's front end ask of diagnostics.
+/// Matchers for the diagnostics of the generator's front end.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 
 namespace edsc {
 
-/// One finding, without its words.
+/// One finding, without its message.
 struct Finding {
   Severity severity;
   std::string rule;
@@ -49,7 +49,7 @@ inline std::vector<Finding> findings(const Diagnostics& diagnostics) {
   return result;
 }
 
-/// The findings of one rule only.
+/// The findings of one rule.
 inline std::vector<Finding> findings(const Diagnostics& diagnostics, std::string_view rule) {
   std::vector<Finding> result = findings(diagnostics);
   result.erase(std::remove_if(result.begin(), result.end(), [&](const Finding& f) { return f.rule != rule; }),

@@ -165,7 +165,7 @@ TEST(PrintText, PutsTheSuppressedBehindTheirRule) {
       << text;
 }
 
-/// 160 findings with one cause, one with another, in a file of 200 lines.
+/// 160 findings with one cause and one finding with another, in a file of 200 lines.
 Diagnostics findings_of_one_cause(const SourceFile& file) {
   Diagnostics diagnostics;
   for (std::uint32_t line = 1; line <= 160; ++line) {

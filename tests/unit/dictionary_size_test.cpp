@@ -1,4 +1,4 @@
-/// What a generated dictionary has room for, and who is named when a device has more.
+/// The maximum size of a generated dictionary, and the object that is reported if a device exceeds it.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 namespace edsc {
 namespace {
 
-/// `count` ARRAYs of 254 elements of 8 bytes from 2000h on: 2032 bytes each.
+/// `count` ARRAYs of 254 elements of 8 bytes, starting at 2000h: 2032 bytes each.
 std::string arrays(int count) {
   std::string text;
   for (int i = 0; i < count; ++i) {
@@ -52,7 +52,7 @@ TEST(DictionarySize, NamesTheValueThatHasNoRoom) {
 
 TEST(DictionarySize, CountsTheLengthAndTheTerminatorOfStrings) {
   Options options;
-  options.string_capacity = {{{0x4000, 0}, 62}};  // 2 bytes of length besides
+  options.string_capacity = {{{0x4000, 0}, 62}};  // plus 2 bytes for the length
   const std::string text = arrays(32) + values(56, "0x1B") + var("4000", "Text", "0x09");
   DeviceFromText fits{text, options};
   EXPECT_TRUE(size_findings(fits, options).empty());

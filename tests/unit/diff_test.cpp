@@ -1,4 +1,4 @@
-/// Two versions of a data sheet: what changed, and whom that breaks.
+/// Two versions of an EDS: the changes, and who is affected by them.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -48,12 +48,12 @@ List compare(std::string old_text, std::string new_text) {
   return Compared(std::move(old_text), std::move(new_text)).short_list();
 }
 
-/// 2000h with these keys.
+/// 2000h with these keys and attributes.
 std::string with(std::string_view keys, std::string_view access = "rw", std::string_view type = "0x0006") {
   return var("2000", "Speed", type, access, keys);
 }
 
-/// A TPDO or RPDO 1 that carries 2000h and what else `mapping` says.
+/// A TPDO or RPDO 1 that maps 2000h and the other entries of `mapping`.
 std::string pdo(std::string_view cob_id, std::string_view transmission_type, const std::vector<std::string>& mapping,
                 bool transmit = true) {
   const std::string communication = transmit ? "1800" : "1400";
@@ -163,14 +163,14 @@ TEST(Diff, KnowsDefaultsThatAMasterReliesOn) {
   EXPECT_EQ(change("1017", "Heartbeat", "100", "50"), (List{"default-value 1017h:00"}));
 }
 
-/// The changes from one default of a COB-ID to another.
+/// The changes if the default value of a COB-ID changes.
 List compare_cob_ids(const char* index, const char* before, const char* after) {
   return compare(var(index, "COB-ID", "7", "rw", "DefaultValue=" + std::string{before} + "\n"),
                  var(index, "COB-ID", "7", "rw", "DefaultValue=" + std::string{after} + "\n"));
 }
 
 TEST(Diff, TellsTheFlagsOfACobIdFromItsCanId) {  // CiA 301, 7.5.2.5, 7.5.2.15, 7.5.2.17
-  // 1005h: bit 31 means nothing; bit 30: the device generates SYNC.
+  // 1005h: bit 31 has no meaning; bit 30: the device generates SYNC.
   EXPECT_EQ(compare_cob_ids("1005", "0x80", "0x80000080"), (List{"cob-id-flag 1005h:00"}));
   EXPECT_EQ(compare_cob_ids("1005", "0x80", "0x40000080"), (List{"sync-started 1005h:00 master pdo"}));
   EXPECT_EQ(compare_cob_ids("1005", "0x40000080", "0x80"), (List{"sync-stopped 1005h:00 master pdo"}));
@@ -182,7 +182,7 @@ TEST(Diff, TellsTheFlagsOfACobIdFromItsCanId) {  // CiA 301, 7.5.2.5, 7.5.2.15, 
   EXPECT_EQ(compare_cob_ids("1012", "0x100", "0x80000100"), (List{"time-consumed 1012h:00"}));
   EXPECT_EQ(compare_cob_ids("1012", "0x100", "0x40000100"), (List{"time-started 1012h:00 master"}));
   EXPECT_EQ(compare_cob_ids("1012", "0x40000100", "0x100"), (List{"time-stopped 1012h:00 master"}));
-  // 1014h: bit 31: EMCY does not exist; then its CAN-ID is nobody's.
+  // 1014h: bit 31: EMCY does not exist; its CAN-ID is then unused.
   EXPECT_EQ(compare_cob_ids("1014", "$NODEID+0x80", "$NODEID+0x80000080"), (List{"service-disabled 1014h:00 master"}));
   EXPECT_EQ(compare_cob_ids("1014", "$NODEID+0x80000080", "$NODEID+0x80"), (List{"service-enabled 1014h:00"}));
   EXPECT_EQ(compare_cob_ids("1014", "$NODEID+0x80", "0x85"), (List{"service-cob-id 1014h:00 master"}));
@@ -263,14 +263,15 @@ TEST(Diff, WantsAHigherMajorRevisionForABreakingChange) {  // CiA 301, 7.5.2.19:
   EXPECT_EQ(changed("0x00010002", "0x00010002"), missing);
   EXPECT_EQ(changed("0x00010002", "0x00010003"), missing);
   EXPECT_EQ(changed("0x00010002", "0x00020000"), "access-reduced 2000h:00 master source");
-  // Compatible changes, and those of the generated code alone, need none; revisions of another product have no order.
+  // Compatible changes, and those of the generated code alone, need no new revision; revisions of another product
+  // have no order.
   EXPECT_EQ(compare(identity("1", "0x10000") + with(""), identity("1", "0x10000") + with("") + var("2001", "b", "5")),
             (List{"object-added 2001h"}));
   EXPECT_EQ(compare(identity("1", "0x10000") + with(""), identity("1", "0x10000") + var("2000", "Velocity", "6")),
             (List{"identifier 2000h source"}));
   EXPECT_EQ(compare(identity("1", "0x10000") + with(""), identity("2", "0x10000") + with("")),
             (List{"identity 1018h:02 master"}));
-  // The configuration of a node is not another revision of its device.
+  // A configuration of a node is not a new revision of its device.
   EXPECT_EQ(compare(identity("1", "0x10000") + with("", "rw"),
                     "[DeviceComissioning]\nNodeName=a\n" + identity("1", "0x10000") + with("", "ro")),
             (List{"access-reduced 2000h:00 master source"}));

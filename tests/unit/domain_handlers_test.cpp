@@ -81,7 +81,7 @@ auto reading(std::uint32_t size) { return StreamBench{canopen::on_domain_read<od
 
 TEST(DomainHandlers, GiveASegmentedUploadItsBytes) {
   auto device = reading(9);
-  EXPECT_EQ(device.ask("40 1A 20 00 00 00 00 00"), "40 1A 20 00 00 00 00 00");  // the size is not known
+  EXPECT_EQ(device.ask("40 1A 20 00 00 00 00 00"), "40 1A 20 00 00 00 00 00");  // the size is unknown
   EXPECT_EQ(device.ask("60 00 00 00 00 00 00 00"), "00 00 01 02 03 04 05 06");
   EXPECT_EQ(device.ask("70 00 00 00 00 00 00 00"), "1B 07 08 00 00 00 00 00");
 }

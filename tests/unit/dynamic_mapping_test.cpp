@@ -1,4 +1,4 @@
-/// Which PDOs can be mapped over the bus, and where their mapping parameters lie.
+/// Which PDOs can be mapped over the bus, and where their mapping parameters are stored.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ std::string communication(std::string_view index) {
          sub_object(index, 1, "7", "rw", "$NODEID+0x180");
 }
 
-/// A mapping parameter of two entries, of which the first maps 2000h.
+/// A mapping parameter with two entries; the first one maps 2000h.
 std::string mapping(std::string_view index, std::string_view access = "rw", std::string_view count_access = "rw") {
   return group(index, fmt::format("Mapping {}", index), "9", 3) + sub_object(index, 0, "5", count_access, "1") +
          sub_object(index, 1, "7", access, "0x20000008") + sub_object(index, 2, "7", access, "0");
@@ -48,7 +48,7 @@ bool first_is_dynamic(const DeviceFromText& text) { return text.device.pdos.at(0
 
 MemoryLayout layout_of(DeviceFromText& text) { return lay_out(text.device, text.options, text.diagnostics); }
 
-/// The word of a VAR, or the ones of a RECORD's or ARRAY's sub-indices, as the table spells them.
+/// The word of a VAR, or those of the sub-indices of a RECORD or ARRAY, as in the table.
 std::string word_of(DeviceFromText& text, std::string_view label) {
   for (const TableRow& row : layout_of(text).entries) {
     if (row.comment.starts_with(label)) return row.text;
@@ -227,9 +227,9 @@ TEST(DynamicMapping, OffersNoConstantToAnRpdo) {
   EXPECT_EQ(subs_of(text).back(), "immediate | 1 | u32 | rw | tpdo");
 }
 
-// ---- what the device says ----
+// ---- what the device contains ----
 
-/// The layouts of the PDOs that the runtime is told of: "1 Rpdo1".
+/// The layouts of the PDOs that the runtime serves: "1 Rpdo1".
 std::vector<std::string> served(DeviceFromText& text, const char* list) {
   std::vector<std::string> rows;
   const auto view = cpp_view(text.device, text.options, text.diagnostics);

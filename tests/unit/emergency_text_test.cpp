@@ -1,4 +1,4 @@
-/// Emergency error codes in words: each row of CiA 402-2 and CiA 401-1, written from the tables of the profiles.
+/// Texts of emergency error codes: each row of CiA 402-2 and CiA 401-1, written from the tables of the profiles.
 #include "decode/emergency_text.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ constexpr std::uint16_t io_modules = 401, drives = 402;
 
 struct Code {
   std::uint16_t code;
-  std::string_view words;  ///< that the text contains
+  std::string_view words;  ///< part of the text
 };
 
 constexpr Code codes_of_drives[] = {

@@ -1,4 +1,4 @@
-/// The search at run time finds what the tables hold, and nothing else, however it is done.
+/// Each search at run time finds all entries of the tables and nothing else.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ using canopen::Dictionary;
 using canopen::entry_search::ByHash;
 using canopen::entry_search::ByRuns;
 
-/// `Count` indices, `Spread` apart at most; with 1 they are neighbours.
+/// `Count` indices, at most `Spread` apart; with 1 they are contiguous.
 template <std::size_t Count, std::uint32_t Spread>
 struct Scattered {
   static constexpr std::array<std::uint16_t, Count> indices = [] {
@@ -65,7 +65,7 @@ void expect_all_found() {
   }
 }
 
-/// By each way of search. There is a hash of each of these.
+/// Checks each kind of search. A hash exists for each of these devices.
 template <class Device>
 void expect_found() {
   static_assert(ByHash<Device>::table.found);

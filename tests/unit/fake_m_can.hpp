@@ -1,5 +1,5 @@
-/// A CAN controller FDCAN in memory, which does what the manuals of STM32G4 and STM32H7 say of its registers, as far as
-/// a driver without interrupts sees it. What a driver must not do is a failure of the test.
+/// A CAN controller FDCAN in memory. Its registers behave as the manuals of STM32G4 and STM32H7 describe them, as far
+/// as a driver without interrupts uses them. The test fails if a driver does something that is not allowed.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -23,22 +23,22 @@ class MCan {
   using Word = volatile std::uint32_t;
   static constexpr std::size_t ram_words = 2560;
 
-  /// After a reset; the message RAM holds what it happens to hold.
+  /// The state after a reset; the message RAM contains arbitrary data.
   explicit MCan(Chip chip, std::uint16_t controller = 0) : chip_{chip}, first_g4_word_{controller * 212u} {
     for (Word& word : ram) word = 0xDEAD'BEEF;
   }
   MCan(const MCan&) = delete;
   MCan& operator=(const MCan&) = delete;
 
-  // --- what a test does --------------------------------------------------------------------------------------------
+  // --- for the test ------------------------------------------------------------------------------------------------
 
   bool powered = true;
   int init_takes = 3;  ///< reads of CCCR until a change of INIT can be read back
-  int wire_takes = 4;  ///< reads of TXBRP until the frame that has been begun has ended
+  int wire_takes = 4;  ///< reads of TXBRP until the frame on the wire has ended
   Word ram[ram_words];
   std::vector<canopen::Frame> sent;
 
-  /// A frame of another node. False: it has not been stored.
+  /// Receives a frame of another node. Returns false if it has not been stored.
   bool arrive(const canopen::Frame& frame) {
     if (!on_the_bus()) return false;
     const std::uint32_t id = frame.extended ? frame.id : frame.id & 0x7FF;
@@ -61,7 +61,7 @@ class MCan {
     return true;
   }
 
-  /// Begins to send what wins the arbitration among the requests.
+  /// Begins to send the request that wins the arbitration.
   bool begin_frame() {
     if (on_wire_ || halted_ || !on_the_bus() || (cccr_ & monitor) != 0) return on_wire_.has_value();
     for (std::uint32_t i = 0; i < place_.transmitted; ++i) {
@@ -71,7 +71,7 @@ class MCan {
     return on_wire_.has_value();
   }
 
-  /// The frame on the wire has been acknowledged, or not: then it is tried again unless it has been cancelled.
+  /// Ends the frame on the wire. Without acknowledgement it is sent again unless it has been cancelled.
   void end_frame(bool acknowledged = true) {
     ASSERT_TRUE(on_wire_);
     const std::uint32_t bit = 1u << *on_wire_;
@@ -84,12 +84,12 @@ class MCan {
     on_wire_.reset();
   }
 
-  /// Sends all that is requested.
+  /// Sends all requested frames.
   void send_all() {
     while (begin_frame()) end_frame();
   }
 
-  /// PSR: as the error counters say.
+  /// Sets PSR as the error counters would.
   void error_state(bool warning, bool passive) { state_ = (warning ? 1u << 6 : 0) | (passive ? 1u << 5 : 0); }
   void go_bus_off() {
     state_ = off | 1u << 6 | 1u << 5;
@@ -97,7 +97,7 @@ class MCan {
     cccr_ |= initialize;
     asked_ |= initialize;
   }
-  /// 129 times 11 recessive bits. False: INIT holds the controller.
+  /// 129 times 11 recessive bits. Returns false if INIT keeps the controller off the bus.
   bool pass_recovery() {
     if ((cccr_ & initialize) != 0) return false;
     state_ = 0;
@@ -131,7 +131,7 @@ class MCan {
   };
 
  public:
-  // --- what a driver sees ------------------------------------------------------------------------------------------
+  // --- for the driver ----------------------------------------------------------------------------------------------
 
   Common common{{*this, Name::CCCR}, {*this, Name::NBTP}, {*this, Name::ECR},
                 {*this, Name::PSR},  {*this, Name::IR},   {*this, Name::IE}};
@@ -142,7 +142,7 @@ class MCan {
       txbcr{*this, Name::TXBCR}, txbto{*this, Name::TXBTO}, txefc{*this, Name::TXEFC};
 
  private:
-  /// Where the controller looks in the message RAM, in words.
+  /// The sections of the message RAM, in words.
   struct Place {
     std::uint32_t standard, standards, extended, extendeds, receive, received, transmit, transmitted, element;
   };
@@ -203,7 +203,7 @@ class MCan {
     }
   }
 
-  /// INIT crosses from one clock domain to the other: it is read back some time after it was written.
+  /// INIT crosses clock domains: a written value can be read back only some time later.
   std::uint32_t read_cccr() {
     if (powered && ((cccr_ ^ asked_) & initialize) != 0 && --init_left_ <= 0) change_init();
     return cccr_;
@@ -233,14 +233,14 @@ class MCan {
     }
     if ((value & change_enable) == 0 || !stopped || changing) return;
     cccr_ |= change_enable;
-    if (requests_ != 0) halted_ = true;  // the Tx handler was looking through them
+    if (requests_ != 0) halted_ = true;  // the Tx handler was scanning them
     EXPECT_FALSE(halted_) << "CCE is set while there are requests: the controller never sends again";
     requests_ = occurred_ = cancelled_ = 0;
     fill_ = get_ = put_ = 0;
     lost_ = false;
   }
 
-  /// As the registers say when the controller goes on the bus.
+  /// Divides the message RAM as the registers specify, when the controller goes on the bus.
   void divide() {
     if (chip_ == Chip::g4) {
       const std::uint32_t first = first_g4_word_;
@@ -263,7 +263,7 @@ class MCan {
                 4};
       unmatched_ = values_[GFC];
       EXPECT_EQ(values_[TXBC] >> 30, 1u);         // a queue
-      EXPECT_EQ(values_[TXBC] >> 16 & 0x3F, 0u);  // and no dedicated buffers
+      EXPECT_EQ(values_[TXBC] >> 16 & 0x3F, 0u);  // no dedicated buffers
       EXPECT_EQ(values_[RXESC] | values_[TXESC], 0u);
       EXPECT_LE(place_.transmit + place_.transmitted * place_.element, ram_words);
       EXPECT_LE(place_.standards, 128u);

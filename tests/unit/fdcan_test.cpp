@@ -41,7 +41,7 @@ struct Fdcan : testing::Test {
     const std::optional<canopen::Frame> got = bus.receive();
     return got ? bench::text(*got) : "nothing";
   }
-  /// What other nodes have got.
+  /// The frames that other nodes have received.
   [[nodiscard]] std::string sent() {
     controller.send_all();
     std::string text;
@@ -177,7 +177,7 @@ TYPED_TEST(Fdcan, HasNoRoomInAFullQueue) {
   EXPECT_FALSE(this->send("080"));
   EXPECT_TRUE(this->controller.begin_frame());
   EXPECT_FALSE(this->send("080"));
-  this->controller.end_frame(false);  // nobody has acknowledged
+  this->controller.end_frame(false);  // not acknowledged
   EXPECT_FALSE(this->send("080"));
   EXPECT_TRUE(this->controller.begin_frame());
   this->controller.end_frame();
@@ -191,7 +191,7 @@ TYPED_TEST(Fdcan, KeepsFramesOfTheSameIdentifierInOrder) {
   EXPECT_TRUE(this->send("585 00"));
   EXPECT_FALSE(this->send("585 10"));
   EXPECT_TRUE(this->send("185 37"));
-  EXPECT_TRUE(this->send("185 R 1"));  // another frame
+  EXPECT_TRUE(this->send("185 R 1"));  // a different frame
   EXPECT_EQ(this->sent(), "185 37 | 185 R 1 | 585 00");
   EXPECT_TRUE(this->send("585 10"));
   EXPECT_EQ(this->sent(), "585 10");
@@ -230,7 +230,7 @@ TYPED_TEST(Fdcan, TellsThatFramesAreLost) {
   constexpr std::uint32_t room = TestFixture::Bus::layout.received;
   for (std::uint32_t i = 0; i < room; ++i) EXPECT_TRUE(this->controller.arrive({.id = i, .size = 0}));
   EXPECT_EQ(this->bus.status_change(), std::nullopt);
-  EXPECT_FALSE(this->controller.arrive(frame("205 11")));  // no room: it is lost
+  EXPECT_FALSE(this->controller.arrive(frame("205 11")));  // the FIFO is full: the frame is lost
   EXPECT_EQ(this->received(), "000");
   EXPECT_EQ(this->bus.status_change(), (BusStatus{.overrun = true}));
   for (std::uint32_t i = 1; i < room; ++i) EXPECT_EQ(this->received(), bench::text({.id = i, .size = 0}));
@@ -243,7 +243,7 @@ TYPED_TEST(Fdcan, TellsThatFramesAreLost) {
 
 TYPED_TEST(Fdcan, AcceptsTheFramesOfANodeAlone) {
   this->go_on_the_bus();
-  EXPECT_TRUE(this->accepts("606 40"));  // all, until it is told which
+  EXPECT_TRUE(this->accepts("606 40"));  // all, until filters are set
   EXPECT_TRUE(this->accepts("00012345 01"));
   const canopen::AcceptedFrame frames[] = {{0x000}, {0x605}, {.id = 0x185, .remote = true}};
   this->bus.accept(frames);
@@ -317,7 +317,7 @@ TYPED_TEST(Fdcan, RecoversFromBusOffAndSendsWhatWaited) {
   EXPECT_TRUE(this->controller.begin_frame());
   this->controller.go_bus_off();
   EXPECT_FALSE(this->send("285 11"));
-  EXPECT_FALSE(this->controller.pass_recovery());  // the controller waits for its program
+  EXPECT_FALSE(this->controller.pass_recovery());  // the controller waits for the software
   EXPECT_EQ(this->bus.status_change(), (BusStatus{.state = BusState::off}));
   for (int i = 0; i < 5; ++i) EXPECT_EQ(this->bus.status_change(), std::nullopt);
   EXPECT_EQ(this->sent(), "");
@@ -348,7 +348,7 @@ TYPED_TEST(Fdcan, ChangesTheBitRateWithoutHarmToTheFrameOnTheWire) {
   EXPECT_TRUE(this->send("705 7F"));
   EXPECT_TRUE(this->send("185 37"));
   EXPECT_TRUE(this->bus.stop());
-  EXPECT_EQ(this->sent(), "7E4 13");  // which was on the wire; the others wait
+  EXPECT_EQ(this->sent(), "7E4 13");  // it was on the wire; the others wait
   EXPECT_FALSE(this->send("085 00"));
   EXPECT_EQ(this->controller.nominal_bit_timing() >> 16 & 0x1FF, 0u);
   ASSERT_TRUE(this->bus.start(80'000'000, 125'000));
@@ -401,7 +401,7 @@ TYPED_TEST(Fdcan, HasItsOwnPartOfTheMessageRam) {
   }
 }
 
-/// The whole way: a node behind the controller.
+/// A complete node that uses the controller.
 TYPED_TEST(Fdcan, CarriesANode) {
   this->go_on_the_bus();
   auto node = canopen::make_node<sample::Device>(this->bus);
@@ -451,7 +451,7 @@ TYPED_TEST(Fdcan, HasItsBitRateChangedByLss) {
   };
   EXPECT_EQ(ask("7E5 04 01 00 00 00 00 00 00"), "");
   EXPECT_EQ(ask("7E5 13 00 04 00 00 00 00 00"), "7E4 13 00 00 00 00 00 00 00");  // 125 kbit/s
-  EXPECT_EQ(ask("7E5 15 0A 00 00 00 00 00 00"), "");                             // in 10 ms, and 10 ms of silence
+  EXPECT_EQ(ask("7E5 15 0A 00 00 00 00 00 00"), "");                             // in 10 ms, then 10 ms of silence
   pass(std::chrono::milliseconds{10});
   EXPECT_FALSE(this->controller.on_the_bus());
   pass(std::chrono::milliseconds{10});

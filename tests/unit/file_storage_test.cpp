@@ -1,4 +1,4 @@
-/// A file as the storage of a node: what another process finds in it, and what happens when it cannot be written.
+/// A file as the storage of a node: what another process reads from it, and what happens if it cannot be written.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <canopen/port/file_storage.hpp>
@@ -34,7 +34,7 @@ class FileStorageTest : public testing::Test {
     fs::remove_all(folder, ignored);
   }
 
-  /// What another node finds.
+  /// The value that another node reads.
   [[nodiscard]] std::uint32_t stored_acceleration() const {
     FileStorage storage{path.string()};
     Device device{canopen::stored_in(storage)};
@@ -71,7 +71,7 @@ TEST_F(FileStorageTest, ReplacesTheFileAsAWhole) {
   FileStorage storage{path.string()};
   Device device{canopen::stored_in(storage)};
   EXPECT_EQ(device.ask(save_all), saved_all);
-  const std::ifstream before{path, std::ios::binary};  // holds the old file open
+  const std::ifstream before{path, std::ios::binary};  // keeps the old file open
   device.ask("605 23 83 60 00 D0 07 00 00");
   EXPECT_EQ(device.ask(save_all), saved_all);
   EXPECT_EQ(stored_acceleration(), 2000u);

@@ -19,7 +19,7 @@ class FindEntry : public testing::Test {
     inputs.reset();
   }
 
-  /// The label of what is found, `object` where it is a whole one, else the problem.
+  /// The label of the entry or whole object that is found, otherwise the problem.
   static std::string find(std::string_view text, const LoadedDevice& device = *drive) {
     const FoundEntry found = find_entry(*device.device, text);
     if (!found.ok()) return found.problem;

@@ -1,5 +1,4 @@
-/// Two pages of flash as a microcontroller has them, whose power can be cut in the middle of each erasure and each
-/// word.
+/// Two pages of flash as in a microcontroller; power can be cut during each erasure and each word.
 #pragma once
 
 #include <array>
@@ -15,11 +14,11 @@ struct FlashEmulation {
   static constexpr std::uint32_t page_size = PageSize;
   static constexpr std::uint32_t word_size = WordSize;
 
-  /// What the cell array keeps of a word that was being written, or a page that was being erased, as power went.
+  /// What the cells contain of a word or page that was being written or erased when power was lost.
   enum class Cut { nothing_done, half_done, all_done };
 
   std::array<std::array<std::uint8_t, PageSize>, 2> pages{};
-  std::array<int, 2> erased{};  ///< how often
+  std::array<int, 2> erased{};  ///< number of erasures
   int steps = 0;                ///< erasures and words so far
   int last_step = std::numeric_limits<int>::max();
   Cut cut = Cut::half_done;
@@ -59,7 +58,7 @@ struct FlashEmulation {
   }
 
  private:
-  /// How many of the bytes of one step get done.
+  /// The number of bytes of this step that are completed.
   [[nodiscard]] std::size_t step(std::size_t bytes) {
     if (!has_power()) return 0;
     if (++steps <= last_step) return bytes;

@@ -1,4 +1,4 @@
-/// Two pages of flash: values survive a cut of power at any moment.
+/// Two pages of flash: values survive a power loss at any moment.
 #include <gtest/gtest.h>
 #include <canopen/flash_storage.hpp>
 
@@ -93,7 +93,7 @@ TYPED_TEST(FlashStorageOf, TakesNoImageThatAPageHasNoRoomFor) {
   EXPECT_EQ(get(storage), image_of(room, 1));
 }
 
-/// A flipped bit in the newest image is no loss of power, after which its header would be bad.
+/// A flipped bit in the newest image is not a power loss; a power loss would leave a bad header.
 TYPED_TEST(FlashStorageOf, ReportsADamagedImageThatIsNewerThanTheOther) {
   TypeParam flash;
   const auto old_image = image_of(20, 1);
@@ -117,7 +117,7 @@ TYPED_TEST(FlashStorageOf, ReportsADamagedImageThatIsNewerThanTheOther) {
   }
 }
 
-/// Power went while the older page was being erased: its image went first.
+/// Power was lost while the older page was being erased, its image before its header.
 TYPED_TEST(FlashStorageOf, PassesOverADamagedImageThatIsOlder) {
   TypeParam flash;
   canopen::FlashStorage storage{flash};
@@ -268,7 +268,7 @@ void set(Device& device, const Values& values) {
   EXPECT_EQ(device.node.set<od::profile_acceleration>(values.acceleration), canopen::ok);
   const std::uint8_t time[] = {static_cast<std::uint8_t>(values.inhibit_time),
                                static_cast<std::uint8_t>(values.inhibit_time >> 8)};
-  EXPECT_EQ(device.node.set(InhibitTime::index, InhibitTime::sub_index, time), canopen::ok);  // the PDO is valid
+  EXPECT_EQ(device.node.set(InhibitTime::index, InhibitTime::sub_index, time), canopen::ok);  // while the PDO is valid
   EXPECT_EQ(device.node.set<od::gain>(values.gain), canopen::ok);
 }
 
@@ -276,15 +276,15 @@ Values values(const Device& device) {
   return {device.node.get<od::profile_acceleration>(), device.node.get<InhibitTime>(), device.node.get<od::gain>()};
 }
 
-/// More than any save has.
+/// More steps than any save takes.
 constexpr int most_steps = 1000;
 
 constexpr Values defaults{1000, 0, -5};
 constexpr Values old_values{11, 1100, 111};
 constexpr Values new_values{22, 2200, 222};
 
-/// Sends a request to a device with old values in storage whose power is cut at this step; what the next power-on
-/// brings.
+/// Sends a request to a device with old values in storage, cuts the power at this step, and returns the values after
+/// the next power-on.
 Values after_cut(const std::string& request, int step, std::string& answer) {
   Flash flash;
   {

@@ -1,4 +1,4 @@
-/// A bus that is not silent for a minute, of which no frame is an answer.
+/// A bus that is flooded for a minute with frames that are not responses.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -18,7 +18,7 @@
 namespace edsc {
 namespace {
 
-/// A text and all that is made of it on the way to its canonical form.
+/// A text and the results of each stage up to its canonical form.
 struct Formatted {
   explicit Formatted(std::string text, std::optional<std::uint8_t> node_id = std::nullopt)
       : source("test.eds", std::move(text)),
@@ -34,7 +34,7 @@ struct Formatted {
     return to_text(document);
   }
 
-  /// The device as `edsc dump` shows it, but for lines.
+  /// The device as `edsc dump` shows it, without line numbers.
   [[nodiscard]] nlohmann::ordered_json view() const {
     nlohmann::ordered_json view = device_view(device);
     remove_lines(view);
@@ -57,7 +57,7 @@ struct Formatted {
 
 std::string formatted(std::string text) { return Formatted(std::move(text)).text(); }
 
-/// [2000] with these keys behind the usual ones.
+/// [2000] with these keys after the usual ones.
 std::string object_with(std::string_view data_type, std::string_view keys) {
   return "[2000]\nParameterName=a\nDataType=" + std::string{data_type} + "\nAccessType=rw\n" + std::string{keys};
 }
@@ -334,7 +334,7 @@ TEST(MakeDcf, DropsAValueThatIsTheDefaultForTheNode) {
   EXPECT_NE(Formatted(text, std::uint8_t{6}).dcf().find("ParameterValue=0x00000007\n"), std::string::npos);
 }
 
-/// A loader writes number and entries of a mapping together; a part of them would be another mapping.
+/// A configuration tool writes number and entries of a mapping together; a part of them would be another mapping.
 TEST(MakeDcf, KeepsAMappingTogether) {
   const auto entry = [](int sub_index, std::string_view type, std::string_view keys) {
     return fmt::format("\n[1A00sub{}]\nParameterName=n\nObjectType=7\nDataType={}\nAccessType=rw\n{}", sub_index, type,

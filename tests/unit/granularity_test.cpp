@@ -1,4 +1,4 @@
-/// A mapping over the bus takes objects whose length is a multiple of the data sheet's Granularity.
+/// A mapping over the bus accepts objects whose length is a multiple of the EDS's Granularity.
 #include <gtest/gtest.h>
 
 #include <coarse_pdo_device/device.hpp>

@@ -20,11 +20,11 @@ using namespace std::chrono_literals;
 
 constexpr const char* event_names[] = {"started", "state changed", "boot-up", "lost", "back"};
 
-/// A consumer that writes down what it tells: "5 started 7F".
+/// A consumer that records its events: "5 started 7F".
 template <std::size_t Count>
 class Listener {
  public:
-  /// What it tells because of a frame.
+  /// Returns the events that a frame causes.
   std::string hear(const std::string& text) {
     if (const auto message = canopen::error_control_message(bench::frame(text))) {
       consumer.on_message(*message, now, Host{*this});
@@ -32,7 +32,7 @@ class Listener {
     return take();
   }
 
-  /// What it tells while this time passes.
+  /// Returns the events during this time.
   std::string pass(canopen::Duration span) {
     const TimePoint end = now + span;
     while (const auto deadline = consumer.next_deadline()) {

@@ -1,4 +1,4 @@
-/// Who a device is by its file, and how many bytes an upload may have.
+/// The identity of a device in its file, and the maximum number of bytes of an upload.
 #include "online/identity.hpp"
 
 #include <fmt/format.h>

@@ -112,7 +112,7 @@ TEST(Indicator, ErrShowsTheMostSevereError) {
   }
 }
 
-/// What both show in steps of 50 ms: '.' dark, 'g' RUN, 'r' ERR, '!' both.
+/// The states of both indicators in steps of 50 ms: '.' both off, 'g' RUN, 'r' ERR, '!' both on.
 template <const canopen::IndicatorTimings& Timings>
 std::string strip(const Indicators<Timings>& indicators, int steps) {
   std::string text;
@@ -185,7 +185,7 @@ TEST(Indicators, KeepTheirRasterWhenTheTimeWraps) {
 
 // Manual 003, 2.3: the indicators of the I/O modules
 
-/// "flashing twice per second" in Pre-operational (5.4.1, line 2329): the one time that the manual gives itself.
+/// "flashing twice per second" in Pre-operational (5.4.1, line 2329): the only time that the manual specifies.
 constexpr canopen::IndicatorTimings twice_per_second = [] {
   canopen::IndicatorTimings timings = cia_303_3_timings;
   timings[static_cast<std::size_t>(IndicatorPattern::blinking)] = {1, 250, 250};

@@ -39,7 +39,7 @@ const KnownSection sections_of_cia306[] = {
       {"ModificationDate"},
       {"ModifiedBy"},
       {"LastEDS"}}},
-    {SectionKind::device_info,  // the keys from LSS_Master on come from other documents
+    {SectionKind::device_info,  // the keys from LSS_Master on are defined in other documents
      {{"VendorName"},
       {"VendorNumber", number_kind, 8},
       {"ProductName"},
@@ -85,7 +85,7 @@ const KnownSection sections_of_cia306[] = {
     {SectionKind::optional_objects, {{"SupportedObjects", count_kind}, {"1", number_kind, 4}, {"12", number_kind, 4}}},
     {SectionKind::manufacturer_objects,
      {{"SupportedObjects", count_kind}, {"1", number_kind, 4}, {"12", number_kind, 4}}},
-    {SectionKind::object,  // Unit, Factor and Description are not of CiA 306, but usual
+    {SectionKind::object,  // Unit, Factor and Description are not in CiA 306, but common
      {{"ParameterName"},
       {"ObjectType", number_kind},
       {"SubNumber", number_kind},

@@ -1,5 +1,5 @@
-/// Nodes that are served later than they asked for: by minutes, while a bus has no room, and by more than moments
-/// compare.
+/// Nodes that are served later than requested: by minutes, while the bus is full, and by more than the range in which
+/// two TimePoints compare.
 #include <gtest/gtest.h>
 
 #include <pdo_device/device.hpp>
@@ -15,7 +15,7 @@ using Bench = bench::Bench<pdo_device::Device>;
 /// An inhibit time, as the bytes of 1800h:03.
 constexpr std::uint8_t ten_milliseconds[] = {100, 0};
 
-/// Lets time pass in steps of a quarter of an hour at most, while heartbeats find no room.
+/// Lets time pass in steps of at most a quarter of an hour while the bus accepts no heartbeat.
 void pass_without_room(Bench& device, canopen::Duration span) {
   device.bus.room = 0;
   for (canopen::Duration step{0}; span.count() != 0; span = span - step) {

@@ -1,4 +1,4 @@
-/// What the commands at a live bus show: identities, tables, the state of a monitored bus.
+/// The output of the commands for a live bus: identities, tables, the state of a monitored bus.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -30,7 +30,7 @@ TEST(Identity, FitsByVendorProductAndRevision) {
   EXPECT_EQ(compare_identity(sheet, with(&Identity::device_type, 0x191)), Fit::other);
 }
 
-/// An EDS without vendor-ID is common; what it states must fit all the same.
+/// An EDS without vendor-ID is common; the numbers that it contains must still match.
 TEST(Identity, ComparesEachNumberThatBothState) {
   const Identity without_vendor = with(&Identity::vendor_id, {});
   EXPECT_EQ(compare_identity(without_vendor, sheet), Fit::same);
@@ -82,7 +82,7 @@ Message message_of(Service service, std::uint8_t node_id, std::string_view state
 
 canopen::Frame nmt(std::uint8_t command, std::uint8_t node_id) { return {0, 2, false, false, {command, node_id}}; }
 
-/// A node confirms no NMT command, and need not send heartbeats.
+/// A node does not confirm NMT commands and need not send heartbeats.
 TEST(MonitorState, AssumesWhereNmtCommandsAndTpdosLead) {
   MonitorState state;
   const auto shown = [&](std::uint8_t node_id) {
@@ -149,7 +149,7 @@ TEST(MonitorState, TellsAChangeOfStateAndNoOtherHeartbeat) {
 TEST(MonitorState, KnowsALateHeartbeatByTheOnesBefore) {
   MonitorState state;
   state.add(frame, heartbeat("operational"), 0);
-  EXPECT_FALSE(state.nodes().at(5).is_late(60'000'000));  // of one alone nobody knows when the next is due
+  EXPECT_FALSE(state.nodes().at(5).is_late(60'000'000));  // the period is unknown after a single heartbeat
   state.add(frame, heartbeat("operational"), 500'000);
   EXPECT_FALSE(state.nodes().at(5).is_late(1'600'000));
   EXPECT_TRUE(state.nodes().at(5).is_late(1'600'001));

@@ -1,4 +1,4 @@
-/// An LSS slave with a device around it that records what it is told.
+/// An LSS slave with a device that records its events.
 #pragma once
 
 #include <canopen/lss_slave.hpp>
@@ -10,10 +10,10 @@
 
 namespace bench {
 
-/// The example of the manual 004, below Figure 12.
+/// The example of manual 004, below Figure 12.
 inline constexpr canopen::LssAddress rk5c_address{0x0000'0093, 0x4335'4B52, 0x0001'0001, 0x1501'1234};
 
-/// A device as a slave sees it. It goes from Initialisation to Pre-operational when it has a node-ID.
+/// A device as its LSS slave uses it. It enters Pre-operational from Initialisation when it has a node-ID.
 template <canopen::LssOptions options = canopen::LssOptions{}>
 class LssDevice {
  public:
@@ -59,7 +59,7 @@ class LssDevice {
     slave.enter(next);
   }
 
-  /// What the device sends because of this frame.
+  /// Returns what the device sends in response to this frame.
   std::string ask(const std::string& request) { return ask(frame(request)); }
   std::string ask(const canopen::Frame& request) {
     slave.on_frame(request, Hooks{*this}, now);
@@ -67,7 +67,7 @@ class LssDevice {
     return bus.take();
   }
 
-  /// What it sends while this time passes.
+  /// Returns what it sends during this time.
   std::string pass(canopen::Duration span) {
     const canopen::TimePoint end = now + span;
     while (const auto deadline = slave.next_deadline()) {

@@ -26,15 +26,15 @@ using canopen::unconfigured_node_id;
 using canopen::VirtualBus;
 using namespace std::chrono_literals;
 
-/// A master on a bus that records; the test plays the slaves.
+/// A master on a bus that records frames; the test acts as the slaves.
 struct MasterBench {
-  /// What the master sends because of this answer.
+  /// Returns what the master sends in response to this answer.
   std::string hear(const std::string& answer) {
     master.on_frame(bench::frame(answer), now);
     return bus.take();
   }
 
-  /// What it sends while this time passes.
+  /// Returns what it sends during this time.
   std::string pass(canopen::Duration span) {
     const TimePoint end = now + span;
     while (const auto deadline = master.next_deadline()) {
@@ -235,7 +235,7 @@ TEST(LssMaster, GoesOnWithASequenceWhenTheBusHasRoomAgain) {
   bench.bus.room = 2;
   bench.master.switch_state_selective(bench::rk5c_address, bench.now);
   EXPECT_EQ(bench.bus.take(), "7E5 40 93 00 00 00 00 00 00 | 7E5 41 52 4B 35 43 00 00 00");
-  bench.hear("7E4 44 00 00 00 00 00 00 00");  // nothing that this master has asked for
+  bench.hear("7E4 44 00 00 00 00 00 00 00");  // not the response that the master waits for
   EXPECT_TRUE(bench.master.busy());
   bench.bus.room = 10;
   EXPECT_EQ(bench.pass(50ms), "7E5 42 01 00 01 00 00 00 00 | 7E5 43 34 12 01 15 00 00 00");
@@ -262,7 +262,7 @@ TEST(LssMaster, ScansBitByBit) {
   EXPECT_EQ(bench.bus.take(), "7E5 51 00 00 00 00 80 00 00");
   bench.hear("7E4 4F 00 00 00 00 00 00 00");
   EXPECT_EQ(bench.pass(20ms), "7E5 51 00 00 00 00 1F 00 00");
-  EXPECT_EQ(bench.pass(20ms), "7E5 51 00 00 00 80 1E 00 00");  // nobody: bit 31 is 1
+  EXPECT_EQ(bench.pass(20ms), "7E5 51 00 00 00 80 1E 00 00");  // no response: bit 31 is 1
   bench.hear("7E4 4F 00 00 00 00 00 00 00");
   bench.hear("7E4 4F 00 00 00 00 00 00 00");
   EXPECT_EQ(bench.pass(20ms), "7E5 51 00 00 00 80 1D 00 00");
@@ -276,7 +276,7 @@ TEST(LssMaster, EndsAFastscanWhoseSlaveIsGone) {
   MasterBench bench;
   bench.master.fastscan(bench.now);
   bench.hear("7E4 4F 00 00 00 00 00 00 00");
-  bench.pass(34 * 20ms);  // the reset, 32 bits, and the number as a whole
+  bench.pass(34 * 20ms);  // the reset, 32 bits, and the complete number
   EXPECT_FALSE(bench.master.busy());
   EXPECT_EQ(bench.master.outcome(), LssOutcome::no_answer);
   bench.master.fastscan(bench.now);
@@ -310,10 +310,10 @@ TEST(LssMaster, LooksForASlaveAboveAnAddress) {
   EXPECT_EQ(sent,
             "7E5 51 00 00 00 00 80 00 00 | 7E5 51 01 00 00 00 00 00 01 | 7E5 51 02 00 00 00 00 01 02 | "
             "7E5 51 03 00 00 00 00 02 03 | 7E5 51 F6 FF FF FF 01 03 03");
-  EXPECT_EQ(bench.pass(20ms), "7E5 51 F8 FF FF FF 03 03 03");  // nobody: the next 0
+  EXPECT_EQ(bench.pass(20ms), "7E5 51 F8 FF FF FF 03 03 03");  // no response: the next 0
   bench.hear("7E4 4F 00 00 00 00 00 00 00");
   EXPECT_EQ(bench.pass(20ms), "7E5 51 F8 FF FF FF 02 03 03");
-  EXPECT_EQ(bench.pass(20ms), "7E5 51 FC FF FF FF 01 03 03");  // nobody: bit 2 is 1
+  EXPECT_EQ(bench.pass(20ms), "7E5 51 FC FF FF FF 01 03 03");  // no response: bit 2 is 1
   bench.hear("7E4 4F 00 00 00 00 00 00 00");
   EXPECT_EQ(bench.pass(20ms), "7E5 51 FC FF FF FF 00 03 03");
   EXPECT_EQ(bench.pass(20ms), "7E5 51 FD FF FF FF 00 03 00");
@@ -335,7 +335,7 @@ TEST(LssMaster, FindsNothingAboveTheHighestAddress) {
   EXPECT_LT(steps, 100);
 }
 
-/// A device on a virtual bus. `answers_always`: in configuration state it answers every Fastscan frame, as a widespread
+/// A device on a virtual bus. `answers_always`: in configuration state it responds to every Fastscan frame, as a common
 /// stack does.
 struct BusDevice {
   BusDevice(VirtualBus& bus, NodeId persistent, const LssAddress& address, bool answers_always = false)
@@ -364,7 +364,7 @@ struct Network {
     bus.listen([this](const canopen::Frame& frame, TimePoint) { requests += frame.id == 0x7E5 ? 1 : 0; });
   }
 
-  /// Lets the service run to its end.
+  /// Runs the service to its end.
   LssOutcome finish(bool begun) {
     EXPECT_TRUE(begun);
     while (master.busy()) bus.run_for(1ms);
@@ -378,7 +378,7 @@ struct Network {
   int requests = 0;
 };
 
-/// Devices of which some differ in one number or in one bit alone.
+/// Random addresses; about half of them differ from an earlier one in a single bit.
 std::vector<LssAddress> random_addresses(std::size_t count, unsigned seed) {
   std::mt19937 random{seed};
   const auto number = [&random] { return static_cast<std::uint32_t>(random()); };
@@ -396,7 +396,7 @@ std::vector<LssAddress> random_addresses(std::size_t count, unsigned seed) {
   return addresses;
 }
 
-/// Gives every device a node-ID; each has to be found once.
+/// Assigns a node-ID to every device; each one must be found exactly once.
 void commission(std::size_t count, unsigned seed) {
   Network network;
   const std::vector<LssAddress> addresses = random_addresses(count, seed);
@@ -441,7 +441,7 @@ TEST(LssNetwork, FastscanFindsEachOfTwentySlavesOnce) {
   for (unsigned seed = 0; seed < 3; ++seed) commission(20, seed);
 }
 
-/// Finds all devices, each of which confirms its address, while none gets a node-ID.
+/// Finds all devices, each of which confirms its address; no node-ID is assigned.
 void find_all(std::size_t count, unsigned seed, bool answers_always) {
   Network network;
   std::vector<LssAddress> addresses = random_addresses(count, seed);

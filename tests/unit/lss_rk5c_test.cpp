@@ -1,5 +1,5 @@
-/// LSS as the manual 004 shows it, frame by frame, against a slave with the options of that device. Lines are those of
-/// the manual's text.
+/// LSS as manual 004 shows it, frame by frame, with a slave that has the options of that device. Line numbers are those
+/// of the manual's text.
 #include <gtest/gtest.h>
 
 #include <rk5c/device.hpp>
@@ -16,8 +16,8 @@ using canopen::NodeId;
 using canopen::unconfigured_node_id;
 using namespace std::chrono_literals;
 
-/// Node-ID 1..127 only (L280); Operational has all communication objects, Stopped none (L1371..L1379); the bit rates of
-/// Table 2; no Fastscan.
+/// Node-ID 1..127 only (L280); all communication objects in Operational, none in Stopped (L1371..L1379); the bit rates
+/// of Table 2; no Fastscan.
 using Rk5c = bench::LssDevice<rk5c::Device::lss_options>;
 
 struct Row {
@@ -59,7 +59,7 @@ TEST(LssRk5c, Figure12SelectsTheDevice) {
   Rk5c device;
   replay(device, {
                      {252, "7E5 40 93 00 00 00 00 00 00", ""},
-                     {253, "7E5 41 52 4B 35 43 00 00 00", ""},  // printed as 52 4B 35 53, against Figure 11 (L234)
+                     {253, "7E5 41 52 4B 35 43 00 00 00", ""},  // misprinted as 52 4B 35 53; see Figure 11 (L234)
                      {254, "7E5 42 01 00 01 00 00 00 00", ""},
                      {255, "7E5 43 34 12 01 15 00 00 00", "7E4 44 00 00 00 00 00 00 00"},
                  });

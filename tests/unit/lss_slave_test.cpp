@@ -302,7 +302,7 @@ TEST(LssSlave, ServesConfigurationAndInquiryInConfigurationStateOnly) {
   EXPECT_FALSE(device.slave.next_deadline());
 }
 
-/// Asks with identify remote slave; revision and serial numbers from low to high.
+/// Sends an identify remote slave service with these ranges of revision and serial numbers.
 std::string identify(LssDevice<>& device, std::uint32_t revision_low, std::uint32_t revision_high,
                      std::uint32_t serial_low, std::uint32_t serial_high, std::uint32_t vendor_id = 0x93,
                      std::uint32_t product_code = 0x4335'4B52) {
@@ -535,12 +535,12 @@ TEST(LssFastscan, IsNotServedWhereTheDeviceHasItNot) {
   EXPECT_EQ(device.ask(identify_non_configured), "7E4 50 00 00 00 00 00 00 00");
 }
 
-// Whatever comes
+// Arbitrary frames
 
 constexpr std::uint8_t commands[] = {0x04, 0x11, 0x13, 0x15, 0x17, 0x40, 0x41, 0x42, 0x43, 0x46, 0x47, 0x48,
                                      0x49, 0x4A, 0x4B, 0x4C, 0x51, 0x5A, 0x5B, 0x5C, 0x5D, 0x5E, 0x04, 0x51};
 
-/// What a slave may answer to a request with this command; 0: nothing.
+/// The command of the response that a slave may send to a request with this command; 0: no response.
 std::uint8_t answer_to(std::uint8_t command) {
   switch (command) {
     case 0x11:

@@ -24,7 +24,7 @@ constexpr std::uint32_t invalid_value = 0x0609'0030;
 constexpr std::uint32_t value_too_high = 0x0609'0031;
 constexpr std::uint32_t not_mappable = 0x0604'0041;
 
-/// Leaves one TPDO valid, gives it this type and timer, and starts the drive.
+/// Leaves one TPDO valid, sets its transmission type and event timer, and starts the drive.
 void start_with(Drive& drive, std::uint16_t tpdo, std::uint32_t type, std::uint32_t event_timer = 0) {
   for (std::uint16_t other = 0x1800; other <= 0x1803; ++other) {
     if (other != tpdo) write(drive, other, 1, 4, 0xC000'0000);
@@ -494,7 +494,7 @@ TEST(Manual000, RefusesANumberOfEntriesThatMakesNoPdo) {
   EXPECT_EQ(write(drive, 0x1600, 0, 1, 2), taken(0x1600, 0));
 }
 
-/// Chapter 12, 1800h: "This bit is always 1", without exception for a PDO that is not valid.
+/// Chapter 12, 1800h: "This bit is always 1", also for a PDO that is not valid.
 TEST(Manual000, KeepsBit30OfATpdoThatIsNotValid) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 23 00 18 01 85 01 00 C0"), "585 60 00 18 01 00 00 00 00");

@@ -22,7 +22,7 @@ using Drive = bench::Bench<ezd_1136::Device>;
 constexpr std::uint32_t invalid_value = 0x0609'0030;
 constexpr std::uint32_t no_object = 0x0602'0000;
 
-/// What the drive sends on entering Operational.
+/// What the drive sends when it enters Operational.
 constexpr auto started = "185 00 00 00 00 01 | 285 00 00 00 00 00 00 00 00 | 385 00 00 00 00 00 00";
 
 // Object dictionary

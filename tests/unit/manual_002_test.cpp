@@ -197,14 +197,14 @@ TEST(Manual002, KeepsTheUpperBitsOf1005h) {
   EXPECT_EQ(drive.ask("605 40 05 10 00 00 00 00 00"), "585 43 05 10 00 A0 00 00 80");
 }
 
-/// CiA 301, 7.5.2.5: a device that produces no SYNC refuses bit 30, also where it keeps that bit.
+/// CiA 301, 7.5.2.5: a device that does not produce SYNC rejects bit 30, even though this one keeps the upper bits.
 TEST(Manual002, RefusesToProduceSync) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 23 05 10 00 80 00 00 40"), "585 80 05 10 00 30 00 09 06");
   EXPECT_EQ(drive.ask("605 40 05 10 00 00 00 00 00"), "585 43 05 10 00 80 00 00 80");
 }
 
-/// 180h is restricted (CiA 301, 7.3.5): the device would make 185h of it, the CAN-ID of TPDO 1.
+/// 180h is restricted (CiA 301, 7.3.5): the device would turn it into 185h, the CAN-ID of TPDO 1.
 TEST(Manual002, RefusesARestrictedCanIdIn1014hWhateverItKeepsOfIt) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 23 14 10 00 80 01 00 00"), "585 80 14 10 00 30 00 09 06");

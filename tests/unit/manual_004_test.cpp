@@ -345,11 +345,11 @@ TEST(Manual004, TakesInhibitTimesOfWholeMillisecondsOnly) {
 
 // LSS
 
-/// Node-ID 1..127 only, no fastscan; served where communication objects are (3.2, 6.1).
+/// Node-ID 1..127 only, no Fastscan; served in the states with communication objects (3.2, 6.1).
 constexpr canopen::LssOptions lss{
     .unconfigurable = false, .fastscan = false, .served_in_stopped = false, .served_in_operational = true};
 
-/// What the sensor keeps beyond power-off.
+/// What the sensor retains without power.
 struct Memory {
   canopen::NodeId node_id{5};
   canopen::LssBitTiming bit_timing{0, 4};  // 125 kbit/s
@@ -358,7 +358,7 @@ struct Memory {
 
 struct Port {
   Memory& memory;
-  std::string log;  ///< what has happened to the CAN controller
+  std::string log;  ///< stops and starts of the CAN controller
 
   canopen::LssError accept(canopen::NodeId) { return canopen::lss::success; }
   canopen::LssError accept(canopen::LssBitTiming) { return canopen::lss::success; }
@@ -372,7 +372,7 @@ struct Port {
   void start_communication(canopen::LssBitTiming timing) { log += std::to_string(timing.index) + " "; }
 };
 
-/// The sensor with its memory, switched on; its boot-up message has been taken away.
+/// The sensor with its memory, switched on; its boot-up message has been removed.
 struct LssSensor {
   explicit LssSensor(Memory& memory)
       : port{memory, {}},

@@ -1,4 +1,4 @@
-/// What the tests of the manuals share: a manual's list of objects, read and written over SDO.
+/// Shared by the tests of the manuals: a manual's list of objects, and reads and writes over SDO.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace manual {
 enum class Access : std::uint8_t { ro, rw };
 using enum Access;
 
-/// A row of a manual's list of objects. Values that follow the node-ID are those of node 5.
+/// A row of a manual's list of objects. Node-ID-dependent values are those of node 5.
 struct Entry {
   std::uint16_t index;
   std::uint8_t sub_index;
@@ -36,10 +36,10 @@ inline std::string sdo(const std::string& can_id, unsigned command, std::uint16_
   return bench::text(frame);
 }
 
-/// The size of expedited data in a command specifier.
+/// The bits of a command specifier for the size of expedited data.
 constexpr unsigned unused(unsigned bytes) { return (4 - bytes) << 2; }
 
-/// Each entry has its default value in the bytes of its type, and takes no write when it is read-only.
+/// Expects that each entry has its default value in the bytes of its type and rejects writes if it is read-only.
 template <class Bench>
 void expect_entries(Bench& device, std::span<const Entry> entries, bool size_indicated = true) {
   for (const auto& [index, sub_index, bytes, access, value] : entries) {
@@ -58,7 +58,7 @@ void expect_entries(Bench& device, std::span<const Entry> entries, bool size_ind
   }
 }
 
-/// Writes a value of this many bytes; the answer.
+/// Writes a value of this many bytes and returns the answer.
 template <class Bench>
 std::string write(Bench& device, std::uint16_t index, std::uint8_t sub_index, unsigned bytes, std::uint32_t value) {
   return device.ask(sdo("605", 0x23 | unused(bytes), index, sub_index, value));

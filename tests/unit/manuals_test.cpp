@@ -1,4 +1,4 @@
-/// What the manuals of all five reference devices say, shown with a device of each.
+/// The statements of the manuals of all five reference devices, tested with a device of each.
 #include <gtest/gtest.h>
 
 #include <can_2057c/device.hpp>
@@ -66,7 +66,7 @@ constexpr Command commands[] = {
 };
 
 struct State {
-  const char* command;  ///< that leads to it
+  const char* command;  ///< enters the state
   bool sdo;             ///< SDO, SYNC and EMCY are served
   const char* heartbeat;
 };
@@ -165,7 +165,7 @@ TYPED_TEST(EveryDevice, SendsItsStateAsHeartbeatInEachState) {
   for (const State& state : states) {
     SCOPED_TRACE(state.command);
     bench::Bench<typename TestFixture::Device> device;
-    device.ask("605 23 00 18 01 05 00 00 80");  // TPDO1 is none: nothing but the heartbeat
+    device.ask("605 23 00 18 01 05 00 00 80");  // TPDO1 is not valid: only the heartbeat is sent
     for (std::uint16_t index = 0x1800; index <= 0x1803; ++index) manual::write(device, index, 1, 4, 0xC0000000);
     device.ask(state.command);
     EXPECT_EQ(device.node.set(0x1017, 0, std::array<std::uint8_t, 2>{100, 0}), canopen::ok);
@@ -247,7 +247,7 @@ TYPED_TEST(EveryDevice, AResetForgetsItsErrors) {
   EXPECT_EQ(device.ask("605 40 01 10 00 00 00 00 00").substr(16), "00 00 00 00");
 }
 
-/// The abort codes that the manuals list and that only an application has a use for.
+/// The abort codes that the manuals list and that only an application uses.
 constexpr std::uint32_t application_codes[] = {
     0x0601'0000, 0x0604'0043, 0x0604'0047, 0x0606'0000, 0x0609'0036, 0x060A'0023, 0x0800'0000,
     0x0800'0020, 0x0800'0021, 0x0800'0022, 0x0800'0023, 0x0800'0024, 0x0800'1234,

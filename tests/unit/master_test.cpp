@@ -22,7 +22,7 @@ using canopen::NodeId;
 using canopen::TimePoint;
 using namespace std::chrono_literals;
 
-/// A bus of which a test says what is on it: frames that wait to be received, and the answer to each frame that is sent.
+/// A bus that a test scripts: the frames that wait to be received, and the response to each frame that is sent.
 struct ScriptedBus {
   bool send(const Frame& sent) {
     const auto answer = answers.find(bench::text(sent));

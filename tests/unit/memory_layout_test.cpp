@@ -1,4 +1,4 @@
-/// Which ARRAYs share one word for all elements.
+/// Which ARRAYs use one word for all elements.
 #include "backend/cpp/memory_layout.hpp"
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ struct Element {
   std::string_view keys = "";
 };
 
-/// An ARRAY 2000h: sub-index 0 has the first element's place, and the others follow.
+/// An ARRAY 2000h of sub-index 0 and these elements.
 std::string array_of(const std::vector<Element>& elements, std::string_view count_keys = "") {
   std::string text =
       group("2000", "Values", "0x8", static_cast<int>(elements.size()) + 1) +
@@ -72,7 +72,7 @@ TEST(UniformArray, KeepsLimitsOfEachElementWhereTheyDiffer) {
   EXPECT_NE(limits[1].find("0x2000, 0x02"), std::string::npos) << limits[1];
 }
 
-/// A TPDO whose mapping can change needs an address of all that it can map, constants included.
+/// A TPDO with dynamic mapping needs an address of everything that it can map, including constants.
 constexpr std::string_view dynamic_tpdo =
     "[1800]\nParameterName=Communication\nObjectType=0x9\nSubNumber=2\n"
     "[1800sub0]\nParameterName=Count\nDataType=0x5\nAccessType=const\nDefaultValue=1\n"
@@ -81,7 +81,7 @@ constexpr std::string_view dynamic_tpdo =
     "[1A00sub0]\nParameterName=Count\nDataType=0x5\nAccessType=rw\nDefaultValue=0\n"
     "[1A00sub1]\nParameterName=Entry\nDataType=0x7\nAccessType=rw\nDefaultValue=0\n";
 
-/// `array` or `record`, as the table of objects calls 2000h.
+/// `array` or `record`: the kind of 2000h in the table of objects.
 std::string kind_of_2000h(const std::string& file) {
   DeviceFromText text(file);
   for (const TableRow& row : lay_out(text.device, text.options, text.diagnostics).entries) {

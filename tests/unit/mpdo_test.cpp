@@ -62,7 +62,7 @@ static_assert(!ListsOf<canopen::DispatchedObjects>::contain(0x1FCF) && !ListsOf<
 
 TEST(MpdoLists, OfTheirNumberOneByteIsLookedAt) {
   Bench device;
-  // What comes after the byte in memory would be a block of 255 objects.
+  // The bytes after this one would mean a block of 255 objects.
   const std::array<std::uint8_t, 4> memory{1, 0xFF, 0xFF, 0xFF};
   using Service = canopen::MpdoService<mpdo_device::Device>;
   EXPECT_EQ(Service::check(device.node.entries(), 0x1FA0, 0, std::span{memory}.first(1)), canopen::ok);
@@ -92,7 +92,7 @@ TEST(DamConsumer, TakesFramesForAllNodes) {
 TEST(DamConsumer, LeavesFramesForOtherNodes) {
   Running device;
   EXPECT_EQ(device.ask("205 86 00 20 00 5A 00 00 00"), "");
-  EXPECT_EQ(device.ask("205 86 99 99 00 5A 00 00 00"), "");  // that node's error, if any
+  EXPECT_EQ(device.ask("205 86 99 99 00 5A 00 00 00"), "");  // an error of that node, if any
   EXPECT_EQ(device.node.get<od::byte>(), 0);
 }
 
@@ -376,7 +376,7 @@ TEST(DamProducer, RefusesWhatItCannotSend) {
   device.ask(bench::start);
   device.bus.room = 0;
   for (int i = 0; i < 4; ++i) EXPECT_TRUE(device.node.send_mpdo(to, 1));
-  EXPECT_FALSE(device.node.send_mpdo(to, 1));  // four wait
+  EXPECT_FALSE(device.node.send_mpdo(to, 1));  // four are waiting
   device.bus.room = 100;
   device.pass(0s);
   device.ask("605 23 01 18 01 85 02 00 80");
@@ -399,7 +399,7 @@ TEST(SamProducer, ForgetsWhatWaitsWhenItsTpdoIsMadeInvalid) {
   EXPECT_EQ(device.pass(1s), "");
 }
 
-// Made an MPDO by SDO
+// PDOs that SDO turns into MPDOs
 
 TEST(DynamicMpdo, ConsumesInEitherMode) {
   Running device;
@@ -416,7 +416,7 @@ TEST(DynamicMpdo, ConsumesInEitherMode) {
 
 TEST(DynamicMpdo, ProducesInDestinationAddressingMode) {
   Running device;
-  device.ask("605 23 01 18 01 85 02 00 80");  // TPDO2 is the first one otherwise
+  device.ask("605 23 01 18 01 85 02 00 80");  // otherwise TPDO2 is the first DAM-TPDO
   EXPECT_EQ(device.ask("605 2F 02 1A 00 FF 00 00 00"), "585 60 02 1A 00 00 00 00 00");
   device.ask("605 23 02 18 01 33 03 00 00");
   EXPECT_TRUE(device.node.send_mpdo({NodeId{6}, 0x2000, 0}, 1));
@@ -447,7 +447,7 @@ TEST(DynamicMpdo, IsRefusedWithoutTheOption) {
 
 // Two nodes
 
-/// Nodes 5 and 7 on a bus; what passes it is written down.
+/// Nodes 5 and 7 on a bus; all frames are recorded.
 struct TwoNodes {
   TwoNodes() {
     canopen::VirtualBus::connect(first_end, first);
@@ -459,8 +459,8 @@ struct TwoNodes {
     second.start(bus.now());
     master.send(bench::frame("605 23 01 14 01 05 03 00 80"));
     master.send(bench::frame("605 23 00 14 01 05 02 00 80"));
-    master.send(bench::frame("605 23 01 14 01 87 01 00 00"));  // RPDO2 of node 5 is TPDO1 of node 7
-    master.send(bench::frame("605 23 00 14 01 87 02 00 00"));  // and its RPDO1 TPDO2
+    master.send(bench::frame("605 23 01 14 01 87 01 00 00"));  // RPDO2 of node 5 receives TPDO1 of node 7
+    master.send(bench::frame("605 23 00 14 01 87 02 00 00"));  // and its RPDO1 receives TPDO2
     bus.run_for(1ms);
     master.send(bench::frame("000 01 00"));
     bus.run_for(1ms);
@@ -480,7 +480,7 @@ TEST(TwoNodesWithMpdos, ExchangeAnObjectInSourceAddressingMode) {
   TwoNodes nodes;
   nodes.second.set<od::input>(0x1234);
   nodes.bus.run_for(1ms);
-  // Node 5 takes 2004h of node 7 into its 2001h, which it sends itself.
+  // Node 5 writes 2004h of node 7 to its own 2001h and sends that.
   EXPECT_EQ(nodes.log, "187 07 04 20 00 34 12 00 00 | 185 05 01 20 00 34 12 00 00");
   EXPECT_EQ(nodes.first.get<od::word>(), 0x1234);
 }

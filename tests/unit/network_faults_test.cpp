@@ -1,12 +1,13 @@
 /// SDO transfers of every kind between a client and a node on a bus that loses, repeats, delays and reorders frames.
 ///
-/// What can be guaranteed: no frame of one transfer is left when the next one begins (SDO numbers no transfers: an
-/// answer of the last one to the same entry could not be told from one of this), and then
+/// What is guaranteed if no frame of a transfer is left when the next one begins (SDO does not number transfers: a late
+/// response to the same entry looks like one of the current transfer):
 ///   - expedited transfers and block transfers with CRC bring the right value or an abort, whatever happens;
-///   - segmented transfers do as long as frames keep their order, repeated or not. A segment that comes again two
-///     segments later has the toggle bit of the one that is due, and nothing in CiA 301 tells: it takes that one's
-///     place when that one is lost, or its answer ends the transfer for a client whose last segment is refused. What a
-///     server takes then is nothing, or made of segments that were sent with these toggle bits and as long as was said.
+///   - segmented transfers do so as long as frames keep their order, repeated or not. A segment that is repeated two
+///     segments later has the toggle bit of the expected one, and CiA 301 has no means to detect it: it replaces the
+///     expected segment if that is lost, or its response ends the transfer for a client whose last segment is rejected.
+///     The server then receives nothing, or a value of the announced length, made of segments that were sent with these
+///     toggle bits.
 #include <gtest/gtest.h>
 
 #include <canopen/node.hpp>
@@ -41,7 +42,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 // Faults
 
-/// What comes to an endpoint, with the time in us.
+/// Records what an endpoint receives, with the time in us.
 struct Listener {
   Listener(BusFaultRates rates, std::uint32_t seed) {
     receiver.on_frame = [this](const Frame& got, TimePoint now) {
@@ -104,7 +105,7 @@ constexpr std::size_t largest_value = 500;
 
 enum class Kind { expedited, segmented, block };
 
-/// Where a value of each kind goes.
+/// The object that a value of each kind is written to.
 struct Target {
   Kind kind;
   std::uint16_t index;
@@ -120,7 +121,7 @@ constexpr Target targets[] = {
     {Kind::block, od::file::index, 0, 29, largest_value, true},
 };
 
-/// What the node keeps in its DOMAIN, and what its application has been given by a download.
+/// The memory of the DOMAIN of the node, and what a download has passed to its application.
 struct Application {
   std::array<std::uint8_t, largest_value> memory{};
   Bytes taken;
@@ -131,7 +132,7 @@ struct Application {
   }
 };
 
-/// A client whose answers, and a server whose requests, pass faults.
+/// A client whose responses, and a server whose requests, are subject to faults.
 class Client {
  public:
   Client(VirtualBus& bus, VirtualBus::Endpoint& server, BusFaultRates rates, std::uint32_t seed) : bus_{bus} {
@@ -142,7 +143,7 @@ class Client {
     to_server_.emplace(server, rates, seed + 1);
   }
 
-  /// Lets the transfer that `begin(client)` begins run to its end. No wait of it is longer than the time-out.
+  /// Runs the transfer that `begin(client)` begins to its end. It never waits longer than the time-out.
   template <class Begin>
   AbortCode transfer(bool block_transfer, Begin begin) {
     sdo_.emplace(endpoint_, NodeId{5},
@@ -160,7 +161,7 @@ class Client {
 
   [[nodiscard]] Bytes data() const { return {sdo_->data().begin(), sdo_->data().end()}; }
 
-  /// Until the server has given up what it still waits for and no frame is on its way.
+  /// Runs until the server has given up an open transfer and no frame is pending.
   void drain() { bus_.run_for(200ms); }
   void end_faults() {
     to_client_->rates = {};
@@ -176,7 +177,7 @@ class Client {
   std::optional<canopen::BusFaults> to_server_;
 };
 
-/// Whether a value is made of segments of another one, each at a place with its toggle bit, and is as long.
+/// Returns whether a value consists of segments of another one with the same toggle bits, and has the same length.
 bool made_of_segments(const Bytes& got, const Bytes& value) {
   constexpr std::size_t size = canopen::sdo::segment_bytes;
   if (got.size() != value.size()) return false;
@@ -194,7 +195,7 @@ bool made_of_segments(const Bytes& got, const Bytes& value) {
 struct Count {
   int good = 0;
   int aborted = 0;
-  int mixed = 0;  ///< segmented transfers that brought a wrong value, as they cannot tell
+  int mixed = 0;  ///< segmented transfers with a wrong value, which they cannot detect
 };
 
 std::map<Kind, Count> run(std::uint32_t seed, BusFaultRates rates, int transfers) {
@@ -232,7 +233,7 @@ std::map<Kind, Count> run(std::uint32_t seed, BusFaultRates rates, int transfers
       code = client.transfer(target.block_transfer,
                              [&](auto& sdo) { return sdo.download(target.index, target.sub_index, value, bus.now()); });
       got = application.taken;
-      // A transfer that failed has left nothing, or all of it where the last answer was lost.
+      // A failed transfer has written nothing, or the whole value if the last response was lost.
       if (code != canopen::ok && !rates.overtaking) {
         EXPECT_TRUE(got.empty() || got == value);
       }
@@ -258,7 +259,7 @@ std::map<Kind, Count> run(std::uint32_t seed, BusFaultRates rates, int transfers
     client.drain();
   }
 
-  // The server serves on.
+  // The server still serves requests.
   client.end_faults();
   Bytes memory(4);
   EXPECT_EQ(client.transfer(false, [&](auto& sdo) { return sdo.upload(0x1018, 4, memory, bus.now()); }), canopen::ok);
@@ -294,14 +295,14 @@ TEST(NetworkFaults, FramesInAnotherOrderBringNoWrongValueButInSegments) {
   }
 }
 
-// What the protocol cannot tell, frame by frame
+// What the protocol cannot detect, frame by frame
 
 TEST(NetworkFaults, ASegmentThatComesAgainTwoLaterTakesThePlaceOfALostOne) {
   bench::Bench<Device> device;
   EXPECT_EQ(device.ask("605 21 0B 20 00 18 00 00 00"), "585 60 0B 20 00 00 00 00 00");  // 24 bytes
   EXPECT_EQ(device.ask("605 00 41 41 41 41 41 41 41"), "585 20 00 00 00 00 00 00 00");
   EXPECT_EQ(device.ask("605 10 42 42 42 42 42 42 42"), "585 30 00 00 00 00 00 00 00");
-  EXPECT_EQ(device.ask("605 00 41 41 41 41 41 41 41"), "585 20 00 00 00 00 00 00 00");  // the first one again
+  EXPECT_EQ(device.ask("605 00 41 41 41 41 41 41 41"), "585 20 00 00 00 00 00 00 00");  // repetition of the first one
   EXPECT_EQ(device.ask("605 19 44 44 44 00 00 00 00"), "585 30 00 00 00 00 00 00 00");  // the third one was lost
   const auto octets = device.node.get<od::octets>();
   EXPECT_EQ(octets.size, 24);
@@ -313,7 +314,7 @@ TEST(NetworkFaults, ASegmentThatComesAgainTwoLaterIsAnsweredInPlaceOfTheLastOne)
   device.ask("605 21 0B 20 00 15 00 00 00");  // 21 bytes
   device.ask("605 00 41 41 41 41 41 41 41");
   device.ask("605 10 42 42 42 42 42 42 42");
-  EXPECT_EQ(device.ask("605 00 41 41 41 41 41 41 41"), "585 20 00 00 00 00 00 00 00");  // the first one again
+  EXPECT_EQ(device.ask("605 00 41 41 41 41 41 41 41"), "585 20 00 00 00 00 00 00 00");  // repetition of the first one
   EXPECT_EQ(device.ask("605 01 43 43 43 43 43 43 43"), "585 80 0B 20 00 00 00 03 05");
   EXPECT_EQ(device.node.get<od::octets>().size, 3);
 }

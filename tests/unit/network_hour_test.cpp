@@ -1,5 +1,5 @@
-/// An hour of a full network: 127 reference devices and a guarding master on one bus, over the moment where TimePoint
-/// begins at 0 again. Each message is sent exactly when it is due, once, and nobody wakes up in vain.
+/// An hour of a full network: 127 reference devices and a guarding master on one bus, while TimePoint wraps. Each
+/// message is sent once and exactly when it is due, and no station wakes up without a reason.
 #include <gtest/gtest.h>
 
 #include <can_2053c/device.hpp>
@@ -33,7 +33,7 @@ using canopen::VirtualBus;
 using namespace std::chrono_literals;
 
 constexpr Duration bus_time = 60min;
-/// TimePoint begins at 0 again in the middle.
+/// TimePoint wraps in the middle of the hour.
 constexpr Duration begin{0u - bus_time.count() / 2};
 
 constexpr std::uint32_t bit_rate = 1'000'000;
@@ -43,20 +43,20 @@ constexpr std::uint64_t longest_delay = 2 * 128 * 111;
 constexpr std::uint32_t sync_id = 0x080;
 constexpr std::uint8_t transmission_types[] = {1, 2, 3, 10, 60, 240};
 
-/// What is known of the messages with one CAN-ID, and what came. Times are in us since the test began.
+/// The expected and the received messages with one CAN-ID. Times are in us since the beginning of the test.
 struct Message {
   std::uint64_t first = 0;
   std::uint64_t period = 0;  ///< 0: another message causes this one
-  std::uint32_t cause = 0;   ///< its key
-  unsigned every = 0;        ///< how many of them it takes; 0: no such message is known
-  unsigned causes = 0;       ///< since the last one
+  std::uint32_t cause = 0;   ///< key of that message
+  unsigned every = 0;        ///< causing messages per message; 0: not expected at all
+  unsigned causes = 0;       ///< causing messages since the last one
   unsigned sent = 0;
   unsigned seen = 0;
   std::uint64_t sent_at = 0;
   std::uint64_t seen_at = 0;
 };
 
-/// CAN-ID, and whether it is a remote frame.
+/// A key is the CAN-ID, plus this bit for a remote frame.
 constexpr std::uint32_t remote = 0x800;
 std::uint32_t key_of(const Frame& frame) { return frame.id | (frame.remote ? remote : 0); }
 
@@ -66,13 +66,13 @@ class Timetable {
     bus.listen([this](const Frame& frame, TimePoint) { seen(frame); });
   }
 
-  /// The first one comes at a moment, the next ones every period.
+  /// The first message is due at `first`, the next ones after each period.
   void periodic(std::uint32_t key, std::uint64_t first, Duration period) {
     messages_[key].first = first;
     messages_[key].period = period.count();
     messages_[key].every = 1;
   }
-  /// One comes at the moment when each n-th one of another kind has passed the wire.
+  /// A message is due when every n-th message of another kind has been transmitted.
   void caused(std::uint32_t key, std::uint32_t cause, unsigned every) {
     messages_[key].cause = cause;
     messages_[key].every = every;
@@ -90,7 +90,7 @@ class Timetable {
     ++message.sent;
   }
 
-  /// Looks at what should have come until now.
+  /// Checks that all messages that were due have been sent.
   void finish() {
     const std::uint64_t now = time();
     for (std::uint32_t key = 0; key < messages_.size(); ++key) {
@@ -123,7 +123,7 @@ class Timetable {
     Message& message = messages_.at(key_of(frame));
     ++message.seen;
     message.seen_at = time();
-    if (message.every == 0) return;  // what starts the network
+    if (message.every == 0) return;  // the NMT command that starts the network
     if (message.seen != message.sent) complain(frame, "has not been sent");
     if (message.seen_at - message.sent_at > longest_delay) complain(frame, "is late");
     for (Message& other : messages_) {
@@ -142,7 +142,7 @@ class Timetable {
   std::array<Message, 0x1000> messages_{};
 };
 
-/// A participant's way to the wire.
+/// A participant's access to the bus.
 struct Port {
   bool send(const Frame& frame) {
     if (!endpoint.send(frame)) return false;
@@ -150,7 +150,7 @@ struct Port {
     return true;
   }
   VirtualBus::Endpoint& endpoint;
-  Timetable* timetable = nullptr;  ///< none before the test begins
+  Timetable* timetable = nullptr;  ///< null before the test begins
 };
 
 template <class Device>
@@ -178,7 +178,7 @@ struct Station {
   unsigned wake_ups = 0;
 };
 
-/// Guards the I/O modules, and starts the network.
+/// Guards the I/O modules and starts the network.
 struct Master {
   struct Host {
     Master& master;
@@ -248,7 +248,7 @@ class Network {
     for (auto& station : sensors) visit(station);
   }
 
-  /// How often a station had something to do by itself. One that is guarded counts guard times besides.
+  /// How often a station has a reason to wake up. A guarded station also wakes up at each guard time.
   template <class Device>
   [[nodiscard]] unsigned occasions(const Station<Device>& station) const {
     const std::uint32_t id = station.number();
@@ -296,7 +296,7 @@ class Network {
     timetable->caused(0x280 + id, sync_id, type);
   }
 
-  /// Guarded, and a TPDO with an event timer.
+  /// Node guarding and a TPDO with an event timer.
   void configure_module(Station<can_2053c::Device>& station) {
     const std::uint32_t id = station.number();
     const auto guard_time = static_cast<std::uint16_t>(5000 + 61 * id);
@@ -311,25 +311,25 @@ class Network {
     timetable->caused(0x700 + id, remote | (0x700 + id), 1);
   }
 
-  /// Heartbeat and a TPDO with an event timer, which sends its first values after the first period only.
+  /// Heartbeat and a TPDO with an event timer; the first TPDO is sent after the first period.
   void configure_sensor(Station<rk5c::Device>& station) {
     const std::uint32_t id = station.number();
     const Duration timer = 3s + Duration{57ms} * id;
-    const Duration heartbeat = 60s;  // of all of them at once
+    const Duration heartbeat = 60s;  // all sensors at the same time
     station.set_event_timer(timer);
     station.set_heartbeat(heartbeat);
     timetable->periodic(0x180 + id, started_at_ + timer.count(), timer);
     timetable->periodic(0x700 + id, 0, heartbeat);
   }
 
-  std::uint64_t started_at_ = 0;  ///< when "start" has passed the wire
+  std::uint64_t started_at_ = 0;  ///< end of the transmission of "start"
 };
 
 TEST(NetworkHour, EachOf127NodesSendsEverythingAtItsTimeAndSleepsOtherwise) {
   Network network;
   for (Duration passed{0}; passed < bus_time; passed += 1min) network.bus.run_for(1min);
   EXPECT_EQ(network.timetable->time(), bus_time.count());
-  EXPECT_LT(network.bus.now(), TimePoint{bus_time});  // over the wrap
+  EXPECT_LT(network.bus.now(), TimePoint{bus_time});  // TimePoint has wrapped
   network.timetable->finish();
   unsigned stations = 0;
   network.for_each([&](auto& station) {

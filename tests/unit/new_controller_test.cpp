@@ -1,4 +1,4 @@
-/// The way of docs/porting.md to a new CAN controller: a driver, and a controller in memory that tests it.
+/// The steps of docs/porting.md for a new CAN controller: a driver, and a controller in memory that tests it.
 #include <gtest/gtest.h>
 
 #include <canopen/node.hpp>
@@ -89,8 +89,8 @@ class SimpleCan {
 static_assert(canopen::CanController<SimpleCan<>>);
 // clang-format on
 
-/// Registers that do what the manual says: one that does something is a type with `operator=`, one that depends on
-/// something a type that converts.
+/// Registers that behave as in the manual: one with side effects is a type with `operator=`, one with a computed value
+/// is a type with a conversion operator.
 struct FakeSimpleCan {
   struct Box {
     std::uint32_t id = 0, length = 0, low = 0, high = 0;
@@ -115,7 +115,7 @@ struct FakeSimpleCan {
     waiting.push_back(box);
     receive = waiting.front();
   }
-  /// The frame on the wire, acknowledged.
+  /// Acknowledges the frame on the wire and returns it.
   std::string take() {
     if (!sending) return "";
     sending = false;

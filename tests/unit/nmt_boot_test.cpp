@@ -1,5 +1,5 @@
-/// The boot-up of slaves by an NMT master, in the cases that a plant has: configuration, requests of the application on the
-/// same SDO, slaves that reset, are slow, are silent, are replaced, and a bus that has no room.
+/// The boot-up of slaves by an NMT master in the cases that occur in a plant: configuration, requests of the
+/// application over the same SDO, slaves that reset, are slow, are silent or are replaced, and a full bus.
 #include <gtest/gtest.h>
 #include <canopen/nmt_master.hpp>
 #include <canopen/port/virtual_bus.hpp>
@@ -57,7 +57,7 @@ struct Host {
   void boot_time_elapsed() { told->log.push_back("boot time elapsed"); }
 };
 
-/// A master of nodes 5 and 6 whose frames are the test's.
+/// A master of nodes 5 and 6; the test writes the frames of the slaves.
 struct Desk {
   explicit Desk(std::vector<NmtSlave> list) : slaves{std::move(list)} {}
 
@@ -94,7 +94,7 @@ struct Desk {
   canopen::NmtMaster<bench::RecordingBus, 2, Host, 3> master{bus, slaves, {}, 100ms, Host{&told}};
 };
 
-/// Whatever is asked about device type, answered.
+/// The response to each read of the device type.
 constexpr auto device_type = "585 43 00 10 00 91 01 0F 00";
 
 NmtSlave slave(std::uint8_t node_id, std::uint16_t heartbeat_time = 0) {
@@ -103,7 +103,7 @@ NmtSlave slave(std::uint8_t node_id, std::uint16_t heartbeat_time = 0) {
   return result;
 }
 
-/// A transfer of the application, with its end in words.
+/// A transfer of the application that records its result.
 struct Transfer {
   SdoRequest read(std::uint16_t index, std::uint8_t sub_index) {
     SdoRequest request;
@@ -140,7 +140,7 @@ struct Transfer {
 
 // Heartbeats
 
-/// Until the master has read 1017h of slave 5, which is this one.
+/// Boots slave 5 until the master reads 1017h; returns what the master sends in response to `answer`.
 std::string ask_for_heartbeat_time(Desk& desk, const std::string& answer) {
   desk.start();
   desk.take("705 00");
@@ -153,9 +153,9 @@ std::string ask_for_heartbeat_time(Desk& desk, const std::string& answer) {
 TEST(NmtBoot, ASlaveWhoseHeartbeatTimeIsWrittenIsWatchedFromItsNextHeartbeatOn) {
   Desk desk{{slave(5, 300)}};
   EXPECT_EQ(ask_for_heartbeat_time(desk, "585 4B 17 10 00 FA 00 00 00"), "605 2B 17 10 00 96 00 00 00");
-  EXPECT_EQ(desk.take("705 7F"), "");  // by the old period
+  EXPECT_EQ(desk.take("705 7F"), "");  // with the old period
   EXPECT_EQ(desk.pass(90ms), "");
-  EXPECT_EQ(desk.take("585 60 17 10 00 00 00 00 00"), "");  // its new period begins here
+  EXPECT_EQ(desk.take("585 60 17 10 00 00 00 00 00"), "");  // the new period begins here
   EXPECT_EQ(desk.pass(149ms), "");
   EXPECT_EQ(desk.take("705 7F"), "000 01 05");
   EXPECT_EQ(desk.pass(299ms), "");
@@ -383,7 +383,7 @@ TEST(NmtBoot, TheAnswerThatASecondBootUpLeavesOverIsNotTakenForAnother) {
   EXPECT_EQ(desk.take("705 00"), "605 40 00 10 00 00 00 00 00");
   EXPECT_EQ(desk.take("705 00"), "605 80 00 10 00 22 00 00 08 | 605 40 00 10 00 00 00 00 00");
   EXPECT_EQ(desk.log(), (Lines{"5 boot-up", "5 boot-up"}));
-  desk.take(device_type);  // to the first request
+  desk.take(device_type);  // the response to the first request
   Transfer write;
   const std::array<std::uint8_t, 1> value{1};
   EXPECT_TRUE(desk.master.request(NodeId{5}, write.write(0x2000, 1, value), desk.now));
@@ -466,7 +466,7 @@ TEST(NmtBoot, ResetsASlaveThatTellsThatItIsStopped) {
   EXPECT_EQ(desk.take("705 00"), "605 40 00 10 00 00 00 00 00");
 }
 
-// A bus without room
+// A full bus
 
 TEST(NmtBoot, BootsWhenTheBusHasRoomAgainWhereverItHadNone) {
   for (std::size_t room = 0; room < 12; ++room) {

@@ -28,12 +28,12 @@ using namespace std::chrono_literals;
 
 constexpr const char* event_names[] = {"boot-up", "state", "unexpected state", "toggle error", "lost", "back"};
 
-/// Writes down what the master tells.
+/// Records the events of the master.
 struct Host {
   std::vector<std::string>* log;
 
   void happened(NmtMasterEvent event, NodeId node_id, NmtState state) {
-    if (event == NmtMasterEvent::not_watched) return;  // most slaves here
+    if (event == NmtMasterEvent::not_watched) return;  // true of most slaves here
     char text[40];
     std::snprintf(text, sizeof text, "(%d %s %02X)", node_id.value(), event_names[static_cast<int>(event)],
                   static_cast<unsigned>(state));
@@ -46,7 +46,7 @@ struct Host {
   void boot_time_elapsed() { log->push_back("(boot time elapsed)"); }
 };
 
-/// The sample device as a slave on the bus: with a heartbeat every 50 ms from each reset on, or guarded.
+/// The sample device as a slave on the bus: with a heartbeat every 50 ms after each reset, or guarded.
 class Slave {
  public:
   Slave(VirtualBus& bus, std::uint8_t node_id, bool beats)
@@ -96,8 +96,8 @@ class Slave {
   bool on_ = false;
 };
 
-/// A master, its slaves, and all that happens, in order: frames as a candump log shows them, what the master tells in
-/// brackets. PDOs are left out, and heartbeats and guarding where they are not asked for.
+/// A master, its slaves, and everything that happens, in order: frames as in a candump log, events of the master in
+/// brackets. PDOs are left out; so are heartbeats and guarding unless they are requested.
 struct Network {
   Network(std::vector<NmtSlave> list, NmtStartUp how)
       : slaves{std::move(list)}, master{end, slaves, how, 100ms, Host{&log}} {
@@ -113,7 +113,7 @@ struct Network {
 
   Slave& slave(std::uint8_t node_id, bool beats) { return devices.emplace_back(bus, node_id, beats); }
 
-  /// What happens while this time passes.
+  /// Returns what happens during this time.
   std::vector<std::string> pass(canopen::Duration span) {
     bus.run_for(span);
     return std::exchange(log, {});
@@ -429,7 +429,7 @@ TEST(NmtMaster, SetsTheHeartbeatOfASlaveThatHasNone) {
   EXPECT_EQ(network.pass(1s).front(), "(5 lost 05)");
 }
 
-/// A master and a slave with a heartbeat time, whose frames are the test's, until 1017h is read.
+/// A master and a slave with a heartbeat time, until 1017h is read; the test writes the frames of the slave.
 struct Asked {
   explicit Asked(std::uint16_t heartbeat_time) {
     slaves[0].heartbeat_time = heartbeat_time;
@@ -478,7 +478,7 @@ TEST(NmtMaster, ASlaveThatCannotHaveAHeartbeatIsNotStarted) {
 TEST(NmtMaster, ASlaveThatDoesNotAnswerGuardingIsNotStarted) {
   Network network{{NmtSlave{NodeId{5}, mandatory | guarded}}, {}};
   network.with_error_control = true;
-  network.slave(5, true).switch_on();  // with its heartbeat it does not answer
+  network.slave(5, true).switch_on();  // with a heartbeat it does not answer guarding
   network.devices.front().switch_off();
   network.pass(0ms);
   network.master.start(network.bus.now());
@@ -516,7 +516,7 @@ TEST(NmtMaster, ASlaveToBeKeptAliveThatIsNotOperationalIsReset) {
                    "585 43 00 10 00 91 01 0F 00", "(5 state 7F)", "(5 0)", "000 01 05"}));
 }
 
-// A slave that is lost
+// A lost slave
 
 TEST(NmtMaster, ResetsALostSlaveAndBootsItAgain) {
   NmtSlave slave{NodeId{5}, mandatory};
@@ -579,7 +579,7 @@ TEST(NmtMaster, ResetsAnOptionalSlaveAlone) {
   EXPECT_EQ(network.pass(400ms), (Lines{"(6 lost 05)", "000 81 06"}));
 }
 
-// Five slaves: one of another kind, one that is not there, one that is late
+// Five slaves: one of another type, one missing, one late
 
 TEST(NmtMaster, BootsANetworkOfFive) {
   NmtSlave beating = slave_with_identity(3, mandatory);

@@ -1,6 +1,6 @@
-/// A master and six slaves on a bus that loses, repeats and delays frames, whose slaves are switched off and on, and which
-/// the master cannot send on now and then. No stale frame is taken for another, and when the faults are over all slaves are
-/// booted, configured and Operational.
+/// A master and six slaves on a bus that loses, repeats and delays frames; slaves are switched off and on, and at times
+/// the master cannot send. No late frame is mistaken for another one, and after the faults all slaves are booted,
+/// configured and Operational.
 #include <gtest/gtest.h>
 #include <canopen/nmt_master.hpp>
 #include <canopen/port/bus_faults.hpp>
@@ -36,7 +36,7 @@ using namespace std::chrono_literals;
 constexpr std::size_t slave_count = 6;
 constexpr canopen::BusFaultRates faulty{.lost = 0.01, .repeated = 0.01, .delayed = 0.05, .longest_delay = 20ms};
 
-/// The master's way on the bus, which is off or full at times.
+/// The master's access to the bus, which is off or full at times.
 struct Port {
   VirtualBus::Endpoint& end;
   std::mt19937& random;
@@ -109,7 +109,7 @@ struct Plant {
     faults.emplace(end, faulty, seed * 100 + 99);
   }
 
-  /// Two transfers, one by segments, begun one after the other.
+  /// Two transfers, one after the other; the second one is segmented.
   struct Configuration {
     Plant* plant = nullptr;
     int step = 0;
@@ -134,7 +134,7 @@ struct Plant {
     }
     void done(NodeId node_id, const SdoAnswer& answer) {
       --running;
-      if (answer.result == AbortCode::device_state) return;  // it has booted up: `configure` comes again
+      if (answer.result == AbortCode::device_state) return;  // it has booted up: `configure` is called again
       if (answer.result != canopen::ok || step == 1) return plant->end_configuration(node_id, answer.result);
       step = 1;
       begin(node_id);
@@ -143,16 +143,16 @@ struct Plant {
 
   void end_configuration(NodeId node_id, AbortCode code) { master->configured(node_id, code, bus.now()); }
 
-  /// What goes wrong in a tenth of a second.
+  /// The faults of a tenth of a second.
   void disturb() {
     auto device = devices.begin();
     std::advance(device, random() % slave_count);
     if (random() % 4 == 0) device->switch_off();
-    if (random() % 4 == 0) device->switch_on();  // again, when it is on
+    if (random() % 4 == 0) device->switch_on();  // also if it is on
     port.off = random() % 10 == 0;
     port.full = random() % 3 == 0 ? 0.3 : 0;
     if (random() % 40 == 0) master->start(bus.now());
-    if (random() % 10 == 0) {  // somebody else asks
+    if (random() % 10 == 0) {  // another client sends a request
       other.send(Frame{.id = static_cast<std::uint32_t>(0x601 + random() % slave_count), .size = 8, .data = {0x40, 0x00, 0x10}});
     }
   }
@@ -162,7 +162,7 @@ struct Plant {
     for (const NodeId node_id : std::exchange(failed, {})) master->boot(node_id, bus.now());
   }
 
-  /// NMT commands are not confirmed: the application starts a slave again that has not received the start.
+  /// NMT commands are not confirmed: the application starts a slave again if it has not received the command.
   void start_again() {
     for (const NmtSlave& slave : slaves) {
       const bool booted = master->status(slave.node_id) == BootStatus::booted;

@@ -18,9 +18,9 @@ using canopen::NodeId;
 using canopen::TimePoint;
 using namespace std::chrono_literals;
 
-// The slave's side
+// The slave
 
-/// A guarded node 5 in Pre-operational with guard time and life time factor of its own.
+/// A guarded node 5 in Pre-operational with its own guard time and life time factor.
 struct Slave {
   Slave(std::uint16_t guard_time_ms, std::uint8_t factor) : guard_time{guard_time_ms}, life_time_factor{factor} {}
 
@@ -32,7 +32,7 @@ struct Slave {
     return bus.take();
   }
 
-  /// How many life guarding events there are while this time passes.
+  /// Returns the number of life guarding events during this time.
   int pass(canopen::Duration span) {
     int events = 0;
     const TimePoint end = now + span;
@@ -116,7 +116,7 @@ TEST(LifeGuarding, FailsAtExactlyTheLifeTime) {
     slave.ask();
     std::uint32_t left = row.life_time - 1;
     for (; left > 1'000'000; left -= 1'000'000)
-      EXPECT_EQ(slave.pass(1'000'000ms), 0);  // beyond what a TimePoint can tell
+      EXPECT_EQ(slave.pass(1'000'000ms), 0);  // longer than the range of a TimePoint
     EXPECT_EQ(slave.pass(std::chrono::milliseconds{left}), 0) << row.guard_time << " * " << int{row.factor};
     EXPECT_EQ(slave.pass(999us), 0) << row.guard_time << " * " << int{row.factor};
     EXPECT_FALSE(slave.guarding.failed());
@@ -181,7 +181,7 @@ TEST(LifeGuarding, NewTimesCountFromTheNextRequestOn) {
 
 namespace od = can_2057c::od;
 
-/// The I/O module CAN-2057C with node-ID 1: the node, and its guarding beside it. 07h is the module's own number of the
+/// The I/O module CAN-2057C with node-ID 1: the node and a separate guarding slave. 07h is the module's own code of the
 /// error (manual 003, 5.3.2).
 struct Module {
   Module() {
@@ -261,12 +261,12 @@ TEST(NodeGuarding, GivesWayToTheHeartbeatAsManual003Shows) {
   });
 }
 
-// The master's side
+// The master
 
 constexpr const char* event_names[] = {"started",          "state changed", "boot-up", "toggle error",
                                        "unexpected state", "lost",          "back"};
 
-/// A master that guards node 5; what it sends and what it tells stand in one line.
+/// A master that guards node 5; what it sends and its events are in one line.
 struct Master {
   Master(std::uint16_t guard_time, std::uint8_t factor) { guard.start(NodeId{5}, guard_time, factor, now); }
 

@@ -1,4 +1,4 @@
-/// Error control, LSS and the bus status as a node serves them.
+/// Error control, LSS and bus status, as a node serves them.
 #include <gtest/gtest.h>
 
 #include <can_2057c/device.hpp>
@@ -77,7 +77,7 @@ TEST(GuardedNode, TellsThatItsGuardIsLostAndBack) {
   auto device =
       bench::with<can_2057c::Device>(canopen::on_life_guarding([&](bool lost) { log += lost ? "lost " : "back "; }));
   device.ask("605 2B 0C 10 00 FA 00 00 00");  // 250 ms
-  device.ask("605 2F 0D 10 00 04 00 00 00");  // four times
+  device.ask("605 2F 0D 10 00 04 00 00 00");  // life time factor 4
   device.ask(bench::start);
   device.pass(10s);
   EXPECT_EQ(log, "");

@@ -32,7 +32,7 @@ TEST(Node, ABusWithoutStateAndHandlersWithoutCapturesTakeNoMemory) {
                                                 canopen::on_write<od::controlword>([](std::uint16_t) {}),
                                                 canopen::on_read<od::statusword>([] {}));
   EXPECT_EQ(sizeof at_link_time, sizeof two);
-  // What goes on while a handler is called.
+  // Plus the state of a handler call.
   EXPECT_LE(sizeof at_link_time, sizeof(canopen::Node<sample::Device, Nowhere>) + 8);
 }
 

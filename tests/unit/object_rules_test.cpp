@@ -54,7 +54,7 @@ TEST(ObjectRules, WarnOfADefaultBeyondItsLimits) {
   EXPECT_NE(above.finding("default-outside-limits").message.find("above"), std::string::npos);
 }
 
-/// CiA 301, 7.5.2.37: 255 where the file says nothing.
+/// CiA 301, 7.5.2.37: 255 if the file has no value.
 TEST(ObjectRules, BlameNoFileForADefaultThatItDoesNotHave) {
   const CheckedObjects checked(group("1800", "Communication", "9", 2) +
                                var("1800sub0", "Count", "5", "const", "DefaultValue=2\n") +
@@ -72,7 +72,7 @@ TEST(ObjectRules, CompareLimitsAsTheTypeDoes) {
   EXPECT_EQ(rules_of(CheckedObjects(var("2000", "V", "0x11", "rw", "LowLimit=-2\nHighLimit=1e300\n")).diagnostics), Rules{});
 }
 
-// What cannot be checked is left out when the device is resolved, so that every command sees the same device.
+// Limits that cannot be checked are dropped when the device is resolved, so that every command sees the same device.
 
 TEST(UnusableLimits, AreDroppedWhereLowIsAboveHigh) {
   const DeviceFromText read(var("2000", "Value", "3", "rw", "LowLimit=1000\nHighLimit=10\nDefaultValue=0\n"));

@@ -1,4 +1,4 @@
-/// 1010h, 1011h and 1020h: what is stored, what is refused, and when stored and default values count.
+/// 1010h, 1011h and 1020h: what is stored, what is rejected, and when stored and default values take effect.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using canopen::Storing;
 namespace od = stored_device::od;
 using namespace std::chrono_literals;
 
-/// A device that has just got power, with what was stored before.
+/// A device at power-on, with the values that were stored before.
 template <class Device = stored_device::Device, class... Handlers>
 using Powered = bench::Bench<Device, canopen::StoredIn<MemoryStorage>, Handlers...>;
 
@@ -544,9 +544,9 @@ TEST(StoreParameters, StartsWithDefaultsWhereTheStorageCannotBeRead) {
   EXPECT_EQ(device.ask(save_all), "585 80 10 10 01 00 00 06 06");
 }
 
-// Values that were stored under other limits
+// Values that were stored with other limits
 
-/// The device with other limits of 6083h, which are 1 and 4294967295 in the data sheet.
+/// The device with other limits of 6083h, which are 1 and 4294967295 in the EDS.
 template <std::uint32_t Low, std::uint32_t High>
 struct WithLimits : stored_device::Device {
   static constexpr auto limits = [] {
@@ -586,7 +586,7 @@ TEST(StoreParameters, DoesNotTakeValuesThatWereStoredUnderOtherLimits) {
   EXPECT_EQ((acceleration_after<WithLimits<1, 0xFFFF'FFFE>>(storage)), by_default);
 }
 
-// The signature of a section follows from each limit, also from those of more than 32 bits.
+// The signature of a section depends on each limit, also on those of more than 32 bits.
 template <std::uint64_t Low, std::uint64_t High>
 struct WithWideLimits : sample::Device {
   static constexpr canopen::WideLimits wide_limits[] = {{canopen::object_key(0x2007, 0x00), Low, High},
@@ -607,7 +607,7 @@ static_assert(signatures<WithWideLimits<wide_low + (1ull << 32), wide_high>> != 
 static_assert(signatures<WithWideLimits<wide_low, wide_high + 1>> != signatures<sample::Device>);
 static_assert(signatures<WithWideLimits<wide_low, wide_high + (1ull << 32)>> != signatures<sample::Device>);
 
-/// A device whose only default with the node-ID in it has 64 bits: 2008h.
+/// A device whose only node-ID-dependent default has 64 bits: 2008h.
 struct WideFollower : sample::Device {
   static constexpr canopen::NodeIdRelative rows[] = {
       {canopen::entry::offset_of(sample::dictionary.find(0x2008, 0)), 8}};
@@ -685,7 +685,7 @@ TEST(VerifyConfiguration, IsZeroWhenAParameterHasChanged) {
   EXPECT_EQ(device.ask(configuration_time), "585 43 20 10 02 00 00 00 00");
 }
 
-// CiA 301, 7.5.2.23: 1020h is 0 when anything but the configuration tool changes a value of the configuration.
+// CiA 301, 7.5.2.23: 1020h becomes 0 when anything but the configuration tool changes a value of the configuration.
 TEST(VerifyConfiguration, IsZeroWhenAWriteHandlerSetsItsObject) {
   MemoryStorage storage;
   auto device = powered(storage, canopen::on_write<od::profile_acceleration>([](auto& node, std::uint32_t value) {

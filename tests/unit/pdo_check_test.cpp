@@ -43,7 +43,7 @@ TEST(CheckedPdos, KnowTheirCobIds) {
   EXPECT_FALSE(CheckedMotion::cob_id.receive);
 }
 
-/// 512 TPDOs and 512 RPDOs are the most that a device has.
+/// 512 TPDOs and 512 RPDOs, the maximum of a device.
 constexpr std::array<canopen::PdoCobId, 1024> many = [] {
   std::array<canopen::PdoCobId, 1024> pdos{};
   for (std::size_t i = 0; i < pdos.size(); ++i) {

@@ -45,7 +45,7 @@ TEST(PdoLayout, TellsWhichObjectsItMaps) {
 }
 
 TEST(PdoLayout, MayStraddleAllBytesOfShiftedBits) {
-  // 1 bit and 63 bits: the long one touches all eight bytes.
+  // 1 bit and 63 bits: the long one has bits in all eight bytes.
   using Layout = canopen::PdoLayout<Entry<1, bool, 1>, Entry<2, std::uint64_t, 63>>;
   const auto data = Layout::pack(true, 0x4000'0000'0000'0001);
   EXPECT_EQ(data, (Data{0x03, 0, 0, 0, 0, 0, 0, 0x80}));

@@ -1,4 +1,4 @@
-/// Dynamic mapping: the procedure of CiA 301, 7.5.2.36, and each way to do it wrong.
+/// Dynamic mapping: the procedure of CiA 301, 7.5.2.36, and each violation of it.
 #include <gtest/gtest.h>
 
 #include <pdo_device/device.hpp>
@@ -13,7 +13,7 @@ using namespace std::chrono_literals;
 
 using Bench = bench::Bench<pdo_device::Device>;
 
-/// An SDO download of four bytes at most, answered by "ok" or the abort code.
+/// An SDO download of at most four bytes; returns "ok" or the abort code.
 std::string write(Bench& device, std::uint16_t index, std::uint8_t sub_index, std::uint32_t value, unsigned bytes) {
   canopen::Frame frame{.id = 0x605, .size = 8};
   frame.data = {static_cast<std::uint8_t>(0x23 | ((4 - bytes) << 2)), static_cast<std::uint8_t>(index),
@@ -34,7 +34,7 @@ std::string map(Bench& device, std::uint16_t index, std::uint8_t entry, std::uin
 }
 std::string cob_id(Bench& device, std::uint16_t index, std::uint32_t value) { return write(device, index, 1, value, 4); }
 
-/// Gives TPDO4 or RPDO3, which are empty and invalid by default, these objects.
+/// Maps these objects to TPDO4 or RPDO3, which are empty and invalid by default.
 std::string remap(Bench& device, std::uint16_t mapping, const std::vector<std::uint32_t>& objects) {
   std::string answer = count(device, mapping, 0);
   std::uint8_t entry = 0;
@@ -44,7 +44,7 @@ std::string remap(Bench& device, std::uint16_t mapping, const std::vector<std::u
   return answer == "ok" ? count(device, mapping, entry) : answer;
 }
 
-// How a mapping is kept: 12 bits hold an offset up to FFEh, as FFFh stands for "nothing".
+// How a mapping is stored: 12 bits hold an offset up to FFEh; FFFh means "nothing".
 
 namespace entry = canopen::entry;
 
@@ -171,7 +171,7 @@ TEST(DynamicMapping, SendsOnWhatAnRpdoBrings) {
   device.ask(bench::start);
   remap(device, 0x1602, {0x20080040});
   cob_id(device, 0x1402, 0x222);
-  remap(device, 0x1A03, {0x20080040});  // now a TPDO carries it, too
+  remap(device, 0x1A03, {0x20080040});  // now a TPDO maps it, too
   cob_id(device, 0x1803, 0x333);
   EXPECT_EQ(device.ask("222 01 02 03 04 05 06 07 08"), "333 01 02 03 04 05 06 07 08");
   EXPECT_EQ(device.ask("222 01 02 03 04 05 06 07 08"), "");
@@ -203,7 +203,7 @@ TEST(DynamicMapping, OfNothingIsSentNever) {
   EXPECT_EQ(device.pass(10s), "");
 }
 
-// What is refused
+// Rejected mappings
 
 TEST(DynamicMappingRefuses, AnyWriteWhileThePdoIsValid) {
   Bench device;
@@ -267,7 +267,7 @@ TEST(DynamicMappingRefuses, AnEntryThatMapsNothing) {
   EXPECT_EQ(map(device, 0x1A03, 1, 0x20000008), "ok");
   EXPECT_EQ(map(device, 0x1A03, 3, 0x20000008), "ok");
   EXPECT_EQ(count(device, 0x1A03, 3), "0604 0042");
-  EXPECT_EQ(map(device, 0x1A03, 1, 0), "ok");  // an entry may be emptied
+  EXPECT_EQ(map(device, 0x1A03, 1, 0), "ok");  // an entry may be cleared
 }
 
 TEST(DynamicMappingRefuses, Subindex4OfTheCommunicationParameter) {
@@ -293,7 +293,7 @@ TEST(CobIdOfAPdo, IsNoRestrictedOne) {
   EXPECT_EQ(cob_id(device, 0x1800, 0x181), "ok");
 }
 
-// The same data sheet with static mapping
+// The same EDS with static mapping
 
 TEST(StaticMapping, IsReadOnly) {
   bench::Bench<static_pdo_device::Device> device;

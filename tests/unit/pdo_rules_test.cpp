@@ -12,7 +12,7 @@ namespace {
 
 using Rules = std::vector<std::string>;
 
-/// Objects of every right, to be mapped.
+/// Objects of every access type, for mappings.
 const std::string objects =
     "[DummyUsage]\nDummy0005=1\nDummy0006=0\n" + var("2000", "Input", "0x0006", "ro", "PDOMapping=1\n") +
     var("2001", "Output", "0x0006", "wo", "PDOMapping=1\n") +
@@ -23,7 +23,7 @@ const std::string objects =
     var("2009", "Memory", "0x000F", "rw", "PDOMapping=1\n") + var("2006", "Switch", "0x0001", "rw", "PDOMapping=1\n") +
     var("2007", "Position", "0x0007", "rw", "PDOMapping=1\n");
 
-/// PDO 1 of one direction, valid after a reset unless `cob_id` says otherwise, that maps these words.
+/// PDO 1 of one direction that maps these words; it is valid after a reset unless `cob_id` says otherwise.
 std::string pdo(bool receive, const std::vector<std::string>& mapping, std::string_view cob_id = "$NODEID+0x200") {
   const std::string communication = receive ? "1400" : "1800";
   const std::string parameter = receive ? "1600" : "1A00";
@@ -42,7 +42,7 @@ std::string pdo(bool receive, const std::vector<std::string>& mapping, std::stri
 /// Mappings are checked when the device is resolved.
 using CheckedPdos = DeviceFromText;
 
-/// Expects one finding of `rule`, and nothing else, at the line of the mapping entry with this word.
+/// Expects one finding, of `rule`, at the line of the mapping entry with this word.
 void expect_one(const CheckedPdos& checked, Severity severity, const std::string& rule, const std::string& word) {
   ASSERT_EQ(rules_of(checked.diagnostics), Rules{rule});
   EXPECT_EQ(checked.finding(rule).severity, severity);

@@ -1,4 +1,4 @@
-/// When PDOs are sent and taken over: transmission types, SYNC, remote frames, deadlines.
+/// When PDOs are sent and when received values take effect: transmission types, SYNC, remote frames, deadlines.
 #include <gtest/gtest.h>
 
 #include <pdo_device/device.hpp>
@@ -15,7 +15,7 @@ using Bench = bench::Bench<pdo_device::Device>;
 
 constexpr auto sync = "080";
 
-/// Operational, and what goes out on entering it taken away. TPDO2 (type 0) has sent its first data.
+/// Operational; the PDOs that it sends on entering have been removed. TPDO2 (type 0) has sent its first data.
 struct Running : Bench {
   Running() {
     ask(bench::start);
@@ -68,8 +68,8 @@ TEST(TpdoType240, IsSentAtEvery240thSync) {
 
 TEST(TpdoStartValue, CountsFromTheSyncWithThisCounter) {
   Bench device;
-  device.ask("605 2F 19 10 00 0A 00 00 00");  // the network counts to 10
-  device.ask("605 2F 01 18 02 FF 00 00 00");  // TPDO2 is none of these
+  device.ask("605 2F 19 10 00 0A 00 00 00");  // SYNC counter overflow value 10
+  device.ask("605 2F 01 18 02 FF 00 00 00");  // TPDO2 is not synchronous
   device.ask("605 23 02 18 01 85 03 00 80");
   device.ask("605 2F 02 18 06 03 00 00 00");  // start value 3
   device.ask("605 2F 02 18 02 02 00 00 00");  // every second SYNC
@@ -77,7 +77,7 @@ TEST(TpdoStartValue, CountsFromTheSyncWithThisCounter) {
   device.ask(bench::start);
   EXPECT_EQ(device.ask("080 01"), "");
   EXPECT_EQ(device.ask("080 02"), "");
-  EXPECT_EQ(device.ask("080 03"), "");  // the first one
+  EXPECT_EQ(device.ask("080 03"), "");  // start value: the first SYNC of the TPDO
   EXPECT_EQ(device.ask("080 04"), "385 00 00");
   EXPECT_EQ(device.ask("080 05"), "");
   EXPECT_EQ(device.ask("080 06"), "385 00 00");
@@ -95,7 +95,7 @@ TEST(TpdoStartValue, MeansNothingWithoutASyncCounter) {
 TEST(TpdoStartValue, CannotChangeWhileTheTpdoIsValid) {
   Bench device;
   EXPECT_EQ(device.ask("605 2F 02 18 06 03 00 00 00"), "585 80 02 18 06 22 00 00 08");
-  EXPECT_EQ(device.ask("605 2F 02 18 06 00 00 00 00"), "585 60 02 18 06 00 00 00 00");  // as it is
+  EXPECT_EQ(device.ask("605 2F 02 18 06 00 00 00 00"), "585 60 02 18 06 00 00 00 00");  // the present value
 }
 
 TEST(TpdoStartValue, IsACounterOfASync) {
@@ -107,7 +107,7 @@ TEST(TpdoStartValue, IsACounterOfASync) {
 
 TEST(TpdoSync, CarriesTheValuesOfTheSyncNotThoseThatItBrings) {
   Bench device;
-  // RPDO2 (type 1) brings 2000h, TPDO2 (here of type 1) sends it.
+  // RPDO2 (type 1) writes 2000h, TPDO2 (here of type 1) sends it.
   device.ask("605 2F 01 18 02 01 00 00 00");
   device.ask(bench::start);
   EXPECT_EQ(device.ask("305 77"), "");
@@ -200,7 +200,7 @@ TEST(TpdoRemote, WaitsForTheInhibitTime) {
   EXPECT_EQ(device.pass(1us), "185 00 00 00 00 00 00");
 }
 
-/// TPDO1 has an inhibit time of 10 ms, which begins now.
+/// TPDO1 has an inhibit time of 10 ms, which starts now.
 struct Inhibited : Bench {
   Inhibited() {
     ask("605 23 00 18 01 85 01 00 80");
@@ -277,7 +277,7 @@ TEST(RpdoDeadline, IsMissedAfterTheEventTimer) {
       canopen::on_rpdo([&](RpdoEvent event, std::uint16_t number) { log += "0+-!?"[static_cast<int>(event)] + std::to_string(number) + " "; }));
   device.ask("605 2B 00 14 05 0A 00 00 00");  // 10 ms
   device.ask(bench::start);
-  EXPECT_EQ(device.pass(1s), "");  // it counts from the first frame on
+  EXPECT_EQ(device.pass(1s), "");  // the deadline runs from the first frame on
   device.ask("205 01 00 00 00 00 00");
   EXPECT_EQ(device.pass(9999us), "");
   device.ask("205 01 00 00 00 00 00");
@@ -371,7 +371,7 @@ TEST(RpdoLength, TooShortIsNotTakenAndTold) {
   EXPECT_EQ(device.ask("205 01 02 03 04 05"), "085 10 82 11 00 00 00 00 00");
   EXPECT_EQ(device.node.get<od::output_word>(), 0);
   EXPECT_EQ(device.node.get<od::error_register>(), 0x11);
-  EXPECT_EQ(device.ask("205 01 02 03 04 05"), "");  // told once
+  EXPECT_EQ(device.ask("205 01 02 03 04 05"), "");  // reported once
   EXPECT_EQ(device.ask("205 01 02 03 04 05 06"), "085 00 00 00 00 00 00 00 00 | 185 00 00 03 04 05 06");
   EXPECT_EQ(device.node.get<od::output_word>(), 0x0201);
   EXPECT_EQ(device.node.get<od::error_register>(), 0);

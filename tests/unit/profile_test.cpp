@@ -1,4 +1,4 @@
-/// Channels of an I/O module (CiA 401) and of an encoder (CiA 406) and the frames that they cause.
+/// Channels of an I/O module (CiA 401) and of an encoder (CiA 406), and the frames that they cause.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -23,7 +23,7 @@ struct ProfileDigitalInputs : testing::Test {
     module.ask(bench::start);
     module.pass(1s);
   }
-  /// What the module sends when the terminals of its first block are like this.
+  /// Returns what the module sends if the terminals of its first block have these levels.
   std::string sample(std::uint8_t levels) {
     inputs.sample(module.node, 0, levels);
     return module.pass(1ms);
@@ -77,7 +77,7 @@ struct ProfileDigitalOutputs : testing::Test {
     module.ask(bench::start);
     module.pass(1s);
   }
-  /// The levels of both blocks after this frame.
+  /// Returns the levels of both blocks after this frame.
   std::vector<unsigned> ask(const std::string& request) {
     module.ask(request);
     return update();
@@ -118,7 +118,7 @@ TEST_F(ProfileDigitalOutputs, TakeTheValuesOf6207hWhere6206hSaysSo) {
   outputs.fail(module.node);
   EXPECT_EQ(update(), (std::vector<unsigned>{0xF5, 0x00}));
   EXPECT_EQ(module.ask("605 40 00 62 01 00 00 00 00"), "585 4F 00 62 01 F5 00 00 00");
-  EXPECT_EQ(ask("205 F0 FF"), (std::vector<unsigned>{0xF0, 0xFF}));  // a new value counts again
+  EXPECT_EQ(ask("205 F0 FF"), (std::vector<unsigned>{0xF0, 0xFF}));  // a new value takes effect again
 }
 
 /// The module without these objects.
@@ -141,7 +141,7 @@ struct ModuleWithout : io_device::Device {
   }();
 };
 
-/// The outputs of the first blocks and channels after a loss of communication; before they are F0h, FFh and 1000, -1000.
+/// The outputs of the first blocks and channels after a loss of communication; they were F0h, FFh, 1000 and -1000.
 template <std::uint16_t... Missing>
 std::string outputs_after_a_loss() {
   bench::Bench<ModuleWithout<Missing...>> module;
@@ -162,7 +162,7 @@ std::string outputs_after_a_loss() {
   return text;
 }
 
-// CiA 401: error mode 1, the default, takes the error value, 0 by default.
+// CiA 401: error mode 1, the default, applies the error value, 0 by default.
 TEST(ProfileOutputs, KeepTheirValuesWithoutErrorModeAndErrorValue) {
   EXPECT_EQ(outputs_after_a_loss<>(), "F5, 00, E8 03, 07 00");
   EXPECT_EQ((outputs_after_a_loss<0x6206, 0x6207>()), "F0, FF, E8 03, 07 00");
@@ -182,7 +182,7 @@ TEST(ProfileOutputs, FailInStoppedWithoutHeartbeatAndWithBusOff) {
   EXPECT_FALSE(canopen::outputs_fail(canopen::BusStatus{canopen::BusState::passive}));
 }
 
-/// A module that does all that CiA 401 asks of its outputs when communication is lost.
+/// A module that does all that CiA 401 requires of its outputs when communication is lost.
 struct FailSafe {
   canopen::DigitalOutputs<io_device::Device> digital;
   canopen::AnalogueOutputs<io_device::Device> analogue;
@@ -205,7 +205,7 @@ auto fail_safe(FailSafe& outputs) {
       }));
 }
 
-/// Error values of the first digital block and analogue channel, then Operational, 1 in each.
+/// Sets error values of the first digital block and analogue channel; then Operational, with 1 in each.
 void set_up(auto& module) {
   module.ask("605 2F 07 62 01 A5 00 00 00");
   module.ask("605 23 44 64 01 00 C0 FF FF");  // -16384
@@ -335,12 +335,12 @@ TEST(ProfileAnalogueOutputs, FollowTheirObjectAndKeepItWhere6443hIs0) {
   EXPECT_EQ(values, (std::vector<int>{-10, -32767}));
 }
 
-// A device without these objects pays nothing.
+// A device without these objects has no overhead.
 static_assert(canopen::DigitalInputs<sample::Device>::blocks == 0);
 static_assert(sizeof(canopen::DigitalInputs<io_device::Device>) == 4);
 static_assert(sizeof(canopen::AnalogueOutputs<io_device::Device>) == 4);
 
-/// An encoder whose preset 6003h and cyclic timer 6200h the bus sets.
+/// An encoder whose preset 6003h and cyclic timer 6200h are written over the bus.
 struct ProfileEncoder : testing::Test {
   struct TakePreset {
     canopen::Encoder<encoder::Device>* channel;

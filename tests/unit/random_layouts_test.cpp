@@ -1,5 +1,5 @@
-/// 10,000 random mappings against bits that are copied one by one. A layout is a type: 300 of them are compiled
-/// (random_layouts/layouts_*.cpp). The mappings that are known at run time only, those of bit_copy.hpp, are 10,000.
+/// 10,000 random mappings, compared with bits that are copied one by one. A layout is a type: 300 of them are compiled
+/// (random_layouts/layouts_*.cpp). The 10,000 mappings known only at run time use bit_copy.hpp.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -20,7 +20,7 @@ using random_layouts::Kind;
 using random_layouts::Random;
 using Raw = std::array<std::uint64_t, 64>;
 
-// ---- what is obviously right ----
+// ---- the reference implementation ----
 
 void reference_put(Data& data, unsigned at, unsigned bits, std::uint64_t value) {
   for (unsigned i = 0; i < bits; ++i) {
@@ -47,7 +47,7 @@ unsigned bits_of(const Fields& fields) {
   return sum;
 }
 
-/// The bits of a value that an entry can have: text is not followed by anything after its first 00h.
+/// The bits of a valid value of an entry: in a text, only zeros follow the first 00h.
 std::uint64_t random_raw(Random& random, const Field& field) {
   std::uint64_t raw = random.next();
   if (field.kind == Kind::text) {

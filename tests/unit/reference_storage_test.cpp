@@ -1,4 +1,4 @@
-/// Store and restore as the manuals of the reference devices have it.
+/// Store and restore as described in the manuals of the reference devices.
 #include <gtest/gtest.h>
 
 #include <canopen/port/memory_storage.hpp>

@@ -23,7 +23,7 @@ using namespace std::chrono_literals;
 
 using Remote = canopen::RemoteNode<sample::Device, bench::RecordingBus>;
 
-// What compiles
+// Which reads and writes compile
 
 template <class O, class V>
 concept CanWrite = requires(Remote& remote, V value) {
@@ -58,7 +58,7 @@ static_assert(canopen::check_value<od::real32_value>(1.6) == AbortCode::value_to
 
 static_assert(canopen::check_value<od::real64_value>(1e300) == canopen::ok);
 
-// Limits of a REAL, which one limit alone is as well.
+// Limits of a REAL; a single limit is also possible.
 struct Ratio : canopen::Object<0x5000, 0, float, canopen::Access::rw> {
   static constexpr float low_limit = -0.5F;
   static constexpr float high_limit = 1.5F;
@@ -80,7 +80,7 @@ static_assert(canopen::check_value<AtLeast>(-2.5) == AbortCode::value_too_low);
 static_assert(canopen::check_value<AtMost>(std::numeric_limits<double>::quiet_NaN()) == AbortCode::invalid_value);
 static_assert(canopen::check_value<AtLeast>(std::numeric_limits<double>::quiet_NaN()) == AbortCode::invalid_value);
 
-// Without waiting
+// Without blocking
 
 TEST(RemoteNode, ReadsAnObject) {
   bench::RecordingBus bus;
@@ -138,7 +138,7 @@ TEST(RemoteNode, ReadsAStringIntoMemory) {
   EXPECT_EQ(std::string(remote.data().begin(), remote.data().end()), "Hi");
 }
 
-// Waiting
+// Blocking
 
 struct Plant {
   Plant() {
@@ -257,7 +257,7 @@ TEST(BlockingSdo, RefusesATransferToTheNodeBeforeItsOwnHasReturned) {
   Plant plant;
   EXPECT_EQ(plant.device.set<od::integer24_value>(-5), canopen::ok);
   AbortCode nested = canopen::ok;
-  plant.master.on_frame = [&](const canopen::Frame& frame, TimePoint) {  // also of the frame that ends the transfer
+  plant.master.on_frame = [&](const canopen::Frame& frame, TimePoint) {  // also for the frame that ends the transfer
     if (frame.id == 0x585) nested = plant.master.upload(NodeId{5}, 0x1000, 0).abort_code();
   };
   EXPECT_EQ(plant.drive.read<od::integer24_value>().value(), -5);

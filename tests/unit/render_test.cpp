@@ -66,7 +66,7 @@ TEST(Render, HasATemplateForEachGeneratedHeader) {
                                                   "stored_eds.hpp"}));
 }
 
-/// The names of the elements of an ARRAY `Gains` at 2000h, next to a VAR of this name at 2001h.
+/// The names of the elements of an ARRAY `Gains` at 2000h; `other` is the name of a VAR at 2001h.
 std::vector<std::string> element_names(const std::vector<std::string>& names, Options options = {},
                                        std::string_view other = "Other") {
   std::string text = group("2000", "Gains", "0x8", static_cast<int>(names.size()) + 1) +

@@ -1,5 +1,5 @@
-/// CAN-IDs that CiA 301 restricts (7.3.5, table 41): whatever the dictionary holds, no service whose COB-ID can be
-/// configured sends or listens there.
+/// CAN-IDs that CiA 301 restricts (7.3.5, table 41): whatever the object dictionary contains, no service with a
+/// configurable COB-ID transmits or receives on them.
 #include <gtest/gtest.h>
 
 #include <canopen/accepted_frames.hpp>
@@ -23,7 +23,7 @@ constexpr std::uint32_t restricted[] = {0x000, 0x001, 0x07F, 0x101, 0x180, 0x581
 struct Entry {
   std::uint16_t index;
   std::uint8_t sub_index;
-  std::uint32_t flags;  ///< what the service needs to be active
+  std::uint32_t flags;  ///< bits that activate the service
 };
 
 constexpr std::uint32_t produces = 0x4000'0000;
@@ -44,13 +44,13 @@ template <class... Handlers>
 struct Device : bench::Bench<every_service::Device, Handlers...> {
   explicit Device(Handlers... handlers) : bench::Bench<every_service::Device, Handlers...>{std::move(handlers)...} {}
 
-  /// Puts a number where it lies, as what was stored or the data sheet's default comes there.
+  /// Writes a number to the memory of an object, as a stored value or a default value of the EDS would be written.
   void put(std::uint16_t index, std::uint8_t sub_index, std::uint32_t value) {
     const canopen::EntryAccess entries = this->node.entries();
     std::memcpy(entries.ram(entries.find(index, sub_index)), &value, sizeof value);
   }
 
-  /// Makes every service send what it can.
+  /// Makes every service send everything that it can.
   std::string use() {
     std::string log = this->ask("000 01 05");
     this->node.template set<od::byte>(static_cast<std::uint8_t>(++count_));
@@ -129,7 +129,7 @@ TEST(RestrictedCanId, OfASyncProducerLeavesTheNodeWithoutDeadline) {
 
 TEST(RestrictedCanId, HasNoReceiver) {
   for (const std::uint32_t id : restricted) {
-    if (id == 0 || id == 0x605) continue;  // NMT and the default SDO take their frames themselves
+    if (id == 0 || id == 0x605) continue;  // NMT and the default SDO receive these frames
     Seen seen;
     Device device{canopen::on_sync([&](std::uint8_t) { ++seen.syncs; }),
                   canopen::on_time_of_day([&](canopen::TimeOfDay) { ++seen.times; }),
@@ -184,7 +184,7 @@ TEST(SecondSdoServer, DoesNotExistWithARestrictedCobId) {
   }
 }
 
-/// `0` in 1201h:01 is the CAN-ID of NMT: "01 05" is a start, and no request.
+/// `0` in 1201h:01 is the CAN-ID of NMT: "01 05" is a start command, not a request.
 TEST(SecondSdoServer, LeavesNmtCommandsAlone) {
   Device<> device;
   device.put(0x1201, 1, 0);

@@ -1,5 +1,5 @@
-/// The rule table. That a finding names a row, and has a severity of it, is checked where it is reported: RuleId does not
-/// compile otherwise. That each row fires, tests/rules/rules_test.py shows.
+/// The rule table. RuleId checks at compile time that a finding has a rule of the table and one of its severities.
+/// tests/rules/rules_test.py shows that each rule has findings.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -33,7 +33,7 @@ TEST(RuleTable, SaysWhichSeveritiesAFindingMayHave) {
   EXPECT_FALSE(find_rule("file-name")->allows(Severity::warning));
 }
 
-/// What an error is reported with takes no rule that is only known to have warnings.
+/// A function that reports errors does not accept a rule that has only warnings.
 TEST(RuleId, IsOfTheSeveritiesThatItsTypeNames) {
   using Either = RuleId<Severity::error, Severity::warning>;
   static_assert(std::is_convertible_v<Either, ErrorRule>);

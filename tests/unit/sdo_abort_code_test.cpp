@@ -1,5 +1,5 @@
-/// Each abort code of CiA 301 and of the manuals: which requests make the server raise it by itself, and which codes
-/// only an application or another service raises.
+/// Each abort code of CiA 301 and of the manuals: the requests for which the server itself reports it, and the codes
+/// that only an application or another service reports.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,10 +42,10 @@ const Raised by_the_server[] = {
     {AbortCode::no_data, {"40 12 20 00 00 00 00 00"}, "80 12 20 00 24 00 00 08"},
 };
 
-/// Raised with the time, and by a device whose buffer is shorter than its strings.
+/// Reported after a time-out, and by a device whose buffer is shorter than its strings.
 constexpr AbortCode by_special_servers[] = {AbortCode::timeout, AbortCode::out_of_memory};
 
-/// Raised by handlers and by the services behind single objects: PDO parameters, storage, errors.
+/// Reported by handlers and by the services of single objects: PDO parameters, storage, errors.
 constexpr AbortCode by_the_application[] = {
     AbortCode::unsupported_access,
     AbortCode::not_mappable,

@@ -1,4 +1,4 @@
-/// An SDO server alone around the values of a device: requests and answers as the eight bytes of their frames.
+/// Only an SDO server with the values of a device: requests and answers as the eight bytes of their frames.
 #pragma once
 
 #include <canopen/object_store.hpp>
@@ -64,7 +64,8 @@ class SdoBench {
 
   [[nodiscard]] PlainHooks<Device> hooks() { return {store, refuse}; }
 
-  /// What the server answers, with " | " between the frames; at most `most` of them, as a bus with so much room.
+  /// Returns the answer of the server, with " | " between the frames; at most `most` frames, as if the bus had no
+  /// more room.
   std::string ask(const std::string& request, std::size_t most = 1000) {
     server.on_request(bytes_of(request), hooks(), now);
     return take(most);

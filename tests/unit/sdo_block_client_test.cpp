@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 
 constexpr SdoClientOptions with_blocks{.timeout = 100ms, .block_transfer = true, .block_threshold = 4};
 
-/// A client whose server is the test: frames as their eight bytes.
+/// A client; the test acts as the server. Frames are written as their eight bytes.
 struct Client {
   explicit Client(SdoClientOptions options = with_blocks) : client{bus, NodeId{5}, options} {}
 
@@ -179,7 +179,7 @@ TEST(SdoBlockClientUpload, EndsWithAnAbortOfTheServerAmongTheSegments) {
 }
 
 struct WrongAnswer {
-  const char* after;   ///< answers that come before
+  const char* after;   ///< preceding answers
   const char* answer;  ///< the wrong one
   AbortCode code;
 };
@@ -187,7 +187,7 @@ struct WrongAnswer {
 TEST(SdoBlockClientUpload, AbortsWhatDoesNotFit) {
   const WrongAnswer rows[] = {
       {"", "60 12 20 00 00 00 00 00", AbortCode::command_specifier},
-      {"", "C6 12 20 00 65 00 00 00", AbortCode::out_of_memory},  // 101 bytes for 100
+      {"", "C6 12 20 00 65 00 00 00", AbortCode::out_of_memory},  // 101 bytes for a memory of 100
       {"C6 12 20 00 0E 00 00 00", "00 01 02 03 04 05 06 07", AbortCode::sequence_number},
       {"C2 12 20 00 0E 00 00 00|81 01 02 03 04 05 06 07", "C1 00 00 00 00 00 00 00", AbortCode::length_mismatch},
       {"C2 12 20 00 07 00 00 00|81 01 02 03 04 05 06 07", "C2 12 20 00 07 00 00 00", AbortCode::command_specifier},
@@ -312,7 +312,7 @@ TEST(SdoBlockClientDownload, AbortsWhatDoesNotFit) {
   }
 }
 
-// Pieces
+// Streamed in pieces
 
 TEST(SdoClientPieces, AnUploadGoesToASink) {
   Client client;
@@ -380,7 +380,7 @@ TEST(SdoClientPieces, ASourceThatRunsDryOrFailsEndsTheTransfer) {
   EXPECT_EQ(client.answer("60 12 20 00 00 00 00 00"), "80 12 20 00 00 00 06 06");
 }
 
-// A transfer that is given up
+// A transfer that is abandoned
 
 TEST(SdoClient, TellsTheServerThatTheApplicationEndsTheTransfer) {
   Client client;

@@ -252,7 +252,7 @@ TEST(SdoBlockDownload, ConfirmsASubBlockOf127Segments) {
   SdoBench device;
   std::array<std::uint8_t, 1000> memory{};
   device.bind<od::parameter_file>(memory, 0);
-  device.ask("C2 12 20 00 80 03 00 00");  // 128 * 7
+  device.ask("C2 12 20 00 80 03 00 00");  // 128 * 7 bytes
   for (unsigned i = 1; i < 127; ++i) {
     canopen::sdo::Data segment{};
     segment.fill(static_cast<std::uint8_t>(i));
@@ -299,7 +299,7 @@ TEST(SdoBlockDownload, RefusesTheSequenceNumberZero) {
 
 TEST(SdoBlockDownload, RefusesSizesThatLie) {
   SdoBench device;
-  EXPECT_EQ(device.ask("C2 0C 20 00 11 00 00 00"), "80 0C 20 00 12 00 07 06");  // 17 of 16 characters
+  EXPECT_EQ(device.ask("C2 0C 20 00 11 00 00 00"), "80 0C 20 00 12 00 07 06");  // 17 characters, 16 at most
   EXPECT_EQ(device.ask("C2 02 20 00 01 00 00 00"), "80 02 20 00 13 00 07 06");
 
   device.ask("C2 0C 20 00 06 00 00 00");  // more than announced, in a segment that is not the last
@@ -366,7 +366,7 @@ TEST(SdoBlockDownload, ConfirmsWhatHasComeOfASubBlockWhoseEndIsOverdue) {
   EXPECT_EQ(device.ask("D5 00 00 00 00 00 00 00"), "A1 00 00 00 00 00 00 00");
 }
 
-/// The client dies after its first segment: what comes then is no segment, but only a timeout can tell.
+/// The client stops after its first segment: its next frame is not a segment, but only a time-out can detect that.
 TEST(SdoBlockDownload, LeavesTheServerDeafForASecondAtMost) {
   SdoBench device;
   EXPECT_EQ(device.ask("C6 0C 20 00 10 00 00 00"), "A4 0C 20 00 7F 00 00 00");
@@ -408,12 +408,12 @@ TEST(SdoBlockUpload, AbortsWhenASubBlockIsNotConfirmed) {
   device.now = device.now + canopen::Duration{900ms};
   device.ask("A3 00 00 00 00 00 00 00", 1);
   device.now = device.now + canopen::Duration{900ms};
-  device.take();  // a slow bus: the time begins with the last segment sent
+  device.take();  // a slow bus: the time-out starts with the last segment sent
   EXPECT_EQ(device.pass(999ms), "");
   EXPECT_EQ(device.pass(1ms), "80 08 10 00 00 00 04 05");
 }
 
-// What a device has
+// What a device supports
 
 TEST(SdoBlock, IsRefusedByADeviceWithoutIt) {
   SdoBench<sample::Device> device;

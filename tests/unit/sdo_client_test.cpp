@@ -67,7 +67,7 @@ TEST(SdoClient, HasNoDataAfterADownload) {
   EXPECT_TRUE(pair.client.data().empty());
 }
 
-// CiA 301, 7.2.4.3.6: with s = 1 the answer says how many of its four bytes count.
+// CiA 301, 7.2.4.3.6: with s = 1 the answer contains the number of its valid bytes.
 struct Expedited {
   explicit Expedited(const std::string& answer, std::size_t room) {
     client.upload(0x2000, 1, std::span{memory}.first(room), TimePoint{});
@@ -158,7 +158,7 @@ TEST(SdoClient, AbortsAValueThatIsLongerThanItsMemory) {
   EXPECT_EQ(pair.client.result(), AbortCode::out_of_memory);
 }
 
-/// The size that a server announces bounds what it may send.
+/// The announced size limits what a server may send.
 TEST(SdoClient, AbortsAServerThatSendsMoreThanItHasAnnounced) {
   bench::RecordingBus bus;
   SdoClient client{bus, NodeId{5}, 100ms};
@@ -247,7 +247,7 @@ TEST(SdoClient, IgnoresAnswersForOtherEntriesAndOtherNodes) {
   EXPECT_TRUE(client.busy());
 }
 
-// Answers to requests of before (M1): SDO numbers no transfers, so index and sub-index tell what an answer is about.
+// Late answers: SDO does not number transfers, so an answer is identified by its index and sub-index.
 
 TEST(SdoClient, IgnoresAnAnswerForAnotherEntryWhateverItsCommand) {
   bench::RecordingBus bus;
@@ -291,7 +291,7 @@ TEST(SdoClient, IgnoresAnInitiateAnswerForAnotherEntryAmongItsSegments) {
   EXPECT_EQ(client.data().size(), 5u);
 }
 
-/// A client whose read of 1000h was not answered in time.
+/// A client whose read of 1000h has timed out.
 struct Unanswered {
   Unanswered() {
     client.read<od::device_type>(TimePoint{});
@@ -355,7 +355,7 @@ TEST(SdoClient, TheLateAbortOfASegmentIsNotThatOfTheNextTransfer) {
   EXPECT_EQ(client.result(), AbortCode::timeout);
   EXPECT_EQ(bus.take(), "605 40 08 10 00 00 00 00 00 | 605 60 00 00 00 00 00 00 00 | 605 80 08 10 00 00 00 04 05");
   EXPECT_TRUE(client.upload(0x1008, 0, memory, TimePoint{102ms}));
-  client.on_frame(frame("585 80 08 10 00 00 00 04 05"), TimePoint{103ms});  // what the server says of the segment
+  client.on_frame(frame("585 80 08 10 00 00 00 04 05"), TimePoint{103ms});  // the server's answer to the segment
   EXPECT_TRUE(client.busy());
   EXPECT_EQ(bus.take(), "605 40 08 10 00 00 00 00 00");
   client.on_frame(frame("585 4B 08 10 00 41 42 00 00"), TimePoint{104ms});

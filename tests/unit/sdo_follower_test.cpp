@@ -1,4 +1,4 @@
-/// How far an SDO transfer is after each of its frames (CiA 301, 7.2.4.3).
+/// The progress of an SDO transfer after each of its frames (CiA 301, 7.2.4.3).
 #include "decode/sdo_follower.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ struct Step {
 
 constexpr TransferStep part = TransferStep::part, finished = TransferStep::finished, aborted = TransferStep::aborted;
 
-/// Sends the frames between a client and node 6, and compares what is said of each.
+/// Decodes the frames between a client and node 6, and compares the step of each.
 void expect_steps(std::string_view name, bool download, const std::vector<Step>& steps) {
   Decoder decoder{{}};
   Message message;

@@ -1,5 +1,5 @@
-/// Client against server over a wire that loses and repeats frames: a transfer ends with the right bytes or with an
-/// abort, on both sides, and it ends.
+/// A client and a server on a wire that loses and repeats frames: each transfer ends on both sides, with the right
+/// bytes or with an abort.
 #include <gtest/gtest.h>
 #include <canopen/sdo_client.hpp>
 
@@ -33,7 +33,7 @@ struct Faults {
   double repeated;
 };
 
-/// Both directions of the wire, and a client's way on it that is full now and then.
+/// Both directions of the wire; the client's direction is full at times.
 struct Wire {
   Wire(std::mt19937& random_numbers, Faults wire_faults) : random{random_numbers}, faults{wire_faults} {}
 
@@ -150,7 +150,7 @@ Count run(unsigned seed, int transfers, Faults faults) {
       EXPECT_EQ(upload ? transfer.data() : transfer.stored(), transfer.value);
       ++count.good;
     } else {
-      // Nothing, the value of before, or all of it when only the last answer was lost.
+      // Nothing, the previous value, or the whole value if only the last answer was lost.
       const auto left = transfer.stored();
       EXPECT_TRUE(upload || left.size() <= 1 || left == transfer.value);
       ++count.aborted;

@@ -283,7 +283,7 @@ TEST(SdoServer, RefusesAnAnnouncedSizeThatDoesNotFit) {
   Bench device;
   std::array<std::uint8_t, 10> memory{};
   device.node.bind<od::parameter_file>(memory);
-  EXPECT_EQ(device.ask("605 21 0C 20 00 11 00 00 00"), "585 80 0C 20 00 12 00 07 06");  // 17 of 16 characters
+  EXPECT_EQ(device.ask("605 21 0C 20 00 11 00 00 00"), "585 80 0C 20 00 12 00 07 06");  // 17 characters, 16 at most
   EXPECT_EQ(device.ask("605 21 12 20 00 0B 00 00 00"), "585 80 12 20 00 12 00 07 06");
   EXPECT_EQ(device.ask("605 21 02 20 00 03 00 00 00"), "585 80 02 20 00 12 00 07 06");
   EXPECT_EQ(device.ask("605 21 02 20 00 01 00 00 00"), "585 80 02 20 00 13 00 07 06");
@@ -331,7 +331,7 @@ TEST(SdoServer, IsOutOfMemoryForAStringLongerThanItsBuffer) {
   EXPECT_EQ(device.ask("605 10 41 42 43 44 45 46 47"), "585 80 0C 20 00 05 00 04 05");
 }
 
-// Rights
+// Access types
 
 TEST(SdoServer, RefusesWhatDoesNotExist) {
   Bench device;

@@ -1,4 +1,4 @@
-/// The SDO servers of a node: several channels, block transfers on a busy bus, DOMAINs that the application streams.
+/// The SDO servers of a node: several channels, block transfers on a busy bus, streamed DOMAINs.
 #include <gtest/gtest.h>
 
 #include <sdo_device/device.hpp>
@@ -11,7 +11,7 @@ namespace {
 namespace od = sdo_device::od;
 using Bench = bench::Bench<sdo_device::Device>;
 
-/// Gives the second server the CAN-IDs 640h and 5C0h.
+/// Gives the second server the CAN-IDs 540h and 4C0h.
 void enable_second_server(Bench& device) {
   EXPECT_EQ(device.ask("605 23 01 12 01 40 05 00 00"), "585 60 01 12 01 00 00 00 00");
   EXPECT_EQ(device.ask("605 23 01 12 02 C0 04 00 00"), "585 60 01 12 02 00 00 00 00");
@@ -30,7 +30,7 @@ TEST(SdoServers, SecondOneAnswersOnItsOwnCanIds) {
   EXPECT_EQ(device.ask("605 40 01 12 01 00 00 00 00"), "585 43 01 12 01 40 05 00 00");
 }
 
-/// CiA 301, 7.5.2.33: bit 30 says that the COB-ID is assigned dynamically. It is not part of the CAN-ID.
+/// CiA 301, 7.5.2.33: bit 30 means that the COB-ID is assigned dynamically. It is not part of the CAN-ID.
 TEST(SdoServers, SecondOneAnswersWhereItsCobIdsAreAssignedDynamically) {
   Bench device;
   EXPECT_EQ(device.ask("605 23 01 12 01 80 06 00 40"), "585 60 01 12 01 00 00 00 00");
@@ -75,7 +75,7 @@ TEST(SdoServers, ASegmentOfABlockTakesNoDomainWhateverItLooksLike) {
     std::snprintf(segment, sizeof segment, "605 %02X 00 00 00 00 00 00 00", static_cast<unsigned>(sequence));
     EXPECT_EQ(device.ask(segment), "");
   }
-  EXPECT_EQ(device.ask("605 21 01 20 00 00 00 00 00"), "");  // the 33rd: no download of 2001h
+  EXPECT_EQ(device.ask("605 21 01 20 00 00 00 00 00"), "");  // the 33rd segment, not a download of 2001h
   EXPECT_EQ(device.ask("540 60 00 00 00 00 00 00 00"), "4C0 00 00 00 00 00 00 00 00");
 }
 
@@ -97,7 +97,7 @@ TEST(SdoBlockTransfer, WaitsForRoomBetweenSegments) {
   EXPECT_EQ(device.node.next_deadline(), device.now);
   device.bus.room = 100;
   EXPECT_EQ(device.pass(std::chrono::seconds{0}), "585 02 08 09 0A 0B 0C 0D 0E | 585 83 0F 00 00 00 00 00 00");
-  // 15 bytes: six of the last segment are no data. The CRC is that of CCITT from 0.
+  // 15 bytes: six bytes of the last segment are padding. The CRC is CRC-CCITT with the initial value 0.
   std::uint16_t crc = 0;
   for (const std::uint8_t byte : memory) crc = canopen::crc16_ccitt(crc, byte);
   char end[32];

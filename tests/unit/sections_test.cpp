@@ -10,7 +10,7 @@ namespace {
 
 using Rules = std::vector<std::string>;
 
-/// A section with its keys, and a device around it.
+/// A section with its keys, in a complete device.
 struct ReadSections : DeviceFromText {
   explicit ReadSections(const std::string& text, std::string file = "test.eds")
       : DeviceFromText(text + var("2000", "Speed", "6"), {}, {}, std::move(file)) {}
@@ -137,7 +137,7 @@ TEST(DynamicChannelsSection, WarnsOfRangesThatAreNone) {
   }
 }
 
-// ---- [HHHHObjectLinks] and keys that say more ----
+// ---- [HHHHObjectLinks] and keys with more information ----
 
 TEST(ObjectLinks, NameObjectsThatBelongTogether) {
   const ReadSections read("[2000ObjectLinks]\nObjectLinks=2\n1=0x2001\n2=4096\n");

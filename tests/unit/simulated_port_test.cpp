@@ -1,4 +1,4 @@
-/// A device in simulated time, as the conformance test uses it: what acts on it from outside the bus.
+/// A device in simulated time, as the conformance test uses it: stimuli from outside the bus.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -20,12 +20,12 @@ using canopen::Frame;
 using canopen::TimePoint;
 using namespace std::chrono_literals;
 
-/// Node 5, with its boot-up message received at 55 us.
+/// Node 5; its boot-up message has been received at 55 us.
 class SimulatedDevice : public testing::Test {
  protected:
   SimulatedDevice() { EXPECT_EQ(next(), "55 705 00"); }
 
-  /// The next frame within 10 ms, with its time; empty when none comes.
+  /// The next frame within 10 ms with its time, or an empty text.
   std::string next() {
     const auto frame = port.receive(10ms);
     if (!frame) return "";
@@ -61,7 +61,7 @@ TEST_F(SimulatedDevice, TheApplicationSetsObjectsWhileFramesWait) {
   EXPECT_EQ(port.set(0x6041, 0, Bytes{0x31}), canopen::AbortCode::length_too_low);
   EXPECT_EQ(port.set(0x1000, 0, Bytes(4)), canopen::AbortCode::read_only);
   EXPECT_EQ(port.now(), TimePoint{Duration{55}});
-  EXPECT_EQ(next(), "340 585 4300100092010200");  // after 111 us of the request and 63 us of NMT
+  EXPECT_EQ(next(), "340 585 4300100092010200");  // after 111 us for the request and 63 us for NMT
   EXPECT_EQ(next(), "435 185 310240E20100");
 }
 
@@ -92,11 +92,11 @@ TEST_F(SimulatedDevice, FramesOfAllKinds) {
 TEST(SimulatedPort, SendsAsManyFramesAsOneLikes) {
   SimulatedPort port{"simulated:" EDSC_SIMULATED_DEVICES "@5"};
   for (int i = 0; i < 10'000; ++i) EXPECT_TRUE(port.send(read_device_type));
-  EXPECT_TRUE(port.receive(2s));  // 605h goes before 705h
+  EXPECT_TRUE(port.receive(2s));  // 605h has priority over 705h
   EXPECT_EQ(port.now(), TimePoint{Duration{10'000 * 111 + 55}});
 }
 
-/// A program that does less than those of the runtime.
+/// A program with fewer functions than those of the runtime.
 TEST(SimulatedPort, AProgramMayBeUnableToDoSomething) {
   const std::string path = testing::TempDir() + "edsc_simulation_without_stimuli";
   std::FILE* const file = std::fopen(path.c_str(), "w");
@@ -116,7 +116,7 @@ TEST(SimulatedPort, AProgramMayBeUnableToDoSomething) {
 
 TEST(SimulatedPort, AfterItsEndEachUseIsAnError) {
   SimulatedPort port{"simulated:" EDSC_SIMULATED_DEVICES "@5"};
-  EXPECT_TRUE(port.send({0x123, 9, false, true, {}}));  // no length of a frame
+  EXPECT_TRUE(port.send({0x123, 9, false, true, {}}));  // not a valid frame length
   EXPECT_THROW((void)port.receive(1ms), BusLost);
   EXPECT_TRUE(port.send(read_device_type));
   EXPECT_THROW((void)port.receive(1ms), BusLost);

@@ -1,4 +1,4 @@
-/// SLCAN character by character: the adapter's side, the host's side, and both against each other.
+/// SLCAN character by character: the adapter, the host, and both connected to each other.
 #include <gtest/gtest.h>
 #include <canopen/port/slcan_codec.hpp>
 
@@ -51,7 +51,7 @@ TEST(Slcan, RefusesWhatIsNoFrame) {
   }
 }
 
-/// An adapter whose serial line and CAN bus are recorded.
+/// An adapter that records its serial line and its CAN bus.
 struct Adapter {
   std::string line;
   bench::RecordingBus bus;
@@ -70,14 +70,14 @@ struct Adapter {
   bool send(const Frame& frame) { return bus.send(frame); }
   std::uint8_t status() { return 0x28; }
 
-  /// What it answers to these characters.
+  /// Returns its answer to these characters.
   std::string ask(std::string_view text) {
     line.clear();
     for (const char character : text) adapter.on_character(character, *this);
     return line;
   }
 
-  /// What it tells the host of a frame.
+  /// Returns what it sends to the host for a frame.
   std::string hear(const std::string& frame) {
     line.clear();
     adapter.on_frame(bench::frame(frame), now, *this);
@@ -164,7 +164,7 @@ TEST(SlcanAdapter, FindsTheNextLineAfterRubbish) {
   EXPECT_EQ(device.bus.take(), "080 | 080");
 }
 
-/// A host before an adapter whose answers the test gives.
+/// A host; the test writes the answers of the adapter.
 struct Host {
   SlcanHost host;
   TimePoint now{};

@@ -1,4 +1,4 @@
-/// The client's side of socketcand, message by message.
+/// The client of socketcand, message by message.
 #include <gtest/gtest.h>
 #include <canopen/port/socketcand_codec.hpp>
 
@@ -22,7 +22,7 @@ struct Client {
 
   Client() { client.start("vcan0", TimePoint{}); }
 
-  /// Frames that these characters bring.
+  /// Returns the frames in these characters.
   std::string hear(std::string_view text) {
     std::string frames;
     for (const char character : text) {

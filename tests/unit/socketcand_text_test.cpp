@@ -1,5 +1,4 @@
-/// The server's text of the socketcand protocol: elements, and the frames in them; the client's codec reads and writes
-/// the same.
+/// The server's text of the socketcand protocol: elements, and the frames in them; compatible with the client's codec.
 #include "server/socketcand_text.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +14,7 @@ namespace {
 using canopen::Frame;
 using namespace edsc::socketcand;
 
-/// What a reader finds in a stream; "!" stands for an element that is too long.
+/// The elements that a reader finds in a stream; "!" is an element that is too long.
 std::vector<std::string> elements(std::string_view stream) {
   ElementReader reader;
   std::vector<std::string> found;
@@ -80,7 +79,7 @@ TEST(SocketcandFrames, AreReceivedAsTheProtocolSpellsThem) {
   EXPECT_EQ(received_text(remote_frame(0x123, false, 4), {23, 424242}).view(), "< rtr 123 23.424242 4 >");
 }
 
-/// What the client's codec makes of it.
+/// The frame that the client's codec reads.
 std::optional<Frame> client_reads(std::string_view element) {
   const std::string_view kind = canopen::socketcand::take_word(element);
   return kind == "frame" || kind == "rtr" ? canopen::socketcand::decode(element, kind == "rtr") : std::nullopt;

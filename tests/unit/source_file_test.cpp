@@ -180,7 +180,7 @@ TEST_F(ReadSourceFile, SaysThatAFolderIsNoFile) {
 
 TEST_F(ReadSourceFile, RefusesAFileOverOneGibibyte) {
   std::ofstream(path("large.eds"), std::ios::binary).flush();
-  std::filesystem::resize_file(path("large.eds"), SourceFile::max_bytes + 1);  // sparse, takes no room
+  std::filesystem::resize_file(path("large.eds"), SourceFile::max_bytes + 1);  // sparse: takes no disk space
   std::string error;
   EXPECT_EQ(read_source_file(path("large.eds"), error), nullptr);
   EXPECT_EQ(error, "cannot read " + path("large.eds") + ": larger than 1 GiB");

@@ -1,4 +1,4 @@
-/// The options `stored_eds` and `lss`, from the device to the view of the templates.
+/// The options `stored_eds` and `lss`, from the device to the input of the templates.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -30,7 +30,7 @@ struct Rendered : DeviceFromText {
   ordered_json view;
 };
 
-/// The messages about options.
+/// The message about options.
 std::string complaint(const std::string& text, StoredEds what) {
   const DeviceFromText device{text, keeping(what)};
   for (const Diagnostic& diagnostic : device.diagnostics.all()) {

@@ -1,4 +1,4 @@
-/// 1021h and 1022h of devices that keep their data sheet: no line of the application binds it.
+/// 1021h and 1022h of devices that store their EDS: no code of the application binds it.
 #include <gtest/gtest.h>
 
 #include <compressed_eds/device.hpp>
@@ -21,7 +21,7 @@ std::string kept() {
   return {Device::stored_eds.begin(), Device::stored_eds.end()};
 }
 
-/// The four bytes of a size as a request or answer has them.
+/// The four bytes of a size, as in a request or answer.
 std::string size_text(std::size_t size) {
   canopen::Frame frame{};
   frame.size = 4;

@@ -1,5 +1,5 @@
-/// Stored values are looked at when they are loaded: what could not have been written over the bus leaves the default,
-/// and EMCY 6300h reports it.
+/// Stored values are checked when they are loaded: a value that could not have been written over the bus is replaced by
+/// the default, and EMCY 6300h reports it.
 #include <gtest/gtest.h>
 
 #include <canopen/port/memory_storage.hpp>
@@ -19,7 +19,7 @@ constexpr auto saved_all = "585 60 10 10 01 00 00 00 00";
 constexpr auto silent = "705 00";
 constexpr auto reported = "705 00 | 085 00 63 01 00 00 00 00 00";
 
-/// What a device sends at power-on.
+/// Returns what a device sends at power-on.
 std::string power_on(MemoryStorage& storage) {
   bench::RecordingBus bus;
   canopen::Node<every_service::Device, bench::RecordingBus, canopen::StoredIn<MemoryStorage>> node{
@@ -29,7 +29,7 @@ std::string power_on(MemoryStorage& storage) {
   return bus.take();
 }
 
-/// Puts bytes where a value lies, as a fault of the memory or another firmware does.
+/// Writes bytes to the memory of a value, as a memory fault or another firmware would.
 void put(Device& device, std::uint16_t index, std::uint8_t sub_index, std::uint64_t value) {
   const canopen::EntryAccess entries = device.node.entries();
   const canopen::entry::Word word = entries.find(index, sub_index);
@@ -124,7 +124,7 @@ TEST(StoredCobIds, ThatAreNotValidMayBeAnything) {
   EXPECT_EQ(value(device, 0x1400, 1), 0x8000'0000u);
 }
 
-// The rows are those of CiA 301: 7.5.2.35 and 7.5.2.37 (transmission types; SYNC start value), 7.5.2.6, 7.5.2.22.
+// The rows are from CiA 301: 7.5.2.35 and 7.5.2.37 (transmission types; SYNC start value), 7.5.2.6, 7.5.2.22.
 TEST(StoredServiceParameters, ThatCouldNotBeWrittenLeaveTheDefault) {
   for (const Value& row : {Value{0x1400, 2, 241}, Value{0x1400, 2, 252}, Value{0x1400, 2, 253}, Value{0x1800, 2, 241},
                            Value{0x1800, 2, 251}, Value{0x1800, 6, 241}, Value{0x1006, 0, 0x8000'0000},

@@ -1,5 +1,5 @@
-/// Buses over a pseudo-terminal and over TCP, as a host uses them: HostBus on one side, and on the other one an SLCAN
-/// adapter with a node behind it, or a socketcand server of a few lines.
+/// Buses over a pseudo-terminal and over TCP, as a host uses them: HostBus on one side; on the other side an SLCAN
+/// adapter with a node, or a small socketcand server.
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ using namespace std::chrono_literals;
 
 std::string text_of(const std::optional<Frame>& frame) { return frame ? bench::text(*frame) : "none"; }
 
-/// A thread that works until its owner goes.
+/// A thread that works until its owner is destroyed.
 class Worker {
  public:
   template <class Work>
@@ -57,7 +57,7 @@ std::string read_some(int descriptor) {
   return count > 0 ? std::string(bytes, static_cast<std::size_t>(count)) : "";
 }
 
-/// A device that is an SLCAN adapter and, behind it, node 5.
+/// A device that contains an SLCAN adapter and node 5.
 class Device {
  public:
   Device() : line_{canopen::opened(::posix_openpt(O_RDWR | O_NOCTTY), "posix_openpt")} {
@@ -87,7 +87,7 @@ class Device {
   }
   std::uint8_t status() { return 0; }
 
-  /// Serves the line for a moment.
+  /// Serves the line once.
   void work() {
     for (const char character : read_some(line_.number())) adapter_.on_character(character, *this);
     if (std::exchange(start_due_, false)) node_.start(HostBus::now());
@@ -183,7 +183,7 @@ TEST(SlcanPort, SendsUrgentFramesFirstWhenTheLineIsFull) {
     bus.emplace("slcan:" + device.name());
   }
   int late = 0;
-  for (; bus->waiting() < 40; ++late) ASSERT_TRUE(bus->send(bench::frame("705 05")));  // nobody reads the line any more
+  for (; bus->waiting() < 40; ++late) ASSERT_TRUE(bus->send(bench::frame("705 05")));  // the line is no longer read
   EXPECT_TRUE(bus->send(bench::frame("080")));
   for (; bus->waiting() < 64; ++late) ASSERT_TRUE(bus->send(bench::frame("705 05")));
   EXPECT_FALSE(bus->send(bench::frame("705 05"))) << "the queue is full";
@@ -214,7 +214,7 @@ TEST(SlcanPort, ThrowsWhenTheLineIsGone) {
       std::system_error);
 }
 
-/// A server that says what it is told to say, and keeps what it hears.
+/// A server that sends given text and records what it receives.
 class Server {
  public:
   Server() : listener_{canopen::opened(::socket(AF_INET, SOCK_STREAM, 0), "socket")} {
@@ -238,12 +238,12 @@ class Server {
   void say(std::string_view text) const {
     EXPECT_EQ(::send(client_.number(), text.data(), text.size(), MSG_NOSIGNAL), static_cast<ssize_t>(text.size()));
   }
-  /// As much of it as the connection takes, if there is still one.
+  /// Sends as much of it as the connection accepts, if it is still open.
   void try_to_say(std::string_view text) const {
     pollfd room{client_.number(), POLLOUT, 0};
     if (::poll(&room, 1, 10) == 1) (void)::send(client_.number(), text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   }
-  /// Waits for these characters.
+  /// Returns whether exactly these characters are received.
   [[nodiscard]] bool hears(std::string_view wanted) {
     for (int i = 0; i < 300'000 && heard_.size() < wanted.size(); ++i) heard_ += read_some(client_.number());
     const bool right = heard_ == wanted;
@@ -301,7 +301,7 @@ TEST(SocketcandPort, HasFramesThatComeWithTheEndOfTheHandshake) {
   EXPECT_EQ(text_of(bus.receive(0us)), "705 05");
 }
 
-/// Says elements that are not frames until it goes, or for half a minute, after which a test has failed.
+/// Sends elements that are not frames until it is destroyed, for half a minute at most; a test has failed by then.
 class Flood {
  public:
   explicit Flood(const Server& server)

@@ -1,4 +1,4 @@
-/// SYNC, TIME and EMCY of other nodes: produced and consumed, and what their parameters take.
+/// SYNC, TIME and EMCY of other nodes: production, consumption, and valid parameters.
 #include <gtest/gtest.h>
 
 #include <sync_device/device.hpp>
@@ -14,7 +14,7 @@ using Bench = bench::Bench<sync_device::Device>;
 
 constexpr auto ok = "585 60";
 
-/// An SDO download; the first two bytes of the answer, or all of it when it is an abort.
+/// An SDO download; returns the first two bytes of the answer, or the whole abort.
 std::string write(Bench& device, const std::string& request) {
   const std::string answer = device.ask(request);
   return answer.starts_with(ok) ? ok : answer;
@@ -210,7 +210,7 @@ TEST(Time, IsGivenToTheApplication) {
   auto device = bench::with<sync_device::Device>(canopen::on_time_of_day([&](canopen::TimeOfDay time) {
     log += std::to_string(time.days) + "d" + std::to_string(time.milliseconds) + "ms ";
   }));
-  device.ask("100 E8 03 00 F0 0A 00");  // the upper four bits are no part of the time
+  device.ask("100 E8 03 00 F0 0A 00");  // the upper four bits are not part of the time
   device.ask("100 E8 03 00 00 0A");     // too short
   device.ask(bench::stop);
   device.ask("100 E8 03 00 00 0A 00");
@@ -248,7 +248,7 @@ TEST(EmcyConsumer, HearsTheNodesOf1028h) {
     log += std::to_string(emergency.sub_index) + ":" + std::string{canopen::emergency_text(emergency.message.code)} + " ";
   }));
   device.ask("082 10 82 11 09 00 00 00 00");
-  device.ask("082 10 82 11 09");  // no whole EMCY
+  device.ask("082 10 82 11 09");  // incomplete EMCY
   device.ask("083 10 82 11 09 00 00 00 00");
   EXPECT_EQ(log, "2:PDO not processed, too short ");
   device.ask("605 23 28 10 03 83 00 00 00");

@@ -118,7 +118,7 @@ TEST(Tpdo, ItsEventTimerDoesNotDriftWhenServedLate) {
   EXPECT_EQ(device.bus.take(), zeros);
   EXPECT_EQ(device.pass(6999us), "");
   EXPECT_EQ(device.pass(1us), zeros);
-  device.now = device.now + 25ms;  // two periods are missing: one is sent
+  device.now = device.now + 25ms;  // two periods have passed: one TPDO is sent
   device.node.on_time(device.now);
   EXPECT_EQ(device.bus.take(), zeros);
   EXPECT_EQ(device.pass(9999us), "");

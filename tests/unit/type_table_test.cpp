@@ -1,4 +1,4 @@
-/// Data types that a file or CiA 301 defines: all rows of the predefined records, and definitions that are not valid.
+/// Data types that a file or CiA 301 defines: all rows of the predefined records, and invalid definitions.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace {
 
 using canopen::DataType;
 
-/// A RECORD of a type, whose sub-objects leave DataType to it.
+/// A RECORD of a type, whose sub-objects have no DataType of their own.
 std::string record_of_type(std::string_view type, int sub_index) {
   return fmt::format(
       "[2000]\nParameterName=Record\nObjectType=0x9\nSubNumber=2\nDataType={}\n"
@@ -46,7 +46,7 @@ const PredefinedRecord predefined_records[] = {
     {"0x0022",
      {{1, DataType::unsigned32},  // COB-ID client -> server
       {2, DataType::unsigned32},  // COB-ID server -> client
-      {3, DataType::unsigned8}},  // node-ID of the other one
+      {3, DataType::unsigned8}},  // node-ID of the other node
      4},
     {"0x0023",
      {{1, DataType::unsigned32},   // vendor-ID
@@ -82,7 +82,7 @@ TEST(TypeTable, TakesAllCodesFrom20hTo3FhForRecords) {
   }
 }
 
-/// A range of a type: a RECORD of the type's index, the lowest and the highest value.
+/// A range of a type: a RECORD with the index of the type, and its lowest and highest value.
 std::string range_of_type(std::string_view type) {
   return fmt::format(
       "[00A0]\nParameterName=Range\nObjectType=0x9\nSubNumber=4\n"

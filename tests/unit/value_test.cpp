@@ -16,7 +16,7 @@ namespace {
 
 using canopen::DataType;
 
-/// One value on its way through parse_value.
+/// One value that parse_value reads.
 struct Parsed {
   Parsed(DataType data_type, std::string text, std::optional<std::uint8_t> node_id = std::nullopt)
       : source("value.eds", "[2000]\nDefaultValue=" + text + "\n"),

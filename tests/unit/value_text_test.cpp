@@ -125,7 +125,7 @@ TEST(ValueText, IsReadBackWhateverItShows) {
       if (type.type == DataType::unicode_string) {
         for (std::size_t i = 1; i < bytes.size(); i += 2) bytes[i] &= 0x7F;
       }
-      if (is_string && !bytes.empty()) bytes.back() |= 1;                        // zeros at the end are cut
+      if (is_string && !bytes.empty()) bytes.back() |= 1;                        // trailing zeros are removed
       if (type.type == DataType::real32 && (bytes[3] & 0x7F) == 0x7F) continue;  // NaN
       if (type.type == DataType::real64 && (bytes[7] & 0x7F) == 0x7F) continue;
       const std::string shown = value_text(type, bytes);

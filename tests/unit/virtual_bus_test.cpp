@@ -20,7 +20,7 @@ using canopen::VirtualBus;
 namespace od = sample::od;
 using namespace std::chrono_literals;
 
-/// What passes the wire, each frame with its time in microseconds.
+/// All frames on the bus, each with its time in microseconds.
 class Log {
  public:
   explicit Log(VirtualBus& bus) {
@@ -57,7 +57,7 @@ TEST(VirtualBus, TheLowestCanIdWins) {
   second.send(frame("181 01"));
   second.send(frame("18100000 01"));
   bus.settle();
-  // A controller sends its own frames in their order.
+  // A controller sends its own frames in the order of the calls.
   EXPECT_EQ(log.lines, (Lines{"0: 181 01", "0: 18100000 01", "0: 701 05", "0: 081 00"}));
 }
 
@@ -220,7 +220,7 @@ TEST(VirtualBus, TimePassesUntilAConditionHolds) {
   tester.on_frame = [&](const Frame& frame, TimePoint) { received = bench::text(frame); };
   const auto any = [&] { return !received.empty(); };
   tester.send(frame("081"));          // 47 us; not received by its sender
-  device.send(frame("181 01"));       // 55 us after it
+  device.send(frame("181 01"));       // 55 us after that
   device.send(frame("281 01 02 03"));
   bus.run_until(any, 1ms);
   EXPECT_EQ(received, "181 01");

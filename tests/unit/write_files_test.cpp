@@ -38,7 +38,7 @@ class WriteFiles : public testing::Test {
 
   [[nodiscard]] std::string path(const char* name) const { return (folder_ / name).string(); }
 
-  /// Paths of all files below the folder.
+  /// Paths of all files in the folder and its subfolders.
   [[nodiscard]] std::vector<std::string> files() const {
     std::vector<std::string> result;
     for (const auto& entry : fs::recursive_directory_iterator{folder_}) {
@@ -95,7 +95,7 @@ TEST_F(WriteFiles, ChangesNothingWhenOneFolderCannotBeMade) {
   EXPECT_EQ(files(), (Names{"file", "one.hpp"}));
 }
 
-/// Files of this process may not grow beyond `bytes` while this exists: a write fails as on a full disk.
+/// While this exists, no file of this process may exceed `bytes`: writing fails as on a full disk.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) {

@@ -19,7 +19,7 @@ namespace {
 
 using Findings = std::vector<Finding>;
 
-/// A profile container on few lines: the device profile's body on line 2, the network profile's from line 3 on.
+/// A short profile container: the device profile is on line 2, the network profile starts on line 3.
 struct Profile {
   std::string objects;
   std::string process;
@@ -40,7 +40,7 @@ struct Profile {
   }
 };
 
-/// Where the first of `Profile::objects` stands.
+/// Line of the first of `Profile::objects`.
 constexpr std::uint32_t first_line = 4;
 
 struct ReadXdd {
@@ -441,7 +441,7 @@ TEST(XddDevice, ReadsDummyUsage) {
   EXPECT_EQ(read.sheet.file_info.file_name.text, "pump.xdd");
 }
 
-// ---- what is wrong ----
+// ---- errors ----
 
 TEST(XddErrors, ReportsWhatIsNotWellFormed) {
   EXPECT_EQ(findings(ReadXdd("<a>\n  <b></c>\n</a>").diagnostics), (Findings{error_at(2, 8, "xml-syntax")}));
@@ -487,7 +487,7 @@ TEST(XddErrors, SurvivesAnyDepth) {
   EXPECT_EQ(findings(ReadXdd(closed).diagnostics, "xml-profile").size(), 1U);
 }
 
-// ---- the same device in both languages ----
+// ---- the same device as EDS and XDD ----
 
 const std::string pump_eds =
     "[DeviceInfo]\nVendorName=Maker & Sons\nVendorNumber=0x319\nProductName=Pump\nProductNumber=17\n"
@@ -551,7 +551,7 @@ const Profile pump_xdd{
     "<productID>17</productID>",
     ""};
 
-/// The view without what tells the files apart.
+/// The view without members that depend on the file.
 nlohmann::ordered_json view_of(const DataSheet& sheet, Diagnostics& diagnostics) {
   const Options options;
   Device device = resolve_device(sheet, options, {"pump", std::nullopt}, diagnostics);
@@ -563,7 +563,7 @@ nlohmann::ordered_json view_of(const DataSheet& sheet, Diagnostics& diagnostics)
   return view;
 }
 
-/// The rules that have fired, but for the one that speaks of a section that XML does not have.
+/// The rules with findings, except the one about a section that XML does not have.
 std::set<std::string> rule_set_of(const Diagnostics& diagnostics) {
   std::set<std::string> rules;
   for (const Diagnostic& diagnostic : diagnostics.all()) rules.emplace(diagnostic.rule);

@@ -1,4 +1,4 @@
-/// PDO layouts as types, made from pseudo-random numbers while the test is compiled.
+/// PDO layouts as types, generated from pseudo-random numbers at compile time.
 #pragma once
 
 #include <array>
@@ -33,7 +33,7 @@ class Random {
     state_ = state_ * 6364136223846793005u + 1442695040888963407u;
     return state_ ^ (state_ >> 29);
   }
-  /// 0..limit-1
+  /// A number from 0 to limit - 1.
   constexpr unsigned below(unsigned limit) { return static_cast<unsigned>((next() >> 32) % limit); }
 
  private:
@@ -54,7 +54,7 @@ constexpr Field random_field(Random& random, unsigned room) {
   return {kind, 1 + random.below(most)};
 }
 
-/// The entries of one PDO: it ends where the dice say or the frame is full.
+/// The entries of one PDO: it ends at random or when the frame is full.
 constexpr Fields random_fields(std::uint64_t seed) {
   Random random{seed};
   Fields fields;
@@ -118,7 +118,7 @@ struct LayoutOf<Seed, std::index_sequence<I...>> {
   using type = canopen::PdoLayout<EntryOf<Seed, I>...>;
 };
 
-/// A layout behind functions of raw bits, so that one test looks at all.
+/// A layout as functions of raw bits, so that one test covers all layouts.
 struct Codec {
   Fields fields;
   void (*pack)(canopen::Frame& frame, const std::uint64_t* raw);
@@ -160,7 +160,7 @@ Codec codec_of(std::index_sequence<I...> positions) {
       }};
 }
 
-/// The layouts of `Count` seeds from `First` on.
+/// The layouts of `Count` seeds, starting with `First`.
 template <std::uint64_t First, std::size_t... I>
 void add_codecs(std::vector<Codec>& codecs, std::index_sequence<I...>) {
   (codecs.push_back(codec_of<First + I>(std::make_index_sequence<fields_of<First + I>.count>{})), ...);
@@ -168,7 +168,7 @@ void add_codecs(std::vector<Codec>& codecs, std::index_sequence<I...>) {
 
 inline constexpr std::size_t layouts_a_file = 60;
 
-// One translation unit each, so that they compile side by side.
+// One translation unit each, so that they compile in parallel.
 void add_layouts_1(std::vector<Codec>& codecs);
 void add_layouts_2(std::vector<Codec>& codecs);
 void add_layouts_3(std::vector<Codec>& codecs);
