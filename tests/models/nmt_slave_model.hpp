@@ -1,4 +1,4 @@
-/// A model of an NMT slave, written from CiA 301 (version 4.2.0, 7.2.8.2.1 and 7.3.2) alone. Numbers in comments are
+/// A model of an NMT slave, written only from CiA 301 (version 4.2.0, 7.2.8.2.1 and 7.3.2). Numbers in comments are
 /// clauses of CiA 301.
 #pragma once
 
@@ -14,12 +14,12 @@ class NmtSlave {
 
   explicit NmtSlave(std::uint8_t node_id) : node_id_{node_id} {}
 
-  /// What a command did besides changing the state.
+  /// The effect of a command besides the change of the state.
   enum class Reset { none, communication, application };
 
-  /// A frame on CAN-ID 000h (7.2.8.3.1.1): the command and the node-ID; 0 is all nodes. Commands that do not exist and
-  /// shorter frames are no NMT service. Of longer frames the standard says nothing; manual 003 (5.4.1) shows commands
-  /// of eight bytes, of which the first two count.
+  /// A frame on CAN-ID 000h (7.2.8.3.1.1): the command and the node-ID; 0 is all nodes. Unknown commands and shorter
+  /// frames are not an NMT service. The standard does not specify longer frames; manual 003 (5.4.1) shows commands of
+  /// eight bytes, of which the first two are used.
   Reset take(std::span<const std::uint8_t> data) {
     if (data.size() < 2) return Reset::none;
     if (data[1] != 0 && data[1] != node_id_) return Reset::none;

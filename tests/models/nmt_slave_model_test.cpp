@@ -1,5 +1,5 @@
-/// A node of the runtime and a model of the NMT slave get the same frames: all commands with all node-IDs and lengths
-/// in each state, and random walks with the other services in between.
+/// A node of the runtime and a model of the NMT slave receive the same frames: all commands with all node-IDs and
+/// lengths in each state, and random walks with the other services in between.
 #include "nmt_slave_model.hpp"
 
 #include <gtest/gtest.h>
@@ -63,7 +63,7 @@ class Pair {
       }
       expect_sent({boot_up()}, "a reset ends with the boot-up message");
     } else {
-      // EMCYs that waited in Stopped, and on entering Operational event-driven TPDOs (7.2.2.4).
+      // EMCYs that waited in Stopped, and event-driven TPDOs on entering Operational (7.2.2.4).
       const bool entered = !was_operational && expected.pdo();
       for (const Frame& sent : bus.sent) {
         expect((entered && is_tpdo(sent)) || (waiting && expected.emcy() && sent.id == 0x085),
@@ -80,7 +80,7 @@ class Pair {
     expect(node.get<od::producer_heartbeat_time>() == heartbeat, "1017h");
   }
 
-  /// Each service once.
+  /// Uses each service once.
   void probe(std::uint32_t value) {
     // SDO
     ask({.id = 0x605, .size = 8, .data = {0x40, 0x00, 0x10}});
@@ -109,7 +109,7 @@ class Pair {
     check();
   }
 
-  /// Sets values over SDO: an application's and 1017h.
+  /// Sets values over SDO: an application object and 1017h.
   void configure(std::uint8_t new_byte, std::uint8_t new_heartbeat) {
     ask({.id = 0x605, .size = 8, .data = {0x2F, 0x00, 0x20, 0x00, new_byte}});
     ask({.id = 0x605, .size = 8, .data = {0x2B, 0x17, 0x10, 0x00, new_heartbeat}});
@@ -120,7 +120,7 @@ class Pair {
     check();
   }
 
-  /// Lets 1 s pass: heartbeats tell the state, in each state.
+  /// Lets 1 s pass: heartbeats contain the state, in each state.
   void pass() {
     bus.sent.clear();
     const canopen::TimePoint end = now + canopen::Duration{1s};
@@ -146,7 +146,7 @@ class Pair {
     expect(heartbeats + 1 >= right && heartbeats <= right + 1, "a heartbeat each period");
   }
 
-  /// An error of the application: EMCY goes out except in Stopped.
+  /// Reports an error of the application: EMCY is sent except in Stopped.
   void error() {
     bus.sent.clear();
     node.emergency(0xFF00, canopen::ErrorRegister{});
@@ -186,7 +186,7 @@ class Pair {
   std::uint8_t byte = 0;
   std::uint32_t long_word = 0;
   std::uint16_t heartbeat = 0;
-  bool waiting = false;  ///< EMCYs wait
+  bool waiting = false;  ///< EMCYs are waiting
 };
 
 void tell(const Pair& pair) { std::printf("%llu requests\n", static_cast<unsigned long long>(pair.requests)); }

@@ -1,5 +1,5 @@
-/// A model of PDO mapping, written from CiA 301 (version 4.2.0, 7.2.2, 7.5.2.35 to 7.5.2.38) alone: each bit of a PDO
-/// is moved by itself. Numbers in comments are clauses of CiA 301.
+/// A model of PDO mapping, written only from CiA 301 (version 4.2.0, 7.2.2, 7.5.2.35 to 7.5.2.38): each bit of a PDO is
+/// copied separately. Numbers in comments are clauses of CiA 301.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace model {
 
-/// What may stand in a mapping.
+/// An object that can be mapped.
 struct Mappable {
   std::uint16_t index = 0;
   std::uint8_t sub_index = 0;
@@ -24,7 +24,7 @@ struct Mappable {
 };
 
 using Code = std::uint32_t;
-using Codes = std::vector<Code>;  ///< allowed abort codes; empty: the write has to be taken
+using Codes = std::vector<Code>;  ///< allowed abort codes; empty: the write must be accepted
 
 class Pdo {
  public:
@@ -38,34 +38,34 @@ class Pdo {
   [[nodiscard]] std::size_t count() const { return count_; }
   [[nodiscard]] std::uint32_t entry(std::size_t i) const { return entries_[i]; }
 
-  // ---- the procedure of 7.5.2.36: the PDO is made invalid, its number of objects 0, then come the objects, their
-  // number, and the PDO is valid again. Each function returns what a write may be answered with.
+  // ---- the procedure of 7.5.2.36: make the PDO invalid, set the number of objects to 0, write the objects and their
+  // number, make the PDO valid. Each function returns the allowed answers to a write.
 
   Codes write_valid(bool valid) {
     valid_ = valid;
     return {};
   }
 
-  /// 1600h:01 to :08. Objects are looked at now: 0602 0000h or 0604 0041h for what does not exist or cannot be mapped.
+  /// 1600h:01 to :08. Objects are checked now: 0602 0000h or 0604 0041h if one does not exist or cannot be mapped.
   Codes write_entry(std::size_t i, std::uint32_t mapped) {
     if (valid_ || count_ != 0) return not_now;
     const Mappable* const object = find(mapped);
     if (object == nullptr || !(transmitted_ ? object->to_tpdo : object->to_rpdo)) {
-      // An object that exists without this sub-index has a code of its own, too.
+      // If only the sub-index does not exist, its own code is allowed, too.
       return {0x0602'0000, 0x0604'0041, 0x0609'0011};
     }
-    // The length is that of the object; which code tells another one is not said.
+    // The length must be that of the object; the standard does not specify the code of a wrong length.
     if ((mapped & 0xFF) != object->bits) return {0x0602'0000, 0x0604'0041, 0x0604'0042};
     entries_[i] = mapped;
     return {};
   }
 
-  /// Whether a mapping entry is one that the standard leaves open: nothing is mapped.
+  /// Returns whether the standard does not specify a mapping entry: it maps nothing.
   [[nodiscard]] static bool is_free(std::uint32_t mapped) { return mapped == 0; }
   void set_entry(std::size_t i, std::uint32_t mapped) { entries_[i] = mapped; }
 
-  /// 1600h:00: the mapping as a whole is looked at now: 0602 0000h or 0604 0042h. A number above that of the
-  /// sub-indices is no value of it either.
+  /// 1600h:00: the whole mapping is checked now: 0602 0000h or 0604 0042h. A number above the number of sub-indices is
+  /// also an invalid value.
   Codes write_count(std::size_t count) {
     if (valid_) return not_now;
     if (count > entries_.size()) return {0x0602'0000, 0x0604'0042, 0x0609'0030, 0x0609'0031};
@@ -101,8 +101,8 @@ class Pdo {
     return data;
   }
 
-  /// A received PDO. Too few bytes: nothing is taken. More bytes: the first ones count (7.2.2.5.2). What an object does
-  /// not take for its limits does not change it.
+  /// A received PDO. With too few bytes it is ignored; of more bytes the first ones are used (7.2.2.5.2). An object
+  /// whose limits do not allow its value keeps the old one.
   void unpack(const std::array<std::uint8_t, 8>& data, std::size_t size) {
     if (size < bytes()) return;
     unsigned at = 0;
@@ -117,8 +117,8 @@ class Pdo {
   }
 
  private:
-  /// A mapping is not written while the PDO is valid or its number of objects is not 0. The clause names no code; the
-  /// codes that mean it: unsupported access, cannot be mapped, not in this state of the device.
+  /// A mapping cannot be written while the PDO is valid or its number of objects is not 0. The clause does not name a
+  /// code; codes with this meaning: unsupported access, cannot be mapped, not in this state of the device.
   inline static const Codes not_now{0x0601'0000, 0x0604'0041, 0x0800'0022};
 
   [[nodiscard]] Mappable* find(std::uint32_t mapped) const {

@@ -1,5 +1,5 @@
 /// A node of the runtime and a model of PDO mapping: random steps of the mapping procedure over SDO, right and wrong
-/// ones, and PDOs received and sent with what is mapped.
+/// ones, and PDOs that are received and sent with these mappings.
 #include "pdo_model.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ constexpr unsigned steps = 60'000;
 constexpr unsigned steps = 3'000'000;
 #endif
 
-/// What pdo_device.eds has to map, and its dummies (DummyUsage).
+/// The mappable objects of pdo_device.eds, and its dummies (DummyUsage).
 std::vector<Mappable> objects() {
   std::vector<Mappable> list{
       {0x0001, 0, 1, true, false},  {0x0005, 0, 8, true, false}, {0x0006, 0, 16, true, false},
@@ -78,7 +78,7 @@ class Pair {
       case 4:
       case 5: set_entry(row, upto(8), any_entry(random)); break;
       case 6: remap(row, random); break;
-      case 7: {  // what is written is read
+      case 7: {  // reads back what was written
         const std::uint32_t i = upto(9);
         expect_number(row.mapping(), i, i == 0 ? static_cast<std::uint32_t>(pdo.count()) : pdo.entry(i - 1));
         expect_number(row.communication, 1, row.cob_id | (pdo.valid() ? 0 : 0x8000'0000));
@@ -115,11 +115,11 @@ class Pair {
   // ---- steps
 
   void become_operational() {
-    send_request(0x2F, 0x1401, 2, 255);  // RPDO 2 does not wait for SYNC, as the others
+    send_request(0x2F, 0x1401, 2, 255);  // like the others, RPDO 2 does not wait for SYNC
     ask({.id = 0, .size = 2, .data = {1, 5}});
   }
 
-  /// The mappings are those of the data sheet again, the values stay.
+  /// The mappings are those of the EDS again; the values remain.
   void reset_communication() {
     rows = first_rows();
     begin();
@@ -144,12 +144,12 @@ class Pair {
     const bool locked = row.pdo.valid() || row.pdo.count() != 0;
     const bool same = value == row.pdo.entry(i);
     const Codes allowed = row.pdo.write_entry(i, value);
-    // Of an entry that maps nothing the standard does not speak.
+    // The standard does not specify an entry that maps nothing.
     const bool free = !locked && model::Pdo::is_free(value);
     if (write(0x23, row.mapping(), i + 1, value, allowed, same || free) && free) row.pdo.set_entry(i, value);
   }
 
-  /// The procedure, with objects that mostly fit.
+  /// The procedure, mostly with objects that fit.
   void remap(Row& row, std::mt19937& random) {
     set_valid(row, false);
     set_count(row, 0);
@@ -232,9 +232,9 @@ class Pair {
     check_sent();
   }
 
-  /// Each TPDO has what is mapped.
+  /// Checks that each TPDO contains its mapped objects.
   void check_sent() {
-    // The error register is a matter of EMCY.
+    // The error register depends on EMCY, which the model does not include.
     error_register->value = node.get<pdo_device::od::error_register>();
     for (const Frame& frame : bus.sent) {
       if (frame.id == 0x585 || frame.id == 0x085) continue;
@@ -258,7 +258,7 @@ class Pair {
     ask(frame);
   }
 
-  /// The SDO answer's command and its bytes 4 to 7.
+  /// Returns the command of the SDO answer and its bytes 4 to 7.
   std::pair<std::uint8_t, std::uint32_t> answer() {
     expect(sent_with(0x585) == 1, "a request is answered");
     for (const Frame& frame : bus.sent) {
@@ -270,7 +270,7 @@ class Pair {
     return {};
   }
 
-  /// A download. `either`: it may be taken, whatever the codes. Returns whether it was.
+  /// A download. `either`: it may be accepted, whatever the codes. Returns whether it was.
   bool write(std::uint8_t command, unsigned index, unsigned sub_index, std::uint32_t value, const Codes& codes,
              bool either) {
     send_request(command, index, sub_index, value);

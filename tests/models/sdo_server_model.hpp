@@ -1,6 +1,6 @@
-/// A model of an SDO server, written from CiA 301 (version 4.2.0, 7.2.4) alone: it shares no code with the runtime and
-/// does each thing in the simplest way. It does not send; it says whether what a server answered is right, and where
-/// the standard leaves a choice it follows the answer. Numbers in comments are clauses of CiA 301.
+/// A model of an SDO server, written only from CiA 301 (version 4.2.0, 7.2.4): it shares no code with the runtime and
+/// does everything in the simplest way. It does not send; it reports whether an answer of the server is right, and
+/// follows the answer if the standard allows several. Numbers in comments are clauses of CiA 301.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,7 @@ struct Entry {
   Type type{};
   bool readable = false;
   bool writable = false;
-  std::size_t size = 0;  ///< bytes; of a string or DOMAIN the most that it holds
+  std::size_t size = 0;  ///< bytes; maximum of a string or DOMAIN
   std::optional<double> low{};
   std::optional<double> high{};
   Octets value{};
@@ -80,14 +80,14 @@ class SdoServer {
     upload,                  ///< segments of an upload
     block_download,          ///< a sub-block of a block download
     block_download_end,      ///< the last segment has been confirmed
-    block_upload_initiated,  ///< the client has to start
-    block_upload_sent,       ///< a sub-block has been sent, its confirmation is missing
-    block_upload_end,        ///< the end has been sent, its answer is missing
+    block_upload_initiated,  ///< the client must start
+    block_upload_sent,       ///< a sub-block has been sent and not yet confirmed
+    block_upload_end,        ///< the end has been sent and not yet answered
   };
 
   explicit SdoServer(std::vector<Entry> entries) : entries_{std::move(entries)} {}
 
-  /// Takes a request and what a server answered to it. Nothing: the answer is right. Otherwise: what is wrong.
+  /// Processes a request and the server's answer. Returns null if the answer is right, otherwise what is wrong.
   const char* request(const Data& request, Answers answers) {
     q_ = &request;
     answers_ = answers;
@@ -98,9 +98,9 @@ class SdoServer {
     return wrong;
   }
 
-  /// The client says nothing any more, and this is what the server sends in the time after it. Of time-outs the
-  /// standard has the abort code alone (0504 0000h), which ends the transfer. A server may confirm a sub-block whose
-  /// end is missing before it gives up: the client sees then what is to be sent again.
+  /// The client is silent; `answers` is what the server sends in the time after that. For time-outs the standard only
+  /// defines the abort code (0504 0000h), which ends the transfer. A server may confirm an incomplete sub-block before
+  /// it aborts: this tells the client what to repeat.
   const char* time_out(Answers answers) {
     answers_ = answers;
     written_ = nullptr;
@@ -117,15 +117,15 @@ class SdoServer {
 
   [[nodiscard]] Phase phase() const { return phase_; }
   [[nodiscard]] std::vector<Entry>& entries() { return entries_; }
-  /// The entry that the last request gave a new value.
+  /// The entry to which the last request wrote a new value.
   [[nodiscard]] const Entry* written() const { return written_; }
-  /// The DOMAIN whose value is not known: during a download, and when it has broken off.
+  /// The DOMAIN whose value is undefined: during a download, and after an incomplete one.
   [[nodiscard]] Entry* spoilt() const { return spoilt_; }
 
-  /// What a well-behaved client, and one that loses frames, may ask next.
+  /// Possible next requests of a correct client and of a client that loses frames.
   [[nodiscard]] std::vector<Data> suggestions() const;
 
-  /// The state without what makes no difference to the protocol.
+  /// The state without details that do not affect the protocol.
   [[nodiscard]] std::string key() const;
 
  private:
@@ -150,7 +150,7 @@ class SdoServer {
     }
   }
 
-  // ---- what was answered
+  // ---- the server's answer
 
   [[nodiscard]] const Data& q() const { return *q_; }
 
@@ -168,7 +168,7 @@ class SdoServer {
   static void put_word(Data& data, std::uint32_t value) {
     for (unsigned i = 0; i < 4; ++i) data[4 + i] = static_cast<std::uint8_t>(value >> 8 * i);
   }
-  /// A frame with the multiplexer of the transfer that runs or begins.
+  /// A frame with the multiplexer of the current or new transfer.
   [[nodiscard]] Data frame(unsigned command, std::uint32_t value = 0) const {
     Data data{static_cast<std::uint8_t>(command), multiplexer_[0], multiplexer_[1], multiplexer_[2]};
     put_word(data, value);
@@ -186,8 +186,8 @@ class SdoServer {
     return nullptr;
   }
 
-  /// A command that does not exist, or not in this state: 0504 0001h. Without a transfer the standard does not say
-  /// which multiplexer the abort has: that of the request's bytes 1 to 3, of the last transfer, or none.
+  /// A command that does not exist, or not in this state: 0504 0001h. Without a transfer the standard does not specify
+  /// the multiplexer of the abort: bytes 1 to 3 of the request, that of the last transfer, or zeros.
   const char* unknown_command() {
     if (phase_ != Phase::idle) return aborts({command_specifier}, "0504 0001h: a command that does not fit the state");
     if (!answers_abort() || word(answers_[0]) != command_specifier) return "0504 0001h: a command without a transfer";
@@ -206,8 +206,8 @@ class SdoServer {
 
   // ---- objects
 
-  /// Begins a transfer with the request's multiplexer. An initiate ends a transfer that runs: the client has given it
-  /// up (the standard has no state in which a server does not take an initiate).
+  /// Begins a transfer with the request's multiplexer. An initiate ends a running transfer, because the client has
+  /// abandoned it (the standard has no state in which a server ignores an initiate).
   void begin() {
     leave();
     std::copy_n(q().begin() + 1, 3, multiplexer_.begin());
@@ -221,7 +221,7 @@ class SdoServer {
     missing_ = object ? no_sub_index : no_object;
   }
 
-  /// Why a value of this length is not taken; 0: it is.
+  /// Returns why a value of this length is rejected, or 0.
   [[nodiscard]] std::uint32_t length_error(std::size_t length) const {
     if (length > entry_->size) return too_long;
     if (length < entry_->size && !entry_->variable()) return too_short;
@@ -240,13 +240,13 @@ class SdoServer {
     return value;
   }
 
-  /// More bytes than were announced or than there is room for: this cannot become right any more. A server says so at
-  /// once or at the end; the standard leaves it free.
+  /// Returns whether there are more bytes than announced, or than the entry can hold. A server may report this
+  /// immediately or at the end; the standard allows both.
   [[nodiscard]] bool too_many(std::size_t bytes) const {
     return bytes > std::min<std::size_t>(entry_->size, announced_.value_or(0xFFFF'FFFF));
   }
 
-  /// Why this value is not taken; 0: it is.
+  /// Returns why this value is rejected, or 0.
   [[nodiscard]] std::uint32_t value_error(const Octets& bytes) const {
     if (const std::uint32_t code = length_error(bytes.size()); code != 0) return code;
     if (entry_->variable()) return 0;
@@ -262,10 +262,10 @@ class SdoServer {
     written_ = entry_;
   }
 
-  /// Takes a whole value: the answer is this frame, or an abort.
+  /// Accepts a complete value: the answer is this frame, or an abort.
   const char* take(const Octets& bytes, const Data& answer, const char* message) {
-    // A BOOLEAN is one bit (7.1.4.2) in a byte of SDO. Of the values 2..255 the standard says nothing: they are
-    // rejected as invalid, or count as TRUE.
+    // A BOOLEAN is one bit (7.1.4.2) in a byte of SDO. The standard does not specify the values 2..255: they are
+    // rejected as invalid or taken as TRUE.
     if (entry_->type == Type::boolean && bytes.size() == 1 && bytes[0] > 1) {
       if (answers_abort()) return aborts({invalid_value, value_too_high}, "a BOOLEAN above 1");
       write({1});
@@ -278,7 +278,7 @@ class SdoServer {
     return expect(answer, message);
   }
 
-  /// The transfer has ended well.
+  /// Ends the transfer successfully.
   void finish() {
     taken_.clear();
     phase_ = Phase::idle;
@@ -293,7 +293,7 @@ class SdoServer {
     const bool expedited = (q()[0] & 2) != 0;
     const bool size_indicated = (q()[0] & 1) != 0;
     if (expedited) {
-      // Without a size the data are as long as the object; four bytes are all that there are.
+      // Without an indicated size the data have the length of the object, four bytes at most.
       const std::size_t length = size_indicated ? 4u - (q()[0] >> 2 & 3u) : std::min<std::size_t>(entry_->size, 4);
       return take(Octets(q().begin() + 4, q().begin() + 4 + static_cast<int>(length)), frame(0x60),
                   "a download is confirmed: 60h");
@@ -333,7 +333,7 @@ class SdoServer {
 
   const char* answer_upload() {
     const Octets& value = entry_->value;
-    // An expedited upload cannot carry nothing: a value of no bytes takes segments or is "no data available".
+    // An expedited upload has at least one byte: an empty value is sent in segments or is "no data available".
     if (value.empty() && answers_abort()) return aborts({no_data}, "0800 0024h: no data");
     if (!value.empty() && value.size() <= 4) {
       Data answer = frame(0x43 | (4u - static_cast<unsigned>(value.size())) << 2);
@@ -393,18 +393,18 @@ class SdoServer {
 
   const char* block_download_segment() {
     const unsigned number = q()[0] & 0x7F;
-    // 0 is no sequence number, and one above the block size cannot be part of this sub-block.
+    // 0 is not a sequence number, and a number above the block size cannot belong to this sub-block.
     if (number == 0 || number > block_size_) return aborts({sequence_number}, "0504 0003h: invalid sequence number");
     const bool last = (q()[0] & 0x80) != 0;
     if (number == in_order_ + 1) {
       ++in_order_;
       taken_.insert(taken_.end(), q().begin() + 1, q().end());
       last_arrived_ = last;
-      // The last segment may hold up to seven bytes that do not count.
+      // The last segment may have up to seven unused bytes.
       if (too_many(taken_.size() - (last ? 7 : 0)) && answers_abort())
         return aborts({too_long, length_mismatch}, "too many bytes");
     }
-    // Segments behind a gap do not count; the confirmation at the end of the sub-block asks for them again.
+    // Segments after a gap are ignored; the confirmation at the end of the sub-block requests them again.
     if (!last && number != block_size_) return answers_.empty() ? nullptr : "segments of a sub-block are not answered";
     const unsigned confirmed = in_order_;
     if (answers_.size() != 1 || answers_[0][2] < 1 || answers_[0][2] > 127) return "a block size is 1..127";
@@ -424,7 +424,7 @@ class SdoServer {
     const std::uint32_t length = length_error(bytes.size());
     Code announced = 0;
     if (announced_ && bytes.size() != *announced_) announced = bytes.size() < *announced_ ? too_short : too_long;
-    // Where both the CRC and the length are wrong either is said.
+    // If both the CRC and the length are wrong, either code is allowed.
     if (!crc_right && announced != 0) return aborts({crc_error, length_mismatch, announced}, "CRC and length");
     if (!crc_right && length != 0) return aborts({crc_error, length}, "CRC and length");
     if (!crc_right) return aborts({crc_error}, "0504 0004h: the CRC is wrong");
@@ -456,7 +456,7 @@ class SdoServer {
       return size_right ? aborts({code}, "what cannot be read") : aborts({code, block_size}, "what cannot be read");
     }
     if (!size_right) return aborts({block_size}, "0504 0002h: the block size is not 1..127");
-    // The protocol switch threshold: a server may answer with a normal upload if the value is not longer. 0: never.
+    // Protocol switch threshold: a normal upload is allowed if the value is not longer. 0: not allowed.
     if (q()[5] != 0 && entry_->value.size() <= q()[5] && answers_.size() == 1 && answers_[0][0] >> 5 == 2)
       return answer_upload();
     if (entry_->value.empty() && answers_abort()) return aborts({no_data}, "0800 0024h: no data");
@@ -467,7 +467,7 @@ class SdoServer {
     return expect(frame(0xC6, static_cast<std::uint32_t>(entry_->value.size())), "a block upload tells its size: C6h");
   }
 
-  /// A sub-block of up to block_size_ segments from position_ on.
+  /// Expects a sub-block of up to block_size_ segments, starting at position_.
   const char* expect_sub_block() {
     phase_ = Phase::block_upload_sent;
     const std::size_t size = entry_->value.size();
@@ -494,7 +494,7 @@ class SdoServer {
                         : aborts({sequence_number, block_size}, "more segments confirmed than sent");
     const std::size_t size = entry_->value.size();
     if (confirmed == in_order_ && last_arrived_) {
-      // No sub-block follows: whether its size is looked at is free.
+      // No sub-block follows: a server may or may not check its size.
       if (!size_right && answers_abort()) return aborts({block_size}, "0504 0002h");
       phase_ = Phase::block_upload_end;
       const std::size_t unused = size == 0 ? 7 : (7 - size % 7) % 7;
@@ -517,10 +517,10 @@ class SdoServer {
   Octets taken_{};                            ///< of a download
   std::optional<std::uint32_t> announced_{};  ///< length of a download
   std::uint8_t toggle_ = 0;
-  std::size_t position_ = 0;  ///< of an upload: bytes that the client has
+  std::size_t position_ = 0;  ///< of an upload: bytes that the client has received
   bool crc_ = false;
   std::uint8_t block_size_ = 0;
-  unsigned in_order_ = 0;      ///< segments of the sub-block that have come, or were sent
+  unsigned in_order_ = 0;      ///< segments of the sub-block that were received or sent
   bool last_arrived_ = false;  ///< the last segment was among them
 
   const Data* q_ = nullptr;

@@ -1,6 +1,6 @@
-/// A node of the runtime and a model of CiA 301 get the same SDO requests: each answer must be one that the model
-/// allows, byte by byte, and the values must be the same afterwards. From each state that the model has, all 256
-/// command bytes are tried with each multiplexer and with data of every kind; then come random walks.
+/// A node of the runtime and a model of CiA 301 receive the same SDO requests: the model must allow each answer, byte
+/// by byte, and the values must be the same afterwards. In each state of the model, all 256 command bytes are tried
+/// with each multiplexer and with data of every kind; random walks follow.
 #include "sdo_server_model.hpp"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ struct Bus {
   }
 };
 
-/// The dictionary of sdo_model_device.eds, written down a second time.
+/// The object dictionary of sdo_model_device.eds, written a second time.
 std::vector<Entry> dictionary() {
   const auto text = [](std::string_view string) { return Octets(string.begin(), string.end()); };
   const auto number = [](std::uint64_t value, std::size_t size) {
@@ -80,7 +80,7 @@ std::vector<Entry> dictionary() {
   };
 }
 
-/// Both servers, side by side.
+/// Both servers.
 class Pair {
  public:
   Pair() : expected{dictionary()} {
@@ -90,7 +90,7 @@ class Pair {
     restart();
   }
 
-  /// Idle, with the values of the beginning.
+  /// Makes both idle, with the initial values.
   void restart() {
     ask({0x80});
     node.values() = first_values;
@@ -138,7 +138,7 @@ class Pair {
 
   void begin_log() { log.clear(); }
 
-  /// A frame that is not a request to this server: not answered, and without consequences.
+  /// Sends a frame that is not a request to this server: it is not answered and has no effect.
   void ignore(const canopen::Frame& frame) {
     reset_bus();
     node.on_frame(frame, now);
@@ -146,7 +146,7 @@ class Pair {
     if (bus.count != 0 || bus.other) fail("a frame that is not a request is answered");
   }
 
-  /// Time passes until the server has nothing to do any more.
+  /// Lets time pass until the server has no deadline.
   void be_silent() {
     reset_bus();
     for (int i = 0; i < 10; ++i) {
@@ -161,7 +161,7 @@ class Pair {
     if (wrong != nullptr) fail(wrong);
   }
 
-  /// How many frames the bus takes before the node is called again.
+  /// The number of frames that the bus accepts before the node is called again.
   unsigned room = 1000;
 
   model::SdoServer expected;
@@ -176,7 +176,7 @@ class Pair {
     bus.room = room;
   }
 
-  /// Gives the node room until it has nothing to send.
+  /// Makes room on the bus until the node has nothing to send.
   void drain() {
     while (bus.room == 0) {
       bus.room = room;
@@ -240,7 +240,7 @@ Data request(unsigned command, std::uint32_t multiplexer, std::uint32_t word = 0
 
 using Path = std::vector<Data>;
 
-/// How to come into each state of the model: a search through what may be asked next.
+/// The requests that lead to each state of the model: a search through all possible next requests.
 std::map<std::string, Path> states(Pair& pair) {
   Path initiates;
   for (const std::uint32_t entry : {0x200000u, 0x200200u, 0x200400u, 0x200700u, 0x200800u, 0x200A00u, 0x200F00u}) {
@@ -308,7 +308,7 @@ bool has_multiplexer(unsigned command) {
 }
 
 #ifdef EDSC_SANITIZED
-constexpr unsigned thinned = 40;  // of a build with sanitizers: so many times less
+constexpr unsigned thinned = 40;  // divisor of the number of tests; larger with sanitizers
 #else
 constexpr unsigned thinned = 5;
 #endif
@@ -350,7 +350,7 @@ TEST(SdoServerModel, EachCommandInEachState) {
   tell(pair);
 }
 
-/// One walk through requests that mostly fit the state.
+/// A random walk of requests that mostly fit the state.
 void walk(Pair& pair, std::mt19937& random, unsigned steps) {
   const auto upto = [&random](unsigned end) { return static_cast<unsigned>(random() % end); };
   for (unsigned i = 0; i < steps && pair.failures == 0; ++i) {
@@ -428,7 +428,7 @@ TEST(SdoServerModel, OtherFramesDoNotDisturb) {
     pair.restart();
     pair.begin_log();
     for (const Data& step : path) pair.ask(step);
-    // An SDO request has eight bytes (7.2.4.3), is a data frame, and has the CAN-ID of 1200h:01.
+    // An SDO request has eight bytes (7.2.4.3), is a data frame and has the CAN-ID of 1200h:01.
     for (std::uint8_t size = 0; size < 8; ++size) {
       pair.ignore({.id = 0x605, .size = size, .data = {0x40, 0x00, 0x10}});
       pair.ignore({.id = 0x605, .size = size, .data = {0x80, 0x00, 0x10}});
