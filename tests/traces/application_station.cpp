@@ -53,7 +53,7 @@ class ApplicationStation final : public Station {
 
  private:
   nodes::Surroundings around_;
-  std::optional<Application<Station>> application_;  ///< nothing: it has no power
+  std::optional<Application<Station>> application_;  ///< empty without power
 };
 
 template <template <class Bus> class Application, class Device>

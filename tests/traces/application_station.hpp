@@ -1,4 +1,4 @@
-/// A station that runs a device's application, the one of examples/nodes.
+/// A station that runs the application of a device, as in examples/nodes.
 #pragma once
 
 #include <canopen/node_id.hpp>
@@ -9,7 +9,7 @@
 
 namespace trace {
 
-/// Nothing: there is no such application. `name` is that of the device's data sheet.
+/// Returns null if the application does not exist. `name` is that of the EDS.
 [[nodiscard]] std::unique_ptr<Station> make_application(std::string_view name, canopen::NodeId node_id);
 
 }  // namespace trace

@@ -66,7 +66,7 @@ class Player {
 
   void fail(const Line& line, std::string message) { failures_.push_back({line.number, std::move(message)}); }
 
-  /// All frames that the nodes have sent must have been in the trace.
+  /// Checks that the trace contains all frames that the nodes have sent.
   void expect_silence(const Line& before) {
     for (const canopen::Frame& frame : heard_) {
       if (!is_disregarded(frame)) fail(before, "up to here not expected: " + to_text(frame));
@@ -115,7 +115,7 @@ class Player {
     exchange();
   }
 
-  /// Brings the frames of each node to the trace and to the other nodes, until all are silent.
+  /// Passes the frames of each node to the trace and to the other nodes, until all are silent.
   void exchange() {
     for (bool silent = false; !silent;) {
       silent = true;
@@ -162,7 +162,7 @@ class Player {
   const Trace& trace_;
   const std::vector<std::unique_ptr<Station>>& stations_;
   canopen::TimePoint now_{};
-  std::deque<canopen::Frame> heard_;        ///< what the nodes have sent and the trace has not yet asked for
+  std::deque<canopen::Frame> heard_;        ///< sent by the nodes, not yet expected by the trace
   std::vector<std::uint32_t> disregarded_;  ///< CAN-IDs
   std::vector<Failure> failures_;
 };

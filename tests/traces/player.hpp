@@ -1,4 +1,4 @@
-/// Plays a trace against the nodes that it names.
+/// Replays a trace with the nodes that it names.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@ struct Failure {
   std::string message;
 };
 
-/// All places where the nodes do something else than the trace. `stations` are those of Trace::nodes, in that order.
+/// Returns each difference between the nodes and the trace. `stations` are those of Trace::nodes, in that order.
 [[nodiscard]] std::vector<Failure> play(const Trace& trace, const std::vector<std::unique_ptr<Station>>& stations);
 
 }  // namespace trace

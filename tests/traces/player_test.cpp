@@ -1,4 +1,4 @@
-/// The player finds what nodes do differently from a trace.
+/// The player finds differences between nodes and a trace.
 #include "player.hpp"
 
 #include <gtest/gtest.h>
@@ -7,9 +7,10 @@
 
 namespace {
 
-/// A node with one object, 2000h:00, of one byte. It sends its value after each change, 100h + node-ID, and takes the
-/// value of any frame with CAN-ID 300h + node-ID. 10 ms after power-on, and every 10 ms from then on, it sends 200h +
-/// node-ID. Of an error it sends the first byte of the manufacturer, 080h + node-ID, and the bits when it is over.
+/// A node with one object, 2000h:00, of one byte. After each change it sends the value with CAN-ID 100h + node-ID;
+/// a frame with CAN-ID 300h + node-ID sets the value. 10 ms after power-on, and then every 10 ms, it sends 200h +
+/// node-ID. For an error it sends 080h + node-ID with the first manufacturer-specific byte, or with the bits when
+/// it is over.
 class Echo final : public trace::Station {
  public:
   explicit Echo(std::uint8_t node_id) : node_id_{node_id} {}
@@ -63,10 +64,10 @@ class Echo final : public trace::Station {
   std::uint8_t node_id_;
   std::uint8_t value_ = 0;
   bool changed_ = false;
-  std::optional<canopen::TimePoint> due_;  ///< nothing: it has no power
+  std::optional<canopen::TimePoint> due_;  ///< empty without power
 };
 
-/// `line: message` of each failure; the nodes have the node-IDs 1 and 2.
+/// `line: message` of each failure; the nodes have node-IDs 1 and 2.
 std::vector<std::string> failures(const std::string& lines, const std::string& kind = "device") {
   std::istringstream text{kind + " a\nnode 1\n" + kind + " b\nnode 2\n" + lines};
   const trace::Trace trace = trace::read(text, "example.trace");

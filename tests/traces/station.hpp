@@ -1,4 +1,4 @@
-/// A node of a trace's bus: what the player sees of it, whatever its device.
+/// A node on the bus of a trace, as the player uses it; independent of the device.
 #pragma once
 
 #include <array>
@@ -22,29 +22,29 @@ class Station {
   virtual ~Station() = default;
 
   virtual void power_on(canopen::TimePoint now) = 0;
-  /// What is not stored is lost; until power-on nothing but time comes.
+  /// Values that are not stored are lost; until power-on only time passes.
   virtual void power_off() = 0;
   virtual void on_frame(const canopen::Frame& frame, canopen::TimePoint now) = 0;
   virtual void on_time(canopen::TimePoint now) = 0;
   [[nodiscard]] virtual std::optional<canopen::TimePoint> next_deadline() const = 0;
   [[nodiscard]] virtual canopen::AbortCode set(std::uint16_t index, std::uint8_t sub_index, const Value& value) = 0;
   virtual void emergency(const Emergency& error) = 0;
-  /// A line of input of the application. False: it knows no such line, or there is no application.
+  /// A line of input for the application. Returns false if it does not know the line, or without an application.
   [[nodiscard]] virtual bool input([[maybe_unused]] const std::string& line,
                                    [[maybe_unused]] canopen::TimePoint now) {
     return false;
   }
   virtual void emergency_over(canopen::ErrorRegister bits) = 0;
-  /// The bytes of an object's value. Nothing when the device has no such object.
+  /// Returns the bytes of an object's value, or nothing if the device does not have the object.
   [[nodiscard]] virtual std::optional<std::vector<std::uint8_t>> value(std::uint16_t index, std::uint8_t sub_index) = 0;
 
-  /// The bus that the node sends to: keeps its frames until the player takes them.
+  /// The bus that the node sends to; keeps the frames until the player takes them.
   bool send(const canopen::Frame& frame) {
     sent_.push_back(frame);
     return true;
   }
 
-  /// The oldest frame that the node has sent and nobody has taken.
+  /// Takes the oldest frame that the node has sent.
   [[nodiscard]] std::optional<canopen::Frame> take() {
     if (sent_.empty()) return std::nullopt;
     const canopen::Frame frame = sent_.front();
@@ -56,7 +56,7 @@ class Station {
   std::deque<canopen::Frame> sent_;
 };
 
-/// What LSS configures. The bus of a trace has no bit rate: all nodes keep to it but one that is switching.
+/// The settings of LSS. The bus of a trace has no bit rate: all nodes use it except one that is switching.
 struct LssMemory {
   canopen::NodeId node_id;
   canopen::LssBitTiming timing;
@@ -74,13 +74,13 @@ struct LssMemory {
   void start_communication(canopen::LssBitTiming) { on_bus = true; }
 };
 
-/// What outlives power-off.
+/// What a power-off does not delete.
 struct Memory {
   LssMemory lss;
   canopen::MemoryStorage storage;
 };
 
-/// The handlers that a device has its parameters stored with and is configured with, where it does either.
+/// The handlers for stored parameters and LSS, as far as the device has these services.
 template <class Device>
 [[nodiscard]] auto handlers_of(Memory& memory) {
   const auto storage = [&memory] {
@@ -146,7 +146,7 @@ class DeviceStation<Device, std::tuple<Handlers...>> final : public Station {
 
  private:
   Memory memory_;
-  std::optional<canopen::Node<Device, Station, Handlers...>> node_;  ///< nothing: it has no power
+  std::optional<canopen::Node<Device, Station, Handlers...>> node_;  ///< empty without power
 };
 
 template <class Device>

@@ -11,7 +11,7 @@ namespace trace {
 
 namespace {
 
-/// Text in front of the comment; a `#` inside quotes is text.
+/// The text before the comment; a `#` inside quotes is text.
 std::string without_comment(const std::string& line) {
   bool quoted = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -72,7 +72,7 @@ canopen::Duration read_span(std::istringstream& words) {
   throw std::invalid_argument{"a time is a number and us, ms or s"};
 }
 
-/// Whether a trace has said a device's node-ID, be it that it has none yet.
+/// Whether a trace has specified a node-ID for a device, which may be 255 (none yet).
 bool is_given(canopen::NodeId node_id) { return node_id.valid() || node_id == canopen::unconfigured_node_id; }
 
 canopen::NodeId read_node_id(std::istringstream& words) {
@@ -89,7 +89,7 @@ std::size_t position_of(canopen::NodeId node_id, const Trace& trace) {
   return static_cast<std::size_t>(found - trace.nodes.begin());
 }
 
-/// The first word behind `node 2`, which may be missing where there is one node only.
+/// The first word after `node 2`, which may be omitted if there is only one node.
 std::string word_behind_node(std::istringstream& words, const Trace& trace, Line& line) {
   std::string word;
   words >> word;
@@ -142,7 +142,7 @@ void read_emergency(std::istringstream& words, const Trace& trace, Line& line) {
   }
 }
 
-/// Whether only time can pass.
+/// Whether the nodes have no power.
 bool is_without_power(const Trace& trace) {
   const auto last = std::ranges::find_if(trace.lines.rbegin(), trace.lines.rend(), [](const Line& line) {
     return line.step == Step::power_off || line.step == Step::power_on;
@@ -150,7 +150,7 @@ bool is_without_power(const Trace& trace) {
   return last != trace.lines.rend() && last->step == Step::power_off;
 }
 
-/// `on` or `off`, each once the other has been.
+/// `on` or `off`, alternating.
 void read_power(std::istringstream& words, Trace& trace, Line& line) {
   std::string state;
   words >> state;

@@ -1,4 +1,4 @@
-/// The traces of a folder as parameters of a test, and the names of their tests.
+/// The traces of a folder as parameters of a test, and the names of these tests.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 
 namespace trace {
 
-/// In the order of their names.
+/// Sorted by name.
 inline std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator{folder}) {

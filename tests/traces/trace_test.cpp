@@ -15,7 +15,7 @@ trace::Trace read(const std::string& text) {
   return trace::read(stream, "example.trace");
 }
 
-/// What the reader says against a text; nothing when it takes it.
+/// The error message of the reader for a text; empty if it accepts the text.
 std::string refusal(const std::string& text) {
   try {
     static_cast<void>(read(text));

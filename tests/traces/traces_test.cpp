@@ -1,4 +1,4 @@
-/// Every trace of the manuals, replayed against the generated device that it names.
+/// Every trace of the manuals, replayed with the generated device that it names.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@
 namespace {
 
 struct DeviceRow {
-  std::string_view name;  ///< as a trace names it
+  std::string_view name;  ///< as in a trace
   std::unique_ptr<trace::Station> (*make)(canopen::NodeId);
 };
 
