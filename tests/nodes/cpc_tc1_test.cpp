@@ -1,4 +1,4 @@
-/// The runnable servo drive without modes of operation: what manual 000 says of its application.
+/// The runnable servo drive without modes of operation: the statements of manual 000 about its application.
 #include "cpc_tc1/cpc_tc1.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 using canopen::cia402::State;
 namespace od = cpc_tc1::od;
 
-/// Operational, what TPDO1 to TPDO4 have told by then taken away. RPDO2 and RPDO3 are valid.
+/// Operational; the first TPDO1 to TPDO4 have been removed. RPDO2 and RPDO3 are valid.
 struct Servo : bench::NodeBench<cpc_tc1_node::CpcTc1> {
   Servo() {
     ask("605 23 01 14 01 05 03 00 00");
@@ -47,7 +47,7 @@ TEST(CpcTc1Node, HasItsStatuswordAndMoreIn1002h) {
   EXPECT_EQ(drive.ask("605 40 02 10 00 00 00 00 00"), "585 43 02 10 00 37 06 07 01");  // 17, 18: motor on, phase found
   drive.ask("305 1F 00 00 00 01 00");
   drive.pass(100ms);
-  EXPECT_EQ(drive.status(), 0x0007'1237u);  // it turns
+  EXPECT_EQ(drive.status(), 0x0007'1237u);  // the motor turns
   drive.pass(2s);
   EXPECT_EQ(drive.status() & 0xFFFF, drive.statusword());
   EXPECT_EQ(drive.status(), 0x0107'1637u);
@@ -67,7 +67,7 @@ TEST(CpcTc1Node, PositionsRunsAndFollowsInTheModeThatIsSelected) {
   drive.ask("405 0F 00 E8 03 00 00");
   drive.pass(1s);
   EXPECT_EQ(drive.app->axis().velocity(), 1'000);
-  EXPECT_EQ(drive.input("mode 6"), "?");  // it has no 6098h
+  EXPECT_EQ(drive.input("mode 6"), "?");  // the drive does not have 6098h
 }
 
 TEST(CpcTc1Node, StopsWhenItsEnableInputFalls) {
@@ -88,7 +88,7 @@ TEST(CpcTc1Node, KeepsTheCanIdOfATpdoWhileItIsValidAndItsBits29And30) {
   Servo drive;  // Operational
   constexpr auto refused = "585 80 00 18 01 30 00 09 06";
   constexpr auto taken = "585 60 00 18 01 00 00 00 00";
-  EXPECT_EQ(drive.ask("605 23 00 18 01 86 01 00 40"), refused);  // another CAN-ID
+  EXPECT_EQ(drive.ask("605 23 00 18 01 86 01 00 40"), refused);  // a different CAN-ID
   EXPECT_EQ(drive.ask("605 23 00 18 01 85 01 00 60"), refused);  // bit 29
   EXPECT_EQ(drive.ask("605 23 00 18 01 85 01 00 00"), refused);  // bit 30
   EXPECT_NE(drive.ask("205 06 00").find("185 31 02"), std::string::npos);
@@ -163,7 +163,7 @@ TEST(CpcTc1Node, GetsItsNodeIdAndItsBitRateByLssAndKeepsThem) {  // chapter 13; 
   EXPECT_EQ(drive.ask(lss_waiting), "");
   EXPECT_TRUE(drive.logged("LSS: node-ID 42, 125 kbit/s stored"));
   EXPECT_EQ(drive.power_cycle(), "72A 00");
-  bench::NodeBench<cpc_tc1_node::CpcTc1> again{std::nullopt, store};  // the process has been started anew
+  bench::NodeBench<cpc_tc1_node::CpcTc1> again{std::nullopt, store};  // a new process
   EXPECT_EQ(again.boot_up, "72A 00");
   for (const char* suffix : {"", ".application", ".lss"}) std::filesystem::remove(store + suffix);
 }
@@ -173,8 +173,8 @@ TEST(CpcTc1Node, TakesTheBitRatesOfChapter13AndNoOther) {
   bench::NodeBench<cpc_tc1_node::CpcTc1> drive;
   drive.ask(lss_configuration);
   struct Row {
-    int index;         ///< of table 0 of CiA 305
-    const char* rate;  ///< nothing: the manual does not have it
+    int index;         ///< in table 0 of CiA 305
+    const char* rate;  ///< null: not in the manual
   };
   for (const Row& row : {Row{0, "1000"}, Row{1, "800"}, Row{2, "500"}, Row{3, "250"}, Row{4, "125"}, Row{5, nullptr},
                          Row{6, "50"}, Row{7, "20"}, Row{8, "10"}, Row{9, nullptr}}) {

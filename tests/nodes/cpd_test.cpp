@@ -1,4 +1,4 @@
-/// The runnable servo drive with modes of its own: what manual 002 says of its application.
+/// The runnable servo drive with its own modes: the statements of manual 002 about its application.
 #include "cpd/cpd.hpp"
 
 #include <gtest/gtest.h>
@@ -84,7 +84,7 @@ TEST(CpdNode, SendsAnEmcyForAnErrorAndGoesToFault) {
   EXPECT_EQ(drive.ask("605 40 41 20 00 00 00 00 00"), "585 4B 41 20 00 20 00 00 00");  // bit 5
   EXPECT_EQ(drive.ask("205 80 00"), "085 00 00 00 00 00 00 00 00 | 185 31 66");
   EXPECT_EQ(drive.ask("605 40 41 20 00 00 00 00 00"), "585 4B 41 20 00 00 00 00 00");
-  EXPECT_EQ(drive.get<od::error_code>(), 0x2212);  // of the last one
+  EXPECT_EQ(drive.get<od::error_code>(), 0x2212);  // of the last error
 }
 
 // shows 002.57
@@ -142,7 +142,7 @@ TEST(CpdNode, KeepsTheLast20ErrorsAndReadsThemFromTheOldestOn) {
     EXPECT_EQ(drive.ask(oldest_error), "585 60 3B 30 05 00 00 00 00");
     EXPECT_EQ(drive.ask(next_error), error_number(0x1003));
   }
-  Servo again{store};  // the process has been started anew
+  Servo again{store};  // a new process
   for (unsigned code = 0x1003; code <= 0x1016; ++code) EXPECT_EQ(again.ask(next_error), error_number(code));
   EXPECT_EQ(again.ask(next_error), error_number(0));
   for (const char* suffix : {"", ".application", ".lss"}) std::filesystem::remove(store + suffix);
@@ -220,7 +220,7 @@ TEST(CpdNode, BrakesInHaltAndGoesOnWithTheMovement) {
   drive.enable(1);
   drive.ask("305 5F 00 A0 86 01 00");  // relative 100'000
   drive.pass(200ms);
-  EXPECT_EQ(drive.app->axis().velocity(), 398);  // 2'000 rpm/s, a step behind
+  EXPECT_EQ(drive.app->axis().velocity(), 398);  // 2'000 rpm/s, one step late
   drive.ask("205 5F 01");
   drive.pass(1s);
   EXPECT_EQ(drive.app->axis().velocity(), 0);

@@ -1,4 +1,4 @@
-/// The runnable stepper drive: what manual 001 says of its application.
+/// The runnable stepper drive: the statements of manual 001 about its application.
 #include "ezd_1136/ezd_1136.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ constexpr auto to_velocity = "605 2F 60 60 00 03 00 00 00";
 constexpr auto to_homing = "605 2F 60 60 00 06 00 00 00";
 constexpr auto to_csp = "605 2F 60 60 00 08 00 00 00";
 
-/// Operational. TPDO1 is 6041h, 603Fh, 6061h; TPDO2 and TPDO3 are off.
+/// Operational. TPDO1 is 6041h, 603Fh, 6061h; TPDO2 and TPDO3 are not valid.
 struct Stepper : bench::NodeBench<ezd_1136_node::Ezd1136> {
   Stepper() {
     set<od::profile_velocity>(1'000);
@@ -30,7 +30,7 @@ struct Stepper : bench::NodeBench<ezd_1136_node::Ezd1136> {
     ask(bench::start);
   }
 
-  /// 6040h by SDO; what follows the answer.
+  /// Writes 6040h over SDO; returns what follows the answer.
   std::string control(std::uint16_t word) {
     const canopen::Frame frame{
         .id = 0x605,
@@ -107,7 +107,7 @@ TEST(Ezd1136Node, AddsWarningsInTheHighByteOfTheCode) {
   EXPECT_TRUE(drive.logged("LED red steady"));
   EXPECT_EQ(drive.input("warning 4096 on"), "085 00 18 81 00 00 00 00 00 | 185 50 02 00 18 01");  // 6144
   EXPECT_EQ(drive.input("alarm 26"), "085 1A 18 A1 00 00 00 00 00 | 185 18 02 1A 18 01");
-  EXPECT_EQ(drive.control(0x80), "085 00 00 81 00 00 00 00 00 | 185 50 02 1A 18 01");  // the warnings are left
+  EXPECT_EQ(drive.control(0x80), "085 00 00 81 00 00 00 00 00 | 185 50 02 1A 18 01");  // the warnings remain
   EXPECT_EQ(drive.input("warning 2048 off"), "085 00 00 81 00 00 00 00 00");
   EXPECT_EQ(drive.input("warning 4096 off"), "085 00 00 00 00 00 00 00 00");
   for (const char* bits : {"256", "512", "1024", "8192"}) {
@@ -123,7 +123,7 @@ TEST(Ezd1136Node, RaisesAlarms13And14OutsideItsSupply) {
   EXPECT_EQ(drive.input("supply 60"), "");
   EXPECT_EQ(drive.get<od::bus_voltage>(), 6'000);
   EXPECT_EQ(drive.input("supply 17"), "085 0D 00 05 00 00 00 00 00 | 185 18 02 0D 00 01");
-  EXPECT_EQ(drive.control(0x80), "");  // as long as it lasts
+  EXPECT_EQ(drive.control(0x80), "");  // as long as the fault lasts
   drive.control(0x00);
   EXPECT_EQ(drive.input("supply 24"), "");
   EXPECT_EQ(drive.control(0x80), "085 00 00 00 00 00 00 00 00 | 185 50 02 0D 00 01");
@@ -133,7 +133,7 @@ TEST(Ezd1136Node, RaisesAlarms13And14OutsideItsSupply) {
 // shows 001.48
 TEST(Ezd1136Node, RaisesAlarm50WhenTheBusIsLostWhileEnabledAnd100WhenItIsStartedAgain) {
   Stepper drive;
-  drive.ask("605 23 16 10 01 64 00 01 00");  // node 1 has 100 ms
+  drive.ask("605 23 16 10 01 64 00 01 00");  // node 1 within 100 ms
   drive.ask("701 05");
   drive.enable();
   drive.pass(99ms);
@@ -159,7 +159,7 @@ TEST(Ezd1136Node, WarnsAtItsLimits) {
   EXPECT_EQ(drive.input("limit positive off"), "085 00 00 00 00 00 00 00 00 | 185 50 02 00 08 01");
   EXPECT_EQ(drive.input("limit negative on"), "085 00 10 81 00 00 00 00 00 | 185 50 0B 00 10 01");
   EXPECT_EQ(drive.input("limit negative off"), "085 00 00 00 00 00 00 00 00 | 185 50 02 00 10 01");
-  // A soft limit: the warning alone.
+  // A software limit: only the warning.
   drive.set<od::software_position_limit<2>>(1'000);
   drive.enable();
   drive.set<od::target_position>(5'000);
@@ -214,7 +214,7 @@ TEST(Ezd1136Node, TellsItsCurrentAndItsAnalogueInputInThousandths) {
 
 struct QuickStop {
   std::int16_t option;
-  std::chrono::milliseconds stands;  ///< after this time; from 10 turns per second
+  std::chrono::milliseconds stands;  ///< time until rest, from 10 turns per second
   State then;
 };
 
@@ -256,7 +256,7 @@ TEST(Ezd1136Node, LeavesOperationAsItsOptionsSay) {
   drive.ask(to_velocity);
   drive.enable();
   drive.pass(1s);
-  drive.control(0x06);  // 605Bh is 0: at once
+  drive.control(0x06);  // 605Bh is 0: immediately
   EXPECT_EQ(drive.state(), State::ready_to_switch_on);
   drive.pass(20s);
   drive.enable();
@@ -289,7 +289,7 @@ TEST(Ezd1136Node, TakesItsModesAndNoOther) {
 // shows 001.54, 001.57, 001.58, 001.59, 001.65
 TEST(Ezd1136Node, FollowsTheControlword) {
   Stepper drive;
-  EXPECT_EQ(drive.statusword(), 0x0250);  // bit 4: it has power; bit 5 is 0
+  EXPECT_EQ(drive.statusword(), 0x0250);  // bit 4: voltage enabled; bit 5 is 0
   EXPECT_EQ(drive.control(0x00), "");
   EXPECT_EQ(drive.control(0x06), "185 31 02 00 00 01");
   EXPECT_EQ(drive.control(0x07), "185 33 02 00 00 01");
@@ -320,12 +320,12 @@ TEST(Ezd1136Node, GoesToAPositionWhenBit4RisesWithBit5) {
   EXPECT_EQ(drive.control(0x3F), "185 37 12 00 00 01");
   drive.pass(100ms);
   drive.set<od::target_position>(2'000);
-  EXPECT_EQ(drive.control(0x2F), "");  // bit 12 stays
-  EXPECT_EQ(drive.control(0x3F), "");  // at once to another one
+  EXPECT_EQ(drive.control(0x2F), "");  // bit 12 remains 1
+  EXPECT_EQ(drive.control(0x3F), "");  // changes immediately to the new set-point
   EXPECT_EQ(drive.pass(2s), "185 37 16 00 00 01");
   EXPECT_EQ(drive.get<od::position_actual_value>(), 2'000);
   drive.control(0x4F);
-  drive.control(0x5F);  // bit 6: 2'000 further
+  drive.control(0x5F);  // bit 6: relative, 2'000 further
   drive.pass(2s);
   EXPECT_EQ(drive.get<od::position_actual_value>(), 4'000);
 }

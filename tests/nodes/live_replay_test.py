@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Plays traces against the runnable nodes as processes on `edsc bus`, in real time, byte for byte.
+"""Plays traces with the runnable nodes as processes on `edsc bus`, in real time, byte for byte.
 
     live_replay_test.py SOURCE_DIR EDSC NODES_DIR [TRACE...]
 
-Only traces of one application that do not look at a frame within a millisecond: what they expect has to come in its order,
-however late. Lines of trace.hpp that are not understood here: `=`, `emergency` and `power`.
+Only for traces of one application that do not check times below a millisecond: the expected frames must be received in
+order, however late. Lines of trace.hpp that are not supported here: `=`, `emergency` and `power`.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ TRACES = sys.argv[4:] or ["001-states-in-homing", "001-states-in-profile-positio
                           "002-6.3.4-manual-movement"]
 ADDRESS = re.compile(r"socketcand:127\.0\.0\.1:(\d+)/(\w+)\n")
 FRAME = re.compile(rb"< frame ([0-9A-F]+) [0-9.]+ ([0-9A-F]*) >")
-LATEST = 120.0  # s until a frame has come
+LATEST = 120.0  # s until a frame must be received
 
 
 class Bus:
@@ -65,8 +65,8 @@ class Replay:
     def __init__(self, trace: str, bus: Bus, process: subprocess.Popen, node_id: int) -> None:
         self.trace, self.bus, self.process, self.node_id = trace, bus, process, node_id
         self.disregarded: set[int] = set()
-        self.early: list[tuple[int, list[str]]] = []  # that came while `read` waited for its answer
-        self.until = 0.0  # time that has to pass before the next stimulus
+        self.early: list[tuple[int, list[str]]] = []  # received while `read` waited for its answer
+        self.until = 0.0  # time of the next stimulus
         self.frames = 0
 
     def receive(self, seconds: float) -> tuple[int, list[str]] | None:
@@ -85,7 +85,7 @@ class Replay:
                 raise AssertionError(f"expected {can_id:03X} {' '.join(data)}, got {got[0]:03X} {' '.join(got[1])}")
 
     def be_silent(self) -> None:
-        """Lets the time pass that has to; nothing comes but what may come at any time."""
+        """Waits until `until`; only disregarded frames may be received."""
         while (left := self.until - time.monotonic()) > 0:
             got = self.receive(left)
             if got and got[0] not in self.disregarded:
@@ -132,7 +132,7 @@ class Replay:
                 self.be_silent()
                 self.process.stdin.write(" ".join(line) + "\n")
                 self.process.stdin.flush()
-                time.sleep(0.05)  # until it has been taken; the bus would overtake it
+                time.sleep(0.05)  # until the node has read it; a frame would be faster
             case ["read", place, value]:
                 self.be_silent()
                 self.read(place, value)
@@ -145,7 +145,7 @@ def head(trace: str, key: str) -> str:
 
 
 def replay(name: str, address: re.Match[str]) -> str:
-    """What went wrong; nothing where the frames were those of the trace."""
+    """Returns what went wrong, or an empty text if the frames are those of the trace."""
     try:
         play(name, int(address[1]), address[2])
     except AssertionError as problem:

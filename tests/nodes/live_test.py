@@ -4,7 +4,7 @@
     live_test.py SOURCE_DIR PROGRAMS...             on vcan0 of the kernel
     live_test.py --edsc EDSC SOURCE_DIR PROGRAMS...  on a bus of `edsc bus`
 
-PROGRAMS: plant, plant_master and rk5c. What this script sees is what any other node would see.
+PROGRAMS: plant, plant_master and rk5c. The script receives what any other node would receive.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-LATE = 600.0  # seconds that a frame may take on a busy machine
+LATE = 600.0  # maximum seconds until a frame on a busy machine
 EVENT_TIMER_OF_TPDO_2 = bytes.fromhex("2B 01 18 05")
-CYCLE_MS = 500  # of the master of the plant, whose guard time it is, too
+CYCLE_MS = 500  # cycle and guard time of the master of the plant
 REMOTE = 0x4000_0000
 
 
@@ -145,7 +145,7 @@ def expect(bus: KernelBus | ServedBus, wanted: Frame, seconds: float = LATE) -> 
 
 
 def ask(bus: KernelBus | ServedBus, request: str, answer: str) -> None:
-    """The next frame with the answer's CAN-ID; others are passed over."""
+    """Expects this answer as the next frame with its CAN-ID; ignores other frames."""
     bus.send(frame_of(request))
     wanted = frame_of(answer)
     end = time.monotonic() + LATE
@@ -165,13 +165,13 @@ def frame_of(text: str) -> Frame:
 
 
 def volts(raw: int) -> float:
-    """In the middle of what a channel of the module takes for this number."""
+    """Returns the middle of the voltages that a channel of the module converts to this number."""
     signed = raw - 0x1_0000 if raw >= 0x8000 else raw
     return (signed + (0.5 if signed > 0 else -0.5 if signed < 0 else 0.0) + 32768) / 65535 * 20 - 10
 
 
 def next_frame(bus: KernelBus | ServedBus, seconds: float, cyclic: set[int], wanted: Frame | None = None) -> Frame | None:
-    """Passes over TPDOs of an event timer that are not wanted: they come when they come."""
+    """Returns the next frame, but ignores TPDOs of an event timer that are not wanted: their times are not known."""
     end = time.monotonic() + seconds
     while True:
         got = bus.receive(max(0.0, end - time.monotonic()))
@@ -180,7 +180,7 @@ def next_frame(bus: KernelBus | ServedBus, seconds: float, cyclic: set[int], wan
 
 
 def read(bus: KernelBus | ServedBus, node_id: int, entry: str, cyclic: set[int]) -> int:
-    """An INTEGER16 of a node, which has taken all frames of before by then."""
+    """Reads an INTEGER16 of a node, which has then processed all earlier frames."""
     index, sub_index = (int(part.rstrip("h"), 16) for part in entry.split(":"))
     bus.send(Frame(0x600 + node_id, bytes([0x40, index & 0xFF, index >> 8, sub_index, 0, 0, 0, 0])))
     answer = next_frame(bus, LATE, cyclic)
@@ -189,7 +189,7 @@ def read(bus: KernelBus | ServedBus, node_id: int, entry: str, cyclic: set[int])
 
 
 def set_input(bus: KernelBus | ServedBus, plant: Program, node_id: int, entry: str, value: int, cyclic: set[int]) -> None:
-    """Gives a channel its voltage after all frames of before, and waits until the node has seen it."""
+    """Sets the voltage of a channel after all earlier frames, and waits until the node has measured it."""
     read(bus, node_id, entry, cyclic)
     plant.say(f"node {node_id} analogue {int(entry.split(':')[1], 16)} {volts(value):.6f}")
     end = time.monotonic() + LATE
@@ -198,11 +198,11 @@ def set_input(bus: KernelBus | ServedBus, plant: Program, node_id: int, entry: s
 
 
 def replay(bus: KernelBus | ServedBus, plant: Program, trace: Path) -> int:
-    """The number of frames that were as in the trace."""
+    """Returns the number of frames that are as in the trace."""
     frames = 0
-    span = 0.0  # what the trace lets pass before its next line
-    begun, due = 0.0, 0.0  # the last request, and how long after it the next frame may come at the earliest
-    cyclic: set[int] = set()  # CAN-IDs of TPDOs whose event timer runs
+    span = 0.0  # time before the next line of the trace
+    begun, due = 0.0, 0.0  # time of the last request; minimum time from it to the next frame
+    cyclic: set[int] = set()  # CAN-IDs of TPDOs with a running event timer
     for number, line in enumerate(trace.read_text(encoding="utf-8").splitlines(), 1):
         words = line.split("#")[0].split()
         if not words or words[0] in ("manual", "device", "node"):
@@ -268,7 +268,7 @@ def run_master_and_plant(bus: KernelBus | ServedBus, arguments: argparse.Namespa
     agreed, differed = map(int, re.fullmatch(r"inputs were as the outputs in (\d+) cycles, otherwise in (\d+)", last).groups())
     assert agreed >= 10 and agreed > differed, last
     print(f"ok   {last}")
-    plant.wait_for(unguarded, times + 1)  # nobody guards any more
+    plant.wait_for(unguarded, times + 1)  # the master no longer guards
     plant.end()
 
 
@@ -285,7 +285,7 @@ def restart_the_sensor(bus: KernelBus | ServedBus, arguments: argparse.Namespace
         sensor.say("position 1 200000")
         ask(bus, "607 23 10 60 01 E8 03 00 00", "587 60 10 60 01 00 00 00 00")
         ask(bus, "607 23 10 10 01 73 61 76 65", "587 60 10 10 01 00 00 00 00")
-        sensor.process.stdin.close()  # its end is not the sensor's
+        sensor.process.stdin.close()  # the sensor must keep running
         time.sleep(0.3)
         ask(bus, "607 40 20 60 01 00 00 00 00", "587 42 20 60 01 E8 03 00 00")
         sensor.end()

@@ -1,4 +1,4 @@
-/// The master of the example and the plant on one bus, in a time of their own.
+/// The master of the example and the plant on one bus, in simulated time.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ struct MasterAndPlant : testing::Test {
 
   std::vector<std::string> log;
   std::vector<std::string> frames;
-  std::function<bool(const canopen::Frame&)> loses;  ///< frames that do not reach the plant
+  std::function<bool(const canopen::Frame&)> loses;  ///< frames that are lost before the plant
   canopen::VirtualBus bus;
   canopen::VirtualBus::Endpoint& end = bus.attach();
   nodes::Surroundings around;
@@ -115,7 +115,7 @@ TEST_F(MasterAndPlant, GoOnWhenAllNodesAreLostAndBack) {
 TEST_F(MasterAndPlant, BringTheOutputsToTheirErrorValuesWhenTheMasterIsLost) {
   run(20);
   EXPECT_NE(plant.digital_out().node().get<can_2057c::od::write_output_8_bit<1>>(), 0);
-  bus.run_for(1s);  // nobody guards
+  bus.run_for(1s);  // no guarding
   EXPECT_EQ(plant.digital_out().node().get<can_2057c::od::write_output_8_bit<1>>(), 0);
   EXPECT_EQ(plant.analogue_out().node().get<can_2024c::od::write_analogue_output_16_bit<1>>(), 0);
   EXPECT_TRUE(sent("081 30 81 11 07 00 00 00 00"));
@@ -128,7 +128,7 @@ TEST_F(MasterAndPlant, ReportEmergencies) {
   EXPECT_TRUE(logged("node 2 tells EMCY 5000h"));
 }
 
-// canopen::Master on its own
+// Only canopen::Master
 
 struct MasterOfOne : testing::Test {
   MasterOfOne() {
@@ -174,7 +174,7 @@ TEST_F(MasterOfOne, KeepsPdosThatComeDuringATransferAndLetsHandlersTransfer) {
   EXPECT_TRUE(inputs.on_pdo<can_2053c::Tpdo1>(
       [&](auto, auto) { read.push_back(inputs.read<od::read_input_8_bit<1>>().value()); }));
   EXPECT_TRUE(master.command(canopen::NmtCommand::start, canopen::NodeId{5}));
-  EXPECT_TRUE(inputs.write<od::guard_time>(100));  // the TPDO of the start comes meanwhile
+  EXPECT_TRUE(inputs.write<od::guard_time>(100));  // the TPDO that follows the start is received meanwhile
   EXPECT_TRUE(read.empty());
   module.set_digital(0, 7);
   master.poll(10ms);

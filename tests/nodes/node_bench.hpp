@@ -1,4 +1,4 @@
-/// A runnable node on a bus that records, with its log.
+/// A runnable node on a bus that records frames, with its log.
 #pragma once
 
 #include <canopen/node_id.hpp>
@@ -13,7 +13,7 @@
 
 namespace bench {
 
-/// Switched on at time 0; its boot-up message has been taken away.
+/// Switched on at time 0; the boot-up message has been removed.
 template <template <class Bus> class Application>
 class NodeBench {
  public:
@@ -22,7 +22,7 @@ class NodeBench {
     power_on();
   }
 
-  /// What it has sent by then.
+  /// Returns what it sends at power-on.
   std::string power_on() {
     app.emplace(bus, around);
     app->start(now);
@@ -33,15 +33,15 @@ class NodeBench {
     return power_on();
   }
 
-  /// What it sends because of this frame.
+  /// Returns what it sends in response to this frame.
   std::string ask(const std::string& request) {
     app->on_frame(frame(request), now);
     return bus.take();
   }
-  /// What it sends because of this line; "?" when it knows none such.
+  /// Returns what it sends in response to this line; "?" if it does not know the line.
   std::string input(std::string_view line) { return app->input(nodes::InputLine{line}, now) ? bus.take() : "?"; }
 
-  /// What it sends while this time passes.
+  /// Returns what it sends during this time.
   std::string pass(canopen::Duration span) {
     const canopen::TimePoint end = now + span;
     while (const auto deadline = app->next_deadline()) {
@@ -54,7 +54,7 @@ class NodeBench {
     return bus.take();
   }
 
-  /// Whether the log has this line, which is taken away with those before it.
+  /// Returns whether the log has this line; removes it and the lines before it.
   bool logged(std::string_view line) {
     for (std::size_t i = 0; i < log.size(); ++i) {
       if (log[i] != line) continue;

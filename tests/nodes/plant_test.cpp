@@ -1,4 +1,4 @@
-/// The four I/O modules, wired to each other: the worked example of manual 003 against the runnable nodes.
+/// The four I/O modules, wired to each other: the worked example of manual 003 with the runnable nodes.
 #include "plant/plant.hpp"
 
 #include <gtest/gtest.h>
@@ -25,9 +25,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// The worked example, by the trace player
+// The worked example, with the trace player
 
-/// A runnable module among the stations of a trace.
+/// A runnable module as a station of a trace.
 template <template <class Bus> class Module>
 class ModuleStation final : public trace::Station {
  public:
@@ -39,7 +39,7 @@ class ModuleStation final : public trace::Station {
   void on_time(canopen::TimePoint now) override { module->on_time(now); }
   [[nodiscard]] std::optional<canopen::TimePoint> next_deadline() const override { return module->next_deadline(); }
 
-  /// What an input measures, whatever its wire brings.
+  /// Sets what an input measures, independent of its wire.
   [[nodiscard]] canopen::AbortCode set(std::uint16_t index, std::uint8_t sub_index,
                                        const trace::Value& value) override {
     const auto channel = static_cast<std::uint8_t>(sub_index - 1);
@@ -95,7 +95,7 @@ INSTANTIATE_TEST_SUITE_P(Manual003, PlantTraces, testing::ValuesIn(trace::files_
 
 // In one process on one bus
 
-/// The plant and what goes over its bus.
+/// The plant and the frames on its bus.
 struct PlantOnABus : testing::Test {
   PlantOnABus() {
     canopen::VirtualBus::connect(port, plant);
@@ -129,7 +129,7 @@ TEST_F(PlantOnABus, BringsOutputsToInputs) {
   EXPECT_EQ(take(), "701 00 | 702 00 | 703 00 | 704 00");
   EXPECT_EQ(send("000 01 00"), "000 01 00 | 182 00 00 | 284 00 00 00 00 00 00 00 00 | 384 00 00 00 00 00 00 00 00");
   EXPECT_EQ(send("201 34 12"), "201 34 12 | 182 34 12");
-  EXPECT_EQ(send("303 FF 3F 00 80 00 00 01 00"), "303 FF 3F 00 80 00 00 01 00");  // analogue inputs send no change
+  EXPECT_EQ(send("303 FF 3F 00 80 00 00 01 00"), "303 FF 3F 00 80 00 00 01 00");  // analogue inputs do not send changes
   EXPECT_EQ(send("284 R 8"), "284 R 8 | 284 FF 3F 00 80 00 00 01 00");
   EXPECT_EQ(send("384 R 8"), "384 R 8 | 384 00 00 01 00 00 00 00 00");
 }
@@ -142,7 +142,7 @@ TEST_F(PlantOnABus, TakesLinesForEachModule) {
   EXPECT_EQ(input("node 1 fault eeprom"), "081 00 50 81 02 00 00 00 00");
   EXPECT_EQ(input("node 1 fault over"), "081 00 00 00 00 00 00 00 00");
   EXPECT_FALSE(plant.input(nodes::InputLine{"node 5 fault eeprom"}, bus.now()));
-  EXPECT_FALSE(plant.input(nodes::InputLine{"node 1 digital 1 0"}, bus.now()));  // it has no digital input
+  EXPECT_FALSE(plant.input(nodes::InputLine{"node 1 digital 1 0"}, bus.now()));  // node 1 does not have digital inputs
 }
 
 TEST_F(PlantOnABus, SetsItsOutputsToTheirErrorValuesInStopped) {
@@ -217,7 +217,7 @@ TEST(ModuleNode, ShowsItsStateAndItsErrorsWithItsIndicators) {
 }
 
 struct ModuleError {
-  const char* line;  ///< of the node's inputs
+  const char* line;  ///< input of the node
   const char* emcy;  ///< the row of table 5.3.2
   std::uint16_t register_1001h;
 };
@@ -257,12 +257,12 @@ TEST(ModuleNode, ReportsTheErrorsOfTheTableInEveryModule) {
   expect_module_errors<Can2057c>();
 }
 
-// Manual 003, 3.2: block protocols for larger data, both ways; the frames are those of CiA 301, 7.2.4.3.
+// Manual 003, 3.2: block protocols for larger data in both directions; the frames are those of CiA 301, 7.2.4.3.
 TEST(ModuleNode, ServesSdoBlockTransfers) {
   bench::NodeBench<Can2053c> module;
   EXPECT_EQ(module.ask("605 A4 08 10 00 7F 00 00 00"), "585 C6 08 10 00 09 00 00 00");  // "CAN-2053" and 00h
   EXPECT_EQ(module.ask("605 A3 00 00 00 00 00 00 00"), "585 01 43 41 4E 2D 32 30 35 | 585 82 33 00 00 00 00 00 00");
-  EXPECT_EQ(module.ask("605 A2 02 7F 00 00 00 00 00"), "585 D5 A6 4D 00 00 00 00 00");  // 5 bytes are empty; CRC 4DA6h
+  EXPECT_EQ(module.ask("605 A2 02 7F 00 00 00 00 00"), "585 D5 A6 4D 00 00 00 00 00");  // 5 unused bytes; CRC 4DA6h
   EXPECT_EQ(module.ask("605 A1 00 00 00 00 00 00 00"), "");
   EXPECT_EQ(module.ask("605 C6 17 10 00 02 00 00 00"), "585 A4 17 10 00 7F 00 00 00");  // 1017h = 500
   EXPECT_EQ(module.ask("605 81 F4 01 00 00 00 00 00"), "585 A2 01 7F 00 00 00 00 00");

@@ -1,4 +1,4 @@
-/// The runnable position sensor: what manual 004 says of its application.
+/// The runnable position sensor: the statements of manual 004 about its application.
 #include "rk5c/rk5c.hpp"
 
 #include <gtest/gtest.h>
@@ -32,14 +32,14 @@ std::string status(unsigned bits) {
 std::string error_register(unsigned bits) {
   return bench::text({.id = 0x585, .size = 8, .data = {0x42, 0x01, 0x10, 0, static_cast<std::uint8_t>(bits)}});
 }
-/// The answer to `read_position`, in steps of 0.1 mm.
+/// The answer to `read_position` in steps of 0.1 mm.
 std::string position(std::int32_t steps) {
   const auto bits = static_cast<std::uint32_t>(steps);
   const auto byte = [bits](unsigned i) { return static_cast<std::uint8_t>(bits >> (8 * i)); };
   return bench::text({.id = 0x585, .size = 8, .data = {0x42, 0x20, 0x60, 1, byte(0), byte(1), byte(2), byte(3)}});
 }
 
-/// In its first measuring cycle; then it is running.
+/// After its first measuring cycle.
 struct RunningSensor : Sensor {
   RunningSensor() { pass(1ms); }
 };
@@ -126,13 +126,13 @@ TEST(Rk5cNode, ChecksItsParametersAtEachResetAndAtLoad) {
     SCOPED_TRACE(check);
     RunningSensor sensor;
     sensor.input("flash damaged");
-    EXPECT_EQ(sensor.pass(1s), "");  // not before it looks
+    EXPECT_EQ(sensor.pass(1s), "");  // not before it checks its memory
     EXPECT_NE(sensor.ask(check).find("085 00 63 01 00 00 00 00 00"), std::string::npos);
     sensor.pass(1ms);
     EXPECT_EQ(sensor.ask(read_status), status(0x11));
     EXPECT_EQ(sensor.ask(read_error_register), error_register(0x01));
     sensor.input("flash whole");
-    EXPECT_EQ(sensor.ask(bench::reset_node), "705 00 | 085 00 63 01 00 00 00 00 00");  // it stays
+    EXPECT_EQ(sensor.ask(bench::reset_node), "705 00 | 085 00 63 01 00 00 00 00 00");  // the error remains
     EXPECT_EQ(sensor.power_cycle(), "705 00");
     EXPECT_EQ(sensor.ask(read_error_register), error_register(0x00));
   }
