@@ -1,4 +1,4 @@
-"""An EDS as a master needs it, read with the standard library's configparser and nothing of edsc."""
+"""An EDS for a master, read with the standard library's configparser, without edsc's code."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 SECTION = re.compile(r"([0-9A-Fa-f]{4})(?:sub([0-9A-Fa-f]+))?")
 
-# Data types of CiA 301: name, bytes (None: any number), signed.
+# Data types of CiA 301: name, bytes (None: variable length), signed.
 TYPES = {
     0x0001: ("BOOLEAN", 1, False), 0x0002: ("INTEGER8", 1, True), 0x0003: ("INTEGER16", 2, True),
     0x0004: ("INTEGER32", 4, True), 0x0005: ("UNSIGNED8", 1, False), 0x0006: ("UNSIGNED16", 2, False),
@@ -25,7 +25,7 @@ class Entry:
     sub: int
     type: int
     access: str
-    default: bytes | None  # as SDO carries it; None: the data sheet has none
+    default: bytes | None  # as in SDO; None: the EDS does not have one
     low: int | None
     high: int | None
     mappable: bool

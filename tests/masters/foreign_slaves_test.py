@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""edsc's master boots slaves with none of edsc's code, on a bus of `edsc bus`: those of slaves.py, each with a habit that a plant
-has, and npm's canopen.
+"""edsc's master boots slaves without edsc's code, on a bus of `edsc bus`: those of slaves.py, each with a behaviour that occurs
+in plants, and npm's canopen.
 
     foreign_slaves_test.py --edsc EDSC --master BOOT_MASTER [--node-canopen WORK_DIR]
 
-Without --node-canopen, or where npm cannot install it, its slave is left out aloud.
+Without --node-canopen, or if npm cannot install it, its slave is skipped with a message.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ sys.path.insert(0, str(HERE))
 from masters_test import Skipped, end_with_parent, install_node_canopen  # noqa: E402
 from slaves import Habits, Slave  # noqa: E402
 
-LIMIT = 1200.0  # seconds, for what hangs
+LIMIT = 1200.0  # seconds, for programs that hang
 
 PLAIN, NO_HEARTBEAT, NEAR, BEYOND, REPLACED, TWICE, SILENT, RESETS, LOST, NPM = range(1, 11)
 
@@ -66,7 +66,7 @@ class Plant:
         self.slaves = slaves
 
     def run(self) -> None:
-        """A turn of all slaves. They do not hear each other: nothing that they send is for a slave."""
+        """Serves all slaves once. They do not receive each other's frames: none of those is for a slave."""
         for can_id, data in self.bus.receive(0.01):
             for slave in self.slaves:
                 slave.take(can_id, data, time.monotonic())
@@ -76,7 +76,7 @@ class Plant:
 
 
 class Log:
-    """What the master prints."""
+    """The output of the master."""
 
     def __init__(self, file: Path) -> None:
         self.file = file
@@ -85,7 +85,7 @@ class Log:
         return self.file.read_text(encoding="utf-8").splitlines()
 
     def has(self, *wanted: str) -> bool:
-        """Whether these lines are there in this order, with others between them."""
+        """Returns whether the output has these lines in this order; other lines may be between them."""
         lines = iter(self.lines())
         return all(any(line == one for line in lines) for one in wanted)
 
@@ -111,7 +111,7 @@ def longer(node_id: int) -> bytes:
 
 
 def boot(arguments: argparse.Namespace, address: str, with_npm: bool) -> list[str]:
-    """The problems."""
+    """Returns the problems."""
     slaves = [
         Slave(PLAIN), Slave(NO_HEARTBEAT, Habits(has_heartbeat=False)), Slave(NEAR, Habits(delay=1.2)),
         Slave(BEYOND, Habits(delay=2.5, delayed_answers=2)), Slave(REPLACED, Habits(product=0x20002)),

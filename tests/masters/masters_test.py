@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""A master with none of edsc's code walks over the eight reference nodes, which run all at once on one bus.
+"""A master without edsc's code tests the eight reference nodes, which run at the same time on one bus.
 
     masters_test.py --nodes DIR [--edsc EDSC | --bus ADDRESS] [--node-canopen WORK_DIR] [--short] [--only NAME]
 
-The bus is one of `edsc bus`, or the one at ADDRESS, such as socketcan:vcan0. The master is python-can with the walk beside
-this file, or node-canopen, which npm installs in WORK_DIR. --short leaves out the long lists of SDO transfers. What fails is printed, and a line for each device. Exit code 77:
-skipped.
+The bus is one of `edsc bus`, or the one at ADDRESS, such as socketcan:vcan0. The master is python-can with walk.py, or
+node-canopen, which npm installs in WORK_DIR. --short omits the long lists of SDO transfers. Prints each failure, and a line
+for each device. Exit code 77: skipped.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ DATA_SHEETS = HERE.parent.parent / "eds"
 EXCEPTIONS = HERE / "exceptions.tsv"
 sys.path.insert(0, str(HERE))
 
-# The node's program, and its node-ID here.
+# Program and node-ID of each node.
 NODES = {"can_2017c": 1, "can_2024c": 2, "can_2053c": 3, "can_2057c": 4, "cpc_tc1": 5, "cpd": 6, "ezd_1136": 7, "rk5c": 8}
 SKIPPED = 77
 
@@ -39,7 +39,7 @@ class Skipped(Exception):
 
 
 def end_with_parent() -> None:
-    """In a child before it runs: no node outlives a test that is killed."""
+    """Runs in the child before its program: a node ends if the test is killed."""
     set_parent_death_signal = 1  # PR_SET_PDEATHSIG of prctl(2)
     ctypes.CDLL(None).prctl(set_parent_death_signal, signal.SIGKILL)
 
@@ -76,7 +76,7 @@ class Plant:
             self.nodes[name] = node
 
     def power_off(self) -> int:
-        """How many nodes did not end well."""
+        """Returns the number of nodes that ended with an error."""
         failed = 0
         for name, node in self.nodes.items():
             node.terminate()
@@ -86,13 +86,13 @@ class Plant:
         return failed
 
     def tell(self, name: str, line: str) -> None:
-        """An input of a node, on its standard input."""
+        """Writes an input line to the standard input of a node."""
         self.nodes[name].stdin.write(line + "\n")
         self.nodes[name].stdin.flush()
 
 
 def with_python_can(plant: Plant, short: bool) -> int:
-    """The number of failures, and of exceptions that no device needs any more."""
+    """Returns the number of failures plus that of exceptions that no device needs any more."""
     if importlib.util.find_spec("can") is None:
         raise Skipped("python3-can is not installed")
     from data_sheet import DataSheet
@@ -120,7 +120,7 @@ def with_python_can(plant: Plant, short: bool) -> int:
 
 
 def install_node_canopen(work: Path) -> Path:
-    """Its program, with the packages of the lock file installed beside it."""
+    """Returns its program, after installing the packages of the lock file in the same folder."""
     for program in ("node", "npm"):
         if shutil.which(program) is None:
             raise Skipped(f"there is no {program}")
@@ -137,7 +137,7 @@ def install_node_canopen(work: Path) -> Path:
 
 
 def with_node_canopen(plant: Plant, work: Path) -> int:
-    """The exit code of its program."""
+    """Returns the exit code of its program."""
     master = install_node_canopen(work)
     plant.power_on()
     nodes = [f"{name}={NODES[name]}" for name in plant.names]

@@ -1,5 +1,5 @@
-"""What a walk has checked, and the exceptions that it knows: a row of exceptions.tsv for each thing that a device does
-otherwise than CiA 301 and its data sheet say, or that must not be tried."""
+"""The checks of a walk, and its known exceptions: a row of exceptions.tsv for each difference of a device from CiA 301 or its
+EDS, or for each check that must not be tried."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def fits(patterns: str, device: str) -> bool:
 
 
 def read_rows(path: Path) -> list[tuple[int, list[str]]]:
-    """The rows of a table, with their lines."""
+    """Returns the rows of a table with their line numbers."""
     lines = enumerate(path.read_text(encoding="utf-8").splitlines(), 1)
     return [(number, line.split("\t")) for number, line in lines if line and not line.startswith("#")]
 
@@ -27,11 +27,11 @@ class Exception_:
     device: str   # patterns of names, such as can_20*, several with commas
     entries: str  # "1010h:01", "1400h-15FFh:01", "1003h:01-10" or "6040h:*", several with commas
     checks: str   # several with commas
-    outcome: str  # "skip", "any", or what comes instead, such as "abort 06010002"
+    outcome: str  # "skip", "any", or the actual result, such as "abort 06010002"
     reason: str
     line: int
-    used: bool = False    # some walk came to it
-    needed: bool = False  # and would have failed without it
+    used: bool = False    # a walk has reached it
+    needed: bool = False  # and would fail without it
 
     def covers(self, device: str, entry: str, check: str) -> bool:
         return (fits(self.device, device) and check in self.checks.split(",")
@@ -55,7 +55,7 @@ def read_exceptions(path: Path) -> list[Exception_]:
 
 
 class Report:
-    """The checks of one device. Only what fails is printed."""
+    """The checks of one device. Only failures are printed."""
 
     def __init__(self, device: str, exceptions: list[Exception_]) -> None:
         self.device, self.exceptions = device, exceptions
@@ -79,7 +79,7 @@ class Report:
         return True
 
     def check(self, check: str, entry: str, got: str, wanted: str) -> bool:
-        """True when it came as wanted, or as an exception says."""
+        """Returns whether the result is as expected, or as in an exception."""
         row = self.exception(entry, check)
         if row is not None and got != wanted:
             row.needed = True
@@ -102,7 +102,7 @@ class Report:
 
 
 def stale(exceptions: list[Exception_]) -> list[str]:
-    """Rows that no walk needed."""
+    """Returns the rows that were not needed."""
     return [f"exceptions.tsv:{row.line}: {row.device} {row.entries} {row.checks}: " +
             ("no device differs here any more" if row.used else "there is no such entry") for row in exceptions
             if not row.needed]

@@ -32,7 +32,7 @@ class SdoClient:
         return answer
 
     def upload(self, index: int, sub: int, size: int | None = None) -> bytes:
-        """`size`: how many bytes count where the answer does not tell."""
+        """`size`: number of valid bytes if the answer does not indicate it."""
         answer = self.ask(struct.pack("<BHBI", 0x40, index, sub, 0))
         if answer[0] >> 5 != 2 or answer[1:4] != struct.pack("<HB", index, sub):
             raise ValueError(f"upload is answered with {answer.hex(' ')}")

@@ -1,5 +1,5 @@
-"""CANopen slaves with none of edsc's code, each with its habits, as frames in and frames out. They know expedited and segmented
-SDO, NMT, boot-up and heartbeat, and no more: no block transfer, no guarding, no PDO."""
+"""CANopen slaves without edsc's code, each with its own habits; they receive and return frames. They support expedited and
+segmented SDO, NMT, boot-up and heartbeat only: no block transfer, no guarding, no PDO."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ READ_ONLY_ENTRIES = {(0x1000, 0), (0x1018, 1), (0x1018, 2)}
 
 @dataclass
 class Habits:
-    """What is otherwise than in a good slave."""
+    """Differences from a good slave."""
     product: int = 0x10001
     has_heartbeat: bool = True
     silent: bool = False          # no answer to any SDO request
     delay: float = 0.0            # of each SDO answer, in seconds
-    delayed_answers: int = 10**9  # how many are late; the others are prompt
+    delayed_answers: int = 10**9  # number of delayed answers; the others are immediate
     boot_ups: int = 1             # messages after each reset
-    resets_at_write: bool = False  # once: writing 2000h makes it boot again in place of an answer
-    dies_after: float | None = None  # seconds from its first start on; it lives again after a reset
+    resets_at_write: bool = False  # once: it resets when 2000h is written, without an answer
+    dies_after: float | None = None  # seconds after its first start; it works again after a reset
 
 
 @dataclass
@@ -61,7 +61,7 @@ class Slave:
         heapq.heappush(self.outbox, (self.now + delay, next(self.order), can_id, data))
 
     def due(self, now: float) -> list[tuple[int, bytes]]:
-        """What it sends by now."""
+        """Returns what it sends until now."""
         self.now = now
         if self.dies_at is not None and now >= self.dies_at:
             self.dead, self.dies_at, self.outbox = True, None, []

@@ -1,4 +1,4 @@
-"""A master's walk over one node: everything that its data sheet promises, by what is seen on the bus."""
+"""A master's walk over one node: tests on the bus everything that the EDS specifies."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ STATES = {"operational": (START, 0x05), "stopped": (STOP, 0x04), "pre-operationa
 GUARD_TIME, LIFE_TIME_FACTOR, CONSUMER_HEARTBEAT, PRODUCER_HEARTBEAT = 0x100C, 0x100D, 0x1016, 0x1017
 ERROR_REGISTER, ERROR_HISTORY, EMCY_COB_ID = 0x1001, 0x1003, 0x1014
 INVALID, NO_REMOTE_FRAMES = 1 << 31, 1 << 30
-HARMLESS = {0x6040: 6, 0x6060: 1, 0x6098: 17}  # values that move no drive, and that drives know
+HARMLESS = {0x6040: 6, 0x6060: 1, 0x6098: 17}  # values that do not move a drive, and that drives accept
 INPUTS = Path(__file__).with_name("inputs.tsv")
-PATIENCE = 120.0  # s, for what must come
-SHORT = 0.04    # s, for what must not come
+PATIENCE = 120.0  # s, for a frame that must be received
+SHORT = 0.04    # s, for a frame that must not be received
 
 
 def hexadecimal(data: bytes) -> str:
@@ -36,7 +36,7 @@ class Walk:
         self.sdo = SdoClient(wire, self.node_id, PATIENCE)
 
     def run(self) -> None:
-        """`short`: without the parts that are long lists of SDO transfers, and with one PDO of each kind."""
+        """Runs all parts. `short`: without the long lists of SDO transfers, and with one PDO of each kind."""
         by_sdo = () if self.short else (self.upload_all, self.refuse_all, self.download_all, self.remap)
         for part in (self.boot, *by_sdo, self.states, self.tpdos, self.rpdos, self.heartbeat, self.guarding, self.consumer,
                      self.emergencies, self.inputs):
@@ -47,7 +47,7 @@ class Walk:
             except (Abort, Silence, ValueError) as problem:
                 self.report.check("walk", part.__name__, str(problem), "its end")
 
-    # ---- what the parts use ----
+    # ---- used by all parts ----
 
     def check(self, check: str, entry: str, got: object, wanted: object) -> bool:
         return self.report.check(check, entry, str(got), str(wanted))
@@ -73,7 +73,7 @@ class Walk:
         self.sdo.download(index, sub, entry.bytes_of(value))
 
     def outcome(self, action: Callable[[], bytes | None]) -> str:
-        """What an SDO transfer comes to."""
+        """Returns the result of an SDO transfer."""
         try:
             data = action()
         except (Abort, Silence, ValueError) as problem:
@@ -85,7 +85,7 @@ class Walk:
         return hexadecimal(frame) if frame is not None else "nothing"
 
     def expect_emcy(self, code: int, register: int | None = None, after: str = "") -> None:
-        """An EMCY with this code; without an exception bytes 3 to 7 are 0."""
+        """Expects an EMCY with this code; without an exception bytes 3 to 7 are 0."""
         got = self.emcy()
         if not self.check("emcy", after or f"{code:04X}h:00", got[:5], hexadecimal(struct.pack("<H", code))):
             return
@@ -113,13 +113,13 @@ class Walk:
                 wanted = "abort 06010001"
             elif entry.default is not None:
                 wanted = f"reads {hexadecimal(entry.default)}"
-            else:  # no default: any value, of the right length
+            else:  # no default: any value of the right length
                 fits = entry.size is None or len(got) == len("reads") + 3 * entry.size
                 wanted = got if got.startswith("reads") and fits else f"reads {entry.size} bytes"
             self.check(check, entry.name, got, wanted)
 
     def refuse_all(self) -> None:
-        """What is not there."""
+        """Accesses objects and sub-indices that do not exist."""
         indices = sorted({index for index, _ in self.sheet.entries})
         for index in indices:
             sub = max(self.sheet.subs(index)) + 1
@@ -168,11 +168,11 @@ class Walk:
     # ---- parameters of PDOs ----
 
     def remap(self) -> None:
-        """CiA 301, 7.5.2.36: a PDO is made invalid, then 0 goes to sub-index 0 of its mapping, then entries, their number,
-        and the PDO is made valid again."""
+        """CiA 301, 7.5.2.36: make a PDO invalid, write 0 to sub-index 0 of its mapping, write the entries and their number, and
+        make the PDO valid again."""
         for index in self.pdos(0x1400) + self.pdos(0x1800):
             mapping, default = index + 0x200, self.read(index, 1)
-            free, other = 0x6A0 + self.node_id, 0x680 + self.node_id  # CAN-IDs that nobody has
+            free, other = 0x6A0 + self.node_id, 0x680 + self.node_id  # unused CAN-IDs
             cob_id = default if default & 0x7FF else default | free
             dynamic = self.sheet.get(mapping, 0) is not None and self.sheet.get(mapping, 0).writable
             entries = [self.read(mapping, sub) for sub in range(1, self.read(mapping) + 1)]
@@ -208,7 +208,7 @@ class Walk:
         self.set("mapping", mapping, 0, len(entries))
 
     def set(self, check: str, index: int, sub: int, value: int, wanted: str = "taken") -> None:
-        """Writes a parameter that the data sheet has and lets write."""
+        """Writes a parameter if the EDS has it and it is writable."""
         entry = self.sheet.get(index, sub)
         if entry is not None and entry.writable and not self.report.skips(entry.name, check):
             self.write_and_read(entry, check, entry.bytes_of(value), wanted)
@@ -221,9 +221,9 @@ class Walk:
         return self.wire.receive(0x580 + self.node_id, seconds) is not None
 
     def state(self, wanted: int) -> int | None:
-        """The wanted state, once a heartbeat tells it; else the last one that came."""
+        """Returns the wanted state when a heartbeat contains it, otherwise the last received state."""
         state, end = None, time.monotonic() + PATIENCE
-        while time.monotonic() < end:  # the first ones may have been on their way
+        while time.monotonic() < end:  # the first frames may be older than the command
             frame = self.wire.receive(0x700 + self.node_id, PATIENCE)
             if frame is None:
                 break
@@ -266,7 +266,7 @@ class Walk:
     # ---- PDOs ----
 
     def mapping(self, parameter: int) -> list[Entry]:
-        """What a PDO with this communication parameter maps, by SDO."""
+        """Reads the mapping of a PDO with this communication parameter over SDO."""
         mapped = parameter + 0x200
         entries = []
         for sub in range(1, self.read(mapped) + 1):
@@ -313,7 +313,7 @@ class Walk:
             self.nmt(STOP)
             self.wire.pass_on()
             for _ in range(100):
-                if self.wire.receive(can_id, SHORT) is None:  # what was on its way has come
+                if self.wire.receive(can_id, SHORT) is None:  # all frames on their way have been received
                     break
             self.wire.send(0x080)
             self.check("tpdo", f"{name} in Stopped", self.wire.receive(can_id, SHORT), None)
@@ -333,7 +333,7 @@ class Walk:
             self.check("tpdo-value", entry.name, hexadecimal(part), hexadecimal(value))
 
     def remote_tpdo(self, index: int, name: str, cob_id: int, entries: list[Entry]) -> None:
-        """Type 253 where the device has it; nothing comes without a remote frame, nor with one where bit 30 says so."""
+        """Type 253, if supported: the TPDO is sent after a remote frame, unless bit 30 is set."""
         self.nmt(PRE_OPERATIONAL)
         self.try_write(index, 1, cob_id | INVALID)
         by_request = self.try_write(index, 2, 253)
@@ -387,7 +387,7 @@ class Walk:
                 break
 
     def rpdo_value(self, entry: Entry) -> bytes:
-        """One that its limits allow, and that no drive moves by."""
+        """Returns a value within the limits that does not move a drive."""
         if entry.index in HARMLESS:
             return entry.bytes_of(HARMLESS[entry.index])
         low, high = entry.range_of_type()
@@ -399,7 +399,7 @@ class Walk:
     def heartbeat(self) -> None:
         for milliseconds in (20, 50):
             self.write(PRODUCER_HEARTBEAT, 0, milliseconds)
-            for _ in range(100):  # a busy machine lets some measurements fail; a wrong period never fits
+            for _ in range(100):  # on a busy machine some measurements fail; a wrong period always does
                 interval = self.heartbeat_interval()
                 if 0.7 * milliseconds <= interval <= 1.3 * milliseconds + 3:
                     interval = milliseconds
@@ -410,7 +410,7 @@ class Walk:
         self.check("heartbeat", "switched off", self.wire.receive(0x700 + self.node_id, 0.08), None)
 
     def heartbeat_interval(self) -> float:
-        """The median of four, in ms."""
+        """Returns the median of four intervals in ms."""
         self.wire.forget(0x700 + self.node_id)
         beats = [self.wire.receive_timed(0x700 + self.node_id, PATIENCE) for _ in range(5)]
         if None in beats:
@@ -485,7 +485,7 @@ class Walk:
             return
 
     def inputs(self) -> None:
-        """What the node's simulated inputs provoke."""
+        """Expects the EMCYs that the node's simulated inputs cause."""
         for _, (devices, line, code, register) in read_rows(INPUTS):
             if fits(devices, self.report.device):
                 self.tell(line)

@@ -1,4 +1,4 @@
-"""A CAN bus by its address, over python-can: frames that nobody has asked for yet wait until somebody does."""
+"""A CAN bus by its address, over python-can; frames wait until they are requested by their CAN-ID."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Wire:
         self.waiting: deque[tuple[float, int, bytes]] = deque(maxlen=10000)
 
     def pass_on(self) -> None:
-        """Until an SLCAN adapter has given on all that was sent to it. What comes meanwhile is forgotten."""
+        """Waits until an SLCAN adapter has sent all frames that it was given; discards what it receives meanwhile."""
         if self.slcan:
             self.bus.get_version(60)
 
@@ -36,8 +36,8 @@ class Wire:
         self.bus.shutdown()
 
     def listen_to(self, node_id: int, pdos: bool = True) -> None:
-        """Frames of this node alone, by the lower seven bits of their CAN-IDs; the kernel passes no others. `pdos` is False
-        where they are not needed: a device with an event timer of 1 ms sends faster than Python reads on a slow machine."""
+        """Receives only frames of this node, by the lower seven bits of their CAN-IDs; the kernel filters them. `pdos` is False
+        if PDOs are not needed: a device with an event timer of 1 ms sends faster than Python reads on a slow machine."""
         self.forget()
         every = [{"can_id": node_id, "can_mask": 0x7F}]
         services = [{"can_id": function | node_id, "can_mask": 0x7FF} for function in (0x080, 0x580, 0x700)]
@@ -47,7 +47,7 @@ class Wire:
         self.bus.send(can.Message(arbitration_id=can_id, data=data, is_extended_id=False))
 
     def request(self, can_id: int, size: int) -> None:
-        """A remote frame. python-can's socketcand interface has no words for it."""
+        """Sends a remote frame. python-can's socketcand interface cannot send one."""
         if self.socketcand:
             self.bus._tcp_send(f"< sendrtr {can_id:X} {size} >")
         else:
@@ -58,7 +58,7 @@ class Wire:
         return found[1] if found else None
 
     def receive_timed(self, can_id: int, seconds: float) -> tuple[float, bytes] | None:
-        """The next data frame with this CAN-ID, and when the bus had it; nothing when none comes in this time."""
+        """Returns the next data frame with this CAN-ID and its time, or None if none is received in this time."""
         for i, (at, found, data) in enumerate(self.waiting):
             if found == can_id:
                 del self.waiting[i]
@@ -74,8 +74,8 @@ class Wire:
                 return None
 
     def forget(self, can_id: int | None = None) -> None:
-        """What has come by now and nobody has asked for. On SocketCAN the kernel says when a frame came, so that this ends
-        also where frames come as fast as they are read."""
+        """Discards the frames received so far. On SocketCAN the kernel's time stamps identify them, so that this ends
+        even if frames arrive as fast as they are read."""
         begin = time.time() if self.socketcan else float("inf")
         kept = deque((one for one in self.waiting if can_id is not None and one[1] != can_id), maxlen=self.waiting.maxlen)
         while (message := self.bus.recv(0)) is not None:

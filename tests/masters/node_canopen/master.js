@@ -1,6 +1,6 @@
 #!/usr/bin/env node
 'use strict';
-/** master.js ADDRESS EDS_DIR EXCEPTIONS NAME=NODE-ID...: node-canopen walks over nodes, one after the other. */
+/** master.js ADDRESS EDS_DIR EXCEPTIONS NAME=NODE-ID...: node-canopen tests nodes, one after the other. */
 
 const path = require('path');
 const { Channel } = require('./socketcand');

@@ -1,5 +1,5 @@
 'use strict';
-/** What a walk has checked, with the exceptions of exceptions.tsv, as report.py. */
+/** The checks of a walk, with the exceptions of exceptions.tsv, like report.py. */
 
 const fs = require('fs');
 

@@ -1,5 +1,5 @@
 'use strict';
-/** A socketcand server as the channel of node-canopen: `send({ id, data })`, and 'message' with what comes. */
+/** A socketcand server as the channel of node-canopen: `send({ id, data })`, and 'message' with received frames. */
 
 const { EventEmitter } = require('events');
 const net = require('net');
@@ -41,7 +41,7 @@ class Channel extends EventEmitter {
     this.socket.write(`< send ${id.toString(16)} ${data.length} ${bytes} >`);
   }
 
-  /** A remote frame, which node-canopen has no words for. */
+  /** Sends a remote frame, which node-canopen does not support. */
   request(id, size) { this.socket.write(`< sendrtr ${id.toString(16)} ${size} >`); }
 
   close() { this.socket.end(); }

@@ -4,11 +4,11 @@
 const { Device, DataType, Eds, SdoCode, rawToType, typeToRaw } = require('canopen');
 
 const MASTER = 126, INVALID = 2 ** 31;
-const PATIENCE = 120000, SHORT = 40;  // ms, for what must come and for what must not
+const PATIENCE = 120000, SHORT = 40;  // ms, for a frame that must be received and for one that must not
 const UPLOAD = 600000;              // ms, for all segments of a long value, such as the EDS in 1021h
 const SIZES = { [DataType.INTEGER8]: 1, [DataType.INTEGER16]: 2, [DataType.INTEGER32]: 4, [DataType.UNSIGNED8]: 1,
   [DataType.UNSIGNED16]: 2, [DataType.UNSIGNED32]: 4 };
-const HARMLESS = { 0x6040: 6, 0x6060: 1, 0x6098: 17 };  // values that move no drive, and that drives know
+const HARMLESS = { 0x6040: 6, 0x6060: 1, 0x6098: 17 };  // values that do not move a drive, and that drives accept
 const STATE = { preOperational: 0x7F, operational: 5, stopped: 4, bootUp: 0 };
 
 const hex = (value, digits) => value.toString(16).toUpperCase().padStart(digits, '0');
@@ -46,9 +46,9 @@ class Walk {
     this.device.stop();
   }
 
-  // ---- what the parts use ----
+  // ---- used by all parts ----
 
-  /** What an emitter tells, as `pick` makes it of the event; "nothing" after this time. Begin before it can happen. */
+  /** Resolves to `pick` of the next event of an emitter, or to "nothing" after this time. Call it before the event. */
   event(emitter, name, pick, milliseconds = PATIENCE) {
     return new Promise((resolve) => {
       const end = (value) => {
@@ -96,7 +96,7 @@ class Walk {
 
   write(index, subIndex, value, dataType) { return this.download(index, subIndex, typeToRaw(value, dataType)); }
 
-  /** What an SDO transfer comes to. */
+  /** The result of an SDO transfer. */
   async outcome(transfer) {
     try {
       const data = await transfer;
@@ -109,7 +109,7 @@ class Walk {
 
   // ---- the object dictionary ----
 
-  /** All entries of the data sheet: index, sub-index, and the DataObject that holds the rest. */
+  /** All entries of the EDS: index, sub-index, and the DataObject with the rest. */
   * entries() {
     for (const object of this.sheet.values()) {
       if (object.subNumber === undefined) {
@@ -122,7 +122,7 @@ class Walk {
     }
   }
 
-  /** The default as bytes; formulas of the node-ID, which node-canopen does not know, are computed here. */
+  /** The default as bytes; node-ID formulas, which node-canopen does not support, are computed here. */
   defaultOf({ dataType, defaultValue }) {
     if (defaultValue === undefined || defaultValue === '') return undefined;
     if (!(dataType in SIZES)) return Buffer.from(defaultValue);
@@ -146,7 +146,7 @@ class Walk {
         continue;
       }
       const wanted = this.defaultOf(object), size = SIZES[object.dataType];
-      // An answer without a size has four bytes here: the data sheet tells how many count.
+      // An answer without a size has four bytes here: the EDS defines how many are valid.
       if (size && got.startsWith('reads') && got.length > 5 + 3 * size) got = got.slice(0, 5 + 3 * size);
       this.report.check(check, name, got, wanted ? `reads ${bytes(wanted)}` : got.startsWith('reads') ? got : 'reads a value');
     }
@@ -231,7 +231,7 @@ class Walk {
     }
   }
 
-  /** Type 1: it comes with each SYNC of node-canopen, with what SDO reads in the objects that it carries. */
+  /** Type 1: the TPDO follows each SYNC of node-canopen, with the values that SDO reads in the mapped objects. */
   async tpdo(object, name, cobId, canId, entries) {
     if (object.at(2).accessType !== 'rw') return;
     const id = [object.index, 1];
@@ -239,7 +239,7 @@ class Walk {
     await this.write(object.index, 2, 1, DataType.UNSIGNED8);
     await this.write(...id, cobId, DataType.UNSIGNED32);
     this.device.nmt.startNode(this.nodeId);
-    await this.upload(0x1000, 0);  // it has come to the state by now
+    await this.upload(0x1000, 0);  // it has entered the state by now
     const frame = this.frame(canId);
     this.device.sync.write();
     const parts = [];
@@ -257,7 +257,7 @@ class Walk {
     await this.reset();
   }
 
-  /** node-canopen sends objects of its own in a TPDO to the node's RPDO. */
+  /** node-canopen sends its own objects in a TPDO to the node's RPDO. */
   async rpdo(name, canId, entries) {
     const values = [];
     const eds = this.device.eds;
