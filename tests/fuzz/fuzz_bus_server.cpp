@@ -1,5 +1,5 @@
-/// Any bytes that a client of the bus server sends: each frame in them is one, and the client's codec writes and reads
-/// the same.
+/// Arbitrary bytes from a client of the bus server: each frame in them is valid, and the client's codec writes and
+/// reads the same frame.
 #include <cstdlib>
 
 #include "canopen/port/socketcand_codec.hpp"
@@ -13,7 +13,7 @@ void require(bool condition) {
   if (!condition) std::abort();
 }
 
-/// What stands between "<" and ">".
+/// The text between "<" and ">".
 std::string_view inside(std::string_view text) { return text.substr(1, text.size() - 2); }
 
 void check(std::string_view element) {

@@ -1,7 +1,7 @@
-/// The whole way: data sheet and options -> device -> findings, JSON and generated files, errors or not.
+/// The complete path: EDS and options -> device -> findings, JSON and generated files, with or without errors.
 ///
-/// An input is a data sheet; one that begins with `{` is an options file, a line `%%` and a data sheet. Every other
-/// length stands for a node-ID. Every fourth is rendered: that takes most of the time, and finds the least.
+/// An input is an EDS; one that begins with `{` is an options file, a line `%%` and an EDS. Each odd length means a
+/// node-ID. Every fourth input is rendered: rendering takes most of the time and finds the least.
 #include "backend/cpp/view.hpp"
 #include "backend/render.hpp"
 #include "fuzz.hpp"
@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view options_end = "\n%%\n";
 
-/// Fills in the source, and the options where the input has some.
+/// Sets the source, and the options if the input has some.
 void split(const std::string& input, LoadedDevice& loaded, Diagnostics& diagnostics) {
   const std::size_t end = input.starts_with('{') ? input.find(options_end) : std::string::npos;
   if (end == std::string::npos) {

@@ -1,4 +1,4 @@
-/// Any bytes as a concise DCF (1F22h): what is read makes up the whole stream, and nothing is read beyond it.
+/// Arbitrary bytes as a concise DCF (1F22h): its entries make up the whole stream; nothing beyond it is read.
 #include "format/concise_dcf.hpp"
 #include "format/configured_values.hpp"
 #include "fuzz.hpp"

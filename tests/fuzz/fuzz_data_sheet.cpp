@@ -1,4 +1,4 @@
-/// INI lines -> data sheet.
+/// INI lines -> EDS.
 #include "eds/data_sheet.hpp"
 #include "fuzz.hpp"
 #include "text/source_file.hpp"

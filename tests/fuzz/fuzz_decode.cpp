@@ -1,5 +1,5 @@
-/// A candump log -> text and JSON lines, summary and complaints, with an axis (node 6) and a device with multiplex PDOs
-/// (node 7).
+/// A candump log -> text and JSON lines, summary and problems, with an axis (node 6) and a device with multiplex
+/// PDOs (node 7).
 #include <nlohmann/json.hpp>
 
 #include "decode/log_decoder.hpp"

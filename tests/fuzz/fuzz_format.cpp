@@ -1,7 +1,7 @@
-/// The formatter and the comparison: the canonical form of a canonical form is itself and means the same device; a
-/// device does not differ from itself; a DCF and a concise DCF hold what can be read again.
+/// The formatter and the comparison: the canonical form of a canonical form is itself and describes the same device; a
+/// device does not differ from itself; a DCF and a concise DCF can be read again.
 ///
-/// An input is a data sheet, or two with a line `%%` between them.
+/// An input is an EDS, or two with a line `%%` between them.
 #include "format/canonical_form.hpp"
 
 #include "compare/compare_devices.hpp"
@@ -17,7 +17,7 @@
 namespace edsc::fuzz {
 namespace {
 
-/// As the commands read a file: what points into the text lives with it.
+/// A file as the commands read it; it owns the text that its parts refer to.
 struct Read {
   explicit Read(std::string text, std::optional<std::uint8_t> node_id = {}) : source{"fuzz.eds", std::move(text)} {
     ini = parse_ini(source, diagnostics);

@@ -1,7 +1,7 @@
-/// Any answers to the commands at a bus: `scan`, `save` and `configure` end, send requests alone, and report what the node
-/// has; `monitor` shows any frames.
+/// Arbitrary answers to the commands for a bus: `scan`, `save` and `configure` end, send only requests, and report the
+/// values of the node; `monitor` shows arbitrary frames.
 ///
-/// An input is a byte that chooses the command and what follows the steps, and a row of steps (steps.hpp).
+/// An input is a byte that selects the command and what follows the steps, and a sequence of steps (steps.hpp).
 #include <nlohmann/json.hpp>
 
 #include <span>
@@ -19,7 +19,7 @@
 namespace edsc::fuzz {
 namespace {
 
-/// An axis, and a configuration of it: all defaults of its data sheet.
+/// An axis, and a configuration of it: all default values of its EDS.
 class Axis {
  public:
   Axis() {

@@ -1,7 +1,7 @@
-/// Any answers, at any time, on a bus with or without room: an LSS master sends LSS requests alone, in their order,
-/// waits no longer than it says, and ends each service.
+/// Arbitrary answers, at any time, on a bus with or without room: an LSS master sends only LSS requests, in their
+/// order, waits no longer than specified, and ends each service.
 ///
-/// An input is a row of steps of twelve bytes: what happens, a choice, eight bytes of data, and two numbers.
+/// An input is a sequence of steps of twelve bytes: an action, a choice, eight bytes of data, and two numbers.
 #include <canopen/lss_master.hpp>
 
 #include <algorithm>

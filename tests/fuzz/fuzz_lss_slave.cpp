@@ -1,6 +1,6 @@
-/// Whatever comes over the bus, an LSS slave answers well-formed frames and stays in a state that exists.
+/// Whatever frames it receives, an LSS slave sends well-formed responses and stays in a valid state.
 ///
-/// An input is a row of steps of ten bytes: what else happens, how much time passes, and the data of a frame.
+/// An input is a sequence of steps of ten bytes: an additional action, the time that passes, and the data of a frame.
 #include <algorithm>
 #include <canopen/lss_slave.hpp>
 

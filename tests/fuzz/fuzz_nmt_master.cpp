@@ -1,9 +1,9 @@
-/// Any frames at any time, late, wrong or hostile ones, on a bus with or without room: an NMT master sends what a
-/// master may send to its own slaves and no more, its view of a node is what it has told of it, and it never wants to
-/// be called again at once.
+/// Arbitrary frames at any time, late, wrong or hostile ones, on a bus with or without room: an NMT master sends only
+/// what a master may send, and only to its own slaves; its state of a node is the one that it has reported; it never
+/// needs to be called again immediately.
 ///
-/// An input is a configuration of five bytes and a row of steps of twelve: what happens, a choice, eight bytes of data,
-/// and two numbers.
+/// An input is a configuration of five bytes and a sequence of steps of twelve: an action, a choice, eight bytes of
+/// data, and two numbers.
 #include <canopen/nmt_master.hpp>
 
 #include <cstring>
@@ -27,7 +27,7 @@ using canopen::NodeId;
 using canopen::TimePoint;
 using namespace std::chrono_literals;
 
-constexpr std::size_t slave_count = 4;  // node-IDs 1 to 4; 3 is in the list without being a slave
+constexpr std::size_t slave_count = 4;  // node-IDs 1 to 4; 3 is in the list but is not a slave
 
 struct World : Room {
   std::array<NmtSlave, slave_count> slaves{};
@@ -118,7 +118,7 @@ constexpr NmtCommand commands[] = {NmtCommand::start, NmtCommand::stop, NmtComma
 constexpr std::uint32_t asked[] = {0x100000, 0x101801, 0x101802, 0x101803, 0x101804, 0x101700};
 constexpr std::uint8_t states[] = {0, 4, 5, 127, 0x80, 0x84, 0x85, 0xFF, 1, 3};
 
-/// Mostly an answer or a message that fits.
+/// Mostly a matching answer or message.
 Frame frame_of(const Step& step) {
   Frame frame{.size = 8};
   std::memcpy(frame.data.data(), step.data.data(), 8);
@@ -134,7 +134,7 @@ Frame frame_of(const Step& step) {
         frame.data[1] = static_cast<std::uint8_t>(entry >> 8);
         frame.data[2] = static_cast<std::uint8_t>(entry >> 16);
         frame.data[3] = static_cast<std::uint8_t>(entry);
-        // The identity that is expected is 1, 2, 3 and so on.
+        // The expected identity is 1, 2, 3 and so on.
         if ((step.choice & 0x20) == 0) frame.data[4] = static_cast<std::uint8_t>(step.other % std::size(asked) + 1);
         if ((step.choice & 0x20) == 0) frame.data[5] = frame.data[6] = frame.data[7] = 0;
       }
@@ -229,7 +229,7 @@ class Run {
     require(world.sent <= 60, "what a master sends at once is bounded");
   }
 
-  /// To the next deadline.
+  /// Lets time pass to the next deadline.
   template <class Master>
   void pass(Master& master) {
     const auto deadline = master.next_deadline();

@@ -1,8 +1,8 @@
-/// Any frames at any time, on a bus with or without room, between any calls of the application: a node with every
-/// service stays inside its memory and takes no other, sends only what its NMT state allows, never wants to be called
-/// again at once, and is whole again after a reset.
+/// Arbitrary frames at any time, on a bus with or without room, between arbitrary calls of the application: a node with
+/// every service stays inside its memory and allocates none, sends only what its NMT state allows, never needs to be
+/// called again immediately, and works again after a reset.
 ///
-/// An input is a row of steps of twelve bytes: what happens, a choice, eight bytes of data, and two numbers.
+/// An input is a sequence of steps of twelve bytes: an action, a choice, eight bytes of data, and two numbers.
 #include <canopen/node.hpp>
 #include <every_service/device.hpp>
 
@@ -32,7 +32,7 @@ void require(bool holds, const char* what) {
   std::abort();
 }
 
-/// What is taken from the heap while the node runs.
+/// Counts allocations from the heap while the node runs.
 bool running = false;
 unsigned allocations = 0;
 
@@ -44,11 +44,11 @@ struct Device : every_service::Device {
   }();
 };
 
-/// What the application is asked, and how it answers.
+/// The answers of the application, and what it expects.
 struct Application {
   AbortCode answer = canopen::ok;
   LssError lss_error{};
-  std::uint32_t expected = 0;  ///< where the next piece of a streamed download begins
+  std::uint32_t expected = 0;  ///< offset of the next piece of a streamed download
   bool off_bus = false;
 };
 
@@ -111,7 +111,7 @@ struct CheckedBus {
   unsigned room = 1000;
   unsigned sent = 0;                          ///< since the last step
   bool answered = false;                      ///< 1000h has been uploaded
-  NmtState state = NmtState::initialisation;  ///< as the node has told it last
+  NmtState state = NmtState::initialisation;  ///< last one that the node has reported
   NodeId node_id{5};
 
   bool send(const Frame& frame) {
@@ -137,7 +137,7 @@ struct CheckedBus {
   }
 };
 
-/// DOMAINs are bound to memory of these sizes, each of its own, so that what is written beside it is seen.
+/// DOMAINs are bound to memory of these sizes, a separate one each, so that writing outside it is detected.
 constexpr std::size_t sizes[] = {0, 1, 20, 300};
 
 struct Step {
@@ -148,7 +148,7 @@ struct Step {
   std::uint8_t other;
 };
 
-// CAN-IDs that node 5 listens to, and one of each kind that it does not.
+// CAN-IDs that node 5 receives, and one of each kind that it does not.
 constexpr std::uint16_t can_ids[] = {0x000, 0x080, 0x081, 0x087, 0x100, 0x185, 0x205, 0x285, 0x305, 0x385, 0x405,
                                      0x485, 0x605, 0x605, 0x605, 0x6C0, 0x704, 0x705, 0x707, 0x7E5, 0x606, 0x707};
 
@@ -168,7 +168,7 @@ void put_entry(Frame& frame, std::uint8_t choice) {
   canopen::sdo::put_multiplexer(frame.data, static_cast<std::uint16_t>(entry >> 8), static_cast<std::uint8_t>(entry));
 }
 
-/// A frame with one of the CAN-IDs, and mostly with a first byte or an entry that exists.
+/// A frame with one of the CAN-IDs, mostly with a valid first byte or an existing entry.
 [[nodiscard]] Frame frame_of(const Step& step) {
   Frame frame{.id = can_ids[step.choice % std::size(can_ids)], .size = 8, .data = step.data};
   if ((step.number & 0x80) != 0) frame.size = step.number & 7;
@@ -219,7 +219,7 @@ class Run {
     check();
   }
 
-  /// On a free bus the node is whole again after "reset node".
+  /// On a free bus the node works again after "reset node".
   void reset() {
     bus_.room = 100'000;
     for (int i = 0; i < 3; ++i) {
@@ -228,7 +228,7 @@ class Run {
     }
     require(!application_.off_bus, "the switch of a bit rate ends");
     node_.on_frame(Frame{.id = 0, .size = 2, .data = {0x81, node_.node_id().value()}}, now_);
-    if (!node_.node_id().valid()) return;  // LSS has taken its node-ID away
+    if (!node_.node_id().valid()) return;  // LSS has removed its node-ID
     require(node_.state() == NmtState::pre_operational, "a device is Pre-operational after a reset");
     bus_.node_id = node_.node_id();
     bus_.answered = false;

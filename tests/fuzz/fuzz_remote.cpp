@@ -1,8 +1,8 @@
-/// Any answers to the typed access of a master: a RemoteNode sends SDO requests to its node alone, sends no value
-/// outside the limits of the data sheet, and has values that their types can have.
+/// Arbitrary answers to the typed access of a master: a RemoteNode sends SDO requests only to its node, sends no value
+/// outside the limits of the EDS, and its values are valid for their types.
 ///
-/// An input is a byte of settings and a row of steps of twelve bytes: what happens, a choice, eight bytes of data, and
-/// two numbers.
+/// An input is a byte of settings and a sequence of steps of twelve bytes: an action, a choice, eight bytes of data,
+/// and two numbers.
 #include <canopen/remote.hpp>
 #include <sample/device.hpp>
 
@@ -29,7 +29,7 @@ struct Bus : Room {
 
 using Remote = canopen::RemoteNode<sample::Device, Bus>;
 
-/// A value of an object, if there is one: such as its type has.
+/// Checks that a value of an object, if there is one, is valid for its type.
 template <class O>
 void look_at(Remote& remote) {
   const auto value = remote.value<O>();
@@ -49,7 +49,7 @@ void look_at(Remote& remote) {
   }
 }
 
-/// Begins to write what the input says; a value outside the limits goes nowhere.
+/// Begins to write the value of the input; a value outside the limits is not sent.
 template <class O>
 void write(Remote& remote, Bus& bus, const Step& step, TimePoint now) {
   typename O::type value{};

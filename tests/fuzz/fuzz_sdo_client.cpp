@@ -1,8 +1,8 @@
-/// Any answers, at any time, on a bus with or without room: an SDO client stays inside the caller's memory, gives and
-/// takes pieces in order, and ends when its server is silent.
+/// Arbitrary answers, at any time, on a bus with or without room: an SDO client stays inside the caller's memory,
+/// passes pieces in order, and ends when its server is silent.
 ///
-/// An input is a row of steps of nine bytes: a control byte and an answer. Bits 0..2 of the control byte choose what
-/// happens, bits 3..5 how many frames the bus takes; bit 6 names the client's entry in the answer.
+/// An input is a sequence of steps of nine bytes: a control byte and an answer. Bits 0..2 of the control byte select
+/// the action, bits 3..5 the number of frames that the bus accepts; bit 6 puts the client's entry into the answer.
 #include <canopen/sdo_client.hpp>
 
 #include <algorithm>

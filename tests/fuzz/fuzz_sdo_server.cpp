@@ -1,9 +1,9 @@
-/// Any requests, at any time, on a bus with or without room: an SDO server stays inside its memory, answers each
-/// request with a bounded number of frames, and hands the bytes of a streamed DOMAIN on in order.
+/// Arbitrary requests, at any time, on a bus with or without room: an SDO server stays inside its memory, answers each
+/// request with a bounded number of frames, and passes on the bytes of a streamed DOMAIN in order.
 ///
-/// An input is a row of steps of nine bytes: a control byte and a request. Bit 7 of the control byte takes the index
-/// from a table, as random ones rarely exist; bits 4..6 choose what happens besides; bits 0..3 tell how many answers
-/// the bus takes.
+/// An input is a sequence of steps of nine bytes: a control byte and a request. Bit 7 of the control byte takes the
+/// index from a table, as random ones rarely exist; bits 4..6 select an additional action; bits 0..3 are the number of
+/// answers that the bus accepts.
 #include <canopen/object_store.hpp>
 #include <canopen/sdo_server.hpp>
 #include <sample/device.hpp>
@@ -40,7 +40,7 @@ class Application {
     bind(20);
   }
 
-  /// Memory of its own each time, so that what is written beside it is seen.
+  /// A separate memory each time, so that writing outside it is detected.
   void bind(std::size_t size) {
     memory_.emplace_back(size);
     std::vector<std::uint8_t>& memory = memory_.back();
@@ -50,7 +50,7 @@ class Application {
 
   struct Hooks {
     Application& application;
-    std::uint32_t& expected;  ///< where the next piece of this server's download begins
+    std::uint32_t& expected;  ///< offset of the next piece of this server's download
     [[nodiscard]] auto entries() const { return application.store.entries(); }
     [[nodiscard]] AbortCode before_read(std::uint16_t, std::uint8_t) const { return application.answer; }
     [[nodiscard]] AbortCode before_write(std::uint16_t, std::uint8_t, std::span<std::uint8_t>) const {
@@ -95,7 +95,7 @@ void act(Application& application, canopen::SdoServer<Device>& server, unsigned 
     case 2: application.bind(number); return server.domain_rebound(0x2012, 0);
     case 3: return server.reset();
     case 4: application.answer = AbortCode::device_state; return;
-    case 5:  // the application begins or ends to stream a DOMAIN between two transfers only
+    case 5:  // the application starts or stops streaming a DOMAIN, but only between two transfers
       server.domain_rebound(0x2012, 0);
       application.streams = !application.streams;
       return;

@@ -1,7 +1,7 @@
-/// Whatever comes over a serial line, an SLCAN adapter and a host make well-formed frames of it or none, keep to the
-/// state of the channel, and understand the next line.
+/// Arbitrary characters on a serial line: an SLCAN adapter and a host decode only well-formed frames, respect the state
+/// of the channel, and understand the next line.
 ///
-/// An input is what the host, or the adapter, sends: the first byte says which one, and how the time passes.
+/// An input is what the host or the adapter sends: the first byte selects which one, and how time passes.
 #include <canopen/port/slcan_codec.hpp>
 #include <span>
 #include <string_view>

@@ -1,7 +1,6 @@
-/// Whatever a socketcand server says, a client makes well-formed frames of it or none, and understands the next
-/// message.
+/// Arbitrary text from a socketcand server: a client decodes only well-formed frames and understands the next message.
 ///
-/// An input is what the server says; an even first byte has it greet the client first.
+/// An input is the text of the server; after an even first byte it greets the client first.
 #include <canopen/port/socketcand_codec.hpp>
 #include <string_view>
 

@@ -1,8 +1,8 @@
-/// One data sheet, generated with mappings that SDO may change and with fixed ones: as long as no mapping is written
-/// both nodes send the same frames and have the same values, whatever comes. Values stay inside their limits, and
-/// nobody sends on a CAN-ID that CiA 301 restricts.
+/// One EDS, generated with mappings that SDO may change and with fixed ones: while no mapping is written, both nodes
+/// send the same frames and have the same values, whatever they receive. Values stay inside their limits, and neither
+/// sends on a CAN-ID that CiA 301 restricts.
 ///
-/// An input is a row of steps of twelve bytes: what happens, a choice, eight bytes of data, and two numbers.
+/// An input is a sequence of steps of twelve bytes: an action, a choice, eight bytes of data, and two numbers.
 #include <canopen/node.hpp>
 #include <pdo_device/device.hpp>
 #include <static_pdo_device/device.hpp>
@@ -38,7 +38,7 @@ struct Bus {
   }
 };
 
-// Entries that exist in both and are no mapping.
+// Entries that exist in both devices and do not belong to a mapping.
 constexpr std::uint32_t entries[] = {0x100000, 0x100100, 0x100300, 0x100301, 0x100500, 0x101400, 0x101500, 0x101700,
                                      0x101900, 0x140001, 0x140002, 0x140005, 0x140101, 0x140102, 0x140105, 0x140201,
                                      0x180001, 0x180002, 0x180003, 0x180005, 0x180006, 0x180101, 0x180102, 0x180103,
@@ -60,7 +60,7 @@ constexpr std::uint8_t nmt_commands[] = {1, 1, 1, 2, 128, 129, 130};
     frame.data[0] = nmt_commands[step.other % std::size(nmt_commands)];
     frame.data[1] = 0;
   }
-  if (frame.id == 0x605) {  // an upload, or a download of a fitting kind, never of a mapping
+  if (frame.id == 0x605) {  // an upload, or a download of a suitable kind, never of a mapping
     const std::uint32_t entry = entries[step.other % std::size(entries)];
     canopen::sdo::put_multiplexer(frame.data, static_cast<std::uint16_t>(entry >> 8), static_cast<std::uint8_t>(entry));
     constexpr std::uint8_t commands[] = {0x40, 0x23, 0x2B, 0x2F, 0x27, 0x22, 0x21, 0x80, 0x60, 0x00};

@@ -1,8 +1,9 @@
-/// Damaged stored parameters: an image whose bytes are changed, cut or lengthened, with and without a checksum that
-/// fits, and two pages of flash with any bits flipped. A node starts with whatever it finds, has values inside their
-/// limits, sends no PDO, EMCY or SYNC on a CAN-ID that CiA 301 restricts, and can store again.
+/// Damaged stored parameters: an image whose bytes are changed, cut or lengthened, with and without a matching
+/// checksum, and two pages of flash with arbitrary flipped bits. A node starts with any of them, has values inside
+/// their limits, sends no PDO, EMCY or SYNC on a CAN-ID that CiA 301 restricts, and can store again.
 ///
-/// An input is a byte of settings and a row of changes of four bytes: what is done, where (two bytes), and a value.
+/// An input is a byte of settings and a sequence of changes of four bytes: the kind, the position (two bytes),
+/// and a value.
 #include <canopen/flash_storage.hpp>
 #include <canopen/node.hpp>
 #include <every_service/device.hpp>
@@ -75,7 +76,7 @@ struct Pages {
 
 constexpr unsigned node_id = 5;
 
-/// The CAN-IDs of table 43 of CiA 301 that nothing configurable may have.
+/// The CAN-IDs of table 41 of CiA 301, which a configurable COB-ID must not use.
 [[nodiscard]] bool is_restricted(std::uint32_t id) {
   return id <= 0x07F || (id >= 0x101 && id <= 0x180) || (id >= 0x581 && id <= 0x5FF) || (id >= 0x601 && id <= 0x67F) ||
          (id >= 0x6E0 && id <= 0x6FF) || id >= 0x701;
@@ -115,7 +116,7 @@ void check_values(const Node& node) {
   for (const std::uint8_t contact : contacts) require(contact <= 1, "a BOOLEAN is 0 or 1");
 }
 
-/// Starts a node with this storage and looks at it.
+/// Starts a node with this storage and checks it.
 template <class S>
 void start(S& storage, bool and_store) {
   Bus bus;
@@ -149,7 +150,7 @@ void start(S& storage, bool and_store) {
   start(storage, false);
 }
 
-/// Values that are no defaults, stored.
+/// Stores values that differ from the defaults.
 template <class S>
 void fill(S& storage) {
   Bus bus;

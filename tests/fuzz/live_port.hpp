@@ -1,4 +1,4 @@
-/// A bus in simulated time with one hostile node on it: what comes in place of its answers is the input.
+/// A bus in simulated time with one hostile node; the input replaces the node's answers.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace edsc::fuzz {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// An SDO server that does all that it is asked for: expedited and segmented transfers of CiA 301, 7.2.4.3.
+/// An SDO server that executes every request: expedited and segmented transfers of CiA 301, 7.2.4.3.
 class ObedientServer {
  public:
   std::map<std::uint32_t, Bytes> values;  ///< by index and sub-index: `0x100017`
@@ -91,17 +91,17 @@ class ObedientServer {
   std::size_t sent_ = 0;
 };
 
-/// The port of a command: the server answers, and the steps of the input say what comes in place of its answers.
+/// The port of a command: the server answers, or the steps of the input replace its answers.
 class LivePort final : public BusPort {
  public:
   static constexpr std::uint8_t node_id = 6;
-  /// More frames than any command sends to one node.
+  /// More frames than any command sends to a node.
   static constexpr unsigned most_frames = 100'000;
 
   LivePort(Steps steps, bool silent_at_end, ObedientServer& server)
       : next_{steps.begin()}, end_{steps.end()}, silent_at_end_{silent_at_end}, server_{server} {}
 
-  bool reads_only = false;  ///< no request may write then
+  bool reads_only = false;  ///< true: no request may write
 
   bool send(const canopen::Frame& frame) override {
     require(frame.size == 8 && !frame.extended && !frame.remote, "a request is a data frame of eight bytes");
@@ -147,7 +147,7 @@ class LivePort final : public BusPort {
     return std::nullopt;
   }
 
-  /// A frame takes a millisecond, so that a bus that is never silent passes time, too.
+  /// A frame takes a millisecond, so that time also passes on a bus that is never silent.
   canopen::Frame received(const canopen::Frame& frame) {
     now_ = now_ + canopen::from_milliseconds(1);
     return frame;

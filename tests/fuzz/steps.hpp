@@ -1,4 +1,4 @@
-/// The input of fuzz targets that drive a state machine: a row of steps of twelve bytes.
+/// The input of fuzz targets that drive a state machine: a sequence of steps of twelve bytes.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ struct Step {
 };
 static_assert(sizeof(Step) == 12);
 
-/// The whole steps of an input, in their order. Takes no memory.
+/// The complete steps of an input, in order. Allocates no memory.
 class Steps {
  public:
   Steps(const std::uint8_t* data, std::size_t size) : begin_{data}, end_{data + size - size % sizeof(Step)} {}
@@ -48,7 +48,7 @@ class Steps {
   const std::uint8_t* end_;
 };
 
-/// How many frames a bus takes before it is full, and how many it took.
+/// How many more frames a bus accepts, and how many it has accepted.
 struct Room {
   unsigned room = 1000;
   unsigned sent = 0;
