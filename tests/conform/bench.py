@@ -1,4 +1,4 @@
-"""A node on a bus of its own, and edsc conform at it."""
+"""A node on its own bus, and edsc conform for it."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from collections.abc import Iterable
 from pathlib import Path
 
 NODE_ID = 5
-LIMIT = 1200.0  # seconds, for what hangs
-TRIES = 8  # of a case that fails otherwise than expected: a node on a busy computer may be late
+LIMIT = 1200.0  # seconds, for programs that hang
+TRIES = 8  # runs of a case that fails unexpectedly: a node on a busy computer may be late
 LATE = re.compile(r"the test itself was late by")
 
 
 def end_with_parent() -> None:
-    """In a child before it runs: no program outlives a test that is killed."""
+    """Runs in the child before its program: a program ends if the test is killed."""
     set_parent_death_signal = 1  # PR_SET_PDEATHSIG of prctl(2)
     ctypes.CDLL(None).prctl(set_parent_death_signal, signal.SIGKILL)
 
 
 class Bench:
-    """`edsc bus`, and a node program that takes the address of the bus as its first argument. What is written to the FIFO
-    `lines` in the folder goes to the standard input of the node."""
+    """`edsc bus`, and a node program that takes the address of the bus as its first argument. Text that is written to the FIFO
+    `lines` in the folder is passed to the standard input of the node."""
 
     def __init__(self, edsc: Path, folder: Path, address: str = "") -> None:
         folder.mkdir(parents=True)
@@ -34,7 +34,7 @@ class Bench:
         self.processes: list[subprocess.Popen] = []
         self.log = folder / "node.log"
         os.mkfifo(folder / "lines")
-        self.lines = os.open(folder / "lines", os.O_RDWR)  # so that it never ends
+        self.lines = os.open(folder / "lines", os.O_RDWR)  # so that the FIFO never ends
         self.address = address or self.start_bus()
 
     def start_bus(self) -> str:
@@ -44,7 +44,7 @@ class Bench:
         return bus.stdout.readline().strip()
 
     def start_node(self, program: list[object], arguments: list[object], started: str) -> subprocess.Popen:
-        """Waits until it has printed `started`."""
+        """Starts the node and waits until it has printed `started`."""
         with self.log.open("w") as log:
             node = subprocess.Popen([*map(str, program), self.address, *map(str, arguments)], stdin=self.lines, stdout=log,
                                     preexec_fn=end_with_parent)
@@ -79,7 +79,7 @@ def patterns(cases: Iterable[str]) -> list[str]:
 
 
 def run_problems(report: dict) -> list[str]:
-    """Of the run as a whole."""
+    """Returns the problems of the whole run."""
     problems = [f"not put back: {text}" for text in report["not_put_back"]]
     if report["ended_early"]:
         problems.append(report["ended_early"])

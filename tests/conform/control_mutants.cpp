@@ -59,7 +59,7 @@ bool is_lss(const Frame& frame, std::uint32_t id, std::uint8_t command) {
 
 constexpr int any_sub_index = -1;
 
-/// A frame of SDO that names this entry.
+/// Returns whether an SDO frame is for this entry.
 bool names(const Frame& frame, std::uint32_t id, std::uint16_t index, int sub_index) {
   if (!is_data(frame, id) || (frame.data[1] | frame.data[2] << 8) != index) return false;
   return sub_index == any_sub_index || frame.data[3] == sub_index;
@@ -78,19 +78,19 @@ bool is_abort(const Frame& frame, std::uint16_t index, AbortCode code) {
          word_at(frame, 4) == static_cast<std::uint32_t>(code);
 }
 
-/// The value that the test reads.
+/// The test reads this value.
 Change reads(std::uint16_t index, int sub_index, std::uint32_t value) {
   return [=](Wire&, Frame& frame) {
     if (is_upload_answer(frame, index, sub_index)) put_word(frame, 4, value);
   };
 }
-/// The value that is written in place of this one.
+/// A download of `value` writes `instead`.
 Change writes(std::uint16_t index, std::uint32_t value, std::uint32_t instead) {
   return [=](Wire&, Frame& frame) {
     if (is_download(frame, index, any_sub_index) && word_at(frame, 4) == value) put_word(frame, 4, instead);
   };
 }
-/// A write that is refused looks as if it had been done.
+/// A rejected download is confirmed.
 Change takes(std::uint16_t index, AbortCode refused) {
   return [=](Wire&, Frame& frame) {
     if (!is_abort(frame, index, refused)) return;
@@ -103,7 +103,7 @@ Change aborts_with(std::uint16_t index, AbortCode code, AbortCode instead) {
     if (is_abort(frame, index, code)) put_word(frame, 4, static_cast<std::uint32_t>(instead));
   };
 }
-/// A write that the device does not see, and that is answered all the same.
+/// A download that is confirmed without being executed.
 Change forgets(std::uint16_t index, int sub_index) {
   return [=](Wire& wire, Frame& frame) {
     if (!is_download(frame, index, sub_index)) return;
@@ -111,7 +111,7 @@ Change forgets(std::uint16_t index, int sub_index) {
     wire.send(make(sdo_answer_id, {0x60, frame.data[1], frame.data[2], frame.data[3], 0, 0, 0, 0}));
   };
 }
-/// Each signature counts as the right one.
+/// Each signature is accepted as the right one.
 Change takes_each_signature(std::uint16_t index, std::uint32_t right) {
   return [=](Wire&, Frame& frame) {
     if (is_download(frame, index, any_sub_index)) put_word(frame, 4, right);
@@ -138,7 +138,7 @@ Change drops(Predicate predicate) {
     if (predicate(frame)) wire.drop();
   };
 }
-/// One in `every` of these frames does not arrive.
+/// One in `every` of these frames is lost.
 template <class Predicate>
 Change drops_some(Predicate predicate, unsigned every) {
   return [=, seen = 0U](Wire& wire, Frame& frame) mutable {
@@ -151,7 +151,7 @@ Change repeats(Predicate predicate) {
     if (predicate(frame)) wire.send(frame);
   };
 }
-/// The device sends this as well, whenever a frame of this kind passes.
+/// The device also sends `added` after each frame of this kind.
 template <class Predicate>
 Change adds(Predicate predicate, Frame added) {
   return [=](Wire& wire, Frame& frame) {
@@ -167,7 +167,7 @@ Change sets_byte(Predicate predicate, std::size_t at, std::uint8_t value) {
 Change ignores(NmtCommand command) {
   return drops([=](const Frame& frame) { return is_nmt(frame, command); });
 }
-/// A boot-up message and nothing else.
+/// Only sends a boot-up message.
 Change pretends(NmtCommand command) {
   return [=](Wire& wire, Frame& frame) {
     if (!is_nmt(frame, command)) return;
@@ -204,7 +204,7 @@ Change guards_for_others() {
     if (frame.remote && (frame.id & 0x780) == 0x700 && frame.id != error_control_id) wire.send(make(frame.id, {state}));
   };
 }
-/// Serves the SDO in Stopped.
+/// Serves SDO in Stopped.
 Change answers_in_stopped() {
   return [stopped = false](Wire& wire, Frame& frame) mutable {
     if (is_data(frame, 0)) stopped = is_nmt(frame, NmtCommand::stop);
@@ -212,7 +212,7 @@ Change answers_in_stopped() {
     wire.send(make(sdo_answer_id, {0x43, frame.data[1], frame.data[2], frame.data[3], 0, 0, 0, 0}));
   };
 }
-/// Does not serve the SDO in Operational.
+/// Does not serve SDO in Operational.
 Change silent_in_operational() {
   return [operational = false](Wire& wire, Frame& frame) mutable {
     if (is_data(frame, 0)) operational = is_nmt(frame, NmtCommand::start);
@@ -246,7 +246,7 @@ Change short_emcy() {
     if (is_any_emcy(frame)) frame = with_size(frame, 7);
   };
 }
-/// Answers to an upload say another size: `command` is 4Fh for one byte, 43h for four.
+/// Answers to an upload indicate another size: `command` is 4Fh for one byte, 43h for four.
 Change says_size(std::uint16_t index, std::uint8_t command) {
   return [=](Wire&, Frame& frame) {
     if (is_upload_answer(frame, index, 0)) frame.data[0] = command;
@@ -268,7 +268,7 @@ Change keeps_its_node_id() {
     if (other) frame.data[1] = node;
   };
 }
-/// Each COB-ID takes a restricted CAN-ID.
+/// Each COB-ID accepts a restricted CAN-ID.
 Change takes_restricted_can_ids() {
   return [](Wire& wire, Frame& frame) {
     for (const unsigned index : {0x1005U, 0x1012U, 0x1014U, 0x1201U, 0x1400U, 0x1800U}) {

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""edsc conform at a drive: an enabled one is not tested with outputs, and nothing is written to it.
+"""edsc conform with a drive: an enabled drive is not tested with outputs, and nothing is written to it.
 
     drive_test.py SOURCE_DIR EDSC NODES_DIR [unittest arguments]
 """

@@ -1,4 +1,4 @@
-/// The good device of these tests: one that has every service.
+/// The good device of these tests, with every service.
 #pragma once
 
 #include <canopen/port/simulated_node.hpp>

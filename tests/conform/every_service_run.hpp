@@ -1,4 +1,4 @@
-/// Runs cases at the device with every service, as it is or as a mutant.
+/// Runs cases with the every-service device, unchanged or as a mutant.
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""A CANopen slave with none of edsc's code, for foreign_slave.eds, on a bus of `edsc bus`. It does what CiA 301 says, but for
-the gaps that it is told to have.
+"""A CANopen slave without edsc's code, for foreign_slave.eds, on a bus of `edsc bus`. It complies with CiA 301, except for the
+given gaps.
 
     foreign_slave.py ADDRESS NODE_ID [GAP]...
 """
@@ -48,14 +48,14 @@ class ForeignSlave(Slave):
         return frames
 
     def wait(self, now: float) -> float:
-        """Seconds until it has to do something."""
+        """Returns the seconds until it must be served."""
         times = [entry[0] for entry in self.outbox[:1]] + ([self.next_beat] if self.next_beat is not None else [])
         return max(0.0, min([1.0, *(at - now for at in times)]))
 
     # ---- SDO server ----
 
     def missing(self, entry: tuple[int, int]) -> bool:
-        """Whether there is no such entry, which is said by an abort."""
+        """Returns whether the entry does not exist, after sending an abort."""
         if entry in self.entries:
             return False
         has_object = any(index == entry[0] for index, _ in self.entries)

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""edsc conform at slaves with none of edsc's code: it names their gaps, and nothing else.
+"""edsc conform with slaves without edsc's code: it reports their gaps, and nothing else.
 
     foreign_test.py SOURCE_DIR EDSC [--node-canopen WORK_DIR]
 
-foreign_slave.py passes all cases without gaps, and with all of them fails those of `GAPS`. npm's canopen fails those of
-`NODE_CANOPEN`, as long as it is the version of the lock file; without --node-canopen, or where npm cannot install it, it is
-left out aloud.
+foreign_slave.py passes all cases without gaps, and with all gaps fails those of `GAPS`. npm's canopen fails those of
+`NODE_CANOPEN`, with the version of the lock file; without --node-canopen, or if npm cannot install it, it is skipped with a
+message.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from masters_test import Skipped, install_node_canopen  # noqa: E402
 
 SHEET = HERE / "foreign_slave.eds"
 
-# By case: the gap, what was expected and what came.
+# By case: the gap, the expected result and the actual result.
 GAPS = {
     "2.3": ("writable", "write of 1000h:00: an abort with 0601 0002h", "write of 1000h:00: done"),
     "2.5": ("abort-code", "read of 1000h:01: an abort with 0609 0011h", "read of 1000h:01: 0602 0000h"),
@@ -57,7 +57,7 @@ Expected = dict[str, tuple[str, str, str]]
 
 
 def problems_of(report: dict, expected: Expected, among: set[str] | None) -> dict[str, str]:
-    """By case, what is otherwise than expected. `among`: the cases that have run; None: all."""
+    """Returns the unexpected result of each case. `among`: the cases that have run; None: all."""
     problems = {}
     for case in report["cases"]:
         verdict, wanted = case["verdict"], expected.get(case["id"])
@@ -78,7 +78,7 @@ def problems_of(report: dict, expected: Expected, among: set[str] | None) -> dic
 
 def test_slave(edsc: Path, folder: Path, program: list[object], arguments: list[object], expected: Expected,
                level: str = "all") -> list[str]:
-    """The problems."""
+    """Returns the problems."""
     bench = Bench(edsc, folder)
     try:
         bench.start_node(program, [NODE_ID, *arguments], "started")

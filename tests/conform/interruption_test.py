@@ -3,7 +3,7 @@
 
     interruption_test.py SOURCE_DIR EDSC NODES_DIR [unittest arguments]
 
-What the device holds is read over SDO before and afterwards.
+The values of the device are read over SDO before and after that.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ SOURCE_DIR, EDSC, NODES = (Path(argument).resolve() for argument in sys.argv[1:4
 SHEET = SOURCE_DIR / "eds/can-2053c.eds"
 FAILED, INTERRUPTED = 1, 130
 HEARTBEAT = "705 7F"
-# The run finds the state of the node by heartbeats of 100 ms, and case 7.102 writes the same again. Then the case waits.
+# The run finds the state of the node with heartbeats of 100 ms, and case 7.102 writes the same again. Then the case waits.
 IN_7_102 = ("605 2B 17 10 00 64 00", "605 2B 17 10 00 64 00", HEARTBEAT, HEARTBEAT, HEARTBEAT)
 
 
@@ -54,7 +54,7 @@ class Interruption(unittest.TestCase):
         return self.edsc("read", "1017h", "1800h:01", "1800h:02", "1800h:03", "1800h:05", *(f"1A00h:0{i}" for i in range(3)))
 
     def start(self, case: str, frames: tuple[str, ...], timeout_ms: int = 2000) -> subprocess.Popen[str]:
-        """edsc conform, when these frames were on the bus in this order."""
+        """Starts edsc conform and waits until these frames were on the bus in this order."""
         command = self.bench.command(SHEET, self.report, f"--only={case}", timeout_ms=timeout_ms)
         process = subprocess.Popen(command, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         self.addCleanup(process.communicate)
@@ -67,7 +67,7 @@ class Interruption(unittest.TestCase):
     def check_interrupted(self, case: str, *frames: str) -> None:
         self.edsc("write", "1017h", 2000, "--type", "u16")
         before = self.values()
-        for _ in range(TRIES):  # on a busy computer the signal may come when the run is over
+        for _ in range(TRIES):  # on a busy computer the run may end before the signal
             process = self.start(case, frames)
             process.send_signal(signal.SIGINT)
             process.communicate(timeout=LIMIT)
@@ -81,7 +81,7 @@ class Interruption(unittest.TestCase):
         self.assertEqual(report["not_put_back"], [])
 
     def state(self) -> str:
-        """As the next heartbeat says it."""
+        """Returns the next heartbeat."""
         last = Client(self.client.socket.getpeername()[1])
         try:
             while not (frame := last.receive()).startswith("705"):
@@ -115,7 +115,7 @@ class Interruption(unittest.TestCase):
         self.node.kill()
         self.node.wait(LIMIT)
         process.send_signal(signal.SIGINT)
-        while not self.client.receive().startswith("605 40 17 10"):  # it puts back, and waits for an answer
+        while not self.client.receive().startswith("605 40 17 10"):  # it restores values and waits for an answer
             pass
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=LIMIT)

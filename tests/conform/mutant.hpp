@@ -1,4 +1,4 @@
-/// A wrong device: a good one, and between it and the test a wire that changes frames.
+/// A wrong device: a good one, with a wire to the test that changes frames.
 #pragma once
 
 #include <canopen/frame.hpp>
@@ -12,34 +12,34 @@
 
 namespace edsc::conform {
 
-/// What a mutant may do with a frame besides changing its bytes.
+/// What a mutant may do with a frame in addition to changing its bytes.
 class Wire {
  public:
   static constexpr std::uint8_t node_id = 5;  ///< of the device
 
   canopen::TimePoint now;  ///< in simulated time
 
-  /// The frame does not arrive.
+  /// The frame is lost.
   void drop() { keep = false; }
-  /// It arrives later, and those behind it keep their time.
+  /// The frame is received later; frames after it keep their time.
   void delay(canopen::Duration span) { later = span; }
-  /// The device sends this frame as well, behind the present one.
+  /// The device also sends this frame, after the present one.
   void send(const canopen::Frame& frame) { from_device.push_back(frame); }
-  /// The test sends this frame as well, before the present one.
+  /// The test also sends this frame, before the present one.
   void request(const canopen::Frame& frame) { to_device.push_back(frame); }
 
-  // Of one frame, for the port.
+  // For one frame; read by the port.
   bool keep = true;
   canopen::Duration later{0};
   std::vector<canopen::Frame> from_device, to_device;
 };
 
-/// Called with each frame on its way. A lambda that keeps state begins anew with each run.
+/// Called for each frame on the wire. A lambda with state starts anew with each run.
 using Change = std::function<void(Wire& wire, canopen::Frame& frame)>;
 
 struct Mutant {
   std::string_view name;  ///< `abort-code-of-missing-sub-index`
-  Change of_answers;      ///< frames of the device; empty: none changes
+  Change of_answers;      ///< frames of the device; empty: unchanged
   Change of_requests;     ///< frames of the test
   std::function<void(std::string& eds)> of_eds{};  ///< the text of the EDS, before the test reads it
 };

@@ -1,4 +1,4 @@
-/// Which cases a wrong device fails. The table mutants.tsv holds them; `--write FILE` prints it anew, `--mutant NAME` and
+/// Which cases a wrong device fails. The table is mutants.tsv; `--write FILE` writes it anew, `--mutant NAME` and
 /// `--only PATTERN` show one run.
 #include <cstdio>
 #include <cstring>
@@ -59,7 +59,7 @@ int show(const Mutant& mutant, const std::vector<std::string>& only) {
   return report.passed() ? 0 : 1;
 }
 
-/// What is wrong with the table as a whole.
+/// The problems of the table: mutants without a failing case, and cases that no mutant fails.
 std::vector<std::string> gaps(const std::map<std::string, std::string>& failed) {
   std::set<std::string> covered;
   std::vector<std::string> problems;
@@ -74,7 +74,7 @@ std::vector<std::string> gaps(const std::map<std::string, std::string>& failed) 
   return problems;
 }
 
-/// What the device fails, or leaves changed, as it is.
+/// The cases that the unchanged device fails, and the values that are left changed.
 std::vector<std::string> failures_of_good_device() {
   std::vector<std::string> problems;
   const RunReport report = run_every_service(Mutant{"none", {}, {}});

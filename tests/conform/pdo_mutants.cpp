@@ -1,4 +1,4 @@
-/// Devices whose PDOs are wrong: what they may map and have mapped, when they send them, and with which data.
+/// Devices with wrong PDOs: their mappings, when they send them, and their data.
 #include <canopen/abort_code.hpp>
 #include <canopen/nmt.hpp>
 #include <optional>
@@ -32,7 +32,7 @@ void set_value(Frame& frame, std::uint32_t value) {
   for (unsigned i = 4; i < 8; ++i, value >>= 8) frame.data[i] = static_cast<std::uint8_t>(value);
 }
 
-/// Entries from one to another of a range of objects. Of a range from 1600h to 1BFFh those of mapping parameters.
+/// Entries of a range of objects. In a range from 1600h to 1BFFh only those of mapping parameters.
 struct Entries {
   std::uint16_t first, last;
   std::uint8_t first_sub_index = 0, last_sub_index = 0xFF;
@@ -63,7 +63,7 @@ Frame answer_to(const Frame& request, std::uint8_t command, AbortCode code = can
   return answer;
 }
 
-/// The device takes another value than the one that is written.
+/// The device writes another value than the given one.
 template <class Function>
 Change writes(Entries entries, Function changed) {
   return [=](Wire&, Frame& frame) {
@@ -71,14 +71,14 @@ Change writes(Entries entries, Function changed) {
   };
 }
 
-/// It has another value.
+/// The device has another value.
 Change reads(Entries entries, std::uint32_t value) {
   return [=](Wire&, Frame& frame) {
     if (is_value(frame) && entries.has(frame)) set_value(frame, value);
   };
 }
 
-/// It has an entry that it should not have.
+/// The device has an entry that it must not have.
 Change has(Entries entries, std::uint32_t value) {
   return [=](Wire&, Frame& frame) {
     if (!is_abort(frame) || !entries.has(frame)) return;
@@ -87,7 +87,7 @@ Change has(Entries entries, std::uint32_t value) {
   };
 }
 
-/// It refuses with another code or, without one, says that it has written.
+/// The device rejects with another code or, without one, confirms.
 Change refuses(Entries entries, AbortCode right, std::optional<AbortCode> wrong) {
   return [=](Wire&, Frame& frame) {
     if (!is_abort(frame) || !entries.has(frame) || value_of(frame) != static_cast<std::uint32_t>(right)) return;
@@ -95,7 +95,7 @@ Change refuses(Entries entries, AbortCode right, std::optional<AbortCode> wrong)
   };
 }
 
-/// It refuses what it should take, where the condition holds for the value.
+/// The device rejects a value that it must accept, if the condition holds for it.
 template <class Condition>
 Change does_not_take(Entries entries, AbortCode code, Condition condition) {
   return [=](Wire& wire, Frame& frame) {
@@ -105,7 +105,7 @@ Change does_not_take(Entries entries, AbortCode code, Condition condition) {
   };
 }
 
-/// It says that it has written, and has not.
+/// The device confirms a download without executing it.
 template <class Condition>
 Change forgets(Entries entries, Condition condition) {
   return [=](Wire& wire, Frame& frame) {
@@ -118,11 +118,11 @@ Change forgets(Entries entries, Condition condition) {
 bool any_value(std::uint32_t) { return true; }
 bool maps_object(std::uint32_t value) { return value >> 16 >= 0x1000; }
 bool maps_dummy(std::uint32_t value) { return value != 0 && value >> 16 < 0x20; }
-/// Of the fixture: 1001h:00 and 200Dh:00 are ro, 200Eh:00 is rww, and may be mapped.
+/// In the fixture, 1001h:00 and 200Dh:00 are ro, 200Eh:00 is rww; all can be mapped.
 bool maps_input(std::uint32_t value) { return value >> 16 == 0x1001 || value >> 16 == 0x200D; }
 bool maps_output(std::uint32_t value) { return value >> 16 == 0x200E; }
 
-/// It maps what it must not: the refused entry counts as written.
+/// The device maps what it must not map: it confirms the wrong entry.
 template <class Condition>
 Mutant maps(std::string_view name, Entries mapping, Condition condition) {
   return {name, {}, forgets(mapped_objects_of(mapping), condition)};
@@ -153,7 +153,7 @@ Change sends_in(NmtCommand state, Condition condition) {
 bool is_remote_frame_for_tpdo(const Frame& frame) { return frame.remote && is_tpdo(frame); }
 bool is_sync(const Frame& frame) { return frame.id == sync && !frame.remote; }
 
-/// Stays in its state, so that its TPDOs go on by events and timers.
+/// Stays in its state, so that its TPDOs are still sent by events and timers.
 Change ignores(NmtCommand command) {
   return [=](Wire& wire, Frame& frame) {
     if (frame.id == 0 && frame.size == 2 && frame.data[0] == static_cast<std::uint8_t>(command)) wire.drop();

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""edsc conform at the reference devices: each runnable node on a bus of its own, all cases, in real time.
+"""edsc conform with the reference devices: each runnable node on its own bus, all cases, in real time.
 
     reference_test.py SOURCE_DIR EDSC NODES_DIR [--only NAME]... [--bus ADDRESS] [--keep FOLDER]
 
-Each case passes, fails as NAME.deviations.json beside the EDS declares, is not applicable, or is inconclusive since the test
-itself was late. Lines on the standard input of a node are the stimuli. A node on a busy computer may be late, which the
-test cannot tell from a slow device: a case that fails runs again alone, and fails when it fails `TRIES` times. With --bus the
-nodes run one after the other on this bus, such as socketcan:vcan0.
+Each case passes, fails as NAME.deviations.json beside the EDS declares, is not applicable, or is inconclusive because the
+test itself was late. Lines on the standard input of a node are the stimuli. A node on a busy computer may be late, which the
+test cannot distinguish from a slow device: a case that fails runs again alone, and fails if it fails `TRIES` times. With
+--bus the nodes run one after the other on this bus, such as socketcan:vcan0.
 """
 
 from __future__ import annotations
@@ -31,20 +31,20 @@ ERRORS = ("5.4", "5.5", "5.6", "9.2", "9.3", "9.4")
 POWER = ("8.2", "8.6")
 
 
-# Each on a bus of its own, as most of the time goes by waiting.
+# Each part on its own bus, because most of the time is waiting.
 PARTS = (("1.*", "2.*", "3.*", "4.*", "5.*", "6.*", "8.*"), ("7.*", "9.*", "10.*", "11.*"))
 
 
 @dataclass(frozen=True)
 class Device:
-    """`tested`: cases that apply, at least. The others are lines that act on the node; `changes` take turns."""
+    """`tested`: minimum number of applicable cases. The others are input lines for the node; `changes` alternate."""
     tested: int
     changes: tuple[tuple[str, ...], ...] = ()
     error: str = ""
     error_over: str = ""
 
     def lines(self) -> dict[str, list[str]]:
-        """By the value of EDSC_STIMULUS, with the turn of a change."""
+        """Returns the lines for each value of EDSC_STIMULUS, with the number of a change."""
         found = {"power_cycle": ["power-cycle"]}
         found |= {f"change{i}": list(lines) for i, lines in enumerate(self.changes)}
         if self.error:
@@ -53,7 +53,7 @@ class Device:
 
 
 MODULE_ERROR = {"error": "fault eeprom", "error_over": "fault over"}
-LIMIT_SWITCH = (("limit positive on",), ("limit positive off",))  # bit 11 of 6041h, which TPDO 1 carries
+LIMIT_SWITCH = (("limit positive on",), ("limit positive off",))  # bit 11 of 6041h, which TPDO 1 maps
 DEVICES = {
     "can_2017c": Device(89, (("analogue 1 5.0", "analogue 5 5.0"), ("analogue 1 2.0", "analogue 5 2.0")), **MODULE_ERROR),
     "can_2024c": Device(74, **MODULE_ERROR),
@@ -86,7 +86,7 @@ def quoted_lines(lines: list[str]) -> str:
 
 
 def stimulus_script(device: Device) -> str:
-    """A shell script that writes the lines for EDSC_STIMULUS to the node; exit code 1 where there are none."""
+    """Returns a shell script that writes the lines for EDSC_STIMULUS to the node; exit code 1 if there are none."""
     rows = [f"{what}) {quoted_lines(lines)} ;;" for what, lines in device.lines().items()]
     return "\n".join(['cd "$(dirname "$0")" || exit 1', 'what=$EDSC_STIMULUS', 'if [ "$what" = change ]; then',
                       '  if [ -e odd ]; then rm odd; what=change0; else : > odd; what=change1; fi', 'fi',
@@ -94,7 +94,7 @@ def stimulus_script(device: Device) -> str:
 
 
 def case_problems(report: dict) -> dict[str, str]:
-    """By case, those that another try may mend."""
+    """Returns the problems of each case that another run may resolve."""
     problems = {}
     for case in report["cases"]:
         verdict = case["verdict"]

@@ -1,4 +1,4 @@
-/// Devices whose SDO server or object dictionary is wrong.
+/// Devices with a wrong SDO server or object dictionary.
 #include <canopen/abort_code.hpp>
 #include <canopen/sdo_protocol.hpp>
 #include <cstdint>
@@ -38,7 +38,7 @@ Data abort_of(const Frame& request, AbortCode code) {
   return bytes_of(abort_byte, sdo::multiplexer_of(request.data), static_cast<std::uint32_t>(code));
 }
 
-/// The device answers with these bytes and does not see the request.
+/// The device answers with these bytes and does not receive the request.
 void answer(Wire& wire, const Data& data) {
   Frame frame;
   frame.id = answer_id;
@@ -58,7 +58,7 @@ bool names(const Frame& frame, std::uint16_t index, std::uint8_t sub_index) {
 
 // Kinds of wrong devices
 
-/// An abort code in the place of another.
+/// One abort code instead of another.
 Mutant abort_code(std::string_view name, AbortCode right, AbortCode wrong) {
   return {name,
           [=](Wire&, Frame& frame) {
@@ -69,7 +69,7 @@ Mutant abort_code(std::string_view name, AbortCode right, AbortCode wrong) {
           {}};
 }
 
-/// A download that is refused with this code is confirmed.
+/// A download that is rejected with this code is confirmed.
 Mutant accepted(std::string_view name, AbortCode code) {
   return {name,
           [=](Wire&, Frame& frame) {
@@ -93,7 +93,7 @@ Mutant upload_refused(std::string_view name, std::uint16_t index, std::uint8_t s
   return upload_gives(name, index, sub_index, abort_byte, static_cast<std::uint32_t>(code));
 }
 
-/// A download to these entries that is answered without being done: with an abort, or with a confirmation (`none`).
+/// A download to these entries is answered without being executed: with an abort, or with a confirmation (`ok`).
 Mutant download_gives(std::string_view name, std::function<bool(const Frame&)> condition, AbortCode code) {
   return {name, {}, [=](Wire& wire, Frame& frame) {
             if (!is_download(frame) || !condition(frame)) return;
@@ -102,7 +102,7 @@ Mutant download_gives(std::string_view name, std::function<bool(const Frame&)> c
           }};
 }
 
-/// A change of each answer whose byte 0 is this, in the bits of the mask.
+/// Changes each answer whose byte 0, in the bits of the mask, is `command`.
 Mutant answers(std::string_view name, std::uint8_t command, std::uint8_t mask, std::function<void(Data&)> change) {
   return {name,
           [=](Wire&, Frame& frame) {
@@ -117,9 +117,9 @@ Mutant requests(std::string_view name, std::uint8_t command, std::uint8_t mask, 
           }};
 }
 
-// Devices with a memory of their own
+// Devices with state
 
-/// 1000h:00 comes in a segment, whose command byte is given.
+/// 1000h:00 is sent in a segment with the given command byte.
 Mutant device_type_in_segment(std::string_view name, std::uint8_t segment) {
   return {name, {}, [segment, open = false](Wire& wire, Frame& frame) mutable {
             if (!is_request(frame)) return;
@@ -132,7 +132,7 @@ Mutant device_type_in_segment(std::string_view name, std::uint8_t segment) {
           }};
 }
 
-/// Each answer to a read of 1000h:00 comes twice.
+/// Each answer to a read of 1000h:00 is sent twice.
 Mutant answered_twice() {
   return {"device-type-twice",
           [](Wire& wire, Frame& frame) {
@@ -150,7 +150,7 @@ Mutant wrong_default_in_eds() {
           }};
 }
 
-/// The toggle bit of upload requests is not looked at.
+/// The toggle bit of upload requests is not checked.
 Mutant toggle_bit_ignored() {
   return {"toggle-bit-ignored", {}, [next = std::uint8_t{0}](Wire&, Frame& frame) mutable {
             if (!is_request(frame)) return;
@@ -170,7 +170,7 @@ Mutant block_sequence_from_2() {
           {}};
 }
 
-/// 1201h:01 keeps what was written when communication is reset.
+/// 1201h:01 keeps its written value after reset communication.
 Mutant server_not_reset() {
   return {
       "sdo-server-not-reset", {}, [written = std::uint32_t{0}, was_reset = false](Wire& wire, Frame& frame) mutable {
@@ -195,7 +195,7 @@ bool is_of(const Frame& frame, std::uint8_t command, std::uint16_t index, std::u
   return frame.data[0] == command && names(frame, index, sub_index) && sdo::word_of(frame.data) == word;
 }
 
-/// A transmission type of four bytes is refused, but the device changes it.
+/// A transmission type of four bytes is rejected, but the device changes it.
 Mutant refused_and_changed() {
   return {"refused-values-change-the-entry", {}, [](Wire& wire, Frame& frame) {
             const std::uint16_t index = sdo::index_of(frame.data);

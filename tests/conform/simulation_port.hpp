@@ -1,4 +1,4 @@
-/// A simulated device in this process, behind the port of a LiveBus, and a mutant on the wire.
+/// A simulated device in this process as the port of a LiveBus, with a mutant on the wire.
 #pragma once
 
 #include <algorithm>
@@ -53,7 +53,7 @@ class SimulationPort final : public BusPort {
     canopen::Frame frame;
   };
 
-  /// What the mutant does to a frame. What it sends besides waits for `receive`.
+  /// Applies the mutant to a frame. Additional frames wait for `receive`.
   Wire put_on(const Change& change, canopen::Frame& frame) {
     Wire wire;
     wire.now = now();
@@ -75,7 +75,7 @@ class SimulationPort final : public BusPort {
   std::deque<Waiting> waiting_;
 };
 
-/// What acts on a simulated device from outside the bus.
+/// Stimuli of a simulated device from outside the bus.
 class SimulationStimuli final : public Stimuli {
  public:
   explicit SimulationStimuli(SimulationPort::Simulation& device) : device_{device} {}
