@@ -1,5 +1,5 @@
-# The target `coverage`: runs all GoogleTest programs of the runtime and prints the lines of each of its headers that they
-# reach, and which they do not. Fails below 95 %. The sockets of port/socketcan.hpp are tested in the virtual machine.
+# The target `coverage`: runs all GoogleTest programs of the runtime and prints which lines of each of its headers they
+# reach and which they do not. Fails below 95 %. The sockets of port/socketcan.hpp are tested in the virtual machine.
 find_program(GCOVR gcovr REQUIRED)
 get_property(programs GLOBAL PROPERTY edsc_covering_tests)
 set(runs)

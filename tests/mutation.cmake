@@ -1,5 +1,5 @@
-# The target `mutation`: changes a line of the sources at a time and prints the changes that no test notices. Fails below
-# 95 %. EDSC_MUTATION_ARGUMENTS says which lines: those that differ from a git reference, or a sample of all.
+# The target `mutation`: changes one line of the sources at a time and prints the changes that the tests do not detect.
+# Fails below 95 %. EDSC_MUTATION_ARGUMENTS selects the lines: those that differ from a git reference, or a sample of all.
 set(EDSC_MUTATION_ARGUMENTS "--against origin/main" CACHE STRING "Arguments of tests/mutation/mutation.py")
 separate_arguments(mutation_arguments UNIX_COMMAND "${EDSC_MUTATION_ARGUMENTS}")
 add_custom_target(
