@@ -123,7 +123,7 @@ def install_node_canopen(work: Path) -> Path:
     """Returns its program, after installing the packages of the lock file in the same folder."""
     for program in ("node", "npm"):
         if shutil.which(program) is None:
-            raise Skipped(f"there is no {program}")
+            raise Skipped(f"{program} is not installed")
     source = HERE / "node_canopen"
     lock, installed = source / "package-lock.json", work / "installed.json"
     shutil.copytree(source, work, dirs_exist_ok=True)

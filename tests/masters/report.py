@@ -104,5 +104,5 @@ class Report:
 def stale(exceptions: list[Exception_]) -> list[str]:
     """Returns the rows that were not needed."""
     return [f"exceptions.tsv:{row.line}: {row.device} {row.entries} {row.checks}: " +
-            ("no device differs here any more" if row.used else "there is no such entry") for row in exceptions
+            ("no device differs here any more" if row.used else "the entry does not exist") for row in exceptions
             if not row.needed]
