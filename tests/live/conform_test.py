@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""edsc conform at a live node: the commands of docs/conform.md do what it says, and the reports are what their schemas and
-readers take.
+"""edsc conform with a live node: the commands of docs/conform.md do what the page says, and the reports conform to their
+schemas and can be read.
 
     conform_test.py SOURCE_DIR EDSC RK5C [unittest arguments]
 
-RK5C is the program of the reference device. The blocks of the document that name this script are run in their order in a copy of
-the files that they use; the lines of blocks without a language are in the output of the commands before them.
+RK5C is the program of the reference device. The blocks of the document that name this script are run in order in a copy of the
+files that they use; the lines of blocks without a language must be in the output of the commands before them.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ EDSC = Path(sys.argv[2]).resolve()
 RK5C = Path(sys.argv[3]).resolve()
 ADDRESS = "socketcand:127.0.0.1:29536/vcan0"  # in the document
 BLOCK = re.compile(r"<!-- run by: tests/live/conform_test.py -->\n```(\w*)\n(.*?)```", re.DOTALL)
-PATIENCE = "--timeout 60000"  # for an answer that has to come, also on a machine that is busy
+PATIENCE = "--timeout 60000"  # for an answer that must be received, even on a busy machine
 
 
 class Conform(unittest.TestCase):
@@ -88,7 +88,7 @@ class Conform(unittest.TestCase):
         suites = ElementTree.parse(self.folder / "report.xml").getroot()
         tests = suites.findall("testsuite/testcase")
         self.assertEqual(len(tests), int(suites.get("tests")))
-        self.assertEqual(len(tests), len(report["cases"]) + 3)  # and what is asked of the run as a whole
+        self.assertEqual(len(tests), len(report["cases"]) + 3)  # and the checks of the whole run
         self.assertEqual(len([test for test in tests if test.find("skipped") is not None]), int(suites.get("skipped")))
 
         log = (self.folder / "frames.log").read_text(encoding="utf-8").splitlines()

@@ -22,13 +22,13 @@ from network import Network  # noqa: E402
 SOURCE_DIR = Path(sys.argv[1]).resolve()
 EDSC = Path(sys.argv[2]).resolve()
 
-# CSI as one character, and all marks of the Unicode Bidirectional Algorithm. A file with ESC is not read at all.
+# CSI as one character, and all marks of the Unicode Bidirectional Algorithm. edsc does not read a file with ESC.
 HOSTILE = "\x9b31m\x7f\u061c\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069\u2028"
 BIDIRECTIONAL = {"LRE", "RLE", "LRO", "RLO", "PDF", "LRI", "RLI", "FSI", "PDI"}
 
 
 def hidden(text: str) -> list[str]:
-    """What a terminal obeys or an editor hides, but for line ends."""
+    """Returns characters that a terminal executes or an editor hides, except line ends."""
     return [f"U+{ord(c):04X}" for c in text
             if c != "\n" and (unicodedata.category(c) in ("Cc", "Zl", "Zp") or c in "\u061c\u200e\u200f" or
                               unicodedata.bidirectional(c) in BIDIRECTIONAL)]
@@ -40,7 +40,7 @@ def entry(section: str, name: str, data_type: int, access: str, value: str, more
 
 
 def sheet(gain: str) -> str:
-    """A device whose names, texts, comments and units are hostile."""
+    """An EDS whose names, texts, comments and units are hostile."""
     return (f"[FileInfo]\nFileName=x{HOSTILE}.eds\nFileVersion=1\nFileRevision=1\nDescription=x{HOSTILE}\n"
             f"CreatedBy={HOSTILE}\n"
             f"[DeviceInfo]\nVendorName=v{HOSTILE}\nVendorNumber=1\nProductName=p{HOSTILE}\nProductNumber=2\n"
@@ -150,7 +150,7 @@ class OfDevices(HiddenTextTest):
         self.segments: list[bytes] = []
 
     def answer(self, frame: str) -> list[str]:
-        """A node with hostile texts, which reads them segment by segment."""
+        """A node with hostile texts, which it sends in segments."""
         if frame.startswith(("605 40 08 10", "605 40 01 20")):
             self.segments = [self.NAME[i:i + 7] for i in range(0, len(self.NAME), 7)]
             self.toggle = 0

@@ -1,5 +1,5 @@
-/// Nodes of live_device.eds on a bus: `live_nodes BUS NODE-ID...` runs them until it gets SIGTERM. 255: a device
-/// without node-ID, for LSS. Each tells by a line when it is up.
+/// Nodes of live_device.eds on a bus: `live_nodes BUS NODE-ID...` runs them until SIGTERM. 255: a device without
+/// node-ID, for LSS. Each prints a line when it is up.
 #include <algorithm>
 #include <atomic>
 #include <canopen/node.hpp>
@@ -24,7 +24,7 @@ using canopen::NodeId;
 
 std::atomic<bool> stop{false};
 
-/// Keeps what LSS gives it. Node-ID 126 is another device's, and 800 kbit/s it does not have.
+/// Stores the settings of LSS. It rejects node-ID 126 and 800 kbit/s, and cannot store node-ID 125.
 struct LssPort {
   NodeId node_id;
   canopen::LssBitTiming timing{0, 2};
@@ -44,7 +44,7 @@ struct LssPort {
   void start_communication(canopen::LssBitTiming) {}
 };
 
-/// What 2000h has got, and 2001h gives.
+/// The data that 2000h has received and 2001h sends.
 struct Memory {
   std::vector<std::uint8_t> bytes = std::vector<std::uint8_t>(3'000, 0xA5);
 

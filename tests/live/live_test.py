@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""edsc scan, read, write, configure, save, monitor, record, lss and nmt against live nodes on the virtual bus of `edsc bus`.
+"""edsc scan, read, write, configure, save, monitor, record, lss and nmt with live nodes on the virtual bus of `edsc bus`.
 
     live_test.py SOURCE_DIR EDSC LIVE_NODES [unittest arguments]
 """
@@ -34,7 +34,7 @@ EDSC = Path(sys.argv[2]).resolve()
 LIVE_NODES = Path(sys.argv[3]).resolve()
 SHEET = SOURCE_DIR / "tests/fixtures/live_device.eds"
 FINE, FAILED, WRONG_USAGE, INTERRUPTED = 0, 1, 2, 130
-PATIENCE_MS = 60_000  # for an answer that has to come, also on a machine that is busy
+PATIENCE_MS = 60_000  # for an answer that must be received, even on a busy machine
 ABORT_GENERAL = "605 80 17 10 00 00 00 00 08"
 
 
@@ -90,7 +90,7 @@ class LiveTest(unittest.TestCase):
 class Scan(LiveTest):
     nodes = (5, 6)
     fast = ("--timeout", 5000, "--listen", 100)
-    some = ("--nodes", "1..16")  # they are asked at the same time
+    some = ("--nodes", "1..16")  # all are queried at the same time
 
     def test_it_tells_who_is_there(self) -> None:
         self.expect(self.edsc("scan", *self.some, *self.fast), FINE, """\
@@ -256,7 +256,7 @@ class Read(LiveTest):
 
 
 class Silence(LiveTest):
-    """Devices and buses that fall silent."""
+    """Devices and buses that no longer respond."""
     nodes = ()
 
     def wait_for(self, process: subprocess.Popen[str]) -> tuple[int, str, str]:
@@ -293,7 +293,7 @@ class Silence(LiveTest):
                     stderr="edsc: 1008h:00: the transfer broke: 0503 0000h, toggle bit not alternated\n")
 
     def endless(self, initiate: str) -> None:
-        """A device whose uploads begin with this answer and do not end."""
+        """Starts a device whose uploads begin with this answer and never end."""
         def answer(frame: str) -> list[str]:
             if frame.startswith("605 40"):
                 return [initiate.replace("xx xx xx", frame[7:15])]
@@ -342,7 +342,7 @@ class Silence(LiveTest):
 
     def test_a_block_transfer_that_breaks_is_tried_by_segments(self) -> None:
         def device(end_of_block: str, received: bytearray):
-            """Takes a block download, and breaks it after its first segment."""
+            """Returns the answers to a block download, which break off after its first segment."""
             def answer(frame: str) -> list[str]:
                 if frame.startswith("605 C6 00 20 00"):
                     return ["585 A4 00 20 00 7F 00 00 00"]
@@ -489,10 +489,10 @@ class Write(LiveTest):
 
 
 class Configure(LiveTest):
-    left_out = "2"  # of the DCF with all values: 1020h
+    left_out = "2"  # in the DCF with all values: 1020h
 
     def dcf(self, **values: str) -> Path:
-        """The DCF of node 5 with these ParameterValues: `x2004="1200"`."""
+        """Writes the DCF of node 5 with these ParameterValues: `x2004="1200"`."""
         path = self.folder / "axis.dcf"
         subprocess.run([EDSC, "format", self.folder / "device.eds", "--dcf", "--all", "--node-id", "5", "-o", path], check=True)
         text = path.read_text()
@@ -504,7 +504,7 @@ class Configure(LiveTest):
         return path
 
     def only(self, **values: str) -> Path:
-        """The same with no other ParameterValue."""
+        """Writes the same without other ParameterValues."""
         path = self.dcf(**values)
         kept, section = [], ""
         for line in path.read_text().splitlines():
@@ -838,7 +838,7 @@ NOT_COMPARED = "edsc: node 5: not compared: revision number (not in foreign.eds)
 
 class Save(LiveTest):
     def values_of(self, dcf: str) -> dict[str, str]:
-        """The ParameterValues of a DCF by section."""
+        """Returns the ParameterValues of a DCF by section."""
         sections = re.findall(r"\[([^\]]+)\]\n([^\[]*)", (self.folder / dcf).read_text())
         return {name: value[1] for name, text in sections if (value := re.search("^ParameterValue=(.*)$", text, re.MULTILINE))}
 
@@ -945,7 +945,7 @@ class SaveOfForeignSlaves(LiveTest):
         self.expect(self.edsc("save", 5, "foreign.eds", "-o", "before.dcf"), FINE,
                     "node 5: 3 entries read, 2 values saved to before.dcf\n", NOT_COMPARED)
         slave.reset()
-        slave.outbox.clear()  # its boot-up message is not heard any more when configure begins
+        slave.outbox.clear()  # configure must not receive its boot-up message
         result = self.edsc("configure", 5, "before.dcf")
         self.assertEqual(result.returncode, FINE, result.stderr)
         self.assertIn("2 of 2 values written, 2 verified", result.stdout)
@@ -971,7 +971,7 @@ class Record(LiveTest):
     nodes = ()
 
     def wait_until_it_records(self, process: subprocess.Popen[str]) -> None:
-        """Sends frames until it has written one."""
+        """Sends frames until edsc record has written one."""
         client = self.network.client()
         while not select.select([process.stdout], [], [], 0.1)[0]:
             client.send("701 05")
@@ -1137,8 +1137,8 @@ class LssWithoutFastscan(LiveTest):
 
 
 class FastscanSlave:
-    """A slave of CiA 305 without node-ID; in configuration state it answers every Fastscan frame, as a widespread stack
-    does. `always`: so it does in waiting state."""
+    """A slave of CiA 305 without node-ID; in configuration state it responds to every Fastscan frame, as a common stack does.
+    `always`: also in waiting state."""
 
     def __init__(self, address: tuple[int, int, int, int], always: bool = False) -> None:
         self.address, self.always = address, always
@@ -1204,7 +1204,7 @@ class FastscanOfSlavesThatAnswerAlways(LiveTest):
                 self.slaves(0x15011234, 0x15011238)
                 listener = network.client()
                 process = self.start(*arguments)
-                while listener.receive()[:6] != "7E4 5D":  # the first one has told its last number
+                while listener.receive()[:6] != "7E4 5D":  # the first slave has sent its last number
                     pass
                 while not listener.receive().startswith("7E5 51"):
                     pass
@@ -1229,7 +1229,7 @@ class Monitor(LiveTest):
     def test_a_summary_as_json(self) -> None:
         self.edsc("write", 5, "1017h", 200, "--type", "u16")
         process = self.start("monitor", "--node", "5=device.eds", "--once", 15, "--bit-rate", 125, "--format", "json")
-        time.sleep(4)  # until it listens
+        time.sleep(4)  # until it receives frames
         self.edsc("nmt", "start", 5)
         client = self.network.client()
         client.send("086 30 81 11 00 00 00 00 00")

@@ -1,4 +1,4 @@
-"""A bus, nodes and clients for the tests of the commands at a live bus."""
+"""A bus, nodes and clients for the tests of the commands for a live bus."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ FRAME = re.compile(r"\((?P<time>[\d.]+)\) \w+ (?P<id>[0-9A-F]+)#(?P<data>[0-9A-F
 
 
 class Client:
-    """A socketcand client that sends and takes frames as `605 40 00 10 00 00 00 00 00`."""
+    """A socketcand client; frames are written as `605 40 00 10 00 00 00 00 00`."""
 
     def __init__(self, port: int) -> None:
         self.socket = socket.create_connection(("127.0.0.1", port), timeout=600)
@@ -47,7 +47,7 @@ class Client:
 
 
 class Device(threading.Thread):
-    """A node that answers as a test wants it: `answer(frame)` gives the frames that it sends."""
+    """A node whose answers a test defines: `answer(frame)` returns the frames that it sends."""
 
     def __init__(self, client: Client, answer: Callable[[str], list[str]]) -> None:
         super().__init__(daemon=True)
@@ -64,7 +64,7 @@ class Device(threading.Thread):
 
 
 class Network:
-    """`edsc bus`, and nodes of tests/fixtures/live_device.eds with these node-IDs; 255: a device without one."""
+    """`edsc bus`, and nodes of tests/fixtures/live_device.eds with these node-IDs; 255: a device without a node-ID."""
 
     def __init__(self, edsc: Path, live_nodes: Path, *nodes: int) -> None:
         self.bus = subprocess.Popen([edsc, "bus", "--listen", "127.0.0.1:0", "--log"], text=True,
@@ -96,7 +96,7 @@ class Network:
         return Device(self.client(), answer)
 
     def frames(self, *can_ids: str) -> list[str]:
-        """All that was on the bus so far, with these CAN-IDs. Ends the bus."""
+        """Ends the bus; returns all its frames, or those with these CAN-IDs."""
         self.close()
         return [frame for frame in self.log if not can_ids or frame.split()[0] in can_ids]
 

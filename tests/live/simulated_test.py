@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Devices in simulated time: the protocol of runtime/include/canopen/port/simulated_device.hpp, and the commands of edsc at
+"""Devices in simulated time: the protocol of runtime/include/canopen/port/simulated_device.hpp, and the commands of edsc with
 addresses that begin with `simulated:`.
 
     simulated_test.py SOURCE_DIR EDSC SIMULATED_DEVICES [unittest arguments]
 
-A frame of n bytes takes 47 + 8 n us at 1 Mbit/s (ISO 11898-1, without stuff bits), 20 more with a CAN-ID of 29 bits.
+A frame of n bytes takes 47 + 8 n us at 1 Mbit/s (ISO 11898-1, without stuff bits), 20 us more with a CAN-ID of 29 bits.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class Protocol(unittest.TestCase):
     maxDiff = None
 
     def play(self, *lines: str, exit_code: int = 0) -> list[str]:
-        """The answers to these lines, without the greeting."""
+        """Returns the answers to these lines, without the greeting."""
         result = subprocess.run([DEVICES], input="".join(f"{line}\n" for line in lines), capture_output=True, text=True,
                                 timeout=600)
         self.assertEqual(result.returncode, exit_code, result.stderr)
@@ -74,7 +74,7 @@ class Protocol(unittest.TestCase):
         self.assertEqual(answers, [
             "ok", "55 705 00", "110 705 7F",  # start() sets 1017h
             "268 185 500240E20100", "1268",
-            "2095 185 50024AE20100", "3095 185 500254E20100",  # tick() moves by 10 each millisecond
+            "2095 185 50024AE20100", "3095 185 500254E20100",  # tick() moves the axis by 10 in each millisecond
             "4095 185 50020CEE0100",                             # and by 3000
             "4295", "4317 585 80FF600031000906",                 # 3001 is above 2005h
             "5095 185 5002C4F90100"])
