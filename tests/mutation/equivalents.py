@@ -1,4 +1,4 @@
-"""Mutants that no test can notice, each with a reason: a table of file, line, mutated line and reason."""
+"""Mutants that no test can detect, each with a reason: a table of file, line, mutated line and reason."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def find_equivalent(mutation: Mutation, source: bytes, known: list[Equivalent]) 
 
 
 def stale_rows(root: Path, known: list[Equivalent]) -> list[Equivalent]:
-    """Rows whose line is no longer in its file."""
+    """Returns the rows whose line is no longer in its file."""
     def is_there(row: Equivalent) -> bool:
         path = root / row.file
         return path.is_file() and row.line in (line.strip() for line in path.read_text().splitlines())

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Included by each mutated source. The environment variable EDSC_MUTANT is the number of the mutant that
-/// runs; 0 or no variable: none. EDSC_MUTANT_REACHED names a file to which a process appends the numbers that it reaches.
+/// Included by each mutated source. The environment variable EDSC_MUTANT is the number of the active mutant; 0 or no
+/// variable: none. EDSC_MUTANT_REACHED is the name of a file to which a process appends the numbers that it reaches.
 
 #include <array>
 #include <atomic>
@@ -21,7 +21,7 @@ inline unsigned active_mutant() {
   return number;
 }
 
-/// Appends the number at once: a process that is killed later has still reached the mutant.
+/// Appends the number immediately: a process that is killed later has still reached the mutant.
 inline void record_reached(unsigned number) {
   static const char* const path = std::getenv("EDSC_MUTANT_REACHED");
   static std::array<std::atomic<bool>, max_mutants> recorded{};
@@ -34,13 +34,14 @@ inline void record_reached(unsigned number) {
 
 }  // namespace edsc_mutation
 
-/// Whether a mutant of a table runs. It is not constexpr, so that the table is initialized at run time.
+/// Returns whether a mutant of a table is active. Not constexpr, so that the table is initialized at run time.
 inline bool edsc_table_mutant(unsigned number) {
   edsc_mutation::record_reached(number);
   return edsc_mutation::active_mutant() == number;
 }
 
-/// Whether a mutant runs; never in a constant evaluation. CMake's checks of the compiler are not in C++20: a builtin.
+/// Returns whether a mutant is active; false in constant evaluation. A builtin, because CMake's compiler checks do not
+/// use C++20.
 constexpr bool edsc_mutant(unsigned number) {
   return __builtin_is_constant_evaluated() ? false : edsc_table_mutant(number);
 }

@@ -18,11 +18,11 @@ REQUIRED_FROM = re.compile(r"^(?P<path>[^\s:][^:]*):(?P<line>\d+):(?P<column>\d+
 
 
 class BuildError(Exception):
-    """The copy does not compile, and no mutation is the reason."""
+    """The copy does not compile, and a mutation is not the reason."""
 
 
 def write_if_changed(path: Path, contents: bytes) -> None:
-    """Keeps the time of an equal file: then nothing that includes it is built again."""
+    """Keeps the time of an unchanged file, so that files that include it are not rebuilt."""
     if path.is_file() and path.read_bytes() == contents:
         return
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -34,9 +34,9 @@ class MutatedBuild:
         self.project = project
         self.area = area
         self.source = folder / "source"
-        # As far below the sources as the folders of the presets: paths in the compiler's cache are relative.
+        # As many folders below the sources as those of the presets: paths in the compiler's cache are relative.
         self.build = self.source / "build" / "mutated"
-        self.mutants = mutants  # by number; those that do not compile are taken out
+        self.mutants = mutants  # by number; those that do not compile are removed
         self.dropped: list[Mutation] = []
         self.jobs = jobs
         self.schemata: dict[str, Schemata] = {}
@@ -79,7 +79,7 @@ class MutatedBuild:
             raise BuildError(output)
 
     def check_syntax(self) -> None:
-        """Each mutated header alone: cheaper than to find the same errors in all that includes it."""
+        """Compiles each mutated header alone: faster than to find the same errors in every file that includes it."""
         for file in sorted(file for file in self.schemata if file.endswith(".hpp")):
             command = ["g++", *self.project.compile_arguments(self.source), "-w", "-xc++", "-fsyntax-only",
                        str(self.source / file)]
@@ -87,7 +87,7 @@ class MutatedBuild:
                 self.drop(output)
 
     def drop(self, output: str) -> None:
-        """Takes out the mutations that the messages of the compiler name, and writes their files again."""
+        """Removes the mutations that the compiler messages refer to, and writes their files again."""
         errors = [match for match in MESSAGE.finditer(output) if match["kind"] != "note"]
         notes = [match for match in MESSAGE.finditer(output) if match["kind"] == "note"]
         for messages in (errors, [*notes, *REQUIRED_FROM.finditer(output)]):
@@ -105,7 +105,7 @@ class MutatedBuild:
         raise BuildError(output[-4000:])
 
     def file_of(self, path: str) -> str | None:
-        """The mutated file that a message of the compiler names."""
+        """Returns the mutated file that a compiler message refers to."""
         absolute = (self.build / path).resolve()
         if not absolute.is_relative_to(self.source.resolve()):
             return None
@@ -113,7 +113,7 @@ class MutatedBuild:
         return file if file in self.schemata else None
 
     def run(self, command: list[str]) -> str | None:
-        """The output of a command that fails."""
+        """Runs a command; returns its output if it fails, otherwise None."""
         done = subprocess.run(command, cwd=self.build if self.build.is_dir() else None, text=True, errors="replace",
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         return done.stdout if done.returncode != 0 else None

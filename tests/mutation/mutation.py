@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Changes the sources a little, one change at a time, and counts the changes that a test notices.
+"""Makes small changes in the sources, one at a time, and counts the changes that a test detects.
 
     mutation.py --against REF         all mutants of the lines changed since the git reference
     mutation.py --sample N --seed S   N mutants of the whole runtime and generator
 
-All mutants are compiled into one copy of the project, and the environment variable EDSC_MUTANT chooses the active one.
-The exit code is 0 when the score is at least --min-score, 1 when it is not, 2 when there is no score: a program fails
-without a mutant, or the copy does not compile.
+All mutants are compiled into one copy of the project, and the environment variable EDSC_MUTANT selects the active one.
+The exit code is 0 if the score is at least --min-score, 1 if it is lower, 2 if there is no score: a program fails without a
+mutant, or the copy does not compile.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ NOTICED, UNNOTICED = ("killed",), ("survived", "not reached")
 def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--against", metavar="REF", help="mutate the lines changed since this git reference")
-    parser.add_argument("--sample", metavar="N", type=int, help="mutate N places of all files")
-    parser.add_argument("--seed", metavar="S", type=int, default=1, help="of the sample (default: 1)")
-    parser.add_argument("--per-file", metavar="N", type=int, default=5, help="of a sample, at most (default: 5)")
+    parser.add_argument("--sample", metavar="N", type=int, help="mutate N places in all files")
+    parser.add_argument("--seed", metavar="S", type=int, default=1, help="seed of the sample (default: 1)")
+    parser.add_argument("--per-file", metavar="N", type=int, default=5, help="maximum per file of a sample (default: 5)")
     parser.add_argument("--programs", metavar="NAME,NAME", help="run only these of the programs that test the files")
     parser.add_argument("--under", metavar="FOLDER,FOLDER", default="",
                         help="only files of these folders, such as generator/decode")
@@ -42,7 +42,7 @@ def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--folder", type=Path, default=Path("build/mutation"),
                         help="for the mutated copy and its build")
     parser.add_argument("--edsc", type=Path, help="generates the code for tests of the runtime (default: built again)")
-    parser.add_argument("--output", type=Path, help="the results as JSON (default: report.json in the folder)")
+    parser.add_argument("--output", type=Path, help="JSON file for the results (default: report.json in the folder)")
     parsed = parser.parse_args(arguments)
     if (parsed.against is None) == (parsed.sample is None):
         parser.error("expected either --against or --sample")
@@ -73,7 +73,7 @@ class Report:
         return Counter(result.outcome for result in self.results)
 
     def score(self) -> float:
-        """Percentage of noticed mutants. Those of the compiler alone, and equivalent ones, do not count."""
+        """Percentage of detected mutants. Equivalent ones, and those that only the compiler evaluates, do not count."""
         counts = self.counts()
         noticed, unnoticed = (sum(counts[outcome] for outcome in outcomes) for outcomes in (NOTICED, UNNOTICED))
         return 100.0 * noticed / (noticed + unnoticed) if noticed + unnoticed else 100.0
@@ -115,7 +115,7 @@ class Report:
 
 
 def select_programs(area: Area, mutants: dict[int, Mutation], names: str | None) -> list[Program]:
-    """The programs that test one of the mutated files."""
+    """Returns the programs that test one of the mutated files."""
     files = {mutation.file for mutation in mutants.values()}
     wanted = names.split(",") if names is not None else [program.name for program in area.programs]
     return [program for program in area.programs

@@ -40,11 +40,11 @@ def git(folder: Path, *arguments: str) -> None:
 
 
 class SampleProject(unittest.TestCase):
-    """One build of all mutants of the sample; the tests look at its report."""
+    """One build of all mutants of the sample; the tests check its report."""
 
     @classmethod
     def setUpClass(cls) -> None:
-        # Git tells a hook where its repository is; these tests have their own.
+        # Git passes the location of its repository to a hook; these tests have their own.
         for variable in [name for name in os.environ if name.startswith("GIT_")]:
             del os.environ[variable]
         cls.temporary = tempfile.TemporaryDirectory()
@@ -77,7 +77,7 @@ class SampleProject(unittest.TestCase):
         return code, output.getvalue()
 
     def mutants(self, before: str) -> dict[str, dict]:
-        """The mutants of a line by what they make of it."""
+        """Returns the mutants of a line, by the mutated line."""
         return {row["after"]: row for row in self.report["mutants"] if row["before"] == before}
 
     def test_kills_what_a_test_notices(self) -> None:

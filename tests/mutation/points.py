@@ -1,8 +1,8 @@
-"""Finds what can be mutated in a C++ source, with libclang.
+"""Finds the possible mutations of a C++ source, with libclang.
 
-A mutation replaces the bytes [start, end) of a source. What the compiler evaluates is left out: template arguments,
+A mutation replaces the bytes [start, end) of a source. Code that the compiler evaluates is omitted: template arguments,
 case labels, static_assert, array sizes, enumerators, `if constexpr`, consteval functions. A constexpr variable can be
-mutated where its users accept one that is initialized at run time; `constexpr_at` is the place of its keyword.
+mutated if its users accept one that is initialized at run time; `constexpr_at` is the position of its keyword.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from pathlib import Path
 import clang.cindex
 from clang.cindex import Cursor, CursorKind, TranslationUnit
 
-# How a mutation is written into the source; at one place the forms nest in this order.
+# How a mutation is written into the source; forms at the same place are nested in this order.
 RETURN, STATEMENT, CONDITION, EXPRESSION = "return", "statement", "condition", "expression"
 FORMS = (RETURN, STATEMENT, CONDITION, EXPRESSION)
 
@@ -34,9 +34,9 @@ OPERATORS = {
 }
 
 INTEGER = re.compile(rb"(0[xX][0-9a-fA-F']+|0[bB][01']+|[0-9][0-9']*)([uUlLzZ]*)")
-# What is in a macro's argument is not always an expression. A record of all macros would take longer than the rest.
+# The argument of a macro is not always an expression. Recording all macros would take longer than everything else.
 MACRO_CALL = re.compile(rb"\b(?:[A-Z][A-Z0-9_]{2,}|assert)\(")
-# Values that `return {};` returns as well.
+# Values that `return {};` also returns.
 EMPTY_VALUES = {b"{}", b"false", b"nullptr", b"0", b"0U", b"std::nullopt", b'""'}
 
 CONSTANT_KINDS = {
@@ -64,16 +64,16 @@ class Mutation:
     form: str
     start: int
     end: int
-    text: bytes  # what replaces the bytes; of a condition, what it becomes
-    in_constexpr: bool = False  # perhaps evaluated by the compiler alone
-    constexpr_at: int | None = None  # keyword of the variable around it
+    text: bytes  # replacement of the bytes; for a condition, the new condition
+    in_constexpr: bool = False  # perhaps evaluated only by the compiler
+    constexpr_at: int | None = None  # keyword of the enclosing variable
     constexpr_becomes: bytes = b""
 
     def apply(self, source: bytes) -> bytes:
         return source[: self.start] + self.text + source[self.end :]
 
     def changed_line(self, source: bytes) -> tuple[str, str]:
-        """The first line that differs, before and after."""
+        """Returns the first line that differs, before and after."""
         before, after = source.decode().splitlines(), self.apply(source).decode().splitlines()
         for old, new in zip(before, after):
             if old != new:
@@ -106,7 +106,7 @@ class Finder:
         return cursor.location.file is not None and cursor.location.file.name == self.path
 
     def closing_parenthesis(self, start: int) -> int:
-        """The end of what begins after an opening parenthesis."""
+        """Returns the end of the text after an opening parenthesis."""
         depth = 1
         for at in range(start, len(self.source)):
             depth += {b"(": 1, b")": -1}.get(self.source[at : at + 1], 0)
@@ -152,7 +152,7 @@ class Finder:
             self.visit(child, context)
 
     def variable_context(self, cursor: Cursor, context: Context) -> Context | None:
-        """The context of the initializer of a variable; nothing where the compiler evaluates it."""
+        """Returns the context of the initializer of a variable, or None if the compiler evaluates it."""
         start = cursor.extent.start.offset
         specifiers = self.source[start : cursor.location.offset]
         if b"constinit" in specifiers or cursor.is_bitfield():
@@ -166,7 +166,7 @@ class Finder:
         return Context(context.in_constexpr, context.in_function, context.in_class, start + keyword.start(), becomes)
 
     def run_time_children(self, cursor: Cursor, children: list[Cursor]) -> list[Cursor]:
-        """The children without those that the compiler evaluates."""
+        """Returns the children without those that the compiler evaluates."""
         kind = cursor.kind
         if kind == CursorKind.CASE_STMT:
             return children[1:]
@@ -220,7 +220,7 @@ class Finder:
         left, right = operands
         first, last = left.extent.end.offset, right.extent.start.offset
         operator = self.source[first:last].strip().decode()
-        # An operand in parentheses or of a dependent type can be reported without all of its text.
+        # libclang can report an operand in parentheses or of a dependent type without its complete text.
         if operator not in OPERATORS or left.extent.start.offset != cursor.extent.start.offset:
             return
         name, others = OPERATORS[operator]
@@ -246,7 +246,7 @@ class Finder:
                 self.add(cursor, context, f"constant {literal.decode()} -> {text.decode()}", EXPRESSION, text)
 
     def condition_of(self, cursor: Cursor, children: list[Cursor]) -> Cursor | None:
-        """The condition of an `if` or `while`; nothing where it declares a variable."""
+        """Returns the condition of an `if` or `while`, or None if it declares a variable."""
         depth, end = 0, None
         for token in cursor.get_tokens():
             depth += {"(": 1, ")": -1}.get(token.spelling, 0)
@@ -276,7 +276,7 @@ class Finder:
 
 
 def find_mutations(root: Path, file: str, arguments: list[str], constexpr_variables: bool) -> list[Mutation]:
-    """The mutations of root/file, compiled with `arguments`, in the order of the source."""
+    """Returns the mutations of root/file, compiled with `arguments`, in the order of the source."""
     path = root / file
     unit = clang.cindex.Index.create().parse(str(path), args=["-xc++", *arguments])
     errors = [text for text in unit.diagnostics if text.severity >= clang.cindex.Diagnostic.Fatal]

@@ -1,4 +1,4 @@
-"""What is mutated, and which programs test it."""
+"""The mutated files, and the programs that test them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 @dataclass(frozen=True)
 class Program:
-    """A program that tests the files whose path begins with one of `tests`."""
+    """A program that tests the files whose paths begin with one of `tests`."""
 
     name: str
     tests: tuple[str, ...]
@@ -29,7 +29,7 @@ class Area:
     programs: tuple[Program, ...]
     cmake_options: tuple[str, ...] = ()
     excluded: tuple[str, ...] = ()
-    # Otherwise constexpr variables are left out, as part of types and tables that the compiler computes.
+    # Otherwise constexpr variables are omitted, as parts of types and tables that the compiler evaluates.
     mutates_constexpr_variables: bool = False
 
     def has(self, file: str) -> bool:
@@ -70,7 +70,7 @@ RUNTIME = "runtime/include/canopen/"
 
 HOST = ("generator/", "bus/", "cli/")
 
-# Fast programs first: the first that fails is the last one to run.
+# Fast programs first: no program runs after the first failure.
 HOST_PROGRAMS = (
     gtest("decode_tests", "bus/decode/", "bus/values/", "generator/text/", "generator/device/"),
     gtest("live_tests", "bus/configure/", "bus/monitor/", "bus/online/"),
@@ -96,12 +96,12 @@ RUNTIME_PROGRAMS = (
     gtest("node_tests", RUNTIME),
 )
 
-# Schemata are full of comparisons that deserve a warning, and in tests of the runtime a warning is an error.
+# Schemata contain many comparisons that cause warnings, and in tests of the runtime a warning is an error.
 NO_WARNINGS = "-DCMAKE_CXX_FLAGS=-O1 -w"
 
 
 def edsc_project(root: Path, edsc: Path | None) -> Project:
-    """`edsc` generates the code for tests of the runtime; without it, it is built from the copy with the mutants."""
+    """`edsc` generates the code for tests of the runtime; None: it is built from the copy with the mutants."""
     host = Area(
         "host", HOST, HOST_PROGRAMS,
         # Each source is compiled alone, as for the test preset: those without a mutant come from the compiler's cache.

@@ -1,4 +1,4 @@
-"""Runs programs with one mutant each and says what happened."""
+"""Runs programs with one mutant each and reports the results."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from pathlib import Path
 from points import Mutation
 from project import Program
 
-# A hang is what takes much longer than the same program without a mutant, on a machine that may be busier by now.
+# A program hangs if it takes much longer than without a mutant, on a machine that may be busier now.
 HANG_FACTOR = 10
 HANG_SECONDS = 60
 MAX_MEMORY = 4 << 30
@@ -27,7 +27,7 @@ FAILED_TEST = re.compile(r"^\[  FAILED  \] ([\w./]+)|^(?:FAIL|ERROR): (\S+)", re
 
 @dataclass
 class Baseline:
-    """What a program does without a mutant."""
+    """Behaviour of a program without a mutant."""
 
     program: Program
     seconds: float
@@ -39,8 +39,8 @@ class Result:
     number: int
     mutation: Mutation
     outcome: str  # killed, survived, not reached, compile time
-    how: str = ""  # it was killed: the program, and a test, a signal or "hangs"
-    programs: list[str] = field(default_factory=list)  # that ran
+    how: str = ""  # if killed: the program, and a test, a signal or "hangs"
+    programs: list[str] = field(default_factory=list)  # programs that ran
 
 
 class BaselineError(Exception):
@@ -81,7 +81,7 @@ class Runner:
                 yield run.result()
 
     def run(self, program: Program, number: int, limit: float | None, reached: Path | None = None) -> str | None:
-        """How the program failed; nothing when it did not."""
+        """Returns how the program failed, or None."""
         command = [part.format(**self.folders) for part in program.command]
         with tempfile.TemporaryDirectory(dir=self.scratch) as folder, tempfile.TemporaryFile() as output:
             environment = {**os.environ, "EDSC_MUTANT": str(number), "TMPDIR": folder, "TEST_TMPDIR": folder,
@@ -110,7 +110,7 @@ def limit_resources() -> None:
 
 
 def end_group(process: subprocess.Popen) -> None:
-    """Ends what the program has started, too."""
+    """Also ends the processes that the program has started."""
     try:
         os.killpg(process.pid, signal.SIGKILL)
     except ProcessLookupError:

@@ -1,4 +1,4 @@
-"""Writes mutations into one source, so that the environment chooses at run time which one is active."""
+"""Writes mutations into one source; an environment variable selects the active one at run time."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ HEADER = Path(__file__).resolve().parent / "mutant.hpp"
 
 @dataclass
 class Point:
-    """The mutations of one place and form, and the points inside."""
+    """The mutations of one place and form, and the points inside it."""
 
     start: int
     end: int
@@ -26,13 +26,13 @@ class Point:
 
 @dataclass
 class Schemata:
-    """A source with its mutations, and where in it they are."""
+    """A source with its mutations, and their positions."""
 
     text: bytes = b""
     places: list[tuple[int, int, tuple[int, ...]]] = field(default_factory=list)  # bytes [start, end): numbers
 
     def numbers_at(self, line: int, column: int) -> set[int]:
-        """The mutants of the innermost point there; where there is none, all of the line."""
+        """Returns the mutants of the innermost point there, otherwise all of the line."""
         lines = self.text.split(b"\n")
         if line > len(lines):
             return set()
@@ -47,12 +47,12 @@ class Schemata:
 
 
 def one_line(text: bytes) -> bytes:
-    """Lines of the original stay lines of the copy where the mutated expression takes one line."""
+    """Joins the lines of a mutated expression, so that the copy has the same lines as the original."""
     return b" ".join(part.strip() for part in text.split(b"\n"))
 
 
 def nest(mutants: dict[int, Mutation]) -> list[Point]:
-    """Points inside others below them. A point that overlaps another one without being inside is left out."""
+    """Nests points inside others. A point that overlaps another one without being inside it is omitted."""
     groups: dict[tuple[int, int, str], list[tuple[int, Mutation]]] = defaultdict(list)
     for number, mutation in sorted(mutants.items()):
         groups[mutation.start, mutation.end, mutation.form].append((number, mutation))
@@ -89,7 +89,7 @@ class Writer:
         for at in sorted(at for at in self.keywords if start <= at < end):
             self.put(self.source[start:at])
             place = len(self.result.text)
-            # Messages name the variable, so its whole line belongs to the mutants.
+            # Compiler messages refer to the variable, so that its whole line belongs to the mutants.
             line_length = self.source[at:].find(b"\n")
             self.result.places.append((place, place + line_length, tuple(self.keyword_numbers[at])))
             self.put(self.keywords[at])

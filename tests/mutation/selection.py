@@ -1,4 +1,4 @@
-"""Chooses the mutations that are tried: all of the lines that differ from a git reference, or a sample."""
+"""Selects the mutations to try: all of the lines that differ from a git reference, or a sample."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ def git(root: Path, *arguments: str) -> str:
 
 
 def changed_lines(root: Path, reference: str, folders: list[str]) -> dict[str, set[int]]:
-    """Lines of the working tree that are not in the reference."""
-    # Of what both have in common: what the reference has gained since is no change of this tree.
+    """Returns the lines of the working tree that are not in the reference."""
+    # Compared with the common ancestor: later changes of the reference are not changes of this tree.
     base = git(root, "merge-base", reference, "HEAD").strip()
     diff = git(root, "diff", "--unified=0", "--no-color", "--no-ext-diff", base, "--", *folders)
     lines: dict[str, set[int]] = defaultdict(set)
@@ -46,9 +46,9 @@ def select_changed(project: Project, reference: str, under: tuple[str, ...]) -> 
 
 
 def select_sample(project: Project, count: int, seed: int, under: tuple[str, ...], per_file: int) -> list[Mutation]:
-    """Files are drawn with the number of their lines as weight, then lines of each, then one mutation of each line.
+    """Draws files, weighted by their number of lines, then lines of each file, then one mutation of each line.
 
-    To find the mutations of a file takes seconds, and to compile it, too: so several are of one file."""
+    Finding the mutations of a file takes seconds, and so does compiling it; therefore several are of one file."""
     generator = random.Random(seed)
     files = project.files(under)
     weights = {file: len((project.root / file).read_bytes().splitlines()) for file in files}
