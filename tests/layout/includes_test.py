@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""The include graph of generator/, bus/ and cli/ is the one of docs/architecture.md, and nothing includes upward.
+"""The include graph of generator/, bus/ and cli/ is that of docs/architecture.md, and no module includes a higher one.
 
     includes_test.py SOURCE_DIR [unittest arguments]
 
-The page has a table of modules, each with the modules that it may include. A module is below all that include it.
+The page has a table of modules, each with the modules that it may include. A module is below all modules that include it.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ TOPS = ("generator", "bus", "cli")
 INCLUDE = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
 ROW = re.compile(r"^\| `((?:generator|bus|cli)(?:/\w+)?)/?` \| (.*?) \|", re.MULTILINE)
 MAX_FILES = 25
-# Folders that have more files; they may not grow.
+# Folders with more files; they must not grow.
 LARGE = {"generator/device": 48, "generator/eds": 29, "generator/format": 26, "bus/conform": 33, "bus/conform/cases": 26}
 
 
 def module_of(path: Path) -> str:
-    """`bus/conform` of bus/conform/cases/setup.cpp, `cli` of cli/main.cpp."""
+    """Returns `bus/conform` for bus/conform/cases/setup.cpp, `cli` for cli/main.cpp."""
     return "/".join(path.relative_to(SOURCE_DIR).parts[:-1][:2])
 
 
@@ -34,7 +34,7 @@ def sources() -> list[Path]:
 
 
 def found_includes() -> dict[str, dict[str, str]]:
-    """By module, the modules that it includes, each with a file that does."""
+    """Returns, for each module, the modules that it includes, each with an include."""
     known = {path.relative_to(SOURCE_DIR / path.relative_to(SOURCE_DIR).parts[0]).as_posix(): module_of(path)
              for path in sources()}
     found: dict[str, dict[str, str]] = defaultdict(dict)

@@ -1,4 +1,4 @@
-"""The compilers that the runtime and generated headers must please, and the flags that they must bear."""
+"""The compilers and flags with which the runtime and generated headers must compile without a warning."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
-SKIPPED = 77  # what CTest is told to take for "skipped"
+SKIPPED = 77  # the exit code that CTest reports as skipped
 
 FLAGS = (
     "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Wpedantic", "-Werror",
@@ -37,7 +37,7 @@ ARM_GCC = Compiler(("arm-none-eabi-g++", "-mcpu=cortex-m0plus"))
 
 
 def those_installed(compilers: Iterable[Compiler]) -> list[Compiler]:
-    """Says aloud which are not there."""
+    """Returns the installed compilers; prints the missing ones."""
     found = []
     for compiler in compilers:
         if compiler.installed:
@@ -49,14 +49,14 @@ def those_installed(compilers: Iterable[Compiler]) -> list[Compiler]:
 
 def compile_only(compiler: Compiler, source: Path, include: Sequence[Path],
                  extra: Sequence[str] = ()) -> subprocess.CompletedProcess[str]:
-    """Looks at a source or header without writing anything."""
+    """Checks a source or header without writing output."""
     folders = [f"-I{folder}" for folder in include]
     return subprocess.run([*compiler.command, *FLAGS, *extra, *folders, str(source)], capture_output=True, text=True,
                           errors="replace", timeout=600)
 
 
 def in_parallel(job, arguments: Iterable) -> list:
-    """Results of `job(argument)`, in order; as many at a time as CTest says or the machine has cores."""
+    """Returns the results of `job(argument)` in order; runs EDSC_TEST_JOBS jobs at a time, by default one per core."""
     workers = int(os.environ.get("EDSC_TEST_JOBS", os.cpu_count() or 1))
     with ThreadPoolExecutor(workers) as pool:
         return list(pool.map(job, arguments))

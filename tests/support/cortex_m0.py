@@ -1,4 +1,4 @@
-"""Images for Cortex-M0+ at -Os: how large they are, and what is in them."""
+"""Images for Cortex-M0+ at -Os: their sizes and symbols."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ class Image:
     symbols: str
 
     def has(self, words: Iterable[str]) -> set[str]:
-        """Those of these words that stand in the name of a symbol."""
+        """Returns those of the words that are part of the name of a symbol."""
         return {word for word in words if word in self.symbols}
 
 
 def build(source: Path, include: Sequence[Path], folder: Path, *extra: str) -> Image:
-    """Compiles one source; it is not linked, so that what is outside stays outside."""
+    """Compiles one source; it is not linked, so that external code is not counted."""
     made = folder / "image.o"
     folders = [f"-I{path}" for path in include]
     subprocess.run([*COMMAND, *folders, *extra, "-c", source, "-o", made], check=True, timeout=600)
@@ -38,7 +38,7 @@ def output(*command: str | Path) -> str:
 
 
 def only_in(one: Image, other: Image, words: Sequence[str], what: str) -> list[str]:
-    """What speaks against `words` being in `one` and not in `other`, which is to be the smaller one."""
+    """Returns problems if `words` are not in `one` or are in `other`, or if `other` is not the smaller one."""
     problems = []
     if found := other.has(words):
         problems.append(f"the image without {what} has {', '.join(sorted(found))}")
