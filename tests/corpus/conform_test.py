@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
-"""Every sheet that generates becomes a device that passes the conformance test, in simulated time.
+"""The code generated from each EDS becomes a device that passes the conformance test, in simulated time.
 
     conform_test.py SOURCE_DIR EDSC WORK_DIR [--compiler CXX] [--flags FLAGS] [--launcher "PROGRAM ARGUMENT..."]
                     [--only TEXT]... [--case PATTERN]...
 
-Each EDS, DCF and XDD of the corpus, of eds/ and of the tests' fixtures is generated and compiled with a node, several of
-them to a program, and `edsc conform --level all` runs at it. A failure by the sheet is none of the device: the report
-names a rule, which `edsc check` must report of the sheet, too. A sheet that `edsc generate` refuses is generated with
---keep-going; what such a device fails is counted only, but the run must reach its end and leave the device as it was.
-What NAME.deviations.json beside a sheet declares has to fail.
+Each EDS, DCF and XDD of the corpus, of eds/ and of the tests' fixtures becomes code that is compiled with a node, several of
+them into one program, and `edsc conform --level all` tests it. A failure that the file causes is not a failure of the device:
+the report names a rule, and `edsc check` must report this rule for the file, too. A file that `edsc generate` rejects is
+generated with --keep-going; the failures of such a device are only counted, but the run must reach its end and leave the
+device unchanged. Deviations that NAME.deviations.json beside a file declares must fail.
 
-The corpus lies in the folder EDSC_CORPUS, or in ../shared/eds-corpus beside the repository; without one the sheets of the
-repository are tested alone. One sheet by hand:
+The corpus is in the folder EDSC_CORPUS, or in ../shared/eds-corpus beside the repository; without a corpus only the files of
+the repository are tested. To test one file:
 
     conform_test.py . build/test/generator/edsc build/conform --only cpd.eds
 """
@@ -38,7 +38,7 @@ from support.compilers import SKIPPED, in_parallel  # noqa: E402
 NODE_ID = 5
 SHEETS_PER_PROGRAM = 12
 FLAGS = "-std=c++20 -O0 -w -fno-exceptions -fno-rtti"
-SHOWN = 6  # problems of one sheet
+SHOWN = 6  # maximum of printed problems per file
 MAIN = """#include <canopen/port/simulated_device.hpp>
 
 extern const std::span<const canopen::SimulatedDevice> devices;
@@ -51,7 +51,7 @@ int main(int argc, char** argv) { return canopen::simulate_devices(argc, argv, d
 class Job:
     path: Path
     title: str
-    name: str = ""  # its namespace; empty where nothing is generated
+    name: str = ""  # its namespace; empty if nothing is generated
     program: Path | None = None
     refused: bool = False
     verdicts: Counter = field(default_factory=Counter)
@@ -62,7 +62,7 @@ class Job:
 def corpus_of(source_dir: Path) -> list[Job]:
     corpus = Path(os.environ.get("EDSC_CORPUS", source_dir.parent / "shared/eds-corpus"))
     if not (corpus / "manifest.tsv").is_file():
-        print("SKIPPED: no corpus; EDSC_CORPUS names one. The sheets of the repository are tested alone")
+        print("SKIPPED: no corpus; set EDSC_CORPUS to its folder. Only the files of the repository are tested")
         return []
     with (corpus / "manifest.tsv").open(newline="", encoding="utf-8") as manifest:
         return [Job(corpus / row["path"], row["path"]) for row in csv.DictReader(manifest, delimiter="\t")]
@@ -74,7 +74,7 @@ def own_sheets(source_dir: Path) -> list[Job]:
 
 
 def node_id_of(path: Path) -> int:
-    """That of a DCF, whose values are for this one; 5 of an EDS."""
+    """Returns the node-ID of a DCF, whose values are for that node; 5 for an EDS."""
     found = re.search(rb"(?im)^\s*NodeID\s*=\s*(0x[0-9a-f]+|[0-9]+)", path.read_bytes())
     node_id = int(found[1], 0) if found and path.suffix.lower() == ".dcf" else 0
     return node_id if 1 <= node_id <= 127 else NODE_ID
@@ -88,7 +88,7 @@ class Driver:
         self.work = arguments.work_dir.resolve()
         self.work.mkdir(parents=True, exist_ok=True)
         self.compiler = [*shlex.split(arguments.launcher), *shlex.split(arguments.compiler), *shlex.split(arguments.flags)]
-        # Relative to the folder where the compiler runs, so that ccache finds it for another clone.
+        # Relative to the working folder of the compiler, so that ccache also finds results of another clone.
         self.include = [f"-I{os.path.relpath(self.source_dir / 'runtime/include', self.work)}", "-Igenerated"]
 
     def generate(self, job: Job) -> None:
@@ -98,7 +98,7 @@ class Driver:
         device = self.work / "generated" / job.name / "device.hpp"
         if result.returncode == 1:
             job.refused = True
-            device.unlink(missing_ok=True)  # that of an earlier run
+            device.unlink(missing_ok=True)  # from an earlier run
             result = subprocess.run([*command, "--keep-going"], capture_output=True, text=True, errors="replace", timeout=600)
         if result.returncode not in (0, 1):
             job.problems.append(f"edsc generate ends with {result.returncode}")
@@ -106,14 +106,14 @@ class Driver:
             job.name = ""
 
     def write_and_compile(self, name: str, text: str) -> str:
-        """What the compiler says when it fails."""
+        """Returns the errors of the compiler, or an empty text."""
         (self.work / f"{name}.cpp").write_text(text, encoding="utf-8")
         command = [*self.compiler, *self.include, "-c", f"{name}.cpp", "-o", f"{name}.o"]
         result = subprocess.run(command, cwd=self.work, capture_output=True, text=True, errors="replace")
         return "" if result.returncode == 0 else result.stderr or f"exit code {result.returncode}"
 
     def program_of(self, jobs: list[Job], name: str) -> Path | None:
-        """None: it does not compile."""
+        """Returns None if it does not compile."""
         lines = ["#include <canopen/port/simulated_node.hpp>", *(f"#include <{job.name}/device.hpp>" for job in jobs)]
         rows = ", ".join(f'{{"{job.name}", canopen::make_simulated_node<{job.name}::Device>}}' for job in jobs)
         lines += [f"static constexpr canopen::SimulatedDevice all[] = {{{rows}}};",
@@ -173,7 +173,7 @@ class Driver:
         return problems
 
     def rules_of(self, job: Job) -> set[str]:
-        """Of which edsc check reports something of the sheet."""
+        """Returns the rules that edsc check reports for the file."""
         command = [self.edsc, "check", "--format", "json", job.path]
         result = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=600)
         return {diagnostic["rule"] for diagnostic in json.loads(result.stdout)["diagnostics"]}
@@ -196,8 +196,8 @@ def arguments_of() -> argparse.Namespace:
     parser.add_argument("--compiler", default="g++")
     parser.add_argument("--flags", default=FLAGS)
     parser.add_argument("--launcher", default="")
-    parser.add_argument("--only", action="append", default=[], help="sheets whose path holds this, or one of several")
-    parser.add_argument("--case", action="append", default=[], help="cases, as of edsc conform --only")
+    parser.add_argument("--only", action="append", default=[], help="files whose path contains this text, or one of several")
+    parser.add_argument("--case", action="append", default=[], help="cases, as for edsc conform --only")
     return parser.parse_args()
 
 
@@ -207,7 +207,7 @@ def main() -> int:
     jobs = [job for job in [*own_sheets(driver.source_dir), *corpus_of(driver.source_dir)]
             if not arguments.only or any(text in job.title for text in arguments.only)]
     if not jobs:
-        print(f"SKIPPED: no sheet whose path holds {' or '.join(arguments.only)}")
+        print(f"SKIPPED: no file whose path contains {' or '.join(arguments.only)}")
         return SKIPPED
     if error := driver.write_and_compile("main", MAIN):
         print(error)
@@ -222,10 +222,10 @@ def main() -> int:
     total: Counter = Counter()
     for job in jobs:
         total += job.verdicts
-        how = " (refused, --keep-going)" if job.refused else ""
+        how = " (rejected, --keep-going)" if job.refused else ""
         passed = f"{job.verdicts['passed']} passed" if job.name else "nothing is generated"
         if failed := job.verdicts["failed"]:
-            passed += f", {failed} failed, {job.by_sheet} of them by the sheet"
+            passed += f", {failed} failed, {job.by_sheet} of them caused by the file"
         if not job.problems:
             print(f"{job.title}{how}: {passed}")
         else:
@@ -234,7 +234,7 @@ def main() -> int:
                 print(f"    {problem[:400]}")
     conform = sum(not job.problems for job in generated)
     refused = sum(job.refused for job in generated)
-    print(f"{conform} of {len(generated)} devices conform ({refused} of them in spite of errors); {len(jobs)} sheets; "
+    print(f"{conform} of {len(generated)} devices conform ({refused} of them in spite of errors); {len(jobs)} files; "
           + ", ".join(f"{count} {verdict}" for verdict, count in sorted(total.items()))
           + f"; {spent:.1f} s of CPU after compilation")
     return 1 if any(job.problems for job in jobs) else 0

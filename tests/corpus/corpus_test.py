@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Data sheets as vendors ship them: edsc generates from nearly all of them, and says what is wrong with the rest.
+"""EDS files as vendors ship them: edsc generates code from nearly all of them and reports errors in the others.
 
     corpus_test.py SOURCE_DIR EDSC
 
-The corpus is no part of this repository. It lies in the folder EDSC_CORPUS, or in ../shared/eds-corpus beside the
-repository: a manifest.tsv whose column `path` names the files. Without one the test is skipped.
+The corpus is not part of this repository. It is in the folder EDSC_CORPUS, or in ../shared/eds-corpus beside the
+repository: a manifest.tsv whose column `path` contains the names of the files. Without a corpus the test is skipped.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ SECONDS = 600
 XML = (".xdd", ".xdc", ".xpd")
 ERROR = re.compile(r": error: ")
 PLACED_ERROR = re.compile(r":\d+:\d+: error: ")
-WHOLE_FILE = re.compile(r": error: .*\[(?:empty-file|no-objects|xml-file)\]$", re.MULTILINE)  # have no line
+WHOLE_FILE = re.compile(r": error: .*\[(?:empty-file|no-objects|xml-file)\]$", re.MULTILINE)  # without a line
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Outcome:
     path: str
     exit_code: int | None = None
     first_error: str = ""
-    problem: str = ""  # what must never happen, whatever the file holds
+    problem: str = ""  # something that must never happen, whatever the file contains
 
     @property
     def fine(self) -> bool:
@@ -69,7 +69,7 @@ def judge(path: str, exit_code: int, stderr: str) -> Outcome:
 
 
 def compile_headers(output: Path, runtime: Path) -> str:
-    """The first error of the compiler; empty when there is none."""
+    """Returns the first error of the compiler, or an empty text."""
     source = output / "all.cpp"
     source.write_text("#include <device/description.hpp>\n#include <device/device.hpp>\n")
     result = compile_only(GCC, source, (output, runtime))
@@ -96,7 +96,7 @@ def main() -> int:
     source_dir, edsc = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
     corpus = find_corpus(source_dir)
     if corpus is None:
-        print("SKIPPED: no corpus; EDSC_CORPUS names one")
+        print("SKIPPED: no corpus; set EDSC_CORPUS to its folder")
         return SKIPPED
     paths = paths_in(corpus)
     with tempfile.TemporaryDirectory() as scratch:

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Compares `edsc dump` of real data sheets with facts that were worked out by hand from their lines: facts.tsv.
+"""Compares `edsc dump` of real EDS files with facts that were determined by hand from their lines: facts.tsv.
 
     facts_test.py SOURCE_DIR EDSC
 
-The corpus is no part of this repository (see corpus_test.py); without it the test is skipped.
+The corpus is not part of this repository (see corpus_test.py); without it the test is skipped.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Fact(NamedTuple):
 
 
 def read_facts(path: Path) -> dict[tuple[str, str], list[Fact]]:
-    """By file and node-ID, in the order of the file."""
+    """Returns the facts of each file and node-ID, in the order of facts.tsv."""
     runs: dict[tuple[str, str], list[Fact]] = {}
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
         if line and not line.startswith("#"):
@@ -87,7 +87,7 @@ def value_of(device: dict, fact: Fact) -> object:
         return found is not None
     if found is None:
         raise LookupError("there is no such entry")
-    if key == "default" and "parameter_value" in found:  # a DCF's value takes the place of the default
+    if key == "default" and "parameter_value" in found:  # the value of a DCF replaces the default
         return found["parameter_value"]
     return found.get(MEMBERS.get(key, key), 0 if key == "obj_flags" else None)
 
@@ -121,7 +121,7 @@ def is_same(expected: str, actual: object) -> bool:
 
 
 def check(device: dict, facts: list[Fact]) -> list[str]:
-    """What is wrong about one device."""
+    """Returns the wrong facts of one device."""
     problems = []
     for fact in facts:
         try:
@@ -138,7 +138,7 @@ def main() -> int:
     source_dir, edsc = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
     corpus = find_corpus(source_dir)
     if corpus is None:
-        print("SKIPPED: no corpus; EDSC_CORPUS names one")
+        print("SKIPPED: no corpus; set EDSC_CORPUS to its folder")
         return SKIPPED
     runs = read_facts(Path(__file__).with_name("facts.tsv"))
     wrong = 0

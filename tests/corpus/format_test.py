@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""`edsc format` keeps what a data sheet says: the laws of the canonical form, over our own data sheets and those of vendors.
+"""`edsc format` keeps the content of an EDS: checks of the canonical form with the EDS files of this repository and of vendors.
 
     format_test.py SOURCE_DIR EDSC
 
-- The canonical form of the canonical form is itself, and `--check` says so.
-- It is the same device: `edsc dump` differs in lines only.
-- The text of each comment is there, and so are each value that is a text and each line of an unknown section.
-- `--dcf --node-id 5` is the device that `edsc dump --node-id 5` shows of the data sheet.
+- The canonical form of the canonical form is itself, and `--check` confirms it.
+- It describes the same device: `edsc dump` differs only in lines.
+- It contains the text of each comment, each text value and each line of an unknown section.
+- `--dcf --node-id 5` describes the device that `edsc dump --node-id 5` shows for the EDS.
 
-The vendors' data sheets are no part of this repository; without them (see corpus_test.py) that part is skipped.
+The vendors' EDS files are not part of this repository; without them (see corpus_test.py) that part is skipped.
 """
 
 from __future__ import annotations
@@ -46,19 +46,19 @@ def run(edsc: Path, *arguments: object) -> subprocess.CompletedProcess[bytes]:
 
 
 def ascii_lines(content: bytes) -> list[str]:
-    """Lines without blanks around them; what is not ASCII is left out, since the canonical form has another encoding."""
+    """Returns stripped lines without characters outside ASCII, because the canonical form has another encoding."""
     text = content.decode("latin-1").encode("ascii", "ignore").decode("ascii")
     return [line.strip(" \t\x1a") for line in re.split(r"\r\n|\n|\r", text)]
 
 
 def comments(content: bytes) -> Counter[str]:
-    """The text of each comment."""
+    """Returns the text of each comment."""
     found = (re.sub(r"^[;#]\s*", "", line, count=1) for line in ascii_lines(content) if line[:1] in (";", "#"))
     return Counter(text.strip() for text in found)
 
 
 def unknown_lines(content: bytes) -> list[str]:
-    """Title and entries of sections that CiA 306 does not know."""
+    """Returns title and entries of sections that CiA 306 does not define."""
     lines, title = [], ""
     for line in ascii_lines(content):
         if line.startswith("["):
@@ -72,7 +72,7 @@ def unknown_lines(content: bytes) -> list[str]:
 
 
 def texts(content: bytes) -> set[str]:
-    """Entries whose value is neither number nor formula nor a word of CiA 306. Of two of the same name the first counts."""
+    """Returns entries with a text value, not with a number, formula or CiA 306 keyword. The first of duplicates is used."""
     found, titles, keys = set(), set(), set()
     for line in ascii_lines(content):
         if line.startswith("["):
@@ -99,7 +99,7 @@ def without_places(view: object) -> object:
 
 
 def without_commissioning(view: object) -> object:
-    """Without what a DCF has and an EDS has not."""
+    """Removes what a DCF has and an EDS does not have."""
     if not isinstance(view, dict):
         return view
     file_info = {key: value for key, value in (view.get("file_info") or {}).items() if key != "last_eds"}
@@ -107,26 +107,26 @@ def without_commissioning(view: object) -> object:
 
 
 def dump(edsc: Path, path: Path, *options: str | Path) -> object:
-    """The device; the first error when there is none."""
+    """Returns the device, or the exit code if there is none."""
     result = run(edsc, "dump", path, "--keep-going", *options)
     return without_places(json.loads(result.stdout)) if result.stdout else result.returncode
 
 
 def options_of(path: Path) -> tuple[str | Path, ...]:
-    """What a copy of a data sheet needs to be the same device: the options file beside the data sheet, if there."""
+    """Returns what a copy of an EDS needs to describe the same device: the options file beside the EDS, if it exists."""
     options = path.with_suffix(".options.json")
     return ("--options", options) if options.exists() else ()
 
 
 def configured(view: object) -> object:
-    """Without the sections that a DCF has of its own, and with the values that the device starts with."""
+    """Removes the sections that only a DCF has, and sets the values with which the device starts."""
     if not isinstance(view, dict):
         return view
     return {key: effective_values(value) for key, value in view.items() if key not in ("commissioning", "file_info")}
 
 
 def effective_values(view: object) -> object:
-    """Each ParameterValue in the place of the DefaultValue that it replaces."""
+    """Replaces each DefaultValue by its ParameterValue."""
     if isinstance(view, dict):
         effective = {key: effective_values(value) for key, value in view.items()}
         if "parameter_value" in effective:
@@ -189,7 +189,7 @@ def own_data_sheets(source_dir: Path) -> list[Path]:
 
 
 def check_all(edsc: Path, paths: list[Path], scratch: Path) -> int:
-    """How many files break a law."""
+    """Returns the number of files that fail a check."""
     outcomes = in_parallel(check_file, [(edsc, path, scratch) for path in paths])
     for outcome in outcomes:
         for problem in outcome.problems:
@@ -208,7 +208,7 @@ def main() -> int:
         wrong = check_all(edsc, own_data_sheets(source_dir), Path(scratch))
         corpus = find_corpus(source_dir)
         if corpus is None:
-            print("SKIPPED: no corpus; EDSC_CORPUS names one")
+            print("SKIPPED: no corpus; set EDSC_CORPUS to its folder")
             return 1 if wrong else SKIPPED
         wrong += check_all(edsc, [corpus / path for path in paths_in(corpus)], Path(scratch))
     return 1 if wrong else 0

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Every data sheet of the corpus resolves to a device; broken.tsv names the few that are wrong beyond use.
+"""Every EDS of the corpus resolves to a device; broken.tsv lists the few that are unusable.
 
     resolve_test.py SOURCE_DIR EDSC
 
 - `edsc dump` ends with 0 and shows the device.
-- Of a broken file it ends with 1, and shows what is left of the device under --keep-going.
-- What `edsc generate` refuses, it makes under --keep-going, and the result compiles.
+- For a broken file it ends with 1, and shows the rest of the device with --keep-going.
+- A file that `edsc generate` rejects is generated with --keep-going, and the result compiles.
 
-The corpus is no part of this repository (see corpus_test.py); without it the test is skipped.
+The corpus is not part of this repository (see corpus_test.py); without it the test is skipped.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def run(edsc: Path, *arguments: object) -> subprocess.CompletedProcess[bytes]:
 
 
 def check_dump(edsc: Path, path: Path, is_broken: bool) -> str:
-    """What is wrong; empty when nothing is."""
+    """Returns the problem, or an empty text."""
     result = run(edsc, "dump", path)
     if result.returncode != (1 if is_broken else 0):
         return f"edsc dump ends with {result.returncode}"
@@ -66,7 +66,7 @@ def main() -> int:
     source_dir, edsc = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
     corpus = find_corpus(source_dir)
     if corpus is None:
-        print("SKIPPED: no corpus; EDSC_CORPUS names one")
+        print("SKIPPED: no corpus; set EDSC_CORPUS to its folder")
         return SKIPPED
     broken = read_broken()
     paths = paths_in(corpus)
