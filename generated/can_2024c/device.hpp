@@ -13,14 +13,14 @@
 
 namespace can_2024c {
 
-/// The services start with CAN-IDs that are theirs.
+/// The default COB-IDs of SYNC, TIME, EMCY and SDO are valid and not restricted.
 static_assert(canopen::checked_cob_ids<
     canopen::StartCobId{0x1005, 0x00, 0x80},
     canopen::StartCobId{0x1014, 0x00, 0x80, true},
     canopen::StartCobId{0x1200, 0x01, 0x600, true},
     canopen::StartCobId{0x1200, 0x02, 0x580, true}>());
 
-/// What canopen::Node takes to be this device.
+/// Description of this device for canopen::Node.
 struct Device {
   static constexpr auto name = "CAN-2024C";
 
@@ -51,10 +51,10 @@ struct Device {
       canopen::NumberedPdo<9, canopen::Tpdo<>>,
       canopen::NumberedPdo<10, canopen::Tpdo<>>>;
 
-  /// Bytes of the longest value that a segmented download may bring.
+  /// Maximum size of a segmented download, in bytes.
   static constexpr std::size_t longest_download = 4;
 
-  /// Where the device departs from CiA 301.
+  /// Deviations of the device from CiA 301.
   static constexpr canopen::DeviceOptions options = [] {
     canopen::DeviceOptions departures;
     departures.error_history_keeps_resets = true;
@@ -66,17 +66,17 @@ struct Device {
     return departures;
   }();
 
-  /// Bit n is set where an RPDO may map data type n as a dummy.
+  /// Bit n is set if an RPDO may map data type n as a dummy.
   static constexpr std::uint32_t dummies = 0x0000;
 
-  /// A mapping over the bus takes objects whose length is a multiple of so many bits.
+  /// Granularity: a mapped object must have a length that is a multiple of this number of bits.
   static constexpr std::uint8_t granularity = 8;
 
-  /// Whether a new value of an entry sends the event-driven TPDOs that carry it.
+  /// Whether a new value of an entry triggers the event-driven TPDOs that map it.
   static constexpr bool triggers_event([[maybe_unused]] std::uint16_t index, [[maybe_unused]] std::uint8_t sub_index) {
     return true;
   }
-  /// The manufacturer-specific bytes of an EMCY that the services send by themselves.
+  /// The manufacturer-specific bytes of the EMCY messages that the services send themselves.
   static constexpr std::array<std::uint8_t, 5> emergency_info(std::uint16_t code) {
     switch (code) {
       case 0x8110: return {{0x06, 0x00, 0x00, 0x00, 0x00}};

@@ -13,7 +13,7 @@
 
 namespace can_2024c {
 
-/// The entries of the dictionary as types: index, sub-index, C++ type, access and mapping, checked wherever they are used.
+/// The entries of the object dictionary as types: index, sub-index, C++ type, access and mapping, checked at each use.
 namespace od {
 
 /// Device type.  1000h:00  UNSIGNED32  ro                                          can-2024c.eds:75
@@ -1380,24 +1380,24 @@ struct analogue_output_error_value_integer<0> : canopen::Object<0x6444, 0x00, st
 
 }  // namespace od
 
-/// Pre-defined error field: what changes of it.
+/// Pre-defined error field: values in RAM.
 struct PreDefinedErrorField {
   std::array<std::uint32_t, 5> elements;
   std::uint8_t highest_sub_index;
 };
 
-/// Identity object: what changes of it.
+/// Identity object: values in RAM.
 struct IdentityObject {
   std::uint32_t revision_number;
 };
 
-/// RPDO communication parameter 1: what changes of it.
+/// RPDO communication parameter 1: values in RAM.
 struct RpdoCommunicationParameter {
   std::uint32_t cob_id_used_by_rpdo;
   std::uint8_t transmission_type;
 };
 
-/// RPDO mapping parameter 1: what changes of it.
+/// RPDO mapping parameter 1: values in RAM.
 struct RpdoMappingParameter {
   std::uint32_t mapping_entry_1;
   std::uint32_t mapping_entry_2;
@@ -1410,7 +1410,7 @@ struct RpdoMappingParameter {
   std::uint8_t number_of_mapped_objects;
 };
 
-/// TPDO communication parameter 1: what changes of it.
+/// TPDO communication parameter 1: values in RAM.
 struct TpdoCommunicationParameter {
   std::uint32_t cob_id_used_by_tpdo;
   std::uint16_t inhibit_time;
@@ -1418,7 +1418,7 @@ struct TpdoCommunicationParameter {
   std::uint8_t transmission_type;
 };
 
-/// The values of the device that may change, as they lie in RAM.
+/// The values of the device in RAM.
 struct Values {
   /// 1000h..1FFFh with a default other than zero.
   struct CommunicationPreset {
@@ -1485,7 +1485,7 @@ struct Values {
   } application_cleared;
 };
 
-/// What a reset copies from flash. A value that follows the node-ID stands without it.
+/// Default values, copied on reset; node-ID-dependent ones without the node-ID.
 inline constexpr Values::CommunicationPreset communication_preset{
     .cob_id_sync = 0x00000080,
     .cob_id_emcy = 0x00000080,
@@ -1513,7 +1513,7 @@ inline constexpr Values::CommunicationPreset communication_preset{
     .manufacturer_device_name = {"CAN-2024"},
 };
 
-/// What a reset copies from flash. A value that follows the node-ID stands without it.
+/// Default values, copied on reset; node-ID-dependent ones without the node-ID.
 inline constexpr Values::ApplicationPreset application_preset{
     .analogue_output_error_mode = {{1, 1, 1, 1}},
 };
@@ -1533,7 +1533,7 @@ inline constexpr Constants constants{
     .manufacturer_software_version = {"V1.00"},
 };
 
-/// What the search by index and sub-index works on; canopen/dictionary.hpp says how to read it.
+/// Tables for the search by index and sub-index; canopen/dictionary.hpp describes their format.
 namespace table {
 
 using namespace canopen::entry;

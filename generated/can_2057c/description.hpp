@@ -6,7 +6,7 @@
 
 namespace can_2057c {
 
-/// Names and types of all entries, ascending: for tools that show a bus to people. A firmware image does without it.
+/// Names and types of all entries, in ascending order, for tools that display values. Firmware does not need them.
 inline constexpr canopen::EntryDescription descriptions[] = {
     {0x1000, 0x00, canopen::DataType::unsigned32, "Device type", {}},
     {0x1001, 0x00, canopen::DataType::unsigned8, "Error register", {}},

@@ -13,7 +13,7 @@
 
 namespace cpc_tc1 {
 
-/// The entries of the dictionary as types: index, sub-index, C++ type, access and mapping, checked wherever they are used.
+/// The entries of the object dictionary as types: index, sub-index, C++ type, access and mapping, checked at each use.
 namespace od {
 
 /// Device type.  1000h:00  UNSIGNED32  const                                       cpc-tc1.eds:89
@@ -635,24 +635,24 @@ struct target_velocity : canopen::Object<0x60FF, 0x00, std::int32_t, canopen::Ac
 
 }  // namespace od
 
-/// Pre-defined error field: what changes of it.
+/// Pre-defined error field: values in RAM.
 struct PreDefinedErrorField {
   std::array<std::uint32_t, 16> elements;
   std::uint8_t highest_sub_index;
 };
 
-/// Identity object: what changes of it.
+/// Identity object: values in RAM.
 struct IdentityObject {
   std::uint32_t serial_number;
 };
 
-/// RPDO communication parameter 1: what changes of it.
+/// RPDO communication parameter 1: values in RAM.
 struct RpdoCommunicationParameter {
   std::uint32_t cob_id_used_by_rpdo;
   std::uint8_t transmission_type;
 };
 
-/// RPDO mapping parameter 1: what changes of it.
+/// RPDO mapping parameter 1: values in RAM.
 struct RpdoMappingParameter {
   std::uint32_t mapping_entry_1;
   std::uint32_t mapping_entry_2;
@@ -661,7 +661,7 @@ struct RpdoMappingParameter {
   std::uint8_t number_of_mapped_application_objects;
 };
 
-/// TPDO communication parameter 1: what changes of it.
+/// TPDO communication parameter 1: values in RAM.
 struct TpdoCommunicationParameter {
   std::uint32_t cob_id_used_by_tpdo;
   std::uint16_t inhibit_time;
@@ -669,7 +669,7 @@ struct TpdoCommunicationParameter {
   std::uint8_t transmission_type;
 };
 
-/// The values of the device that may change, as they lie in RAM.
+/// The values of the device in RAM.
 struct Values {
   /// 1000h..1FFFh with a default other than zero.
   struct CommunicationPreset {
@@ -716,7 +716,7 @@ struct Values {
   } application_cleared;
 };
 
-/// What a reset copies from flash. A value that follows the node-ID stands without it.
+/// Default values, copied on reset; node-ID-dependent ones without the node-ID.
 inline constexpr Values::CommunicationPreset communication_preset{
     .cob_id_sync = 0x00000080,
     .rpdo_communication_parameter_1 = {.cob_id_used_by_rpdo = 0x00000200, .transmission_type = 0xFF},
@@ -751,7 +751,7 @@ inline constexpr Constants constants{
     .manufacturer_software_version = {"0.7.15"},
 };
 
-/// What the search by index and sub-index works on; canopen/dictionary.hpp says how to read it.
+/// Tables for the search by index and sub-index; canopen/dictionary.hpp describes their format.
 namespace table {
 
 using namespace canopen::entry;

@@ -13,7 +13,7 @@
 
 namespace cpd {
 
-/// The entries of the dictionary as types: index, sub-index, C++ type, access and mapping, checked wherever they are used.
+/// The entries of the object dictionary as types: index, sub-index, C++ type, access and mapping, checked at each use.
 namespace od {
 
 /// Device type.  1000h:00  UNSIGNED32  ro                                          cpd.eds:94
@@ -955,42 +955,42 @@ struct supported_drive_modes : canopen::Object<0x6502, 0x00, std::uint32_t, cano
 
 }  // namespace od
 
-/// Pre-defined error field: what changes of it.
+/// Pre-defined error field: values in RAM.
 struct PreDefinedErrorField {
   std::array<std::uint32_t, 1> elements;
   std::uint8_t highest_sub_index;
 };
 
-/// Identity object: what changes of it.
+/// Identity object: values in RAM.
 struct IdentityObject {
   std::uint32_t vendor_id;
 };
 
-/// SDO server parameter 2: what changes of it.
+/// SDO server parameter 2: values in RAM.
 struct SdoServerParameter {
   std::uint32_t cob_id_client_to_server;
   std::uint32_t cob_id_server_to_client;
   std::uint8_t node_id_of_the_sdo_client;
 };
 
-/// RPDO communication parameter 1: what changes of it.
+/// RPDO communication parameter 1: values in RAM.
 struct RpdoCommunicationParameter {
   std::uint32_t cob_id_used_by_rpdo;
   std::uint8_t transmission_type;
 };
 
-/// RPDO communication parameter 4: what changes of it.
+/// RPDO communication parameter 4: values in RAM.
 struct RpdoCommunicationParameter_1403 {
   std::uint32_t cob_id_used_by_rpdo;
 };
 
-/// RPDO mapping parameter 1: what changes of it.
+/// RPDO mapping parameter 1: values in RAM.
 struct RpdoMappingParameter {
   std::uint32_t mapping_entry_1;
   std::uint8_t number_of_mapped_objects;
 };
 
-/// RPDO mapping parameter 2: what changes of it.
+/// RPDO mapping parameter 2: values in RAM.
 struct RpdoMappingParameter_1601 {
   std::uint32_t mapping_entry_1;
   std::uint32_t mapping_entry_2;
@@ -999,7 +999,7 @@ struct RpdoMappingParameter_1601 {
   std::uint8_t number_of_mapped_objects;
 };
 
-/// TPDO communication parameter 1: what changes of it.
+/// TPDO communication parameter 1: values in RAM.
 struct TpdoCommunicationParameter {
   std::uint32_t cob_id_used_by_tpdo;
   std::uint16_t inhibit_time;
@@ -1007,49 +1007,49 @@ struct TpdoCommunicationParameter {
   std::uint8_t transmission_type;
 };
 
-/// TPDO communication parameter 4: what changes of it.
+/// TPDO communication parameter 4: values in RAM.
 struct TpdoCommunicationParameter_1803 {
   std::uint32_t cob_id_used_by_tpdo;
   std::uint16_t inhibit_time;
   std::uint16_t event_timer;
 };
 
-/// Parameter storage: what changes of it.
+/// Parameter storage: values in RAM.
 struct ParameterStorage {
   std::uint16_t save_settings_to_eeprom;
   std::uint16_t reset_user_settings;
 };
 
-/// Position interface: what changes of it.
+/// Position interface: values in RAM.
 struct PositionInterface {
   std::uint16_t signal_selection;
 };
 
-/// Motion settings: what changes of it.
+/// Motion settings: values in RAM.
 struct MotionSettings {
   std::uint16_t negative_limit_switch_contact;
   std::uint16_t positive_limit_switch_contact;
   std::uint16_t direction_of_rotation_inversion;
 };
 
-/// Inputs and outputs: what changes of it.
+/// Inputs and outputs: values in RAM.
 struct InputsAndOutputs {
   std::uint16_t digital_inputs_and_outputs;
 };
 
-/// Analogue inputs: what changes of it.
+/// Analogue inputs: values in RAM.
 struct AnalogueInputs {
   std::int16_t analogue_input_ana1;
   std::int16_t analogue_input_ana2;
 };
 
-/// Current limits: what changes of it.
+/// Current limits: values in RAM.
 struct CurrentLimits {
   std::uint16_t quick_stop_current_limit;
   std::uint16_t stop_current_limit;
 };
 
-/// Operating mode settings: what changes of it.
+/// Operating mode settings: values in RAM.
 struct OperatingModeSettings {
   std::uint16_t manual_movement_activation;
   std::uint16_t current_setpoint_specification;
@@ -1057,7 +1057,7 @@ struct OperatingModeSettings {
   std::uint16_t gear_activation;
 };
 
-/// Monitoring status: what changes of it.
+/// Monitoring status: values in RAM.
 struct MonitoringStatus {
   std::uint16_t action_status;
   std::uint16_t active_monitoring_signals;
@@ -1066,44 +1066,44 @@ struct MonitoringStatus {
   std::uint16_t latched_warnings;
 };
 
-/// Motion generator: what changes of it.
+/// Motion generator: values in RAM.
 struct MotionGenerator {
   std::int32_t ramp_position_actual_value;
 };
 
-/// Current control: what changes of it.
+/// Current control: values in RAM.
 struct CurrentControl {
   std::int16_t current_setpoint;
 };
 
-/// Speed control: what changes of it.
+/// Speed control: values in RAM.
 struct SpeedControl {
   std::int16_t speed_setpoint;
 };
 
-/// Electronic gear: what changes of it.
+/// Electronic gear: values in RAM.
 struct ElectronicGear {
   std::int32_t gear_denominator;
   std::int32_t gear_numerator;
 };
 
-/// Manual movement: what changes of it.
+/// Manual movement: values in RAM.
 struct ManualMovement {
   std::uint16_t slow_speed;
   std::uint16_t fast_speed;
 };
 
-/// Error memory control: what changes of it.
+/// Error memory control: values in RAM.
 struct ErrorMemoryControl {
   std::uint16_t error_memory_reset;
 };
 
-/// Error memory: what changes of it.
+/// Error memory: values in RAM.
 struct ErrorMemory {
   std::uint16_t error_number;
 };
 
-/// The values of the device that may change, as they lie in RAM.
+/// The values of the device in RAM.
 struct Values {
   /// 1000h..1FFFh with a default other than zero.
   struct CommunicationPreset {
@@ -1180,7 +1180,7 @@ struct Values {
   } application_cleared;
 };
 
-/// What a reset copies from flash. A value that follows the node-ID stands without it.
+/// Default values, copied on reset; node-ID-dependent ones without the node-ID.
 inline constexpr Values::CommunicationPreset communication_preset{
     .cob_id_sync = 0x80000080,
     .cob_id_emcy = 0x00000080,
@@ -1195,7 +1195,7 @@ inline constexpr Values::CommunicationPreset communication_preset{
     .tpdo_communication_parameter_4 = {.cob_id_used_by_tpdo = 0xC0000480, .inhibit_time = 0, .event_timer = 0},
 };
 
-/// What a reset copies from flash. A value that follows the node-ID stands without it.
+/// Default values, copied on reset; node-ID-dependent ones without the node-ID.
 inline constexpr Values::ApplicationPreset application_preset{
     .electronic_gear = {.gear_denominator = 1, .gear_numerator = 1},
     .supported_drive_modes = 0x00000025,
@@ -1230,7 +1230,7 @@ inline constexpr Constants constants{
     .manufacturer_software_version = {"SW 01.01"},
 };
 
-/// What the search by index and sub-index works on; canopen/dictionary.hpp says how to read it.
+/// Tables for the search by index and sub-index; canopen/dictionary.hpp describes their format.
 namespace table {
 
 using namespace canopen::entry;

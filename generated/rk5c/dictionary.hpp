@@ -13,7 +13,7 @@
 
 namespace rk5c {
 
-/// The entries of the dictionary as types: index, sub-index, C++ type, access and mapping, checked wherever they are used.
+/// The entries of the object dictionary as types: index, sub-index, C++ type, access and mapping, checked at each use.
 namespace od {
 
 /// Device type.  1000h:00  UNSIGNED32  ro                                          rk5c.eds:79
@@ -245,32 +245,32 @@ struct measuring_step : canopen::Object<0x6501, 0x00, std::uint32_t, canopen::Ac
 
 }  // namespace od
 
-/// Identity object: what changes of it.
+/// Identity object: values in RAM.
 struct IdentityObject {
   std::uint32_t serial_number;
 };
 
-/// Identity object: what changes of it.
+/// Identity object: values in RAM.
 struct IdentityObject_1018 {
   std::uint32_t product_code;
   std::uint32_t revision_number;
 };
 
-/// TPDO communication parameter 1: what changes of it.
+/// TPDO communication parameter 1: values in RAM.
 struct TpdoCommunicationParameter {
   std::uint32_t cob_id_used_by_tpdo;
   std::uint16_t event_timer;
   std::uint8_t transmission_type;
 };
 
-/// TPDO mapping parameter 1: what changes of it.
+/// TPDO mapping parameter 1: values in RAM.
 struct TpdoMappingParameter {
   std::uint32_t mapping_entry_1;
   std::uint32_t mapping_entry_2;
   std::uint8_t number_of_mapped_application_objects;
 };
 
-/// The values of the device that may change, as they lie in RAM.
+/// The values of the device in RAM.
 struct Values {
   /// 1000h..1FFFh with a default other than zero.
   struct CommunicationPreset {
@@ -301,14 +301,14 @@ struct Values {
   } application_cleared;
 };
 
-/// What a reset copies from flash. A value that follows the node-ID stands without it.
+/// Default values, copied on reset; node-ID-dependent ones without the node-ID.
 inline constexpr Values::CommunicationPreset communication_preset{
     .cob_id_sync = 0x00000080,
     .cob_id_emcy = 0x00000080,
     .tpdo_communication_parameter_1 = {.cob_id_used_by_tpdo = 0x00000180, .event_timer = 1, .transmission_type = 0xFE},
 };
 
-/// What a reset copies from flash. A value that follows the node-ID stands without it.
+/// Default values, copied on reset; node-ID-dependent ones without the node-ID.
 inline constexpr Values::ApplicationPreset application_preset{
     .linear_encoder_measuring_step_settings = {{100000, 100}},
     .measuring_step = 100000,
@@ -335,7 +335,7 @@ inline constexpr Constants constants{
     .manufacturer_software_version = {"1.0"},
 };
 
-/// What the search by index and sub-index works on; canopen/dictionary.hpp says how to read it.
+/// Tables for the search by index and sub-index; canopen/dictionary.hpp describes their format.
 namespace table {
 
 using namespace canopen::entry;
