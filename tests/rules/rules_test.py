@@ -256,14 +256,15 @@ def code_block(block: Block | None) -> list[str]:
 
 INTRODUCTION = """# Rules
 
-What `edsc check` looks for. An error stops `edsc generate`; a warning says what is wrong or was assumed; a note is worth
-knowing, and fails nothing, not even with `--strict`. `--silence RULE` and `silence` in the [options file](options.md) drop a
-rule here; `generate` drops its warnings and notes only. `allow` there, or a comment in the EDS, sets
-[expected findings](options.md#allowed-findings) aside. `edsc check --list-rules` prints this table, `--explain RULE` a row of it.
+The rules of `edsc check`. An error stops `edsc generate`; a warning reports a fault or an assumption; a note is for
+information and does not change the exit code, not even with `--strict`. `--silence RULE` and `silence` in the
+[options file](options.md) disable a rule for `check`; for `generate`, only its warnings and notes. `allow` in the options
+file, or a comment in the EDS, allows [expected findings](options.md#allowed-findings). `edsc check --list-rules` prints this
+table, `--explain RULE` one row of it.
 
-The examples show what they change in a data sheet without findings: a line replaces the one with its key, a section that
-begins with `-` is taken away, `^` is where the finding stands. Made from `tests/rules/examples.txt`, and tried by
-`tests/rules/rules_test.py`, whose option `--write` makes this page.
+The examples are changes to an EDS without findings: a line replaces the one with the same key, a section that begins with
+`-` is removed, and `^` marks the position of the finding. `tests/rules/rules_test.py` runs the examples of
+`tests/rules/examples.txt` and writes this page from them with `--write`.
 """
 
 
