@@ -35,9 +35,9 @@ std::string quoted_object(const PdoEntry& entry) {
   return fmt::format("{} \"{}\"", entry_label(entry.index, entry.sub_index), entry.object->name);
 }
 
-/// `TPDO 1 maps, as entry 2,`
+/// `TPDO 1 entry 2 maps`
 std::string maps(const Pdo& pdo, const PdoEntry& entry) {
-  return fmt::format("{} maps, as entry {},", pdo_label(pdo), entry.position);
+  return fmt::format("{} entry {} maps", pdo_label(pdo), entry.position);
 }
 
 /// Usual in vendors' files: one byte on the wire for a BOOLEAN.
@@ -48,14 +48,14 @@ bool is_boolean_in_a_byte(const PdoEntry& entry) {
 Finding check_dummy(const Device& device, const Pdo& pdo, const PdoEntry& entry) {
   const std::string dummy = fmt::format("the dummy {} {}", index_label(entry.index), entry.dummy->name);
   if (pdo.direction == PdoDirection::transmit) {
-    return BrokenPdo{"pdo-dummy", fmt::format("{} {}, which only an RPDO may", maps(pdo, entry), dummy)};
+    return BrokenPdo{"pdo-dummy", fmt::format("{} {}, which only an RPDO can map", maps(pdo, entry), dummy)};
   }
   if (std::ranges::find(device.dummies, entry.index) == device.dummies.end()) {
     return BrokenPdo{"pdo-dummy", fmt::format("{} {}, which [DummyUsage] does not allow", maps(pdo, entry), dummy)};
   }
   const unsigned bits = entry.dummy->bits;
   if (bits == 0) {
-    return BrokenPdo{"pdo-variable-length", fmt::format("{} {}, a type of no fixed length", maps(pdo, entry), dummy)};
+    return BrokenPdo{"pdo-variable-length", fmt::format("{} {}, a variable-length data type", maps(pdo, entry), dummy)};
   }
   if (entry.bits != bits) {
     return BrokenPdo{"pdo-length",
@@ -68,13 +68,13 @@ Finding check_dummy(const Device& device, const Pdo& pdo, const PdoEntry& entry)
 Finding check_string(const Options& options, const Pdo& pdo, const PdoEntry& entry) {
   const auto capacity = mapped_string_capacity(*entry.object, options);
   if (!capacity) {
-    return BrokenPdo{"pdo-variable-length", fmt::format("{} {}, a {} of no fixed length", maps(pdo, entry),
+    return BrokenPdo{"pdo-variable-length", fmt::format("{} {}, a variable-length {}", maps(pdo, entry),
                                                         quoted_object(entry), entry.object->type->name)};
   }
   if (entry.bits % 8 != 0 || entry.bits == 0) {
     return BrokenPdo{"pdo-variable-length",
-                     fmt::format("{} {} of {}, a {}: not a number of whole bytes", maps(pdo, entry), counted(entry.bits, "bit"),
-                                 quoted_object(entry), entry.object->type->name)};
+                     fmt::format("{} {} of {}, a {}; expected a multiple of 8 bits", maps(pdo, entry),
+                                 counted(entry.bits, "bit"), quoted_object(entry), entry.object->type->name)};
   }
   if (entry.bits / 8u > *capacity) {
     return BrokenPdo{"pdo-length",
@@ -89,32 +89,32 @@ Finding check_object(const Device& device, const Options& options, const Pdo& pd
     const Object* object = device.find(entry.index);
     const std::string label = entry_label(entry.index, entry.sub_index);
     if (object == nullptr) {
-      return BrokenPdo{"pdo-object", fmt::format("{} {}: the device has no such object", maps(pdo, entry), label),
+      return BrokenPdo{"pdo-object", fmt::format("{} {}, which does not exist", maps(pdo, entry), label),
                        label};
     }
     return BrokenPdo{
         "pdo-object",
-        fmt::format("{} {} of \"{}\": the device has no such sub-index", maps(pdo, entry), label, object->name), label};
+        fmt::format("{} {} of \"{}\", a sub-index that does not exist", maps(pdo, entry), label, object->name), label};
   }
   const Entry& object = *entry.object;
   if (!object.pdo_mapping) {
     return BrokenPdo{
         "pdo-mappable",
-        fmt::format("{} {}, which cannot be mapped (PDOMapping=0)", maps(pdo, entry), quoted_object(entry)),
+        fmt::format("{} {}, which is not PDO-mappable (PDOMapping=0)", maps(pdo, entry), quoted_object(entry)),
         "PDOMapping=0"};
   }
   const Mappable needed = pdo.direction == PdoDirection::receive ? Mappable::rpdo : Mappable::tpdo;
   if (!canopen::allows(object.mappable(), needed)) {
     return BrokenPdo{
         "pdo-direction",
-        fmt::format("{} {}, which {} may not carry (access {})", maps(pdo, entry), quoted_object(entry),
-                    pdo.direction == PdoDirection::receive ? "an RPDO" : "a TPDO", canopen::row_of(object.access).name),
+        fmt::format("{} {}, which is not {}-mappable (AccessType {})", maps(pdo, entry), quoted_object(entry),
+                    pdo.direction == PdoDirection::receive ? "RPDO" : "TPDO", canopen::row_of(object.access).name),
         fmt::format("{} in {}", canopen::row_of(object.access).name,
                     pdo.direction == PdoDirection::receive ? "RPDOs" : "TPDOs")};
   }
   if (object.type->kind == canopen::DataClass::string) return check_string(options, pdo, entry);
   if (object.type->bits == 0) {
-    return BrokenPdo{"pdo-variable-length", fmt::format("{} {}, a {} of no fixed length", maps(pdo, entry),
+    return BrokenPdo{"pdo-variable-length", fmt::format("{} {}, a variable-length {}", maps(pdo, entry),
                                                         quoted_object(entry), object.type->name)};
   }
   if (object.type->bits != entry.bits && !is_boolean_in_a_byte(entry)) {
@@ -130,7 +130,7 @@ void report_broken(Pdo& pdo, BrokenPdo finding, const Position& place, Diagnosti
   if (on_by_default(pdo)) {
     diagnostics.error(finding.rule, place, std::move(finding.message), {}, std::move(finding.cause));
   } else {
-    diagnostics.warning(finding.rule, place, finding.message + "; it is off by default and left out", {},
+    diagnostics.warning(finding.rule, place, finding.message + "; the PDO is disabled by default and left out", {},
                         std::move(finding.cause));
   }
 }
@@ -138,7 +138,7 @@ void report_broken(Pdo& pdo, BrokenPdo finding, const Position& place, Diagnosti
 void report_boolean_byte(const Pdo& pdo, const PdoEntry& entry, Diagnostics& diagnostics) {
   diagnostics.warning(
       "pdo-boolean-byte", entry.place,
-      fmt::format("{} {} as 8 bits; a BOOLEAN has 1. The whole byte is used", maps(pdo, entry), quoted_object(entry)),
+      fmt::format("{} {} as 8 bits, but a BOOLEAN has 1; using the whole byte", maps(pdo, entry), quoted_object(entry)),
       {}, "bytes");
 }
 
@@ -166,14 +166,14 @@ void check_size(Pdo& pdo, Diagnostics& diagnostics) {
     const auto over =
         std::ranges::find_if(pdo.entries, [&](const PdoEntry& entry) { return (sum += entry.bits) > most_bits; });
     report_broken(pdo,
-                  {"pdo-size", fmt::format("{} maps {} bits; its frame carries {}, which {} exceeds", pdo_label(pdo),
+                  {"pdo-size", fmt::format("{} maps {} bits; the maximum is {}, which {} exceeds", pdo_label(pdo),
                                            pdo.bits(), most_bits, labelled(*over))},
                   over->place, diagnostics);
   }
   if (pdo.entries.size() > most_mapped_objects) {
     const PdoEntry& over = pdo.entries[most_mapped_objects];
     report_broken(pdo,
-                  {"pdo-entries", fmt::format("{} maps {} objects; {} is the most, which {} exceeds", pdo_label(pdo),
+                  {"pdo-entries", fmt::format("{} maps {} objects; the maximum is {}, which {} exceeds", pdo_label(pdo),
                                               pdo.entries.size(), most_mapped_objects, labelled(over))},
                   over.place, diagnostics);
   }

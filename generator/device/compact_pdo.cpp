@@ -151,7 +151,7 @@ void add_compact_pdos(const DeviceInfo& info, Device& device, Diagnostics& diagn
   if (mask == 0) return;
   if ((mask & ~known_bits) != 0) {
     diagnostics.warning("compact-pdo", info.compact_pdo.position,
-                        "CompactPDO has bits for sub-indices that a communication parameter does not have");
+                        "CompactPDO has bits for sub-indices that a communication parameter cannot have");
   }
   CompactPdos compact{mask & known_bits, info.compact_pdo.position, device};
   for (const Direction& direction : directions) {
@@ -160,7 +160,7 @@ void add_compact_pdos(const DeviceInfo& info, Device& device, Diagnostics& diagn
     const std::uint32_t count = (receive ? capabilities.nr_of_rx_pdo : capabilities.nr_of_tx_pdo).value_or(0);
     if (count > most_pdos) {
       diagnostics.warning("compact-pdo", (info.*direction.count).position,
-                          "a device has 512 PDOs of a direction at most");
+                          "a device can have at most 512 PDOs per direction");
     }
     compact.add(direction, std::min<std::uint32_t>(count, most_pdos));
   }

@@ -57,7 +57,7 @@ void apply_list(const std::vector<NumberedField>& list, Field EntryDescription::
     } else {
       diagnostics.warning(
           "compact-entry", entry.field.position,
-          fmt::format("there is no sub-index {} that {} could be for", entry.number, quote(entry.field.text)));
+          fmt::format("sub-index {}, for which {} is given, does not exist", entry.number, quote(entry.field.text)));
     }
   }
 }
@@ -74,7 +74,7 @@ std::uint8_t compact_count(const ObjectDescription& description, Diagnostics& di
     return 0;
   }
   if (*count > most_sub_objects) {
-    diagnostics.warning("compact-sub-obj", field.position, "CompactSubObj is 254 at most: 254 is taken");
+    diagnostics.warning("compact-sub-obj", field.position, "the maximum of CompactSubObj is 254; using 254");
   }
   return static_cast<std::uint8_t>(std::min<std::uint64_t>(*count, most_sub_objects));
 }

@@ -90,7 +90,7 @@ class Completion {
     if (count.sub_index != 0 || object.index == pre_defined_error_field || !count.default_value) return;
     if (!count.default_value->clause.empty()) {
       note("implied-default", count.position,
-           fmt::format("{} has no default; using {} ({})", named(count), count.default_value->bits,
+           fmt::format("{} has no default value; using {} ({})", named(count), count.default_value->bits,
                        by(count.default_value->clause)));
     }
     const std::uint8_t highest = object.highest_sub_index();
@@ -98,7 +98,7 @@ class Completion {
       return;
     }
     diagnostics_.warning("sub-index-0-value", count.default_value->position,
-                         fmt::format("{} is {}, but {} is the highest sub-index that is described; using {}",
+                         fmt::format("{} is {}, but the highest sub-index described is {}; using {}",
                                      named(count), count.default_value->bits, highest, highest));
     set(count, highest, sub_index_0_clause);
   }
@@ -110,7 +110,7 @@ class Completion {
     if (!holds(entry, own.bits)) return;
     if (entry.index == default_sdo) return fix_default_sdo(parameter, std::move(own), entry);
     if (!entry.default_value) {
-      note_cob_id(parameter, entry, "has no default", own);
+      note_cob_id(parameter, entry, "has no default value", own);
     } else if (is_can_id_0(parameter, *entry.default_value)) {
       own.bits |= entry.default_value->bits & flags_of(parameter);
       note_cob_id(parameter, entry, "is CAN-ID 000h, which is NMT", own);
@@ -134,7 +134,7 @@ class Completion {
     const auto& value = entry.default_value;
     if (value && value->bits == own.bits && value->plus_node_id == own.plus_node_id) return;
     if (!value) {
-      note_cob_id(parameter, entry, "has no default", own);
+      note_cob_id(parameter, entry, "has no default value", own);
     } else {
       diagnostics_.warning("default-sdo-cob-id", value->position,
                            fmt::format("{} is {}, but that of the default SDO is {}; using that ({})", named(entry),
@@ -146,7 +146,7 @@ class Completion {
   void note_cob_id(const CobIdParameter& parameter, const Entry& entry, std::string_view why, const Value& own) {
     const bool off = parameter.has_valid_bit && !CobId{static_cast<std::uint32_t>(own.bits)}.valid();
     note("cob-id-missing", own.position,
-         fmt::format("{} {}; using {}{} ({})", named(entry), why, spelled(own), off ? ", which is off" : "",
+         fmt::format("{} {}; using {}{} ({})", named(entry), why, spelled(own), off ? ", which is disabled" : "",
                      by(own.clause)));
   }
 
@@ -157,7 +157,7 @@ class Completion {
     const std::string_view clause = receive ? "7.5.2.35" : "7.5.2.37";
     if (!entry.default_value) {
       note("implied-default", entry.position,
-           fmt::format("{} has no default; using {}, event-driven", named(entry), default_transmission_type));
+           fmt::format("{} has no default value; using {}, event-driven", named(entry), default_transmission_type));
     } else if (!canopen::transmission_type_is_legal(
                    receive, static_cast<std::uint32_t>(std::min<std::uint64_t>(entry.default_value->bits, 256)))) {
       diagnostics_.warning("pdo-transmission-type", entry.default_value->position,
@@ -174,7 +174,7 @@ class Completion {
     if (row == std::end(error_values) || !entry.default_value || entry.default_value->bits == 0) return;
     if (!holds(entry, 0)) return;
     note("live-default", entry.default_value->position,
-         fmt::format("{} is 0 at start, when there is no error ({}); its default is not used", named(entry),
+         fmt::format("{} is 0 at start, without any error ({}); its default value is not used", named(entry),
                      by(row->clause)));
     set(entry, 0, row->clause);
   }
@@ -184,7 +184,7 @@ class Completion {
     if (row == std::end(storage_capabilities) || (object.has_sub_indices() && entry.sub_index == 0)) return;
     if (!entry.default_value || (entry.default_value->bits & ~row->bits) == 0 || !holds(entry, on_command)) return;
     diagnostics_.warning("storage-capability", entry.default_value->position,
-                         fmt::format("{} reads 0x{:X}, but only the bits 0x{:X} have a meaning; using {}, on command",
+                         fmt::format("{} is 0x{:X}, but only the bits 0x{:X} are defined; using {}, on command",
                                      named(entry), entry.default_value->bits, row->bits, on_command));
     set(entry, on_command, row->clause);
   }
@@ -195,7 +195,7 @@ class Completion {
     if (overflow != 1 && overflow <= 240) return;
     diagnostics_.warning(
         "sync-counter", entry.default_value->position,
-        fmt::format("{} is 0 or 2..240, not {}; using 0, SYNC is not counted", named(entry), overflow));
+        fmt::format("{} must be 0 or 2..240, not {}; using 0, SYNC is not counted", named(entry), overflow));
     set(entry, 0, "7.5.2.22");
   }
 
@@ -205,7 +205,7 @@ class Completion {
     const std::uint64_t behavior = entry.default_value->bits;
     if (behavior <= 2 || behavior >= 0x80) return;
     diagnostics_.warning("error-behavior", entry.default_value->position,
-                         fmt::format("{} is 0, 1 or 2, or 80h and above; {} is reserved; using 0, Pre-operational",
+                         fmt::format("{} must be 0, 1, 2, or 80h and above; {} is reserved; using 0, Pre-operational",
                                      named(entry), behavior));
     set(entry, 0, "7.5.2.32");
   }

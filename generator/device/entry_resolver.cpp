@@ -101,7 +101,7 @@ void EntryResolver::check_sub_object_type(const EntryDescription& description) {
     return report_object_type_name(*named, description.object_type, diagnostics_);
   }
   diagnostics_.warning("object-type", description.object_type.position,
-                       "a sub-object is a VAR or a DOMAIN: taken for one");
+                       "a sub-object must be a VAR or a DOMAIN; ignoring its ObjectType");
 }
 
 std::optional<ValueType> EntryResolver::data_type(const EntryDescription& description, const EntryPlace& place) {
@@ -118,16 +118,18 @@ std::optional<ValueType> EntryResolver::data_type(const EntryDescription& descri
   if (type.row != nullptr) return type;
   if (const ValueType member = types_.find_member(*code, place.sub_index);
       place.in_object_with_sub_indices && member.row != nullptr) {
-    diagnostics_.warning("complex-data-type", field.position,
-                         fmt::format("DataType 0x{:04X} is a RECORD's, not a value's; its sub-index {} is {}", *code,
-                                     place.sub_index, member.row->name),
-                         {}, fmt::format("read {}", *code));
+    diagnostics_.warning(
+        "complex-data-type", field.position,
+        fmt::format("DataType 0x{:04X} is the data type of a RECORD, not of a value; its sub-index {} is {}", *code,
+                    place.sub_index, member.row->name),
+        {}, fmt::format("read {}", *code));
     return member;
   }
   if (types_.is_complex(*code)) {
-    diagnostics_.warning("complex-data-type", field.position,
-                         fmt::format("DataType 0x{:04X} is a RECORD's, not a value's; the entry is left out", *code),
-                         {}, fmt::format("left out {}", *code));
+    diagnostics_.warning(
+        "complex-data-type", field.position,
+        fmt::format("DataType 0x{:04X} is the data type of a RECORD, not of a value; the entry is left out", *code), {},
+        fmt::format("left out {}", *code));
     return std::nullopt;
   }
   diagnostics_.error(
@@ -139,7 +141,7 @@ std::optional<ValueType> EntryResolver::data_type(const EntryDescription& descri
 std::optional<ValueType> EntryResolver::missing_data_type(const EntryDescription& description, const EntryPlace& place) {
   const auto object_type = number_of(description.object_type);
   if (object_type == static_cast<std::uint64_t>(ObjectType::domain)) {
-    diagnostics_.warning("data-type", description.position, "no DataType: a DOMAIN by its ObjectType");
+    diagnostics_.warning("data-type", description.position, "missing DataType; assuming DOMAIN from ObjectType");
     return types_.find(static_cast<std::uint64_t>(DataType::domain));
   }
   if (place.record_type) {
@@ -153,11 +155,11 @@ std::optional<ValueType> EntryResolver::missing_data_type(const EntryDescription
     if (!fits) continue;
     const ValueType type = types_.find(static_cast<std::uint64_t>(row.type));
     diagnostics_.warning("data-type", description.position,
-                         fmt::format("{} without DataType: taken for an {}", row.what, type.row->name), {},
+                         fmt::format("missing DataType of {}; assuming {}", row.what, type.row->name), {},
                          std::string{row.what});
     return type;
   }
-  diagnostics_.error("data-type", description.position, "no DataType");
+  diagnostics_.error("data-type", description.position, "missing DataType");
   return ValueType{};
 }
 
@@ -168,10 +170,10 @@ Access EntryResolver::access(const EntryDescription& description) {
     if (equal_ignoring_case(text, row.name)) return row.access;
   }
   if (!field.present || text.empty()) {
-    diagnostics_.warning("access-type", description.position, "no AccessType: taken for rw", {}, "missing");
+    diagnostics_.warning("access-type", description.position, "missing AccessType; assuming rw", {}, "missing");
   } else {
     diagnostics_.error("access-type", field.position,
-                       fmt::format("AccessType {} is none of ro, wo, rw, rwr, rww, const", quote(text)));
+                       fmt::format("AccessType {} is not ro, wo, rw, rwr, rww or const", quote(text)));
   }
   return Access::rw;
 }
@@ -183,7 +185,7 @@ bool EntryResolver::pdo_mapping(const EntryDescription& description) {
   const auto number = parse_unsigned(text);
   if (number && *number <= 1) return *number == 1;
   diagnostics_.warning("pdo-mapping", field.position,
-                       fmt::format("PDOMapping is 0 or 1, not {}; {} is taken", quote(text), number ? 1 : 0));
+                       fmt::format("PDOMapping must be 0 or 1, not {}; using {}", quote(text), number ? 1 : 0));
   return number.has_value();
 }
 
@@ -194,14 +196,14 @@ void EntryResolver::resolve_default(const EntryDescription& description, Entry& 
   const bool is_configured = configured.present && !configured.empty();
   if (is_configured && !is_dcf_) {
     diagnostics_.warning("parameter-value", configured.position,
-                         "ParameterValue belongs into a DCF; in an EDS the DefaultValue counts", {}, "EDS");
+                         "ParameterValue belongs in a DCF; an EDS uses DefaultValue", {}, "EDS");
   }
   entry.default_value = parse_value(is_configured && is_dcf_ ? configured : description.default_value, *entry.type,
                                     node_id_, diagnostics_);
   const std::size_t length = entry.default_value ? entry.default_value->bytes.size() : 0;
   if (entry.octets == 0 || length <= entry.octets) return;
   diagnostics_.error("number-range", entry.default_value->position,
-                     fmt::format("the value has {} bytes, its data type {}", length, entry.octets));
+                     fmt::format("the value has {} bytes, but its data type has {}", length, entry.octets));
   entry.default_value.reset();
 }
 
@@ -223,7 +225,7 @@ void EntryResolver::resolve_limits(const EntryDescription& description, const Va
 void EntryResolver::drop_limit_formula(std::optional<Value>& limit) {
   if (!limit || !limit->plus_node_id) return;
   diagnostics_.warning("limit-formula", limit->position,
-                       "a limit that follows the node-ID is not checked unless the node-ID is given");
+                       "node-ID-dependent limit; it is not checked unless the node-ID is given");
   limit.reset();
 }
 
@@ -233,7 +235,7 @@ void EntryResolver::resolve_files(const EntryDescription& description, Entry& en
   if (entry.type->kind == DataClass::domain) return;
   for (const Field* field : {&description.upload_file, &description.download_file}) {
     if (field->present && !field->empty()) {
-      diagnostics_.warning("domain-value", field->position, "only the value of a DOMAIN stands in a file", {}, "file");
+      diagnostics_.warning("domain-value", field->position, "only a DOMAIN can have its value in a file", {}, "file");
     }
   }
 }

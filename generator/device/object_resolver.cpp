@@ -82,7 +82,7 @@ std::optional<Object> ObjectResolver::resolve(const ObjectDescription& descripti
   object.denotation = description.denotation.text;
   object.type = object_type(description);
   if (object.name.empty()) {
-    diagnostics_.warning("parameter-name", description.position, "an object without ParameterName");
+    diagnostics_.warning("parameter-name", description.position, "missing ParameterName");
   }
   resolve_links(description, object);
   if (object.has_sub_indices()) {
@@ -103,7 +103,8 @@ ObjectType ObjectResolver::object_type(const ObjectDescription& description) {
   const std::string_view text = strip_inline_comment(field.text);
   if (!field.present || text.empty()) {
     if (has_subs) {
-      diagnostics_.warning("object-type", description.position, "no ObjectType, but sub-objects: taken for a RECORD");
+      diagnostics_.warning("object-type", description.position,
+                           "missing ObjectType of an object with sub-objects; assuming RECORD");
     }
     return fallback;
   }
@@ -115,13 +116,13 @@ ObjectType ObjectResolver::object_type(const ObjectDescription& description) {
   if (known == object_types.end()) {
     diagnostics_.warning(
         "object-type", field.position,
-        fmt::format("{} is no object code of CiA 301: taken for a {}", quote(text), to_string(fallback)));
+        fmt::format("{} is not an object code of CiA 301; assuming {}", quote(text), to_string(fallback)));
     return fallback;
   }
   if (*known == ObjectType::deftype || *known == ObjectType::defstruct) {
     diagnostics_.warning(
         "object-type", field.position,
-        fmt::format("a {} has an index below 1000h: taken for a {}", to_string(*known), to_string(fallback)));
+        fmt::format("a {} must have an index below 1000h; assuming {}", to_string(*known), to_string(fallback)));
     return fallback;
   }
   const bool is_simple = *known == ObjectType::var || *known == ObjectType::domain;
@@ -131,14 +132,14 @@ ObjectType ObjectResolver::object_type(const ObjectDescription& description) {
     return *known;
   }
   diagnostics_.warning("object-type", field.position,
-                       fmt::format("a {} has no sub-objects: taken for a RECORD", to_string(*known)));
+                       fmt::format("a {} cannot have sub-objects; assuming RECORD", to_string(*known)));
   return ObjectType::record;
 }
 
 void ObjectResolver::report_stray_sub_objects(const ObjectDescription& description, ObjectType type) {
   for (const SubObjectDescription& sub : description.sub_objects) {
     diagnostics_.warning("sub-object-without-object", sub.position,
-                         fmt::format("{} is a {} and does not have sub-objects; {} {} is left out",
+                         fmt::format("{} is a {} and cannot have sub-objects; {} {} is left out",
                                      index_label(description.index), to_string(type),
                                      entry_label(description.index, sub.sub_index), quote(sub.parameter_name.text)));
   }
@@ -189,9 +190,8 @@ void ObjectResolver::check_sub_number(const ObjectDescription& description) {
   const std::size_t count = description.sub_objects.size();
   if (number_of(field) == count) return;
   diagnostics_.warning("sub-number", field.position,
-                       fmt::format("SubNumber is {}, but {} described; {}", strip_inline_comment(field.text),
-                                   count == 1 ? "1 sub-object is" : fmt::format("{} sub-objects are", count),
-                                   count == 1 ? "that counts" : "those count"));
+                       fmt::format("SubNumber is {}, but {} described; using {}", strip_inline_comment(field.text),
+                                   count == 1 ? "1 sub-object is" : fmt::format("{} sub-objects are", count), count));
 }
 
 /// Sub-indices are hexadecimal (CiA 306-1, 4.6.2). Where a sub-index is missing, but there is the one whose digits are
@@ -208,9 +208,10 @@ void ObjectResolver::check_sub_indices(const ObjectDescription& description) {
   for (const Slip& slip : slips) {
     const auto written = find(slip.written);
     if (written == none || find(slip.before) == none || find(slip.meant) != none) continue;
-    diagnostics_.warning("sub-index-base", written->position,
-                         fmt::format("sub-indices are hexadecimal: this is {:X}h; {:X}h is missing, is that meant?",
-                                     slip.written, slip.meant));
+    diagnostics_.warning(
+        "sub-index-base", written->position,
+        fmt::format("sub-indices are hexadecimal: this is {:X}h; did you mean {:X}h, which is missing?", slip.written,
+                    slip.meant));
   }
 }
 
@@ -219,7 +220,7 @@ void ObjectResolver::supply_sub_index_0(const ObjectDescription& description, Ob
     const std::uint8_t highest = object.highest_sub_index();
     diagnostics_.warning(
         "sub-index-0", description.position,
-        fmt::format("{} has no sub-index 0; one with the value {} is supplied", index_label(object.index), highest));
+        fmt::format("{} has no sub-index 0; assuming one with the value {}", index_label(object.index), highest));
     object.entries.insert(object.entries.begin(), count_entry(description.index, highest, description.position));
     return;
   }

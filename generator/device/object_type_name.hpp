@@ -26,8 +26,8 @@ namespace edsc {
 inline void report_object_type_name(ObjectType type, const Field& field, Diagnostics& diagnostics) {
   diagnostics.warning(
       "object-type", field.position,
-      fmt::format("ObjectType is a number; that of {} is 0x{:X}", to_string(type), static_cast<unsigned>(type)), {},
-      std::string{to_string(type)});
+      fmt::format("ObjectType must be a number; that of {} is 0x{:X}", to_string(type), static_cast<unsigned>(type)),
+      {}, std::string{to_string(type)});
 }
 
 }  // namespace edsc

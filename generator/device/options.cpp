@@ -53,7 +53,7 @@ constexpr std::array<std::string_view, 16> structured_options = {
 
 constexpr std::array<std::string_view, 3> allow_members = {"rule", "object", "reason"};
 constexpr const char* allow_form =
-    "an array of objects: [{\"rule\": \"pdo-empty\", \"object\": \"1A00h\", \"reason\": \"mapped at start\"}]";
+    "expected an array of objects: [{\"rule\": \"pdo-empty\", \"object\": \"1A00h\", \"reason\": \"mapped at start\"}]";
 
 struct NumberOption {
   const char* name;
@@ -123,7 +123,7 @@ class OptionsReader {
       return {};
     }
     if (!document.is_object()) {
-      error("", "the options file holds one JSON object");
+      error("", "the options file must be one JSON object");
       return {};
     }
     for (const auto& [name, value] : document.items()) member(name, value);
@@ -167,7 +167,7 @@ class OptionsReader {
     }
     if (name == "pdo_reserved_can_ids") return pdo_reserved_can_ids(value);
     if (name == "reset_emergency") return reset_emergency(value);
-    error(name, "no such option" + did_you_mean(name, all_names()));
+    error(name, "unknown option" + did_you_mean(name, all_names()));
   }
 
   static std::vector<std::string_view> all_names() {
@@ -180,13 +180,13 @@ class OptionsReader {
   }
 
   void each_entry(const std::string& name, const json& value, const std::function<bool(EntryKey, const json&)>& take) {
-    if (!value.is_object()) return error(name, "an object with one member for each entry, such as \"1018h:04\"");
+    if (!value.is_object()) return error(name, "expected an object with one member per entry, such as \"1018h:04\"");
     for (const auto& [entry, v] : value.items()) {
       const auto key = parse_entry_key(entry);
       if (!key) {
         error(name + "/" + entry, "not an entry such as \"1018h:04\"");
       } else if (!take(*key, v)) {
-        error(name + "/" + entry, "not a value that this option can have");
+        error(name + "/" + entry, "invalid value for this option");
       }
     }
   }
@@ -204,7 +204,7 @@ class OptionsReader {
   }
 
   void settable(const json& value) {
-    if (!value.is_array()) return error("settable", "an array of entries such as \"1018h:04\"");
+    if (!value.is_array()) return error("settable", "expected an array of entries such as \"1018h:04\"");
     for (const json& item : value) {
       const auto key = item.is_string() ? parse_entry_key(item.get<std::string>()) : std::nullopt;
       if (!key) {
@@ -216,12 +216,12 @@ class OptionsReader {
   }
 
   void silence(const json& value) {
-    if (!value.is_array()) return error("silence", "an array of rule ids");
+    if (!value.is_array()) return error("silence", "expected an array of rule ids");
     for (const json& item : value) {
       if (item.is_string()) {
         options_.silence.push_back({item.get<std::string>(), position_of(item.get<std::string>())});
       } else {
-        error("silence", "an array of rule ids");
+        error("silence", "expected an array of rule ids");
       }
     }
   }
@@ -244,10 +244,10 @@ class OptionsReader {
       } else if (name == "object" && object) {
         allowed.object = object;
       } else if (std::ranges::find(allow_members, name) == allow_members.end()) {
-        return error("allow/" + name, "no such member" + did_you_mean(name, allow_members));
+        return error("allow/" + name, "unknown member" + did_you_mean(name, allow_members));
       } else {
         return error("allow/" + name, name == "object" ? "not an object or entry such as \"6040h\" or \"6401h:03\""
-                                                       : "a text that is not empty");
+                                                       : "expected a non-empty string");
       }
     }
     if (allowed.rule.empty() || allowed.reason.empty()) {
@@ -258,7 +258,7 @@ class OptionsReader {
   }
 
   void connected_modules(const json& value) {
-    constexpr const char* meaning = "an array of numbers of [SupportedModules]";
+    constexpr const char* meaning = "expected an array of numbers of [SupportedModules]";
     if (!value.is_array()) return error("connected_modules", meaning);
     for (const json& item : value) {
       if (item.is_number_unsigned() && item.get<std::uint64_t>() >= 1 && item.get<std::uint64_t>() <= 0xFFFF) {
@@ -270,7 +270,7 @@ class OptionsReader {
   }
 
   void static_mapping(const json& value) {
-    constexpr const char* meaning = "true, or an array of mapping parameters such as \"1A00h\"";
+    constexpr const char* meaning = "expected true, or an array of mapping parameters such as \"1A00h\"";
     if (value.is_boolean()) {
       options_.static_mapping.all = value.get<bool>();
       return;
@@ -287,7 +287,7 @@ class OptionsReader {
   }
 
   void no_event(const json& value) {
-    constexpr const char* meaning = "an array of objects or entries such as \"6401h\" or \"6401h:03\"";
+    constexpr const char* meaning = "expected an array of objects or entries such as \"6401h\" or \"6401h:03\"";
     if (!value.is_array()) return error("no_event", meaning);
     for (const json& item : value) {
       const auto entry = item.is_string() ? parse_entry_selector(item.get<std::string>()) : std::nullopt;
@@ -300,7 +300,8 @@ class OptionsReader {
   }
 
   void emergency_info(const json& value) {
-    constexpr const char* meaning = "an object with one member for each error code: {\"8210h\": \"0900000000\"}";
+    constexpr const char* meaning =
+        "expected an object with one member for each error code: {\"8210h\": \"0900000000\"}";
     if (!value.is_object()) return error("emergency_info", meaning);
     for (const auto& [code, bytes] : value.items()) {
       const auto number = parse_index(code);
@@ -309,13 +310,14 @@ class OptionsReader {
         options_.emergency_info[*number] = *info;
       } else {
         error("emergency_info/" + code,
-              number ? "five bytes as ten hexadecimal digits" : "not a code such as \"8210h\"");
+              number ? "expected five bytes as ten hexadecimal digits" : "not a code such as \"8210h\"");
       }
     }
   }
 
   void storing(const json& value) {
-    constexpr const char* meaning = "an object with one member for each object or entry: {\"6010h:01\": \"never\"}";
+    constexpr const char* meaning =
+        "expected an object with one member for each object or entry: {\"6010h:01\": \"never\"}";
     if (!value.is_object()) return error("storing", meaning);
     for (const auto& [text, how] : value.items()) {
       const auto entry = parse_entry_selector(text);
@@ -328,20 +330,20 @@ class OptionsReader {
         options_.storing.emplace_back(*entry, how.get<std::string>());
       } else {
         error("storing/" + text,
-              entry ? "always, never or with_node_id" : "not an object or entry such as \"6010h:01\"");
+              entry ? "expected always, never or with_node_id" : "not an object or entry such as \"6010h:01\"");
       }
     }
   }
 
   void lss(const json& value) {
-    if (!value.is_object()) return error("lss", "an object: {\"bit_rates\": [125, 500], \"fastscan\": false}");
+    if (!value.is_object()) return error("lss", "expected an object: {\"bit_rates\": [125, 500], \"fastscan\": false}");
     LssSettings& settings = options_.lss.emplace();
     for (const auto& [name, v] : value.items()) {
       const std::string path = "lss/" + name;
       if (name == "bit_rates") {
         settings.bit_rates = lss_bit_rates(path, v);
       } else if (std::ranges::find(lss_flags, name) == lss_flags.end()) {
-        error(path, "no such option");
+        error(path, "unknown option");
       } else if (bool on = false; flag(path, v, on)) {
         settings.flags[name] = on;
       }
@@ -350,7 +352,8 @@ class OptionsReader {
 
   /// One bit for each index of table 0 of CiA 305; none for a fixed bit rate.
   std::optional<std::uint16_t> lss_bit_rates(const std::string& path, const json& value) {
-    constexpr const char* meaning = "\"fixed\", or an array of bit rates of CiA 301 in kbit/s, such as [125, 500], and \"auto\"";
+    constexpr const char* meaning =
+        "expected \"fixed\", or an array of bit rates of CiA 301 in kbit/s, such as [125, 500], and \"auto\"";
     if (value == "fixed") return std::uint16_t{0};
     unsigned mask = 0;
     bool valid = value.is_array() && !value.empty();
@@ -379,7 +382,7 @@ class OptionsReader {
     } else if (value == "compressed") {
       options_.stored_eds = StoredEds::compressed;
     } else {
-      error("stored_eds", "true, false or \"compressed\"");
+      error("stored_eds", "expected true, false or \"compressed\"");
     }
   }
 
@@ -387,14 +390,14 @@ class OptionsReader {
     if (value.is_boolean()) {
       target = value.get<bool>();
     } else {
-      error(name, "true or false");
+      error(name, "expected true or false");
     }
     return value.is_boolean();
   }
 
   void mask(const std::string& name, const json& value) {
     const auto bits = value.is_string() ? parse_unsigned(value.get<std::string>()) : std::nullopt;
-    if (!bits || *bits > 0xFFFF'FFFF) return error(name, "a 32-bit mask such as \"0x80000780\"");
+    if (!bits || *bits > 0xFFFF'FFFF) return error(name, "expected a 32-bit mask such as \"0x80000780\"");
     options_.runtime.emplace_back(name, fmt::format("0x{:08X}", *bits));
   }
 
@@ -403,14 +406,14 @@ class OptionsReader {
     const bool known = std::ranges::any_of(canopen::abort_code_texts, [&](const canopen::AbortCodeText& row) {
       return row.code != canopen::ok && static_cast<std::uint32_t>(row.code) == code;
     });
-    if (!known) return error(name, "an abort code of CiA 301 such as \"0x06040041\"");
+    if (!known) return error(name, "expected an abort code of CiA 301 such as \"0x06040041\"");
     options_.runtime.emplace_back(name, fmt::format("0x{:08X}", *code));
   }
 
   void number(const NumberOption& option, const json& value) {
     const std::uint64_t count = value.is_number_unsigned() ? value.get<std::uint64_t>() : 0;
     if (!value.is_number_unsigned() || count < option.low || count > option.high) {
-      return error(option.name, fmt::format("a number from {} to {}", option.low, option.high));
+      return error(option.name, fmt::format("expected a number from {} to {}", option.low, option.high));
     }
     options_.runtime.emplace_back(option.name, fmt::format("{}", count));
   }
@@ -423,14 +426,15 @@ class OptionsReader {
     const auto first = can_id(0);
     const auto last = can_id(1);
     if (!first || !last || *first > *last || *last > 0x7FF) {
-      return error("pdo_reserved_can_ids", "the first and the last of a range of CAN-IDs: [\"0x080\", \"0x100\"]");
+      return error("pdo_reserved_can_ids",
+                   "expected the first and the last of a range of CAN-IDs: [\"0x080\", \"0x100\"]");
     }
     options_.runtime.emplace_back("pdo_reserved_can_ids", fmt::format("{{0x{:03X}, 0x{:03X}}}", *first, *last));
   }
 
   void reset_emergency(const json& value) {
     const auto code = value.is_string() ? parse_index(value.get<std::string>()) : std::nullopt;
-    if (!code || *code == 0) return error("reset_emergency", "an emergency error code such as \"FF00h\"");
+    if (!code || *code == 0) return error("reset_emergency", "expected an emergency error code such as \"FF00h\"");
     options_.runtime.emplace_back("reset_emergency", fmt::format("0x{:04X}", *code));
   }
 

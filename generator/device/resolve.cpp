@@ -101,8 +101,8 @@ class Resolver {
     entries_ += device_.objects.back().entries.size();
     if (entries_ <= most_entries) return true;
     diagnostics_.error("dictionary-size", last.position,
-                       fmt::format("a device has {} entries at most; what follows {} is left out", most_entries,
-                                   index_label(last.index)));
+                       fmt::format("a device can have at most {} entries; everything after {} is left out",
+                                   most_entries, index_label(last.index)));
     return false;
   }
 
@@ -111,7 +111,7 @@ class Resolver {
     const auto check = [&](const EntryKey& key, std::string_view option) {
       if (device_.find(key.first, key.second) != nullptr) return;
       diagnostics_.error("options", Position{sheet_.source},
-                         fmt::format("option {} names {}, which is not in the data sheet", option,
+                         fmt::format("option {} names {}, which is not in the EDS", option,
                                      entry_label(key.first, key.second)));
     };
     for (const auto& [key, name] : options_.names) check(key, "names");
@@ -130,7 +130,7 @@ class Resolver {
   void check_object(std::uint16_t index, std::string_view option) {
     if (device_.find(index) != nullptr) return;
     diagnostics_.error("options", Position{sheet_.source},
-                       fmt::format("option {} names {}, which is not in the data sheet", option, index_label(index)));
+                       fmt::format("option {} names {}, which is not in the EDS", option, index_label(index)));
   }
 
   /// A mapping parameter lies in RAM as a whole or not at all.
@@ -141,7 +141,7 @@ class Resolver {
           device_.pdos, [&](const Pdo& one) { return one.mapping != nullptr && one.mapping->index == key.first; });
       if (pdo == device_.pdos.end() || pdo->dynamic) continue;
       diagnostics_.error("options", Position{sheet_.source},
-                         fmt::format("option settable names {}, but the mapping of {} is static: all of {} is to be "
+                         fmt::format("option settable names {}, but the mapping of {} is static: all of {} must be "
                                      "writable or settable",
                                      entry_label(key.first, key.second), pdo_label(*pdo), index_label(key.first)));
     }

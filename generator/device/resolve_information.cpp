@@ -139,7 +139,7 @@ class InformationReader {
     const auto last = dash == std::string_view::npos ? first : parse_unsigned(text.substr(dash + 1));
     if (!first || !last || *first > *last || *last > 0xFFFF) {
       diagnostics_.warning("dynamic-segment", field.position,
-                           fmt::format("{} is no range of indices such as 0xA080-0xA0BF", quote(field.text)));
+                           fmt::format("{} is not an index range such as 0xA080-0xA0BF", quote(field.text)));
       return;
     }
     channel.first_index = static_cast<std::uint32_t>(*first);
@@ -184,7 +184,8 @@ std::optional<std::uint32_t> read_number(const Field& field, WarningRule rule, D
                         fmt::format("a leading 0 makes {} an octal number: {}", quote(text), *number));
   }
   if (number && *number <= 0xFFFF'FFFF) return static_cast<std::uint32_t>(*number);
-  diagnostics.warning(rule, field.position, fmt::format("{} is no UNSIGNED32; it is left out", quote(field.text)));
+  diagnostics.warning(rule, field.position,
+                      fmt::format("{} is not an UNSIGNED32 value; it is left out", quote(field.text)));
   return std::nullopt;
 }
 

@@ -49,17 +49,18 @@ class ModuleResolver {
     for (const NumberedField& entry : list) {
       const auto index = index_of(entry.field);
       if (!index) {
-        diagnostics_.error("number", entry.field.position, fmt::format("{} is no index", quote(entry.field.text)));
+        diagnostics_.error("number", entry.field.position,
+                           fmt::format("{} is not a valid index", quote(entry.field.text)));
       } else if (listed.insert(*index); std::ranges::find(described, *index, &Description::index) == described.end()) {
         diagnostics_.warning(
             "object-without-section", entry.field.position,
-            fmt::format("{} is listed, but there is no section [{}{:04X}]", index_label(*index), prefix, *index));
+            fmt::format("{} is listed, but section [{}{:04X}] is missing", index_label(*index), prefix, *index));
       }
     }
     for (const Description& one : described) {
       if (!listed.contains(one.index)) {
         diagnostics_.warning("object-not-listed", one.position,
-                             fmt::format("[{}{:04X}] is in no list of its module", prefix, one.index));
+                             fmt::format("[{}{:04X}] is not in any list of its module", prefix, one.index));
       }
     }
   }
@@ -68,7 +69,7 @@ class ModuleResolver {
     for (const ObjectDescription& description : module.objects) {
       if (device_.find(description.index) != nullptr) {
         diagnostics_.warning("module-object", description.position,
-                             fmt::format("{} is there already; that of module {} is left out",
+                             fmt::format("{} already exists; that of module {} is left out",
                                          index_label(description.index), module.number));
       } else if (auto object = objects_.resolve(description)) {
         insert(std::move(*object));
@@ -97,8 +98,9 @@ class ModuleResolver {
                                                           : parse_unsigned(text.substr(semicolon + 1));
     const bool fits = whole && bits && *whole <= most_sub_objects && *bits <= 64 && (*whole == 0 || *bits == 0);
     if (fits) return Count{static_cast<std::uint32_t>(*whole), static_cast<std::uint32_t>(*bits)};
-    diagnostics_.error("module-count", field.position,
-                       fmt::format("Count is a number of sub-indices, or 0;m for m bits of one, not {}", quote(text)));
+    diagnostics_.error(
+        "module-count", field.position,
+        fmt::format("Count must be a number of sub-indices, or 0;m for m bits of one, not {}", quote(text)));
     return std::nullopt;
   }
 
@@ -145,7 +147,7 @@ class ModuleResolver {
       if (extend_after == 0) break;
     }
     diagnostics_.error("module-object", extension.position,
-                       fmt::format("{} has no room for another sub-index of a module", index_label(extension.index)));
+                       fmt::format("{} cannot hold another sub-index of a module", index_label(extension.index)));
     return std::nullopt;
   }
 

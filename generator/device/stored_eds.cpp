@@ -23,7 +23,7 @@ void resolve_stored_eds(Device& device, const Options& options, Diagnostics& dia
   const Entry* const sheet = find_entry(device, store_eds);
   if (sheet == nullptr || sheet->type->kind != canopen::DataClass::domain || !is_read_only(*sheet)) {
     diagnostics.error("options", Position{device.source},
-                      "option stored_eds: the data sheet has no DOMAIN 1021h that is read only");
+                      "option stored_eds: the EDS has no read-only DOMAIN 1021h");
     return;
   }
   Entry* const format = find_entry(device, store_format);
@@ -33,7 +33,7 @@ void resolve_stored_eds(Device& device, const Options& options, Diagnostics& dia
     format->default_value->bits = static_cast<std::uint64_t>(compressed ? StoreFormat::gzip : StoreFormat::text);
   } else if (compressed || format != nullptr) {
     diagnostics.error("options", Position{device.source},
-                      "option stored_eds: the data sheet has no number 1022h that is read only and tells the format");
+                      "option stored_eds: the EDS has no read-only integer 1022h for the format");
   }
 }
 

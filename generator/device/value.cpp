@@ -66,7 +66,7 @@ class ValueReader {
     switch (type_.kind) {
       case DataClass::string: return string();
       case DataClass::domain:
-        warning("domain-value", "a DOMAIN has no value in a data sheet; it is left out", "value");
+        warning("domain-value", "a DOMAIN cannot have a value in an EDS; it is left out", "value");
         return std::nullopt;
       case DataClass::boolean:
       case DataClass::unsigned_integer:
@@ -112,14 +112,14 @@ class ValueReader {
     std::string_view constant = plus == std::string_view::npos ? std::string_view{} : trim(text.substr(plus + 1));
     if (variable.empty() || variable.front() != '$') std::swap(variable, constant);
     if (!is_node_id(variable)) {
-      error("node-id-formula", fmt::format("{} is not a formula of $NODEID and a number", quote(text)));
+      error("node-id-formula", fmt::format("{} is not a valid $NODEID formula", quote(text)));
       return std::nullopt;
     }
     std::uint64_t number = 0;
     if (plus != std::string_view::npos) {
       const auto parsed = parse_unsigned(without_suffix(constant));
       if (!parsed) {
-        error("node-id-formula", fmt::format("{} is not a formula of $NODEID and a number", quote(text)));
+        error("node-id-formula", fmt::format("{} is not a valid $NODEID formula", quote(text)));
         return std::nullopt;
       }
       number = *parsed;
@@ -133,14 +133,14 @@ class ValueReader {
   bool is_node_id(std::string_view variable) {
     if (equal_ignoring_case(variable, "$NODEID")) return true;
     if (!equal_ignoring_case(variable, "$NODE_ID") && !equal_ignoring_case(variable, "$MY_NODE_ID")) return false;
-    warning("node-id-formula", fmt::format("{} is read as $NODEID", variable), std::string{variable});
+    warning("node-id-formula", fmt::format("reading {} as $NODEID", variable), std::string{variable});
     return true;
   }
 
   /// `above` or below all values of the type.
   std::optional<Value> out_of_range(bool above) {
     if (limit_ == (above ? Limit::high : Limit::low)) {
-      warning("number-range", fmt::format("{} lies beyond the range of {}: it limits nothing and is left out",
+      warning("number-range", fmt::format("{} is outside the range of {}; this limit has no effect and is left out",
                                           quote(field_.text), type_.name));
       return std::nullopt;
     }
@@ -150,13 +150,13 @@ class ValueReader {
 
   std::optional<Value> boolean(std::string_view text) {
     if (equal_ignoring_case(text, "true") || equal_ignoring_case(text, "false")) {
-      warning("number-spelling", "a BOOLEAN is written as 0 or 1", "BOOLEAN");
+      warning("number-spelling", "a BOOLEAN must be written as 0 or 1", "BOOLEAN");
       return value(equal_ignoring_case(text, "true") ? 1 : 0);
     }
     const auto number = parse_unsigned(without_suffix(text));
     if (!number) return not_a_number();
     if (*number > 1) {
-      warning("number-range", fmt::format("\"{}\" is no BOOLEAN; it is read as 1", text));
+      warning("number-range", fmt::format("\"{}\" is not a BOOLEAN; reading it as 1", text));
     }
     return value(*number != 0 ? 1 : 0);
   }
@@ -170,7 +170,7 @@ class ValueReader {
     if (is_octal(plain)) {
       warning("number-spelling", fmt::format("a leading 0 makes {} an octal number: {}", quote(text), *magnitude));
     }
-    if (plain.size() != digits.size()) warning("number-spelling", "a C suffix has no place in a data sheet", "suffix");
+    if (plain.size() != digits.size()) warning("number-spelling", "a C suffix is not allowed in an EDS", "suffix");
     return negative ? negative_integer(*magnitude) : positive_integer(*magnitude, is_hexadecimal(plain));
   }
 
@@ -180,7 +180,7 @@ class ValueReader {
     if (magnitude > lowest || (limit_ && is_unsigned && magnitude != 0)) return out_of_range(false);
     if (is_unsigned && magnitude != 0) {
       warning("number-range",
-              fmt::format("a negative value of the unsigned type {}; its two's complement is taken", type_.name));
+              fmt::format("negative value of the unsigned type {}; using its two's complement", type_.name));
       return value((~magnitude + 1) & mask());
     }
     return value(~magnitude + 1);
@@ -194,8 +194,8 @@ class ValueReader {
     if (magnitude < sign) return value(magnitude);
     if (!hexadecimal && limit_) return out_of_range(true);
     if (!hexadecimal) {
-      warning("number-range",
-              fmt::format("{} is over the highest {}; it is read as two's complement", quote(field_.text), type_.name));
+      warning("number-range", fmt::format("{} exceeds the maximum of {}; reading it as two's complement",
+                                          quote(field_.text), type_.name));
     }
     return value(magnitude | ~mask());
   }
@@ -203,16 +203,16 @@ class ValueReader {
   /// `80h`, or `0.0` or `0089` for an integer: accepted when nothing is lost.
   std::optional<Value> unusual_integer(std::string_view text) {
     if (const auto hexadecimal = parse_h_suffix(text)) {
-      warning("number-spelling", fmt::format("a hexadecimal number is written with 0x, not as {}", quote(text)));
+      warning("number-spelling", fmt::format("a hexadecimal number must be written with 0x, not as {}", quote(text)));
       return positive_integer(*hexadecimal, true);
     }
     const auto number = parse_real(text);
     if (!number || std::trunc(*number) != *number || std::abs(*number) > 9e15) return not_a_number();
     if (text.find_first_of(".eE") == std::string_view::npos) {
       warning("number-spelling",
-              fmt::format("\"{}\" begins like an octal number and is none: it is read as decimal", text));
+              fmt::format("\"{}\" has a leading 0, but is not an octal number; reading it as decimal", text));
     } else {
-      warning("number-spelling", fmt::format("a value of type {} is written without a decimal point", type_.name));
+      warning("number-spelling", fmt::format("a value of type {} must be written without a decimal point", type_.name));
     }
     const auto magnitude = static_cast<std::uint64_t>(std::abs(*number));
     return *number < 0 ? negative_integer(magnitude) : positive_integer(magnitude, false);
@@ -229,7 +229,7 @@ class ValueReader {
     const std::string_view plain = without_real_suffix(text);
     const auto number = parse_real(plain);
     if (!number) return not_a_number();
-    if (plain.size() != text.size()) warning("number-spelling", "a C suffix has no place in a data sheet", "suffix");
+    if (plain.size() != text.size()) warning("number-spelling", "a C suffix is not allowed in an EDS", "suffix");
     if (type_.bits == 64) return value(std::bit_cast<std::uint64_t>(*number));
     const auto single = static_cast<float>(*number);
     if (std::isinf(single) && !std::isinf(*number)) return out_of_range(*number > 0);
@@ -250,13 +250,14 @@ class ValueReader {
     Value result = value(0);
     if (type_.type == DataType::octet_string) {
       if (!hex_bytes(field_.text, result.bytes)) {
-        warning("octet-string", "an OCTET_STRING is written as pairs of hexadecimal digits; its characters are taken");
+        warning("octet-string", "an OCTET_STRING must be written as pairs of hexadecimal digits; using its characters");
         result.bytes = field_.text;
       }
     } else {
       const std::string_view text = field_.text;
       if (text.size() >= 2 && text.front() == '"' && text.back() == '"') {
-        warning("string-quotes", "the quotation marks belong to the text: a data sheet puts none around it", "quotes");
+        warning("string-quotes", "the quotation marks are part of the string; an EDS does not put them around it",
+                "quotes");
       }
       result.bytes = text;
     }

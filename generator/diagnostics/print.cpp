@@ -86,7 +86,7 @@ class TextPrinter {
     if (diagnostic.unnamed > 0) {
       print_file(diagnostic.position.file);
       print_message(Severity::note,
-                    fmt::format("{} more {} of the same cause", diagnostic.unnamed,
+                    fmt::format("{} more {} with the same cause", diagnostic.unnamed,
                                 diagnostic.unnamed == 1 ? "place" : "places"),
                     {});
     }

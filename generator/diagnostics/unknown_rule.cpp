@@ -13,7 +13,7 @@ namespace edsc {
 std::string unknown_rule(std::string_view id) {
   std::vector<std::string_view> ids;
   for (const Rule& rule : all_rules()) ids.push_back(rule.id);
-  return fmt::format("no rule is called {}{}", quote(id), did_you_mean(id, ids));
+  return fmt::format("unknown rule {}{}", quote(id), did_you_mean(id, ids));
 }
 
 }  // namespace edsc

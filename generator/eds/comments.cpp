@@ -17,7 +17,7 @@ void check_count(const SourceFile& source, const IniSection& section, const Comm
                  Diagnostics& diagnostics) {
   if (!comments.lines.present) {
     diagnostics.warning("comments", section_position(source, section),
-                        fmt::format("{} is missing in [{}]", count_key, section.name));
+                        fmt::format("missing {} in [{}]", count_key, section.name));
     return;
   }
   const std::optional<std::uint64_t> count = number_of(comments.lines);

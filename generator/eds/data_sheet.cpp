@@ -81,15 +81,15 @@ class DataSheetReader {
     const Position position = section_position(source_, section);
     if (name.kind == SectionKind::malformed) {
       diagnostics_.error("section-name", position,
-                         fmt::format("{} names no object: {}", quote(section.name), name.remark));
+                         fmt::format("{} is not a valid section name: {}", quote(section.name), name.remark));
     } else if (name.kind == SectionKind::unknown) {
       diagnostics_.warning("unknown-section", position,
-                           fmt::format("CiA 306 knows no section {}; it is left out{}", quote(section.name),
+                           fmt::format("unknown section {}; it is left out{}", quote(section.name),
                                        similar_section(section.name)));
     } else if (name.has_short_index) {
       diagnostics_.warning(
           "section-name", position,
-          fmt::format("an index has four digits; {} is taken for {:04X}h", quote(section.name), name.index));
+          fmt::format("an index has four digits; reading {} as {:04X}h", quote(section.name), name.index));
     }
   }
 
@@ -205,7 +205,7 @@ class DataSheetReader {
 
   void read_objects() {
     if (object_sections_.empty()) {
-      diagnostics_.error("no-objects", {&source_}, "there is no section of an object in this file, such as [1000]");
+      diagnostics_.error("no-objects", {&source_}, "the file does not have an object section such as [1000]");
       return;
     }
     sheet_.objects = edsc::read_objects(source_, std::move(object_sections_), {}, diagnostics_);

@@ -21,7 +21,7 @@ bool have_same_content(const IniSection& a, const IniSection& b) {
 void report_duplicate_section(const SourceFile& source, const IniSection& section, const IniSection& first,
                               Diagnostics& diagnostics) {
   diagnostics.warning("duplicate-section", section_position(source, section),
-                      fmt::format("section {} stands twice, with {} content; the first one counts", quote(section.name),
+                      fmt::format("duplicate section {} with {} content; using the first", quote(section.name),
                                   have_same_content(section, first) ? "the same" : "different"),
                       {{section_position(source, first), "the first one"}});
 }
@@ -29,7 +29,7 @@ void report_duplicate_section(const SourceFile& source, const IniSection& sectio
 void report_duplicate_key(const SourceFile& source, const IniEntry& entry, const Position& first,
                           Diagnostics& diagnostics) {
   diagnostics.warning("duplicate-key", key_position(source, entry),
-                      fmt::format("{} stands twice in this section; the first one counts", quote(entry.key)),
+                      fmt::format("duplicate key {} in this section; using the first", quote(entry.key)),
                       {{first, "the first one"}});
 }
 

@@ -55,8 +55,9 @@ DynamicChannels read_dynamic_channels(const SourceFile& source, const IniSection
   const std::string_view text = strip_inline_comment(channels.nr_of_segments.text);
   const std::optional<std::uint64_t> count = text.empty() ? std::optional<std::uint64_t>{0} : parse_unsigned(text);
   if (!count || *count != channels.segments.size()) {
-    diagnostics.warning("dynamic-segment", channels.nr_of_segments.position,
-                        fmt::format("{} says how many segments there are: {}", segment_count_key, channels.segments.size()));
+    diagnostics.warning(
+        "dynamic-segment", channels.nr_of_segments.position,
+        fmt::format("{} must be the number of segments, {}", segment_count_key, channels.segments.size()));
   }
   return channels;
 }

@@ -59,7 +59,7 @@ class IniReader {
       ++line_number_;
     }
     error("binary-file", source_.line(line_number_), from_there.substr(0, 1),
-          "a control character; this is no text file, nothing of it is read");
+          "control character; this is not a text file, and nothing of it is read");
     return true;
   }
 
@@ -71,13 +71,13 @@ class IniReader {
     }
     diagnostics_.error(
         "xml-file", {&source_},
-        "this is XML, perhaps a device description of CiA 311; what is read here is the INI form of CiA 306");
+        "this is XML, perhaps a device description of CiA 311; expected the INI format of CiA 306");
     return true;
   }
 
   void report_empty() {
     if (file_.sections.empty() && target_ == Target::none_yet && !found_entry_outside_) {
-      diagnostics_.error("empty-file", {&source_}, "there is no section in this file");
+      diagnostics_.error("empty-file", {&source_}, "the file does not have a section");
     }
   }
 
@@ -104,7 +104,7 @@ class IniReader {
     if (!found_hash_comment_) {
       warning(
           "hash-comment", line, comment.substr(0, 1),
-          "'#' begins no comment in CiA 306, ';' does; this line and all that begin with '#' are taken as comments");
+          "a comment begins with ';' in CiA 306, not with '#'; reading all lines that begin with '#' as comments");
     }
     found_hash_comment_ = true;
   }
@@ -113,7 +113,7 @@ class IniReader {
     const std::size_t end = content.find(']');
     if (end == std::string_view::npos) {
       error("unterminated-section", line, content.substr(0, 1),
-            "']' is missing; the entries up to the next section are left out");
+            "missing ']'; the entries up to the next section are left out");
       target_ = Target::unreadable_section;
       return;
     }
@@ -127,7 +127,7 @@ class IniReader {
     }
     keep_remark(rest);
     if (rest[0] != ';' && rest[0] != '#') {
-      warning("text-after-section", line, rest, "this text behind the section's name is taken as a comment");
+      warning("text-after-section", line, rest, "text after section header; reading it as a comment");
     }
   }
 
@@ -136,13 +136,13 @@ class IniReader {
     if (equals == std::string_view::npos) {
       keep_remark(content);
       warning("stray-line", line, content,
-              "neither a section nor an entry (there is no '='); this line is taken as a comment");
+              "neither a section nor an entry (missing '='); reading this line as a comment");
       return;
     }
     const std::string_view key = trim_right(content.substr(0, equals));
     if (key.empty()) {
       keep_remark(content);
-      warning("stray-line", line, content, "there is no key before the '='; this line is taken as a comment");
+      warning("stray-line", line, content, "missing key before '='; reading this line as a comment");
       return;
     }
     if (target_ == Target::none_yet) {
@@ -165,7 +165,7 @@ class IniReader {
   void report_entry_outside(std::string_view line, std::string_view key) {
     if (!found_entry_outside_) {
       error("entry-outside-section", line, key,
-            quote(key) + " stands before the first section; all entries up to there are left out");
+            quote(key) + " is before the first section; all entries up to there are left out");
     }
     found_entry_outside_ = true;
   }

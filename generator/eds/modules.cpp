@@ -50,7 +50,7 @@ class ModuleReader {
     std::sort(module_.sub_extensions.begin(), module_.sub_extensions.end(),
               [](const SubExtension& a, const SubExtension& b) { return a.index < b.index; });
     if (!has_info_) {
-      diagnostics_.warning("modules", module_.position, fmt::format("there is no [M{}ModuleInfo]", module_.number));
+      diagnostics_.warning("modules", module_.position, fmt::format("missing section [M{}ModuleInfo]", module_.number));
     }
   }
 
@@ -115,7 +115,7 @@ void check_count(const SourceFile& source, const IniSection* section, const Modu
                  Diagnostics& diagnostics) {
   if (section == nullptr) {
     if (!modules.supported.empty()) {
-      diagnostics.warning("modules", modules.supported[0].position, "there is no [SupportedModules]");
+      diagnostics.warning("modules", modules.supported[0].position, "missing section [SupportedModules]");
     }
     return;
   }

@@ -40,7 +40,7 @@ class NumberedSectionReader {
       read_count(entry);
     } else if (!count_key_.misspelling.empty() && equal_ignoring_case(entry.key, count_key_.misspelling)) {
       diagnostics_.warning("key-spelling", key_position(source_, entry),
-                           fmt::format("{} is taken for \"{}\"", quote(entry.key), count_key_.name));
+                           fmt::format("reading {} as \"{}\"", quote(entry.key), count_key_.name));
       read_count(entry);
     } else {
       report_unknown_key(source_, section_, entry, {&count_key_.name, 1}, diagnostics_);
@@ -64,16 +64,16 @@ class NumberedSectionReader {
     count_entry_ = &entry;
     count_ = parse_unsigned(strip_inline_comment(entry.value));
     if (!count_) {
-      diagnostics_.error(
-          "number", value_position(source_, entry),
-          fmt::format("{} is no number; {} is how many entries the section has", quote(entry.value), count_key_.name));
+      diagnostics_.error("number", value_position(source_, entry),
+                         fmt::format("{} is not a number; {} must be the number of entries in the section",
+                                     quote(entry.value), count_key_.name));
     }
   }
 
   void check_count() {
     if (count_entry_ == nullptr) {
       diagnostics_.warning(count_key_.rule, section_position(source_, section_),
-                           fmt::format("{} is missing in [{}]", count_key_.name, section_.name));
+                           fmt::format("missing {} in [{}]", count_key_.name, section_.name));
     } else if (count_ && *count_ != fields_.size()) {
       diagnostics_.warning(count_key_.rule, value_position(source_, *count_entry_),
                            fmt::format("{} is {}, but the section has {}", count_key_.name, *count_,

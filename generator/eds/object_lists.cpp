@@ -45,7 +45,7 @@ class ObjectListReader {
         add({list, static_cast<std::uint16_t>(*index), entry.field.position});
       } else {
         diagnostics_.error("number", entry.field.position,
-                           fmt::format("{} is no index; the index of an object is expected, 0x0001 to 0xFFFF",
+                           fmt::format("{} is not a valid index; expected 0x0001 to 0xFFFF",
                                        quote(entry.field.text)));
       }
     }
@@ -69,7 +69,7 @@ class ObjectListReader {
     const std::optional<ObjectListKind> right = list_of(object.index);
     if (right && *right != object.list) {
       diagnostics_.warning("object-list", object.position,
-                           fmt::format("{:04X}h stands in [{}], but belongs in [{}]", object.index,
+                           fmt::format("{:04X}h is listed in [{}], but belongs in [{}]", object.index,
                                        section_name(object.list), section_name(*right)),
                            {}, fmt::format("{} {}", section_name(object.list), section_name(*right)));
     }
@@ -104,7 +104,7 @@ void report_not_listed(const DataSheet& sheet, Diagnostics& diagnostics) {
     const bool one_cause = objects.size() > Diagnostics::most_places;
     for (const ObjectDescription* object : objects) {
       diagnostics.warning("object-not-listed", object->position,
-                          fmt::format("{:04X}h is in no object list{}", object->index,
+                          fmt::format("{:04X}h is not in any object list{}", object->index,
                                       list ? fmt::format("; it belongs in [{}]", list_name) : ""),
                           {}, one_cause ? list_name : "");
     }
@@ -154,7 +154,7 @@ void compare_lists_with_objects(const DataSheet& sheet, Diagnostics& diagnostics
     if (!has_object(listed.index)) {
       diagnostics.warning(
           "object-without-section", listed.position,
-          fmt::format("{:04X}h is listed, but there is no section [{:04X}]", listed.index, listed.index));
+          fmt::format("{:04X}h is listed, but section [{:04X}] is missing", listed.index, listed.index));
     }
   }
   report_not_listed(sheet, diagnostics);

@@ -79,7 +79,7 @@ class ObjectReader {
   void report_missing_section(const ObjectSection& first, const ObjectDescription& object) {
     diagnostics_.warning(
         "sub-object-without-object", object.position,
-        fmt::format("[{}] stands without a section [{}{:04X}]", first.section->name, prefix_, object.index));
+        fmt::format("[{}] has no parent section [{}{:04X}]", first.section->name, prefix_, object.index));
   }
 
   void read_section(const ObjectSection& section, ObjectDescription& object) {

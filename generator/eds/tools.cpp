@@ -25,7 +25,7 @@ void check_count(const SourceFile& source, const IniSection& list, std::size_t t
   const std::optional<std::uint64_t> count = number_of(items);
   if (!count || *count != tools) {
     diagnostics.warning("tools", items.present ? items.position : section_position(source, list),
-                        fmt::format("{} says how many sections [ToolX] there are: {}", tool_count_key, tools));
+                        fmt::format("{} must be the number of sections [ToolX], {}", tool_count_key, tools));
   }
 }
 
@@ -51,7 +51,7 @@ std::vector<Tool> read_tools(const SourceFile& source, const IniSection* list, s
   if (list != nullptr) {
     check_count(source, *list, tools.size(), diagnostics);
   } else if (!tools.empty()) {
-    diagnostics.warning("tools", section_position(source, *sections[0].section), "[ToolX] stands without [Tools]");
+    diagnostics.warning("tools", section_position(source, *sections[0].section), "missing section [Tools] for [ToolX]");
   }
   return tools;
 }

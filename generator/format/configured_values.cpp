@@ -62,7 +62,7 @@ class Configuration {
     if (fields.parameter_value == nullptr || strip_inline_comment(fields.parameter_value->text).empty()) return;
     if (entry.default_value && !entry.default_value->clause.empty()) {
       diagnostics_.note("implied-default", fields.parameter_value->position,
-                        fmt::format("{} is not configured: CiA 301, {}, gives it another value",
+                        fmt::format("{} is not configured: CiA 301, {}, requires another value",
                                     entry_label(entry.index, entry.sub_index), entry.default_value->clause));
       return;
     }
@@ -80,7 +80,7 @@ class Configuration {
     if (value->plus_node_id) {
       diagnostics.error(
           "node-id", field.position,
-          fmt::format("{} follows the node-ID, which is not known", entry_label(entry.index, entry.sub_index)));
+          fmt::format("{} depends on the node-ID, which is not known", entry_label(entry.index, entry.sub_index)));
       return std::nullopt;
     }
     return data_of(*value, *entry.type);

@@ -67,7 +67,7 @@ class ValueMover {
     } else if (is_cob_id && is_can_id_of_own_node(value->bits)) {
       diagnostics_.warning(
           "cob-id-node-id", described.parameter_value.position,
-          fmt::format("{} stays {}, a CAN-ID of node {}: its default does not follow the node-ID",
+          fmt::format("{} remains {}, a CAN-ID of node {}: its default value does not depend on the node-ID",
                       entry_label(index, sub_index), line.value, own_));
     }
   }

@@ -59,7 +59,7 @@ bool check_frame(const RuleContext& context, const CobIdUse& use) {
   if (!use.valid() || use.cob_id.extended() || (highest & 0x1FFF'F800U) == 0) return true;
   context.report(
       "cob-id-frame", use.place(),
-      fmt::format("{} has more than 11 bits, but bit 29 says that it is an 11-bit CAN-ID", named(*use.entry)));
+      fmt::format("{} has more than 11 bits, but bit 29 selects an 11-bit CAN-ID", named(*use.entry)));
   return false;
 }
 
@@ -75,7 +75,7 @@ std::string hint(const CobIdUse& use) {
   if (use.plus_node_id || !use.parameter->plus_node_id) return "";
   const std::uint32_t function_code = use.parameter->predefined_of(use.entry->index);
   if (use.cob_id.can_id() != function_code) return "";
-  return fmt::format("; $NODEID+0x{:X} adds the node-ID", use.cob_id.value());
+  return fmt::format("; use $NODEID+0x{:X} to add the node-ID", use.cob_id.value());
 }
 
 /// `CAN-ID 6E0h for node-ID 96`, and the other node-IDs with a restricted CAN-ID.
@@ -116,7 +116,7 @@ void check_restricted(const RuleContext& context, const CobIdUse& use) {
   context.report("cob-id-restricted", use.place(),
                  fmt::format("{} is restricted{} (CAN-ID {:03X}h of node {}: {}){}", named(*use.entry),
                              node_ids.words(), can_id, node_ids.first, restriction_of(use, can_id),
-                             node_ids.count < last_node_id ? "; a node-ID that is given is checked alone" : ""));
+                             node_ids.count < last_node_id ? "; a given node-ID is checked alone" : ""));
 }
 
 /// The node-ID that a formula adds; nothing where the file says a number.
@@ -139,8 +139,8 @@ void check_added_twice(const RuleContext& context, const CobIdUse& use, std::uin
   const std::uint32_t extra = can_id - function_code;
   context.report(
       "cob-id-node-id", use.place(),
-      fmt::format("{} is $NODEID+0x{:X}, which has a node-ID in it already: {:03X}h for node 1, the CAN-ID of "
-                  "node {}; $NODEID+0x{:X} adds it once",
+      fmt::format("{} is $NODEID+0x{:X}, which already contains a node-ID: {:03X}h for node 1, the CAN-ID of "
+                  "node {}; use $NODEID+0x{:X} to add it once",
                   named(*use.entry), base, can_id + 1, extra + 1, base - extra),
       {}, "added twice");
 }
@@ -156,7 +156,7 @@ void check_node_id(const RuleContext& context, const CobIdUse& use) {
   if (can_id <= function_code || can_id > function_code + last_node_id) return;
   const std::uint32_t node_id = can_id - function_code;
   context.report("cob-id-node-id", use.place(),
-                 fmt::format("{} is {:03X}h, the CAN-ID of node {} alone; $NODEID+0x{:X} is that of any node",
+                 fmt::format("{} is {:03X}h, the CAN-ID of node {} only; use $NODEID+0x{:X} for any node",
                              named(*use.entry), can_id, node_id, function_code + (use.cob_id.value() & 0xE000'0000U)),
                  {}, fmt::format("node {}", node_id));
 }
@@ -195,7 +195,7 @@ void report_users(const RuleContext& context, Users users) {
   for (std::size_t i = 0; i < users.all.size(); ++i) {
     const CobIdUse& use = *users.all[i];
     if (i > 0) names += (i + 1 == users.all.size() ? " and " : ", ") + named(*use.entry);
-    if (i != 1) notes.push_back({use.place(), i == 0 ? "the first one" : "a further one"});
+    if (i != 1) notes.push_back({use.place(), i == 0 ? "the first one" : "another one"});
   }
   const std::string message = fmt::format("{} have the same CAN-ID{}", names, users.when());
   context.report("cob-id-twice", users.all[1]->place(), message, std::move(notes));

@@ -23,12 +23,12 @@ void check_heartbeat_consumer(const RuleContext& context) {
     const std::uint64_t node = value >> 16;
     if (node > last_node_id) {
       context.report("heartbeat-consumer", default_place(entry),
-                     fmt::format("{} watches node {}; 127 is the last", named(entry), node));
+                     fmt::format("{} monitors node {}; the maximum node-ID is 127", named(entry), node));
     } else if ((value & 0xFFFF) != 0 && node != 0) {
       const Entry*& first = watched[node];
       if (first != nullptr) {
         context.report("heartbeat-consumer", default_place(entry),
-                       fmt::format("{} watches node {} a second time", named(entry), node),
+                       fmt::format("{} monitors node {} a second time", named(entry), node),
                        {{default_place(*first), "the first time"}});
       }
       first = first == nullptr ? &entry : first;
@@ -42,8 +42,8 @@ void check_error_control_values(const RuleContext& context) {
   const Entry* guard_time = context.device.find(0x100C, 0);
   if (default_of(context, 0x1017) == 0 || default_of(context, 0x100C) == 0 || default_of(context, 0x100D) == 0) return;
   context.report("two-error-controls", default_place(*guard_time),
-                 "node guarding and heartbeat are both on by default; the heartbeat counts",
-                 {{default_place(*heartbeat), "the heartbeat's time"}});
+                 "node guarding and heartbeat are both enabled by default; heartbeat is used",
+                 {{default_place(*heartbeat), "the heartbeat time"}});
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ constexpr Flag flags[] = {
 
 void check_flag(const RuleContext& context, std::string_view key, const Field& field) {
   if (field.empty() || number_of(field).value_or(2) <= 1) return;
-  context.report("device-info-flag", field.position, fmt::format("{} is 0 or 1, not {}", key, quote(field.text)));
+  context.report("device-info-flag", field.position, fmt::format("{} must be 0 or 1, not {}", key, quote(field.text)));
 }
 
 void check_flags(const RuleContext& context) {
@@ -46,16 +46,16 @@ void check_baud_rates(const RuleContext& context) {
     any = any || number_of(rate.field).value_or(0) != 0;
     if (std::ranges::find(standard_baud_rates, rate.kbit_per_second) != std::end(standard_baud_rates)) continue;
     context.report("baud-rate-key", rate.field.position,
-                   fmt::format("CiA 306 knows no key BaudRate_{}", rate.kbit_per_second));
+                   fmt::format("CiA 306 does not define a key BaudRate_{}", rate.kbit_per_second));
   }
-  if (!any) context.report("baud-rates", info.position, "the device supports no baud rate");
+  if (!any) context.report("baud-rates", info.position, "the device does not support any bit rate");
 }
 
 void check_granularity(const RuleContext& context) {
   const Field& field = context.sheet.device_info.granularity;
   if (field.empty() || number_of(field).value_or(most_granularity + 1) <= most_granularity) return;
   context.report("granularity", field.position,
-                 fmt::format("Granularity is a number of 0..64, not {}", quote(field.text)));
+                 fmt::format("Granularity must be 0..64, not {}", quote(field.text)));
 }
 
 struct PdoCount {
@@ -118,7 +118,7 @@ void check_lss(const RuleContext& context) {
     if (context.device.find(0x1018, sub_index) != nullptr) continue;
     context.report(
         "lss-identity", field.position,
-        fmt::format("LSS selects a device by all of 1018h, but {} is missing", entry_label(0x1018, sub_index)));
+        fmt::format("LSS requires all of 1018h, but {} is missing", entry_label(0x1018, sub_index)));
     return;
   }
 }
@@ -127,14 +127,14 @@ void check_dynamic_channels(const RuleContext& context) {
   const Field& field = context.sheet.device_info.dynamic_channels_supported;
   if (number_of(field).value_or(0) == 0 || context.sheet.dynamic_channels.present) return;
   context.report("dynamic-channels", field.position,
-                 "dynamic channels are supported, but there is no section [DynamicChannels]");
+                 "dynamic channels are supported, but section [DynamicChannels] is missing");
 }
 
 }  // namespace
 
 void check_device_info(const RuleContext& context) {
   if (!context.sheet.device_info.present) {
-    context.report("no-device-info", context.whole_file(), "there is no section [DeviceInfo]");
+    context.report("no-device-info", context.whole_file(), "missing section [DeviceInfo]");
     return;
   }
   check_flags(context);

@@ -45,7 +45,7 @@ void check_live(const RuleContext& context, const Entry& entry) {
   if (entry.default_value->bits == 0 && entry.default_value->bytes.empty()) return;
   if (shows_a_setting(context, entry)) return;
   context.report("live-default", entry.default_value->position,
-                 fmt::format("{} has a default, but a running device has another value", named(entry)));
+                 fmt::format("{} has a default value, but the running device sets another one", named(entry)));
 }
 
 void check_mapping(const RuleContext& context, const Entry& entry) {
@@ -53,13 +53,13 @@ void check_mapping(const RuleContext& context, const Entry& entry) {
                               ? mapped_string_capacity(entry, context.options).has_value()
                               : entry.type->bits > 0;
   if (entry.pdo_mapping && !has_length) {
-    context.report(
-        "mapping-of-no-length", entry.mapping_position,
-        fmt::format("{} can be mapped (PDOMapping=1), but {} has no fixed length", named(entry), entry.type->name));
+    context.report("mapping-of-no-length", entry.mapping_position,
+                   fmt::format("{} is PDO-mappable (PDOMapping=1), but {} is a variable-length data type", named(entry),
+                               entry.type->name));
   }
   if (!entry.pdo_mapping && (entry.access == Access::rwr || entry.access == Access::rww)) {
     context.report("process-data-not-mappable", entry.access_position,
-                   fmt::format("{} is process data ({}), but cannot be mapped (PDOMapping=0)", named(entry),
+                   fmt::format("{} is process data ({}), but not PDO-mappable (PDOMapping=0)", named(entry),
                                canopen::row_of(entry.access).name),
                    {}, std::string{canopen::row_of(entry.access).name});
   }
@@ -68,7 +68,7 @@ void check_mapping(const RuleContext& context, const Entry& entry) {
 void check_name_length(const RuleContext& context, const Entry& entry) {
   if (entry.name.size() <= longest_name || count_code_points(entry.name) <= longest_name) return;
   context.report("name-length", context.place_of(entry, &EntryDescription::parameter_name),
-                 fmt::format("the name of {} has {} characters; {} are the most",
+                 fmt::format("the name of {} has {} characters; the maximum is {}",
                              entry_label(entry.index, entry.sub_index), count_code_points(entry.name), longest_name));
 }
 
@@ -78,7 +78,7 @@ void check_flags(const RuleContext& context, const EntryDescription& description
   const auto flags = number_of(field);
   if (flags && (*flags & ~known_flags) == 0) return;
   context.report("object-flags", field.position,
-                 fmt::format("ObjFlags has two bits, 0 and 1; {} has others", quote(field.text)));
+                 fmt::format("ObjFlags defines bits 0 and 1 only; {} sets others", quote(field.text)));
 }
 
 /// The elements of an ARRAY have one data type. What CiA 301 says of an object, other rules compare.

@@ -69,25 +69,26 @@ constexpr FileInfoForm file_info_forms[] = {
 void check_file_name(const RuleContext& context) {
   const Field& field = context.sheet.file_info.file_name;
   if (field.empty()) {
-    context.report("file-name", context.sheet.file_info.position, "FileName is missing");
+    context.report("file-name", context.sheet.file_info.position, "missing FileName");
     return;
   }
   const std::string name = std::filesystem::path{context.device.source->name()}.filename().string();
   if (name == "-" || equal_ignoring_case(field.text, name)) return;
   context.report("file-name", field.position,
-                 fmt::format("FileName is {}, the file is called {}", quote(field.text), quote(name)));
+                 fmt::format("FileName is {}, but the name of the file is {}", quote(field.text), quote(name)));
 }
 
 void check_file_info(const RuleContext& context) {
   const FileInfo& info = context.sheet.file_info;
   if (!info.present) {
-    context.report("file-info", context.whole_file(), "there is no section [FileInfo]");
+    context.report("file-info", context.whole_file(), "missing section [FileInfo]");
     return;
   }
   for (const FileInfoForm& row : file_info_forms) {
     const Field& field = info.*row.field;
     if (field.empty() || row.fits(strip_inline_comment(field.text))) continue;
-    context.report(row.rule, field.position, fmt::format("{} is {}, not {}", row.key, row.form, quote(field.text)));
+    context.report(row.rule, field.position,
+                   fmt::format("{} must be {}, not {}", row.key, row.form, quote(field.text)));
   }
   check_file_name(context);
 }
@@ -98,14 +99,16 @@ void check_lines(const RuleContext& context) {
   for (std::uint32_t number = 1; number <= source.lines(); ++number) {
     const std::string_view line = source.line(number);
     if (line.size() > longest_line && count_code_points(line) > longest_line) {
-      context.report("long-line", {&source, number, longest_line + 1, 1},
-                     fmt::format("the line has {} characters; {} are the most", count_code_points(line), longest_line));
+      context.report(
+          "long-line", {&source, number, longest_line + 1, 1},
+          fmt::format("the line has {} characters; the maximum is {}", count_code_points(line), longest_line));
     }
     if (only_ascii || is_ascii(line)) continue;
     only_ascii = true;  // say so once
     const auto at = std::ranges::find_if(line, [](char c) { return static_cast<unsigned char>(c) >= 0x80; });
-    context.report("encoding", {&source, number, static_cast<std::uint32_t>(at - line.begin()) + 1, 1},
-                   fmt::format("the file holds more than ASCII; it is read as {}", to_string(source.encoding())));
+    context.report(
+        "encoding", {&source, number, static_cast<std::uint32_t>(at - line.begin()) + 1, 1},
+        fmt::format("the file contains non-ASCII characters; reading it as {}", to_string(source.encoding())));
   }
 }
 
@@ -114,10 +117,10 @@ void check_dummy_usage(const RuleContext& context) {
     const std::string_view text = strip_inline_comment(dummy.field.text);
     if (parse_unsigned(text).value_or(2) > 1) {
       context.report("dummy-usage", dummy.field.position,
-                     fmt::format("Dummy{:04X} is 0 or 1, not {}", dummy.number, quote(dummy.field.text)));
+                     fmt::format("Dummy{:04X} must be 0 or 1, not {}", dummy.number, quote(dummy.field.text)));
     } else if (parse_unsigned(text) == 1 && canopen::find_data_type(dummy.number) == nullptr) {
       context.report("dummy-usage", dummy.field.position,
-                     fmt::format("Dummy{:04X} is no data type that a PDO can skip", dummy.number));
+                     fmt::format("Dummy{:04X} is not a data type that a PDO can map as a dummy", dummy.number));
     }
   }
 }
@@ -127,8 +130,9 @@ void check_commissioned_baud_rate(const RuleContext& context) {
   const auto rate = number_of(field);
   if (field.empty() || rate == 0) return;
   if (!rate || std::ranges::find(standard_baud_rates, *rate) == std::end(standard_baud_rates)) {
-    context.report("commissioned-baud-rate", field.position,
-                   fmt::format("Baudrate is 10, 20, 50, 125, 250, 500, 800 or 1000 kbit/s, not {}", quote(field.text)));
+    context.report(
+        "commissioned-baud-rate", field.position,
+        fmt::format("Baudrate must be 10, 20, 50, 125, 250, 500, 800 or 1000 kbit/s, not {}", quote(field.text)));
     return;
   }
   for (const DeviceInfo::BaudRate& row : context.sheet.device_info.baud_rates) {
@@ -149,7 +153,7 @@ void check_commissioning(const RuleContext& context) {
   }
   if (!context.device.node_id) {
     context.report("commissioned-node-id", commissioning.node_id.position,
-                   "a configured device has a NodeID of 1..127");
+                   "missing NodeID; expected 1..127");
   }
   check_commissioned_baud_rate(context);
 }

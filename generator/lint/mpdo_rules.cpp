@@ -26,7 +26,7 @@ bool is_source_multiplexed(const Pdo& pdo) {
 void check_option(const RuleContext& context, const Pdo& pdo) {
   if (served(context.options)) return;
   context.report("mpdo-option", default_place(*pdo.mapping->find(0)),
-                 fmt::format("{} is a multiplex PDO ({} mapped objects), which is served with the option \"mpdo\" only",
+                 fmt::format("{} is a multiplex PDO ({} mapped objects), which requires the option \"mpdo\"",
                              pdo_label(pdo), mapped_objects(pdo)));
 }
 
@@ -37,7 +37,7 @@ void check_type(const RuleContext& context, const Pdo& pdo) {
   }
   context.report(
       "mpdo-transmission-type", default_place(*pdo.communication->find(transmission_type_sub_index)),
-      fmt::format("{} is a multiplex PDO: its transmission type is 254 or 255, not {}", pdo_label(pdo), *type));
+      fmt::format("{} is a multiplex PDO: its transmission type must be 254 or 255, not {}", pdo_label(pdo), *type));
 }
 
 template <class Element>
@@ -50,7 +50,7 @@ void check_has_list(const RuleContext& context, const Pdo& pdo, std::string_view
   if (std::ranges::any_of(context.device.objects, is_list<Element>)) return;
   context.report(
       "mpdo-list", default_place(*pdo.mapping->find(0)),
-      fmt::format("{} is a multiplex PDO in source addressing mode, but there is no object {} list, {} to {}",
+      fmt::format("{} is a multiplex PDO in source addressing mode, but the object {} list ({} to {}) is missing",
                   pdo_label(pdo), name, index_label(Element::first_list), index_label(Element::last_list)));
 }
 
@@ -58,8 +58,8 @@ void check_has_list(const RuleContext& context, const Pdo& pdo, std::string_view
 std::string_view obstacle(const Device& device, std::uint16_t index, unsigned sub_index, canopen::Mappable direction) {
   const Entry* object = sub_index > 0xFF ? nullptr : device.find(index, static_cast<std::uint8_t>(sub_index));
   if (object == nullptr) return "does not exist";
-  if (!canopen::allows(object->mappable(), direction)) return "cannot be mapped";
-  return object->type->bits == 0 || object->type->bits > most_mpdo_bits ? "has no length of 1 to 32 bits" : "";
+  if (!canopen::allows(object->mappable(), direction)) return "is not PDO-mappable";
+  return object->type->bits == 0 || object->type->bits > most_mpdo_bits ? "does not have a length of 1 to 32 bits" : "";
 }
 
 /// The elements that the defaults of a list name.
@@ -74,7 +74,7 @@ void check_elements(const RuleContext& context, const Object& list, canopen::Map
       if (why.empty()) continue;
       context.report(
           "mpdo-list-object", default_place(entry),
-          fmt::format("{} names {}:{:02X}, which {}", named(entry), index_label(element.index()), sub_index, why));
+          fmt::format("{} lists {}:{:02X}, which {}", named(entry), index_label(element.index()), sub_index, why));
       break;
     }
   }
@@ -107,7 +107,7 @@ void check_mpdos(const RuleContext& context) {
     if (producer != nullptr) {
       context.report(
           "mpdo-second-producer", default_place(*pdo.mapping->find(0)),
-          fmt::format("{} is a producer in source addressing mode, of which a device has one", pdo_label(pdo)),
+          fmt::format("{} is a second producer in source addressing mode; a device can have only one", pdo_label(pdo)),
           {{default_place(*producer->mapping->find(0)), pdo_label(*producer)}});
     }
     producer = &pdo;

@@ -54,26 +54,26 @@ void check_name(const RuleContext& context, const Named& named, Scope& scope, Fi
   const std::string wanted = to_snake_case(named.name);
   if (wanted.empty()) {
     context.report("name-empty", named.position,
-                   fmt::format("{} \"{}\" has no letter that C++ knows; it is called {}", named.label, named.name,
-                               named.identifier));
+                   fmt::format("{} \"{}\" has no character that a C++ name can contain; using {}", named.label,
+                               named.name, named.identifier));
     return;
   }
   if (wanted != named.identifier) {
     if (!scope.filled()) fill(scope);
     const auto* first = scope.find(wanted);
     std::vector<Note> notes;
-    if (first != nullptr) notes.push_back({first->first, fmt::format("{} is called so", first->second)});
+    if (first != nullptr) notes.push_back({first->first, fmt::format("{} has this name", first->second)});
     context.report("name-twice", named.position,
-                   fmt::format("{} \"{}\" would be {} in C++, as another is; it is called {}", named.label, named.name,
+                   fmt::format("{} \"{}\" would be {} in C++, which is already used; using {}", named.label, named.name,
                                wanted, named.identifier),
                    std::move(notes));
   } else if (wanted.back() == '_') {
     context.report("name-reserved", named.position,
-                   fmt::format("{} \"{}\" is a word of C++ or of the generated code; it is called {}", named.label,
+                   fmt::format("{} \"{}\" is reserved in C++ or in the generated code; using {}", named.label,
                                named.name, wanted));
   } else if (wanted.starts_with("n_") && is_digit(wanted[2])) {
     context.report("name-digit", named.position,
-                   fmt::format("{} \"{}\" begins with a digit; it is called {}", named.label, named.name, wanted));
+                   fmt::format("{} \"{}\" begins with a digit; using {}", named.label, named.name, wanted));
   }
 }
 

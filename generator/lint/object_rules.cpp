@@ -17,7 +17,7 @@ void check_default(const RuleContext& context, const Entry& entry) {
   const bool above = entry.high_limit && is_less(*entry.type, entry.high_limit->bits, value);
   if (!below && !above) return;
   context.report("default-outside-limits", entry.default_value->position,
-                 fmt::format("the default of {} is {} its limit", named(entry), below ? "below" : "above"));
+                 fmt::format("the default value of {} is {} its limit", named(entry), below ? "below" : "above"));
 }
 
 }  // namespace
@@ -26,7 +26,7 @@ void check_objects(const RuleContext& context) {
   for (const std::uint16_t index : mandatory_indices) {
     if (context.device.find(index) != nullptr) continue;
     context.report("mandatory-object", context.whole_file(),
-                   fmt::format("{} is missing: every device has it", index_label(index)));
+                   fmt::format("mandatory object {} is missing", index_label(index)));
   }
   for (const Object& object : context.device.objects) {
     for (const Entry& entry : object.entries) check_default(context, entry);

@@ -45,7 +45,7 @@ void check_transmission_type(const RuleContext& context, const Pdo& pdo, std::ui
   const Transmission transmission = transmission_of(type);
   if (is_synchronous(transmission) && on_by_default(pdo) && context.device.find(0x1005) == nullptr) {
     context.report("pdo-sync", default_place(entry),
-                   fmt::format("{} waits for SYNC (transmission type {}), but 1005h is missing", pdo_label(pdo), type),
+                   fmt::format("{} is synchronous (transmission type {}), but 1005h is missing", pdo_label(pdo), type),
                    {}, "1005h is missing");
   }
 }
@@ -58,7 +58,7 @@ void check_remote(const RuleContext& context, const Pdo& pdo, std::uint64_t type
   const bool remote = transmission == Transmission::remote || transmission == Transmission::remote_synchronous;
   if (!remote || !value || canopen::CobId{static_cast<std::uint32_t>(*value)}.rtr_allowed()) return;
   context.report("pdo-remote", default_place(*pdo.communication->find(transmission_type_sub_index)),
-                 fmt::format("{} is sent on request only (transmission type {}), but its COB-ID allows no remote frame",
+                 fmt::format("{} is RTR-only (transmission type {}), but its COB-ID does not allow RTR",
                              pdo_label(pdo), type));
 }
 
@@ -66,8 +66,8 @@ void check_time(const RuleContext& context, const Pdo& pdo, std::uint8_t sub_ind
   if (used || communication_default(pdo, sub_index).value_or(0) == 0) return;
   const Entry& entry = *pdo.communication->find(sub_index);
   context.report("pdo-time-unused", default_place(entry),
-                 is_receive(pdo) ? fmt::format("{} has no effect: {} is not sent", named(entry), pdo_label(pdo))
-                                 : fmt::format("{} has no effect: {} is of transmission type {}", named(entry),
+                 is_receive(pdo) ? fmt::format("{} has no effect: {} is not transmitted", named(entry), pdo_label(pdo))
+                                 : fmt::format("{} has no effect: {} has transmission type {}", named(entry),
                                                pdo_label(pdo), type));
 }
 
@@ -98,9 +98,10 @@ void check_inhibit_time(const RuleContext& context, const Pdo& pdo, std::uint64_
 void check_compatibility_entry(const RuleContext& context, const Pdo& pdo) {
   const Entry* entry = pdo.communication->find(compatibility_entry);
   if (entry == nullptr) return;
-  context.report("pdo-compatibility-entry", entry->position,
-                 fmt::format("{} of {} is reserved and left out by CiA 301", named(*entry), pdo_label(pdo)), {},
-                 "sub-index 4");
+  context.report(
+      "pdo-compatibility-entry", entry->position,
+      fmt::format("{} of {} is reserved by CiA 301 and must not be implemented", named(*entry), pdo_label(pdo)), {},
+      "sub-index 4");
 }
 
 void check_sync_start(const RuleContext& context, const Pdo& pdo, std::uint64_t type) {
@@ -113,11 +114,11 @@ void check_sync_start(const RuleContext& context, const Pdo& pdo, std::uint64_t 
   if (pdo.direction == PdoDirection::receive) {
     why = "an RPDO has no SYNC start value";
   } else if (start > 240) {
-    why = "240 is the highest";
+    why = "the maximum is 240";
   } else if (type < 1 || type > 240) {
     why = "its transmission type is not 1..240";
   } else if (!counted) {
-    why = "SYNC has no counter (1019h)";
+    why = "SYNC is not counted (1019h)";
   } else {
     return;
   }

@@ -23,9 +23,10 @@ void check_gaps(const RuleContext& context, const Pdo& pdo, const Entry& count) 
       return;
     }
     if (entry->default_value && entry->default_value->bits != 0) continue;
-    context.report("pdo-mapping-gap", default_place(*entry),
-                   fmt::format("{} maps {}, but {} maps nothing", pdo_label(pdo), counted(entries, "object"), named(*entry)), {},
-                   i == 1 ? "counted, but not mapped" : "");
+    context.report(
+        "pdo-mapping-gap", default_place(*entry),
+        fmt::format("{} maps {}, but {} is empty", pdo_label(pdo), counted(entries, "object"), named(*entry)), {},
+        i == 1 ? "counted, but not mapped" : "");
     return;
   }
 }
@@ -46,7 +47,7 @@ void check_twice(const RuleContext& context, const Pdo& pdo) {
 void check_empty(const RuleContext& context, const Pdo& pdo, const Entry& count) {
   if (count.default_value->bits != 0 || !on_by_default(pdo)) return;
   context.report("pdo-empty", count.default_value->position,
-                 fmt::format("{} is valid and maps nothing", pdo_label(pdo)), {}, "empty");
+                 fmt::format("{} is valid, but does not map any object", pdo_label(pdo)), {}, "empty");
 }
 
 bool mapping_is_writable(const Pdo& pdo) {
@@ -69,7 +70,7 @@ void check_granularity_of_mappings(const RuleContext& context) {
       if (!mapping_is_writable(pdo)) continue;
       context.report(
           "granularity-static", field.position,
-          fmt::format("Granularity 0 says that no mapping can be changed, but that of {} can", pdo_label(pdo)),
+          fmt::format("Granularity 0 means static mappings, but the mapping of {} can be changed", pdo_label(pdo)),
           {{pdo.mapping->position, "its mapping parameter"}});
       return;
     }
@@ -77,7 +78,7 @@ void check_granularity_of_mappings(const RuleContext& context) {
         std::ranges::find_if(pdo.entries, [&](const PdoEntry& entry) { return entry.bits % *granularity != 0; });
     if (finer == pdo.entries.end()) continue;
     context.report("pdo-granularity", finer->place,
-                   fmt::format("{} maps, as entry {}, {} of {}, but Granularity is {}", pdo_label(pdo),
+                   fmt::format("{} entry {} maps {} of {}, but Granularity is {}", pdo_label(pdo),
                                finer->position, counted(finer->bits, "bit"), mapped_name(*finer), *granularity),
                    {{field.position, "Granularity"}});
     return;
@@ -95,7 +96,7 @@ void check_both_directions(const RuleContext& context) {
         received.try_emplace(entry.object, &pdo);
       } else if (const auto at = received.find(entry.object); at != received.end()) {
         context.report("pdo-both-directions", entry.place,
-                       fmt::format("{} sends, as entry {}, {}, which {} receives", pdo_label(pdo), entry.position,
+                       fmt::format("{} entry {} maps {}, which {} also maps", pdo_label(pdo), entry.position,
                                    named(*entry.object), pdo_label(*at->second)));
       }
     }

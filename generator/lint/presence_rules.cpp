@@ -40,9 +40,9 @@ void check_needs(const RuleContext& context) {
   for (const Need& need : needs) {
     const Object* object = context.device.find(need.index);
     if (object == nullptr || context.device.find(need.needed) != nullptr) continue;
-    context.report(
-        "needed-object", object->position,
-        fmt::format("{} needs {} {}, which is missing", named(*object), index_label(need.needed), need.what));
+    context.report("needed-object", object->position,
+                   fmt::format("{} requires {} {}, which is not implemented", named(*object), index_label(need.needed),
+                               need.what));
   }
 }
 
@@ -51,7 +51,7 @@ void check_error_control(const RuleContext& context) {
   if (context.device.find(0x1017) != nullptr) return;
   if (context.device.find(0x100C) != nullptr && context.device.find(0x100D) != nullptr) return;
   context.report("error-control", context.whole_file(),
-                 "neither heartbeat (1017h) nor node guarding (100Ch, 100Dh): every device has one of them");
+                 "neither heartbeat (1017h) nor node guarding (100Ch, 100Dh) is implemented; one of them is mandatory");
 }
 
 /// Further SDO servers come on top of the default one.
@@ -59,8 +59,9 @@ void check_sdo_servers(const RuleContext& context) {
   if (context.device.find(0x1200) != nullptr) return;
   for (const Object& object : context.device.objects) {
     if (object.index < 0x1201 || object.index > 0x127F) continue;
-    context.report("default-sdo", object.position,
-                   fmt::format("{} is a further SDO server, but 1200h, the first one, is missing", named(object)));
+    context.report(
+        "default-sdo", object.position,
+        fmt::format("{} is an additional SDO server, but the default SDO server 1200h is missing", named(object)));
     return;
   }
 }
@@ -69,8 +70,9 @@ void check_indices(const RuleContext& context) {
   for (const Obsolete& row : obsolete_objects) {
     const Object* object = context.device.find(row.index);
     if (object == nullptr) continue;
-    context.report("obsolete-object", object->position,
-                   fmt::format("{} is reserved in CiA 301; it was the {} once", named(*object), row.was));
+    context.report(
+        "obsolete-object", object->position,
+        fmt::format("{} is reserved in CiA 301; in earlier versions it was the {}", named(*object), row.was));
   }
   for (auto at = context.device.objects.rbegin(); at != context.device.objects.rend(); ++at) {
     if (at->index < first_reserved_index) break;

@@ -40,16 +40,16 @@ void check_io_modules(const RuleContext& context, const Entry& device_type) {
   const auto bits = static_cast<std::uint32_t>(device_type.default_value->bits);
   if ((bits & all_io_kinds) == 0) {
     context.report("io-kinds", default_place(device_type),
-                   fmt::format("{} names CiA 401, but neither inputs nor outputs (bits 16..19)", named(device_type)));
+                   fmt::format("{} states CiA 401, but neither inputs nor outputs (bits 16..19)", named(device_type)));
     return;
   }
   for (const IoKind& kind : io_kinds) {
     const bool said = (bits >> kind.bit & 1U) != 0;
     const bool there = has_any(context.device, kind.first, kind.last);
     if (said == there) continue;
-    const std::string message = said ? fmt::format("{} names {} (bit {}), but {} is missing", named(device_type),
+    const std::string message = said ? fmt::format("{} states {} (bit {}), but {} is missing", named(device_type),
                                                    kind.name, kind.bit, index_label(kind.usual))
-                                     : fmt::format("there are objects of {}, but {} does not name them (bit {})",
+                                     : fmt::format("the device has objects for {}, but {} does not state them (bit {})",
                                                    kind.name, named(device_type), kind.bit);
     context.report(said ? missing_object : unnamed_kind, default_place(device_type), message);
   }
@@ -62,7 +62,7 @@ void check_needed(const RuleContext& context, const Entry& device_type, std::uin
         need.one_of, [&](std::uint16_t index) { return index != 0 && context.device.find(index) != nullptr; });
     if (there) continue;
     context.report(need.rule, default_place(device_type),
-                   fmt::format("{} names CiA {}, but {} {} is missing", named(device_type), profile,
+                   fmt::format("{} states CiA {}, but {} {} is missing", named(device_type), profile,
                                index_label(need.one_of[0]), need.name));
   }
 }
@@ -76,7 +76,7 @@ void check_types(const RuleContext& context, std::uint16_t profile) {
       if (object->has_sub_indices() && (entry.sub_index == 0 || entry.sub_index == 0xFF)) continue;
       if (entry.type->type == row.type) continue;
       context.report("profile-data-type", context.place_of(entry, &EntryDescription::data_type),
-                     fmt::format("{} is {}; CiA {} says {}", named(entry), entry.type->name, profile,
+                     fmt::format("{} is {}; CiA {} requires {}", named(entry), entry.type->name, profile,
                                  canopen::find_data_type(static_cast<std::uint32_t>(row.type))->name),
                      {}, fmt::format("{} {}", object->index, entry.type->name));
     }
@@ -90,7 +90,7 @@ void check_profile(const RuleContext& context) {
   if (device_type == nullptr) return;
   if (!device_type->default_value) {
     context.report("device-type", device_type->position,
-                   fmt::format("{} has no default: it says which profile the device follows", named(*device_type)));
+                   fmt::format("{} has no default value, so the device profile is unknown", named(*device_type)));
     return;
   }
   const auto profile = static_cast<std::uint16_t>(device_type->default_value->bits);

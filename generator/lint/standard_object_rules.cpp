@@ -44,13 +44,13 @@ void check_entry(const RuleContext& context, const Entry& entry, const StandardO
   }
   if (entry.type->type != row->type) {
     context.report("standard-data-type", context.place_of(entry, &EntryDescription::data_type),
-                   fmt::format("{} is {}; CiA 301 says {} (clause {})", named(entry), entry.type->name,
+                   fmt::format("{} is {}; CiA 301 requires {} (clause {})", named(entry), entry.type->name,
                                type_name(row->type), standard.clause),
                    {}, fmt::format("{} {}", standard.first, entry.type->name));
   }
   if (!row->access.has(entry.access)) {
     context.report("standard-access", entry.access_position,
-                   fmt::format("{} has access {}, which CiA 301 does not allow there (clause {})", named(entry),
+                   fmt::format("{} has access {}, which CiA 301 does not allow (clause {})", named(entry),
                                canopen::row_of(entry.access).name, standard.clause),
                    {}, fmt::format("{} {}", standard.first, canopen::row_of(entry.access).name));
   }
@@ -60,7 +60,7 @@ void check_required(const RuleContext& context, const Object& object, const Stan
   for (const StandardEntry& row : standard.entries) {
     if (!row.required || object.find(row.first) != nullptr) continue;
     context.report("standard-sub-index-missing", object.position,
-                   fmt::format("{} is missing: the {} of CiA 301 has it (clause {})",
+                   fmt::format("{} is missing; CiA 301 requires it for the {} (clause {})",
                                entry_label(object.index, row.first), standard.name, standard.clause));
   }
 }

@@ -17,7 +17,7 @@ void check_value(const RuleContext& context, const Object& object, const Entry& 
   if (value == highest) return;
   context.report(
       "sub-index-0-value", count.default_value->position,
-      fmt::format("{} says that {} is the highest sub-index; {} is described", named(count), value, highest));
+      fmt::format("{} is {}, but the highest sub-index described is {}", named(count), value, highest));
 }
 
 void check_count(const RuleContext& context, const Object& object) {
@@ -25,14 +25,14 @@ void check_count(const RuleContext& context, const Object& object) {
   if (count.sub_index != 0) return;
   if (count.type->type != canopen::DataType::unsigned8) {
     context.report("sub-index-0-type", context.place_of(count, &EntryDescription::data_type),
-                   fmt::format("{} is {}; sub-index 0 is UNSIGNED8", named(count), count.type->name), {},
+                   fmt::format("{} is {}; sub-index 0 must be UNSIGNED8", named(count), count.type->name), {},
                    std::string{count.type->name});
   }
   const bool may_change = counts(object.index);
   if (!canopen::readable(count.access) || (canopen::writable(count.access) && !may_change)) {
     context.report("sub-index-0-access", count.access_position,
                    fmt::format("{} has access {}; {}", named(count), canopen::row_of(count.access).name,
-                               may_change ? "it can be read" : "the highest sub-index is const or ro"),
+                               may_change ? "it must be readable" : "the highest sub-index must be const or ro"),
                    {}, std::string{canopen::row_of(count.access).name});
   }
   check_value(context, object, count);
@@ -44,7 +44,7 @@ void check_structure(const RuleContext& context, const Object& object) {
   if (entry == nullptr) return;
   if (entry->type->type != canopen::DataType::unsigned32) {
     return context.report("sub-index-255", context.place_of(*entry, &EntryDescription::data_type),
-                          fmt::format("{} is {}; sub-index FFh is UNSIGNED32 and describes its object",
+                          fmt::format("{} is {}; sub-index FFh describes its object and must be UNSIGNED32",
                                       named(*entry), entry->type->name));
   }
   const ObjectStructure structure = structure_of(object);

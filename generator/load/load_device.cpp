@@ -137,7 +137,8 @@ void resolve_and_check(LoadedDevice& loaded, const LoadSettings& settings, Diagn
                                          : read_data_sheet(parse_ini(*loaded.source, diagnostics), diagnostics);
   if (loaded.sheet.objects.empty()) return;
   if (is_xml(*loaded.source) && loaded.options.stored_eds != StoredEds::of_application) {
-    diagnostics.error("options", Position{loaded.source.get()}, "option stored_eds: 1021h holds an EDS, which this is not");
+    diagnostics.error("options", Position{loaded.source.get()},
+                      "option stored_eds: 1021h holds an EDS, but this file is not an EDS");
   }
   loaded.device = resolve_device(loaded.sheet, loaded.options, {settings.name, settings.node_id}, diagnostics);
   if (settings.check) check_device(*loaded.device, loaded.sheet, loaded.options, diagnostics);

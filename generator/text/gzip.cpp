@@ -69,7 +69,7 @@ std::string gunzip(std::string_view bytes, std::size_t max_bytes, std::string& c
   inflateEnd(&stream);
   if (content.size() > max_bytes) return fmt::format("unpacks to more than {} bytes; {}", max_bytes, place);
   if (is_bomb()) return fmt::format("unpacks to more than {} times its size; {}", max_ratio, place);
-  return whole ? "" : "not a whole gzip file";
+  return whole ? "" : "not a complete gzip file";
 }
 
 }  // namespace edsc

@@ -124,7 +124,7 @@ Parameter ApplicationProcess::read_parameter(pugi::xml_attribute reference) {
   if (!element) {
     xml_.diagnostics().warning(
         "xml-element", xml_.value(reference).position,
-        fmt::format("nothing in ApplicationProcess has the uniqueID {}", quote(reference.value())));
+        fmt::format("no element of ApplicationProcess has the uniqueID {}", quote(reference.value())));
     return parameter;
   }
   read_part(element, parameter);
@@ -166,7 +166,7 @@ void ApplicationProcess::read_access(pugi::xml_node element, Parameter& paramete
   if (equal_ignoring_case(word.text, "noAccess")) {
     access_type.text = default_access_type;
     xml_.diagnostics().warning("access-type", word.position,
-                               "noAccess is nothing that a data sheet of CiA 306 says: taken for ro");
+                               "CiA 306 cannot express noAccess; assuming ro");
   }
 }
 
@@ -198,7 +198,7 @@ void ApplicationProcess::read_property(pugi::xml_node property, Parameter& param
     return;
   }
   xml_.note_once("xml-element", "property " + std::string{name}, xml_.position(property),
-                 fmt::format("property {} is a tool's own; it is left out, here and wherever it stands", quote(name)));
+                 fmt::format("property {} is tool-specific; it is left out, here and elsewhere", quote(name)));
 }
 
 /// A single range is what LowLimit and HighLimit say. More than that has no place in a data sheet.
@@ -216,8 +216,9 @@ void ApplicationProcess::read_allowed_values(pugi::xml_node element, Parameter& 
     }
   });
   if (others > 0) {
-    xml_.diagnostics().warning("xml-element", xml_.position(element),
-                               "allowedValues is more than one range; limits cannot say that, and there are none then");
+    xml_.diagnostics().warning(
+        "xml-element", xml_.position(element),
+        "allowedValues has more than one range, which limits cannot express; the limits are left out");
   } else if (range) {
     read_range(range, parameter.entry);
   }

@@ -90,13 +90,13 @@ Field respell(XmlDocument& xml, const Field& field, Spelling spelling) {
 
 void report_unknown_attribute(XmlDocument& xml, pugi::xml_node element, pugi::xml_attribute attribute) {
   xml.note_once("xml-element", std::string{local_name(element)} + "@" + attribute.name(), xml.position(attribute),
-                fmt::format("CiA 311 knows no attribute {} of {}; it is left out, here and wherever it stands",
+                fmt::format("unknown attribute {} of {}; it is left out, here and elsewhere",
                             quote(attribute.name()), local_name(element)));
 }
 
 void report_unknown_element(XmlDocument& xml, pugi::xml_node element) {
   xml.note_once("xml-element", path_of(element), xml.position(element),
-                fmt::format("{} in {} is not read, here and wherever it stands", quote(local_name(element)),
+                fmt::format("{} in {} is not read, here and elsewhere", quote(local_name(element)),
                             local_name(element.parent())));
 }
 
@@ -115,7 +115,7 @@ void note_silent(XmlDocument& xml, pugi::xml_node element, pugi::xml_attribute a
 
 void report_second(XmlDocument& xml, pugi::xml_attribute attribute, const Position& first) {
   xml.diagnostics().warning("duplicate-key", xml.position(attribute),
-                            fmt::format("{} stands twice in this element; the first one counts", attribute.name()),
+                            fmt::format("duplicate attribute {} in this element; using the first", attribute.name()),
                             {{first, "the first one"}});
 }
 

@@ -203,7 +203,7 @@ class ObjectListReader {
   void report_complex_value(const Parameter& parameter, const ObjectDescription& object) {
     if (!parameter.type.array_or_struct || !object.sub_objects.empty() || object.data_type.present) return;
     xml_.diagnostics().warning("xml-element", object.position,
-                               fmt::format("the parameter of {:04X}h is of the type {}, an object of such a type needs "
+                               fmt::format("the parameter of {:04X}h is of the type {}; an object of this type needs "
                                            "sub-objects",
                                            object.index, local_name(parameter.type.array_or_struct)));
   }
@@ -247,8 +247,8 @@ class ObjectListReader {
 
   void report_direction(const EntryDescription& entry) {
     xml_.diagnostics().warning("pdo-mapping", entry.pdo_mapping.position,
-                               fmt::format("PDOmapping is {}, but no such PDO carries an object whose access is {}; it "
-                                           "cannot be mapped",
+                               fmt::format("PDOmapping is {}, but no such PDO can map an object with access {}; it "
+                                           "is not PDO-mappable",
                                            entry.pdo_mapping.text, entry.access_type.text));
   }
 
@@ -257,7 +257,7 @@ class ObjectListReader {
     const auto [first, is_new] = first_places.try_emplace(number, xml_.position(element));
     if (is_new) return true;
     xml_.diagnostics().warning("duplicate-section", xml_.position(element),
-                               fmt::format("{:X}h stands twice; the first one counts", number),
+                               fmt::format("duplicate {:X}h; using the first", number),
                                {{first->second, "the first one"}});
     return false;
   }

@@ -116,7 +116,7 @@ class XddReader {
       if (type.starts_with(known)) return true;
     }
     xml_.diagnostics().warning("xml-element", xml_.position(body),
-                               fmt::format("a profile of the type {} is not CANopen's; it is left out", quote(type)));
+                               fmt::format("profile type {} is not CANopen; it is left out", quote(type)));
     return false;
   }
 
@@ -156,17 +156,17 @@ class XddReader {
       return;
     }
     xml_.diagnostics().warning("duplicate-section", xml_.position(element),
-                               fmt::format("{} stands twice; the first one counts", local_name(element)),
+                               fmt::format("duplicate element {}; using the first", local_name(element)),
                                {{xml_.position(part), "the first one"}});
   }
 
   void report_no_profile() {
     const bool is_container = local_name(xml_.root()) == container_name || local_name(xml_.root()) == profile_name;
-    xml_.diagnostics().error("xml-profile", xml_.position(xml_.root()),
-                             is_container
-                                 ? "no profile in this file has a CANopenObjectList: this is no XDD or XDC of CiA 311"
-                                 : fmt::format("an XDD or XDC of CiA 311 begins with {}, not with {}", container_name,
-                                               quote(local_name(xml_.root()))));
+    xml_.diagnostics().error(
+        "xml-profile", xml_.position(xml_.root()),
+        is_container ? "no profile in this file has a CANopenObjectList; this is not an XDD or XDC of CiA 311"
+                     : fmt::format("an XDD or XDC of CiA 311 begins with {}, not with {}", container_name,
+                                   quote(local_name(xml_.root()))));
   }
 
   void read_parts() {
@@ -181,7 +181,7 @@ class XddReader {
     sheet_.objects = read_object_list(xml_, parts_.object_list, process);
     list_objects();
     if (sheet_.objects.empty()) {
-      xml_.diagnostics().error("no-objects", xml_.position(parts_.object_list), "there is no object in this list");
+      xml_.diagnostics().error("no-objects", xml_.position(parts_.object_list), "the object list is empty");
     }
   }
 

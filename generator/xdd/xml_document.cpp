@@ -61,7 +61,7 @@ bool XmlDocument::report_unreadable_text() {
   const auto control = std::find_if(text.begin(), text.end(), is_forbidden);
   if (control != text.end()) {
     diagnostics_.error("xml-syntax", position_of(static_cast<std::size_t>(control - text.begin()), 1),
-                       "a control character; XML has none, and nothing of this file is read");
+                       "control character, which XML does not allow; nothing of this file is read");
     return true;
   }
   if (std::count_if(text.begin(), text.end(), [](char c) { return c == '<' || c == '='; }) > most_nodes) {
@@ -90,7 +90,7 @@ void XmlDocument::find_root() {
   for (const pugi::xml_node node : document_.children()) {
     if (node.type() == pugi::node_doctype) {
       diagnostics_.warning("xml-element", {&source_},
-                           "a document type declaration is not read; entities that it defines stay as they are");
+                           "the document type declaration is not read; entities that it defines are not replaced");
     } else if (is_text(node)) {
       diagnostics_.warning("xml-syntax", {&source_}, "text outside of the root element is left out");
     } else if (node.type() == pugi::node_element && root_) {

@@ -217,16 +217,16 @@ class Allow(CheckTest):
         self.options({"rule": "pdo-sise", "reason": "a"})
         returncode, findings = self.check(self.sheet())
         self.assertEqual((returncode, [(d["rule"], d["message"]) for d in findings["diagnostics"]]),
-                         (INPUT_HAS_ERRORS, [("options", 'allow: no rule is called "pdo-sise"; did you mean "pdo-size"?')]))
+                         (INPUT_HAS_ERRORS, [("options", 'allow: unknown rule "pdo-sise"; did you mean "pdo-size"?')]))
         (self.folder / "example.options.json").unlink()
         for comment, message in (
-                ("; edsc: allow pdo-sise - a", 'no rule is called "pdo-sise"; did you mean "pdo-size"?'),
+                ("; edsc: allow pdo-sise - a", 'unknown rule "pdo-sise"; did you mean "pdo-size"?'),
                 ("; edsc: allow pdo-size", 'missing reason: "; edsc: allow RULE - reason"'),
                 ("; edsc: alow pdo-size - a", 'a comment of edsc has the form "; edsc: allow RULE - reason"')):
             returncode, findings = self.check(self.commented("[DeviceInfo]", comment))
             self.assertEqual((returncode, [(d["rule"], d["message"]) for d in findings["diagnostics"]]),
                              (FINE, [("allow-comment", message)]))
-        self.assertIn('no rule is called "pdo-sise"; did you mean "pdo-size"?',
+        self.assertIn('unknown rule "pdo-sise"; did you mean "pdo-size"?',
                       self.run_edsc("check", "example.eds", "--silence", "pdo-sise").stderr)
 
     def test_stays_in_sarif(self) -> None:
@@ -259,7 +259,7 @@ class Documentation(CheckTest):
     def test_of_an_unknown_rule(self) -> None:
         result = self.run_edsc("check", "--explain", "pdo-lenght")
         self.assertEqual(result.returncode, WRONG_USAGE)
-        self.assertIn('no rule is called "pdo-lenght"; did you mean "pdo-length"?', result.stderr)
+        self.assertIn('unknown rule "pdo-lenght"; did you mean "pdo-length"?', result.stderr)
 
     def test_has_an_anchor_for_each_rule(self) -> None:
         headings = set(re.findall(r"^## (.*)$", (SOURCE_DIR / "docs/rules.md").read_text(encoding="utf-8"), re.MULTILINE))
@@ -276,7 +276,7 @@ class Suggestions(CheckTest):
     def test_of_a_key(self) -> None:
         for key, hint in (("CreatedBye", '; did you mean "CreatedBy"?'), ("Colour", "")):
             self.assertEqual(self.messages(("CreatedBy=edsc", f"CreatedBy=edsc\n{key}=edsc", "")),
-                             [f'CiA 306 knows no key "{key}" in section "FileInfo"; it is left out{hint}'])
+                             [f'unknown key "{key}" in section "FileInfo"; it is left out{hint}'])
         self.assertTrue(any(message.endswith('in section "1000"; it is left out; did you mean "AccessType"?')
                             for message in self.messages(("[1000]", "[1000]\nAccesType=ro", ""))))
         self.assertTrue(any(message.endswith('did you mean "SupportedObjects"?')
@@ -286,7 +286,7 @@ class Suggestions(CheckTest):
         for section, hint in (("DeviceInfos", '; did you mean "DeviceInfo"?'), ("1003Vale", '; did you mean "1003Value"?'),
                               ("Colours", "")):
             self.assertEqual(self.messages(("[DeviceInfo]", f"[{section}]\n[DeviceInfo]", "")),
-                             [f'CiA 306 knows no section "{section}"; it is left out{hint}'])
+                             [f'unknown section "{section}"; it is left out{hint}'])
 
 
 class Sarif(CheckTest):

@@ -300,7 +300,7 @@ class Generate(CommandLine):
         uploaded.write_bytes(packed)
         self.assertEqual(self.edsc("format", uploaded).stdout, self.edsc("format", sheet).stdout)
         uploaded.write_bytes(packed[:-1])
-        self.expect(WRONG_USAGE, self.edsc("format", uploaded), "not a whole gzip file")
+        self.expect(WRONG_USAGE, self.edsc("format", uploaded), "not a complete gzip file")
 
     def test_keeps_no_xdd_in_the_device(self) -> None:
         xdd = self.write("device.xdd", "<ISO15745ProfileContainer xmlns:xsi='x'><ISO15745Profile><ProfileBody "
@@ -310,7 +310,7 @@ class Generate(CommandLine):
                          "</ISO15745ProfileContainer>\n")
         options = self.write("options.json", '{ "stored_eds": true }')
         self.expect(INPUT_HAS_ERRORS, self.edsc("generate", xdd, "-o", self.output, "--options", options),
-                    "1021h holds an EDS, which this is not")
+                    "1021h holds an EDS, but this file is not an EDS")
 
     def test_is_deterministic(self) -> None:
         self.edsc("generate", GOOD, "-o", self.output)
@@ -415,7 +415,7 @@ class Generate(CommandLine):
 
     def test_a_silenced_warning_does_not_hide_what_is_left_out(self) -> None:
         sheet = self.write("off.eds", WRONG.read_text().replace("$NODEID+0x180", "$NODEID+0x80000180"))
-        self.expect(FINE, self.edsc("generate", sheet, "-o", self.output), "it is off by default and left out")
+        self.expect(FINE, self.edsc("generate", sheet, "-o", self.output), "the PDO is disabled by default and left out")
         self.write("off.options.json", '{"silence": ["pdo-size"]}')
         result = self.edsc("generate", sheet, "-o", self.output)
         self.expect(FINE, result, "left out: the default mapping of TPDO 1")

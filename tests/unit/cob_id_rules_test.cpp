@@ -121,8 +121,9 @@ TEST(CobIdRules, ReportACanIdOfManyServicesOnce) {
 TEST(CobIdRules, SayWhatIsMeantByAFunctionCodeAlone) {
   DeviceFromText text(sheet_with_cob_id("1800", 1, "0x40000180"));
   check_device(text.device, text.sheet, text.options, text.diagnostics);
-  EXPECT_EQ(text.finding("cob-id-restricted").message,
-            "1800h:01 \"COB-ID\" is CAN-ID 180h, which is restricted (reserved); $NODEID+0x40000180 adds the node-ID");
+  EXPECT_EQ(
+      text.finding("cob-id-restricted").message,
+      "1800h:01 \"COB-ID\" is CAN-ID 180h, which is restricted (reserved); use $NODEID+0x40000180 to add the node-ID");
 }
 
 /// The compiler rejects what the rule rejects.

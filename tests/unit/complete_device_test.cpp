@@ -92,11 +92,11 @@ TEST(CompleteDevice, NotesACobIdThatItSupplies) {
   EXPECT_EQ(note.severity, Severity::note);
   EXPECT_EQ(note.position.line, 1U);
   EXPECT_EQ(note.message,
-            "1014h:00 \"COB-ID EMCY\" has no default; using $NODEID+0x80 (CiA 301, 7.5.2.17)");
+            "1014h:00 \"COB-ID EMCY\" has no default value; using $NODEID+0x80 (CiA 301, 7.5.2.17)");
   const DeviceFromText zero(record("1201", {"0", "-"}));
   EXPECT_EQ(zero.line_of("cob-id-missing"), "DefaultValue=0");
   EXPECT_EQ(zero.finding("cob-id-missing").message,
-            "1201h:01 \"Value\" is CAN-ID 000h, which is NMT; using 0x80000000, which is off (CiA 301, 7.5.2.33)");
+            "1201h:01 \"Value\" is CAN-ID 000h, which is NMT; using 0x80000000, which is disabled (CiA 301, 7.5.2.33)");
 }
 
 TEST(CompleteDevice, AddsAKnownNodeId) {

@@ -218,7 +218,7 @@ TEST(PrintText, NamesTheFirstPlacesOfOneCause) {
   const std::string text = printed(findings_of_one_cause(file));
   EXPECT_NE(text.find("a.eds:1:1: error: maps an rwr [number-range]\n"), std::string::npos) << text;
   EXPECT_NE(text.find("a.eds:4:1: note: maps an rwr\n"), std::string::npos) << text;
-  EXPECT_NE(text.find("a.eds: note: 156 more places of the same cause\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("a.eds: note: 156 more places with the same cause\n"), std::string::npos) << text;
   EXPECT_TRUE(text.ends_with("a.eds: 2 errors, 0 warnings\n")) << text;
 }
 

@@ -73,7 +73,7 @@ TEST(DictionarySize, NamesTheRecordWhoseRowsHaveNoRoom) {
   DeviceFromText over{text};
   const auto findings = size_findings(over);
   ASSERT_EQ(findings.size(), 1u);
-  EXPECT_EQ(findings.front(), "2101h \"R257\" does not fit: a dictionary has 65535 rows of sub-indices that differ");
+  EXPECT_EQ(findings.front(), "2101h \"R257\" does not fit: a dictionary can have 65535 rows for distinct sub-indices");
 }
 
 TEST(DictionarySize, LeavesOutWhatFollowsTooManyEntriesInCompactForm) {

@@ -136,7 +136,7 @@ TEST(DynamicMapping, IsOfAWholeParameterOrOfNothing) {
   const DeviceFromText text{tpdo("ro", "const"), options};
   EXPECT_FALSE(first_is_dynamic(text));
   EXPECT_EQ(text.finding("options").message,
-            "option settable names 1A00h:01, but the mapping of TPDO 1 is static: all of 1A00h is to be writable or "
+            "option settable names 1A00h:01, but the mapping of TPDO 1 is static: all of 1A00h must be writable or "
             "settable");
 }
 

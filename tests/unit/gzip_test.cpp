@@ -36,12 +36,12 @@ TEST(Gzip, RefusesAFileThatIsCutOffDamagedOrLonger) {
   const std::string file = gzip("[1000]\nParameterName=Device type\n");
   std::string content;
   for (std::size_t size = 2; size < file.size(); ++size) {
-    EXPECT_EQ(gunzip(std::string_view{file}.substr(0, size), most, content), "not a whole gzip file") << size;
+    EXPECT_EQ(gunzip(std::string_view{file}.substr(0, size), most, content), "not a complete gzip file") << size;
   }
   std::string damaged = file;
   damaged[file.size() - 6] ^= 1;
-  EXPECT_EQ(gunzip(damaged, most, content), "not a whole gzip file");
-  EXPECT_EQ(gunzip(file + "x", most, content), "not a whole gzip file");
+  EXPECT_EQ(gunzip(damaged, most, content), "not a complete gzip file");
+  EXPECT_EQ(gunzip(file + "x", most, content), "not a complete gzip file");
 }
 
 TEST(Gzip, UnpacksNoMoreThanItMay) {

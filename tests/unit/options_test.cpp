@@ -106,10 +106,10 @@ TEST(OptionsFile, NamesASimilarOption) {
   std::string messages;
   for (const Diagnostic& one : read.diagnostics.all()) messages += one.message + "\n";
   EXPECT_EQ(messages,
-            "allow/rul: no such member; did you mean \"rule\"?\n"
-            "colour: no such option\n"
-            "sdo_timeot: no such option; did you mean \"sdo_timeout\"?\n"
-            "setable: no such option; did you mean \"settable\"?\n");
+            "allow/rul: unknown member; did you mean \"rule\"?\n"
+            "colour: unknown option\n"
+            "sdo_timeot: unknown option; did you mean \"sdo_timeout\"?\n"
+            "setable: unknown option; did you mean \"settable\"?\n");
 }
 
 TEST(OptionsFile, SaysThatStringsEndWithAZero) {

@@ -69,7 +69,7 @@ TEST(PdoRules, RefuseAnObjectThatTheDeviceDoesNotHave) {
   expect_one(checked, Severity::error, "pdo-object", "0x21000010");
   EXPECT_TRUE(message_has(checked, "pdo-object", "TPDO 1"));
   EXPECT_TRUE(message_has(checked, "pdo-object", "2100h:00"));
-  EXPECT_TRUE(message_has(checked, "pdo-object", "no such object"));
+  EXPECT_TRUE(message_has(checked, "pdo-object", "which does not exist"));
   EXPECT_TRUE(checked.device.pdos.front().broken);
 }
 
@@ -77,7 +77,7 @@ TEST(PdoRules, RefuseASubIndexThatTheObjectDoesNotHave) {
   const CheckedPdos checked(pdo(true, {"0x20020110"}));
   expect_one(checked, Severity::error, "pdo-object", "0x20020110");
   EXPECT_TRUE(message_has(checked, "pdo-object", "2002h:01"));
-  EXPECT_TRUE(message_has(checked, "pdo-object", "no such sub-index"));
+  EXPECT_TRUE(message_has(checked, "pdo-object", "a sub-index that does not exist"));
 }
 
 TEST(PdoRules, RefuseAnObjectThatCannotBeMapped) {
@@ -120,7 +120,7 @@ TEST(PdoRules, LetAStringTakeAsManyBytesAsItHasRoomFor) {
   EXPECT_EQ(rules_of(CheckedPdos(pdo(false, {"0x20080018"})).diagnostics), Rules{});
   const CheckedPdos longer(pdo(false, {"0x20080030"}));
   expect_one(longer, Severity::error, "pdo-length", "0x20080030");
-  EXPECT_TRUE(message_has(longer, "pdo-length", "TPDO 1 maps, as entry 1, 48 bits of 2008h:00 \"Name\""));
+  EXPECT_TRUE(message_has(longer, "pdo-length", "TPDO 1 entry 1 maps 48 bits of 2008h:00 \"Name\""));
 }
 
 TEST(PdoRules, LetTheOptionsSayHowMuchAStringHolds) {
@@ -133,7 +133,7 @@ TEST(PdoRules, LetTheOptionsSayHowMuchAStringHolds) {
 TEST(PdoRules, RefusePartsOfAByteOfAString) {
   const CheckedPdos checked(pdo(false, {"0x2008000C"}));
   expect_one(checked, Severity::error, "pdo-variable-length", "0x2008000C");
-  EXPECT_TRUE(message_has(checked, "pdo-variable-length", "not a number of whole bytes"));
+  EXPECT_TRUE(message_has(checked, "pdo-variable-length", "expected a multiple of 8 bits"));
 }
 
 TEST(PdoRules, RefuseADomain) {
@@ -143,11 +143,11 @@ TEST(PdoRules, RefuseADomain) {
 TEST(PdoRules, NameTheEntry) {
   const CheckedPdos checked(pdo(false, {"0x20000010", "0x20020010"}));
   EXPECT_TRUE(message_has(checked, "pdo-direction",
-                          "TPDO 1 maps, as entry 2, 2002h:00 \"Process output\", which a TPDO may not carry"));
+                          "TPDO 1 entry 2 maps 2002h:00 \"Process output\", which is not TPDO-mappable"));
   const CheckedPdos sub_index(pdo(true, {"0x20020110"}));
-  EXPECT_TRUE(message_has(sub_index, "pdo-object", "as entry 1, 2002h:01 of \"Process output\""));
+  EXPECT_TRUE(message_has(sub_index, "pdo-object", "entry 1 maps 2002h:01 of \"Process output\""));
   const CheckedPdos dummy(pdo(true, {"0x00060010"}));
-  EXPECT_TRUE(message_has(dummy, "pdo-dummy", "as entry 1, the dummy 0006h UNSIGNED16"));
+  EXPECT_TRUE(message_has(dummy, "pdo-dummy", "entry 1 maps the dummy 0006h UNSIGNED16"));
   const CheckedPdos size(pdo(false, {"0x20070020", "0x20070020", "0x20000010"}));
   EXPECT_TRUE(message_has(size, "pdo-size", "which entry 3, 2000h:00 \"Input\" exceeds"));
 }
@@ -195,7 +195,7 @@ TEST(PdoRules, RefuseADummyOfAnotherLength) {
 TEST(PdoRules, WarnOnlyWhenThePdoIsOffByDefault) {
   const CheckedPdos checked(pdo(false, {"0x20040010"}, "$NODEID+0x80000180"));
   expect_one(checked, Severity::warning, "pdo-mappable", "0x20040010");
-  EXPECT_TRUE(message_has(checked, "pdo-mappable", "off by default"));
+  EXPECT_TRUE(message_has(checked, "pdo-mappable", "disabled by default"));
   EXPECT_TRUE(checked.device.pdos.front().broken) << "no layout can be made of it all the same";
 }
 

@@ -133,7 +133,7 @@ TEST(Resolve, RefusesADefaultThatIsLongerThanItsDeftype) {
 TEST(Resolve, TakesTheNameOfAnObjectTypeForItsNumber) {
   const DeviceFromText text("[2000]\nParameterName=Value\nObjectType=var\nDataType=5\nAccessType=rw\n");
   EXPECT_EQ(text.device.find(0x2000)->type, ObjectType::var);
-  EXPECT_EQ(text.finding("object-type").message, "ObjectType is a number; that of VAR is 0x7");
+  EXPECT_EQ(text.finding("object-type").message, "ObjectType must be a number; that of VAR is 0x7");
 }
 
 TEST(Resolve, FollowsADeftypeToOneThatStatesALength) {
@@ -607,9 +607,9 @@ TEST(Options, MustSpeakOfObjectsThatExist) {
   for (const Diagnostic& finding : text.diagnostics.all()) {
     if (finding.rule == "options") messages.push_back(finding.message);
   }
-  EXPECT_EQ(messages, (std::vector<std::string>{"option no_event names 2000h:01, which is not in the data sheet",
-                                                "option no_event names 2001h, which is not in the data sheet",
-                                                "option static_mapping names 1A00h, which is not in the data sheet"}));
+  EXPECT_EQ(messages, (std::vector<std::string>{"option no_event names 2000h:01, which is not in the EDS",
+                                                "option no_event names 2001h, which is not in the EDS",
+                                                "option static_mapping names 1A00h, which is not in the EDS"}));
 }
 
 // ---- the device ----

@@ -163,7 +163,7 @@ TEST_F(ReadSourceFile, UnpacksAGzipFile) {
   EXPECT_EQ(file->text(), "[1000]\r\n");
   std::ofstream(path("cut.gz"), std::ios::binary) << gzip("[1000]\r\n").substr(0, 20);
   EXPECT_EQ(read_source_file(path("cut.gz"), error), nullptr);
-  EXPECT_EQ(error, "cannot read " + path("cut.gz") + ": not a whole gzip file");
+  EXPECT_EQ(error, "cannot read " + path("cut.gz") + ": not a complete gzip file");
 }
 
 TEST_F(ReadSourceFile, SaysThatAFileIsMissing) {

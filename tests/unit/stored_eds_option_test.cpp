@@ -67,7 +67,7 @@ TEST(StoredEdsOption, KeepsAGzipFile) {
 }
 
 TEST(StoredEdsOption, NeedsADomainThatIsReadOnly) {
-  const std::string no_domain = "option stored_eds: the data sheet has no DOMAIN 1021h that is read only";
+  const std::string no_domain = "option stored_eds: the EDS has no read-only DOMAIN 1021h";
   EXPECT_EQ(complaint(device_type, StoredEds::text), no_domain);
   EXPECT_EQ(complaint(device_type + var("1021", "Store EDS", "9", "ro"), StoredEds::text), no_domain);
   EXPECT_EQ(complaint(device_type + var("1021", "Store EDS", "0xF", "rw"), StoredEds::text), no_domain);
@@ -76,7 +76,7 @@ TEST(StoredEdsOption, NeedsADomainThatIsReadOnly) {
 
 TEST(StoredEdsOption, NeedsAFormatWhereItIsCompressed) {
   const std::string no_format =
-      "option stored_eds: the data sheet has no number 1022h that is read only and tells the format";
+      "option stored_eds: the EDS has no read-only integer 1022h for the format";
   EXPECT_EQ(complaint(device_type + store_eds_object, StoredEds::compressed), no_format);
   const std::string writable = var("1022", "Store format", "5", "rw");
   EXPECT_EQ(complaint(device_type + store_eds_object + writable, StoredEds::text), no_format);

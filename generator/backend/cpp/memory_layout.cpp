@@ -594,7 +594,7 @@ class Builder {
     if (layout_.subs.size() <= most_rows || found_too_many_rows_) return;
     found_too_many_rows_ = true;
     diagnostics_.error("dictionary-size", object.position,
-                       fmt::format("{} \"{}\" does not fit: a dictionary has {} rows of sub-indices that differ",
+                       fmt::format("{} \"{}\" does not fit: a dictionary can have {} rows for distinct sub-indices",
                                    index_label(object.index), object.name, most_rows));
   }
 
