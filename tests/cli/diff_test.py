@@ -76,14 +76,14 @@ class Markdown(CommandLine):
 
 | Entry | Change | Breaks | Line | Kind |
 | --- | --- | --- | ---: | --- |
-| 1017h:00 Producer heartbeat time | access rw becomes ro: what was read or written is aborted | master, source code | 29 | `access-reduced` |
+| 1017h:00 Producer heartbeat time | access rw becomes ro: an access that was allowed is aborted | master, source code | 29 | `access-reduced` |
 
 <details>
 <summary>1 compatible</summary>
 
 | Entry | Change | Breaks | Line | Kind |
 | --- | --- | --- | ---: | --- |
-| 100Dh Life time factor | object added: nobody uses it yet | - | 45 | `object-added` |
+| 100Dh Life time factor | object added: not used yet | - | 45 | `object-added` |
 
 </details>
 """)

@@ -214,11 +214,10 @@ TEST(Diff, KnowsTheFlagsOfAPdo) {  // CiA 301, 7.5.2.35 and 7.5.2.37
 TEST(Diff, NamesTheFlagAndShowsCanIds) {
   const Compared flag(pdo("0x181", "255", {"0x20000010"}), pdo("0x40000181", "255", {"0x20000010"}));
   EXPECT_EQ(message_of(flag.changes.all().front()),
-            "bit 30 (no remote frames) set 0x00000181 becomes 0x40000181: a partner that requests the PDO with a remote "
-            "frame gets no answer");
+            "bit 30 (no remote frames) set 0x00000181 becomes 0x40000181: a remote frame for the PDO is not answered");
   const Compared can_id(pdo("$NODEID+0x40000180", "255", {"0x20000010"}), pdo("0x40000281", "255", {"0x20000010"}));
   EXPECT_EQ(message_of(can_id.changes.all().front()),
-            "CAN-ID $NODEID+0x180 becomes 0x281: the partner uses another one");
+            "CAN-ID $NODEID+0x180 becomes 0x281: the partner uses the old one");
 }
 
 TEST(Diff, SeesAnotherLengthOfATypeOfTheSameNumber) {
@@ -358,7 +357,8 @@ TEST(Diff, LeavesPartnersAloneOfAPdoThatIsOff) {
 TEST(Diff, SaysWhatAndWhereInOneLine) {
   const Compared compared(with(""), "\n" + with("", "ro"));
   EXPECT_EQ(changes_as_text(compared.changes, false),
-            "new.eds:6: breaks master and source code: 2000h:00 \"Speed\": access rw becomes ro: what was read or written is aborted "
+            "new.eds:6: breaks master and source code: 2000h:00 \"Speed\": access rw becomes ro: an access that was "
+            "allowed is aborted "
             "[access-reduced] (was old.eds:5)\n1 breaking, 0 compatible\n");
 }
 
