@@ -161,7 +161,7 @@ class Run {
   void fail(const ConfigurationStep& step, const SdoOutcome& outcome) {
     std::string what = failure_text(outcome);
     if (step.group != 0 && given_up_.insert(step.group).second && outcome.end == SdoEnd::refused) {
-      what += "; what belongs to it is left as it is now";
+      what += "; the related entries are not changed";
     }
     result_.failures.push_back({step.entry, step.value, std::move(what)});
     result_.lost = outcome.end == SdoEnd::no_answer;

@@ -263,13 +263,14 @@ void Decoder::decode_predefined(const TimedFrame& frame, Message& message) {
 void Decoder::decode_unknown(const Frame& frame, Message& message) const {
   message.service = Service::unknown;
   message.problem = true;
-  message.text += "no node that is given uses CAN-ID ";
+  message.text += "CAN-ID ";
   append_can_id(message.text, frame);
+  message.text += " is not used by any known node";
   if (frame.extended) return;
   if (const std::string pdo = predefined_pdo(frame.id); !pdo.empty()) {
-    message.text += "; by the pre-defined connection set it is " + pdo;
+    message.text += "; in the pre-defined connection set it is " + pdo;
   } else if (const char* reason = canopen::restriction_of(frame.id)) {
-    message.text += std::string{"; CiA 301 keeps it: "} + reason;
+    message.text += std::string{"; restricted by CiA 301: "} + reason;
   }
 }
 
@@ -339,7 +340,7 @@ void Decoder::decode_error_control(const Frame& frame, Message& message) {
   message.service = Service::heartbeat;
   if (frame.remote) {
     message.service = Service::guarding;
-    message.text += "asked for its state";
+    message.text += "state requested";
     guarding_asked_[node_id] = true;
     return;
   }
@@ -383,7 +384,7 @@ void Decoder::decode_pdo(const Frame& frame, const std::vector<Route>& routes, M
   message.node_id = node.node_id();
   message.number = pdo.number;
   if (frame.remote) {
-    message.text += "asked for";
+    message.text += "requested";
     return;
   }
   if (pdo.multiplexed) return decode_mpdo(frame, node, message);
@@ -397,7 +398,7 @@ void Decoder::decode_pdo(const Frame& frame, const std::vector<Route>& routes, M
     separator = ", ";
   }
   if (pdo.fields.empty()) {
-    message.text += "nothing is mapped";
+    message.text += "no object is mapped";
     message.problem = frame.size > 0;
   } else if (bits < pdo.bits) {
     fmt::format_to(std::back_inserter(message.text), "{}too short: {} of {}", separator, frame.size,

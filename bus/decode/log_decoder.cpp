@@ -54,7 +54,7 @@ void LogDecoder::decode(std::string_view text, std::size_t line_number, std::str
     case LogLineKind::remark: return;
     case LogLineKind::can_fd:
       summary_.add_can_fd();
-      return complain(line_number, "a CAN FD frame is passed over", complaints);
+      return complain(line_number, "a CAN FD frame is ignored", complaints);
     case LogLineKind::broken:
       ++broken_lines_;
       summary_.add_broken_line();

@@ -104,7 +104,7 @@ bool parse_id(std::string_view text, LogLine& line) {
 /// `DEADBEEF`, `DE.AD.BE.EF`, `R`, `R8`, and what cansend takes behind it: `_E`, a raw length.
 LogLine parse_compact(std::string_view text, LogLine line) {
   const std::size_t hash = text.find('#');
-  if (!parse_id(text.substr(0, hash), line)) return broken(line, "the CAN-ID is not one of 3 or 8 hexadecimal digits");
+  if (!parse_id(text.substr(0, hash), line)) return broken(line, "the CAN-ID does not have 3 or 8 hexadecimal digits");
   std::string_view data = text.substr(hash + 1);
   if (data.starts_with('#')) {
     line.kind = LogLineKind::can_fd;
@@ -114,7 +114,7 @@ LogLine parse_compact(std::string_view text, LogLine line) {
   if (data.starts_with('R') || data.starts_with('r')) {
     line.frame.remote = true;
     if (data.size() > 2 || (data.size() == 2 && (data[1] < '0' || data[1] > '8'))) {
-      return broken(line, "the length behind R is not one of 0 to 8");
+      return broken(line, "the length after R is not 0 to 8");
     }
     line.frame.size = data.size() == 2 ? static_cast<std::uint8_t>(data[1] - '0') : std::uint8_t{0};
     return line;
@@ -141,13 +141,13 @@ LogLine parse_compact(std::string_view text, LogLine line) {
 LogLine parse_columns(std::string_view rest, LogLine line) {
   const std::string_view length = take_word(rest);
   if (length.size() < 3 || length.front() != '[' || length.back() != ']') {
-    return broken(line, "there is no length in brackets behind the CAN-ID");
+    return broken(line, "missing length in brackets after the CAN-ID");
   }
   if (length.size() == 4 && is_digit(length[1]) && is_digit(length[2])) {
     line.kind = LogLineKind::can_fd;
     return line;
   }
-  if (length.size() != 3 || length[1] < '0' || length[1] > '8') return broken(line, "the length is not one of 0 to 8");
+  if (length.size() != 3 || length[1] < '0' || length[1] > '8') return broken(line, "the length is not 0 to 8");
   line.frame.size = static_cast<std::uint8_t>(length[1] - '0');
   for (unsigned i = 0; i < line.frame.size; ++i) {
     const std::string_view byte = take_word(rest);
@@ -156,7 +156,7 @@ LogLine parse_columns(std::string_view rest, LogLine line) {
       return line;
     }
     if (byte.size() != 2 || hex_value(byte[0]) == no_digit || hex_value(byte[1]) == no_digit) {
-      return broken(line, "there are fewer bytes than the length says");
+      return broken(line, "fewer bytes than the length states");
     }
     line.frame.data[i] = static_cast<std::uint8_t>(hex_value(byte[0]) << 4 | hex_value(byte[1]));
   }
@@ -183,7 +183,7 @@ LogLine parse_log_line(std::string_view text) {
   }
   if (rest.front() == '(') {
     const std::size_t end = rest.find(')');
-    if (end == std::string_view::npos) return broken(line, "the time has no end");
+    if (end == std::string_view::npos) return broken(line, "the time is not terminated");
     line.time = rest.substr(1, end - 1);
     line.has_time = parse_seconds(line.time, line.microseconds) || parse_date(line.time, line.microseconds);
     if (!line.has_time) return broken(line, "the time is neither a number of seconds nor a date");
@@ -192,7 +192,7 @@ LogLine parse_log_line(std::string_view text) {
   std::string_view word = take_word(rest);
   if (word.find('#') != std::string_view::npos) return parse_compact(word, line);
   for (const char c : word) {
-    if (c <= ' ' || c == '\x7F') return broken(line, "there is no name of an interface");
+    if (c <= ' ' || c == '\x7F') return broken(line, "missing interface name");
   }
   line.interface = word;
   word = take_word(rest);
@@ -202,7 +202,7 @@ LogLine parse_log_line(std::string_view text) {
     take_word(rest);
     word = take_word(rest);
   }
-  if (!is_id(word)) return broken(line, "there is no CAN-ID");
+  if (!is_id(word)) return broken(line, "missing CAN-ID");
   static_cast<void>(parse_id(word, line));
   return parse_columns(rest, line);
 }

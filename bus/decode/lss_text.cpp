@@ -83,12 +83,12 @@ void append_bit_timing(std::string& text, std::uint8_t table, std::uint8_t index
 
 std::string_view error_words(Command command, std::uint8_t code) {
   if (code == 0) return "done";
-  if (code == canopen::lss::implementation_specific) return "refused for a reason of the manufacturer's";
+  if (code == canopen::lss::implementation_specific) return "refused, manufacturer-specific error";
   if (command == Command::configure_node_id && code == 1) return "refused, node-ID out of range";
   if (command == Command::configure_bit_timing && code == 1) return "refused, bit timing not supported";
   if (command == Command::store_configuration && code == 1) return "refused, not supported";
   if (command == Command::store_configuration && code == 2) return "refused, storage access failed";
-  return "refused for an unknown reason";
+  return "refused, unknown error";
 }
 
 void append_fastscan(std::string& text, const canopen::Frame& frame) {
@@ -135,7 +135,7 @@ void append_content(std::string& text, const LssRow& row, const canopen::Frame& 
 
 bool append_lss_text(std::string& text, const canopen::Frame& frame, bool from_master) {
   if (frame.remote || frame.size != 8) {
-    text += "no LSS message: it has 8 bytes";
+    text += "not an LSS message, which has 8 bytes";
     return false;
   }
   for (const LssRow& row : rows) {

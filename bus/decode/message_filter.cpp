@@ -33,7 +33,7 @@ std::string MessageFilter::add(std::string_view text) {
     const std::size_t comma = text.find(',');
     const std::string_view condition = trim(text.substr(0, comma));
     const std::size_t equals = condition.find('=');
-    if (equals == std::string_view::npos) return fmt::format("\"{}\" is no condition such as node=5", condition);
+    if (equals == std::string_view::npos) return fmt::format("\"{}\" is not a condition such as node=5", condition);
     const std::string problem = add_condition(trim(condition.substr(0, equals)), trim(condition.substr(equals + 1)));
     if (!problem.empty()) return problem;
     text = comma == std::string_view::npos ? std::string_view{} : text.substr(comma + 1);
@@ -44,7 +44,7 @@ std::string MessageFilter::add(std::string_view text) {
 std::string MessageFilter::add_condition(std::string_view key, std::string_view value) {
   if (key == "node") {
     const auto node_id = parse_unsigned(value);
-    if (!node_id || *node_id < 1 || *node_id > 127) return fmt::format("\"{}\" is no node-ID from 1 to 127", value);
+    if (!node_id || *node_id < 1 || *node_id > 127) return fmt::format("\"{}\" is not a node-ID from 1 to 127", value);
     nodes_.set(*node_id);
     return "";
   }
@@ -56,11 +56,11 @@ std::string MessageFilter::add_condition(std::string_view key, std::string_view 
       services_.set(static_cast<std::size_t>(row.service));
       found = true;
     }
-    return found ? "" : fmt::format("no service is called \"{}\"", value);
+    return found ? "" : fmt::format("unknown service \"{}\"", value);
   }
   if (key == "id") {
     const auto can_id = parse_can_id(value);
-    if (!can_id) return fmt::format("\"{}\" is no CAN-ID such as 185h", value);
+    if (!can_id) return fmt::format("\"{}\" is not a CAN-ID such as 185h", value);
     can_ids_.push_back(*can_id);
     return "";
   }
@@ -68,7 +68,7 @@ std::string MessageFilter::add_condition(std::string_view key, std::string_view 
     problems_only_ = true;
     return "";
   }
-  return fmt::format("\"{}={}\" is no condition: there are node, service, id and problem=yes", key, value);
+  return fmt::format("\"{}={}\" is not a condition; expected node, service, id or problem=yes", key, value);
 }
 
 bool MessageFilter::passes(const LogLine& line, const Message& message) const {

@@ -118,7 +118,7 @@ std::uint32_t SdoFollower::mapped_object() const {
 
 void SdoFollower::stray(std::string_view what, Message& message) {
   message.text += what;
-  message.text += " of a transfer whose beginning is not in the log";
+  message.text += " of a transfer whose start is not in the log";
 }
 
 // What a transfer is made of
@@ -241,9 +241,9 @@ void SdoFollower::upload_answer(const TimedFrame& frame, Message& message) {
   const Data& data = frame.frame.data;
   const bool other = canopen::sdo::index_of(data) != index_ || data[3] != sub_index_;
   if (phase_ != Phase::asked || download_ || other) {
-    message.text += "answer to a read of ";
+    message.text += "response to a read of ";
     append_entry_label(message.text, canopen::sdo::index_of(data), data[3]);
-    message.text += open() && other ? ", which is not what was asked for" : " that is not in the log";
+    message.text += open() && other ? ", which was not requested" : " that is not in the log";
     message.problem = open();
     return;
   }
@@ -284,7 +284,7 @@ void SdoFollower::segment(const TimedFrame& frame, bool from_client, Message& me
 
 /// What the receiver of a segment says: an upload's client asks for the next one.
 void SdoFollower::segment_confirmed(const TimedFrame& frame, bool last, Message& message) {
-  message.text += verb(download_) + label_ + ", segment taken";
+  message.text += verb(download_) + label_ + ", segment confirmed";
   put_transfer(TransferStep::part, message);
   toggle_ = !toggle_;
   if (!last) return;
@@ -346,9 +346,9 @@ void SdoFollower::block_confirmed(const Data& data, Message& message) {
     if (!seen_.test(sequence)) complete_ = false;
   }
   message.text += verb(download_) + label_;
-  fmt::format_to(std::back_inserter(message.text), ", taken up to segment {}", taken);
+  fmt::format_to(std::back_inserter(message.text), ", confirmed up to segment {}", taken);
   if (taken < highest_) {
-    fmt::format_to(std::back_inserter(message.text), " of {}: the others come again", highest_);
+    fmt::format_to(std::back_inserter(message.text), " of {}; the others are repeated", highest_);
     message.problem = true;
   }
   const bool all = last_seen_ && taken >= highest_;
@@ -367,7 +367,7 @@ void SdoFollower::block_end(const Data& data, Message& message) {
   message.text += verb(download_) + label_ + ", end of the blocks";
   put_transfer(TransferStep::part, message);
   if (crc_used_ && complete_ && crc != crc_) {
-    fmt::format_to(std::back_inserter(message.text), ", the CRC {:04X}h is wrong: it should be {:04X}h", crc, crc_);
+    fmt::format_to(std::back_inserter(message.text), ", wrong CRC {:04X}h, expected {:04X}h", crc, crc_);
     message.problem = true;
   }
   phase_ = Phase::block_ended;
@@ -408,7 +408,7 @@ void SdoFollower::block_download_answer(const TimedFrame& frame, Message& messag
     case 2:
       if (phase_ != Phase::block_running && phase_ != Phase::block_last) return stray("confirmation", message);
       return block_confirmed(data, message);
-    default: message.text += "an SDO answer that CiA 301 does not know"; message.problem = true;
+    default: message.text += "an unknown SDO response"; message.problem = true;
   }
 }
 
@@ -449,7 +449,7 @@ void SdoFollower::request(const TimedFrame& frame, const NodeModel* model, Messa
       return block_end(data, message);
     case ClientCommand::reserved: break;
   }
-  message.text += "an SDO request that CiA 301 does not know";
+  message.text += "an unknown SDO request";
   message.problem = true;
 }
 
@@ -474,7 +474,7 @@ void SdoFollower::response(const TimedFrame& frame, const NodeModel*, Message& m
     case ServerCommand::block_upload: return block_upload_answer(frame, message);
     case ServerCommand::reserved: break;
   }
-  message.text += "an SDO answer that CiA 301 does not know";
+  message.text += "an unknown SDO response";
   message.problem = true;
 }
 

@@ -144,7 +144,7 @@ std::string Summary::text() const {
     fmt::format_to(put, "node {:<4}  {}, {} aborted", id,
                    counted(one.finished + one.aborted, "SDO transfer"), one.aborted);
     if (one.timed > 0) {
-      fmt::format_to(put, ", {:.3f} ms on average, {:.3f} ms the longest",
+      fmt::format_to(put, ", {:.3f} ms on average, {:.3f} ms maximum",
                      static_cast<double>(one.sum_us) / 1e3 / static_cast<double>(one.timed),
                      static_cast<double>(one.longest_us) / 1e3);
     }
@@ -156,7 +156,7 @@ std::string Summary::text() const {
     fmt::format_to(put, "node {:<4}  EMCY {:04X}h: {}\n", key.first, key.second, count);
   out += silent;
   if (open_transfers_ > 0) fmt::format_to(put, "{} not finished\n", counted(open_transfers_, "SDO transfer"));
-  if (can_fd_frames_ > 0) fmt::format_to(put, "{} passed over\n", counted(can_fd_frames_, "CAN FD frame"));
+  if (can_fd_frames_ > 0) fmt::format_to(put, "{} ignored\n", counted(can_fd_frames_, "CAN FD frame"));
   if (broken_lines_ > 0) fmt::format_to(put, "{} skipped\n", counted(broken_lines_, "line"));
   return out;
 }

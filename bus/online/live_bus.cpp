@@ -66,7 +66,7 @@ std::optional<Frame> LiveBus::receive(Duration timeout) {
   const Duration longest_at_once = port_->longest_at_once();
   for (;;) {
     if (refused_since_ && now() - *refused_since_ > longest_refusal) {
-      throw BusLost{"it takes no frames: nobody acknowledges them, or the controller is off"};
+      throw BusLost{"it does not accept frames: no node acknowledges them, or the controller is off"};
     }
     const TimePoint present = now();
     const Duration left = end > present ? end - present : Duration{0};

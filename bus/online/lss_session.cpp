@@ -21,9 +21,9 @@ constexpr std::size_t most_slaves = 127;
 std::string LssSession::refusal(Service service) const {
   const canopen::LssError error = master_.error();
   if (error.code == canopen::lss::implementation_specific) {
-    return fmt::format("refused: error {} of the manufacturer's own", error.specific);
+    return fmt::format("refused: manufacturer-specific error {}", error.specific);
   }
-  std::string_view text = "an error that CiA 305 does not know";
+  std::string_view text = "unknown error";
   if (service == Service::configure_node_id && error == canopen::lss::node_id_out_of_range) {
     text = "the node-ID is out of the slave's range";
   } else if (service == Service::configure_bit_timing && error == canopen::lss::bit_timing_not_supported) {
@@ -145,8 +145,8 @@ LssResult LssSession::confirm(const LssAddress& address) {
 
 std::string LssSession::reason_for_silence() {
   if (!identify_non_configured().done()) return "no device without node-ID answers";
-  return "a device without node-ID answers LSS, but not Fastscan, which it may not have; \"edsc lss BUS state "
-         "configuration\" and \"inquire\", with no other device on the bus, tell its numbers for \"assign\"";
+  return "a device without node-ID answers LSS, but not Fastscan, which it may not support; with no other device on "
+         "the bus, \"edsc lss BUS state configuration\" and \"inquire\" show its numbers for \"assign\"";
 }
 
 LssResult LssSession::find_unconfigured(const std::function<void(const LssAddress&)>& found, const LssAddress& among,

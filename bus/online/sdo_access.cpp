@@ -102,7 +102,7 @@ std::string failure_text(const SdoOutcome& outcome) {
                          abort_text(outcome.foreign_abort->code));
     case SdoEnd::broken:
       if (outcome.max_bytes != 0) return fmt::format("the value is longer than {} bytes", outcome.max_bytes);
-      return "the transfer broke: " + abort_text(outcome.code);
+      return "the transfer failed: " + abort_text(outcome.code);
   }
   return {};
 }

@@ -57,7 +57,7 @@ SimulatedAddress parse_address(const std::string& address) {
     if (good_node_id && good_name) return {std::string{rest.substr(0, at)}, *node_id, std::string{name}};
   }
   throw std::invalid_argument{
-      fmt::format("\"{}\" is not a simulation: write simulated:PROGRAM@NODE-ID[,NAME]", address)};
+      fmt::format("\"{}\" is not a simulation; expected simulated:PROGRAM@NODE-ID[,NAME]", address)};
 }
 
 std::string end_text(int status) {
@@ -136,7 +136,7 @@ std::string SimulatedPort::end_of_program() {
     }
   }
   process_ = -1;
-  return ended == 0 ? "does not take requests any more" : end_text(status);
+  return ended == 0 ? "no longer accepts requests" : end_text(status);
 }
 
 void SimulatedPort::lost() { throw BusLost{fmt::format("the program {}", end_of_program())}; }

@@ -60,7 +60,7 @@ ClientRequest BusClient::on_command(Command command, std::string_view element) {
       static_cast<void>(words.next());
       wanted_bus_ = words.next();
       if (!bus_ && words.at_end()) return ClientRequest::open_bus;
-      refuse(bus_ ? "a bus is open already" : "syntax error in open command");
+      refuse(bus_ ? "a bus is already open" : "syntax error in open command");
       return ClientRequest::nothing;
     }
     case Command::rawmode:

@@ -178,7 +178,7 @@ void BusServer::flush() {
   std::erase_if(clients_, [&](const std::unique_ptr<BusClient>& client) {
     if (!client->flush()) return true;
     if (client->backlog() > limits_.backlog) {
-      report(*client, "it reads too slowly: " + std::to_string(client->backlog()) + " bytes wait for it");
+      report(*client, "it reads too slowly: " + std::to_string(client->backlog()) + " bytes are pending");
       return true;
     }
     if (client->bus() || now - client->since() < limits_.handshake) return false;

@@ -19,7 +19,7 @@ ListenAddress parse_listen_address(const std::string& text) {
   }
   if (!good)
     throw std::invalid_argument{"\"" + text +
-                                "\" is no address to listen at: write HOST:PORT, such as 127.0.0.1:29536"};
+                                "\" is not a listen address; expected HOST:PORT, such as 127.0.0.1:29536"};
   return address;
 }
 

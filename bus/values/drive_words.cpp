@@ -20,7 +20,7 @@ constexpr BitPattern drive_states[] = {
     {0x6F, 0x21, "ready to switch on"},     {0x6F, 0x23, "switched on"},
     {0x6F, 0x27, "operation enabled"},      {0x6F, 0x07, "quick stop active"},
     {0x4F, 0x0F, "fault reaction active"},  {0x4F, 0x08, "fault"},
-    {0x00, 0x00, "no state of CiA 402"},
+    {0x00, 0x00, "not a state of CiA 402"},
 };
 
 constexpr BitPattern drive_commands[] = {

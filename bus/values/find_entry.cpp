@@ -150,7 +150,7 @@ std::string near_indices(const Device& device, std::uint16_t index) {
   const auto above = std::ranges::upper_bound(device.objects, index, {}, &Object::index);
   std::string text;
   const auto add = [&](const Object& object) {
-    text += fmt::format("{}{} {}", text.empty() ? "; next to it are " : " and ", index_label(object.index),
+    text += fmt::format("{}{} {}", text.empty() ? "; the nearest objects are " : " and ", index_label(object.index),
                         object.identifier);
   };
   if (above != device.objects.begin()) add(*std::prev(above));
@@ -201,7 +201,7 @@ FoundEntry by_entry_name(const Device& device, std::string_view text) {
   }
   if (matches.size() == 1) return matches.front();
   if (matches.empty()) return no_entry(fmt::format("the device has no object \"{}\"{}", text, near_names(device, text)));
-  std::string sentence = fmt::format("\"{}\" may be", text);
+  std::string sentence = fmt::format("\"{}\" is ambiguous:", text);
   for (std::size_t i = 0; i < std::min(matches.size(), most_suggestions); ++i) {
     sentence += fmt::format("{} {}", i == 0 ? "" : " or", entry_title(*matches[i].object, *matches[i].entry));
   }

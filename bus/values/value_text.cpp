@@ -158,7 +158,7 @@ ParsedValue parse_integer(const DataTypeRow& type, std::string_view text) {
   const auto magnitude = parse_magnitude(text);
   if (!magnitude) {
     const bool digits = !text.empty() && std::ranges::all_of(text, is_digit);
-    if (!digits) return problem(fmt::format("\"{}\" is no number (such as 10, -10, 0x0A or 0Ah)", whole));
+    if (!digits) return problem(fmt::format("\"{}\" is not a number (such as 10, -10, 0x0A or 0Ah)", whole));
   }
   const bool is_signed = type.kind == DataClass::signed_integer;
   const std::uint64_t highest =
@@ -173,7 +173,7 @@ ParsedValue parse_integer(const DataTypeRow& type, std::string_view text) {
 ParsedValue parse_boolean(std::string_view text) {
   if (text == "1" || equal_ignoring_case(text, "true")) return {{1}, ""};
   if (text == "0" || equal_ignoring_case(text, "false")) return {{0}, ""};
-  return problem(fmt::format("\"{}\" is no BOOLEAN: it is true or false, 1 or 0", text));
+  return problem(fmt::format("\"{}\" is not a BOOLEAN; expected true, false, 1 or 0", text));
 }
 
 ParsedValue parse_real(const DataTypeRow& type, std::string_view text) {
@@ -184,7 +184,7 @@ ParsedValue parse_real(const DataTypeRow& type, std::string_view text) {
   const auto parsed = std::from_chars(text.data(), end, number);
   const bool out_of_range = parsed.ec == std::errc::result_out_of_range;
   if ((parsed.ec != std::errc{} && !out_of_range) || parsed.ptr != end) {
-    return problem(fmt::format("\"{}\" is no number (such as 2.5 or -1e3)", whole));
+    return problem(fmt::format("\"{}\" is not a number (such as 2.5 or -1e3)", whole));
   }
   const bool too_high = type.bits == 32 && std::isfinite(number) && std::isinf(static_cast<float>(number));
   if (out_of_range || too_high) return problem(fmt::format("{} does not fit into {}", whole, type.name));
@@ -248,7 +248,7 @@ ParsedValue parse_time(const DataTypeRow& type, std::string_view text) {
   }
   const auto milliseconds = parse_clock(clock);
   if (!days || !milliseconds) {
-    return problem(fmt::format("\"{}\" is no {} (such as {})", text, type.name,
+    return problem(fmt::format("\"{}\" is not a {} (such as {})", text, type.name,
                                of_day ? "2024-01-31 12:34:56.789, from 1984-01-01 to 2163-06-06" : "3 d 12:34:56.789"));
   }
   return {bytes_of(std::uint64_t{*days} << 32 | *milliseconds, 48), ""};
@@ -263,7 +263,7 @@ ParsedValue parse_hex_bytes(const DataTypeRow& type, std::string_view text) {
     if (is_blank(c) && high < 0) continue;
     const int digit = hex_digit_value(c);
     if (digit < 0)
-      return problem(fmt::format("\"{}\" is no {}: it is given in pairs of hexadecimal digits", text, type.name));
+      return problem(fmt::format("\"{}\" is not a valid {}; expected pairs of hexadecimal digits", text, type.name));
     if (high >= 0) result.bytes.push_back(static_cast<std::uint8_t>(high << 4 | digit));
     high = high < 0 ? digit : -1;
   }
@@ -298,7 +298,7 @@ ParsedValue parse_string(const DataTypeRow& type, std::string_view text) {
     result.bytes.assign(plain.begin(), plain.end());
     return result;
   }
-  if (!is_utf8(plain)) return problem("a UNICODE_STRING is given in UTF-8, which this is not");
+  if (!is_utf8(plain)) return problem("a UNICODE_STRING must be given in UTF-8");
   for (const char16_t unit : to_utf16(plain)) {
     result.bytes.push_back(static_cast<std::uint8_t>(unit & 0xFF));
     result.bytes.push_back(static_cast<std::uint8_t>(unit >> 8));
@@ -482,7 +482,7 @@ ParsedValue parse_value_text(const DataTypeRow& type, std::string_view text) {
     case DataClass::time: return parse_time(type, trim(text));
     case DataClass::domain: return parse_hex_bytes(type, trim(text));
   }
-  return problem("a value of no known type");
+  return problem("a value of unknown data type");
 }
 
 ParsedValue parse_value_text(const Entry& entry, std::string_view text) {

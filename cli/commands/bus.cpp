@@ -19,7 +19,7 @@ constexpr const char* examples = R"(Examples:
   edsc bus                                  a bus at socketcand:127.0.0.1:29536/vcan0, until Ctrl-C
   edsc bus --bus vcan0 --bus vcan1          two of them
   edsc bus --log > bus.log                  and all frames as a log for edsc decode; the address is on standard error
-  edsc bus --listen 127.0.0.1:0             at a port that is free; the first line says which)";
+  edsc bus --listen 127.0.0.1:0             at any free port; the first line names it)";
 
 struct Settings {
   std::string listen = to_text(ListenAddress{});
@@ -57,7 +57,7 @@ std::string bad_bus_name(const std::string& name) {
   const bool good = !name.empty() && name.size() <= 15 && std::all_of(name.begin(), name.end(), [](unsigned char c) {
     return c > ' ' && c < 0x7F && c != '<' && c != '>' && c != '/';
   });
-  return good ? "" : fmt::format("\"{}\" is no name of a bus: up to 15 characters without blanks, <, > and /", name);
+  return good ? "" : fmt::format("\"{}\" is not a bus name: up to 15 characters without blanks, <, > and /", name);
 }
 
 int serve(const Settings& settings) {
@@ -85,11 +85,11 @@ void add_bus_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("bus", "virtual CAN buses on this machine, for socketcand clients");
   command->footer(examples);
   auto settings = std::make_shared<Settings>();
-  command->add_option("--listen", settings->listen, "HOST:PORT; port 0: one that is free")->capture_default_str();
+  command->add_option("--listen", settings->listen, "HOST:PORT; port 0: any free port")->capture_default_str();
   command->add_option("--bus", settings->buses, "name of a bus; may be given several times")
       ->check(bad_bus_name)
       ->capture_default_str();
-  command->add_option("--clients", settings->limits.clients, "how many may be connected at once")
+  command->add_option("--clients", settings->limits.clients, "maximum number of connected clients")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command->add_flag("--log", settings->log, "print all frames as lines of candump -L, and the addresses on standard error");

@@ -21,7 +21,7 @@ namespace edsc {
 namespace {
 
 constexpr const char* examples = R"(Examples:
-  edsc check eds/*.eds                    findings as a compiler shows them; exit code 1 when there are errors
+  edsc check eds/*.eds                    findings as compiler messages; exit code 1 if there are errors
   edsc check drive.eds --format json      the same for a program
   edsc check eds/*.eds --format sarif     the same for a code review (SARIF 2.1.0)
   edsc check drive.eds --strict           warnings count as errors
@@ -172,7 +172,7 @@ std::string check_rule(const std::string& id) {
 }  // namespace
 
 void add_check_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("check", "say what is wrong with data sheets");
+  CLI::App* command = app.add_subcommand("check", "check EDS, DCF and XDD files");
   command->footer(examples);
   auto settings = std::make_shared<Settings>();
   command->add_option("FILE", settings->paths, "EDS, DCF, XDD or XDC files");
@@ -182,7 +182,7 @@ void add_check_command(CLI::App& app, int& exit_code) {
   command->add_option("--options", settings->options_path,
                       "options file (default: FILE's name with .options.json, if there)");
   add_node_id_option(*command, settings->node_id);
-  command->add_option("--silence", settings->silence, "a rule that is not reported; may be given more than once")
+  command->add_option("--silence", settings->silence, "rule not to report; may be given more than once")
       ->allow_extra_args(false)
       ->check(check_rule);
   command->add_flag("--keep-going", settings->keep_going, keep_going_help);

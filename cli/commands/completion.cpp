@@ -10,7 +10,7 @@ namespace edsc {
 namespace {
 
 constexpr const char* examples = R"(Examples:
-  source <(edsc completion bash)               completion in this shell; an installed edsc brings it along
+  source <(edsc completion bash)               completion in this shell; an installed edsc includes it
   edsc completion zsh >~/.zfunc/_edsc          for zsh, in a folder of its fpath
   edsc completion man | man -l -               the manual page)";
 

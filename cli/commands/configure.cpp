@@ -26,12 +26,12 @@ namespace edsc {
 namespace {
 
 constexpr const char* examples = R"(Examples:
-  edsc configure socketcan:can0 5 axis1.dcf --dry-run           what differs, and the steps; nothing is written
+  edsc configure socketcan:can0 5 axis1.dcf --dry-run           the differences and the steps; nothing is written
   edsc configure socketcan:can0 5 axis1.dcf                     write what differs, read it back
-  edsc configure socketcan:can0 5 axis1.dcf --store --start     keep it without power, then start the node
+  edsc configure socketcan:can0 5 axis1.dcf --store --start     store the parameters, then start the node
   edsc configure socketcan:can0 5 axis1.dcf --all               write all ParameterValues
   edsc configure socketcan:can0 5 axis1.bin --concise --eds drive.eds
-  edsc format drive.eds --dcf --node-id 5 -o axis1.dcf          where the DCF comes from)";
+  edsc format drive.eds --dcf --node-id 5 -o axis1.dcf          make the DCF)";
 
 struct Settings {
   std::string bus;
@@ -125,7 +125,7 @@ bool read_dcf(const Settings& settings, Configuration& configuration) {
   configuration.loaded = load_live_device(settings.path, settings.node);
   if (!configuration.loaded) return false;
   if (!configuration.loaded->sheet.is_dcf) {
-    return refuse(settings.path + " is no DCF: \"edsc format --dcf\" makes one of a data sheet");
+    return refuse(settings.path + " is not a DCF; \"edsc format --dcf\" makes one from an EDS");
   }
   Diagnostics diagnostics;
   const auto values = configured_values(configuration.loaded->sheet, *configuration.device(), diagnostics);
@@ -150,7 +150,7 @@ bool read_concise(const Settings& settings, Configuration& configuration) {
   if (!read_bytes(settings.path, configuration.stream, problem)) return refuse(problem);
   const auto entries =
       read_concise_dcf({reinterpret_cast<const char*>(configuration.stream.data()), configuration.stream.size()});
-  if (!entries) return refuse(settings.path + " is no concise DCF: it is shorter or longer than it says");
+  if (!entries) return refuse(settings.path + " is not a concise DCF: its length does not match its contents");
   for (const ConciseEntry& entry : *entries) {
     configuration.values.push_back({entry_or_address(configuration.device(), entry.index, entry.sub_index),
                                     {entry.data.begin(), entry.data.end()},
@@ -236,7 +236,7 @@ bool is_for_this_node(const Settings& settings, const Configuration& configurati
   if (settings.force || !configuration.loaded) return true;
   const auto meant = parse_unsigned(configuration.loaded->sheet.commissioning.node_id.text);
   if (!meant || *meant == settings.node) return true;
-  return refuse(fmt::format("{} is for node {}, not for node {} (--force writes nevertheless)",
+  return refuse(fmt::format("{} is for node {}, not for node {} (--force writes anyway)",
                             settings.concise ? settings.sheet : settings.path, *meant, settings.node));
 }
 
@@ -258,7 +258,7 @@ bool is_right_device(LiveBus& bus, SdoAccess& node, const Settings& settings, co
   const NodeCheck check =
       check_node(node, *configuration.device(), settings.concise ? settings.sheet : settings.path);
   ending.not_compared = check.not_compared;
-  return check.problem.empty() || refuse(check.problem + ", --force writes nevertheless");
+  return check.problem.empty() || refuse(check.problem + "; --force writes anyway");
 }
 
 std::string place_of_value(const ConfigurationValue* value) {
@@ -452,7 +452,7 @@ int configure(LiveBus& bus, const Settings& settings, const Configuration& confi
     return what_differs(node, settings, configuration, hooks);
   });
   if (!work) {
-    refuse(fmt::format("node {} does not answer any more; nothing written", settings.node));
+    refuse(fmt::format("node {} no longer answers; nothing written", settings.node));
     return exit_device_failed;
   }
   const bool text = settings.format == "text";
@@ -512,25 +512,25 @@ int run_configure(const Settings& settings) {
 }  // namespace
 
 void add_configure_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("configure", "write the values of a DCF that a node does not have");
+  CLI::App* command = app.add_subcommand("configure", "write the values of a DCF that differ from those of a node");
   command->footer(examples);
   auto settings = std::make_shared<Settings>();
   add_bus_argument(*command, settings->bus);
   add_node_argument(*command, settings->node);
   command->add_option("FILE", settings->path, "DCF, XDC or, with --concise, concise DCF")->required();
   auto* concise = command->add_flag("--concise", settings->concise, "FILE is a concise DCF, as object 1F22h holds it");
-  command->add_option("--eds", settings->sheet, "data sheet for a concise DCF: names, and the identity to check")
+  command->add_option("--eds", settings->sheet, "EDS for a concise DCF: names, and the identity to check")
       ->type_name("FILE")
       ->needs(concise);
-  command->add_flag("--store", settings->store, "let the node store its parameters (1010h) when all went well");
-  command->add_flag("--start", settings->start, "start the node when all went well");
-  command->add_flag("--keep-state", settings->keep_state, "do not put the node into Pre-operational first");
+  command->add_flag("--store", settings->store, "store the parameters of the node (1010h) after a successful configuration");
+  command->add_flag("--start", settings->start, "start the node after a successful configuration");
+  command->add_flag("--keep-state", settings->keep_state, "do not set the node to Pre-operational first");
   command->add_flag("--all", settings->all, "write all values, not only those that differ from the node's");
   command->add_flag("--node-id-and-bit-rate", settings->node_id_and_bit_rate,
                     "also write the node's own node-ID and bit rate");
-  command->add_flag("--force", settings->force, "write to another device");
+  command->add_flag("--force", settings->force, "write even if the device does not match");
   command->add_flag("--dry-run", settings->dry_run,
-                    "print what differs and the steps, and write nothing; with --all all steps, without the bus");
+                    "print the differences and the steps without writing; with --all all steps, without the bus");
   add_format_option(*command, settings->format);
   add_timeout_option(*command, settings->sdo.timeout_ms);
   command->callback([settings, &exit_code] { exit_code = run_configure(*settings); });

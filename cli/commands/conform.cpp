@@ -40,12 +40,12 @@ using conform::RunReport;
 using conform::Verdict;
 
 constexpr const char* examples = R"(Examples:
-  edsc conform socketcan:can0 5 drive.eds                          reads, and requests that a device must refuse
-  edsc conform socketcan:can0 5 drive.eds --level communication    writes 1000h to 1FFFh, too, and puts back
+  edsc conform socketcan:can0 5 drive.eds                          reads, and requests that a device must reject
+  edsc conform socketcan:can0 5 drive.eds --level communication    also writes 1000h to 1FFFh, then restores
   edsc conform socketcan:can0 5 drive.eds --level all --html report.html
   edsc conform socketcan:can0 5 drive.eds --only 3.* --only 2.5    some cases
   edsc conform socketcan:can0 5 drive.eds --stimulus 5.4="ssh bench pull-sensor-plug"
-  edsc conform --list                                              what is asked, with the clause)";
+  edsc conform --list                                              all cases, with the clause)";
 
 struct Settings {
   std::string bus;
@@ -270,17 +270,20 @@ int run_conform(const Settings& settings) {
 }  // namespace
 
 void add_conform_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("conform", "test whether a node behaves as CiA 301 and its EDS say");
+  CLI::App* command = app.add_subcommand("conform", "test a node against CiA 301 and its EDS");
   command->footer(examples);
   auto settings = std::make_shared<Settings>();
   auto* bus = add_bus_argument(*command, settings->bus);
   auto* node = add_node_argument(*command, settings->node);
-  auto* sheet = command->add_option("FILE", settings->sheet, "data sheet of the node: EDS, DCF, XDD or XDC")->required();
-  command->add_option("--level", settings->level, "what may be done to the node: read, communication or all")
+  auto* sheet =
+      command->add_option("FILE", settings->sheet, "description of the node: EDS, DCF, XDD or XDC")->required();
+  command->add_option("--level", settings->level, "what the test may do to the node: read, communication or all")
       ->check(CLI::IsMember({"read", "communication", "all"}))
       ->capture_default_str();
-  command->add_flag("--store", settings->store, "store and restore parameters (1010h, 1011h), and put back");
-  command->add_flag("--application", settings->application, "write 2000h and above, and put back");
+  command->add_flag("--store", settings->store,
+                    "store and restore parameters (1010h, 1011h), then restore the original values");
+  command->add_flag("--application", settings->application,
+                    "write objects from 2000h, then restore the original values");
   command->add_flag("--outputs", settings->outputs, "send RPDOs and SYNC: outputs may move");
   command->add_option("--only", settings->only, "cases to run: 2.5 or 3.*; may be given more than once")
       ->type_name("CASE")
@@ -289,7 +292,7 @@ void add_conform_command(CLI::App& app, int& exit_code) {
         const auto rows = conform::all_cases();
         const bool names_one =
             std::ranges::any_of(rows, [&](const CaseRow* row) { return conform::matches(pattern, row->id); });
-        return names_one ? std::string{} : "no case is \"" + pattern + "\"; --list prints them";
+        return names_one ? std::string{} : "unknown case \"" + pattern + "\"; --list prints the cases";
       });
   command->add_option("--stimulus", settings->stimuli, "command that acts on the node in a case: 5.4=COMMAND")
       ->type_name("CASE=COMMAND")
@@ -303,8 +306,8 @@ void add_conform_command(CLI::App& app, int& exit_code) {
   command->add_option("--junit", settings->junit, "write it as JUnit XML")->type_name("FILE");
   command->add_option("--json", settings->json, "write it as JSON")->type_name("FILE");
   command->add_option("--log", settings->log, "write the frames as a candump log")->type_name("FILE");
-  command->add_option("--seed", settings->seed, "of the accesses that are chosen by lot")->capture_default_str();
-  command->add_flag("--quiet", settings->quiet, "print failures and the result alone");
+  command->add_option("--seed", settings->seed, "seed of the randomly chosen accesses")->capture_default_str();
+  command->add_flag("--quiet", settings->quiet, "print only failures and the result");
   add_timeout_option(*command, settings->sdo.timeout_ms);
   settings->color.add_to(*command);
   command->add_flag_callback(

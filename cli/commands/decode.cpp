@@ -22,8 +22,8 @@ namespace edsc {
 namespace {
 
 constexpr const char* examples = R"(Examples:
-  edsc decode --node 5=drive.eds can0.log            what each frame of a candump log says
-  candump -L can0 | edsc decode --node axis1.dcf -   the same of a live bus; the DCF names its node-ID
+  edsc decode --node 5=drive.eds can0.log            decode each frame of a candump log
+  candump -L can0 | edsc decode --node axis1.dcf -   the same on a live bus; the DCF states the node-ID
   edsc decode --node 5=drive.eds can0.log --filter node=5,service=sdo --summary
   edsc decode --node 5=drive.eds can0.log --format json | jq -c 'select(.problem)')";
 
@@ -53,7 +53,7 @@ NodeArgument parse_node_argument(const std::string& text) {
   const auto number =
       equals == std::string::npos ? std::nullopt : parse_unsigned(std::string_view{text}.substr(0, equals));
   if (!number) return {std::nullopt, text};
-  if (*number < 1 || *number > 127) throw Refused{fmt::format("--node {}: a node-ID is one of 1 to 127", text)};
+  if (*number < 1 || *number > 127) throw Refused{fmt::format("--node {}: a node-ID must be 1 to 127", text)};
   return {static_cast<std::uint8_t>(*number), text.substr(equals + 1)};
 }
 
@@ -78,7 +78,7 @@ std::unique_ptr<LoadedDevice> load_node(NodeArgument& argument, const ColorOptio
   if (loaded->unreadable || !loaded->device) throw Refused{fmt::format("--node: {} cannot be used", argument.path)};
   if (!argument.node_id) argument.node_id = loaded->device->node_id;
   if (!argument.node_id) {
-    throw Refused{fmt::format("--node {0}: the file names no node-ID; say which it is, --node 5={0}", argument.path)};
+    throw Refused{fmt::format("--node {0}: the file does not state a node-ID; use --node 5={0}", argument.path)};
   }
   return loaded;
 }
@@ -224,23 +224,24 @@ int decode(const Settings& settings) {
 }  // namespace
 
 void add_decode_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("decode", "what the frames of a candump log say");
+  CLI::App* command = app.add_subcommand("decode", "decode the frames of a candump log");
   command->footer(examples);
   auto settings = std::make_shared<Settings>();
   command->add_option("LOG", settings->log, "log of candump, \"-\" for standard input")->capture_default_str();
   command
       ->add_option("--node", settings->nodes,
-                   "ID=FILE: data sheet of a node, or FILE, a DCF that names its node-ID; may be given more than once")
+                   "ID=FILE: EDS of a node, or FILE: a DCF with its node-ID; may be given more than once")
       ->allow_extra_args(false);
   command->add_option("--format", settings->format, "text or json, an object on each line")
       ->check(CLI::IsMember({"text", "json"}))
       ->capture_default_str();
   command
       ->add_option("--filter", settings->filters,
-                   "show only what fits: node=5,service=sdo,id=185h,problem=yes; all frames are followed")
+                   "show only matching frames: node=5,service=sdo,id=185h,problem=yes; all frames are evaluated")
       ->allow_extra_args(false);
   command->add_option("--interface", settings->interface, "frames of this interface only, such as can0");
-  command->add_flag("--summary", settings->summary, "at the end frames by service and node, aborts, EMCYs and times");
+  command->add_flag("--summary", settings->summary,
+                    "print a summary at the end: frames by service and node, aborts, EMCY messages and times");
   settings->color.add_to(*command);
   command->callback([settings, &exit_code] { exit_code = decode(*settings); });
 }

@@ -18,11 +18,11 @@ namespace edsc {
 namespace {
 
 constexpr const char* examples = R"(Examples:
-  edsc diff drive-1.0.eds drive-1.1.eds                  what changed, and whom it breaks; exit code 1 when it breaks anybody
+  edsc diff drive-1.0.eds drive-1.1.eds                  what changed and what it breaks; exit code 1 if anything breaks
   edsc diff drive-1.0.eds drive-1.1.eds --format json    the same for a program
   edsc diff drive.eds axis1.dcf --node-id 5              a DCF against its EDS, both as node 5
   edsc diff --against git:main drive.eds --format markdown    a comment for a pull request
-  edsc diff --against git:HEAD --fail-on any eds/*.eds   exit code 1 when a device is not as it was committed)";
+  edsc diff --against git:HEAD --fail-on any eds/*.eds   exit code 1 if a device differs from its commit)";
 
 constexpr std::string_view git_prefix = "git:";
 
@@ -141,7 +141,7 @@ int diff(const Settings& settings) {
 
 void check_files(const Settings& settings) {
   if (settings.against.empty() && settings.files.size() != 2) {
-    throw CLI::ValidationError("FILE", "two files are compared, OLD and NEW; --against git:REF takes any number");
+    throw CLI::ValidationError("FILE", "expected two files, OLD and NEW; --against git:REF accepts any number");
   }
   if (settings.against.empty() && settings.allow_new) throw CLI::RequiresError("--allow-new", "--against");
 }
@@ -165,14 +165,14 @@ void add_diff_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command
       ->add_option("--audience", settings->audience,
-                   "leave out changes that break others only: wire (masters, PDO partners), source (C++ code)")
+                   "whose breaking changes to report: all, wire (masters, PDO partners) or source (C++ code)")
       ->check(CLI::IsMember({"all", "wire", "source"}))
       ->capture_default_str();
-  command->add_option("--fail-on", settings->fail_on, "which changes give exit code 1")
+  command->add_option("--fail-on", settings->fail_on, "changes that cause exit code 1")
       ->check(CLI::IsMember({"breaking", "any", "never"}))
       ->capture_default_str();
   add_node_id_option(*command, settings->node_id);
-  command->add_flag("--keep-going", settings->keep_going, "compare in spite of errors; what is wrong is left out");
+  command->add_flag("--keep-going", settings->keep_going, "compare despite errors; what is wrong is left out");
   settings->color.add_to(*command);
   command->callback([settings, &exit_code] {
     check_files(*settings);

@@ -17,7 +17,7 @@ namespace {
 constexpr const char* examples = R"(Examples:
   edsc dump drive.eds                                      the resolved device as JSON
   edsc dump drive.eds --node-id 5 | jq '.objects[].name'   formulas as numbers; the names of all objects
-  edsc dump drive.eds --cpp                                also what the C++ templates see)";
+  edsc dump drive.eds --cpp                                with the view of the C++ templates)";
 
 struct Settings {
   LoadSettings load;
@@ -56,7 +56,7 @@ int dump(const Settings& settings) {
 }  // namespace
 
 void add_dump_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("dump", "the resolved device as JSON");
+  CLI::App* command = app.add_subcommand("dump", "print the resolved device as JSON");
   command->footer(examples);
   auto settings = std::make_shared<Settings>();
   command->add_option("FILE", settings->load.path, "EDS, DCF, XDD or XDC")->required();

@@ -31,9 +31,9 @@ constexpr const char* examples = R"(Examples:
   edsc format drive.eds --dcf --node-id 5 -o axis1.dcf     the DCF of node 5
   edsc format drive.eds --dcf --node-id 5 --all            the same with a ParameterValue for each writable entry
   edsc format axis1.dcf --dcf --node-id 7 -o axis2.dcf     the same configuration for node 7
-  edsc format drive.xdd -o drive.eds                       an EDS of an XDD
-  edsc format axis1.xdc -o axis1.dcf                       a DCF of an XDC
-  edsc format axis1.dcf --concise -o axis1.bin             what a master downloads to it (object 1F22h))";
+  edsc format drive.xdd -o drive.eds                       an EDS from an XDD
+  edsc format axis1.xdc -o axis1.dcf                       a DCF from an XDC
+  edsc format axis1.dcf --concise -o axis1.bin             the concise DCF for a master (object 1F22h))";
 
 struct Settings {
   std::vector<std::string> paths;
@@ -141,13 +141,14 @@ int format_file(const Settings& settings, const std::string& path) {
   if (is_xml(*input.file)) {
     if (settings.check || settings.in_place) {
       diagnostics.error("xml-file", {input.file.get()},
-                        "XML does not have a canonical form; -o FILE makes an EDS or DCF of an XDD or XDC");
+                        "XML does not have a canonical form; -o FILE makes an EDS or DCF from an XDD or XDC");
     } else {
       convert(settings, input, diagnostics);
     }
   }
   if (input.has_values_for_eds) {
-    print_visibly(stderr, "edsc: {}: an XDC has the values of one node, which an EDS does not have; name the output .dcf\n", path);
+    print_visibly(
+        stderr, "edsc: {}: an XDC has the values of one node, which an EDS cannot have; name the output .dcf\n", path);
     return exit_wrong_usage;
   }
   if (diagnostics.errors() == 0) read(settings, input, diagnostics);
@@ -192,7 +193,7 @@ void add_format_command(CLI::App& app, int& exit_code) {
       command->add_option("-o,--output", settings->output, "file to write; may be FILE (default: standard output)");
   auto* in_place = command->add_flag("-i,--in-place", settings->in_place, "write each FILE itself");
   auto* check = command->add_flag("--check", settings->check,
-                                  "write nothing; list each FILE that is not canonical; exit code 1 when there is one");
+                                  "write nothing; list each FILE that is not canonical; exit code 1 if there is one");
   auto* dcf = command->add_flag("--dcf", settings->dcf,
                                 "make a DCF: [DeviceComissioning], and the ParameterValues that differ from defaults");
   auto* all = command->add_flag("--all", settings->all, "with --dcf: a ParameterValue for each writable entry");

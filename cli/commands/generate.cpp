@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 constexpr const char* examples = R"(Examples:
   edsc generate eds/drive.eds -o build/generated           headers for namespace drive
   edsc generate drive.eds -o out --name axis1 --node-id 5  a second one, with its node-ID fixed
-  edsc generate vendor.eds -o out --keep-going             leave out what is wrong in a bought device's file)";
+  edsc generate vendor.eds -o out --keep-going             leave out what is wrong in the EDS of a purchased device)";
 
 /// Only a device that keeps its data sheet has this one.
 constexpr std::string_view stored_eds_header = "stored_eds.hpp";
@@ -156,26 +156,29 @@ int generate(const Settings& settings) {
 }  // namespace
 
 void add_generate_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("generate", "C++ headers for one device");
+  CLI::App* command = app.add_subcommand("generate", "generate C++ headers for one device");
   command->footer(examples);
   auto settings = std::make_shared<Settings>();
   command->add_option("FILE", settings->load.path, "EDS, DCF, XDD or XDC")->required();
-  command->add_option("-o,--output", settings->output, "folder; the headers go to its subfolder NAME")->required();
+  command->add_option("-o,--output", settings->output, "folder; the headers are written to its subfolder NAME")
+      ->required();
   command->add_option("--name", settings->load.name, "C++ namespace (default: the file's name)")
       ->check([](const std::string& name) {
         if (!name.empty() && to_namespace(name) == name) return std::string{};
-        return fmt::format("a namespace in snake_case is wanted, not \"{}\"; \"{}\" is one", name, to_namespace(name));
+        return fmt::format("expected a namespace in snake_case, such as \"{1}\", not \"{0}\"", name,
+                           to_namespace(name));
       });
   add_node_id_option(*command, settings->load.node_id);
   command->add_option("--options", settings->load.options_path, "options file (default: FILE's name with .options.json, if there)");
   command->add_flag("--static-mapping", settings->load.static_mapping,
-                    "no PDO can be mapped over the bus: smaller firmware");
+                    "no PDO can be mapped over the bus, for smaller firmware");
   command->add_option("--templates", settings->templates, "folder with templates that replace the built-in ones")
       ->check(CLI::ExistingDirectory);
   command->add_option("--depfile", settings->depfile, "write what the headers depend on, for make and ninja");
-  command->add_option("--depfile-target", settings->depfile_target, "what depends on them there (default: the headers)");
+  command->add_option("--depfile-target", settings->depfile_target,
+                      "target of the dependencies (default: the headers)");
   command->add_flag("--keep-going", settings->load.keep_going, keep_going_help);
-  command->add_flag("-v,--verbose", settings->verbose, "name the files that are written");
+  command->add_flag("-v,--verbose", settings->verbose, "print the names of the files that are written");
   settings->color.add_to(*command);
   command->callback([settings, &exit_code] { exit_code = generate(*settings); });
 }

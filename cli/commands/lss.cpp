@@ -98,7 +98,7 @@ int inquire(LssSession& session, const Settings& settings) {
     print(json);
   } else {
     print_visibly(stdout, "{}, {}\n", to_text(address),
-               !node_id.done() ? "node-ID not told"
+               !node_id.done() ? "node-ID not reported"
                : has_node_id   ? fmt::format("node-ID {}", node_id.value)
                                : "no node-ID");
   }
@@ -223,18 +223,18 @@ CLI::Option* add_new_node_id(CLI::App& command, const std::string& name, Setting
   return command
       .add_option_function<std::string>(
           name, [&settings](const std::string& text) { settings.node_id = parse_count(text).value_or(0); },
-          "the new node-ID: 1..127, or 255 to take it away")
+          "the new node-ID: 1..127, or 255 to remove it")
       ->check([](const std::string& text) {
         const auto number = parse_count(text, 255).value_or(0);
         const bool known = (number >= 1 && number <= 127) || number == 255;
-        return known ? std::string{} : "\"" + text + "\" is no node-ID from 1 to 127, and not 255";
+        return known ? std::string{} : "\"" + text + "\" is not a node-ID from 1 to 127 or 255";
       });
 }
 
 }  // namespace
 
 void add_lss_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("lss", "give devices their node-ID and bit rate (CiA 305)");
+  CLI::App* command = app.add_subcommand("lss", "configure node-ID and bit rate of devices (CiA 305)");
   command->footer(examples);
   command->require_subcommand(1);
   auto settings = std::make_shared<Settings>();
@@ -249,17 +249,17 @@ void add_lss_command(CLI::App& app, int& exit_code) {
   };
   const auto with_json = [&](CLI::App* service) { add_format_option(*service, settings->format); };
 
-  CLI::App* assigned = add("assign", "select or find one device, give it a node-ID, store it", assign);
+  CLI::App* assigned = add("assign", "select or find one device and configure its node-ID", assign);
   add_address_options(*assigned, *settings, false);
   add_new_node_id(*assigned, "--node-id", *settings)->required();
   add_bit_rate(*assigned, "--bit-rate", *settings);
-  assigned->add_flag("--store", settings->store, "the device keeps it without power");
+  assigned->add_flag("--store", settings->store, "store the node-ID in the device");
   with_json(assigned);
   CLI::App* found = add("fastscan", "find devices without node-ID, all or those with these numbers", fastscan);
   add_address_options(*found, *settings, false);
   with_json(found);
-  add_address_options(*add("select", "put one device into configuration state", select), *settings, true);
-  add("state", "put all devices into a state", switch_state)
+  add_address_options(*add("select", "switch one device to configuration state", select), *settings, true);
+  add("state", "switch all devices to a state", switch_state)
       ->add_option_function<std::string>(
           "STATE",
           [settings](const std::string& text) {
@@ -268,16 +268,16 @@ void add_lss_command(CLI::App& app, int& exit_code) {
           "waiting or configuration")
       ->required()
       ->check(CLI::IsMember({"waiting", "configuration"}));
-  with_json(add("inquire", "who is in configuration state", inquire));
-  add_new_node_id(*add("node-id", "a new node-ID for the device in configuration state", configure_node_id), "NODE",
-                  *settings)
+  with_json(add("inquire", "inquire the LSS address and node-ID of the device in configuration state", inquire));
+  add_new_node_id(*add("node-id", "configure the node-ID of the device in configuration state", configure_node_id),
+                  "NODE", *settings)
       ->required();
-  add_bit_rate(*add("bit-rate", "a new bit rate for the device in configuration state", configure_bit_rate), "KBIT",
-               *settings)
+  add_bit_rate(*add("bit-rate", "configure the bit rate of the device in configuration state", configure_bit_rate),
+               "KBIT", *settings)
       ->required();
-  add("store", "the device in configuration state keeps its node-ID and bit rate without power", store);
-  add("activate", "the devices in configuration state use their new bit rate", activate)
-      ->add_option("--delay", settings->delay_ms, "ms until the switch, and of silence after it")
+  add("store", "store node-ID and bit rate in the device in configuration state", store);
+  add("activate", "activate the new bit rate of the devices in configuration state", activate)
+      ->add_option("--delay", settings->delay_ms, "switch delay in ms, before and after the switch")
       ->capture_default_str();
 }
 

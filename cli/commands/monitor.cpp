@@ -167,18 +167,18 @@ int run_monitor(const Settings& settings) {
 }  // namespace
 
 void add_monitor_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("monitor", "nodes, states, PDO values, rates and load of a bus, live");
+  CLI::App* command = app.add_subcommand("monitor", "show nodes, states, PDO values, rates and load of a bus, live");
   command->footer(examples);
   auto settings = std::make_shared<Settings>();
   add_bus_argument(*command, settings->bus);
-  command->add_option("--node", settings->nodes, "node-ID and its data sheet; may be given more than once")
+  command->add_option("--node", settings->nodes, "node-ID and its EDS; may be given more than once")
       ->type_name("ID=FILE")
       ->allow_extra_args(false)
       ->check([](const std::string& text) {
-        return parse_node_file(text) ? std::string{} : "\"" + text + "\" is not a node-ID, = and a file";
+        return parse_node_file(text) ? std::string{} : "\"" + text + "\" is not of the form NODE-ID=FILE";
       });
   auto* once =
-      command->add_option("--once", settings->once_seconds, "seconds to listen for before one table is printed")
+      command->add_option("--once", settings->once_seconds, "print one table after this many seconds")
           ->check(CLI::Range(0.01, 86'400.0));
   command->add_option("--bit-rate", settings->bit_rate, "kbit/s of the bus, for its load (without stuff bits)")
       ->check(CLI::Range(5, 1000));

@@ -51,9 +51,9 @@ class Confirmation {
 
   /// Why the state is not confirmed: the last state that the node reported, or that it sent nothing.
   [[nodiscard]] std::string reason() const {
-    if (told_) return fmt::format("its last message says {}", nmt_state_text(*told_));
-    if (settings_.command->leads_to == canopen::NmtState::initialisation) return "it has sent no boot-up message";
-    return fmt::format("it has sent no heartbeat; 1017h may be 0 (edsc read {} {} 1017h --type u16)", settings_.bus,
+    if (told_) return fmt::format("the last state that it reported is {}", nmt_state_text(*told_));
+    if (settings_.command->leads_to == canopen::NmtState::initialisation) return "it has not sent a boot-up message";
+    return fmt::format("it has not sent a heartbeat; 1017h may be 0 (edsc read {} {} 1017h --type u16)", settings_.bus,
                        settings_.node);
   }
 
@@ -101,9 +101,9 @@ void add_nmt_command(CLI::App& app, int& exit_code) {
       ->required()
       ->check([](const std::string& text) {
         const bool known = text == "all" || (parse_count(text, 127).value_or(0) != 0);
-        return known ? std::string{} : "\"" + text + "\" is no node-ID from 1 to 127, and not \"all\"";
+        return known ? std::string{} : "\"" + text + "\" is not a node-ID from 1 to 127 or \"all\"";
       });
-  command->add_option("--wait", settings->wait_ms, "ms to wait for, until the node tells its new state")
+  command->add_option("--wait", settings->wait_ms, "ms to wait until the node reports its new state")
       ->check(CLI::Range(1, 600'000));
   command->callback([settings, &exit_code] {
     if (settings->wait_ms != 0 && settings->node == 0) {

@@ -17,11 +17,11 @@ namespace edsc {
 namespace {
 
 constexpr const char* examples = R"(Examples:
-  edsc read socketcan:can0 5 position_actual_value --eds drive.eds    by name, in the units of the data sheet
+  edsc read socketcan:can0 5 position_actual_value --eds drive.eds    by name, in the units of the EDS
   edsc read socketcan:can0 5 6064h identity_object.vendor_id --eds drive.eds
   edsc read socketcan:can0 5 1018h --eds drive.eds                    all entries of an object
   edsc read socketcan:can0 5 --all --eds drive.eds --format json      all that can be read
-  edsc read socketcan:can0 5 1018h:02 --type u32                      without data sheet
+  edsc read socketcan:can0 5 1018h:02 --type u32                      without an EDS
   edsc read socketcan:can0 5 1021h --eds drive.eds --file stored.eds  a DOMAIN to a file)";
 
 struct Settings {
@@ -211,10 +211,10 @@ void add_read_command(CLI::App& app, int& exit_code) {
   auto settings = std::make_shared<Settings>();
   add_bus_argument(*command, settings->bus);
   add_node_argument(*command, settings->node);
-  auto* objects = command->add_option("OBJECT", settings->objects, "6064h, 1018h:02, or a name of the data sheet");
+  auto* objects = command->add_option("OBJECT", settings->objects, "6064h, 1018h:02, or a name from the EDS");
   auto* sheet =
-      command->add_option("--eds", settings->sheet, "data sheet of the node: EDS, DCF, XDD or XDC")->type_name("FILE");
-  auto* all = command->add_flag("--all", settings->all, "all entries that the data sheet lets read, but no DOMAINs");
+      command->add_option("--eds", settings->sheet, "description of the node: EDS, DCF, XDD or XDC")->type_name("FILE");
+  auto* all = command->add_flag("--all", settings->all, "all readable entries of the EDS except DOMAINs");
   all->needs(sheet)->excludes(objects);
   add_type_option(*command, settings->type);
   add_format_option(*command, settings->format);
@@ -222,9 +222,9 @@ void add_read_command(CLI::App& app, int& exit_code) {
   auto* file =
       command->add_option("--file", settings->file, "write the bytes of one entry to this file")->type_name("FILE");
   file->excludes(all)->excludes(raw);
-  auto* block = command->add_flag("--block", settings->block, "block transfer also for what is not a DOMAIN");
+  auto* block = command->add_flag("--block", settings->block, "block transfer for all data types");
   command->add_flag("--segmented", settings->segmented, "no block transfer")->excludes(block);
-  command->add_option("--max-bytes", settings->sdo.max_bytes, "longest value of a type without a fixed size")
+  command->add_option("--max-bytes", settings->sdo.max_bytes, "maximum bytes of a variable-length value")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 30))
       ->capture_default_str();
   add_timeout_option(*command, settings->sdo.timeout_ms);

@@ -108,7 +108,8 @@ class Recorder {
 int record(LiveBus& bus, const Settings& settings, std::FILE* file) {
   Recorder recorder{bus, settings, file};
   const auto report = [&] {
-    if (!settings.output.empty()) print_visibly(stdout, "{} frames to {}\n", recorder.frames(), settings.output);
+    if (!settings.output.empty())
+      print_visibly(stdout, "{} frames written to {}\n", recorder.frames(), settings.output);
   };
   try {
     errno = 0;
@@ -146,7 +147,7 @@ void add_record_command(CLI::App& app, int& exit_code) {
   add_bus_argument(*command, settings->bus);
   command->add_option("-o,--output", settings->output, "file to write; emptied at the start (default: standard output)")->type_name("FILE");
   command->add_option("--seconds", settings->seconds, "end after this time")->check(CLI::Range(0.01, 1e9));
-  command->add_option("--count", settings->count, "end after so many frames")
+  command->add_option("--count", settings->count, "end after this number of frames")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 62));
   command->add_option("--interface", settings->interface, "name of the interface in the log (default: that of BUS)")
       ->check(bad_interface);

@@ -243,7 +243,7 @@ int save(LiveBus& bus, const Settings& settings, const LoadedDevice& loaded) {
   if (!settings.force) {
     const NodeCheck check = check_node(node, device, settings.path);
     if (!check.problem.empty()) {
-      fail(check.problem + ", --force saves nevertheless");
+      fail(check.problem + "; --force saves anyway");
       return exit_device_failed;
     }
     if (!check.not_compared.empty()) {
@@ -259,7 +259,7 @@ int save(LiveBus& bus, const Settings& settings, const LoadedDevice& loaded) {
     });
   }
   if (saved.found.lost) {
-    fail(fmt::format("node {} does not answer any more; nothing saved", settings.node));
+    fail(fmt::format("node {} no longer answers; nothing saved", settings.node));
     return exit_device_failed;
   }
   for (const UnreadValue& unread : saved.found.unread) {
@@ -277,7 +277,7 @@ int run_save(const Settings& settings) {
   if (!loaded) return exit_wrong_usage;
   Diagnostics ignored;
   if (parse_ini(*loaded->source, ignored).sections.empty()) {
-    fail(settings.path + " is not an EDS or DCF: a DCF is made of one of them");
+    fail(settings.path + " is not an EDS or DCF; a DCF is made from one of them");
     return exit_wrong_usage;
   }
   return with_bus(settings.bus, [&](LiveBus& bus) { return save(bus, settings, *loaded); });
@@ -297,7 +297,7 @@ void add_save_command(CLI::App& app, int& exit_code) {
   command->add_flag("--all", settings->all, "all values, not only those that differ from the EDS");
   command->add_option("--bit-rate", settings->bit_rate, "kbit/s of the bus, for [DeviceComissioning]")
       ->check(CLI::Range(5, 1000));
-  command->add_flag("--force", settings->force, "also of another device than FILE describes");
+  command->add_flag("--force", settings->force, "save even if the device does not match FILE");
   add_format_option(*command, settings->format);
   add_timeout_option(*command, settings->sdo.timeout_ms);
   command->callback([settings, output, &exit_code] {

@@ -23,7 +23,7 @@ namespace {
 constexpr const char* examples = R"(Examples:
   edsc scan socketcan:can0                                   all nodes that answer or send heartbeats
   edsc scan socketcan:can0 --nodes 1..10 --listen 3000       some of them; three seconds for slow heartbeats
-  edsc scan socketcan:can0 --eds drive.eds --eds io.eds      and which data sheet fits each
+  edsc scan socketcan:can0 --eds drive.eds --eds io.eds      and which EDS matches each
   edsc scan slcan:/dev/ttyACM0 --lss                         and the devices without node-ID, by LSS Fastscan
   edsc scan socketcand:127.0.0.1:29536/vcan0 --format json   for a program)";
 
@@ -99,8 +99,8 @@ void print_misfits(const std::vector<FoundNode>& nodes, const std::vector<Candid
   for (const Candidate& candidate : candidates) {
     const auto nearest = nearest_misfit(nodes, candidate);
     if (!nearest) continue;
-    print_visibly(stdout, "{} fits no node; node {}{}: {}\n", candidate.path, nearest->node->node_id,
-               nodes.size() > 1 ? " is nearest" : "",
+    print_visibly(stdout, "{} does not match any node; node {}{}: {}\n", candidate.path, nearest->node->node_id,
+               nodes.size() > 1 ? " is the closest" : "",
                identity_differences(candidate.identity, identity_of(*nearest->node)));
   }
 }
@@ -108,7 +108,7 @@ void print_misfits(const std::vector<FoundNode>& nodes, const std::vector<Candid
 void print_text(const Findings& found, const std::vector<Candidate>& candidates, bool colour) {
   TextTable table;
   std::vector<std::string> head{"node", "state", "vendor-ID", "product", "revision", "serial", "device type", "name"};
-  if (!candidates.empty()) head.emplace_back("data sheet");
+  if (!candidates.empty()) head.emplace_back("EDS");
   table.add(std::move(head));
   for (const FoundNode& node : found.nodes) {
     std::vector<std::string> row{
@@ -233,23 +233,23 @@ int run_scan(Settings settings) {
 }  // namespace
 
 void add_scan_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("scan", "which nodes are on a bus, and who they are");
+  CLI::App* command = app.add_subcommand("scan", "find and identify the nodes on a bus");
   command->footer(examples);
   auto settings = std::make_shared<Settings>();
   add_bus_argument(*command, settings->bus);
-  command->add_option("--nodes", settings->nodes, "node-IDs to ask: 1..127, or a list such as 1,3,8..20")
+  command->add_option("--nodes", settings->nodes, "node-IDs to scan: 1..127, or a list such as 1,3,8..20")
       ->check([](const std::string& text) {
-        return parse_node_list(text).empty() ? "\"" + text + "\" is no list of node-IDs" : std::string{};
+        return parse_node_list(text).empty() ? "\"" + text + "\" is not a list of node-IDs" : std::string{};
       })
       ->capture_default_str();
   add_timeout_option(*command, settings->scan.timeout_ms);
-  command->add_option("--listen", settings->scan.listen_ms, "ms to listen to heartbeats for, at least")
+  command->add_option("--listen", settings->scan.listen_ms, "minimum ms to listen for heartbeats")
       ->check(CLI::Range(0, 600'000))
       ->capture_default_str();
-  command->add_option("--eds", settings->sheets, "data sheet to compare with; may be given more than once")
+  command->add_option("--eds", settings->sheets, "EDS to compare with; may be given more than once")
       ->allow_extra_args(false)
       ->type_name("FILE");
-  auto* lss = command->add_flag("--lss", settings->lss, "find devices without node-ID by LSS Fastscan, too");
+  auto* lss = command->add_flag("--lss", settings->lss, "also find devices without node-ID, by LSS Fastscan");
   add_step_option(*command, settings->lss_step_ms)->needs(lss);
   add_format_option(*command, settings->format);
   settings->color.add_to(*command);

@@ -17,7 +17,7 @@ namespace {
 constexpr const char* examples = R"(Examples:
   edsc write socketcan:can0 5 target_velocity 1500 --eds drive.eds            by name
   edsc write socketcan:can0 5 producer_heartbeat_time "500 ms" --eds drive.eds --verify
-  edsc write socketcan:can0 5 1017h 500 --type u16                            without data sheet
+  edsc write socketcan:can0 5 1017h 500 --type u16                            without an EDS
   edsc write socketcan:can0 5 1017h F4 01 --raw                               as bytes
   edsc write socketcan:can0 5 1F50h:01 --file firmware.bin --eds drive.eds    a DOMAIN from a file)";
 
@@ -57,13 +57,13 @@ ParsedValue value_to_write(const Settings& settings, const LiveEntry& entry) {
   if (settings.raw) return parse_value_text(*find_type("octets"), text);
   if (entry.entry != nullptr && !settings.force) return parse_value_text(*entry.entry, text);
   if (entry.type != nullptr) return parse_value_text(*entry.type, text);
-  value.problem = "without data sheet the value needs a type (--type u16), or is given as bytes (--raw)";
+  value.problem = "without an EDS the value requires a type (--type u16), or bytes (--raw)";
   return value;
 }
 
 std::string access_problem(const LiveEntry& entry) {
   if (entry.entry == nullptr || canopen::writable(entry.entry->access)) return {};
-  return fmt::format("{} is {}: it is not written (--force tries)", title(entry),
+  return fmt::format("{} is {}; not written (--force writes anyway)", title(entry),
                      canopen::row_of(entry.entry->access).name);
 }
 
@@ -136,17 +136,17 @@ void add_write_command(CLI::App& app, int& exit_code) {
   auto settings = std::make_shared<Settings>();
   add_bus_argument(*command, settings->bus);
   add_node_argument(*command, settings->node);
-  command->add_option("OBJECT", settings->object, "6064h, 1018h:02, or a name of the data sheet")->required();
+  command->add_option("OBJECT", settings->object, "6064h, 1018h:02, or a name from the EDS")->required();
   auto* value = command->add_option("VALUE", settings->value, "1500, 5DCh, \"500 ms\", text; with --raw bytes");
-  command->add_option("--eds", settings->sheet, "data sheet of the node: EDS, DCF, XDD or XDC")->type_name("FILE");
+  command->add_option("--eds", settings->sheet, "description of the node: EDS, DCF, XDD or XDC")->type_name("FILE");
   add_type_option(*command, settings->type);
   auto* raw = command->add_flag("--raw", settings->raw, "VALUE is bytes, as hexadecimal digits");
   command->add_option("--file", settings->file, "write the bytes of this file")
       ->type_name("FILE")
       ->excludes(value)
       ->excludes(raw);
-  command->add_flag("--force", settings->force, "leave access and limits to the device");
-  command->add_flag("--verify", settings->verify, "read the value back");
+  command->add_flag("--force", settings->force, "write regardless of access type and limits");
+  command->add_flag("--verify", settings->verify, "read the value back and compare it");
   auto* block = command->add_flag("--block", settings->block, "block transfer also for short values");
   command->add_flag("--segmented", settings->segmented, "no block transfer")->excludes(block);
   add_timeout_option(*command, settings->sdo.timeout_ms);

@@ -23,7 +23,7 @@ wrong usage, or a file could not be read or written
 .SH ENVIRONMENT
 .TP
 .B NO_COLOR
-when set, nothing is coloured unless
+if set, output is not coloured unless
 .B \-\-color
 says so
 .SH SEE ALSO

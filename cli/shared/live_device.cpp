@@ -19,7 +19,7 @@ namespace {
 NamedEntries by_address(const std::string& text) {
   const auto address = parse_entry_address(text);
   if (!address) {
-    return {{}, fmt::format("\"{}\" is no address such as 1018h:01; for names a data sheet is needed (--eds)", text)};
+    return {{}, fmt::format("\"{}\" is not an address such as 1018h:01; names require an EDS (--eds)", text)};
   }
   LiveEntry entry;
   entry.index = address->index;
@@ -94,7 +94,8 @@ NodeCheck check_node(SdoAccess& node, const Device& device, const std::string& p
 
 void report_broken_block(const LiveEntry& entry, const SdoOutcome& outcome) {
   if (outcome.block_failure.empty()) return;
-  print_visibly(stderr, "edsc: {}: the block transfer broke: {}; trying segments\n", title(entry), outcome.block_failure);
+  print_visibly(stderr, "edsc: {}: the block transfer failed: {}; trying a segmented transfer\n", title(entry),
+                outcome.block_failure);
 }
 
 bool read_bytes(const std::string& path, std::vector<std::uint8_t>& bytes, std::string& problem) {

@@ -31,18 +31,18 @@ CLI::Option* add_node_argument(CLI::App& command, std::uint8_t& node) {
           "NODE", [&node](const std::string& text) { node = parse_node(text).value_or(0); }, "node-ID, 1..127")
       ->required()
       ->check([](const std::string& text) {
-        return parse_node(text) ? std::string{} : "\"" + text + "\" is no node-ID from 1 to 127";
+        return parse_node(text) ? std::string{} : "\"" + text + "\" is not a node-ID from 1 to 127";
       });
 }
 
 CLI::Option* add_timeout_option(CLI::App& command, unsigned& milliseconds) {
-  return command.add_option("--timeout", milliseconds, "ms that a device may be silent for")
+  return command.add_option("--timeout", milliseconds, "ms to wait for a response of a device")
       ->check(CLI::Range(1, 600'000))
       ->capture_default_str();
 }
 
 CLI::Option* add_step_option(CLI::App& command, unsigned& milliseconds) {
-  return command.add_option("--step", milliseconds, "ms that each step of Fastscan waits for: more on a slow bus")
+  return command.add_option("--step", milliseconds, "ms to wait in each step of Fastscan; more on a slow bus")
       ->check(CLI::Range(1, 10'000))
       ->capture_default_str();
 }
@@ -57,10 +57,10 @@ CLI::Option* add_type_option(CLI::App& command, const canopen::DataTypeRow*& typ
   return command
       .add_option_function<std::string>(
           "--type", [&type](const std::string& text) { type = find_type(text); },
-          "data type in place of the data sheet's: bool, u8..u64, i8..i64, f32, f64, string, unicode, octets, time, "
+          "data type instead of that of the EDS: bool, u8..u64, i8..i64, f32, f64, string, unicode, octets, time, "
           "span, domain")
       ->check([](const std::string& text) {
-        return find_type(text) != nullptr ? std::string{} : "\"" + text + "\" is no data type";
+        return find_type(text) != nullptr ? std::string{} : "\"" + text + "\" is not a data type";
       });
 }
 
@@ -102,7 +102,7 @@ CLI::Option* add_count_option(CLI::App& command, const std::string& name, std::o
       .add_option_function<std::string>(
           name, [&number](const std::string& text) { number = parse_count(text); }, description)
       ->check([](const std::string& text) {
-        return parse_count(text) ? std::string{} : "\"" + text + "\" is no number: write 31, 0x1F or 1Fh";
+        return parse_count(text) ? std::string{} : "\"" + text + "\" is not a number; expected 31, 0x1F or 1Fh";
       });
 }
 

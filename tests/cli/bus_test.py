@@ -145,9 +145,9 @@ class BusCommand(unittest.TestCase):
     def test_what_it_refuses(self) -> None:
         with Bus() as bus:
             for arguments, words in ((("--listen", f"127.0.0.1:{bus.port}"), "Address already in use"),
-                                     (("--listen", "127.0.0.1"), "write HOST:PORT"),
+                                     (("--listen", "127.0.0.1"), "expected HOST:PORT"),
                                      (("--listen", "192.0.2.1:0"), "Cannot assign requested address"),
-                                     (("--bus", "a/b"), "no name of a bus"),
+                                     (("--bus", "a/b"), "not a bus name"),
                                      (("--clients", "0"), "--clients"),
                                      (("vcan0",), "vcan0")):
                 with self.subTest(arguments=arguments):

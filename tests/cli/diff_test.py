@@ -42,8 +42,8 @@ class ExitCodes(CommandLine):
         self.assertEqual(self.code(RENAMED, "--audience", "wire"), FINE)
 
     def test_of_the_wrong_number_of_files(self) -> None:
-        self.expect(WRONG_USAGE, self.edsc("diff", self.old), "two files are compared")
-        self.expect(WRONG_USAGE, self.edsc("diff", self.old, self.old, self.old), "two files are compared")
+        self.expect(WRONG_USAGE, self.edsc("diff", self.old), "expected two files")
+        self.expect(WRONG_USAGE, self.edsc("diff", self.old, self.old, self.old), "expected two files")
         self.expect(WRONG_USAGE, self.edsc("diff", self.old, self.old, "--allow-new"), "--against")
         self.expect(WRONG_USAGE, self.edsc("diff", self.old, "--against", "HEAD"), "expected git:REF, got HEAD")
 

@@ -110,21 +110,21 @@ class Usage(unittest.TestCase):
         self.refuse("--node", "5=missing.eds", words="missing.eds")
 
     def test_a_node_id_that_there_is_not(self) -> None:
-        self.refuse("--node", f"128={AXIS}", words="one of 1 to 127")
-        self.refuse("--node", f"0={AXIS}", words="one of 1 to 127")
+        self.refuse("--node", f"128={AXIS}", words="must be 1 to 127")
+        self.refuse("--node", f"0={AXIS}", words="must be 1 to 127")
 
     def test_a_data_sheet_without_node_id(self) -> None:
-        self.refuse("--node", "eds/rk5c.eds", words="names no node-ID")
+        self.refuse("--node", "eds/rk5c.eds", words="does not state a node-ID")
 
     def test_a_node_that_is_given_twice(self) -> None:
         self.refuse("--node", AXIS, "--node", f"6={AXIS}", words="node 6 is given twice")
 
     def test_a_wrong_filter(self) -> None:
-        self.refuse("--filter", "node=200", words="no node-ID")
-        self.refuse("--filter", "service=tcp", words="no service is called")
-        self.refuse("--filter", "sdo", words="is no condition")
-        self.refuse("--filter", "colour=red", words="is no condition")
-        self.refuse("--filter", "id=xyz", words="no CAN-ID")
+        self.refuse("--filter", "node=200", words="not a node-ID")
+        self.refuse("--filter", "service=tcp", words="unknown service")
+        self.refuse("--filter", "sdo", words="is not a condition")
+        self.refuse("--filter", "colour=red", words="is not a condition")
+        self.refuse("--filter", "id=xyz", words="not a CAN-ID")
 
     def test_a_node_id_before_the_dcfs_own(self) -> None:
         result = edsc("--node", f"9={AXIS}", log="can0 189#37020A000000\n")

@@ -118,7 +118,7 @@ class Conform(unittest.TestCase):
     def test_a_case_that_does_not_exist_is_wrong_usage(self) -> None:
         result = self.run_line(f"edsc conform {ADDRESS} 5 eds/rk5c.eds --only 33.*")
         self.assertEqual(result.returncode, 2)
-        self.assertIn("no case is", result.stderr)
+        self.assertIn("unknown case", result.stderr)
 
 
 if __name__ == "__main__":

@@ -124,11 +124,11 @@ node  state  vendor-ID  product    revision   serial     device type            
             text.replace("0x00020192", "0x00040191") + "\n[DeviceComissioning]\nNodeID=6\nLSS_SerialNumber=0x101\n")
         result = self.edsc("scan", *self.some, *self.fast, "--eds", "device.eds", "--eds", "other.eds", "--eds", "serial.dcf")
         self.assertEqual(result.stdout.splitlines()[3:], [
-            "other.eds fits no node; node 5 is nearest: product code is 00001001h, expected 00001002h",
-            "serial.dcf fits no node; node 6 is nearest: device type is 00020192h, expected 00040191h"])
+            "other.eds does not match any node; node 5 is the closest: product code is 00001001h, expected 00001002h",
+            "serial.dcf does not match any node; node 6 is the closest: device type is 00020192h, expected 00040191h"])
         result = self.edsc("scan", "--nodes", "5", *self.fast, "--eds", "other.eds")
         self.assertEqual(result.stdout.splitlines()[2:],
-                         ["other.eds fits no node; node 5: product code is 00001001h, expected 00001002h"])
+                         ["other.eds does not match any node; node 5: product code is 00001001h, expected 00001002h"])
         result = self.edsc("scan", "--nodes", "5", *self.fast, "--eds", "other.eds", "--format", "json")
         self.assertEqual(self.expect_json(result, "scan.schema.json")["nodes"][0]["misfits"],
                          [{"file": "other.eds", "differences": "product code is 00001001h, expected 00001002h"}])
@@ -202,7 +202,7 @@ class Read(LiveTest):
                     "1018h:01 = EF CD AB 00\n1008h:00 = 4C 69 76 65 20 64 65 76 69 63 65\n")
         self.expect(self.edsc("read", 5, "1018h:01", "--type", "u32"), FINE, "1018h:01 = 11259375 (00ABCDEFh)\n")
         self.expect(self.edsc("read", 5, "speed"), WRONG_USAGE,
-                    stderr='edsc: "speed" is no address such as 1018h:01; for names a data sheet is needed (--eds)\n')
+                    stderr='edsc: "speed" is not an address such as 1018h:01; names require an EDS (--eds)\n')
 
     def test_what_the_device_refuses(self) -> None:
         self.expect(self.edsc("read", 5, "2FFFh", "6064h"), FAILED, "6064h:00 = 40 E2 01 00\n",
@@ -244,7 +244,7 @@ class Read(LiveTest):
     def test_wrong_usage(self) -> None:
         for arguments, words in (
                 (("5",), "OBJECT or --all"),
-                (("200", "1000h"), "no node-ID"),
+                (("200", "1000h"), "not a node-ID"),
                 (("5", "--all"), "--eds"),
                 (("5", "1000h", "--eds", "missing.eds"), "missing.eds"),
                 (("5", "speeed", "--eds", "device.eds"), "speed"),
@@ -290,7 +290,7 @@ class Silence(LiveTest):
                    "605 60 00 00 00 00 00 00 00": ["585 10 41 42 43 44 45 46 47"]}
         self.network.device(lambda frame: answers.get(frame, []))
         self.expect(self.edsc("read", 5, "1008h"), FAILED,
-                    stderr="edsc: 1008h:00: the transfer broke: 0503 0000h, toggle bit not alternated\n")
+                    stderr="edsc: 1008h:00: the transfer failed: 0503 0000h, toggle bit not alternated\n")
 
     def endless(self, initiate: str) -> None:
         """Starts a device whose uploads begin with this answer and never end."""
@@ -304,7 +304,7 @@ class Silence(LiveTest):
 
     def test_an_upload_that_brings_more_than_announced(self) -> None:
         self.endless("585 41 xx xx xx 03 00 00 00")
-        self.expect(self.edsc("read", 5, "1008h"), FAILED, stderr="edsc: 1008h:00: the transfer broke: 0607 0012h, "
+        self.expect(self.edsc("read", 5, "1008h"), FAILED, stderr="edsc: 1008h:00: the transfer failed: 0607 0012h, "
                     "value too long\n")
         self.assertEqual(self.network.frames("605")[-1], "605 80 08 10 00 12 00 07 06")
 
@@ -372,7 +372,7 @@ class Silence(LiveTest):
                 network.device(device(end_of_block, received))
                 self.expect(self.edsc("write", 5, "2000h", "--file", "firmware.bin", "--timeout", 5000), FINE,
                             "2000h:00: 200 bytes from firmware.bin\n",
-                            f"edsc: 2000h:00: the block transfer broke: {words}; trying segments\n")
+                            f"edsc: 2000h:00: the block transfer failed: {words}; trying a segmented transfer\n")
                 self.assertEqual(bytes(received), content)
 
     def test_a_refusal_of_a_block_transfer_is_the_end(self) -> None:
@@ -437,7 +437,7 @@ class Write(LiveTest):
         self.expect(self.edsc("write", 5, "maximum_speed", 6001, "--eds", "device.eds"), WRONG_USAGE,
                     stderr='edsc: 6001 is above the high limit of 2005h:00 "Maximum speed", 6000\n')
         self.expect(self.edsc("write", 5, "1008h", "other", "--eds", "device.eds"), WRONG_USAGE,
-                    stderr="edsc: 1008h:00 Manufacturer device name is const: it is not written (--force tries)\n")
+                    stderr="edsc: 1008h:00 Manufacturer device name is const; not written (--force writes anyway)\n")
         self.assertEqual(self.network.frames("605"), [])
 
     def test_force_leaves_them_to_the_device(self) -> None:
@@ -476,8 +476,8 @@ class Write(LiveTest):
     def test_wrong_usage(self) -> None:
         for arguments, words in (
                 (("1017h",), "VALUE or --file"),
-                (("1017h", "5"), "needs a type"),
-                (("1017h", "x", "--type", "u16"), "is no number"),
+                (("1017h", "5"), "requires a type"),
+                (("1017h", "x", "--type", "u16"), "is not a number"),
                 (("1017h", "70000", "--type", "u16"), "does not fit into UNSIGNED16"),
                 (("1018h", "1", "--eds", "device.eds"), "1018h"),
                 (("firmware", "--file", "missing", "--eds", "device.eds"), "missing: No such file"),
@@ -738,7 +738,7 @@ node 5: 2 of 2 values differ; 2 of 2 values written, 2 verified, 1020h written
         self.expect(self.edsc("configure", 5, "axis.dcf", "--all", "--store"), FAILED,
                     "node 5: 2 of 5 values written, 1 verified, 3 failed\n", f"""\
 edsc: axis.dcf: 1 error; what is wrong is left out ("edsc check --keep-going" lists it)
-axis.dcf:{mapping}:16: error: 1A00h:02 TPDO mapping parameter 1, Mapping entry 2 = 20020008h: refused by the device: 0604 0041h, object cannot be mapped to the PDO; what belongs to it is left as it is now
+axis.dcf:{mapping}:16: error: 1A00h:02 TPDO mapping parameter 1, Mapping entry 2 = 20020008h: refused by the device: 0604 0041h, object cannot be mapped to the PDO; the related entries are not changed
 axis.dcf:{speed}:16: error: 2004h:00 Speed = 4000 rpm: refused by the device: 0609 0031h, value too high
 axis.dcf:{rounded}:16: error: 2009h:00 Rounded value = 7: reads back as 0
 """)
@@ -750,7 +750,7 @@ axis.dcf:{rounded}:16: error: 2009h:00 Rounded value = 7: reads back as 0
         path.write_text(path.read_text().replace("0x00001001", "0x00001002"))
         self.expect(self.edsc("configure", 5, "axis.dcf"), FAILED,
                     stderr="edsc: node 5 is not the device of axis.dcf: product code is 00001001h, expected "
-                           '00001002h; "edsc scan BUS --eds FILE" finds the node of a file, --force writes nevertheless\n')
+                           '00001002h; "edsc scan BUS --eds FILE" finds the node of a file; --force writes anyway\n')
         self.expect(self.edsc("configure", 5, "axis.dcf", "--force"), FINE,
                     "2004h:00 Speed: 1000 rpm -> 1200 rpm\n"
                     "node 5: 1 of 1 value differs; 1 of 1 value written, 1 verified, 1020h written\n")
@@ -784,14 +784,14 @@ axis.dcf:{rounded}:16: error: 2009h:00 Rounded value = 7: reads back as 0
             result = subprocess.run([EDSC, "configure", "socketcan:none", "6", "axis.dcf", *options], cwd=self.folder,
                                     capture_output=True, text=True, timeout=600)
             self.expect(result, FAILED,
-                        stderr="edsc: axis.dcf is for node 5, not for node 6 (--force writes nevertheless)\n")
+                        stderr="edsc: axis.dcf is for node 5, not for node 6 (--force writes anyway)\n")
         self.expect(self.edsc("configure", 6, "axis.dcf", "--timeout", 50, "--force"), FAILED,
                     stderr="edsc: node 6 does not answer\n")
         self.assertEqual(self.edsc("configure", 6, "axis.dcf", "--dry-run", "--all", "--force").returncode, FINE)
         path = self.folder / "axis.dcf"
         path.write_text(path.read_text().replace("NodeID=5", "NodeID=7").replace("NodeId=5", "NodeId=7"))
         self.expect(self.edsc("configure", 5, "axis.dcf"), FAILED,
-                    stderr="edsc: axis.dcf is for node 7, not for node 5 (--force writes nevertheless)\n")
+                    stderr="edsc: axis.dcf is for node 7, not for node 5 (--force writes anyway)\n")
 
     def test_a_concise_dcf(self) -> None:
         self.only(x2004="1200", x1017="250")
@@ -804,10 +804,10 @@ axis.dcf:{rounded}:16: error: 2009h:00 Rounded value = 7: reads back as 0
         self.expect(self.edsc("configure", 5, "axis.bin", "--concise", "--eds", "device.eds"), FINE,
                     "node 5: 0 of 2 values differ\n")
         self.expect(self.edsc("configure", 5, "axis.dcf", "--concise"), WRONG_USAGE,
-                    stderr="edsc: axis.dcf is no concise DCF: it is shorter or longer than it says\n")
+                    stderr="edsc: axis.dcf is not a concise DCF: its length does not match its contents\n")
         self.expect(self.edsc("configure", 5, ".", "--concise"), WRONG_USAGE, stderr="edsc: .: Is a directory\n")
         self.expect(self.edsc("configure", 5, "device.eds"), WRONG_USAGE,
-                    stderr='edsc: device.eds is no DCF: "edsc format --dcf" makes one of a data sheet\n')
+                    stderr='edsc: device.eds is not a DCF; "edsc format --dcf" makes one from an EDS\n')
 
     def test_a_concise_dcf_with_a_write_only_value(self) -> None:
         (self.folder / "axis.bin").write_bytes(struct.pack("<IHBIIHBIH", 2, 0x2006, 0, 4, 77, 0x2004, 0, 2, 1200))
@@ -910,7 +910,7 @@ class Save(LiveTest):
         (self.folder / "other.eds").write_text(SHEET.read_text().replace("0x00001001", "0x00001002"))
         result = self.edsc("save", 5, "other.eds", "-o", "axis.dcf")
         self.expect(result, FAILED, stderr="edsc: node 5 is not the device of other.eds: product code is 00001001h, expected "
-                    '00001002h; "edsc scan BUS --eds FILE" finds the node of a file, --force saves nevertheless\n')
+                    '00001002h; "edsc scan BUS --eds FILE" finds the node of a file; --force saves anyway\n')
         self.assertFalse((self.folder / "axis.dcf").exists())
         self.assertEqual(self.edsc("save", 5, "other.eds", "-o", "axis.dcf", "--force").returncode, FINE)
         self.expect(self.edsc("save", 9, "device.eds", "--timeout", 50), FAILED, stderr="edsc: node 9 does not answer\n")
@@ -1000,7 +1000,7 @@ class Record(LiveTest):
         process.send_signal(signal.SIGINT)
         stdout, stderr = process.communicate(timeout=600)
         count = len(log.read_text().splitlines())
-        self.assertEqual((stdout, stderr, process.returncode), (f"{count} frames to bus.log\n", "", FINE))
+        self.assertEqual((stdout, stderr, process.returncode), (f"{count} frames written to bus.log\n", "", FINE))
         decoded = subprocess.run([EDSC, "decode", log], capture_output=True, text=True, timeout=60)
         self.assertEqual(decoded.returncode, FINE)
         self.assertEqual(len(decoded.stdout.splitlines()), count)
@@ -1044,17 +1044,17 @@ class Nmt(LiveTest):
     def test_it_waits_for_the_boot_up_message(self) -> None:
         self.expect(self.edsc("nmt", "reset-node", 5, "--wait", 60_000), FINE)
         self.expect(self.edsc("nmt", "reset-node", 9, "--wait", 50), FAILED,
-                    stderr="edsc: node 9 did not report boot-up within 50 ms: it has sent no boot-up message\n")
+                    stderr="edsc: node 9 did not report boot-up within 50 ms: it has not sent a boot-up message\n")
 
     def test_it_says_why_no_heartbeat_may_come(self) -> None:
         self.expect(self.edsc("nmt", "start", 5, "--wait", 50), FAILED,
-                    stderr="edsc: node 5 did not report operational within 50 ms: it has sent no heartbeat; "
+                    stderr="edsc: node 5 did not report operational within 50 ms: it has not sent a heartbeat; "
                            f"1017h may be 0 (edsc read {self.network.address} 5 1017h --type u16)\n")
         self.edsc("write", 6, "1017h", 10, "--type", "u16")
         self.expect(self.edsc("nmt", "stop", 6, "--wait", 60_000), FINE)
         self.network.device(lambda frame: ["707 7F"] if frame == "000 01 07" else [])
         self.expect(self.edsc("nmt", "start", 7, "--wait", 10_000), FAILED,
-                    stderr="edsc: node 7 did not report operational within 10000 ms: its last message says "
+                    stderr="edsc: node 7 did not report operational within 10000 ms: the last state that it reported is "
                            "pre-operational\n")
 
     def test_wrong_usage(self) -> None:
@@ -1130,8 +1130,9 @@ class LssWithoutFastscan(LiveTest):
 
     def test_it_says_that_a_slave_answers_lss(self) -> None:
         self.network.device(lambda frame: ["7E4 50 00 00 00 00 00 00 00"] if frame.startswith("7E5 4C") else [])
-        words = ("edsc: fastscan: a device without node-ID answers LSS, but not Fastscan, which it may not have; \"edsc lss BUS "
-                 "state configuration\" and \"inquire\", with no other device on the bus, tell its numbers for \"assign\"\n")
+        words = ("edsc: fastscan: a device without node-ID answers LSS, but not Fastscan, which it may not support; with no "
+                 "other device on the bus, \"edsc lss BUS state configuration\" and \"inquire\" show its numbers for "
+                 "\"assign\"\n")
         self.expect(self.edsc("lss", "--timeout", 2000, "fastscan"), FAILED, stderr=words)
         self.expect(self.edsc("lss", "--timeout", 2000, "assign", "--node-id", 7), FAILED, stderr=words)
 

@@ -172,14 +172,14 @@ class Commands(unittest.TestCase):
 
     def test_an_hour_takes_a_moment(self) -> None:
         self.expect(self.edsc("nmt", "simulated:devices@5", "stop", 5, "--wait", 600_000), FAILED, "",
-                    "edsc: node 5 did not report stopped within 600000 ms: its last message says boot-up\n")
+                    "edsc: node 5 did not report stopped within 600000 ms: the last state that it reported is boot-up\n")
 
     def test_addresses(self) -> None:
         for address in ("simulated:", "simulated:devices", "simulated:devices@", "simulated:@5", "simulated:devices@0",
                         "simulated:devices@128", "simulated:devices@5,", "simulated:devices@5,a b"):
             with self.subTest(address):
-                self.expect(self.edsc("nmt", address, "start", 5), WRONG_USAGE, "", f'edsc: "{address}" is not a simulation: '
-                            "write simulated:PROGRAM@NODE-ID[,NAME]\n")
+                self.expect(self.edsc("nmt", address, "start", 5), WRONG_USAGE, "", f'edsc: "{address}" is not a simulation; '
+                            "expected simulated:PROGRAM@NODE-ID[,NAME]\n")
 
     def test_programs_that_are_not_simulations(self) -> None:
         for text, problem in (("echo hello", 'unexpected line "hello" of the program; is it a simulation of edsc?'),

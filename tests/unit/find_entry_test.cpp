@@ -65,7 +65,7 @@ TEST_F(FindEntry, SuggestsWhatWasMeant) {
   EXPECT_NE(find("vendr_id").find("did you mean 1018h:01 identity_object.vendor_id"), std::string::npos)
       << find("vendr_id");
   EXPECT_EQ(find("xyzzy"), "the device has no object \"xyzzy\"");
-  EXPECT_NE(find("6065h:00").find("next to it are 6064h position_actual_value and"), std::string::npos)
+  EXPECT_NE(find("6065h:00").find("the nearest objects are 6064h position_actual_value and"), std::string::npos)
       << find("6065h:00");
   EXPECT_NE(find("1018h:09").find("has no sub-index 09h; it has 1018h:00"), std::string::npos) << find("1018h:09");
   EXPECT_NE(find("identity_object.serial").find("has no entry \"serial\"; it has 1018h:00"), std::string::npos);

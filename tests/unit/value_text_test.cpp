@@ -87,12 +87,12 @@ TEST(ValueText, SaysWhatIsWrongWithANumber) {
   EXPECT_EQ(problem(DataType::integer8, "0x100"), "0x100 does not fit into INTEGER8 (-128..127)");
   EXPECT_EQ(problem(DataType::unsigned64, "18446744073709551616"),
             "18446744073709551616 does not fit into UNSIGNED64 (0..18446744073709551615)");
-  EXPECT_EQ(problem(DataType::unsigned16, "fast"), "\"fast\" is no number (such as 10, -10, 0x0A or 0Ah)");
-  EXPECT_EQ(problem(DataType::unsigned16, ""), "\"\" is no number (such as 10, -10, 0x0A or 0Ah)");
+  EXPECT_EQ(problem(DataType::unsigned16, "fast"), "\"fast\" is not a number (such as 10, -10, 0x0A or 0Ah)");
+  EXPECT_EQ(problem(DataType::unsigned16, ""), "\"\" is not a number (such as 10, -10, 0x0A or 0Ah)");
   EXPECT_EQ(problem(DataType::real32, "1e40"), "1e40 does not fit into REAL32");
   EXPECT_EQ(problem(DataType::real64, "1e400"), "1e400 does not fit into REAL64");
-  EXPECT_EQ(problem(DataType::real64, "2,5"), "\"2,5\" is no number (such as 2.5 or -1e3)");
-  EXPECT_EQ(problem(DataType::boolean, "yes"), "\"yes\" is no BOOLEAN: it is true or false, 1 or 0");
+  EXPECT_EQ(problem(DataType::real64, "2,5"), "\"2,5\" is not a number (such as 2.5 or -1e3)");
+  EXPECT_EQ(problem(DataType::boolean, "yes"), "\"yes\" is not a BOOLEAN; expected true, false, 1 or 0");
 }
 
 TEST(ValueText, TakesStringsAndTimes) {
