@@ -1,5 +1,5 @@
-/// One client of the bus server: what it may say in which mode of the socketcand protocol, and what is on its way to
-/// it.
+/// One client of the bus server: the requests that each mode of the socketcand protocol allows, and the data pending
+/// for the client.
 #pragma once
 
 #include <chrono>
@@ -13,7 +13,7 @@
 
 namespace edsc {
 
-/// What a client's element comes to for the server.
+/// The request of a client's element to the server.
 enum class ClientRequest { nothing, open_bus, send_frame, leave };
 
 class BusClient {
@@ -21,7 +21,7 @@ class BusClient {
   using Clock = std::chrono::steady_clock;
   enum class Command { open, rawmode, bcmmode, send, echo };
 
-  /// Takes the connected, non-blocking socket ; `name` tells of it in messages.
+  /// Takes the connected, non-blocking socket; `name` identifies the client in messages.
   BusClient(int socket, std::string name);
   BusClient(const BusClient&) = delete;
   BusClient& operator=(const BusClient&) = delete;
@@ -33,33 +33,33 @@ class BusClient {
   /// When it was connected.
   [[nodiscard]] Clock::time_point since() const { return since_; }
 
-  /// The number of the bus that it has opened.
+  /// The number of the opened bus.
   [[nodiscard]] std::optional<std::size_t> bus() const { return bus_; }
 
-  /// True in the raw mode: it gets all frames of its bus.
+  /// True in the raw mode: the client receives all frames of its bus.
   [[nodiscard]] bool listens() const { return raw_; }
 
-  /// One byte of what the client says. `open_bus`: answer with `opened` or `refuse`; `send_frame`: `frame()` goes to
-  /// the bus; `leave`: it is to be closed, `leaves_because` says why.
+  /// Reads one byte from the client. `open_bus`: answer with `opened` or `refuse`; `send_frame`: send `frame()` to the
+  /// bus; `leave`: close the connection, for the reason in `leaves_because`.
   [[nodiscard]] ClientRequest take(char c);
 
-  /// The name that an `open_bus` asks for.
+  /// The bus name of an `open_bus`.
   [[nodiscard]] const std::string& wanted_bus() const { return wanted_bus_; }
   [[nodiscard]] const canopen::Frame& frame() const { return frame_; }
   [[nodiscard]] const std::string& leaves_because() const { return leaves_because_; }
 
   void opened(std::size_t bus);
 
-  /// Tells the client "< error REASON >".
+  /// Sends "< error REASON >" to the client.
   void refuse(std::string_view reason);
 
-  /// Puts text behind what is on its way to the client.
+  /// Appends text to the data pending for the client.
   void put(std::string_view text) { backlog_.append(text); }
 
-  /// Writes as much as the connection takes. False when it is broken.
+  /// Writes as much as the connection accepts. Returns false if it is broken.
   [[nodiscard]] bool flush();
 
-  /// Bytes on their way to the client.
+  /// Bytes pending for the client.
   [[nodiscard]] std::size_t backlog() const { return backlog_.size() - written_; }
 
  private:

@@ -20,31 +20,32 @@ namespace edsc {
 
 struct BusLimits {
   std::size_t clients = 64;
-  std::size_t backlog = std::size_t{8} << 20;  ///< bytes on their way to one client, beyond which it is disconnected
-  std::chrono::milliseconds handshake{5000};   ///< after which a client that has opened no bus is disconnected
+  std::size_t backlog = std::size_t{8} << 20;  ///< bytes pending for one client, above which it is disconnected
+  std::chrono::milliseconds handshake{5000};   ///< after which a client that has not opened a bus is disconnected
 };
 
-/// What the server tells of; none of them may be empty.
+/// Events that the server reports; none of the functions may be empty.
 struct BusEvents {
   std::function<void(const canopen::Frame&, const std::string& bus, socketcand::TimeStamp)> on_frame;
   std::function<void(const std::string& message)> on_trouble;  ///< a client is disconnected
 };
 
-/// Each bus hands every frame to all its clients but the sender, to all in the same order. It waits for none of them.
+/// Each bus forwards every frame to all its clients except the sender, to all in the same order, without waiting for
+/// any.
 class BusServer {
  public:
-  /// Listens. Throws std::system_error when it cannot.
+  /// Starts listening. Throws std::system_error on failure.
   BusServer(const ListenAddress& address, std::vector<std::string> buses, BusLimits limits, BusEvents events);
   BusServer(const BusServer&) = delete;
   BusServer& operator=(const BusServer&) = delete;
   ~BusServer();
 
-  /// Where it listens, with the port that it has got.
+  /// The address it listens at, with the actual port.
   [[nodiscard]] const ListenAddress& address() const { return address_; }
   [[nodiscard]] std::size_t clients() const { return clients_.size(); }
 
-  /// Waits until a client wants something, or for this time at most, and serves all that do. `signals` is the mask
-  /// while it waits; a signal ends the turn.
+  /// Waits for requests of clients, at most for this time, and serves them. `signals` is the signal mask during the
+  /// wait; a signal ends it.
   void turn(std::chrono::milliseconds wait, const sigset_t* signals = nullptr);
 
  private:

@@ -11,7 +11,7 @@ struct ListenAddress {
   std::uint16_t port = 29536;  ///< 0: the system picks one
 };
 
-/// Throws std::invalid_argument, with a sentence, for what is no such address.
+/// Throws std::invalid_argument with a message for the user if the address is malformed.
 [[nodiscard]] ListenAddress parse_listen_address(const std::string& text);
 
 /// HOST:PORT again.

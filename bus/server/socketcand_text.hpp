@@ -14,7 +14,7 @@
 
 namespace edsc::socketcand {
 
-/// Bytes between "<" and ">". The longest element of the raw mode has some 60.
+/// Bytes between "<" and ">". The longest element of the raw mode has about 60.
 inline constexpr std::size_t longest_element = 200;
 
 /// Seconds and microseconds since 1970, of a frame that was received.
@@ -23,13 +23,13 @@ struct TimeStamp {
   std::int32_t microseconds = 0;  ///< 0..999 999
 };
 
-/// Takes bytes one by one and finds elements in them; what stands outside of them is passed over.
+/// Reads bytes one by one and finds elements; text outside elements is ignored.
 class ElementReader {
  public:
   enum class Found { nothing, element, too_long };
 
-  /// `element` with the ">" that ends one; `too_long` with the byte that is one too many: the rest of it is passed
-  /// over.
+  /// Returns `element` at the ">" that ends one; `too_long` at the first byte above the limit: the rest of the element
+  /// is ignored.
   [[nodiscard]] Found take(char c) {
     if (c == '<') {
       size_ = 0;
@@ -49,7 +49,7 @@ class ElementReader {
     return Found::nothing;
   }
 
-  /// What stands between "<" and ">" of the element that `take` has found; valid until the next call of `take`.
+  /// The text between "<" and ">" of the element that `take` has found; valid until the next call of `take`.
   [[nodiscard]] std::string_view element() const { return {text_.data(), size_}; }
 
  private:
@@ -58,12 +58,12 @@ class ElementReader {
   bool inside_ = false;
 };
 
-/// Takes the words of an element, which blanks part, one after the other.
+/// Reads the words of an element, separated by blanks, one after the other.
 class Words {
  public:
   explicit constexpr Words(std::string_view element) : rest_{element} {}
 
-  /// The next word; empty when there is none.
+  /// Returns the next word; empty at the end.
   [[nodiscard]] constexpr std::string_view next() {
     rest_.remove_prefix(std::min(rest_.find_first_not_of(' '), rest_.size()));
     const std::string_view word = rest_.substr(0, rest_.find(' '));
@@ -79,7 +79,7 @@ class Words {
 
 namespace detail {
 
-/// A whole word as a number of at most `max`.
+/// Reads a whole word as a number up to `max`.
 [[nodiscard]] inline std::optional<std::uint32_t> number(std::string_view word, int base, std::uint32_t max) {
   std::uint32_t value = 0;
   const char* const end = word.data() + word.size();
@@ -88,7 +88,7 @@ namespace detail {
   return value;
 }
 
-/// Eight digits make a CAN-ID of 29 bits; so does a value that 11 bits do not hold.
+/// A CAN-ID has 29 bits if it has eight digits, or a value above 7FFh.
 [[nodiscard]] inline bool read_id(std::string_view word, canopen::Frame& frame) {
   const auto id = number(word, 16, 0x1FFF'FFFF);
   if (!id || word.size() > 8) return false;
@@ -105,7 +105,7 @@ namespace detail {
 
 }  // namespace detail
 
-/// The frame of a client's "send ID DLC BYTE..." or "sendrtr ID DLC"; nothing when the element is no such one.
+/// Returns the frame of a client's "send ID DLC BYTE..." or "sendrtr ID DLC"; nothing for any other element.
 [[nodiscard]] inline std::optional<canopen::Frame> parse_send(std::string_view element) {
   Words words{element};
   const std::string_view command = words.next();

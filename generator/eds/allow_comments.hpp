@@ -1,4 +1,4 @@
-/// Comments of a data sheet that allow findings: `; edsc: allow RULE - reason`.
+/// Comments of an EDS that allow findings: `; edsc: allow RULE - reason`.
 #pragma once
 
 #include <string>
@@ -12,20 +12,20 @@ namespace edsc {
 /// A comment that begins with `; edsc:`.
 struct AllowComment {
   Position position;         ///< of the rule, else of the comment
-  std::string_view rule;     ///< empty when the comment is not of this form
-  std::string_view reason;   ///< empty where it is missing
+  std::string_view rule;     ///< empty if the comment is malformed
+  std::string_view reason;   ///< empty if missing
   AllowanceScope scope;      ///< the next line or section; before the first section the file
-  bool has_target = false;   ///< false where only comments and blank lines follow
+  bool has_target = false;   ///< false if only comments and blank lines follow
 };
 
 struct AllowComments {
-  SheetOutline outline;  ///< sections, and lines of lists that name another object or entry
+  SheetOutline outline;  ///< sections, and list lines that refer to another object or entry
   std::vector<AllowComment> comments;
 };
 
-/// Finds the comments, and what they apply to, in the lines of an EDS or DCF. A comment applies to the next line that is
-/// neither a comment nor empty: a key, or a section as a whole. One before the first section applies to the file, one
-/// after a section's header in the same line to that section.
+/// Finds the comments and their targets in the lines of an EDS or DCF. A comment applies to the next line that is
+/// neither a comment nor empty: a key, or a whole section. A comment before the first section applies to the file, one
+/// after a section header on the same line to that section.
 [[nodiscard]] AllowComments find_allow_comments(const SourceFile& source);
 
 }  // namespace edsc

@@ -7,7 +7,7 @@
 
 namespace edsc {
 
-/// `Lines=2`, `Line1=...`, `Line2=...`. Checks the count against the lines.
+/// `Lines=2`, `Line1=...`, `Line2=...`. Checks the count.
 [[nodiscard]] Comments read_comments(const SourceFile& source, const IniSection& section, Diagnostics& diagnostics);
 
 }  // namespace edsc

@@ -1,5 +1,5 @@
-/// The data sheet: an EDS or DCF as it was written, sorted into the sections of CiA 306-1, nothing resolved yet. An XDD or
-/// XDC of CiA 311 is read into the same.
+/// The data sheet: an EDS or DCF as written, sorted into the sections of CiA 306-1, unresolved. An XDD or XDC of CiA
+/// 311 is read into the same structure.
 #pragma once
 
 #include <array>
@@ -16,8 +16,8 @@
 
 namespace edsc {
 
-/// The value of a key as it was spelled, and where. `present` is false when the section has no such key; then
-/// `position` is that of the section.
+/// The value of a key as written, with its position. `present` is false if the section does not have the key;
+/// `position` is then that of the section.
 struct Field {
   std::string_view text;
   Position position;
@@ -58,7 +58,7 @@ struct NumberedField {
 
 struct ObjectDescription : EntryDescription {
   std::uint16_t index = 0;
-  bool has_section = true;  ///< false when only sub-object sections name this index
+  bool has_section = true;  ///< false if only sub-object sections have this index
   Field sub_number;
   Field compact_sub_obj;
   std::vector<SubObjectDescription> sub_objects;  ///< ascending, each sub-index once
@@ -82,7 +82,7 @@ struct FileInfo {
   bool present = false;
   Field file_name, file_version, file_revision, eds_version, description, created_by;
   Field creation_time, creation_date, modification_time, modification_date, modified_by;
-  Field last_eds;  ///< of a DCF: the EDS it was made of
+  Field last_eds;  ///< of a DCF: the EDS it was made from
 };
 
 /// [DeviceInfo], clause 4.5.
@@ -152,11 +152,11 @@ struct ModuleDescription {
   std::vector<SubExtension> sub_extensions;  ///< ascending
 };
 
-/// What may be plugged into a modular device, and what is.
+/// The supported and the connected modules of a modular device.
 struct Modules {
   Field nr_of_entries;
   std::vector<ModuleDescription> supported;  ///< ascending
-  std::vector<NumberedField> connected;      ///< of a DCF: the number of a module by its place
+  std::vector<NumberedField> connected;      ///< of a DCF: the module number at each place
 };
 
 struct DataSheet {
@@ -173,12 +173,12 @@ struct DataSheet {
   std::vector<NumberedField> dummy_usage;
   std::vector<ListedObject> listed;        ///< in the order of the lists
   std::vector<ObjectDescription> objects;  ///< ascending by index, each index once
-  /// What fields point to that does not stand in the source like that. Copies of the sheet share it.
+  /// Texts that fields point to and that do not occur in the source in this form. Copies of the data sheet share them.
   std::shared_ptr<const std::deque<std::string>> texts;
 };
 
-/// Sorts an INI file into a data sheet. Everything that cannot be placed is reported; the first of two sections or keys
-/// of the same name wins.
+/// Sorts an INI file into a data sheet. Unknown sections and keys are reported; of duplicate sections or keys, the
+/// first is used.
 [[nodiscard]] DataSheet read_data_sheet(const IniFile& ini, Diagnostics& diagnostics);
 
 }  // namespace edsc

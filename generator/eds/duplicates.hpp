@@ -1,4 +1,4 @@
-/// Sections and keys that stand twice: the first one counts.
+/// Duplicate sections and keys; the first is used.
 #pragma once
 
 #include "diagnostics/diagnostics.hpp"
@@ -6,11 +6,11 @@
 
 namespace edsc {
 
-/// `first` is the section that counts. Says whether the two differ.
+/// `first` is the section that is used. The message states whether the contents differ.
 void report_duplicate_section(const SourceFile& source, const IniSection& section, const IniSection& first,
                               Diagnostics& diagnostics);
 
-/// `first` is the place of the value that counts.
+/// `first` is the position of the value that is used.
 void report_duplicate_key(const SourceFile& source, const IniEntry& entry, const Position& first,
                           Diagnostics& diagnostics);
 

@@ -14,7 +14,7 @@
 
 namespace edsc {
 
-/// A key and where its value goes; null for a key that is known but says nothing about the device's function.
+/// A key and its destination; null for a known key without effect on the device.
 template <typename Struct>
 struct KeyRow {
   std::string_view name;
@@ -36,7 +36,7 @@ template <typename Struct>
   return {};
 }
 
-/// Gives each field the place where it is missing.
+/// Sets the position of each field, in case it is missing.
 template <typename Struct>
 void place_fields(std::span<const KeyRow<Struct>> table, const Position& position, Struct& target) {
   for (const KeyRow<Struct>& row : table) {
@@ -48,13 +48,13 @@ void place_fields(std::span<const KeyRow<Struct>> table, const Position& positio
 
 [[nodiscard]] Field make_field(const SourceFile& source, const IniEntry& entry);
 
-/// The field of `number`; a new one when there is none yet.
+/// Returns the field of `number`; adds one if necessary.
 [[nodiscard]] Field& numbered_field(std::vector<NumberedField>& fields, std::uint32_t number);
 
-/// The number behind `prefix`: 3 in `Line3`. Nothing for any other key.
+/// Returns the number after `prefix`: 3 in `Line3`. Nothing for any other key.
 [[nodiscard]] std::optional<std::uint32_t> number_behind(std::string_view prefix, std::string_view key);
 
-/// `known` are the keys of the section: the message names one that is similar.
+/// `known` are the keys of the section, for a suggestion in the message.
 void report_unknown_key(const SourceFile& source, const IniSection& section, const IniEntry& entry,
                         std::span<const std::string_view> known, Diagnostics& diagnostics);
 
@@ -65,8 +65,8 @@ void append_names(std::vector<std::string_view>& names, std::span<const KeyRow<S
   for (const KeyRow<Struct>& row : table) names.push_back(row.name);
 }
 
-/// Puts each value where `find` says its key belongs; `find` takes a key and gives a KeyMatch. `known` are names and tables
-/// of the keys that it finds.
+/// Stores each value at the destination that `find` returns as a KeyMatch for its key. `known` are names and tables of
+/// the keys that it finds.
 template <typename Find, typename... Known>
 void read_keys(const SourceFile& source, const IniSection& section, Diagnostics& diagnostics, Find find,
                const Known&... known) {

@@ -10,11 +10,11 @@
 
 namespace edsc {
 
-/// Null where a section is missing.
+/// Null if a section is missing.
 struct ModuleSections {
   const IniSection* supported = nullptr;
   const IniSection* connected = nullptr;
-  std::span<const NamedSection> modules;  ///< all that begin with MX
+  std::span<const NamedSection> modules;  ///< all sections that begin with MX
 };
 
 [[nodiscard]] Modules read_modules(const SourceFile& source, const ModuleSections& sections, Diagnostics& diagnostics);

@@ -12,12 +12,12 @@ namespace edsc {
 
 struct CountKey {
   std::string_view name;         ///< as CiA 306 spells it
-  std::string_view misspelling;  ///< let through with a warning; may be empty
-  WarningRule rule;              ///< for a count that is missing or differs
-  bool numbers_count_up;         ///< from 1, without gaps; else they are sub-indices, and some may be left out
+  std::string_view misspelling;  ///< accepted with a warning; may be empty
+  WarningRule rule;              ///< for a missing or wrong count
+  bool numbers_count_up;         ///< from 1, without gaps; otherwise sub-indices, possibly with gaps
 };
 
-/// The entries in the order of the file, each number once. Checks the count against them.
+/// Returns the entries in the order of the file, each number once. Checks the count.
 [[nodiscard]] std::vector<NumberedField> read_numbered_section(const SourceFile& source, const IniSection& section,
                                                                const CountKey& count_key, Diagnostics& diagnostics);
 

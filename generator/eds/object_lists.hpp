@@ -15,11 +15,11 @@ namespace edsc {
 /// `MandatoryObjects` and its like.
 [[nodiscard]] std::string_view section_name(ObjectListKind kind);
 
-/// The list where an object belongs. Nothing for the data types below 1000h, of which CiA 306 does not say where they are
-/// listed.
+/// The list to which an object belongs. Nothing for the data types below 1000h, for which CiA 306 does not define a
+/// list.
 [[nodiscard]] std::optional<ObjectListKind> list_of(std::uint16_t index);
 
-/// The three sections; null where one is missing.
+/// The three sections; null if missing.
 struct ObjectListSections {
   const IniSection* mandatory = nullptr;
   const IniSection* optional = nullptr;
@@ -30,7 +30,7 @@ struct ObjectListSections {
 [[nodiscard]] std::vector<ListedObject> read_object_lists(const SourceFile& source, const ObjectListSections& sections,
                                                           Diagnostics& diagnostics);
 
-/// Warns of listed objects without section, and of sections in no list.
+/// Reports listed objects without section, and sections that are not listed.
 void compare_lists_with_objects(const DataSheet& sheet, Diagnostics& diagnostics);
 
 }  // namespace edsc

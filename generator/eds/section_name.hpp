@@ -1,4 +1,4 @@
-/// What the name of a section says (CiA 306-1, clauses 4.4 to 4.9, 5.3 and 6).
+/// The meaning of a section name (CiA 306-1, clauses 4.4 to 4.9, 5.3 and 6).
 #pragma once
 
 #include <cstdint>
@@ -33,10 +33,10 @@ enum class SectionKind : std::uint8_t {
   module_info,           ///< [M1ModuleInfo]
   module_comments,       ///< [M1Comments]
   module_fixed_objects,  ///< [M1FixedObjects]
-  module_fixed_object,   ///< [M1Fixed6000], [M1Fixed6000sub1] and all else that objects have
+  module_fixed_object,   ///< [M1Fixed6000], [M1Fixed6000sub1] and the other sections of objects
   module_sub_extends,    ///< [M1SubExtends]
   module_sub_extension,  ///< [M1SubExt6000]
-  malformed,             ///< meant for an object, but names no index or sub-index
+  malformed,             ///< meant for an object, but without a valid index or sub-index
   unknown
 };
 
@@ -46,8 +46,8 @@ struct SectionName {
   std::uint8_t sub_index = 0;
   bool has_short_index = false;             ///< an index of fewer than four digits
   std::uint16_t number = 0;                 ///< of a tool or module
-  SectionKind part = SectionKind::unknown;  ///< of `module_fixed_object`: which of an object's sections it is
-  std::string_view remark;                  ///< for `malformed` what is wrong
+  SectionKind part = SectionKind::unknown;  ///< of `module_fixed_object`: the kind of its object section
+  std::string_view remark;                  ///< for `malformed`: the fault
 };
 
 struct NamedSection {
@@ -55,10 +55,10 @@ struct NamedSection {
   const IniSection* section = nullptr;
 };
 
-/// Letter case is ignored.
+/// Ignores letter case.
 [[nodiscard]] SectionName read_section_name(std::string_view name);
 
-/// Names of sections, for a message about `like`; one that begins with an index may belong to a compact form.
+/// Names of sections that are candidates for a suggestion for `like`, including those of compact forms for an index.
 [[nodiscard]] std::vector<std::string> known_section_names(std::string_view like);
 
 }  // namespace edsc

@@ -1,4 +1,4 @@
-/// The keys of CiA 306-1 and where their values go: one row for a key, for what reads sections and for what writes them.
+/// The keys of CiA 306-1 and their destinations: one row per key, for reading and writing sections.
 #pragma once
 
 #include <span>

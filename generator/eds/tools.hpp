@@ -1,4 +1,4 @@
-/// [Tools] and [ToolX]: programs of the vendor that go with the device.
+/// [Tools] and [ToolX]: programs of the vendor for the device.
 #pragma once
 
 #include <span>
@@ -11,7 +11,7 @@
 
 namespace edsc {
 
-/// `list` is null when there is no [Tools]. Checks its count against the sections.
+/// `list` is null if [Tools] is missing. Checks the count of sections.
 [[nodiscard]] std::vector<Tool> read_tools(const SourceFile& source, const IniSection* list,
                                            std::span<const NamedSection> sections, Diagnostics& diagnostics);
 

@@ -16,7 +16,7 @@ namespace edsc {
 
 [[nodiscard]] constexpr char to_lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; }
 
-/// Space and tab. Ctrl-Z too: DOS programs end a text with it, and nowhere else is it let through.
+/// Space and tab, and Ctrl-Z, with which DOS programs end a text; it is rejected anywhere else.
 [[nodiscard]] constexpr bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\x1A'; }
 
 [[nodiscard]] constexpr std::string_view trim_left(std::string_view text) {

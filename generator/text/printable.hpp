@@ -11,13 +11,13 @@
 
 namespace edsc {
 
-/// True for a code point that a terminal or editor obeys or hides instead of showing it: C0 and C1 controls, marks of
-/// bidirectional text, separators of lines, other invisible format characters. The joiners of Indic and Persian
-/// scripts are not among them.
+/// Returns true for a code point that a terminal or editor interprets or hides instead of displaying it: C0 and C1
+/// controls, bidirectional marks, line separators and other invisible format characters, except for the joiners of
+/// Indic and Persian scripts.
 [[nodiscard]] bool is_hidden(char32_t code_point);
 
-/// The UTF-8 sequence that `text` begins with: its length, and whether it is to be shown as it is. A byte that begins no
-/// well-formed sequence is one of length 1 that is not.
+/// The UTF-8 sequence that `text` begins with: its length, and whether it can be displayed unchanged. A byte that does
+/// not begin a well-formed sequence is a sequence of length 1 that cannot.
 struct Sequence {
   std::size_t length = 0;
   bool is_visible = false;
@@ -29,10 +29,10 @@ struct Sequence {
 [[nodiscard]] std::string printable(std::string_view text);
 void append_printable(std::string& out, std::string_view text);
 
-/// Valid JSON with hidden code points as \u202E. Equal to `json` for every reader.
+/// Returns the JSON with hidden code points as \u202E. Readers decode it like `json`.
 [[nodiscard]] std::string printable_json(std::string json);
 
-/// A value of nlohmann::json as text for people and programs. What is not UTF-8 becomes U+FFFD.
+/// A value of nlohmann::json as text for people and programs. Bytes that are not UTF-8 become U+FFFD.
 template <typename Json>
 [[nodiscard]] std::string json_text(const Json& json) {
   return printable_json(json.dump(2, ' ', false, Json::error_handler_t::replace));
@@ -54,7 +54,7 @@ Printed<Value> printed(const Value& value) {
 
 }  // namespace detail
 
-/// fmt::print() with each text among `values` made printable: for messages that hold names, values or paths.
+/// fmt::print() with each text among `values` made printable: for messages with names, values or paths.
 template <typename... Values>
 void print_visibly(std::FILE* stream, fmt::format_string<detail::Printed<std::decay_t<Values>>...> format,
                    const Values&... values) {

@@ -1,4 +1,4 @@
-/// A file's text in UTF-8, whatever it was written in, cut into lines.
+/// The text of a file, converted to UTF-8 and split into lines.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace edsc {
 
-/// cp437 stands for the DOS code pages 437 and 850, which agree on the letters of western Europe.
+/// cp437 means the DOS code pages 437 and 850, which have the same western European letters.
 enum class Encoding : std::uint8_t { ascii, utf8, utf16_le, utf16_be, cp1252, cp437 };
 
 [[nodiscard]] std::string_view to_string(Encoding encoding);
@@ -20,8 +20,8 @@ class SourceFile {
   static constexpr std::size_t max_bytes = std::size_t{1} << 30;
   static constexpr std::size_t max_unpacked_bytes = std::size_t{1} << 26;  ///< of a gzip file
 
-  /// `name` is what diagnostics show; `bytes` are decoded at once, a byte order mark is dropped. What the encoding does
-  /// not define becomes U+FFFD. More than `max_bytes` throw std::length_error.
+  /// `name` is the file name in diagnostics; `bytes` are decoded immediately, without the byte order mark. Undefined
+  /// characters of the encoding become U+FFFD. Throws std::length_error above `max_bytes`.
   SourceFile(std::string name, std::string bytes);
 
   SourceFile(const SourceFile&) = delete;
@@ -32,9 +32,9 @@ class SourceFile {
   [[nodiscard]] Encoding encoding() const { return encoding_; }
   /// Whether `text()` is the file byte for byte: ASCII or UTF-8, without byte order mark.
   [[nodiscard]] bool is_verbatim() const { return is_verbatim_; }
-  /// Number of lines; the text after the last line end counts when it is not empty.
+  /// Number of lines; text after the last line end counts if it is not empty.
   [[nodiscard]] std::uint32_t lines() const;
-  /// Line `number` (from 1) without its line end (LF, CR LF or CR); empty where there is none.
+  /// Line `number` (from 1) without its line end (LF, CR LF or CR); empty if it does not exist.
   [[nodiscard]] std::string_view line(std::uint32_t number) const;
 
  private:
@@ -45,11 +45,11 @@ class SourceFile {
   std::string text_;
   Encoding encoding_ = Encoding::ascii;
   bool is_verbatim_ = false;
-  std::vector<std::uint32_t> starts_;  ///< where each line begins; one more for the end
+  std::vector<std::uint32_t> starts_;  ///< start of each line, and the end
 };
 
-/// Reads a whole file, "-" is standard input; one that is a gzip file is unpacked. Returns null when it cannot be read (missing, a folder, no permission,
-/// too large); `error` then holds a sentence with path and reason.
+/// Reads a whole file and unpacks a gzip file; "-" is standard input. Returns null if the file cannot be read (missing,
+/// a folder, no permission, too large), with path and reason in `error`.
 [[nodiscard]] std::unique_ptr<SourceFile> read_source_file(const std::string& path, std::string& error);
 
 }  // namespace edsc

@@ -1,4 +1,4 @@
-/// UTF-8: what every text inside the generator is.
+/// UTF-8, the encoding of all texts in the generator.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@ namespace edsc {
 
 inline constexpr char32_t replacement_character = 0xFFFD;
 
-/// Length of the well-formed sequence that `text` begins with; 0 where there is none.
+/// Returns the length of the well-formed sequence that `text` begins with, or 0.
 [[nodiscard]] std::size_t utf8_sequence_length(std::string_view text);
 
 [[nodiscard]] bool is_ascii(std::string_view text);
@@ -17,7 +17,7 @@ inline constexpr char32_t replacement_character = 0xFFFD;
 
 void append_utf8(std::string& text, char32_t code_point);
 
-/// True for every byte of a code point but its first.
+/// Returns true for every byte of a code point except its first.
 [[nodiscard]] constexpr bool is_utf8_continuation(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
 
 /// Code points beyond FFFFh as two surrogates.
