@@ -1,4 +1,4 @@
-/// A JSON view as the template library sees it, without a copy of it: names are looked up when a template asks for them.
+/// Adapts a JSON view to the template library without copying it: names are looked up when a template uses them.
 #pragma once
 
 #include <cstddef>
@@ -18,18 +18,18 @@ class JsonContext : public kainjow::mustache::basic_context<std::string> {
   /// `view` is an object and must outlive the context.
   explicit JsonContext(const Json& view) : nodes_{&view} {}
 
-  /// The library enters the section of something that `get` has given it, or of one item of such a list.
+  /// The library enters the section of a value returned by `get`, or of one item of such a list.
   void push(const Data* data) override { nodes_.push_back(node_of(data)); }
   void pop() override { nodes_.pop_back(); }
 
-  /// Numbers are text; null is false. What is given lives until something else is asked for at the same depth.
+  /// Numbers are text; null is false. The result is valid until the next call at the same depth.
   const Data* get(const std::string& name) const override;
   const Data* get_partial(const std::string&) const override { return nullptr; }
 
  private:
-  /// Something given to the library that it may enter as a section.
+  /// A value given to the library, which it may enter as a section.
   struct Given {
-    std::size_t depth;  ///< of the sections that were open then
+    std::size_t depth;  ///< of open sections at that time
     const Json* node;
     Data data;
   };
@@ -38,7 +38,7 @@ class JsonContext : public kainjow::mustache::basic_context<std::string> {
   [[nodiscard]] const Json* node_of(const Data* data) const;
   const Data* give(const Json* node, Data data) const;
 
-  std::vector<const Json*> nodes_;  ///< of the open sections; null for a condition, which has no names of its own
+  std::vector<const Json*> nodes_;  ///< of the open sections; null for a condition, which does not have names
   mutable std::deque<Given> given_;
   mutable Data text_;
 };

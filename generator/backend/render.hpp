@@ -1,4 +1,4 @@
-/// Views through templates into files.
+/// Renders views with templates.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -14,13 +14,13 @@ struct Template {
   std::string_view text;
 };
 
-/// The templates of the generated headers, in the order in which their files are written.
+/// The templates of the generated headers, in the order of writing their files.
 [[nodiscard]] const std::vector<Template>& built_in_templates();
 
 /// The templates of reports in HTML, in templates/html.
 [[nodiscard]] const std::vector<Template>& report_templates();
 
-/// Fills a template. Throws std::runtime_error with a message when the template itself is wrong.
+/// Renders a template. Throws std::runtime_error with a message if the template is invalid.
 [[nodiscard]] std::string render(std::string_view text, const nlohmann::ordered_json& view);
 
 /// The same for HTML: each value becomes printable, and <, >, &, " and ' in it become entities.

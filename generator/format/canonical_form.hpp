@@ -1,5 +1,5 @@
-/// The canonical form of an EDS or DCF: order, spelling and counts as CiA 306-1 has them, nothing lost but what the
-/// reader does not take either: second sections and keys of the same name.
+/// The canonical form of an EDS or DCF: order, spelling and counts of CiA 306-1. Only duplicate sections and keys are
+/// lost, which the reader ignores too.
 #pragma once
 
 #include "device/device.hpp"

@@ -1,4 +1,4 @@
-/// The concise DCF: what an NMT master downloads to configure a node, object 1F22h (CiA 302-3, 4.2).
+/// The concise DCF, which an NMT master uses to configure a node: object 1F22h (CiA 302-3, 4.2).
 #pragma once
 
 #include <cstdint>
@@ -12,9 +12,9 @@
 
 namespace edsc {
 
-/// The number of entries, then each with index, sub-index, length and data, low byte first; ascending. In it are the
-/// writable entries whose ParameterValue differs from their default. `device` is that of `sheet`, with the node-ID. A
-/// formula without node-ID, and a value that cannot be read, is reported; what the report is about is left out.
+/// The number of entries, then each with index, sub-index, length and data, low byte first; ascending. It contains the
+/// writable entries whose ParameterValue differs from their default value. `device` is that of `sheet`, with the
+/// node-ID. A formula without node-ID and an invalid value are reported and left out.
 [[nodiscard]] std::string concise_dcf(const DataSheet& sheet, const Device& device, Diagnostics& diagnostics);
 
 struct ConciseEntry {
@@ -23,7 +23,7 @@ struct ConciseEntry {
   std::string_view data;  ///< of the stream
 };
 
-/// The entries of such a stream; nothing when it is shorter or longer than it says.
+/// Returns the entries of such a stream; nothing if its length does not match its contents.
 [[nodiscard]] std::optional<std::vector<ConciseEntry>> read_concise_dcf(std::string_view stream);
 
 }  // namespace edsc

@@ -1,4 +1,4 @@
-/// What a DCF configures: the entries with a ParameterValue, as SDO downloads carry them.
+/// The values that a DCF configures: the entries with a ParameterValue, as SDO download data.
 #pragma once
 
 #include <string>
@@ -12,20 +12,19 @@ namespace edsc {
 struct ConfiguredValue {
   const Entry* entry = nullptr;
   std::string data;      ///< low byte first
-  bool differs = false;  ///< from the default
+  bool differs = false;  ///< from the default value
   Position position;     ///< the value
 };
 
-/// The writable entries that have a ParameterValue, ascending; without DOMAINs. `device` is that of `sheet`, with the
-/// node-ID. A formula without node-ID, and a value that cannot be read, is reported; what the report is about is left
-/// out.
+/// The writable entries that have a ParameterValue, ascending, except DOMAINs. `device` is that of `sheet`, with the
+/// node-ID. A formula without node-ID and an invalid value are reported and left out.
 [[nodiscard]] std::vector<ConfiguredValue> configured_values(const DataSheet& sheet, const Device& device,
                                                              Diagnostics& diagnostics);
 
-/// A value as an SDO download carries it.
+/// A value as SDO download data.
 [[nodiscard]] std::string data_of(const Value& value, const canopen::DataTypeRow& type);
 
-/// A number of so many bytes behind `bytes`, low byte first.
+/// Appends a number with this many bytes to `bytes`, low byte first.
 void append_bytes(std::string& bytes, std::uint64_t number, unsigned count);
 
 }  // namespace edsc

@@ -1,4 +1,4 @@
-/// An INI text on its way out: sections and entries with the comments that stand before them.
+/// An INI file for output: sections and entries with the comments before them.
 #pragma once
 
 #include <string>
@@ -20,29 +20,28 @@ struct DocumentEntry {
 
 struct DocumentSection {
   Remarks remarks;   ///< before it
-  SectionName kind;  ///< what its title says
+  SectionName kind;  ///< the meaning of its title
   std::string title;
   std::vector<DocumentEntry> entries;
 };
 
 struct Document {
-  Remarks head;  ///< what stands at the top, a blank line before the first section
+  Remarks head;  ///< at the top, separated from the first section by a blank line
   std::vector<DocumentSection> sections;
-  Remarks tail;  ///< behind the last entry
+  Remarks tail;  ///< after the last entry
 };
 
-/// All that the file holds, in its order. Comments that begin with `#`, and lines that are neither section nor entry,
-/// become
+/// The complete file, in its order. Comments that begin with `#`, and lines that are neither section nor entry, become
 /// `;` comments.
 [[nodiscard]] Document document_of(const IniFile& ini);
 
-/// LF, one blank line between sections, no blanks around `=`.
+/// With LF, one blank line between sections, no blanks around `=`.
 [[nodiscard]] std::string to_text(const Document& document);
 
 /// `text` as a line of a comment: `# a` and `a` become `; a`.
 [[nodiscard]] std::string remark_line(std::string_view text);
 
-/// Puts `more` behind `remarks`.
+/// Appends `more` to `remarks`.
 void append(Remarks& remarks, const Remarks& more);
 
 }  // namespace edsc

@@ -1,4 +1,4 @@
-/// The keys that CiA 306-1 knows, section by section: order, spelling, and what their values are.
+/// The keys of CiA 306-1, by section: order, spelling and kind of value.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ enum class ValueKind : std::uint8_t {
 };
 
 struct KeySpelling {
-  std::uint32_t order = 0;  ///< where the key stands among those of its section
+  std::uint32_t order = 0;  ///< position among the keys of its section
   std::string name;
   ValueKind value = ValueKind::text;
   std::uint8_t hex_digits = 1;  ///< of a number
@@ -26,10 +26,10 @@ struct KeySpelling {
   bool is_known = false;
 };
 
-/// How a key of a section of this kind is spelled. One that CiA 306 does not know stays as it is, behind the others.
+/// The spelling of a key in a section of this kind. An unknown key is unchanged, and follows the others.
 [[nodiscard]] KeySpelling spell_key(SectionKind section, std::string_view key);
 
-/// The section's title as CiA 306 spells it; `title` itself for one that CiA 306 does not know.
+/// The section title as CiA 306 spells it; `title` itself if unknown.
 [[nodiscard]] std::string spell_title(const SectionName& name, std::string_view title);
 
 }  // namespace edsc

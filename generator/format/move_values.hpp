@@ -1,4 +1,4 @@
-/// The configuration of one node becomes that of another.
+/// Converts the configuration of one node to another node.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,10 @@
 
 namespace edsc {
 
-/// Gives each ParameterValue that is the default of the DCF's own node, such as CAN-ID 185h of `$NODEID+0x180`, the value
-/// for `node_id`; of a COB-ID also where only its flags differ from the default. `device` is that of `sheet` with the
-/// DCF's own node-ID. A COB-ID without a formula that has a CAN-ID of the own node stays, and is reported.
+/// Sets each ParameterValue that is the default value for the node-ID of the DCF, such as CAN-ID 185h of
+/// `$NODEID+0x180`, to the value for `node_id`; a COB-ID also if only its flags differ from the default value. `device`
+/// is that of `sheet` with the node-ID of the DCF. A COB-ID without a formula remains, and is reported if its CAN-ID is
+/// one of the node.
 void move_values(Document& document, const DataSheet& sheet, const Device& device, std::uint8_t node_id,
                  Diagnostics& diagnostics);
 

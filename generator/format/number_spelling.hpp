@@ -1,4 +1,4 @@
-/// How the canonical form spells numbers: base and value stay, the spelling is one.
+/// The canonical spelling of numbers, with the same base and value.
 #pragma once
 
 #include <canopen/data_type.hpp>
@@ -10,21 +10,21 @@ namespace edsc {
 
 struct Spelling {
   std::string text;
-  std::string_view remark;  ///< an inline comment that stood behind the value, with its `;` or `#`; may be empty
+  std::string_view remark;  ///< an inline comment after the value, with its `;` or `#`; may be empty
 };
 
-/// A number of the data sheet's own keys, such as DataType or VendorNumber: `0x` and upper-case digits, `hex_digits` at
-/// least; or decimal, or octal. What is no number stays as it is.
+/// A number of an EDS key such as DataType or VendorNumber: `0x` and at least `hex_digits` upper-case digits; or
+/// decimal, or octal. Text that is not a number is unchanged.
 [[nodiscard]] Spelling spell_number(std::string_view text, unsigned hex_digits);
 
-/// A value of an entry of this type: default, limit or parameter value. Hexadecimal digits as many as the type has,
-/// formulas as `$NODEID+0x180`; strings, and what is no value of the type, stay as they are.
+/// A value of an entry of this type: default value, limit or parameter value. With the number of hexadecimal digits of
+/// the type, and formulas as `$NODEID+0x180`; strings and invalid values are unchanged.
 [[nodiscard]] Spelling spell_value(std::string_view text, const canopen::DataTypeRow& type);
 
-/// An AccessType in lower case; what is none stays as it is.
+/// An AccessType in lower case; other text is unchanged.
 [[nodiscard]] Spelling spell_access(std::string_view text);
 
-/// How many hexadecimal digits a type has.
+/// The number of hexadecimal digits of a type.
 [[nodiscard]] unsigned hex_digits_of(const canopen::DataTypeRow& type);
 
 }  // namespace edsc

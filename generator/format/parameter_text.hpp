@@ -1,4 +1,4 @@
-/// The value of a device as a ParameterValue.
+/// A value read from a device as a ParameterValue.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@
 
 namespace edsc {
 
-/// What an SDO upload has brought, as an EDS spells it: numbers in the base of the default value, REAL as the shortest
-/// decimal number, OCTET_STRING in hexadecimal digits. The 00h after a VISIBLE_STRING is left out. Nothing for a value
-/// that is not as long as its type, and for what has no spelling: an empty string, a text of several lines.
+/// The value of an SDO upload in EDS spelling: numbers in the base of the default value, REAL as the shortest decimal
+/// number, OCTET_STRING in hexadecimal digits, VISIBLE_STRING without a trailing 00h. Nothing for a value with the
+/// wrong length, and for values that an EDS cannot express: an empty string, a text of several lines.
 [[nodiscard]] std::optional<std::string> parameter_text(const Entry& entry, std::span<const std::uint8_t> bytes);
 
 }  // namespace edsc

@@ -1,4 +1,4 @@
-/// Which sections there are, and in which order: CiA 306-1, clause 4.3.
+/// The order of sections: CiA 306-1, clause 4.3.
 #pragma once
 
 #include "eds/data_sheet.hpp"
@@ -6,18 +6,18 @@
 
 namespace edsc {
 
-/// The first of two sections of the same name stays, and takes the comments of the second.
+/// Of duplicate sections, the first remains, with the comments of both.
 void drop_second_sections(Document& document);
 
 /// FileInfo, DeviceInfo, DummyUsage, Comments, DeviceComissioning; then each object list and its objects, ascending;
 /// then the rest in its order.
 void order_sections(Document& document, const DataSheet& sheet);
 
-/// The list where an object stands: the one where it belongs, of a data type the one that names it. Nothing when there
-/// is none.
+/// The list of an object: the list to which it belongs; for a data type, the list that contains it. Nothing if there is
+/// none.
 [[nodiscard]] std::optional<ObjectListKind> list_for(std::uint16_t index, const DataSheet& sheet);
 
-/// The description of an object; null when the data sheet has none.
+/// The description of an object, or null.
 [[nodiscard]] const ObjectDescription* find_object(const DataSheet& sheet, std::uint16_t index);
 
 }  // namespace edsc

@@ -7,8 +7,8 @@
 
 namespace edsc {
 
-/// Inline comments behind numbers become lines of their own, before the key. Of two keys of the same name the first
-/// stays, and takes the comments of the second.
+/// Inline comments after numbers become separate lines before the key. Of duplicate keys, the first remains, with the
+/// comments of both.
 void spell_section(DocumentSection& section, const DataSheet& sheet, const Device& device);
 
 }  // namespace edsc

@@ -1,4 +1,4 @@
-/// The COB-IDs of a device's services as the C++ templates see them.
+/// The COB-IDs of a device's services for the C++ templates.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,8 +7,8 @@
 
 namespace edsc {
 
-/// One row for each COB-ID of SYNC, TIME, EMCY, SDO servers and SDO clients that is on after a reset: what the compiler
-/// is told to check. PDOs have pdo_rows().
+/// One row for each COB-ID of SYNC, TIME, EMCY, SDO servers and SDO clients that is enabled after a reset, for the
+/// checks of the C++ compiler. PDOs have pdo_rows().
 [[nodiscard]] nlohmann::ordered_json cob_id_rows(const Device& device);
 
 }  // namespace edsc

@@ -1,4 +1,4 @@
-/// fmt::format for texts that are made by the ten thousand: its format is read when edsc is compiled.
+/// fmt::format with a format string that is parsed at compile time, for texts that occur ten thousand times.
 #pragma once
 
 #include <fmt/compile.h>
@@ -8,7 +8,8 @@
 
 namespace edsc {
 
-/// `format` is FMT_COMPILE("..."). Formats into a buffer first: fmt::format would let the string grow piece by piece.
+/// `format` is FMT_COMPILE("..."). Formats into a buffer first, since fmt::format would reallocate the string
+/// repeatedly.
 template <class Format, class... Values>
 [[nodiscard]] std::string compiled_format(const Format& format, const Values&... values) {
   fmt::memory_buffer buffer;

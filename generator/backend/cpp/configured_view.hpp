@@ -1,4 +1,4 @@
-/// The two values of an entry of a DCF.
+/// Default value and parameter value of the entries of a DCF.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,8 +8,8 @@
 
 namespace edsc {
 
-/// In the view of a DCF's device: `default_value` becomes the DefaultValue, and `parameter_value` is the ParameterValue
-/// where there is one. What CiA 301 gives the device, whatever the file says, stays its default.
+/// In the view of a DCF: `default_value` becomes the DefaultValue, and `parameter_value` the ParameterValue, if
+/// present. Values that CiA 301 fixes remain `default_value`.
 void separate_configured_values(const DataSheet& sheet, const Device& device, nlohmann::ordered_json& view);
 
 }  // namespace edsc

@@ -1,4 +1,4 @@
-/// The part of the JSON view that is not about objects.
+/// The part of the JSON view for sections other than objects.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-/// Objects of a JSON view, put together without copies.
+/// Builds objects of a JSON view without copies.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ void append_members(nlohmann::ordered_json::object_t& object, const char* key, V
 
 }  // namespace detail
 
-/// An object of key, value, key, value, ... in this order; the keys differ.
+/// An object of key, value, key, value, ... in this order, with distinct keys.
 template <class... KeysAndValues>
 [[nodiscard]] nlohmann::ordered_json json_object(KeysAndValues&&... keys_and_values) {
   nlohmann::ordered_json::object_t object;

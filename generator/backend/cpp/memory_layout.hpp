@@ -1,5 +1,5 @@
-/// Where the entries of a device live: which are constants in flash, which are values in RAM, and the tables that find
-/// them. What it makes are lines of C++ for the templates; the words of the tables are those of canopen/dictionary.hpp.
+/// The memory layout of a device: constants in flash, values in RAM, and the tables to find them, as lines of C++ for
+/// the templates. canopen/dictionary.hpp describes the words of the tables.
 #pragma once
 
 #include <cstddef>
@@ -16,11 +16,11 @@ namespace edsc {
 struct Member {
   std::string type;
   std::string name;
-  std::string initializer;  ///< empty in structs that start from zero
+  std::string initializer;  ///< empty in structs that are zero after a reset
   std::string comment;
   unsigned alignment = 1;
   std::size_t size = 0;            ///< bytes
-  const Object* object = nullptr;  ///< whose value it is
+  const Object* object = nullptr;  ///< the object of the value
 };
 
 struct Struct {
@@ -30,7 +30,7 @@ struct Struct {
   std::vector<Member> members;  ///< widest alignment first: no padding between them
 };
 
-/// A row of a table, and what a comment says beside it.
+/// A row of a table, and its comment.
 struct TableRow {
   std::string text;
   std::string comment;
@@ -38,7 +38,7 @@ struct TableRow {
 
 struct MemoryLayout {
   std::vector<Struct> record_types;  ///< shared by all records of equal shape
-  std::vector<Struct> values;        ///< the parts of Values that are not empty
+  std::vector<Struct> values;        ///< the non-empty parts of Values
   Struct constants;
   std::vector<TableRow> runs, entries, groups, subs, limits, wide_limits;
   std::vector<TableRow> node_id_relative_communication, node_id_relative_application;
@@ -47,10 +47,10 @@ struct MemoryLayout {
 
 [[nodiscard]] MemoryLayout lay_out(const Device& device, const Options& options, Diagnostics& diagnostics);
 
-/// An ARRAY whose elements 1..N have one numeric type and the same rights and limits: in C++ one template.
+/// An ARRAY whose elements 1..N have the same numeric type, access and limits: one template in C++.
 [[nodiscard]] bool describes_uniform_array(const Object& object);
 
-/// The C++ type of an entry: of strings with their capacity.
+/// The C++ type of an entry; a string with its capacity.
 [[nodiscard]] std::string cpp_type(const Entry& entry, const Options& options);
 
 }  // namespace edsc

@@ -1,4 +1,4 @@
-/// The PDOs of a device as the C++ templates see them.
+/// The PDOs of a device for the C++ templates.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,16 +7,16 @@
 
 namespace edsc {
 
-/// One row for each PDO that has a mapping parameter: its layout as a type, and what the compiler is told to check.
+/// One row for each PDO that has a mapping parameter: its layout as a type, and the checks of the C++ compiler.
 [[nodiscard]] nlohmann::ordered_json pdo_rows(const Device& device);
 
-/// Whether its COB-ID is not legal: it may be sent on no account.
+/// Whether the COB-ID of the PDO is invalid, so that it must not be sent.
 [[nodiscard]] bool has_wrong_cob_id(const Pdo& pdo);
 
-/// Whether the generated code has no PDO for it: its mapping or its COB-ID is wrong.
+/// Whether the PDO is not generated, since its mapping or its COB-ID is invalid.
 [[nodiscard]] bool is_left_out(const Pdo& pdo);
 
-/// Those of pdo_rows() that take part in the check for COB-IDs of their own.
+/// The rows of pdo_rows() for the check for distinct COB-IDs.
 [[nodiscard]] nlohmann::ordered_json distinct_pdos(const Device& device);
 
 }  // namespace edsc

@@ -1,4 +1,4 @@
-/// The JSON view of a device: what `edsc dump` prints and what the templates see. Its schema stands in docs/schema/.
+/// The JSON view of a device, which `edsc dump` prints and the templates use. Its schema is in docs/schema/.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -11,7 +11,7 @@ namespace edsc {
 /// The device itself: objects, entries, values and PDO layouts, free of any target language.
 [[nodiscard]] nlohmann::ordered_json device_view(const Device& device);
 
-/// What the C++ templates need besides: declarations and tables as lines of C++.
+/// The additional view for the C++ templates: declarations and tables as lines of C++.
 [[nodiscard]] nlohmann::ordered_json cpp_view(const Device& device, const Options& options, Diagnostics& diagnostics);
 
 }  // namespace edsc
