@@ -1,4 +1,4 @@
-/// Tells of each frame on a bus what it says, in the names of the data sheets of the nodes.
+/// Decodes the frames of a bus with the names in the EDS files of the nodes.
 #pragma once
 
 #include <array>
@@ -16,30 +16,31 @@
 
 namespace edsc {
 
-/// A node whose data sheet is known; its formulas have to be resolved for the node-ID.
+/// A node with a known EDS; its formulas must be resolved for the node-ID.
 struct KnownNode {
   std::uint8_t node_id = 0;
   const Device* device = nullptr;
 };
 
-/// Frames go in, in the order of the bus; memory does not grow with their number. NMT, SYNC, TIME, EMCY, error control,
-/// LSS and default SDOs are told of all nodes; PDOs, further SDO servers and names of those that are known.
+/// Decodes frames in the order of the bus, with memory that does not grow with their number. NMT, SYNC, TIME, EMCY,
+/// error control, LSS and default SDOs are decoded for all nodes; PDOs, additional SDO servers and names for known
+/// nodes.
 class Decoder {
  public:
-  /// The devices must stay. Of two with the same node-ID the last counts.
+  /// The devices must outlive the decoder. Of two with the same node-ID, the last is used.
   explicit Decoder(const std::vector<KnownNode>& nodes);
 
-  /// The message is cleared first, and filled; its values stand until the next call.
+  /// Clears the message and fills it; its values are valid until the next call.
   void decode(const TimedFrame& frame, Message& message);
   void decode_error_frame(const canopen::Frame& frame, Message& message);
 
-  /// `node 5: read of 1008h:00 Manufacturer device name after 7 bytes`, for each transfer that has not ended.
+  /// `node 5: read of 1008h:00 Manufacturer device name after 7 bytes`, for each unfinished transfer.
   [[nodiscard]] std::vector<std::string> open_transfers() const;
 
  private:
   enum class Use : std::uint8_t { none, sync, time, emcy, sdo_request, sdo_response, pdo };
 
-  /// What a CAN-ID is used for by a known node.
+  /// The use of a CAN-ID by a known node.
   struct Route {
     Use use = Use::none;
     std::uint8_t node = 0;    ///< in `nodes_`
@@ -69,11 +70,11 @@ class Decoder {
 
   std::vector<NodeModel> nodes_;
   std::array<std::uint8_t, node_ids> place_of_node_{};  ///< by node-ID: in `nodes_`, from 1
-  std::array<bool, node_ids> guarding_asked_{};         ///< the next error control message answers
+  std::array<bool, node_ids> guarding_asked_{};         ///< the next error control message is a response
   std::array<std::vector<Route>, can_ids> routes_;
   std::unordered_map<std::uint32_t, std::vector<Route>> extended_routes_;
 
-  /// The default SDO of each node-ID, then the further servers.
+  /// The default SDO of each node-ID, then the additional servers.
   struct Follower {
     std::uint8_t node_id = 0;
     SdoFollower sdo;

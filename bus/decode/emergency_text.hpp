@@ -1,4 +1,4 @@
-/// EMCY in words: error codes of CiA 301 and of device profiles, and the bits of the error register.
+/// EMCY as text: error codes of CiA 301 and of device profiles, and the bits of the error register.
 #pragma once
 
 #include <cstdint>
@@ -7,11 +7,11 @@
 
 namespace edsc {
 
-/// What an emergency error code means to a device of this profile, the low word of its device type: as precisely as CiA
-/// 401 or CiA 402 say it, else by the class that CiA 301 gives it.
+/// The meaning of an emergency error code for a device of this profile (the low word of the device type): by CiA 401 or
+/// CiA 402, otherwise the error class of CiA 301.
 [[nodiscard]] std::string_view emergency_text(std::uint16_t code, std::uint16_t profile);
 
-/// `generic, communication`; `no error` where no bit is set.
+/// `generic, communication`; `no error` if no bit is set.
 void append_error_register(std::string& text, std::uint8_t error_register);
 
 }  // namespace edsc

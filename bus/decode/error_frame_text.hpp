@@ -1,4 +1,4 @@
-/// Error frames of SocketCAN in words: what the controller, not the bus, has to tell (linux/can/error.h).
+/// Error frames of SocketCAN as text: reports of the controller, not frames of the bus (linux/can/error.h).
 #pragma once
 
 #include <canopen/frame.hpp>

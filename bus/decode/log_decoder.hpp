@@ -16,24 +16,24 @@
 namespace edsc {
 
 struct LogDecoderSettings {
-  std::string log_name;   ///< in complaints
-  std::string interface;  ///< frames of others are passed over; empty: of all
+  std::string log_name;   ///< in error messages
+  std::string interface;  ///< ignore frames of other interfaces; empty: all
   bool json = false;
   bool color = false;
-  MessageFilter filter;  ///< what is shown; all frames are followed
+  MessageFilter filter;  ///< frames to show; all frames are evaluated
 };
 
 class LogDecoder {
  public:
-  /// Complaints about lines up to which they are listed; the others are counted.
+  /// Maximum number of listed errors; any more are counted.
   static constexpr std::size_t most_complaints = 50;
 
   LogDecoder(const std::vector<KnownNode>& nodes, NodeLabels labels, LogDecoderSettings settings);
 
-  /// Appends what the line says to `out`, and what is wrong with it to `complaints`.
+  /// Appends the decoded line to `out`, and errors to `complaints`.
   void decode(std::string_view line, std::size_t line_number, std::string& out, std::string& complaints);
 
-  /// What is left to say at the end: transfers that are not finished, and complaints that were counted.
+  /// Appends the errors at the end of the log: unfinished transfers, and the number of errors that were not listed.
   void finish(std::string& complaints);
 
   [[nodiscard]] const Summary& summary() const { return summary_; }
@@ -50,7 +50,7 @@ class LogDecoder {
   Summary summary_;
   std::size_t broken_lines_ = 0, complaints_ = 0;
 
-  // candump -t d tells the time since the frame before.
+  // candump -t d writes the time since the previous frame.
   bool has_time_ = false, from_zero_ = false, deltas_ = false;
   std::int64_t last_time_ = 0, sum_ = 0;
 };

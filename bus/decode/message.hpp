@@ -1,4 +1,4 @@
-/// What a frame says: the service that it belongs to, and what that tells, for people and for programs.
+/// The meaning of a frame: its service and contents, for people and for programs.
 #pragma once
 
 #include <canopen/data_type.hpp>
@@ -57,21 +57,21 @@ inline constexpr std::size_t service_count = std::size(services);
   return services[static_cast<std::size_t>(service)];
 }
 
-/// The value of an object that a PDO or a finished SDO transfer carries.
+/// The value of an object in a PDO or a finished SDO transfer.
 struct MessageValue {
   std::uint16_t index = 0;
   std::uint8_t sub_index = 0;
-  std::string_view name;                       ///< empty where no data sheet knows the object
-  const canopen::DataTypeRow* type = nullptr;  ///< null where it is not known
+  std::string_view name;                       ///< empty if the object is in no known EDS
+  const canopen::DataTypeRow* type = nullptr;  ///< null if unknown
   std::string_view unit;
   std::uint64_t number = 0;             ///< of a PDO: the bits
-  std::uint8_t bits = 0;                ///< of a PDO: how many; 0 where `bytes` holds the value
+  std::uint8_t bits = 0;                ///< of a PDO: their number; 0 if `bytes` holds the value
   std::span<const std::uint8_t> bytes;  ///< of an SDO, until the next frame
-  std::size_t text_begin = 0;           ///< where the value stands in the message's text
+  std::size_t text_begin = 0;           ///< position of the value in the text of the message
   std::size_t text_end = 0;
 };
 
-/// How far an SDO transfer is.
+/// The progress of an SDO transfer.
 enum class TransferStep : std::uint8_t { none, part, finished, aborted };
 
 struct Message {
@@ -79,7 +79,7 @@ struct Message {
   std::uint8_t node_id = 0;  ///< 0: none, or all
   std::uint16_t number = 0;  ///< of a PDO
   bool from_client = false;  ///< SDO, LSS: to the server or slave
-  bool problem = false;      ///< an error, or something that should not be
+  bool problem = false;      ///< an error or anomaly
   std::string text;
   std::vector<MessageValue> values;
 
@@ -87,17 +87,17 @@ struct Message {
   std::string_view state;           ///< of boot-up, heartbeat, guarding
   std::uint16_t error_code = 0;     ///< of EMCY
   std::uint8_t error_register = 0;  ///< of EMCY
-  std::int16_t counter = -1;        ///< of SYNC, if it has one
+  std::int16_t counter = -1;        ///< of SYNC, if present
 
   TransferStep step = TransferStep::none;
   bool download = false;
   std::uint16_t index = 0;  ///< of an SDO transfer
   std::uint8_t sub_index = 0;
   std::uint32_t size = 0;         ///< bytes so far
-  std::int64_t duration_us = -1;  ///< of a transfer that has ended, where the log has times
+  std::int64_t duration_us = -1;  ///< of a finished transfer, if the log has time stamps
   std::uint32_t abort_code = 0;
 
-  /// As it was made, but for the memory that its texts have taken.
+  /// Resets to the initial state, but keeps the memory of its texts.
   void clear() {
     std::string kept_text = std::move(text);
     std::vector<MessageValue> kept_values = std::move(values);
@@ -109,7 +109,7 @@ struct Message {
   }
 };
 
-/// A frame, and when it was seen.
+/// A frame and its time.
 struct TimedFrame {
   canopen::Frame frame;
   bool has_time = false;

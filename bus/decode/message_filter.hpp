@@ -1,4 +1,4 @@
-/// Which frames are shown: `node=5,service=sdo`.
+/// Selects frames: `node=5,service=sdo`.
 #pragma once
 
 #include <bitset>
@@ -12,11 +12,11 @@
 
 namespace edsc {
 
-/// What is not named is not looked at; of what is named more than once one has to fit.
+/// Only the given keys are checked; if a key is given more than once, one of its values must match.
 class MessageFilter {
  public:
-  /// Adds the conditions of a text: `node=5`, `service=sdo` (`pdo` for both directions), `id=185h`, `problem=yes`, with
-  /// commas between them. Gives a sentence on what is wrong, or nothing.
+  /// Adds comma-separated conditions: `node=5`, `service=sdo` (`pdo` for both directions), `id=185h`, `problem=yes`.
+  /// Returns an error message, or nothing.
   [[nodiscard]] std::string add(std::string_view text);
 
   [[nodiscard]] bool passes(const LogLine& line, const Message& message) const;

@@ -1,4 +1,4 @@
-/// A node as its data sheet, and what a log has written to it since, make it: CAN-IDs and PDO layouts.
+/// CAN-IDs and PDO layouts of a node, by its EDS and by what the log has written to it.
 #pragma once
 
 #include <canopen/cob_id.hpp>
@@ -14,7 +14,7 @@
 
 namespace edsc {
 
-/// Where a PDO carries an object.
+/// The position of an object in a PDO.
 struct PdoField {
   std::uint16_t index = 0;
   std::uint8_t sub_index = 0;
@@ -22,8 +22,8 @@ struct PdoField {
   std::uint8_t bits = 0;
   bool dummy = false;
   DriveWord drive_word = DriveWord::none;
-  const Entry* entry = nullptr;                ///< null: a dummy, or the device has no such entry
-  const canopen::DataTypeRow* type = nullptr;  ///< null where neither is known
+  const Entry* entry = nullptr;                ///< null: a dummy, or an entry that does not exist
+  const canopen::DataTypeRow* type = nullptr;  ///< null if neither is known
   std::string name;                            ///< `Statusword`
 };
 
@@ -42,34 +42,35 @@ struct SdoServerIds {
   canopen::CobId response;  ///< server to client
 };
 
-/// `Identity object, Vendor-ID`; of a DCF the user's own name.
+/// `Identity object, Vendor-ID`; the Denotation of a DCF, if present.
 [[nodiscard]] std::string display_name(const Object& object, const Entry& entry);
 
 class NodeModel {
  public:
-  /// The device must stay. Its formulas have to be resolved for this node-ID.
+  /// The device must outlive the model. Its formulas must be resolved for this node-ID.
   NodeModel(std::uint8_t node_id, const Device& device);
 
   [[nodiscard]] std::uint8_t node_id() const { return node_id_; }
   [[nodiscard]] const Device& device() const { return *device_; }
-  /// The low word of the device type 1000h: 402 of a drive.
+  /// The low word of the device type 1000h: 402 for a drive.
   [[nodiscard]] std::uint16_t profile() const { return profile_; }
 
   [[nodiscard]] const std::vector<PdoLayout>& pdos() const { return pdos_; }
   [[nodiscard]] std::optional<canopen::CobId> sync() const { return cob_id(0x1005); }
   [[nodiscard]] std::optional<canopen::CobId> time() const { return cob_id(0x1012); }
   [[nodiscard]] std::optional<canopen::CobId> emcy() const { return cob_id(0x1014); }
-  /// The servers from 1201h on; the default SDO is every node's.
+  /// The servers from 1201h on; every node has the default SDO.
   [[nodiscard]] std::vector<SdoServerIds> further_sdo_servers() const;
 
-  /// `Statusword, 16 bits`: what a value of a mapping parameter names.
+  /// `Statusword, 16 bits`: the meaning of a value of a mapping parameter.
   [[nodiscard]] std::string mapped_name(std::uint32_t mapping) const;
 
-  /// An SDO has written or read a value, low byte first. True: CAN-IDs or layouts are others now.
+  /// An SDO has written or read a value, low byte first. Returns true if CAN-IDs or layouts have changed.
   [[nodiscard]] bool learn(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> value,
                            bool written);
 
-  /// The node has been reset: what was not stored is gone. True: CAN-IDs or layouts are others now.
+  /// The node has been reset, which discards values that were not stored. Returns true if CAN-IDs or layouts have
+  /// changed.
   [[nodiscard]] bool reset();
 
  private:
@@ -86,9 +87,9 @@ class NodeModel {
   std::uint8_t node_id_;
   std::uint16_t profile_ = 0;
   const Device* device_;
-  std::vector<PdoLayout> pdos_;  ///< as those of the device
-  Parameters written_;           ///< what differs from the data sheet
-  Parameters stored_;            ///< what of that will be there after a reset
+  std::vector<PdoLayout> pdos_;  ///< in the order of the device
+  Parameters written_;           ///< values that differ from the EDS
+  Parameters stored_;            ///< those of them that remain after a reset
 };
 
 }  // namespace edsc

@@ -1,4 +1,4 @@
-/// Follows the SDO transfers of one server: expedited, segmented and by blocks (CiA 301, 7.2.4.3.3 to 7.2.4.3.17).
+/// Tracks the SDO transfers of one server: expedited, segmented and block transfer (CiA 301, 7.2.4.3.3 to 7.2.4.3.17).
 #pragma once
 
 #include <array>
@@ -18,20 +18,20 @@ namespace edsc {
 
 class SdoFollower {
  public:
-  /// Bytes of a value that are kept to be shown; of longer ones only their number is known.
+  /// Maximum bytes of a value that are stored; of longer values, only the length is known.
   static constexpr std::size_t most_kept = 1024;
 
-  /// Says in `message` what a frame of the client or server does. `model` may be null: objects have no names then. The
-  /// values of the message stand until the next frame.
+  /// Decodes a frame of the client or server into `message`. `model` may be null: objects then have no names. The
+  /// values of the message are valid until the next frame.
   void request(const TimedFrame& frame, const NodeModel* model, Message& message);
   void response(const TimedFrame& frame, const NodeModel* model, Message& message);
 
-  /// A transfer is going on.
+  /// Whether a transfer is in progress.
   [[nodiscard]] bool open() const { return phase_ != Phase::idle; }
   /// `read of 1008h:00 Manufacturer device name after 7 bytes`
   [[nodiscard]] std::string description() const;
 
-  /// The finished transfer's value, all of it. Empty where it is longer than what is kept, or part of it is not known.
+  /// The complete value of the finished transfer. Empty if it is too long to be stored, or if part of it is missing.
   [[nodiscard]] std::span<const std::uint8_t> whole_value() const;
 
  private:
@@ -39,11 +39,11 @@ class SdoFollower {
     idle,
     asked,           ///< initiated by the client
     segments,        ///< initiated by both
-    block_answered,  ///< block upload: the client has to start
+    block_answered,  ///< block upload: waiting for the client to start
     block_running,   ///< a sub-block
-    block_last,      ///< its last segment has been sent
-    block_ending,    ///< all is confirmed
-    block_ended,     ///< the sender has said so
+    block_last,      ///< the last segment has been sent
+    block_ending,    ///< all segments are confirmed
+    block_ended,     ///< the sender has ended the transfer
   };
 
   void begin(const TimedFrame& frame, const NodeModel* model, bool download, bool block, Message& message);
@@ -65,7 +65,7 @@ class SdoFollower {
 
   void append(std::span<const std::uint8_t> bytes);
   [[nodiscard]] std::span<const std::uint8_t> expedited_value(const canopen::sdo::Data& data) const;
-  /// The value of a mapping parameter; 0 where the transfer is about another object.
+  /// The value of a mapping parameter; 0 for other objects.
   [[nodiscard]] std::uint32_t mapped_object() const;
   void flush_held(std::size_t bytes);
   void put_value(Message& message) const;
@@ -77,10 +77,10 @@ class SdoFollower {
   bool download_ = false;
   bool expedited_ = false;
   bool last_seen_ = false;
-  bool complete_ = true;  ///< no part is missing in the log
+  bool complete_ = true;  ///< no part is missing from the log
   bool has_start_ = false;
   bool client_crc_ = false, crc_used_ = false;
-  bool toggle_ = false;  ///< of the segment that is to come
+  bool toggle_ = false;  ///< of the next segment
   std::uint16_t index_ = 0;
   std::uint8_t sub_index_ = 0;
   std::int64_t start_ = 0;  ///< us
@@ -88,18 +88,18 @@ class SdoFollower {
   std::uint32_t total_ = 0;
   std::uint16_t crc_ = 0;
   const NodeModel* model_ = nullptr;
-  const Entry* entry_ = nullptr;  ///< null where no data sheet knows it
+  const Entry* entry_ = nullptr;  ///< null if it is in no known EDS
   DriveWord drive_word_ = DriveWord::none;
   std::string name_;   ///< `Manufacturer device name`
   std::string label_;  ///< `1008h:00 Manufacturer device name`
   std::vector<std::uint8_t> kept_;
 
-  // A sub-block counts when it is confirmed: until then its segments may come again.
+  // A sub-block is used when it is confirmed: until then its segments may be repeated.
   static constexpr std::size_t segment_bytes = canopen::sdo::segment_bytes;
   std::array<std::uint8_t, canopen::sdo::largest_block * segment_bytes> block_{};
   std::bitset<canopen::sdo::largest_block + 1> seen_;
   std::uint8_t highest_ = 0;  ///< sequence number
-  bool holds_ = false;        ///< the last confirmed segment: the end of a block transfer cuts it
+  bool holds_ = false;        ///< the last confirmed segment, which the end of a block transfer truncates
   std::array<std::uint8_t, segment_bytes> held_{};
 };
 

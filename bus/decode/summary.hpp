@@ -1,4 +1,4 @@
-/// What a log held: frames by service and node, SDO transfers, aborts, EMCYs, times.
+/// The summary of a log: frames by service and node, SDO transfers, aborts, EMCY messages, times.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ class Summary {
 
  private:
   static constexpr std::size_t node_ids = 128;
-  static constexpr std::size_t most_codes = 1000;  ///< of errors and aborts; further ones are counted as transfers only
+  static constexpr std::size_t most_codes = 1000;  ///< of errors and aborts; any more are counted as transfers only
 
   struct Transfers {
     std::size_t finished = 0, aborted = 0, timed = 0;
@@ -41,7 +41,7 @@ class Summary {
   [[nodiscard]] bool is_silent(std::size_t id) const;
   [[nodiscard]] std::string silent_nodes() const;
 
-  std::array<std::array<std::size_t, service_count>, node_ids> frames_{};  ///< by node-ID, 0 for those of no node
+  std::array<std::array<std::size_t, service_count>, node_ids> frames_{};  ///< by node-ID; 0: frames without node
   std::array<Transfers, node_ids> transfers_{};
   std::array<bool, node_ids> heard_{};  ///< the node has sent a frame
   Codes emergencies_, aborts_;

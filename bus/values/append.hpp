@@ -1,4 +1,4 @@
-/// Numbers behind a text, without a format string in between: a log of a million frames has ten million of them.
+/// Appends numbers to a text without a format string: a log of a million frames has ten million of them.
 #pragma once
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@ inline void append_signed_decimal(std::string& text, std::int64_t number) {
   text.append(digits.data(), digits.size());
 }
 
-/// Upper-case digits, as many as asked for: those above are cut off.
+/// The given number of upper-case digits; higher digits are truncated.
 inline void append_hex(std::string& text, std::uint64_t number, unsigned digits) {
   char buffer[16];
   for (unsigned i = digits; i-- > 0; number >>= 4) buffer[i] = upper_hex_digits[number & 0xF];

@@ -1,4 +1,4 @@
-/// Controlword and statusword of a drive in words (CiA 402-2, clause 8.4).
+/// Controlword and statusword of a drive as text (CiA 402-2, clause 8.4).
 #pragma once
 
 #include <cstdint>
@@ -8,10 +8,10 @@ namespace edsc {
 
 enum class DriveWord : std::uint8_t { none, controlword, statusword };
 
-/// Which of the two an object is, of any of the eight axes that a device may have (800h apart).
+/// Whether an object is one of the two, for any of the eight axes of a device (800h apart).
 [[nodiscard]] DriveWord drive_word_at(std::uint16_t index, std::uint8_t sub_index);
 
-/// `0237h operation enabled`, `000Fh enable operation`, with the other bits that mean the same in all modes.
+/// `0237h operation enabled`, `000Fh enable operation`, with the other bits that are the same in all modes.
 void append_drive_word(std::string& text, DriveWord word, std::uint16_t value);
 
 }  // namespace edsc

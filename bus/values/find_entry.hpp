@@ -1,4 +1,4 @@
-/// Which entry of a device people mean: by index and sub-index, or by name.
+/// Finds an entry of a device by index and sub-index, or by name.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace edsc {
 
-/// An index, and a sub-index where one is given.
+/// An index, with an optional sub-index.
 struct EntryAddress {
   std::uint16_t index = 0;
   std::optional<std::uint8_t> sub_index;
@@ -18,25 +18,25 @@ struct EntryAddress {
   friend bool operator==(const EntryAddress&, const EntryAddress&) = default;
 };
 
-/// `6064h`, `1018h:02`, `0x6064`, `0x1018:2`, `6064`. Behind an h the sub-index is hexadecimal, as edsc writes it;
-/// behind 0x it is decimal unless it has a 0x itself. Nothing when the text is no address.
+/// Parses `6064h`, `1018h:02`, `0x6064`, `0x1018:2`, `6064`. After an index with h the sub-index is hexadecimal, as
+/// edsc writes it; after 0x it is decimal unless it has a 0x itself. Nothing if the text is not an address.
 [[nodiscard]] std::optional<EntryAddress> parse_entry_address(std::string_view text);
 
-/// What was found: an object, of it an entry where the text names one; of an object without sub-indices its only one.
+/// The result: an object, and an entry of it if the text names one, or if the object does not have sub-indices.
 struct FoundEntry {
   const Object* object = nullptr;
   const Entry* entry = nullptr;
-  std::string problem;  ///< a sentence, with what may have been meant; empty when an object was found
+  std::string problem;  ///< error message with suggestions; empty if an object was found
 
   [[nodiscard]] bool ok() const { return problem.empty(); }
 };
 
-/// By address; by name as it is generated, `position_actual_value` or `identity_object.vendor_id`, or as it stands in
-/// the data sheet, `Identity object.Vendor-ID`; upper and lower case are the same. The name of a sub-index alone does
-/// where only one object has it; an element of an array is `name.3` or `name[3]`.
+/// Finds by address; by generated name, `position_actual_value` or `identity_object.vendor_id`; or by the name in the
+/// EDS, `Identity object.Vendor-ID`, ignoring letter case. The name of a sub-index is sufficient if only one object has
+/// it; an element of an array is `name.3` or `name[3]`.
 [[nodiscard]] FoundEntry find_entry(const Device& device, std::string_view text);
 
-/// The same where a whole object is not enough: it is a problem that names its sub-indices.
+/// The same for a single entry: an object with sub-indices is an error that lists them.
 [[nodiscard]] FoundEntry find_one_entry(const Device& device, std::string_view text);
 
 /// `1018h:01 identity_object.vendor_id`
