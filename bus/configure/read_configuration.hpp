@@ -22,16 +22,17 @@ struct UnreadValue {
 
 struct NodeConfiguration {
   std::vector<ReadValue> values;
-  std::vector<LiveEntry> process_data;  ///< what a valid RPDO writes, and what a profile lets masters command with
-  std::vector<UnreadValue> unread;      ///< without entries that have no value now
-  bool lost = false;                    ///< the node did not answer any more
+  std::vector<LiveEntry> process_data;  ///< entries that a valid RPDO writes, or that are commands of the profile
+  std::vector<UnreadValue> unread;      ///< except entries that currently have no value
+  bool lost = false;                    ///< the node stopped answering
 };
 
-/// The entries that can be read and written, ascending, without DOMAINs and what `is_left_out` and ObjFlags name.
+/// The entries that can be read and written, ascending, except DOMAINs and those excluded by `is_left_out` and
+/// ObjFlags.
 [[nodiscard]] std::vector<LiveEntry> configuration_entries(const Device& device);
 
-/// Reads these entries. Of a mapping parameter only as many entries as its sub-index 0 says. `progress` is called before
-/// each entry. Throws Interrupted, BusLost.
+/// Reads these entries; of a mapping parameter, only the number of entries in its sub-index 0. `progress` is called
+/// before each entry. Throws Interrupted, BusLost.
 [[nodiscard]] NodeConfiguration read_configuration(SdoAccess& node, const Device& device,
                                                    const std::vector<LiveEntry>& entries,
                                                    const std::function<void(std::size_t done)>& progress);

@@ -1,4 +1,4 @@
-/// What has been seen on a bus: nodes, PDOs, and how much goes on.
+/// The observed state of a bus: nodes, PDOs, and rates.
 #pragma once
 
 #include <array>
@@ -13,11 +13,11 @@
 
 namespace edsc {
 
-/// How often something comes: counted over the last whole second, or over all the time while that is shorter.
+/// The rate of an event, counted over the last whole second, or over the whole time if shorter.
 class Rate {
  public:
   void count(std::uint64_t amount = 1) { total_ += amount; }
-  /// To be called once a second.
+  /// Call once a second.
   void take(double seconds);
   [[nodiscard]] std::uint64_t total() const { return total_; }
   [[nodiscard]] double per_second() const { return per_second_; }
@@ -29,18 +29,18 @@ class Rate {
 };
 
 struct MonitoredNode {
-  std::string name;                      ///< of the data sheet
-  std::string state;                     ///< as error control has told it; empty: it has not
-  std::string assumed;                   ///< from later NMT commands and TPDOs; empty: nothing contradicts `state`
+  std::string name;                      ///< from the EDS
+  std::string state;                     ///< reported by error control; empty: none
+  std::string assumed;                   ///< from later NMT commands and TPDOs; empty: no contradiction to `state`
   std::optional<std::int64_t> heard_us;  ///< its last error control message
-  std::int64_t interval_us = 0;          ///< between its last two heartbeats; 0: not known
+  std::int64_t interval_us = 0;          ///< between its last two heartbeats; 0: unknown
   std::uint64_t heartbeats = 0;
   std::uint64_t emergencies = 0;
-  std::string emergency;  ///< the last one in words
+  std::string emergency;  ///< the last EMCY as text
   std::uint16_t error_code = 0;
   std::int64_t emergency_us = 0;
 
-  /// No heartbeat for twice the time that it took before, and a tenth of a second.
+  /// No heartbeat for twice the previous interval plus a tenth of a second.
   [[nodiscard]] bool is_late(std::int64_t now_us) const {
     return heard_us && interval_us != 0 && now_us - *heard_us > 2 * interval_us + 100'000;
   }
@@ -64,12 +64,12 @@ class MonitorState {
 
   void set_name(std::uint8_t node_id, std::string name) { node_of(node_id).name = std::move(name); }
 
-  /// True: something is new; heartbeats, PDOs, SYNC and TIME that tell the same as before are not.
+  /// Returns true for new information; heartbeats, PDOs, SYNC and TIME with unchanged contents are not new.
   bool add(const canopen::Frame& frame, const Message& message, std::int64_t now_us);
 
-  /// To be called now and then: takes the rates once a second.
+  /// Call regularly: updates the rates once a second.
   void pass(std::int64_t now_us);
-  /// Takes the rates over all that has been seen in this time.
+  /// Computes the rates over the whole time.
   void end(std::int64_t now_us);
 
   [[nodiscard]] const std::map<std::uint8_t, MonitoredNode>& nodes() const { return nodes_; }
@@ -79,7 +79,7 @@ class MonitorState {
   [[nodiscard]] const Rate& bits() const { return bits_; }
   [[nodiscard]] std::int64_t start_us() const { return start_us_.value_or(0); }
 
-  /// When the rates begin to be counted.
+  /// The start of counting the rates.
   void start(std::int64_t now_us) { start_us_ = tick_us_ = now_us; }
 
  private:
@@ -91,7 +91,7 @@ class MonitorState {
   void take_rates(double seconds);
 
   std::map<std::uint8_t, MonitoredNode> nodes_;
-  std::array<std::string, 128> commanded_;  ///< where the last NMT command leads to, by node-ID
+  std::array<std::string, 128> commanded_;  ///< state after the last NMT command, by node-ID
   std::map<PdoKey, MonitoredPdo> pdos_;
   std::map<std::uint32_t, Rate> others_;
   Rate frames_, bits_;

@@ -1,4 +1,4 @@
-/// What the monitor has seen, as lines of a table and as JSON.
+/// The state of the monitor as lines of a table and as JSON.
 #pragma once
 
 #include <cstdint>
@@ -17,14 +17,14 @@ struct MonitorView {
   bool colour = false;
 };
 
-/// The table; no line is limited in width.
+/// The table, with lines of any width.
 [[nodiscard]] std::vector<std::string> monitor_lines(const MonitorState& state, const MonitorView& view,
                                                      std::int64_t now_us);
 
-/// A line cut to so many characters; colours count nothing and are switched off at its end.
+/// A line truncated to this number of characters, not counting colours, which are reset at its end.
 [[nodiscard]] std::string cut_to_width(const std::string& line, std::size_t width);
 
-/// As docs/schema/monitor.schema.json says.
+/// By docs/schema/monitor.schema.json.
 [[nodiscard]] nlohmann::ordered_json monitor_json(const MonitorState& state, const MonitorView& view,
                                                   std::int64_t now_us);
 

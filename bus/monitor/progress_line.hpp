@@ -1,4 +1,4 @@
-/// How far a long work is: one line on standard error that is written again and again, on a terminal only.
+/// A progress line on standard error, which is rewritten repeatedly; on a terminal only.
 #pragma once
 
 #include <chrono>
@@ -6,7 +6,7 @@
 
 namespace edsc {
 
-/// Appears when the work has taken a while, and is gone with this.
+/// Appears if the work takes a while, and disappears with this object.
 class ProgressLine {
  public:
   ProgressLine();
@@ -14,10 +14,10 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  /// Whether it is time to show something new.
+  /// Whether it is time for an update.
   [[nodiscard]] bool due() const;
   void show(const std::string& text);
-  /// Before something else is printed.
+  /// Removes the line before other output.
   void hide();
 
  private:

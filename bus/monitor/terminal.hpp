@@ -1,4 +1,4 @@
-/// A terminal that one picture is drawn on again and again.
+/// A terminal for a screen that is redrawn repeatedly.
 #pragma once
 
 #include <termios.h>
@@ -8,8 +8,8 @@
 
 namespace edsc {
 
-/// Takes the screen on standard output, and the keys of standard input where that is a terminal, too. Gives both back
-/// as they were.
+/// Takes over the screen on standard output, and the keys if standard input is a terminal too. Restores both at the
+/// end.
 class Terminal {
  public:
   Terminal();
@@ -21,16 +21,16 @@ class Terminal {
     std::size_t columns, rows;
   };
 
-  /// As it is now; 80 x 24 where it does not say.
+  /// The current size; 80 x 24 if unknown.
   [[nodiscard]] static Size size();
 
-  /// Draws the lines over what was there. They fit, and hold no control characters but colours.
+  /// Draws the lines over the previous ones. They must fit, and contain no control characters except colours.
   void draw(const std::vector<std::string>& lines);
 
-  /// The next key that was pressed; 0: none.
+  /// The next pressed key; 0: none.
   [[nodiscard]] char key() const;
 
-  /// Whether standard output is one.
+  /// Whether standard output is a terminal.
   [[nodiscard]] static bool is_there();
 
  private:

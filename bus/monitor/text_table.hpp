@@ -10,7 +10,7 @@
 namespace edsc {
 
 /// Rows of cells; each column is as wide as its widest cell, with two blanks between columns and none at the end of a
-/// line. Cells are made printable. Characters are counted as code points of UTF-8.
+/// line. Cells are made printable. Width is counted in code points of UTF-8.
 class TextTable {
  public:
   void add(std::vector<std::string> row) {

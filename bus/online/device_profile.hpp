@@ -1,4 +1,4 @@
-/// What a device type says (CiA 301, 7.5.2.1): the profile in its lower half.
+/// The device profile in the low word of the device type (CiA 301, 7.5.2.1).
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-/// Whether a device on the bus is the one of a data sheet.
+/// Compares the identity of a device on the bus with an EDS.
 #pragma once
 
 #include <canopen/lss_protocol.hpp>
@@ -14,21 +14,21 @@ namespace edsc {
 
 class SdoAccess;
 
-/// Who a device is. Nothing where that is not known.
+/// The identity of a device; nothing for unknown numbers.
 struct Identity {
   std::optional<std::uint32_t> device_type, vendor_id, product_code, revision_number, serial_number;
 };
 
-/// What a data sheet says: 1000h and 1018h, else [DeviceInfo]; the serial number is LSS_SerialNumber of a DCF. A number
-/// that is 0 says nothing.
+/// The identity in an EDS: 1000h and 1018h, else [DeviceInfo]; the serial number is LSS_SerialNumber of a DCF. The
+/// number 0 means unknown.
 [[nodiscard]] Identity identity_of(const Device& device);
 
 enum class Fit : std::uint8_t {
-  same,            ///< every number that both state is equal
-  minor_revision,  ///< except the lower half of the revision number: the CANopen behaviour is the same
-  major_revision,  ///< except the revision number
+  same,            ///< all numbers that both state are equal
+  minor_revision,  ///< except for the minor revision: the CANopen behaviour is the same
+  major_revision,  ///< except for the revision number
   other,           ///< another device type, vendor, product or serial number
-  unknown,         ///< no number is stated by both
+  unknown,         ///< no number that both state
 };
 
 /// `same device`
@@ -37,24 +37,24 @@ enum class Fit : std::uint8_t {
 /// Reads device type and identity object.
 [[nodiscard]] Identity read_identity(SdoAccess& node);
 
-/// Compares each number that both state; a number that only one of them states does not count.
+/// Compares the numbers that both state.
 [[nodiscard]] Fit compare_identity(const Identity& sheet, const Identity& device);
 
 /// The differences, number by number: `product code is 00001234h, expected 00001235h`.
 [[nodiscard]] std::string identity_differences(const Identity& sheet, const Identity& device);
 
-/// How many numbers differ.
+/// The number of differences.
 [[nodiscard]] unsigned count_differences(const Identity& sheet, const Identity& device);
 
 /// A number that could not be compared.
 struct NotCompared {
   std::string_view name;  ///< `vendor-ID`
   std::string_view key;   ///< in JSON: `vendor_id`
-  bool in_sheet = false;  ///< stated by the sheet, but not by the device
+  bool in_sheet = false;  ///< stated by the EDS, but not by the device
 };
 
-/// Device type, vendor-ID, product code and revision number that one of them does not state; the serial number only
-/// where the sheet states it.
+/// The numbers among device type, vendor-ID, product code and revision number that one of them does not state; the
+/// serial number only if the EDS states it.
 [[nodiscard]] std::vector<NotCompared> not_compared(const Identity& sheet, const Identity& device);
 
 /// `vendor-ID, product code`

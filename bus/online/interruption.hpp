@@ -5,11 +5,11 @@
 
 namespace edsc {
 
-/// Thrown when a command has left the bus clean because it was told to end.
+/// Thrown after an interruption, when a command has ended its transfers.
 struct Interrupted {};
 
-/// As long as it lives, SIGINT and SIGTERM are noted, so that a command can abort its transfer. The second one ends the
-/// program at once. One at a time.
+/// During its lifetime, SIGINT and SIGTERM are recorded, so that a command can abort its transfer. The second one ends
+/// the program immediately. Only one object may exist at a time.
 class Interruption {
  public:
   Interruption();
@@ -24,8 +24,8 @@ class Interruption {
   struct sigaction before_term_ {};
 };
 
-/// As long as it lives, an interruption is not noted: for what a command does to leave a device as it was. The second
-/// signal ends the program all the same.
+/// During its lifetime, an interruption is ignored, so that a command can restore the device. The second signal still
+/// ends the program.
 class Uninterrupted {
  public:
   Uninterrupted();

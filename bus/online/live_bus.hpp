@@ -1,4 +1,4 @@
-/// The bus that a command talks to.
+/// The bus of a command.
 #pragma once
 
 #include <algorithm>
@@ -15,12 +15,12 @@
 
 namespace edsc {
 
-/// The bus broke while it was in use.
+/// The bus failed while in use.
 struct BusLost : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What a LiveBus sends and receives with: the ports of the host, or a bus in simulated time.
+/// The interface of a LiveBus to its port: a port of the host, or a bus in simulated time.
 class BusPort {
  public:
   BusPort() = default;
@@ -30,48 +30,48 @@ class BusPort {
 
   /// False if the port cannot take the frame now. `send` and `receive` throw std::system_error if the bus is lost.
   [[nodiscard]] virtual bool send(const canopen::Frame& frame) = 0;
-  /// The next frame, or nothing when none comes within this time.
+  /// The next frame, or nothing if none is received within this time.
   [[nodiscard]] virtual std::optional<canopen::Frame> receive(canopen::Duration timeout) = 0;
   [[nodiscard]] virtual canopen::TimePoint now() const = 0;
-  /// When the last frame that `receive` gave was received.
+  /// The time of reception of the last frame of `receive`.
   [[nodiscard]] virtual canopen::TimePoint received_at() const = 0;
-  /// Readable when there is something to do.
+  /// Readable when frames are pending.
   [[nodiscard]] virtual int file_descriptor() const = 0;
-  /// How long `receive` may wait at once: an interruption is noted behind it.
+  /// The longest wait of one `receive`; interruptions are checked after it.
   [[nodiscard]] virtual canopen::Duration longest_at_once() const { return canopen::from_milliseconds(50); }
 };
 
-/// A bus that reports when it is lost: by what the port says, or by taking no frame for two seconds.
+/// A bus that detects its loss: reported by the port, or if the port does not accept a frame for two seconds.
 class LiveBus {
  public:
-  /// A port of the host, canopen::HostBus, or a SimulatedPort. Throws std::invalid_argument for a malformed address, another
-  /// std::runtime_error for what cannot be opened.
+  /// Opens a port of the host (canopen::HostBus) or a SimulatedPort. Throws std::invalid_argument for a malformed
+  /// address, std::runtime_error if it cannot be opened.
   explicit LiveBus(const std::string& address);
   explicit LiveBus(std::unique_ptr<BusPort> port) : port_{std::move(port)} {}
 
-  /// False when there is no room now.
+  /// Returns false if the port cannot take the frame now.
   [[nodiscard]] bool send(const canopen::Frame& frame);
 
-  /// Waits until there is room. Throws Interrupted, BusLost.
+  /// Waits until the port takes the frame. Throws Interrupted, BusLost.
   void send_all(const canopen::Frame& frame);
 
-  /// The next frame; nothing when none comes within this time, or at an interruption. Throws BusLost.
+  /// The next frame; nothing if none is received within this time, or at an interruption. Throws BusLost.
   [[nodiscard]] std::optional<canopen::Frame> receive(canopen::Duration timeout);
 
-  /// Hands frames to `on_frame` for this time. Throws Interrupted, BusLost.
+  /// Passes frames to `on_frame` for this time. Throws Interrupted, BusLost.
   void listen(canopen::Duration span);
 
-  /// What it sends and receives with.
+  /// The port of the bus.
   [[nodiscard]] BusPort& port() { return *port_; }
 
   [[nodiscard]] canopen::TimePoint now() const { return port_->now(); }
   [[nodiscard]] int file_descriptor() const { return port_->file_descriptor(); }
-  /// When the last frame that `receive` gave was received.
+  /// The time of reception of the last frame of `receive`.
   [[nodiscard]] canopen::TimePoint received_at() const { return port_->received_at(); }
 
-  /// Called with every frame that is received.
+  /// Called with every received frame.
   std::function<void(const canopen::Frame&, canopen::TimePoint now)> on_frame;
-  /// Called with every frame that the port has taken.
+  /// Called with every frame that the port has accepted.
   std::function<void(const canopen::Frame&, canopen::TimePoint now)> on_sent;
 
  private:
@@ -79,8 +79,8 @@ class LiveBus {
   std::optional<canopen::TimePoint> refused_since_;
 };
 
-/// Hands frames and time to a client, SdoClient or LssMaster for instance, until it is no longer busy. At an
-/// interruption `cancel` is called once. Throws BusLost.
+/// Passes frames and time to a client, such as SdoClient or LssMaster, until it is no longer busy. Calls `cancel` once
+/// at an interruption. Throws BusLost.
 template <class Client, class Cancel>
 void run(LiveBus& bus, Client& client, Cancel cancel) {
   constexpr canopen::Duration try_again{1'000};

@@ -1,4 +1,4 @@
-/// An entry of a live node: what is known of it, its value as text and as JSON.
+/// An entry of a live node: its description, and its value as text and as JSON.
 #pragma once
 
 #include <canopen/data_type.hpp>
@@ -13,45 +13,45 @@
 
 namespace edsc {
 
-/// One entry, with its data sheet or without.
+/// One entry, with or without EDS.
 struct LiveEntry {
   std::uint16_t index = 0;
   std::uint8_t sub_index = 0;
-  const Entry* entry = nullptr;                ///< null without data sheet
+  const Entry* entry = nullptr;                ///< null without EDS
   const canopen::DataTypeRow* type = nullptr;  ///< null: raw bytes
-  std::string name;                            ///< `Identity object, Vendor-ID`; empty without data sheet
+  std::string name;                            ///< `Identity object, Vendor-ID`; empty without EDS
 };
 
 [[nodiscard]] LiveEntry live_entry(const Object& object, const Entry& entry);
 
-/// A type in place of the data sheet's, whose access, limits and unit do not count then.
+/// A data type that replaces that of the EDS, whose access, limits and unit are then ignored.
 void set_type(LiveEntry& entry, const canopen::DataTypeRow& type);
 
-/// What the node has there. Where its answer tells no size, as many bytes as the type has, and a string without the 00h
-/// behind it.
+/// The value of the node. If the response does not state the size: the size of the data type, and a string without
+/// trailing 00h.
 [[nodiscard]] SdoOutcome upload(SdoAccess& node, const LiveEntry& entry,
                                 SdoTransfer transfer = SdoTransfer::segmented, const SdoProgress& progress = {});
 
-/// Whether these bytes were read back. Where the answer told no size, those behind them do not count.
+/// Whether these bytes were read back. If the response did not state the size, further bytes are ignored.
 [[nodiscard]] bool reads_back(const SdoOutcome& outcome, std::span<const std::uint8_t> bytes);
 
 /// `6064h:00 Position actual value`
 [[nodiscard]] std::string title(const LiveEntry& entry);
 
-/// `123456 inc`; of a DOMAIN the first bytes and how many there are, without a type all bytes.
+/// `123456 inc`; of a DOMAIN the first bytes and the length, without a type all bytes.
 [[nodiscard]] std::string value_of(const LiveEntry& entry, std::span<const std::uint8_t> bytes);
 
 /// `40 E2 01 00`
 [[nodiscard]] std::string hex_bytes(std::span<const std::uint8_t> bytes);
 
-/// What came of reading or writing it (docs/schema/read.schema.json).
+/// The result of reading or writing an entry (docs/schema/read.schema.json).
 [[nodiscard]] nlohmann::ordered_json as_json(const LiveEntry& entry, const SdoOutcome& outcome,
                                              std::span<const std::uint8_t> bytes);
 
-/// Data types by the names that people use: `u16`, `i32`, `f32`, `string`, and those of CiA 301. Null when it is none.
+/// Finds a data type by a short name, `u16`, `i32`, `f32`, `string`, or its name in CiA 301. Null if unknown.
 [[nodiscard]] const canopen::DataTypeRow* find_type(std::string_view name);
 
-/// Whether the value may be long enough for a block transfer: that of a DOMAIN.
+/// Whether the value may be long enough for a block transfer: a DOMAIN.
 [[nodiscard]] SdoTransfer best_transfer(const LiveEntry& entry);
 
 }  // namespace edsc

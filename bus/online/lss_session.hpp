@@ -1,4 +1,4 @@
-/// LSS services from a command (CiA 305): each waits for its end.
+/// LSS services for commands (CiA 305); each call waits until the service ends.
 #pragma once
 
 #include <canopen/lss_master.hpp>
@@ -9,9 +9,9 @@
 
 namespace edsc {
 
-/// What a service came to; a sentence where it failed.
+/// The result of a service, with a message if it failed.
 struct LssResult {
-  std::string failure;  ///< empty: done
+  std::string failure;  ///< empty on success
   std::uint32_t value = 0;
 
   [[nodiscard]] bool done() const { return failure.empty(); }
@@ -20,7 +20,7 @@ struct LssResult {
 /// `vendor-ID 00000093h, product code 43354B52h, revision 00010001h, serial number 15011234h`
 [[nodiscard]] std::string to_text(const canopen::LssAddress& address);
 
-/// Throws Interrupted, after the slaves have been put into waiting state, and BusLost.
+/// Throws Interrupted, after switching the slaves to waiting state, and BusLost.
 class LssSession {
  public:
   explicit LssSession(LiveBus& bus, canopen::LssTimeouts timeouts = {}) : bus_{bus}, master_{bus, timeouts} {}
@@ -36,20 +36,20 @@ class LssSession {
   [[nodiscard]] LssResult store();
   [[nodiscard]] LssResult identify_non_configured();
 
-  /// Puts the slave without node-ID whose first `known` numbers are those of `address` into configuration state, and
-  /// fills in the others.
+  /// Switches the slave without node-ID whose first `known` numbers match `address` to configuration state, and fills
+  /// in the other numbers.
   [[nodiscard]] LssResult fastscan(canopen::LssAddress& address, std::uint8_t known);
 
-  /// Why Fastscan has found no slave, as far as LSS tells: a slave without node-ID may lack Fastscan.
+  /// Why Fastscan did not find a slave: a slave without node-ID may not support Fastscan.
   [[nodiscard]] std::string reason_for_silence();
 
-  /// Whether one slave is in configuration state and has this address, as the four inquiries say.
+  /// Checks with the four inquiries that one slave is in configuration state and has this address.
   [[nodiscard]] LssResult confirm(const canopen::LssAddress& address);
 
-  /// Finds all slaves without node-ID, ascending by address; of those only whose first `known` numbers are those of
-  /// `among`. `found` is called for each that has confirmed its address. All slaves are waiting before, after, and while
-  /// the next one is searched for, as some answer each Fastscan frame in configuration state. A failure: an answer that
-  /// no slave confirms; the search ends there.
+  /// Finds all slaves without node-ID, ascending by address, whose first `known` numbers match `among`. `found` is
+  /// called for each slave that has confirmed its address. All slaves are in waiting state before, after, and during
+  /// the search for the next one, since some answer each Fastscan frame in configuration state. A response that no
+  /// slave confirms is a failure and ends the search.
   LssResult find_unconfigured(const std::function<void(const canopen::LssAddress&)>& found,
                               const canopen::LssAddress& among = {}, std::uint8_t known = 0);
 

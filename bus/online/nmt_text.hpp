@@ -1,4 +1,4 @@
-/// NMT states and commands in words.
+/// NMT states and commands as text.
 #pragma once
 
 #include <canopen/nmt.hpp>
@@ -29,8 +29,8 @@ inline constexpr NmtStateText nmt_state_texts[] = {
 
 struct NmtCommandText {
   canopen::NmtCommand command;
-  std::string_view text;       ///< as `edsc nmt` takes it
-  canopen::NmtState leads_to;  ///< a boot-up message where it is a reset
+  std::string_view text;       ///< argument of `edsc nmt`
+  canopen::NmtState leads_to;  ///< for a reset, confirmed by the boot-up message
 };
 
 inline constexpr NmtCommandText nmt_command_texts[] = {

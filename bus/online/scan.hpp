@@ -1,4 +1,4 @@
-/// Which nodes are on a bus: those that answer over SDO, and those that send heartbeats.
+/// Finds the nodes on a bus: those that answer over SDO, and those that send heartbeats.
 #pragma once
 
 #include <canopen/lss_protocol.hpp>
@@ -14,21 +14,21 @@ namespace edsc {
 
 struct ScanSettings {
   std::vector<std::uint8_t> nodes;  ///< ascending, 1..127
-  unsigned timeout_ms = 250;        ///< for each answer
-  unsigned listen_ms = 1200;        ///< at least; a known heartbeat is waited for in any case
+  unsigned timeout_ms = 250;        ///< for each response
+  unsigned listen_ms = 1200;        ///< minimum; the scan always waits for known heartbeats
 };
 
-/// What a node says of itself. Nothing where it has no such object, or does not answer.
+/// Data read from a node. Nothing if the object does not exist, or if the node does not answer.
 struct FoundNode {
   std::uint8_t node_id = 0;
   bool answers_sdo = false;
-  std::optional<canopen::NmtState> state;  ///< as error control has told it
+  std::optional<canopen::NmtState> state;  ///< reported by error control
   std::optional<std::uint32_t> device_type, vendor_id, product_code, revision_number, serial_number;
   std::optional<std::uint32_t> heartbeat_ms;  ///< 1017h
   std::optional<std::string> name;            ///< 1008h
 };
 
-/// Fills in the nodes that were found, ascending, also before it throws. Throws Interrupted, BusLost.
+/// Stores the nodes found, ascending, also before it throws. Throws Interrupted, BusLost.
 void scan(LiveBus& bus, const ScanSettings& settings, std::vector<FoundNode>& found);
 
 }  // namespace edsc

@@ -1,4 +1,4 @@
-/// Entries of a remote node over SDO, from a command.
+/// SDO access to entries of a remote node, for commands.
 #pragma once
 
 #include <canopen/abort_code.hpp>
@@ -18,12 +18,13 @@ namespace edsc {
 
 enum class SdoEnd : std::uint8_t {
   done,
-  refused,    ///< by the device: its abort ended the transfer
-  no_answer,  ///< the device sent nothing that belongs to the transfer for the timeout
-  broken,     ///< what the device answered is against the protocol, or too long
+  refused,    ///< the device aborted the transfer
+  no_answer,  ///< the device did not send a frame of the transfer within the timeout
+  broken,     ///< the response violates the protocol, or is too long
 };
 
-/// An abort that names another entry than that of the transfer. CiA 301 has none, so it does not end the transfer.
+/// An abort with another entry than that of the transfer. CiA 301 does not define this, so it does not end the
+/// transfer.
 struct ForeignAbort {
   std::uint16_t index = 0;
   std::uint8_t sub_index = 0;
@@ -34,39 +35,39 @@ struct SdoOutcome {
   SdoEnd end = SdoEnd::done;
   canopen::AbortCode code = canopen::ok;
   std::vector<std::uint8_t> bytes;  ///< of an upload
-  bool size_told = true;            ///< false: some of the four bytes may be none of the value's
-  std::optional<ForeignAbort> foreign_abort;  ///< that came before the end
-  std::string block_failure;                  ///< why a block transfer broke, where segments came after it
-  std::size_t max_bytes = 0;                  ///< the bound that the value exceeds; 0: it does not
+  bool size_told = true;            ///< false: not all of the four bytes may belong to the value
+  std::optional<ForeignAbort> foreign_abort;  ///< received before the end
+  std::string block_failure;                  ///< why a block transfer failed, if a segmented one followed
+  std::size_t max_bytes = 0;                  ///< the limit that the value exceeds; 0: none
 
   [[nodiscard]] bool done() const { return end == SdoEnd::done; }
 };
 
-/// Why there is no value: `refused by the device: 0602 0000h, object does not exist`.
+/// Why the transfer failed: `refused by the device: 0602 0000h, object does not exist`.
 [[nodiscard]] std::string failure_text(const SdoOutcome& outcome);
 
 /// `0602 0000h, object does not exist`
 [[nodiscard]] std::string abort_text(canopen::AbortCode code);
 
 enum class SdoTransfer : std::uint8_t {
-  segmented,  ///< expedited where four bytes do
-  block,      ///< by segments when the device has no block transfer, and again by segments when it breaks
+  segmented,  ///< expedited up to four bytes
+  block,      ///< segmented if the device does not support block transfer, or if it fails
 };
 
 struct SdoSettings {
   unsigned timeout_ms = 500;
-  std::size_t max_bytes = std::size_t{16} << 20;  ///< of an upload whose type has no fixed size
+  std::size_t max_bytes = std::size_t{16} << 20;  ///< of an upload of a variable-length data type
 };
 
-/// How many bytes have gone, of how many; 0 where that is not known.
+/// The transferred bytes and the total, 0 if unknown.
 using SdoProgress = std::function<void(std::size_t done, std::size_t total)>;
 
-/// The bytes of an upload, up to a limit: the device decides how long its answer is.
+/// Collects the bytes of an upload, up to a limit, since the device determines the length.
 class UploadBuffer {
  public:
   explicit UploadBuffer(std::size_t limit) : limit_{limit} {}
 
-  /// Takes all bytes of the piece or, with the abort code, none.
+  /// Accepts all bytes of the segment, or none with an abort code.
   [[nodiscard]] canopen::AbortCode append(std::span<const std::uint8_t> piece);
   void clear() { bytes_.clear(); }
 
@@ -79,13 +80,13 @@ class UploadBuffer {
   std::vector<std::uint8_t> bytes_;
 };
 
-/// One SDO server of one node. Throws Interrupted, when the transfer has been aborted, and BusLost.
+/// One SDO server of one node. Throws Interrupted after aborting the transfer, and BusLost.
 class SdoAccess {
  public:
   SdoAccess(LiveBus& bus, canopen::NodeId node, SdoSettings settings);
 
-  /// `type_size`: bytes of the data type, where that is fixed. A device that sends many more than that, or more than
-  /// `SdoSettings::max_bytes`, gets an abort: 0607 0012h or 0504 0005h.
+  /// `type_size`: bytes of a fixed-length data type. If a device sends many more, or more than
+  /// `SdoSettings::max_bytes`, the transfer is aborted with 0607 0012h or 0504 0005h.
   [[nodiscard]] SdoOutcome upload(std::uint16_t index, std::uint8_t sub_index,
                                   SdoTransfer transfer = SdoTransfer::segmented, const SdoProgress& progress = {},
                                   std::optional<std::size_t> type_size = std::nullopt);
@@ -94,7 +95,7 @@ class SdoAccess {
 
   [[nodiscard]] canopen::NodeId node() const { return node_; }
 
-  /// For the next transfers.
+  /// Applies to the next transfers.
   void set_timeout(unsigned milliseconds) { settings_.timeout_ms = milliseconds; }
 
  private:
@@ -108,8 +109,8 @@ class SdoAccess {
   LiveBus& bus_;
   canopen::NodeId node_;
   SdoSettings settings_;
-  Client client_;          ///< the only one: an SDO has one client, which knows the answers that may still come
-  bool no_block_ = false;  ///< the device was silent where a block transfer was asked for
+  Client client_;          ///< the only client of the SDO, since it must recognize late responses
+  bool no_block_ = false;  ///< the device did not answer a block transfer
 };
 
 }  // namespace edsc

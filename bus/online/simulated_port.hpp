@@ -17,8 +17,8 @@
 
 namespace edsc {
 
-/// Starts the program, with nothing between it and its only participant. Time passes in `receive` alone, as fast as the
-/// program runs. What the program writes to standard error stays there.
+/// Starts the program and is its only other participant on the bus. Time passes in `receive` only, as fast as the
+/// program runs. Standard error of the program is not redirected.
 class SimulatedPort final : public BusPort {
  public:
   /// Whether an address begins with `simulated:`.
@@ -28,52 +28,52 @@ class SimulatedPort final : public BusPort {
   /// of the devices of the program. Throws std::invalid_argument for a malformed address, std::runtime_error for a program
   /// that cannot be started or is not such a simulation.
   explicit SimulatedPort(const std::string& address);
-  /// The program ends with its input; one that does not is killed.
+  /// Closes the input of the program, which ends it; otherwise kills it.
   ~SimulatedPort() override;
 
-  // Functions that talk to the program throw BusLost when it ends or answers what is not an answer, and Interrupted when it
-  // does not answer for a second after Ctrl-C.
+  // Functions that communicate with the program throw BusLost if it ends or sends an invalid response, and Interrupted
+  // if it does not answer for a second after Ctrl-C.
 
   [[nodiscard]] bool send(const canopen::Frame& frame) override;
   [[nodiscard]] std::optional<canopen::Frame> receive(canopen::Duration timeout) override;
-  /// The simulated time, from 0 on.
+  /// The simulated time, from 0.
   [[nodiscard]] canopen::TimePoint now() const override;
   [[nodiscard]] canopen::TimePoint received_at() const override { return received_at_; }
-  /// Of the connection to the program. Not readable between two calls.
+  /// Descriptor of the connection to the program. Not readable between two calls.
   [[nodiscard]] int file_descriptor() const override { return connection_.number(); }
-  /// Seconds of simulated time take the program less than a millisecond.
+  /// The program simulates seconds in less than a millisecond.
   [[nodiscard]] canopen::Duration longest_at_once() const override { return canopen::from_milliseconds(10'000); }
 
-  // What the bus does not do. No time passes: frames that wait are on their way with the next `receive`. Nothing or false:
-  // the program cannot do it.
+  // Inputs of the device other than the bus. No time passes; pending frames are sent by the next `receive`. Nothing or
+  // false: the program does not support it.
 
-  /// The application sets an object to these bytes, as SDO sends them. The abort code with which the device refuses them.
+  /// The application sets an object to these bytes, in SDO format. Returns the abort code of the device.
   [[nodiscard]] std::optional<canopen::AbortCode> set(std::uint16_t index, std::uint8_t sub_index,
                                                       std::span<const std::uint8_t> bytes);
   /// The application reports an error, which sets these bits of 1001h.
   [[nodiscard]] bool emergency(std::uint16_t code, canopen::ErrorRegister bits);
-  /// The error has gone.
+  /// The error is over.
   [[nodiscard]] bool emergency_over(canopen::ErrorRegister bits);
-  /// Switches the device off and on. It keeps what it has stored.
+  /// Switches the device off and on. It keeps its stored values.
   [[nodiscard]] bool power_cycle();
 
  private:
   void start(const std::string& program);
-  /// Why the program cannot be talked to any more.
+  /// Why the program no longer communicates.
   [[noreturn]] void lost();
   [[noreturn]] void lost(const std::string& answer);
   /// How the program has ended; it is killed if it has not.
   [[nodiscard]] std::string end_of_program();
   void flush();
   [[nodiscard]] std::string read_line();
-  /// The answer to a request that lets no time pass.
+  /// The response to a request without simulated time.
   [[nodiscard]] std::optional<canopen::AbortCode> ask(const std::string& request);
 
   std::string program_;
   pid_t process_ = -1;
   canopen::Descriptor connection_;
   std::string requests_;  ///< not written yet
-  std::string answers_;   ///< not looked at yet
+  std::string answers_;   ///< not read yet
   std::uint64_t now_us_ = 0;
   canopen::TimePoint received_at_{};
 };

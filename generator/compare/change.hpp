@@ -1,4 +1,4 @@
-/// What may have changed between two versions of a device, and whom that breaks: a table.
+/// The table of changes between two versions of a device, and what each breaks.
 #pragma once
 
 #include <cstdint>
@@ -66,22 +66,22 @@ enum class ChangeId : std::uint8_t {
 struct ChangeKind {
   ChangeId id;
   std::string_view name;    ///< as `edsc diff` prints it; stable
-  bool breaks_master;       ///< what reads and writes the device by SDO, or supervises it
-  bool breaks_pdo;          ///< what sends its RPDOs or receives its TPDOs
-  bool breaks_source;       ///< code that is compiled against the generated headers
-  std::string_view what;    ///< is it that changed
-  std::string_view reason;  ///< why it breaks somebody, or why not
+  bool breaks_master;       ///< breaks programs that access the device by SDO, or supervise it
+  bool breaks_pdo;          ///< breaks devices that send its RPDOs or receive its TPDOs
+  bool breaks_source;       ///< breaks code that is compiled against the generated headers
+  std::string_view what;    ///< the changed property
+  std::string_view reason;  ///< why it is breaking, or why not
 };
 
 [[nodiscard]] std::span<const ChangeKind> all_change_kinds();
 [[nodiscard]] const ChangeKind& kind_of(ChangeId id);
 
-/// One difference. Positions are those of the whole file where one side has nothing to show.
+/// One difference. On a side without the entry, the position is the whole file.
 struct Change {
   ChangeId id;
   std::string entry;      ///< `6040h:00`, `1018h`, `TPDO 1` or `device`
   std::string name;       ///< of the entry; may be empty
-  std::string old_value;  ///< empty where there is none
+  std::string old_value;  ///< empty if there is none
   std::string new_value;
   Position old_position;
   Position new_position;
@@ -92,23 +92,23 @@ struct Change {
   [[nodiscard]] bool is_breaking() const { return breaks_master || breaks_pdo || breaks_source; }
 };
 
-/// What changed, from what to what, and what that means, in one sentence.
+/// The property, its old and new value, and the consequence, in one sentence.
 [[nodiscard]] std::string message_of(const Change& change);
 
-/// Whom a comparison is for.
+/// The audience of a comparison.
 enum class Audience : std::uint8_t {
   all,
-  wire,    ///< masters and PDO partners: what has CAN frames in common with the device
+  wire,    ///< masters and PDO partners: devices on the same bus
   source,  ///< code that is compiled against the generated headers
 };
 
-/// Collects changes; who is broken comes from the table, unless the place says otherwise.
+/// Collects changes; the table states what each breaks, unless the caller does.
 class Changes {
  public:
   Change& add(ChangeId id, std::string entry, std::string name, const Position& old_position,
               const Position& new_position);
 
-  /// Drops the changes that break somebody, but nobody of this audience; the others break nobody else from here on.
+  /// Drops the changes that break only other audiences; the others then break only this audience.
   void keep(Audience audience);
   /// Adds the changes of another device.
   void append(Changes more);

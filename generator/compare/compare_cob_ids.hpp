@@ -1,4 +1,4 @@
-/// COB-IDs compared by what they mean: a CAN-ID and flags (CiA 301, 7.5.2.5 to 7.5.2.37).
+/// Compares COB-IDs by meaning: CAN-ID and flags (CiA 301, 7.5.2.5 to 7.5.2.37).
 #pragma once
 
 #include <canopen/data_type.hpp>
@@ -14,12 +14,12 @@ namespace edsc {
 
 struct CobIdChange {
   ChangeId id;
-  std::string old_value;  ///< the CAN-ID where that changed, else the whole COB-ID
+  std::string old_value;  ///< the CAN-ID if it changed, else the whole COB-ID
   std::string new_value;
 };
 
-/// What changed from one COB-ID of a service to another. Whether a PDO exists (bit 31) is not part of it: that is a
-/// change of the PDO. Nothing breaks anybody where the service does not exist before.
+/// The changes between two COB-IDs of a service, except bit 31 of a PDO, which is a change of the PDO. No change is
+/// breaking if the service did not exist before.
 [[nodiscard]] std::vector<CobIdChange> compare_cob_ids(const std::optional<Value>& before,
                                                        const std::optional<Value>& after,
                                                        const canopen::DataTypeRow& type, CobIdService service);

@@ -1,4 +1,4 @@
-/// Two versions of a device, compared by what they mean.
+/// Compares two versions of a device by meaning.
 #pragma once
 
 #include "compare/change.hpp"
@@ -6,7 +6,7 @@
 
 namespace edsc {
 
-/// The device's own data, then objects and entries ascending, then PDOs.
+/// Compares device data, then objects and entries ascending, then PDOs.
 [[nodiscard]] Changes compare_devices(const Device& before, const Device& after);
 
 }  // namespace edsc

@@ -6,12 +6,11 @@
 
 namespace edsc {
 
-/// Type, access, mapping, limits and default. `in_rpdo`: an RPDO carries it by default, so that its sender is bound by
-/// its limits, too. Communication and mapping parameters of PDOs are compared as PDOs: their defaults are not looked
-/// at.
+/// Compares type, access, mapping, limits and default value. `in_rpdo`: an RPDO maps the entry by default, so that its
+/// limits apply to the sender too. The default values of PDO communication and mapping parameters are compared as PDOs.
 void compare_entries(const Entry& before, const Entry& after, bool in_rpdo, Changes& changes);
 
-/// A value as a data sheet spells it; strings in quotes; `none` where there is none.
+/// A value in EDS spelling; strings in quotes; `none` if missing.
 [[nodiscard]] std::string value_text(const std::optional<Value>& value, const canopen::DataTypeRow& type);
 
 [[nodiscard]] bool same_value(const std::optional<Value>& a, const std::optional<Value>& b);

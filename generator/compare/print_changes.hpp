@@ -9,7 +9,7 @@
 
 namespace edsc {
 
-/// A line for each change, as compilers write them, and a summary.
+/// A line for each change, in the format of compiler messages, and a summary.
 [[nodiscard]] std::string changes_as_text(const Changes& changes, bool colour);
 
 /// A heading, a table of the breaking changes and one of the others, folded: for a comment on a pull request.

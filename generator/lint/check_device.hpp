@@ -1,4 +1,4 @@
-/// What is wrong with a resolved device.
+/// Checks a resolved device.
 #pragma once
 
 #include "device/device.hpp"
@@ -7,8 +7,8 @@
 
 namespace edsc {
 
-/// Runs all rules over the device and the data sheet that it was made of. The device is the same before and after: what
-/// cannot be used of a data sheet is left out, and reported, by resolve_device().
+/// Runs all rules over the device and its data sheet. Does not change the device: resolve_device() reports and leaves
+/// out what cannot be used.
 void check_device(const Device& device, const DataSheet& sheet, const Options& options, Diagnostics& diagnostics);
 
 }  // namespace edsc

@@ -1,4 +1,4 @@
-/// Objects of device profiles: what each must have, and of which type.
+/// Objects of device profiles: required objects and their data types.
 #pragma once
 
 #include <array>
@@ -10,11 +10,11 @@
 
 namespace edsc {
 
-/// One of these objects is there in a device of the profile.
+/// A device of the profile has one of these objects.
 struct ProfileNeed {
   AnyRule rule;
   std::uint16_t profile;
-  std::array<std::uint16_t, 3> one_of;  ///< 0 fills up
+  std::array<std::uint16_t, 3> one_of;  ///< unused elements are 0
   std::string_view name;
 };
 
@@ -29,7 +29,7 @@ inline constexpr ProfileNeed profile_needs[] = {
     {"profile-406-object", 406, {0x6500}, "operating status"},
 };
 
-/// The type of an object's value, or of its elements.
+/// The data type of an object's value, or of its elements.
 struct ProfileType {
   std::uint16_t profile;
   std::uint16_t index;

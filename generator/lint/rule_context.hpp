@@ -1,4 +1,4 @@
-/// What the rules look at, and where their findings go.
+/// The input of the rules, and the destination of their findings.
 #pragma once
 
 #include <cstdint>
@@ -21,23 +21,23 @@ struct RuleContext {
   const Options& options;
   Diagnostics& diagnostics;
 
-  /// A finding of a rule, as bad as the rule's row says.
+  /// Reports a finding with the severity of the rule.
   void report(AnyRule rule, const Position& position, std::string message, std::vector<Note> notes = {},
               std::string cause = {}) const;
 
-  /// The file as a whole.
+  /// The whole file.
   [[nodiscard]] Position whole_file() const { return Position{device.source}; }
 
-  /// What the data sheet says of an object; null when it does not stand there.
+  /// The description of an object, or null.
   [[nodiscard]] const ObjectDescription* describe(std::uint16_t index) const;
-  /// The section that describes an entry: of an element of a compact object, the object's own.
+  /// The section that describes an entry; for an element of a compact object, that of the object.
   [[nodiscard]] const EntryDescription* describe(const Entry& entry) const;
 
-  /// Where a key of an entry stands, or its section when it is missing.
+  /// The position of a key of an entry, or of its section if the key is missing.
   [[nodiscard]] Position place_of(const Entry& entry, Field EntryDescription::*key) const;
 };
 
-/// Where the default of an entry stands, or its section when there is none.
+/// The position of the default value of an entry, or of its section if it has none.
 [[nodiscard]] Position default_place(const Entry& entry);
 
 /// `6040h:00 "Controlword"`

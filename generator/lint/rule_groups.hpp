@@ -1,4 +1,4 @@
-/// The rules beyond those of single values and mappings, grouped by what they look at.
+/// The rules other than those for single values and mappings, grouped by subject.
 #pragma once
 
 #include "lint/rule_context.hpp"
@@ -9,9 +9,9 @@ namespace edsc {
 void check_file(const RuleContext& context);
 /// [DeviceInfo], alone and against the objects.
 void check_device_info(const RuleContext& context);
-/// Mandatory objects, and defaults against limits.
+/// Mandatory objects, and default values against limits.
 void check_objects(const RuleContext& context);
-/// Objects that others need, and indices that nobody should use.
+/// Objects that others require, and reserved indices.
 void check_presence(const RuleContext& context);
 /// The communication profile's objects against CiA 301.
 void check_standard_objects(const RuleContext& context);
@@ -19,7 +19,7 @@ void check_standard_objects(const RuleContext& context);
 void check_sub_index_0(const RuleContext& context);
 /// Keys of single entries.
 void check_entries(const RuleContext& context);
-/// Values of the communication profile that are no COB-IDs.
+/// Values of the communication profile other than COB-IDs.
 void check_communication_values(const RuleContext& context);
 /// COB-IDs, alone and against each other.
 void check_cob_ids(const RuleContext& context);
@@ -29,7 +29,7 @@ void check_pdo_communication(const RuleContext& context);
 void check_pdo_mapping(const RuleContext& context);
 /// Multiplex PDOs and their lists.
 void check_mpdos(const RuleContext& context);
-/// What the device profile of 1000h asks for.
+/// Requirements of the device profile in 1000h.
 void check_profile(const RuleContext& context);
 /// Names as C++ identifiers.
 void check_names(const RuleContext& context);

@@ -27,23 +27,23 @@ class AccessSet {
 
 namespace access_sets {
 using canopen::Access;
-/// What the device tells.
+/// Values that the device reports.
 inline constexpr AccessSet read_only{Access::ro, Access::constant};
-/// What a master sets, unless the device cannot change it.
+/// Values that a master sets, unless the device does not support it.
 inline constexpr AccessSet settable{Access::rw, Access::rwr, Access::rww, Access::ro, Access::constant};
-/// What a master must be able to set.
+/// Values that a master must be able to set.
 inline constexpr AccessSet read_write{Access::rw, Access::rwr, Access::rww};
 inline constexpr AccessSet write_only{Access::wo};
 }  // namespace access_sets
 
-/// Sub-indices `first` to `last` of an object; of a VAR both are 0. Sub-index 0 of ARRAYs and RECORDs has rules of its
-/// own.
+/// Sub-indices `first` to `last` of an object; of a VAR both are 0. Sub-index 0 of ARRAYs and RECORDs has separate
+/// rules.
 struct StandardEntry {
   std::uint8_t first;
   std::uint8_t last;
   canopen::DataType type;
   AccessSet access;
-  bool required = false;  ///< `first` may not be missing
+  bool required = false;  ///< `first` is mandatory
 };
 
 struct StandardObject {
@@ -139,7 +139,7 @@ inline constexpr StandardObject objects[] = {
 
 }  // namespace standard
 
-/// The row of an index; null when CiA 301 does not describe it.
+/// The row of an index; null if CiA 301 does not describe it.
 [[nodiscard]] const StandardObject* find_standard_object(std::uint16_t index);
 
 }  // namespace edsc
