@@ -1,4 +1,4 @@
-/// Default PDO mappings of which no layout can be made.
+/// Default PDO mappings without a valid layout.
 #pragma once
 
 #include <string_view>
@@ -8,7 +8,7 @@
 
 namespace edsc {
 
-/// Marks PDOs with an invalid mapping as broken and reports why: as an error, but as a warning where the PDO is invalid
+/// Marks PDOs with an invalid mapping as broken and reports why: as an error, but as a warning if the PDO is disabled
 /// by default (bit 31 of its COB-ID). A BOOLEAN that is mapped as a byte is accepted with a warning.
 void mark_broken_pdos(Device& device, const Options& options, Diagnostics& diagnostics);
 

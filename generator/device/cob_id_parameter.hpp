@@ -1,4 +1,4 @@
-/// Where COB-IDs are in the object dictionary, and what CiA 301 gives each one: one row for objects of one kind.
+/// The COB-IDs in the object dictionary and their default values in CiA 301, one row per kind of object.
 #pragma once
 
 #include <canopen/cob_id.hpp>
@@ -13,7 +13,7 @@ namespace edsc {
 
 enum class CobIdService : std::uint8_t { sync, time, emcy, emcy_consumer, sdo_server, sdo_client, rpdo, tpdo };
 
-/// A COB-ID of one object, or of a range of them.
+/// A COB-ID of one object, or of a range of objects.
 struct CobIdParameter {
   std::uint16_t first, last;  ///< indices
   std::uint8_t first_sub_index, last_sub_index;
@@ -27,17 +27,17 @@ struct CobIdParameter {
   [[nodiscard]] std::uint32_t predefined_of(std::uint16_t index) const {
     return predefined + std::uint32_t{step} * (index - first);
   }
-  /// Whether the pre-defined connection set has a CAN-ID for it.
+  /// Whether the pre-defined connection set defines a CAN-ID for it.
   [[nodiscard]] bool is_predefined() const { return canopen::CobId{predefined}.valid(); }
 };
 
 /// All rows, ascending by index.
 [[nodiscard]] std::span<const CobIdParameter> cob_id_parameters();
 
-/// The row of an entry; null when the entry is not a COB-ID.
+/// The row of an entry; null if the entry is not a COB-ID.
 [[nodiscard]] const CobIdParameter* find_cob_id_parameter(std::uint16_t index, std::uint8_t sub_index);
 
-/// The COB-ID that CiA 301 gives the object at `index` of a row. A known node-ID is added to it.
+/// The default COB-ID of the object at `index` by CiA 301. A known node-ID is added to it.
 [[nodiscard]] Value predefined_cob_id(const CobIdParameter& parameter, std::uint16_t index,
                                       std::optional<std::uint8_t> node_id, const Position& position);
 

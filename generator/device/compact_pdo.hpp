@@ -1,4 +1,4 @@
-/// CompactPDO (CiA 306-1, 4.5): PDO parameters that the data sheet only counts.
+/// CompactPDO (CiA 306-1, 4.5): PDO parameters given only by their number.
 #pragma once
 
 #include "device/device.hpp"
@@ -6,9 +6,9 @@
 
 namespace edsc {
 
-/// Adds communication and mapping parameters until there are NrOfRXPDO and NrOfTXPDO PDOs: to PDOs that lack one of the
-/// two, and new ones at the lowest free numbers. Bit n of CompactPDO says that communication parameters have sub-index
-/// n + 1. The device's objects stay in order.
+/// Adds communication and mapping parameters up to NrOfRXPDO and NrOfTXPDO PDOs: first to PDOs without one of the two,
+/// then at the lowest free numbers. Bit n of CompactPDO means that communication parameters have sub-index n + 1. The
+/// objects of the device remain sorted.
 void add_compact_pdos(const DeviceInfo& info, Device& device, Diagnostics& diagnostics);
 
 }  // namespace edsc

@@ -1,4 +1,4 @@
-/// What a data sheet leaves open and CiA 301 does not.
+/// Values that an EDS does not state and CiA 301 does.
 #pragma once
 
 #include <cstdint>
@@ -7,13 +7,13 @@
 
 namespace edsc {
 
-/// The transmission type of a PDO whose sheet has none: event-driven, as the device profiles have it. CiA 301 has no
-/// default.
+/// The transmission type of a PDO without one in the EDS: event-driven, as in the device profiles. CiA 301 does not
+/// define a default value.
 inline constexpr std::uint8_t default_transmission_type = 255;
 
-/// Gives the communication profile of a device the values that it starts with by CiA 301: those that the standard fixes,
-/// whatever the file says, and those that it implies, where the file has none. A value that comes from the standard names
-/// its clause; what differs from the file, or is missing there, is reported.
+/// Sets the default values of the communication profile that CiA 301 fixes, regardless of the file, and those that it
+/// implies and the file does not state. Each such value records its clause; differences from the file and missing
+/// values are reported.
 void complete_device(Device& device, Diagnostics& diagnostics);
 
 }  // namespace edsc

@@ -1,4 +1,4 @@
-/// A section of the data sheet -> an entry of the dictionary: type, access, mapping, values.
+/// Resolves a section of the data sheet to an entry of the dictionary: type, access, mapping, values.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ struct EntryPlace {
   std::uint16_t index = 0;
   std::uint8_t sub_index = 0;
   bool in_object_with_sub_indices = false;
-  std::optional<std::uint64_t> record_type = std::nullopt;  ///< DataType of the RECORD it stands in
+  std::optional<std::uint64_t> record_type = std::nullopt;  ///< DataType of its RECORD
 };
 
 class EntryResolver {
@@ -23,7 +23,7 @@ class EntryResolver {
   EntryResolver(const TypeTable& types, bool is_dcf, std::optional<std::uint8_t> node_id, Diagnostics& diagnostics)
       : types_{types}, is_dcf_{is_dcf}, node_id_{node_id}, diagnostics_{diagnostics} {}
 
-  /// Nothing when the entry has no type; that is reported.
+  /// Returns nothing if the entry has no type, which is reported.
   [[nodiscard]] std::optional<Entry> resolve(const EntryDescription& description, const EntryPlace& place,
                                              std::string_view name);
 
@@ -31,7 +31,7 @@ class EntryResolver {
 
  private:
   void check_sub_object_type(const EntryDescription& description);
-  /// Nothing for an entry that is left out; no row for one whose type is not known.
+  /// Returns nothing for an entry that is left out; no row for an unknown type.
   std::optional<ValueType> data_type(const EntryDescription& description, const EntryPlace& place);
   std::optional<ValueType> missing_data_type(const EntryDescription& description, const EntryPlace& place);
   canopen::Access access(const EntryDescription& description);

@@ -1,4 +1,4 @@
-/// What a data sheet says besides its objects, in types.
+/// The contents of a data sheet other than objects, as typed values.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace edsc {
 
-/// [FileInfo] (CiA 306-1, clause 4.4). Dates and times stay as they are written.
+/// [FileInfo] (CiA 306-1, clause 4.4). Dates and times are unchanged texts.
 struct FileInformation {
   std::string file_name, file_version, file_revision, eds_version, description;
   std::string creation_time, creation_date, created_by;
@@ -16,15 +16,15 @@ struct FileInformation {
   std::string last_eds;
 };
 
-/// [DeviceInfo] (clause 4.5); who the device is stands in `Device`. Nothing where a key is missing or cannot be read.
+/// [DeviceInfo] (clause 4.5) without the identity, which is in `Device`. Nothing for a missing or invalid key.
 struct Capabilities {
   std::string order_code;
-  std::vector<std::uint16_t> baud_rates;  ///< kbit/s, those that are supported
+  std::vector<std::uint16_t> baud_rates;  ///< kbit/s, supported ones
   std::optional<bool> simple_boot_up_master, simple_boot_up_slave, group_messaging, lss_supported;
   std::optional<std::uint32_t> granularity, dynamic_channels_supported, nr_of_rx_pdo, nr_of_tx_pdo, compact_pdo;
 };
 
-/// [DeviceComissioning] of a DCF (clause 5.3); the node-ID stands in `Device`.
+/// [DeviceComissioning] of a DCF (clause 5.3) without the node-ID, which is in `Device`.
 struct Commissioning {
   std::string node_name, network_name, node_refd, net_refd;
   std::optional<std::uint32_t> baudrate, net_number, lss_serial_number;
@@ -41,7 +41,7 @@ struct DynamicChannel {
   std::string direction;
 };
 
-/// What may be plugged into a modular device (clause 6).
+/// The modules of a modular device (clause 6).
 struct ModuleInformation {
   std::uint16_t number = 0;
   std::string product_name, order_code;
@@ -57,7 +57,7 @@ struct Information {
   std::vector<ToolInformation> tools;
   std::vector<DynamicChannel> dynamic_channels;
   std::vector<ModuleInformation> supported_modules;
-  std::vector<std::uint16_t> connected_modules;  ///< by place, as far as the DCF or the options say
+  std::vector<std::uint16_t> connected_modules;  ///< by place, from the DCF or the options
 };
 
 }  // namespace edsc

@@ -1,4 +1,4 @@
-/// What a data sheet describes and the resolved device does not have.
+/// Parts of a data sheet that the resolved device does not have.
 #pragma once
 
 #include <string>
@@ -14,8 +14,8 @@ struct LeftOut {
   std::string what;  ///< `RPDO 2`, `2000h:01 "Speed"`, `the DefaultValue of 2000h:01 "Speed"`
 };
 
-/// Compares the data sheet with the device: objects, entries, default values and limits that are missing, and PDOs whose
-/// mapping is broken. It does not depend on what was reported, or silenced.
+/// Compares the data sheet with the device: missing objects, entries, default values and limits, and PDOs with a broken
+/// mapping. Does not depend on which findings were reported or silenced.
 [[nodiscard]] std::vector<LeftOut> find_left_out(const DataSheet& sheet, const Device& device);
 
 }  // namespace edsc

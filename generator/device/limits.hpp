@@ -1,11 +1,11 @@
-/// How much a device may have (CiA 301, 7.4 and 7.5.2).
+/// Limits of a device (CiA 301, 7.4 and 7.5.2).
 #pragma once
 
 #include <cstdint>
 
 namespace edsc {
 
-inline constexpr std::uint16_t most_pdos = 512;  ///< of each direction
+inline constexpr std::uint16_t most_pdos = 512;  ///< per direction
 inline constexpr std::uint8_t most_mapped_objects = 64;
 inline constexpr std::uint8_t most_sub_objects = 254;
 

@@ -6,7 +6,7 @@
 
 namespace edsc {
 
-/// Gives each object an identifier that is unique in the device, each entry one that is unique in its object.
+/// Sets identifiers: of objects, unique in the device; of entries, unique in the object.
 void name_objects(Device& device, const Options& options);
 
 }  // namespace edsc

@@ -1,4 +1,4 @@
-/// The sections of one index -> an object with its entries; compact forms are unfolded.
+/// Resolves the sections of one index to an object with its entries; unfolds compact forms.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace edsc {
 
-/// Sub-index 0 of an object whose data sheet has none: a constant.
+/// Sub-index 0, a constant, of an object without one in the EDS.
 [[nodiscard]] Entry count_entry(std::uint16_t index, std::uint8_t highest, const Position& position);
 
 class ObjectResolver {
@@ -18,7 +18,7 @@ class ObjectResolver {
   ObjectResolver(EntryResolver& entries, bool is_dcf, Diagnostics& diagnostics)
       : entries_{entries}, is_dcf_{is_dcf}, diagnostics_{diagnostics} {}
 
-  /// Nothing when no entry is left of it; that is reported.
+  /// Returns nothing if no entry remains, which is reported.
   [[nodiscard]] std::optional<Object> resolve(const ObjectDescription& description);
 
  private:

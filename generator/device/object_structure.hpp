@@ -11,10 +11,10 @@ namespace edsc {
 
 inline constexpr std::uint8_t structure_sub_index = 0xFF;
 
-/// What the UNSIGNED32 of sub-index FFh holds: the object code in bits 0 to 7, the data type in bits 8 to 15, 0 above.
+/// The value of sub-index FFh: the object code in bits 0 to 7, the data type in bits 8 to 15, 0 above.
 struct ObjectStructure {
   std::uint8_t object_code = 0;
-  std::optional<std::uint8_t> data_type;  ///< nothing: of a RECORD of the manufacturer or of a profile
+  std::optional<std::uint8_t> data_type;  ///< nothing for a RECORD of the manufacturer or of a profile
 
   [[nodiscard]] bool matches(std::uint64_t value) const;
   [[nodiscard]] std::string text() const;  ///< `object code 08h and data type 05h`

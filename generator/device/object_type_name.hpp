@@ -1,4 +1,4 @@
-/// ObjectType as a word, where CiA 306 writes a number.
+/// ObjectType as a word instead of a number.
 #pragma once
 
 #include <fmt/format.h>
@@ -14,7 +14,7 @@
 
 namespace edsc {
 
-/// The object code of this name; nothing when the text is none.
+/// The object code of this name; nothing if unknown.
 [[nodiscard]] inline std::optional<ObjectType> object_type_named(std::string_view text) {
   constexpr std::array named = {ObjectType::domain, ObjectType::var, ObjectType::array, ObjectType::record};
   for (const ObjectType type : named) {

@@ -1,4 +1,4 @@
-/// The options file `NAME.options.json`: what a device does that an EDS has no words for.
+/// The options file `NAME.options.json`: behaviour of a device that an EDS cannot express.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace edsc {
 
 using EntryKey = std::pair<std::uint16_t, std::uint8_t>;
 
-/// One entry, or all of an object where no sub-index is given.
+/// One entry, or the whole object without a sub-index.
 struct EntrySelector {
   std::uint16_t index = 0;
   std::optional<std::uint8_t> sub_index;
@@ -25,7 +25,7 @@ struct EntrySelector {
   friend bool operator==(const EntrySelector&, const EntrySelector&) = default;
 };
 
-/// Mapping parameters that are constants whatever access the data sheet gives them.
+/// Mapping parameters that are constants regardless of their access type in the EDS.
 struct StaticMapping {
   bool all = false;
   std::vector<std::uint16_t> parameters;  ///< indices
@@ -35,31 +35,31 @@ struct StaticMapping {
   }
 };
 
-/// The bytes of an EMCY behind error code and error register.
+/// The bytes of an EMCY message after error code and error register.
 using EmergencyInfo = std::array<std::uint8_t, 5>;
 
-/// Members of canopen::LssOptions that are true or false, in its order.
+/// Boolean members of canopen::LssOptions, in its order.
 inline constexpr std::array lss_flags = {"manufacturer_bit_timing", "unconfigurable", "fastscan", "served_in_stopped",
                                          "served_in_operational"};
 
-/// How a device is configured by LSS, as far as the options say; what they do not is the default of CiA 305.
+/// LSS options of a device; values that are not given have the default of CiA 305.
 struct LssSettings {
-  std::optional<std::uint16_t> bit_rates;  ///< canopen::LssOptions::bit_rates; else those of the data sheet
+  std::optional<std::uint16_t> bit_rates;  ///< canopen::LssOptions::bit_rates; otherwise those of the EDS
   std::map<std::string, bool> flags;       ///< by member
 
   friend bool operator==(const LssSettings&, const LssSettings&) = default;
 };
 
-/// What 1021h holds: what the application binds to it, the data sheet's text, or the same as a gzip file.
+/// The value of 1021h: bound by the application, the text of the EDS, or the EDS as a gzip file.
 enum class StoredEds : std::uint8_t { of_application, text, compressed };
 
-/// A rule whose findings are not reported.
+/// A silenced rule.
 struct SilencedRule {
   std::string rule;
   Position position;
 };
 
-/// Findings of a rule that are expected, and why: of one object or entry, or of the whole data sheet.
+/// Expected findings of a rule, with a reason: for one object or entry, or for the whole EDS.
 struct AllowedFindings {
   std::string rule;
   std::optional<EntrySelector> object;
@@ -68,31 +68,31 @@ struct AllowedFindings {
 };
 
 struct Options {
-  /// C++ names to use in place of the one made from ParameterName.
+  /// C++ names that replace those made from ParameterName.
   std::map<EntryKey, std::string> names;
-  /// Bytes that a string in RAM can hold.
+  /// Maximum bytes of a string in RAM.
   std::map<EntryKey, std::uint16_t> string_capacity;
-  /// Constant or ro entries that the application sets at start-up: they live in RAM.
+  /// Constant or ro entries that the application sets at start-up: they are in RAM.
   std::vector<EntryKey> settable;
   /// Rules that are not reported for this device.
   std::vector<SilencedRule> silence;
-  /// What is plugged into a modular device: the numbers of the modules, by place. Empty: what the DCF says.
+  /// The connected modules of a modular device: their numbers, by place. Empty: as in the DCF.
   std::vector<std::uint16_t> connected_modules;
-  /// VISIBLE_STRINGs go out with a trailing 00h.
+  /// VISIBLE_STRINGs are uploaded with a trailing 00h.
   bool zero_terminated_strings = false;
   StaticMapping static_mapping;
-  /// Entries whose new value sends no event-driven TPDO.
+  /// Entries whose new value does not trigger event-driven TPDOs.
   std::vector<EntrySelector> no_event;
-  /// What the EMCYs that the services send by themselves carry, by emergency error code.
+  /// The manufacturer-specific bytes of EMCY messages that the services send themselves, by emergency error code.
   std::map<std::uint16_t, EmergencyInfo> emergency_info;
-  /// Entries that 1010h stores otherwise than their access says, by enumerator of canopen::Storing.
+  /// Entries for which 1010h does not follow the access type, with their enumerator of canopen::Storing.
   std::vector<std::pair<EntrySelector, std::string>> storing;
-  /// Set where the options speak of LSS: the device has it then, whatever the data sheet says.
+  /// Set if the options file has LSS options: the device then supports LSS regardless of the EDS.
   std::optional<LssSettings> lss;
   StoredEds stored_eds = StoredEds::of_application;
-  /// Departures from CiA 301 that the runtime knows: member of canopen::DeviceOptions and its value in C++.
+  /// Deviations from CiA 301 for the runtime: member of canopen::DeviceOptions and its value in C++.
   std::vector<std::pair<std::string, std::string>> runtime;
-  /// Findings that are expected.
+  /// Expected findings.
   std::vector<AllowedFindings> allow;
 
   [[nodiscard]] bool is_settable(std::uint16_t index, std::uint8_t sub_index) const {
@@ -100,7 +100,7 @@ struct Options {
   }
 };
 
-/// Reads an options file. Unknown members and values of a wrong type are errors, with the member's path.
+/// Reads an options file. Unknown members and invalid values are errors, with the path of the member.
 [[nodiscard]] Options read_options(const SourceFile& source, Diagnostics& diagnostics);
 
 }  // namespace edsc

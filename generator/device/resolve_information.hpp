@@ -1,4 +1,4 @@
-/// Sections of the data sheet other than those of objects, with their numbers read.
+/// Resolves the sections of a data sheet other than those of objects.
 #pragma once
 
 #include "device/information.hpp"
@@ -9,7 +9,7 @@ namespace edsc {
 
 [[nodiscard]] Information resolve_information(const DataSheet& sheet, const Options& options, Diagnostics& diagnostics);
 
-/// An UNSIGNED32; nothing, with a warning, when the field holds something else. An empty field holds nothing.
+/// Reads an UNSIGNED32. Returns nothing for an empty field, and for an invalid one, which is reported.
 [[nodiscard]] std::optional<std::uint32_t> read_number(const Field& field, WarningRule rule, Diagnostics& diagnostics);
 
 }  // namespace edsc

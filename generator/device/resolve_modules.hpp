@@ -1,4 +1,4 @@
-/// The objects that plugged-in modules bring along (CiA 306-1, clause 6).
+/// The objects of connected modules (CiA 306-1, clause 6).
 #pragma once
 
 #include "device/device.hpp"
@@ -7,8 +7,8 @@
 
 namespace edsc {
 
-/// Adds fixed objects once for each kind of module that is connected, and the sub-indices of each module in the order
-/// of their places. The device's objects stay in order.
+/// Adds the fixed objects of each kind of connected module once, and the sub-indices of each module in the order of
+/// their places. The objects of the device remain sorted.
 void add_modules(const Modules& modules, ObjectResolver& objects, EntryResolver& entries, Device& device,
                  Diagnostics& diagnostics);
 

@@ -6,7 +6,7 @@
 
 namespace edsc {
 
-/// Fills `device.pdos`. The device's objects must not move afterwards: PDOs point at them.
+/// Fills `device.pdos`. The objects of the device must not move afterwards, since PDOs point to them.
 void resolve_pdos(Device& device, const Options& options);
 
 }  // namespace edsc

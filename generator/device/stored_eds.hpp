@@ -1,4 +1,4 @@
-/// A device that keeps its data sheet: 1021h and 1022h (CiA 301, 7.5.2.24 and 7.5.2.25).
+/// A device that stores its EDS: 1021h and 1022h (CiA 301, 7.5.2.24 and 7.5.2.25).
 #pragma once
 
 #include <string>
@@ -11,17 +11,17 @@ namespace edsc {
 inline constexpr std::uint16_t store_eds = 0x1021;
 inline constexpr std::uint16_t store_format = 0x1022;
 
-/// 1022h: how 1021h holds the data sheet.
+/// 1022h: the format of the EDS in 1021h.
 enum class StoreFormat : std::uint8_t {
   text = 0x00,  ///< ISO 10646, not compressed
-  gzip = 0x80,  ///< RFC 1952; the first of the manufacturer's own formats
+  gzip = 0x80,  ///< RFC 1952; the first manufacturer-specific format
 };
 
-/// Where the options want the data sheet in the device: 1022h tells its format. An error where 1021h is no DOMAIN that
-/// is only read, or where a compressed one has no 1022h to tell it by.
+/// If the options request a stored EDS, sets 1022h to its format. Reports an error if 1021h is not a read-only DOMAIN,
+/// or if a compressed EDS has no 1022h.
 void resolve_stored_eds(Device& device, const Options& options, Diagnostics& diagnostics);
 
-/// The bytes of 1021h, in UTF-8; none where the options do not want them.
+/// The bytes of 1021h, in UTF-8; empty unless the options request them.
 [[nodiscard]] std::string stored_eds(const Device& device, const Options& options);
 
 }  // namespace edsc

@@ -6,8 +6,8 @@
 
 namespace edsc {
 
-/// The type that CiA 301 or a usual programming language calls so (`UNSIGNED8`, `uint8_t`, `float`), letter case ignored;
-/// null for any other word.
+/// Finds a data type by its name in CiA 301 or a usual programming language (`UNSIGNED8`, `uint8_t`, `float`), ignoring
+/// letter case. Null if unknown.
 [[nodiscard]] const canopen::DataTypeRow* find_type_by_name(std::string_view name);
 
 }  // namespace edsc

@@ -1,4 +1,4 @@
-/// What DataType stands for: basic types, complex ones of CiA 301, and the data sheet's own.
+/// The data types that DataType can name: basic and complex types of CiA 301, and those that the EDS defines.
 #pragma once
 
 #include <canopen/data_type.hpp>
@@ -16,26 +16,25 @@ namespace edsc {
 /// Indices below this describe data types, not values.
 inline constexpr std::uint16_t first_communication_index = 0x1000;
 
-/// A basic type, and the limits that a type of the data sheet's own puts on it.
+/// A basic type, with the limits of a type that the EDS defines.
 struct ValueType {
   const canopen::DataTypeRow* row = nullptr;
   const Value* low_limit = nullptr;
   const Value* high_limit = nullptr;
-  std::uint32_t octets = 0;  ///< of a string: the length that its DEFTYPE states, in bytes; 0 where none does
+  std::uint32_t octets = 0;  ///< of a string: the length stated by its DEFTYPE, in bytes; 0 if none
 };
 
 class TypeTable {
  public:
   TypeTable(const DataSheet& sheet, std::optional<std::uint8_t> node_id, Diagnostics& diagnostics);
 
-  /// The type of one value; `row` is null where there is none.
+  /// The type of one value; `row` is null if unknown.
   [[nodiscard]] ValueType find(std::uint64_t code) const;
 
-  /// The type that a RECORD of complex type `code` has at a sub-index; `row` is null where none is known.
+  /// The type of a sub-index of a RECORD of complex type `code`; `row` is null if unknown.
   [[nodiscard]] ValueType find_member(std::uint64_t code, std::uint8_t sub_index) const;
 
-  /// PDO parameters, SDO parameter, identity and their like (CiA 301, 7.4.7, table 44), or a DEFSTRUCT of the data
-  /// sheet.
+  /// PDO parameters, SDO parameter, identity and so on (CiA 301, 7.4.7, table 44), or a DEFSTRUCT of the EDS.
   [[nodiscard]] bool is_complex(std::uint64_t code) const;
 
   [[nodiscard]] const std::vector<TypeDefinition>& definitions() const { return definitions_; }

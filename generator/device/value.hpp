@@ -1,4 +1,4 @@
-/// Values as an EDS spells them: numbers, node-ID formulas, strings (CiA 306-1, 4.6.2.3).
+/// Parses the values of an EDS: numbers, node-ID formulas, strings (CiA 306-1, 4.6.2.3).
 #pragma once
 
 #include <canopen/data_type.hpp>
@@ -10,19 +10,19 @@
 
 namespace edsc {
 
-/// The value of DefaultValue or ParameterValue for an entry of this type. Nothing when the field is
-/// missing or empty, or when it cannot be read, which is then reported. With a node-ID, formulas become numbers.
+/// Parses DefaultValue or ParameterValue of an entry of this type. Returns nothing for a missing or empty field, and
+/// for an invalid one, which is reported. With a node-ID, formulas become numbers.
 [[nodiscard]] std::optional<Value> parse_value(const Field& field, const canopen::DataTypeRow& type,
                                                std::optional<std::uint8_t> node_id, Diagnostics& diagnostics);
 
 enum class Limit : std::uint8_t { low, high };
 
-/// The same for LowLimit or HighLimit. One that lies beyond the type's own range limits nothing: it is left out, with a
+/// The same for LowLimit or HighLimit. A limit outside the range of the type has no effect and is left out, with a
 /// warning.
 [[nodiscard]] std::optional<Value> parse_limit(const Field& field, Limit which, const canopen::DataTypeRow& type,
                                                std::optional<std::uint8_t> node_id, Diagnostics& diagnostics);
 
-/// Whether `a` is less than `b`, both the bits of values of this type.
+/// Whether `a` is less than `b`; both are the bits of values of this type.
 [[nodiscard]] bool is_less(const canopen::DataTypeRow& type, std::uint64_t a, std::uint64_t b);
 
 }  // namespace edsc
