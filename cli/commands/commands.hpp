@@ -12,7 +12,7 @@ void add_dump_command(CLI::App& app, int& exit_code);
 void add_format_command(CLI::App& app, int& exit_code);
 void add_diff_command(CLI::App& app, int& exit_code);
 void add_decode_command(CLI::App& app, int& exit_code);
-/// Describes all subcommands of `app`, also those that are added later.
+/// Describes all subcommands of `app`, including those added later.
 void add_completion_command(CLI::App& app, int& exit_code);
 void add_bus_command(CLI::App& app, int& exit_code);
 void add_scan_command(CLI::App& app, int& exit_code);

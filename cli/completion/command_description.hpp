@@ -1,5 +1,4 @@
-/// The commands of the program as data, taken from what parses them: for completions and the manual page, which so are
-/// never stale.
+/// The commands of the program as data, derived from the command line parser, for completions and the manual page.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -9,11 +8,11 @@
 
 namespace edsc {
 
-/// What may stand behind an option, or as an argument.
+/// The kind of value of an option or argument.
 enum class ValueKind : std::uint8_t { none, words, folder, file, number };
 
 struct OptionDescription {
-  std::vector<std::string> names;  ///< `--format`, `-o`; of an argument its name, `FILE`
+  std::vector<std::string> names;  ///< `--format`, `-o`; for an argument its name, `FILE`
   std::string text;
   ValueKind value = ValueKind::none;
   std::vector<std::string> words;  ///< of ValueKind::words
@@ -23,15 +22,15 @@ struct OptionDescription {
 
 struct CommandDescription {
   std::vector<std::string> path;  ///< `lss`, `inquire`; empty for the program
-  std::string group;  ///< of commands that the help lists together
+  std::string group;  ///< heading in the help
   std::string text;
-  std::string examples;  ///< lines behind `Examples:`
+  std::string examples;  ///< lines after `Examples:`
   std::vector<OptionDescription> options;
   std::vector<OptionDescription> arguments;
   std::vector<CommandDescription> commands;
 };
 
-/// The groups of the commands of a command, in their order.
+/// The groups of the subcommands of a command, in order.
 [[nodiscard]] std::vector<std::string> groups_of(const CommandDescription& command);
 
 [[nodiscard]] CommandDescription describe_commands(const CLI::App& program);

@@ -1,4 +1,4 @@
-/// A file as a git revision has it.
+/// A file in a git revision.
 #pragma once
 
 #include <memory>
@@ -9,12 +9,12 @@
 namespace edsc {
 
 struct GitFile {
-  std::unique_ptr<SourceFile> source;  ///< null when it cannot be read
-  bool is_missing = false;             ///< the revision is known and does not have the file
+  std::unique_ptr<SourceFile> source;  ///< null if it cannot be read
+  bool is_missing = false;             ///< the revision exists, but does not contain the file
   std::string error;                   ///< message for the user; empty if there is a source
 };
 
-/// Reads `path`, which need not exist now, from `revision` of the repository that its folder is in.
+/// Reads `path`, which need not exist in the working tree, from `revision` of the repository of its folder.
 [[nodiscard]] GitFile read_git_file(const std::string& revision, const std::string& path);
 
 }  // namespace edsc

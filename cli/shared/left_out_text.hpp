@@ -1,4 +1,4 @@
-/// What a device does not have of its data sheet, as text.
+/// Text for the parts of an EDS that are left out.
 #pragma once
 
 #include <string>
@@ -9,11 +9,12 @@
 
 namespace edsc {
 
-/// What the device does not have, and PDOs that are not generated since their COB-ID is wrong.
+/// Parts that the device does not have, and PDOs that are not generated because of an invalid COB-ID.
 [[nodiscard]] std::vector<LeftOut> all_left_out(const LoadedDevice& loaded);
 
-/// A line for each, `drive.eds:70:2: left out: TPDO 1`. Needed where the findings do not say it: with --keep-going a finding
-/// says what is wrong, a silenced rule says nothing, and one that fires often is counted only.
+/// A line for each part, `drive.eds:70:2: left out: TPDO 1`. Needed since the findings may not state it: with
+/// --keep-going a finding states only what is wrong, silenced rules report nothing, and frequent findings are counted
+/// only.
 [[nodiscard]] std::string left_out_text(const std::vector<LeftOut>& left_out);
 
 }  // namespace edsc

@@ -1,4 +1,4 @@
-/// Arguments that the commands at a live bus have in common.
+/// Common arguments of the commands at a live bus.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -28,13 +28,13 @@ CLI::Option* add_format_option(CLI::App& command, std::string& format);
 /// `--type TYPE`
 CLI::Option* add_type_option(CLI::App& command, const canopen::DataTypeRow*& type);
 
-/// A number as people write it: 31, 0x1F or 1Fh. Nothing when it is none, or above `most`.
+/// Parses a number: 31, 0x1F or 1Fh. Nothing if it is invalid, or above `most`.
 [[nodiscard]] std::optional<std::uint32_t> parse_count(const std::string& text, std::uint32_t most = 0xFFFF'FFFF);
 
-/// `1..127`, `5` or `1,3,8..20`: ascending, each once. Empty when it is none of these.
+/// Parses `1..127`, `5` or `1,3,8..20`: ascending, each once. Empty if invalid.
 [[nodiscard]] std::vector<std::uint8_t> parse_node_list(const std::string& text);
 
-/// An option or argument that is such a number.
+/// Adds an option or argument with such a number.
 CLI::Option* add_count_option(CLI::App& command, const std::string& name, std::optional<std::uint32_t>& number,
                               const std::string& description);
 

@@ -1,4 +1,4 @@
-/// Findings that a comment of the data sheet or its options file allows, each with a reason.
+/// Findings that a comment in the EDS or the options file allows, each with a reason.
 #pragma once
 
 #include <cstddef>
@@ -13,27 +13,27 @@
 
 namespace edsc {
 
-/// A part of a data sheet: a section, an element, or one line of them.
+/// A part of a data sheet: a section, an XML element, or one line of it.
 struct SheetPart {
   std::uint32_t line = 0;
   std::uint32_t column = 0;
-  std::optional<std::uint16_t> index;     ///< of the object that the part describes
+  std::optional<std::uint16_t> index;     ///< of the described object
   std::optional<std::uint8_t> sub_index;  ///< of its entry; 0 for the section of an object
 };
 
-/// Where the parts of a data sheet are.
+/// The positions of the parts of a data sheet.
 struct SheetOutline {
   const SourceFile* file = nullptr;
-  std::vector<SheetPart> parts;  ///< in their order; each ends where the next one begins
-  std::vector<SheetPart> lines;  ///< lines that describe another object or entry than the part that they are in
+  std::vector<SheetPart> parts;  ///< in order; each ends where the next one begins
+  std::vector<SheetPart> lines;  ///< lines that describe another object or entry than their part
 };
 
-/// What an allowance applies to.
+/// The scope of an allowance.
 struct AllowanceScope {
   enum class Kind : std::uint8_t { file, part, line, object, entry };
 
   Kind kind = Kind::file;
-  std::uint32_t line = 0;  ///< of `part` its first one
+  std::uint32_t line = 0;  ///< of `part`: its first line
   std::uint16_t index = 0;
   std::uint8_t sub_index = 0;
 
@@ -43,10 +43,10 @@ struct AllowanceScope {
 struct Allowance {
   std::string rule;
   std::string reason;
-  Position position;  ///< where it is written
-  bool in_source = false;  ///< a comment of the data sheet; else a member of the options file
+  Position position;  ///< of the allowance itself
+  bool in_source = false;  ///< a comment in the EDS; otherwise a member of the options file
   AllowanceScope scope;
-  std::size_t findings = 0;  ///< how many it applied to
+  std::size_t findings = 0;  ///< number of findings that it applied to
 };
 
 /// The allowances of one data sheet.
@@ -55,7 +55,7 @@ class Allowances {
   void set_outline(SheetOutline outline);
   void add(Allowance allowance);
 
-  /// The place in `all()` of the first allowance of `rule` that applies to `position`, the narrowest scope first.
+  /// The index in `all()` of the first allowance of `rule` that applies to `position`, narrowest scope first.
   [[nodiscard]] std::optional<std::size_t> find(std::string_view rule, const Position& position) const;
   void count_finding(std::size_t allowance) { ++all_[allowance].findings; }
 

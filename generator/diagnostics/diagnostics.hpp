@@ -1,4 +1,4 @@
-/// Diagnostics: what is wrong, how bad it is, and where it stands.
+/// Diagnostics: faults with severity and position.
 #pragma once
 
 #include <cstddef>
@@ -25,18 +25,18 @@ struct Note {
 
 struct Diagnostic {
   Severity severity = Severity::error;
-  std::string_view rule;  ///< id of a row of the rule table; lives as long as the program
+  std::string_view rule;  ///< id in the rule table; static
   Position position;
   std::string message;
-  std::vector<Note> notes;  ///< further places that explain the first
-  /// Findings of one rule with the same cause are one: the notes name the next places, and `places` counts all of them.
-  /// Without a cause, a finding is on its own.
+  std::vector<Note> notes;  ///< related positions
+  /// Findings of one rule with the same cause are merged: the notes list the next places, and `places` counts all of
+  /// them. A finding without a cause is never merged.
   std::string cause;
   std::size_t places = 1;
-  std::size_t unnamed = 0;  ///< how many of the places are neither `position` nor among the notes
+  std::size_t unnamed = 0;  ///< number of places that are neither `position` nor in the notes
 };
 
-/// Collects what the passes over one or more files find, in the order they find it.
+/// Collects the findings for one or more files, in the order in which they are reported.
 class Diagnostics {
  public:
   void error(ErrorRule rule, const Position& position, std::string message, std::vector<Note> notes = {},
@@ -45,66 +45,65 @@ class Diagnostics {
                std::string cause = {});
   void note(NoteRule rule, const Position& position, std::string message, std::vector<Note> notes = {},
             std::string cause = {});
-  /// A finding of the severity that the rule usually has.
+  /// Reports a finding with the usual severity of the rule.
   void usual(AnyRule rule, const Position& position, std::string message, std::vector<Note> notes = {},
              std::string cause = {});
-  /// Takes over a finding of another collection.
+  /// Adds a finding of another collection.
   void report(Diagnostic diagnostic);
 
-  /// Drops the warnings and notes of a rule; its errors stay, since what is wrong with them is left out of the device.
+  /// Drops the warnings and notes of a rule; its errors remain, since they cause parts of the device to be left out.
   void silence(std::string rule);
-  /// Findings that an allowance applies to are set aside: warnings and notes, but no errors, as in silence().
+  /// Sets aside the findings to which an allowance applies: warnings and notes, but not errors, as in silence().
   void set_outline(SheetOutline outline) { allowances_.set_outline(std::move(outline)); }
   void allow(Allowance allowance) { allowances_.add(std::move(allowance)); }
-  /// From here on errors are dropped or set aside as well: for `edsc check`, which makes nothing of the device.
+  /// From now on, errors are dropped or set aside too: for `edsc check`, which does not generate anything.
   void silence_errors() { silence_errors_ = true; }
   /// Whether a warning or an error was dropped or set aside.
   [[nodiscard]] bool any_silenced() const { return any_silenced_; }
   /// Whether silence() of this rule has dropped a finding.
   [[nodiscard]] bool has_silenced(std::string_view rule) const;
-  /// From here on errors at places in `file` are warnings (`--keep-going`): who reads the file of another manufacturer
-  /// cannot mend it. Those of the rules in `fatal` stay errors. A warning of this kind may still be silenced.
+  /// From now on, errors at positions in `file` become warnings (`--keep-going`), for files that the user cannot
+  /// change, except errors of the rules in `fatal`. Such a warning can still be silenced.
   void keep_going(const SourceFile* file, std::span<const std::string_view> fatal) {
     foreign_file_ = file;
     fatal_rules_ = fatal;
   }
-  /// From here on a warning counts as an error (`--strict`). A note stays a note.
+  /// From now on, warnings count as errors (`--strict`); notes do not.
   void treat_warnings_as_errors() { strict_ = true; }
 
-  /// From here on notes are dropped: `edsc check` shows them, no other command does.
+  /// From now on, notes are dropped: only `edsc check` prints them.
   void drop_notes() { drop_notes_ = true; }
 
-  /// The listed findings. `errors()`, `warnings()` and `notes()` count the suppressed ones too.
+  /// The listed findings. `errors()`, `warnings()` and `notes()` also count the suppressed ones.
   [[nodiscard]] const std::vector<Diagnostic>& all() const { return all_; }
   [[nodiscard]] std::size_t errors() const { return errors_; }
   [[nodiscard]] std::size_t warnings() const { return warnings_; }
   [[nodiscard]] std::size_t notes() const { return notes_; }
-  /// How many findings of `rule` in `file` came after the first `most_per_rule` and were counted only.
+  /// The number of findings of `rule` in `file` after the first `most_per_rule`, which are counted only.
   struct Suppressed {
     const SourceFile* file;
     std::string_view rule;
     Severity severity;
     std::size_t count;
-    std::size_t last_listed;  ///< where in `all()` the last listed one of this kind stands
+    std::size_t last_listed;  ///< index in `all()` of the last listed one of this kind
   };
   [[nodiscard]] const std::vector<Suppressed>& suppressed() const { return suppressed_; }
-  /// Whether the next finding of this kind is counted only, so that its message is not needed.
+  /// Whether the next finding of this kind will be counted only, so that it does not need a message.
   [[nodiscard]] bool counts_only(std::string_view rule, Severity severity, const SourceFile* file) const;
 
-  /// A finding that was set aside, and its place in `allowances()`. At most `most_per_rule` for each allowance are kept.
+  /// A finding that was set aside, and its index in `allowances()`. At most `most_per_rule` are stored per allowance.
   struct Allowed {
     Diagnostic diagnostic;
     std::size_t allowance;
   };
   [[nodiscard]] const std::vector<Allowed>& allowed() const { return allowed_; }
   [[nodiscard]] const std::vector<Allowance>& allowances() const { return allowances_.all(); }
-  /// How many findings were set aside.
+  /// The number of findings that were set aside.
   [[nodiscard]] std::size_t allowed_findings() const { return allowed_findings_; }
 
-  /// A rule that fires more often than this in one file (and with one severity) is counted, not listed: nobody reads
-  /// the 51st.
+  /// Maximum number of listed findings of one rule and severity per file; any more are counted only.
   static constexpr std::size_t most_per_rule = 50;
-  /// Of the places with one cause, so many are named.
+  /// Maximum number of listed places per cause.
   static constexpr std::size_t most_places = 4;
 
  private:
@@ -136,7 +135,7 @@ class Diagnostics {
   };
 
   void count(Severity severity);
-  /// Whether the finding is a further place of a listed one, or of one that is only counted.
+  /// Whether the finding is another place of a listed finding, or of one that is only counted.
   bool join(const Kind& kind, Diagnostic& diagnostic);
   [[nodiscard]] bool is_tolerated(const Diagnostic& diagnostic) const;
   [[nodiscard]] bool drop_silenced(const Diagnostic& diagnostic);
@@ -144,7 +143,7 @@ class Diagnostics {
 
   std::vector<Diagnostic> all_;
   std::unordered_map<Kind, Tally, KindHash> tallies_;
-  std::unordered_map<Cause, std::size_t, CauseHash> first_of_cause_;  ///< where in `all_`; may be behind its end
+  std::unordered_map<Cause, std::size_t, CauseHash> first_of_cause_;  ///< index in `all_`; may be beyond its end
   std::vector<Suppressed> suppressed_;
   std::vector<Silenced> silenced_;
   std::size_t errors_ = 0;

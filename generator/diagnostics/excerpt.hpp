@@ -1,4 +1,4 @@
-/// The part of a source line that a diagnostic shows.
+/// The excerpt of a source line in a diagnostic.
 #pragma once
 
 #include <cstddef>
@@ -12,12 +12,12 @@ namespace edsc {
 struct Excerpt {
   static constexpr std::size_t most_columns = 120;
 
-  std::string text;               ///< printable, `...` where the line was cut
+  std::string text;               ///< printable, with `...` where the line is truncated
   std::size_t caret = 0;          ///< columns before the caret
-  std::size_t caret_columns = 1;  ///< how many columns to underline
+  std::size_t caret_columns = 1;  ///< columns to underline
 };
 
-/// The surroundings of a place in `line`. Looks at no more of the line than it shows.
+/// The excerpt around a position in `line`. Reads only the part of the line that it shows.
 [[nodiscard]] Excerpt excerpt(std::string_view line, const Position& position);
 
 }  // namespace edsc

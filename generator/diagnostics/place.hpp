@@ -1,4 +1,4 @@
-/// A position as an editor counts it.
+/// A position in the units of an editor.
 #pragma once
 
 #include <cstddef>
@@ -9,9 +9,9 @@
 
 namespace edsc {
 
-/// Line and column count from 1, columns in code points. The file as a whole is its line 1.
+/// Line and column count from 1, columns in code points. The whole file is line 1.
 struct Place {
-  std::string file;  ///< empty when there is none; then all else is 0
+  std::string file;  ///< empty without a file; all other members are then 0
   std::uint32_t line = 0;
   std::size_t column = 0;
   std::size_t length = 0;

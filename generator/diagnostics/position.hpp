@@ -7,8 +7,8 @@ namespace edsc {
 
 class SourceFile;
 
-/// A place in a source file. Lines and columns count from 1, columns in bytes of the UTF-8 text; a line of 0 means the
-/// file as a whole, which is shown as its line 1.
+/// A position in a source file. Lines and columns count from 1, columns in bytes of the UTF-8 text; line 0 means the
+/// whole file, which is printed as line 1.
 struct Position {
   const SourceFile* file = nullptr;
   std::uint32_t line = 0;

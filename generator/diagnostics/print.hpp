@@ -1,4 +1,4 @@
-/// Diagnostics for people (like a compiler's) and for programs (JSON). Both count columns in code points.
+/// Diagnostics as compiler messages and as JSON. Both count columns in code points.
 #pragma once
 
 #include <cstdio>
@@ -9,14 +9,14 @@
 
 namespace edsc {
 
-/// Every finding with its line, then a sum for each file, `with_allowed` with the number of those that are allowed. The
-/// source files must still live.
+/// Every finding with its line, then a summary for each file; `with_allowed` adds the number of allowed findings. The
+/// source files must still exist.
 void print_text(std::string& out, const Diagnostics& diagnostics, bool colour, bool with_allowed = false);
 void print_text(std::FILE* out, const Diagnostics& diagnostics, bool colour, bool with_allowed = false);
 
-/// {"version":1, "diagnostics":[...], "allowed_diagnostics":[...], "suppressed":[...], "errors":n, "warnings":n, "notes":n,
-/// "allowed":n}. A file name may hold what is not
-/// UTF-8: dump it with nlohmann::json::error_handler_t::replace.
+/// {"version":1, "diagnostics":[...], "allowed_diagnostics":[...], "suppressed":[...], "errors":n, "warnings":n,
+/// "notes":n, "allowed":n}. File names may contain bytes that are not UTF-8: dump it with
+/// nlohmann::json::error_handler_t::replace.
 [[nodiscard]] nlohmann::json print_json(const Diagnostics& diagnostics);
 
 }  // namespace edsc

@@ -1,4 +1,4 @@
-/// Text of a source file inside a message.
+/// Quotes text of a source file in a message.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace edsc {
 
-/// `text` in double quotes, cut to a length that a message can bear.
+/// `text` in double quotes, truncated to a reasonable length.
 [[nodiscard]] std::string quote(std::string_view text);
 
 }  // namespace edsc

@@ -1,4 +1,4 @@
-/// Findings as SARIF 2.1.0, which code review and CI systems read.
+/// Findings as SARIF 2.1.0 for code review and CI systems.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -11,7 +11,7 @@
 
 namespace edsc {
 
-/// A row of the rule table, as far as SARIF is concerned.
+/// The part of a row of the rule table that SARIF needs.
 struct SarifRule {
   std::string_view id;
   Severity level;
@@ -20,13 +20,13 @@ struct SarifRule {
   std::string url;          ///< of its documentation
 };
 
-/// One run over any number of files. A file name may hold what is not UTF-8: dump the document with
+/// One run over any number of files. File names may contain bytes that are not UTF-8: dump the document with
 /// nlohmann::json::error_handler_t::replace.
 class SarifLog {
  public:
   SarifLog(std::string_view version, const std::vector<SarifRule>& rules);
 
-  /// The source files need not live any longer than this call.
+  /// The source files need not outlive this call.
   void add(const Diagnostics& diagnostics);
 
   [[nodiscard]] nlohmann::ordered_json document() const;

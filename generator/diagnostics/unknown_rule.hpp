@@ -6,7 +6,7 @@
 
 namespace edsc {
 
-/// `no rule is called "pdo-sise"; did you mean "pdo-size"?`
+/// `unknown rule "pdo-sise"; did you mean "pdo-size"?`
 [[nodiscard]] std::string unknown_rule(std::string_view id);
 
 }  // namespace edsc

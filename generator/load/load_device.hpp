@@ -1,4 +1,4 @@
-/// From a path to a checked device: what every command begins with.
+/// Loads and checks a device from a path.
 #pragma once
 
 #include <memory>
@@ -15,34 +15,35 @@ namespace edsc {
 
 struct LoadSettings {
   std::string path;
-  std::string options_path;             ///< empty: `NAME.options.json` beside the data sheet, if it is there
-  std::string name;                     ///< C++ namespace; empty: from the file's name
+  std::string options_path;             ///< empty: `NAME.options.json` beside the EDS, if it exists
+  std::string name;                     ///< C++ namespace; empty: from the file name
   std::optional<std::uint8_t> node_id;
-  bool static_mapping = false;          ///< of all PDOs, whatever the options file says
+  bool static_mapping = false;          ///< of all PDOs, regardless of the options file
   bool check = true;                    ///< run the rules over the device
-  bool keep_going = false;              ///< errors in the data sheet are warnings; what is wrong is left out
+  bool keep_going = false;              ///< errors in the EDS become warnings; what is wrong is left out
 };
 
-/// A device and all that its positions point into.
+/// A device and the files to which its positions point.
 struct LoadedDevice {
   std::unique_ptr<SourceFile> source;
-  std::unique_ptr<SourceFile> options_source;  ///< null when there is no options file
+  std::unique_ptr<SourceFile> options_source;  ///< null without options file
   Options options;
   DataSheet sheet;
-  std::optional<Device> device;  ///< nothing when the file could not be read as a data sheet at all
-  bool unreadable = false;       ///< a file could not be read: wrong usage, not wrong input
+  std::optional<Device> device;  ///< nothing if the file could not be read as a data sheet
+  bool unreadable = false;       ///< a file could not be read: wrong usage, not invalid input
 };
 
-/// Reads, resolves and, where that is wanted, checks. Everything that is wrong stands in `diagnostics`; positions there point into the result.
+/// Reads, resolves and optionally checks a device. Adds findings to `diagnostics`, whose positions point into the
+/// result.
 [[nodiscard]] std::unique_ptr<LoadedDevice> load_device(const LoadSettings& settings, Diagnostics& diagnostics);
 
-/// Whether `--keep-going` makes warnings of all errors.
+/// Whether `--keep-going` turns all errors into warnings.
 [[nodiscard]] bool can_keep_going(const LoadedDevice& loaded, const Diagnostics& diagnostics);
 
-/// Reports members of the options and comments of the data sheet that silence or allow what was not found.
+/// Reports options and comments that silence or allow findings that did not occur.
 void report_unused_allowances(const LoadedDevice& loaded, Diagnostics& diagnostics);
 
-/// The same as load_device() from where `loaded` holds the source, and the options, already.
+/// The part of load_device() after reading the source and the options into `loaded`.
 void resolve_and_check(LoadedDevice& loaded, const LoadSettings& settings, Diagnostics& diagnostics);
 
 }  // namespace edsc

@@ -10,14 +10,14 @@
 
 namespace edsc {
 
-/// What the type of a parameter, array or struct member comes to.
+/// The resolved type of a parameter, array or struct member.
 struct ResolvedType {
   const SimpleType* simple = nullptr;
-  Position position;               ///< where it is named
+  Position position;               ///< of the reference
   pugi::xml_node array_or_struct;  ///< null for a simple type
 };
 
-/// What a parameter says about the object that refers to it. Fields that it does not speak of are not present.
+/// The properties of the object that refers to a parameter. Fields that the parameter does not define are not present.
 struct Parameter {
   EntryDescription entry;
   ResolvedType type;
@@ -29,12 +29,12 @@ class ApplicationProcess {
   /// `element` may be null.
   ApplicationProcess(XmlDocument& xml, pugi::xml_node element);
 
-  /// Follows a uniqueIDRef; the parameter may leave things to its template. Nothing is present when `reference` names
-  /// nothing, which is reported.
+  /// Resolves a uniqueIDRef, with the template of the parameter. If the reference is invalid, which is reported, no
+  /// field is present.
   [[nodiscard]] Parameter read_parameter(pugi::xml_attribute reference);
 
-  /// The type of a sub-object that its object's array or struct describes: of an array the element's, of a struct that
-  /// of the member with this name.
+  /// The type of a sub-object by the array or struct of its object: that of the array elements, or of the struct member
+  /// with this name.
   [[nodiscard]] ResolvedType member_type(pugi::xml_node array_or_struct, std::string_view name) const;
 
  private:

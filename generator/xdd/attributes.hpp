@@ -11,10 +11,10 @@
 
 namespace edsc {
 
-/// How CiA 311 spells a value that CiA 306 spells in another way.
+/// Spellings of values that differ between CiA 311 and CiA 306.
 enum class Spelling : std::uint8_t {
   text,         ///< the same
-  decimal,      ///< `04`, which CiA 306 would take for an octal number
+  decimal,      ///< `04`, which is octal in CiA 306
   hexadecimal,  ///< `0007` for 0x0007
   identity,     ///< a vendor-ID: decimal, with 0x, or eight hexadecimal digits
   flag,         ///< `true` for 1
@@ -23,30 +23,30 @@ enum class Spelling : std::uint8_t {
   time,         ///< `14:05:00+02:00` for 02:05PM
 };
 
-/// The value as CiA 306 spells it; what cannot be read stays as it is, for the passes behind to complain.
+/// The value in the spelling of CiA 306; an invalid value is unchanged, and reported later.
 [[nodiscard]] Field respell(XmlDocument& xml, const Field& field, Spelling spelling);
 
-/// An attribute and where its value goes; null for one that is known but says nothing about the device's function.
+/// An attribute and its destination; null for a known attribute without effect on the device.
 template <typename Struct>
 struct AttributeRow {
   std::string_view name;
   Field Struct::*field;
   Spelling spelling = Spelling::text;
-  bool is_structure = false;  ///< it says how the file is put together, not what the device is
+  bool is_structure = false;  ///< describes the structure of the file, not the device
 };
 
 void report_unknown_attribute(XmlDocument& xml, pugi::xml_node element, pugi::xml_attribute attribute);
 void report_unknown_element(XmlDocument& xml, pugi::xml_node element);
 void report_second(XmlDocument& xml, pugi::xml_attribute attribute, const Position& first);
 
-/// Notes an element or attribute that an EDS cannot express, unless it is empty or says no.
+/// Notes an element or attribute that an EDS cannot express, unless it is empty or false.
 void note_silent(XmlDocument& xml, pugi::xml_node element);
 void note_silent(XmlDocument& xml, pugi::xml_node element, pugi::xml_attribute attribute);
 
-/// Namespaces and schema locations: no attributes of CiA 311.
+/// Namespaces and schema locations, which are not attributes of CiA 311.
 [[nodiscard]] bool is_of_xml_itself(pugi::xml_attribute attribute);
 
-/// Gives each field the place where it is missing.
+/// Sets the position of each field, in case it is missing.
 template <typename Struct>
 void place_attributes(std::span<const AttributeRow<Struct>> rows, const Position& position, Struct& target) {
   for (const AttributeRow<Struct>& row : rows) {

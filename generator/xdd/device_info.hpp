@@ -1,4 +1,4 @@
-/// What a profile says of the device as a whole: identity, features, baud rates, dummies, commissioning.
+/// The device information of a profile: identity, features, baud rates, dummies, commissioning.
 #pragma once
 
 #include "eds/data_sheet.hpp"

@@ -1,4 +1,4 @@
-/// What an XDD says and an EDS cannot express.
+/// Parts of an XDD that an EDS cannot express.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace edsc {
 
-/// An element or attribute, such as `DeviceIdentity/deviceFamily`, at the first place where the file has it.
+/// An element or attribute, such as `DeviceIdentity/deviceFamily`, at its first position in the file.
 struct NotInEds {
   Position position;
   std::string what;

@@ -1,4 +1,4 @@
-/// CANopenObjectList: the objects, and what their parameters say of them.
+/// CANopenObjectList: the objects, with the properties of their parameters.
 #pragma once
 
 #include <vector>
@@ -13,7 +13,7 @@ namespace edsc {
 [[nodiscard]] std::vector<ObjectDescription> read_object_list(XmlDocument& xml, pugi::xml_node list,
                                                               ApplicationProcess& process);
 
-/// Where the objects and their sub-objects are.
+/// The positions of the objects and their sub-objects.
 [[nodiscard]] SheetOutline outline_of(const XmlDocument& xml, pugi::xml_node list);
 
 }  // namespace edsc

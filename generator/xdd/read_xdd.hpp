@@ -9,11 +9,11 @@
 
 namespace edsc {
 
-/// Tells XML from the INI form of CiA 306 by the first character that is no blank.
+/// Distinguishes XML from the INI format of CiA 306 by the first non-blank character.
 [[nodiscard]] bool is_xml(const SourceFile& source);
 
-/// Sorts a profile into the data sheet that an EDS or DCF of the same device would give. What is not read is reported;
-/// what an EDS cannot express is added to `not_in_eds`, if given.
+/// Reads a profile into the data sheet that an EDS or DCF of the same device would give. Ignored parts are reported;
+/// parts that an EDS cannot express are added to `not_in_eds`, if given.
 [[nodiscard]] DataSheet read_xdd(const SourceFile& source, Diagnostics& diagnostics,
                                  std::vector<NotInEds>* not_in_eds = nullptr);
 

@@ -1,4 +1,4 @@
-/// The simple data types of CiA 311 (those of IEC 61131-3), and the data types of CiA 301 that they are.
+/// The simple data types of CiA 311 (those of IEC 61131-3) and the corresponding data types of CiA 301.
 #pragma once
 
 #include <string_view>
@@ -7,13 +7,13 @@ namespace edsc {
 
 struct SimpleType {
   std::string_view name;
-  std::string_view data_type;  ///< as an EDS spells it
+  std::string_view data_type;  ///< in EDS spelling
 };
 
-/// Null when the element's name is no simple type.
+/// Null if the name of the element is not a simple type.
 [[nodiscard]] const SimpleType* find_simple_type(std::string_view name);
 
-/// BITSTRING without a value. CiA 311 has no DOMAIN; tools write it like that.
+/// For BITSTRING without a value, which tools write for DOMAIN, as CiA 311 does not define it.
 [[nodiscard]] const SimpleType& domain_type();
 
 inline constexpr std::string_view bit_string = "BITSTRING";

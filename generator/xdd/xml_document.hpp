@@ -1,4 +1,4 @@
-/// An XML file, well-formed or reported, and the places of its elements and attributes.
+/// A well-formed XML file with the positions of its elements and attributes.
 #pragma once
 
 #include <cstddef>
@@ -19,16 +19,16 @@
 
 namespace edsc {
 
-/// The name without its namespace prefix: `DeviceIdentity` of `q1:DeviceIdentity`. Which prefix a file gives to CiA
-/// 311's namespace, and whether it gives any, is its own choice.
+/// The name without namespace prefix: `DeviceIdentity` of `q1:DeviceIdentity`. Each file may use any or no prefix for
+/// the namespace of CiA 311.
 [[nodiscard]] std::string_view local_name(pugi::xml_node element);
 [[nodiscard]] std::string_view local_name(pugi::xml_attribute attribute);
 
-/// The first child element or the attribute of this local name, letter case ignored; null when there is none.
+/// The first child element or the attribute of this local name, ignoring letter case, or null.
 [[nodiscard]] pugi::xml_node find_child(pugi::xml_node element, std::string_view name);
 [[nodiscard]] pugi::xml_attribute find_attribute(pugi::xml_node element, std::string_view name);
 
-/// The child elements, one after the other.
+/// Calls a function for each child element.
 template <typename Use>
 void for_each_element(pugi::xml_node parent, Use use) {
   for (const pugi::xml_node child : parent.children()) {
@@ -38,7 +38,7 @@ void for_each_element(pugi::xml_node parent, Use use) {
 
 class XmlDocument {
  public:
-  /// What is not well-formed is reported; then `root()` is null.
+  /// Reports a file that is not well-formed; `root()` is then null.
   XmlDocument(const SourceFile& source, Diagnostics& diagnostics);
 
   XmlDocument(const XmlDocument&) = delete;
@@ -48,21 +48,21 @@ class XmlDocument {
   [[nodiscard]] const SourceFile& source() const { return source_; }
   [[nodiscard]] Diagnostics& diagnostics() const { return diagnostics_; }
 
-  /// Of the element's name; of the file when there is no such element.
+  /// The position of the element's name; of the file if the element is null.
   [[nodiscard]] Position position(pugi::xml_node element) const;
   [[nodiscard]] Position position(pugi::xml_attribute attribute) const;
 
-  /// An attribute's value, blanks around it cut; not present when the attribute is null.
+  /// The value of an attribute, without blanks around it; not present if the attribute is null.
   [[nodiscard]] Field value(pugi::xml_attribute attribute);
-  /// The text inside an element, blanks around it cut.
+  /// The text in an element, without blanks around it.
   [[nodiscard]] Field text(pugi::xml_node element);
 
-  /// A home for text that stands nowhere in the file.
+  /// Stores a text that does not occur in the file.
   [[nodiscard]] std::string_view keep(std::string text);
-  /// All that `keep` was given, and values that hold entities; for the data sheet that points there.
+  /// The texts stored by `keep`, and values with entities, to which the data sheet points.
   [[nodiscard]] std::shared_ptr<const std::deque<std::string>> kept_texts() const { return texts_; }
 
-  /// Warns of something that stands in the file often, the first time only; `what` tells such things apart.
+  /// Reports the first occurrence of something that may occur often; `what` identifies it.
   void note_once(NoteRule rule, const std::string& what, const Position& position, const std::string& message);
 
   /// Notes that an EDS cannot express an element or attribute, such as `DeviceIdentity/deviceFamily`; each name once.
@@ -79,7 +79,7 @@ class XmlDocument {
 
   const SourceFile& source_;
   Diagnostics& diagnostics_;
-  std::string buffer_;  ///< pugixml parses in place: what it calls a name or value stands where it stands in the file
+  std::string buffer_;  ///< pugixml parses in place: names and values have the same offset as in the file
   pugi::xml_document document_;
   pugi::xml_node root_;
   std::shared_ptr<std::deque<std::string>> texts_ = std::make_shared<std::deque<std::string>>();
