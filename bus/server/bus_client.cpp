@@ -12,7 +12,7 @@ namespace {
 
 using Command = BusClient::Command;
 
-/// The commands of the protocol that the server knows.
+/// The supported commands of the protocol.
 struct CommandName {
   std::string_view name;
   Command command;

@@ -18,7 +18,7 @@
 namespace edsc {
 namespace {
 
-/// How much one client may say before the next one is heard.
+/// Maximum bytes read from one client before the next one is served.
 constexpr std::size_t bytes_a_turn = 4096;
 
 [[noreturn]] void fail(const std::string& what) { throw std::system_error{errno, std::generic_category(), what}; }
@@ -118,12 +118,12 @@ void BusServer::welcome() {
   report(*client, "too many clients");
 }
 
-/// Takes what the client says. False when it is to leave.
+/// Reads the input of the client. Returns false if it must be disconnected.
 bool BusServer::hear(BusClient& client) {
   std::array<char, bytes_a_turn> bytes{};
   const ssize_t size = ::recv(client.socket(), bytes.data(), bytes.size(), 0);
   if (size < 0) return errno == EAGAIN || errno == EINTR;
-  set_option(client.socket(), IPPROTO_TCP, TCP_QUICKACK);  // else a client without TCP_NODELAY waits for it
+  set_option(client.socket(), IPPROTO_TCP, TCP_QUICKACK);  // otherwise a client without TCP_NODELAY waits for it
   for (ssize_t i = 0; i < size; ++i) {
     if (!answer(client, client.take(bytes[static_cast<std::size_t>(i)]))) return false;
   }
@@ -161,7 +161,7 @@ void BusServer::deliver(const BusClient& sender) {
   events_.on_frame(sender.frame(), buses_[*sender.bus()], time);
 }
 
-/// How long to wait before the next client has had its time to open a bus.
+/// The time until the next client exceeds its time to open a bus.
 std::chrono::milliseconds BusServer::until_handshake_ends(std::chrono::milliseconds at_most) const {
   const auto now = Clock::now();
   for (const auto& client : clients_) {
@@ -172,7 +172,7 @@ std::chrono::milliseconds BusServer::until_handshake_ends(std::chrono::milliseco
   return at_most;
 }
 
-/// Sends what is on its way. Clients that are lost, that read too slowly or that open no bus are disconnected.
+/// Sends pending data. Disconnects clients that are lost, read too slowly or do not open a bus.
 void BusServer::flush() {
   const auto now = Clock::now();
   std::erase_if(clients_, [&](const std::unique_ptr<BusClient>& client) {

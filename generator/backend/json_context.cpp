@@ -22,7 +22,7 @@ const JsonContext::Data* JsonContext::get(const std::string& name) const {
   return give(nullptr, Data{false});
 }
 
-/// The innermost section that knows the name; `.` is the section itself.
+/// The innermost section with this name; `.` is the section itself.
 const JsonContext::Json* JsonContext::find(const std::string& name) const {
   for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) {
     if (*node == nullptr) continue;
@@ -33,7 +33,7 @@ const JsonContext::Json* JsonContext::find(const std::string& name) const {
   return nullptr;
 }
 
-/// Keeps what the library may enter. What was given at this depth or deeper before is no longer in use.
+/// Stores a value that the library may enter. Earlier values at this depth or deeper are no longer in use.
 const JsonContext::Data* JsonContext::give(const Json* node, Data data) const {
   while (!given_.empty() && given_.back().depth >= nodes_.size()) given_.pop_back();
   given_.push_back({nodes_.size(), node, std::move(data)});

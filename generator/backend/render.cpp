@@ -10,7 +10,7 @@
 namespace edsc {
 namespace {
 
-/// Whether a line holds one section tag and nothing else.
+/// Whether a line contains only one section tag.
 bool is_section_line(std::string_view line) {
   const std::size_t begin = line.find_first_not_of(' ');
   if (begin == std::string_view::npos || !line.substr(begin).starts_with("{{")) return false;
@@ -18,7 +18,7 @@ bool is_section_line(std::string_view line) {
   return line.size() > begin + 2 && std::string_view{"#/^!"}.find(line[begin + 2]) != std::string_view::npos;
 }
 
-/// Lines that hold only a section tag leave nothing behind, not even an empty line, also where the section is empty.
+/// Removes the line ends of lines that contain only a section tag, so that they do not produce empty lines.
 std::string without_section_lines(std::string_view text) {
   std::string out;
   while (!text.empty()) {
@@ -35,7 +35,7 @@ std::string without_section_lines(std::string_view text) {
   return out;
 }
 
-/// What the library writes to.
+/// The output of the library.
 struct Output {
   std::string text;
   Output& operator<<(const std::string& part) {

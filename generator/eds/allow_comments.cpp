@@ -25,7 +25,7 @@ bool is_compact_list(SectionKind kind) {
          kind == SectionKind::compact_denotations;
 }
 
-/// Takes the word off that `text` begins with, and the blanks behind it.
+/// Removes the first word of `text` and the blanks after it.
 std::string_view take_word(std::string_view& text) {
   const auto end = static_cast<std::size_t>(std::ranges::find_if(text, is_blank) - text.begin());
   const std::string_view word = text.substr(0, end);

@@ -47,7 +47,7 @@ class DataSheetReader {
 
   DataSheet read() {
     sheet_.source = &source_;
-    if (!ini_.sections.empty()) {  // else the INI reader has said why
+    if (!ini_.sections.empty()) {  // otherwise the INI reader has reported why
       sort_sections();
       read_file_info();
       read_device_info();
@@ -107,10 +107,10 @@ class DataSheetReader {
     }
   }
 
-  /// The section of a kind that stands once; null when there is none.
+  /// The section of a kind that occurs once, or null.
   [[nodiscard]] const IniSection* single(SectionKind kind) const { return single_[static_cast<std::size_t>(kind)]; }
 
-  /// Where a field of this section is missing: the section, or the file when the section is missing too.
+  /// The position for a missing field of this section: the section, or the file if the section is missing too.
   [[nodiscard]] Position place_of(const IniSection* section) const {
     return section == nullptr ? Position{&source_} : section_position(source_, *section);
   }
@@ -139,7 +139,7 @@ class DataSheetReader {
     }
   }
 
-  /// `BaudRate_125` and its like. A rate that CiA 306 has no key for is taken just the same.
+  /// `BaudRate_125` etc., including rates for which CiA 306 does not define a key.
   KeyMatch find_baud_rate(std::string_view key) {
     if (!starts_with_ignoring_case(key, baud_rate_prefix)) {
       return {};
@@ -220,7 +220,7 @@ class DataSheetReader {
   Diagnostics& diagnostics_;
   DataSheet sheet_;
   std::array<const IniSection*, static_cast<std::size_t>(SectionKind::malformed)> single_{};
-  std::unordered_map<std::uint16_t, std::size_t> baud_rate_places_;  ///< in the list of those that have a key
+  std::unordered_map<std::uint16_t, std::size_t> baud_rate_places_;  ///< index in the list of rates with a key
   std::vector<ObjectSection> object_sections_;
   std::vector<NamedSection> tool_sections_;
   std::vector<NamedSection> module_sections_;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::string_view segment_count_key = "NrOfSeg";
 
-/// What stands before the number of a segment.
+/// The prefix of the segment number.
 constexpr KeyRow<DynamicSegment> segment_rows[] = {
     {"Type", &DynamicSegment::type},
     {"Dir", &DynamicSegment::direction},

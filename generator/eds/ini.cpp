@@ -11,7 +11,8 @@
 namespace edsc {
 namespace {
 
-/// What no text holds: control characters but for tab, line ends and the Ctrl-Z that ends a DOS text.
+/// Characters that do not occur in a text: control characters except tab, line ends and the Ctrl-Z at the end of a DOS
+/// text.
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' && c != '\r'; }
 
 std::string_view without_end_of_text_mark(std::string_view text) {
@@ -44,7 +45,7 @@ class IniReader {
   }
 
  private:
-  /// Which section the entries go to.
+  /// The section of the following entries.
   enum class Target { none_yet, last_section, unreadable_section };
 
   bool report_binary() {
@@ -157,7 +158,7 @@ class IniReader {
 
     std::vector<IniEntry>& entries = file_.sections.back().entries;
     if (entries.empty()) {
-      entries.reserve(8);  // as many as an object's section has
+      entries.reserve(8);  // the usual number in an object section
     }
     entries.push_back({key, value, line_number_, column_of(line, key), column_of(line, value_place)});
   }

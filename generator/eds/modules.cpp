@@ -35,7 +35,7 @@ constexpr std::span<const KeyRow<SubExtension>> extension_keys = extension_rows;
 constexpr CountKey nr_of_extensions{"NrOfEntries", {}, "entry-count", true};
 constexpr std::string_view module_count_key = "NrOfEntries";
 
-/// The sections of one module, read in the order in which they stand.
+/// Reads the sections of one module, in file order.
 class ModuleReader {
  public:
   ModuleReader(const SourceFile& source, ModuleDescription& module, Diagnostics& diagnostics)
@@ -65,7 +65,7 @@ class ModuleReader {
     }
   }
 
-  /// Other sections than those of objects, whose reader looks for duplicates itself.
+  /// Sections other than those of objects, whose reader detects duplicates itself.
   bool is_first(const NamedSection& section) {
     const auto [first, is_new] = first_.try_emplace({section.name.kind, section.name.index}, section.section);
     if (!is_new) {

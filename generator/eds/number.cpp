@@ -10,7 +10,7 @@
 namespace edsc {
 namespace {
 
-/// Takes the prefix off that names the base; "0" alone is a decimal number.
+/// Removes the prefix for the base; "0" alone is a decimal number.
 int take_base(std::string_view& text) {
   if (text.starts_with("0x") || text.starts_with("0X")) {
     text.remove_prefix(2);

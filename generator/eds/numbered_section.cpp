@@ -83,7 +83,7 @@ class NumberedSectionReader {
     }
   }
 
-  /// The right count, but numbers that a reader who counts from 1 does not find.
+  /// The count is correct, but the numbers do not run from 1 to the count.
   void check_numbers() {
     for (const NumberedField& field : fields_) {
       if (field.number == 0 || field.number > *count_) {

@@ -19,7 +19,7 @@ namespace {
 
 constexpr CountKey supported_objects{"SupportedObjects", "Supported Objects", "object-list-count", true};
 
-/// The list where an object belongs. Ranges before that do not name it, the first that does counts.
+/// A range of indices and its list; the first matching row is used.
 struct ListRange {
   std::uint16_t first, last;
   ObjectListKind list;
@@ -91,7 +91,7 @@ std::vector<std::uint16_t> sorted_indices(const std::vector<ListedObject>& liste
   return indices;
 }
 
-/// Objects that no list has. Where a list lacks many of them, all or most of it was forgotten: one cause.
+/// Reports objects in no list. If many are missing from one list, they have the same cause.
 void report_not_listed(const DataSheet& sheet, Diagnostics& diagnostics) {
   const std::vector<std::uint16_t> listed = sorted_indices(sheet.listed);
   std::map<std::optional<ObjectListKind>, std::vector<const ObjectDescription*>> missing;

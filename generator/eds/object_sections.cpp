@@ -35,7 +35,7 @@ std::size_t count_indices(ObjectSections sections) {
   return indices;
 }
 
-/// How many sections at the start of `sections` have one index.
+/// The number of leading sections with the same index.
 std::size_t length_of_object(ObjectSections sections) {
   const std::uint16_t index = sections[0].name.index;
   const auto end = std::find_if(sections.begin(), sections.end(),
@@ -48,7 +48,7 @@ class ObjectReader {
   ObjectReader(const SourceFile& source, std::string_view prefix, Diagnostics& diagnostics)
       : source_(source), prefix_(prefix), diagnostics_(diagnostics) {}
 
-  /// `sections` all have one index and are in order.
+  /// All `sections` have the same index and are sorted.
   void read(ObjectSections sections, ObjectDescription& object) {
     object.index = sections[0].name.index;
     object.has_section = sections[0].name.kind == SectionKind::object;

@@ -64,7 +64,7 @@ constexpr std::size_t index_digits = 4;
 constexpr std::size_t sub_index_digits = 2;
 constexpr std::string_view sub = "sub";
 
-/// Takes the decimal number off that `text` begins with.
+/// Removes the decimal number at the start of `text`.
 std::optional<std::uint16_t> take_number(std::string_view& text) {
   const auto end = std::find_if_not(text.begin(), text.end(), is_digit);
   const auto digits = static_cast<std::size_t>(end - text.begin());
@@ -79,7 +79,7 @@ std::optional<std::uint16_t> take_number(std::string_view& text) {
   return number;
 }
 
-/// Takes a prefix off that `text` begins with, in any letter case.
+/// Removes a prefix of `text`, ignoring letter case.
 bool take_prefix(std::string_view& text, std::string_view prefix) {
   if (!starts_with_ignoring_case(text, prefix)) {
     return false;
@@ -147,7 +147,7 @@ std::optional<SectionName> read_object(std::string_view name) {
   return std::nullopt;
 }
 
-/// What stands behind the number of a module.
+/// The part after the module number.
 std::optional<SectionName> read_module_part(std::string_view rest) {
   SectionName result;
   if (const std::optional<SectionKind> kind = find_fixed(module_parts, rest)) {
@@ -170,7 +170,7 @@ std::optional<SectionName> read_module_part(std::string_view rest) {
   return std::nullopt;
 }
 
-/// `ToolX`, and all that begins with `MX`.
+/// `ToolX`, and names that begin with `MX`.
 std::optional<SectionName> read_numbered(std::string_view name) {
   std::string_view rest = name;
   if (take_prefix(rest, tool_prefix)) {

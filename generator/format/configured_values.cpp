@@ -31,7 +31,7 @@ class Configuration {
   }
 
  private:
-  /// The two fields of an entry; null where the data sheet has none.
+  /// The two fields of an entry; null if missing.
   struct Fields {
     const Field* default_value = nullptr;
     const Field* parameter_value = nullptr;
@@ -41,7 +41,7 @@ class Configuration {
     return {&description.default_value, &description.parameter_value};
   }
 
-  /// In a DCF the values of a compact form are what is configured; in an EDS they are its defaults.
+  /// The values of a compact form are ParameterValues in a DCF, and default values in an EDS.
   [[nodiscard]] Fields fields_of(const Entry& entry, const ObjectDescription& object) const {
     const auto sub = std::ranges::find(object.sub_objects, entry.sub_index, &SubObjectDescription::sub_index);
     if (sub != object.sub_objects.end()) return fields_of(*sub);

@@ -8,7 +8,7 @@
 namespace edsc {
 namespace {
 
-/// Walks the remarks of a file beside its sections and entries.
+/// Iterates over the remarks of a file in parallel with its sections and entries.
 class DocumentReader {
  public:
   explicit DocumentReader(const IniFile& ini) : ini_(ini) {}
@@ -27,7 +27,7 @@ class DocumentReader {
   }
 
  private:
-  /// The remarks up to the last blank line before the first section: they are about the whole file.
+  /// The remarks up to the last blank line before the first section, which belong to the whole file.
   Remarks take_head(std::uint32_t first_section) {
     std::size_t end = count_up_to(first_section);
     std::uint32_t line_behind = first_section;
@@ -50,7 +50,7 @@ class DocumentReader {
     return result;
   }
 
-  /// How many remarks stand before this line, or behind the section's name in it.
+  /// The number of remarks before this line, or after the section header on it.
   [[nodiscard]] std::size_t count_up_to(std::uint32_t line) const {
     std::size_t count = taken_;
     while (count < ini_.remarks.size() && ini_.remarks[count].line <= line) ++count;

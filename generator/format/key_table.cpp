@@ -29,7 +29,7 @@ constexpr SpelledKey file_info[] = {
     {"CreationDate"}, {"CreatedBy"},   {"ModificationTime"}, {"ModificationDate"}, {"ModifiedBy"},  {"LastEDS"},
 };
 
-/// BaudRate_N stands in the place of the row that ends in `#`.
+/// BaudRate_N has the position of the row that ends in `#`.
 constexpr SpelledKey device_info[] = {
     {"VendorName"},
     {"VendorNumber", ValueKind::number, unsigned32},
@@ -95,7 +95,7 @@ constexpr SpelledKey object[] = {
     {"UploadFile"},
     {"DownloadFile"},
     {"ParamRefd"},
-    // Not of CiA 306, but usual.
+    // Not in CiA 306, but usual.
     {"Unit"},
     {"Factor"},
     {"Description"},
@@ -103,7 +103,7 @@ constexpr SpelledKey object[] = {
 
 struct SectionRow {
   SectionKind kind;
-  std::string_view title;  ///< of an object what follows the index
+  std::string_view title;  ///< for an object section, the part after the index
   std::span<const SpelledKey> keys;
 };
 
@@ -131,7 +131,7 @@ const SectionRow* find_section(SectionKind kind) {
   return nullptr;
 }
 
-/// Room for the numbered keys of one row.
+/// Reserved positions for the numbered keys of one row.
 constexpr std::uint32_t row_step = 1U << 20U;
 constexpr std::uint32_t unknown_order = std::numeric_limits<std::uint32_t>::max();
 
@@ -142,7 +142,7 @@ struct RowMatch {
   std::uint32_t number = 0;
 };
 
-/// Whether a key is that of the row: `#` stands for a number, `%` for four hexadecimal digits.
+/// Whether a key matches the row: `#` is a number, `%` four hexadecimal digits.
 std::optional<RowMatch> match(const SpelledKey& row, std::string_view key) {
   const char last = row.name.back();
   if (last != '#' && last != '%') {

@@ -25,7 +25,7 @@ DocumentEntry* find_entry(DocumentSection& section, std::string_view key) {
   return at != section.entries.end() ? &*at : nullptr;
 }
 
-/// Sets a key's value; a new key goes to the place that CiA 306 has for it.
+/// Sets the value of a key; a new key is inserted at its place in CiA 306.
 void set(DocumentSection& section, std::string_view key, std::string value) {
   if (DocumentEntry* const entry = find_entry(section, key)) {
     entry->value = std::move(value);
@@ -38,7 +38,7 @@ void set(DocumentSection& section, std::string_view key, std::string value) {
   section.entries.insert(behind, {{}, std::string{key}, std::move(value)});
 }
 
-/// Its comments go to what stands behind it, or to the section.
+/// Removes a key; its comments move to the next key, or to the section.
 void remove(DocumentSection& section, std::string_view key) {
   DocumentEntry* const entry = find_entry(section, key);
   if (entry == nullptr) return;
@@ -71,7 +71,7 @@ class DcfMaker {
   }
 
  private:
-  /// A tool that loads the DCF would send them.
+  /// Removes the values of commands, which a tool that loads the DCF would send.
   void drop_commands() {
     for (DocumentSection& section : document_.sections) {
       if (is_command(section)) remove(section, "ParameterValue");
@@ -112,7 +112,7 @@ class DcfMaker {
     return *document_.sections.insert(behind, std::move(added));
   }
 
-  /// A device with one bit rate has that one; of several, none is more likely than another.
+  /// The bit rate of a device that supports only one; unknown if it supports several.
   [[nodiscard]] std::string only_baud_rate() const {
     std::string only;
     for (const DeviceInfo::BaudRate& rate : sheet_.device_info.baud_rates) {
@@ -128,7 +128,7 @@ class DcfMaker {
     if (name != nullptr) set(file_info, "LastEDS", std::string{name->value});
   }
 
-  /// The section of a compact form describes many entries: it takes no value for one.
+  /// The section of a compact form describes many entries and cannot have a value for one.
   void configure_object(DocumentSection& section) {
     const Object* const object = device_.find(section.kind.index);
     if (object == nullptr || object->has_sub_indices()) {
@@ -138,8 +138,8 @@ class DcfMaker {
     configure(section, 0);
   }
 
-  /// Notes the ParameterValues of a DCF that are the defaults, and the mapping parameters in which one is not: their
-  /// number and entries belong together.
+  /// Finds the ParameterValues of a DCF that equal the default values, and the mapping parameters in which one does
+  /// not, since their number and entries belong together.
   void compare_with_defaults() {
     if (!sheet_.is_dcf) return;
     Diagnostics ignored;
@@ -157,7 +157,7 @@ class DcfMaker {
     return has_value && !defaults_.contains(&entry);
   }
 
-  /// In an EDS a ParameterValue says nothing; in the DCF it would.
+  /// A ParameterValue has no meaning in an EDS, but would have in the DCF.
   void drop_meaningless_value(DocumentSection& section) {
     if (!sheet_.is_dcf) remove(section, "ParameterValue");
   }
@@ -177,7 +177,7 @@ class DcfMaker {
     }
   }
 
-  /// Whether a sub-index has no section of its own.
+  /// Whether a sub-index does not have its own section.
   static bool is_element(const ObjectDescription& object, std::uint8_t sub_index) {
     return sub_index != 0 && object.compact_sub_obj.present &&
            std::ranges::find(object.sub_objects, sub_index, &SubObjectDescription::sub_index) == object.sub_objects.end();
@@ -212,7 +212,7 @@ class DcfMaker {
     const Entry* const entry = device_.find(section.kind.index, sub_index);
     if (entry == nullptr || !entry->default_value || !canopen::writable(entry->access)) return;
     if (!entry->default_value->clause.empty()) {
-      // What CiA 301 gives the device is in it already; the file's own value would be wrong.
+      // The device has the value of CiA 301; that of the file would be wrong.
       remove(section, "ParameterValue");
       return;
     }
@@ -237,7 +237,7 @@ class DcfMaker {
     }
   }
 
-  /// A formula as the number that it gives for this node; other values as they are.
+  /// A formula as its value for this node; other values unchanged.
   [[nodiscard]] std::string resolved(const std::string& value, const Entry& entry) const {
     if (value.find('$') == std::string::npos || entry.type->kind == canopen::DataClass::string) return value;
     Diagnostics ignored;
@@ -251,9 +251,9 @@ class DcfMaker {
   const DataSheet& sheet_;
   const Device& device_;
   DcfValues values_;
-  const GivenValues* given_ = nullptr;  ///< the ParameterValues; null: those that the file and `values_` say
+  const GivenValues* given_ = nullptr;  ///< the ParameterValues; null: from the file and `values_`
   std::optional<unsigned> bit_rate_;
-  std::set<const Entry*> defaults_;  ///< with a ParameterValue that is the default
+  std::set<const Entry*> defaults_;  ///< with a ParameterValue that equals the default value
   std::set<std::uint16_t> whole_;    ///< mapping parameters of which all entries get a ParameterValue
 };
 

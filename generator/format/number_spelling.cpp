@@ -24,7 +24,7 @@ bool is_decimal(std::string_view text) { return !text.empty() && std::ranges::al
 
 Spelling unchanged(std::string_view text) { return {std::string{text}, {}}; }
 
-/// What stands behind the value, from its `;` or `#` on.
+/// The inline comment after the value, from its `;` or `#`.
 std::string_view inline_comment(std::string_view text) {
   const std::size_t start = text.find_first_of(";#");
   if (start == std::string_view::npos || trim(text.substr(start + 1)).empty()) return {};
@@ -40,7 +40,7 @@ std::optional<std::string> spell_magnitude(std::string_view digits, unsigned hex
   return fmt::format("{}", *number);
 }
 
-/// `12LL`: C suffixes are let through by the reader of values.
+/// `12LL`: C suffixes, which the parser of values accepts.
 std::string_view without_suffix(std::string_view digits) {
   while (digits.size() > 1 && std::string_view{"uUlL"}.find(digits.back()) != std::string_view::npos) {
     digits.remove_suffix(1);
@@ -48,7 +48,7 @@ std::string_view without_suffix(std::string_view digits) {
   return digits;
 }
 
-/// `0089` begins like an octal number and is read as a decimal one.
+/// `0089` has a leading 0, but is decimal.
 std::optional<std::string> spell_decimal(std::string_view digits) {
   if (!is_decimal(digits)) return std::nullopt;
   const std::size_t zeros = std::min(digits.find_first_not_of('0'), digits.size() - 1);
@@ -64,7 +64,7 @@ std::optional<std::string> spell_integer(std::string_view text, unsigned hex_dig
   return (is_negative ? "-" : "") + *magnitude;
 }
 
-/// The bit pattern in hexadecimal, or a decimal number as it stands.
+/// The bit pattern in hexadecimal, or an unchanged decimal number.
 std::optional<std::string> spell_real(std::string_view text, unsigned hex_digits) {
   if (is_hexadecimal(text)) return spell_magnitude(text, hex_digits);
   const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;

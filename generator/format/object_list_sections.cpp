@@ -24,10 +24,10 @@ constexpr std::pair<ObjectListKind, SectionKind> lists[] = {
     {ObjectListKind::manufacturer, SectionKind::manufacturer_objects},
 };
 
-/// What an old list holds besides the objects.
+/// The contents of an old list other than objects.
 struct OldList {
-  Remarks remarks;                     ///< before the count, or before what is no longer listed
-  std::vector<DocumentEntry> unknown;  ///< keys that CiA 306 does not know
+  Remarks remarks;                     ///< before the count, or before entries that are removed
+  std::vector<DocumentEntry> unknown;  ///< unknown keys
 };
 
 class ListWriter {
@@ -100,7 +100,7 @@ class ListWriter {
   Document& document_;
   const DataSheet& sheet_;
   std::map<ObjectListKind, std::vector<std::uint16_t>> listed_;
-  std::map<std::uint16_t, Remarks> remarks_;  ///< before an object's entry, in whichever list it stood
+  std::map<std::uint16_t, Remarks> remarks_;  ///< before the entry of an object, in any list
 };
 
 }  // namespace

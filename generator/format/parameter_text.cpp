@@ -17,7 +17,7 @@ using canopen::DataClass;
 using canopen::DataType;
 using Bytes = std::span<const std::uint8_t>;
 
-/// A text that stays as it is as the value of a key.
+/// Whether a text can be the value of a key unchanged.
 std::optional<std::string> line_of(std::string text) {
   const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; };
   const bool printable = is_utf8(text) && std::none_of(text.begin(), text.end(), is_control);

@@ -14,7 +14,7 @@
 namespace edsc {
 namespace {
 
-/// Sections that CiA 306 has once: those of the same number are the same.
+/// Sections that occur once; names with the same number are the same section.
 std::uint32_t identity(const SectionName& name) {
   return (std::uint32_t{name.index} << 16U) | (static_cast<std::uint32_t>(name.kind) << 8U) | name.sub_index;
 }
@@ -30,7 +30,7 @@ void merge_remarks(DocumentSection& first, const DocumentSection& second) {
   for (const DocumentEntry& entry : second.entries) append(first.remarks, entry.remarks);
 }
 
-/// Groups of sections: single ones, for each list the list and its objects, objects in no list, the rest.
+/// Groups of sections: single sections, each list with its objects, objects in no list, the rest.
 constexpr std::uint32_t list_groups = 8;
 constexpr std::uint32_t unlisted_objects = 16;
 constexpr std::uint32_t other_sections = 17;
@@ -61,7 +61,7 @@ bool is_for_edsc(const std::string& remark) {
   return trim_left(std::string_view{remark}.substr(1)).starts_with("edsc:");
 }
 
-/// What `; edsc: allow` allows before the first section, it allows in the whole file: there it stays when another section
+/// A comment `; edsc: allow` before the first section applies to the whole file: it remains there if another section
 /// becomes the first.
 void keep_at_top(Document& document) {
   Remarks& remarks = document.sections.front().remarks;

@@ -13,10 +13,10 @@
 namespace edsc {
 namespace {
 
-/// Of CiA 306-1, whose sections these are.
+/// EDSVersion for the sections of CiA 306-1.
 constexpr std::string_view eds_version = "4.0";
 
-/// The text in one line, with one blank between words of different lines.
+/// The text on one line, with one blank between lines.
 std::string one_line(std::string_view text) {
   std::string line;
   bool at_break = false;

@@ -71,7 +71,7 @@ class SectionSpeller {
     return {value, {}};
   }
 
-  /// The number of sub-objects that are described, in the base of the old one. A compact form's number stays.
+  /// The number of described sub-objects, in the base of the old number, which remains for a compact form.
   [[nodiscard]] Spelling sub_number(const std::string& value) const {
     Spelling spelling = spell_number(value, 1);
     const ObjectDescription* const object = find_object(sheet_, section_.kind.index);
@@ -84,7 +84,7 @@ class SectionSpeller {
     return spelling;
   }
 
-  /// The type of an entry's values; null when they are of none, and stay as they are.
+  /// The type of an entry's values; null if unknown: the values are then unchanged.
   [[nodiscard]] const canopen::DataTypeRow* type_of(const KeySpelling& key) const {
     const SectionName& name = section_.kind;
     if (name.kind == SectionKind::compact_values) {
@@ -96,7 +96,7 @@ class SectionSpeller {
     return object != nullptr && !object->has_sub_indices() ? type_in_device(0) : nullptr;
   }
 
-  /// That of the section's own DataType, when it is a basic one.
+  /// The type of DataType in the section, if it is a basic type.
   [[nodiscard]] const canopen::DataTypeRow* own_type() const {
     for (const SpelledEntry& entry : entries_) {
       if (entry.key.name != "DataType") continue;
@@ -121,7 +121,7 @@ class SectionSpeller {
 
 bool is_spelled(SectionKind kind) {
   const bool is_list = kind >= SectionKind::mandatory_objects && kind <= SectionKind::manufacturer_objects;
-  return kind <= SectionKind::object_links && !is_list;  // the lists are written anew
+  return kind <= SectionKind::object_links && !is_list;  // the lists are rewritten
 }
 
 }  // namespace

@@ -26,8 +26,8 @@ constexpr std::u32string_view cp1252 =
     U"\uFFFD‘’“”•–—˜™š›œ\uFFFDžŸ";
 static_assert(cp1252.size() == 32);
 
-/// What the bytes 80h..FFh are: `u` an umlaut or sharp s, `U` a capital umlaut, `l` another letter (or the apostrophe
-/// of 1252, which stands where letters do), `s` a sign, `b` a box drawing character, `-` undefined.
+/// The kinds of the bytes 80h..FFh: `u` an umlaut or sharp s, `U` a capital umlaut, `l` another letter (or the
+/// apostrophe of 1252, which occurs between letters), `s` a sign, `b` a box drawing character, `-` undefined.
 constexpr std::string_view cp437_kinds =
     "lullulllllllllUl"
     "llslullllUUsssss"
@@ -48,10 +48,10 @@ constexpr std::string_view cp1252_kinds =
     "llllllusllllulll";
 static_assert(cp437_kinds.size() == 128 && cp1252_kinds.size() == 128);
 
-/// Where a byte stands among ASCII letters.
+/// The position of a byte among ASCII letters.
 enum class Place : std::size_t { inside_word, begins_word, ends_word, alone };
 
-/// How well a kind goes with a place. The figures only have to put the readings of real texts in order.
+/// How likely a kind is at a place. Only the order that the sums give for real texts matters.
 struct Likelihood {
   char kind;
   int at[4];  // in the order of Place

@@ -9,16 +9,16 @@ namespace edsc {
 namespace {
 
 constexpr int window_bits = 15;
-constexpr int gzip_header = 16;  ///< added to the window's bits: gzip around the data, not zlib
+constexpr int gzip_header = 16;  ///< added to the window bits: gzip format instead of zlib
 constexpr int memory_level = 9;
 constexpr int unknown_system = 255;
 constexpr std::size_t most_at_once = std::size_t{1} << 16;
 
-/// Sheets of 30,000 equal objects shrink to a 35th, files made to fill the memory to a 1000th.
+/// EDS files with 30,000 equal objects have a ratio of 35; files made to exhaust memory, of 1000.
 constexpr std::size_t max_ratio = 200;
 constexpr std::size_t any_ratio_bytes = std::size_t{1} << 20;  ///< up to this size
 
-/// The library takes bytes through pointers that it does not write to.
+/// The library has a non-const pointer to the input, but does not write to it.
 Bytef* input_of(std::string_view bytes) { return reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data())); }
 Bytef* output_of(std::string& bytes, std::size_t at) { return reinterpret_cast<Bytef*>(&bytes[at]); }
 

@@ -82,7 +82,7 @@ std::string printable(std::string_view text) {
 }
 
 std::string printable_json(std::string json) {
-  // Strings in JSON hold no white space but blanks.
+  // Strings in JSON contain no white space except blanks.
   const auto stays = [](char c) { return is_plain(c) || is_white_space(c); };
   if (std::ranges::all_of(json, stays)) return json;
   std::string out;

@@ -21,7 +21,7 @@ constexpr std::string_view utf16_be_mark = "\xFE\xFF";
 
 constexpr std::string_view too_large = "larger than 1 GiB";
 
-/// One code unit of UTF-16 after another.
+/// Reads the code units of UTF-16.
 class Utf16Reader {
  public:
   Utf16Reader(std::string_view bytes, Encoding encoding)
@@ -50,7 +50,7 @@ class Utf16Reader {
   }
 
   std::string_view bytes_;
-  std::size_t high_;  ///< where in a pair the high byte stands
+  std::size_t high_;  ///< position of the high byte in a pair
   std::size_t at_ = 0;
 };
 
@@ -67,7 +67,7 @@ std::string from_utf16(std::string_view bytes, Encoding encoding) {
   return text;
 }
 
-/// UTF-16 without a byte order mark: at the start of the text every second byte, and no other, is NUL.
+/// Detects UTF-16 without a byte order mark: at the start of the text, exactly every second byte is NUL.
 bool has_nul_as_every_second_byte(std::string_view bytes, std::size_t first_nul) {
   const std::string_view start = bytes.substr(0, 512);
   if (start.size() < 4) {
@@ -85,8 +85,8 @@ std::string reason(int error_number) { return std::generic_category().message(er
 
 constexpr std::size_t read_at_once = std::size_t{1} << 16;
 
-/// Reads all of `file` into `bytes`, whose size is a guess at what it needs. Gives the reason when that fails, else an
-/// empty string.
+/// Reads all of `file` into `bytes`, whose size is an estimate. Returns the reason on failure, otherwise an empty
+/// string.
 std::string read_all(std::FILE* file, std::string& bytes) {
   std::size_t size = 0;
   std::size_t got = 0;

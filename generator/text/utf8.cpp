@@ -26,7 +26,7 @@ constexpr std::array<LeadBytes, 8> lead_bytes{{
     {0xF4, 0xF4, 4, 0x80, 0x8F},
 }};
 
-/// How many bytes at the start of `text` are ASCII, eight at a time; the rest of a word that is not is left over.
+/// The number of leading ASCII bytes in `text`, in steps of eight.
 std::size_t skip_ascii_words(std::string_view text) {
   std::size_t at = 0;
   std::uint64_t word = 0;

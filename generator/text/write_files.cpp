@@ -34,10 +34,10 @@ std::string reason() { return std::strerror(errno); }
 
 using canopen::Descriptor;
 
-/// Some file systems report a full disk only now.
+/// Some file systems report a full disk only at this point.
 bool closed(Descriptor& descriptor) { return descriptor.close() == 0 || errno == EINTR; }
 
-/// Waits where a descriptor does not take more bytes for now.
+/// Waits if a descriptor currently does not accept more bytes.
 bool write_all(int descriptor, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
@@ -68,13 +68,13 @@ class Target {
  public:
   explicit Target(const OutputFile& file) : file_{&file}, path_{file.path} {}
 
-  /// Follows symlinks and looks at what is there. Nothing has changed when this fails.
+  /// Follows symlinks and examines the target. Does not change anything.
   [[nodiscard]] std::string find() {
     struct stat status {};
     if (::stat(file_->path.c_str(), &status) == 0) {
       status_ = status;
     } else if (errno != ENOENT) {
-      return problem();  // also a symlink that the kernel does not follow, in a folder that everybody may write to
+      return problem();  // also for a symlink that the kernel does not follow, in a world-writable folder
     }
     follow_symlinks();
     if (path_.filename().empty() || (status_ && S_ISDIR(status_->st_mode))) return file_->path + ": is a folder";
@@ -92,7 +92,7 @@ class Target {
     return error ? folder().string() + ": " + error.message() : "";
   }
 
-  /// True when the file has its content already. Looks at what is there now.
+  /// Whether the file already has its content, by its current state.
   [[nodiscard]] bool is_up_to_date() {
     struct stat status {};
     const Descriptor in{::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK)};
@@ -132,7 +132,7 @@ class Target {
     return written ? "" : problem();
   }
 
-  /// Puts the new file in place of the old one, which is the temporary file from now on.
+  /// Exchanges the new file and the old one, which is the temporary file from now on.
   [[nodiscard]] std::string replace() {
     const bool exchanged =
         exists_ && ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, path_.c_str(), RENAME_EXCHANGE) == 0;
@@ -159,7 +159,7 @@ class Target {
   }
 
  private:
-  static constexpr int max_symlinks = 40;  ///< as in Linux
+  static constexpr int max_symlinks = 40;  ///< as on Linux
   static constexpr int max_names = 100;
 
   [[nodiscard]] std::string problem() const { return file_->path + ": " + reason(); }
@@ -174,7 +174,7 @@ class Target {
     }
   }
 
-  /// A file of its own: nobody else can have planted a file or symlink with this name.
+  /// Creates a new file, so that nobody else can have planted a file or symlink with this name.
   Descriptor make_temporary() {
     std::random_device random;
     for (int i = 0; i < max_names; ++i) {
@@ -189,25 +189,25 @@ class Target {
   static void keep_owner_and_mode(int descriptor, const struct stat& before) {
     mode_t mode = before.st_mode & permission_bits;
     if (::fchown(descriptor, before.st_uid, before.st_gid) != 0) {
-      mode &= without_set_id;  // set-ID bits of one user are not for another one
+      mode &= without_set_id;  // set-ID bits of one user do not apply to another
       [[maybe_unused]] const int group_kept = ::fchown(descriptor, static_cast<uid_t>(-1), before.st_gid);
     }
     static_cast<void>(::fchmod(descriptor, mode));
   }
 
-  /// True also where the file system cannot say.
+  /// Also true if the file system does not support the query.
   static bool is_on_disk(int descriptor) { return ::fsync(descriptor) == 0 || errno == EINVAL || errno == ENOSYS; }
 
   const OutputFile* file_;
-  fs::path path_;                     ///< behind all symlinks
-  std::optional<struct stat> status_;  ///< of what the path named at first
+  fs::path path_;                     ///< after resolving all symlinks
+  std::optional<struct stat> status_;  ///< of the original target
   std::optional<int> descriptor_;     ///< of this process
   std::string temporary_;
   bool exists_ = false;
   bool replaced_ = false;
 };
 
-/// The folders of the files, each once. Keeps other processes from writing several files into them meanwhile.
+/// The folders of the files, each once. Locks them against other processes that write several files into them.
 class Folders {
  public:
   void open(const fs::path& path) {
@@ -219,7 +219,7 @@ class Folders {
     if (!found.descriptor) found.descriptor = std::move(folder);
   }
 
-  /// In an order that is the same in all processes. A file system without locks goes without.
+  /// Locks in an order that is the same in all processes. File systems without locks are not locked.
   void lock() const {
     for (const auto& [id, folder] : folders_) {
       while (folder.files > 1 && ::flock(folder.descriptor.number(), LOCK_EX) != 0 && errno == EINTR) {
@@ -227,7 +227,7 @@ class Folders {
     }
   }
 
-  /// Names of files as well.
+  /// Includes the names of files.
   void write_to_disk() const {
     for (const auto& [id, folder] : folders_) ::fsync(folder.descriptor.number());
   }

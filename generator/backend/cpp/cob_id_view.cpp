@@ -11,12 +11,12 @@
 namespace edsc {
 namespace {
 
-/// A value of canopen::StartCobId; empty when the COB-ID is off.
+/// A value of canopen::StartCobId; empty if the COB-ID is disabled.
 std::string start_cob_id(const CobIdParameter& parameter, const Entry& entry) {
   const auto bits = static_cast<std::uint32_t>(entry.default_value ? entry.default_value->bits : 0);
   const bool plus_node_id = entry.default_value && entry.default_value->plus_node_id;
   if (parameter.has_valid_bit && !canopen::CobId{bits}.valid()) return "";
-  // A wrong one is an error. With --keep-going the device has it, and no service uses it.
+  // An invalid one is an error. With --keep-going the device has it, but no service uses it.
   if (!canopen::is_legal({entry.index, entry.sub_index, bits, plus_node_id})) return "";
   return fmt::format("canopen::StartCobId{{0x{:04X}, 0x{:02X}, 0x{:X}{}}}", entry.index, entry.sub_index, bits,
                      plus_node_id ? ", true" : "");

@@ -46,7 +46,7 @@ std::string byte_list(std::string_view bytes) {
   return out + "}";
 }
 
-/// Code units beyond ASCII as \x escapes, each closing its literal so that no digit behind it is drawn in.
+/// Non-ASCII code units as \x escapes, each ending its literal so that a digit after it does not become part of it.
 std::string utf16_string(std::string_view text) {
   std::string out = "u\"";
   for (const char16_t unit : to_utf16(text)) {
@@ -111,7 +111,7 @@ std::string cpp_comment(std::string_view text) {
   std::ranges::replace(out, '\\', '/');
   for (std::size_t at = 0; (at = out.find(backslash_trigraph, at)) != std::string::npos;) {
     out.erase(at, backslash_trigraph.size());
-    at -= std::min(at, backslash_trigraph.size());  // what is left may be another one
+    at -= std::min(at, backslash_trigraph.size());  // the rest may be another one
   }
   return out;
 }

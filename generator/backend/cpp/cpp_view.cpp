@@ -40,15 +40,14 @@ std::string_view mappable_enumerator(Mappable mappable) {
   return "no";
 }
 
-/// `text` and the spaces that bring what follows to a common column.
+/// `text`, padded with blanks to a common column.
 std::string padded(std::string text, std::size_t column) {
   if (!is_ascii(text)) return fmt::format("{:<{}}", text, column);  // knows characters of two columns
   text.resize(std::max(text.size(), column), ' ');
   return text;
 }
 
-/// What is left of the name of an element without its number: "field" of "Field 1", "Field1" and, for sub-index 0Ah,
-/// "Field A".
+/// The name of an element without its number: "field" for "Field 1", "Field1" and, for sub-index 0Ah, "Field A".
 std::string without_number(const Entry& element) {
   const std::string name = to_snake_case(element.name);
   const std::string hexadecimal = fmt::format("{:x}", element.sub_index);
@@ -64,7 +63,7 @@ std::string without_number(const Entry& element) {
   return rest;
 }
 
-/// Makes the declarations of od:: types.
+/// Creates the declarations of od:: types.
 class ObjectTypes {
  public:
   ObjectTypes(const Device& device, const Options& options) : device_{device}, options_{options} {
@@ -105,7 +104,7 @@ class ObjectTypes {
                        "length", length, "count", std::move(count), "elements", element_names(object));
   }
 
-  /// Elements that have a name of their own, such as `gains_p` for `gains<1>`; null when there are none.
+  /// Elements that have their own name, such as `gains_p` for `gains<1>`; null if there are none.
   [[nodiscard]] ordered_json element_names(const Object& object) {
     std::map<std::string, int> names;
     for (const Entry& entry : object.entries) {
@@ -124,7 +123,7 @@ class ObjectTypes {
   }
 
   /// Whether the options name an element, or its name differs from those of the object and of the other elements by
-  /// more than a number. `names`: how many elements have a name without its number.
+  /// more than a number. `names`: the number of elements by name without number.
   [[nodiscard]] bool has_own_name(const Object& object, const Entry& element,
                                   const std::map<std::string, int>& names) const {
     if (options_.names.contains({element.index, element.sub_index})) return true;
@@ -136,7 +135,7 @@ class ObjectTypes {
 
   [[nodiscard]] static std::string element_name(const Object& object, const Entry& element) {
     std::string name = element.identifier;
-    if (name.ends_with('_')) name.pop_back();  // which keeps words of C++ apart
+    if (name.ends_with('_')) name.pop_back();  // which distinguishes C++ keywords
     return name.starts_with(object.identifier + "_") ? name : object.identifier + "_" + name;
   }
 
@@ -259,7 +258,7 @@ ordered_json layout_view(MemoryLayout&& layout) {
 
 // ---- PDOs ----
 
-/// The PDOs that the runtime serves: those with both parameters and something in them, now or later.
+/// The PDOs that the runtime serves: those with both parameters, and with mapped objects or a dynamic mapping.
 ordered_json served_pdos(const Device& device, PdoDirection direction) {
   ordered_json rows = ordered_json::array();
   for (const Pdo& pdo : device.pdos) {
@@ -287,7 +286,7 @@ ordered_json storing_rows(const Options& options) {
   return rows;
 }
 
-/// What is true of the entries that raise an event: none of those that the options name.
+/// The condition for entries that trigger an event: not in the option no_event.
 ordered_json event_conditions(const Options& options) {
   ordered_json rows = json_array(options.no_event.size());
   for (const EntrySelector& entry : options.no_event) {
@@ -313,7 +312,7 @@ ordered_json runtime_rows(const Options& options) {
   return rows;
 }
 
-/// Bit rates of the data sheet as canopen::LssOptions::bit_rates has them.
+/// The bit rates of the EDS in the format of canopen::LssOptions::bit_rates.
 std::uint16_t lss_bit_rates(const Capabilities& capabilities) {
   unsigned mask = 0;
   for (std::size_t i = 0; i < std::size(canopen::lss::bit_rates); ++i) {
@@ -323,7 +322,7 @@ std::uint16_t lss_bit_rates(const Capabilities& capabilities) {
   return static_cast<std::uint16_t>(mask);
 }
 
-/// The members of canopen::LssOptions in its order, of a device that has LSS; else null.
+/// The members of canopen::LssOptions in its order for a device with LSS; otherwise null.
 ordered_json lss_view(const Device& device, const Options& options) {
   const Capabilities& capabilities = device.information.capabilities;
   if (!options.lss && !capabilities.lss_supported.value_or(false)) return nullptr;
@@ -338,7 +337,7 @@ ordered_json lss_view(const Device& device, const Options& options) {
   return json_object("members", std::move(members));
 }
 
-/// The data sheet's bytes in lines of C++, where the device keeps it; else null.
+/// The bytes of the EDS as lines of C++ if the device stores it; otherwise null.
 ordered_json stored_eds_view(const Device& device, const Options& options) {
   constexpr std::size_t bytes_in_a_line = 24;
   const std::string bytes = stored_eds(device, options);
@@ -366,7 +365,7 @@ std::string to_upper(std::string text) {
   return text;
 }
 
-/// Bit n is set where an RPDO may map data type n as a dummy.
+/// Bit n is set if an RPDO may map data type n as a dummy.
 std::string dummy_mask(const Device& device) {
   std::uint32_t mask = 0;
   for (const std::uint16_t dummy : device.dummies) mask |= dummy < 32 ? std::uint32_t{1} << dummy : 0;

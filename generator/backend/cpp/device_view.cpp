@@ -44,7 +44,7 @@ ordered_json value_view(const Value& value, const canopen::DataTypeRow& type) {
   return fmt::format("$NODEID+0x{:X}", value.bits);
 }
 
-/// A key only where the data sheet has something to say.
+/// Adds a key only if the data sheet states a value.
 void add_text(const char* key, std::string_view text, ordered_json& view) {
   if (!text.empty()) view[key] = text;
 }
@@ -78,7 +78,7 @@ ordered_json entry_view(const Entry& entry) {
   return view;
 }
 
-/// A communication parameter and what a PDO calls it.
+/// A sub-index of a communication parameter, and its key in a PDO.
 struct PdoParameter {
   std::uint8_t sub_index;
   const char* key;
@@ -88,7 +88,7 @@ constexpr PdoParameter pdo_parameters[] = {
     {1, "cob_id"}, {2, "transmission_type"}, {3, "inhibit_time"}, {5, "event_timer"}, {6, "sync_start_value"},
 };
 
-/// The defaults of the communication parameters that the device has.
+/// The default values of the existing communication parameters.
 void add_pdo_parameters(const Pdo& pdo, ordered_json& view) {
   for (const PdoParameter& parameter : pdo_parameters) {
     const Entry* const entry = pdo.communication != nullptr ? pdo.communication->find(parameter.sub_index) : nullptr;
@@ -162,13 +162,13 @@ ordered_json object_view(const Object& object) {
   return view;
 }
 
-/// The fields of an entry; null where it is an element of a compact form whose value nothing overrides.
+/// The fields of an entry; null for an element of a compact form without its own section.
 struct ValueFields {
   const Field* default_value = nullptr;
   const Field* parameter_value = nullptr;
 };
 
-/// The values of the compact form of a DCF are what is configured (CiA 306-1, 5).
+/// The values of the compact form of a DCF are ParameterValues (CiA 306-1, 5).
 ValueFields value_fields(const Entry& entry, const ObjectDescription& object, bool has_sub_indices) {
   const auto sub = std::ranges::find(object.sub_objects, entry.sub_index, &SubObjectDescription::sub_index);
   if (sub != object.sub_objects.end()) return {&sub->default_value, &sub->parameter_value};
@@ -178,7 +178,7 @@ ValueFields value_fields(const Entry& entry, const ObjectDescription& object, bo
   return {&object.default_value, &value->field};
 }
 
-/// What CiA 301 gives the device stays its default.
+/// A value that CiA 301 fixes remains the default value.
 void separate(const Entry& entry, const ObjectDescription& object, const Device& device, ordered_json& row) {
   const ValueFields fields = value_fields(entry, object, device.find(entry.index)->has_sub_indices());
   if (fields.parameter_value == nullptr || !fields.parameter_value->present || fields.parameter_value->empty()) return;

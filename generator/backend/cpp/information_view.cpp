@@ -85,7 +85,7 @@ ordered_json to_json(const std::optional<T>& value) {
   return *value;
 }
 
-/// Adds what the data sheet says, and nothing for what it does not.
+/// Adds the values that the data sheet states.
 template <typename Struct, typename Rows>
 void add_members(const Struct& from, const Rows& rows, ordered_json& view) {
   for (const auto& row : rows) {

@@ -19,24 +19,24 @@ using canopen::Access;
 using canopen::DataClass;
 using canopen::DataType;
 
-/// Strings in RAM without a default hold this much, unless the options say otherwise.
+/// Capacity of strings in RAM without a default value, unless the options set it.
 constexpr std::uint32_t default_string_capacity = 16;
 
 constexpr std::uint16_t last_communication_index = 0x1FFF;
 
-/// Read-only objects of the communication profile that a device does not change while it runs.
+/// Read-only objects of the communication profile that do not change at run time.
 constexpr std::array constant_ranges = {
     IndexRange{0x1000, 0x1000}, IndexRange{0x1005, 0x100F}, IndexRange{0x1012, 0x1012}, IndexRange{0x1014, 0x1019},
     IndexRange{0x1200, 0x12FF}, IndexRange{0x1400, 0x15FF}, IndexRange{0x1800, 0x19FF},
 };
 
-/// Store and restore: what is written is a command; what is read says what the device can do.
+/// Store and restore: a write is a command; a read returns the capabilities of the device.
 constexpr std::array command_ranges = {IndexRange{0x1010, 0x1011}};
 
 /// Name of sub-index 0 in the struct of an array whose sub-index 0 changes.
 constexpr std::string_view count_member = "highest_sub_index";
 
-/// Types that generated code has beside those of records.
+/// Generated types other than those of records.
 constexpr std::array taken_type_names = {"Values",
                                          "Constants",
                                          "Device",
@@ -108,17 +108,17 @@ std::uint32_t string_capacity(const Entry& entry, const Options& options) {
   return entry.access == Access::constant ? 0 : default_string_capacity;
 }
 
-/// Bytes that a string's type has room for: its capacity, and a terminator where the options want one.
+/// Bytes of a string type: its capacity, and a terminator if the options require one.
 std::uint32_t room(const Entry& entry, const Options& options) {
   const bool terminated = options.zero_terminated_strings && entry.type->type == DataType::visible_string;
   return string_capacity(entry, options) + (terminated ? 1 : 0);
 }
 
-/// What the words of the tables can address.
+/// The address range of the words of the tables.
 constexpr std::size_t most_bytes = 0x10000;
 constexpr std::size_t most_rows = 0xFFFF;
 
-/// Of canopen::Domain where pointers have 32 bits; where they have more, the generated code counts for itself.
+/// Of canopen::Domain with 32-bit pointers; for larger ones, the generated code computes the size itself.
 constexpr std::size_t domain_size = 12;
 
 std::size_t round_up(std::size_t size, std::size_t alignment) { return (size + alignment - 1) / alignment * alignment; }
@@ -131,13 +131,13 @@ std::size_t size_of(const Entry& entry, const Options& options) {
   return round_up(length_size + std::max(room(entry, options), 1u), length_size);
 }
 
-/// Where the last of these members ends, the first beginning at `begin`.
+/// The end of these members, if the first begins at `begin`.
 std::size_t end_of(const std::vector<Member>& members, std::size_t begin) {
   for (const Member& member : members) begin = round_up(begin, member.alignment) + member.size;
   return begin;
 }
 
-/// Bytes of a struct with these members, of which the first has the widest alignment.
+/// Bytes of a struct with these members; the first has the widest alignment.
 std::size_t size_of(const std::vector<Member>& members) {
   return round_up(end_of(members, 0), members.front().alignment);
 }
@@ -195,7 +195,7 @@ class Builder {
     return std::ranges::binary_search(settable_, EntryKey{entry.index, entry.sub_index});
   }
 
-  /// A mapping parameter of a static PDO: a constant whatever access the data sheet gives it.
+  /// A mapping parameter of a static PDO: a constant regardless of its access type in the EDS.
   [[nodiscard]] bool is_static_mapping(std::uint16_t index) const {
     return contains(mapping_parameters, index) && !std::ranges::binary_search(dynamic_mappings_, index);
   }
@@ -236,7 +236,7 @@ class Builder {
     return Place::rom;
   }
 
-  /// A TPDO whose mapping may change finds its objects in memory, the constants among them too.
+  /// A TPDO with dynamic mapping reads its objects, including constants, from memory.
   [[nodiscard]] bool needs_address(const Entry& entry) const {
     return has_dynamic_tpdo_ && canopen::allows(entry.mappable(), canopen::Mappable::tpdo);
   }
@@ -256,8 +256,8 @@ class Builder {
     return text;
   }
 
-  /// Limits matter where the bus can write a value; a string's capacity, wherever it can change, stands in the same
-  /// table. What may be mapped, and how much, is checked against the dictionary instead.
+  /// Limits are needed for values that can be written over the bus; the same table contains the capacity of each string
+  /// that can change. Mapping entries are checked against the dictionary instead.
   [[nodiscard]] bool has_limits(const Entry& entry) const {
     if (entry.type->kind == DataClass::string) return place(*device_.find(entry.index), entry) == Place::ram;
     return canopen::writable(entry.access) && !contains(mapping_parameters, entry.index) &&
@@ -296,7 +296,7 @@ class Builder {
                        entry.high_limit ? cpp_literal(*entry.high_limit, *entry.type) : "");
   }
 
-  /// Bits of the lowest and highest value that a type holds.
+  /// Bits of the minimum and maximum of a type.
   static std::uint64_t lowest(const Entry& entry) {
     if (entry.type->kind == DataClass::real) return entry.type->bits == 32 ? 0xFF7F'FFFF : 0xFFEF'FFFF'FFFF'FFFF;
     if (entry.type->kind != DataClass::signed_integer) return 0;
@@ -310,7 +310,7 @@ class Builder {
 
   // ---- single values ----
 
-  /// Puts a value where it belongs and gives the word's place.
+  /// Adds a value to its section, and returns its place for the word.
   std::string add_single(const Entry& entry, const std::string& identifier) {
     const Object& object = *device_.find(entry.index);
     const Place where = place(object, entry);
@@ -390,12 +390,12 @@ class Builder {
          index_label(object.index)});
   }
 
-  /// Elements of one numeric type and one set of rights in one kind of memory, without gaps: they share one word.
+  /// Elements of the same numeric type and access in the same memory, without gaps: they share one word.
   [[nodiscard]] bool is_uniform_array(const Object& object) const {
     if (!describes_uniform_array(object)) return false;
     const Place first = place(object, object.entries[1]);
     if (first != Place::ram && first != Place::rom) return false;
-    if (first == Place::rom && place(object, object.entries[0]) == Place::rom) return false;  // a record holds both
+    if (first == Place::rom && place(object, object.entries[0]) == Place::rom) return false;  // a record can have both
     return std::ranges::all_of(object.entries.begin() + 1, object.entries.end(),
                                [&](const Entry& entry) { return place(object, entry) == first; });
   }
@@ -446,7 +446,7 @@ class Builder {
     return {{count_word, ""}, {element_word, ""}};
   }
 
-  /// The word of a sub-index 0 that does not change, while the elements do.
+  /// The word of a constant sub-index 0 of an object with variable elements.
   std::string constant_count(const Object& object, const Entry& count, std::string& rom) {
     const Place where = place(object, count);
     if (where != Place::rom) return word(count, immediate_text(count, where));
@@ -536,7 +536,7 @@ class Builder {
     return subs;
   }
 
-  /// The member that holds a record, of a type that records of the same shape share.
+  /// The member for a record; records of the same shape share a type.
   Member whole_record(const Object& object, Struct shape, std::string& type_name) {
     sort_by_alignment(shape.members);
     Member whole;
@@ -555,7 +555,7 @@ class Builder {
     return whole;
   }
 
-  /// Finds or makes the struct for a shape: the same member types and names in the same order.
+  /// Finds or creates the struct for a shape: the same member types and names in the same order.
   std::string record_type(const Object& object, Struct shape) {
     std::string key;
     for (Member& m : shape.members) {
@@ -574,7 +574,7 @@ class Builder {
     return layout_.record_types.back().type;
   }
 
-  /// Position of these words in the table of sub-indices; equal ones stand there once.
+  /// Position of these words in the table of sub-indices, which contains equal ones only once.
   std::size_t shared_subs(const std::vector<TableRow>& rows, const Object& object) {
     std::string key;
     for (const TableRow& row : rows) key += row.text + '\n';
@@ -598,7 +598,7 @@ class Builder {
                                    index_label(object.index), object.name, most_rows));
   }
 
-  /// Where a struct ends that begins at `begin`. Its first member that cannot be addressed is reported.
+  /// The end of a struct that begins at `begin`. Reports its first member that cannot be addressed.
   std::size_t check_size(const Struct& part, std::size_t begin, std::string_view what) {
     if (part.members.empty()) return begin;
     begin = round_up(begin, part.members.front().alignment);

@@ -26,7 +26,7 @@ std::string type_name(const Pdo& pdo) { return fmt::format("{}{}", is_receive(pd
 
 // ---- the layout ----
 
-/// The type of a mapped object, without regard to its length in the PDO.
+/// The type of a mapped object, regardless of its length in the PDO.
 std::string mapped_object(const Device& device, const PdoEntry& entry) {
   const Object& object = *device.find(entry.index);
   if (!object.has_sub_indices()) return fmt::format("od::{}", object.identifier);
@@ -61,30 +61,30 @@ ordered_json entry_rows(const Device& device, const Pdo& pdo) {
   return rows;
 }
 
-// ---- what the compiler checks ----
+// ---- checks of the C++ compiler ----
 
-/// A PDO's parameters, and what `edsc check` warns of that harms nobody: that is built all the same.
+/// The parameters of a PDO for the C++ checks. `left_out`: harmless faults that only `edsc check` reports.
 struct Provable {
   PdoParameters parameters;
   std::uint32_t granularity = 1;
   std::vector<std::string> left_out;
 };
 
-/// What the device has after a reset; 0 where the entry has no default, `otherwise` where there is no entry.
+/// The value after a reset: 0 if the entry has no default value, `otherwise` if it does not exist.
 std::uint64_t start_value(const Pdo& pdo, std::uint8_t sub_index, std::uint64_t otherwise) {
   const Entry* entry = pdo.communication->find(sub_index);
   if (entry == nullptr) return otherwise;
   return entry->default_value ? entry->default_value->bits : 0;
 }
 
-/// What the device has is what is proven: nothing that is wrong is left out.
+/// Adds the COB-ID of the device, also if it is invalid.
 void add_cob_id(const Pdo& pdo, PdoParameters& parameters) {
   const Entry* entry = pdo.communication->find(1);
   parameters.cob_id = static_cast<std::uint32_t>(start_value(pdo, 1, CobId::invalid_bit));
   parameters.plus_node_id = entry->default_value && entry->default_value->plus_node_id;
 }
 
-/// Times that the transmission type does not use harm nobody.
+/// Times that the transmission type does not use are harmless.
 void add_transmission(const Pdo& pdo, Provable& provable) {
   const auto type = static_cast<std::uint8_t>(start_value(pdo, 2, default_transmission_type));
   provable.parameters.transmission_type = type;
@@ -123,12 +123,12 @@ Provable provable_of(const Device& device, const Pdo& pdo) {
   return provable;
 }
 
-/// Whether there is anything to check it against.
+/// Whether the PDO can be checked.
 bool is_checked(const Pdo& pdo) {
   return pdo.mapping != nullptr && !is_left_out(pdo) && pdo.communication != nullptr && pdo.communication->find(1) != nullptr;
 }
 
-/// `canopen::PdoParameters{.cob_id = 0x180, .plus_node_id = true}`, without what says nothing.
+/// `canopen::PdoParameters{.cob_id = 0x180, .plus_node_id = true}`, without members that have their default.
 std::string parameters_text(const PdoParameters& parameters) {
   std::vector<std::string> members;
   constexpr PdoParameters unknown;
@@ -143,7 +143,7 @@ std::string parameters_text(const PdoParameters& parameters) {
   return fmt::format("canopen::PdoParameters{{{}}}", fmt::join(members, ", "));
 }
 
-/// The template arguments behind dictionary, number and layout.
+/// The template arguments after dictionary, number and layout.
 std::string check_arguments(const Provable& provable) {
   const std::string parameters = parameters_text(provable.parameters);
   if (provable.granularity != 1) return fmt::format(", {}, {}", parameters, provable.granularity);
