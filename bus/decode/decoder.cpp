@@ -115,7 +115,7 @@ void append_field(std::string& text, const PdoField& field, std::uint64_t word, 
   message.values.push_back(value);
 }
 
-/// CAN-IDs that mean the same whatever a data sheet says: NMT, default SDO, error control, LSS.
+/// CAN-IDs with a fixed meaning: NMT, default SDO, error control, LSS.
 bool belongs_to_all_nodes(std::uint32_t can_id) {
   if (can_id == function_code::nmt || can_id == canopen::lss::request_id || can_id == canopen::lss::response_id)
     return true;
@@ -156,7 +156,7 @@ NodeModel* Decoder::model_of(std::uint8_t node_id) {
   return place == 0 ? nullptr : &nodes_[place - 1U];
 }
 
-// Which CAN-ID is used for what
+// Use of CAN-IDs
 
 void Decoder::add_route(CobId cob_id, Route route) {
   if (!cob_id.valid() || (!cob_id.extended() && belongs_to_all_nodes(cob_id.can_id()))) return;
@@ -166,7 +166,7 @@ void Decoder::add_route(CobId cob_id, Route route) {
 void Decoder::find_routes() {
   for (auto& routes : routes_) routes.clear();
   extended_routes_.clear();
-  // Who sends stands first: the TPDO of one node is the RPDO of another.
+  // The sender comes first: the TPDO of one node is the RPDO of another.
   for (const PdoDirection direction : {PdoDirection::transmit, PdoDirection::receive}) {
     for (std::size_t node = 0; node < nodes_.size(); ++node) {
       const auto& pdos = nodes_[node].pdos();
@@ -419,7 +419,7 @@ void Decoder::decode_pdo(const Frame& frame, const std::vector<Route>& routes, M
   }
 }
 
-/// A multiplex PDO says itself which object it carries (CiA 301, 7.2.2.5).
+/// A multiplex PDO contains the address of its object (CiA 301, 7.2.2.5).
 void Decoder::decode_mpdo(const Frame& frame, const NodeModel& node, Message& message) {
   if (frame.size != 8) return wrong_length(frame, "the 8 of a multiplex PDO", message);
   const bool destination = (frame.data[0] & 0x80) != 0;

@@ -196,7 +196,7 @@ std::string_view emergency_text(std::uint16_t code, std::uint16_t profile) {
   for (const ProfileCode& row : profile_codes) {
     if (row.profile == profile && row.code == code) return row.text;
   }
-  // Other profiles put codes of their own into the classes of CiA 301.
+  // Other profiles define their own codes in the error classes of CiA 301.
   const auto is_known = [](std::uint16_t wanted) {
     return std::ranges::any_of(canopen::emergency_code_texts, [&](const canopen::EmergencyCodeText& row) {
       return (wanted & row.mask) == row.code;

@@ -51,7 +51,7 @@ constexpr Flag violations[] = {
     {0x80, "while sending"},
 };
 
-/// Where in the frame; values, not bits.
+/// Locations in the frame; values, not bits.
 constexpr Flag places[] = {
     {0x02, "ID bits 28..21"},
     {0x03, "start of frame"},
@@ -80,7 +80,7 @@ constexpr Flag wires[] = {
     {0x60, "CAN_L shorted to supply"}, {0x70, "CAN_L shorted to ground"},  {0x80, "CAN_L shorted to CAN_H"},
 };
 
-/// ` (a, b)`, nothing where no bit is set.
+/// ` (a, b)`; empty if no bit is set.
 void append_flags(std::string& text, std::span<const Flag> flags, std::uint32_t value) {
   const char* separator = " (";
   for (const Flag& flag : flags) {

@@ -31,7 +31,7 @@ void LogDecoder::complain(std::size_t line_number, std::string_view what, std::s
                  printable(what));
 }
 
-/// Times that begin with 0 and go back are differences: they are added up from then on.
+/// Times that begin with 0 and decrease are differences, which are added up from then on.
 void LogDecoder::count_time(LogLine& line) {
   if (!line.has_time) return;
   if (!has_time_) from_zero_ = line.microseconds == 0;

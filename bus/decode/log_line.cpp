@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint8_t no_digit = 0xFF;
 
-/// What a character is worth as a hexadecimal digit.
+/// The value of a hexadecimal digit.
 constexpr std::array<std::uint8_t, 256> hex_values = [] {
   std::array<std::uint8_t, 256> values{};
   for (unsigned c = 0; c < values.size(); ++c) {
@@ -25,7 +25,7 @@ constexpr std::array<std::uint8_t, 256> hex_values = [] {
 
 std::uint8_t hex_value(char c) { return hex_values[static_cast<unsigned char>(c)]; }
 
-/// The next word, and the blanks before it, taken off the text.
+/// Removes the next word and the blanks before it from the text.
 std::string_view take_word(std::string_view& text) {
   std::size_t begin = 0;
   while (begin < text.size() && (text[begin] == ' ' || text[begin] == '\t')) ++begin;
@@ -101,7 +101,7 @@ bool parse_id(std::string_view text, LogLine& line) {
   return line.frame.extended ? id <= 0x1FFF'FFFF : id <= 0x7FF;
 }
 
-/// `DEADBEEF`, `DE.AD.BE.EF`, `R`, `R8`, and what cansend takes behind it: `_E`, a raw length.
+/// `DEADBEEF`, `DE.AD.BE.EF`, `R`, `R8`, also followed by `_E`, a raw length, as in cansend.
 LogLine parse_compact(std::string_view text, LogLine line) {
   const std::size_t hash = text.find('#');
   if (!parse_id(text.substr(0, hash), line)) return broken(line, "the CAN-ID does not have 3 or 8 hexadecimal digits");
@@ -137,7 +137,7 @@ LogLine parse_compact(std::string_view text, LogLine line) {
   return line;
 }
 
-/// `123   [4]  DE AD BE EF`, from the length on. What follows the bytes is candump's.
+/// `123   [4]  DE AD BE EF`, from the length on. Any text of candump after the bytes is ignored.
 LogLine parse_columns(std::string_view rest, LogLine line) {
   const std::string_view length = take_word(rest);
   if (length.size() < 3 || length.front() != '[' || length.back() != ']') {

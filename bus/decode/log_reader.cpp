@@ -11,7 +11,7 @@ namespace edsc {
 LogReader::LogReader(int file_descriptor, std::function<bool()> before_reading)
     : file_descriptor_{file_descriptor}, before_reading_{std::move(before_reading)}, buffer_(2 * longest_line, '\0') {}
 
-/// More bytes behind those that are there, which are less than a line. False when there are none.
+/// Reads more bytes after the incomplete line. Returns false at the end.
 bool LogReader::fill() {
   if (at_end_) return false;
   std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);

@@ -13,7 +13,7 @@ namespace {
 
 using canopen::lss::Command;
 
-/// What stands behind the words for a command.
+/// The data after the text of a command.
 enum class Content : std::uint8_t {
   nothing,
   number,      ///< bytes 1..4

@@ -12,7 +12,7 @@ constexpr unsigned most_bits = 64;
 constexpr std::uint8_t most_mapped = 64;
 constexpr std::uint32_t save_signature = 0x6576'6173, load_signature = 0x6461'6F6C;  ///< "save", "load"
 
-/// Objects that change what frames mean.
+/// Objects that change the meaning of frames.
 struct Range {
   std::uint16_t first, last;
   std::uint8_t first_sub_index, last_sub_index;
@@ -79,7 +79,7 @@ std::optional<CobId> NodeModel::cob_id(std::uint16_t index) const {
   const auto value = parameter(index, 0);
   if (!value) return std::nullopt;
   constexpr std::uint32_t identifier = CobId::extended_bit | 0x1FFF'FFFF;
-  // Bits 31 and 30 of 1005h and 1012h say who sends; of 1014h bit 31 says that there is none.
+  // Bits 31 and 30 of 1005h and 1012h select producer and consumer; bit 31 of 1014h means that EMCY does not exist.
   if (index != 0x1014) return CobId{*value & identifier};
   const bool base_alone = !CobId{*value}.extended() && CobId{*value}.can_id() == canopen::function_code::emcy;
   return CobId{*value + (base_alone ? node_id_ : 0U)};
@@ -94,7 +94,7 @@ CobId NodeModel::pdo_cob_id(const Pdo& pdo) const {
   if (pdo.number > predefined_pdos) return value ? CobId{*value} : CobId{};
   const std::uint32_t predefined = predefined_id(pdo.direction, pdo.number);
   if (!value) return CobId{predefined + node_id_};
-  // A data sheet that gives the base alone means the formula.
+  // An EDS with only the base means the formula.
   const bool base_alone = !CobId{*value}.extended() && CobId{*value}.can_id() == predefined;
   return CobId{*value + (base_alone ? node_id_ : 0U)};
 }

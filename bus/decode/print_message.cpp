@@ -80,7 +80,7 @@ void append_member(std::string& out, std::string_view key, std::uint64_t number)
   append_decimal(out, number);
 }
 
-/// JSON has no words for infinity and NaN.
+/// JSON cannot express infinity and NaN.
 void append_real(std::string& out, double number) {
   if (!std::isfinite(number)) {
     out += "null";
@@ -96,7 +96,7 @@ std::uint64_t number_of(const MessageValue& value) {
   return number;
 }
 
-/// Numbers as numbers, BOOLEANs as such, all else as the text that people see.
+/// Numbers as numbers, BOOLEANs as booleans, other types as their text.
 void append_json_value(std::string& out, const MessageValue& value, std::string_view text) {
   const unsigned bits = value.bits != 0 ? value.bits : static_cast<unsigned>(value.bytes.size()) * 8;
   const DataClass kind = value.type != nullptr ? value.type->kind : DataClass::domain;

@@ -21,7 +21,7 @@ using canopen::sdo::ServerCommand;
 const char* noun(bool download) { return download ? "write of " : "read of "; }
 const char* verb(bool download) { return download ? "write " : "read "; }
 
-/// Where no data sheet knows the type: a number, a text, or bytes.
+/// For an unknown type: a number, a text, or bytes.
 void append_untyped(std::string& text, std::span<const std::uint8_t> bytes) {
   constexpr auto row = [](canopen::DataType type) { return canopen::find_data_type(static_cast<std::uint32_t>(type)); };
   const auto printable = [](std::uint8_t c) { return c >= 0x20 && c < 0x7F; };
@@ -53,7 +53,7 @@ std::span<const std::uint8_t> SdoFollower::whole_value() const {
   return kept_;
 }
 
-// What a message tells
+// Message texts
 
 void SdoFollower::put_transfer(TransferStep step, Message& message) const {
   message.step = step;
@@ -121,7 +121,7 @@ void SdoFollower::stray(std::string_view what, Message& message) {
   message.text += " of a transfer whose start is not in the log";
 }
 
-// What a transfer is made of
+// Data of a transfer
 
 void SdoFollower::append(std::span<const std::uint8_t> bytes) {
   total_ += static_cast<std::uint32_t>(bytes.size());
@@ -210,7 +210,7 @@ void SdoFollower::abort(const TimedFrame& frame, Message& message) {
 
 // Expedited and segmented transfer
 
-/// Where the frame does not say how long the value is, its type does.
+/// If the frame does not state the length of the value, uses that of its type.
 std::span<const std::uint8_t> SdoFollower::expedited_value(const Data& data) const {
   std::size_t bytes = 4;
   if ((data[0] & canopen::sdo::size_indicated) != 0) {
@@ -260,7 +260,7 @@ void SdoFollower::upload_answer(const TimedFrame& frame, Message& message) {
   if (announced_) fmt::format_to(std::back_inserter(message.text), ", {} {}", counted(*announced_, "byte"), *announced_ == 1 ? "follows" : "follow");
 }
 
-/// A segment of data, whoever sends it. One with the toggle bit of the last one is that segment again.
+/// A data segment of either direction. One with the toggle bit of the last one is a repetition of it.
 void SdoFollower::segment(const TimedFrame& frame, bool from_client, Message& message) {
   if (phase_ != Phase::segments || download_ != from_client) return stray("segment", message);
   const Data& data = frame.frame.data;
@@ -282,7 +282,7 @@ void SdoFollower::segment(const TimedFrame& frame, bool from_client, Message& me
   finish(frame, message);
 }
 
-/// What the receiver of a segment says: an upload's client asks for the next one.
+/// The confirmation of a segment: of a download by the server; of an upload by the client's next request.
 void SdoFollower::segment_confirmed(const TimedFrame& frame, bool last, Message& message) {
   message.text += verb(download_) + label_ + ", segment confirmed";
   put_transfer(TransferStep::part, message);
@@ -335,7 +335,7 @@ void SdoFollower::flush_held(std::size_t bytes) {
   holds_ = false;
 }
 
-/// The receiver has taken the segments up to a sequence number; those behind it come again.
+/// The receiver has confirmed the segments up to a sequence number; those after it are repeated.
 void SdoFollower::block_confirmed(const Data& data, Message& message) {
   const std::uint8_t taken = std::min(data[1], canopen::sdo::largest_block);
   for (unsigned sequence = 1; sequence <= taken; ++sequence) {
@@ -359,7 +359,7 @@ void SdoFollower::block_confirmed(const Data& data, Message& message) {
   put_transfer(TransferStep::part, message);
 }
 
-/// The sender tells how much of the last segment counts, and the CRC.
+/// The sender states the used bytes of the last segment, and the CRC.
 void SdoFollower::block_end(const Data& data, Message& message) {
   const std::size_t unused = data[0] >> 2 & 7U;
   flush_held(segment_bytes - unused);

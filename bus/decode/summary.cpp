@@ -18,7 +18,7 @@ std::string abort_text(std::uint32_t code) {
                      canopen::to_text(static_cast<canopen::AbortCode>(code)));
 }
 
-/// Whether the frame is one that the node sends.
+/// Whether the node is the sender of the frame.
 bool is_of_node(const Message& message) {
   switch (message.service) {
     case Service::boot_up:
@@ -47,7 +47,7 @@ std::string ranges_of(const std::vector<std::size_t>& ids) {
 
 }  // namespace
 
-/// Whether the node is asked over SDO and sends nothing, as most nodes of a scan do.
+/// Whether the node received SDO requests and did not send anything, as most nodes in a scan.
 bool Summary::is_silent(std::size_t id) const {
   if (id == 0 || heard_[id]) return false;
   for (const ServiceRow& row : services) {
@@ -57,7 +57,7 @@ bool Summary::is_silent(std::size_t id) const {
   return true;
 }
 
-/// One line for all silent nodes, where there are several.
+/// One line for all silent nodes, if there are several.
 std::string Summary::silent_nodes() const {
   std::vector<std::size_t> ids;
   std::size_t frames = 0, aborted = 0;

@@ -14,7 +14,7 @@ struct BitPattern {
   std::string_view text;
 };
 
-/// The first row that fits counts.
+/// The first matching row is used.
 constexpr BitPattern drive_states[] = {
     {0x4F, 0x00, "not ready to switch on"}, {0x4F, 0x40, "switch on disabled"},
     {0x6F, 0x21, "ready to switch on"},     {0x6F, 0x23, "switched on"},
@@ -28,7 +28,7 @@ constexpr BitPattern drive_commands[] = {
     {0x07, 0x06, "shutdown"},    {0x0F, 0x07, "switch on"},       {0x0F, 0x0F, "enable operation"},
 };
 
-/// Bits that mean the same in all modes of operation.
+/// Bits with the same meaning in all modes of operation.
 constexpr BitPattern status_bits[] = {
     {0x0080, 0x0080, ", warning"},
     {0x0400, 0x0400, ", target reached"},

@@ -17,9 +17,9 @@ namespace edsc {
 namespace {
 
 constexpr std::size_t most_suggestions = 3;
-constexpr std::size_t most_listed = 8;  ///< sub-indices in a sentence
+constexpr std::size_t most_listed = 8;  ///< sub-indices in a message
 
-/// `2`, `0x2`, `02h`; behind an index with an h all digits are hexadecimal.
+/// `2`, `0x2`, `02h`; after an index with h, all digits are hexadecimal.
 std::optional<std::uint8_t> parse_sub_index(std::string_view text, bool hexadecimal) {
   if (text.ends_with('h') || text.ends_with('H')) {
     hexadecimal = true;
@@ -75,9 +75,9 @@ std::string sub_indices_of(const Object& object) {
   return text;
 }
 
-// Near misses
+// Suggestions
 
-/// How many letters have to be put in, left out or changed; more than `most` count as `most` + 1.
+/// The number of letters to insert, delete or change, at most `most` + 1.
 std::size_t distance(std::string_view a, std::string_view b, std::size_t most) {
   if (std::max(a.size(), b.size()) - std::min(a.size(), b.size()) > most) return most + 1;
   std::vector<std::size_t> row(b.size() + 1);
@@ -92,7 +92,7 @@ std::size_t distance(std::string_view a, std::string_view b, std::size_t most) {
   return std::min(row[b.size()], most + 1);
 }
 
-/// What comes nearest to a name: few other letters first, then what contains it.
+/// Suggestions for a name: the fewest different letters first, then names that contain it.
 class Suggestions {
  public:
   explicit Suggestions(std::string_view text)
@@ -145,7 +145,7 @@ std::string near_names(const Device& device, std::string_view text) {
   return suggestions.text();
 }
 
-/// The neighbours of an index that is not there.
+/// The neighbours of a missing index.
 std::string near_indices(const Device& device, std::uint16_t index) {
   const auto above = std::ranges::upper_bound(device.objects, index, {}, &Object::index);
   std::string text;
@@ -174,7 +174,7 @@ FoundEntry by_address(const Device& device, const EntryAddress& address) {
 }
 
 /// `identity_object.vendor_id`, `identity_object:1`, `Identity object, Vendor-ID`, `read_input_8_bit[1]`: every place
-/// where the name may end is tried, for names hold all of these characters themselves.
+/// where the object name may end is tried, since names may contain all of these characters.
 std::optional<FoundEntry> by_both_names(const Device& device, std::string_view text) {
   for (std::size_t at = text.find_first_of(".,:[<"); at != std::string_view::npos;
        at = text.find_first_of(".,:[<", at + 1)) {

@@ -192,7 +192,7 @@ ParsedValue parse_real(const DataTypeRow& type, std::string_view text) {
   return {bytes_of(std::bit_cast<std::uint32_t>(static_cast<float>(number)), 32), ""};
 }
 
-/// A number, and what follows behind a separator.
+/// A number, followed by a separator.
 bool take_number(std::string_view& text, std::string_view separator, std::uint32_t& number) {
   const char* const end = text.data() + text.size();
   const auto parsed = std::from_chars(text.data(), end, number);
@@ -203,7 +203,7 @@ bool take_number(std::string_view& text, std::string_view separator, std::uint32
   return true;
 }
 
-/// `12:34:56` or `12:34:56.789`; nothing when it is more than a day.
+/// `12:34:56` or `12:34:56.789`; nothing for more than a day.
 std::optional<std::uint32_t> parse_clock(std::string_view text) {
   std::uint32_t hours = 0, minutes = 0, seconds = 0, milliseconds = 0;
   if (!take_number(text, ":", hours) || !take_number(text, ":", minutes) || !take_number(text, "", seconds)) return {};
@@ -308,7 +308,7 @@ ParsedValue parse_string(const DataTypeRow& type, std::string_view text) {
 
 // Limits
 
-/// A limit as text: with a node-ID that is not known, as a formula.
+/// A limit as text; with an unknown node-ID, as a formula.
 std::string limit_text(const Value& limit, const DataTypeRow& type) {
   if (limit.plus_node_id) return fmt::format("$NODEID+0x{:X}", limit.bits);
   if (type.kind == DataClass::signed_integer) return fmt::format("{}", static_cast<std::int64_t>(limit.bits));
@@ -329,7 +329,7 @@ bool less(std::uint64_t a, std::uint64_t b, const DataTypeRow& type) {
   return single(a) < single(b);
 }
 
-/// What speaks against a value; empty when nothing does. A limit with a node-ID that is not known limits nothing.
+/// Why a value is rejected; empty if it is valid. A limit with an unknown node-ID is not checked.
 std::string limit_problem(const Entry& entry, std::uint64_t number, std::string_view text) {
   const auto beyond = [&](const std::optional<Value>& limit, bool high) {
     if (!limit || limit->plus_node_id) return false;

@@ -19,12 +19,12 @@ using canopen::CobId;
 
 constexpr std::uint16_t default_sdo = 0x1200;
 
-/// A COB-ID that the device has after a reset.
+/// A COB-ID of the device after a reset.
 struct CobIdUse {
   const Entry* entry;
   const CobIdParameter* parameter;
   bool plus_node_id;
-  CobId cob_id;  ///< for node-ID 0 when the node-ID is added
+  CobId cob_id;  ///< for node-ID 0 if the node-ID is added
 
   [[nodiscard]] bool valid() const { return !parameter->has_valid_bit || cob_id.valid(); }
   [[nodiscard]] CobIdService service() const { return parameter->service; }
@@ -53,7 +53,7 @@ std::vector<CobIdUse> cob_ids_of(const Device& device) {
   return uses;
 }
 
-/// Bits 11..28 of a COB-ID with an 11-bit CAN-ID are 0. One that is off may be anything.
+/// Bits 11..28 of a COB-ID with an 11-bit CAN-ID are 0. A disabled COB-ID is not checked.
 bool check_frame(const RuleContext& context, const CobIdUse& use) {
   const std::uint32_t highest = use.of(last_node_id).value();
   if (!use.valid() || use.cob_id.extended() || (highest & 0x1FFF'F800U) == 0) return true;
@@ -63,14 +63,14 @@ bool check_frame(const RuleContext& context, const CobIdUse& use) {
   return false;
 }
 
-/// Why a COB-ID has a CAN-ID that its service may not use; null when it may.
+/// Why a service may not use its CAN-ID; null if it may.
 const char* restriction_of(const CobIdUse& use, std::uint32_t can_id) {
   if (!canopen::is_restricted_for(use.entry->index, can_id)) return nullptr;
   const char* const reason = canopen::restriction_of(can_id);
   return reason != nullptr ? reason : "SYNC";
 }
 
-/// 180h alone for TPDO 1 is meant as 180h + node-ID.
+/// 180h for TPDO 1 means 180h + node-ID.
 std::string hint(const CobIdUse& use) {
   if (use.plus_node_id || !use.parameter->plus_node_id) return "";
   const std::uint32_t function_code = use.parameter->predefined_of(use.entry->index);
@@ -119,7 +119,7 @@ void check_restricted(const RuleContext& context, const CobIdUse& use) {
                              node_ids.count < last_node_id ? "; a given node-ID is checked alone" : ""));
 }
 
-/// The node-ID that a formula adds; nothing where the file says a number.
+/// The node-ID that a formula adds; nothing if the file has a number.
 std::optional<std::uint32_t> added_node_id(const RuleContext& context, const CobIdUse& use) {
   if (use.plus_node_id) return 0;
   const EntryDescription* description = context.describe(*use.entry);
@@ -130,7 +130,7 @@ std::optional<std::uint32_t> added_node_id(const RuleContext& context, const Cob
   return *context.device.node_id;
 }
 
-/// $NODEID+0x181 for TPDO 1 is the COB-ID of node 1 with the node-ID of the device on top.
+/// $NODEID+0x181 for TPDO 1 is the COB-ID of node 1 plus the node-ID of the device.
 void check_added_twice(const RuleContext& context, const CobIdUse& use, std::uint32_t added) {
   const std::uint32_t base = use.cob_id.value() - added;
   const std::uint32_t can_id = CobId{base}.can_id();
@@ -145,7 +145,7 @@ void check_added_twice(const RuleContext& context, const CobIdUse& use, std::uin
       {}, "added twice");
 }
 
-/// In a sheet for any node-ID, 181h for TPDO 1 is meant as 180h + node-ID.
+/// In an EDS for any node-ID, 181h for TPDO 1 means 180h + node-ID.
 void check_node_id(const RuleContext& context, const CobIdUse& use) {
   if (!use.parameter->plus_node_id || use.cob_id.extended() || !use.valid()) return;
   if (use.entry->index == default_sdo) return;  // CiA 301 fixes it
@@ -161,19 +161,19 @@ void check_node_id(const RuleContext& context, const CobIdUse& use) {
                  {}, fmt::format("node {}", node_id));
 }
 
-/// The node-ID for which a formula is this CAN-ID; 0 when there is none.
+/// The node-ID for which a formula gives this CAN-ID; 0 if there is none.
 std::uint32_t node_id_of(const CobIdUse& formula, const CobIdUse& plain) {
   if (formula.cob_id.extended() != plain.cob_id.extended()) return 0;
   const std::uint32_t node_id = plain.cob_id.can_id() - formula.cob_id.can_id();
   return node_id >= 1 && node_id <= last_node_id ? node_id : 0;
 }
 
-/// The services that have one CAN-ID, in the order of their objects.
+/// The services with the same CAN-ID, in the order of their objects.
 struct Users {
   std::vector<const CobIdUse*> all;
-  std::vector<std::uint32_t> node_ids;  ///< for which it is one; none where it always is
+  std::vector<std::uint32_t> node_ids;  ///< for which it is the same; empty if it always is
 
-  /// Several RPDOs may take the same frame.
+  /// Several RPDOs may receive the same frame.
   [[nodiscard]] bool collide() const {
     const auto is_rpdo = [](const CobIdUse* use) { return use->service() == CobIdService::rpdo; };
     return all.size() > 1 && !std::ranges::all_of(all, is_rpdo);
@@ -201,7 +201,7 @@ void report_users(const RuleContext& context, Users users) {
   context.report("cob-id-twice", users.all[1]->place(), message, std::move(notes));
 }
 
-/// The CAN-IDs of other nodes, whatever those are.
+/// CAN-IDs of other nodes, which are not checked.
 bool is_of_another_node(const CobIdUse& use) {
   return use.service() == CobIdService::sdo_client || use.service() == CobIdService::emcy_consumer;
 }
@@ -226,7 +226,7 @@ void check_duplicates(const RuleContext& context, const std::vector<CobIdUse>& u
   }
 }
 
-/// A frame with the CAN-ID of SYNC is a SYNC for all others, also where the device itself knows none.
+/// A frame with the CAN-ID of SYNC is a SYNC for all other nodes, even if the device itself does not support SYNC.
 void check_sync_can_id(const RuleContext& context, const CobIdUse& use) {
   const bool is_sync = !use.plus_node_id && use.cob_id.can_id() == canopen::function_code::sync;
   if (use.service() != CobIdService::tpdo || !use.valid() || use.cob_id.extended() || !is_sync) return;

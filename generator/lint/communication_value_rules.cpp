@@ -36,7 +36,7 @@ void check_heartbeat_consumer(const RuleContext& context) {
   }
 }
 
-/// CiA 301, 7.2.8.2.2: not both at a time; the heartbeat counts.
+/// CiA 301, 7.2.8.2.2: not both at the same time; heartbeat is used.
 void check_error_control_values(const RuleContext& context) {
   const Entry* heartbeat = context.device.find(0x1017, 0);
   const Entry* guard_time = context.device.find(0x100C, 0);

@@ -69,7 +69,7 @@ constexpr PdoCount pdo_counts[] = {
     {"NrOfTXPDO", &DeviceInfo::nr_of_tx_pdo, PdoDirection::transmit},
 };
 
-/// With CompactPDO most PDOs are not described one by one.
+/// With CompactPDO, most PDOs are not described individually.
 void check_pdo_counts(const RuleContext& context) {
   const DeviceInfo& info = context.sheet.device_info;
   if (number_of(info.compact_pdo).value_or(0) != 0) return;

@@ -17,7 +17,7 @@ using canopen::Access;
 constexpr std::size_t longest_name = 241;
 constexpr std::uint64_t known_flags = 0x3;  ///< no download of a DCF, no upload for a DCF
 
-/// A constant without a value reads as 0 or as an empty text for good.
+/// A constant without a value is always 0 or an empty string.
 void check_constant(const RuleContext& context, const Entry& entry) {
   if (entry.access != Access::constant || entry.default_value || entry.type->kind == canopen::DataClass::domain) return;
   if (context.options.is_settable(entry.index, entry.sub_index)) return;
@@ -25,7 +25,7 @@ void check_constant(const RuleContext& context, const Entry& entry) {
                  fmt::format("{} is const and has no DefaultValue", named(entry)));
 }
 
-/// What reads otherwise in a running device, whatever the file says.
+/// Values that differ from the file in a running device.
 bool is_live(const Entry& entry) {
   constexpr EntryKey live[] = {{0x1002, 0}, {0x1018, 4}};
   constexpr std::uint16_t first_application_index = 0x2000;
@@ -33,13 +33,13 @@ bool is_live(const Entry& entry) {
   return std::ranges::find(live, EntryKey{entry.index, entry.sub_index}) != std::end(live);
 }
 
-/// CiA 402: 6061h is the mode that 6060h sets, so that it starts with the same default.
+/// CiA 402: 6061h displays the mode of 6060h, so it has the same default value.
 bool shows_a_setting(const RuleContext& context, const Entry& entry) {
   const Entry* const mode = entry.index == 0x6061 ? context.device.find(0x6060, 0) : nullptr;
   return mode != nullptr && mode->default_value && mode->default_value->bits == entry.default_value->bits;
 }
 
-/// 0 is what such a value has before the device has measured or counted.
+/// Before the device measures or counts, such a value is 0.
 void check_live(const RuleContext& context, const Entry& entry) {
   if (!entry.default_value || !entry.default_value->clause.empty() || !is_live(entry)) return;
   if (entry.default_value->bits == 0 && entry.default_value->bytes.empty()) return;
@@ -81,7 +81,7 @@ void check_flags(const RuleContext& context, const EntryDescription& description
                  fmt::format("ObjFlags defines bits 0 and 1 only; {} sets others", quote(field.text)));
 }
 
-/// The elements of an ARRAY have one data type. What CiA 301 says of an object, other rules compare.
+/// The elements of an ARRAY have the same data type. Other rules compare the objects of CiA 301.
 void check_array(const RuleContext& context, const Object& object) {
   constexpr std::uint8_t structure = 0xFF;
   if (object.type != ObjectType::array || find_standard_object(object.index) != nullptr) return;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t longest_line = 255;
 
-/// Whether `text` is like `pattern`, where `0` stands for a digit and each other character for itself.
+/// Whether `text` matches `pattern`, in which `0` is any digit.
 bool has_form(std::string_view text, std::string_view pattern) {
   return std::ranges::equal(text, pattern, [](char c, char p) { return p == '0' ? is_digit(c) : to_lower(c) == p; });
 }
@@ -45,7 +45,7 @@ bool is_time(std::string_view text) {
 
 bool is_version(std::string_view text) { return has_form(text, "0.0"); }
 
-/// Decimal, also with leading zeros: a revision 08 is the one after 07.
+/// Decimal, also with leading zeros: revision 08 follows 07.
 bool is_unsigned8(std::string_view text) { return parse_decimal(text).value_or(256) <= 255; }
 
 struct FileInfoForm {
@@ -104,7 +104,7 @@ void check_lines(const RuleContext& context) {
           fmt::format("the line has {} characters; the maximum is {}", count_code_points(line), longest_line));
     }
     if (only_ascii || is_ascii(line)) continue;
-    only_ascii = true;  // say so once
+    only_ascii = true;  // report it once
     const auto at = std::ranges::find_if(line, [](char c) { return static_cast<unsigned char>(c) >= 0x80; });
     context.report(
         "encoding", {&source, number, static_cast<std::uint32_t>(at - line.begin()) + 1, 1},
@@ -158,7 +158,7 @@ void check_commissioning(const RuleContext& context) {
   check_commissioned_baud_rate(context);
 }
 
-/// An XDD has rules of its own about dates and encodings.
+/// XDD files have other rules for dates and encodings.
 bool is_ini(const SourceFile& source) {
   const auto first = source.text().find_first_not_of(" \t\r\n");
   return first == std::string_view::npos || source.text()[first] != '<';

@@ -54,7 +54,7 @@ void check_has_list(const RuleContext& context, const Pdo& pdo, std::string_view
                   pdo_label(pdo), name, index_label(Element::first_list), index_label(Element::last_list)));
 }
 
-/// Why an MPDO cannot carry an object in this direction; empty when it can.
+/// Why an MPDO cannot map an object in this direction; empty if it can.
 std::string_view obstacle(const Device& device, std::uint16_t index, unsigned sub_index, canopen::Mappable direction) {
   const Entry* object = sub_index > 0xFF ? nullptr : device.find(index, static_cast<std::uint8_t>(sub_index));
   if (object == nullptr) return "does not exist";
@@ -62,7 +62,7 @@ std::string_view obstacle(const Device& device, std::uint16_t index, unsigned su
   return object->type->bits == 0 || object->type->bits > most_mpdo_bits ? "does not have a length of 1 to 32 bits" : "";
 }
 
-/// The elements that the defaults of a list name.
+/// Checks the objects in the default values of a list.
 template <class Element>
 void check_elements(const RuleContext& context, const Object& list, canopen::Mappable direction) {
   for (const Entry& entry : list.entries) {

@@ -11,7 +11,7 @@
 namespace edsc {
 namespace {
 
-/// A thing with a name: an object of the device, or an entry of an object.
+/// An object of the device, or an entry of an object.
 struct Named {
   std::string label;
   const std::string& name;
@@ -19,7 +19,7 @@ struct Named {
   Position position;
 };
 
-/// Names of one scope, and which came first. Filled when the first name that had to be changed is found.
+/// The first use of each name in one scope. Filled when the first changed name is found.
 class Scope {
  public:
   [[nodiscard]] bool filled() const { return !first_.empty(); }
@@ -35,7 +35,7 @@ class Scope {
   std::unordered_map<std::string, std::pair<Position, std::string>> first_;
 };
 
-/// Whether the identifier looks as if it was not what the name alone gives: cheap, and wrong now and then.
+/// Whether the identifier may differ from the one that its name gives: a cheap check with false positives.
 bool may_be_changed(std::string_view identifier) {
   if (identifier.empty() || identifier.back() == '_' || identifier.starts_with("n_")) return true;
   if (identifier.starts_with("object_") || identifier.starts_with("sub_")) return true;
@@ -47,7 +47,7 @@ bool may_be_changed(std::string_view identifier) {
   return true;
 }
 
-/// `fill` adds all names of the scope, the changed ones too.
+/// `fill` adds all names of the scope, including changed ones.
 template <typename Fill>
 void check_name(const RuleContext& context, const Named& named, Scope& scope, Fill fill) {
   if (named.name.empty() || !may_be_changed(named.identifier)) return;
@@ -85,13 +85,13 @@ Position name_place(const EntryDescription* description, const Position& section
   return description != nullptr && description->parameter_name.present ? description->parameter_name.position : section;
 }
 
-/// CiA 301 itself gives all PDO parameters one name, and all SDO parameters.
+/// CiA 301 defines the same name for all PDO parameters, and for all SDO parameters.
 bool is_one_of_many(std::uint16_t index) {
   const StandardObject* standard = find_standard_object(index);
   return standard != nullptr && standard->first != standard->last;
 }
 
-/// The elements of an ARRAY are called by their numbers.
+/// The elements of an ARRAY are identified by their numbers.
 void check_entry_names(const RuleContext& context, const Object& object) {
   Scope scope;
   const auto fill = [&](Scope& names) {

@@ -6,10 +6,10 @@
 namespace edsc {
 namespace {
 
-/// CiA 301, 7.5.2: objects that every device has.
+/// Mandatory objects (CiA 301, 7.5.2).
 constexpr std::uint16_t mandatory_indices[] = {0x1000, 0x1001, 0x1018};
 
-/// A default that CiA 301 gives is not a mistake of the file.
+/// Checks a default value against its limits, unless it comes from CiA 301.
 void check_default(const RuleContext& context, const Entry& entry) {
   if (!entry.default_value || entry.default_value->plus_node_id || !entry.default_value->clause.empty()) return;
   const std::uint64_t value = entry.default_value->bits;

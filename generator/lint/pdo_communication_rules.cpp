@@ -29,7 +29,7 @@ bool is_synchronous(Transmission transmission) {
   return transmission == Transmission::synchronous || transmission == Transmission::remote_synchronous;
 }
 
-/// A PDO is made of two parameters (CiA 301, 7.5.2.35).
+/// A PDO has two parameters (CiA 301, 7.5.2.35).
 void check_pair(const RuleContext& context, const Pdo& pdo) {
   if (pdo.communication != nullptr && pdo.mapping != nullptr) return;
   const bool has_mapping = pdo.communication == nullptr;
@@ -50,7 +50,7 @@ void check_transmission_type(const RuleContext& context, const Pdo& pdo, std::ui
   }
 }
 
-/// Bit 30 of a TPDO's COB-ID: no remote frame is answered.
+/// Bit 30 of the COB-ID of a TPDO: no RTR allowed.
 void check_remote(const RuleContext& context, const Pdo& pdo, std::uint64_t type) {
   if (is_receive(pdo)) return;
   const Transmission transmission = transmission_of(type);
@@ -71,7 +71,7 @@ void check_time(const RuleContext& context, const Pdo& pdo, std::uint8_t sub_ind
                                                pdo_label(pdo), type));
 }
 
-/// Inhibit time and event timer are for event-driven PDOs; the event timer of an RPDO watches it.
+/// Inhibit time and event timer apply to event-driven PDOs; the event timer of an RPDO monitors it.
 void check_times(const RuleContext& context, const Pdo& pdo, std::uint64_t type) {
   const auto number = static_cast<std::uint32_t>(type);
   if (!canopen::transmission_type_is_legal(is_receive(pdo), number)) return;
@@ -79,8 +79,8 @@ void check_times(const RuleContext& context, const Pdo& pdo, std::uint64_t type)
   check_time(context, pdo, event_timer, canopen::event_timer_is_used(is_receive(pdo), number), type);
 }
 
-/// The event timer counts in ms, the inhibit time in 100 us. A PDO that waits longer than its event timer is never sent
-/// when that expires.
+/// The event timer is in ms, the inhibit time in 100 us. With an inhibit time longer than its event timer, a PDO is
+/// never sent when the timer expires.
 void check_inhibit_time(const RuleContext& context, const Pdo& pdo, std::uint64_t type) {
   constexpr std::uint64_t per_millisecond = 10;
   if (!canopen::inhibit_time_is_used(is_receive(pdo), static_cast<std::uint32_t>(type))) return;

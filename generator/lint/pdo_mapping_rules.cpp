@@ -11,7 +11,7 @@
 namespace edsc {
 namespace {
 
-/// The first of the sub-indices 1..count that is not there or maps nothing.
+/// Reports the first of the sub-indices 1..count that is missing or empty.
 void check_gaps(const RuleContext& context, const Pdo& pdo, const Entry& count) {
   const std::uint64_t entries = count.default_value->bits;
   for (std::uint64_t i = 1; i <= std::min<std::uint64_t>(entries, 64); ++i) {
@@ -31,7 +31,7 @@ void check_gaps(const RuleContext& context, const Pdo& pdo, const Entry& count) 
   }
 }
 
-/// Dummies may come more than once.
+/// Dummies may be mapped more than once.
 void check_twice(const RuleContext& context, const Pdo& pdo) {
   for (auto second = pdo.entries.begin(); second != pdo.entries.end(); ++second) {
     if (second->object == nullptr) continue;
@@ -60,7 +60,7 @@ std::string mapped_name(const PdoEntry& entry) {
   return entry.object != nullptr ? named(*entry.object) : entry_label(entry.index, entry.sub_index);
 }
 
-/// Granularity is the unit of mapping in bits; 0 says that no mapping can be changed.
+/// Granularity is the unit of mapping in bits; 0 means that all mappings are static.
 void check_granularity_of_mappings(const RuleContext& context) {
   const Field& field = context.sheet.device_info.granularity;
   const auto granularity = number_of(field);
@@ -85,7 +85,7 @@ void check_granularity_of_mappings(const RuleContext& context) {
   }
 }
 
-/// An entry that a master sends and the device sends back.
+/// An entry that the device receives and also transmits.
 void check_both_directions(const RuleContext& context) {
   std::unordered_map<const Entry*, const Pdo*> received;
   for (const Pdo& pdo : context.device.pdos) {

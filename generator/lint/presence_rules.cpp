@@ -7,11 +7,11 @@
 namespace edsc {
 namespace {
 
-/// `index` is of no use without `needed`.
+/// `index` requires `needed`.
 struct Need {
   std::uint16_t index;
   std::uint16_t needed;
-  std::string_view what;  ///< `needed` in words
+  std::string_view what;  ///< name of `needed`
 };
 
 constexpr Need needs[] = {
@@ -46,7 +46,7 @@ void check_needs(const RuleContext& context) {
   }
 }
 
-/// CiA 301, 7.2.8.2.2: a device guards its node or sends heartbeats.
+/// CiA 301, 7.2.8.2.2: a device supports node guarding or heartbeat.
 void check_error_control(const RuleContext& context) {
   if (context.device.find(0x1017) != nullptr) return;
   if (context.device.find(0x100C) != nullptr && context.device.find(0x100D) != nullptr) return;
@@ -54,7 +54,7 @@ void check_error_control(const RuleContext& context) {
                  "neither heartbeat (1017h) nor node guarding (100Ch, 100Dh) is implemented; one of them is mandatory");
 }
 
-/// Further SDO servers come on top of the default one.
+/// Additional SDO servers require the default one.
 void check_sdo_servers(const RuleContext& context) {
   if (context.device.find(0x1200) != nullptr) return;
   for (const Object& object : context.device.objects) {

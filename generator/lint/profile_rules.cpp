@@ -15,7 +15,7 @@ bool has_any(const Device& device, std::uint16_t first, std::uint16_t last) {
   return at != device.objects.end() && at->index <= last;
 }
 
-/// CiA 401-1, 5.2: bits of 1000h, and the objects that hold the values.
+/// CiA 401-1, 5.2: bits of 1000h, and the objects with the values.
 struct IoKind {
   unsigned bit;
   std::string_view name;
@@ -67,7 +67,7 @@ void check_needed(const RuleContext& context, const Entry& device_type, std::uin
   }
 }
 
-/// Elements of ARRAYs have one type.
+/// The elements of an ARRAY have the same type.
 void check_types(const RuleContext& context, std::uint16_t profile) {
   for (const ProfileType& row : profile_types) {
     const Object* object = row.profile == profile ? context.device.find(row.index) : nullptr;

@@ -7,7 +7,7 @@
 namespace edsc {
 namespace {
 
-/// Objects whose sub-index 0 is not the highest sub-index, but a number that changes: errors, mapped objects.
+/// Objects whose sub-index 0 is not the highest sub-index, but a variable number: of errors, of mapped objects.
 bool counts(std::uint16_t index) { return index == 0x1003 || contains(mapping_parameters, index); }
 
 void check_value(const RuleContext& context, const Object& object, const Entry& count) {
@@ -38,7 +38,7 @@ void check_count(const RuleContext& context, const Object& object) {
   check_value(context, object, count);
 }
 
-/// Sub-index FFh without a default is 0 in the device.
+/// Sub-index FFh without a default value is 0 in the device.
 void check_structure(const RuleContext& context, const Object& object) {
   const Entry* entry = object.find(structure_sub_index);
   if (entry == nullptr) return;
