@@ -18,7 +18,7 @@ constexpr std::uint32_t bit_30 = CobId::no_rtr_bit;
 constexpr std::uint32_t bit_29 = CobId::extended_bit;
 constexpr std::uint32_t can_id_bits = 0x1FFF'FFFF;
 
-/// A flag of the COB-IDs of a service, and what it is to set or clear it.
+/// A flag of the COB-IDs of a service, and the changes for setting and clearing it.
 struct FlagRow {
   CobIdService service;
   std::uint32_t bit;

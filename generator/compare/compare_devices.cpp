@@ -17,7 +17,7 @@ constexpr std::uint8_t revision_sub_index = 3;
 
 using EntryNumber = std::pair<std::uint16_t, std::uint8_t>;
 
-/// Walks two ascending lists side by side: `one_side(before, after)` gets null for what the other list lacks.
+/// Iterates over two ascending lists in parallel: `one_side(before, after)` gets null for an element that is missing.
 template <typename List, typename Key, typename Visit>
 void walk(const List& before, const List& after, Key key, Visit visit) {
   auto a = before.begin();
@@ -79,8 +79,8 @@ class DeviceComparison {
     }
   }
 
-  /// CiA 301, 7.5.2.19: the major revision is that of the CANopen behaviour. The configuration of a device (a DCF) is not
-  /// another revision of it, and revisions of different products have no order.
+  /// CiA 301, 7.5.2.21: the major revision identifies the CANopen behaviour. A configuration of a device (a DCF) is not
+  /// another revision, and revisions of different products have no order.
   void check_revision() {
     if (before_.information.commissioning || after_.information.commissioning) return;
     if (identity_number(before_, 1) != identity_number(after_, 1)) return;
@@ -102,7 +102,7 @@ class DeviceComparison {
     if (new_revision >> 16 != old_revision >> 16) change.new_value = fmt::format("{}", new_revision >> 16);
   }
 
-  /// Of 1018h; where it is missing, of [DeviceInfo].
+  /// From 1018h; if missing, from [DeviceInfo].
   static std::uint64_t identity_number(const Device& device, std::uint8_t sub_index) {
     const Entry* const entry = device.find(identity_object, sub_index);
     if (entry != nullptr && entry->default_value) return entry->default_value->bits;
@@ -170,7 +170,7 @@ class DeviceComparison {
 
   const Device& before_;
   const Device& after_;
-  std::set<EntryNumber> in_rpdo_;  ///< what RPDOs carry by default, before
+  std::set<EntryNumber> in_rpdo_;  ///< mapped to RPDOs by default, before the change
   Changes changes_;
 };
 

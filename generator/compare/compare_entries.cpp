@@ -19,7 +19,7 @@ using canopen::DataClass;
 using canopen::DataTypeRow;
 using canopen::Mappable;
 
-/// Entries whose default says what a device is.
+/// Entries whose default value identifies a device.
 struct SpecialDefault {
   std::uint16_t first, last;
   std::uint8_t first_sub_index, last_sub_index;
@@ -52,7 +52,7 @@ bool is_number(const DataTypeRow& type) {
          type.kind == DataClass::real;
 }
 
-/// A limit as a number; `missing` stands for one that there is none of. 64 bits fit into a long double's mantissa.
+/// A limit as a number, or `missing`. The mantissa of a long double holds 64 bits.
 long double limit_number(const std::optional<Value>& limit, const DataTypeRow& type, long double missing) {
   if (!limit) return missing;
   if (type.kind == DataClass::signed_integer) return static_cast<long double>(static_cast<std::int64_t>(limit->bits));
@@ -132,7 +132,7 @@ class EntryComparison {
         after_.mapping_position, mappable_text(before_), mappable_text(after_));
   }
 
-  /// `unlimited` is what the type itself allows.
+  /// `unlimited` is the limit of the type.
   void compare_limit(std::string_view which, const std::optional<Value>& old_limit,
                      const std::optional<Value>& new_limit, long double unlimited, bool is_low) {
     if (same_value(old_limit, new_limit)) return;
@@ -187,7 +187,7 @@ class EntryComparison {
 
   [[nodiscard]] bool is_revision() const { return before_.index == 0x1018 && before_.sub_index == 3; }
 
-  /// CiA 301, 7.5.2.19: the high word counts the changes of the CANopen behaviour.
+  /// CiA 301, 7.5.2.21: the high word counts the changes of the CANopen behaviour.
   void compare_revision() {
     const auto major = [](const std::optional<Value>& value) { return value ? value->bits >> 16 : 0; };
     add(major(before_.default_value) != major(after_.default_value) ? ChangeId::revision_major

@@ -30,7 +30,7 @@ bool is_on(const Pdo& pdo) {
   return cob_id && canopen::CobId{static_cast<std::uint32_t>(cob_id->bits)}.valid();
 }
 
-/// What a partner sees of one entry.
+/// The properties of an entry that matter to a PDO partner.
 struct LayoutEntry {
   std::uint16_t index;
   std::uint8_t sub_index;
@@ -89,7 +89,7 @@ class PdoComparison {
     report(cob_id_sub_index, is_on(before_) ? ChangeId::pdo_disabled : ChangeId::pdo_enabled);
   }
 
-  /// CAN-ID and flags, but for the bit that says whether the PDO is on.
+  /// CAN-ID and flags, except for the valid bit of the PDO.
   void compare_cob_id() {
     const Entry* const old_entry = parameter(before_, cob_id_sub_index);
     const Entry* const new_entry = parameter(after_, cob_id_sub_index);
@@ -147,7 +147,7 @@ class PdoComparison {
     const auto new_layout = layout_of(after_);
     if (old_layout == new_layout) return;
     const auto [old_end, new_end] = std::ranges::mismatch(old_layout, new_layout);
-    // A receiver ignores bytes behind its mapping; a device waits for all bytes that its RPDO has.
+    // A receiver ignores bytes after its mapping; a device requires all bytes of its RPDO.
     const bool ignores_more = after_.direction == PdoDirection::transmit || old_layout.empty();
     const bool extended = old_end == old_layout.end() && ignores_more;
     const auto first = static_cast<std::size_t>(old_end - old_layout.begin());
@@ -161,7 +161,7 @@ class PdoComparison {
   const Pdo& before_;
   const Pdo& after_;
   Changes& changes_;
-  bool is_used_;  ///< on by default, before or after
+  bool is_used_;  ///< enabled by default, before or after
 };
 
 const Pdo* find(const Device& device, const Pdo& wanted) {

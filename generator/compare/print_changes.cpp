@@ -43,7 +43,7 @@ std::string verdict_of(const Change& change) {
   return text;
 }
 
-/// Text as a cell of a table shows it: nothing in it is markup.
+/// Text for a cell of a table, with markup escaped.
 std::string cell(std::string_view text) {
   std::string out;
   for (const char c : printable(text)) {

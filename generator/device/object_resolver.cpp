@@ -30,8 +30,8 @@ Value number_value(std::uint64_t bits, const Position& position) {
   return value;
 }
 
-/// What sub-index 0 holds when the data sheet does not say: the highest sub-index, but no error in the pre-defined
-/// error field (CiA 301, 7.5.2.6), and as many objects as there are in a mapping (7.5.2.36).
+/// The value of sub-index 0 that the EDS does not state: the highest sub-index, but 0 errors in the pre-defined error
+/// field (CiA 301, 7.5.2.4), and the number of mapped objects in a mapping (7.5.2.36).
 std::uint8_t implied_count(const Object& object) {
   constexpr std::uint16_t pre_defined_error_field = 0x1003;
   if (object.index == pre_defined_error_field) return 0;
@@ -44,15 +44,15 @@ std::uint8_t implied_count(const Object& object) {
   return count;
 }
 
-/// The clause of CiA 301 that says what sub-index 0 counts.
+/// The clause of CiA 301 that defines sub-index 0.
 std::string_view implied_count_clause(std::uint16_t index) {
   if (index == 0x1003) return "7.5.2.4";
   if (!contains(mapping_parameters, index)) return "7.4.4";
   return index < 0x1A00 ? "7.5.2.36" : "7.5.2.38";
 }
 
-/// Whether a VAR or DOMAIN with sub-objects is one nevertheless: it has a type of its own, announces no sub-objects, and
-/// sub-index 0, which counts them, is not there. Then it is their index that is wrong.
+/// Whether a VAR or DOMAIN with sub-objects is a value, and the index of the sub-objects is wrong: it has its own data
+/// type, states no sub-objects, and sub-index 0 is missing.
 bool describes_a_value(const ObjectDescription& description) {
   const bool counts = std::ranges::any_of(
       description.sub_objects, [](const SubObjectDescription& sub) { return sub.sub_index == 0; });
@@ -194,8 +194,8 @@ void ObjectResolver::check_sub_number(const ObjectDescription& description) {
                                    count == 1 ? "1 sub-object is" : fmt::format("{} sub-objects are", count), count));
 }
 
-/// Sub-indices are hexadecimal (CiA 306-1, 4.6.2). Where a sub-index is missing, but there is the one whose digits are
-/// its decimal number, someone may have counted in decimal: 10h in place of Ah, 16h in place of 10h.
+/// Sub-indices are hexadecimal (CiA 306-1, 4.6.2). If a sub-index is missing, but its decimal number exists as a
+/// hexadecimal one, the author may have counted in decimal: 10h instead of Ah, 16h instead of 10h.
 void ObjectResolver::check_sub_indices(const ObjectDescription& description) {
   struct Slip {
     std::uint8_t before, meant, written;
