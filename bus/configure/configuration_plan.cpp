@@ -18,14 +18,14 @@ namespace {
 
 using canopen::CobId;
 
-/// What is not written besides `command_objects`: 1020h is written at the end, and the other objects of a program
-/// download command as well.
+/// Objects that are not written, in addition to `command_objects`: 1020h is written at the end, and the other objects
+/// of a program download are commands too.
 constexpr std::array not_written = {IndexRange{0x1020, 0x1020}, IndexRange{0x1F50, 0x1F5A}};
 
 constexpr std::uint32_t produces_sync = 0x4000'0000;
 constexpr std::uint32_t consumes_or_produces_time = 0xC000'0000;
 
-/// COB-IDs whose CAN-ID may change only while they are off (CiA 301, 7.5.2).
+/// COB-IDs whose CAN-ID may change only while they are disabled (CiA 301, 7.5.2).
 struct GuardedCobId {
   IndexRange objects;
   std::uint8_t first_sub_index, last_sub_index;
@@ -39,7 +39,7 @@ constexpr GuardedCobId guarded_cob_ids[] = {
     {{0x1201, 0x12FF}, 1, 2, CobId::invalid_bit, 0},
 };
 
-/// Objects that stand at another place than their index: the SYNC overflow before the period, the SYNC producer behind.
+/// Objects that are not in the order of their index: the SYNC overflow before the period, the SYNC producer after it.
 struct Place {
   std::uint16_t index, before;
 };
@@ -64,7 +64,7 @@ const GuardedCobId* guard_of(const LiveEntry& entry) {
   return nullptr;
 }
 
-/// Ascending, application behind communication.
+/// Ascending, application after communication.
 std::uint64_t order_of(const LiveEntry& entry) {
   std::uint64_t place = entry.index * 2U + 1U;
   for (const Place& row : places) {
@@ -107,7 +107,7 @@ class Planner {
     steps_.push_back({kind, value.entry, &value, value.bytes, 0, 0, group_});
   }
 
-  /// A COB-ID, or a counter, that the DCF may say nothing of.
+  /// A COB-ID or a counter that the DCF need not configure.
   void add(StepKind kind, std::uint16_t index, std::uint8_t sub_index, const ConfigurationValue* value,
            std::uint32_t off_set = 0, std::uint32_t off_cleared = 0) {
     ConfigurationStep step{kind, entry_of(index, sub_index), value, {}, off_set, off_cleared, group_};
@@ -146,7 +146,7 @@ class Planner {
     const bool period = find(ordinary_, sync_period, 0) != nullptr;
     const bool restores_period = !period && device_ != nullptr && is_writable(sync_period, 0);
     if (overflow && (period || restores_period)) {
-      add(StepKind::clear, sync_period, 0, nullptr);  // 1019h changes only while there is no period
+      add(StepKind::clear, sync_period, 0, nullptr);  // 1019h can change only while the period is 0
     }
     for (std::size_t i = 0; i < ordinary_.size(); ++i) {
       if (guard_of(ordinary_[i]->entry) == nullptr) {
@@ -164,7 +164,7 @@ class Planner {
     }
   }
 
-  /// The values of one object with COB-IDs that go off first.
+  /// The values of one object with COB-IDs that are disabled first.
   void plan_guarded(const Values& values) {
     group_ = ++groups_;
     for (const ConfigurationValue* value : values) {
@@ -195,7 +195,7 @@ class Planner {
     group_ = 0;
   }
 
-  /// As many entries as are to count; those behind are not looked at by anybody.
+  /// Plans the used entries of a mapping; those after them have no effect.
   void plan_mapping(std::uint16_t mapping, const Values& values) {
     const ConfigurationValue* count = find(values, mapping, 0);
     Values entries;
@@ -220,7 +220,7 @@ class Planner {
   unsigned groups_ = 0;
 };
 
-/// The letters and digits of a name, in lower case: `CAN bit rate`, `CanBitRate` and `CAN_Bitrate` are one.
+/// The letters and digits of a name, in lower case: `CAN bit rate`, `CanBitRate` and `CAN_Bitrate` are equal.
 std::string squashed(std::string_view name) {
   std::string text;
   for (const char c : name) {
@@ -231,7 +231,8 @@ std::string squashed(std::string_view name) {
   return text;
 }
 
-/// The words of a name in lower case, between blanks: `CAN bit rate`, `CanBitRate` and `CAN_Bit-Rate` are ` can bit rate `.
+/// The words of a name in lower case, between blanks: ` can bit rate ` for `CAN bit rate`, `CanBitRate` and
+/// `CAN_Bit-Rate`.
 std::string words_of(std::string_view name) {
   std::string words = " ";
   bool after_lower = false;

@@ -32,7 +32,7 @@ bool can_be_read(const LiveEntry& entry) {
   return entry.entry == nullptr || canopen::readable(entry.entry->access);
 }
 
-/// Whether the node has the value. The 00h after a VISIBLE_STRING does not count.
+/// Whether the node has the value, ignoring a trailing 00h of a VISIBLE_STRING.
 bool holds(const LiveEntry& entry, const SdoOutcome& outcome, std::span<const std::uint8_t> bytes) {
   if (reads_back(outcome, bytes)) return true;
   if (entry.type == nullptr || entry.type->type != canopen::DataType::visible_string) return false;
@@ -109,12 +109,12 @@ class Run {
     written_.push_back(&step);
   }
 
-  /// Keeps what was there for `switch_on`, where it was not off.
+  /// Stores the previous value for `switch_on`, unless it was disabled.
   void switch_off(const ConfigurationStep& step) {
     const SdoOutcome outcome = upload(node_, step.entry);
     if (!outcome.done()) return fail(step, outcome);
     const auto cob_id = word_of(outcome.bytes);
-    if (!cob_id) return;  // no COB-ID as CiA 301 has it: the device judges what is written
+    if (!cob_id) return;  // not a COB-ID of CiA 301: the device decides whether the value is valid
     const std::uint32_t off = (*cob_id | step.off_set) & ~step.off_cleared;
     if (off == *cob_id) return;
     before_[key(step.entry)] = *cob_id;
@@ -179,7 +179,7 @@ class Run {
   std::set<unsigned> given_up_;
 };
 
-/// A number of two or four digits, and what stands behind it; false when it is none, or above `most`.
+/// Reads a number of two or four digits and the character after it; false if it is invalid, or above `most`.
 bool take(std::string_view& text, std::size_t digits, char behind, unsigned most, unsigned& number) {
   if (text.size() < digits) return false;
   const auto [end, error] = std::from_chars(text.data(), text.data() + digits, number);

@@ -12,13 +12,13 @@
 namespace edsc {
 namespace {
 
-constexpr unsigned max_silent = 3;  ///< entries without an answer in a row, after which the node counts as lost
+constexpr unsigned max_silent = 3;  ///< consecutive entries without response, after which the node is lost
 constexpr std::uint16_t axis_step = 0x800;
 constexpr unsigned max_axes = 8;
 
 using Key = std::pair<std::uint16_t, std::uint8_t>;
 
-/// What a profile lets masters command with: the controlword of CiA 402, for each axis; the outputs of CiA 401.
+/// Commands of a profile: the controlword of CiA 402, for each axis; the outputs of CiA 401.
 struct CommandsOfProfile {
   std::uint16_t profile;
   IndexRange objects;
@@ -45,7 +45,7 @@ bool is_profile_command(std::uint16_t profile, std::uint16_t index) {
   });
 }
 
-/// The values of the node; of what was not read the defaults of the EDS.
+/// The values of the node; for entries that were not read, the default values of the EDS.
 class Values {
  public:
   Values(const Device& device, const std::vector<ReadValue>& values) : device_{device} {

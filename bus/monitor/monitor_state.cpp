@@ -58,7 +58,7 @@ MonitoredNode& MonitorState::node_of(std::uint8_t node_id) {
   return node->second;
 }
 
-/// A node does not confirm an NMT command: where it leads to is assumed until error control says it.
+/// Nodes do not confirm NMT commands: the new state is assumed until error control reports it.
 void MonitorState::add_command(const canopen::Frame& frame) {
   if (frame.remote || frame.size < 2 || frame.data[1] >= commanded_.size()) return;
   for (const NmtCommandText& row : nmt_command_texts) {
@@ -96,7 +96,7 @@ bool MonitorState::add_state(const Message& message, std::int64_t now_us) {
 }
 
 bool MonitorState::add_pdo(const Message& message, std::int64_t now_us) {
-  // A node sends PDOs in Operational only.
+  // A node sends PDOs only in Operational.
   if (message.service == Service::tpdo && message.node_id != 0) {
     assume(message.node_id, nmt_state_text(canopen::NmtState::operational));
   }

@@ -31,7 +31,7 @@ std::string other_label(std::uint32_t cob_id) {
   return (cob_id & 0x2000'0000) != 0 ? fmt::format("{:08X}h", cob_id & 0x1FFF'FFFF) : fmt::format("{:03X}h", cob_id);
 }
 
-/// `operational?`: no heartbeat says so, but NMT commands or PDOs.
+/// `operational?`: not by a heartbeat, but by NMT commands or PDOs.
 std::string state_text(const MonitoredNode& node) {
   if (!node.assumed.empty()) return node.assumed + "?";
   return node.state.empty() ? "-" : node.state;
@@ -48,7 +48,7 @@ std::string emergency_text(const MonitoredNode& node, std::int64_t now_us) {
                      seconds(now_us - node.emergency_us));
 }
 
-/// Lines of a table behind a bold head.
+/// The lines of a table after a bold heading.
 void append_table(std::vector<std::string>& lines, const TextTable& table, bool colour) {
   const std::vector<std::string> rows = table.lines();
   for (std::size_t i = 0; i < rows.size(); ++i) {

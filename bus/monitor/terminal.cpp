@@ -27,7 +27,7 @@ Terminal::Terminal() : keys_{isatty(STDIN_FILENO) != 0 && tcgetattr(STDIN_FILENO
     now.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
     now.c_cc[VMIN] = 0;
     now.c_cc[VTIME] = 0;
-    now.c_cc[VSUSP] = _POSIX_VDISABLE;  // a suspended program would leave the screen as it is
+    now.c_cc[VSUSP] = _POSIX_VDISABLE;  // a suspended program would not restore the screen
     tcsetattr(STDIN_FILENO, TCSANOW, &now);
   }
   print(take_screen);

@@ -4,7 +4,7 @@ namespace edsc {
 namespace {
 
 volatile std::sig_atomic_t noted_signal = 0;
-int uninterrupted = 0;  ///< how many Uninterrupted live
+int uninterrupted = 0;  ///< number of Uninterrupted objects
 
 }  // namespace
 

@@ -38,7 +38,7 @@ constexpr TypeName type_names[] = {
     {"domain", DataType::domain},
 };
 
-/// A number, string or BOOLEAN as JSON has it; null for all else, and for bytes that are not as many as the type has.
+/// A number, string or boolean of JSON; null for other types, and if the number of bytes does not match the type.
 Json json_value(const canopen::DataTypeRow* type, std::span<const std::uint8_t> bytes) {
   if (type == nullptr) return nullptr;
   if (type->type == DataType::visible_string) {
@@ -78,7 +78,7 @@ std::string_view to_text(SdoEnd end) {
   return {};
 }
 
-/// The bytes of a number, and of a string whose DEFTYPE states its length.
+/// The size of a number, and of a string whose DEFTYPE states its length.
 std::optional<std::size_t> size_of_type(const LiveEntry& entry) {
   if (entry.type != nullptr && entry.type->bits != 0) return (entry.type->bits + 7U) / 8U;
   if (entry.entry != nullptr && entry.entry->octets != 0) return entry.entry->octets;

@@ -13,7 +13,7 @@ using canopen::LssAddress;
 using canopen::LssOutcome;
 using canopen::LssState;
 
-/// As many slaves as a network can have.
+/// The maximum number of slaves in a network.
 constexpr std::size_t most_slaves = 127;
 
 }  // namespace

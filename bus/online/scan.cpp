@@ -15,21 +15,21 @@ using canopen::Frame;
 using canopen::NodeId;
 using canopen::TimePoint;
 
-/// Nodes that are asked at the same time: few enough for the answers to come in time at 20 kbit/s.
+/// Nodes that are queried at the same time: few enough to receive the responses in time at 20 kbit/s.
 constexpr std::size_t most_at_once = 16;
-/// A heartbeat that comes more seldom is not waited for.
+/// The scan does not wait for slower heartbeats.
 constexpr std::uint32_t longest_heartbeat_ms = 5'000;
 constexpr Duration look_again = canopen::from_milliseconds(5);
 
-/// What is read of a node: a number of up to 32 bits, or its name.
+/// A value that is read from a node: a number of up to 32 bits, or its name.
 struct Question {
   std::uint16_t index;
   std::uint8_t sub_index;
-  std::size_t size;  ///< bytes; the answer need not tell
+  std::size_t size;  ///< bytes, in case the response does not state them
   std::optional<std::uint32_t> FoundNode::*number;
 };
 
-/// The first one shows that the node is there.
+/// The first one shows that the node exists.
 constexpr Question questions[] = {
     {0x1000, 0, 4, &FoundNode::device_type},
     {0x1018, 1, 4, &FoundNode::vendor_id},
@@ -40,7 +40,7 @@ constexpr Question questions[] = {
     {0x1008, 0, 0, nullptr},
 };
 
-/// The questions to one node, one after the other.
+/// The requests to one node, one after the other.
 class Interview {
  public:
   Interview(LiveBus& bus, FoundNode& node, Duration timeout)
@@ -70,7 +70,7 @@ class Interview {
  private:
   void ask() { (void)client_.upload(questions[next_].index, questions[next_].sub_index, memory_, bus_.now()); }
 
-  /// A node that is silent once is not asked again.
+  /// A node that did not answer once is not queried again.
   void go_on() {
     if (over() || client_.busy()) return;
     if (client_.result() == canopen::ok) take(questions[next_]);

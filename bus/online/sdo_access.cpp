@@ -14,10 +14,10 @@ using canopen::AbortCode;
 using canopen::Duration;
 using canopen::Frame;
 
-/// For what a device still sends of a transfer that broke.
+/// Waiting time for remaining frames of a failed transfer.
 constexpr Duration after_a_break = canopen::from_milliseconds(50);
 
-/// Devices have longer values than the EDS says: so many bytes more are still shown to the user.
+/// Additional bytes accepted for a value that is longer than its type in the EDS.
 constexpr std::size_t type_margin = 64;
 
 canopen::SdoClientOptions options_of(const SdoSettings& settings, bool block) {
@@ -32,19 +32,19 @@ bool is_abort_of(const Frame& frame, canopen::NodeId node) {
          frame.id == canopen::default_sdo(node).response.can_id() && frame.data[0] == canopen::sdo::abort_command;
 }
 
-/// An expedited answer that leaves open how many of its four bytes count (CiA 301, 7.2.4.3.6).
+/// An expedited response that does not state its size (CiA 301, 7.2.4.3.6).
 bool is_upload_without_size(const Frame& frame) {
   using namespace canopen::sdo;
   constexpr std::uint8_t command = 0xE0, initiate_upload = 0x40;
   return frame.size == 8 && (frame.data[0] & (command | expedited | size_indicated)) == (initiate_upload | expedited);
 }
 
-/// A client, and who has ended its transfer.
+/// A client, and how its transfer ended.
 template <class Client>
 struct Observed {
   Client& client;
   canopen::NodeId node;
-  std::uint32_t entry;           ///< index and sub-index, as the frame holds them
+  std::uint32_t entry;           ///< index and sub-index in the format of the frame
   bool heard = false;            ///< the device has answered
   bool ended_by_device = false;  ///< an abort of the device ended the transfer
   bool size_told = true;
@@ -71,7 +71,7 @@ struct Observed {
   }
 };
 
-/// Abort codes of the protocol itself: another kind of transfer may do.
+/// Abort codes of the protocol itself: another kind of transfer may succeed.
 bool is_of_protocol(AbortCode code) {
   switch (code) {
     case AbortCode::toggle_bit:
@@ -110,9 +110,9 @@ std::string failure_text(const SdoOutcome& outcome) {
 SdoAccess::SdoAccess(LiveBus& bus, canopen::NodeId node, SdoSettings settings)
     : bus_{bus}, node_{node}, settings_{settings}, client_{bus, node, options_of(settings, false)} {}
 
-/// Gives the client what has come, and what comes within this time.
+/// Passes received frames to the client, and those received within this time.
 void SdoAccess::take_frames(Duration span) {
-  constexpr unsigned at_most = 10'000;  // a bus may bring frames without end
+  constexpr unsigned at_most = 10'000;  // a bus may deliver frames endlessly
   const canopen::TimePoint end = bus_.now() + span;
   for (unsigned i = 0; i != at_most; ++i) {
     const canopen::TimePoint present = bus_.now();
@@ -146,12 +146,12 @@ SdoOutcome SdoAccess::finish(std::uint32_t entry, bool block) {
   return outcome;
 }
 
-/// A device that is silent about block transfers is asked again for one by segments; so is one whose block transfer
-/// broke, when what it still sends of that has come.
+/// If a device does not answer a block transfer, or if the block transfer fails, retries with a segmented transfer,
+/// after the remaining frames of the failed one.
 template <class Begin>
 SdoOutcome SdoAccess::transfer(SdoTransfer how, std::uint32_t entry, Begin begin) {
   std::string failure;
-  take_frames(Duration{0});  // none of those that have come answers the request
+  take_frames(Duration{0});  // frames received before are not responses to the request
   if (how == SdoTransfer::block && !no_block_) {
     client_.set_options(options_of(settings_, true));
     begin();

@@ -36,7 +36,7 @@ constexpr std::string_view scheme = "simulated:";
 constexpr std::size_t longest_line = 4096;
 constexpr timeval longest_wait{0, 100'000};
 constexpr int waits_after_interruption = 10;
-constexpr std::size_t most_requests = 16'384;  // bytes that wait for the next answer to be asked for
+constexpr std::size_t most_requests = 16'384;  // bytes pending until the next request for a response
 
 struct SimulatedAddress {
   std::string program;
@@ -105,7 +105,7 @@ void SimulatedPort::start(const std::string& program) {
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, other.number(), STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&actions, other.number(), STDOUT_FILENO);
-  // A process group of its own: Ctrl-C is for the command, which ends the program.
+  // A separate process group: Ctrl-C is for the command, which ends the program.
   posix_spawnattr_t attributes{};
   posix_spawnattr_init(&attributes);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
