@@ -17,17 +17,17 @@ using canopen::Mappable;
 
 constexpr unsigned most_bits = 64;
 
-/// An error, or a warning where the PDO is off by default.
+/// An error, or a warning if the PDO is disabled by default.
 using BrokenPdoRule = RuleId<Severity::error, Severity::warning>;
 
 constexpr BrokenPdoRule rules[] = {"pdo-object",          "pdo-mappable", "pdo-direction", "pdo-length",
                                    "pdo-variable-length", "pdo-dummy",    "pdo-size",      "pdo-entries"};
 
-/// Why no layout can be made of a PDO.
+/// Why a PDO does not have a valid layout.
 struct BrokenPdo {
   BrokenPdoRule rule;
   std::string message;
-  std::string cause = {};  ///< the same for all PDOs that one fault breaks
+  std::string cause = {};  ///< the same for all PDOs with the same fault
 };
 using Finding = std::optional<BrokenPdo>;
 
@@ -40,7 +40,7 @@ std::string maps(const Pdo& pdo, const PdoEntry& entry) {
   return fmt::format("{} entry {} maps", pdo_label(pdo), entry.position);
 }
 
-/// Usual in vendors' files: one byte on the wire for a BOOLEAN.
+/// Usual in vendors' files: one byte in the PDO for a BOOLEAN.
 bool is_boolean_in_a_byte(const PdoEntry& entry) {
   return entry.object->type->type == canopen::DataType::boolean && entry.bits == 8;
 }
@@ -64,7 +64,7 @@ Finding check_dummy(const Device& device, const Pdo& pdo, const PdoEntry& entry)
   return {};
 }
 
-/// A string has a length when its options or its default say how many bytes it holds: it may take as many in a PDO.
+/// A string can be mapped up to its capacity, given by the options or the default value.
 Finding check_string(const Options& options, const Pdo& pdo, const PdoEntry& entry) {
   const auto capacity = mapped_string_capacity(*entry.object, options);
   if (!capacity) {
@@ -124,7 +124,7 @@ Finding check_object(const Device& device, const Options& options, const Pdo& pd
   return {};
 }
 
-/// A PDO that is wrong is an error; one that is off by default harms nobody until it is switched on.
+/// An invalid PDO is an error; if it is disabled by default, it is harmless until it is enabled.
 void report_broken(Pdo& pdo, BrokenPdo finding, const Position& place, Diagnostics& diagnostics) {
   pdo.broken = true;
   if (on_by_default(pdo)) {

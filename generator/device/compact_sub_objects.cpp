@@ -28,7 +28,7 @@ SubObjectDescription count_description(const ObjectDescription& description, std
   return sub;
 }
 
-/// Sub-indices 1.. have the keys of the object, and its name with their number behind it.
+/// Sub-indices 1.. have the keys of the object, and its name followed by their number.
 SubObjectDescription element_description(const ObjectDescription& description, std::uint8_t sub_index,
                                          std::deque<std::string>& texts) {
   SubObjectDescription sub;
@@ -48,7 +48,7 @@ SubObjectDescription* find_sub(std::vector<SubObjectDescription>& subs, std::uin
   return at != subs.end() && at->sub_index == sub_index ? &*at : nullptr;
 }
 
-/// Puts the texts of a list into the sub-objects that they are for.
+/// Sets the texts of a list in their sub-objects.
 void apply_list(const std::vector<NumberedField>& list, Field EntryDescription::*key,
                 std::vector<SubObjectDescription>& subs, Diagnostics& diagnostics) {
   for (const NumberedField& entry : list) {

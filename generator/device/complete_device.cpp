@@ -24,14 +24,14 @@ constexpr std::string_view sub_index_0_clause = "7.4.4";
 constexpr std::array rpdo_communication = {IndexRange{0x1400, 0x15FF}};
 constexpr std::array tpdo_communication = {IndexRange{0x1800, 0x19FF}};
 
-/// Values that count errors: there is none at start, whatever was found in the device from which the file was made.
+/// Values that count errors: 0 at start, regardless of the values in the device from which the file was made.
 struct ErrorValue {
   std::uint16_t index;
   std::string_view clause;
 };
 constexpr ErrorValue error_values[] = {{0x1001, "7.5.2.2"}, {pre_defined_error_field, "7.5.2.4"}};
 
-/// What reading 1010h and 1011h returns: a few bits, the others 0.
+/// The values of 1010h and 1011h when read: defined bits; the others are 0.
 struct StorageCapability {
   std::uint16_t index;
   std::uint64_t bits;
@@ -84,7 +84,7 @@ class Completion {
 
   // ---- sub-index 0 ----
 
-  /// The highest sub-index, where it does not count something else (7.4.4).
+  /// Sub-index 0 as the highest sub-index, unless it counts something else (7.4.4).
   void complete_sub_index_0(Object& object) {
     Entry& count = object.entries.front();
     if (count.sub_index != 0 || object.index == pre_defined_error_field || !count.default_value) return;
@@ -120,7 +120,7 @@ class Completion {
     entry.default_value = std::move(own);
   }
 
-  /// The bits besides the CAN-ID and the one that says that it does not exist.
+  /// The bits other than the CAN-ID and the valid bit.
   static std::uint32_t flags_of(const CobIdParameter& parameter) {
     return CobId::no_rtr_bit | (parameter.has_valid_bit ? 0 : CobId::invalid_bit);
   }

@@ -20,7 +20,7 @@ using canopen::DataClass;
 using canopen::DataType;
 using canopen::DataTypeRow;
 
-/// Types that go without saying. The first row that fits counts.
+/// Implied data types. The first matching row is used.
 struct ImpliedType {
   std::uint16_t first, last;  ///< indices
   bool only_sub_index_0;
@@ -34,14 +34,14 @@ constexpr ImpliedType implied_types[] = {
     {0x1A00, 0x1BFF, false, DataType::unsigned32, "a mapping entry"},
 };
 
-/// `: REAL32 is 0x0008` for `float`; nothing for a word that names no type.
+/// `: REAL32 is 0x0008` for `float`; empty if the word is not a data type.
 std::string number_of_type(std::string_view name) {
   const DataTypeRow* const type = find_type_by_name(name);
   return type == nullptr ? std::string{} : fmt::format(": {} is 0x{:04X}", type->name, static_cast<unsigned>(type->type));
 }
 
-/// Whether an entry of an unknown type is a DOMAIN, bytes that are not interpreted. The services of CiA 301 know the types of
-/// the communication profile, and sub-index 0 counts: these are left out.
+/// Whether an entry of unknown type becomes a DOMAIN, bytes that are not interpreted. Entries of the communication
+/// profile and sub-index 0 need their type and are left out.
 bool may_be_opaque(const EntryPlace& place) {
   constexpr std::uint16_t first_application_index = 0x2000;
   return place.index >= first_application_index && !(place.in_object_with_sub_indices && place.sub_index == 0);
@@ -189,8 +189,8 @@ bool EntryResolver::pdo_mapping(const EntryDescription& description) {
   return number.has_value();
 }
 
-/// CiA 306-1, 5: a DCF's ParameterValue is what the device is configured with. In an EDS it says nothing, even where
-/// there is no DefaultValue.
+/// CiA 306-1, 5: the ParameterValue of a DCF is the configured value. In an EDS it has no meaning, even without a
+/// DefaultValue.
 void EntryResolver::resolve_default(const EntryDescription& description, Entry& entry) {
   const Field& configured = description.parameter_value;
   const bool is_configured = configured.present && !configured.empty();

@@ -10,7 +10,7 @@
 namespace edsc {
 namespace {
 
-/// A list of words, in the order that a binary search needs.
+/// A list of words, sorted for binary search.
 template <std::size_t N>
 consteval std::array<std::string_view, N> sorted(const char* const (&words)[N]) {
   std::array<std::string_view, N> list{};
@@ -19,8 +19,8 @@ consteval std::array<std::string_view, N> sorted(const char* const (&words)[N]) 
   return list;
 }
 
-/// Words that cannot name an object: keywords, alternative tokens, usual macros in lower case, and the members that
-/// each generated object has.
+/// Names that are not available for objects: keywords, alternative tokens, usual macros in lower case, and the members
+/// of each generated object.
 constexpr const char* word_list[] = {
     "alignas",       "alignof",     "and",          "and_eq",        "asm",          "assert",      "auto",
     "bitand",        "bitor",       "bits",         "bool",          "break",        "canopen",     "case",
@@ -43,8 +43,8 @@ constexpr const char* word_list[] = {
 };
 constexpr auto reserved_words = sorted(word_list);
 
-/// Words that cannot name a namespace at global scope besides: functions of the C library, and the constants of
-/// canopen::entry that the generated tables are written in.
+/// Further names that are not available for a namespace at global scope: functions of the C library, and the constants
+/// of canopen::entry in the generated tables.
 constexpr const char* namespace_list[] = {
     // C library and POSIX.
     "abort",  "abs",    "accept", "access", "acos",   "alarm",  "asin",   "atan",   "atexit",  "bind",   "brk",
@@ -80,7 +80,7 @@ constexpr std::array spellings = {
 constexpr bool is_lower(char c) { return c >= 'a' && c <= 'z'; }
 constexpr bool is_upper(char c) { return c >= 'A' && c <= 'Z'; }
 
-/// ASCII letters and digits stay, code points with a usual spelling are written out, all else becomes a blank.
+/// Keeps ASCII letters and digits, transliterates code points with a usual spelling, and replaces others by a blank.
 std::string to_ascii(std::string_view name) {
   if (is_ascii(name)) return std::string{name};
   std::string out;
@@ -108,7 +108,7 @@ bool word_begins(std::string_view text, std::size_t i) {
   if (i == 0 || !is_upper(text[i])) return false;
   if (is_lower(text[i - 1])) return true;
   if (is_upper(text[i - 1]) && i + 1 < text.size() && is_lower(text[i + 1])) {
-    return i + 2 < text.size() && is_lower(text[i + 2]);  // `COBs`, `PDOs`: a plural, no new word
+    return i + 2 < text.size() && is_lower(text[i + 2]);  // `COBs`, `PDOs`: a plural, not a new word
   }
   return false;
 }

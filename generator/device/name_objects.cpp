@@ -7,7 +7,7 @@
 namespace edsc {
 namespace {
 
-/// The options' name, else the one made from ParameterName, else one made from the index.
+/// The name in the options, else from ParameterName, else from the index.
 std::string identifier(const Options& options, std::string_view name, std::uint16_t index, std::uint8_t sub_index) {
   if (const auto at = options.names.find({index, sub_index}); at != options.names.end()) return at->second;
   std::string made = to_snake_case(name);

@@ -7,7 +7,7 @@
 namespace edsc {
 namespace {
 
-/// Structures of CiA 301, table 44, that the objects of the communication profile have.
+/// Structures of CiA 301, table 44, used by objects of the communication profile.
 struct StandardRecord {
   IndexRange objects;
   std::uint8_t data_type;

@@ -44,7 +44,7 @@ constexpr std::array runtime_masks = {"pdo_cob_id_writable", "sync_cob_id_writab
 constexpr std::array runtime_abort_codes = {"pdo_mapping_abort_code", "error_history_abort_code",
                                             "storage_signature_abort_code"};
 
-/// Members that are no runtime option, or have a value of their own form.
+/// Members that are not runtime options, or have another kind of value.
 constexpr std::array<std::string_view, 16> structured_options = {
     "names",          "string_capacity", "settable",          "silence", "allow",      "connected_modules",
     "static_mapping", "no_event",        "emergency_info",    "storing", "lss",        "stored_eds",
@@ -61,14 +61,14 @@ struct NumberOption {
   std::uint16_t high;
 };
 
-/// The longest inhibit time is less than half of the time after which canopen::TimePoint wraps.
+/// The longest inhibit time is less than half of the wrap-around time of canopen::TimePoint.
 constexpr std::array runtime_numbers = {
     NumberOption{"inhibit_time_unit", 1, 32767},
     NumberOption{"emcy_inhibit_time_step", 1, 65535},
     NumberOption{"sdo_timeout", 0, 65535},
 };
 
-/// Enumerators of canopen::Storing that depart from an entry's access.
+/// Enumerators of canopen::Storing that differ from the access type of an entry.
 constexpr std::array storing_names = {"always", "never", "with_node_id"};
 
 /// `1018h` or `1018`: an index.
@@ -78,7 +78,7 @@ std::optional<std::uint16_t> parse_index(std::string_view text) {
   return index && *index <= 0xFFFF ? std::optional{static_cast<std::uint16_t>(*index)} : std::nullopt;
 }
 
-/// `6401h:03`, or `6401h` for all of the object.
+/// `6401h:03`, or `6401h` for the whole object.
 std::optional<EntrySelector> parse_entry_selector(std::string_view text) {
   const std::size_t colon = text.find(':');
   const auto index = parse_index(text.substr(0, colon));
@@ -438,7 +438,7 @@ class OptionsReader {
     options_.runtime.emplace_back("reset_emergency", fmt::format("0x{:04X}", *code));
   }
 
-  /// Where a member's name stands in the text, as well as can be told: its first occurrence in quotes.
+  /// The position of a member's name, approximately: its first occurrence in quotes.
   [[nodiscard]] Position position_of(std::string_view member) const {
     const std::string_view last = member.substr(member.rfind('/') + 1);
     return position_of_text(fmt::format("\"{}\"", last));
@@ -463,7 +463,7 @@ class OptionsReader {
     return position;
   }
 
-  /// The parser's words without its own place and number.
+  /// The message of the parser without its position and number.
   static std::string what_of(const json::exception& problem) {
     const std::string_view what = problem.what();
     const std::size_t colon = what.find(": ");

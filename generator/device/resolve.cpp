@@ -57,7 +57,7 @@ class Resolver {
   }
 
  private:
-  /// NodeID of a DCF: a configured device knows its number. 0 and 255 mean none.
+  /// NodeID of a DCF; 0 and 255 mean none.
   std::optional<std::uint8_t> commissioned_node_id() {
     const Field& field = sheet_.commissioning.node_id;
     const std::string_view text = strip_inline_comment(field.text);
@@ -96,7 +96,7 @@ class Resolver {
     add_compact_pdos(sheet_.device_info, device_, diagnostics_);
   }
 
-  /// Whether objects may follow the last one. In compact form, a sheet of one MB can describe millions of entries.
+  /// Whether more objects may follow. In compact form, an EDS of 1 MB can describe millions of entries.
   bool has_room(const ObjectDescription& last) {
     entries_ += device_.objects.back().entries.size();
     if (entries_ <= most_entries) return true;
@@ -106,7 +106,7 @@ class Resolver {
     return false;
   }
 
-  /// Options must speak of entries that exist.
+  /// Options must refer to existing entries.
   void check_option_keys() {
     const auto check = [&](const EntryKey& key, std::string_view option) {
       if (device_.find(key.first, key.second) != nullptr) return;
@@ -133,7 +133,7 @@ class Resolver {
                        fmt::format("option {} names {}, which is not in the EDS", option, index_label(index)));
   }
 
-  /// A mapping parameter lies in RAM as a whole or not at all.
+  /// A mapping parameter is completely in RAM, or not at all.
   void check_settable_mappings() {
     for (const EntryKey& key : options_.settable) {
       if (!contains(mapping_parameters, key.first)) continue;

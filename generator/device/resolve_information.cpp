@@ -10,7 +10,7 @@
 namespace edsc {
 namespace {
 
-/// A field that is copied as it is written.
+/// A field that is copied unchanged.
 template <typename Source, typename Target>
 struct TextRow {
   Field Source::*from;
@@ -87,7 +87,7 @@ class InformationReader {
     return read_number(field, rule, diagnostics_);
   }
 
-  /// What is neither 0 nor 1 is a matter of the rules.
+  /// The rules report values other than 0 and 1.
   static std::optional<bool> flag(const Field& field) {
     const auto value = number_of(field);
     return field.present && value ? std::optional{*value != 0} : std::nullopt;

@@ -14,7 +14,7 @@
 namespace edsc {
 namespace {
 
-/// How many sub-indices a module adds: whole ones, or a part of one that it shares with its neighbours.
+/// The number of sub-indices that a module adds: whole ones, or a part of one that it shares with its neighbours.
 struct Count {
   std::uint32_t sub_indices = 0;
   std::uint32_t bits = 0;
@@ -35,7 +35,7 @@ class ModuleResolver {
     for (const SubExtension& extension : module.sub_extensions) extend(extension);
   }
 
-  /// Once for each module that is supported, whether it is connected or not.
+  /// Once for each supported module, connected or not.
   void check_lists(const ModuleDescription& module) {
     check_list(module.fixed_objects, module.objects, fmt::format("M{}Fixed", module.number));
     check_list(module.sub_extends, module.sub_extensions, fmt::format("M{}SubExt", module.number));
@@ -104,7 +104,7 @@ class ModuleResolver {
     return std::nullopt;
   }
 
-  /// A sub-index that several modules share is new as soon as the bits of the last one do not suffice.
+  /// Starts a new shared sub-index if the remaining bits of the last one are not sufficient.
   void share(const SubExtension& extension, std::uint32_t bits) {
     std::uint32_t& free = free_bits_[extension.index];
     if (free < bits) {
@@ -119,7 +119,7 @@ class ModuleResolver {
     free -= std::min(free, bits);
   }
 
-  /// One more sub-index of the object, or of the next one when this is full. Null when there is no room.
+  /// Adds a sub-index to the object, or to the next one if it is full. Null if there is no space.
   const Entry* append(const SubExtension& extension) {
     const auto place = free_place(extension);
     if (!place) return nullptr;
@@ -132,7 +132,7 @@ class ModuleResolver {
     return &object.entries.back();
   }
 
-  /// ObjExtend: the highest sub-index of an object before the next index is used; 0 when none is.
+  /// ObjExtend: the highest sub-index of an object before the next index is used; 0: no next index.
   std::optional<EntryPlace> free_place(const SubExtension& extension) {
     const std::uint32_t extend_after = read_number(extension.object_extend, "module-count", diagnostics_).value_or(0);
     const std::uint32_t highest =
@@ -151,7 +151,7 @@ class ModuleResolver {
     return std::nullopt;
   }
 
-  /// The object that a module extends; a new ARRAY when the device does not have it.
+  /// The object that a module extends; a new ARRAY if it does not exist.
   Object& object_at(std::uint16_t index, const SubExtension& extension) {
     if (device_.find(index) == nullptr) {
       Object object;
@@ -178,7 +178,7 @@ class ModuleResolver {
   EntryResolver& entries_;
   Device& device_;
   Diagnostics& diagnostics_;
-  std::set<std::uint16_t> known_;                     ///< kinds of modules that are there
+  std::set<std::uint16_t> known_;                     ///< kinds of connected modules
   std::map<std::uint16_t, std::uint32_t> free_bits_;  ///< of the last shared sub-index, by the object's index
 };
 

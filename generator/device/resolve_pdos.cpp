@@ -21,7 +21,7 @@ constexpr ParameterIndices parameter_indices[] = {
 
 std::uint64_t default_of(const Entry* entry) { return entry != nullptr && entry->default_value ? entry->default_value->bits : 0; }
 
-/// The mapping that the defaults give: sub-index 0 counts, sub-indices 1.. name the objects.
+/// The default mapping: sub-index 0 is the number of objects, sub-indices 1.. the objects.
 std::vector<PdoEntry> default_mapping(const Device& device, const Object& mapping) {
   std::vector<PdoEntry> entries;
   const std::uint64_t count = default_of(mapping.find(0));
@@ -48,7 +48,7 @@ bool changes(const Entry& entry, const Options& options) {
   return (access.readable && access.writable) || options.is_settable(entry.index, entry.sub_index);
 }
 
-/// The form in which the runtime can walk through a mapping: a count, and one UNSIGNED32 behind the other.
+/// Whether the runtime can process a mapping: a count, followed by UNSIGNED32 entries.
 bool is_list_of_objects(const Object& mapping) {
   if (mapping.entries.size() < 2 || mapping.entries.size() > most_mapped_objects + 1) return false;
   for (std::size_t i = 0; i < mapping.entries.size(); ++i) {
@@ -59,21 +59,22 @@ bool is_list_of_objects(const Object& mapping) {
   return true;
 }
 
-/// What is mapped over the bus has the length of its type. A string has the one of its entry.
+/// Whether the PDO maps a string, whose length a mapping over the bus cannot express: its entries have the length of
+/// their data type.
 bool carries_a_string(const Pdo& pdo) {
   return std::ranges::any_of(pdo.entries, [](const PdoEntry& entry) {
     return entry.object != nullptr && entry.object->type->kind == canopen::DataClass::string;
   });
 }
 
-/// Sub-index 0 counts entries that map nothing, or more of them than there are: the layout without them is what the PDO
-/// carries, and no mapping that could be changed is the same.
+/// Whether sub-index 0 includes empty or missing entries: the PDO has the layout without them, which a dynamic mapping
+/// cannot express.
 bool has_gaps(const Pdo& pdo) {
   return !pdo.multiplexed && pdo.entries.size() != default_of(pdo.mapping->find(0));
 }
 
-/// Whether the mapping may change: all of its parameter may be written, or set by the application. A PDO without a
-/// COB-ID is not served at all.
+/// Whether the mapping can be changed: all entries of its parameter are writable, or set by the application. A PDO
+/// without a COB-ID is not served.
 bool is_dynamic(const Pdo& pdo, const Options& options) {
   constexpr std::uint8_t cob_id = 1;
   if (pdo.communication == nullptr || pdo.communication->find(cob_id) == nullptr) return false;

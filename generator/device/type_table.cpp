@@ -63,7 +63,7 @@ const SubObjectDescription* find_sub(const ObjectDescription& object, std::uint8
 
 class DefinitionReader {
   static constexpr int most_steps = 8;              ///< from a DEFTYPE to its basic type
-  static constexpr std::uint64_t most_octets = 256;  ///< longer ones are a DOMAIN, whose memory is the application's
+  static constexpr std::uint64_t most_octets = 256;  ///< longer types are a DOMAIN, in memory of the application
 
  public:
   DefinitionReader(const DataSheet& sheet, std::optional<std::uint8_t> node_id, Diagnostics& diagnostics)
@@ -98,7 +98,7 @@ class DefinitionReader {
     }
   }
 
-  /// A range as CANFestival writes it: a RECORD of the basic type's index, the lowest and the highest value.
+  /// A range in the format of CANFestival: a RECORD of the index of the basic type, the minimum and the maximum.
   void read_range(const ObjectDescription& object, TypeDefinition& definition) {
     const auto code = number_of(find_sub(object, 1)->default_value);
     if (code) definition.type = follow(*code);
@@ -116,7 +116,7 @@ class DefinitionReader {
     definition.type = with_length(basic, stated_length(object));
     if (definition.type.row == nullptr) return report(object.data_type, "is not the index of a data type");
     if (definition.type.row != basic.row) {
-      // A basic type that the sheet describes as well is the one of CiA 301, whatever stands here.
+      // A basic type that the EDS also describes is that of CiA 301, regardless of the description.
       if (basic_type(std::uint64_t{object.index}) == nullptr) report_length(object, definition.type);
       return;
     }
@@ -125,7 +125,7 @@ class DefinitionReader {
     definition.high_limit = limit(object.high_limit, Limit::high, *definition.type.row);
   }
 
-  /// From a type to the basic one that it stands for, through any DEFTYPEs between.
+  /// The basic type of a type, through any DEFTYPEs.
   TypeReference follow(std::uint64_t code, int steps = most_steps) {
     if (const DataTypeRow* row = basic_type(code)) return {row};
     const ObjectDescription* object = code < first_communication_index ? find_description(sheet_, code) : nullptr;
@@ -138,14 +138,13 @@ class DefinitionReader {
     return code ? follow(*code, steps) : TypeReference{};
   }
 
-  /// The value of a DEFTYPE is the length of its type in bits (CiA 301, 7.4.7); 0 where it states none.
+  /// The value of a DEFTYPE is the length of its type in bits (CiA 301, 7.4.7); 0 if it states none.
   static std::uint64_t stated_length(const ObjectDescription& object) {
     const bool is_deftype = number_of(object.object_type) == static_cast<std::uint64_t>(ObjectType::deftype);
     return is_deftype ? number_of(object.default_value).value_or(0) : 0;
   }
 
-  /// A type of another length than its basic type's is not that type: octets, or a DOMAIN where it is long or not whole
-  /// bytes.
+  /// A type whose length differs from its basic type is an OCTET_STRING, or a DOMAIN if it is long or not whole bytes.
   static TypeReference with_length(const TypeReference& basic, std::uint64_t bits) {
     const DataTypeRow* row = basic.row;
     if (bits == 0) return basic;

@@ -21,7 +21,7 @@ using canopen::DataTypeRow;
 
 bool is_hexadecimal(std::string_view digits) { return digits.starts_with("0x") || digits.starts_with("0X"); }
 
-/// `12LL`, `0xFFu`: C suffixes have no place in an EDS; they are cut.
+/// `12LL`, `0xFFu`: removes C suffixes, which are not allowed in an EDS.
 std::string_view without_suffix(std::string_view digits) {
   while (digits.size() > 1 && std::string_view{"uUlL"}.find(digits.back()) != std::string_view::npos) {
     digits.remove_suffix(1);
@@ -36,7 +36,7 @@ std::string_view without_real_suffix(std::string_view digits) {
   return is_digit(before) || before == '.' ? digits.substr(0, digits.size() - 1) : digits;
 }
 
-/// `80h`, `0000 0080h`: as manuals and CiA documents write them.
+/// `80h`, `0000 0080h`: the notation of manuals and CiA documents.
 std::optional<std::uint64_t> parse_h_suffix(std::string_view text) {
   if (text.size() < 2 || !is_digit(text.front()) || to_lower(text.back()) != 'h') return std::nullopt;
   std::string digits{"0x"};
@@ -54,7 +54,7 @@ std::optional<double> parse_real(std::string_view text) {
   return value;
 }
 
-/// One field on its way to a value.
+/// Parses the value of one field.
 class ValueReader {
  public:
   ValueReader(const Field& field, const DataTypeRow& type, std::optional<std::uint8_t> node_id,
@@ -200,7 +200,7 @@ class ValueReader {
     return value(magnitude | ~mask());
   }
 
-  /// `80h`, or `0.0` or `0089` for an integer: accepted when nothing is lost.
+  /// `80h`, or `0.0` or `0089` for an integer: accepted if the value is exact.
   std::optional<Value> unusual_integer(std::string_view text) {
     if (const auto hexadecimal = parse_h_suffix(text)) {
       warning("number-spelling", fmt::format("a hexadecimal number must be written with 0x, not as {}", quote(text)));
@@ -218,7 +218,7 @@ class ValueReader {
     return *number < 0 ? negative_integer(magnitude) : positive_integer(magnitude, false);
   }
 
-  /// A hexadecimal number is the IEEE 754 pattern; all else a decimal number.
+  /// A hexadecimal number is the IEEE 754 pattern; otherwise a decimal number.
   std::optional<Value> real(std::string_view text) {
     if (is_hexadecimal(text)) {
       const auto bits = parse_unsigned(text);

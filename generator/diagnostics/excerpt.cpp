@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::string_view cut_mark = "...";
 
-/// Steps up to `most` code points back from `at`; gives how many there were.
+/// Steps up to `most` code points back from `at`, and returns their number.
 std::size_t step_back(std::string_view text, std::size_t& at, std::size_t most) {
   std::size_t steps = 0;
   while (at > 0 && steps < most) {
@@ -39,7 +39,7 @@ Excerpt excerpt(std::string_view line, const Position& position) {
   constexpr std::size_t columns = Excerpt::most_columns - 2 * cut_mark.size();
   const std::size_t caret = std::min<std::size_t>(position.column == 0 ? 0 : position.column - 1, line.size());
 
-  // Half of the window before the caret, the rest behind it, and what the rest leaves over before it again.
+  // Half of the window before the caret, the rest after it, and unused columns before it again.
   std::size_t begin = caret;
   std::size_t end = caret;
   const std::size_t before = step_back(line, begin, columns / 2);

@@ -39,7 +39,7 @@ constexpr Palette coloured{"\x1B[1m", "\x1B[1;31m", "\x1B[1;35m", "\x1B[1;36m", 
 
 std::string file_name(const SourceFile* file) { return file == nullptr ? std::string() : printable(file->name()); }
 
-/// What one file's findings come to.
+/// The numbers of findings of one file.
 struct FileSum {
   const SourceFile* file;
   std::size_t errors = 0;

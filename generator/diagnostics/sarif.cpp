@@ -15,8 +15,8 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-/// A path as a URI reference (RFC 3986): what is not unreserved is percent-encoded, slashes stay. A relative path stays
-/// relative.
+/// A path as a URI reference (RFC 3986): percent-encoded except for unreserved characters and slashes. A relative path
+/// remains relative.
 std::string uri_of(std::string_view path) {
   constexpr std::string_view unreserved = "-._~/";
   std::string uri = path.starts_with('/') ? "file://" : "";

@@ -11,7 +11,7 @@
 namespace edsc {
 namespace {
 
-/// The attribute `access` and the AccessType that says the same. An Input is a process input, which a TPDO carries.
+/// The attribute `access` and the corresponding AccessType. An Input is a process input, for TPDOs.
 struct AccessWord {
   std::string_view word;
   std::string_view access_type;
@@ -22,7 +22,7 @@ constexpr AccessWord access_words[] = {
     {"readWriteOutput", "rww"},
 };
 
-/// What the schema takes for a parameter that says nothing.
+/// The default of the schema.
 constexpr std::string_view default_access_type = "ro";
 
 /// Children of a parameter with one field each, whose value is the attribute `value`.
@@ -36,21 +36,21 @@ constexpr ValueElement value_elements[] = {
     {"actualValue", &EntryDescription::parameter_value},
 };
 
-/// Children of a parameter that say nothing about the dictionary: texts for people, units, what the application does.
+/// Children of a parameter without effect on the dictionary: texts, units, behaviour of the application.
 constexpr std::string_view silent_elements[] = {
     "description", "labelRef",           "descriptionRef", "unit",          "substituteValue",
     "variableRef", "conditionalSupport", "dataTypeIDRef",  "allowedValues",
 };
 
-/// CANopenEditor's own property: the object is kept in the file, but the device does not have it.
+/// Property of CANopenEditor: the object is in the file, but not in the device.
 constexpr std::string_view disabled_property = "CO_disabled";
 
-/// How long a chain of derived types may be.
+/// Maximum length of a chain of derived types.
 constexpr int longest_chain = 16;
 
 bool is_array_or_struct(pugi::xml_node type) { return local_name(type) == "array" || local_name(type) == "struct"; }
 
-/// The label in English when there is one, else the first.
+/// The English label if there is one, otherwise the first.
 pugi::xml_node find_label(pugi::xml_node element) {
   pugi::xml_node label;
   for_each_element(element, [&](pugi::xml_node child) {
@@ -90,7 +90,7 @@ pugi::xml_node ApplicationProcess::find(std::string_view unique_id) const {
   return at == by_unique_id_.end() ? pugi::xml_node{} : at->second;
 }
 
-/// Follows enums and derived types to the simple type, array or struct behind them.
+/// Resolves enums and derived types to their simple type, array or struct.
 ResolvedType ApplicationProcess::resolve_type(pugi::xml_node element) const {
   ResolvedType result;
   for (int length = 0; length < longest_chain && element; ++length) {
@@ -144,7 +144,7 @@ Parameter ApplicationProcess::read_parameter(pugi::xml_attribute reference) {
   return parameter;
 }
 
-/// A parameter or its template: fills in what is missing still.
+/// Reads a parameter or its template: fills in missing fields.
 void ApplicationProcess::read_part(pugi::xml_node element, Parameter& parameter) {
   if (!element) return;
   read_access(element, parameter);
@@ -201,7 +201,7 @@ void ApplicationProcess::read_property(pugi::xml_node property, Parameter& param
                  fmt::format("property {} is tool-specific; it is left out, here and elsewhere", quote(name)));
 }
 
-/// A single range is what LowLimit and HighLimit say. More than that has no place in a data sheet.
+/// A single range becomes LowLimit and HighLimit. An EDS cannot express more.
 void ApplicationProcess::read_allowed_values(pugi::xml_node element, Parameter& parameter) {
   if (const pugi::xml_attribute id = find_attribute(element, "templateIDRef")) {
     if (const pugi::xml_node found = find(id.value())) element = found;

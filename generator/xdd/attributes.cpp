@@ -44,7 +44,7 @@ std::string_view baud_rate(std::string_view text) {
   return unit.empty() || equal_ignoring_case(unit, "Kbps") ? decimal(number) : text;
 }
 
-/// Digits where `pattern` has a 0, else its characters.
+/// Whether a text matches `pattern`, in which `0` is any digit.
 bool has_form(std::string_view text, std::string_view pattern) {
   return text.size() >= pattern.size() && std::equal(pattern.begin(), pattern.end(), text.begin(),
                                                      [](char p, char c) { return p == '0' ? is_digit(c) : p == c; });

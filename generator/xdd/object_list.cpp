@@ -42,15 +42,15 @@ constexpr AttributeRow<EntryDescription> entry_rows[] = {
 
 constexpr std::span<const AttributeRow<EntryDescription>> entry_attributes = entry_rows;
 
-/// What a parameter decides when an object refers to it. An attribute of the object counts where the parameter is
-/// silent.
+/// Attributes that the parameter of an object determines. Those of the object are used if the parameter does not have
+/// them.
 constexpr Field EntryDescription::*parameter_fields[] = {
     &EntryDescription::data_type,  &EntryDescription::access_type,   &EntryDescription::low_limit,
     &EntryDescription::high_limit, &EntryDescription::default_value, &EntryDescription::parameter_value,
     &EntryDescription::denotation,
 };
 
-/// Values that a BOOLEAN may spell as true and false.
+/// Values that may be true or false for a BOOLEAN.
 constexpr Field EntryDescription::*value_fields[] = {
     &EntryDescription::default_value,
     &EntryDescription::parameter_value,
@@ -71,7 +71,7 @@ Mappable common(Mappable a, Mappable b) {
   return static_cast<Mappable>(static_cast<unsigned>(a) & static_cast<unsigned>(b));
 }
 
-/// An index or sub-index: hexadecimal digits, as a rule without 0x.
+/// An index or sub-index: hexadecimal digits, usually without 0x.
 std::optional<std::uint16_t> read_hex(std::string_view text, std::size_t most_digits) {
   const bool has_prefix = starts_with_ignoring_case(text, "0x");
   return parse_hex(text.substr(has_prefix ? 2 : 0), most_digits);
@@ -87,7 +87,7 @@ SheetPart part_at(const XmlDocument& xml, pugi::xml_node element) {
   return part;
 }
 
-/// The element that begins after this one has ended; null when there is none.
+/// The first element after the end of this one, or null.
 pugi::xml_node next_element(pugi::xml_node element) {
   for (; element; element = element.parent()) {
     for (pugi::xml_node next = element.next_sibling(); next; next = next.next_sibling()) {
@@ -169,7 +169,7 @@ class ObjectListReader {
     return number;
   }
 
-  /// The element's attributes, and the parameter that it refers to.
+  /// Reads the attributes of the element, and its parameter.
   Parameter read_entry(pugi::xml_node element, EntryDescription& entry) {
     entry.position = xml_.position(element);
     place_attributes(entry_attributes, entry.position, entry);
@@ -189,7 +189,7 @@ class ObjectListReader {
     to.present = true;
   }
 
-  /// A sub-object that says nothing of its type gets it from its object's array or struct.
+  /// A sub-object without a data type gets it from the array or struct of its object.
   void take_from_object(const Parameter& of_object, SubObjectDescription& sub_object) {
     const pugi::xml_node type = of_object.type.array_or_struct;
     const bool is_count_of_array = sub_object.sub_index == 0 && local_name(type) == "array";
@@ -208,7 +208,7 @@ class ObjectListReader {
                                            object.index, local_name(parameter.type.array_or_struct)));
   }
 
-  /// Spells as an EDS does what depends on more than one attribute.
+  /// Converts values that depend on more than one attribute to EDS spelling.
   void finish(EntryDescription& entry) {
     map_to_access(entry);
     if (parse_unsigned(entry.data_type.text) != 1) return;
@@ -217,8 +217,8 @@ class ObjectListReader {
     }
   }
 
-  /// CiA 306 has no words for "RPDO only" and "TPDO only" but the access types: an rw object that PDOmapping lets into
-  /// TPDOs only is rwr, one for RPDOs only is rww; the others name one direction already.
+  /// CiA 306 can express "RPDO only" and "TPDO only" by the access type only: an rw object that PDOmapping allows for
+  /// TPDOs only is rwr, for RPDOs only rww; the other access types imply one direction.
   void map_to_access(EntryDescription& entry) {
     Field& mapping = entry.pdo_mapping;
     for (const MappingWord& row : mapping_words) {
@@ -231,7 +231,7 @@ class ObjectListReader {
     }
   }
 
-  /// False when no direction is left.
+  /// Returns false if no direction remains.
   static bool restrict_access(Mappable mappable, Field& access_type) {
     for (const canopen::AccessRow& row : canopen::access_rows) {
       if (!equal_ignoring_case(row.name, access_type.text) || mappable == Mappable::no) continue;
@@ -252,7 +252,7 @@ class ObjectListReader {
                                            entry.pdo_mapping.text, entry.access_type.text));
   }
 
-  /// Of two objects, or two sub-objects of one object, with the same number the first one wins.
+  /// Of duplicate objects, or sub-objects of one object, the first is used.
   bool is_first(pugi::xml_node element, std::uint16_t number, FirstPlaces& first_places) {
     const auto [first, is_new] = first_places.try_emplace(number, xml_.position(element));
     if (is_new) return true;
@@ -265,7 +265,7 @@ class ObjectListReader {
   XmlDocument& xml_;
   ApplicationProcess& process_;
   FirstPlaces first_objects_;
-  FirstPlaces first_sub_objects_;  ///< of the object that is being read
+  FirstPlaces first_sub_objects_;  ///< of the current object
 };
 
 }  // namespace

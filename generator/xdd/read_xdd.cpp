@@ -19,16 +19,16 @@
 namespace edsc {
 namespace {
 
-/// The parts of a profile that are read; null where one is missing.
+/// The parts of a profile that are read; null if missing.
 struct Parts {
-  pugi::xml_node body;  ///< of the device profile when there is one
+  pugi::xml_node body;  ///< of the device profile, if any
   pugi::xml_node identity, application_process;
   pugi::xml_node application_layers, object_list, dummy_usage;
   pugi::xml_node transport_layers, physical_layer, baud_rate;
   pugi::xml_node network_management, general_features, master_features, commissioning;
 };
 
-/// Where a part stands; null for one that is known but says nothing about the device's function.
+/// The destination of a part; null for a known part without effect on the device.
 struct PartRow {
   std::string_view parent;
   std::string_view name;
@@ -108,7 +108,7 @@ class XddReader {
     });
   }
 
-  /// A body without type is taken for what its children say.
+  /// The type of a body without type is determined by its children.
   bool is_canopen(pugi::xml_node body) {
     const std::string_view type = body_type(body);
     if (type.empty()) return true;
@@ -126,7 +126,7 @@ class XddReader {
     if (!parts_.body || (is_first && parts_.identity)) parts_.body = body;
   }
 
-  /// The levels below a body are few, and each has its name: no recursion.
+  /// The few levels below a body have distinct names: no recursion.
   void find_parts(pugi::xml_node body) {
     find_parts_in(body);
     for (pugi::xml_node Parts::*const level :
@@ -185,7 +185,7 @@ class XddReader {
     }
   }
 
-  /// CiA 311 has no object lists: each object stands in that of CiA 306 where it belongs.
+  /// CiA 311 does not have object lists: each object is added to its list in CiA 306.
   void list_objects() {
     for (const ObjectDescription& object : sheet_.objects) {
       if (const auto list = list_of(object.index)) sheet_.listed.push_back({*list, object.index, object.position});

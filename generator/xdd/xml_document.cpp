@@ -14,8 +14,8 @@
 namespace edsc {
 namespace {
 
-/// Elements and attributes at most, counted generously: what keeps a hostile file from filling the memory. A device
-/// with 10,000 entries has about 300,000.
+/// Upper bound of elements and attributes, against hostile files that exhaust memory. A device with 10,000 entries has
+/// about 300,000.
 constexpr std::ptrdiff_t most_nodes = 8'000'000;
 
 constexpr std::string_view xml_blanks = " \t\r\n";
@@ -72,7 +72,7 @@ bool XmlDocument::report_unreadable_text() {
   return false;
 }
 
-/// The text is UTF-8 by now, whatever the XML declaration says that it was.
+/// The text is already UTF-8, regardless of the XML declaration.
 void XmlDocument::parse() {
   const pugi::xml_parse_result result = document_.load_buffer_inplace(
       buffer_.data(), buffer_.size(), pugi::parse_default | pugi::parse_doctype, pugi::encoding_utf8);
@@ -122,7 +122,7 @@ Position XmlDocument::position_of(std::size_t offset, std::size_t length) const 
           static_cast<std::uint32_t>(std::max<std::size_t>(length, 1))};
 }
 
-/// `part` is what pugixml gives: it points into the buffer, but for a missing name or value.
+/// `part` comes from pugixml and points into the buffer, except for a missing name or value.
 Position XmlDocument::position_of(std::string_view part) const {
   const std::less<> before;
   const char* const begin = buffer_.data();
@@ -136,7 +136,7 @@ Position XmlDocument::position(pugi::xml_attribute attribute) const {
   return position_of(std::string_view{attribute.name()});
 }
 
-/// The same text in the source file when it stands there like that, else a copy.
+/// The same text in the source file if it occurs there unchanged, otherwise a copy.
 std::string_view XmlDocument::stored(std::string_view part) {
   if (part.empty()) return {};
   const auto offset = static_cast<std::size_t>(part.data() - buffer_.data());
