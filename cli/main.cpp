@@ -20,8 +20,8 @@
 
 namespace {
 
-/// Stands before an argument that has brackets around it. Without it CLI11 takes `[a,b]` for a list of values wherever an
-/// option takes several.
+/// Prefix of an argument in brackets. Without it, CLI11 reads `[a,b]` as a list of values for options with several
+/// values.
 constexpr char literal = '\x01';
 
 std::string marked(std::string_view argument) {
@@ -41,7 +41,7 @@ void take_marks_off(CLI::App& app) {
   for (CLI::App* const command : app.get_subcommands([](CLI::App*) { return true; })) take_marks_off(*command);
 }
 
-/// Parses the arguments, each as it is.
+/// Parses the arguments, each unchanged.
 void parse(CLI::App& app, int argc, char** argv) {
   take_marks_off(app);
   std::vector<std::string> arguments;
@@ -55,7 +55,7 @@ std::vector<const CLI::App*> commands_of(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App* one) { return !one->get_name().empty(); });
 }
 
-/// The first word in the place of a command that names none, reported; false when there is no such word.
+/// Reports the first word in the place of a command that is not a command; false if there is none.
 bool report_unknown_command(const CLI::App& app) {
   for (const CLI::App* const chosen : app.get_subcommands()) {
     if (report_unknown_command(*chosen)) return true;
@@ -70,7 +70,7 @@ bool report_unknown_command(const CLI::App& app) {
   return true;
 }
 
-/// What CLI11 says of arguments, which may hold anything.
+/// Prints the message of CLI11 about arguments, which may contain any characters.
 std::string failure_message(const CLI::App* app, const CLI::Error& problem) {
   std::string message = CLI::FailureMessage::simple(app, problem);
   for (std::size_t at = 0; (at = message.find("\x01[", at)) != std::string::npos;) message.erase(at, 1);
@@ -84,7 +84,7 @@ std::string failure_message(const CLI::App* app, const CLI::Error& problem) {
   return shown;
 }
 
-/// What standard output does not take is reported at the end.
+/// Write errors of standard output are reported at the end.
 int report(const std::exception& problem) {
   if (std::ferror(stdout) == 0) edsc::print_visibly(stderr, "edsc: {}\n", problem.what());
   return edsc::exit_wrong_usage;

@@ -30,7 +30,7 @@ struct Settings {
 
 std::atomic<bool> stop{false};
 
-/// SIGINT and SIGTERM end the command; they come while it waits, and at no other time.
+/// SIGINT and SIGTERM end the command; they are delivered only while it waits.
 class EndingSignals {
  public:
   EndingSignals() {
@@ -52,7 +52,7 @@ class EndingSignals {
   sigset_t while_waiting_{};
 };
 
-/// A bus's name is a word of at most 15 letters that fits into an address and into a line of candump.
+/// A bus name is a word of up to 15 characters that is valid in an address and in a line of candump.
 std::string bad_bus_name(const std::string& name) {
   const bool good = !name.empty() && name.size() <= 15 && std::all_of(name.begin(), name.end(), [](unsigned char c) {
     return c > ' ' && c < 0x7F && c != '<' && c != '>' && c != '/';

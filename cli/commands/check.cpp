@@ -76,7 +76,7 @@ int list_rules(const std::string& format) {
   return exit_fine;
 }
 
-/// Findings of one file after the other, in one of the formats.
+/// Prints the findings of the files in one of the formats.
 class Report {
  public:
   Report(std::string format, const ColorOption& color) : format_{std::move(format)}, color_{color} {}
@@ -91,7 +91,7 @@ class Report {
     }
   }
 
-  /// SARIF has no place for it; there, findings of `--keep-going` say what is left out.
+  /// Not in SARIF, where findings of `--keep-going` state what is left out.
   void add_left_out(const std::vector<LeftOut>& left_out) {
     if (format_ == "text") fmt::print("{}", left_out_text(left_out));
     for (const LeftOut& one : left_out) {
@@ -163,7 +163,7 @@ int check(const Settings& settings) {
   return exit_code;
 }
 
-/// CLI11's form: what is wrong, or nothing.
+/// In the format of CLI11: an error message, or nothing.
 std::string check_rule(const std::string& id) {
   if (find_rule(id) != nullptr) return {};
   return fmt::format("{} (see --list-rules)", unknown_rule(id));

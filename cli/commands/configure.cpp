@@ -50,32 +50,32 @@ struct Settings {
   SdoSettings sdo;
 };
 
-/// What is to be written, and all that it points into.
+/// The values to write, and the data to which they point.
 struct Configuration {
-  std::unique_ptr<LoadedDevice> loaded;  ///< null: a concise DCF without data sheet
+  std::unique_ptr<LoadedDevice> loaded;  ///< null: a concise DCF without EDS
   std::vector<std::uint8_t> stream;      ///< of a concise DCF
-  std::vector<ConfigurationValue> values;  ///< without what is left out
+  std::vector<ConfigurationValue> values;  ///< except those that are left out
   std::size_t left_out = 0;
   std::optional<ConfigurationTime> time;  ///< of 1020h
 
   [[nodiscard]] const Device* device() const { return loaded ? &*loaded->device : nullptr; }
 };
 
-/// A value that the node does not have.
+/// A value that differs from that of the node.
 struct Change {
   ConfigurationValue value;
-  std::optional<std::vector<std::uint8_t>> before;  ///< nothing where it cannot be read
+  std::optional<std::vector<std::uint8_t>> before;  ///< nothing if it cannot be read
 };
 
-/// What is to be written to the node.
+/// The values to write to the node.
 struct Work {
   std::size_t compared = 0;
-  std::vector<Change> changes;             ///< of those that were compared
+  std::vector<Change> changes;             ///< of the compared values
   std::vector<Change> withheld;            ///< node-ID and bit rate, without the flag
   std::vector<ConfigurationValue> values;  ///< to write
 };
 
-/// What a run came to besides its values.
+/// The result of a run other than its values.
 struct Ending {
   std::string not_compared;  ///< numbers of the identity
   bool nothing_differs = false;
@@ -87,7 +87,7 @@ struct Ending {
 using Json = nlohmann::ordered_json;
 
 constexpr std::uint32_t store_signature = 0x6576'6173;  ///< "save"
-constexpr unsigned shortest_store_ms = 5'000;           ///< a device may erase its flash before it answers
+constexpr unsigned shortest_store_ms = 5'000;           ///< a device may erase flash before it answers
 constexpr canopen::Duration after_nmt = canopen::from_milliseconds(10);
 
 LiveEntry entry_or_address(const Device* device, std::uint16_t index, std::uint8_t sub_index) {
@@ -159,7 +159,7 @@ bool read_concise(const Settings& settings, Configuration& configuration) {
   return true;
 }
 
-/// Takes out what is not written in any case.
+/// Removes values that are never written.
 void leave_out(Configuration& configuration) {
   configuration.left_out =
       std::erase_if(configuration.values, [](const ConfigurationValue& value) { return is_left_out(value.entry); });
@@ -176,7 +176,7 @@ std::string_view verb_of(StepKind kind) {
   return {};
 }
 
-/// The value; of many bytes without a type the first ones.
+/// The value; of many bytes without a type, the first ones.
 std::string shown(const LiveEntry& entry, const std::vector<std::uint8_t>& bytes) {
   constexpr std::size_t most_bytes = 32;
   if (entry.type != nullptr || bytes.size() <= most_bytes) return value_of(entry, bytes);
@@ -231,7 +231,7 @@ void enter_pre_operational(LiveBus& bus, const SdoAccess& node) {
   bus.listen(after_nmt);
 }
 
-/// Whether the DCF is one for this node, as far as it says so. A DCF for another one is reported.
+/// Whether the DCF is for this node, if it states a node-ID. Reports a DCF for another node.
 bool is_for_this_node(const Settings& settings, const Configuration& configuration) {
   if (settings.force || !configuration.loaded) return true;
   const auto meant = parse_unsigned(configuration.loaded->sheet.commissioning.node_id.text);
@@ -240,8 +240,8 @@ bool is_for_this_node(const Settings& settings, const Configuration& configurati
                             settings.concise ? settings.sheet : settings.path, *meant, settings.node));
 }
 
-/// Whether the node is the device of the DCF, as far as both state it. What contradicts it is reported. A node that is
-/// silent may be in Stopped.
+/// Whether the identities of the node and the DCF match. Reports differences. A node that does not answer may be in
+/// Stopped.
 bool is_right_device(LiveBus& bus, SdoAccess& node, const Settings& settings, const Configuration& configuration,
                      Ending& ending) {
   SdoOutcome first = node.upload(0x1000, 0);
@@ -359,7 +359,7 @@ void print_json(const Settings& settings, const Configuration& configuration, co
   fmt::print("{}\n", json_text(json));
 }
 
-/// Behind all values: when they were made, and that they stay.
+/// After all values: writes 1020h and stores the parameters.
 void finish(SdoAccess& node, const Settings& settings, const Configuration& configuration, bool complete,
             Ending& ending) {
   if (complete && configuration.time && (settings.all || read_configuration_time(node) != configuration.time)) {
@@ -376,7 +376,7 @@ void finish(SdoAccess& node, const Settings& settings, const Configuration& conf
   if (!outcome.done()) ending.problems.push_back("1010h:01 Store parameters: " + failure_text(outcome));
 }
 
-/// Hears the boot-up message of the node.
+/// Detects the boot-up message of the node.
 class RestartWatch {
  public:
   RestartWatch(LiveBus& bus, std::uint8_t node) : bus_{bus} {
@@ -397,7 +397,7 @@ class RestartWatch {
   bool restarted_ = false;
 };
 
-/// Everything but node-ID and bit rate, which need their flag.
+/// All values except node-ID and bit rate, which require their option.
 Work all_values(const Settings& settings, const Configuration& configuration) {
   Work work;
   for (const ConfigurationValue& value : configuration.values) {
@@ -410,7 +410,7 @@ Work all_values(const Settings& settings, const Configuration& configuration) {
   return work;
 }
 
-/// What the node does not have; nothing when it does not answer any more.
+/// The values that differ from those of the node; nothing if it stops answering.
 std::optional<Work> what_differs(SdoAccess& node, const Settings& settings, const Configuration& configuration,
                                  const ConfigurationHooks& hooks) {
   Comparison comparison = compare_configuration(node, configuration.values, hooks);
@@ -440,7 +440,7 @@ int configure(LiveBus& bus, const Settings& settings, const Configuration& confi
     print_visibly(stderr, "edsc: node {}: not compared: {}\n", settings.node, ending.not_compared);
   }
   ConfigurationHooks hooks{{}, [&] { return watch.restarted(); }};
-  /// Shows how far the work is, as long as it lasts.
+  /// Shows the progress.
   const auto with_progress = [&](std::string_view doing, const auto& work) {
     ProgressLine progress;
     hooks.progress = [&](std::size_t done, std::size_t of) {

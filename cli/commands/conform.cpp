@@ -63,11 +63,10 @@ struct Settings {
   ColorOption color;
 };
 
-/// By how much a time on a real bus may differ from what a device promises: half of what a tick of 100 Hz takes, and the
-/// frames before it on the wire.
+/// Tolerance for times on a real bus: half a tick of 100 Hz, and the preceding frames on the bus.
 constexpr canopen::Duration live_tolerance = canopen::from_milliseconds(10);
 
-/// Commands of the user that act on the device, one for each case.
+/// User commands that act on the device, one per case.
 class CommandStimuli final : public conform::Stimuli {
  public:
   explicit CommandStimuli(const std::vector<std::string>& options) {
@@ -84,7 +83,7 @@ class CommandStimuli final : public conform::Stimuli {
   bool power_cycle() override { return run("power_cycle"); }
 
  private:
-  /// The command finds in EDSC_STIMULUS what is asked for.
+  /// The command gets the requested stimulus in EDSC_STIMULUS.
   bool run(const char* what) {
     const auto found = commands_.find(case_);
     if (found == commands_.end()) return false;
@@ -96,7 +95,7 @@ class CommandStimuli final : public conform::Stimuli {
   std::string case_;
 };
 
-/// A simulated device is acted on through its program.
+/// A simulated device receives stimuli through its program.
 class SimulatedStimuli final : public conform::Stimuli {
  public:
   explicit SimulatedStimuli(SimulatedPort& port) : port_{port} {}
@@ -137,8 +136,7 @@ void list_cases() {
   }
 }
 
-/// The device of the data sheet and what `edsc check` finds in it. Null when the file cannot be read as one; the reason is
-/// printed.
+/// The device of the EDS and its findings. Null if the file cannot be read, with the reason printed.
 std::unique_ptr<LoadedDevice> load_sheet(const Settings& settings, conform::SheetFindings& findings) {
   Diagnostics diagnostics;
   diagnostics.drop_notes();
@@ -152,7 +150,7 @@ std::unique_ptr<LoadedDevice> load_sheet(const Settings& settings, conform::Shee
   return nullptr;
 }
 
-/// SHA-256 of the file's bytes; empty where it cannot be read again, as standard input.
+/// SHA-256 of the file; empty if it cannot be read again, such as standard input.
 std::string hash_of_file(const std::string& path) {
   std::vector<std::uint8_t> bytes;
   std::string problem;
@@ -160,13 +158,13 @@ std::string hash_of_file(const std::string& path) {
   return conform::sha256({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-/// The file of declared deviations, which their positions point into.
+/// The file of declared deviations, to which their positions point.
 struct DeclaredDeviations {
   std::unique_ptr<SourceFile> source;
   std::vector<conform::Deviation> all;
 };
 
-/// Nothing when there is an error in the file, which is printed.
+/// Nothing if the file has an error, which is printed.
 std::optional<DeclaredDeviations> load_deviations(const Settings& settings) {
   DeclaredDeviations declared;
   if (settings.deviations.empty()) return declared;
@@ -196,7 +194,7 @@ constexpr ReportFile report_files[] = {
     {&Settings::log, [](const RunReport& run, const Device&) { return conform::candump_log(run); }},
 };
 
-/// False when one of them cannot be written; the reason is printed.
+/// Returns false if one of them cannot be written; the reason is printed.
 bool write_reports(const Settings& settings, const RunReport& report, const Device& sheet) {
   std::vector<OutputFile> files;
   for (const ReportFile& row : report_files) {
@@ -207,7 +205,7 @@ bool write_reports(const Settings& settings, const RunReport& report, const Devi
   return problem.empty();
 }
 
-/// Runs the cases with what they come to on standard output as it comes.
+/// Runs the cases and prints their results as they complete.
 void run_and_print(LiveBus& bus, const Settings& settings, const LoadedDevice& loaded, conform::RunSettings& run,
                    const DeclaredDeviations& deviations, RunReport& report) {
   auto* const simulated = dynamic_cast<SimulatedPort*>(&bus.port());

@@ -37,12 +37,12 @@ struct Settings {
   ColorOption color;
 };
 
-/// Ends the program with exit code 2: a sentence for the user.
+/// An error that ends the program with exit code 2, with a message for the user.
 struct Refused {
   std::string sentence;
 };
 
-/// `5=drive.eds`, or `axis1.dcf` with a node-ID of its own.
+/// `5=drive.eds`, or `axis1.dcf` with its own node-ID.
 struct NodeArgument {
   std::optional<std::uint8_t> node_id;
   std::string path;
@@ -57,7 +57,7 @@ NodeArgument parse_node_argument(const std::string& text) {
   return {static_cast<std::uint8_t>(*number), text.substr(equals + 1)};
 }
 
-/// Warnings are for `edsc check`. So are invalid mappings: a PDO is decoded as it is mapped.
+/// Warnings and invalid mappings are for `edsc check`: a PDO is decoded as mapped.
 void print_errors(const Diagnostics& diagnostics, const ColorOption& color) {
   Diagnostics errors;
   for (const Diagnostic& one : diagnostics.all()) {
@@ -66,7 +66,7 @@ void print_errors(const Diagnostics& diagnostics, const ColorOption& color) {
   print_findings(stderr, errors, color);
 }
 
-/// A node's device. What is wrong with its data sheet is shown; what is left of it is used.
+/// The device of a node. Errors in its EDS are printed; the rest is used.
 std::unique_ptr<LoadedDevice> load_node(NodeArgument& argument, const ColorOption& color) {
   Diagnostics diagnostics;
   LoadSettings load;
@@ -128,7 +128,7 @@ class InputFile {
   int descriptor_;
 };
 
-/// The reader of our output has gone: nobody to tell.
+/// The reader of standard output has closed it: the program ends without message.
 struct OutputClosed {};
 
 void write_all(int descriptor, std::string& text) {
@@ -144,8 +144,7 @@ void write_all(int descriptor, std::string& text) {
 
 volatile std::sig_atomic_t interrupted = 0;
 
-/// An interrupt ends the log, so that the summary is shown. It is let through only while there is nothing to do but to
-/// wait for the log.
+/// An interrupt ends the log, so that the summary is printed. It is delivered only while waiting for the log.
 class Interrupts {
  public:
   Interrupts() {
@@ -161,7 +160,7 @@ class Interrupts {
     sigdelset(&while_waiting_, SIGINT);
   }
 
-  /// Waits until there is something to read. False: an interrupt has come.
+  /// Waits for input. Returns false at an interrupt.
   [[nodiscard]] bool wait_for(int descriptor) const {
     pollfd input{descriptor, POLLIN, 0};
     while (ppoll(&input, 1, nullptr, &while_waiting_) < 0 && errno == EINTR) {

@@ -38,14 +38,14 @@ struct Settings {
   ColorOption color;
 };
 
-/// Two versions of a device; `before` is null for a file that is new.
+/// Two versions of a device; `before` is null for a new file.
 struct Pair {
   std::unique_ptr<LoadedDevice> before;
   std::unique_ptr<LoadedDevice> after;
   Changes changes;
 };
 
-/// Null when there is nothing to compare; the errors are printed.
+/// Null if the device cannot be compared; the errors are printed.
 std::unique_ptr<LoadedDevice> reported(std::unique_ptr<LoadedDevice> loaded, const Diagnostics& diagnostics,
                                        const Settings& settings) {
   if (diagnostics.errors() > 0 || settings.keep_going) print_findings(stderr, diagnostics, settings.color);
@@ -61,7 +61,7 @@ std::unique_ptr<LoadedDevice> load(const std::string& path, const Settings& sett
   return reported(std::move(loaded), diagnostics, settings);
 }
 
-/// The device of a source file, with the options file that the same revision has beside it.
+/// The device of a source file, with the options file beside it in the same revision.
 std::unique_ptr<LoadedDevice> load_committed(std::unique_ptr<SourceFile> source, const std::string& revision,
                                              const std::string& path, const Settings& settings) {
   Diagnostics diagnostics;
@@ -77,7 +77,7 @@ std::unique_ptr<LoadedDevice> load_committed(std::unique_ptr<SourceFile> source,
   return reported(std::move(loaded), diagnostics, settings);
 }
 
-/// The pairs to compare; nothing when one of the files cannot be used, which is printed.
+/// The pairs to compare; nothing if a file cannot be used, which is printed.
 std::optional<std::vector<Pair>> load_pairs(const Settings& settings) {
   std::vector<Pair> pairs;
   if (settings.against.empty()) {

@@ -25,7 +25,7 @@ struct Settings {
   ColorOption color;
 };
 
-/// A broken PDO is shown as such; with any other error, part of the data sheet is missing or assumed.
+/// A broken PDO is marked as broken; with any other error, parts of the EDS are missing or assumed.
 bool is_incomplete(const Diagnostics& diagnostics) {
   return std::ranges::any_of(diagnostics.all(), [](const Diagnostic& one) {
     return one.severity == Severity::error && !is_broken_pdo_rule(one.rule);

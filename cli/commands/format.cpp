@@ -47,13 +47,13 @@ struct Settings {
   ColorOption color;
 };
 
-/// What these rules say is left out, stays in the text.
+/// These rules report parts as left out that remain in the text.
 constexpr std::string_view rules_of_what_stays[] = {"unknown-key", "unknown-section"};
 
-/// A data sheet with its lines. Values are not judged here: that is `edsc check`.
+/// A data sheet with its lines. Values are not checked here, but by `edsc check`.
 struct Input {
-  std::unique_ptr<SourceFile> file;    ///< as it was read
-  std::unique_ptr<SourceFile> source;  ///< null when the file itself is an EDS or DCF
+  std::unique_ptr<SourceFile> file;    ///< as read
+  std::unique_ptr<SourceFile> source;  ///< null if the file itself is an EDS or DCF
   IniFile ini;
   DataSheet sheet;
   Device device;
@@ -71,7 +71,7 @@ void read(const Settings& settings, Input& input, Diagnostics& diagnostics) {
   input.device = resolve_device(input.sheet, {}, {"", settings.node_id}, ignored);
 }
 
-/// Turns an XDD into the text of an EDS, an XDC into that of a DCF. What is lost is noted.
+/// Converts an XDD to an EDS, an XDC to a DCF. Notes what is lost.
 void convert(const Settings& settings, Input& input, Diagnostics& diagnostics) {
   std::vector<NotInEds> not_in_eds;
   const DataSheet sheet = read_xdd(*input.file, diagnostics, &not_in_eds);
@@ -96,7 +96,7 @@ std::string canonical_text(const Settings& settings, const Input& input) {
   return to_text(document);
 }
 
-/// The values of a DCF are those of its own node: those that follow the node-ID become the ones of another node first.
+/// For another node than that of the DCF, its node-ID-dependent values are first converted.
 void move_to_node(const Settings& settings, Input& input, Diagnostics& diagnostics) {
   if (!settings.node_id || !input.sheet.commissioning.present) return;
   Diagnostics ignored;

@@ -25,7 +25,7 @@ constexpr const char* examples = R"(Examples:
   edsc generate drive.eds -o out --name axis1 --node-id 5  a second one, with its node-ID fixed
   edsc generate vendor.eds -o out --keep-going             leave out what is wrong in the EDS of a purchased device)";
 
-/// Only a device that keeps its data sheet has this one.
+/// Only for a device that stores its EDS.
 constexpr std::string_view stored_eds_header = "stored_eds.hpp";
 
 struct Settings {
@@ -38,12 +38,12 @@ struct Settings {
   ColorOption color;
 };
 
-/// A template's text, and the file it came from when it is not the built-in one.
+/// The text of a template, and its file unless it is built in.
 struct ChosenTemplate {
   Template built_in;
   std::unique_ptr<SourceFile> replacement;
 
-  /// Throws std::runtime_error with the name of the file that has a mistake.
+  /// Throws std::runtime_error with the name of the invalid file.
   [[nodiscard]] std::string rendered(const nlohmann::ordered_json& view) const {
     if (!replacement) return render(built_in.text, view);
     try {
@@ -54,7 +54,7 @@ struct ChosenTemplate {
   }
 };
 
-/// The built-in templates, each replaced by the file of the same name in `folder`, where there is one.
+/// The built-in templates, each replaced by the file of the same name in `folder`, if it exists.
 std::vector<ChosenTemplate> choose_templates(const std::string& folder) {
   std::vector<ChosenTemplate> chosen;
   for (const Template& built_in : built_in_templates()) {
@@ -81,7 +81,7 @@ std::string make_path(std::string_view path) {
   return out;
 }
 
-/// A make rule: `target`, or the outputs where that is empty, depend on the inputs.
+/// A make rule: `target`, or the outputs if it is empty, depend on the inputs.
 std::string depfile_text(const std::string& target, const std::vector<OutputFile>& outputs,
                          const std::vector<std::string>& inputs) {
   std::string text = make_path(target);
@@ -93,7 +93,7 @@ std::string depfile_text(const std::string& target, const std::vector<OutputFile
   return text + "\n";
 }
 
-/// Takes sheet and device away as soon as the view is made: large ones take more memory than their files.
+/// Releases data sheet and device as soon as the view is complete, since large ones need more memory than their files.
 std::vector<OutputFile> render_all(const Settings& settings, LoadedDevice& loaded, Diagnostics& diagnostics) {
   const auto templates = choose_templates(settings.templates);
   loaded.sheet = {};
@@ -112,7 +112,7 @@ std::vector<OutputFile> render_all(const Settings& settings, LoadedDevice& loade
   return files;
 }
 
-/// Where all errors are in the file of another manufacturer.
+/// A hint, if `--keep-going` would make warnings of all errors.
 constexpr const char* keep_going_hint =
     "edsc: nothing was generated. For a file that you cannot change, --keep-going (KEEP_GOING in CMake) generates the rest of the "
     "device";

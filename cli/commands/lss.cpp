@@ -69,7 +69,7 @@ LssAddress address_of(const Settings& settings) {
           settings.serial.value_or(0)};
 }
 
-/// How many of the four numbers are given, from the first on.
+/// The number of given address parts, from the first.
 std::uint8_t known_numbers(const Settings& settings) {
   std::uint8_t known = 0;
   for (const auto* number : {&settings.vendor, &settings.product, &settings.revision, &settings.serial}) {
@@ -125,7 +125,7 @@ void print_found(const std::vector<LssAddress>& found) {
   print(json);
 }
 
-/// What was found is shown also where the search is interrupted or fails.
+/// Prints the slaves found even if the search is interrupted or fails.
 int fastscan(LssSession& session, const Settings& settings) {
   const bool text = settings.format == "text";
   std::vector<LssAddress> found;
@@ -161,7 +161,7 @@ int assign_selected(LssSession& session, const Settings& settings) {
   return settings.store ? done_or_failed("store", session.store()) : int{exit_fine};
 }
 
-/// Of a slave whose numbers are not all given, Fastscan finds the others. All slaves are waiting before and after.
+/// Fastscan finds the numbers that are not given. All slaves are in waiting state before and after.
 int assign(LssSession& session, const Settings& settings) {
   LssAddress address = address_of(settings);
   const std::uint8_t known = known_numbers(settings);

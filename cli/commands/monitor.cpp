@@ -51,7 +51,7 @@ std::optional<NodeFile> parse_node_file(const std::string& text) {
 
 constexpr canopen::Duration between_pictures = canopen::from_milliseconds(100);
 
-/// The bus from now on, in words.
+/// Prints the events on the bus as text.
 class Monitor {
  public:
   Monitor(LiveBus& bus, const Settings& settings, const std::vector<KnownNode>& known)
@@ -61,7 +61,7 @@ class Monitor {
     state_.start(0);
   }
 
-  /// A table that is drawn ten times a second, until q or Ctrl-C.
+  /// A table that is updated ten times a second, until q or Ctrl-C.
   int show_table(bool colour) {
     view_.colour = colour;
     Terminal terminal;
@@ -85,7 +85,7 @@ class Monitor {
     return exit_fine;
   }
 
-  /// What came in so many seconds; Ctrl-C shortens them.
+  /// The state after this number of seconds, or at Ctrl-C.
   int print_once(double seconds, const std::string& format) {
     const auto end_us = static_cast<std::int64_t>(seconds * 1e6);
     while (!Interruption::noted() && now_us_ < end_us) {
@@ -103,7 +103,7 @@ class Monitor {
   }
 
  private:
-  /// Takes frames for this time and tells of those that are news.
+  /// Receives frames for this time and prints new information.
   template <class OnNews>
   void take_frames(canopen::Duration span, OnNews on_news) {
     const canopen::TimePoint end = bus_.now() + span;

@@ -26,7 +26,7 @@ struct Settings {
   unsigned wait_ms = 0;
 };
 
-/// Listens for the node's word that it is where the command leads.
+/// Waits until the node reports the state that the command leads to.
 class Confirmation {
  public:
   Confirmation(LiveBus& bus, const Settings& settings) : bus_{bus}, settings_{settings} {

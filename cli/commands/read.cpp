@@ -41,16 +41,16 @@ struct Settings {
 
 using Json = nlohmann::ordered_json;
 
-/// So many entries without an answer in a row, and the node is taken for gone.
+/// Consecutive entries without response, after which the node is lost.
 constexpr unsigned most_silent = 3;
 
 /// An entry to read.
 struct Chosen {
   LiveEntry entry;
-  bool by_object = false;  ///< as one of its object: not each of them need have a value now
+  bool by_object = false;  ///< one of the entries of its object, which need not all have a value
 };
 
-/// All that tools may read (ObjFlags, CiA 306-1, 4.6.3.2): of DOMAINs only those that are asked for.
+/// All entries that tools may read (ObjFlags, CiA 306-1, 4.6.3.2); DOMAINs only if named.
 std::vector<Chosen> all_entries(const Device& device) {
   constexpr std::uint32_t no_read = 2;
   std::vector<Chosen> entries;
@@ -65,7 +65,7 @@ std::vector<Chosen> all_entries(const Device& device) {
   return entries;
 }
 
-/// False when an object is not known, which is then told.
+/// Returns false if an object is unknown, which is reported.
 bool choose_entries(const Settings& settings, const Device* device, std::vector<Chosen>& entries) {
   if (settings.all) {
     entries = all_entries(*device);
@@ -85,7 +85,7 @@ bool choose_entries(const Settings& settings, const Device* device, std::vector<
   return true;
 }
 
-/// What sub-index 0 of the object that is being read says.
+/// The value of sub-index 0 of the current object.
 class EntryCount {
  public:
   void take(const LiveEntry& entry, const SdoOutcome& outcome) {
@@ -104,14 +104,14 @@ class EntryCount {
   std::optional<std::uint8_t> count_;
 };
 
-/// 1003h has as many entries as its sub-index 0 says (CiA 301, 7.5.2.4); of the others none is read.
+/// 1003h has the number of entries in its sub-index 0 (CiA 301, 7.5.2.4); the others are not read.
 bool has_no_entry(const Chosen& chosen, const EntryCount& count) {
   constexpr std::uint16_t error_history = 0x1003;
   return chosen.by_object && chosen.entry.index == error_history && count.leaves_out(chosen.entry);
 }
 
-/// Whether the device may refuse to read the entry without being at fault: it has no value now, or it is a mapping
-/// entry above the number of mapped objects.
+/// Whether the device may refuse to read the entry: it currently has no value, or it is a mapping entry above the
+/// number of mapped objects.
 bool may_be_refused(const Chosen& chosen, const EntryCount& count, const SdoOutcome& outcome) {
   if (!chosen.by_object || outcome.end != SdoEnd::refused) return false;
   const unsigned range = chosen.entry.index & 0xFE00U;

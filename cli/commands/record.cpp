@@ -42,7 +42,7 @@ std::string bad_interface(const std::string& name) {
   return fmt::format("\"{}\" is not the name of an interface: up to 15 characters without blanks", name);
 }
 
-/// The time of day at which a frame was received, never before that of the frame before.
+/// The time of day at which a frame was received, never earlier than that of the previous frame.
 class Clock {
  public:
   socketcand::TimeStamp at(canopen::TimePoint received, canopen::TimePoint now) {
@@ -58,7 +58,7 @@ class Clock {
   std::int64_t last_ = 0;
 };
 
-/// The frames of a bus to a file.
+/// Writes the frames of a bus to a file.
 class Recorder {
  public:
   Recorder(LiveBus& bus, const Settings& settings, std::FILE* file)
@@ -67,7 +67,7 @@ class Recorder {
         interface_{settings.interface.empty() ? interface_of(settings.bus) : settings.interface},
         file_{file} {}
 
-  /// False when the file cannot be written.
+  /// Returns false if the file cannot be written.
   bool run() {
     using namespace std::chrono;
     const auto end = steady_clock::now() + duration_cast<steady_clock::duration>(
@@ -114,7 +114,7 @@ int record(LiveBus& bus, const Settings& settings, std::FILE* file) {
   try {
     errno = 0;
     if (!recorder.run()) {
-      // main reports what standard output does not take
+      // main reports write errors of standard output
       if (settings.output.empty()) throw std::system_error{errno, std::generic_category(), "standard output"};
       print_visibly(stderr, "edsc: {}: {}\n", settings.output, errno != 0 ? std::strerror(errno) : "cannot be written");
       return exit_wrong_usage;

@@ -47,7 +47,7 @@ struct Settings {
 
 using Json = nlohmann::ordered_json;
 
-/// Why an entry is not in the DCF.
+/// An entry that is not in the DCF, with the reason.
 struct Missing {
   LiveEntry entry;
   std::string what;
@@ -65,7 +65,7 @@ bool fail(const std::string& sentence) {
   return false;
 }
 
-/// Whether the value is the default of the EDS for this node.
+/// Whether the value is the default value of the EDS for this node.
 bool is_default(const Entry& entry, const std::vector<std::uint8_t>& bytes) {
   if (!entry.default_value) return false;
   const std::string data = data_of(*entry.default_value, *entry.type);
@@ -76,7 +76,7 @@ bool is_default(const Entry& entry, const std::vector<std::uint8_t>& bytes) {
   return value == data;
 }
 
-/// Whether the element of a compact form has no section of its own.
+/// Whether the element of a compact form does not have its own section.
 bool is_compact(const DataSheet& sheet, const LiveEntry& entry) {
   const ObjectDescription* object = find_object(sheet, entry.index);
   if (object == nullptr || entry.sub_index == 0 || !object->compact_sub_obj.present) return false;
@@ -101,7 +101,7 @@ class Choice {
   }
 
  private:
-  /// Of a DCF the device has the ParameterValues as its defaults.
+  /// With a DCF, the default values of the device are the ParameterValues.
   void note_parameter_values(const LoadedDevice& loaded) {
     if (!loaded.sheet.is_dcf) return;
     Diagnostics ignored;
@@ -115,7 +115,7 @@ class Choice {
   }
 
   std::set<const Entry*> not_default_;
-  std::set<std::uint16_t> whole_;  ///< objects of which all values are saved: mappings and compact forms
+  std::set<std::uint16_t> whole_;  ///< objects with all values saved: mappings and compact forms
 };
 
 void choose_values(const Settings& settings, const LoadedDevice& loaded, Saved& saved) {
@@ -132,8 +132,8 @@ void choose_values(const Settings& settings, const LoadedDevice& loaded, Saved& 
   }
 }
 
-/// The entries of which the ParameterValue in FILE does not count: those that `save` reads, and 1020h, which would have
-/// the date of FILE.
+/// The entries whose ParameterValue in FILE is ignored: those that `save` reads, and 1020h, which would have the date
+/// of FILE.
 std::set<const Entry*> known_entries(const Device& device) {
   std::set<const Entry*> known;
   for (const LiveEntry& entry : configuration_entries(device)) known.insert(entry.entry);
@@ -151,7 +151,7 @@ std::string dcf_text(const Settings& settings, const LoadedDevice& loaded, const
   return to_text(document);
 }
 
-/// What a program that reads the DCF gets: the values by address.
+/// The values that a reader of the DCF gets, by address.
 std::map<std::pair<std::uint16_t, std::uint8_t>, std::string> values_in(const Settings& settings,
                                                                         const std::string& text) {
   Diagnostics ignored;
@@ -166,7 +166,7 @@ std::map<std::pair<std::uint16_t, std::uint8_t>, std::string> values_in(const Se
   return values;
 }
 
-/// Writes the DCF and reads it back: what it does not hold is taken out and reported.
+/// Writes the DCF and reads it back: values that it does not preserve are removed and reported.
 void make_text(const Settings& settings, const LoadedDevice& loaded, Saved& saved) {
   saved.text = dcf_text(settings, loaded, saved.values);
   const auto held = values_in(settings, saved.text);
@@ -222,7 +222,7 @@ void report(const Settings& settings, const Saved& saved) {
   print_visibly(settings.output.empty() ? stderr : stdout, "{}\n", text);
 }
 
-/// False when the file cannot be written.
+/// Returns false if the file cannot be written.
 bool write_text(const Settings& settings, const Saved& saved) {
   if (!settings.output.empty()) {
     const std::string problem = write_files({{settings.output, saved.text}});

@@ -38,7 +38,7 @@ struct Settings {
   ColorOption color;
 };
 
-/// A data sheet that devices are compared with.
+/// An EDS to compare devices with.
 struct Candidate {
   std::string path;
   Identity identity;
@@ -75,13 +75,13 @@ std::string fits_text(const FoundNode& node, const std::vector<Candidate>& candi
   return text.empty() ? "none" : text;
 }
 
-/// A node that is not the device of a file, but the most similar one.
+/// The most similar node for a file that does not match any node.
 struct Nearest {
   const FoundNode* node = nullptr;
   unsigned differences = 0;
 };
 
-/// Nothing where the file fits a node, or no node states a number.
+/// Nothing if the file matches a node, or if no node states a number.
 std::optional<Nearest> nearest_misfit(const std::vector<FoundNode>& nodes, const Candidate& candidate) {
   std::optional<Nearest> nearest;
   for (const FoundNode& node : nodes) {
@@ -94,7 +94,7 @@ std::optional<Nearest> nearest_misfit(const std::vector<FoundNode>& nodes, const
   return nearest;
 }
 
-/// Why files fit no node.
+/// Prints why files do not match any node.
 void print_misfits(const std::vector<FoundNode>& nodes, const std::vector<Candidate>& candidates) {
   for (const Candidate& candidate : candidates) {
     const auto nearest = nearest_misfit(nodes, candidate);
@@ -178,7 +178,7 @@ void print_json(const Findings& found, const std::vector<Candidate>& candidates)
 
 constexpr std::uint8_t any_node = 1;  ///< the identity of a device does not depend on its node-ID
 
-/// False when a data sheet cannot be read, which is then told.
+/// Returns false if an EDS cannot be read, which is reported.
 bool load_candidates(const Settings& settings, std::vector<Candidate>& candidates) {
   for (const std::string& path : settings.sheets) {
     const auto loaded = load_live_device(path, any_node);

@@ -37,7 +37,7 @@ struct Settings {
   SdoSettings sdo;
 };
 
-/// Values from which on a block transfer is tried.
+/// Minimum size for a block transfer.
 constexpr std::size_t long_value = 128;
 
 std::string joined(const std::vector<std::string>& words) {
@@ -46,7 +46,7 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-/// What is to be written, or what is wrong with it.
+/// The value to write, or an error message.
 ParsedValue value_to_write(const Settings& settings, const LiveEntry& entry) {
   ParsedValue value;
   if (!settings.file.empty()) {

@@ -10,7 +10,7 @@
 namespace edsc {
 namespace {
 
-/// CLI11 names what a check accepts behind the type: `TEXT:{text,json}`, `UINT:INT in [1 - 127]`, `TEXT:DIR`.
+/// CLI11 appends the accepted values of a check to the type: `TEXT:{text,json}`, `UINT:INT in [1 - 127]`, `TEXT:DIR`.
 void take_value(const std::string& type_name, OptionDescription& option) {
   const std::size_t open = type_name.find('{');
   const std::size_t close = type_name.find('}', open);

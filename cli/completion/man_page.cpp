@@ -30,7 +30,7 @@ says so
 .BR candump (1)
 )";
 
-/// Text in which roff finds nothing of its own.
+/// Text with roff markup escaped.
 std::string escaped(std::string_view text) {
   std::string out;
   for (std::size_t at = 0; at < text.size(); ++at) {
@@ -49,7 +49,7 @@ std::string escaped(std::string_view text) {
   return out;
 }
 
-/// A sentence, its lines no longer than mandoc likes them.
+/// A sentence, wrapped to the line length recommended by mandoc.
 std::string filled(std::string_view text) {
   constexpr std::size_t most_columns = 78;
   std::string out, line;

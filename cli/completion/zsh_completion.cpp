@@ -19,7 +19,7 @@ _edsc_file() {
 
 )";
 
-/// In single quotes; what _arguments takes for itself gets a backslash.
+/// In single quotes; special characters of _arguments are escaped.
 std::string quoted(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -68,7 +68,7 @@ std::string function_of(const CommandDescription& command) {
   return command.path.empty() ? "_edsc" : fmt::format("_edsc_{}", fmt::join(command.path, "_"));
 }
 
-/// The commands of a command, each group under its name.
+/// The subcommands of a command, each group under its name.
 void append_choices(std::string& out, const CommandDescription& command) {
   const auto put = std::back_inserter(out);
   out += "      local -a commands\n";

@@ -32,7 +32,7 @@ struct Outcome {
   std::string errors;
 };
 
-/// Both ends of a pipe, closed in the end.
+/// Both ends of a pipe, closed at the end.
 class Pipe {
  public:
   Pipe() { is_open_ = pipe2(ends_.data(), O_CLOEXEC) == 0; }
@@ -57,7 +57,7 @@ class Pipe {
   bool is_open_ = false;
 };
 
-/// Reads what a program writes, until it writes no more.
+/// Reads the output of a program until its end.
 void drain(const Pipe& output, const Pipe& errors, Outcome& outcome) {
   std::array<pollfd, 2> open{{{output.reading(), POLLIN, 0}, {errors.reading(), POLLIN, 0}}};
   std::array<std::string*, 2> texts{&outcome.output, &outcome.errors};
@@ -78,7 +78,7 @@ void drain(const Pipe& output, const Pipe& errors, Outcome& outcome) {
   }
 }
 
-/// Runs git without a shell; nothing when it cannot be started.
+/// Runs git without a shell; nothing if it cannot be started.
 std::optional<Outcome> run_git(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), "git");
   std::vector<char*> words;
@@ -107,8 +107,8 @@ std::optional<Outcome> run_git(std::vector<std::string> arguments) {
   return outcome;
 }
 
-/// A folder for `git -C`, and the file as that folder sees it. In a hook, GIT_DIR is relative to the folder that git has
-/// chosen.
+/// A folder for `git -C`, and the path of the file relative to it. In a hook, GIT_DIR is relative to the folder chosen
+/// by git.
 std::pair<std::vector<std::string>, std::string> place_of(const std::string& path) {
   std::error_code error;
   if (std::getenv("GIT_DIR") != nullptr) {

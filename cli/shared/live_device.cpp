@@ -27,7 +27,7 @@ NamedEntries by_address(const std::string& text) {
   return {{entry}, ""};
 }
 
-/// Which numbers of the identity the file or the node does not state.
+/// The numbers of the identity that the file or the node does not state.
 std::string not_compared_text(const std::string& path, const std::vector<NotCompared>& numbers) {
   std::vector<NotCompared> in_sheet, elsewhere;
   for (const NotCompared& number : numbers) (number.in_sheet ? in_sheet : elsewhere).push_back(number);

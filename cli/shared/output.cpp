@@ -25,7 +25,7 @@ bool flushed() {
 void occupy_standard_descriptors() {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) continue;
-    // The lowest free number is this one. Open for the other direction: use of it fails, as of the closed one.
+    // The lowest free number is this one. Opened for the other direction, so that using it fails like a closed one.
     if (::open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY) < 0) return;
   }
 }

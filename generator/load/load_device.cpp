@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The options file that goes with a data sheet: `drive.options.json` beside `drive.eds`.
+/// The options file of an EDS: `drive.options.json` beside `drive.eds`.
 std::string options_path_of(const LoadSettings& settings) {
   if (!settings.options_path.empty()) return settings.options_path;
   const fs::path beside = fs::path{settings.path}.replace_extension(".options.json");
@@ -83,7 +83,7 @@ void allow_by_comment(const AllowComment& comment, Diagnostics& diagnostics) {
   diagnostics.allow({std::string{comment.rule}, std::string{comment.reason}, comment.position, true, comment.scope});
 }
 
-/// Registers what the options and comments of the data sheet allow. The parts of an XDD are known when it is read.
+/// Registers the allowances in the options and comments of the EDS. The parts of an XDD are known after reading it.
 void allow_findings(const LoadedDevice& loaded, Diagnostics& diagnostics) {
   allow_by_options(loaded, diagnostics);
   diagnostics.set_outline({loaded.source.get(), {}, {}});
