@@ -71,7 +71,7 @@ void read(const Settings& settings, Input& input, Diagnostics& diagnostics) {
   input.device = resolve_device(input.sheet, {}, {"", settings.node_id}, ignored);
 }
 
-/// Converts an XDD to an EDS, an XDC to a DCF. Notes what is lost.
+/// Converts an XDD to an EDS, an XDC to a DCF. Reports losses as notes.
 void convert(const Settings& settings, Input& input, Diagnostics& diagnostics) {
   std::vector<NotInEds> not_in_eds;
   const DataSheet sheet = read_xdd(*input.file, diagnostics, &not_in_eds);

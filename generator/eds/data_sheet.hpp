@@ -97,7 +97,7 @@ struct DeviceInfo {
     std::uint16_t kbit_per_second;
     Field field;
   };
-  std::vector<BaudRate> baud_rates;  ///< those that have a key, whatever its value
+  std::vector<BaudRate> baud_rates;  ///< those that have a key, regardless of its value
 };
 
 /// [DeviceComissioning] of a DCF, clause 5.3.
