@@ -24,9 +24,9 @@ class SimulatedPort final : public BusPort {
   /// Whether an address begins with `simulated:`.
   [[nodiscard]] static bool is_address(std::string_view text);
 
-  /// `simulated:PROGRAM@NODE-ID[,NAME]`: PROGRAM is a path, NODE-ID 1..127 or 255 for a device that LSS gives one, NAME one
-  /// of the devices of the program. Throws std::invalid_argument for a malformed address, std::runtime_error for a program
-  /// that cannot be started or is not such a simulation.
+  /// `simulated:PROGRAM@NODE-ID[,NAME]`: PROGRAM is a path; NODE-ID is 1..127, or 255 for a device without node-ID, for
+  /// LSS; NAME is a device of the program. Throws std::invalid_argument for a malformed address, std::runtime_error for
+  /// a program that cannot be started or is not such a simulation.
   explicit SimulatedPort(const std::string& address);
   /// Closes the input of the program, which ends it; otherwise kills it.
   ~SimulatedPort() override;

@@ -1,5 +1,5 @@
-/// The rule table: the faults that edsc reports in EDS, DCF and XDD files, with severity and clause. A finding names a row
-/// and has a severity that the row allows; another id or severity does not compile.
+/// The rule table: the faults that edsc reports in EDS, DCF and XDD files, with severity and clause. A finding names a
+/// row and has a severity that the row allows; another id or severity does not compile.
 #pragma once
 
 #include <algorithm>

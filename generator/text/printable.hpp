@@ -1,5 +1,5 @@
-/// Text of files and devices, made safe for a terminal, a comment or a viewer of JSON: control characters and characters
-/// that change the direction of text are visible, and have no effect.
+/// Makes text of files and devices safe for a terminal, a comment or a JSON viewer: control characters and characters
+/// that change the text direction become visible, and have no effect.
 #pragma once
 
 #include <fmt/format.h>
