@@ -24,7 +24,7 @@ using canopen::CobId;
 using canopen::Frame;
 
 constexpr std::uint32_t function_mask = 0x780, node_mask = 0x7F;
-constexpr std::size_t most_further_followers = 1024;
+constexpr std::size_t max_further_followers = 1024;
 
 struct CommandRow {
   canopen::NmtCommand command;
@@ -186,7 +186,7 @@ void Decoder::find_routes() {
       const std::uint64_t key = std::uint64_t{ids.request.value() & 0x3FFF'FFFF} << 32 | ids.response.value();
       auto at = further_followers_.find(key * 131 + model.node_id());
       if (at == further_followers_.end()) {
-        if (further_followers_.size() >= most_further_followers) continue;
+        if (further_followers_.size() >= max_further_followers) continue;
         at = further_followers_.emplace(key * 131 + model.node_id(), followers_.size()).first;
         followers_.push_back({model.node_id(), {}});
       }

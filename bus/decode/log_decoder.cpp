@@ -13,10 +13,10 @@ namespace edsc {
 namespace {
 
 std::string broken_line_text(const LogLine& line, std::string_view text) {
-  constexpr std::size_t most_shown = 60;
+  constexpr std::size_t max_shown = 60;
   std::string sentence = fmt::format("skipped, {}: ", line.problem);
-  append_quoted(sentence, text.substr(0, most_shown));
-  if (text.size() > most_shown) sentence += "...";
+  append_quoted(sentence, text.substr(0, max_shown));
+  if (text.size() > max_shown) sentence += "...";
   return sentence;
 }
 
@@ -26,7 +26,7 @@ LogDecoder::LogDecoder(const std::vector<KnownNode>& nodes, NodeLabels labels, L
     : settings_{std::move(settings)}, labels_{std::move(labels)}, decoder_{nodes} {}
 
 void LogDecoder::complain(std::size_t line_number, std::string_view what, std::string& complaints) {
-  if (++complaints_ > most_complaints) return;
+  if (++complaints_ > max_complaints) return;
   fmt::format_to(std::back_inserter(complaints), "{}:{}: {}\n", printable(settings_.log_name), line_number,
                  printable(what));
 }
@@ -84,9 +84,9 @@ void LogDecoder::finish(std::string& complaints) {
     fmt::format_to(std::back_inserter(complaints), "{}: {} was not finished\n", printable(settings_.log_name),
                    printable(transfer));
   }
-  if (complaints_ > most_complaints) {
+  if (complaints_ > max_complaints) {
     fmt::format_to(std::back_inserter(complaints), "{}: {} like {}\n", printable(settings_.log_name),
-                   counted(complaints_ - most_complaints, "more line"), complaints_ - most_complaints == 1 ? "this" : "these");
+                   counted(complaints_ - max_complaints, "more line"), complaints_ - max_complaints == 1 ? "this" : "these");
   }
 }
 

@@ -26,7 +26,7 @@ struct LogDecoderSettings {
 class LogDecoder {
  public:
   /// Maximum number of listed errors; any more are counted.
-  static constexpr std::size_t most_complaints = 50;
+  static constexpr std::size_t max_complaints = 50;
 
   LogDecoder(const std::vector<KnownNode>& nodes, NodeLabels labels, LogDecoderSettings settings);
 

@@ -8,8 +8,8 @@ namespace {
 
 using canopen::CobId;
 
-constexpr unsigned most_bits = 64;
-constexpr std::uint8_t most_mapped = 64;
+constexpr unsigned max_bits = 64;
+constexpr std::uint8_t max_mapped = 64;
 constexpr std::uint32_t save_signature = 0x6576'6173, load_signature = 0x6461'6F6C;  ///< "save", "load"
 
 /// Objects that change the meaning of frames.
@@ -147,11 +147,11 @@ void NodeModel::lay_out(std::size_t at) {
   const auto index = static_cast<std::uint16_t>((receive ? 0x1600 : 0x1A00) + pdo.number - 1);
   const std::uint32_t count = parameter(index, 0).value_or(0);
   layout.multiplexed = count >= canopen::source_multiplexed;
-  for (unsigned i = 1; i <= count && i <= most_mapped && !layout.multiplexed; ++i) {
+  for (unsigned i = 1; i <= count && i <= max_mapped && !layout.multiplexed; ++i) {
     const std::uint32_t mapping = parameter(index, static_cast<std::uint8_t>(i)).value_or(0);
     PdoField one = field(mapping);
     if (mapping == 0 || one.bits == 0) continue;
-    if (layout.bits + one.bits > most_bits) break;
+    if (layout.bits + one.bits > max_bits) break;
     one.offset = static_cast<std::uint8_t>(layout.bits);
     layout.bits += one.bits;
     layout.fields.push_back(std::move(one));
@@ -165,8 +165,8 @@ void NodeModel::lay_out_all() {
 }
 
 bool NodeModel::learn(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> value, bool written) {
-  constexpr std::size_t most_bytes = 4;
-  if (value.empty() || value.size() > most_bytes) return false;
+  constexpr std::size_t max_bytes = 4;
+  if (value.empty() || value.size() > max_bytes) return false;
   std::uint32_t number = 0;
   for (std::size_t i = value.size(); i-- > 0;) number = number << 8 | value[i];
   constexpr std::uint16_t store = 0x1010, restore = 0x1011;

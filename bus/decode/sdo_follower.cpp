@@ -125,7 +125,7 @@ void SdoFollower::stray(std::string_view what, Message& message) {
 
 void SdoFollower::append(std::span<const std::uint8_t> bytes) {
   total_ += static_cast<std::uint32_t>(bytes.size());
-  const std::size_t room = most_kept - std::min(kept_.size(), most_kept);
+  const std::size_t room = max_kept - std::min(kept_.size(), max_kept);
   const auto shown = bytes.first(std::min(room, bytes.size()));
   kept_.insert(kept_.end(), shown.begin(), shown.end());
   if (crc_used_) crc_ = canopen::crc16_ccitt(crc_, bytes);

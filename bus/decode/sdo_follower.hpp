@@ -19,7 +19,7 @@ namespace edsc {
 class SdoFollower {
  public:
   /// Maximum bytes of a value that are stored; of longer values, only the length is known.
-  static constexpr std::size_t most_kept = 1024;
+  static constexpr std::size_t max_kept = 1024;
 
   /// Decodes a frame of the client or server into `message`. `model` may be null: objects then have no names. The
   /// values of the message are valid until the next frame.

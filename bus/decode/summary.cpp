@@ -76,7 +76,7 @@ void Summary::count_code(Codes& codes, std::uint8_t node_id, std::uint32_t code)
   const auto at = codes.find({node_id, code});
   if (at != codes.end()) {
     ++at->second;
-  } else if (codes.size() < most_codes) {
+  } else if (codes.size() < max_codes) {
     codes.emplace(std::pair{node_id, code}, 1);
   }
 }

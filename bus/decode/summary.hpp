@@ -27,7 +27,7 @@ class Summary {
 
  private:
   static constexpr std::size_t node_ids = 128;
-  static constexpr std::size_t most_codes = 1000;  ///< of errors and aborts; any more are counted as transfers only
+  static constexpr std::size_t max_codes = 1000;  ///< of errors and aborts; any more are counted as transfers only
 
   struct Transfers {
     std::size_t finished = 0, aborted = 0, timed = 0;

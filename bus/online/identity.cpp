@@ -12,16 +12,16 @@ namespace {
 struct Number {
   std::string_view name, key;
   std::optional<std::uint32_t> Identity::*value;
-  Fit difference;
+  IdentityMatch difference;
   bool usual = true;  ///< every EDS should state it
 };
 
 constexpr Number numbers[] = {
-    {"device type", "device_type", &Identity::device_type, Fit::other},
-    {"vendor-ID", "vendor_id", &Identity::vendor_id, Fit::other},
-    {"product code", "product_code", &Identity::product_code, Fit::other},
-    {"revision number", "revision_number", &Identity::revision_number, Fit::major_revision},
-    {"serial number", "serial_number", &Identity::serial_number, Fit::other, false},
+    {"device type", "device_type", &Identity::device_type, IdentityMatch::other},
+    {"vendor-ID", "vendor_id", &Identity::vendor_id, IdentityMatch::other},
+    {"product code", "product_code", &Identity::product_code, IdentityMatch::other},
+    {"revision number", "revision_number", &Identity::revision_number, IdentityMatch::major_revision},
+    {"serial number", "serial_number", &Identity::serial_number, IdentityMatch::other, false},
 };
 
 std::optional<std::uint32_t> default_of(const Device& device, std::uint16_t index, std::uint8_t sub_index) {
@@ -64,30 +64,30 @@ Identity read_identity(SdoAccess& node) {
           read_word(node, 0x1018, 3), read_word(node, 0x1018, 4)};
 }
 
-std::string_view to_text(Fit fit) {
-  switch (fit) {
-    case Fit::same: return "same device";
-    case Fit::minor_revision: return "other minor revision";
-    case Fit::major_revision: return "other major revision";
-    case Fit::other: return "other device";
-    case Fit::unknown: return "not known";
+std::string_view to_text(IdentityMatch match) {
+  switch (match) {
+    case IdentityMatch::same: return "same device";
+    case IdentityMatch::minor_revision: return "other minor revision";
+    case IdentityMatch::major_revision: return "other major revision";
+    case IdentityMatch::other: return "other device";
+    case IdentityMatch::unknown: return "not known";
   }
   return {};
 }
 
-Fit compare_identity(const Identity& sheet, const Identity& device) {
-  Fit fit = Fit::unknown;
+IdentityMatch compare_identity(const Identity& sheet, const Identity& device) {
+  IdentityMatch match = IdentityMatch::unknown;
   for (const Number& number : numbers) {
     const auto expected = sheet.*number.value, found = device.*number.value;
     if (!expected || !found) continue;
     if (*expected == *found) {
-      if (fit == Fit::unknown) fit = Fit::same;
+      if (match == IdentityMatch::unknown) match = IdentityMatch::same;
       continue;
     }
-    if (number.difference == Fit::other) return Fit::other;
-    fit = (*expected >> 16) == (*found >> 16) ? Fit::minor_revision : Fit::major_revision;
+    if (number.difference == IdentityMatch::other) return IdentityMatch::other;
+    match = (*expected >> 16) == (*found >> 16) ? IdentityMatch::minor_revision : IdentityMatch::major_revision;
   }
-  return fit;
+  return match;
 }
 
 std::string identity_differences(const Identity& sheet, const Identity& device) {

@@ -23,7 +23,7 @@ struct Identity {
 /// number 0 means unknown.
 [[nodiscard]] Identity identity_of(const Device& device);
 
-enum class Fit : std::uint8_t {
+enum class IdentityMatch : std::uint8_t {
   same,            ///< all numbers that both state are equal
   minor_revision,  ///< except for the minor revision: the CANopen behaviour is the same
   major_revision,  ///< except for the revision number
@@ -32,13 +32,13 @@ enum class Fit : std::uint8_t {
 };
 
 /// `same device`
-[[nodiscard]] std::string_view to_text(Fit fit);
+[[nodiscard]] std::string_view to_text(IdentityMatch match);
 
 /// Reads device type and identity object.
 [[nodiscard]] Identity read_identity(SdoAccess& node);
 
 /// Compares the numbers that both state.
-[[nodiscard]] Fit compare_identity(const Identity& sheet, const Identity& device);
+[[nodiscard]] IdentityMatch compare_identity(const Identity& sheet, const Identity& device);
 
 /// The differences, number by number: `product code is 00001234h, expected 00001235h`.
 [[nodiscard]] std::string identity_differences(const Identity& sheet, const Identity& device);

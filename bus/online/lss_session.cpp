@@ -14,7 +14,7 @@ using canopen::LssOutcome;
 using canopen::LssState;
 
 /// The maximum number of slaves in a network.
-constexpr std::size_t most_slaves = 127;
+constexpr std::size_t max_slaves = 127;
 
 }  // namespace
 
@@ -154,7 +154,7 @@ LssResult LssSession::find_unconfigured(const std::function<void(const LssAddres
   switch_state(LssState::waiting);
   LssAddress address = among;
   LssResult result = fastscan(address, known);
-  for (std::size_t count = 0; result.done() && count != most_slaves; ++count) {
+  for (std::size_t count = 0; result.done() && count != max_slaves; ++count) {
     const LssAddress last = address;
     const LssResult confirmed = confirm(address);
     switch_state(LssState::waiting);

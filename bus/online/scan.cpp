@@ -16,7 +16,7 @@ using canopen::NodeId;
 using canopen::TimePoint;
 
 /// Nodes that are queried at the same time: few enough to receive the responses in time at 20 kbit/s.
-constexpr std::size_t most_at_once = 16;
+constexpr std::size_t max_at_once = 16;
 /// The scan does not wait for slower heartbeats.
 constexpr std::uint32_t longest_heartbeat_ms = 5'000;
 constexpr Duration look_again = canopen::from_milliseconds(5);
@@ -108,7 +108,7 @@ class Scan {
     const TimePoint begin = bus_.now();
     std::size_t next = 0;
     while (next != settings_.nodes.size() || !running_.empty() || waits_for_heartbeats(begin)) {
-      while (next != settings_.nodes.size() && running_.size() < most_at_once) {
+      while (next != settings_.nodes.size() && running_.size() < max_at_once) {
         running_.emplace_back(bus_, nodes_[settings_.nodes[next++]], Duration{settings_.timeout_ms * 1000U});
       }
       if (const auto frame = bus_.receive(wait())) on_frame(*frame);

@@ -36,7 +36,7 @@ constexpr std::string_view scheme = "simulated:";
 constexpr std::size_t longest_line = 4096;
 constexpr timeval longest_wait{0, 100'000};
 constexpr int waits_after_interruption = 10;
-constexpr std::size_t most_requests = 16'384;  // bytes pending until the next request for a response
+constexpr std::size_t max_requests = 16'384;  // bytes pending until the next request for a response
 
 struct SimulatedAddress {
   std::string program;
@@ -180,7 +180,7 @@ bool SimulatedPort::send(const Frame& frame) {
   requests_ += "send ";
   simulation::append_frame(requests_, frame);
   requests_ += '\n';
-  if (requests_.size() > most_requests) flush();
+  if (requests_.size() > max_requests) flush();
   return true;
 }
 

@@ -16,8 +16,8 @@
 namespace edsc {
 namespace {
 
-constexpr std::size_t most_suggestions = 3;
-constexpr std::size_t most_listed = 8;  ///< sub-indices in a message
+constexpr std::size_t max_suggestions = 3;
+constexpr std::size_t max_listed = 8;  ///< sub-indices in a message
 
 /// `2`, `0x2`, `02h`; after an index with h, all digits are hexadecimal.
 std::optional<std::uint8_t> parse_sub_index(std::string_view text, bool hexadecimal) {
@@ -64,11 +64,11 @@ FoundEntry no_entry(std::string sentence) { return {nullptr, nullptr, std::move(
 
 std::string sub_indices_of(const Object& object) {
   std::string text;
-  for (std::size_t i = 0; i < std::min(object.entries.size(), most_listed); ++i) {
+  for (std::size_t i = 0; i < std::min(object.entries.size(), max_listed); ++i) {
     const Entry& entry = object.entries[i];
     text += fmt::format("{}{} {}", i == 0 ? "" : ", ", entry_label(entry.index, entry.sub_index), entry.identifier);
   }
-  if (object.entries.size() > most_listed) {
+  if (object.entries.size() > max_listed) {
     const Entry& last = object.entries.back();
     text += fmt::format(" ... {} {}", entry_label(last.index, last.sub_index), last.identifier);
   }
@@ -114,7 +114,7 @@ class Suggestions {
     rows_.erase(std::unique(rows_.begin(), rows_.end(), same), rows_.end());
     if (rows_.empty()) return "";
     std::string out = "; did you mean ";
-    const std::size_t count = std::min(rows_.size(), most_suggestions);
+    const std::size_t count = std::min(rows_.size(), max_suggestions);
     for (std::size_t i = 0; i < count; ++i) {
       out += i == 0 ? "" : i + 1 == count ? " or " : ", ";
       out += rows_[i].second;
@@ -202,10 +202,10 @@ FoundEntry by_entry_name(const Device& device, std::string_view text) {
   if (matches.size() == 1) return matches.front();
   if (matches.empty()) return no_entry(fmt::format("the device has no object \"{}\"{}", text, near_names(device, text)));
   std::string sentence = fmt::format("\"{}\" is ambiguous:", text);
-  for (std::size_t i = 0; i < std::min(matches.size(), most_suggestions); ++i) {
+  for (std::size_t i = 0; i < std::min(matches.size(), max_suggestions); ++i) {
     sentence += fmt::format("{} {}", i == 0 ? "" : " or", entry_title(*matches[i].object, *matches[i].entry));
   }
-  if (matches.size() > most_suggestions) sentence += fmt::format(" or {} more", matches.size() - most_suggestions);
+  if (matches.size() > max_suggestions) sentence += fmt::format(" or {} more", matches.size() - max_suggestions);
   return no_entry(std::move(sentence));
 }
 

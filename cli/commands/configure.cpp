@@ -178,8 +178,8 @@ std::string_view verb_of(StepKind kind) {
 
 /// The value; of many bytes without a type, the first ones.
 std::string shown(const LiveEntry& entry, const std::vector<std::uint8_t>& bytes) {
-  constexpr std::size_t most_bytes = 32;
-  if (entry.type != nullptr || bytes.size() <= most_bytes) return value_of(entry, bytes);
+  constexpr std::size_t max_bytes = 32;
+  if (entry.type != nullptr || bytes.size() <= max_bytes) return value_of(entry, bytes);
   LiveEntry domain = entry;
   set_type(domain, *canopen::find_data_type(static_cast<std::uint32_t>(canopen::DataType::domain)));
   return value_of(domain, bytes);

@@ -33,8 +33,8 @@ class Confirmation {
     bus.on_frame = [this](const canopen::Frame& frame, canopen::TimePoint) {
       const auto message = canopen::error_control_message(frame);
       if (!message || message->node_id.value() != settings_.node) return;
-      told_ = message->state;
-      if (told_ == settings_.command->leads_to) confirmed_ = true;
+      reported_ = message->state;
+      if (reported_ == settings_.command->leads_to) confirmed_ = true;
     };
   }
   ~Confirmation() { bus_.on_frame = nullptr; }
@@ -51,7 +51,7 @@ class Confirmation {
 
   /// Why the state is not confirmed: the last state that the node reported, or that it sent nothing.
   [[nodiscard]] std::string reason() const {
-    if (told_) return fmt::format("the last state that it reported is {}", nmt_state_text(*told_));
+    if (reported_) return fmt::format("the last state that it reported is {}", nmt_state_text(*reported_));
     if (settings_.command->leads_to == canopen::NmtState::initialisation) return "it has not sent a boot-up message";
     return fmt::format("it has not sent a heartbeat; 1017h may be 0 (edsc read {} {} 1017h --type u16)", settings_.bus,
                        settings_.node);
@@ -61,7 +61,7 @@ class Confirmation {
   LiveBus& bus_;
   const Settings& settings_;
   bool confirmed_ = false;
-  std::optional<canopen::NmtState> told_;  ///< last
+  std::optional<canopen::NmtState> reported_;  ///< last
 };
 
 int run_nmt(const Settings& settings) {

@@ -42,7 +42,7 @@ struct Settings {
 using Json = nlohmann::ordered_json;
 
 /// Consecutive entries without response, after which the node is lost.
-constexpr unsigned most_silent = 3;
+constexpr unsigned max_silent = 3;
 
 /// An entry to read.
 struct Chosen {
@@ -179,7 +179,7 @@ int read_entries(LiveBus& bus, const Settings& settings, const std::vector<Chose
     if (!outcome.done() && !excused) exit_code = exit_device_failed;
     silent = outcome.end == SdoEnd::no_answer ? silent + 1 : 0;
     heard = heard || silent == 0;
-    if (silent >= (heard ? most_silent : 1) && i + 1 != entries.size()) {
+    if (silent >= (heard ? max_silent : 1) && i + 1 != entries.size()) {
       print_visibly(stderr, "edsc: node {} does not answer: {} more not read\n", settings.node, entries.size() - i - 1);
       break;
     }

@@ -58,15 +58,18 @@ Identity identity_of(const FoundNode& node) {
 
 std::string hex_or_dash(std::optional<std::uint32_t> number) { return number ? fmt::format("{:08X}h", *number) : "-"; }
 
-bool fits(Fit fit) { return fit == Fit::same || fit == Fit::minor_revision || fit == Fit::major_revision; }
+bool fits(IdentityMatch match) {
+  using enum IdentityMatch;
+  return match == same || match == minor_revision || match == major_revision;
+}
 
 std::string fits_text(const FoundNode& node, const std::vector<Candidate>& candidates) {
   std::string text;
   for (const Candidate& candidate : candidates) {
-    const Fit fit = compare_identity(candidate.identity, identity_of(node));
-    if (!fits(fit)) continue;
+    const IdentityMatch match = compare_identity(candidate.identity, identity_of(node));
+    if (!fits(match)) continue;
     text += (text.empty() ? "" : ", ") + candidate.path;
-    std::string remark{fit == Fit::same ? "" : to_text(fit)};
+    std::string remark{match == IdentityMatch::same ? "" : to_text(match)};
     if (const auto missing = not_compared(candidate.identity, identity_of(node)); !missing.empty()) {
       remark += fmt::format("{}{} not compared", remark.empty() ? "" : "; ", names_of(missing));
     }
@@ -149,13 +152,13 @@ Json as_json(const FoundNode& node, const std::vector<Candidate>& candidates) {
   json["data_sheets"] = Json::array();
   json["misfits"] = Json::array();
   for (const Candidate& candidate : candidates) {
-    const Fit fit = compare_identity(candidate.identity, identity_of(node));
-    if (!fits(fit)) {
+    const IdentityMatch match = compare_identity(candidate.identity, identity_of(node));
+    if (!fits(match)) {
       const std::string differences = identity_differences(candidate.identity, identity_of(node));
       json["misfits"].push_back({{"file", candidate.path}, {"differences", differences}});
       continue;
     }
-    Json sheet{{"file", candidate.path}, {"fit", to_text(fit)}, {"not_compared", Json::array()}};
+    Json sheet{{"file", candidate.path}, {"fit", to_text(match)}, {"not_compared", Json::array()}};
     for (const NotCompared& number : not_compared(candidate.identity, identity_of(node))) {
       sheet["not_compared"].push_back(number.key);
     }

@@ -51,7 +51,7 @@ std::string escaped(std::string_view text) {
 
 /// A sentence, wrapped to the line length recommended by mandoc.
 std::string filled(std::string_view text) {
-  constexpr std::size_t most_columns = 78;
+  constexpr std::size_t max_columns = 78;
   std::string out, line;
   const auto end_line = [&] {
     out += escaped(line) + "\n";
@@ -60,7 +60,7 @@ std::string filled(std::string_view text) {
   while (!text.empty()) {
     const std::size_t blank = std::min(text.find_first_of(" \n"), text.size());
     const std::string_view word = text.substr(0, blank);
-    if (!line.empty() && line.size() + 1 + word.size() > most_columns) end_line();
+    if (!line.empty() && line.size() + 1 + word.size() > max_columns) end_line();
     if (!line.empty() && !word.empty()) line += ' ';
     line += word;
     text.remove_prefix(std::min(blank + 1, text.size()));

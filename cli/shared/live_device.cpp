@@ -85,8 +85,8 @@ NodeCheck check_node(SdoAccess& node, const Device& device, const std::string& p
   const Identity found = read_identity(node), expected = identity_of(device);
   NodeCheck check;
   check.not_compared = not_compared_text(path, not_compared(expected, found));
-  const Fit fit = compare_identity(expected, found);
-  if (fit == Fit::same || fit == Fit::minor_revision || fit == Fit::unknown) return check;
+  const IdentityMatch match = compare_identity(expected, found);
+  if (match == IdentityMatch::same || match == IdentityMatch::minor_revision || match == IdentityMatch::unknown) return check;
   check.problem = fmt::format("node {} is not the device of {}: {}; \"edsc scan BUS --eds FILE\" finds the node of a file",
                               node.node().value(), path, identity_differences(expected, found));
   return check;

@@ -69,7 +69,7 @@ class Filters {
   }
 
  private:
-  using Frames = std::array<canopen::AcceptedFrame, canopen::most_accepted_frames<Device>>;
+  using Frames = std::array<canopen::AcceptedFrame, canopen::max_accepted_frames<Device>>;
 
   Frames frames_{};
   std::size_t count_ = 0;

@@ -15,7 +15,7 @@ namespace {
 
 using canopen::Mappable;
 
-constexpr unsigned most_bits = 64;
+constexpr unsigned max_bits = 64;
 
 /// An error, or a warning if the PDO is disabled by default.
 using BrokenPdoRule = RuleId<Severity::error, Severity::warning>;
@@ -161,20 +161,20 @@ std::string labelled(const PdoEntry& entry) {
 }
 
 void check_size(Pdo& pdo, Diagnostics& diagnostics) {
-  if (pdo.bits() > most_bits) {
+  if (pdo.bits() > max_bits) {
     unsigned sum = 0;
     const auto over =
-        std::ranges::find_if(pdo.entries, [&](const PdoEntry& entry) { return (sum += entry.bits) > most_bits; });
+        std::ranges::find_if(pdo.entries, [&](const PdoEntry& entry) { return (sum += entry.bits) > max_bits; });
     report_broken(pdo,
                   {"pdo-size", fmt::format("{} maps {} bits; the maximum is {}, which {} exceeds", pdo_label(pdo),
-                                           pdo.bits(), most_bits, labelled(*over))},
+                                           pdo.bits(), max_bits, labelled(*over))},
                   over->place, diagnostics);
   }
-  if (pdo.entries.size() > most_mapped_objects) {
-    const PdoEntry& over = pdo.entries[most_mapped_objects];
+  if (pdo.entries.size() > max_mapped_objects) {
+    const PdoEntry& over = pdo.entries[max_mapped_objects];
     report_broken(pdo,
                   {"pdo-entries", fmt::format("{} maps {} objects; the maximum is {}, which {} exceeds", pdo_label(pdo),
-                                              pdo.entries.size(), most_mapped_objects, labelled(over))},
+                                              pdo.entries.size(), max_mapped_objects, labelled(over))},
                   over.place, diagnostics);
   }
 }

@@ -52,7 +52,7 @@ class CompactPdos {
   void add(const Direction& direction, std::uint32_t count) {
     const std::uint32_t described = count_described(direction);
     std::uint32_t missing = count > described ? count - described : 0;
-    for (std::uint32_t i = 0; i < most_pdos; ++i) {
+    for (std::uint32_t i = 0; i < max_pdos; ++i) {
       const bool is_described = has(direction.communication + i) || has(direction.mapping + i);
       if (!is_described && missing == 0) continue;
       if (!is_described) --missing;
@@ -74,7 +74,7 @@ class CompactPdos {
 
   [[nodiscard]] std::uint32_t count_described(const Direction& direction) const {
     std::uint32_t described = 0;
-    for (std::uint32_t i = 0; i < most_pdos; ++i) {
+    for (std::uint32_t i = 0; i < max_pdos; ++i) {
       described += has(direction.communication + i) || has(direction.mapping + i) ? 1 : 0;
     }
     return described;
@@ -129,9 +129,9 @@ class CompactPdos {
 
   [[nodiscard]] Object mapping(const Direction& direction, std::uint32_t i) const {
     Object object = record(direction.mapping + i, fmt::format("{} mapping parameter {}", direction.name, i + 1));
-    object.entries.reserve(most_mapped_objects + 1U);
+    object.entries.reserve(max_mapped_objects + 1U);
     add_entry(object, 0, "Number of mapped objects", DataType::unsigned8, Access::rw).default_value = value(0);
-    for (std::uint32_t sub_index = 1; sub_index <= most_mapped_objects; ++sub_index) {
+    for (std::uint32_t sub_index = 1; sub_index <= max_mapped_objects; ++sub_index) {
       add_entry(object, sub_index, fmt::format("Mapped object {}", sub_index), DataType::unsigned32, Access::rw)
           .default_value = value(0);
     }
@@ -158,11 +158,11 @@ void add_compact_pdos(const DeviceInfo& info, Device& device, Diagnostics& diagn
     const bool receive = direction.count == &DeviceInfo::nr_of_rx_pdo;
     const Capabilities& capabilities = device.information.capabilities;
     const std::uint32_t count = (receive ? capabilities.nr_of_rx_pdo : capabilities.nr_of_tx_pdo).value_or(0);
-    if (count > most_pdos) {
+    if (count > max_pdos) {
       diagnostics.warning("compact-pdo", (info.*direction.count).position,
                           "a device can have at most 512 PDOs per direction");
     }
-    compact.add(direction, std::min<std::uint32_t>(count, most_pdos));
+    compact.add(direction, std::min<std::uint32_t>(count, max_pdos));
   }
   compact.finish();
 }

@@ -73,10 +73,10 @@ std::uint8_t compact_count(const ObjectDescription& description, Diagnostics& di
     diagnostics.error("compact-sub-obj", field.position, fmt::format("CompactSubObj {} is not a number", quote(text)));
     return 0;
   }
-  if (*count > most_sub_objects) {
+  if (*count > max_sub_objects) {
     diagnostics.warning("compact-sub-obj", field.position, "the maximum of CompactSubObj is 254; using 254");
   }
-  return static_cast<std::uint8_t>(std::min<std::uint64_t>(*count, most_sub_objects));
+  return static_cast<std::uint8_t>(std::min<std::uint64_t>(*count, max_sub_objects));
 }
 
 bool has_compact_form(const ObjectDescription& description) {

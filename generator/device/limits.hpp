@@ -5,8 +5,8 @@
 
 namespace edsc {
 
-inline constexpr std::uint16_t most_pdos = 512;  ///< per direction
-inline constexpr std::uint8_t most_mapped_objects = 64;
-inline constexpr std::uint8_t most_sub_objects = 254;
+inline constexpr std::uint16_t max_pdos = 512;  ///< per direction
+inline constexpr std::uint8_t max_mapped_objects = 64;
+inline constexpr std::uint8_t max_sub_objects = 254;
 
 }  // namespace edsc

@@ -25,7 +25,7 @@
 namespace edsc {
 namespace {
 
-constexpr std::size_t most_entries = 0x20000;
+constexpr std::size_t max_entries = 0x20000;
 
 std::string namespace_of(const std::string& file) { return to_namespace(std::filesystem::path{file}.stem().string()); }
 
@@ -99,10 +99,10 @@ class Resolver {
   /// Whether more objects may follow. In compact form, an EDS of 1 MB can describe millions of entries.
   bool has_room(const ObjectDescription& last) {
     entries_ += device_.objects.back().entries.size();
-    if (entries_ <= most_entries) return true;
+    if (entries_ <= max_entries) return true;
     diagnostics_.error("dictionary-size", last.position,
                        fmt::format("a device can have at most {} entries; everything after {} is left out",
-                                   most_entries, index_label(last.index)));
+                                   max_entries, index_label(last.index)));
     return false;
   }
 

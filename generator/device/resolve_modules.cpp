@@ -96,7 +96,7 @@ class ModuleResolver {
     const auto whole = parse_unsigned(text.substr(0, semicolon));
     const auto bits = semicolon == std::string_view::npos ? std::optional<std::uint64_t>{0}
                                                           : parse_unsigned(text.substr(semicolon + 1));
-    const bool fits = whole && bits && *whole <= most_sub_objects && *bits <= 64 && (*whole == 0 || *bits == 0);
+    const bool fits = whole && bits && *whole <= max_sub_objects && *bits <= 64 && (*whole == 0 || *bits == 0);
     if (fits) return Count{static_cast<std::uint32_t>(*whole), static_cast<std::uint32_t>(*bits)};
     diagnostics_.error(
         "module-count", field.position,
@@ -136,7 +136,7 @@ class ModuleResolver {
   std::optional<EntryPlace> free_place(const SubExtension& extension) {
     const std::uint32_t extend_after = read_number(extension.object_extend, "module-count", diagnostics_).value_or(0);
     const std::uint32_t highest =
-        extend_after == 0 ? most_sub_objects : std::min<std::uint32_t>(extend_after, most_sub_objects);
+        extend_after == 0 ? max_sub_objects : std::min<std::uint32_t>(extend_after, max_sub_objects);
     for (std::uint32_t index = extension.index; index <= 0xFFFF; ++index) {
       const Object* object = device_.find(static_cast<std::uint16_t>(index));
       if (object != nullptr && !object->has_sub_indices()) break;

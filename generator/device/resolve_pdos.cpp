@@ -50,7 +50,7 @@ bool changes(const Entry& entry, const Options& options) {
 
 /// Whether the runtime can process a mapping: a count, followed by UNSIGNED32 entries.
 bool is_list_of_objects(const Object& mapping) {
-  if (mapping.entries.size() < 2 || mapping.entries.size() > most_mapped_objects + 1) return false;
+  if (mapping.entries.size() < 2 || mapping.entries.size() > max_mapped_objects + 1) return false;
   for (std::size_t i = 0; i < mapping.entries.size(); ++i) {
     const Entry& entry = mapping.entries[i];
     const auto type = i == 0 ? canopen::DataType::unsigned8 : canopen::DataType::unsigned32;
@@ -87,7 +87,7 @@ bool is_dynamic(const Pdo& pdo, const Options& options) {
 
 void resolve_pdos(Device& device, const Options& options) {
   for (const ParameterIndices& indices : parameter_indices) {
-    for (std::uint16_t i = 0; i < most_pdos; ++i) {
+    for (std::uint16_t i = 0; i < max_pdos; ++i) {
       const Object* communication = device.find(static_cast<std::uint16_t>(indices.communication + i));
       const Object* mapping = device.find(static_cast<std::uint16_t>(indices.mapping + i));
       if (communication == nullptr && mapping == nullptr) continue;

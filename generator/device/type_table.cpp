@@ -62,8 +62,8 @@ const SubObjectDescription* find_sub(const ObjectDescription& object, std::uint8
 }
 
 class DefinitionReader {
-  static constexpr int most_steps = 8;              ///< from a DEFTYPE to its basic type
-  static constexpr std::uint64_t most_octets = 256;  ///< longer types are a DOMAIN, in memory of the application
+  static constexpr int max_steps = 8;              ///< from a DEFTYPE to its basic type
+  static constexpr std::uint64_t max_octets = 256;  ///< longer types are a DOMAIN, in memory of the application
 
  public:
   DefinitionReader(const DataSheet& sheet, std::optional<std::uint8_t> node_id, Diagnostics& diagnostics)
@@ -112,7 +112,7 @@ class DefinitionReader {
   }
 
   void read_alias(const ObjectDescription& object, TypeDefinition& definition) {
-    const TypeReference basic = data_type(object, most_steps);
+    const TypeReference basic = data_type(object, max_steps);
     definition.type = with_length(basic, stated_length(object));
     if (definition.type.row == nullptr) return report(object.data_type, "is not the index of a data type");
     if (definition.type.row != basic.row) {
@@ -126,7 +126,7 @@ class DefinitionReader {
   }
 
   /// The basic type of a type, through any DEFTYPEs.
-  TypeReference follow(std::uint64_t code, int steps = most_steps) {
+  TypeReference follow(std::uint64_t code, int steps = max_steps) {
     if (const DataTypeRow* row = basic_type(code)) return {row};
     const ObjectDescription* object = code < first_communication_index ? find_description(sheet_, code) : nullptr;
     if (object == nullptr || steps == 0) return {};
@@ -149,7 +149,7 @@ class DefinitionReader {
     const DataTypeRow* row = basic.row;
     if (bits == 0) return basic;
     if (row != nullptr && (row->bits == bits || row->kind == DataClass::domain)) return basic;
-    if (bits % 8 != 0 || bits / 8 > most_octets) return {basic_type(DataType::domain)};
+    if (bits % 8 != 0 || bits / 8 > max_octets) return {basic_type(DataType::domain)};
     const bool is_string = row != nullptr && row->kind == DataClass::string;
     return {is_string ? row : basic_type(DataType::octet_string), static_cast<std::uint32_t>(bits / 8)};
   }

@@ -46,12 +46,12 @@ void Diagnostics::report(Diagnostic diagnostic) {
   count(diagnostic.severity);
   Tally& tally = tallies_[kind];
   ++tally.found;
-  if (tally.found <= most_per_rule) {
+  if (tally.found <= max_per_rule) {
     tally.last_listed = all_.size();
     all_.push_back(std::move(diagnostic));
     return;
   }
-  if (tally.found == most_per_rule + 1) {
+  if (tally.found == max_per_rule + 1) {
     tally.suppressed_row = suppressed_.size();
     suppressed_.push_back({kind.file, kind.rule, kind.severity, 0, tally.last_listed});
   }
@@ -60,14 +60,14 @@ void Diagnostics::report(Diagnostic diagnostic) {
 
 bool Diagnostics::join(const Kind& kind, Diagnostic& diagnostic) {
   if (diagnostic.cause.empty()) return false;
-  const bool is_listed = tallies_[kind].found < most_per_rule;
+  const bool is_listed = tallies_[kind].found < max_per_rule;
   const auto [first, is_new] = first_of_cause_.try_emplace(
       Cause{kind, diagnostic.cause}, is_listed ? all_.size() : std::numeric_limits<std::size_t>::max());
   if (is_new) return false;
   if (first->second >= all_.size()) return true;
   Diagnostic& listed = all_[first->second];
   ++listed.places;
-  if (listed.places > most_places) {
+  if (listed.places > max_places) {
     ++listed.unnamed;
   } else {
     listed.notes.push_back({diagnostic.position, std::move(diagnostic.message)});
@@ -104,7 +104,7 @@ bool Diagnostics::has_silenced(std::string_view rule) const {
 bool Diagnostics::counts_only(std::string_view rule, Severity severity, const SourceFile* file) const {
   const Severity listed_as = strict_ && severity == Severity::warning ? Severity::error : severity;
   const auto found = tallies_.find(Kind{file, rule, listed_as});
-  return found != tallies_.end() && found->second.found >= most_per_rule;
+  return found != tallies_.end() && found->second.found >= max_per_rule;
 }
 
 void Diagnostics::count(Severity severity) {
@@ -132,7 +132,7 @@ bool Diagnostics::set_aside(Diagnostic& diagnostic) {
   if (!allowance) return false;
   allowances_.count_finding(*allowance);
   ++allowed_findings_;
-  if (allowances_.all()[*allowance].findings <= most_per_rule) allowed_.push_back({std::move(diagnostic), *allowance});
+  if (allowances_.all()[*allowance].findings <= max_per_rule) allowed_.push_back({std::move(diagnostic), *allowance});
   return true;
 }
 

@@ -79,7 +79,7 @@ class Diagnostics {
   [[nodiscard]] std::size_t errors() const { return errors_; }
   [[nodiscard]] std::size_t warnings() const { return warnings_; }
   [[nodiscard]] std::size_t notes() const { return notes_; }
-  /// The number of findings of `rule` in `file` after the first `most_per_rule`, which are counted only.
+  /// The number of findings of `rule` in `file` after the first `max_per_rule`, which are counted only.
   struct Suppressed {
     const SourceFile* file;
     std::string_view rule;
@@ -91,7 +91,7 @@ class Diagnostics {
   /// Whether the next finding of this kind will be counted only, so that it does not need a message.
   [[nodiscard]] bool counts_only(std::string_view rule, Severity severity, const SourceFile* file) const;
 
-  /// A finding that was set aside, and its index in `allowances()`. At most `most_per_rule` are stored per allowance.
+  /// A finding that was set aside, and its index in `allowances()`. At most `max_per_rule` are stored per allowance.
   struct Allowed {
     Diagnostic diagnostic;
     std::size_t allowance;
@@ -102,9 +102,9 @@ class Diagnostics {
   [[nodiscard]] std::size_t allowed_findings() const { return allowed_findings_; }
 
   /// Maximum number of listed findings of one rule and severity per file; any more are counted only.
-  static constexpr std::size_t most_per_rule = 50;
+  static constexpr std::size_t max_per_rule = 50;
   /// Maximum number of listed places per cause.
-  static constexpr std::size_t most_places = 4;
+  static constexpr std::size_t max_places = 4;
 
  private:
   struct Kind {
@@ -131,7 +131,7 @@ class Diagnostics {
   struct Tally {
     std::size_t found = 0;
     std::size_t last_listed = 0;     ///< in `all_`
-    std::size_t suppressed_row = 0;  ///< in `suppressed_`, once more than `most_per_rule` were found
+    std::size_t suppressed_row = 0;  ///< in `suppressed_`, once more than `max_per_rule` were found
   };
 
   void count(Severity severity);

@@ -36,7 +36,7 @@ std::size_t step_forward(std::string_view text, std::size_t& at, std::size_t mos
 }  // namespace
 
 Excerpt excerpt(std::string_view line, const Position& position) {
-  constexpr std::size_t columns = Excerpt::most_columns - 2 * cut_mark.size();
+  constexpr std::size_t columns = Excerpt::max_columns - 2 * cut_mark.size();
   const std::size_t caret = std::min<std::size_t>(position.column == 0 ? 0 : position.column - 1, line.size());
 
   // Half of the window before the caret, the rest after it, and unused columns before it again.

@@ -10,7 +10,7 @@
 namespace edsc {
 
 struct Excerpt {
-  static constexpr std::size_t most_columns = 120;
+  static constexpr std::size_t max_columns = 120;
 
   std::string text;               ///< printable, with `...` where the line is truncated
   std::size_t caret = 0;          ///< columns before the caret

@@ -53,8 +53,8 @@ bool is_octal(std::string_view text) {
          parse_unsigned(text).value_or(0) >= 8;
 }
 
-std::optional<std::uint16_t> parse_hex(std::string_view text, std::size_t most_digits) {
-  if (text.empty() || text.size() > most_digits || !std::all_of(text.begin(), text.end(), is_hex_digit)) {
+std::optional<std::uint16_t> parse_hex(std::string_view text, std::size_t max_digits) {
+  if (text.empty() || text.size() > max_digits || !std::all_of(text.begin(), text.end(), is_hex_digit)) {
     return std::nullopt;
   }
   std::uint16_t number = 0;

@@ -20,8 +20,8 @@ struct Field;
 /// Whether a leading 0 changes the value: 010 is eight.
 [[nodiscard]] bool is_octal(std::string_view text);
 
-/// Reads hexadecimal digits without prefix, as in section and key names: one to `most_digits`, at most four.
-[[nodiscard]] std::optional<std::uint16_t> parse_hex(std::string_view text, std::size_t most_digits);
+/// Reads hexadecimal digits without prefix, as in section and key names: one to `max_digits`, at most four.
+[[nodiscard]] std::optional<std::uint16_t> parse_hex(std::string_view text, std::size_t max_digits);
 
 /// Removes `;` or `#`, the text after it, and the blanks before it. Only for values that contain neither: numbers,
 /// codes.

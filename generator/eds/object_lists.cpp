@@ -101,7 +101,7 @@ void report_not_listed(const DataSheet& sheet, Diagnostics& diagnostics) {
   }
   for (const auto& [list, objects] : missing) {
     const std::string list_name{list ? section_name(*list) : ""};
-    const bool one_cause = objects.size() > Diagnostics::most_places;
+    const bool one_cause = objects.size() > Diagnostics::max_places;
     for (const ObjectDescription* object : objects) {
       diagnostics.warning("object-not-listed", object->position,
                           fmt::format("{:04X}h is not in any object list{}", object->index,

@@ -11,7 +11,7 @@
 namespace edsc {
 namespace {
 
-constexpr std::uint64_t most_granularity = 64;
+constexpr std::uint64_t max_granularity = 64;
 
 struct Flag {
   std::string_view key;
@@ -53,7 +53,7 @@ void check_baud_rates(const RuleContext& context) {
 
 void check_granularity(const RuleContext& context) {
   const Field& field = context.sheet.device_info.granularity;
-  if (field.empty() || number_of(field).value_or(most_granularity + 1) <= most_granularity) return;
+  if (field.empty() || number_of(field).value_or(max_granularity + 1) <= max_granularity) return;
   context.report("granularity", field.position,
                  fmt::format("Granularity must be 0..64, not {}", quote(field.text)));
 }

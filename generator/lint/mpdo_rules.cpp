@@ -10,7 +10,7 @@
 namespace edsc {
 namespace {
 
-constexpr unsigned most_mpdo_bits = 32;
+constexpr unsigned max_mpdo_bits = 32;
 
 bool served(const Options& options) {
   return std::ranges::find(options.runtime, std::pair<std::string, std::string>{"mpdo", "true"}) !=
@@ -59,7 +59,7 @@ std::string_view obstacle(const Device& device, std::uint16_t index, unsigned su
   const Entry* object = sub_index > 0xFF ? nullptr : device.find(index, static_cast<std::uint8_t>(sub_index));
   if (object == nullptr) return "does not exist";
   if (!canopen::allows(object->mappable(), direction)) return "is not PDO-mappable";
-  return object->type->bits == 0 || object->type->bits > most_mpdo_bits ? "does not have a length of 1 to 32 bits" : "";
+  return object->type->bits == 0 || object->type->bits > max_mpdo_bits ? "does not have a length of 1 to 32 bits" : "";
 }
 
 /// Checks the objects in the default values of a list.

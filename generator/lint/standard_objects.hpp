@@ -63,10 +63,10 @@ using namespace access_sets;
 
 constexpr StandardEntry value(DataType type, AccessSet access) { return {0, 0, type, access}; }
 
-inline constexpr StandardEntry told_u32[] = {value(unsigned32, read_only)};
-inline constexpr StandardEntry told_u8[] = {value(unsigned8, read_only)};
-inline constexpr StandardEntry told_text[] = {value(visible_string, read_only)};
-inline constexpr StandardEntry told_domain[] = {value(domain, read_only)};
+inline constexpr StandardEntry read_only_u32[] = {value(unsigned32, read_only)};
+inline constexpr StandardEntry read_only_u8[] = {value(unsigned8, read_only)};
+inline constexpr StandardEntry read_only_text[] = {value(visible_string, read_only)};
+inline constexpr StandardEntry read_only_domain[] = {value(domain, read_only)};
 inline constexpr StandardEntry set_u8[] = {value(unsigned8, settable)};
 inline constexpr StandardEntry set_u16[] = {value(unsigned16, settable)};
 inline constexpr StandardEntry set_u32[] = {value(unsigned32, settable)};
@@ -100,16 +100,16 @@ inline constexpr auto record = ObjectType::record;
 
 /// Ascending by index.
 inline constexpr StandardObject objects[] = {
-    {0x1000, 0x1000, var, "device type", "7.5.2.1", told_u32},
-    {0x1001, 0x1001, var, "error register", "7.5.2.2", told_u8},
-    {0x1002, 0x1002, var, "manufacturer status register", "7.5.2.3", told_u32},
+    {0x1000, 0x1000, var, "device type", "7.5.2.1", read_only_u32},
+    {0x1001, 0x1001, var, "error register", "7.5.2.2", read_only_u8},
+    {0x1002, 0x1002, var, "manufacturer status register", "7.5.2.3", read_only_u32},
     {0x1003, 0x1003, array, "pre-defined error field", "7.5.2.4", error_field},
     {0x1005, 0x1005, var, "COB-ID SYNC message", "7.5.2.5", set_u32},
     {0x1006, 0x1006, var, "communication cycle period", "7.5.2.6", set_u32},
     {0x1007, 0x1007, var, "synchronous window length", "7.5.2.7", set_u32},
-    {0x1008, 0x1008, var, "manufacturer device name", "7.5.2.8", told_text},
-    {0x1009, 0x1009, var, "manufacturer hardware version", "7.5.2.9", told_text},
-    {0x100A, 0x100A, var, "manufacturer software version", "7.5.2.10", told_text},
+    {0x1008, 0x1008, var, "manufacturer device name", "7.5.2.8", read_only_text},
+    {0x1009, 0x1009, var, "manufacturer hardware version", "7.5.2.9", read_only_text},
+    {0x100A, 0x100A, var, "manufacturer software version", "7.5.2.10", read_only_text},
     {0x100C, 0x100C, var, "guard time", "7.5.2.11", set_u16},
     {0x100D, 0x100D, var, "life time factor", "7.5.2.12", set_u8},
     {0x1010, 0x1010, array, "store parameters", "7.5.2.13", store},
@@ -123,7 +123,7 @@ inline constexpr StandardObject objects[] = {
     {0x1018, 0x1018, record, "identity object", "7.5.2.21", identity},
     {0x1019, 0x1019, var, "synchronous counter overflow value", "7.5.2.22", set_u8},
     {0x1020, 0x1020, array, "verify configuration", "7.5.2.23", verify_configuration},
-    {0x1021, 0x1021, var, "store EDS", "7.5.2.24", told_domain},
+    {0x1021, 0x1021, var, "store EDS", "7.5.2.24", read_only_domain},
     {0x1024, 0x1024, var, "OS command mode", "7.5.2.27", command_mode},
     {0x1027, 0x1027, array, "module list", "7.5.2.30", module_list},
     {0x1028, 0x1028, array, "emergency consumer object", "7.5.2.31", emergency_consumer},

@@ -12,7 +12,7 @@ constexpr int window_bits = 15;
 constexpr int gzip_header = 16;  ///< added to the window bits: gzip format instead of zlib
 constexpr int memory_level = 9;
 constexpr int unknown_system = 255;
-constexpr std::size_t most_at_once = std::size_t{1} << 16;
+constexpr std::size_t max_at_once = std::size_t{1} << 16;
 
 /// EDS files with 30,000 equal objects have a ratio of 35; files made to exhaust memory, of 1000.
 constexpr std::size_t max_ratio = 200;
@@ -58,11 +58,11 @@ std::string gunzip(std::string_view bytes, std::size_t max_bytes, std::string& c
   };
   while (result == Z_OK && content.size() <= max_bytes && !is_bomb()) {
     const std::size_t size = content.size();
-    content.resize(size + most_at_once);
+    content.resize(size + max_at_once);
     stream.next_out = output_of(content, size);
-    stream.avail_out = static_cast<uInt>(most_at_once);
+    stream.avail_out = static_cast<uInt>(max_at_once);
     result = inflate(&stream, Z_NO_FLUSH);
-    content.resize(size + most_at_once - stream.avail_out);
+    content.resize(size + max_at_once - stream.avail_out);
   }
   const bool whole = result == Z_STREAM_END && stream.avail_in == 0;
   const std::string place = fmt::format("stopped at byte {} of {}", stream.total_in, bytes.size());

@@ -72,9 +72,9 @@ Mappable common(Mappable a, Mappable b) {
 }
 
 /// An index or sub-index: hexadecimal digits, usually without 0x.
-std::optional<std::uint16_t> read_hex(std::string_view text, std::size_t most_digits) {
+std::optional<std::uint16_t> read_hex(std::string_view text, std::size_t max_digits) {
   const bool has_prefix = starts_with_ignoring_case(text, "0x");
-  return parse_hex(text.substr(has_prefix ? 2 : 0), most_digits);
+  return parse_hex(text.substr(has_prefix ? 2 : 0), max_digits);
 }
 
 using FirstPlaces = std::unordered_map<std::uint16_t, Position>;
@@ -158,13 +158,13 @@ class ObjectListReader {
     list.push_back(std::move(sub_object));
   }
 
-  std::optional<std::uint16_t> read_number(pugi::xml_node element, std::string_view name, std::size_t most_digits) {
+  std::optional<std::uint16_t> read_number(pugi::xml_node element, std::string_view name, std::size_t max_digits) {
     const Field field = xml_.value(find_attribute(element, name));
-    const std::optional<std::uint16_t> number = read_hex(field.text, most_digits);
+    const std::optional<std::uint16_t> number = read_hex(field.text, max_digits);
     if (!number) {
       xml_.diagnostics().error("number", field.present ? field.position : xml_.position(element),
                                fmt::format("{} {} is not a number of up to {} hexadecimal digits; this {} is left out",
-                                           name, quote(field.text), most_digits, local_name(element)));
+                                           name, quote(field.text), max_digits, local_name(element)));
     }
     return number;
   }

@@ -16,7 +16,7 @@ namespace {
 
 /// Upper bound of elements and attributes, against hostile files that exhaust memory. A device with 10,000 entries has
 /// about 300,000.
-constexpr std::ptrdiff_t most_nodes = 8'000'000;
+constexpr std::ptrdiff_t max_nodes = 8'000'000;
 
 constexpr std::string_view xml_blanks = " \t\r\n";
 
@@ -64,9 +64,9 @@ bool XmlDocument::report_unreadable_text() {
                        "control character, which XML does not allow; nothing of this file is read");
     return true;
   }
-  if (std::count_if(text.begin(), text.end(), [](char c) { return c == '<' || c == '='; }) > most_nodes) {
+  if (std::count_if(text.begin(), text.end(), [](char c) { return c == '<' || c == '='; }) > max_nodes) {
     diagnostics_.error("xml-syntax", {&source_},
-                       fmt::format("more than {} elements and attributes; nothing of this file is read", most_nodes));
+                       fmt::format("more than {} elements and attributes; nothing of this file is read", max_nodes));
     return true;
   }
   return false;

@@ -10,7 +10,7 @@
 namespace edsc::fuzz {
 namespace {
 
-constexpr std::size_t most_output_per_line = 16 * 1024;
+constexpr std::size_t max_output_per_line = 16 * 1024;
 
 struct Nodes {
   std::unique_ptr<LoadedDevice> axis = load(EDSC_SOURCE_DIR "/tests/decode/axis.dcf", 6);
@@ -48,7 +48,7 @@ void decode(const Nodes& nodes, std::string_view log, bool json) {
     const std::size_t end = std::min(log.find('\n', begin), log.size());
     out.clear();
     decoder.decode(log.substr(begin, end - begin), ++number, out, complaints);
-    require(out.size() < most_output_per_line, "a frame is told in a line of bearable length");
+    require(out.size() < max_output_per_line, "a frame is told in a line of bearable length");
     require(out.empty() || (out.ends_with('\n') && out.find('\n') == out.size() - 1), "a frame is one line");
     check_text(out);
     if (json && !out.empty()) require(nlohmann::json::accept(out), "a line of JSON is JSON");

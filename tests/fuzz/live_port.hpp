@@ -96,7 +96,7 @@ class LivePort final : public BusPort {
  public:
   static constexpr std::uint8_t node_id = 6;
   /// More frames than any command sends to a node.
-  static constexpr unsigned most_frames = 100'000;
+  static constexpr unsigned max_frames = 100'000;
 
   LivePort(Steps steps, bool silent_at_end, ObedientServer& server)
       : next_{steps.begin()}, end_{steps.end()}, silent_at_end_{silent_at_end}, server_{server} {}
@@ -106,7 +106,7 @@ class LivePort final : public BusPort {
   bool send(const canopen::Frame& frame) override {
     require(frame.size == 8 && !frame.extended && !frame.remote, "a request is a data frame of eight bytes");
     require(frame.id > 0x600 && frame.id <= 0x67F, "only SDO requests are sent");
-    require(++sent_ < most_frames, "a command ends");
+    require(++sent_ < max_frames, "a command ends");
     if (reads_only) {
       const unsigned command = frame.data[0] >> 5;
       require(command == 2 || command == 3 || command == 4 || command == 5, "a command that reads does not write");

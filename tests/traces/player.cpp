@@ -62,7 +62,7 @@ class Player {
   }
 
  private:
-  static constexpr int most_rounds = 100;  ///< calls of all nodes at one moment
+  static constexpr int max_rounds = 100;  ///< calls of all nodes at one moment
 
   void fail(const Line& line, std::string message) { failures_.push_back({line.number, std::move(message)}); }
 
@@ -92,7 +92,7 @@ class Player {
       if (*deadline > now_) {
         now_ = *deadline;
         rounds = 0;
-      } else if (++rounds == most_rounds) {
+      } else if (++rounds == max_rounds) {
         return fail(line, "a node has something to do and does not do it");
       }
       let_all_act();

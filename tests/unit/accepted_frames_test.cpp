@@ -20,7 +20,7 @@ std::set<std::string> accepted_by(bench::Bench<Device>& device) {
     frames.insert(bench::text({.id = accepted.id, .extended = accepted.extended, .remote = accepted.remote}));
     ++count;
   });
-  EXPECT_LE(count, canopen::most_accepted_frames<Device>);
+  EXPECT_LE(count, canopen::max_accepted_frames<Device>);
   return frames;
 }
 

@@ -107,11 +107,11 @@ TEST(Diagnostics, ListTheFirstOfARuleAndCountTheRest) {
     diagnostics.warning("number-range", {&file, 1, 1}, "again");
   }
   diagnostics.warning("number-range", {&other, 1, 1}, "elsewhere");
-  EXPECT_EQ(diagnostics.all().size(), Diagnostics::most_per_rule + 1);
+  EXPECT_EQ(diagnostics.all().size(), Diagnostics::max_per_rule + 1);
   ASSERT_EQ(diagnostics.suppressed().size(), 1U);
   EXPECT_EQ(diagnostics.suppressed()[0].file, &file);
   EXPECT_EQ(diagnostics.suppressed()[0].rule, "number-range");
-  EXPECT_EQ(diagnostics.suppressed()[0].count, 100'000 - Diagnostics::most_per_rule);
+  EXPECT_EQ(diagnostics.suppressed()[0].count, 100'000 - Diagnostics::max_per_rule);
   EXPECT_EQ(diagnostics.warnings(), 100'001U);
 }
 
@@ -152,7 +152,7 @@ TEST(PrintText, ShowsAWholeFileAsItsFirstLine) {
 TEST(PrintText, PutsTheSuppressedBehindTheirRule) {
   const SourceFile file("a.eds", "");
   Diagnostics diagnostics;
-  for (std::size_t time = 0; time < Diagnostics::most_per_rule + 3; ++time) {
+  for (std::size_t time = 0; time < Diagnostics::max_per_rule + 3; ++time) {
     diagnostics.warning("number-range", {&file}, "again");
   }
   diagnostics.error("data-type", {&file}, "last");
@@ -184,9 +184,9 @@ TEST(Diagnostics, MakeOneOfTheFindingsOfOneCause) {
   const Diagnostic& first = diagnostics.all().front();
   EXPECT_EQ(first.position.line, 1U);
   EXPECT_EQ(first.places, 160U);
-  ASSERT_EQ(first.notes.size(), Diagnostics::most_places - 1);
-  EXPECT_EQ(first.notes.back().position.line, Diagnostics::most_places);
-  EXPECT_EQ(first.unnamed, 160 - Diagnostics::most_places);
+  ASSERT_EQ(first.notes.size(), Diagnostics::max_places - 1);
+  EXPECT_EQ(first.notes.back().position.line, Diagnostics::max_places);
+  EXPECT_EQ(first.unnamed, 160 - Diagnostics::max_places);
   EXPECT_EQ(diagnostics.all().back().places, 1U);
 }
 
@@ -205,12 +205,12 @@ TEST(Diagnostics, CountManyCausesOnce) {
   const SourceFile file("a.eds", "");
   Diagnostics diagnostics;
   for (int time = 0; time < 2; ++time) {
-    for (std::size_t cause = 0; cause < Diagnostics::most_per_rule + 5; ++cause) {
+    for (std::size_t cause = 0; cause < Diagnostics::max_per_rule + 5; ++cause) {
       diagnostics.error("number-range", {&file}, "x", {}, std::to_string(cause));
     }
   }
-  EXPECT_EQ(diagnostics.errors(), Diagnostics::most_per_rule + 5);
-  EXPECT_EQ(diagnostics.all().size(), Diagnostics::most_per_rule);
+  EXPECT_EQ(diagnostics.errors(), Diagnostics::max_per_rule + 5);
+  EXPECT_EQ(diagnostics.all().size(), Diagnostics::max_per_rule);
 }
 
 TEST(PrintText, NamesTheFirstPlacesOfOneCause) {
@@ -291,7 +291,7 @@ TEST(Excerpt, ShowsAShortLineWhole) {
 TEST(Excerpt, CutsALongLineAroundThePlace) {
   const std::string line(100'000'000, 'x');
   const Excerpt middle = excerpt(line, {nullptr, 1, 50'000'000, 1});
-  EXPECT_EQ(middle.text.size(), Excerpt::most_columns);
+  EXPECT_EQ(middle.text.size(), Excerpt::max_columns);
   EXPECT_TRUE(middle.text.starts_with("...x"));
   EXPECT_TRUE(middle.text.ends_with("x..."));
   EXPECT_EQ(middle.caret, 60U);
@@ -299,11 +299,11 @@ TEST(Excerpt, CutsALongLineAroundThePlace) {
   const Excerpt start = excerpt(line, {nullptr, 1, 1, 100'000'000});
   EXPECT_TRUE(start.text.starts_with("xxxx"));
   EXPECT_EQ(start.caret, 0U);
-  EXPECT_LT(start.caret_columns, Excerpt::most_columns);
+  EXPECT_LT(start.caret_columns, Excerpt::max_columns);
 
   const Excerpt end = excerpt(line, {nullptr, 1, 100'000'000, 1});
   EXPECT_TRUE(end.text.ends_with("xxxx"));
-  EXPECT_LT(end.caret, Excerpt::most_columns);
+  EXPECT_LT(end.caret, Excerpt::max_columns);
 }
 
 TEST(Excerpt, KeepsThePlaceBehindTheEndOfTheLine) {
@@ -339,14 +339,14 @@ TEST(PrintJson, HasAStableShape) {
 TEST(PrintJson, CountsTheSuppressed) {
   const SourceFile file("a.eds", "");
   Diagnostics diagnostics;
-  for (std::size_t time = 0; time < Diagnostics::most_per_rule + 2; ++time) {
+  for (std::size_t time = 0; time < Diagnostics::max_per_rule + 2; ++time) {
     diagnostics.warning("number-range", {&file}, "again");
   }
   const nlohmann::json json = print_json(diagnostics);
-  EXPECT_EQ(json["diagnostics"].size(), Diagnostics::most_per_rule);
+  EXPECT_EQ(json["diagnostics"].size(), Diagnostics::max_per_rule);
   EXPECT_EQ(json["suppressed"],
             nlohmann::json::parse(R"([{"file": "a.eds", "severity": "warning", "rule": "number-range", "count": 2}])"));
-  EXPECT_EQ(json["warnings"], Diagnostics::most_per_rule + 2);
+  EXPECT_EQ(json["warnings"], Diagnostics::max_per_rule + 2);
 }
 
 }  // namespace

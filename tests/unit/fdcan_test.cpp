@@ -276,21 +276,21 @@ TYPED_TEST(Fdcan, AcceptsFramesWith29BitsWhereTheNodeHasThem) {
 TYPED_TEST(Fdcan, AcceptsAsManyAsTheFiltersHold) {
   this->go_on_the_bus();
   std::vector<canopen::AcceptedFrame> frames;
-  for (std::uint32_t i = 0; i < TestFixture::Bus::most_standard; ++i) frames.push_back({.id = 2 * i});
-  for (std::uint32_t i = 0; i < TestFixture::Bus::most_extended; ++i) frames.push_back({.id = 3 * i, .extended = true});
+  for (std::uint32_t i = 0; i < TestFixture::Bus::max_standard; ++i) frames.push_back({.id = 2 * i});
+  for (std::uint32_t i = 0; i < TestFixture::Bus::max_extended; ++i) frames.push_back({.id = 3 * i, .extended = true});
   this->bus.accept(frames);
   for (std::uint32_t id = 0; id < 0x800; ++id) {
     EXPECT_EQ(this->accepts(bench::text({.id = id, .size = 0})),
-              id % 2 == 0 && id < 2 * TestFixture::Bus::most_standard);
+              id % 2 == 0 && id < 2 * TestFixture::Bus::max_standard);
     EXPECT_EQ(this->accepts(bench::text({.id = id, .size = 0, .extended = true})),
-              id % 3 == 0 && id < 3 * TestFixture::Bus::most_extended);
+              id % 3 == 0 && id < 3 * TestFixture::Bus::max_extended);
   }
 }
 
 TYPED_TEST(Fdcan, AcceptsAllWhereTheFiltersDoNotSuffice) {
   this->go_on_the_bus();
   for (const bool extended : {false, true}) {
-    const std::size_t most = extended ? TestFixture::Bus::most_extended : TestFixture::Bus::most_standard;
+    const std::size_t most = extended ? TestFixture::Bus::max_extended : TestFixture::Bus::max_standard;
     this->bus.accept(std::vector<canopen::AcceptedFrame>(most + 1, {.id = 1, .extended = extended}));
     EXPECT_TRUE(this->accepts("7FF"));
     EXPECT_TRUE(this->accepts("1FFFFFFF"));

@@ -277,7 +277,7 @@ Values values(const Device& device) {
 }
 
 /// More steps than any save takes.
-constexpr int most_steps = 1000;
+constexpr int max_steps = 1000;
 
 constexpr Values defaults{1000, 0, -5};
 constexpr Values old_values{11, 1100, 111};
@@ -305,7 +305,7 @@ Values after_cut(const std::string& request, int step, std::string& answer) {
 TEST(FlashStorage, ASaveThatPowerCutsLeavesOldOrNewValues) {
   std::string answer;
   int step = 0;
-  for (; answer != "585 60 10 10 01 00 00 00 00" && step < most_steps; ++step) {
+  for (; answer != "585 60 10 10 01 00 00 00 00" && step < max_steps; ++step) {
     const Values found = after_cut("605 23 10 10 01 73 61 76 65", step, answer);
     if (answer == "585 60 10 10 01 00 00 00 00") {
       EXPECT_EQ(found, new_values);
@@ -315,32 +315,32 @@ TEST(FlashStorage, ASaveThatPowerCutsLeavesOldOrNewValues) {
     }
   }
   EXPECT_GT(step, 10);
-  EXPECT_LT(step, most_steps);
+  EXPECT_LT(step, max_steps);
 }
 
 TEST(FlashStorage, ARestoreThatPowerCutsLeavesOldOrDefaultValues) {
   std::string answer;
   int step = 0;
-  for (; answer != "585 60 11 10 01 00 00 00 00" && step < most_steps; ++step) {
+  for (; answer != "585 60 11 10 01 00 00 00 00" && step < max_steps; ++step) {
     const Values found = after_cut("605 23 11 10 01 6C 6F 61 64", step, answer);
     const bool restored = answer == "585 60 11 10 01 00 00 00 00";
     EXPECT_TRUE(found == defaults || (!restored && found == old_values)) << "step " << step;
   }
   EXPECT_GT(step, 2);
-  EXPECT_LT(step, most_steps);
+  EXPECT_LT(step, max_steps);
 }
 
 TEST(FlashStorage, ASaveOfOneRangeLeavesTheOthersWheneverPowerIsCut) {
   std::string answer;
   int step = 0;
-  for (; answer != "585 60 10 10 03 00 00 00 00" && step < most_steps; ++step) {
+  for (; answer != "585 60 10 10 03 00 00 00 00" && step < max_steps; ++step) {
     const Values found = after_cut("605 23 10 10 03 73 61 76 65", step, answer);
     EXPECT_EQ(found.inhibit_time, old_values.inhibit_time) << "step " << step;
     EXPECT_EQ(found.gain, old_values.gain) << "step " << step;
     const bool saved = answer == "585 60 10 10 03 00 00 00 00";
     EXPECT_TRUE(found.acceleration == 22 || (!saved && found.acceleration == 11)) << "step " << step;
   }
-  EXPECT_LT(step, most_steps);
+  EXPECT_LT(step, max_steps);
 }
 
 }  // namespace

@@ -59,14 +59,14 @@ class Listener {
     void happened(HeartbeatEvent event, NodeId node_id, NmtState state) {
       char state_text[8];
       std::snprintf(state_text, sizeof state_text, "%02X", static_cast<unsigned>(state));
-      listener.told_ += (listener.told_.empty() ? "" : " | ") + std::to_string(node_id.value()) + " " +
+      listener.reported_ += (listener.reported_.empty() ? "" : " | ") + std::to_string(node_id.value()) + " " +
                         event_names[static_cast<int>(event)] + " " + state_text;
     }
   };
 
-  std::string take() { return std::exchange(told_, {}); }
+  std::string take() { return std::exchange(reported_, {}); }
 
-  std::string told_;
+  std::string reported_;
 };
 
 TEST(HeartbeatConsumer, ReadsAnEntryOf1016h) {

@@ -60,15 +60,15 @@ TEST(IdentityOf, HasTheSerialNumberOfADcf) {
 
 TEST(CompareIdentity, ComparesEachNumber) {
   const Identity device{0x192, 0x93, 5, 0x10002, 9};
-  EXPECT_EQ(compare_identity(device, device), Fit::same);
+  EXPECT_EQ(compare_identity(device, device), IdentityMatch::same);
   for (const auto number :
        {&Identity::device_type, &Identity::vendor_id, &Identity::product_code, &Identity::serial_number}) {
     Identity other = device;
     other.*number = 77;
-    EXPECT_EQ(compare_identity(device, other), Fit::other);
+    EXPECT_EQ(compare_identity(device, other), IdentityMatch::other);
     EXPECT_FALSE(identity_differences(device, other).empty());
     other.*number = {};
-    EXPECT_EQ(compare_identity(device, other), Fit::same);
+    EXPECT_EQ(compare_identity(device, other), IdentityMatch::same);
     EXPECT_EQ(not_compared(device, other).size(), 1U);
   }
 }

@@ -148,7 +148,7 @@ TEST(IniReader, ReadsAMillionStrayLines) {
   }
   const ReadLines read(std::move(text));
   EXPECT_EQ(read.diagnostics.warnings(), 1'000'000U);
-  EXPECT_EQ(read.diagnostics.all().size(), Diagnostics::most_per_rule);
+  EXPECT_EQ(read.diagnostics.all().size(), Diagnostics::max_per_rule);
 }
 
 TEST(IniReader, ReportsAHugeUnterminatedHeaderInAWord) {

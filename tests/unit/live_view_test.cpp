@@ -21,26 +21,26 @@ Identity with(std::optional<std::uint32_t> Identity::*number, std::optional<std:
 }
 
 TEST(Identity, FitsByVendorProductAndRevision) {
-  EXPECT_EQ(compare_identity(sheet, sheet), Fit::same);
-  EXPECT_EQ(compare_identity(sheet, with(&Identity::serial_number, 7)), Fit::same);
-  EXPECT_EQ(compare_identity(sheet, with(&Identity::revision_number, 0x0001'0003)), Fit::minor_revision);
-  EXPECT_EQ(compare_identity(sheet, with(&Identity::revision_number, 0x0002'0002)), Fit::major_revision);
-  EXPECT_EQ(compare_identity(sheet, with(&Identity::product_code, 6)), Fit::other);
-  EXPECT_EQ(compare_identity(sheet, with(&Identity::vendor_id, 0x94)), Fit::other);
-  EXPECT_EQ(compare_identity(sheet, with(&Identity::device_type, 0x191)), Fit::other);
+  EXPECT_EQ(compare_identity(sheet, sheet), IdentityMatch::same);
+  EXPECT_EQ(compare_identity(sheet, with(&Identity::serial_number, 7)), IdentityMatch::same);
+  EXPECT_EQ(compare_identity(sheet, with(&Identity::revision_number, 0x0001'0003)), IdentityMatch::minor_revision);
+  EXPECT_EQ(compare_identity(sheet, with(&Identity::revision_number, 0x0002'0002)), IdentityMatch::major_revision);
+  EXPECT_EQ(compare_identity(sheet, with(&Identity::product_code, 6)), IdentityMatch::other);
+  EXPECT_EQ(compare_identity(sheet, with(&Identity::vendor_id, 0x94)), IdentityMatch::other);
+  EXPECT_EQ(compare_identity(sheet, with(&Identity::device_type, 0x191)), IdentityMatch::other);
 }
 
 /// An EDS without vendor-ID is common; the numbers that it contains must still match.
 TEST(Identity, ComparesEachNumberThatBothState) {
   const Identity without_vendor = with(&Identity::vendor_id, {});
-  EXPECT_EQ(compare_identity(without_vendor, sheet), Fit::same);
-  EXPECT_EQ(compare_identity(without_vendor, with(&Identity::product_code, 6)), Fit::other);
-  EXPECT_EQ(compare_identity(without_vendor, with(&Identity::device_type, 0x191)), Fit::other);
-  EXPECT_EQ(compare_identity({0x192, {}, {}, {}, {}}, sheet), Fit::same);
-  EXPECT_EQ(compare_identity({0x192, {}, {}, {}, {}}, with(&Identity::device_type, 0x191)), Fit::other);
-  EXPECT_EQ(compare_identity({{}, {}, {}, 0x0002'0000, {}}, sheet), Fit::major_revision);
-  EXPECT_EQ(compare_identity({}, sheet), Fit::unknown);
-  EXPECT_EQ(compare_identity(sheet, {}), Fit::unknown);
+  EXPECT_EQ(compare_identity(without_vendor, sheet), IdentityMatch::same);
+  EXPECT_EQ(compare_identity(without_vendor, with(&Identity::product_code, 6)), IdentityMatch::other);
+  EXPECT_EQ(compare_identity(without_vendor, with(&Identity::device_type, 0x191)), IdentityMatch::other);
+  EXPECT_EQ(compare_identity({0x192, {}, {}, {}, {}}, sheet), IdentityMatch::same);
+  EXPECT_EQ(compare_identity({0x192, {}, {}, {}, {}}, with(&Identity::device_type, 0x191)), IdentityMatch::other);
+  EXPECT_EQ(compare_identity({{}, {}, {}, 0x0002'0000, {}}, sheet), IdentityMatch::major_revision);
+  EXPECT_EQ(compare_identity({}, sheet), IdentityMatch::unknown);
+  EXPECT_EQ(compare_identity(sheet, {}), IdentityMatch::unknown);
 }
 
 TEST(Identity, NamesWhatDiffers) {

@@ -177,7 +177,7 @@ class Cpd : public Base<Cpd<B>, B> {
 
   /// A step in a mode of the drive's own.
   void operate(std::int8_t mode) {
-    if (movement_ended_ && !end_is_told_) return;
+    if (movement_ended_ && !end_is_reported_) return;
     movement_ended_ = false;
     switch (mode) {
       case mode::manual: return operate_manual();
@@ -200,7 +200,7 @@ class Cpd : public Base<Cpd<B>, B> {
       word = static_cast<std::uint16_t>(stands ? word | bit::target_reached : word & ~bit::target_reached);
     }
     if (stands || movement_ended_) word |= bit::manufacturer_14;
-    end_is_told_ = movement_ended_;
+    end_is_reported_ = movement_ended_;
     if (reference_is_valid_) word |= bit::manufacturer_15;
     return word;
   }
@@ -322,7 +322,7 @@ class Cpd : public Base<Cpd<B>, B> {
   ErrorMemory errors_;
   std::uint16_t movement_ = 0;  ///< 301Bh:09 that has been taken
   bool movement_ended_ = false;
-  bool end_is_told_ = false;  ///< by bit 14
+  bool end_is_reported_ = false;  ///< by bit 14
   bool reference_is_valid_ = false;
   bool was_fault_ = false;
   std::uint16_t active_ = 0;   ///< 301Ch:07

@@ -142,8 +142,8 @@ class Rk5c {
     if (around_.serial_number != 0) {
       static_cast<void>(node_.template set<rk5c::od::identity_object::serial_number>(around_.serial_number));
     }
-    data_set_error_told_ = around_.parameters.state() == canopen::StorageState::damaged;  // by the node itself
-    if (data_set_error_told_) data_set_error_ = true;
+    data_set_error_reported_ = around_.parameters.state() == canopen::StorageState::damaged;  // by the node itself
+    if (data_set_error_reported_) data_set_error_ = true;
     if (data_set_error_) tell_data_set_error();
     check_flash();
     if (hardware_bad_) tell_hardware_error();
@@ -161,8 +161,8 @@ class Rk5c {
     tell_data_set_error();
   }
   void tell_data_set_error() {
-    if (!data_set_error_told_) node_.emergency(canopen::emergency_code::data_set, canopen::ErrorRegister::generic);
-    data_set_error_told_ = true;
+    if (!data_set_error_reported_) node_.emergency(canopen::emergency_code::data_set, canopen::ErrorRegister::generic);
+    data_set_error_reported_ = true;
     panel_.set(canopen::IndicatorError::configuration, true);
     show_status();
   }
@@ -282,7 +282,7 @@ class Rk5c {
   bool flash_damaged_ = false;
   bool hardware_bad_ = false;
   bool data_set_error_ = false;
-  bool data_set_error_told_ = false;  ///< since the last reset
+  bool data_set_error_reported_ = false;  ///< since the last reset
   bool resets_application_ = true;
   bool restored_ = false;  ///< since power-on: what is in use stays until power-off
   bool starting_ = true;

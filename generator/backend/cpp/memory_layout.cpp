@@ -115,8 +115,8 @@ std::uint32_t room(const Entry& entry, const Options& options) {
 }
 
 /// The address range of the words of the tables.
-constexpr std::size_t most_bytes = 0x10000;
-constexpr std::size_t most_rows = 0xFFFF;
+constexpr std::size_t max_bytes = 0x10000;
+constexpr std::size_t max_rows = 0xFFFF;
 
 /// Of canopen::Domain with 32-bit pointers; for larger ones, the generated code computes the size itself.
 constexpr std::size_t domain_size = 12;
@@ -591,11 +591,11 @@ class Builder {
   // ---- the end ----
 
   void check_rows(const Object& object) {
-    if (layout_.subs.size() <= most_rows || found_too_many_rows_) return;
+    if (layout_.subs.size() <= max_rows || found_too_many_rows_) return;
     found_too_many_rows_ = true;
     diagnostics_.error("dictionary-size", object.position,
                        fmt::format("{} \"{}\" does not fit: a dictionary can have {} rows for distinct sub-indices",
-                                   index_label(object.index), object.name, most_rows));
+                                   index_label(object.index), object.name, max_rows));
   }
 
   /// The end of a struct that begins at `begin`. Reports its first member that cannot be addressed.
@@ -603,11 +603,11 @@ class Builder {
     if (part.members.empty()) return begin;
     begin = round_up(begin, part.members.front().alignment);
     const std::size_t end = end_of(part.members, begin);
-    if (begin > most_bytes || end <= most_bytes) return end;
+    if (begin > max_bytes || end <= max_bytes) return end;
     for (std::size_t at = begin; const Member& member : part.members) {
       const std::size_t before = at;
       at = round_up(at, member.alignment) + member.size;
-      if (at <= most_bytes) continue;
+      if (at <= max_bytes) continue;
       diagnostics_.error(
           "dictionary-size", member.object->position,
           fmt::format("{} \"{}\" does not fit: a dictionary has 64 KiB for {}, and {} bytes lie before it",

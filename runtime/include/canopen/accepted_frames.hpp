@@ -138,6 +138,6 @@ void for_each_accepted_frame(Node<Device, B, Handlers...>& node, Visit&& visit) 
 
 /// Maximum number of frames for a node of this device.
 template <class Device>
-inline constexpr std::size_t most_accepted_frames = accepted_detail::source_count<Device> + 4;
+inline constexpr std::size_t max_accepted_frames = accepted_detail::source_count<Device> + 4;
 
 }  // namespace canopen

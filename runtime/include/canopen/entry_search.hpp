@@ -176,12 +176,12 @@ struct ByHash {
 };
 
 /// Maximum number of indices: with more of them, the table takes too long to compile.
-inline constexpr std::size_t most_hashed = 1024;
+inline constexpr std::size_t max_hashed = 1024;
 
 /// Whether a hash exists and is worthwhile: for speed, or if it takes less flash.
 template <class Device, bool Fast>
 [[nodiscard]] constexpr bool by_hash() {
-  if constexpr (Device::dictionary.entries.size() <= most_hashed && Device::dictionary.runs.size() > 4 &&
+  if constexpr (Device::dictionary.entries.size() <= max_hashed && Device::dictionary.runs.size() > 4 &&
                 (Fast || ByHash<Device>::bytes < ByRuns<Device>::bytes)) {
     return ByHash<Device>::table.found;
   } else {

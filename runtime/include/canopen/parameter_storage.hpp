@@ -267,7 +267,7 @@ class ParameterStorage {
     return wide;
   }();
   using Relative = std::conditional_t<has_wide_relative, std::uint64_t, std::uint32_t>;
-  static constexpr std::size_t most_relative =
+  static constexpr std::size_t max_relative =
       std::max(Device::node_id_relative_communication().size(), Device::node_id_relative_application().size());
 
   [[nodiscard]] static Relative relative_value(const std::uint8_t* ram, const NodeIdRelative& row) {
@@ -285,7 +285,7 @@ class ParameterStorage {
     std::uint8_t what;  ///< one of these, or the maximum number of objects of a mapping parameter
   };
   static constexpr std::uint8_t plain_value = 0;
-  static constexpr std::uint8_t most_mapped = 64;
+  static constexpr std::uint8_t max_mapped = 64;
   static constexpr std::uint8_t emcy_inhibit_time = 0xF7;
   static constexpr std::uint8_t error_behavior = 0xF8;
   static constexpr std::uint8_t rpdo_transmission = 0xF9;
@@ -296,10 +296,10 @@ class ParameterStorage {
   static constexpr std::uint8_t cob_id = 0xFF;      ///< if it is not valid, any value is accepted
   static constexpr std::uint8_t identifier = 0xFE;  ///< the same, but bits 30 and 31 have another meaning
   [[nodiscard]] static constexpr bool is_mapping(const Checked& row) {
-    return row.what != plain_value && row.what <= most_mapped;
+    return row.what != plain_value && row.what <= max_mapped;
   }
   [[nodiscard]] static constexpr bool is_of_service(const Checked& row) {
-    return row.what > most_mapped && row.what < identifier;
+    return row.what > max_mapped && row.what < identifier;
   }
 
   [[nodiscard]] static constexpr bool is_error_behavior(const Checked& row) { return row.what == error_behavior; }
@@ -485,7 +485,7 @@ class ParameterStorage {
     const bool same_node_id = record.node_id == store.node_id().value();
     if (!same_node_id && section == static_cast<std::size_t>(ParameterSection::with_node_id)) return true;
     std::uint8_t* const ram = ram_of(store);
-    std::array<Relative, most_relative> defaults;
+    std::array<Relative, max_relative> defaults;
     for (std::size_t i = 0; i < relative.size(); ++i) defaults[i] = relative_value(ram, relative[i]);
     if (!read_values(storage, section, record.position, left_out, ram)) return false;
     for (std::size_t i = 0; !same_node_id && i < relative.size(); ++i) {

@@ -84,7 +84,7 @@ class SdoServer {
   /// that time is confirmed as far as it has been received, so that the client repeats the rest.
   void on_time([[maybe_unused]] TimePoint now) {
     if constexpr (has_timeout) {
-      if (state_ == State::idle || now < last_activity_ + patience()) return;
+      if (state_ == State::idle || now < last_activity_ + current_timeout()) return;
       if constexpr (has_block) {
         if (sub_block_begun()) return confirm_sub_block();
       }
@@ -95,7 +95,7 @@ class SdoServer {
   /// Returns when the timeout of the client elapses.
   [[nodiscard]] std::optional<TimePoint> next_deadline() const {
     if constexpr (has_timeout) {
-      if (state_ != State::idle) return last_activity_ + patience();
+      if (state_ != State::idle) return last_activity_ + current_timeout();
     }
     return std::nullopt;
   }
@@ -638,7 +638,7 @@ class SdoServer {
   /// Whether a sub-block has been received in part.
   [[nodiscard]] bool sub_block_begun() const { return state_ == State::block_downloading && block_.sequence != 0; }
 
-  [[nodiscard]] Duration patience() const {
+  [[nodiscard]] Duration current_timeout() const {
     if constexpr (has_block) {
       if (sub_block_begun()) return timeout / 2;
     }

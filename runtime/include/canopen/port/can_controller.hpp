@@ -37,7 +37,7 @@ concept CanController = Bus<T> && requires(T& can, std::uint32_t number, std::sp
 /// bits take 1.1 ms at 10 kbit/s, the longest frame 16 ms.
 template <class Condition>
 [[nodiscard]] bool wait_until(Condition&& reached) {
-  for (std::uint32_t patience = 1'000'000; patience > 0; --patience) {
+  for (std::uint32_t tries = 1'000'000; tries > 0; --tries) {
     if (reached()) return true;
   }
   return false;
@@ -52,13 +52,13 @@ class StatusReport {
   [[nodiscard]] std::optional<BusStatus> change(BusState state) {
     const BusStatus status{state, overrun_};
     overrun_ = false;
-    if (status == told_) return std::nullopt;
-    told_ = status;
+    if (status == reported_) return std::nullopt;
+    reported_ = status;
     return status;
   }
 
  private:
-  BusStatus told_{};
+  BusStatus reported_{};
   bool overrun_ = false;
 };
 

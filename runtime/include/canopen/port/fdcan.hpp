@@ -150,8 +150,8 @@ class Fdcan {
   static constexpr BitTimingRange range{512, 256, 128, 128};
   static constexpr fdcan::MessageRam layout = Chip::message_ram;
   /// Maximum number of identifiers for `accept`: two per filter; the last filter is for all frames.
-  static constexpr std::size_t most_standard = 2 * (layout.standard_filters - 1);
-  static constexpr std::size_t most_extended = 2 * (layout.extended_filters - 1);
+  static constexpr std::size_t max_standard = 2 * (layout.standard_filters - 1);
+  static constexpr std::size_t max_extended = 2 * (layout.extended_filters - 1);
 
   /// `message_ram` is that of the chip; the part of this controller begins with `first_word`: 0 for the first
   /// controller, `layout.size` for the second one.
@@ -223,7 +223,7 @@ class Fdcan {
     std::size_t standards = 0;
     std::size_t extendeds = 0;
     for (const AcceptedFrame& frame : frames) {
-      if (frame.extended ? extendeds == most_extended : standards == most_standard) return accept_all();
+      if (frame.extended ? extendeds == max_extended : standards == max_standard) return accept_all();
       if (frame.extended) {
         add_extended(extendeds++, frame.id);
       } else {

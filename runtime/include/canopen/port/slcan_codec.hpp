@@ -363,7 +363,7 @@ class SlcanHost {
     if (asked_) return forget_flags();
     put("F\r");
     asked_ = true;
-    deadline_ = now + patience;
+    deadline_ = now + response_timeout;
   }
 
   [[nodiscard]] std::optional<TimePoint> next_deadline() const { return deadline_; }
@@ -380,9 +380,9 @@ class SlcanHost {
   enum class Step : std::uint8_t { closing, setting, opening, open, refused };
 
   static constexpr Duration settling{100'000};  ///< for data still in transit
-  static constexpr Duration patience{500'000};  ///< for a response
+  static constexpr Duration response_timeout{500'000};  ///< for a response
   static constexpr Duration between_flags{1'000'000};
-  static constexpr std::uint8_t most_refusals = 3;
+  static constexpr std::uint8_t max_refusals = 3;
 
   void enter(Step step, std::optional<TimePoint> deadline) {
     step_ = step;
@@ -393,10 +393,10 @@ class SlcanHost {
     if (step_ == Step::closing && bit_rate_code_) {
       const char command[] = {'S', static_cast<char>('0' + *bit_rate_code_), slcan::end};
       put({command, sizeof command});
-      enter(Step::setting, now + patience);
+      enter(Step::setting, now + response_timeout);
     } else if (step_ == Step::closing || step_ == Step::setting) {
       put("O\r");
-      enter(Step::opening, now + patience);
+      enter(Step::opening, now + response_timeout);
     } else {
       enter(Step::open, std::nullopt);
     }
@@ -405,7 +405,7 @@ class SlcanHost {
   /// Handles a rejection. A slow adapter's response to earlier commands may look like one: only the third one
   /// is accepted.
   void refuse(TimePoint now) {
-    if (++refusals_ < most_refusals) {
+    if (++refusals_ < max_refusals) {
       put("C\r");
       return enter(Step::closing, now + settling);
     }

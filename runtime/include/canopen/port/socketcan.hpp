@@ -97,7 +97,7 @@ class SocketCan {
   /// Makes the kernel discard frames that the node ignores.
   template <class Device, Bus B, class... Handlers>
   void listen_for(Node<Device, B, Handlers...>& node) {
-    constexpr std::size_t most = most_accepted_frames<Device>;
+    constexpr std::size_t most = max_accepted_frames<Device>;
     if constexpr (most <= CAN_RAW_FILTER_MAX) {
       std::array<can_filter, most> filters;
       std::size_t count = 0;
@@ -118,7 +118,7 @@ class SocketCan {
         ++read_;
       } else if (status_.state == BusState::off) {
         status_.state = BusState::active;  // a controller that receives frames is on the bus
-      } else if (status_ == told_) {
+      } else if (status_ == reported_) {
         ++read_;
         return PortEvent{frame_of(raw), last_, status_};
       }
@@ -403,9 +403,9 @@ class SocketCan {
 
   /// Returns a status that has not been reported yet.
   [[nodiscard]] std::optional<PortEvent> status_event() {
-    if (status_ == told_) return std::nullopt;
+    if (status_ == reported_) return std::nullopt;
     if (status_.state == BusState::off) drop_queue();
-    told_ = status_;
+    reported_ = status_;
     return PortEvent{std::nullopt, last_, status_};
   }
 
@@ -431,7 +431,7 @@ class SocketCan {
   std::uint32_t lost_ = 0;  ///< frames for which the socket was full, counted by the kernel
 
   BusStatus status_{};
-  BusStatus told_{};
+  BusStatus reported_{};
   TimePoint overrun_end_{};
   TimePoint reopen_at_{};
   TimePoint retry_at_{};

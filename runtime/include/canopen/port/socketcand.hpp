@@ -33,11 +33,11 @@ class SocketcandPort : public StreamPort<SocketcandClient> {
       throw std::invalid_argument{"\"" + bus + "\" is no name of a bus: 1 to 16 characters"};
     }
     protocol_.start(bus, now());
-    connect(patience);
+    connect(connect_timeout);
   }
 
  private:
-  static constexpr Duration patience = std::chrono::seconds{5};
+  static constexpr Duration connect_timeout = std::chrono::seconds{5};
 
   struct FreeAddresses {
     void operator()(addrinfo* addresses) const { ::freeaddrinfo(addresses); }
@@ -66,7 +66,7 @@ class SocketcandPort : public StreamPort<SocketcandClient> {
     if (::connect(stream.number(), address.ai_addr, address.ai_addrlen) != 0) {
       if (errno != EINPROGRESS) return errno;
       pollfd waiting{stream.number(), POLLOUT, 0};
-      const timespec span = to_timespec(patience);
+      const timespec span = to_timespec(connect_timeout);
       const int ready = ::ppoll(&waiting, 1, &span, nullptr);
       if (ready <= 0) return ready == 0 ? ETIMEDOUT : errno;
       int error = 0;

@@ -43,7 +43,7 @@ class StreamPort {
 
   /// Sends a frame. Returns false if it is not accepted: the queue is full, or the bus is off.
   [[nodiscard]] bool send(const Frame& frame) {
-    congested_ = told_.state == BusState::off;
+    congested_ = reported_.state == BusState::off;
     if (congested_) return false;
     if (queue_.full()) flush();
     congested_ = !queue_.push(frame);
@@ -75,7 +75,7 @@ class StreamPort {
   /// Readable when there is an event, for the application's own poll loop.
   [[nodiscard]] int file_descriptor() const { return events_.number(); }
 
-  [[nodiscard]] const BusStatus& status() const { return told_; }
+  [[nodiscard]] const BusStatus& status() const { return reported_; }
 
   /// Returns the number of frames that wait for room.
   [[nodiscard]] std::size_t waiting() const { return queue_.size(); }
@@ -87,7 +87,7 @@ class StreamPort {
     for (std::size_t reads = 0;; ++reads) {
       while (has_more()) {
         const std::optional<Frame> frame = protocol_.on_character(bytes_[read_++], present_);
-        if (frame) return PortEvent{frame, present_, told_};
+        if (frame) return PortEvent{frame, present_, reported_};
         if (const auto changed = status_event()) return changed;
       }
       // A stream may contain bytes continuously without a frame: time must pass meanwhile.
@@ -101,7 +101,7 @@ class StreamPort {
   [[nodiscard]] std::optional<TimePoint> next_deadline() const { return protocol_.next_deadline(); }
   [[nodiscard]] Duration hold_off() const {
     if (!congested_) return Duration{0};
-    return told_.state == BusState::off ? host_loop::look_again : host_loop::try_again;
+    return reported_.state == BusState::off ? host_loop::look_again : host_loop::try_again;
   }
   [[nodiscard]] bool has_more() const { return read_ < count_; }
   [[nodiscard]] TimePoint pass_time() { return present_ = monotonic_now(); }
@@ -194,9 +194,9 @@ class StreamPort {
   /// Returns a status that has not been reported yet.
   [[nodiscard]] std::optional<PortEvent> status_event() {
     const BusStatus status = protocol_.status();
-    if (status == told_) return std::nullopt;
+    if (status == reported_) return std::nullopt;
     if (status.state == BusState::off) queue_.clear();
-    told_ = status;
+    reported_ = status;
     return PortEvent{std::nullopt, present_, status};
   }
 
@@ -210,7 +210,7 @@ class StreamPort {
   std::size_t count_ = 0;
   std::size_t read_ = 0;  ///< number of these that have been processed
   TimePoint present_ = monotonic_now();
-  BusStatus told_{};
+  BusStatus reported_{};
   bool congested_ = false;  ///< there was no room for the last frame
 };
 

@@ -173,7 +173,7 @@ class AnalogueInputs {
       if (value == Value::template get<std::int16_t>(entries, channel, 0)) return;
       const bool told = tells(entries, channel, value);
       if constexpr (has_delta) {
-        if (told) told_[channel] = value;
+        if (told) reported_[channel] = value;
       }
       Value::set(node, channel, value, !told);
     }
@@ -216,7 +216,7 @@ class AnalogueInputs {
   [[nodiscard]] bool moved([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] std::uint8_t channel,
                            [[maybe_unused]] unsigned trigger, [[maybe_unused]] std::int32_t value) const {
     if constexpr (has_delta) {
-      const std::int32_t way = value - told_[channel];
+      const std::int32_t way = value - reported_[channel];
       const auto up = static_cast<std::uint32_t>(way > 0 ? way : 0);
       const auto down = static_cast<std::uint32_t>(way < 0 ? -way : 0);
       if ((trigger & changed) != 0 && up + down > Delta::template get<std::uint32_t>(entries, channel, 0)) return true;
@@ -228,7 +228,7 @@ class AnalogueInputs {
     }
   }
 
-  [[no_unique_address]] std::conditional_t<has_delta, std::array<std::int16_t, channels>, NoDelta> told_{};
+  [[no_unique_address]] std::conditional_t<has_delta, std::array<std::int16_t, channels>, NoDelta> reported_{};
 };
 
 /// Analogue outputs of 16 bits, 6411h.

@@ -142,8 +142,8 @@ class Drive {
 
  private:
   static constexpr Duration step_time{options.step};
-  static constexpr std::int32_t most_positive = 0x7FFF'FFFF;
-  static constexpr std::int32_t most_negative = -most_positive - 1;
+  static constexpr std::int32_t max_position = 0x7FFF'FFFF;
+  static constexpr std::int32_t min_position = -max_position - 1;
 
   [[nodiscard]] static constexpr bool has_mode(std::int8_t wanted) {
     return (options.modes & bit_of_mode(wanted)) != 0;
@@ -549,8 +549,8 @@ class Drive {
   template <class Node>
   [[nodiscard]] bool software_limit_blocks(const Node& node, std::int32_t direction) const {
     const std::int32_t demand = axis_.position_demand();
-    return (direction > 0 && within_software_limits(node, most_positive) <= demand && demand != most_positive) ||
-           (direction < 0 && within_software_limits(node, most_negative) >= demand && demand != most_negative);
+    return (direction > 0 && within_software_limits(node, max_position) <= demand && demand != max_position) ||
+           (direction < 0 && within_software_limits(node, min_position) >= demand && demand != min_position);
   }
 
   /// Stops an axis at a limit.
