@@ -1,4 +1,4 @@
-/// Which abort codes a case takes: those of CiA 301, and those that the test tool of CiA takes besides.
+/// Abort codes that a case accepts: those of CiA 301, and those that the test tool of CiA accepts in addition.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 
 namespace edsc::conform {
 
-/// An abort code of the second column only passes with a warning. `none` fills the rows.
+/// A code of `accepted` passes with a warning. `ok` fills the rows.
 struct AbortRule {
   std::array<canopen::AbortCode, 3> standard;
   std::array<canopen::AbortCode, 3> accepted;
@@ -46,16 +46,16 @@ inline constexpr AbortRule mapping_too_long{{Code::pdo_length, Code::not_mappabl
                                             {Code::unsupported_access, Code::no_object, Code::general}};
 inline constexpr AbortRule not_mappable{{Code::not_mappable}, {Code::no_object}};
 
-/// A value that the object does not take, whatever its state.
+/// A value that the object refuses in any state.
 inline constexpr AbortRule value{{Code::invalid_value, Code::value_too_high, Code::value_too_low}, {Code::general}};
-/// A value that the object does not take now.
+/// A value that the object refuses in its present state.
 inline constexpr AbortRule state{{Code::device_state}, {Code::general}};
-/// A node that another entry of 1016h watches.
+/// A node-ID that another entry of 1016h has already.
 inline constexpr AbortRule duplicate{{Code::parameter_incompatible}, {Code::general}};
-/// A write to 1010h or 1011h that brings another signature: 0800 002xh.
+/// A write to 1010h or 1011h with a wrong signature: 0800 002xh.
 inline constexpr AbortRule signature{{Code::not_stored, Code::local_control, Code::device_state},
                                      {Code::no_dictionary, Code::no_data, Code::general}};
-/// An entry of 1003h that 1003h:00 does not count.
+/// An entry of 1003h above the number of errors in 1003h:00.
 inline constexpr AbortRule no_error{{Code::no_data}, {Code::general}};
 
 }  // namespace abort_rule

@@ -6,7 +6,7 @@ namespace edsc::conform {
 namespace {
 
 constexpr AreaRow area_rows[] = {
-    {"1", "Data sheet", sheet_cases},
+    {"1", "EDS", sheet_cases},
     {"2", "SDO", sdo_cases},
     {"3", "PDO", pdo_cases},
     {"4", "Object dictionary", dictionary_cases},

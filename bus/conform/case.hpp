@@ -1,4 +1,4 @@
-/// The cases of the conformance test as a table: what each asks for, where the standard says so, and what it may do to a
+/// The table of the cases of the conformance test: requirement, clause of the standard, and what a case may do to a
 /// device.
 #pragma once
 
@@ -12,11 +12,11 @@ namespace edsc::conform {
 
 class Dut;
 
-/// What a run may do to the device, from the least to the most. Each contains those before it.
+/// What a run may do to the device. Each level includes those before it.
 enum class Level : std::uint8_t {
   read,           ///< reads, and requests that each device must refuse without being written
   communication,  ///< writes 1000h to 1FFFh and puts back; NMT to this node
-  all,            ///< with everything that `Permission` names
+  all,            ///< everything, with all of `Permission`
 };
 
 struct LevelRow {
@@ -32,7 +32,7 @@ inline constexpr LevelRow levels[] = {
 
 [[nodiscard]] constexpr const LevelRow& row_of(Level level) { return levels[static_cast<std::size_t>(level)]; }
 
-/// What a case needs besides its level: the user allows it by an option of its own, or by `Level::all`.
+/// What a case needs besides its level. The user allows each by its own option, or all by `Level::all`.
 enum class Permission : std::uint8_t {
   none = 0,
   store = 1,        ///< 1010h and 1011h: `--store`
@@ -58,10 +58,10 @@ inline constexpr PermissionRow permission_options[] = {
     {Permission::outputs, "--outputs"},
 };
 
-/// `run` ends normally where the device passes. What else it may come to, it says by a member of Dut.
+/// `run` returns if the device passes. A member of Dut ends it with any other verdict.
 struct CaseRow {
   std::string_view id;      ///< `2.5`: area and number
-  std::string_view title;   ///< what is asked, as a sentence
+  std::string_view title;   ///< the requirement as a sentence
   std::string_view clause;  ///< `CiA 301, 7.2.4.3.4`
   Level level = Level::read;
   Permission needs = Permission::none;
@@ -69,7 +69,7 @@ struct CaseRow {
 };
 
 struct AreaRow {
-  std::string_view id;     ///< `2`: what the ids of its cases begin with
+  std::string_view id;     ///< `2`: the first part of the ids of its cases
   std::string_view title;  ///< `SDO`
   std::span<const CaseRow> (*cases)();
 };

@@ -22,7 +22,7 @@ using json = nlohmann::ordered_json;  // errors in the order of the file
 constexpr std::array<std::string_view, 2> file_members = {"$schema", "deviations"};
 constexpr std::array<std::string_view, 4> deviation_members = {"case", "object", "reason", "source"};
 
-/// Characters of a text, and how many of them the parser has taken.
+/// Iterates over the characters of a text and records how far the parser has read.
 class CountedText {
  public:
   using iterator_category = std::input_iterator_tag;
@@ -73,7 +73,7 @@ class DeviationsReader {
   }
 
  private:
-  /// Where an object of the file and the names of its members are.
+  /// Positions of an object of the file and of the names of its members.
   struct Places {
     Position begin;
     std::map<std::string, Position, std::less<>> members;
@@ -82,7 +82,7 @@ class DeviationsReader {
   std::optional<json> parse() {
     const std::string_view text = source_.text();
     const char* taken = text.data();
-    const char* token = text.data();  // at the begin of the next one, or before it
+    const char* token = text.data();  // at the next token, or before it
     const auto note_place = [&](int depth, json::parse_event_t event, json& parsed) {
       while (token < taken && std::string_view{" \t\r\n,:"}.find(*token) != std::string_view::npos) ++token;
       const Position position = position_at(static_cast<std::size_t>(token - text.data()));
@@ -135,13 +135,13 @@ class DeviationsReader {
     if (valid) deviations_.push_back(std::move(row));
   }
 
-  /// What is wrong with it; empty: nothing.
+  /// Returns the problem of a member; empty: none.
   std::string set_member(Deviation& row, const std::string& name, const json& value) const {
     if (std::ranges::find(deviation_members, name) == deviation_members.end()) {
       return fmt::format("unknown member {}{}", name, did_you_mean(name, deviation_members));
     }
     const std::string text = value.is_string() ? value.get<std::string>() : std::string{};
-    if (trim(text).empty()) return fmt::format("{}: expected a text that is not empty", name);
+    if (trim(text).empty()) return fmt::format("{}: expected a non-empty string", name);
     if (name == "case") {
       if (std::ranges::find(case_ids_, text) == case_ids_.end()) {
         return fmt::format("case: unknown case {}; edsc conform --list prints the cases", text);
@@ -169,7 +169,7 @@ class DeviationsReader {
             static_cast<std::uint32_t>(1 + column)};
   }
 
-  /// The parser's message without its own place and number.
+  /// The parser's message without its exception name and id.
   static std::string what_of(const json::exception& problem) {
     const std::string_view what = problem.what();
     const std::size_t colon = what.find(": ");

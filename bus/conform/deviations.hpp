@@ -1,4 +1,4 @@
-/// Declared deviations: where a device does not do what CiA 301 says, on purpose, and what its manual says about it.
+/// Declared deviations: intended differences of a device from CiA 301, with the reason and the place in its manual.
 #pragma once
 
 #include <optional>
@@ -15,20 +15,21 @@ namespace edsc::conform {
 
 struct Deviation {
   std::string id;                      ///< of the case: `3.7`
-  std::optional<EntryAddress> object;  ///< the deviation is of this object or entry only
+  std::optional<EntryAddress> object;  ///< restricts the deviation to this object or entry
   std::string reason;
   std::string source;  ///< `manual, page 12`; may be empty
-  Position position;   ///< in the file, which must outlive this
+  Position position;   ///< in the SourceFile, which must outlive this
 };
 
-/// Reads a file as docs/schema/deviations.schema.json says. Anything else in it is an error, at its line and column.
+/// Reads a file in the format of docs/schema/deviations.schema.json. Reports anything else in it as an error, with line
+/// and column.
 [[nodiscard]] std::vector<Deviation> read_deviations(const SourceFile& source, Diagnostics& diagnostics);
 
-/// A failed case that is declared becomes `deviates`. A declaration with an object does not apply to a failure that
-/// names other entries only.
+/// Sets the verdict of a failed case with a declaration to `deviates`. A declaration with an object does not apply to a
+/// failure that names only other entries.
 void apply_deviations(std::span<const Deviation> deviations, CaseResult& result);
 
-/// Fills `unused_deviations`: declarations whose case has passed.
+/// Fills `unused_deviations` with the declarations whose case passed.
 void find_unused_deviations(std::span<const Deviation> deviations, RunReport& run);
 
 }  // namespace edsc::conform

@@ -22,7 +22,7 @@ std::string why_axis_may_move(SdoAccess& node, std::uint16_t index) {
   if (!read.done() || read.bytes.empty()) return fmt::format("{} cannot be read: {}", label(index, 0), outcome_text(read));
   const std::uint64_t status = number_of(read.bytes);
   if ((status & power_is_on) == 0) return {};
-  return fmt::format("{} is {:04X}h: it is enabled", label(index, 0), status);
+  return fmt::format("{} is {:04X}h (enabled)", label(index, 0), status);
 }
 
 }  // namespace

@@ -9,8 +9,8 @@
 
 namespace edsc::conform {
 
-/// Why the device may move when a test writes to it. Empty for a device that is not a drive, in 1000h and in the EDS, and for
-/// a drive whose axes all say in the statusword 6041h that they are not enabled (CiA 402-2, statusword).
+/// Returns why the device may move when a test writes to it. Empty if neither 1000h nor the EDS describes a drive, or
+/// if the statusword 6041h of each axis reports that the axis is not enabled (CiA 402-2, statusword).
 [[nodiscard]] std::string why_drive_may_move(SdoAccess& node, const Device& sheet, const Identity& found);
 
 }  // namespace edsc::conform

@@ -23,18 +23,18 @@ using canopen::TimePoint;
 namespace sdo = canopen::sdo;
 
 constexpr std::uint16_t heartbeat_time = 0x1017, guard_time = 0x100C, verify_configuration = 0x1020;
-/// The sub-indices of 1020h: it goes behind all others, as the device sets it to 0 where one of those changes.
+/// The sub-indices of 1020h. They are written last: the device sets them to 0 when another parameter changes.
 constexpr std::uint8_t verified[] = {1, 2};
 constexpr std::uint64_t watched_heartbeat_ms = 100;
 
-/// What a device may take to follow an NMT command. CiA 301 gives no limit.
+/// The time that a device may need to follow an NMT command. CiA 301 does not specify a limit.
 constexpr Duration to_follow = milliseconds{50};
-/// What it may take to start.
+/// The time that a device may need to start.
 constexpr Duration to_start = milliseconds{5000};
 
 bool is_pdo_parameter(std::uint16_t index) { return index >= 0x1400 && index < 0x1C00; }
 
-/// 1600h of 1400h, and the reverse.
+/// Returns 1600h for 1400h, and the reverse.
 std::uint16_t other_parameter(std::uint16_t index) { return static_cast<std::uint16_t>(index ^ 0x0200U); }
 
 std::uint32_t seed_of(std::uint32_t seed, std::string_view id) {
@@ -87,7 +87,7 @@ Dut::~Dut() {
   bus_.on_sent = nullptr;
 }
 
-// ---- what the data sheet says ----
+// ---- the EDS ----
 
 const Entry* Dut::entry(std::uint16_t index, std::uint8_t sub_index) const { return sheet_.find(index, sub_index); }
 
@@ -450,7 +450,7 @@ std::optional<NmtState> Dut::state() {
 
 void Dut::expect_state(NmtState expected) {
   const auto found = state();
-  expect(found == expected, fmt::format("a message of error control that says {}", canopen::to_text(expected)),
+  expect(found == expected, fmt::format("an error control message with the state {}", canopen::to_text(expected)),
          found ? std::string{canopen::to_text(*found)} : "none");
 }
 
@@ -518,7 +518,7 @@ void Dut::expect_time(std::uint64_t measured, std::uint64_t low, std::uint64_t h
 
 Duration Dut::tolerance() const { return settings_.tolerance; }
 
-// ---- of the runner ----
+// ---- for the runner ----
 
 void Dut::begin_case(const CaseRow& row) {
   frames_.clear();
@@ -565,7 +565,7 @@ void Dut::remember_entry(const LiveEntry& wanted) {
   }
 }
 
-/// Before the first reset, as a reset takes away what is not stored.
+/// Called before the first reset, which discards what is not stored.
 void Dut::remember_configuration() {
   if (configuration_known_) return;
   configuration_known_ = true;
@@ -579,7 +579,7 @@ void Dut::remember_configuration() {
 
 namespace {
 
-/// The first ones, and how many others there are.
+/// The first ones, and the number of the others.
 std::string titles_of(const std::vector<ConfigurationValue>& values) {
   constexpr std::size_t max_named = 8;
   std::string text;
@@ -597,7 +597,7 @@ std::vector<std::string> Dut::restore_values(const Values& wanted, bool applicat
   for (const auto& [key, bytes] : wanted) values.push_back({live(key.first, key.second), bytes, {}});
   const ConfigurationHooks hooks{[](std::size_t, std::size_t) {}, [] { return false; }};
   const Comparison comparison = compare_configuration(sdo_, values, hooks);
-  if (comparison.lost) return {"the device does not answer: nothing could be put back of " + titles_of(values)};
+  if (comparison.lost) return {titles_of(values) + ": the device does not answer"};
   std::vector<bool> differs;
   std::vector<std::string> left;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -605,7 +605,7 @@ std::vector<std::string> Dut::restore_values(const Values& wanted, bool applicat
     const ComparedValue& compared = comparison.values[i];
     const bool changed = compared.differs && compared.known();
     if (compared.differs && !compared.known()) {
-      left.push_back(fmt::format("{} was {} and cannot be read any more: {}", title(values[i].entry),
+      left.push_back(fmt::format("{} was {} and can no longer be read: {}", title(values[i].entry),
                                  value_of(values[i].entry, values[i].bytes), outcome_text(compared.found)));
     }
     differs.push_back(changed && !kept);
@@ -620,7 +620,7 @@ std::vector<std::string> Dut::restore_values(const Values& wanted, bool applicat
   for (const ConfigurationFailure& failure : result.failures) {
     left.push_back(fmt::format("{}: {}", title(failure.entry), failure.what));
   }
-  if (result.lost && left.empty()) left.push_back("the device does not answer any more");
+  if (result.lost && left.empty()) left.push_back("the device no longer answers");
   return left;
 }
 
@@ -645,7 +645,7 @@ std::vector<std::string> Dut::find_state() {
   try {
     if (watch_state()) found_state_ = state();
   } catch (const CaseEnd&) {
-    // 1017h cannot be used as the data sheet says: cases will find out.
+    // 1017h cannot be used as the EDS says: a case will report it.
   }
   return put_back();
 }

@@ -1,6 +1,6 @@
-/// The device under test, as a case sees it: its data sheet, its answers, the frames on the bus, and time.
+/// The device under test, as a case sees it: its EDS, its answers, the frames on the bus, and time.
 ///
-/// A case is a function of it that reads like its clause:
+/// A case is a function that reads like its clause:
 ///
 ///     void missing_sub_index(Dut& dut) {
 ///       dut.expect_abort(dut.upload(0x1000, 1), abort_rule::no_sub_index);
@@ -42,13 +42,13 @@ using std::chrono::milliseconds;
 using canopen::Duration;
 using Bytes = std::vector<std::uint8_t>;
 
-/// Ends a case before its last line. Thrown by the members of Dut alone.
+/// Ends a case with another verdict than passed. Only members of Dut throw it.
 struct CaseEnd {
   Verdict verdict;
   std::string reason;
   std::string expected;
   std::string got;
-  std::string rule{};  ///< of `edsc check` that finds the same in the EDS
+  std::string rule{};  ///< of `edsc check` that reports the cause in the EDS
 };
 
 struct DutSettings {
@@ -57,11 +57,11 @@ struct DutSettings {
   Level level = Level::read;
   Permission permissions = Permission::none;
   bool simulated = false;  ///< time passes only while the test waits
-  /// By how much times on the bus may differ from what the device promises, without the lag of the test itself. In
-  /// simulated time too, frames wait for others on the wire.
+  /// By how much a time on the bus may differ, without the lag of the test itself. Not 0 in simulated time either: a
+  /// frame waits until the bus is free.
   Duration tolerance = microseconds{500};
   std::uint32_t seed = 1;
-  /// What `edsc check` finds in the EDS. Nothing when it was not checked.
+  /// Findings of `edsc check` in the EDS; std::nullopt if it was not checked.
   std::optional<SheetFindings> findings{};
 };
 
@@ -72,58 +72,59 @@ class Dut {
   Dut(const Dut&) = delete;
   Dut& operator=(const Dut&) = delete;
 
-  // ---- what the data sheet says ----
+  // ---- the EDS ----
 
   [[nodiscard]] const Device& sheet() const { return sheet_; }
   [[nodiscard]] canopen::NodeId node() const { return settings_.node; }
   [[nodiscard]] const std::optional<SheetFindings>& findings() const { return settings_.findings; }
   [[nodiscard]] bool has(std::uint16_t index, std::uint8_t sub_index = 0) const;
   [[nodiscard]] const Entry* entry(std::uint16_t index, std::uint8_t sub_index = 0) const;
-  /// The entry; the case is not applicable where the data sheet does not have it.
+  /// Returns the entry. The case is not applicable if the EDS does not have it.
   const Entry& need(std::uint16_t index, std::uint8_t sub_index = 0);
-  /// The same for an entry that can be written.
+  /// Like `need`, but the entry must also be writable.
   const Entry& need_writable(std::uint16_t index, std::uint8_t sub_index = 0);
-  /// The default value; nothing where the data sheet states none, or where it is a string.
+  /// The default value; std::nullopt if the EDS has none, and for a variable-length data type.
   [[nodiscard]] std::optional<std::uint64_t> default_of(std::uint16_t index, std::uint8_t sub_index = 0) const;
   /// All entries, ascending.
   [[nodiscard]] std::vector<LiveEntry> entries() const;
-  /// 1800h.. or 1400h.. of the data sheet, as indices of their communication parameters.
+  /// TPDOs or RPDOs of the EDS that have a communication parameter (1800h or 1400h and above).
   [[nodiscard]] std::vector<const Pdo*> pdos(PdoDirection direction) const;
   [[nodiscard]] bool allowed(Permission permission) const { return includes(settings_.permissions, permission); }
   [[nodiscard]] Level level() const { return settings_.level; }
 
   // ---- SDO ----
 
-  /// Reads or writes an entry through the default SDO, expedited where four bytes do, else segmented or in blocks.
-  /// A write remembers what was there, and it is put back when the case is over.
+  /// Reads or writes an entry through the default SDO: expedited if four bytes suffice, else segmented or in blocks.
+  /// A write first reads the present value, which is put back when the case ends.
   [[nodiscard]] SdoOutcome upload(std::uint16_t index, std::uint8_t sub_index = 0,
                                   SdoTransfer transfer = SdoTransfer::segmented);
   [[nodiscard]] SdoOutcome download(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> value,
                                     SdoTransfer transfer = SdoTransfer::segmented);
-  /// A number of 1 to 8 bytes, low byte first, as many as the entry's type has in the data sheet (4 without one).
+  /// Writes a number, little-endian, as 1 to 8 bytes: the size of the entry's data type in the EDS (4 without one).
   [[nodiscard]] SdoOutcome download(std::uint16_t index, std::uint8_t sub_index, std::uint64_t number);
   [[nodiscard]] Bytes bytes_of(std::uint16_t index, std::uint8_t sub_index, std::uint64_t number) const;
 
-  /// The value; the case fails where the device refuses.
+  /// Returns the value. The case fails if the device does not answer with one.
   Bytes read(std::uint16_t index, std::uint8_t sub_index = 0);
   std::uint64_t read_number(std::uint16_t index, std::uint8_t sub_index = 0);
-  /// Writes; the case fails where the device refuses.
+  /// Writes. The case fails if the device does not confirm the write.
   void write(std::uint16_t index, std::uint8_t sub_index, std::uint64_t number);
-  /// Writes without remembering what was there: save, load and what a case undoes itself.
+  /// Writes without reading the present value: "save", "load", and what a case undoes itself.
   [[nodiscard]] SdoOutcome command(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> value);
-  /// Reads the entry, which a case then writes by hand-made frames: it is put back when the case is over.
+  /// Reads an entry that the case then writes frame by frame. The value is put back when the case ends.
   void remember(std::uint16_t index, std::uint8_t sub_index);
 
-  /// One request to the default SDO server, and its next frame; nothing when none comes in time. The transfer that it
-  /// leaves open is aborted when the case is over, or by `end_transfer`.
+  /// Sends one request to the default SDO server and returns its next frame; std::nullopt after the timeout. A transfer
+  /// that remains open is aborted by `end_transfer` or when the case ends.
   std::optional<canopen::sdo::Data> exchange(const canopen::sdo::Data& request);
-  /// The same where no answer is waited for: segments of a block.
+  /// Sends a request without waiting for an answer, such as a segment of a block.
   void request(const canopen::sdo::Data& request);
-  /// The next frame of the server, when no request is due: segments of a block upload.
+  /// Returns the next frame of the server without a request, such as a segment of a block upload.
   std::optional<canopen::sdo::Data> answer();
-  /// Aborts what a transfer by `exchange` has left open.
+  /// Aborts a transfer that `exchange` or `request` has left open.
   void end_transfer(std::uint16_t index = 0, std::uint8_t sub_index = 0);
-  /// Reads or writes an entry by hand-made segments: the transfer that is asked for, also where the value is short.
+  /// Reads or writes an entry frame by frame. The download is segmented even if the value is short; the server chooses
+  /// the type of the upload.
   [[nodiscard]] Bytes upload_segmented(std::uint16_t index, std::uint8_t sub_index);
   [[nodiscard]] SdoOutcome download_segmented(std::uint16_t index, std::uint8_t sub_index,
                                               std::span<const std::uint8_t> value);
@@ -133,15 +134,15 @@ class Dut {
   using Key = std::pair<std::uint16_t, std::uint8_t>;
   using Values = std::map<Key, Bytes>;
 
-  /// What the device holds in the entries that "save" may store, 1020h among them.
+  /// Returns the present values of the entries that "save" may store, and of 1020h.
   [[nodiscard]] Values values();
-  /// Writes those that differ now, of the application as well, and remembers nothing. What cannot be written is a
-  /// warning.
+  /// Writes the values that differ now, also at 2000h and above, without recording the present ones. A value that
+  /// cannot be written adds a warning.
   void restore(const Values& values);
 
   // ---- frames ----
 
-  /// A place in the record of frames.
+  /// A position in the recorded frames.
   using Mark = std::size_t;
   using Match = std::function<bool(const canopen::Frame&)>;
 
@@ -149,10 +150,10 @@ class Dut {
   void send(const canopen::Frame& frame);
   void send(std::uint32_t can_id, std::span<const std::uint8_t> data);
   void send_remote(std::uint32_t can_id, std::uint8_t size);
-  /// The first frame that the device has sent since the mark, waiting for this long at most.
+  /// Returns the first matching frame that was received since the mark. Waits for at most `span`.
   std::optional<SeenFrame> wait_for(const Match& match, Duration span, Mark since);
   std::optional<SeenFrame> wait_for(const Match& match, Duration span) { return wait_for(match, span, mark()); }
-  /// All such frames of this time, which passes as a whole.
+  /// Waits for `span` and returns all matching frames that were received.
   std::vector<SeenFrame> collect(const Match& match, Duration span);
   void pass_time(Duration span) { (void)collect([](const canopen::Frame&) { return false; }, span); }
   /// Frames received since the mark.
@@ -160,7 +161,7 @@ class Dut {
   [[nodiscard]] std::uint64_t now() const;  ///< microseconds since the run began
 
   [[nodiscard]] static Match with_id(std::uint32_t can_id);
-  /// The CAN-ID of a valid COB-ID as an object holds it; nothing where bit 31 says that it is not valid.
+  /// Matches data frames with the CAN-ID of a COB-ID as an object holds it. Ignores bit 31 (valid).
   [[nodiscard]] static Match with_cob_id(std::uint32_t cob_id);
   [[nodiscard]] Match error_control() const;  ///< 700h + node-ID
   [[nodiscard]] Match boot_up() const;
@@ -170,58 +171,58 @@ class Dut {
 
   /// NMT to this node.
   void nmt(canopen::NmtCommand command);
-  /// Reset node or reset communication, and the boot-up message. The case fails where none comes.
+  /// Sends reset node or reset communication and waits for the boot-up message. The case fails without it.
   void reset(canopen::NmtCommand command);
-  /// Start, stop or pre-operational, and time for the device to follow.
+  /// Sends the command for the state and gives the device time to follow. Initialisation is a reset node.
   void enter(canopen::NmtState state);
-  /// Turns on a heartbeat of at most 100 ms, or takes node guarding. False if the device has neither.
+  /// Enables a heartbeat of at most 100 ms, or selects node guarding. Returns false if the device has neither.
   bool watch_state();
-  /// The state in the next message of error control; std::nullopt if none comes. Call `watch_state` first.
+  /// Returns the NMT state in the next error control message; std::nullopt without one. Call `watch_state` first.
   std::optional<canopen::NmtState> state();
-  /// Fails if the next message of error control has another state, or none comes.
+  /// Fails if the next error control message has another state or is missing.
   void expect_state(canopen::NmtState state);
 
   // ---- verdicts ----
 
   [[noreturn]] void fail(std::string expected, std::string got);
-  /// The device cannot pass, since its data sheet promises what no device keeps: a rule of `edsc check` says so.
+  /// Fails because of an error in the EDS, which a rule of `edsc check` reports: no device could pass with this EDS.
   [[noreturn]] void fail_by_sheet(std::string_view rule, std::string expected, std::string got);
   void expect(bool condition, const std::string& expected, const std::string& got) {
     if (!condition) fail(expected, got);
   }
-  /// An abort of the device with a code of the rule.
+  /// Expects an SDO abort with a code of the rule.
   void expect_abort(const SdoOutcome& outcome, const AbortRule& rule, const std::string& what = {});
-  /// The same for an answer to `exchange`.
+  /// Expects an abort as the answer to `exchange`.
   void expect_abort(const std::optional<canopen::sdo::Data>& answer, const AbortRule& rule,
                     const std::string& what = {});
   void expect_done(const SdoOutcome& outcome, const std::string& what);
   void expect_equal(std::uint64_t got, std::uint64_t expected, const std::string& what);
-  /// A time that was measured, in microseconds, within limits widened by the tolerance. Inconclusive where the test
-  /// itself was late by more than it misses.
+  /// Expects a measured time, in microseconds, within limits widened by the tolerance. Inconclusive if it misses the
+  /// limits by no more than the tolerance and the lag of the test together.
   void expect_time(std::uint64_t measured, std::uint64_t low, std::uint64_t high, const std::string& what);
   void warn(std::string text) { warnings_.push_back(std::move(text)); }
   [[noreturn]] void not_applicable(std::string reason);
   [[noreturn]] void inconclusive(std::string reason);
-  /// Inconclusive where the run may not do this.
+  /// Ends the case as inconclusive if the run does not have the permission.
   void need_permission(Permission permission);
 
-  /// By how much a time may differ now: the tolerance of the run and the lag of the test.
+  /// By how much a time may differ: the tolerance of the run.
   [[nodiscard]] Duration tolerance() const;
   [[nodiscard]] bool simulated() const { return settings_.simulated; }
 
-  // ---- what acts on the device from outside the bus ----
+  // ---- actions on the device that do not use the bus ----
 
   [[nodiscard]] Stimuli& stimuli() { return stimuli_; }
   std::mt19937& random() { return random_; }
 
-  // ---- of the runner ----
+  // ---- for the runner ----
 
   /// The result names what could not be put back. Throws Interrupted, BusLost.
   void begin_case(const CaseRow& row);
   void end_case(CaseResult& result);
-  /// Puts back what was changed and not yet put back: at an interruption, and at the end. Answers what could not be.
+  /// Puts back what was changed and not yet put back: at an interruption, and at the end. Returns what could not be.
   std::vector<std::string> put_back();
-  /// The NMT state in which the run has found the device, as far as it was told. Answers what could not be put back.
+  /// Finds the NMT state of the device before the run, if error control reports it. Returns what could not be put back.
   [[nodiscard]] std::vector<std::string> find_state();
   [[nodiscard]] std::uint64_t lag() const { return lag_; }
 
@@ -247,27 +248,27 @@ class Dut {
   std::uint64_t lag_ = 0;
   std::uint64_t case_began_ = 0;
 
-  std::map<Key, Bytes> changed_;        ///< what was there before this case
+  std::map<Key, Bytes> changed_;        ///< values before this case
   std::map<Key, Bytes> configuration_;  ///< of the whole device, before the first reset
-  std::set<Key> unreadable_;            ///< written, and not to be read: not put back
+  std::set<Key> unreadable_;            ///< written, but not readable: not put back
   bool configuration_known_ = false;
   bool was_reset_ = false;
   bool state_changed_ = false;
   bool transfer_open_ = false;
-  std::optional<Mark> failed_;  ///< where the case failed
-  bool guarded_ = false;     ///< the state is asked for by remote frames
-  Mark next_answer_ = 0;     ///< of `answer`
-  Mark last_match_ = 0;      ///< of `wait_for`
+  std::optional<Mark> failed_;                    ///< where the case failed
+  bool guarded_ = false;                          ///< the state is read by node guarding
+  Mark next_answer_ = 0;                          ///< of `answer`
+  Mark last_match_ = 0;                           ///< of `wait_for`
   std::optional<canopen::NmtState> found_state_;  ///< before the run
 };
 
 /// `1017h:00`
 [[nodiscard]] std::string label(std::uint16_t index, std::uint8_t sub_index);
-/// The number of at most eight bytes, low byte first.
+/// The number in the first eight bytes at most, little-endian.
 [[nodiscard]] std::uint64_t number_of(std::span<const std::uint8_t> bytes);
 /// `0609 0011h, sub-index does not exist`, `no answer`, `done`, `the value 01 02`.
 [[nodiscard]] std::string outcome_text(const SdoOutcome& outcome);
-/// The same of an answer to `exchange`.
+/// The same for an answer to `exchange`.
 [[nodiscard]] std::string answer_text(const std::optional<canopen::sdo::Data>& answer);
 
 }  // namespace edsc::conform

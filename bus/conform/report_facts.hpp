@@ -1,4 +1,4 @@
-/// What all reports of a run have in common.
+/// Texts and numbers that all reports of a run have in common.
 #pragma once
 
 #include <array>
@@ -19,32 +19,32 @@ namespace edsc::conform {
 /// `level communication with store and outputs`
 [[nodiscard]] std::string level_text(const RunReport& run);
 
-/// What else keeps a run from passing: unused deviations, what could not be put back, an early end.
+/// Other reasons for which a run does not pass: unused deviations, values that could not be put back, an early end.
 [[nodiscard]] std::vector<std::string> run_problems(const RunReport& run);
 
-/// How many cases of an area came to each verdict, in the order of `verdicts`.
+/// The number of cases of an area by verdict, in the order of `verdicts`.
 struct AreaCount {
   const AreaRow* area = nullptr;
   std::array<std::size_t, std::size(verdicts)> of_verdict{};
   std::size_t cases = 0;
 };
-/// The areas that have run, in the order in which they ran.
+/// The areas with cases in this run, in the order of the run.
 [[nodiscard]] std::vector<AreaCount> count_by_area(const RunReport& run);
 
-/// The longest that the test itself was late, microseconds.
+/// The maximum lag of the test itself, in microseconds.
 [[nodiscard]] std::uint64_t max_lag(const RunReport& run);
 
 /// `store`, `outputs`: the options without their dashes.
 [[nodiscard]] std::vector<std::string_view> permission_names(Permission permissions);
 
-/// What a case came to, in one line: `expected 0602 0000h...; got no answer`, `not applicable: 1017h:00 does not
+/// The result of a case in one line: `expected 0602 0000h...; got no answer`, `not applicable: 1017h:00 does not
 /// exist...`.
 [[nodiscard]] std::string message_of(const CaseResult& result);
 
 /// Seconds since the run began: `12.003481`.
 [[nodiscard]] std::string time_text(std::uint64_t microseconds);
 
-/// How long something took: `0.4 ms`, `1.204 s`.
+/// A duration: `0.4 ms`, `1.204 s`.
 [[nodiscard]] std::string duration_text(std::uint64_t microseconds);
 
 }  // namespace edsc::conform

@@ -17,7 +17,7 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-/// Null, which a section of the template leaves out, where there is nothing to say.
+/// Null for an empty text: the template omits the section.
 json shown(const std::string& text) { return text.empty() ? json(nullptr) : json(text); }
 
 std::string data_text(const canopen::Frame& frame) {
@@ -62,7 +62,7 @@ std::string frames_remark(std::size_t frames) {
   return fmt::format("{} not shown; --log writes all frames", counted(frames - max_html_frames, "earlier frame"));
 }
 
-/// What is shown of a case while it is closed.
+/// The note of a case whose details are closed.
 std::string note_of(const CaseResult& result) {
   if (!result.deviation.empty()) return result.deviation;
   if (!result.reason.empty() || result.warnings.empty()) return result.reason;

@@ -1,4 +1,4 @@
-/// The report of a run as one HTML file that needs nothing else.
+/// The report of a run as one HTML file that needs no other file.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace edsc::conform {
 
-/// Of each case at most `max_html_frames` frames are shown, the last ones.
+/// The maximum number of frames of a case in the report: the last ones.
 inline constexpr std::size_t max_html_frames = 500;
 
-/// Filled into templates/html/conform.html.mustache, which is built into edsc.
+/// Renders templates/html/conform.html.mustache, which is built into edsc.
 [[nodiscard]] std::string html_report(const RunReport& run, const Device& sheet);
 
 }  // namespace edsc::conform

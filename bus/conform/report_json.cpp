@@ -12,7 +12,7 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-/// Null where there is nothing to say.
+/// Null for an empty text.
 json text_or_null(const std::string& text) { return text.empty() ? json(nullptr) : json(text); }
 
 json frame_object(const SeenFrame& seen, const Message& message) {

@@ -1,4 +1,4 @@
-/// The report of a run as JSON: all that the run has found out, with every frame.
+/// The report of a run as JSON: all results, with every frame.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace edsc::conform {
 
-/// An object as docs/schema/conform.schema.json says, with a line end.
+/// An object in the format of docs/schema/conform.schema.json, with a line end.
 [[nodiscard]] std::string json_report(const RunReport& run, const Device& sheet);
 
 }  // namespace edsc::conform

@@ -27,14 +27,14 @@ void set_count(pugi::xml_node node, const char* name, std::size_t count) {
 
 void set_time(pugi::xml_node node, std::uint64_t microseconds) { set(node, "time", time_text(microseconds)); }
 
-/// The text of an element, a line each.
+/// The text of an element, one line each.
 void set_lines(pugi::xml_node node, const std::vector<std::string>& lines) {
   std::string text;
   for (const std::string& line : lines) text += printable(line) + '\n';
   node.append_child(pugi::node_pcdata).set_value(text.c_str());
 }
 
-/// Texts that belong to a result whatever its verdict is.
+/// Texts of a result with any verdict.
 void add_remarks(pugi::xml_node test, const CaseResult& result) {
   std::vector<std::string> lines;
   for (const std::string& warning : result.warnings) lines.push_back("warning: " + warning);
@@ -123,16 +123,16 @@ void add_properties(pugi::xml_node suite, const RunReport& run) {
   }
 }
 
-/// What is asked of the run as a whole.
+/// A requirement on the run as a whole.
 struct RunCheck {
   const char* name;
   std::vector<std::string> problems;
 };
 
 std::vector<RunCheck> run_checks(const RunReport& run) {
-  std::vector<RunCheck> checks = {{"the device has its values again", run.not_put_back},
-                                  {"each declared deviation happens", run.unused_deviations},
-                                  {"the run reaches its end", {}}};
+  std::vector<RunCheck> checks = {{"all changed values are put back", run.not_put_back},
+                                  {"each declared deviation occurs", run.unused_deviations},
+                                  {"the run is complete", {}}};
   if (run.interrupted) checks.back().problems.emplace_back("interrupted");
   if (!run.lost.empty()) checks.back().problems.push_back(run.lost);
   return checks;

@@ -28,14 +28,14 @@ std::string_view color_of(Verdict verdict) {
   return {};
 }
 
-/// `text` in a colour, where there is one, and blanks behind it.
+/// `text` in the colour, if there is one, padded with blanks to the width.
 std::string colored(std::string_view text, std::string_view color, std::size_t width = 0) {
   const std::size_t blanks = width - std::min(width, text.size());
   if (color.empty()) return fmt::format("{}{:{}}", text, "", blanks);
   return fmt::format("{}{}{}{:{}}", color, text, no_color, "", blanks);
 }
 
-/// A line below that of a case. Empty texts have none.
+/// Appends a detail line, unless the text is empty.
 void append_detail(std::string& out, std::string_view name, std::string_view text) {
   if (text.empty()) return;
   fmt::format_to(std::back_inserter(out), "{:{}}{:<13} {}\n", "", id_width, name, printable(text));
@@ -133,7 +133,7 @@ std::string TextReport::summary() const {
   out += '\n';
   if (!run_.read_identity.empty()) append_detail(out, "identity", run_.read_identity);
   append_detail(out, "differs", run_.identity);
-  append_detail(out, "own lag", fmt::format("{} at most", duration_text(max_lag(run_))));
+  append_detail(out, "test lag", fmt::format("{} at most", duration_text(max_lag(run_))));
   for (const std::string& problem : run_problems(run_)) append_detail(out, "problem", problem);
   const bool passed = run_.passed();
   const std::string_view color = color_of(passed ? Verdict::passed : Verdict::failed);

@@ -1,4 +1,4 @@
-/// The report of a run for a terminal, in pieces as the run goes on.
+/// The report of a run for a terminal, printed in parts during the run.
 #pragma once
 
 #include <string>
@@ -10,20 +10,20 @@ namespace edsc::conform {
 
 class TextReport {
  public:
-  /// `run` may still grow; both must outlive the report.
+  /// `run` may still get results. Both must outlive the report.
   TextReport(const RunReport& run, const Device& sheet, bool color) : run_{run}, sheet_{sheet}, color_{color} {}
 
-  /// Of a failure so many frames are shown: the last ones.
+  /// The maximum number of frames of a failure: the last ones.
   static constexpr std::size_t max_frames = 20;
 
   /// What is tested: device, EDS, bus, level.
   [[nodiscard]] std::string head() const;
-  /// The objects of 2000h and above that --application writes; empty where the run may not.
+  /// The objects at 2000h and above that --application writes; empty without this permission.
   [[nodiscard]] std::string application_objects() const;
-  /// A line with id, verdict and title; of a failure also the clause, what was expected, what came, the frames and the
-  /// command that repeats the case.
+  /// A line with id, verdict and title. For a failure also the clause, the expected and the actual result, the frames,
+  /// and the command that repeats the case.
   [[nodiscard]] std::string of(const CaseResult& result) const;
-  /// A table by area, what else is wrong, and what the run came to.
+  /// A table by area, other problems, and the result of the run.
   [[nodiscard]] std::string summary() const;
 
  private:

@@ -11,7 +11,7 @@
 namespace edsc::conform {
 namespace {
 
-/// What the run may not do of all that the case needs; empty: nothing.
+/// The first option that the case needs and the run does not have; empty: none.
 std::string missing_permission(const CaseRow& row, const DutSettings& settings) {
   if (row.level > settings.level) {
     return fmt::format("needs --level {}", row_of(row.level).name);
@@ -28,7 +28,7 @@ bool is_selected(const CaseRow& row, const std::vector<std::string>& only) {
   return only.empty() || std::ranges::any_of(only, [&](const std::string& pattern) { return matches(pattern, row.id); });
 }
 
-/// Runs the case and puts the device back. Throws Interrupted and BusLost when that is done, as far as it can be.
+/// Runs the case and puts the values of the device back. Throws Interrupted and BusLost.
 CaseResult run_case(const CaseRow& row, Dut& dut) {
   CaseResult result;
   result.row = &row;
@@ -77,18 +77,19 @@ std::string identity_text(const Identity& identity) {
   return text;
 }
 
-/// Throws RunRefused for a drive that may move when the test does what it may do.
+/// Throws RunRefused for a drive that the permissions of the run may move.
 void refuse_enabled_drive(SdoAccess& node, const Device& sheet, const Identity& found, const DutSettings& settings) {
   const bool writes = includes(settings.permissions, Permission::application) && settings.level != Level::read;
   if (settings.simulated || (!writes && !includes(settings.permissions, Permission::outputs))) return;
   const std::string reason = why_drive_may_move(node, sheet, found);
   if (reason.empty()) return;
-  throw RunRefused{fmt::format("node {} is a drive (device type 402) that may move, as {}. Disable it, or leave out --outputs, "
-                               "--application and --level all",
-                               settings.node.value(), reason)};
+  throw RunRefused{
+      fmt::format("node {} is a drive (device type 402) that may move: {}. Disable it, or omit --outputs, "
+                  "--application and --level all",
+                  settings.node.value(), reason)};
 }
 
-/// Reads who answers there; false if nobody does.
+/// Reads the identity of the device. Returns false if it does not answer.
 bool find_device(LiveBus& bus, const Device& sheet, const DutSettings& settings, RunReport& report) {
   SdoAccess access{bus, settings.node, settings.sdo};
   const SdoOutcome answer = access.upload(0x1000, 0);

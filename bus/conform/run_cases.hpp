@@ -1,4 +1,4 @@
-/// Runs the cases of the conformance test at one device.
+/// Runs the cases of the conformance test on one device.
 #pragma once
 
 #include <cstddef>
@@ -19,17 +19,17 @@ struct RunSettings {
   /// Before each case.
   std::function<void(const CaseRow& row, std::size_t done, std::size_t of)> began = [](const CaseRow&, std::size_t,
                                                                                      std::size_t) {};
-  /// It may change the result, which is then in the report.
+  /// After each case. May change the result in the report.
   std::function<void(CaseResult& result)> ended = [](CaseResult&) {};
 };
 
-/// The run would do what is dangerous with this device; nothing was written yet.
+/// The run is too dangerous for this device. Nothing was written.
 struct RunRefused : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Fills what a run finds out: `cases`, what was not put back, and why it ended early. An interruption and a lost bus end
-/// it; the device is put back before, as far as it can be. Throws RunRefused.
+/// Runs the cases and fills the report, except for what identifies the EDS, the bus and edsc. An interruption or a lost
+/// bus ends the run; before, the values of the device are put back as far as possible. Throws RunRefused.
 void run_cases(LiveBus& bus, const Device& sheet, Stimuli& stimuli, const RunSettings& settings, RunReport& report);
 
 }  // namespace edsc::conform

@@ -18,7 +18,7 @@ struct SheetFindings {
   static constexpr std::size_t max_named = 5;
 };
 
-/// Whoever loads the EDS calls it and puts the result into `DutSettings::findings`.
+/// The caller that loads the EDS stores the result in `DutSettings::findings`.
 [[nodiscard]] SheetFindings sheet_findings(const Diagnostics& diagnostics);
 
 }  // namespace edsc::conform

@@ -1,4 +1,4 @@
-/// What acts on a device from outside the bus: its inputs, its errors, its power.
+/// Actions on the device that do not use the bus: its inputs, its errors, its power.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace edsc::conform {
 
-/// Each answers false where it cannot be done. The default does nothing.
+/// Each returns false if it cannot be done. The default implementation does nothing.
 class Stimuli {
  public:
   Stimuli() = default;
@@ -15,14 +15,14 @@ class Stimuli {
   Stimuli& operator=(const Stimuli&) = delete;
   virtual ~Stimuli() = default;
 
-  /// The case that asks, before it begins.
+  /// Called before a case begins.
   virtual void begin_case(std::string_view /*id*/) {}
   /// The application sets an object: a process input changes.
   [[nodiscard]] virtual bool set(std::uint16_t /*index*/, std::uint8_t /*sub_index*/,
                                  std::span<const std::uint8_t> /*value*/) {
     return false;
   }
-  /// The device finds an error with this emergency error code, which sets these bits of 1001h; or it is over.
+  /// The device detects an error with this emergency error code, which sets these bits of 1001h; or the error ends.
   [[nodiscard]] virtual bool emergency(std::uint16_t /*code*/, std::uint8_t /*error_register*/) { return false; }
   [[nodiscard]] virtual bool emergency_over(std::uint8_t /*error_register*/) { return false; }
   [[nodiscard]] virtual bool power_cycle() { return false; }

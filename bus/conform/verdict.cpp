@@ -10,7 +10,7 @@
 namespace edsc::conform {
 namespace {
 
-/// A word of a command as a shell takes it.
+/// A word of a command, quoted for a shell if necessary.
 std::string shell_word(std::string_view word) {
   constexpr std::string_view plain = "_./:@%+=,-";
   const bool is_plain = !word.empty() && std::ranges::all_of(word, [&](char c) {

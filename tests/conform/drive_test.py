@@ -53,7 +53,7 @@ class Drive(unittest.TestCase):
         for options in (("--level", "all"), ("--outputs",), ("--level", "communication", "--application")):
             result = self.conform(*options)
             self.assertEqual((result.returncode, result.stdout), (WRONG_USAGE, ""), options)
-            self.assertIn("node 5 is a drive (device type 402) that may move, as 6041h:00 is ", result.stderr)
+            self.assertIn("node 5 is a drive (device type 402) that may move: 6041h:00 is ", result.stderr)
         result = self.conform("--level", "communication", "--only", "2.3")
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
 

@@ -105,7 +105,7 @@ class Interruption(unittest.TestCase):
         self.node.kill()
         stdout, stderr = process.communicate(timeout=LIMIT)
         self.assertEqual(process.returncode, FAILED, stdout + stderr)
-        text = "the device does not answer: nothing could be put back of 1017h:00 Producer Heartbeat Time"
+        text = "1017h:00 Producer Heartbeat Time: the device does not answer"
         self.assertIn(text.lower(), stdout.lower())
         report = json.loads(self.report.read_text(encoding="utf-8"))
         self.assertEqual([left.lower() for left in report["not_put_back"]], [text.lower()])

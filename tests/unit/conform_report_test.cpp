@@ -238,7 +238,7 @@ TEST(ConformText, SumsUpByArea) {
             "       all                                3       1       1               1\n"
             "\n"
             "       identity      vendor-ID 0000 0319h\n"
-            "       own lag       0.1 ms at most\n"
+            "       test lag      0.1 ms at most\n"
             "       problem       unused deviation: pump.json:4: case 8.4 passed: restored after a power cycle\n"
             "failed: 1 of 3 cases failed; 1 passed, 1 not applicable\n");
 }
@@ -248,7 +248,7 @@ TEST(ConformText, SaysWhyNoCaseRan) {
   run.lost = "node 5 does not answer";
   EXPECT_EQ((TextReport{run, sheet().device, false}.summary()),
             "\n"
-            "       own lag       0.0 ms at most\n"
+            "       test lag      0.0 ms at most\n"
             "       problem       the run ended early: node 5 does not answer\n"
             "failed: no case ran\n");
 }
@@ -355,7 +355,7 @@ TEST(ConformJunit, FailsWhereTheRunAsAWholeDoes) {
   run.lost = "node 5 does not answer";
   const Junit junit{junit_report(run, sheet().device)};
   EXPECT_EQ(junit.suite("run").attribute("failures").as_int(), 2);
-  EXPECT_EQ(std::string_view{junit.test("the run reaches its end").child("failure").attribute("message").value()},
+  EXPECT_EQ(std::string_view{junit.test("the run is complete").child("failure").attribute("message").value()},
             "node 5 does not answer");
 }
 
@@ -475,8 +475,8 @@ TEST(ConformDeviations, AreReadStrictly) {
       {R"({"deviations": [{"reason": "x"}]})", "1:17: missing member case"},
       {"{\"deviations\": [{\"case\": \"3.7\", \"reason\": \"x\"},\n  {\"case\": \"3.700\", \"reason\": \"x\"}]}",
        "2:4: case: unknown case 3.700; edsc conform --list prints the cases"},
-      {R"({"deviations": [{"case": "3.7", "reason": " "}]})", "1:33: reason: expected a text that is not empty"},
-      {R"({"deviations": [{"case": "3.7", "reason": 5}]})", "1:33: reason: expected a text that is not empty"},
+      {R"({"deviations": [{"case": "3.7", "reason": " "}]})", "1:33: reason: expected a non-empty string"},
+      {R"({"deviations": [{"case": "3.7", "reason": 5}]})", "1:33: reason: expected a non-empty string"},
       {R"({"deviations": [{"case": "3.7", "reason": "x", "object": "speed"}]})",
        "1:48: object: expected an object or entry such as \"1800h\" or \"1800h:02\""},
       {R"({"deviations": [{"case": "3.7", "reason": "x", "resaon": "y"}]})",

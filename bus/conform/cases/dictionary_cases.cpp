@@ -1,5 +1,5 @@
 /// Area 4: the object dictionary and its EDS (CiA 301, 7.4). Cases 4.1 and 4.2 are about 1000h to 1FFFh, 4.7 to 4.9
-/// about 2000h and above, where ObjFlags say what tools must leave alone; the others are about all entries.
+/// about 2000h and above, where ObjFlags restrict the access of tools; the others are about all entries.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ std::size_t type_bytes(const LiveEntry& entry) { return (entry.type->bits + 7U) 
 
 // Reading
 
-/// Whether the entry may be read at all; of a DOMAIN, which may be long, only the first answer.
+/// Reads only the first answer of the entry and aborts the transfer: a DOMAIN may be long.
 SdoOutcome begin_upload(Dut& dut, const LiveEntry& entry) {
   const auto answer = dut.exchange(sdo_frame(0x40, entry.index, entry.sub_index));
   SdoOutcome outcome;
@@ -54,8 +54,8 @@ SdoOutcome read_entry(Dut& dut, const LiveEntry& entry) {
   return is_domain(entry) ? begin_upload(dut, entry) : dut.upload(entry.index, entry.sub_index);
 }
 
-/// Entries that have no value now: the rest of the error history (CiA 301, 7.5.2.4), a string or DOMAIN not yet
-/// written.
+/// Entries that may not have a value now: unused entries of the error history (CiA 301, 7.5.2.4), a string or DOMAIN
+/// that was not yet written.
 bool may_have_no_value(const LiveEntry& entry) {
   return entry.type->bits == 0 || (entry.index == error_history && entry.sub_index != 0);
 }
@@ -73,7 +73,7 @@ void expect_readable(EntryResults& results, const LiveEntry& entry, const SdoOut
 
 using InArea = bool (*)(const LiveEntry&);
 
-/// Each entry that the EDS says is readable, with as many bytes as its type has.
+/// Reads each entry that is readable in the EDS and compares the number of bytes with its data type.
 void read_entries(Dut& dut, InArea in_area, const std::string& none) {
   EntryResults results{dut};
   for (const LiveEntry& entry : dut.entries()) {
@@ -82,7 +82,7 @@ void read_entries(Dut& dut, InArea in_area, const std::string& none) {
     results.count();
     expect_readable(results, entry, read_entry(dut, entry));
   }
-  results.finish("each readable entry is read, with the bytes of its data type", none);
+  results.finish("each readable entry is read, with the size of its data type", none);
 }
 
 constexpr const char* no_application_entries = "the EDS has no such entry at 2000h or above";
@@ -107,16 +107,16 @@ constexpr ProductValue product_values[] = {
 
 bool is_serial_number(const LiveEntry& entry) { return entry.index == 0x1018 && entry.sub_index == 4; }
 
-/// The number of sub-indices; in a list that a device fills, sub-index 0 has another default.
+/// Sub-index 0 with the highest sub-index. In a list that the device fills, it has another default value.
 bool is_highest_sub_index(const Dut& dut, const LiveEntry& entry) {
   const Object* object = dut.sheet().find(entry.index);
   if (entry.sub_index != 0 || object == nullptr || !object->has_sub_indices()) return false;
   return dut.default_of(entry.index, 0) == object->highest_sub_index();
 }
 
-/// Whether the value is a constant of the product: access const, or read-only and one of the above, or the number of
-/// sub-indices. Other values differ from their default in a device that is right: what it measures or counts, and what
-/// a user has written or stored. They have their default only after restoring, which other cases ask for.
+/// Whether the value is a constant of the product: access const, or read-only and one of the above or the highest
+/// sub-index. A correct device may have other values that differ from their default: measured values, counters, and
+/// values that a user has written or stored. Other cases test the default values after "load".
 bool is_product_value(const Dut& dut, const LiveEntry& entry) {
   const Access access = entry.entry->access;
   if (is_serial_number(entry) || entry.index == error_history) return false;
@@ -129,7 +129,7 @@ bool is_product_value(const Dut& dut, const LiveEntry& entry) {
   });
 }
 
-/// Text with what may follow it: devices fill a VISIBLE_STRING with 00h or spaces, and files lose spaces.
+/// Removes fill characters: devices fill a VISIBLE_STRING with 00h or spaces, and EDS files may lose spaces at its end.
 Bytes trimmed(const LiveEntry& entry, Bytes bytes) {
   const auto is_fill = [](std::uint8_t byte) { return byte == 0 || byte == ' '; };
   if (entry.type->type == canopen::DataType::visible_string) {
@@ -163,14 +163,14 @@ void compare_application_defaults(Dut& dut) { compare_defaults(dut, is_applicati
 
 // Access that the entry does not allow
 
-/// A value that fits the entry: what it has, so that a device which takes it changes nothing.
+/// The present value of the entry, so that a device that accepts it changes nothing; zeros if it cannot be read.
 Bytes fitting_value(Dut& dut, const LiveEntry& entry) {
   SdoOutcome present = dut.upload(entry.index, entry.sub_index);
   if (present.done() && !present.bytes.empty()) return std::move(present.bytes);
   return Bytes(entry.type->bits == 0 ? 1 : type_bytes(entry));
 }
 
-/// Those of 2000h and above only where the run may write them.
+/// Entries at 2000h and above only with the permission to write them.
 void write_read_only_entries(Dut& dut) {
   EntryResults results{dut};
   for (const LiveEntry& entry : dut.entries()) {
@@ -198,7 +198,7 @@ void read_write_only_entries(Dut& dut) {
 
 // Sub-index FFh
 
-/// Fails by the EDS where that describes another structure.
+/// Fails because of the EDS if its sub-index FFh does not match the object.
 void expect_described(Dut& dut, const Object& object) {
   const Entry* entry = object.find(structure_sub_index);
   if (entry == nullptr) return;
@@ -232,7 +232,7 @@ void check_structures(Dut& dut) {
                  "no object has a sub-index FFh");
 }
 
-// Limits and writing back
+// Limits and writes of the present value
 
 /// A refusal that depends on other values does not fail the case.
 void expect_written(EntryResults& results, const LiveEntry& entry, const SdoOutcome& outcome, std::string_view what) {
@@ -256,7 +256,7 @@ void try_beyond(Dut& dut, EntryResults& results, const LiveEntry& entry, std::ui
   }
 }
 
-/// The limit itself is taken and read back.
+/// The limit itself is accepted and read back.
 void try_limit(Dut& dut, EntryResults& results, const LiveEntry& entry, const Value& limit, std::string_view name) {
   const Bytes value = dut.bytes_of(entry.index, entry.sub_index, bits_of(dut, limit));
   const SdoOutcome outcome = dut.download(entry.index, entry.sub_index, value);
@@ -269,7 +269,7 @@ void try_limit(Dut& dut, EntryResults& results, const LiveEntry& entry, const Va
   }
 }
 
-/// Such a value cannot be written back, so that the entry keeps it.
+/// A value outside the limits could not be written back, so the case does not change it.
 std::string outside_limits(const LiveEntry& entry, const Bytes& bytes) {
   return fmt::format("{} is outside the limits {} of the EDS and is not written back", value_of(entry, bytes),
                      limits_text(*entry.entry));
@@ -294,14 +294,14 @@ void try_limits(Dut& dut) {
     }
     if (row.high_limit) try_limit(dut, results, entry, *row.high_limit, "HighLimit");
     if (row.low_limit) try_limit(dut, results, entry, *row.low_limit, "LowLimit");
-    // At once: an output does not stay at its limit while the other entries are tried.
+    // Written back at once, so that an output does not keep its limit during the other entries.
     (void)dut.command(entry.index, entry.sub_index, before.bytes);
   }
-  results.finish("values beyond the limits of the EDS are refused, and the limits are taken",
+  results.finish("values beyond the limits of the EDS are refused, and the limits are accepted",
                  "the EDS has no writable entry with limits");
 }
 
-/// The value that was read. What can be mapped may change meanwhile and is not compared.
+/// Writes the value that was read. A mappable value may change in between and is not compared.
 void write_back(Dut& dut) {
   EntryResults results{dut};
   for (const LiveEntry& entry : dut.entries()) {
@@ -323,7 +323,7 @@ void write_back(Dut& dut) {
           entry, fmt::format("{} written, then {}", value_of(entry, before.bytes), value_of(entry, after.bytes)));
     }
   }
-  results.finish("each writable entry takes the value that was read", no_application_entries);
+  results.finish("each writable entry accepts the value that was read", no_application_entries);
 }
 
 constexpr Permission none = Permission::none;
@@ -337,13 +337,14 @@ constexpr CaseRow rows[] = {
      write_read_only_entries},
     {"4.4", "Each read of a write-only entry is refused", "CiA 301, 7.4.5", Level::read, none, read_write_only_entries},
     {"4.5", "Sub-index FFh describes its object", "CiA 301, 7.4.4", Level::read, none, check_structures},
-    {"4.6", "Limits of the EDS hold", "CiA 306-1, 4.6.2", Level::communication, Permission::application, try_limits},
+    {"4.6", "The device enforces the limits of the EDS", "CiA 306-1, 4.6.2", Level::communication,
+     Permission::application, try_limits},
     {"4.7", "Each readable entry of 2000h and above is read", "CiA 301, 7.4.5", Level::read, none,
      read_application_entries},
     {"4.8", "Constants of 2000h and above have the values of the EDS", "CiA 306-1, 4.6.2", Level::read, none,
      compare_application_defaults},
-    {"4.9", "Each writable entry of 2000h and above takes the value that it has", "CiA 301, 7.4.5",
-     Level::communication, Permission::application, write_back},
+    {"4.9", "Each writable entry of 2000h and above accepts its present value", "CiA 301, 7.4.5", Level::communication,
+     Permission::application, write_back},
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-/// Emergency (CiA 301, 7.2.7): the error register 1001h, the history 1003h, and the EMCY that an error causes.
+/// Emergency (CiA 301, 7.2.7): the error register 1001h, the error history 1003h, and the EMCY that an error causes.
 #include <fmt/format.h>
 
 #include <canopen/error_register.hpp>
@@ -18,10 +18,10 @@ constexpr std::uint16_t error_register = 0x1001, error_history = 0x1003, emcy = 
 constexpr std::uint16_t generic_error = 0x1000;
 constexpr auto generic_bit = static_cast<std::uint8_t>(ErrorRegister::generic);
 
-/// What a device may take to send an EMCY. The longest inhibit time of 1015h comes to 6.5 s; this is a usual one.
+/// The time that a device may need to send an EMCY. The maximum inhibit time of 1015h is 6.5 s; usual ones are shorter.
 constexpr Duration to_report = milliseconds{1000};
 
-/// An error that the device has now.
+/// A present error of the device.
 struct Raised {
   std::uint32_t cob_id = 0;  ///< 1014h:00
   std::uint16_t code = 0;
@@ -35,7 +35,7 @@ struct ShortRpdo {
   bool synchronous = false;
 };
 
-/// A valid RPDO that maps something, preferably one whose length the device looks at as soon as it comes.
+/// A valid RPDO that maps objects, preferably one whose length the device checks on reception.
 std::optional<ShortRpdo> find_rpdo(Dut& dut) {
   std::optional<ShortRpdo> found;
   for (const Pdo* pdo : dut.pdos(PdoDirection::receive)) {
@@ -49,7 +49,7 @@ std::optional<ShortRpdo> find_rpdo(Dut& dut) {
   return found;
 }
 
-/// By a stimulus, else by an RPDO without data (8210h, CiA 301, 7.2.7.1, table 26).
+/// Causes an error by a stimulus, else by an RPDO without data (8210h, CiA 301, 7.2.7.1, table 26).
 Raised raise(Dut& dut) {
   Raised error{emcy_cob_id(dut), generic_error, true, dut.mark(), {}};
   if (!dut.stimuli().emergency(generic_error, generic_bit)) {
@@ -69,7 +69,7 @@ Raised raise(Dut& dut) {
   return error;
 }
 
-/// The error goes again, and with it the EMCYs that say so.
+/// Ends the error by a stimulus, else by reset communication, and waits for the EMCYs that report it.
 void end_error(Dut& dut, const Raised& error) {
   if (error.by_stimulus && dut.stimuli().emergency_over(generic_bit)) return dut.pass_time(milliseconds{50});
   dut.reset(NmtCommand::reset_communication);
@@ -81,22 +81,22 @@ void with_error(Dut& dut, Check check) {
   and_undo([&] { check(error); }, [&] { end_error(dut, error); });
 }
 
-/// The EMCY that the device has sent last: the error may be over by now.
+/// The last EMCY of the device: the error may have ended.
 SeenFrame last_message(Dut& dut, const Raised& error) {
   dut.pass_time(milliseconds{100});
   return dut.received_since(error.since, Dut::with_cob_id(error.cob_id)).back();
 }
 
-/// Bit 6 is reserved, and each error sets the generic bit.
+/// Bit 6 is reserved, and each error sets bit 0 (generic error).
 void expect_well_formed(Dut& dut, std::uint64_t bits, const std::string& what) {
-  dut.expect((bits & 0x40) == 0, what + ": bit 6, which is reserved, is 0", fmt::format("{:02X}h", bits));
-  dut.expect(bits == 0 || (bits & generic_bit) != 0, what + ": bit 0 is set as soon as another bit is",
+  dut.expect((bits & 0x40) == 0, what + ": reserved bit 6 is 0", fmt::format("{:02X}h", bits));
+  dut.expect(bits == 0 || (bits & generic_bit) != 0, what + ": bit 0 is set if another bit is set",
              fmt::format("{:02X}h", bits));
 }
 
 void cob_id(Dut& dut) {
   expect_default_cob_id(dut, emcy, 0x80U + dut.node().value());
-  dut.expect((dut.read_number(emcy) & CobId::no_rtr_bit) == 0, "1014h:00: bit 30, which is reserved, is 0", "1");
+  dut.expect((dut.read_number(emcy) & CobId::no_rtr_bit) == 0, "1014h:00: reserved bit 30 is 0", "1");
 }
 
 void read_register(Dut& dut) {
@@ -110,7 +110,7 @@ void read_history(Dut& dut) {
   dut.need(error_history, 1);
   const std::uint64_t count = dut.read_number(error_history);
   dut.expect(count == 0 || dut.has(error_history, static_cast<std::uint8_t>(count)),
-             "1003h:00: at most as many errors as there are sub-indices", std::to_string(count));
+             "1003h:00: not more errors than sub-indices", std::to_string(count));
   for (std::uint8_t i = 1; i <= count; ++i) {
     const std::uint64_t error = dut.read_number(error_history, i);
     dut.expect((error & 0xFFFF'FFFF) != 0, label(error_history, i) + ": an error, as 1003h:00 counts it", "0");
@@ -119,9 +119,9 @@ void read_history(Dut& dut) {
   if (!dut.has(error_history, next)) return;
   const SdoOutcome outcome = dut.upload(error_history, next);
   if (outcome.done() && number_of(outcome.bytes) == 0) {
-    dut.warn(label(error_history, next) + " is 0; CiA 301 has 0800 0024h, since 1003h:00 does not count it");
+    dut.warn(label(error_history, next) + " is 0; CiA 301 requires abort code 0800 0024h above the number of errors");
   } else {
-    dut.expect_abort(outcome, abort_rule::no_error, label(error_history, next) + ", which 1003h:00 does not count");
+    dut.expect_abort(outcome, abort_rule::no_error, label(error_history, next) + ", above the number of errors");
   }
 }
 
@@ -130,14 +130,15 @@ void force_message(Dut& dut) {
     const canopen::Frame& message = error.message.frame;
     dut.expect_equal(message.size, 8, "bytes of the EMCY");
     const std::uint16_t code = emergency_code_of(message);
-    const bool may_be_any = error.by_stimulus && !dut.simulated();  // a command of the user causes what it can
+    const bool may_be_any = error.by_stimulus && !dut.simulated();  // a user's command causes any error
     if (may_be_any) {
       dut.expect(code != 0, "an EMCY with the code of an error", "0000h");
     } else {
       dut.expect_equal(code, error.code, "the emergency error code");
     }
     expect_well_formed(dut, message.data[2], "the error register in the EMCY");
-    if (message.data[2] == 0) dut.warn("the EMCY of an error says 00h for the error register; CiA 301 sets bit 0");
+    if (message.data[2] == 0)
+      dut.warn("the error register in the EMCY of an error is 00h; CiA 301 requires bit 0 to be set");
     (void)last_message(dut, error);
     const auto sent = dut.received_since(error.since, emcy_with_code(error.cob_id, code));
     dut.expect_equal(sent.size(), 1, "EMCYs for one error");
@@ -155,7 +156,7 @@ void register_follows(Dut& dut) {
     const std::uint64_t bits = last_message(dut, error).frame.data[2];
     const std::uint64_t read = dut.read_number(error_register);
     expect_well_formed(dut, read, "1001h:00");
-    dut.expect_equal(read, bits, "1001h:00, as the last EMCY says it");
+    dut.expect_equal(read, bits, "1001h:00, as in the last EMCY");
   });
 }
 
@@ -180,15 +181,15 @@ void history_follows(Dut& dut) {
 
 constexpr CaseRow rows[] = {
     {"5.1", "1014h holds the default COB-ID of EMCY", "CiA 301, 7.5.2.17", Level::read, Permission::none, cob_id},
-    {"5.2", "The error register 1001h can be read and sets bit 0 with each other bit", "CiA 301, 7.5.2.2", Level::read,
-     Permission::none, read_register},
-    {"5.3", "The history 1003h has as many errors as its sub-index 0 says", "CiA 301, 7.5.2.4", Level::read,
+    {"5.2", "The error register 1001h can be read, and bit 0 is set if another bit is set", "CiA 301, 7.5.2.2",
+     Level::read, Permission::none, read_register},
+    {"5.3", "The error history 1003h has as many errors as 1003h:00 says", "CiA 301, 7.5.2.4", Level::read,
      Permission::none, read_history},
     {"5.4", "An error sends one EMCY with its code", "CiA 301, 7.2.7.1 and 7.2.7.3", Level::communication,
      Permission::none, force_message},
-    {"5.5", "The error register 1001h is the one of the last EMCY", "CiA 301, 7.2.7.3.1 and 7.5.2.2",
+    {"5.5", "The error register 1001h equals that of the last EMCY", "CiA 301, 7.2.7.3.1 and 7.5.2.2",
      Level::communication, Permission::none, register_follows},
-    {"5.6", "The history 1003h begins with the error of the last EMCY", "CiA 301, 7.5.2.4", Level::communication,
+    {"5.6", "The error history 1003h begins with the error of the last EMCY", "CiA 301, 7.5.2.4", Level::communication,
      Permission::none, history_follows},
 };
 

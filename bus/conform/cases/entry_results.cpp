@@ -35,7 +35,7 @@ void EntryResults::add_warning(const LiveEntry& entry, std::string_view text) { 
 void EntryResults::finish(const std::string& expected, const std::string& why_none) {
   if (warnings_.size != 0) dut_.warn(fmt::format("expected: {}; got: {}", expected, warnings_.whole()));
   if (failures_.size != 0) {
-    dut_.fail(expected, failures_.whole() + (lost() ? "; the device does not answer, the rest was not tried" : ""));
+    dut_.fail(expected, failures_.whole() + (lost() ? "; the device does not answer, other entries not tested" : ""));
   }
   if (tried_ == 0) dut_.not_applicable(why_none);
 }

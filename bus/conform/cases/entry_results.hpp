@@ -15,7 +15,7 @@ class EntryResults {
 
   /// The entry must have been read or written.
   void expect_done(const LiveEntry& entry, const SdoOutcome& outcome);
-  /// The entry must have been refused with a code of the rule. `done` says what a bad device did: `written`.
+  /// The entry must have been refused with a code of the rule. `done` names the access: `written`.
   void expect_abort(const LiveEntry& entry, const SdoOutcome& outcome, const AbortRule& rule, std::string_view done);
   void add_failure(const LiveEntry& entry, std::string_view got);
   void add_warning(const LiveEntry& entry, std::string_view text);

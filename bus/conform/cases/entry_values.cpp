@@ -36,7 +36,7 @@ constexpr PlainParameter plain_parameters[] = {
     {0x1800, 0x19FF, 5, 5},    // event timer
 };
 
-/// The next value of a REAL in the direction of `towards`. Nothing where the type ends there.
+/// The next value of a REAL in the direction of `towards`; std::nullopt at the end of the type.
 template <typename Real, typename Bits>
 std::optional<std::uint64_t> next_real(std::uint64_t bits, Real towards) {
   const Real next = std::nextafter(std::bit_cast<Real>(static_cast<Bits>(bits)), towards);
@@ -44,7 +44,7 @@ std::optional<std::uint64_t> next_real(std::uint64_t bits, Real towards) {
   return std::bit_cast<Bits>(next);
 }
 
-/// The bits of the greatest or the least value of an integer type, sign-extended to 64 bits.
+/// The bits of the maximum or minimum value of an integer type, sign-extended to 64 bits.
 std::uint64_t greatest(const DataTypeRow& type) {
   const unsigned used = type.kind == DataClass::signed_integer ? type.bits - 1U : type.bits;
   return ~std::uint64_t{0} >> (64 - used);

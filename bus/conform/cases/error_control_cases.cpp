@@ -1,4 +1,4 @@
-/// Error control (CiA 301, 7.2.8.3.2): node and life guarding, heartbeat, and which of the two a device does.
+/// Error control (CiA 301, 7.2.8.3.2): node and life guarding, heartbeat, and which of the two is active.
 #include <fmt/format.h>
 
 #include <canopen/error_control.hpp>
@@ -18,12 +18,12 @@ constexpr std::uint16_t guard_time = 0x100C, life_time_factor = 0x100D;
 constexpr std::uint16_t consumer_time = 0x1016, producer_time = 0x1017;
 constexpr std::uint8_t toggle_bit = 0x80;
 
-/// What a device may take to answer a guarding request.
+/// The time that a device may need to answer a guarding request.
 constexpr Duration to_answer = milliseconds{50};
 
 // ---- node and life guarding ----
 
-/// Not applicable where the data sheet has no node guarding. Heartbeat is off afterwards, as it excludes guarding.
+/// Not applicable if the EDS does not have node guarding. Disables heartbeat, which excludes guarding.
 void need_guarding(Dut& dut) {
   dut.need(guard_time);
   dut.need(life_time_factor);
@@ -34,7 +34,7 @@ void need_guarding(Dut& dut) {
   }
 }
 
-/// All messages of error control that one request gets.
+/// Sends one guarding request and returns all error control messages that answer it.
 std::vector<SeenFrame> answers(Dut& dut) {
   const Dut::Mark since = dut.mark();
   dut.send_remote(0x700U + dut.node().value(), 1);
@@ -42,7 +42,7 @@ std::vector<SeenFrame> answers(Dut& dut) {
   return dut.received_since(since, dut.error_control());
 }
 
-/// One request is answered by one message of one byte. The byte.
+/// Sends one guarding request, expects one message of one byte, and returns the byte.
 std::uint8_t guard(Dut& dut) {
   const std::vector<SeenFrame> seen = answers(dut);
   dut.expect(seen.size() == 1, "one answer to a remote frame of node guarding",
@@ -60,7 +60,7 @@ void expect_guarded(Dut& dut, NmtState state, bool toggle) {
 void read_guarding(Dut& dut) {
   dut.need(guard_time);
   dut.expect_equal(dut.read(guard_time).size(), 2, "bytes of 100Ch:00");
-  dut.expect(dut.has(life_time_factor), "100Dh, which belongs to 100Ch", "it does not exist in the data sheet");
+  dut.expect(dut.has(life_time_factor), "100Dh, which belongs to 100Ch", "it does not exist in the EDS");
   dut.expect_equal(dut.read(life_time_factor).size(), 1, "bytes of 100Dh:00");
 }
 
@@ -80,7 +80,7 @@ void toggle(Dut& dut) {
   }
 }
 
-/// Messages of error control that requests for all other node-IDs get.
+/// Sends guarding requests for all other node-IDs and returns the error control messages of other node-IDs.
 std::vector<SeenFrame> foreign_answers(Dut& dut) {
   const Dut::Mark since = dut.mark();
   for (std::uint32_t node = 1; node <= 127; ++node) {
@@ -97,7 +97,7 @@ std::vector<SeenFrame> foreign_answers(Dut& dut) {
 void foreign_requests(Dut& dut) {
   need_guarding(dut);
   if (hears_other_nodes(dut, milliseconds{1200})) {
-    dut.inconclusive("other nodes are on the bus, and they are not to be guarded: conclusive where the device is alone");
+    dut.inconclusive("other nodes are on the bus and must not be guarded; test the device alone on the bus");
   }
   dut.enter(NmtState::pre_operational);
   (void)guard(dut);
@@ -107,7 +107,7 @@ void foreign_requests(Dut& dut) {
     const bool follows = (seen.frame.data[0] & 0x7FU) == static_cast<unsigned>(NmtState::stopped);
     dut.expect(!follows, "no answer to a request for another node-ID", fmt::format("one on {:X}h", seen.frame.id));
   }
-  dut.inconclusive("another node is on the bus: conclusive where the device is alone");
+  dut.inconclusive("another node is on the bus; test the device alone on the bus");
 }
 
 void write_guarding(Dut& dut) {
@@ -121,9 +121,9 @@ void write_guarding(Dut& dut) {
   }
 }
 
-/// 1014h, by which the device reports that a node is lost; inconclusive where it does not have it.
+/// The EMCY with which the device reports a lost node. Inconclusive if the EDS does not have 1014h.
 Dut::Match error_control_event(Dut& dut) {
-  if (!dut.has(0x1014)) dut.inconclusive("1014h:00 does not exist in the data sheet: the device cannot report the event");
+  if (!dut.has(0x1014)) dut.inconclusive("1014h:00 does not exist in the EDS: the device cannot report the event");
   return emcy_with_code(emcy_cob_id(dut), canopen::emergency_code::error_control);
 }
 
@@ -138,14 +138,14 @@ void life_guarding(Dut& dut) {
   dut.write(guard_time, 0, time.count() / 1000);
   dut.write(life_time_factor, 0, factor);
   const Dut::Mark began = dut.mark();
-  dut.pass_time(time * (factor + 2));  // the first request begins it
+  dut.pass_time(time * (factor + 2));  // life guarding begins with the first request
   std::uint64_t last = 0;
   for (unsigned i = 0; i < 8; ++i) {
     last = dut.now();
     (void)guard(dut);
     dut.pass_time(time - to_answer);
   }
-  dut.expect(dut.received_since(began, event).empty(), "no EMCY with code 8130h while requests come", "one");
+  dut.expect(dut.received_since(began, event).empty(), "no EMCY with code 8130h while requests are sent", "one");
   const auto lost = dut.wait_for(event, time * factor * 2, began);
   dut.expect(lost.has_value(), "an EMCY with code 8130h after the life time of 300 ms", "none");
   dut.expect_time(lost->at - last, std::uint64_t{time.count()} * factor, std::uint64_t{time.count()} * (factor + 1),
@@ -158,7 +158,7 @@ void life_guarding(Dut& dut) {
 
 constexpr Duration beat = milliseconds{100};
 
-/// Heartbeats come each period, in this state, and nothing else on their CAN-ID.
+/// Expects a heartbeat with this state in each period, and no other frame with its CAN-ID.
 void expect_heartbeats(Dut& dut, NmtState state, Duration period, unsigned count) {
   const std::vector<SeenFrame> seen = dut.collect(dut.error_control(), period * count + period / 2);
   const std::string wanted = fmt::format("{} heartbeats in {} ms", count, period.count() * count / 1000);
@@ -201,21 +201,21 @@ void count_heartbeats(Dut& dut) {
 
 void stop_heartbeat(Dut& dut) {
   start_heartbeat(dut);
-  dut.expect(!dut.collect(dut.heartbeat(), beat * 3).empty(), "heartbeats each 100 ms", "none");
+  dut.expect(!dut.collect(dut.heartbeat(), beat * 3).empty(), "a heartbeat every 100 ms", "none");
   dut.write(producer_time, 0, 0);
   expect_no_heartbeats(dut);
 }
 
 // ---- heartbeat consumer ----
 
-/// A producer that the test simulates, and the entry of 1016h that watches it.
+/// A heartbeat producer that the test simulates, and the entry of 1016h that monitors it.
 class Producer {
  public:
   explicit Producer(Dut& dut) : dut_{dut} {
     const std::optional<Value>& limit = dut.need_writable(consumer_time, 1).high_limit;
     node_ = free_node_id(dut);
     if (limit && limit->bits < value(milliseconds{0xFFFF})) {
-      dut.not_applicable(fmt::format("the data sheet limits 1016h:01 to {:X}h, which names no node", limit->bits));
+      dut.not_applicable(fmt::format("the EDS limits 1016h:01 to {:X}h, which is too low for a node-ID", limit->bits));
     }
   }
 
@@ -225,13 +225,13 @@ class Producer {
     return std::uint64_t{node_.value()} << 16 | time.count() / 1000;
   }
 
-  /// One heartbeat. When it was sent.
+  /// Sends one heartbeat and returns the time.
   std::uint64_t beat(NmtState state = NmtState::operational) const {
     dut_.send(0x700U + node_.value(), Bytes{static_cast<std::uint8_t>(state)});
     return dut_.now();
   }
 
-  /// Heartbeats of this period for so many periods. When the last one was sent.
+  /// Sends `count` heartbeats with this period and returns the time of the last one.
   std::uint64_t beats(Duration period, unsigned count) const {
     std::uint64_t last = beat();
     for (unsigned i = 1; i < count; ++i) {
@@ -248,7 +248,7 @@ class Producer {
 
 constexpr Duration watched = milliseconds{200};
 
-/// The heartbeat event: 8130h one consumer time after the last heartbeat.
+/// Expects the heartbeat event: an EMCY with 8130h one consumer heartbeat time after the last heartbeat.
 void expect_lost(Dut& dut, const Dut::Match& event, Dut::Mark since, std::uint64_t last) {
   const auto seen = dut.wait_for(event, watched * 3, since);
   dut.expect(seen.has_value(), "an EMCY with code 8130h after the consumer heartbeat time of 200 ms", "none");
@@ -267,7 +267,7 @@ void duplicate_consumer(Dut& dut) {
   const std::uint64_t before = dut.read_number(consumer_time, 2);
   dut.expect_equal(dut.read_number(consumer_time, 1), producer.value(watched), "1016h:01");
   dut.expect_abort(dut.download(consumer_time, 2, producer.value(watched)), abort_rule::duplicate,
-                   "the node-ID of 1016h:01 to 1016h:02");
+                   "the node-ID of 1016h:01 written to 1016h:02");
   dut.expect_equal(dut.read_number(consumer_time, 2), before, "1016h:02 afterwards");
 }
 
@@ -279,7 +279,7 @@ void heartbeats_in_time(Dut& dut) {
   dut.pass_time(watched * 3);
   expect_not_lost(dut, event, since, "before the first heartbeat");
   const std::uint64_t last = producer.beats(watched / 2, 12);
-  expect_not_lost(dut, event, since, "while heartbeats come each 100 ms");
+  expect_not_lost(dut, event, since, "while heartbeats are sent every 100 ms");
   expect_lost(dut, event, since, last);
 }
 
@@ -322,7 +322,7 @@ void need_both(Dut& dut) {
   dut.need_writable(producer_time);
 }
 
-/// Writes 100Ch and 100Dh: 0 turns life guarding off.
+/// Writes 100Ch and 100Dh: 0 disables life guarding.
 void set_guarding(Dut& dut, std::uint16_t milliseconds_between, std::uint8_t factor) {
   dut.write(guard_time, 0, milliseconds_between);
   dut.write(life_time_factor, 0, factor);
@@ -331,7 +331,7 @@ void set_guarding(Dut& dut, std::uint16_t milliseconds_between, std::uint8_t fac
 void one_of_both(Dut& dut) {
   const bool guarding = dut.has(guard_time) && dut.has(life_time_factor);
   if (!guarding && !dut.has(producer_time)) {
-    dut.fail_by_sheet("error-control", "1017h, or 100Ch and 100Dh", "the data sheet has neither");
+    dut.fail_by_sheet("error-control", "1017h, or 100Ch and 100Dh", "the EDS has neither");
   }
   for (const std::uint16_t index : {guard_time, life_time_factor, producer_time}) {
     if (dut.has(index)) (void)dut.read_number(index);
@@ -362,17 +362,17 @@ void heartbeat_without_guarding(Dut& dut) {
   expect_heartbeats(dut, NmtState::pre_operational, beat, 10);
 }
 
-/// Remote frames between two heartbeats: none is answered, and no heartbeat is missing.
+/// Sends remote frames between heartbeats. Expects no answer to them, and no missing heartbeat.
 void expect_requests_ignored(Dut& dut) {
   const auto first = dut.wait_for(dut.heartbeat(), beat * 3);
-  dut.expect(first.has_value(), "heartbeats each 100 ms", "none");
+  dut.expect(first.has_value(), "a heartbeat every 100 ms", "none");
   for (unsigned i = 0; i < 5; ++i) {
     dut.pass_time(beat / 4);
     const auto answered = answers(dut);
     dut.expect(answered.empty(), "no answer to a remote frame of node guarding while 1017h:00 is not 0",
                std::to_string(answered.size()));
     const auto seen = dut.wait_for(dut.error_control(), beat * 2);
-    dut.expect(seen.has_value(), "heartbeats each 100 ms", "none");
+    dut.expect(seen.has_value(), "a heartbeat every 100 ms", "none");
     dut.expect_equal(seen->frame.data[0], static_cast<unsigned>(NmtState::pre_operational), "the byte of a heartbeat");
   }
 }
@@ -412,37 +412,37 @@ constexpr CaseRow rows[] = {
      Permission::none, toggle},
     {"7.4", "Remote frames of node guarding for other node-IDs are not answered", "CiA 301, 7.2.8.3.2.1 and 7.3.5",
      Level::communication, Permission::none, foreign_requests},
-    {"7.5", "100Ch and 100Dh keep the values that are written", "CiA 301, 7.5.2.11 and 7.5.2.12", Level::communication,
+    {"7.5", "100Ch and 100Dh keep the written values", "CiA 301, 7.5.2.11 and 7.5.2.12", Level::communication,
      Permission::none, write_guarding},
-    {"7.6", "Without requests for the life time an EMCY with code 8130h comes", "CiA 301, 7.2.8.3.2.1",
-     Level::communication, Permission::none, life_guarding},
-    {"7.101", "1017h keeps the values that are written", "CiA 301, 7.5.2.20", Level::communication, Permission::none,
+    {"7.6", "After a node life time without guarding requests the device sends an EMCY with code 8130h",
+     "CiA 301, 7.2.8.3.2.1", Level::communication, Permission::none, life_guarding},
+    {"7.101", "1017h keeps the written values", "CiA 301, 7.5.2.20", Level::communication, Permission::none,
      write_heartbeat},
-    {"7.102", "Heartbeats come each period of 1017h with the NMT state", "CiA 301, 7.2.8.3.2.2", Level::communication,
-     Permission::none, count_heartbeats},
-    {"7.103", "With 0 in 1017h no heartbeat comes", "CiA 301, 7.5.2.20", Level::communication, Permission::none,
-     stop_heartbeat},
+    {"7.102", "The device sends a heartbeat with the NMT state in each period of 1017h", "CiA 301, 7.2.8.3.2.2",
+     Level::communication, Permission::none, count_heartbeats},
+    {"7.103", "With 1017h = 0 the device sends no heartbeat", "CiA 301, 7.5.2.20", Level::communication,
+     Permission::none, stop_heartbeat},
     {"7.104", "1016h refuses a second entry for the same node", "CiA 301, 7.5.2.19", Level::communication,
      Permission::none, duplicate_consumer},
-    {"7.105", "A node whose heartbeats come in time is not lost", "CiA 301, 7.2.8.2.2 and 7.5.2.19",
+    {"7.105", "A node whose heartbeats are in time is not reported as lost", "CiA 301, 7.2.8.2.2 and 7.5.2.19",
      Level::communication, Permission::none, heartbeats_in_time},
-    {"7.106", "A node whose heartbeat comes too late is lost after the time of 1016h", "CiA 301, 7.2.8.2.2 and 7.5.2.19",
-     Level::communication, Permission::none, heartbeats_too_late},
-    {"7.107", "After a reset a node is watched from its first heartbeat on", "CiA 301, 7.2.8.2.2 and 7.5.2.19",
+    {"7.106", "A node whose heartbeat is late is reported as lost after the time of 1016h",
+     "CiA 301, 7.2.8.2.2 and 7.5.2.19", Level::communication, Permission::none, heartbeats_too_late},
+    {"7.107", "After a reset a node is monitored from its first heartbeat on", "CiA 301, 7.2.8.2.2 and 7.5.2.19",
      Level::communication, Permission::none, consumer_after_reset},
     {"7.201", "The device has heartbeat or node guarding", "CiA 301, 7.2.8.3.2", Level::communication, Permission::none,
      one_of_both},
-    {"7.202", "A device with both stops its heartbeat with 0 in 1017h", "CiA 301, 7.5.2.20", Level::communication,
-     Permission::none, heartbeat_off},
-    {"7.203", "Without heartbeat node guarding is answered", "CiA 301, 7.2.8.3.2", Level::communication,
+    {"7.202", "A device with heartbeat and node guarding stops its heartbeat if 1017h = 0", "CiA 301, 7.5.2.20",
+     Level::communication, Permission::none, heartbeat_off},
+    {"7.203", "Without heartbeat the device answers node guarding", "CiA 301, 7.2.8.3.2", Level::communication,
      Permission::none, guarding_without_heartbeat},
-    {"7.204", "With 0 in 100Ch and 100Dh heartbeats come", "CiA 301, 7.2.8.3.2", Level::communication, Permission::none,
-     heartbeat_without_guarding},
-    {"7.205", "While heartbeats come a remote frame is not answered", "CiA 301, 7.2.8.3.2", Level::communication,
+    {"7.204", "With 100Ch and 100Dh = 0 the device sends heartbeats", "CiA 301, 7.2.8.3.2", Level::communication,
+     Permission::none, heartbeat_without_guarding},
+    {"7.205", "While heartbeat is active a remote frame is not answered", "CiA 301, 7.2.8.3.2", Level::communication,
      Permission::none, requests_without_guarding},
-    {"7.206", "With 100Ch and 100Dh set heartbeats come, and no life guarding event", "CiA 301, 7.2.8.3.2",
-     Level::communication, Permission::none, heartbeat_with_guarding},
-    {"7.207", "With 100Ch and 100Dh set a remote frame is not answered while heartbeats come", "CiA 301, 7.2.8.3.2",
+    {"7.206", "With 100Ch and 100Dh set the device sends heartbeats, without a life guarding event",
+     "CiA 301, 7.2.8.3.2", Level::communication, Permission::none, heartbeat_with_guarding},
+    {"7.207", "With 100Ch and 100Dh set a remote frame is not answered while heartbeat is active", "CiA 301, 7.2.8.3.2",
      Level::communication, Permission::none, requests_with_guarding},
 };
 

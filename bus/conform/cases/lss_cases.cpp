@@ -18,23 +18,23 @@ namespace lss = canopen::lss;
 using lss::Command;
 
 constexpr std::uint16_t identity = 0x1018;
-/// What a slave may take to answer. CiA 305 gives no limit.
+/// The time that a slave may need to answer. CiA 305 does not specify a limit.
 constexpr Duration to_answer = milliseconds{200};
 constexpr Duration to_store = milliseconds{2000};
 
-/// The LSS slave of the device. It waits again, and has its node-ID, when the object goes.
+/// The LSS slave of the device. The constructor leaves it in the waiting state.
 class Slave {
  public:
   explicit Slave(Dut& dut) : dut_{dut} {
     if (!dut.sheet().information.capabilities.lss_supported.value_or(false)) {
-      dut.not_applicable("the data sheet says that the device does not have LSS (LSS_Supported)");
+      dut.not_applicable("the device does not have LSS: LSS_Supported is not 1 in the EDS");
     }
     dut.enter(NmtState::pre_operational);
     for (std::uint8_t i = 0; i < 4; ++i) {
       dut.need(identity, static_cast<std::uint8_t>(i + 1));
       numbers_[i] = static_cast<std::uint32_t>(dut.read_number(identity, static_cast<std::uint8_t>(i + 1)));
     }
-    // Older slaves are served in Stopped only.
+    // Older slaves support LSS in Stopped only.
     if (!try_select(numbers_)) dut.enter(NmtState::stopped);
     wait();
   }
@@ -44,7 +44,7 @@ class Slave {
   void send(Command command, std::uint32_t word = 0) const {
     dut_.send(lss::make_frame(lss::request_id, command, word));
   }
-  /// The next message of a slave with this command.
+  /// Waits for the next message of a slave with this command.
   [[nodiscard]] std::optional<Frame> answer(Command command, Dut::Mark since, Duration span = to_answer) const {
     const auto found = dut_.wait_for(
         [command](const Frame& frame) {
@@ -53,20 +53,20 @@ class Slave {
         span, since);
     return found ? std::optional{found->frame} : std::nullopt;
   }
-  /// A request whose answer has the same command.
+  /// Sends a request whose answer has the same command.
   [[nodiscard]] std::optional<Frame> ask(Command command, std::uint32_t word = 0, Duration span = to_answer) const {
     const Dut::Mark since = dut_.mark();
     send(command, word);
     return answer(command, since, span);
   }
 
-  /// A value that the slave says of itself: an inquire service.
+  /// Expects a value as the answer to an inquire service.
   void expect_says(Command command, std::uint32_t expected, const std::string& what) const {
     const auto said = ask(command);
     dut_.expect(said.has_value(), "an answer with " + what, "none");
     dut_.expect_equal(lss::word_of(*said), expected, what);
   }
-  /// A configure service is answered with this error code.
+  /// Expects an error code as the answer to a configure service.
   void expect_error(Command command, std::uint32_t word, std::uint8_t expected, const std::string& what) const {
     const auto said = ask(command, word);
     dut_.expect(said.has_value(), "an answer to " + what, "none");
@@ -88,7 +88,7 @@ class Slave {
     return in_sequence(Command::identify_vendor_id, words, Command::identified);
   }
 
-  /// All slaves wait, as they do without a master at work.
+  /// Sets all slaves to the waiting state.
   void wait() const {
     send(Command::switch_state_global, static_cast<std::uint32_t>(LssState::waiting));
     dut_.pass_time(milliseconds{20});
@@ -110,7 +110,7 @@ class Slave {
   std::array<std::uint32_t, 4> numbers_{};
 };
 
-/// Runs a case with the slave in the configuration state; afterwards it waits.
+/// Runs a case with the slave in the configuration state, then sets it to the waiting state.
 template <class Check>
 void with_slave(Dut& dut, Check check) {
   const Slave slave{dut};
@@ -123,7 +123,7 @@ void with_slave(Dut& dut, Check check) {
 
 void need_silent_bus(Dut& dut) {
   if (hears_other_nodes(dut, milliseconds{1200})) {
-    dut.inconclusive("other nodes are on the bus, which the service reaches as well: conclusive where the device is alone");
+    dut.inconclusive("the service also addresses the other nodes on the bus; test the device alone on the bus");
   }
 }
 
@@ -132,7 +132,10 @@ void select(Dut& dut) {
   for (std::uint8_t i = 0; i < 4; ++i) {
     auto other = slave.numbers();
     other[i] ^= 1;
-    dut.expect(!slave.try_select(other), fmt::format("no answer to another number than that of {}", label(identity, static_cast<std::uint8_t>(i + 1))), "one");
+    dut.expect(
+        !slave.try_select(other),
+        fmt::format("no answer to a number other than that of {}", label(identity, static_cast<std::uint8_t>(i + 1))),
+        "one");
     dut.expect(!slave.ask(Command::inquire_node_id), "no answer to inquire node-ID in the waiting state", "one");
   }
   with_slave(dut, [&dut](const Slave& selected) {
@@ -171,7 +174,7 @@ void waiting(Dut& dut) {
   const Slave slave{dut};
   for (const Command command : {Command::inquire_vendor_id, Command::inquire_node_id, Command::configure_node_id,
                                 Command::configure_bit_timing}) {
-    // 0 is neither a node-ID nor, as a word of 4 bytes with FFh, a bit rate: nothing would change.
+    // Invalid values, so that a slave that is not waiting does not change its configuration.
     const std::uint32_t word = command == Command::configure_bit_timing ? 0xFF7F : 0;
     dut.expect(!slave.ask(command, word), fmt::format("no answer to {:02X}h in the waiting state", static_cast<unsigned>(command)), "one");
   }
@@ -209,13 +212,13 @@ void identify_non_configured(Dut& dut) {
   dut.expect(!answer, "no answer to identify non-configured remote slave from a device with a node-ID", "one");
 }
 
-/// Bits BitCheck to 31 of one number.
+/// One step of Fastscan: compares bits 31 to `bit_check` of one number.
 struct Scan {
   std::uint32_t number = 0;
   std::uint8_t bit_check = 0, sub = 0, next = 0;
 };
 
-/// Whether a slave answers to a step of Fastscan.
+/// Returns whether a slave answers a step of Fastscan.
 bool scan(Dut& dut, const Slave& slave, const Scan& step) {
   Frame frame = lss::make_frame(lss::request_id, Command::fastscan, step.number);
   frame.data[5] = step.bit_check;
@@ -231,7 +234,7 @@ void fastscan_configured(Dut& dut) {
   dut.expect(!scan(dut, slave, {0, lss::fastscan_reset, 0, 0}), "no answer to Fastscan from a device with a node-ID", "one");
 }
 
-/// The slave gets a node-ID while it has none, and starts.
+/// Configures the node-ID of a slave without one and expects its boot-up message.
 void give_node_id(Dut& dut, const Slave& slave) {
   slave.configure(dut.node());
   const Dut::Mark since = dut.mark();
@@ -240,25 +243,26 @@ void give_node_id(Dut& dut, const Slave& slave) {
   dut.pass_time(milliseconds{50});
 }
 
-/// Runs a case while the device has no node-ID. Only where no other node is on the bus.
+/// Runs a case while the device does not have a node-ID. Only if no other node is on the bus.
 template <class Check>
 void without_node_id(Dut& dut, Check check) {
   need_silent_bus(dut);
   const Slave slave{dut};
   const Dut::Mark before = dut.mark();
   slave.send(Command::identify_non_configured);
-  if (slave.answer(Command::identified_non_configured, before)) dut.inconclusive("another LSS slave without node-ID is on the bus");
+  if (slave.answer(Command::identified_non_configured, before))
+    dut.inconclusive("another LSS slave without a node-ID is on the bus");
   slave.select();
   const auto taken = slave.ask(Command::configure_node_id, canopen::unconfigured_node_id.value());
   dut.expect(taken.has_value(), "an answer to configure node-ID 255", "none");
   slave.wait();
-  if (taken->data[1] != 0) dut.not_applicable("the device does not give up its node-ID: it refuses 255");
+  if (taken->data[1] != 0) dut.not_applicable("the node-ID of the device cannot be removed: it refuses 255");
   dut.enter(NmtState::pre_operational);
   const auto unconfigured = [&] {
     const Dut::Mark since = dut.mark();
     dut.nmt(NmtCommand::reset_communication);
     dut.pass_time(milliseconds{500});
-    dut.expect(dut.received_since(since, dut.boot_up()).empty(), "no boot-up message without node-ID", "one");
+    dut.expect(dut.received_since(since, dut.boot_up()).empty(), "no boot-up message without a node-ID", "one");
     check(slave);
   };
   const auto configure = [&] {
@@ -301,7 +305,7 @@ void fastscan(Dut& dut) {
       expect_answer({number, 0, sub, next}, true);
     }
     slave.expect_says(Command::inquire_node_id, canopen::unconfigured_node_id.value(),
-                      "the node-ID in the configuration state, to which Fastscan leads");
+                      "the node-ID in the configuration state after Fastscan");
   });
 }
 
@@ -315,7 +319,7 @@ void wrong_node_id(Dut& dut) {
   });
 }
 
-/// A node-ID counts from the next reset of the communication on. The old one is put back in the same way.
+/// A new node-ID takes effect with the next reset communication. The old one is put back in the same way.
 void new_node_id(Dut& dut) {
   const NodeId own = dut.node(), other = free_node_id(dut);
   const Slave slave{dut};
@@ -335,26 +339,27 @@ void new_node_id(Dut& dut) {
     const Dut::Mark since = dut.mark();
     dut.send(0, Bytes{static_cast<std::uint8_t>(NmtCommand::reset_communication), other.value()});
     if (!moved) return;
-    dut.expect(starts(own, since), fmt::format("a boot-up message of node {} again", own.value()), "none");
+    dut.expect(starts(own, since), fmt::format("a boot-up message of node {}, the former node-ID", own.value()),
+               "none");
   };
   const auto move = [&] {
     configure(other);
     slave.select();
-    slave.expect_says(Command::inquire_node_id, own.value(), "the node-ID before a reset of the communication");
+    slave.expect_says(Command::inquire_node_id, own.value(), "the node-ID before reset communication");
     slave.wait();
     dut.enter(NmtState::pre_operational);
     const Dut::Mark since = dut.mark();
     dut.nmt(NmtCommand::reset_communication);
     moved = starts(other, since);
-    dut.expect(moved, fmt::format("a boot-up message of node {}, as LSS has configured it", other.value()), "none");
+    dut.expect(moved, fmt::format("a boot-up message of node {}, as configured by LSS", other.value()), "none");
     slave.select();
-    slave.expect_says(Command::inquire_node_id, other.value(), "the node-ID after a reset of the communication");
+    slave.expect_says(Command::inquire_node_id, other.value(), "the node-ID after reset communication");
     slave.wait();
   };
   and_undo(move, move_back);
 }
 
-/// Reserved places of table 0, and reserved tables.
+/// Reserved indices of table 0, and reserved tables.
 void wrong_bit_timing(Dut& dut) {
   with_slave(dut, [](const Slave& slave) {
     for (const auto& [table, index] : {std::pair{0, 5}, std::pair{0, 10}, std::pair{0, 255}, std::pair{1, 0}, std::pair{127, 0}}) {
@@ -364,7 +369,7 @@ void wrong_bit_timing(Dut& dut) {
   });
 }
 
-/// What is stored is what the device works with already.
+/// Stores the present node-ID.
 void store(Dut& dut) {
   with_slave(dut, [&dut](const Slave& slave) {
     slave.configure(dut.node());
@@ -382,14 +387,14 @@ void store(Dut& dut) {
       dut.reset(NmtCommand::reset_node);
     }
     slave.select();
-    slave.expect_says(Command::inquire_node_id, dut.node().value(), "the node-ID that is stored");
+    slave.expect_says(Command::inquire_node_id, dut.node().value(), "the stored node-ID");
   });
 }
 
-/// The bit rate stays: the device is silent for one delay after the first one, and then answers again.
+/// The bit rate does not change. The device is silent during the second delay, then answers again.
 void activate(Dut& dut) {
   if (dut.sheet().information.capabilities.baud_rates.size() < 2) {
-    dut.not_applicable("the data sheet does not name two bit rates");
+    dut.not_applicable("the EDS does not have two bit rates");
   }
   constexpr Duration delay = milliseconds{200};
   const auto from_device = [](const Frame& frame) { return frame.id != 0; };
@@ -413,7 +418,7 @@ void activate(Dut& dut) {
 constexpr CaseRow rows[] = {
     {"11.1", "Switch state selective selects a device by all four numbers of 1018h", "CiA 305, switch state selective",
      Level::communication, Permission::none, select},
-    {"11.2", "Switch state global leads to the configuration state and back, without answer",
+    {"11.2", "Switch state global leads to the configuration state and back, without an answer",
      "CiA 305, switch state global", Level::communication, Permission::none, switch_global},
     {"11.3", "Inquire identity answers with the numbers of 1018h", "CiA 305, inquire identity", Level::communication,
      Permission::none, inquire_identity},
@@ -427,14 +432,14 @@ constexpr CaseRow rows[] = {
      "CiA 305, identify non-configured remote slave", Level::communication, Permission::none, identify_non_configured},
     {"11.8", "A device with node-ID does not answer Fastscan", "CiA 305, Fastscan", Level::communication,
      Permission::none, fastscan_configured},
-    {"11.9", "A device without node-ID answers identify non-configured remote slave, and starts as it gets one",
+    {"11.9", "A device without node-ID answers identify non-configured remote slave, and boots with a new node-ID",
      "CiA 305, identify non-configured remote slave", Level::communication, Permission::none, unconfigured},
     {"11.10", "Fastscan finds a device without node-ID by the numbers of 1018h", "CiA 305, Fastscan",
      Level::communication, Permission::none, fastscan},
     {"11.11", "Configure node-ID refuses 0 and 128 with error code 1", "CiA 305, configure node-ID",
      Level::communication, Permission::none, wrong_node_id},
-    {"11.12", "A new node-ID counts after a reset of the communication", "CiA 305, configure node-ID",
-     Level::communication, Permission::none, new_node_id},
+    {"11.12", "A new node-ID takes effect with reset communication", "CiA 305, configure node-ID", Level::communication,
+     Permission::none, new_node_id},
     {"11.13", "Configure bit timing refuses reserved tables and indices with error code 1",
      "CiA 305, configure bit timing parameters", Level::communication, Permission::none, wrong_bit_timing},
     {"11.14", "Store configuration keeps the node-ID", "CiA 305, store configuration", Level::communication,

@@ -18,9 +18,9 @@ using Code = canopen::AbortCode;
 constexpr std::uint16_t sync_cob_id = 0x1005, sync_period = 0x1006, sync_counter = 0x1019;
 constexpr std::uint8_t wanted_overflow = 10;
 
-/// What the device does not support, it refuses with 0609 0030h (CiA 301, 7.5.2.35 and 7.5.2.37).
+/// The device refuses what it does not support with 0609 0030h (CiA 301, 7.5.2.35 and 7.5.2.37).
 constexpr AbortRule not_supported{{Code::invalid_value}, {Code::value_too_high, Code::value_too_low, Code::general}};
-/// Bit 30 of a COB-ID also with 0601 0000h, where bits 0 to 30 cannot be changed at all.
+/// Bit 30 of a COB-ID also with 0601 0000h, if bits 0 to 30 cannot be changed at all.
 constexpr AbortRule flag_not_supported{{Code::invalid_value, Code::unsupported_access}, {Code::general}};
 
 constexpr std::uint64_t mask_of(unsigned bits) {
@@ -41,7 +41,7 @@ std::string access_text(const Entry& entry) {
   return fmt::format("{} is {} in the EDS", label(entry.index, entry.sub_index), canopen::row_of(entry.access).name);
 }
 
-/// The values of an integer: the lowest, and how many there are above it.
+/// The range of an integer: the lowest value, and the number of values above it.
 struct Range {
   std::uint64_t low = 0;
   std::uint64_t span = 0;
@@ -62,7 +62,7 @@ Range range_of(const Dut& dut, const Entry& entry) {
   return {low, high - low};
 }
 
-/// The bits of a type, extended to 64 as `Value` holds them.
+/// Extends a value of a data type to 64 bits, as `Value` holds it.
 std::uint64_t extended(const Entry& entry, std::uint64_t value) {
   const unsigned bits = entry.type->bits;
   const bool negative = entry.type->kind == DataClass::signed_integer && (value >> (bits - 1) & 1) != 0;
@@ -75,7 +75,7 @@ std::optional<std::uint64_t> present_parameter(Dut& dut, std::uint16_t index, st
   return dut.read_number(index, sub_index);
 }
 
-/// Nothing when the parameter has the value, else why it cannot.
+/// Writes the parameter unless it has the value. Returns the reason if that is not possible.
 std::optional<std::string> set_parameter(Dut& dut, const Tpdo& tpdo, std::uint8_t sub_index, std::uint64_t value,
                                          bool is_disabled) {
   if (present_parameter(dut, tpdo.index, sub_index) == value) return std::nullopt;
@@ -94,7 +94,7 @@ std::optional<std::string> set_parameter(Dut& dut, const Tpdo& tpdo, std::uint8_
   const SdoOutcome outcome = dut.download(tpdo.index, sub_index, value);
   if (outcome.done()) return std::nullopt;
   dut.expect_abort(outcome, not_supported, fmt::format("{} written to {}", value, name));
-  return fmt::format("{} does not take {}", name, value);
+  return fmt::format("{} does not accept {}", name, value);
 }
 
 std::optional<std::string> set_parameters(Dut& dut, const Tpdo& tpdo, const Transmission& wanted, bool is_disabled) {
@@ -112,7 +112,7 @@ std::optional<std::string> set_parameters(Dut& dut, const Tpdo& tpdo, const Tran
   return set_parameter(dut, tpdo, timer_parameter, wanted.event_timer, is_disabled);
 }
 
-/// The COB-ID with which the TPDO is valid. Nothing when it has it, else why it cannot.
+/// Writes the COB-ID with which the TPDO is valid. Returns the reason if that is not possible.
 std::optional<std::string> enable(Dut& dut, const Tpdo& tpdo, std::optional<bool> remote_frames) {
   std::uint32_t cob_id = tpdo.cob_id;
   if (remote_frames) cob_id = (cob_id & ~CobId::no_rtr_bit) | (*remote_frames ? 0 : CobId::no_rtr_bit);
@@ -127,7 +127,7 @@ std::optional<std::string> enable(Dut& dut, const Tpdo& tpdo, std::optional<bool
     dut.expect_done(outcome, what);
   } else if (!outcome.done()) {
     dut.expect_abort(outcome, flag_not_supported, what);
-    return fmt::format("{} does not take {:08X}h", name, cob_id);
+    return fmt::format("{} does not accept {:08X}h", name, cob_id);
   } else if (dut.read_number(tpdo.index, cob_id_parameter) != cob_id) {
     return fmt::format("{} does not keep {:08X}h", name, cob_id);
   }
@@ -204,7 +204,7 @@ std::optional<MappingFault> fault_of(const Dut& dut, PdoDirection direction, con
 std::optional<std::string> reason_against(const Dut& dut, const Pdo& pdo, const std::vector<Mapped>& mapping) {
   for (const Mapped& mapped : mapping) {
     if (const auto fault = fault_of(dut, pdo.direction, mapped)) {
-      return fmt::format("{} maps {}, which the EDS does not let it carry", pdo_label(pdo), fault->got);
+      return fmt::format("{} maps {}, which the EDS does not allow", pdo_label(pdo), fault->got);
     }
   }
   if (bits_of(mapping) > 64) return pdo_label(pdo) + " maps more than 64 bits";
@@ -294,14 +294,14 @@ std::optional<Tpdo> read_tpdo(Dut& dut, const Pdo& pdo, std::string& reason) {
   tpdo.found_cob_id = static_cast<std::uint32_t>(dut.read_number(tpdo.index, cob_id_parameter));
   tpdo.cob_id = tpdo.found_cob_id & ~CobId::invalid_bit;
   if (!tpdo.was_valid() && !is_writable(dut, tpdo.index, cob_id_parameter)) {
-    return skip(name + " is not valid, and cannot be made valid");
+    return skip(name + " is not valid and cannot be enabled");
   }
   if (!canopen::may_be_written(CobId{tpdo.cob_id}, true, true)) {
     return skip(fmt::format("{} has no usable CAN-ID: its COB-ID is {:08X}h", name, tpdo.found_cob_id));
   }
   auto mapping = read_mapping(dut, tpdo.index);
   if (!mapping) return skip(name + " is a multiplex PDO");
-  if (mapping->empty()) return skip(name + " maps nothing");
+  if (mapping->empty()) return skip(name + " maps no object");
   if (auto why = reason_against(dut, pdo, *mapping)) return skip(std::move(*why));
   tpdo.mapping = std::move(*mapping);
   for (const std::uint8_t sub_index : {type_parameter, inhibit_parameter, timer_parameter, sync_start_parameter}) {
@@ -370,10 +370,9 @@ std::string frames_text(const std::vector<SeenFrame>& frames) {
 }
 
 void expect_data(Dut& dut, const Tpdo& tpdo, const SeenFrame& seen, const Image& image) {
-  dut.expect(
-      seen.frame.size == tpdo.size(),
-      fmt::format("{} with {} data bytes, as {} bits are mapped", tpdo.name(), tpdo.size(), bits_of(tpdo.mapping)),
-      frame_text(seen.frame));
+  dut.expect(seen.frame.size == tpdo.size(),
+             fmt::format("{} with {} data bytes for {} mapped bits", tpdo.name(), tpdo.size(), bits_of(tpdo.mapping)),
+             frame_text(seen.frame));
   const std::uint64_t data = data_of(seen.frame);
   if (((data ^ image.bits) & image.known) == 0) return;
   canopen::Frame expected = seen.frame;
@@ -412,7 +411,7 @@ canopen::Frame make_remote_frame(std::uint32_t cob_id, std::uint8_t size) {
   return frame;
 }
 
-// ---- what makes a TPDO be sent ----
+// ---- triggers of a TPDO ----
 
 SyncSource::SyncSource(Dut& dut, Counter counter) : dut_{dut}, since_{dut.mark()} {
   dut.need(sync_cob_id);
@@ -424,7 +423,7 @@ SyncSource::SyncSource(Dut& dut, Counter counter) : dut_{dut}, since_{dut.mark()
   since_ = dut.mark();
 }
 
-/// The device itself must not produce SYNC while the test does.
+/// The device must not produce SYNC while the test does.
 void SyncSource::stop_production(std::uint64_t cob_id) {
   const bool produces =
       (cob_id & CobId::no_rtr_bit) != 0 && is_readable(dut_, sync_period, 0) && dut_.read_number(sync_period) != 0;
@@ -446,7 +445,7 @@ void SyncSource::enable_counter() {
 void SyncSource::send() {
   if (!dut_.received_since(since_, Dut::with_cob_id(cob_id_)).empty()) {
     dut_.inconclusive(
-        fmt::format("another node produces SYNC (CAN-ID {:X}h): stop it for this case", CobId{cob_id_}.can_id()));
+        fmt::format("another node produces SYNC (CAN-ID {:X}h); stop it for this case", CobId{cob_id_}.can_id()));
   }
   sent_at_ = dut_.now();
   const std::uint8_t counter[] = {next_};

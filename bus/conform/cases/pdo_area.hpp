@@ -1,4 +1,4 @@
-/// What the cases of the PDO area share: a TPDO as the device has it, its configuration, and the SYNC of the test.
+/// Shared by the cases of the PDO area: a TPDO as the device has it, its configuration, and the SYNC of the test.
 #pragma once
 
 #include <canopen/cob_id.hpp>
@@ -24,13 +24,14 @@ inline constexpr std::uint8_t cob_id_parameter = 1, type_parameter = 2, inhibit_
 
 inline constexpr std::uint8_t acyclic = 0, remote_synchronous = 252, remote = 253, event_driven = 255;
 
-/// How long a device may take to send what an event, a SYNC or a remote frame asks for. CiA 301 gives no limit.
+/// The time that a device may need to send a TPDO after an event, a SYNC or a remote frame. CiA 301 does not specify a
+/// limit.
 inline constexpr Duration to_answer = milliseconds{500};
-/// How long nothing must come for nothing to come at all.
+/// A TPDO that is not received within this time is considered not sent.
 inline constexpr Duration silence = milliseconds{100};
 
-/// Fails for a value of an entry: by the EDS where that is its default (0 without one), as the rule of `edsc check`
-/// says, too.
+/// Fails because of the value of an entry. If it is the default value of the EDS (0 without one), the failure names the
+/// rule of `edsc check` that reports it.
 [[noreturn]] void fail_value(Dut& dut, std::uint16_t index, std::uint8_t sub_index, std::uint64_t value,
                              std::string_view rule, const std::string& expected, const std::string& got);
 
@@ -50,38 +51,40 @@ struct Mapped {
 };
 
 [[nodiscard]] Mapped mapped_of(std::uint64_t value);
-/// 1600h of 1400h, 1A00h of 1800h.
+/// Returns 1600h for 1400h, and 1A00h for 1800h.
 [[nodiscard]] std::uint16_t mapping_of(std::uint16_t communication);
 [[nodiscard]] unsigned bits_of(const std::vector<Mapped>& mapping);
-/// The mapping that the device has now; nothing where the PDO is an MPDO.
+/// Reads the present mapping; std::nullopt for an MPDO.
 [[nodiscard]] std::optional<std::vector<Mapped>> read_mapping(Dut& dut, std::uint16_t communication);
 /// `2000h:00 and 2001h:00`
 [[nodiscard]] std::string objects_text(const std::vector<Mapped>& mapping);
 
-/// Why the EDS does not let a PDO carry an entry of its mapping.
+/// Why the EDS does not allow an entry of a mapping.
 struct MappingFault {
   std::string_view rule;  ///< of `edsc check`
   std::string expected;
   std::string got;
 };
 [[nodiscard]] std::optional<MappingFault> fault_of(const Dut& dut, PdoDirection direction, const Mapped& mapped);
-/// Why the mapping that a PDO has is none: `TPDO 1 maps 6041h:00, ...`. Nothing when it is one, also of no objects.
+/// Returns why a mapping is not valid: `TPDO 1 maps 6041h:00, ...`; std::nullopt if it is valid. An empty mapping is
+/// valid.
 [[nodiscard]] std::optional<std::string> reason_against(const Dut& dut, const Pdo& pdo,
                                                         const std::vector<Mapped>& mapping);
-/// An entry whose PDOMapping and access let a PDO of this direction carry it.
+/// Whether PDOMapping and AccessType of an entry allow a PDO of this direction to map it.
 [[nodiscard]] bool may_carry(PdoDirection direction, const Entry& entry);
 
-/// The data of a PDO as SDO reads it from the mapped objects, and which of its bits are known.
+/// The data of a PDO as read from the mapped objects by SDO, and the mask of its known bits.
 struct Image {
   std::uint64_t bits = 0;
   std::uint64_t known = 0;
 };
 [[nodiscard]] Image read_image(Dut& dut, const std::vector<Mapped>& mapping);
 
-/// Puts values into a PDO, the first object in the lowest bits (CiA 301, 7.5.2.36).
+/// Packs values into PDO data, the first object in the least significant bits (CiA 301, 7.5.2.36).
 [[nodiscard]] std::uint64_t pack(const std::vector<Mapped>& mapping, std::span<const std::uint64_t> values);
 
-/// Another value for an entry than this one, which its limits allow; nothing where none is known. `salt` gives others.
+/// A value within the limits of an entry that differs from the present one; std::nullopt if none is known. Another
+/// `salt` gives another value.
 [[nodiscard]] std::optional<std::uint64_t> other_value(const Dut& dut, const Mapped& mapped, std::uint64_t present,
                                                        std::uint64_t salt = 1);
 
@@ -102,35 +105,35 @@ struct Tpdo {
   [[nodiscard]] std::string name() const;  ///< `TPDO 1 (1800h, CAN-ID 181h)`
 };
 
-/// Nothing where it cannot be tested; `reason` then says why.
+/// Returns std::nullopt, and `reason`, if the TPDO cannot be tested.
 [[nodiscard]] std::optional<Tpdo> read_tpdo(Dut& dut, const Pdo& pdo, std::string& reason);
-/// Those that can be tested, in Pre-operational. The case is not applicable where there is none.
+/// Enters Pre-operational and returns the TPDOs that can be tested. The case is not applicable without one.
 [[nodiscard]] std::vector<Tpdo> tpdos(Dut& dut);
 
-/// What a case asks of a TPDO. Event-driven ones have no inhibit time and no event timer unless the case asks for them.
+/// The parameters that a case needs in a TPDO. By default an event-driven TPDO without inhibit time and event timer.
 struct Transmission {
-  std::uint8_t type = event_driven;        ///< 254 does as well as 255
-  std::optional<bool> remote_frames = {};  ///< whether bit 30 of the COB-ID allows them; nothing: as it is
+  std::uint8_t type = event_driven;        ///< 255; 254 is also accepted
+  std::optional<bool> remote_frames = {};  ///< whether bit 30 of the COB-ID allows them; std::nullopt: unchanged
   std::uint16_t inhibit_time = 0;          ///< 100 us
   std::uint16_t event_timer = 0;           ///< ms
   std::uint8_t sync_start = 0;
 };
 
-/// Makes the TPDO so, in Pre-operational or Operational. Nothing when that is done, else why the device does not
-/// support it: `1800h:05 does not exist in the EDS`. The TPDO is then as it was found.
+/// Configures the TPDO, in Pre-operational or Operational. If the device does not support the parameters, returns the
+/// reason, `1800h:05 does not exist in the EDS`, and puts the TPDO back as it was found.
 [[nodiscard]] std::optional<std::string> configure(Dut& dut, const Tpdo& tpdo, const Transmission& wanted);
 /// Puts the parameters back as they were found.
 void put_back(Dut& dut, const Tpdo& tpdo);
 
-/// A value for an entry that its limits in the EDS allow, as near to this one as can be.
+/// Returns the value nearest to `value` within the limits of the EDS.
 [[nodiscard]] std::uint64_t within_limits(const Dut& dut, std::uint16_t index, std::uint8_t sub_index,
                                           std::uint64_t value);
 
 // ---- frames ----
 
-/// The frame has the length of the mapped objects and carries these values of them.
+/// Expects the length of the mapped objects and these values in the frame.
 void expect_data(Dut& dut, const Tpdo& tpdo, const SeenFrame& seen, const Image& image);
-/// The same with what SDO read before the frame and reads now; of values that change meanwhile nothing is asked.
+/// Likewise with the values that SDO read before the frame and reads now. Ignores values that differ between the two.
 void expect_present_data(Dut& dut, const Tpdo& tpdo, const SeenFrame& seen, const Image& before);
 
 [[nodiscard]] std::uint64_t data_of(const canopen::Frame& frame);
@@ -138,32 +141,32 @@ void expect_present_data(Dut& dut, const Tpdo& tpdo, const SeenFrame& seen, cons
 [[nodiscard]] std::string frame_text(const canopen::Frame& frame);
 [[nodiscard]] std::string frames_text(const std::vector<SeenFrame>& frames);
 
-/// Lets what a TPDO sends on entering Operational, or after its configuration, go by.
+/// Waits until the TPDO is silent: entering Operational or a new configuration may have triggered it.
 void settle(Dut& dut, const Tpdo& tpdo);
 
 /// Data and remote frames with the CAN-ID of a COB-ID.
 [[nodiscard]] canopen::Frame make_frame(std::uint32_t cob_id, std::span<const std::uint8_t> data);
 [[nodiscard]] canopen::Frame make_remote_frame(std::uint32_t cob_id, std::uint8_t size);
 
-// ---- what makes a TPDO be sent ----
+// ---- triggers of a TPDO ----
 
-/// The SYNC of the test, with the COB-ID of 1005h and the counter that 1019h asks for. A device that produces SYNC is
-/// told not to. The case is not applicable without 1005h. To be made in Pre-operational or Operational.
+/// The SYNC producer of the test, with the CAN-ID of 1005h and the counter of 1019h. Stops the SYNC producer of the
+/// device. The case is not applicable without 1005h. Create it in Pre-operational or Operational.
 class SyncSource {
  public:
   enum class Counter { as_it_is, enabled };
 
   explicit SyncSource(Dut& dut, Counter counter = Counter::as_it_is);
 
-  /// One SYNC. Inconclusive where another node produces SYNC.
+  /// Sends one SYNC. Inconclusive if another node produces SYNC.
   void send();
-  /// The frames that come within the communication cycle of the test after one SYNC.
+  /// Sends one SYNC and returns the matching frames within the communication cycle of the test.
   [[nodiscard]] std::vector<SeenFrame> send_and_collect(const Dut::Match& match);
-  /// The counter of the next SYNC.
+  /// Sets the counter of the next SYNC.
   void set_next(std::uint8_t counter) { next_ = counter; }
   [[nodiscard]] std::uint8_t overflow() const { return overflow_; }
-  [[nodiscard]] std::uint64_t sent_at() const { return sent_at_; }  ///< the last one
-  /// Between the SYNCs of `send_and_collect`.
+  [[nodiscard]] std::uint64_t sent_at() const { return sent_at_; }  ///< time of the last SYNC
+  /// The time between the SYNCs of `send_and_collect`.
   static constexpr Duration cycle = milliseconds{50};
 
  private:
@@ -178,8 +181,8 @@ class SyncSource {
   std::uint64_t sent_at_ = 0;
 };
 
-/// What makes a TPDO be sent by event: one of its objects changes, from outside the bus. It is changed back when this
-/// goes out of scope. To be made in a state in which the device answers SDO.
+/// Triggers an event of a TPDO: a stimulus changes one of its objects. The destructor changes it back. Create it in a
+/// state in which the device answers SDO requests.
 class Event {
  public:
   Event(Dut& dut, const std::vector<Mapped>& mapping);
@@ -187,12 +190,12 @@ class Event {
   Event& operator=(const Event&) = delete;
   ~Event();
 
-  /// The other value each time. False where no stimulus changes any of the objects.
+  /// Changes the object between two values. Returns false if no stimulus changes any of the objects.
   [[nodiscard]] bool apply();
-  /// Another object from now on, as a change of the last one is not an event. False where there is none: the last one
-  /// stays.
+  /// Selects the next object, because a change of the present one is not an event. Returns false if there is no other
+  /// object; the present one remains selected.
   [[nodiscard]] bool use_next();
-  [[nodiscard]] std::string object() const;  ///< that `apply` has changed
+  [[nodiscard]] std::string object() const;  ///< the object that `apply` changes
 
  private:
   struct Candidate {
@@ -203,7 +206,7 @@ class Event {
   [[nodiscard]] bool set(const Candidate& candidate, bool changed);
 
   Stimuli& stimuli_;
-  std::vector<Candidate> candidates_;  ///< the first one is that which works, once one has
+  std::vector<Candidate> candidates_;  ///< the first one is selected
   bool works_ = false;
   bool is_changed_ = false;
 };

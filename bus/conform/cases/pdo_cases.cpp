@@ -18,7 +18,7 @@ struct ParameterRange {
 constexpr ParameterRange receive_range{PdoDirection::receive, 0x1400, 512};
 constexpr ParameterRange transmit_range{PdoDirection::transmit, 0x1800, 512};
 
-/// A valid PDO has a CAN-ID that CiA 301, 7.3.5 leaves to it.
+/// A valid PDO must have a CAN-ID that CiA 301, 7.3.5 does not restrict.
 void expect_legal_cob_id(Dut& dut, std::uint16_t index, std::uint32_t cob_id) {
   const CobId parsed{cob_id};
   if (!parsed.valid() || canopen::may_be_written(parsed, true, true)) return;
@@ -34,14 +34,14 @@ void expect_legal_type(Dut& dut, const ParameterRange& range, std::uint16_t inde
              label(index, type_parameter) + " with a transmission type that is not reserved", fmt::format("{}", type));
 }
 
-/// 1400h or 1800h of the EDS: all its parameters can be read, and say what they may say.
+/// 1400h or 1800h of the EDS: all its parameters can be read and have legal values.
 void expect_communication_parameter(Dut& dut, const ParameterRange& range, const Object& object) {
   for (const Entry& entry : object.entries) {
     if (!canopen::readable(entry.access)) continue;
     const std::uint64_t value = dut.read_number(entry.index, entry.sub_index);
     const std::string name = label(entry.index, entry.sub_index);
     if (entry.sub_index == 0) {
-      dut.expect(value >= type_parameter, name + " of 2 or more, as a COB-ID and a transmission type are mandatory",
+      dut.expect(value >= type_parameter, name + " of 2 or more: COB-ID and transmission type are mandatory",
                  fmt::format("{}", value));
     } else if (entry.sub_index == cob_id_parameter) {
       expect_legal_cob_id(dut, entry.index, static_cast<std::uint32_t>(value));
@@ -51,7 +51,7 @@ void expect_communication_parameter(Dut& dut, const ParameterRange& range, const
   }
 }
 
-/// A PDO that the EDS does not have, the device does not have.
+/// The device does not have a PDO that the EDS does not have.
 void expect_no_pdo(Dut& dut, std::uint16_t index, canopen::AbortCode& known) {
   const SdoOutcome outcome = dut.upload(index, cob_id_parameter);
   if (outcome.end == SdoEnd::refused && outcome.code == known) return;
@@ -83,10 +83,10 @@ void expect_no_reserved_parameter(Dut& dut) {
       dut.expect_abort(dut.upload(index, reserved_parameter), abort_rule::no_sub_index, name);
     }
   }
-  if (!reserved.empty()) dut.warn("the EDS has what CiA 301 reserves: " + reserved);
+  if (!reserved.empty()) dut.warn("the EDS has an entry that CiA 301 reserves: " + reserved);
 }
 
-/// Each CAN-ID has one producer, and one meaning.
+/// No two TPDOs have the same CAN-ID.
 void expect_distinct_cob_ids(Dut& dut) {
   std::map<std::uint32_t, std::string> users;
   for (const Pdo* pdo : dut.pdos(PdoDirection::transmit)) {
@@ -98,7 +98,7 @@ void expect_distinct_cob_ids(Dut& dut) {
     if (!is_new) {
       fail_value(dut, entry->index, cob_id_parameter, cob_id.value(), "cob-id-twice",
                  pdo_label(*pdo) + " with a CAN-ID of its own",
-                 fmt::format("{:X}h, as {} has", cob_id.can_id(), user->second));
+                 fmt::format("{:X}h, like {}", cob_id.can_id(), user->second));
     }
   }
 }
@@ -124,9 +124,9 @@ void pre_operational(Dut& dut) {
 constexpr Level with_writes = Level::communication;
 constexpr Permission no_permission = Permission::none, with_sync = Permission::outputs;
 
-// 3.3 to 3.8 are asked in Operational, 3.9 to 3.14 in Stopped, and 3.15 to 3.20, whose names in lists of cases do not
-// say it, in Pre-operational: the states of table 37 in which PDOs are or are not. The cases that send SYNC need the
-// permission for outputs, as devices apply what they have received at a SYNC.
+// Cases 3.3 to 3.8 run in Operational, 3.9 to 3.14 in Stopped, and 3.15 to 3.20 in Pre-operational: table 37 allows
+// PDOs in Operational only. Cases that send SYNC need the permission for outputs, because devices apply received data
+// at a SYNC.
 constexpr CaseRow rows[] = {
     {"3.1", "The device has the RPDOs of the EDS, with legal communication parameters", "CiA 301, 7.5.2.35",
      Level::read, no_permission, scan_rpdos},
@@ -134,11 +134,11 @@ constexpr CaseRow rows[] = {
      Level::read, no_permission, scan_tpdos},
     {"3.3", "In Operational a remote frame is answered by its TPDO", "CiA 301, 7.2.2.3", with_writes, no_permission,
      sends_on_remote_frame},
-    {"3.4", "In Operational a TPDO is sent once for each event, and not within its inhibit time", "CiA 301, 7.5.2.37",
+    {"3.4", "In Operational a TPDO is sent once for each event, but not within its inhibit time", "CiA 301, 7.5.2.37",
      with_writes, no_permission, sends_on_event},
     {"3.5", "In Operational a TPDO is sent when its event timer elapses", "CiA 301, 7.5.2.37", with_writes,
      no_permission, sends_by_event_timer},
-    {"3.6", "In Operational a cyclic synchronous TPDO is sent at each n-th SYNC", "CiA 301, 7.5.2.37", with_writes,
+    {"3.6", "In Operational a cyclic synchronous TPDO is sent at every n-th SYNC", "CiA 301, 7.5.2.37", with_writes,
      with_sync, sends_at_each_nth_sync},
     {"3.7", "In Operational an acyclic synchronous TPDO is sent at the SYNC after an event", "CiA 301, 7.5.2.37",
      with_writes, with_sync, sends_at_sync_after_event},
@@ -170,8 +170,8 @@ constexpr CaseRow rows[] = {
      pre_operational<silent_from_sync_start_value>},
     {"3.21", "Each object that a PDO maps exists and may be mapped", "CiA 301, 7.5.2.36", Level::read, no_permission,
      mapping_fits_dictionary},
-    {"3.22", "A new mapping is taken by the procedure, and used", "CiA 301, 7.5.2.36", with_writes, with_sync,
-     takes_new_mapping},
+    {"3.22", "A new mapping by the procedure of CiA 301 is accepted and used", "CiA 301, 7.5.2.36", with_writes,
+     with_sync, takes_new_mapping},
     {"3.23", "A mapping entry is not changed while the PDO is valid and maps objects", "CiA 301, 7.5.2.36", with_writes,
      no_permission, refuses_entry_of_active_mapping},
     {"3.24", "A mapping is not changed while the PDO is valid", "CiA 301, 7.5.2.36", with_writes, no_permission,

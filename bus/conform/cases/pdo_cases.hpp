@@ -1,4 +1,4 @@
-/// The cases of the PDO area, which pdo_cases.cpp has as a table.
+/// The cases of the PDO area; their table is in pdo_cases.cpp.
 #pragma once
 
 #include "conform/cases/pdo_area.hpp"

@@ -1,4 +1,4 @@
-/// What PDOs carry (CiA 301, 7.5.2.36 and 7.5.2.38): the mapping that the device has, new ones, and what it must
+/// PDO mapping (CiA 301, 7.5.2.36 and 7.5.2.38): the present mapping, new mappings, and mappings that the device must
 /// refuse.
 #include <fmt/format.h>
 
@@ -26,7 +26,7 @@ constexpr AbortRule wrong_count{{Code::pdo_length, Code::no_object, Code::not_ma
 
 std::string_view name_of(PdoDirection direction) { return direction == PdoDirection::receive ? "RPDO" : "TPDO"; }
 
-/// A PDO whose mapping the EDS lets change, and the procedure to do so. It is put back as it was found.
+/// A PDO whose mapping can be changed according to the EDS, and the procedure. `put_back` restores what was found.
 class Remapping {
  public:
   Remapping(Dut& dut, const Pdo& pdo, std::uint8_t capacity)
@@ -44,7 +44,7 @@ class Remapping {
   [[nodiscard]] std::uint8_t capacity() const { return capacity_; }
   [[nodiscard]] std::uint8_t found_count() const { return count_; }
   [[nodiscard]] bool is_valid() const { return CobId{cob_id_}.valid(); }
-  /// Whether it is valid, or may be made valid as its CAN-ID can be used.
+  /// Whether the CAN-ID can be used, so that the PDO is valid or can be enabled.
   [[nodiscard]] bool can_be_valid() const {
     return canopen::may_be_written(CobId{cob_id_ & ~CobId::invalid_bit}, true, true);
   }
@@ -71,7 +71,7 @@ class Remapping {
     clear();
   }
 
-  /// Steps 1 to 4, which the device must take, and must have then.
+  /// Steps 1 to 4. The device must accept them, and reads must return the new mapping.
   void remap(const std::vector<Mapped>& mapping) {
     begin();
     std::uint8_t position = 0;
@@ -120,7 +120,7 @@ bool is_read_and_written(const Entry* entry) {
   return entry != nullptr && canopen::readable(entry->access) && canopen::writable(entry->access);
 }
 
-/// How many objects the PDO can map; 0 where its mapping cannot be changed.
+/// The maximum number of mapped objects; 0 if the mapping cannot be changed.
 std::uint8_t capacity_of(const Dut& dut, const Pdo& pdo) {
   const std::uint16_t communication = pdo.communication->index;
   const std::uint16_t mapping = mapping_of(communication);
@@ -134,7 +134,7 @@ std::uint8_t capacity_of(const Dut& dut, const Pdo& pdo) {
   return std::min<std::uint8_t>(capacity, 64);
 }
 
-/// PDOs whose mapping can be changed, and put back. Not applicable where there is none.
+/// PDOs whose mapping can be changed and put back. Not applicable without one.
 std::vector<Remapping> remappings(Dut& dut, std::initializer_list<PdoDirection> directions) {
   std::vector<Remapping> found;
   std::string reason = fmt::format("the EDS has no {} whose mapping and COB-ID are rw",
@@ -164,7 +164,7 @@ std::vector<Remapping> all_remappings(Dut& dut) {
 
 // ---- objects ----
 
-/// As many bits as a mapping entry for it has; 0 where it has no fixed length that the device can map.
+/// The number of bits of an entry in a mapping; 0 for a length that the device cannot map.
 std::uint8_t mapped_bits(const Dut& dut, const Entry& entry) {
   const unsigned bits = entry.type == nullptr ? 0 : entry.type->bits;
   const unsigned granularity = dut.sheet().information.capabilities.granularity.value_or(8);
@@ -190,7 +190,7 @@ std::vector<Mapped> mappable_objects(const Dut& dut, PdoDirection direction) {
   });
 }
 
-/// Some of them, for each PDO others, the same in each run with the same seed.
+/// A random selection, different for each PDO and the same in each run with the same seed.
 std::vector<Mapped> some_of(Dut& dut, const std::vector<Mapped>& objects) {
   constexpr std::size_t most = 4;
   std::vector<Mapped> chosen;
@@ -200,11 +200,11 @@ std::vector<Mapped> some_of(Dut& dut, const std::vector<Mapped>& objects) {
 
 }  // namespace
 
-// ---- the mapping that the device has ----
+// ---- the present mapping ----
 
 namespace {
 
-/// The object of a mapping entry, which the EDS may map by default.
+/// Expects a mapped object that exists and may be mapped. Fails because of the EDS if its default mapping is wrong.
 void expect_mapped_object(Dut& dut, const Pdo& pdo, std::uint16_t index, std::uint8_t position, const Mapped& mapped) {
   const std::string where = label(index, position);
   if (const auto fault = fault_of(dut, pdo.direction, mapped)) {
@@ -232,13 +232,13 @@ void mapping_fits_dictionary(Dut& dut) {
       const unsigned highest = dut.sheet().find(index)->highest_sub_index();
       if (mapping->size() > highest) {
         fail_value(dut, index, 0, mapping->size(), "pdo-mapping-count",
-                   fmt::format("{} at most {}", label(index, 0), highest), fmt::format("{}", mapping->size()));
+                   fmt::format("{} is at most {}", label(index, 0), highest), fmt::format("{}", mapping->size()));
       }
       std::uint8_t position = 0;
       for (const Mapped& mapped : *mapping) expect_mapped_object(dut, *pdo, index, ++position, mapped);
       if (const unsigned bits = bits_of(*mapping); bits > 64) {
         fail_value(dut, index, 0, pdo->bits() == bits ? mapping->size() : 0, "pdo-size",
-                   pdo_label(*pdo) + " with 64 bits at most", fmt::format("{} bits", bits));
+                   pdo_label(*pdo) + " with at most 64 bits", fmt::format("{} bits", bits));
       }
     }
   }
@@ -249,8 +249,8 @@ void mapping_fits_dictionary(Dut& dut) {
 
 namespace {
 
-/// Another mapping than the present one, of objects that the EDS lets the PDO carry: the present ones in the
-/// reverse order, or one that is not mapped yet.
+/// A mapping that differs from the present one, of objects that the EDS allows: the present ones in reverse order, or
+/// one that is not yet mapped.
 std::vector<Mapped> new_mapping(const Dut& dut, const Remapping& remapping) {
   const std::vector<Mapped> present = remapping.found();
   std::vector<Mapped> reversed{present.rbegin(), present.rend()};
@@ -261,7 +261,7 @@ std::vector<Mapped> new_mapping(const Dut& dut, const Remapping& remapping) {
   return reversed;
 }
 
-/// Gives the objects values that differ from each other, by a stimulus or, where that is allowed, by SDO.
+/// Sets the objects to distinct values, by a stimulus or, with the permission, by SDO.
 class DistinctValues {
  public:
   DistinctValues(Dut& dut, const std::vector<Mapped>& mapping) : dut_{dut} {
@@ -291,7 +291,7 @@ class DistinctValues {
   std::vector<std::pair<Mapped, Bytes>> set_;
 };
 
-/// Makes the TPDO be sent, by its event timer or by SYNC; nothing where it supports neither.
+/// Triggers the TPDO by its event timer or by SYNC; std::nullopt if it supports neither.
 std::optional<SeenFrame> make_sent(Dut& dut, const Tpdo& tpdo) {
   constexpr std::uint16_t timer_ms = 50;
   const auto timer = static_cast<std::uint16_t>(within_limits(dut, tpdo.index, timer_parameter, timer_ms));
@@ -311,7 +311,7 @@ std::optional<SeenFrame> make_sent(Dut& dut, const Tpdo& tpdo) {
   return frames.front();
 }
 
-/// A TPDO carries the newly mapped objects.
+/// Expects the newly mapped objects in the TPDO.
 void expect_sent_as_mapped(Dut& dut, const Remapping& remapping) {
   std::string reason;
   const auto tpdo = read_tpdo(dut, remapping.pdo(), reason);
@@ -324,8 +324,8 @@ void expect_sent_as_mapped(Dut& dut, const Remapping& remapping) {
   put_back(dut, *tpdo);
 }
 
-/// Another value than the present one that the device takes, as SDO shows: not each value within the limits is one, such as
-/// a mode of operation. The present one where none is found.
+/// A value that differs from the present one and that the device accepts by SDO: some objects, such as a mode of
+/// operation, do not accept every value within their limits. The present value if none is found.
 std::uint64_t value_taken(Dut& dut, const Mapped& mapped, std::uint64_t present, std::uint64_t salt) {
   constexpr std::uint64_t tries = 8;
   for (std::uint64_t i = 0; i != tries; ++i) {
@@ -338,7 +338,7 @@ std::uint64_t value_taken(Dut& dut, const Mapped& mapped, std::uint64_t present,
   return present;
 }
 
-/// An RPDO writes the newly mapped objects.
+/// Expects that the RPDO writes the newly mapped objects.
 void expect_received_as_mapped(Dut& dut, Remapping& remapping, const std::vector<Mapped>& mapping) {
   const std::uint16_t index = remapping.pdo().communication->index;
   const auto cob_id = static_cast<std::uint32_t>(dut.read_number(index, cob_id_parameter));
@@ -352,7 +352,7 @@ void expect_received_as_mapped(Dut& dut, Remapping& remapping, const std::vector
     const Entry* const entry = dut.entry(mapped.index, mapped.sub_index);
     if (entry == nullptr || mapped.index < 0x2000 || !is_read_and_written(entry)) return;
     const std::uint64_t present = dut.read_number(mapped.index, mapped.sub_index);
-    dut.write(mapped.index, mapped.sub_index, present);  // so that it is put back
+    dut.write(mapped.index, mapped.sub_index, present);  // records the value to put back
     values.push_back(value_taken(dut, mapped, present, ++salt));
   }
   const std::uint64_t data = pack(mapping, values);
@@ -363,7 +363,7 @@ void expect_received_as_mapped(Dut& dut, Remapping& remapping, const std::vector
   dut.pass_time(silence);
   for (std::size_t i = 0; i < mapping.size(); ++i) {
     dut.expect_equal(dut.read_number(mapping[i].index, mapping[i].sub_index), values[i],
-                     fmt::format("{} after {} with the new mapping has brought it",
+                     fmt::format("{} as received in {} with the new mapping",
                                  label(mapping[i].index, mapping[i].sub_index), pdo_label(remapping.pdo())));
   }
   dut.enter(NmtState::pre_operational);
@@ -389,14 +389,14 @@ void takes_new_mapping(Dut& dut) {
     }
     remapping.put_back();
   }
-  if (!any) dut.not_applicable("the EDS has no object that a PDO whose mapping is rw may carry");
+  if (!any) dut.not_applicable("the EDS has no object for a PDO whose mapping is rw");
 }
 
 // ---- without the procedure ----
 
 namespace {
 
-/// PDOs that are valid and map something; not applicable where none is.
+/// Runs a check for each valid PDO that maps objects; enables it if necessary. Not applicable without one.
 template <class Check>
 void for_each_active(Dut& dut, Check check) {
   std::vector<Remapping> all = all_remappings(dut);
@@ -441,7 +441,7 @@ void refuses_mapping_of_valid_pdo(Dut& dut) {
   });
 }
 
-// ---- mappings that are not possible ----
+// ---- impossible mappings ----
 
 void refuses_too_many_objects(Dut& dut) {
   for (Remapping& remapping : all_remappings(dut)) {
@@ -457,8 +457,8 @@ void refuses_too_many_objects(Dut& dut) {
 
 namespace {
 
-/// Objects of more than 64 bits together, as few as can be; the same ones again where there are not enough. Nothing
-/// where the PDO cannot map so many.
+/// The fewest objects with more than 64 bits in total; repeats objects if there are not enough. Empty if the PDO cannot
+/// map that number.
 std::vector<Mapped> too_long_mapping(const Dut& dut, const Remapping& remapping) {
   std::vector<Mapped> objects = mappable_objects(dut, remapping.pdo().direction);
   std::ranges::stable_sort(objects, std::ranges::greater{}, &Mapped::bits);
@@ -473,7 +473,7 @@ std::vector<Mapped> too_long_mapping(const Dut& dut, const Remapping& remapping)
 }  // namespace
 
 void refuses_too_many_bits(Dut& dut) {
-  std::string reason = "no mapping that the EDS allows is longer than 64 bits";
+  std::string reason = "the EDS does not allow a mapping of more than 64 bits";
   bool any = false;
   for (Remapping& remapping : all_remappings(dut)) {
     const std::vector<Mapped> mapping = too_long_mapping(dut, remapping);

@@ -1,5 +1,5 @@
-/// When TPDOs are sent (CiA 301, 7.2.2.2 and 7.5.2.37): in Operational as their parameters say, in other states not at
-/// all (7.3.2.2.5, table 37).
+/// Transmission of TPDOs (CiA 301, 7.2.2.2 and 7.5.2.37): in Operational according to their parameters, in other states
+/// not at all (7.3.2.2.5, table 37).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,15 +13,15 @@
 namespace edsc::conform::pdo_area {
 namespace {
 
-/// By how much other frames on the wire may delay a TPDO.
+/// The delay of a TPDO by other frames on the bus.
 constexpr std::uint32_t wire_us = 1'000;
 
-/// Counts the TPDOs that a case has tested, and keeps why others were not.
+/// Records whether a case has tested a TPDO, and why it did not test others.
 class Tested {
  public:
   explicit Tested(Dut& dut) : dut_{dut} {}
 
-  /// Whether the TPDO is so now. The case may go on with it.
+  /// Configures the TPDO. Returns whether the case can test it.
   [[nodiscard]] bool configured(const Tpdo& tpdo, const Transmission& wanted) {
     if (auto why = configure(dut_, tpdo, wanted)) {
       if (reason_.empty()) reason_ = tpdo.name() + ": " + *why;
@@ -40,7 +40,7 @@ class Tested {
   std::string reason_;
 };
 
-/// Runs a check in Operational for each TPDO that can be made so. Not applicable where none can.
+/// Runs a check in Operational for each TPDO that can be configured. Not applicable without one.
 template <class Check>
 void for_each_tpdo(Dut& dut, const std::vector<Transmission>& transmissions, Check check) {
   Tested tested{dut};
@@ -61,14 +61,14 @@ void expect_none(Dut& dut, const Tpdo& tpdo, const std::vector<SeenFrame>& frame
   dut.expect(frames.empty(), fmt::format("no {} {}", tpdo.name(), when), frames_text(frames));
 }
 
-/// Whether the values of the TPDO change by themselves, so that its events cannot be counted. What comes without a
-/// change, comes without an event.
+/// Whether the values of the TPDO change by themselves, so that its events cannot be counted. Fails for a TPDO without
+/// a change, because it is sent without an event.
 bool changes_by_itself(Dut& dut, const Tpdo& tpdo) {
   const std::vector<SeenFrame> frames = dut.collect(tpdo.frames(), 2 * silence);
   for (std::size_t i = 1; i < frames.size(); ++i) {
     const bool is_same = frames[i].frame == frames[i - 1].frame;
     dut.expect(!is_same, fmt::format("no {} without an event", tpdo.name()),
-               frame_text(frames[i].frame) + " twice, with the same data");
+               frame_text(frames[i].frame) + " twice with the same data");
   }
   return !frames.empty();
 }
@@ -81,13 +81,14 @@ SeenFrame expect_frame(Dut& dut, const Tpdo& tpdo, Dut::Mark since, Duration lon
 }
 
 [[noreturn]] void no_stimulus(Dut& dut, const Tpdo& tpdo) {
-  dut.inconclusive(fmt::format("no stimulus changes an object that {} carries ({}): give the command that changes one",
-                               tpdo.name(), objects_text(tpdo.mapping)));
+  dut.inconclusive(
+      fmt::format("no stimulus changes an object of {} ({}); use --stimulus with a command that changes one",
+                  tpdo.name(), objects_text(tpdo.mapping)));
 }
 
 // ---- remote frames ----
 
-/// Whether another service shows that the bus carries remote frames.
+/// Whether node guarding shows that the bus transmits remote frames.
 bool answers_node_guarding(Dut& dut) {
   if (!dut.has(0x100C) || (dut.has(0x1017) && dut.read_number(0x1017) != 0)) return false;
   const Dut::Mark since = dut.mark();
@@ -105,12 +106,13 @@ SeenFrame ask(Dut& dut, const Tpdo& tpdo, bool bus_is_known) {
     return all.front();
   }
   if (!bus_is_known && !dut.simulated() && !answers_node_guarding(dut)) {
-    dut.inconclusive(tpdo.name() + " does not answer a remote frame, and nothing else shows that the bus carries any");
+    dut.inconclusive(tpdo.name() +
+                     " does not answer a remote frame, and it is unknown whether the bus transmits remote frames");
   }
   dut.fail(tpdo.name() + " after a remote frame", fmt::format("no frame within {} ms", to_answer.count() / 1000));
 }
 
-/// Bit 30 of the COB-ID is 1: a remote frame is not answered.
+/// With bit 30 of the COB-ID set, a remote frame is not answered.
 void expect_no_answer_where_not_allowed(Dut& dut, const Tpdo& tpdo, Transmission wanted) {
   wanted.remote_frames = false;
   if (configure(dut, tpdo, wanted)) return;
@@ -120,7 +122,7 @@ void expect_no_answer_where_not_allowed(Dut& dut, const Tpdo& tpdo, Transmission
   expect_none(dut, tpdo, dut.collect(tpdo.frames(), silence), "after a remote frame that bit 30 of its COB-ID forbids");
 }
 
-/// Type 252: the data are those of the last SYNC.
+/// Type 252: the TPDO has the values at the last SYNC.
 void expect_sample_of_sync(Dut& dut, const Tpdo& tpdo, bool bus_is_known) {
   SyncSource sync{dut};
   Event event{dut, tpdo.mapping};
@@ -161,8 +163,8 @@ void sends_on_remote_frame(Dut& dut) {
 
 namespace {
 
-/// Changes the objects of the TPDO one by one until `is_sent` says that a change was an event: not each object is one.
-/// False where no stimulus has changed any of them, as SDO reads them.
+/// Changes the objects of the TPDO one by one until `is_sent` returns that the change was an event: some objects do not
+/// cause events. Returns false if no stimulus has changed a value that SDO reads.
 template <class IsSent>
 bool find_event(Dut& dut, const Tpdo& tpdo, Event& event, IsSent is_sent) {
   bool has_changed = false;
@@ -176,7 +178,7 @@ bool find_event(Dut& dut, const Tpdo& tpdo, Event& event, IsSent is_sent) {
   return has_changed;
 }
 
-/// An event: the TPDO comes once, with the new values.
+/// Expects that an event sends the TPDO once, with the new values.
 void expect_event(Dut& dut, const Tpdo& tpdo, Event& event, bool counts) {
   const Dut::Mark since = dut.mark();
   if (!event.apply()) no_stimulus(dut, tpdo);
@@ -192,7 +194,7 @@ void expect_event(Dut& dut, const Tpdo& tpdo, Event& event, bool counts) {
 constexpr std::uint16_t inhibit_time = 1000;  ///< 100 ms
 constexpr std::uint32_t inhibit_us = 100'000;
 
-/// No two frames are nearer to each other than the inhibit time, and the second event is not lost.
+/// Expects the inhibit time between two frames, and that the second event is not lost.
 void expect_inhibit_time(Dut& dut, const Tpdo& tpdo, Event& event, bool counts) {
   const Dut::Mark since = dut.mark();
   if (!event.apply()) no_stimulus(dut, tpdo);
@@ -246,7 +248,7 @@ std::uint16_t timer_of(const Dut& dut, const Tpdo& tpdo) {
   return static_cast<std::uint16_t>(within_limits(dut, tpdo.index, timer_parameter, wanted_ms));
 }
 
-/// The event timer gives the longest time between two frames; while nothing changes, also the shortest one.
+/// The event timer is the maximum time between two frames; without a change also the minimum time.
 void expect_period(Dut& dut, const Tpdo& tpdo, const std::vector<SeenFrame>& frames, std::uint64_t period_us) {
   for (std::size_t i = 1; i < frames.size(); ++i) {
     const bool may_be_event = i == 1 || !(frames[i].frame == frames[i - 1].frame);
@@ -290,11 +292,11 @@ void sends_by_event_timer(Dut& dut) {
 
 namespace {
 
-/// At one SYNC: once or not at all, within the synchronous window where there is one.
+/// Sends one SYNC and returns whether the TPDO follows: once, and within the synchronous window if one is set.
 bool is_sent_at_sync(Dut& dut, const Tpdo& tpdo, SyncSource& sync, std::uint64_t window_us) {
   const Image before = read_image(dut, tpdo.mapping);
   const std::vector<SeenFrame> frames = sync.send_and_collect(tpdo.frames());
-  dut.expect(frames.size() <= 1, fmt::format("one {} at most after a SYNC", tpdo.name()), frames_text(frames));
+  dut.expect(frames.size() <= 1, fmt::format("at most one {} after a SYNC", tpdo.name()), frames_text(frames));
   if (frames.empty()) return false;
   expect_present_data(dut, tpdo, frames.front(), before);
   if (window_us != 0) {
@@ -309,7 +311,7 @@ std::uint64_t sync_window(Dut& dut) {
   return window != nullptr && canopen::readable(window->access) ? dut.read_number(0x1007) : 0;
 }
 
-/// Type n: at each n-th SYNC, and not without one.
+/// Type n: at every n-th SYNC, and not without a SYNC.
 void expect_each_nth(Dut& dut, const Tpdo& tpdo, SyncSource& sync, unsigned n) {
   constexpr unsigned rounds = 3;
   expect_none(dut, tpdo, dut.collect(tpdo.frames(), silence), "without a SYNC");
@@ -319,8 +321,8 @@ void expect_each_nth(Dut& dut, const Tpdo& tpdo, SyncSource& sync, unsigned n) {
   for (unsigned i = 1; i <= rounds * n; ++i) {
     if (!is_sent_at_sync(dut, tpdo, sync, window_us)) continue;
     const unsigned distance = last ? i - *last : n;
-    dut.expect(distance == n, fmt::format("{} of type {} at each {}. SYNC", tpdo.name(), n, n),
-               fmt::format("two of them {} SYNCs from each other", distance));
+    dut.expect(distance == n, fmt::format("{} of type {} every {} SYNCs", tpdo.name(), n, n),
+               fmt::format("two of them {} SYNCs apart", distance));
     last = i;
     ++count;
   }
@@ -372,7 +374,7 @@ void sends_at_sync_after_event(Dut& dut) {
 
 namespace {
 
-/// A start value that the counter reaches, after a few SYNCs.
+/// A SYNC start value that the counter reaches after a few SYNCs.
 struct SyncStart {
   std::uint8_t value;
   std::uint8_t first;  ///< the counter of the first SYNC
@@ -397,12 +399,11 @@ void sends_from_sync_start_value(Dut& dut) {
     for (; counter != start.value;
          counter = counter < sync.overflow() ? static_cast<std::uint8_t>(counter + 1) : std::uint8_t{1}) {
       expect_none(dut, tpdo, sync.send_and_collect(tpdo.frames()),
-                  fmt::format("at the SYNC with counter {}, before the first one with the SYNC start value {}", counter,
-                              start.value));
+                  fmt::format("at the SYNC with counter {}, before the SYNC start value {}", counter, start.value));
     }
     for (int i = 0; i < 3; ++i) {
       dut.expect(is_sent_at_sync(dut, tpdo, sync, sync_window(dut)),
-                 fmt::format("{} at each SYNC from that with counter {}", tpdo.name(), start.value), "no frame");
+                 fmt::format("{} at each SYNC beginning with counter {}", tpdo.name(), start.value), "no frame");
     }
   });
 }
@@ -411,8 +412,7 @@ void sends_from_sync_start_value(Dut& dut) {
 
 namespace {
 
-/// The TPDOs that can be made so, all at once, while PDOs do not exist. They have been in Operational before: a timer
-/// that runs on would show.
+/// Configures all TPDOs that support the parameters, in Pre-operational. Not applicable without one.
 std::vector<Tpdo> configure_all(Dut& dut, const Transmission& wanted) {
   Tested tested{dut};
   std::vector<Tpdo> done;
@@ -423,7 +423,7 @@ std::vector<Tpdo> configure_all(Dut& dut, const Transmission& wanted) {
   return done;
 }
 
-/// Enters the state, provokes, and expects that no TPDO comes.
+/// Enters the state through Operational, where timers start, calls `provoke`, and expects no TPDO.
 template <class Provoke>
 void expect_silence(Dut& dut, NmtState state, const std::vector<Tpdo>& tested, const std::string& when,
                     Provoke provoke) {
@@ -438,7 +438,7 @@ void expect_silence(Dut& dut, NmtState state, const std::vector<Tpdo>& tested, c
   }
 }
 
-/// Events for all of the TPDOs. Inconclusive where there is not one.
+/// Events for all TPDOs. Inconclusive without a stimulus for one of them.
 class Events {
  public:
   Events(Dut& dut, const std::vector<Tpdo>& tested) : dut_{dut}, first_{tested.front()} {

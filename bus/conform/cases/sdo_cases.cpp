@@ -34,7 +34,7 @@ constexpr std::uint16_t default_server = 0x1200;
 constexpr std::uint16_t first_server = 0x1201, last_server = 0x127F;
 constexpr std::uint16_t first_client = 0x1280, last_client = 0x12FF;
 
-constexpr std::size_t drawn_entries = 8;  ///< of a case that tries some of many
+constexpr std::size_t drawn_entries = 8;  ///< in a case that tests a random selection
 
 using Entries = std::vector<LiveEntry>;
 
@@ -47,7 +47,7 @@ Entries entries_with(const Dut& dut, Condition condition) {
   return found;
 }
 
-/// Some of them, drawn by lot.
+/// A random selection.
 Entries draw(Dut& dut, Entries entries) {
   std::ranges::shuffle(entries, dut.random());
   if (entries.size() > drawn_entries) entries.resize(drawn_entries);
@@ -57,7 +57,7 @@ Entries draw(Dut& dut, Entries entries) {
 /// Parameters of 1000h to 1FFFh that a case may write at any time.
 Entries plain_parameters(const Dut& dut) { return entries_with(dut, is_plain_parameter); }
 
-/// Numbers with this property: parameters of 1000h to 1FFFh, else those of the application, which need a permission.
+/// Numbers with this property: parameters of 1000h to 1FFFh, else those at 2000h and above, which need the permission.
 template <typename Condition>
 Entries numbers_with(Dut& dut, Condition condition) {
   Entries found = entries_with(dut, [&](const LiveEntry& e) { return is_plain_parameter(e) && condition(e); });
@@ -68,7 +68,7 @@ Entries numbers_with(Dut& dut, Condition condition) {
   return found;
 }
 
-/// The server serves the next request.
+/// Expects an answer to the next request.
 void expect_served(Dut& dut) {
   if (dut.has(device_type)) return (void)dut.read(device_type);
   const SdoOutcome outcome = dut.upload(device_type);
@@ -79,7 +79,7 @@ void expect_served(Dut& dut) {
 
 void read_expedited(Dut& dut) {
   if (!dut.has(device_type)) {
-    dut.fail_by_sheet("mandatory-object", "1000h in the EDS, as every device has it", "it does not exist in the EDS");
+    dut.fail_by_sheet("mandatory-object", "mandatory object 1000h in the EDS", "it does not exist in the EDS");
   }
   const SdoFrame answer = initiate_upload(dut, device_type, 0);
   dut.expect(is_expedited(answer), "an expedited upload of 4 bytes", hex_bytes(answer));
@@ -90,7 +90,7 @@ void read_expedited(Dut& dut) {
   dut.expect(more.empty(), "one answer", fmt::format("{} more", more.size()));
 }
 
-/// The value that was read: what it may be otherwise, each device knows for itself.
+/// Writes the value that was read: other values may not be valid on this device.
 void read_and_write(Dut& dut) {
   EntryResults results{dut};
   for (const LiveEntry& entry : draw(dut, plain_parameters(dut))) {
@@ -109,10 +109,10 @@ void read_and_write(Dut& dut) {
     }
   }
   results.finish("each value can be read, written and read back",
-                 "no entry of 1000h to 1FFFh can be written without an effect on others");
+                 "no entry of 1000h to 1FFFh can be written without an effect on other entries");
 }
 
-/// With the value that the device has: if it takes the value, nothing changes.
+/// Writes the present value, so that a device that accepts it changes nothing.
 void write_read_only(Dut& dut) {
   const Entry& entry = dut.need(device_type);
   if (canopen::writable(entry.access)) {
@@ -146,7 +146,7 @@ void read_missing_object(Dut& dut) {
   dut.expect_abort(dut.upload(index, 0), abort_rule::no_object, "read of " + label(index, 0));
 }
 
-/// Command specifier 7, which no client sends. The server must serve the next request.
+/// Sends the unused command specifier 7. The server must answer the next request.
 void unknown_command(Dut& dut) {
   dut.expect_abort(dut.exchange(sdo_frame(0xE0, device_type, 0)), abort_rule::command, "a request with byte 0 E0h");
   expect_served(dut);
@@ -154,7 +154,7 @@ void unknown_command(Dut& dut) {
 
 // Lengths and limits
 
-/// The value is refused, and the entry keeps what it has. What can be mapped may change by itself.
+/// The value is refused, and the entry keeps its value. A mappable entry may change by itself and is not compared.
 void expect_refused(Dut& dut, const LiveEntry& entry, const Bytes& value, const AbortRule& rule,
                     const std::string& what) {
   const Bytes before = dut.read(entry.index, entry.sub_index);
@@ -190,7 +190,7 @@ void write_too_short(Dut& dut) {
   }
 }
 
-/// Limits of the EDS, else those of CiA 301: 1003h:00 takes only 0, and transmission type 241 is reserved.
+/// Limits of the EDS, else those of CiA 301: 1003h:00 accepts only 0, and transmission type 241 is reserved.
 void write_too_high(Dut& dut) {
   const Entries limited = numbers_with(dut, [&](const LiveEntry& e) {
     const bool allowed = is_communication(e) || dut.allowed(Permission::application);
@@ -203,7 +203,7 @@ void write_too_high(Dut& dut) {
   if (!limited.empty()) return;
   const Entry* history = dut.entry(error_history);
   if (history != nullptr && canopen::writable(history->access)) {
-    // Not remembered: putting the number of errors back would clear them.
+    // Not recorded: writing the number of errors back would clear the history.
     return dut.expect_abort(dut.command(error_history, 0, Bytes{1}), abort_rule::too_high, "1 to 1003h:00");
   }
   const Entries types = entries_with(dut, [](const LiveEntry& e) {
@@ -217,7 +217,8 @@ void write_too_high(Dut& dut) {
 void write_too_low(Dut& dut) {
   const Entries limited =
       numbers_with(dut, [&](const LiveEntry& e) { return value_below_limit(dut, *e.entry).has_value(); });
-  if (limited.empty()) dut.not_applicable("the EDS has no writable entry with a LowLimit above the least value");
+  if (limited.empty())
+    dut.not_applicable("the EDS has no writable entry with a LowLimit above the minimum of its data type");
   for (const LiveEntry& entry : draw(dut, limited)) {
     const std::uint64_t value = *value_below_limit(dut, *entry.entry);
     expect_refused(dut, entry, value, abort_rule::too_low, "a value below the LowLimit");
@@ -234,7 +235,7 @@ void default_cob_ids(Dut& dut) {
 
 // Segmented transfer
 
-/// The bytes of a value that come in more than four: of a number those of its type.
+/// Expects the number of bytes of the data type, unless its length is variable.
 void expect_length(Dut& dut, const LiveEntry& entry, std::size_t size) {
   if (entry.type->bits != 0) dut.expect_equal(size, (entry.type->bits + 7U) / 8U, "the bytes of " + title(entry));
 }
@@ -247,7 +248,7 @@ Entries long_entries(const Dut& dut) {
   });
 }
 
-/// Whether the device begins to upload the entry in segments: its value has more than four bytes now.
+/// Whether the device uploads the entry in segments: its present value has more than four bytes.
 bool is_segmented(Dut& dut, const LiveEntry& entry) {
   const auto answer = dut.exchange(sdo_frame(0x40, entry.index, entry.sub_index));
   if (!answer || (*answer)[0] == sdo::abort_command) return false;
@@ -255,7 +256,7 @@ bool is_segmented(Dut& dut, const LiveEntry& entry) {
   return !is_expedited(*answer);
 }
 
-/// One whose value has more than four bytes now; constants first, so that reading twice gives the same.
+/// Returns an entry whose present value has more than four bytes; constants first, because two reads must be equal.
 LiveEntry need_long_entry(Dut& dut) {
   Entries entries = long_entries(dut);
   const auto is_constant = [](const LiveEntry& e) { return e.entry->access == canopen::Access::constant; };
@@ -266,7 +267,7 @@ LiveEntry need_long_entry(Dut& dut) {
   dut.not_applicable("no readable entry of the EDS has a value of more than 4 bytes");
 }
 
-/// The server chooses: a value of four bytes may come expedited or in a segment.
+/// The server may upload a value of four bytes expedited or in a segment.
 void read_short_value_segmented(Dut& dut) {
   dut.need(device_type);
   const Bytes value = upload_by_segments(dut, device_type, 0);
@@ -298,7 +299,7 @@ void read_segmented(Dut& dut) {
              hex_bytes(value));
 }
 
-/// A value of the time other than the present one. Guarding and heartbeat exclude each other: the other one is off.
+/// A time that differs from the present one. Disables the other of guarding and heartbeat, which exclude each other.
 std::uint64_t other_time(Dut& dut, std::uint16_t index) {
   const Entry& entry = dut.need_writable(index);
   const std::uint16_t other = index == guard_time ? heartbeat_time : guard_time;
@@ -309,7 +310,7 @@ std::uint64_t other_time(Dut& dut, std::uint16_t index) {
   for (const std::uint64_t value : {1000U, 500U, 250U, 100U, 0U}) {
     if (value != present && is_within_limits(dut, entry, dut.bytes_of(index, 0, value))) return value;
   }
-  dut.inconclusive("the limits of " + label(index, 0) + " leave none of 0, 100, 250, 500 and 1000 ms");
+  dut.inconclusive("the limits of " + label(index, 0) + " exclude 0, 100, 250, 500 and 1000 ms");
 }
 
 /// A wrong toggle bit is refused, and the value is not stored.
@@ -333,7 +334,7 @@ void read_short_value_in_block(Dut& dut) {
   dut.expect(value.bytes == dut.read(device_type), "the 4 bytes of 1000h:00", hex_bytes(value.bytes));
 }
 
-/// In one block, in blocks of one segment, and with a block that is sent again.
+/// In one block, in blocks of one segment, and with a repeated block.
 void read_long_value_in_blocks(Dut& dut, bool crc) {
   const LiveEntry entry = need_long_entry(dut);
   const BlockTransfer transfers[] = {
@@ -399,7 +400,7 @@ void wrong_sequence_number(Dut& dut) {
 
 using ParameterValues = std::map<std::pair<std::uint16_t, std::uint8_t>, Bytes>;
 
-/// The COB-IDs of a valid SDO server are not those of other services.
+/// A valid SDO server must not have a restricted CAN-ID.
 void expect_usable(Dut& dut, const Entry& entry, std::uint64_t value) {
   constexpr std::uint32_t dynamic_bit = 0x4000'0000;
   if (entry.sub_index != 1 && entry.sub_index != 2) return;
@@ -423,7 +424,7 @@ void read_sdo_parameter(Dut& dut, const Object& object, ParameterValues& values)
   dut.expect_equal(dut.read_number(object.index), highest, label(object.index, 0));
 }
 
-/// All objects of the range: those of the EDS can be read, and the others do not exist.
+/// Reads all objects of the range: those of the EDS can be read, and the others do not exist.
 ParameterValues read_sdo_parameters(Dut& dut, std::uint16_t first, std::uint16_t last) {
   ParameterValues values;
   for (std::uint16_t index = first; index <= last; ++index) {
@@ -450,14 +451,14 @@ const Object* unused_parameter(Dut& dut, std::uint16_t first, std::uint16_t last
   return nullptr;
 }
 
-/// Reset communication gives the parameters their values after power-on.
+/// Reset communication restores the power-on values of the parameters.
 void read_servers_after_reset(Dut& dut) {
   if (dut.sheet().find(first_server) == nullptr) dut.not_applicable("1201h does not exist in the EDS");
   dut.reset(canopen::NmtCommand::reset_communication);
   const auto before = read_sdo_parameters(dut, first_server, last_server);
   if (const Object* server = unused_parameter(dut, first_server, last_server, 1)) {
     constexpr std::uint32_t unused = CobId::invalid_bit | 0x6A0, other = CobId::invalid_bit | 0x6A1;
-    // A device may refuse the CAN-ID: then it keeps what it has, and the reset does not change that.
+    // A device may refuse the CAN-ID and keep its value, which the reset then must not change.
     const std::uint64_t value = dut.read_number(server->index, 1) == unused ? other : unused;
     (void)dut.download(server->index, 1, value);
   }
@@ -471,7 +472,7 @@ void read_servers_after_reset(Dut& dut) {
 
 SdoOutcome save(Dut& dut) { return dut.command(store_parameters, 1, Bytes{'s', 'a', 'v', 'e'}); }
 
-/// A saved client parameter survives reset communication. Objects that the EDS does not have do not exist.
+/// A stored client parameter remains after reset communication. Objects that the EDS does not have do not exist.
 void save_clients(Dut& dut) {
   (void)read_sdo_parameters(dut, first_client, last_client);
   constexpr std::uint8_t server_node = 3;
@@ -488,7 +489,7 @@ void save_clients(Dut& dut) {
   dut.reset(canopen::NmtCommand::reset_communication);
   const std::uint64_t after = dut.read_number(client->index, server_node);
   dut.write(client->index, server_node, before);
-  dut.expect_done(save(dut), "save of the former value to 1010h:01");
+  dut.expect_done(save(dut), "save with the former value to 1010h:01");
   dut.expect_equal(after, changed, label(client->index, server_node) + " after save and reset communication");
 }
 
@@ -496,7 +497,7 @@ constexpr Permission none = Permission::none;
 
 constexpr CaseRow rows[] = {
     {"2.1", "1000h:00 is read in one frame", "CiA 301, 7.2.4.3.6", Level::read, none, read_expedited},
-    {"2.2", "Communication parameters, drawn by lot, are read, written and read back", "CiA 301, 7.2.4.2",
+    {"2.2", "Randomly selected communication parameters are read, written and read back", "CiA 301, 7.2.4.2",
      Level::communication, none, read_and_write},
     {"2.3", "A write of the read-only 1000h:00 is refused", "CiA 301, 7.2.4.3.17", Level::communication, none,
      write_read_only},
@@ -514,18 +515,18 @@ constexpr CaseRow rows[] = {
     {"2.10", "A value that is too high is refused", "CiA 301, 7.2.4.3.17", Level::communication, none, write_too_high},
     {"2.11", "A value that is too low is refused", "CiA 301, 7.2.4.3.17", Level::communication, none, write_too_low},
     {"2.12", "1200h has the COB-IDs of the default SDO", "CiA 301, 7.5.2.33", Level::read, none, default_cob_ids},
-    {"2.13", "1000h:00 is read by a client that takes segments", "CiA 301, 7.2.4.3.5", Level::read, none,
+    {"2.13", "1000h:00 is read by a client that accepts segments", "CiA 301, 7.2.4.3.5", Level::read, none,
      read_short_value_segmented},
     {"2.14", "100Ch:00 is written in a segment", "CiA 301, 7.2.4.3.4", Level::communication, none,
      write_segmented<guard_time>},
     {"2.15", "1017h:00 is written in a segment", "CiA 301, 7.2.4.3.4", Level::communication, none,
      write_segmented<heartbeat_time>},
-    {"2.16", "A value of more than four bytes comes in segments", "CiA 301, 7.2.4.3.6", Level::read, none,
+    {"2.16", "A value of more than four bytes is uploaded in segments", "CiA 301, 7.2.4.3.6", Level::read, none,
      read_long_value},
     {"2.17", "A segment requested with the wrong toggle bit is refused", "CiA 301, 7.2.4.3.7", Level::read, none,
      wrong_toggle_bit},
-    {"2.18", "Long values, drawn by lot, come whole in segments", "CiA 301, 7.2.4.3.7", Level::read, none,
-     read_segmented},
+    {"2.18", "Randomly selected long values are completely uploaded in segments", "CiA 301, 7.2.4.3.7", Level::read,
+     none, read_segmented},
     {"2.19", "1000h:00 is read in a block without CRC", "CiA 301, 7.2.4.3.12", Level::read, none,
      read_short_value_in_block},
     {"2.20", "100Ch:00 is written in a block without CRC", "CiA 301, 7.2.4.3.8", Level::communication, none,
@@ -543,10 +544,10 @@ constexpr CaseRow rows[] = {
      wrong_block_size},
     {"2.27", "A block upload whose segment 128 is confirmed is refused", "CiA 301, 7.2.4.3.14", Level::read, none,
      wrong_sequence_number},
-    {"2.28", "1201h to 127Fh are those of the EDS", "CiA 301, 7.5.2.33", Level::read, none, read_servers},
-    {"2.29", "1201h to 127Fh have their values again after reset communication", "CiA 301, 7.5.2.33",
-     Level::communication, none, read_servers_after_reset},
-    {"2.30", "Saved values of 1280h to 12FFh survive reset communication", "CiA 301, 7.5.2.34", Level::communication,
+    {"2.28", "The objects 1201h to 127Fh are those of the EDS", "CiA 301, 7.5.2.33", Level::read, none, read_servers},
+    {"2.29", "Reset communication restores the values of 1201h to 127Fh", "CiA 301, 7.5.2.33", Level::communication,
+     none, read_servers_after_reset},
+    {"2.30", "Reset communication keeps stored values of 1280h to 12FFh", "CiA 301, 7.5.2.34", Level::communication,
      Permission::store, save_clients},
 };
 

@@ -13,7 +13,7 @@ namespace sdo = canopen::sdo;
 
 constexpr std::uint8_t command_mask = 0xE0;
 constexpr std::uint8_t size_mask = 0x0C;                 ///< expedited: n
-constexpr std::size_t max_bytes = std::size_t{1} << 16;  ///< of a value that a case reads frame by frame
+constexpr std::size_t max_bytes = std::size_t{1} << 16;  ///< maximum for a value that is read frame by frame
 
 canopen::AbortCode abort_code(const SdoFrame& frame) { return static_cast<canopen::AbortCode>(sdo::word_of(frame)); }
 
@@ -28,14 +28,14 @@ void append(Bytes& bytes, std::span<const std::uint8_t> piece) {
   bytes.insert(bytes.end(), piece.begin(), piece.end());
 }
 
-/// The bytes of a segment that come next; all other bytes are 0.
+/// A segment with these bytes; all other bytes are 0.
 SdoFrame segment_of(std::uint8_t command, std::span<const std::uint8_t> bytes) {
   SdoFrame frame = sdo_frame(command);
   std::ranges::copy(bytes, frame.begin() + 1);
   return frame;
 }
 
-/// The segment of a download that begins at this byte of the value.
+/// The segment of a download that begins at byte `at` of the value.
 SdoFrame download_segment(std::uint8_t toggle, std::span<const std::uint8_t> value, std::size_t at) {
   const auto piece = value.subspan(at, std::min<std::size_t>(sdo::segment_bytes, value.size() - at));
   const bool last = at + piece.size() == value.size();
@@ -52,7 +52,7 @@ void initiate_download(Dut& dut, std::uint16_t index, std::uint8_t sub_index, st
   expect_multiplexer(dut, answer, index, sub_index);
 }
 
-/// Of a size that is indicated.
+/// Compares the size with the indicated one, if any.
 void expect_size(Dut& dut, const SdoFrame& initiate, std::uint8_t indicated, std::size_t size, std::uint16_t index,
                  std::uint8_t sub_index) {
   if ((initiate[0] & indicated) == 0) return;

@@ -23,7 +23,7 @@ bool is_writable(const Dut& dut, std::uint16_t index, std::uint8_t sub_index) {
   return entry != nullptr && canopen::writable(entry->access) && canopen::readable(entry->access);
 }
 
-/// The node whose error control or default SDO the frame is; nothing of other frames.
+/// The node-ID of an error control message or an answer of the default SDO; std::nullopt for other frames.
 std::optional<std::uint8_t> node_of(const Frame& frame) {
   const std::uint32_t code = frame.id & 0x780U;
   const bool known = code == canopen::function_code::error_control || code == canopen::function_code::sdo_response;
@@ -33,7 +33,7 @@ std::optional<std::uint8_t> node_of(const Frame& frame) {
 
 bool anything(const Frame&) { return true; }
 
-/// Whether the first entries of a mapping parameter name objects of the data sheet.
+/// Whether the first entries of a mapping parameter map objects of the EDS.
 bool maps_objects(Dut& dut, std::uint16_t index, std::uint8_t count) {
   for (std::uint8_t i = 1; i <= count; ++i) {
     const std::uint64_t mapped = dut.read_number(index, i);
@@ -49,19 +49,20 @@ void expect_default_cob_id(Dut& dut, std::uint16_t index, std::uint32_t standard
   const std::uint64_t expected = dut.default_of(index).value_or(standard);
   const std::uint64_t got = dut.read_number(index);
   const std::string name = label(index, 0);
-  dut.expect(canopen::is_legal({index, 0, static_cast<std::uint32_t>(got)}),
-             name + ": a COB-ID with a CAN-ID that is not restricted", fmt::format("{:X}h", got));
+  dut.expect(canopen::is_legal({index, 0, static_cast<std::uint32_t>(got)}), name + ": a CAN-ID that is not restricted",
+             fmt::format("{:X}h", got));
   if (got == expected) return;
   if (!canopen::writable(entry.access)) dut.expect_equal(got, expected, name);
-  dut.inconclusive(fmt::format("{} is {:X}h and by default {:X}h: somebody may have configured it; conclusive after its "
-                               "default is restored",
-                               name, got, expected));
+  dut.inconclusive(
+      fmt::format("{} is {:X}h, its default value is {:X}h: it may have been configured; restore its "
+                  "default value to test it",
+                  name, got, expected));
 }
 
 std::uint32_t emcy_cob_id(Dut& dut) {
   dut.need(emcy);
   const auto cob_id = static_cast<std::uint32_t>(dut.read_number(emcy));
-  if (!CobId{cob_id}.valid()) dut.not_applicable("1014h:00 says by bit 31 that EMCY is not valid");
+  if (!CobId{cob_id}.valid()) dut.not_applicable("EMCY is not valid (bit 31 of 1014h:00)");
   return cob_id;
 }
 
@@ -88,14 +89,14 @@ NodeId free_node_id(Dut& dut) {
   for (std::uint8_t sub_index = 1; dut.has(0x1016, sub_index); ++sub_index) {
     taken.insert(static_cast<std::uint8_t>(dut.read_number(0x1016, sub_index) >> 16 & 0x7F));
   }
-  // A heartbeat of more than a second is rare; the other frames of a node bear its number in most networks.
+  // Heartbeat times of more than a second are rare. In most networks the other CAN-IDs of a node include its node-ID.
   for (const SeenFrame& seen : dut.collect(anything, milliseconds{1200})) {
     taken.insert(static_cast<std::uint8_t>(seen.frame.id & 0x7FU));
   }
   for (std::uint8_t node = 127; node > 0; --node) {
     if (!taken.contains(node)) return NodeId{node};
   }
-  dut.inconclusive("no node-ID is free on this bus");
+  dut.inconclusive("no free node-ID on this bus");
 }
 
 std::optional<Parameter> harmless_parameter(const Dut& dut) {
@@ -153,7 +154,7 @@ bool can_produce_sync(Dut& dut, std::uint32_t cob_id) {
   if (!is_writable(dut, sync_cob_id, 0) || !is_writable(dut, sync_period, 0)) return false;
   const SdoOutcome outcome = dut.download(sync_cob_id, 0, cob_id | produces_sync);
   if (!outcome.done()) {
-    dut.expect_abort(outcome, abort_rule::value, "bit 30 of 1005h:00, which a device that does not produce SYNC refuses");
+    dut.expect_abort(outcome, abort_rule::value, "bit 30 of 1005h:00 on a device that does not produce SYNC");
     return false;
   }
   dut.write(sync_cob_id, 0, cob_id);

@@ -1,4 +1,4 @@
-/// What cases of several areas set up or look for before they ask their question.
+/// Preconditions that cases of several areas have in common.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace edsc::conform {
 
-/// Does what undoes a step of a case, however the case ends: at an interruption as well.
+/// Runs a step of a case, then undoes it, also if the case ends early or is interrupted.
 template <class Check, class Undo>
 void and_undo(Check check, Undo undo) {
   try {
@@ -26,22 +26,22 @@ void and_undo(Check check, Undo undo) {
   undo();
 }
 
-/// The COB-ID that an object has by default: that of the data sheet, else the standard one. Another one fails where it
-/// is a restricted one or cannot be written; else somebody may have configured it, and the case is inconclusive.
+/// Expects the default COB-ID of an object: that of the EDS, else the standard one. Another COB-ID fails if its CAN-ID
+/// is restricted or if it cannot be written. Otherwise it may have been configured, and the case is inconclusive.
 void expect_default_cob_id(Dut& dut, std::uint16_t index, std::uint32_t standard);
 
-/// 1014h:00. Not applicable where the data sheet does not have it, or where it says that EMCY is not valid.
+/// Returns 1014h:00. Not applicable if the EDS does not have it, or if EMCY is not valid.
 [[nodiscard]] std::uint32_t emcy_cob_id(Dut& dut);
-/// The EMCYs of the device with this emergency error code.
+/// Matches EMCYs of the device with this emergency error code.
 [[nodiscard]] Dut::Match emcy_with_code(std::uint32_t cob_id, std::uint16_t code);
 [[nodiscard]] std::uint16_t emergency_code_of(const canopen::Frame& frame);
 
-/// Listens for this time, and says whether another node has sent a boot-up message, a heartbeat or an SDO answer.
+/// Listens for `span` and returns whether another node sent a boot-up message, a heartbeat or an SDO answer.
 [[nodiscard]] bool hears_other_nodes(Dut& dut, Duration span);
-/// A node-ID that was not heard while listening, and that 1016h of the device does not name.
+/// Listens and returns a node-ID that neither a CAN-ID on the bus nor 1016h of the device includes.
 [[nodiscard]] canopen::NodeId free_node_id(Dut& dut);
 
-/// A parameter of 1000h to 1FFFh that cases may change: nothing is sent because of it, and "save" stores it.
+/// A parameter of 1000h to 1FFFh that cases may change: it has no effect on other nodes, and "save" stores it.
 struct Parameter {
   std::uint16_t index = 0;
   std::uint8_t sub_index = 0;
@@ -49,27 +49,26 @@ struct Parameter {
   [[nodiscard]] std::string name() const { return label(index, sub_index); }
 };
 [[nodiscard]] std::optional<Parameter> harmless_parameter(const Dut& dut);
-/// A value that the parameter does not have now, and not by default.
+/// Returns a value that is neither the present nor the default value of the parameter.
 [[nodiscard]] std::uint64_t other_value(Dut& dut, const Parameter& parameter);
 
-/// Makes a TPDO send as this transmission type says; 0 ms: without event timer. Its COB-ID; nothing where no TPDO of
-/// the data sheet can do so.
+/// Configures a TPDO with this transmission type; 0 ms: without event timer. Returns its COB-ID; std::nullopt if no
+/// TPDO of the EDS supports it.
 [[nodiscard]] std::optional<std::uint32_t> set_up_tpdo(Dut& dut, std::uint8_t transmission_type,
                                                        std::uint16_t event_timer_ms);
 
-/// Stops the SYNC producer of the device: 1006h is 0 and bit 30 of 1005h is 0. The CAN-ID of SYNC with bit 29. Not
-/// applicable where the data sheet does not have 1005h.
+/// Stops the SYNC producer of the device: sets 1006h and bit 30 of 1005h to 0. Returns the CAN-ID of SYNC with bit 29.
+/// Not applicable if the EDS does not have 1005h.
 std::uint32_t stop_sync(Dut& dut);
-/// Whether the device can produce SYNC: 1005h and 1006h can be written, and bit 30 is not refused. `stop_sync` comes
-/// before.
+/// Whether the device can produce SYNC: 1005h and 1006h are writable, and bit 30 is accepted. Call `stop_sync` before.
 [[nodiscard]] bool can_produce_sync(Dut& dut, std::uint32_t cob_id);
-/// Begins to produce SYNC. `stop_sync` and `can_produce_sync` come before.
+/// Starts the SYNC producer. Call `stop_sync` and `can_produce_sync` before.
 void start_sync(Dut& dut, std::uint32_t cob_id, Duration period);
 
-/// Resets the device and fails where it does not send exactly one boot-up message.
+/// Resets the device and fails unless it sends exactly one boot-up message.
 void expect_one_boot_up(Dut& dut, canopen::NmtCommand command);
-/// Fails where a device that says its state is not Pre-operational after its boot-up message. Operational is as good
-/// where 1F80h lets it start by itself.
+/// Fails if the device is not Pre-operational after its boot-up message. Operational is also accepted if 1F80h allows
+/// the device to start by itself. Call `watch_state` before.
 void expect_state_after_boot_up(Dut& dut);
 
 }  // namespace edsc::conform

@@ -1,4 +1,4 @@
-/// NMT states (CiA 301, 7.3.2.2): which services run in which state, and that no other one does.
+/// NMT states (CiA 301, 7.3.2.2): the services that are active, and those that are not, in each state.
 #include <fmt/format.h>
 
 #include "conform/cases/setup.hpp"
@@ -15,15 +15,15 @@ constexpr std::uint8_t test_bit = 0x01;
 constexpr Duration cycle = milliseconds{50};
 constexpr unsigned cycles = 6;
 
-/// What the device sends by itself, as far as it can.
+/// Services with which the device sends by itself, if it supports them.
 struct Services {
-  std::optional<std::uint32_t> tpdo;  ///< COB-ID of one that is sent each cycle
-  std::optional<std::uint32_t> sync;  ///< produced each cycle
+  std::optional<std::uint32_t> tpdo;  ///< COB-ID of a TPDO that is sent every cycle
+  std::optional<std::uint32_t> sync;  ///< COB-ID, produced every cycle
   std::optional<std::uint32_t> emcy;
-  bool state = false;                 ///< the device says its state
+  bool state = false;  ///< the device reports its NMT state
 };
 
-/// After a reset, in Pre-operational.
+/// Starts the services, in Pre-operational.
 Services start_services(Dut& dut) {
   Services services;
   constexpr std::uint8_t event_driven = 255;
@@ -77,7 +77,7 @@ void expect_services(Dut& dut, const Services& services, NmtState state) {
   }
 }
 
-/// A reset brings the value back that a parameter had after the reset before: the default, or what is stored.
+/// A reset restores the value that a parameter had after the reset before: the default value or the stored one.
 void boot_up(Dut& dut) {
   for (const NmtCommand command : {NmtCommand::reset_node, NmtCommand::reset_communication}) {
     expect_one_boot_up(dut, command);
@@ -87,7 +87,7 @@ void boot_up(Dut& dut) {
     dut.write(parameter->index, parameter->sub_index, other_value(dut, *parameter));
     dut.reset(command);
     dut.expect_equal(dut.read_number(parameter->index, parameter->sub_index), before,
-                     parameter->name() + " after a reset, as after the reset before");
+                     parameter->name() + " after a reset, as after the first reset");
   }
 }
 
@@ -116,13 +116,13 @@ void stopped(Dut& dut) {
 }
 
 constexpr CaseRow rows[] = {
-    {"9.1", "A reset sends one boot-up message and brings the values back that the device starts with",
+    {"9.1", "After a reset the device sends one boot-up message and has its power-on values",
      "CiA 301, 7.2.8.3.3 and 7.3.2.2.1", Level::communication, Permission::none, boot_up},
-    {"9.2", "After its boot-up message the device is Pre-operational: SDO, SYNC, EMCY and error control, no PDO",
+    {"9.2", "After its boot-up message the device is Pre-operational: SDO, SYNC, EMCY and error control, but no PDO",
      "CiA 301, 7.3.2.2.2 and 7.3.2.2.5", Level::communication, Permission::none, pre_operational},
-    {"9.3", "In Operational all services run", "CiA 301, 7.3.2.2.3 and 7.3.2.2.5", Level::communication,
+    {"9.3", "In Operational all services are active", "CiA 301, 7.3.2.2.3 and 7.3.2.2.5", Level::communication,
      Permission::none, operational},
-    {"9.4", "In Stopped the device does NMT and error control, and nothing else", "CiA 301, 7.3.2.2.4 and 7.3.2.2.5",
+    {"9.4", "In Stopped only NMT and error control are active", "CiA 301, 7.3.2.2.4 and 7.3.2.2.5",
      Level::communication, Permission::none, stopped},
 };
 

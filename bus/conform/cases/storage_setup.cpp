@@ -15,12 +15,12 @@ Bytes signature(std::string_view letters) { return Bytes(letters.begin(), letter
 
 void Storage::save() const {
   dut_.expect_done(dut_.command(store_parameters, sub_index_, signature("save")),
-                   "\"save\" taken by " + label(store_parameters, sub_index_));
+                   "\"save\" accepted by " + label(store_parameters, sub_index_));
 }
 
 void Storage::load() const {
   dut_.expect_done(dut_.command(restore_parameters, sub_index_, signature("load")),
-                   "\"load\" taken by " + label(restore_parameters, sub_index_));
+                   "\"load\" accepted by " + label(restore_parameters, sub_index_));
 }
 
 void Storage::expect_refused(std::uint16_t index) const {
@@ -38,7 +38,7 @@ void Storage::reset() const {
 void need_command(Dut& dut, std::uint16_t index, std::uint8_t sub_index) {
   dut.need_writable(index, sub_index);
   if ((dut.read_number(index, sub_index) & 1U) == 0) {
-    dut.not_applicable(label(index, sub_index) + " says by bit 0 that the device does nothing on command");
+    dut.not_applicable(label(index, sub_index) + ": bit 0 is 0, the device does not support it on command");
   }
 }
 

@@ -1,4 +1,4 @@
-/// What cases of 1010h and 1011h have in common: the device stores what it had stored before when they are over.
+/// Common to the cases of 1010h and 1011h: at their end the device stores again what it had stored before.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +14,12 @@ class Storage {
 
   Storage(Dut& dut, std::uint8_t sub_index) : dut_{dut}, sub_index_{sub_index} {}
 
-  /// The case fails where the device refuses.
+  /// The case fails if the device refuses.
   void save() const;
   void load() const;
-  /// Fails where the device takes another signature than that of 1010h or 1011h.
+  /// Fails if the device accepts a wrong signature.
   void expect_refused(std::uint16_t index) const;
-  /// The reset that brings stored values and defaults: of sub-index 2 that of the communication.
+  /// The reset that loads stored or default values: reset communication for sub-index 2, else reset node.
   void reset() const;
 
   [[nodiscard]] std::uint8_t sub_index() const { return sub_index_; }
@@ -29,12 +29,12 @@ class Storage {
   std::uint8_t sub_index_;
 };
 
-/// 2 where 1010h can store the communication parameters alone, else 1. Not applicable where it stores nothing.
+/// Returns 2 if 1010h can store the communication parameters alone, else 1. Not applicable if it stores nothing.
 [[nodiscard]] std::uint8_t save_communication(Dut& dut);
-/// Not applicable where 1010h or 1011h does not have the sub-index, or says by bit 0 that it does nothing on command.
+/// Not applicable if 1010h or 1011h does not have the sub-index, or if its bit 0 (on command) is 0.
 void need_command(Dut& dut, std::uint16_t index, std::uint8_t sub_index);
 
-/// Runs a case after a reset, with what the device has stored. Afterwards the same is stored again.
+/// Runs a case after a reset, which loads the stored values. At the end the same values are stored again.
 template <class Check>
 void with_storage(Dut& dut, std::uint8_t sub_index, Check check) {
   need_command(dut, 0x1010, sub_index);

@@ -1,4 +1,4 @@
-/// SYNC (CiA 301, 7.2.5): produced and consumed, with and without counter.
+/// SYNC (CiA 301, 7.2.5): producer and consumer, with and without counter.
 #include <fmt/format.h>
 
 #include <canopen/sync.hpp>
@@ -16,12 +16,12 @@ using canopen::NmtState;
 constexpr std::uint16_t sync_cob_id = 0x1005, sync_period = 0x1006, sync_window = 0x1007, sync_overflow = 0x1019;
 constexpr Duration period = milliseconds{20};
 
-/// Where the data sheet has 1019h: SYNC gets a counter up to this value, or none. The period has to be 0.
+/// Sets the overflow value of the SYNC counter, if the EDS has 1019h; 0: no counter. 1006h must be 0.
 void set_overflow(Dut& dut, std::uint8_t overflow) {
   if (dut.has(sync_overflow) && dut.read_number(sync_overflow) != overflow) dut.write(sync_overflow, 0, overflow);
 }
 
-/// The CAN-ID of SYNC; not applicable where the device does not produce it.
+/// Returns the CAN-ID of SYNC. Not applicable if the device cannot produce it.
 std::uint32_t need_producer(Dut& dut) {
   const std::uint32_t cob_id = stop_sync(dut);
   dut.need_writable(sync_period);
@@ -31,7 +31,7 @@ std::uint32_t need_producer(Dut& dut) {
 
 void default_cob_id(Dut& dut) { expect_default_cob_id(dut, sync_cob_id, 0x80); }
 
-/// Fails where a SYNC comes.
+/// Fails if a SYNC is received.
 void expect_silence(Dut& dut, std::uint32_t cob_id, const std::string& when) {
   const auto seen = dut.collect(Dut::with_cob_id(cob_id), period * 10);
   dut.expect(seen.empty(), "no SYNC " + when, fmt::format("{} within {} ms", seen.size(), period.count() / 100));
@@ -58,7 +58,7 @@ void count_messages(Dut& dut) {
     dut.expect_time(seen[i].at - seen[i - 1].at, period.count() * 9 / 10, period.count() * 11 / 10, "the time between two SYNCs");
   }
   const std::uint64_t mean = (seen.back().at - seen.front().at) / (seen.size() - 1);
-  dut.expect_time(mean, period.count() * 49 / 50, period.count() * 51 / 50, "the time between SYNCs in the mean");
+  dut.expect_time(mean, period.count() * 49 / 50, period.count() * 51 / 50, "the mean time between SYNCs");
   dut.write(sync_period, 0, 0);
   expect_silence(dut, cob_id, "after 1006h:00 is 0");
 }
@@ -115,7 +115,7 @@ void invalid_overflow(Dut& dut) {
   }
 }
 
-/// Begins to produce SYNC: each has one byte, which counts from 1.
+/// Starts the SYNC producer and expects SYNCs with one byte that counts from 1.
 void expect_counting(Dut& dut, std::uint32_t cob_id, std::uint8_t overflow) {
   const Dut::Mark since = dut.mark();
   start_sync(dut, cob_id, period);
@@ -166,7 +166,7 @@ void stored_counter(Dut& dut) {
     dut.write(sync_overflow, 0, overflow);
     storage.save();
     dut.reset(NmtCommand::reset_node);
-    dut.expect_equal(dut.read_number(sync_overflow), overflow, "1019h:00 as it was stored");
+    dut.expect_equal(dut.read_number(sync_overflow), overflow, "1019h:00 as stored");
     if (!dut.allowed(Permission::outputs)) return;
     const std::uint32_t cob_id = stop_sync(dut);
     if (!can_produce_sync(dut, cob_id)) return;
@@ -194,7 +194,7 @@ void stored_values(Dut& dut) {
       if (entry != nullptr && canopen::writable(entry->access)) dut.write(index, 0, value);
     };
     set(sync_overflow, 7);
-    set(sync_cob_id, cob_id == 0x6A0 ? 0x6A1 : 0x6A0);  // in the pre-defined connection set nothing has it
+    set(sync_cob_id, cob_id == 0x6A0 ? 0x6A1 : 0x6A0);  // not used in the pre-defined connection set
     set(sync_period, 40'000);
     set(sync_window, 10'000);
     std::vector<std::pair<std::uint16_t, std::uint64_t>> stored;
@@ -204,7 +204,7 @@ void stored_values(Dut& dut) {
     storage.save();
     dut.reset(NmtCommand::reset_node);
     for (const auto& [index, value] : stored) {
-      dut.expect_equal(dut.read_number(index), value, label(index, 0) + " as it was stored");
+      dut.expect_equal(dut.read_number(index), value, label(index, 0) + " as stored");
     }
   });
 }
@@ -212,24 +212,24 @@ void stored_values(Dut& dut) {
 constexpr CaseRow rows[] = {
     {"6.1", "1005h holds the default COB-ID of SYNC", "CiA 301, 7.5.2.5", Level::communication, Permission::none,
      default_cob_id},
-    {"6.2", "A SYNC producer sends a SYNC each period of 1006h", "CiA 301, 7.2.5.3 and 7.5.2.6", Level::communication,
-     Permission::outputs, count_messages},
-    {"6.3", "A TPDO of type 2 is sent at each second SYNC", "CiA 301, 7.2.5 and 7.5.2.37", Level::communication,
+    {"6.2", "A SYNC producer sends a SYNC in each period of 1006h", "CiA 301, 7.2.5.3 and 7.5.2.6",
+     Level::communication, Permission::outputs, count_messages},
+    {"6.3", "A TPDO of type 2 is sent at every second SYNC", "CiA 301, 7.2.5 and 7.5.2.37", Level::communication,
      Permission::outputs, count_tpdos},
     {"6.4", "A SYNC consumer, and a producer without a period, send no SYNC", "CiA 301, 7.5.2.5 and 7.5.2.6",
      Level::communication, Permission::none, no_producer},
     {"6.5", "1019h refuses the reserved values 1, 241 and 255", "CiA 301, 7.5.2.22", Level::communication,
      Permission::none, invalid_overflow},
-    {"6.6", "With 0 in 1019h a SYNC has no counter", "CiA 301, 7.5.2.22", Level::communication, Permission::none,
+    {"6.6", "With 1019h = 0 a SYNC has no counter", "CiA 301, 7.5.2.22", Level::communication, Permission::none,
      no_overflow},
-    {"6.7", "The counter of SYNC goes from 1 to 1019h and begins with 1 after Stopped", "CiA 301, 7.2.5.1 and 7.5.2.22",
-     Level::communication, Permission::outputs, counter},
-    {"6.8", "1019h keeps its value over a reset after it was stored", "CiA 301, 7.5.2.13 and 7.5.2.22",
-     Level::communication, Permission::store, stored_counter},
+    {"6.7", "The SYNC counter counts from 1 to 1019h and restarts with 1 after Stopped",
+     "CiA 301, 7.2.5.1 and 7.5.2.22", Level::communication, Permission::outputs, counter},
+    {"6.8", "1019h has its stored value after a reset", "CiA 301, 7.5.2.13 and 7.5.2.22", Level::communication,
+     Permission::store, stored_counter},
     {"6.9", "1019h refuses a new value while 1006h is not 0", "CiA 301, 7.5.2.22", Level::communication,
      Permission::none, overflow_in_use},
-    {"6.10", "The parameters of SYNC keep their values over a reset after they were stored", "CiA 301, 7.5.2.13",
-     Level::communication, Permission::store, stored_values},
+    {"6.10", "The SYNC parameters have their stored values after a reset", "CiA 301, 7.5.2.13", Level::communication,
+     Permission::store, stored_values},
 };
 
 }  // namespace

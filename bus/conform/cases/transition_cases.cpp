@@ -1,4 +1,4 @@
-/// NMT services (CiA 301, 7.2.8.2.1): each leads from each state to the right one.
+/// NMT services (CiA 301, 7.2.8.2.1): each leads from each state to the correct one.
 #include <fmt/format.h>
 
 #include "conform/cases/setup.hpp"
@@ -10,14 +10,14 @@ namespace {
 using canopen::NmtCommand;
 using canopen::NmtState;
 
-/// Inconclusive where the device cannot say in which state it is.
+/// Inconclusive if the device cannot report its NMT state.
 void need_state(Dut& dut) {
   if (!dut.watch_state()) {
-    dut.inconclusive("the data sheet has no heartbeat and no node guarding: the device does not say its state");
+    dut.inconclusive("the EDS has neither heartbeat nor node guarding: the device does not report its NMT state");
   }
 }
 
-/// Goes to a state, and from there to another one, without a boot-up message.
+/// Enters a state, then another one, and expects no boot-up message in between.
 void expect_transition(Dut& dut, NmtState from, NmtState to) {
   dut.enter(from);
   dut.expect_state(from);
@@ -42,7 +42,7 @@ void resets(Dut& dut) {
   }
 }
 
-/// From each other state, and from the state itself.
+/// Tests the service in each other state and in the state itself.
 template <NmtState to>
 void service(Dut& dut) {
   need_state(dut);
