@@ -1,4 +1,4 @@
-/// A command at a live bus.
+/// Runs a command on a live bus.
 #pragma once
 
 #include <functional>
@@ -8,8 +8,8 @@
 
 namespace edsc {
 
-/// Opens the bus and runs a command on it. What goes wrong on the way is told on standard error. Throws as the
-/// constructor of LiveBus does.
+/// Opens the bus and runs a command on it. Reports a problem on standard error. Throws the exceptions of the LiveBus
+/// constructor.
 [[nodiscard]] int with_bus(const std::string& address, const std::function<int(LiveBus&)>& command);
 
 }  // namespace edsc
