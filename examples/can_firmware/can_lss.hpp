@@ -1,4 +1,4 @@
-/// LSS on a CAN bus: as the settings in flash, and the bit rate is that of the board's CAN controller.
+/// LSS settings in flash, and the bit rate of the board's CAN controller.
 #pragma once
 
 #include <canopen/lss_options.hpp>
@@ -15,21 +15,21 @@ class CanLss : public LssSettings {
   constexpr CanLss(board::Flash& flash, board::Can& can) : LssSettings{flash}, can_{can} {}
 
   using LssSettings::accept;
-  /// A bit rate that the controller's clock gives.
+  /// Accepts a bit rate that the clock of the controller allows.
   [[nodiscard]] canopen::LssError accept(canopen::LssBitTiming timing) {
     const bool possible = canopen::bit_timing(board::can_clock, bit_rate(timing), board::Can::range).has_value();
     return possible ? canopen::lss::success : canopen::lss::bit_timing_not_supported;
   }
 
-  /// Frames that wait are sent at the new bit rate.
+  /// Waiting frames are sent at the new bit rate.
   void stop_communication() { can_.stop(); }
-  /// 125 kbit/s where nothing else has been stored.
+  /// Uses 125 kbit/s if the controller cannot start with the bit rate.
   void start_communication(canopen::LssBitTiming timing) {
     if (!can_.start(board::can_clock, bit_rate(timing))) (void)can_.start(board::can_clock, 125'000);
   }
 
  private:
-  /// In bit/s; 0: not one of table 0.
+  /// In bit/s; 0: not a bit rate of table 0.
   [[nodiscard]] static std::uint32_t bit_rate(canopen::LssBitTiming timing) {
     constexpr std::size_t rates = sizeof canopen::lss::bit_rates / sizeof canopen::lss::bit_rates[0];
     return timing.table == 0 && timing.index < rates ? canopen::lss::bit_rates[timing.index] * 1000u : 0;

@@ -1,6 +1,5 @@
-/// Firmware of one device on a CAN bus: its node with the board's CAN controller, its parameters in flash, and LSS
-/// where its node-ID does not come from the build. The build is tested, and the parts are; it has not run on a board
-/// yet.
+/// Firmware of one device on a CAN bus: its node with the board's CAN controller, its parameters in flash, and LSS if
+/// the build does not set a node-ID. The build and the parts are tested, but the firmware has not yet run on a board.
 #include <array>
 #include <canopen/accepted_frames.hpp>
 #include <canopen/flash_storage.hpp>
@@ -27,7 +26,7 @@ board::Flash lss_pages{1};
 CanLss lss{lss_pages, can};
 #endif
 
-/// With storage where the device stores, and LSS where its node-ID does not come from the build.
+/// With storage if the device has 1010h, and with LSS if the build does not set a node-ID.
 template <class D>
 auto make_node() {
   constexpr bool stores = D::dictionary.has(0x1010, 0);
@@ -43,7 +42,7 @@ auto make_node() {
 
 auto node = make_node<Device>();
 
-/// Goes on the bus; what node-ID the node has there.
+/// Starts the CAN controller and returns the node-ID.
 canopen::NodeId start_can() {
 #ifdef EDSC_NODE_ID
   (void)can.start(board::can_clock, 125'000);
@@ -55,7 +54,7 @@ canopen::NodeId start_can() {
 #endif
 }
 
-/// The acceptance filters follow the COB-IDs, which SDO and LSS can change: they are set again when they are others.
+/// Sets the acceptance filters again when the COB-IDs have changed, by SDO or LSS.
 class Filters {
  public:
   void follow() {

@@ -1,4 +1,4 @@
-/// The frames of a bus as `candump -L` writes them, for `edsc decode` and other tools.
+/// Writes the frames of a bus in the format of `candump -L`, for `edsc decode` and other tools.
 #pragma once
 
 #include <canopen/frame.hpp>
@@ -15,13 +15,13 @@ class CandumpLog {
   CandumpLog& operator=(const CandumpLog&) = delete;
   ~CandumpLog();
 
-  /// False: the file cannot be written.
+  /// Returns false if the file cannot be written.
   [[nodiscard]] bool open(const std::string& path);
 
-  /// Does nothing while no file is open.
+  /// Does nothing if no file is open.
   void write(const canopen::Frame& frame, canopen::TimePoint now);
 
-  /// False: something could not be written.
+  /// Returns false if the file was not written completely.
   [[nodiscard]] bool close();
 
  private:

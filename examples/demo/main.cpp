@@ -1,6 +1,6 @@
-/// The demo: five of the reference devices, one of each manual, and a small master on a simulated bus of 500 kbit/s. The
-/// master boots the network, reads each identity, starts the nodes and exchanges PDOs with them; every frame is shown in
-/// the names of the data sheets.
+/// The demo: five of the reference devices, one of each manual, and a small master on a simulated bus of 500 kbit/s.
+/// The master boots the network, reads each identity, starts the nodes and exchanges PDOs with them. Every frame is
+/// shown with the names of the EDS files.
 #include <fmt/format.h>
 
 #include <array>
@@ -42,7 +42,7 @@ constexpr NodeId sensor_id{5};
 
 void heading(const char* text) { fmt::print("\n-- {}\n", text); }
 
-/// Statuswords of CiA 402 along the way that shutdown (06h), switch on (07h) and enable operation (0Fh) lead.
+/// The CiA 402 statusword after shutdown (06h), switch on (07h) and enable operation (0Fh).
 std::uint16_t statusword_after(std::uint16_t controlword) {
   switch (controlword & 0x0F) {
     case 0x06: return 0x0231;
@@ -91,7 +91,7 @@ void show_identities(demo::Master& master) {
   }
 }
 
-/// What a master sets before it starts the nodes, and one thing that it may not set.
+/// Configures the nodes before they start, with one write that a node refuses.
 void configure(demo::Master& master) {
   master.write<ezd_1136::od::producer_heartbeat_time>(stepper_id, 50);
   master.write<rk5c::od::tpdo_communication_parameter_1::event_timer>(sensor_id, 20);
@@ -208,7 +208,7 @@ int run_demo(demo::CandumpLog& log) {
 
 }  // namespace
 
-/// demo [--log FILE]: with a candump log of all frames.
+/// demo [--log FILE]: also writes all frames to a candump log.
 int main(int argc, char** argv) {
   demo::CandumpLog log;
   const bool logs = argc == 3 && std::string_view{argv[1]} == "--log";

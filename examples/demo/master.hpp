@@ -19,13 +19,13 @@ class Master {
   Master(const Master&) = delete;
   Master& operator=(const Master&) = delete;
 
-  /// Nodes whose boot-up message has come.
+  /// Nodes whose boot-up message was received.
   [[nodiscard]] const std::set<std::uint8_t>& booted() const { return booted_; }
 
-  /// To all nodes when `node` is 0.
+  /// Sends the command to a node; 0: to all nodes.
   void command(canopen::NmtCommand command, canopen::NodeId node = canopen::NodeId{0});
 
-  /// The value of a remote object; nothing when the server aborts, `last_abort()` then says why.
+  /// Reads a remote object; std::nullopt if the server aborts: `last_abort()` returns the abort code.
   template <canopen::DictionaryObject O>
   [[nodiscard]] std::optional<typename O::type> read(canopen::NodeId node) {
     canopen::SdoClient client{port_, node, timeout};
@@ -41,7 +41,7 @@ class Master {
     return run(client) == canopen::ok;
   }
 
-  /// A remote string.
+  /// Reads a remote string.
   template <canopen::DictionaryObject O>
   [[nodiscard]] std::string read_text(canopen::NodeId node) {
     return read_text(node, O::index, O::sub_index);
@@ -55,7 +55,7 @@ class Master {
     send({.id = 0x100u + 0x100u * number + node.value(), .size = Layout::size, .data = data});
   }
 
-  /// Called with each TPDO number `number` of a node.
+  /// Sets the function that is called with each TPDO `number` of a node.
   void on_tpdo(canopen::NodeId node, unsigned number, std::function<void(const canopen::Frame&)> receiver) {
     receivers_[0x80u + 0x100u * number + node.value()] = std::move(receiver);
   }

@@ -1,4 +1,4 @@
-/// The layout of a generated PDO as data, for people: made from its type.
+/// The layout of a generated PDO as data for output, derived from its type.
 #pragma once
 
 #include <canopen/pdo_list.hpp>
@@ -36,7 +36,7 @@ void describe_all(canopen::PdoList<Pdos...>, [[maybe_unused]] bool transmit, std
   (out.push_back(describe<Pdos>(transmit, Pdos::number)), ...);
 }
 
-/// The PDOs that a device serves: RPDOs, then TPDOs.
+/// The PDOs of a device: RPDOs, then TPDOs.
 template <class Device>
 [[nodiscard]] std::vector<PdoDescription> describe_pdos() {
   std::vector<PdoDescription> descriptions;

@@ -38,7 +38,7 @@ std::string number_text(std::uint64_t raw, unsigned bits, const canopen::DataTyp
   return raw < 10 ? fmt::format("{}", raw) : fmt::format("{} ({:X}h)", raw, raw);
 }
 
-/// The bits of a frame, low bit first.
+/// Bits of the data of a frame, as a number.
 std::uint64_t bits_of(const Frame& frame, unsigned offset, unsigned bits) {
   std::uint64_t raw = 0;
   for (unsigned i = 0; i < bits; ++i) {

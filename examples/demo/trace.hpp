@@ -1,4 +1,4 @@
-/// A readable trace of a bus: each frame with its time, CAN-ID, bytes, and what it says in the names of the data sheets.
+/// A readable trace of a bus: each frame with its time, CAN-ID, bytes, and meaning with the names of the EDS files.
 #pragma once
 
 #include <canopen/description.hpp>
@@ -14,7 +14,7 @@
 
 namespace demo {
 
-/// What the trace knows of a node.
+/// Names and PDOs of a node.
 struct KnownNode {
   std::string name;
   std::span<const canopen::EntryDescription> names;
@@ -26,7 +26,7 @@ class Trace {
   void add(canopen::NodeId id, KnownNode node) { nodes_[id.value()] = std::move(node); }
   void print(const canopen::Frame& frame, canopen::TimePoint now);
 
-  /// While off, frames are counted only.
+  /// If disabled, frames are only counted.
   void enable(bool on) { on_ = on; }
   [[nodiscard]] std::size_t frames() const { return frames_; }
 
@@ -36,7 +36,7 @@ class Trace {
   [[nodiscard]] std::string sdo_response(const canopen::Frame& frame, const KnownNode& node, std::uint8_t id);
   [[nodiscard]] std::string pdo(const canopen::Frame& frame, const KnownNode& node, bool transmit, std::uint16_t number) const;
 
-  /// The entry that the last SDO request to a node named: segments do not repeat it.
+  /// The entry of the last SDO request to a node, which segments do not repeat.
   struct Mux {
     std::uint16_t index = 0;
     std::uint8_t sub_index = 0;

@@ -1,4 +1,4 @@
-/// Node-ID and bit rate of a node that LSS configures, in flash of their own.
+/// Node-ID and bit rate of a node that is configured by LSS, in separate flash pages.
 #pragma once
 
 #include <array>
@@ -10,12 +10,12 @@
 
 #include "board.hpp"
 
-/// The port of canopen::configured_by_lss. A serial line has no bit rate of a CAN bus: it is stored, and no more.
+/// The port of canopen::configured_by_lss. The bit rate is only stored: a serial line does not have one of a CAN bus.
 class LssSettings {
  public:
   explicit constexpr LssSettings(board::Flash& flash) : storage_{flash} {}
 
-  /// At power-on.
+  /// Loads the stored values. Call it at power-on.
   void open() {
     std::array<std::uint8_t, 3> image{};
     const bool stored = storage_.open() == canopen::StorageState::whole && storage_.size() == image.size();

@@ -1,5 +1,5 @@
-/// Firmware of one device: its node behind SLCAN on the board's serial line, with its parameters in flash, and with LSS
-/// where it has no node-ID of its own.
+/// Firmware of one device: its node uses SLCAN on the board's serial line, its parameters are in flash, and it has LSS
+/// if the build does not set a node-ID.
 #include <canopen/flash_storage.hpp>
 #include <canopen/node.hpp>
 #include EDSC_DEVICE_HEADER
@@ -20,7 +20,7 @@ constinit canopen::FlashStorage storage{parameter_pages};
 board::Flash lss_pages{1};
 constinit LssSettings lss{lss_pages};
 
-/// With storage where the device stores, and LSS where its node-ID does not come from the build.
+/// With storage if the device has 1010h, and with LSS if the build does not set a node-ID.
 template <class D>
 auto make_node() {
   constexpr bool stores = D::dictionary.has(0x1010, 0);
@@ -34,7 +34,7 @@ auto make_node() {
 #endif
 }
 
-/// Made at power-on: one that the compiler makes would lie in flash as well, where it refers to others.
+/// Initialized at power-on: a constant-initialized node with references also takes flash for its initial values.
 auto node = make_node<Device>();
 
 canopen::NodeId node_id() {

@@ -1,4 +1,4 @@
-/// A CAN bus behind SLCAN on the board's serial line: the host sees an adapter, behind which is one node.
+/// A CAN bus over SLCAN on the board's serial line: for the host the board is an SLCAN adapter to a bus with one node.
 #pragma once
 
 #include <array>
@@ -13,18 +13,19 @@
 
 #include "board.hpp"
 
-/// While the host's channel is closed nobody acknowledges, as on a bus without another node: `send` takes nothing, and
-/// what is due stays due. So a node starts at power-on, and its boot-up message is the first frame that the host gets.
+/// While the channel of the host is closed, `send` accepts no frames, as on a bus without another node to acknowledge
+/// them, and due frames remain due. Therefore the node starts at power-on, and its boot-up message is the first frame
+/// that the host receives.
 class SerialBus {
  public:
-  /// To the host. False: the channel is closed, or the line has no room for a frame now.
+  /// Sends a frame to the host. Returns false if the channel is closed or the buffer has no space for it.
   [[nodiscard]] bool send(const canopen::Frame& frame) {
     if (!adapter_.is_open() || room() < canopen::slcan::longest_line + longest_answer) return false;
     adapter_.on_frame(frame, board::now(), *this);
     return true;
   }
 
-  /// A frame of the host, if one has come. Moves characters in both directions.
+  /// Returns a frame of the host, if one was received. Transfers characters in both directions.
   [[nodiscard]] std::optional<canopen::Frame> receive() {
     while (first_ != last_ && board::uart_put(line_[first_ % line_.size()])) ++first_;
     if (room() < longest_answer) return std::nullopt;
@@ -36,7 +37,7 @@ class SerialBus {
     return received_ ? std::optional{frame_} : std::nullopt;
   }
 
-  /// To the serial line; there is room.
+  /// Writes to the serial line. The caller has checked that there is space.
   void write(std::span<const char> text) {
     for (const char character : text) line_[last_++ % line_.size()] = character;
   }
@@ -44,7 +45,7 @@ class SerialBus {
  private:
   static constexpr std::size_t longest_answer = 12;
 
-  /// What the adapter asks of the bus. The bit rate is of no account: there is no wire behind the adapter.
+  /// The bus as the adapter needs it. The bit rate is ignored: the adapter does not have a CAN bus.
   struct Side {
     SerialBus& bus;
     void write(std::span<const char> text) { bus.write(text); }
@@ -65,5 +66,5 @@ class SerialBus {
   bool received_ = false;
   std::uint8_t first_ = 0;
   std::uint8_t last_ = 0;
-  std::array<char, 128> line_{};  ///< characters that wait for the UART; a power of two
+  std::array<char, 128> line_{};  ///< characters for the UART; the size is a power of two
 };

@@ -1,4 +1,4 @@
-/// What the pump does: its pressure follows the speed.
+/// The application of the pump: its pressure follows the speed.
 #pragma once
 
 #include <canopen/node.hpp>

@@ -1,4 +1,4 @@
-/// The master of one servo drive, node 5: docs/master.md takes it apart.
+/// The master of one servo drive, node 5, which docs/master.md describes.
 #pragma once
 
 #include <canopen/port/master.hpp>
@@ -31,7 +31,7 @@ class DriveMaster {
 
   void run_for(canopen::Duration span) { master_.poll(span); }
 
-  /// Nothing before the first TPDO, and while the drive is lost.
+  /// std::nullopt before the first TPDO, and while the drive is lost.
   [[nodiscard]] std::optional<std::int32_t> position() const { return position_; }
 
   [[nodiscard]] canopen::Result<void> switch_on() {

@@ -1,5 +1,5 @@
-/// The master of the plant: boots its four modules, configures them, counts on its digital outputs, ramps its analogue
-/// ones, compares what the inputs tell, and stops the outputs when a module is lost until it is back.
+/// The master of the plant: boots and configures its four modules, counts on the digital outputs, ramps an analogue
+/// output and compares the inputs with them. While a module is lost it stops the outputs.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-/// Of the outputs, and the guard time.
+/// The cycle of the outputs, and the guard time.
 inline constexpr canopen::Duration usual_cycle = std::chrono::milliseconds{100};
 
 template <canopen::BlockingBus B>
@@ -41,7 +41,7 @@ class PlantMaster {
 
   void start() { master_.start(); }
 
-  /// One cycle: to be called again and again.
+  /// Runs one cycle. Call it repeatedly.
   void run_cycle() {
     master_.poll(cycle_);
     if (!running_) return;
@@ -50,7 +50,7 @@ class PlantMaster {
   }
 
   [[nodiscard]] bool running() const { return running_; }
-  /// Cycles in which the inputs were what the outputs had been set to, and in which they were not.
+  /// The number of cycles in which the inputs were equal to the outputs, and in which they were not.
   [[nodiscard]] unsigned agreed() const { return agreed_; }
   [[nodiscard]] unsigned differed() const { return differed_; }
 
@@ -58,7 +58,7 @@ class PlantMaster {
   static constexpr std::uint8_t life_time_factor = 3;
   static constexpr std::size_t nodes = 4;
 
-  /// ms
+  /// The guard time in ms.
   [[nodiscard]] static std::uint16_t guard_time(canopen::Duration cycle) {
     return static_cast<std::uint16_t>(cycle.count() / 1000);
   }
@@ -75,7 +75,7 @@ class PlantMaster {
     list[3].device_type = default_of<can_2017c::Device>();
     return list;
   }
-  /// 1000h is a constant of the data sheet.
+  /// 1000h is a constant of the EDS.
   template <class Device>
   [[nodiscard]] static std::uint32_t default_of() {
     return canopen::ObjectStore<Device>{}.template number<0x1000, 0>();
@@ -95,7 +95,7 @@ class PlantMaster {
     written_.reset();
   }
 
-  /// Outputs that the master is lost to are set to 0 by the modules themselves; inputs tell themselves.
+  /// Output modules set their outputs to 0 if the master is lost. Input modules send their values by an event timer.
   [[nodiscard]] canopen::Result<void> configure(canopen::NodeId node_id) {
     switch (node_id.value()) {
       case 1:
@@ -114,7 +114,7 @@ class PlantMaster {
   [[nodiscard]] canopen::Result<void> guarded(canopen::MasterRemote<Device, B>& node) const {
     return all({node.template write<GuardTime>(guard_time(cycle_)), node.template write<LifeTimeFactor>(life_time_factor)});
   }
-  /// The first failure of several transfers.
+  /// Returns the first failure of several transfers.
   [[nodiscard]] static canopen::Result<void> all(std::initializer_list<canopen::Result<void>> results) {
     for (const canopen::Result<void>& result : results) {
       if (!result) return result;
@@ -133,7 +133,7 @@ class PlantMaster {
     if (!listening_) log_("the PDOs of the inputs cannot be read");
   }
 
-  /// Outputs stop; their modules bring them to their error values. A module that is lost itself is being reset already.
+  /// Stops the output modules, which then set their error values. A lost module itself is already being reset.
   void lost(canopen::NodeId node_id) {
     log_(name(node_id) + " is lost: outputs stop");
     running_ = false;

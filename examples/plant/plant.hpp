@@ -20,7 +20,7 @@
 #include "shared/input_line.hpp"
 #include "shared/surroundings.hpp"
 
-/// Both ends of the wires must live as long as each other. The last analogue output is wired to the sixth input, too.
+/// All four modules must have the same lifetime. The last analogue output is also wired to the sixth input.
 template <class DigitalOut, class DigitalIn, class AnalogueOut, class AnalogueIn>
 void wire(DigitalOut& digital_out, DigitalIn& digital_in, AnalogueOut& analogue_out, AnalogueIn& analogue_in) {
   digital_out.on_digital = [&digital_in](std::uint8_t block, std::uint8_t levels) {
@@ -91,7 +91,7 @@ class Plant {
   [[nodiscard]] auto& analogue_in() { return analogue_in_.module; }
 
  private:
-  /// Where one module sends: to the bus, and to the others, who share its access to the bus.
+  /// The bus for one module: sends to the bus and to the other modules of the process.
   struct Tap {
     Plant& plant;
     B& bus;
@@ -127,7 +127,7 @@ class Plant {
     visit(analogue_in_);
   }
 
-  /// Brings what each has sent to the others.
+  /// Passes the frames that each module has sent to the others.
   void exchange(canopen::TimePoint now) {
     while (!sent_.empty()) {
       const auto [sender, frame] = sent_.front();

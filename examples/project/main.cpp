@@ -2,7 +2,7 @@
 #include <canopen/node.hpp>
 #include <valve/device.hpp>
 
-/// In place of a CAN controller; canopen/port/ has drivers.
+/// Replaces a CAN controller; drivers are in canopen/port/.
 struct Can {
   canopen::Frame last{};
   bool send(const canopen::Frame& frame) { return last = frame, true; }

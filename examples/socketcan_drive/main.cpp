@@ -14,7 +14,7 @@ namespace {
 
 std::atomic<bool> stop{false};
 
-/// Statuswords of CiA 402 along the way that shutdown (06h), switch on (07h) and enable operation (0Fh) lead.
+/// The CiA 402 statusword after shutdown (06h), switch on (07h) and enable operation (0Fh).
 std::uint16_t statusword_after(std::uint16_t controlword) {
   switch (controlword & 0x0F) {
     case 0x06: return 0x0231;

@@ -1,5 +1,4 @@
-/// A servo drive whose device profile is 402 and whose data sheet has six of its objects: no mode of operation, no
-/// ramps.
+/// A servo drive with device profile 402 whose EDS has six objects of the profile: no mode of operation, no ramps.
 #pragma once
 
 #include <canopen/abort_code.hpp>
@@ -25,7 +24,7 @@ inline constexpr nodes::AxisData axis{.increments_per_turn = 8'192,
                                       .highest_velocity = 8'192 * 80,
                                       .highest_acceleration = 8'192 * 1'000};
 
-/// Mode and ramps are set with the vendor's program.
+/// The vendor's program sets mode and ramps.
 inline constexpr canopen::cia402::Options options = [] {
   canopen::cia402::Options result;
   result.modes = canopen::cia402::bit_of_mode(mode::profile_position) |
@@ -55,7 +54,7 @@ using Base = nodes::DriveNode<Self, cpc_tc1::Device, B, options, canopen::Stored
                               canopen::LssHandler<cpc_tc1::Device::lss_options, nodes::LssSettings>, Store<1>, Store<2>,
                               Store<3>, Restore<1>, Restore<2>, Restore<3>>;
 
-/// Made before the node, which starts with the node-ID that LSS has stored.
+/// Initialized before the node, which starts with the node-ID that LSS has stored.
 struct ConfiguredByLss {
   explicit ConfiguredByLss(nodes::Surroundings& around) : lss{around, canopen::NodeId{1}, bit_rate_1000} {}
   static constexpr canopen::LssBitTiming bit_rate_1000{0, 0};
@@ -107,7 +106,7 @@ class CpcTc1 : private ConfiguredByLss, public Base<CpcTc1<B>, B> {
     phase_found_ = false;
   }
 
-  /// 1002h, of which bits 0..15 are the statusword.
+  /// Updates 1002h; bits 0 to 15 are the statusword.
   void watch() {
     motor_on_ = canopen::cia402::has_power(drive_.state());
     phase_found_ = phase_found_ || motor_on_;

@@ -1,4 +1,5 @@
-/// A servo drive with the modes of CiA 402 and four of its own: manual movement, electronic gear, current and speed.
+/// A servo drive with modes of CiA 402 and four manufacturer-specific ones: manual movement, electronic gear, current
+/// and speed.
 #pragma once
 
 #include <canopen/abort_code.hpp>
@@ -48,14 +49,14 @@ inline constexpr canopen::cia402::Options options = [] {
   return result;
 }();
 
-/// 301Bh:09, a set of bits.
+/// Bits of 301Bh:09.
 namespace manual_movement {
 inline constexpr std::uint16_t positive = 1;
 inline constexpr std::uint16_t negative = 2;
 inline constexpr std::uint16_t fast = 4;
 }  // namespace manual_movement
 
-/// Monitoring signals 301Ch:07 and :08.
+/// Bits of the monitoring signals 301Ch:07 and :08.
 namespace signal {
 inline constexpr std::uint16_t limit_switch = 0x0002;
 inline constexpr std::uint16_t software_limit = 0x0004;
@@ -76,7 +77,7 @@ inline constexpr std::uint16_t reference_limit = 0x8612;
 inline constexpr std::uint16_t with_parameter = 2;       ///< 301Bh:10 and :11: the set-point is 3020h:04, 3021h:04
 inline constexpr std::uint16_t immediate_gear = 1;       ///< 301Bh:12
 inline constexpr std::uint16_t pulses_as_signal = 1;     ///< 3005h:02
-inline constexpr std::int32_t axis_range = 0x1000'0000;  ///< increments, both ways
+inline constexpr std::int32_t axis_range = 0x1000'0000;  ///< increments, in both directions
 inline constexpr std::int32_t current_step = 20;         ///< turns per minute and second for 0.01 A
 
 struct AcceptsMode {
@@ -93,13 +94,13 @@ struct AcceptsHomingMethod {
   }
 };
 
-/// 3004h:01, PAReeprSave: 1 stores what 1010h:01 does.
+/// 3004h:01, PAReeprSave: 1 stores the same parameters as 1010h:01.
 struct SavesSettings {
   canopen::AbortCode operator()(auto& node, std::uint16_t value) const {
     return value == 1 ? node.save() : value == 0 ? canopen::ok : canopen::AbortCode::invalid_value;
   }
 };
-/// 3004h:08, PARusrReset: 1 gives up what is stored, as 1011h:01 does; the next reset brings the defaults.
+/// 3004h:08, PARusrReset: 1 deletes the stored parameters, like 1011h:01; the next reset loads the default values.
 struct RestoresSettings {
   canopen::AbortCode operator()(auto& node, std::uint16_t value) const {
     return value == 1 ? node.restore() : value == 0 ? canopen::ok : canopen::AbortCode::invalid_value;
@@ -116,7 +117,7 @@ struct RewindsErrorMemory {
   void operator()(std::uint16_t) const { memory->rewind(); }
 };
 
-/// 303Ch has the errors of services and of the drive alike (manual 002, 3.5.1).
+/// 303Ch has the errors of both the services and the drive (manual 002, 3.5.1).
 struct RemembersErrors {
   ErrorMemory* memory;
   nodes::Surroundings* around;
@@ -175,7 +176,7 @@ class Cpd : public Base<Cpd<B>, B> {
     status_ = latched_ = 0;
   }
 
-  /// A step in a mode of the drive's own.
+  /// One step in a manufacturer-specific mode.
   void operate(std::int8_t mode) {
     if (movement_ended_ && !end_is_reported_) return;
     movement_ended_ = false;
@@ -188,8 +189,8 @@ class Cpd : public Base<Cpd<B>, B> {
     }
   }
 
-  /// Bits 13 (the movement has ended with an error), 14 (it has ended) and 15 (the reference point is valid); bit 10 at
-  /// standstill without power, too.
+  /// Bits 13 (movement ended with an error), 14 (movement ended) and 15 (reference point valid); bit 10 also at
+  /// standstill without power.
   std::uint16_t statusword(std::uint16_t word) {
     namespace bit = canopen::cia402::statusword;
     const bool stands = !axis_.moving() && !drive_.homing().running();
@@ -273,7 +274,7 @@ class Cpd : public Base<Cpd<B>, B> {
     run_at(direction * speed);
   }
 
-  /// The axis follows the pulses by numerator over denominator, from where it is when a factor comes.
+  /// The axis follows the pulses times numerator / denominator, from its position at the last change of a factor.
   void operate_gear() {
     const std::int32_t numerator = get<od::electronic_gear::gear_numerator>();
     const std::int32_t denominator = get<od::electronic_gear::gear_denominator>();
@@ -290,7 +291,7 @@ class Cpd : public Base<Cpd<B>, B> {
     axis_.follow(static_cast<std::int32_t>(gear_from_ + way));
   }
 
-  /// A motor without load accelerates with its current.
+  /// A motor without load accelerates in proportion to its current.
   void operate_current() {
     if (get<od::operating_mode_settings::current_setpoint_specification>() != with_parameter) return;
     const std::int32_t current = get<od::current_control::current_setpoint>();
@@ -304,7 +305,7 @@ class Cpd : public Base<Cpd<B>, B> {
     run_at(get<od::speed_control::speed_setpoint>());
   }
 
-  /// A limit switch that stops a movement is an error; a homing looks for it.
+  /// A limit switch that stops a movement is an error, except during homing.
   void watch_signals() {
     std::uint16_t active = 0;
     if (drive_.at_limit_switch()) active |= signal::limit_switch;
@@ -320,9 +321,9 @@ class Cpd : public Base<Cpd<B>, B> {
   }
 
   ErrorMemory errors_;
-  std::uint16_t movement_ = 0;  ///< 301Bh:09 that has been taken
+  std::uint16_t movement_ = 0;  ///< present value of 301Bh:09
   bool movement_ended_ = false;
-  bool end_is_reported_ = false;  ///< by bit 14
+  bool end_is_reported_ = false;  ///< bit 14 has reported the end
   bool reference_is_valid_ = false;
   bool was_fault_ = false;
   std::uint16_t active_ = 0;   ///< 301Ch:07

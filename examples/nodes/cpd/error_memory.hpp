@@ -1,4 +1,4 @@
-/// The last errors of a drive, stored without power and read one after the other.
+/// The last errors of a drive, in non-volatile memory. They are read one after the other.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ class ErrorMemory {
 
   explicit ErrorMemory(nodes::NodeStorage& storage) : storage_{storage} {}
 
-  /// What is stored; after power-on.
+  /// Loads the stored errors. Call it after power-on.
   void load() {
     std::array<std::uint8_t, 2 * capacity> image{};
     count_ = next_ = 0;
@@ -28,7 +28,7 @@ class ErrorMemory {
     }
   }
 
-  /// The oldest one makes room. False: it could not be stored.
+  /// Adds an error; if the memory is full, deletes the oldest one. Returns false if it could not be stored.
   bool add(std::uint16_t code) {
     if (count_ == capacity) {
       std::copy(codes_.begin() + 1, codes_.end(), codes_.begin());
@@ -45,10 +45,10 @@ class ErrorMemory {
            storage_.write(std::span{image}.first(2 * count_)) && storage_.commit();
   }
 
-  /// The next error, from the oldest on; 0 after the newest.
+  /// Returns the next error, beginning with the oldest; 0 after the newest.
   [[nodiscard]] std::uint16_t next() { return next_ < count_ ? codes_[next_++] : std::uint16_t{0}; }
 
-  /// Reading begins with the oldest one again.
+  /// Continues with the oldest error.
   void rewind() { next_ = 0; }
 
  private:

@@ -1,4 +1,4 @@
-/// A closed-loop stepper drive: alarms, warnings, and a statusword with bits of its own.
+/// A closed-loop stepper drive: alarms, warnings, and a statusword with manufacturer-specific bits.
 #pragma once
 
 #include <canopen/abort_code.hpp>
@@ -28,7 +28,7 @@ inline constexpr nodes::AxisData axis{.increments_per_turn = 10'000,
                                       .highest_velocity = 10'000 * 50,
                                       .highest_acceleration = 10'000 * 2'000};
 
-/// Bit 11 of the statusword tells of the limit switches alone. 6502h does not name CSP, which 6060h takes.
+/// Bit 11 of the statusword reports only the limit switches. 6060h accepts CSP, although 6502h does not include it.
 inline constexpr canopen::cia402::Options options = [] {
   canopen::cia402::Options result;
   result.tells_software_limits = false;
@@ -36,7 +36,8 @@ inline constexpr canopen::cia402::Options options = [] {
   return result;
 }();
 
-/// An alarm: its code is the low byte of the EMCY's. The lamp flashes green once and red so many times.
+/// An alarm: its code is the low byte of the emergency error code. The lamp flashes green once, then red
+/// `red_flashes` times.
 struct Alarm {
   std::uint8_t code;
   ErrorRegister bits;
@@ -67,7 +68,7 @@ inline constexpr Alarm alarms[] = {
   return nullptr;
 }
 
-/// Warnings are bits of the high byte of the EMCY's code.
+/// Warnings are bits of the high byte of the emergency error code.
 namespace warning {
 inline constexpr std::uint16_t eeprom_read = 256;
 inline constexpr std::uint16_t unstable_voltage = 512;
@@ -77,7 +78,7 @@ inline constexpr std::uint16_t negative_limit = 4'096;
 inline constexpr std::uint16_t homing_failed = 8'192;
 }  // namespace warning
 
-/// 206Dh.
+/// Values of 206Dh.
 namespace run_state {
 inline constexpr std::int16_t not_enabled = 1;
 inline constexpr std::int16_t stopped = 2;
@@ -106,7 +107,7 @@ struct AcceptsQuickStopOption {
     return code == 1 || code == 2 || code == 5 || code == 6 ? canopen::ok : canopen::AbortCode::invalid_value;
   }
 };
-/// The other option codes, up to the highest that the axis brakes by.
+/// The other option codes, up to the highest that the drive supports.
 template <std::int16_t Highest>
 struct AcceptsOption {
   canopen::AbortCode operator()(std::int16_t code) const {
@@ -151,7 +152,7 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
     was_commanded_ = false;
   }
 
-  /// Bits 8, 12, 14 and 15 as the manual has them, and bit 10 after a motion alone.
+  /// Bits 8, 12, 14 and 15 as in the manual, and bit 10 only after a motion.
   std::uint16_t statusword(std::uint16_t word) {
     namespace bit = canopen::cia402::statusword;
     const State state = drive_.state();
@@ -185,7 +186,7 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
     show_lamp();
   }
 
-  /// Alarm 50 while enabled; 100 when the node is started again after that.
+  /// Raises alarm 50 while enabled, and alarm 100 when the node is then started again.
   void abort_connection(std::int16_t) {
     was_disconnected_ = true;
     raise(50);
@@ -236,7 +237,7 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
     return node_.template get<O>() == 0;
   }
 
-  /// False: there is no such alarm.
+  /// Returns false if the alarm does not exist.
   bool raise(std::uint8_t code) {
     const Alarm* const alarm = alarm_of(code);
     if (alarm == nullptr) return false;
@@ -252,7 +253,7 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
     if (code != 0) static_cast<void>(raise(code));
   }
 
-  /// Whether the drive has been told to move since it was enabled, in this mode.
+  /// Records whether the drive got a motion command in this mode since it was enabled.
   void remember_commands() {
     const State state = drive_.state();
     const canopen::cia402::Homing& homing = drive_.homing();
@@ -293,8 +294,8 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
     return bits;
   }
 
-  /// An EMCY with the sum of the warnings when one comes, 0000h when one goes. Limits count while a motor is wanted:
-  /// a homing looks for them.
+  /// Sends an EMCY with the sum of the warnings if one is new, with 0000h if one is over. Does nothing during homing,
+  /// which searches the limits.
   void report_warnings() {
     if (drive_.homing().running()) return;
     const std::uint16_t now = present_warnings();
@@ -327,8 +328,8 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
   }
 
   std::uint8_t alarm_ = 0;      ///< until a fault reset
-  std::uint16_t warnings_ = 0;  ///< that have been reported
-  std::uint16_t injected_ = 0;  ///< by lines
+  std::uint16_t warnings_ = 0;  ///< reported warnings
+  std::uint16_t injected_ = 0;  ///< warnings of input lines
   int supply_ = 48;             ///< V
   bool was_commanded_ = false;
   bool was_disconnected_ = false;  ///< while enabled

@@ -34,7 +34,7 @@ class Rk5c {
       "  flash whole|damaged              what the next check of the parameters' checksum finds\n"
       "  hardware good|bad                what the measuring routines find\n"};
 
-  /// Its measuring range in um, and how often it measures.
+  /// The measuring range in um, and the measuring cycle.
   static constexpr std::int32_t range = 4'000'000;
   static constexpr canopen::Duration measuring_cycle = std::chrono::milliseconds{1};
   static constexpr std::int32_t highest_temperature = 105;
@@ -65,7 +65,7 @@ class Rk5c {
               canopen::on_write<rk5c::od::restore_default_parameters<1>>(Loader{this}),
               canopen::on_state(StateTeller{this})} {}
 
-  /// Power-on.
+  /// Switches the node on.
   void start(canopen::TimePoint now) {
     resets_application_ = true;
     node_.start(now);
@@ -137,7 +137,7 @@ class Rk5c {
       canopen::WriteHandler<rk5c::od::store_parameters<1>, Saver>,
       canopen::WriteHandler<rk5c::od::restore_default_parameters<1>, Loader>, canopen::StateHandler<StateTeller>>;
 
-  /// At power-on and each reset: what counts from now on, and the errors that are still there.
+  /// At power-on and at each reset: loads the settings that become valid, and reports the errors that still exist.
   void initialise() {
     if (around_.serial_number != 0) {
       static_cast<void>(node_.template set<rk5c::od::identity_object::serial_number>(around_.serial_number));
@@ -170,7 +170,7 @@ class Rk5c {
 
   // Preset and its offset
 
-  /// 0800 0020h: there is no valid position.
+  /// Aborts with 0800 0020h if there is no valid position.
   [[nodiscard]] canopen::AbortCode preset(std::int32_t value) {
     if ((status() & running) == 0) return canopen::AbortCode::not_stored;
     encoder_.preset(value);
@@ -210,7 +210,7 @@ class Rk5c {
                         encoder_.speed_steps(node_, speed_ / 10));
     }
   }
-  /// Values that are not measured.
+  /// Sets position and speed without a measurement.
   void show(std::int32_t position, std::int16_t speed) {
     static_cast<void>(node_.template set<rk5c::od::position_values_for_multi_sensor_devices<1>>(position));
     static_cast<void>(node_.template set<rk5c::od::speed_value<1>>(speed));
@@ -282,10 +282,10 @@ class Rk5c {
   bool flash_damaged_ = false;
   bool hardware_bad_ = false;
   bool data_set_error_ = false;
-  bool data_set_error_reported_ = false;  ///< since the last reset
+  bool data_set_error_reported_ = false;  ///< reported since the last reset
   bool resets_application_ = true;
-  bool restored_ = false;  ///< since power-on: what is in use stays until power-off
+  bool restored_ = false;  ///< since power-on: the present offset remains valid until power-off
   bool starting_ = true;
-  bool unmeasured_ = true;  ///< the next measuring cycle finds something new
+  bool unmeasured_ = true;  ///< the next measuring cycle has a new value
   Node node_;
 };

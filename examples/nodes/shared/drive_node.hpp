@@ -32,7 +32,7 @@ namespace nodes {
   return "unknown";
 }
 
-/// What the drives share. `Self` derives from it and may have:
+/// The common part of the drives. `Self` derives from it and may have:
 ///     void operate(std::int8_t mode)               see canopen::cia402::NoApplication
 ///     std::uint16_t statusword(std::uint16_t)      the same
 ///     void watch()                                 called after each change and each step
@@ -40,7 +40,7 @@ namespace nodes {
 ///     void restarted()                             power-on, or an NMT reset
 ///     void on_state(canopen::NmtState state)       an NMT state is entered
 ///     bool take_line(const InputLine& line)        its own inputs
-/// `node_id` is the one of power-on, `handlers` go to the node. The surroundings must outlive it.
+/// `node_id` is the node-ID at power-on; the handlers are passed to the node. The surroundings must outlive it.
 template <class Self, class Device, canopen::Bus B, canopen::cia402::Options options, class... Handlers>
 class DriveNode {
  public:
@@ -90,7 +90,7 @@ class DriveNode {
     on_time(now);
   }
 
-  /// The lines of `common_inputs`, and those that `Self` takes.
+  /// Accepts the lines of `common_inputs`, and those of `Self`.
   bool input(const InputLine& line, canopen::TimePoint now) {
     bool taken = take(line);
     if constexpr (requires { self().take_line(line); }) taken = taken || self().take_line(line);
@@ -136,7 +136,7 @@ class DriveNode {
 
   [[nodiscard]] Self& self() { return static_cast<Self&>(*this); }
 
-  /// An error of the drive, as the profile reports it.
+  /// Reports an error of the drive as the profile requires.
   void fault(std::uint16_t code, canopen::ErrorRegister bits, const canopen::EmergencyInfo& info = {}) {
     drive_.fault(node_, code, bits, info);
   }

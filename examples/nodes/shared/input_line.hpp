@@ -1,4 +1,4 @@
-/// A line that simulates an input of a node, such as `digital 1 0x55`: a word and what belongs to it.
+/// A line that simulates an input of a node, such as `digital 1 0x55`: a name and its arguments.
 #pragma once
 
 #include <canopen/bus_status.hpp>
@@ -24,24 +24,24 @@ class InputLine {
   }
 
   [[nodiscard]] bool empty() const { return words_.empty(); }
-  /// Whether the line begins with this word and has so many after it.
+  /// Whether the line begins with this word and has this number of arguments.
   [[nodiscard]] bool is(std::string_view name, std::size_t arguments) const {
     return words_.size() == arguments + 1 && words_[0] == name;
   }
-  /// Whether it begins with this word and has at least so many after it.
+  /// Whether the line begins with this word and has at least this number of arguments.
   [[nodiscard]] bool begins_with(std::string_view name, std::size_t arguments) const {
     return words_.size() > arguments && words_[0] == name;
   }
-  /// What follows so many words.
+  /// The rest of the line after `count` words.
   [[nodiscard]] InputLine after(std::size_t count) const {
     InputLine rest{""};
     rest.words_.assign(words_.begin() + static_cast<std::ptrdiff_t>(count), words_.end());
     return rest;
   }
-  /// A word after the first one, from 1 on.
+  /// The argument at a position, from 1 on.
   [[nodiscard]] std::string_view word(std::size_t position) const { return words_[position]; }
 
-  /// The same as a whole number, 8976, 0x2310 or 2310h; nothing when it is none or outside the range.
+  /// The argument as an integer, 8976, 0x2310 or 2310h; std::nullopt if it is not an integer or out of range.
   template <class T>
   [[nodiscard]] std::optional<T> number(std::size_t position, T lowest = std::numeric_limits<T>::min(),
                                         T highest = std::numeric_limits<T>::max()) const {
@@ -63,7 +63,7 @@ class InputLine {
     return static_cast<T>(value);
   }
 
-  /// The same as a number with a fraction.
+  /// The argument as a number with a fraction.
   [[nodiscard]] std::optional<double> real(std::size_t position) const {
     const std::string& text = words_[position];
     char* end = nullptr;
@@ -71,7 +71,7 @@ class InputLine {
     return end == text.c_str() + text.size() ? std::optional{value} : std::nullopt;
   }
 
-  /// The same as `on` or `off`.
+  /// The argument as `on` or `off`.
   [[nodiscard]] std::optional<bool> on_or_off(std::size_t position) const {
     if (words_[position] == "on") return true;
     if (words_[position] == "off") return false;
@@ -82,7 +82,7 @@ class InputLine {
   std::vector<std::string> words_;
 };
 
-/// `can active`, `can passive`, `can off`, `can overrun`: what the CAN controller tells its node.
+/// The status of the CAN controller: `can active`, `can passive`, `can off`, `can overrun`.
 [[nodiscard]] inline std::optional<canopen::BusStatus> bus_status_of(const InputLine& line) {
   if (!line.is("can", 1)) return std::nullopt;
   if (line.word(1) == "active") return canopen::BusStatus{};

@@ -1,5 +1,5 @@
-/// An I/O module of CiA 401 on a host: its outputs are lines of the log, its inputs lines that come in. What kinds of
-/// channels it has is what its data sheet says.
+/// An I/O module of CiA 401 on a host: its outputs are lines of the log, its inputs are input lines. Its EDS determines
+/// its types of channels.
 #pragma once
 
 #include <algorithm>
@@ -32,7 +32,7 @@ inline constexpr double highest_volts = 10;
   return (raw + 32768.0) / 65535 * (highest_volts - lowest_volts) + lowest_volts;
 }
 
-/// An error that the firmware of a module finds, with its EMCY.
+/// An error that the firmware of a module detects, with its EMCY.
 struct ModuleFault {
   std::string_view name;
   std::uint16_t code;
@@ -85,18 +85,18 @@ class IoModule {
     return taken;
   }
 
-  /// The levels of a block's input terminals; blocks and channels count from 0.
+  /// Sets the levels at the input terminals of a block; blocks and channels count from 0.
   void set_digital(std::uint8_t block, std::uint8_t levels) {
     if (block < digital_levels_.size()) digital_levels_[block] = levels;
     update();
   }
-  /// What an input channel measures.
+  /// Sets the value that an input channel measures.
   void set_analogue(std::uint8_t channel, std::int16_t raw) {
     if (channel < analogue_values_.size()) analogue_values_[channel] = raw;
     update();
   }
 
-  /// Called when an output changes: where it is wired to.
+  /// Called when an output changes, for the input that it is wired to.
   std::function<void(std::uint8_t block, std::uint8_t levels)> on_digital;
   std::function<void(std::uint8_t channel, std::int16_t raw)> on_analogue;
 
@@ -127,7 +127,7 @@ class IoModule {
     analogue_outputs_.fail(node_);
   }
 
-  /// Between the terminals and the objects, both ways.
+  /// Updates the objects from the inputs and the outputs from the objects.
   void update() {
     for (std::uint8_t block = 0; block < digital_levels_.size(); ++block) {
       digital_inputs_.sample(node_, block, digital_levels_[block]);

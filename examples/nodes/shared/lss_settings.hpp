@@ -1,4 +1,4 @@
-/// Node-ID and bit rate of a node that LSS configures, stored beside its parameters.
+/// Node-ID and bit rate of a node that is configured by LSS, stored beside its parameters.
 #pragma once
 
 #include <array>
@@ -13,10 +13,10 @@
 
 namespace nodes {
 
-/// The port of canopen::configured_by_lss. On a host the bit rate of the bus is not the node's to set: it is logged.
+/// The port of canopen::configured_by_lss. On a host a node cannot set the bit rate of the bus; it is only logged.
 class LssSettings {
  public:
-  /// The node-ID is the stored one, else the one of the surroundings, else `node_id`.
+  /// The node-ID is the stored one, else that of the surroundings, else `node_id`.
   LssSettings(Surroundings& around, canopen::NodeId node_id, canopen::LssBitTiming bit_timing)
       : around_{around}, node_id_{around.node_id.value_or(node_id)}, bit_timing_{bit_timing} {
     std::array<std::uint8_t, 3> image{};

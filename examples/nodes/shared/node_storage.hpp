@@ -1,4 +1,4 @@
-/// What a node keeps without power: in a file, or without one as long as the process runs.
+/// The non-volatile memory of a node: a file, or memory of the process.
 #pragma once
 
 #include <canopen/port/file_storage.hpp>
@@ -14,7 +14,7 @@ namespace nodes {
 
 class NodeStorage {
  public:
-  /// An empty path: no file.
+  /// An empty path: memory of the process.
   explicit NodeStorage(const std::string& path = {}) {
     if (!path.empty()) file_.emplace(path);
   }
@@ -23,7 +23,7 @@ class NodeStorage {
     if (file_) return state_ = file_->open();
     return state_ = image_.empty() ? canopen::StorageState::empty : canopen::StorageState::whole;
   }
-  /// What was found when it was opened last.
+  /// The result of the last `open`.
   [[nodiscard]] canopen::StorageState state() const { return state_; }
   [[nodiscard]] std::uint32_t size() const { return file_ ? file_->size() : static_cast<std::uint32_t>(image_.size()); }
   [[nodiscard]] bool read(std::uint32_t position, std::span<std::uint8_t> to) const {
@@ -52,7 +52,7 @@ class NodeStorage {
   std::optional<canopen::FileStorage> file_;
   canopen::StorageState state_ = canopen::StorageState::empty;
   std::vector<std::uint8_t> image_;  ///< without a file
-  std::vector<std::uint8_t> fresh_;  ///< the next one
+  std::vector<std::uint8_t> fresh_;  ///< the next image, until `commit`
 };
 
 }  // namespace nodes

@@ -1,4 +1,4 @@
-/// NMT state, RUN and ERR indicators (CiA 303-3) of a node as lines of its log, one for each change.
+/// NMT state, RUN and ERR indicators (CiA 303-3) of a node as lines of its log, one line for each change.
 #pragma once
 
 #include <canopen/bus_status.hpp>
@@ -28,7 +28,7 @@ namespace nodes {
   return "unknown";
 }
 
-/// What the node tells it, it shows. The surroundings must outlive it.
+/// Shows what the node reports. The surroundings must outlive it.
 class Panel {
  public:
   explicit Panel(Surroundings& around) : around_{around} {}
@@ -46,13 +46,13 @@ class Panel {
     set(canopen::IndicatorError::warning_limit, status.state == canopen::BusState::passive);
     set(canopen::IndicatorError::bus_off, status.state == canopen::BusState::off);
   }
-  /// An error that ERR tells is there, or over.
+  /// Sets or ends an error that ERR shows.
   void set(canopen::IndicatorError error, bool there) {
     const auto bit = static_cast<std::uint8_t>(error);
     errors_ = static_cast<std::uint8_t>(there ? errors_ | bit : errors_ & ~bit);
     show();
   }
-  /// LSS configures the node, or has done so.
+  /// Sets the activity that RUN shows, such as LSS.
   void set_activity(canopen::IndicatorActivity activity) {
     activity_ = activity;
     show();
@@ -64,7 +64,7 @@ class Panel {
   }
 
  private:
-  /// What the CAN controller has told is true after a reset, too.
+  /// Errors of the CAN controller remain after a reset.
   [[nodiscard]] static std::uint8_t kept_over_reset(std::uint8_t errors) {
     using canopen::IndicatorError;
     return static_cast<std::uint8_t>(

@@ -10,7 +10,7 @@
 ///       void on_time(canopen::TimePoint now);
 ///       std::optional<canopen::TimePoint> next_deadline() const;
 ///       void on_bus_status(const canopen::BusStatus&, canopen::TimePoint now);
-///       bool input(const nodes::InputLine&, canopen::TimePoint now);   // false: it knows no such line
+///       bool input(const nodes::InputLine&, canopen::TimePoint now);   // false: unknown line
 ///     };
 ///     int main(int argc, char** argv) { return nodes::run_node<Drive>(argc, argv); }
 #pragma once
@@ -54,7 +54,7 @@ struct Arguments {
   bool help = false;
 };
 
-/// Throws std::invalid_argument with a sentence.
+/// Throws std::invalid_argument with a message.
 [[nodiscard]] inline Arguments parse_arguments(int argc, const char* const* argv, int highest_node_id = 127) {
   Arguments result;
   const auto number = [](std::string_view option, std::string_view text, std::uint32_t most) {
@@ -116,13 +116,13 @@ inline void print_help(const Description& what) {
       what.program);
 }
 
-/// Lines of standard input, without waiting for them.
+/// Lines of standard input, read without waiting.
 class StandardInput {
  public:
-  /// -1 when it has ended.
+  /// -1 after the end of standard input.
   [[nodiscard]] int file_descriptor() const { return open_ ? STDIN_FILENO : -1; }
 
-  /// Reads what is there; to be called when there is something.
+  /// Reads available input. Call it only if there is some.
   void read() {
     std::array<char, 512> piece;
     const ssize_t got = ::read(STDIN_FILENO, piece.data(), piece.size());
@@ -151,7 +151,7 @@ namespace run_detail {
 
 inline std::atomic<bool> stop{false};
 
-/// Waits for the bus or a line, for a while.
+/// Waits for the bus or a line, for at most 100 ms.
 inline void wait_for_either(const canopen::HostBus& bus, const StandardInput& input) {
   constexpr int look_at_stop = 100;  // ms
   std::array<pollfd, 2> waiting{{{bus.file_descriptor(), POLLIN, 0}, {input.file_descriptor(), POLLIN, 0}}};
@@ -163,7 +163,7 @@ inline void wait_for_either(const canopen::HostBus& bus, const StandardInput& in
   return descriptor >= 0 && ::poll(&waiting, 1, 0) > 0;
 }
 
-/// One context for the bus, the time and the inputs. True: a line asks for a power cycle; false: it was stopped.
+/// Serves the bus, the timers and the inputs in one context. Returns true for the line `power-cycle`, false if stopped.
 template <class Application>
 [[nodiscard]] bool run_until_power_cycle(canopen::HostBus& bus, Application& application, StandardInput& input,
                                          Surroundings& around) {
@@ -187,7 +187,7 @@ template <class Application>
 
 }  // namespace run_detail
 
-/// Standard output line by line, also into a pipe.
+/// Writes a line to standard output and flushes it, also into a pipe.
 inline void log_to_standard_output(std::string_view line) {
   std::printf("%.*s\n", static_cast<int>(line.size()), line.data());
   std::fflush(stdout);

@@ -1,4 +1,4 @@
-/// A motor with an encoder and switches, simulated: what canopen::cia402::Drive moves.
+/// A simulated motor with an encoder and switches, for canopen::cia402::Drive.
 #pragma once
 
 #include <algorithm>
@@ -11,13 +11,13 @@
 
 namespace nodes {
 
-/// The motor, and what a 1 in the objects of its drive stands for. Positions are increments.
+/// The motor, and the units of the objects of its drive. Positions are in increments.
 struct AxisData {
   double increments_per_turn;
   double velocity_unit;         ///< increments per second
   double acceleration_unit;     ///< increments per second squared
   double highest_velocity;      ///< increments per second
-  double highest_acceleration;  ///< increments per second squared; where a ramp is 0
+  double highest_acceleration;  ///< increments per second squared; also used if a ramp is 0
 };
 
 /// The trajectory is one step ahead of the motor. Without power it coasts to a stop.
@@ -53,7 +53,7 @@ class SimulatedAxis {
     course_ = Course::follow;
     target_ = position;
   }
-  /// What the motor is on its way to moves with it.
+  /// Shifts the target with the position.
   void set_position(std::int32_t position) {
     const double shift = position - position_;
     position_ += shift;
@@ -109,25 +109,25 @@ class SimulatedAxis {
     return passed;
   }
 
-  // The machine around it
+  // The machine
 
-  std::optional<double> negative_limit;  ///< where the switches are, in increments from where it stood at power-on
+  std::optional<double> negative_limit;  ///< position of the switch, in increments from the position at power-on
   std::optional<double> positive_limit;
-  std::optional<double> home_switch;  ///< active from here on
+  std::optional<double> home_switch;  ///< active from this position on
 
-  /// The shaft is turned by hand: only without power.
+  /// Turns the shaft by hand. Returns false with power.
   bool turn_to(std::int32_t position) {
     if (enabled_) return false;
     position_ = demand_ = position;
     turns_ = turns();
     return true;
   }
-  /// Something keeps the shaft from turning.
+  /// Blocks or releases the shaft.
   void block(bool blocked) { blocked_ = blocked; }
-  /// A switch is held down, or let go.
+  /// Holds or releases switches.
   void hold(std::uint32_t inputs, bool down) { held_ = down ? held_ | inputs : held_ & ~inputs; }
 
-  /// Where it is on the machine, in increments from where it stood at power-on.
+  /// The position on the machine, in increments from the position at power-on.
   [[nodiscard]] std::int32_t machine_position() const { return rounded(position_ + machine_); }
 
  private:
@@ -154,7 +154,7 @@ class SimulatedAxis {
     return static_cast<std::int64_t>(std::floor((position_ + machine_) / data_.increments_per_turn));
   }
 
-  /// From one velocity to another: faster with the acceleration, slower with the deceleration.
+  /// The velocity after a time on the way to another one, with the acceleration or the deceleration.
   [[nodiscard]] double ramped(double from, double to, double seconds) const {
     const bool faster = std::abs(to) > std::abs(from) && from * to >= 0;
     return towards(from, to, (faster ? acceleration_ : deceleration_) * seconds);
@@ -178,7 +178,7 @@ class SimulatedAxis {
     demand_ += demand_velocity_ * seconds;
   }
 
-  /// As fast as it may be to stop at the target, at most as fast as the profile.
+  /// Advances with the highest velocity that can still stop at the target, limited by the profile.
   void advance_to_target(double seconds) {
     const double way = target_ - demand_;
     const double step = deceleration_ * seconds;
@@ -202,13 +202,13 @@ class SimulatedAxis {
   bool index_pulse_ = false;
   std::uint32_t held_ = 0;
   Course course_ = Course::stop;
-  double machine_ = 0;  ///< from the position to the place on the machine
+  double machine_ = 0;  ///< offset from the position to the position on the machine
   double position_ = 0;
   double velocity_ = 0;
   double demand_ = 0;
   double demand_velocity_ = 0;
   double target_ = 0;
-  double wanted_ = 0;  ///< velocity
+  double wanted_ = 0;  ///< target velocity
   double acceleration_ = 0;
   double deceleration_ = 0;
   std::int64_t turns_ = 0;

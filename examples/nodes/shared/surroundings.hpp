@@ -1,4 +1,4 @@
-/// What a node on a host finds around it: its settings, its storage and a log.
+/// The environment of a node on a host: its settings, its storage and a log.
 #pragma once
 
 #include <canopen/node_id.hpp>
@@ -15,13 +15,13 @@
 
 namespace nodes {
 
-/// It outlives the node, so that what is stored comes back when the node is switched on again.
+/// It outlives the node, so that stored values are available when the node is switched on again.
 class Surroundings {
  public:
   using Log = std::function<void(std::string_view line)>;
 
-  /// `store` is the path of the file that parameters are stored in; what else is stored stands in FILE.lss and
-  /// FILE.application beside it. Empty: no files.
+  /// `store` is the path FILE of the file for parameters; other values are stored in FILE.lss and FILE.application.
+  /// Empty: no files.
   Surroundings(std::optional<canopen::NodeId> chosen_node_id, std::uint32_t serial, std::string store, Log log_to)
       : node_id{chosen_node_id},
         serial_number{serial},
@@ -33,7 +33,7 @@ class Surroundings {
   explicit Surroundings(std::optional<canopen::NodeId> chosen_node_id = std::nullopt)
       : Surroundings{chosen_node_id, 1, {}, [](std::string_view) {}} {}
 
-  /// Those of one node among several, by its name: it logs with its name before each line and stores in FILE.NAME.
+  /// The environment of one of several nodes, by its name: logs lines with the name first and stores in FILE.NAME.
   [[nodiscard]] Surroundings& part(const std::string& name) {
     std::unique_ptr<Surroundings>& found = parts_[name];
     if (!found) {
@@ -43,11 +43,11 @@ class Surroundings {
     return *found;
   }
 
-  std::optional<canopen::NodeId> node_id;  ///< what the switches say; nothing: the device's own
-  std::uint32_t serial_number;             ///< 1018h:04, where the device has it settable
+  std::optional<canopen::NodeId> node_id;  ///< of the switches; std::nullopt: the default of the device
+  std::uint32_t serial_number;             ///< 1018h:04, if it can be set in the device
   NodeStorage parameters;                  ///< for 1010h and 1011h
   NodeStorage lss;                         ///< node-ID and bit rate
-  NodeStorage application;                 ///< what no object holds
+  NodeStorage application;                 ///< values that are not in an object
   Log log;
 
  private:
