@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""How long edsc takes for a data sheet, and a compiler for what it makes, beside the figures of others.
+"""Measures edsc on an EDS and a compiler on the generated code, with the figures of other tools.
 
     compile_time.py EDSC RUNTIME_INCLUDE_DIR
 
-Prints for each data sheet of this folder the wall time and the largest memory of edsc, and of g++ and clang++ on the device
-header alone, at -O2 with the compilers' default limits for constant expressions. Best of three runs.
+Prints for each EDS of this folder the wall time and the peak memory of edsc, and of g++ and clang++ for the device header
+alone, at -O2 with the compilers' default limits for constant expressions. Best of three runs.
 """
 
 from __future__ import annotations

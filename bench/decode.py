@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""How long edsc decode takes for a log of a million frames, and how that compares with reading the lines and writing them back.
+"""Measures edsc decode on a log of a million frames, compared with a program that only reads the lines and writes them back.
 
     decode.py EDSC LOG_FLOOR [FRAMES]
 
-The log is that of a machine: an axis with SYNC, two PDOs and a heartbeat, and now and then an SDO transfer and an EMCY.
-Output goes to /dev/null; the shortest of five runs counts. Instructions are counted by callgrind (package valgrind), the
-difference of two logs, so that start and data sheet are not in them.
+The log is that of a machine: an axis with SYNC, two PDOs and a heartbeat, and an occasional SDO transfer or EMCY. Output goes
+to /dev/null; the result is the shortest of five runs. Instructions are counted by callgrind (package valgrind) as the
+difference of two logs, which excludes the start and the EDS.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def make_log(path: Path, frames: int) -> None:
 
 
 def seconds(command: list[str], log: Path) -> float:
-    """Processor time, the least of some runs."""
+    """The minimum CPU time of several runs."""
     best = float("inf")
     for _ in range(RUNS):
         before = resource.getrusage(resource.RUSAGE_CHILDREN)

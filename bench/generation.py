@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""How long `edsc generate` takes, checks included, and how much memory, beside the figures of others.
+"""Measures the time and memory of `edsc generate`, including its checks, with the figures of other tools.
 
     generation.py EDSC [--runs N]
 
-For eds1000, eds5000 and sheets of 5,000, 10,000 and 20,000 RECORDs of 5 sub-indices (make_eds.py): wall and CPU time (best of
-five runs), memory, bytes of data sheet per second of CPU time, and the number of instructions, which is the same on a busy
-machine (valgrind's callgrind; left out where there is none).
+For eds1000, eds5000 and EDS files with 5,000, 10,000 and 20,000 RECORDs of 5 sub-indices (make_eds.py): wall and CPU time (best
+of five runs), memory, EDS bytes per second of CPU time, and the number of instructions, which does not depend on the load of
+the machine (valgrind's callgrind; omitted if it is not installed).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from pathlib import Path
 
 HERE = Path(__file__).parent
 
-# Seconds that others take, measured on a machine of the same kind (2 cores, gcc 12.2 -O2).
+# Seconds of other tools, measured on a machine of the same kind (2 cores, gcc 12.2 -O2).
 PEERS = {
     "lely dcf2c": {"eds1000": 0.022, "eds5000": 0.108},
     "objdictgen": {"eds1000": 0.43, "eds5000": 2.9},
@@ -49,7 +49,7 @@ def run(command: list[str]) -> Run:
 
 
 def instructions(command: list[str]) -> str:
-    """In millions."""
+    """The number of instructions in millions."""
     if shutil.which("valgrind") is None:
         return "-"
     done = subprocess.run(["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", *command],
@@ -59,7 +59,7 @@ def instructions(command: list[str]) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description="How long edsc takes for data sheets of growing size.")
+    parser = argparse.ArgumentParser(description="Measures edsc for EDS files of growing size.")
     parser.add_argument("edsc")
     parser.add_argument("--runs", type=int, default=5)
     arguments = parser.parse_args()
@@ -68,13 +68,13 @@ def main() -> None:
         sheets = {name: HERE / f"{name}.eds" for name in ("eds1000", "eds5000")}
         for objects in (5000, 10000, 20000):
             sheet = sheets[f"{objects} x 5"] = Path(folder) / f"big{objects}.eds"
-            with sheet.open("w") as file:  # by a process of its own: the memory of this one counts for its children
+            with sheet.open("w") as file:  # in a separate process: the memory of this one counts for its children
                 subprocess.run([sys.executable, HERE / "make_eds.py", str(objects), "--subs", "5"], stdout=file, check=True)
         for name, sheet in sheets.items():
             def command(output: int) -> list[str]:
                 return [arguments.edsc, "generate", str(sheet), "-o", f"{folder}/{output}", "--name", "device"]
 
-            runs = [run(command(i)) for i in range(arguments.runs)]  # each writes files that were not there
+            runs = [run(command(i)) for i in range(arguments.runs)]  # each writes new files
             wall, cpu = min(r.wall for r in runs), min(r.cpu for r in runs)
             size = sheet.stat().st_size / 1e6
             peers = ", ".join(f"{peer} {figures[name] / wall:.1f}" for peer, figures in PEERS.items() if name in figures)

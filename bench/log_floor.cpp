@@ -1,5 +1,5 @@
-/// The floor for `edsc decode`: reads a log of `candump -L` from standard input and writes each line back with its
-/// bytes apart, and knows nothing of CANopen.
+/// The lower limit for `edsc decode`: reads a log of `candump -L` from standard input and writes each line with its
+/// bytes separated, without decoding CANopen.
 #include <cstdio>
 #include <cstring>
 #include <string>

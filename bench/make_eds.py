@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Prints a synthetic data sheet of any size: for the speed of edsc, and for what must not grow out of hand.
+"""Prints a synthetic EDS of any size, to test how time and memory of edsc grow.
 
     make_eds.py OBJECTS [--subs N] [--access rw|const] > big.eds
 
-OBJECTS objects from 2000h on, each a RECORD of N sub-indices (sub-index 0 among them), or a VAR where N is 0. They are of
-64 kinds, which differ in types and values. A generated dictionary has 64 KiB for values in RAM and 65,535 rows of
-sub-indices: large sheets fit with `const` entries only, whose 16 bits stand in rows that records of one kind share.
+OBJECTS objects from 2000h on, each a RECORD of N sub-indices (including sub-index 0), or a VAR if N is 0. They are of 64 kinds,
+which differ in types and values. A generated dictionary is limited to 64 KiB for values in RAM and 65,535 rows of sub-indices:
+large EDS files fit only with `const` entries, whose 16 bits are in rows that records of one kind share.
 """
 
 from __future__ import annotations
@@ -74,8 +74,8 @@ def make(objects: int, subs: int, access: str) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description="Prints a synthetic data sheet.")
-    parser.add_argument("objects", type=int, help=f"how many objects, {0x10000 - FIRST_INDEX} at most")
+    parser = argparse.ArgumentParser(description="Prints a synthetic EDS.")
+    parser.add_argument("objects", type=int, help=f"number of objects, at most {0x10000 - FIRST_INDEX}")
     parser.add_argument("--subs", type=int, default=5, help="sub-indices of each; 0: VARs (default: %(default)s)")
     parser.add_argument("--access", choices=["rw", "const"], default="const", help="(default: %(default)s)")
     arguments = parser.parse_args()

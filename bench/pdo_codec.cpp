@@ -1,8 +1,8 @@
-/// How long codecs of PdoLayout take, and hand-written ones: nanoseconds for each call.
+/// Measures codecs of PdoLayout and hand-written ones: nanoseconds per call.
 ///
 ///     pdo_codec [ROUNDS [CALLS]]
 ///
-/// Prints `NAME TYPED BY_HAND` for each; the best of so many rounds, typed and by hand in turn. pdo_codec.py calls it.
+/// Prints `NAME TYPED BY_HAND` for each codec: the best of all rounds, which alternate. pdo_codec.py runs it.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -13,7 +13,7 @@ namespace {
 
 using codec::Data;
 
-/// What a loop computes has to come out somewhere.
+/// The result of all loops, so that the compiler does not remove them.
 std::uint64_t sum = 0;
 
 Data data_of(unsigned i) {
@@ -43,7 +43,7 @@ void compare(const char* name, unsigned rounds, unsigned calls, Typed typed, ByH
   std::printf("%s %.3f %.3f\n", name, best_typed, best_by_hand);
 }
 
-/// A loop that packs: the data go on from call to call.
+/// A loop that packs; each call continues with the data of the call before.
 template <class Pack>
 auto packs(Pack pack) {
   return [pack, data = Data{}](unsigned i) mutable {
@@ -52,7 +52,7 @@ auto packs(Pack pack) {
   };
 }
 
-/// A loop that unpacks one of a few PDOs.
+/// A loop that unpacks one of several PDOs.
 template <class Unpack>
 auto unpacks(Unpack unpack) {
   return [unpack, pdos = std::array{data_of(3), data_of(5), data_of(250), data_of(77)}](unsigned i) {

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Codecs of PdoLayout beside hand-written ones: time and instructions for each call, and their ratios.
+"""Compares codecs of PdoLayout with hand-written ones: time and instructions per call, and their ratios.
 
     pdo_codec.py PDO_CODEC
 
-Runs the program bench/pdo_codec.cpp twice: as it is for the times, under callgrind (valgrind) for the instructions, which
-are exact; they stand behind the times. `words` is a PDO of four objects in eight bytes, `odd` one of 1, 1, 33 and 12 bits.
+Runs the program bench/pdo_codec.cpp twice: directly for the times, and under callgrind (valgrind) for the exact number of
+instructions, printed after the times. `words` is a PDO of four objects in eight bytes, `odd` one of 1, 1, 33 and 12 bits.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import tempfile
 from pathlib import Path
 
 CALLS = 1000  # under callgrind
-FUNCTION = re.compile(r"^(c?fn)=\((\d+)\)(?: (.*))?$")  # a name stands where its number comes first
+FUNCTION = re.compile(r"^(c?fn)=\((\d+)\)(?: (.*))?$")  # only the first occurrence of a number has a name
 
 
 def times(program: str) -> dict[str, tuple[float, float]]:
@@ -26,7 +26,7 @@ def times(program: str) -> dict[str, tuple[float, float]]:
 
 
 def own_costs(profile: str) -> dict[str, int]:
-    """Instructions of each function itself, without those that it calls."""
+    """Instructions of each function, without those of the functions that it calls."""
     names: dict[str, str] = {}
     costs: dict[str, int] = {}
     function, of_a_call = "", False
@@ -36,7 +36,7 @@ def own_costs(profile: str) -> dict[str, int]:
             if match[1] == "fn":
                 function = names[match[2]]
         elif line.startswith("calls="):
-            of_a_call = True  # the next line is what the callee costs
+            of_a_call = True  # the next line has the cost of the callee
         elif re.match(r"^[+\-*\d]", line):
             if not of_a_call:
                 costs[function] = costs.get(function, 0) + int(line.split()[1])
@@ -45,7 +45,7 @@ def own_costs(profile: str) -> dict[str, int]:
 
 
 def instructions(program: str) -> dict[str, float]:
-    """For each call, by `typed::NAME` or `by_hand::NAME`."""
+    """Instructions per call, by `typed::NAME` or `by_hand::NAME`."""
     with tempfile.TemporaryDirectory() as folder:
         profile = Path(folder) / "profile"
         subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={profile}", program, "1", str(CALLS)],

@@ -1,6 +1,5 @@
-/// What a node costs on SocketCAN: user and system CPU time of each frame, behind `SocketCan::run` and beside it in a
-/// loop of read and write that answers with ready frames. `socketcan_path INTERFACE [FRAMES]`, on an interface of its
-/// own.
+/// Measures the user and system CPU time of a node on SocketCAN per frame, compared with a read and write loop that
+/// answers with prepared frames. `socketcan_path INTERFACE [FRAMES]`, on an otherwise unused interface.
 #include <linux/can.h>
 #include <linux/can/raw.h>
 #include <net/if.h>
@@ -41,7 +40,7 @@ can_frame frame(canid_t id, std::initializer_list<std::uint8_t> data) {
 
 const can_frame read_word = frame(request, {0x40, 0x01, 0x20, 0x00, 0, 0, 0, 0});
 
-/// A socket that waits.
+/// A blocking socket.
 class RawSocket {
  public:
   explicit RawSocket(const std::string& interface)
@@ -83,7 +82,7 @@ void run_node(const std::string& interface) {
   bus.run(node, stop);
 }
 
-/// Looks at the CAN-ID and nothing else.
+/// Reads only the CAN-ID.
 void run_bare(const std::string& interface) {
   RawSocket bus{interface};
   bus.filter({nmt, rpdo, request});
@@ -105,7 +104,7 @@ void expect(RawSocket& bus, canid_t id) {
   if (bus.receive().can_id != id) throw std::runtime_error{"another frame was expected"};
 }
 
-/// One way to talk to a node, `frames` frames to it in all.
+/// One kind of communication with a node, with `frames` frames to it in total.
 struct Talk {
   const char* what;
   void (*run)(RawSocket&, unsigned frames);
@@ -138,7 +137,7 @@ const Talk talks[] = {
      }},
 };
 
-/// CPU time of a process that answers, in us for each frame that it is sent.
+/// The CPU time of a process that answers, in us per frame that it receives.
 double measure(const std::string& interface, void (*answerer)(const std::string&), const Talk& talk, unsigned frames) {
   RawSocket bus{interface};
   bus.filter({0x705, tpdo, response});

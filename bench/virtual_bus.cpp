@@ -1,5 +1,5 @@
-/// What a VirtualBus costs: the CPU time of simulated time with 127 nodes, at 1 Mbit/s. `virtual_bus [MINUTES]`. The
-/// checksum is of all frames and of their times: another implementation has to have the same one.
+/// Measures the CPU time of a VirtualBus in simulated time with 127 nodes at 1 Mbit/s. `virtual_bus [MINUTES]`. The
+/// checksum includes all frames and their times: another implementation must have the same one.
 #include <can_2053c/device.hpp>
 #include <canopen/node.hpp>
 #include <canopen/port/virtual_bus.hpp>

@@ -28,7 +28,7 @@ inline void start_counter() {
   count_detail::systick(0) = 5;
 }
 
-/// Instructions of `run`; less than 671 million.
+/// Counts the instructions of `run`, which must be less than 671 million.
 template <class F>
 std::uint32_t count(F run) {
   const std::uint32_t before = count_detail::systick(8);
@@ -36,7 +36,7 @@ std::uint32_t count(F run) {
   return ((before - count_detail::systick(8)) & 0xFF'FFFF) * count_detail::instructions_per_tick;
 }
 
-/// Prints `NAME INSTRUCTIONS`, for each of so many units, with tenths.
+/// Prints `NAME INSTRUCTIONS`, divided by the number of units, with one decimal.
 inline void print(const char* name, std::uint32_t instructions, std::uint32_t units) {
   char line[64];
   unsigned at = 0;
@@ -62,7 +62,7 @@ inline void print(const char* name, std::uint32_t instructions, std::uint32_t un
   }
 }
 
-/// The mean of `run(i)` over a thousand calls.
+/// Prints the mean of `run(i)` over a thousand calls.
 template <class F>
 void print_mean(const char* name, F run) {
   constexpr std::uint32_t calls = 1000;

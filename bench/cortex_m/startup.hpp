@@ -1,5 +1,5 @@
-/// What a program of this folder begins with on a Cortex-M: vectors, and memory as C++ expects it. `program` is its
-/// own.
+/// Start-up code of the programs in this folder on a Cortex-M: vectors, and memory initialization for C++. Each program
+/// defines `program`.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ extern std::uint32_t __data_load__;
 
 [[noreturn]] void program();
 
-/// Loops that stay loops: no function of the C library is in every image.
+/// The compiler must not replace the loops by calls of the C library, which would then be in every image.
 extern "C" [[gnu::optimize("no-tree-loop-distribute-patterns")]] void reset() {
   for (std::uint32_t *from = &__data_load__, *to = &__data_start__; to != &__data_end__;) *to++ = *from++;
   for (std::uint32_t* to = &__bss_start__; to != &__bss_end__;) *to++ = 0;

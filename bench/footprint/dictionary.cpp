@@ -1,4 +1,4 @@
-/// The values of a device and the search by number alone.
+/// Only the values of a device and the search by index and sub-index.
 #include "../cortex_m/startup.hpp"
 
 #include <canopen/object_store.hpp>

@@ -1,4 +1,4 @@
-/// Nothing: what is taken off every other image.
+/// An empty program, whose size is subtracted from every other image.
 #include "../cortex_m/startup.hpp"
 
 void program() {

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""What whole images cost: those that the preset `firmware` has built, whose tests have noted the stack.
+"""Prints the flash, RAM and stack of the images that the preset `firmware` has built and whose tests have recorded the stack.
 
     images.py DIR [--check]
 
-DIR is build/firmware/tests/firmware. Prints docs/images.md; `--check` compares it with what is there: the words, and the figures.
-Another compiler's may be 3 % larger or smaller; the stack, whose limit the tests know, goes deeper when much comes at once.
+DIR is build/firmware/tests/firmware. Prints docs/images.md; `--check` compares its text and figures with the present page.
+Flash and RAM of another compiler may differ by 3 %. The stack, which the tests limit, is larger when many frames come at once.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ its entries and PDOs, and stored its parameters. Bytes:
 
 
 def figures(folder: Path) -> dict[tuple[str, str], tuple[str, str, str]]:
-    """Flash, RAM and stack by data sheet and board."""
+    """Flash, RAM and stack by EDS and board."""
     found = {}
     for report in sorted(folder.glob("*.report.txt")):
         name, flash, ram = REPORT.match(report.read_text(encoding="utf-8")).groups()
@@ -53,7 +53,7 @@ def page(folder: Path) -> str:
 
 
 def differ(column: int, written: str, printed: str) -> bool:
-    """Of two cells. One that nobody has measured this time is not compared."""
+    """Whether two cells differ. A cell without a measurement is not compared."""
     if written.isdecimal() and printed.isdecimal():
         is_stack = column > 0 and column % 3 == 0
         return abs(int(written) - int(printed)) > (OF_THE_STACK if is_stack else TOLERANCE) * int(printed)

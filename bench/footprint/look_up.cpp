@@ -1,4 +1,4 @@
-/// Looks up entries by index and sub-index, in an order without order.
+/// Looks up entries by index and sub-index, in random order.
 #include "../cortex_m/count.hpp"
 #include "../cortex_m/startup.hpp"
 
@@ -18,7 +18,7 @@ volatile std::uint32_t found;
 
 using Entries = canopen::EntryAccess<device::Device>;
 
-/// Every entry has the same chance.
+/// Selects entries with equal probability.
 void choose() {
   std::uint32_t entries = 0;
   device::dictionary.for_each_entry([&](std::uint16_t, std::uint8_t, canopen::entry::Word) { ++entries; });

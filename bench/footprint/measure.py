@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""What a device costs on a Cortex-M: flash and RAM of a whole node, of each service and of the dictionary, and the
-instructions of what it does all the time, beside other stacks.
+"""Measures a device on a Cortex-M: flash and RAM of a complete node, of each service and of the dictionary, and the
+instructions of its frequent operations, compared with other stacks.
 
     measure.py EDSC RUNTIME_INCLUDE [--page | --functions]
 
 Bytes are those of images for a Cortex-M0+ at -Os, linked, without those of an empty program: NMT slave, boot-up, heartbeat,
-SDO server, EMCY with a history, SYNC and 4 + 4 PDOs for ref.eds. Instructions are those of a Cortex-M4 at -O2, counted by
-QEMU, and exact: the loop that asks and the store of the frame are in them. A `!` stands where a mark is missed.
+SDO server, EMCY with a history, SYNC and 4 + 4 PDOs for ref.eds. Instructions are those of a Cortex-M4 at -O2, counted exactly
+by QEMU, including the loop that calls and the store of the frame. A `!` marks a missed goal.
 
 `--page` prints docs/footprint.md. `--functions` lists what is in the images.
 """
@@ -33,14 +33,14 @@ FAST = ("-mcpu=cortex-m4", "-O2", "-DCOUNT")
 
 @dataclass(frozen=True)
 class Entry:
-    """A VAR that a sheet gains, or a sub-index of it."""
+    """A VAR, or a sub-index, that is added to an EDS."""
 
     index: int
     data_type: int
     access: str = "rw"
     default: str = "0"
     sub_index: int | None = None
-    array: int = 0  # elements; the entry is the object then
+    array: int = 0  # number of elements; the entry is then the object
 
     @property
     def section(self) -> str:
@@ -66,12 +66,12 @@ def array(index: int, data_type: int, elements: int) -> tuple[Entry, ...]:
 
 @dataclass(frozen=True)
 class Variant:
-    """A device: its data sheet and what is asked of edsc."""
+    """A device: its EDS and the options of edsc."""
 
     sheet: str
     static_mapping: bool = False
     block_transfer: bool = False
-    without: str = ""  # the indices that the sheet loses, as a regular expression
+    without: str = ""  # the indices to remove from the EDS, as a regular expression
     added: tuple[Entry, ...] = ()
 
     @property
@@ -79,7 +79,7 @@ class Variant:
         return f"{Path(self.sheet).name}_{hashlib.sha256(repr(self).encode()).hexdigest()[:12]}"
 
 
-OPTIONAL = "10(?!00|01|18)[0-9A-F]{2}|1[1-9A-F][0-9A-F]{2}|[2-9A-F][0-9A-F]{3}"  # indices that no device must have
+OPTIONAL = "10(?!00|01|18)[0-9A-F]{2}|1[1-9A-F][0-9A-F]{2}|[2-9A-F][0-9A-F]{3}"  # indices of optional objects
 STATIC = Variant("ref", static_mapping=True)
 DYNAMIC = Variant("ref")
 BLOCK = Variant("ref", block_transfer=True)
@@ -89,7 +89,7 @@ BLOCK_SERVER = Variant("bench100", block_transfer=True)
 
 @dataclass(frozen=True)
 class Row:
-    """A figure beside the best of other stacks; both are bytes, or both instructions."""
+    """A figure and that of the best other stack, both in bytes or in instructions."""
 
     what: str
     value: float
@@ -110,7 +110,7 @@ class Bench:
         self.empty = self.size("empty", STATIC)
 
     def headers(self, variant: Variant) -> Path:
-        """The folder with device/device.hpp."""
+        """Generates the code and returns the folder with device/device.hpp."""
         made = self.folder / variant.name
         if made.exists():
             return made
@@ -133,18 +133,18 @@ class Bench:
         return made
 
     def size(self, program: str, variant: Variant) -> Size:
-        """Of the whole image."""
+        """The size of the whole image."""
         text, data, bss = (int(word) for word in output("arm-none-eabi-size", self.build(program, variant, SMALL))
                            .splitlines()[1].split()[:3])
         return Size(text + data, data + bss)
 
     def cost(self, program: str, variant: Variant) -> Size:
-        """Above an empty program."""
+        """The size without that of an empty program."""
         size = self.size(program, variant)
         return Size(size.flash - self.empty.flash, size.ram - self.empty.ram)
 
     def bytes_per_entry(self, sheet: str) -> float:
-        """Flash that the dictionary takes for each entry: all of a sheet against its mandatory objects alone."""
+        """The flash of the dictionary per entry: the difference between a whole EDS and its mandatory objects alone."""
         whole, least = Variant(sheet, static_mapping=True), Variant(sheet, static_mapping=True, without=OPTIONAL)
         flash = self.cost("dictionary", whole).flash - self.cost("dictionary", least).flash
         return round(flash / (self.entries(whole) - self.entries(least)), 1)
@@ -161,7 +161,7 @@ class Bench:
         return {name: float(number) for name, number in map(str.split, printed.splitlines())}
 
     def functions(self, program: str, variant: Variant) -> list[tuple[int, str, str]]:
-        """Bytes, kind of memory and name of what is in an image, the largest first."""
+        """Size in bytes, type of memory and name of the symbols of an image, the largest first."""
         listed = output("arm-none-eabi-nm", "-C", "-S", "--size-sort", "-r", self.build(program, variant, SMALL))
         return [(int(size, 16), kind, short_name(name))
                 for _, size, kind, name in (line.split(maxsplit=3) for line in listed.splitlines())]
@@ -172,7 +172,7 @@ def output(*command: str | Path) -> str:
 
 
 def changed(text: str, variant: Variant) -> str:
-    """A data sheet without some objects, and with others."""
+    """The EDS with objects removed and added."""
     if variant.without:
         text = re.sub(rf"(?im)^\[(?:{variant.without})(?:sub[0-9A-F]+)?\]\n(?:[^\[\n].*\n|\n)*", "", text)
         text = re.sub(rf"(?im)^\d+=0x(?:{variant.without})\n", "", text)
@@ -182,7 +182,7 @@ def changed(text: str, variant: Variant) -> str:
 
 
 def renumbered(sheet: str) -> str:
-    """Object lists count from 1 without a gap."""
+    """The EDS with its object lists numbered from 1 without gaps."""
     def numbered(match: re.Match[str]) -> str:
         indices = re.findall(r"(?m)^\d+=(0x[0-9A-Fa-f]+)$", match[2])
         return "\n".join([f"[{match[1]}]", f"SupportedObjects={len(indices)}",
@@ -191,7 +191,7 @@ def renumbered(sheet: str) -> str:
 
 
 def short_name(name: str) -> str:
-    """Without template arguments and parameters."""
+    """The name without template arguments and parameters."""
     while (shorter := re.sub(r"<[^<>]*>|\([^()]*\)|\{[^{}]*\}", "", name)) != name:
         name = shorter
     return name
@@ -213,7 +213,7 @@ def sizes(bench: Bench) -> list[Row]:
 
 
 def services(bench: Bench) -> list[tuple[str, Size]]:
-    """What each service adds to ref.eds with a static mapping, its objects included."""
+    """The size that each service, with its objects, adds to ref.eds with a static mapping."""
     whole = bench.cost("node", STATIC)
 
     def part(without: str) -> Size:
@@ -245,7 +245,7 @@ def services(bench: Bench) -> list[tuple[str, Size]]:
 
 
 def objects(bench: Bench) -> list[tuple[str, Size]]:
-    """What an entry adds."""
+    """The size that an entry adds."""
     whole = bench.cost("node", STATIC)
 
     def more(*added: Entry) -> Size:

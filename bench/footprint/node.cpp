@@ -1,4 +1,4 @@
-/// A whole node as firmware has it, with one mailbox for each direction.
+/// A complete node as in firmware, with one mailbox for each direction.
 #include "../cortex_m/startup.hpp"
 
 #include <canopen/node.hpp>
@@ -7,9 +7,9 @@
 
 namespace {
 
-/// A CAN controller with a mailbox to send from and one to receive into.
+/// A CAN controller with one transmit and one receive mailbox.
 struct Mailbox {
-  volatile std::uint32_t status;  ///< 1: the one to send from is full, 2: the one to receive into is full
+  volatile std::uint32_t status;  ///< 1: transmit mailbox full, 2: receive mailbox full
   volatile std::uint32_t id;
   volatile std::uint32_t size;
   volatile std::uint32_t data[2];

@@ -1,4 +1,5 @@
-/// PDOs of four objects in eight bytes: one packed and one taken, and a cycle of four RPDOs, a SYNC and four TPDOs.
+/// PDOs of four objects in eight bytes: one TPDO built, one RPDO processed, and a cycle of four RPDOs, a SYNC and four
+/// TPDOs.
 #include "../cortex_m/count.hpp"
 #include "../cortex_m/startup.hpp"
 

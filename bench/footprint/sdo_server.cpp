@@ -1,4 +1,4 @@
-/// The SDO server alone: for its size, and with COUNT for its instructions.
+/// The SDO server alone, to measure its size, and with COUNT its instructions.
 #include "../cortex_m/startup.hpp"
 #ifdef COUNT
 #include "../cortex_m/count.hpp"
@@ -31,7 +31,7 @@ struct Hooks {
 
 [[gnu::noinline]] void ask(const Bytes& request) { server.on_request(request, Hooks{}, canopen::TimePoint{}); }
 
-/// Where the frames come from and go to.
+/// Source and destination of the frames.
 struct Mailbox {
   volatile std::uint32_t words[2];
 };
