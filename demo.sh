@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds edsc and runs the demo: eight devices generated, five of them and a master on a simulated bus.
+# Builds edsc and runs the demo: generates eight devices and runs five of them with a master on a simulated bus.
 set -euo pipefail
 cd "$(dirname "$0")"
 

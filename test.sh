@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Runs the whole test suite: as built for use, then under AddressSanitizer and UBSan the unit and trace tests, and a
-# short run of each fuzz target; then images of the reference devices for Cortex-M under QEMU.
-#   ./test.sh           everything
-#   ./test.sh test      only the first part
-#   ./test.sh asan      only the part with sanitizers
+# Runs the whole test suite: all tests with a release build; the unit and trace tests and a short run of each fuzz
+# target with AddressSanitizer and UBSan; the images of the reference devices for Cortex-M under QEMU.
+#   ./test.sh           all parts
+#   ./test.sh test      only the release build
+#   ./test.sh asan      only the sanitizers
 #   ./test.sh firmware  only the images
-# The last two take the command edsc from the build of the first, where they build it if it is not there.
+# The last two use the program edsc of the release build, and build it there if it is missing.
 set -euo pipefail
 cd "$(dirname "$0")"
 
