@@ -1,5 +1,5 @@
 // expect: its COB-ID is restricted .*canopen::TpdoNumber<1> .*canopen::CanId<'5', '8', '1', 'h'>
-// 580h + node-ID is what the default SDO answers with.
+// 580h + node-ID is the COB-ID of the default SDO's answers.
 #include <canopen/pdo_check.hpp>
 #include <every_type/device.hpp>
 

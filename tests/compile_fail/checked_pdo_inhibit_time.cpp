@@ -1,7 +1,7 @@
 // expect: an inhibit time is for TPDOs of transmission types 254 and 255
 // expect: canopen::TpdoNumber<1>.*false, 1, 100, 0, false}
 //
-// A synchronous TPDO goes out at its SYNC.
+// A synchronous TPDO is sent at its SYNC.
 #include <canopen/pdo_check.hpp>
 #include <every_type/device.hpp>
 

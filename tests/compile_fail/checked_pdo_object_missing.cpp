@@ -4,7 +4,7 @@
 // expect: ObjectAt<'6', '0', '7', '1', 'h', ':', '0', '0'>
 // expect: other::od::target_torque
 //
-// The device has no 6071h.
+// The device does not have 6071h.
 #include <canopen/pdo_check.hpp>
 #include <every_type/device.hpp>
 

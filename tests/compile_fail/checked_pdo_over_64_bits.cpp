@@ -3,7 +3,7 @@
 // expect: PdoEntry<canopen::EntryNumber<2>, canopen::ObjectAt<'2', '6', '0', '0', 'h', ':', '0', '0'>
 // expect: every_type::od::access_ro
 //
-// A CAN frame carries 64 bits.
+// A CAN frame has at most 64 data bits.
 #include <canopen/pdo_check.hpp>
 #include <every_type/device.hpp>
 

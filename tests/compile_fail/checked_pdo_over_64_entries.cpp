@@ -1,5 +1,5 @@
 // expect: 64 objects at most .*canopen::TpdoNumber<2> .*every_type::od::boolean_value
-// A mapping parameter has 64 entries.
+// A mapping parameter has at most 64 entries.
 #include <canopen/pdo_check.hpp>
 #include <every_type/device.hpp>
 

@@ -4,7 +4,7 @@
 // expect: ObjectAt<'1', '0', '0', '5', 'h', ':', '0', '0'>
 // expect: other::od::cob_id_sync
 //
-// What the type says does not count, but what the dictionary does.
+// The check uses the dictionary, not the object type.
 #include <canopen/pdo_check.hpp>
 #include <every_type/device.hpp>
 

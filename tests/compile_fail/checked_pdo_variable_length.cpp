@@ -4,7 +4,7 @@
 // expect: mapped_strings::od::state
 // expect: canopen::TpdoNumber<1>
 //
-// A string has no fixed length of its own.
+// A string is a variable-length data type.
 #include <canopen/pdo_check.hpp>
 #include <mapped_strings/device.hpp>
 

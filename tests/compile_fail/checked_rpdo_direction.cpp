@@ -4,7 +4,7 @@
 // expect: ObjectAt<'2', '6', '0', '0', 'h', ':', '0', '0'>
 // expect: other::od::access_ro
 //
-// What the bus cannot write, an RPDO cannot bring.
+// An RPDO cannot write an object that is not writable over the bus.
 #include <canopen/pdo_check.hpp>
 #include <every_type/device.hpp>
 

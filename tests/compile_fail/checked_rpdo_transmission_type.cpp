@@ -1,5 +1,5 @@
 // expect: its transmission type is reserved .*canopen::RpdoNumber<1>.*false, 253, 0, 0, false}
-// An RPDO cannot be asked for by a remote frame.
+// A remote frame cannot request an RPDO.
 #include <canopen/pdo_check.hpp>
 #include <every_type/device.hpp>
 

@@ -4,7 +4,7 @@
 // expect: ObjectAt<'2', '6', '0', '3', 'h', ':', '0', '0'>
 // expect: other::od::access_rww
 //
-// Process output (rww) is what an RPDO carries.
+// Only an RPDO can map a process output (rww).
 #include <canopen/pdo_check.hpp>
 #include <every_type/device.hpp>
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Each mistake here does not compile, and the compiler says which object is wrong.
+"""Each mistake here does not compile, and the message of the compiler names the wrong object.
 
     compile_fail_test.py SOURCE_DIR GENERATED_DIR [CASE]      GENERATED_DIR has a folder for each device
 
-A case is a .cpp file. It compiles with GOOD defined and does not without; then the words of each of its lines
-`// expect: regex` stand in what the compiler says. `A .*B` wants A and B somewhere, for GCC and Clang tell them in different order; `A|B`
-wants one of them.
+A case is a .cpp file. It compiles with GOOD defined, and does not compile without. Then the messages of the compiler must match
+each of its lines `// expect: regex`. `A .*B` requires A and B in any order, as the order differs between GCC and Clang; `A|B`
+requires one of them.
 """
 
 from __future__ import annotations
@@ -27,20 +27,20 @@ def says(output: str, expectation: str) -> bool:
 
 
 def run_case(job: tuple[Compiler, Path, tuple[Path, ...]]) -> str:
-    """What is wrong with the case; empty when it does what it shall."""
+    """Returns the problem of the case; empty if it has none."""
     compiler, case, include = job
     expectations = EXPECTATION.findall(case.read_text())
     if not expectations:
         return f"{case.name}: its first line is not `// expect: regex`"
     good = compile_only(compiler, case, include, ("-DGOOD", *UNUSED_IS_FINE))
     if good.returncode != 0:
-        return f"{compiler.name}, {case.name}: its good twin does not compile:\n{good.stderr[:2000]}"
+        return f"{compiler.name}, {case.name}: does not compile with GOOD:\n{good.stderr[:2000]}"
     bad = compile_only(compiler, case, include, UNUSED_IS_FINE)
     if bad.returncode == 0:
-        return f"{compiler.name}, {case.name}: compiles"
+        return f"{compiler.name}, {case.name}: compiles without GOOD"
     missing = [expectation for expectation in expectations if not says(bad.stderr, expectation)]
     if missing:
-        return f"{compiler.name}, {case.name}: nothing in its message is `{missing[0]}`:\n{bad.stderr[:3000]}"
+        return f"{compiler.name}, {case.name}: its message does not match `{missing[0]}`:\n{bad.stderr[:3000]}"
     return ""
 
 

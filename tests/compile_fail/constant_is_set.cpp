@@ -1,5 +1,5 @@
 // expect: a constant of the data sheet cannot be set .*every_type::od::integer24_constant
-// A constant of the data sheet lives in flash.
+// A constant of the EDS is in flash.
 #include <canopen/object_store.hpp>
 #include <every_type/device.hpp>
 

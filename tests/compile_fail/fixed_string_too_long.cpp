@@ -1,5 +1,5 @@
 // expect: longer than the string can be .*FixedString<mapped_strings::od::state
-// The string holds five bytes.
+// The string has at most five bytes.
 #include <canopen/pdo_check.hpp>
 #include <mapped_strings/device.hpp>
 

@@ -1,5 +1,5 @@
 // expect: not a handler: pass on_write<object>
-// A callable alone does not say what it is called for.
+// A callable alone does not specify its object.
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>
 

@@ -2,7 +2,7 @@
 // expect: PdoEntry<canopen::EntryNumber<2>
 // expect: every_type::od::unsigned8_value
 //
-// A CAN frame carries 64 bits.
+// A CAN frame has at most 64 data bits.
 #include <canopen/object_store.hpp>
 #include <every_type/device.hpp>
 

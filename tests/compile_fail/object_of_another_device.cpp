@@ -1,5 +1,5 @@
 // expect: this device has no such object .*other::od::target_torque
-// What another device has, this one need not have.
+// An object of another device need not exist in this one.
 #include <canopen/object_store.hpp>
 #include <every_type/device.hpp>
 

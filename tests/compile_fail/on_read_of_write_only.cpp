@@ -1,5 +1,5 @@
 // expect: the object is wo .*every_type::od::access_wo
-// The bus cannot read what it may only write.
+// An object of access type wo cannot be read over the bus.
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>
 

@@ -1,5 +1,5 @@
 // expect: the object is ro or const .*every_type::od::integer24_constant
-// The bus cannot write a constant: its write handler would never be called.
+// A constant cannot be written over the bus: its write handler would never be called.
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>
 

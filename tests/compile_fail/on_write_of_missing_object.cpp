@@ -1,5 +1,5 @@
 // expect: this device does not have the object .*other::od::target_torque
-// A handler is for an object of the device.
+// A handler must be for an object of the device.
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>
 

@@ -1,5 +1,5 @@
 // expect: the object is ro or const .*every_type::od::error_register
-// Nor can the bus write an object of access type ro.
+// An object of access type ro cannot be written over the bus.
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>
 

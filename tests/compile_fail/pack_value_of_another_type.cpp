@@ -1,5 +1,5 @@
 // expect: every_type::od::integer24_value|integer24_value::type
-// A speed is no position, and a struct is no number.
+// A speed is not a position, and a struct is not a number.
 #include <canopen/object_store.hpp>
 #include <every_type/device.hpp>
 

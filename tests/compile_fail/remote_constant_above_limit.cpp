@@ -1,5 +1,5 @@
 // expect: outside the limits of the object .*every_type::od::integer8_value
-// A master cannot write a constant that the data sheet forbids.
+// A master cannot write a constant outside the limits of the EDS.
 #include <canopen/remote.hpp>
 #include <every_type/device.hpp>
 

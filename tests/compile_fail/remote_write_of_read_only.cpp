@@ -1,5 +1,5 @@
 // expect: RemoteWritable .*every_type::od::integer24_constant
-// A master cannot write what the bus may only read.
+// A master cannot write an object that can only be read over the bus.
 #include <canopen/remote.hpp>
 #include <every_type/device.hpp>
 

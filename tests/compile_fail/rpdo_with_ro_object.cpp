@@ -2,7 +2,7 @@
 // expect: RpdoEntry<canopen::EntryNumber<2>, canopen::ObjectAt<'2', '6', '0', '0', 'h', ':', '0', '0'>
 // expect: every_type::od::access_ro
 //
-// What the bus cannot write, an RPDO cannot bring.
+// An RPDO cannot write an object that is not writable over the bus.
 #include <canopen/object_store.hpp>
 #include <every_type/device.hpp>
 

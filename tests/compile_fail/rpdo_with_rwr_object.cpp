@@ -2,7 +2,7 @@
 // expect: RpdoEntry<canopen::EntryNumber<2>, canopen::ObjectAt<'2', '6', '0', '4', 'h', ':', '0', '0'>
 // expect: every_type::od::access_rwr
 //
-// Process input (rwr) is what a TPDO carries.
+// Only a TPDO can map a process input (rwr).
 #include <canopen/object_store.hpp>
 #include <every_type/device.hpp>
 

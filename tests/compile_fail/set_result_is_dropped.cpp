@@ -1,5 +1,5 @@
 // expect: nodiscard .*od::integer8_value
-// A value that an object with limits can refuse is not dropped silently. Any value fits one without.
+// The result of set must be used for an object with limits, which can refuse a value.
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>
 

@@ -1,5 +1,5 @@
 // expect: COB-ID: it is restricted .*canopen::ObjectAt<'1', '2', '0', '1', 'h', ':', '0', '2'> .*canopen::CanId<'0', '0', '0', 'h'>
-// A server that sends on CAN-ID 0 commands NMT.
+// Frames of a server with CAN-ID 0 would be NMT commands.
 #include <canopen/cob_id_check.hpp>
 
 #ifdef GOOD

@@ -1,5 +1,5 @@
 // expect: COB-ID: it is restricted .*canopen::ObjectAt<'1', '0', '1', '4', 'h', ':', '0', '0'> .*canopen::CanId<'5', '8', '1', 'h'>
-// 580h + node-ID is what the default SDO answers with.
+// 580h + node-ID is the COB-ID of the default SDO's answers.
 #include <canopen/cob_id_check.hpp>
 
 #ifdef GOOD

@@ -2,7 +2,7 @@
 // expect: PdoEntry<canopen::EntryNumber<2>, canopen::ObjectAt<'2', '0', '0', '9', 'h', ':', '0', '0'>
 // expect: every_type::od::visible_string_value
 //
-// A string has no fixed length.
+// A string is a variable-length data type.
 #include <canopen/object_store.hpp>
 #include <every_type/device.hpp>
 

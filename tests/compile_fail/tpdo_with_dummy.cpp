@@ -1,5 +1,5 @@
 // expect: a TPDO may not carry this object .*canopen::EntryNumber<2> .*canopen::Dummy<5, 8>
-// A dummy is for what this device does not want to hear.
+// A dummy reserves bits in an RPDO that the device ignores.
 #include <canopen/pdo.hpp>
 #include <every_type/device.hpp>
 

@@ -2,7 +2,7 @@
 // expect: TpdoEntry<canopen::EntryNumber<2>, canopen::ObjectAt<'2', '6', '0', '3', 'h', ':', '0', '0'>
 // expect: every_type::od::access_rww
 //
-// Process output (rww) is what an RPDO carries.
+// Only an RPDO can map a process output (rww).
 #include <canopen/object_store.hpp>
 #include <every_type/device.hpp>
 

@@ -2,7 +2,7 @@
 // expect: TpdoEntry<canopen::EntryNumber<2>, canopen::ObjectAt<'1', '0', '0', '5', 'h', ':', '0', '0'>
 // expect: every_type::od::cob_id_sync
 //
-// The data sheet says PDOMapping=0.
+// The EDS has PDOMapping=0.
 #include <canopen/object_store.hpp>
 #include <every_type/device.hpp>
 

@@ -2,7 +2,7 @@
 // expect: TpdoEntry<canopen::EntryNumber<1>, canopen::ObjectAt<'2', '6', '0', '1', 'h', ':', '0', '0'>
 // expect: every_type::od::access_wo
 //
-// What the bus cannot read, a TPDO cannot bring.
+// A TPDO cannot send an object that is not readable over the bus.
 #include <canopen/pdo.hpp>
 #include <every_type/device.hpp>
 

@@ -1,5 +1,5 @@
 // expect: the object has two of them .*every_type::od::integer16_value
-// Of two write handlers of one object the first may refuse what the second has acted upon.
+// With two write handlers, one may refuse a value that the other has already used.
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>
 
