@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Firmware that is over its limits, or asks for a heap, is no firmware: what the build says of it.
+"""The build fails for firmware that exceeds its limits or needs a heap, and reports the reason.
 
     budget_test.py EDSC
 """
@@ -83,10 +83,10 @@ class Budget(unittest.TestCase):
 
 
 class Optimisation(unittest.TestCase):
-    """By the commands that compile an image: nothing is built."""
+    """Checks the commands that compile an image, without building it."""
 
     def configure(self, *options: str, build_type: str) -> tuple[str, set[str]]:
-        """What CMake prints, and the -O of all that is compiled for the board."""
+        """Returns the output of CMake and the -O options of all sources for the board."""
         folder = tempfile.TemporaryDirectory(prefix="edsc-optimisation-")
         self.addCleanup(folder.cleanup)
         project = Project(Path(folder.name), EDSC)

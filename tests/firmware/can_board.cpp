@@ -1,4 +1,4 @@
-/// A board that has a core and a CAN controller, and nothing else: enough to link a node.
+/// A board with only a core and a CAN controller: enough to link a node.
 #include "board.hpp"
 
 #include "registers.hpp"

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""A node links with each CAN controller that has a port, for the core beside it: without warnings, without a heap, and in the
+"""A node links with the port of each CAN controller, for the core of its chip: without warnings, without a heap, and within the
 memory of a small chip. Prints flash and RAM of each image.
 
     can_images_test.py SOURCE_DIR EDSC
 
-The program is that of examples/can_firmware: LSS, which changes the bit rate, acceptance filters, the controller's state.
+The program is that of examples/can_firmware, which has LSS with a change of the bit rate, acceptance filters and bus status.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Chip:
     port: str       # header
     controller: str  # class
     arguments: str  # of its constructor
-    flash: tuple[int, str]  # where it begins and how long it is
+    flash: tuple[int, str]  # begin and length
     ram: tuple[int, str]
 
 
@@ -67,7 +67,7 @@ MEMORY = "MEMORY {{ flash (rx) : ORIGIN = {flash[0]}, LENGTH = {flash[1]}  ram (
 
 
 def link(chip: Chip, source: Path, generated: Path, folder: Path) -> tuple[Path, str]:
-    """The image, and what the compiler says if there is none."""
+    """Returns the image, and the messages of the compiler if it fails."""
     (folder / "can.hpp").write_text(CAN_HEADER.format(**vars(chip)), encoding="utf-8")
     (folder / "memory.ld").write_text(MEMORY.format(**vars(chip)), encoding="utf-8")
     boards = source / "cmake/boards"

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""An image of a reference device on a board of QEMU, over SLCAN on its serial line: boot-up, LSS, all that its data sheet
-promises, stored parameters over a loss of power, the stack that all this took, and the same by the commands of edsc.
+"""An image of a reference device on a board of QEMU, over SLCAN on its serial line: boot-up, LSS, all entries and PDOs of its
+EDS, stored parameters after a power loss, the stack used, and the same with the commands of edsc.
 
     firmware_test.py BOARD IMAGE DATA_SHEET NODE_ID EDSC
 
@@ -23,13 +23,13 @@ from report import Report, read_exceptions  # noqa: E402
 from sdo import Abort, Silence  # noqa: E402
 from walk import Walk  # noqa: E402
 
-BY_LSS = 9        # the node-ID that a device without one gets
-LARGEST_STACK, OF_DEVICE = 640, {"cpc-tc1": 512}  # bytes; the most is for storing parameters
-PATIENCE = 10.0   # s, for what must come
+BY_LSS = 9        # the node-ID for a device without one
+LARGEST_STACK, OF_DEVICE = 640, {"cpc-tc1": 512}  # bytes; storing parameters needs most
+PATIENCE = 10.0   # s, timeout for an expected frame
 WHOLE_WALK_ON = "microbit"
 SAVE, LOAD = b"save", b"load"
 STORE, RESTORE, HEARTBEAT = 0x1010, 0x1011, 0x1017
-STORED_TIME = 0x1234  # ms; nothing is heard of it during the test
+STORED_TIME = 0x1234  # ms; too long for a heartbeat during the test
 
 
 class Firmware:
@@ -54,11 +54,11 @@ class Firmware:
         self.machine.power_off()
 
     def boot(self, what: str) -> None:
-        """The node has started long before the channel was opened."""
+        """The node has started long before the channel is opened."""
         self.check("boot-up", what, self.first_frame(), f"{0x700 + self.sheet.node_id:03X} 00")
 
     def lss(self) -> None:
-        """CiA 305: to configuration, a node-ID, store, to waiting; then the node boots. 5E asks for the active one."""
+        """CiA 305: configuration state, configure node-ID, store, waiting state; then the node boots. 5E is inquire node-ID."""
         self.check("lss", "silent without node-ID", self.first_frame(1.5), "nothing")
         node_id = f"{BY_LSS:02X}"
         for request, answer in (("04 01", None), (f"11 {node_id}", "11 00 00 00 00 00 00 00"),
@@ -69,7 +69,7 @@ class Firmware:
                 self.check("lss", request, got and got.hex(" ").upper(), answer)
 
     def whole_walk(self) -> None:
-        """All of it on one board; on the others what their drivers and compilers could break."""
+        """The whole walk on one board; on the others only the parts that depend on their drivers and compilers."""
         walk = self.walk
         long = (walk.refuse_all, walk.download_all, walk.remap, walk.states, walk.guarding, walk.consumer)
         for part in (walk.boot, walk.upload_all, walk.tpdos, walk.rpdos, walk.heartbeat,
@@ -84,7 +84,7 @@ class Firmware:
         return int.from_bytes(self.sdo.upload(HEARTBEAT, 0, 2), "little")
 
     def storage(self) -> None:
-        """A device without 1010h forgets with the power what was written."""
+        """Stored and restored values remain after a power loss; a device without 1010h loses what was written."""
         self.walk.reset()
         default = self.heartbeat_time()
         stores = self.sheet.get(STORE, 1) is not None
@@ -101,7 +101,7 @@ class Firmware:
                 self.sdo.download(RESTORE, 1, LOAD)
 
     def stack(self) -> None:
-        """What is painted at power-on and is not any more."""
+        """Memory that was painted at power-on and has changed."""
         first, last = self.machine.paint
         memory = self.machine.save(first, last - first, self.machine.folder / "stack")
         untouched = len(memory) - len(memory.lstrip(bytes([STACK_PAINT])))

@@ -1,5 +1,5 @@
-"""edsc's own commands on an image's serial line: who is there, all that its data sheet promises, values written, a DCF that
-outlasts the power, states, PDOs, and a node-ID by LSS."""
+"""The commands of edsc on the serial line of an image: scan, all entries of its EDS, writes, a DCF that remains after a power
+loss, NMT states, PDOs, and a node-ID by LSS."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from data_sheet import DOMAIN, DataSheet, Entry
 from machine import Machine
 from report import Report
 
-PATIENCE = 20_000  # ms, for what must come
+PATIENCE = 20_000  # ms, timeout for an expected answer
 LONGEST = 240      # s, for a command
 HEARTBEAT, STORE = 0x1017, 0x1010
 HEARTBEAT_TIME, EVENT_TIME = 100, 50  # ms, in the DCF
@@ -26,7 +26,7 @@ def hexadecimal(data: bytes) -> str:
 
 
 class HostSide:
-    """Begins with an erased flash, and ends without power."""
+    """Begins with erased flash and ends with the power off."""
 
     def __init__(self, edsc: Path, machine: Machine, path: Path, sheet: DataSheet, by_lss: bool, report: Report) -> None:
         self.program, self.machine, self.path, self.sheet = edsc, machine, path, sheet
@@ -63,15 +63,15 @@ class HostSide:
         return self.edsc(command, self.node, *arguments, "--timeout", PATIENCE)
 
     def done(self, result: subprocess.CompletedProcess[str]) -> bool:
-        """Whether a command ended well; what it said, if not."""
+        """Whether a command succeeded; reports its output if not."""
         command = " ".join(map(str, result.args[1:2] + result.args[3:5]))
         self.check(command, f"{result.returncode} {result.stderr}", "0 ")
         return result.returncode == 0
 
-    # ---- what they are to find ----
+    # ---- expected results ----
 
     def lss(self) -> None:
-        """One device, step by step; it boots with its node-ID when it is left waiting."""
+        """Configures one device step by step; it boots with its node-ID in the waiting state."""
         for step in (["state", "configuration"], ["node-id", self.node], ["store"]):
             self.done(self.edsc("lss", *step, "--timeout", PATIENCE))
         inquired = self.edsc("lss", "inquire", "--format", "json", "--timeout", PATIENCE)
@@ -103,7 +103,7 @@ class HostSide:
             self.entry(wanted[place], found[place])
 
     def entry(self, entry: Entry, row: dict) -> None:
-        """As the python-can walk has it, with the same exceptions."""
+        """Compares an entry like the python-can walk, with the same exceptions."""
         if row["result"] == "done":
             got = f"reads {row['bytes']}"
         else:
@@ -119,7 +119,7 @@ class HostSide:
             self.report.check("default", entry.name, got, wanted)
 
     def write(self) -> None:
-        """A value that is read back, and one that the node is left to refuse."""
+        """Writes a value that is read back, and one that the node must refuse."""
         self.done(self.node_command("write", "1017h", 0x1234, "--eds", self.path, "--verify"))
         self.done(self.node_command("write", "1017h", 0, "--eds", self.path, "--verify"))
         refused = self.node_command("write", "1000h", 0, "--eds", self.path, "--force")
@@ -128,7 +128,7 @@ class HostSide:
     # ---- a DCF ----
 
     def timed_tpdo(self) -> int | None:
-        """The first one that maps something and has an event timer."""
+        """The first TPDO that maps objects and has an event timer."""
         for index in range(0x1800, 0x1A00):
             timer = self.sheet.get(index, 5)
             if timer and timer.writable and self.sheet.default(index + 0x200) and self.sheet.default(index, 2) >= 0xFE:
@@ -157,7 +157,7 @@ class HostSide:
         self.check("configure, values", told["written"], told["values"])
 
     def monitor(self) -> None:
-        """Until the heartbeat and the TPDO have been told."""
+        """Runs until the heartbeat and the TPDO are printed."""
         words = {"heartbeat": f"HEART     node {self.node} "}
         index = self.timed_tpdo()
         if index is not None:

@@ -1,4 +1,4 @@
-"""A board of QEMU with an image, whose serial line is a pseudo-terminal of the host."""
+"""A board of QEMU with an image. Its serial line is a pseudo-terminal of the host."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ PAGES = 4 * 2048  # bytes: two pairs of pages of board::Flash
 
 
 def connected(path: Path) -> socket.socket:
-    """To a socket that QEMU is about to make."""
+    """Connects to a socket that QEMU is about to create."""
     end = time.monotonic() + 60
     while not path.exists() and time.monotonic() < end:
         time.sleep(0.01)
@@ -29,7 +29,7 @@ def connected(path: Path) -> socket.socket:
 
 
 def write_memory(line: socket.socket, address: int, data: bytes) -> None:
-    """As a debugger does it, which writes flash, too: the remote protocol of GDB."""
+    """Writes memory by the remote protocol of GDB, which can also write flash."""
     for at in range(0, len(data), 1024):
         piece = data[at:at + 1024]
         packet = f"M{address + at:x},{len(piece):x}:{piece.hex()}".encode()
@@ -56,11 +56,11 @@ STACK_PAINT = 0xA5
 
 
 class Machine:
-    """The pages of flash are a file in `folder`: erased at first, loaded when the power comes on and saved before it goes.
-    All other memory is lost between."""
+    """The flash pages are a file in `folder`: erased at first, loaded at power-on and saved before power-off. All other memory
+    is lost in between."""
 
     def __init__(self, board: str, image: Path, folder: Path, paint: tuple[int, int] | None = None) -> None:
-        """`paint`: beginning and end of memory that is full of STACK_PAINT at power-on."""
+        """`paint`: start and end of the memory that is filled with STACK_PAINT at power-on."""
         self.board, self.image, self.folder, self.paint = board, image, folder, paint
         self.flash = folder / "flash"
         self.process: subprocess.Popen[str] | None = None
@@ -83,7 +83,7 @@ class Machine:
         if not match:
             raise RuntimeError(f"qemu-system-arm: {told}{self.process.stdout.read()}")
         self.address = f"slcan:{match[0]}"
-        self.line = os.open(match[0], os.O_RDWR | os.O_NOCTTY)  # QEMU looks for a host that comes back once a second only
+        self.line = os.open(match[0], os.O_RDWR | os.O_NOCTTY)  # QEMU checks only once a second for a host that reconnects
         self.control = connected(control)
         self.lines = self.control.makefile("rw")
         self.lines.readline()
@@ -103,7 +103,7 @@ class Machine:
                 raise RuntimeError(f"{name}: {answer['error']}")
 
     def save(self, address: int, size: int, to: Path) -> bytes:
-        """What is in its memory."""
+        """Returns the content of its memory."""
         self.command("memsave", val=address, size=size, filename=str(to), **{"cpu-index": 0})
         return to.read_bytes()
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""What an object costs: images of a data sheet with and without it differ by what the report says of it.
+"""The flash and RAM of an object: images of an EDS with and without it differ by the size in the report.
 
     object_bytes_test.py EDSC
 
-Flash grows by the object's own bytes, what all objects share, and code; at most UNEXPLAINED bytes are none of these. RAM is
-exact.
+Flash grows by the bytes of the object itself, the part that all objects share, and code; at most UNEXPLAINED bytes are none of
+these. RAM is exact.
 """
 
 from __future__ import annotations
@@ -50,11 +50,11 @@ class Variant:
     name: str
     index: str
     text: str
-    flash: int  # bytes that the object has for itself at least: one word in the tables
+    flash: int  # minimum bytes of the object itself: one word in the tables
     ram: int    # bytes of its value
 
 
-# Removed: what the device has from the beginning. All others are added to it.
+# REMOVED is an object of the device; all others are added to it.
 REMOVED = Variant("removed u16", "2008", entry("2008", U16, default=7), 6, 2)
 PRESENT = (REMOVED, Variant("", "2030", parts("2030", 8, U16, U16), 0, 0), Variant("", "2031", parts("2031", 9, U8, U16), 0, 0),
            Variant("", "2032", entry("2032", STRING, "rw", "abc"), 0, 0))
@@ -74,7 +74,7 @@ ADDED = (
 
 
 def sheet(variants: list[Variant]) -> str:
-    """The pump of the examples with these objects."""
+    """The EDS of the pump of the examples with these objects."""
     text = (SOURCE_DIR / "examples/first_device/pump.eds").read_text(encoding="utf-8")
     indices = sorted(["2000", "2001", *(variant.index for variant in variants)])
     listed = [f"SupportedObjects={len(indices)}", *(f"{number}=0x{index}" for number, index in enumerate(indices, 1))]
@@ -97,7 +97,7 @@ def cost(project: Project, target: str, namespace: str) -> Cost:
 
 
 def problems(variant: Variant, less: Cost, more: Cost) -> list[str]:
-    """Of the object that `more` has and `less` has not."""
+    """Problems of the object that `more` has and `less` does not have."""
     grown = more.flash.total - less.flash.total
     own = more.flash.objects[variant.index]
     others = more.flash.objects.total() - own - less.flash.objects.total()
@@ -111,13 +111,13 @@ def problems(variant: Variant, less: Cost, more: Cost) -> list[str]:
           f"between {unexplained:+2}; RAM {ram:+3} = object {own_ram:2}, alignment {shared_ram:+2}")
     found = []
     if abs(unexplained) > UNEXPLAINED:
-        found.append(f"{unexplained} of {grown} bytes of flash are explained by nothing")
+        found.append(f"{unexplained} of {grown} bytes of flash are not explained")
     if ram != own_ram + shared_ram:
         found.append(f"RAM grows by {ram}, not by {own_ram} + {shared_ram}")
     if own < variant.flash or own_ram != variant.ram:
         found.append(f"the report has {own} and {own_ram} bytes of it, not {variant.flash} or more and {variant.ram}")
     if variant.index in less.flash.objects:
-        found.append("the report has it where it is not")
+        found.append("the report has it in the image without it")
     return [f"{variant.name}: {problem}" for problem in found]
 
 

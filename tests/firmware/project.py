@@ -1,4 +1,4 @@
-"""A project of somebody who makes firmware with edsc_add_firmware, in a folder of its own."""
+"""A project of a user of edsc_add_firmware, in its own folder."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 SOURCE_DIR = Path(__file__).resolve().parents[2]
 TOOLCHAIN = SOURCE_DIR / "cmake/toolchains/arm-none-eabi.cmake"
-LONGEST = 1200  # s, for a step of the build
+LONGEST = 1200  # s, timeout for a step of the build
 LISTS = """cmake_minimum_required(VERSION 3.25)
 project(consumer LANGUAGES CXX)
 add_subdirectory("{source}" edsc)
@@ -23,7 +23,7 @@ class Project:
     edsc: Path
 
     def configure(self, lines: str, *options: str, build_type: str = "Release") -> str:
-        """What CMake prints."""
+        """Returns the output of CMake."""
         (self.folder / "CMakeLists.txt").write_text(LISTS.format(source=SOURCE_DIR, lines=lines))
         launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
         result = self.run("cmake", "-S", self.folder, "-B", self.build_dir, "-G", "Ninja", f"-DCMAKE_TOOLCHAIN_FILE={TOOLCHAIN}",
