@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Codecs that PdoLayout makes take as many instructions as hand-written ones.
+"""Codecs of PdoLayout need as many instructions as hand-written ones.
 
     codec_instructions_test.py SOURCE_DIR
 
 Compiles codec/typed.cpp and codec/by_hand.cpp at -O2 for x86-64 and for a Cortex-M4 and counts the instructions of each
-function. With g++, layouts of whole bytes take no more than by hand, those with bits beside bytes at most 1.2 times as
-many. What clang makes is shown, and not judged.
+function. With g++, layouts of whole bytes need no more than by hand, those that mix bits and bytes at most 1.2 times as
+many. The results of clang are only printed.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ MOST_OF_BITS = 1.2
 
 FUNCTION = re.compile(r"^[0-9a-f]+ <(?P<name>.*)>:$")
 INSTRUCTION = re.compile(r"^ +[0-9a-f]+:\t(?P<text>[^\t ]+)")
-PADDING = re.compile(r"nop[wl]?|nop\.[nw]|cs|data16|xchg|endbr64|\.word|\.short")  # and constants behind a function
+PADDING = re.compile(r"nop[wl]?|nop\.[nw]|cs|data16|xchg|endbr64|\.word|\.short")  # and constants after a function
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ def compiled(target: Target, source: Path, runtime: Path, folder: Path) -> Path:
 
 
 def instructions(objdump: str, made: Path) -> dict[str, int]:
-    """How many each function has, without what fills up to the next one."""
+    """The number of instructions of each function, without the padding after it."""
     listing = subprocess.run([objdump, "-d", "--demangle", "--no-show-raw-insn", made], check=True, capture_output=True,
                              text=True).stdout
     counts: dict[str, int] = {}
@@ -88,7 +88,7 @@ def main() -> int:
             row += f"{typed[name]:>14} :{by_hand[name]:>5}  "
             most = by_hand[name] * (1 if name.split("_")[1] in WHOLE_BYTES else MOST_OF_BITS)
             if target.judged and typed[name] > most:
-                problems.append(f"{target.name}: {name} takes {typed[name]} instructions, by hand {by_hand[name]}")
+                problems.append(f"{target.name}: {name} needs {typed[name]} instructions, by hand {by_hand[name]}")
         print(row.rstrip())
     print("\n".join(problems))
     print(f"{len(columns)} targets, {len(problems)} problems (typed : by hand)")

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Headers hold on their own: each compiles alone and twice without a warning, a generated one as the main file, too.
+"""Each header compiles alone and twice without a warning, a generated one also as the main file.
 
     compile_headers.py SOURCE_DIR EDSC
 
-Looks at the headers of the runtime, and at what edsc makes of the reference devices and of the fixtures.
+Tests the headers of the runtime and those that edsc generates for the reference devices and the fixtures.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from support.compilers import ARM_GCC, CLANG, GCC, Compiler, compile_only, in_parallel, those_installed  # noqa: E402
 
-PARTS_OF_A_DEVICE = ("/dictionary.hpp", "/pdo.hpp")  # a device.hpp includes them: all compilers see them there
-# For an operating system, whose errors they throw.
+PARTS_OF_A_DEVICE = ("/dictionary.hpp", "/pdo.hpp")  # device.hpp includes them, so that all compilers compile them there
+# These need an operating system, whose errors they throw.
 HOSTED_ONLY = ("port/descriptor.hpp", "port/event_descriptor.hpp", "port/file_storage.hpp", "port/host_bus.hpp",
                "port/host_loop.hpp", "port/simulated_device.hpp", "port/slcan.hpp", "port/socketcan.hpp",
                "port/socketcand.hpp", "port/stream_port.hpp")
@@ -26,8 +26,8 @@ HOSTED_ONLY = ("port/descriptor.hpp", "port/event_descriptor.hpp", "port/file_st
 
 @dataclass(frozen=True)
 class Header:
-    root: Path  # what it is included from
-    path: str   # below it
+    root: Path  # the include directory
+    path: str   # relative to it
 
     def __str__(self) -> str:
         return self.path
@@ -43,7 +43,7 @@ class Job:
     how: str
 
     def run(self) -> str:
-        """The compiler's words; empty when it has none."""
+        """Returns the messages of the compiler; empty if there are none."""
         result = compile_only(self.compiler, self.source, self.include, self.extra)
         if result.returncode == 0 and not result.stderr:
             return ""
@@ -76,7 +76,7 @@ def jobs_of(header: Header, compilers: list[Compiler], runtime: Path, scratch: P
             continue
         if not header.path.endswith(PARTS_OF_A_DEVICE):
             jobs.append(Job(compiler, header, twice, include, ("-fexceptions",) if hosted else (), "included twice"))
-    if header.root != runtime and GCC in compilers:  # a main file cannot say #pragma once
+    if header.root != runtime and GCC in compilers:  # a main file must not have #pragma once
         jobs.append(Job(GCC, header, header.root / header.path, include, ("-x", "c++"), "as the main file"))
     if header.path.endswith("dictionary.hpp") and GCC in compilers:
         jobs.append(Job(GCC, header, twice, include, ("-std=gnu++20",), "with GNU extensions"))
@@ -94,7 +94,7 @@ def main() -> int:
         problems = [problem for problem in in_parallel(Job.run, jobs) if problem]
     for problem in problems:
         print(problem)
-    print(f"{len(jobs) - len(problems)} of {len(jobs)} compilations of {len(headers)} headers without a word")
+    print(f"{len(jobs) - len(problems)} of {len(jobs)} compilations of {len(headers)} headers without a message")
     return 1 if problems or not headers or not compilers else 0
 
 

@@ -1,4 +1,4 @@
-/// The generated device of dynamic_mapping.eds: what of its mapping can change, what cannot, and what its options say.
+/// The generated device of dynamic_mapping.eds: its dynamic and static mappings, and its options.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -28,7 +28,7 @@ constexpr const canopen::Group& group(std::uint16_t index) {
   return dictionary.groups[entry::offset_of(dictionary.find_index(index))];
 }
 
-/// Sub-indices 0 and 1 in RAM, each further entry 4 bytes behind the one before it, all of them aligned.
+/// Sub-indices 0 and 1 are in RAM, each further entry 4 bytes after the one before it, all of them aligned.
 constexpr bool is_dynamic(std::uint16_t index) {
   if (place(index, 0) != entry::Place::ram) return false;
   const std::uint16_t first = entry::offset_of(dictionary.find(index, 1));
@@ -54,7 +54,7 @@ static_assert(is_static(0x1601) && is_static(0x1A02));
 static_assert(group(0x1600).subs == group(0x1A00).subs && group(0x1600).subs == group(0x1A01).subs);
 static_assert(group(0x1601).subs == group(0x1A02).subs && group(0x1601).subs != group(0x1600).subs);
 
-// Those without an object are listed as soon as their mapping can change.
+// PDOs that map no object are listed if their mapping can change.
 static_assert(Device::Rpdos::count == 2 && Device::Tpdos::count == 4);
 static_assert([] {
   std::size_t entries = 0;

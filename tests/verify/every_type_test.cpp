@@ -1,4 +1,4 @@
-/// The generated device of every_type.eds: what its tables, its typed objects and its data sheet say is the same.
+/// The generated device of every_type.eds: its tables and its typed objects agree with the EDS.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -63,7 +63,7 @@ std::string label(std::uint16_t index, std::uint8_t sub_index) {
   return text;
 }
 
-/// A number of up to 64 bits as the wire carries it.
+/// A number of up to 64 bits as it is sent, little-endian.
 Bytes wire(std::int64_t number, std::size_t size) {
   Bytes bytes;
   for (std::size_t i = 0; i < size; ++i) bytes.push_back(static_cast<std::uint8_t>(number >> (8 * i)));
@@ -127,7 +127,7 @@ TEST(EveryType, DescribesEachEntry) {
 
 // ---- typed access ----
 
-/// Expects a typed read, then a typed write that the dictionary sees, byte for byte.
+/// Expects a typed read, then a typed write that the dictionary returns byte for byte.
 template <class O>
 void expect_round_trip(const typename O::type& before, const typename O::type& after, const Bytes& after_on_the_wire) {
   Device device;
@@ -241,7 +241,7 @@ TEST(TypedAccess, ExtendsTheSignOfWhatTheDictionaryWrites) {
   EXPECT_EQ(device.store.get<od::integer56_array<3>>(), -3);
 }
 
-// ---- what the types say ----
+// ---- properties of the types ----
 
 TEST(ObjectTypes, CarryAccessAndMapping) {
   using canopen::Access;

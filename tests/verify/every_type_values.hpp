@@ -1,4 +1,4 @@
-/// What each entry of every_type.eds reads as after a reset of node 5: the bytes that SDO sends, low byte first.
+/// The value of each entry of every_type.eds after a reset of node 5: the bytes that SDO sends, little-endian.
 #pragma once
 
 #include <cstdint>

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""docs/footprint.md is what bench/footprint/measure.py prints, but for the figures: those are one compiler's.
+"""docs/footprint.md is the output of bench/footprint/measure.py, except for the figures, which depend on the compiler.
 
     footprint_test.py SOURCE_DIR EDSC
 
-Prints the page. Flash and RAM of a whole device may be 5 % more than the page says.
+Prints the page. Flash and RAM of a whole device may exceed the page by 5 %.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def main() -> int:
     said = dict(WHOLE_DEVICE.findall(written))
     for what, figure in WHOLE_DEVICE.findall(printed):
         if int(figure) > int(said.get(what, 0)) * MOST_GROWTH:
-            problems.append(f"{what}: {figure} bytes; docs/footprint.md says {said.get(what)}")
+            problems.append(f"{what}: {figure} bytes; docs/footprint.md has {said.get(what)}")
     print("\n".join(problems))
     return 1 if problems else 0
 

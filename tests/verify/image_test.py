@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""What a device does not have is not in its image.
+"""The image of a device does not include services that the device does not have.
 
     image_test.py SOURCE_DIR BUILD_DIR
 
-Builds whole nodes for Cortex-M0+ at -Os with and without a service, from what edsc has generated below BUILD_DIR. Prints
-flash and RAM of both.
+Builds complete nodes for Cortex-M0+ at -Os with and without a service, from the code that edsc has generated below BUILD_DIR.
+Prints flash and RAM of both.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ class Case:
     service: str
     having: tuple[str, ...]   # device and flags
     without: tuple[str, ...]
-    symbols: tuple[str, ...]  # in names of functions and tables that only the service needs
+    symbols: tuple[str, ...]  # parts of the names of functions and tables that only the service needs
 
 
 CASES = (

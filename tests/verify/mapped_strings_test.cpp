@@ -1,4 +1,4 @@
-/// The generated device of mapped_strings.eds on a bus: its PDOs carry strings.
+/// The generated device of mapped_strings.eds on a bus: its PDOs map strings.
 #include <gtest/gtest.h>
 
 #include <canopen/node.hpp>
@@ -30,7 +30,7 @@ struct Device {
     bus.sent.clear();
   }
 
-  /// The last frame that goes out now.
+  /// Returns the last frame that was sent.
   canopen::Frame last() {
     node.on_time(now);
     return bus.sent.empty() ? canopen::Frame{} : bus.sent.back();

@@ -1,4 +1,4 @@
-/// The codecs of typed.cpp as one writes them by hand: memcpy for whole bytes, shifts and masks for bits.
+/// Hand-written versions of the codecs of typed.cpp: memcpy for whole bytes, shifts and masks for bits.
 #include <cstring>
 
 #include "codecs.hpp"
@@ -66,7 +66,7 @@ void pack_twelves(Data& data, std::uint16_t a, std::int16_t b, std::uint16_t c, 
   store(&data[6], static_cast<std::uint16_t>(e & 0xFFF));
 }
 void pack_odd(Data& data, bool a, bool b, std::uint64_t c, std::int16_t d) {
-  // 2 + 33 + 12 = 47 bits: four bytes of a, b and c, then what is left of c, and d
+  // 2 + 33 + 12 = 47 bits: four bytes of a, b and c, then the rest of c, and d
   const auto low = static_cast<std::uint32_t>(c);
   const auto high = static_cast<std::uint32_t>(c >> 32) & 1U;
   store(&data[0], static_cast<std::uint32_t>(a) | (static_cast<std::uint32_t>(b) << 1) | (low << 2));

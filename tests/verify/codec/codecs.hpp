@@ -1,4 +1,4 @@
-/// What typed.cpp and by_hand.cpp both define.
+/// The functions that typed.cpp and by_hand.cpp both define.
 #pragma once
 
 #include "layouts.hpp"

@@ -1,4 +1,4 @@
-/// The layouts whose codecs are counted and timed against hand-written ones.
+/// The layouts whose codecs are compared with hand-written ones in instructions and time.
 #pragma once
 
 #include <canopen/pdo.hpp>

@@ -1,4 +1,4 @@
-/// Codecs as PdoLayout makes them. by_hand.cpp has the same functions without it.
+/// Codecs of PdoLayout. by_hand.cpp has the same functions without it.
 #include "codecs.hpp"
 
 namespace codec::typed {

@@ -1,4 +1,4 @@
-/// A whole node as firmware has it. DEVICE and DEVICE_HEADER name the device; with STORED its parameters are stored.
+/// A complete node as in firmware. DEVICE and DEVICE_HEADER name the device; with STORED it stores its parameters.
 #include <canopen/node.hpp>
 #include DEVICE_HEADER
 
