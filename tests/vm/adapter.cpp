@@ -1,5 +1,5 @@
-/// A device that is an SLCAN adapter with a node behind it: `vm_adapter NODE-ID` prints the name of its serial line, a
-/// pseudo-terminal, and runs until SIGTERM.
+/// An SLCAN adapter with a node: `vm_adapter NODE-ID` prints the name of its serial line, a pseudo-terminal, and runs
+/// until SIGTERM.
 #include <fcntl.h>
 #include <poll.h>
 #include <unistd.h>
@@ -23,7 +23,7 @@ class Device {
  public:
   Device(canopen::Descriptor line, canopen::NodeId id) : line_{std::move(line)}, node_{bus_, id} {}
 
-  // What the adapter needs.
+  // The interface for the adapter.
   void write(std::span<const char> text) const { (void)!::write(line_.number(), text.data(), text.size()); }
   bool open(const canopen::SlcanChannel& channel) {
     constexpr std::uint16_t code_of_500_kbit = 6;
@@ -37,7 +37,7 @@ class Device {
   }
   std::uint8_t status() const { return 0; }
 
-  /// Serves the line for ten milliseconds at most.
+  /// Serves the line for at most ten milliseconds.
   void work() {
     pollfd waiting{line_.number(), POLLIN, 0};
     std::array<char, 256> bytes;
@@ -62,7 +62,7 @@ class Device {
   canopen::SlcanAdapter adapter_;
   NodeBus bus_{this};
   canopen::Node<every_service::Device, NodeBus> node_;
-  bool start_due_ = false;  ///< the channel has been opened
+  bool start_due_ = false;  ///< the channel was opened
 };
 
 }  // namespace

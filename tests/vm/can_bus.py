@@ -1,4 +1,4 @@
-"""A raw CAN socket of the kernel, and what the tests in the virtual machine share. Nothing of edsc."""
+"""A raw CAN socket of the kernel, and common functions of the tests in the virtual machine, without code of edsc."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Bus:
         self.socket.send(FRAME.pack(can_id, len(payload), payload.ljust(8, b"\0")))
 
     def drain(self) -> None:
-        """Forgets what has come until now."""
+        """Discards the frames received until now."""
         self.socket.setblocking(False)
         try:
             while self.socket.recv(FRAME.size):
@@ -37,13 +37,13 @@ class Bus:
                 raise
 
     def ask(self, can_id: int, data: str, answer: int, seconds: float = 300.0) -> str:
-        """The first frame with the CAN-ID `answer` after this one has been sent."""
+        """Sends a frame and returns the first one after it with the CAN-ID `answer`."""
         self.drain()
         self.send(can_id, data)
         return self.receive(answer, seconds)
 
     def receive(self, can_id: int, seconds: float = 300.0) -> str:
-        """The next frame with this CAN-ID as hexadecimal digits; others are passed over."""
+        """The data of the next frame with this CAN-ID as hexadecimal digits; ignores other frames."""
         end = time.monotonic() + seconds
         while (left := end - time.monotonic()) > 0:
             self.socket.settimeout(left)
@@ -52,7 +52,7 @@ class Bus:
             except TimeoutError:
                 break
             except OSError as problem:
-                if problem.errno != errno.ENETDOWN:  # told once, of an interface that has been down
+                if problem.errno != errno.ENETDOWN:  # reported once after an interface was down
                     raise
                 continue
             if found == can_id:
@@ -67,7 +67,7 @@ def expect(what: str, got: object, wanted: object) -> None:
 
 
 def run(command: str) -> str:
-    """What a command prints. It must end well."""
+    """The output of a command, which must succeed."""
     result = subprocess.run(command.split(), capture_output=True, text=True, check=False)
     if result.returncode != 0:
         sys.exit(f"{command}: ended with {result.returncode}: {result.stdout}{result.stderr}")
@@ -75,7 +75,7 @@ def run(command: str) -> str:
 
 
 class Program:
-    """A program that runs until it is stopped, and the CPU time that it took."""
+    """A program that runs until it is stopped, with its CPU time."""
 
     def __init__(self, *arguments: str, piped: bool = False) -> None:
         self.process = subprocess.Popen(arguments, stdout=subprocess.PIPE if piped else None, text=True)
@@ -88,7 +88,7 @@ class Program:
             self.process.kill()
 
     def line(self) -> str:
-        """The next line that it prints, where that is piped."""
+        """The next line of its output, which must be piped."""
         return self.process.stdout.readline().strip()
 
     def cpu_seconds(self) -> float:

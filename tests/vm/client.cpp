@@ -1,4 +1,4 @@
-/// The runtime's own SDO client, through sockets, against `vm_node`: `vm_client BUS NODE-ID`, and 0 when all is well.
+/// Tests `vm_node` with the SDO client of the runtime over sockets: `vm_client BUS NODE-ID`. Exit code 0: passed.
 #include <canopen/port/blocking_sdo.hpp>
 #include <canopen/port/host_bus.hpp>
 #include <cstdio>

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Nodes on two CAN controllers of one bus, whose bit rate `ip link` sets.
+"""Nodes on two CAN controllers of one bus; `ip link` sets the bit rate.
 
     controllers_test.py VM_NODE VM_CLIENT VM_FRAMES     in a machine with can0 and can1
 """

@@ -1,5 +1,5 @@
-/// Many frames through two ports: `vm_frames BUS BUS COUNT` sends COUNT frames at full speed on the first and takes
-/// them from the second. None may be lost, none may overtake another one.
+/// Many frames through two ports: `vm_frames BUS BUS COUNT` sends COUNT frames at full speed on the first bus and
+/// receives them from the second. None may be lost or reordered.
 #include <canopen/port/host_bus.hpp>
 #include <cstdio>
 #include <cstdlib>
@@ -8,7 +8,7 @@
 
 namespace {
 
-constexpr std::uint64_t window = 100;  ///< frames on their way: a socket holds more
+constexpr std::uint64_t window = 100;  ///< frames in transit; a socket has space for more
 
 canopen::Frame numbered(std::uint64_t number) {
   canopen::Frame frame{};

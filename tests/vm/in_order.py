@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Several tests in one virtual machine, with the time that each takes: starting a machine takes longer than most of them.
+"""Runs several tests in one virtual machine and prints their times: starting a machine takes longer than most of the tests.
 
     in_order.py COMMAND [ARGUMENT...] [-- COMMAND [ARGUMENT...]]...
 """

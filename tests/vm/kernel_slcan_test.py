@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The kernel's own SLCAN driver on pseudo-terminals: before an adapter with a node behind it, and as an interface that takes
-no more frames while nobody reads its line.
+"""The SLCAN driver of the kernel on pseudo-terminals: with an adapter that has a node, and as an interface that accepts no more
+frames while its line is not read.
 
     kernel_slcan_test.py VM_ADAPTER VM_URGENT      in a machine whose kernel has slcan
 """
@@ -25,7 +25,7 @@ SIOCGIFNAME = 0x8910
 
 
 def attach(line: int) -> str:
-    """Makes a CAN interface of a serial line, and tells its name."""
+    """Attaches a CAN interface to a serial line and returns its name."""
     tty.setraw(line)
     fcntl.ioctl(line, termios.TIOCSETD, struct.pack("i", SLCAN_DISCIPLINE))
     return fcntl.ioctl(line, SIOCGIFNAME, bytes(16)).rstrip(b"\0").decode()
@@ -50,7 +50,7 @@ def node_behind_an_adapter(vm_adapter: str) -> None:
 
 
 def frames_of(line: int, program: subprocess.Popen[str]) -> list[str]:
-    """What comes over the line until the program has ended."""
+    """The frames on the line until the program has ended."""
     text = b""
     while program.poll() is None or select.select([line], [], [], 2.0)[0]:
         if select.select([line], [], [], 0.1)[0]:

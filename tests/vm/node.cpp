@@ -1,5 +1,5 @@
-/// A node for the tests in the virtual machine: `vm_node BUS NODE-ID [serve]` runs until SIGTERM; with `serve` in a
-/// poll loop of its own.
+/// A node for the tests in the virtual machine: `vm_node BUS NODE-ID [serve]` runs until SIGTERM; with `serve` it uses
+/// its own poll loop.
 #include <poll.h>
 
 #include <atomic>

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A node on vcan0: can-utils and the runtime's own client talk to it; its bus fails and comes back; it rests meanwhile.
+"""A node on vcan0: communication with can-utils and the client of the runtime, failure and recovery of its bus, CPU time.
 
     node_on_vcan_test.py VM_NODE VM_CLIENT      in a machine whose kernel has vcan0
 """
@@ -22,13 +22,13 @@ START = "01 05"
 
 
 def listeners() -> int:
-    """Sockets that take all frames of vcan0."""
+    """The number of sockets that receive all frames of vcan0."""
     with open("/proc/net/can/rcvlist_all", encoding="ascii") as file:
         return len(re.findall(r"^ *vcan0 ", file.read(), re.M))
 
 
 def candump(seconds: float, *arguments: str) -> subprocess.Popen[str]:
-    """Ends after so many seconds without a frame."""
+    """Starts candump, which ends after this time without a frame."""
     before = listeners()
     command = ["candump", "-L", "-T", str(int(seconds * 1000)), *arguments]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
@@ -39,7 +39,7 @@ def candump(seconds: float, *arguments: str) -> subprocess.Popen[str]:
 
 
 def frames_of(process: subprocess.Popen[str]) -> list[str]:
-    """As candump -L writes them, without time and interface."""
+    """The frames in the format of candump -L, without time and interface."""
     return re.findall(r"\S+#\S*", process.communicate()[0])
 
 
@@ -57,7 +57,7 @@ def can_utils(bus: Bus) -> None:
 
 
 def filters(bus: Bus) -> None:
-    """The kernel's own list: what a node does not look at does not reach it."""
+    """The filter list of the kernel: a node does not receive frames that it does not use."""
     expect("SDO", bus.ask(0x605, "40 00 10 00 00 00 00 00", 0x585), "43 00 10 00 00 00 00 00")
     with open("/proc/net/can/rcvlist_sff", encoding="ascii") as file:
         listed = set(re.findall(r"^ *vcan0 +([0-9a-f]{3}) ", file.read(), re.M))
@@ -91,8 +91,8 @@ def bus_off(bus: Bus, program: Program) -> None:
     before = program.cpu_seconds()
     expect("silence while the controller is off the bus", bus.receive(0x705, 0.6), "nothing")
     expect("and rest", program.cpu_seconds() - before < 0.3, True)
-    expect("what is told after bus-off", bus.ask(RESTARTED, "00 00 00 00 00 00 00 00", 0x085), "40 81 11 00 00 00 00 00")
-    expect("and that it is over", bus.receive(0x085), "00 00 00 00 00 00 00 00")
+    expect("EMCY after bus-off", bus.ask(RESTARTED, "00 00 00 00 00 00 00 00", 0x085), "40 81 11 00 00 00 00 00")
+    expect("EMCY when it is over", bus.receive(0x085), "00 00 00 00 00 00 00 00")
     expect("bus-off is a communication error: Pre-operational", bus.receive(0x705), "7F")
 
 

@@ -3,7 +3,7 @@
 
     socketcan_drive_test.py PROGRAM        in a machine whose kernel has vcan0
 
-Uses the kernel's own sockets and nothing of edsc: what it sees is what any other node would see.
+Uses sockets of the kernel and no code of edsc: it receives what any other node would receive.
 """
 
 from __future__ import annotations
