@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What `edsc --version` says of the commit: that of a working tree of its own, and nothing where there is none.
+"""The commit in `edsc --version`: that of edsc's own working tree, and nothing without one.
 
     commit_test.py SOURCE_DIR [unittest arguments]
 """

@@ -1,6 +1,6 @@
-"""A project that uses edsc, somewhere else: examples/project, copied.
+"""A project that uses edsc: a copy of examples/project in another folder.
 
-Scripts that use it are called with SOURCE_DIR and BUILD_DIR. BUILD_DIR is a build of edsc, from which it is installed.
+The arguments of the scripts that use it are SOURCE_DIR and BUILD_DIR. BUILD_DIR is a build of edsc, from which it is installed.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ ENVIRONMENT["CMAKE_BUILD_TYPE"] = "Release"
 
 
 def use_compiler_cache(folder: Path) -> None:
-    """Objects compiled below this folder are the same wherever the folder is.
+    """Objects compiled below this folder do not depend on its location.
 
     Its path must not contain a blank: ccache 4.7 does not make such a path relative in the dependency files that it keeps,
     so that a later hit names files of a folder which no longer exists, and the object is compiled again and again.
@@ -36,7 +36,7 @@ def use_compiler_cache(folder: Path) -> None:
 
 
 def run(*command: object, folder: Path | None = None, variables: dict[str, str] | None = None) -> str:
-    """Output of a command that must succeed."""
+    """The output of a command that must succeed."""
     result = subprocess.run([str(word) for word in command], cwd=folder, env=ENVIRONMENT | (variables or {}),
                             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                             errors="replace", timeout=1700)
@@ -46,7 +46,7 @@ def run(*command: object, folder: Path | None = None, variables: dict[str, str] 
 
 
 def copy_sources(to: Path) -> None:
-    """The working tree without what is built or of git."""
+    """Copies the working tree without build folders and git."""
     shutil.copytree(SOURCE_DIR, to, symlinks=True,
                     ignore=shutil.ignore_patterns("build", "out", ".git", ".cache", "__pycache__"))
 
@@ -54,7 +54,7 @@ def copy_sources(to: Path) -> None:
 class Project:
     """A copy of examples/project in `source`; `edsc` replaces its find_package, `more` is appended.
 
-    In a folder with a blank in its path the compiler cache is off (see use_compiler_cache).
+    In a folder with a blank in its path the compiler cache is disabled (see use_compiler_cache).
     """
 
     def __init__(self, source: Path, edsc: str = FROM_PACKAGE, more: str = "", build_dir: Path | None = None) -> None:
@@ -88,7 +88,7 @@ class PackageTest(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder)
 
     def install(self) -> Path:
-        """The prefix of an installed edsc."""
+        """Installs edsc and returns the prefix."""
         prefix = self.folder / "prefix"
         run("cmake", "--install", BUILD_DIR, "--prefix", prefix)
         return prefix

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The functions for CMake: their arguments, and mistakes in them and in the data sheet.
+"""The CMake functions: their arguments, and errors in them and in the EDS.
 
     package_test.py SOURCE_DIR BUILD_DIR [unittest arguments]
 """
@@ -33,7 +33,7 @@ class Arguments(PackageTest):
 
 class Conformance(PackageTest):
     def test_is_a_test_of_the_project(self) -> None:
-        """In which the device does what its application does, at the node-ID that its dictionary or DCF has."""
+        """The device runs its application, at the node-ID of its dictionary or DCF."""
         calls = """
 enable_testing()
 edsc_add_conformance_test(valve_conforms valve APPLICATION valve_application.hpp shop::Valve ARGUMENTS --only "1.*")
@@ -92,7 +92,7 @@ class Schemas(PackageTest):
 class CompilerCache(PackageTest):
     @unittest.skipUnless(shutil.which("ccache"), "SKIPPED: ccache is not installed")
     def test_dependencies_of_a_cached_object_are_those_of_this_copy_of_the_project(self) -> None:
-        """The second copy takes its objects from the cache after the first copy has been deleted."""
+        """The second copy uses objects of the cache after the first copy was deleted."""
         prefix = self.install()
         base = Path(tempfile.mkdtemp(prefix="edsc-cache-")).resolve()
         self.addCleanup(shutil.rmtree, base)

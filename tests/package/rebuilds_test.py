@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What a project builds again when something changes, and that two builds of the same give the same bytes.
+"""What a project rebuilds after a change, and that two builds of the same sources have the same bytes.
 
     rebuilds_test.py SOURCE_DIR BUILD_DIR [unittest arguments]
 """
@@ -95,7 +95,7 @@ class Rebuilds(PackageTest):
 
 @unittest.skipIf(WITHOUT_ARM, WITHOUT_ARM)
 class SameBytes(PackageTest):
-    """In two folders of different names, without a compiler cache between them."""
+    """In two folders with different names, without a common compiler cache."""
 
     def setUp(self) -> None:
         super().setUp()

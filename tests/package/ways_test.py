@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Each way in which a project gets edsc, for the host and for a Cortex-M, as docs/install.md tells it.
+"""Each way to use edsc in a project, for the host and for a Cortex-M, as docs/install.md describes it.
 
     ways_test.py SOURCE_DIR BUILD_DIR [unittest arguments]
 
-The commands and the lines of CMake are those of the document. Its commands run in a copy of the sources without what is
-built and without git.
+The commands and the CMake lines are those of the document. The commands run in a copy of the sources without build folders and
+git.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ BLOCK = re.compile(r"<!-- run by: tests/package/ways_test.py -->\n```(\w+)\n(.*?
 EDSC = BUILD_DIR / "generator/edsc"
 WITHOUT_DPKG = "" if shutil.which("dpkg-shlibdeps") and shutil.which("file") else "SKIPPED: dpkg-dev or file is not installed"
 
-# A toolchain file that looks for everything but programs in its own root.
+# A toolchain file that searches everything but programs in its own root.
 STRICT_TOOLCHAIN = """include("{toolchain}")
 set(CMAKE_FIND_ROOT_PATH "${{CMAKE_CURRENT_LIST_DIR}}/root")
 set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
 """
 
-# What a project may set for itself, and what it must find unchanged behind edsc.
+# Settings of a project, and properties that edsc must not change.
 SETTINGS = """set(CMAKE_CXX_STANDARD 17)
 set(CMAKE_UNITY_BUILD ON)
 set(BUILD_SHARED_LIBS ON)
@@ -50,7 +50,7 @@ message(STATUS "behind edsc: CMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LA
 
 
 def blocks(section: str, language: str) -> list[str]:
-    """Those of a section of the document that are for this test."""
+    """The blocks of a section of the document that are for this test."""
     text = (SOURCE_DIR / "docs/install.md").read_text(encoding="utf-8").split(f"\n## {section}\n")[1].split("\n## ")[0]
     return [block for found, block in BLOCK.findall(text) if found == language]
 
@@ -74,7 +74,7 @@ class Ways(unittest.TestCase):
         return SOURCE_DIR / path.replace("doc/edsc/", "").replace("edsc/schema", "docs/schema")
 
     def built(self) -> None:
-        """Once: edsc by the document's first commands, installed."""
+        """Builds and installs edsc once, by the first commands of the document."""
         if not self.prefix.exists():
             self.document("Installed", 0)
 
@@ -120,7 +120,7 @@ class Ways(unittest.TestCase):
 
     @unittest.skipIf(WITHOUT_ARM, WITHOUT_ARM)
     def test_installed_beside_headers_of_the_host(self) -> None:
-        """The names of all that newlib and libstdc++ have; and a toolchain file that looks in its own root alone."""
+        """The host has headers with the names of all those of newlib and libstdc++. A toolchain file searches only its root."""
         self.built()
         prefix = self.folder / "like usr"
         shutil.copytree(self.prefix, prefix)
@@ -188,8 +188,8 @@ class Ways(unittest.TestCase):
     # ---- sources ----
 
     def test_a_subdirectory(self) -> None:
-        """Which leaves the project around it alone."""
-        # In folders of the same names as what is fetched, so that a compiler cache knows one from the other.
+        """The subdirectory does not change the project that includes it."""
+        # The folders have the same names as with FetchContent, so that a compiler cache can use objects of one for the other.
         line = blocks("A subdirectory", "cmake")[0].replace("(edsc)", "(edsc-src ../edsc-build)")
         project = Project(self.folder / "subdirectory/project", SETTINGS + line + UNCHANGED)
         copy_sources(project.source / "edsc-src")
@@ -206,7 +206,7 @@ class Ways(unittest.TestCase):
 
     @unittest.skipIf(WITHOUT_ARM, WITHOUT_ARM)
     def test_a_subdirectory_for_a_cortex_m(self) -> None:
-        """edsc is built for the host, whatever the environment says of compilers."""
+        """edsc is built for the host, independent of the compilers in the environment."""
         line = blocks("A subdirectory", "cmake")[0].replace("(edsc)", f'("{self.sources}" edsc)')
         toolchain = self.sources / "cmake" / TOOLCHAIN
         project = Project(self.folder / "subdirectory-arm", line, build_dir=self.sources / "m3-a")  # as deep as build/test
@@ -219,7 +219,7 @@ class Ways(unittest.TestCase):
                 del ENVIRONMENT[name]
 
     def test_fetch_content(self) -> None:
-        """From an archive, in a folder for what is fetched."""
+        """FetchContent with an archive."""
         archive = self.folder / "edsc.tar.gz"
         with tarfile.open(archive, "w:gz", compresslevel=1) as tar:
             tar.add(self.sources, "edsc-0.1.0", filter=lambda entry: None if "/build" in entry.name else entry)
@@ -234,7 +234,7 @@ class Ways(unittest.TestCase):
                          f"-DFETCHCONTENT_SOURCE_DIR_EDSC={self.sources}")
 
     def test_sources_with_a_program_that_is_there(self) -> None:
-        """Nothing of edsc is compiled, and its folder has a blank in its path."""
+        """edsc is not compiled, and its folder has a blank in its path."""
         sources = self.folder / "the sources"
         copy_sources(sources)
         conformance = "\nenable_testing()\nedsc_add_conformance_test(valve_conforms valve)\n"
@@ -249,7 +249,7 @@ class Ways(unittest.TestCase):
             self.assertNotIn("edsc_host", (project.build_dir / "build.ninja").read_text())
 
     def test_sources_in_a_folder_with_a_blank(self) -> None:
-        """What its build runs besides compilers."""
+        """Tests the commands of the build other than compilers."""
         sources = self.folder / "more sources"
         copy_sources(sources)
         run("cmake", "-S", sources, "-B", sources / "build", "-G", "Ninja", "-DEDSC_BUILD_TESTS=OFF",
