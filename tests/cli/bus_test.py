@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""edsc bus as a program: where it listens, what it prints, how it ends, and python-can's socketcand interface on it.
+"""The program edsc bus: its ports, its output, its end, and the socketcand interface of python-can with it.
 
     bus_test.py SOURCE_DIR EDSC [unittest arguments]
 """
@@ -23,7 +23,7 @@ FINE, WRONG_USAGE = 0, 2
 
 
 class Bus:
-    """A running `edsc bus` at a free port."""
+    """A running `edsc bus` on a free port."""
 
     def __init__(self, *arguments: str, buses: int = 1) -> None:
         self.process = subprocess.Popen([EDSC, "bus", "--listen", "127.0.0.1:0", *arguments], text=True,
@@ -42,7 +42,7 @@ class Bus:
         self.process.stderr.close()
 
     def end(self, with_signal: int = signal.SIGTERM) -> tuple[int, str, str]:
-        """Exit code, and what it printed behind the addresses, on both streams."""
+        """Ends it and returns the exit code, and what it printed after the addresses, on both streams."""
         self.process.send_signal(with_signal)
         return self.process.wait(timeout=600), self.process.stdout.read(), self.process.stderr.read()
 
@@ -157,7 +157,7 @@ class BusCommand(unittest.TestCase):
 
 
 class PythonCan(unittest.TestCase):
-    """The socketcand interface of python-can, as Debian has it."""
+    """The socketcand interface of python-can as packaged in Debian."""
 
     def test_frames_go_both_ways(self) -> None:
         try:
@@ -173,7 +173,7 @@ class PythonCan(unittest.TestCase):
                 message = second.recv(timeout=600)
                 self.assertEqual((message.arbitration_id, bytes(message.data)), (can_id, data))
             other.say("< sendrtr 705 1 >< send 701 1 5 >")
-            logging.disable()  # it passes the remote frame over, and logs that
+            logging.disable()  # it ignores the remote frame, and logs that
             self.assertEqual(second.recv(timeout=600).arbitration_id, 0x701)
             logging.disable(logging.NOTSET)
             first.shutdown()

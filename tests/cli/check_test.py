@@ -23,7 +23,7 @@ SCHEMA = json.loads((SOURCE_DIR / "tests/fixtures/sarif-2.1.0-subset.schema.json
 
 FINE, INPUT_HAS_ERRORS, WRONG_USAGE = 0, 1, 2
 
-# What a line of the base sheet becomes, and which rule says so.
+# A line of the base EDS, its replacement, and the rule that reports it.
 NOTE = ("FileName=example.eds", "FileName=other.eds", "file-name")
 WARNING = ("SupportedObjects=11", "SupportedObjects=12", "object-list-count")
 ERROR = ("LowLimit=0\nHighLimit=3000\nDefaultValue=100", "DefaultValue=fast", "number-format")
@@ -114,10 +114,10 @@ class Silence(CheckTest):
 
 
 class Allow(CheckTest):
-    """Findings that are expected, with a scope and a reason: in the options file or as a comment."""
+    """Expected findings, with a scope and a reason, in the options file or in a comment."""
 
     def allowed(self, sheet: str, *arguments: str) -> list[tuple]:
-        """(rule, line, kind, reason, line of the allowance) of each finding that is allowed."""
+        """(rule, line, kind, reason, line of the allowance) of each allowed finding."""
         _, findings = self.check(sheet, *arguments)
         self.assertEqual(len(findings["allowed_diagnostics"]), findings["allowed"])
         return [(d["rule"], d["line"], d["allowance"]["kind"], d["allowance"]["reason"], d["allowance"]["line"])

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What edsc promises to those who call it: exit codes, streams, whole output or none, and stable JSON.
+"""The interface of edsc: exit codes, streams, complete output or none, and stable JSON.
 
     cli_test.py SOURCE_DIR EDSC [unittest arguments]
 """
@@ -29,7 +29,7 @@ NOBODY = 65534
 
 FINE, INPUT_HAS_ERRORS, WRONG_USAGE = 0, 1, 2
 
-# A device that is fine but for what a test adds to it.
+# A device without findings, to which the tests add errors.
 SMALL = """[FileInfo]
 FileName=small.eds
 [DeviceInfo]
@@ -77,7 +77,7 @@ AccessType=ro
 
 
 def snapshot(folder: Path) -> dict[str, tuple[bytes, int]]:
-    """Content and time stamp of each file below a folder."""
+    """The content and time stamp of each file below a folder."""
     return {str(path.relative_to(folder)): (path.read_bytes(), path.stat().st_mtime_ns)
             for path in folder.rglob("*") if path.is_file()}
 
@@ -107,7 +107,7 @@ class CommandLine(unittest.TestCase):
 
 class BadInput(CommandLine):
     def refuse(self, path: Path | str, exit_code: int, *words: str) -> None:
-        """Every command refuses it in the same way, and writes nothing."""
+        """Every command rejects the file in the same way, and writes nothing."""
         for arguments in (("generate", path, "-o", self.output), ("check", path), ("dump", path)):
             with self.subTest(command=arguments[0]):
                 self.expect(exit_code, self.edsc(*arguments), *words)
@@ -357,7 +357,7 @@ class Generate(CommandLine):
         self.assertIn("TPDO 1, 1800h and 1A00h: left out", (self.output / "wrong/pdo.hpp").read_text())
 
     def test_refusal_names_the_way_to_go_on(self) -> None:
-        """Only where it helps: an options file is the user's own, and of a file without objects nothing is left."""
+        """Only if it helps: users can correct their options file, and a file without objects leaves nothing to generate."""
         hint = "--keep-going (KEEP_GOING in CMake)"
         self.assertTrue(self.edsc("generate", WRONG, "-o", self.output).stderr.endswith(
             "edsc: nothing was generated. For a file that you cannot change, --keep-going (KEEP_GOING in CMake) generates the "
@@ -376,7 +376,7 @@ class Generate(CommandLine):
                                                 "--keep-going"), "error:", "[no-objects]")
 
     def test_keep_going_makes_opaque_bytes_of_an_unknown_type(self) -> None:
-        """Of what only the maker knows, a master can still move the bytes: as a DOMAIN."""
+        """A master can still transfer the bytes of a type that only the vendor knows, as a DOMAIN."""
         for line in ("DataType=0x99", "DataType=float", "Denotation=x"):
             sheet = self.write("odd.eds", SMALL + f"[2100]\nParameterName=Odd\nObjectType=7\n{line}\nAccessType=rw\n")
             self.expect(INPUT_HAS_ERRORS, self.edsc("generate", sheet, "-o", self.output), "error: ", "[data-type]", "--keep-going")
@@ -492,7 +492,7 @@ class Check(CommandLine):
         device = json.loads(dumped.stdout)
         entry = next(row for row in device["objects"] if row["index"] == 0x2000)["entries"][0]
         self.assertFalse({"low_limit", "high_limit"} & set(entry))
-        nobody = "socketcand:127.0.0.1:1/none"  # a value beyond the limits is refused before the bus is opened
+        nobody = "socketcand:127.0.0.1:1/none"  # a value outside the limits is rejected before the bus is opened
         self.assertNotIn("limit", self.edsc("write", nobody, "5", "2000h", "500", "--eds", sheet).stderr)
         good = self.write("good.eds", sheet.read_text().replace("HighLimit=10\n", "HighLimit=2000\n"))
         self.assertIn("below the low limit", self.edsc("write", nobody, "5", "2000h", "500", "--eds", good).stderr)

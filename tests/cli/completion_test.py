@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Completions and manual page name what the commands have: each command, each option, each word that an option takes.
+"""Completions and manual page include each command, each option, and each word that an option accepts.
 
     completion_test.py SOURCE_DIR EDSC [unittest arguments]
 """
@@ -29,7 +29,7 @@ def run(*arguments: str) -> str:
 
 
 def options_of(text: str) -> set[str]:
-    """The options that a help lists, `-o,--output TEXT REQUIRED  what it is`."""
+    """The options in a help text, `-o,--output TEXT REQUIRED  description`."""
     found = set()
     for line in text.splitlines():
         if match := re.match(r"  (-[\w-]+(?:,-[\w-]+)*)", line):
@@ -43,13 +43,13 @@ def commands_of(text: str) -> list[str]:
 
 
 def arguments_before_commands(text: str) -> list[str]:
-    """What stands for the positionals that a command takes before its own commands: `edsc lss BUS SUBCOMMAND`."""
+    """The names of the positional arguments before the subcommands of a command: `edsc lss BUS SUBCOMMAND`."""
     usage = re.search(r"^Usage: .*?\[OPTIONS\](.*) SUBCOMMAND", text, re.MULTILINE)
     return usage[1].split() if usage else []
 
 
 def all_commands(path: tuple[str, ...] = (), words: tuple[str, ...] = ()) -> dict[tuple[str, ...], str]:
-    """The help of each command, by its path; `words` lead to it, with arguments."""
+    """The help text of each command, by its path; `words` are the path with arguments."""
     text = run(*words, "--help")
     found = {path: text}
     for command in commands_of(text):
@@ -61,7 +61,7 @@ HELP = all_commands()
 
 
 class Groups(unittest.TestCase):
-    """The help lists the commands by what they work on; completion of zsh and manual page follow."""
+    """The help groups the commands by what they work on; so do zsh completion and the manual page."""
 
     def test_of_the_help(self) -> None:
         headings = re.findall(r"^([A-Z][\w ]*):\n((?:  [a-z].*\n(?:   .*\n)*)+)", HELP[()], re.MULTILINE)
@@ -78,10 +78,10 @@ class Groups(unittest.TestCase):
         self.assertEqual(found, {name.upper(): commands for name, commands in GROUPS.items()})
 
 
-@unittest.skipUnless(shutil.which("bash"), "SKIPPED: there is no bash")
+@unittest.skipUnless(shutil.which("bash"), "SKIPPED: bash is not installed")
 class Bash(unittest.TestCase):
     def complete(self, *words: str, folder: str = ".") -> set[str]:
-        """What bash offers behind these words, the last of which is not finished."""
+        """The completions of bash for these words, the last of which is incomplete."""
         quoted = " ".join("'" + word + "'" for word in words)
         script = f"""{run("completion", "bash")}
 compopt() {{ :; }}
@@ -136,9 +136,9 @@ class Zsh(unittest.TestCase):
             for command in commands_of(help_text):
                 self.assertIn(f"'{command}:", function[1])
 
-    @unittest.skipUnless(shutil.which("zsh"), "SKIPPED: there is no zsh")
+    @unittest.skipUnless(shutil.which("zsh"), "SKIPPED: zsh is not installed")
     def test_is_what_zsh_understands(self) -> None:
-        """Loaded as compinit would, with an _arguments that checks what it is given."""
+        """Loads it like compinit, with an _arguments that prints its arguments."""
         script = f"""
 _arguments() {{ for spec in "$@"; do print -r -- "$spec"; done; }}
 _describe() {{ :; }}
@@ -168,14 +168,14 @@ class ManPage(unittest.TestCase):
             self.assertEqual(set(re.findall(r"\\fB(-[\w-]+)\\fR", section[1])), options_of(help_text), title)
             self.assertIn(f".B {title}\n", plain)
 
-    @unittest.skipUnless(shutil.which("groff"), "SKIPPED: there is no groff")
+    @unittest.skipUnless(shutil.which("groff"), "SKIPPED: groff is not installed")
     def test_is_clean_for_groff(self) -> None:
         result = subprocess.run(["groff", "-man", "-ww", "-Tutf8"], input=self.page, capture_output=True, text=True, timeout=600,
                                 check=True)
         self.assertEqual(result.stderr, "")
         self.assertIn("EXIT STATUS", re.sub(".\b", "", result.stdout))
 
-    @unittest.skipUnless(shutil.which("mandoc"), "SKIPPED: there is no mandoc")
+    @unittest.skipUnless(shutil.which("mandoc"), "SKIPPED: mandoc is not installed")
     def test_is_clean_for_mandoc(self) -> None:
         result = subprocess.run(["mandoc", "-Tlint", "-W", "warning"], input=self.page, capture_output=True, text=True, timeout=600,
                                 check=False)

@@ -110,7 +110,7 @@ class Git(CommandLine):
         self.environment = {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_SYSTEM": os.devnull, "GIT_AUTHOR_NAME": "a",
                             "GIT_AUTHOR_EMAIL": "a@example.org", "GIT_COMMITTER_NAME": "a",
                             "GIT_COMMITTER_EMAIL": "a@example.org", "GIT_CEILING_DIRECTORIES": str(self.folder.parent)}
-        for name in ("GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PREFIX"):  # of a hook that runs the tests
+        for name in ("GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PREFIX"):  # set by a hook that runs the tests
             os.environ.pop(name, None)
         self.git("init", "-q", "-b", "main")
         (self.folder / "eds").mkdir()
@@ -142,7 +142,7 @@ class Git(CommandLine):
             self.expect(FINE, result, "object-added", "0 breaking, 1 compatible")
 
     def test_works_in_a_hook(self) -> None:
-        """git sets GIT_DIR there, relative to the top of the working tree."""
+        """In a hook git sets GIT_DIR, relative to the top of the working tree."""
         self.environment["GIT_DIR"] = ".git"
         self.expect(FINE, self.against("HEAD", "eds/device.eds"), "0 breaking, 0 compatible")
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`edsc format`: many files, other nodes, and EDS files of XDD files; the hooks for pre-commit.
+"""`edsc format`: several files, other node-IDs, and EDS files from XDD files; the hooks for pre-commit.
 
     format_test.py SOURCE_DIR EDSC [unittest arguments]
 """
@@ -71,7 +71,7 @@ class Comments(CommandLine):
 
 
 class AnotherNode(CommandLine):
-    """The values of a DCF that follow the node-ID go with it to another node."""
+    """The node-ID-dependent values of a DCF change with its node-ID."""
 
     def make(self, node: int, source: Path, *options: object) -> str:
         result = self.edsc("format", source, "--dcf", "--node-id", node, *options)
@@ -115,7 +115,7 @@ class AnotherNode(CommandLine):
 
 
 def device_of(view: object) -> object:
-    """A dump without what an EDS and an XDD of the same device spell in their own way."""
+    """A dump without the parts that EDS and XDD of the same device spell differently."""
     if isinstance(view, dict):
         return {key: device_of(value) for key, value in view.items()
                 if key not in ("line", "column", "source", "file_name", "eds_version") and not key.endswith("_line")}
@@ -183,7 +183,7 @@ class FromXdd(CommandLine):
 
 
 class Hooks(CommandLine):
-    """.pre-commit-hooks.yaml, as pre-commit would run its entries: with the names of the changed files behind them."""
+    """.pre-commit-hooks.yaml: its entries run as by pre-commit, followed by the names of the changed files."""
 
     def setUp(self) -> None:
         super().setUp()

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The program is built with what makes mistakes in it harder to exploit, as its ELF file shows.
+"""The ELF file of the program has the options that make errors in it harder to exploit.
 
     hardening_test.py SOURCE_DIR EDSC [unittest arguments]
 """
@@ -38,7 +38,7 @@ class Hardening(unittest.TestCase):
         self.assertTrue([name for name in symbols if name.endswith("_chk")], "no fortified function of the C library")
 
     def test_indirect_branches_have_marked_targets(self) -> None:
-        """CET of x86: main is a target. The note in the file is missing where the C library's start-up code is without."""
+        """CET of x86: main is a target. The file has the note only if the start-up code of the C library has it."""
         if "X86-64" not in self.readelf("--file-header") or not shutil.which("objdump"):
             print("SKIPPED: not x86-64, or no objdump")
             self.skipTest("SKIPPED: not x86-64")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What edsc writes to: files, devices, FIFOs, symlinks and standard output, also where they take nothing.
+"""Output of edsc: to files, devices, FIFOs, symlinks and standard output, also if they cannot be written.
 
     output_test.py SOURCE_DIR EDSC [unittest arguments]
 """
@@ -53,7 +53,7 @@ class Output(unittest.TestCase):
         return self.edsc("format", SHEET).stdout
 
     def device(self, name: str, minor: int) -> Path:
-        """A character device of the test's own: what happens to it harms nobody."""
+        """A character device of the test itself, so that an error does no harm."""
         path = self.folder / name
         try:
             os.mknod(path, stat.S_IFCHR | 0o600, os.makedev(MEMORY_DEVICES, minor))
@@ -163,7 +163,7 @@ class SeveralAtOnce(Output):
         return contents(folder)
 
     def test_leave_the_headers_of_one_of_them(self) -> None:
-        """None fails, and what is there at the end is a whole set."""
+        """No run fails, and the result is the complete set of one of them."""
         ways = [(SHEET,), (SHEET, "--static-mapping"), (OTHER_SHEET,), (OTHER_SHEET, "--node-id", 5)]
         sets = [self.headers(*way) for way in ways]
         self.assertEqual(len({tuple(sorted(one.items())) for one in sets}), len(sets))
@@ -178,7 +178,7 @@ class SeveralAtOnce(Output):
 
 class FullDisk(Output):
     def test_changes_nothing(self) -> None:
-        """A limit on the size of files fails as a full disk does."""
+        """A limit on the file size fails like a full disk."""
         arguments = ("generate", SHEET, "-o", "out", "--name", NAME)
         self.expect(FINE, self.edsc(*arguments))
         sizes = sorted(map(len, contents(self.folder).values()))
@@ -186,7 +186,7 @@ class FullDisk(Output):
             path.write_text("old")
         before = contents(self.folder)
         for size in (sizes[0] - 1, sizes[-1] - 1):
-            result = self.edsc(*arguments, restore_signals=False,  # SIGXFSZ stays ignored
+            result = self.edsc(*arguments, restore_signals=False,  # SIGXFSZ remains ignored
                                preexec_fn=lambda size=size: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)))
             self.expect(WRONG_USAGE, result, "File too large")
             self.assertEqual(contents(self.folder), before)
@@ -215,7 +215,7 @@ class FullDisk(Output):
 
 
 class PackedInput(Output):
-    """A gzip file that is made to fill the memory."""
+    """A gzip file that would fill the memory."""
 
     def pack(self, piece: bytes, count: int) -> Path:
         packer = zlib.compressobj(1, wbits=31)
@@ -240,7 +240,7 @@ class PackedInput(Output):
 
 
 class StandardOutput(Output):
-    """A command whose output is lost has not succeeded."""
+    """A command fails if its output is lost."""
 
     COMMANDS = (
         ("--help",), ("--version",), ("check", "--help"), ("generate", "--help"),

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Files that nobody writes, but that somebody may hand in: edsc ends with each within a bounded time.
+"""Unusual, possibly malicious files: edsc ends within a bounded time for each.
 
     pathological_test.py SOURCE_DIR EDSC [--times]
 
-Makes files of one to four MB in a temporary folder and runs `edsc check`, `generate`, `dump` and `format` on each. The limit
-of 10 s of CPU time for each MB is a guard against hangs and steps of quadratic cost, wide enough for a slow machine and
-sanitizers; how long edsc takes is shown by bench/.
+Creates files of one to four MB in a temporary folder and runs `edsc check`, `generate`, `dump` and `format` on each. The limit
+of 10 s of CPU time per MB detects hangs and steps of quadratic cost, and is sufficient for a slow machine and sanitizers;
+bench/ measures the time of edsc.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def repeated(text: str, megabytes: float) -> str:
 
 
 def counted(template: str, megabytes: float) -> str:
-    """The template again and again, `{i}` being 0, 1, 2, ... and `{i:...}` the same in another form."""
+    """The template repeated, with `{i}` = 0, 1, 2, ...; `{i:...}` formats the number."""
     length = len(template.format(i=123456))
     return "".join(template.format(i=i) for i in range(int(megabytes * MB / length)))
 
@@ -56,7 +56,7 @@ def objects(make: Callable[[int], str], megabytes: float, first: int = 0x1000) -
 
 
 def mapping(index: int) -> str:
-    """A mapping parameter of 254 entries, each of which maps what is not there."""
+    """A mapping parameter of 254 entries, each of which maps a missing object."""
     text = f"[{index:04X}]\nParameterName=Mapping\nObjectType=9\nSubNumber=255\n"
     for sub in range(255):
         value = "254" if sub == 0 else "0x20000108"
@@ -73,7 +73,7 @@ def pdos() -> str:
     return "".join(communication(0x1400 + i) + communication(0x1800 + i) for i in range(512)) + objects(mapping, 2, 0x1600)
 
 
-# Each is a data sheet; the number behind it is not its size but how many of something it has.
+# The content of each file by its name. The numbers in the calls are megabytes, or indices with `objects`.
 FILES: dict[str, Callable[[], str]] = {
     "one_long_line": lambda: repeated("x", 4),
     "one_long_key": lambda: "[1000]\n" + repeated("x", 2) + "=1\n",

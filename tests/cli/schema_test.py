@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""The schemas of docs/schema describe what edsc prints and reads: `edsc dump` over all EDS files, options files and files of
+"""The schemas of docs/schema describe the output and input of edsc: `edsc dump` for all EDS files, options files and files of
 deviations.
 
     schema_test.py SOURCE_DIR EDSC [unittest arguments]
 
-The vendors' files are no part of this repository; without them (see corpus_test.py) that part is skipped.
+The files of vendors are not part of this repository; without them (see corpus_test.py) that part is skipped.
 """
 
 from __future__ import annotations
