@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""What edsc decode says: golden outputs of small logs, and how it behaves between pipes.
+"""The output of edsc decode for small logs, and its behaviour in pipes.
 
     decode_test.py SOURCE_DIR EDSC [--update | unittest arguments]
 
-A case in cases/ is a comment, the arguments, a log, and what edsc makes of it, one behind the other. `--update` writes
-what edsc makes of it now: look at the difference before you commit it.
+A case in cases/ is a comment, the arguments, a log, and the output of edsc, in this order. `--update` writes the present
+output: review the difference before you commit it.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class Case:
         self.arguments = re.search(r"^edsc decode (.*)$", self.head, re.MULTILINE)[1].split()
 
     def now(self) -> str:
-        """The case with what edsc makes of it."""
+        """The case with the present output of edsc."""
         result = edsc(*self.arguments, log=self.log)
         errors = f"--- errors\n{result.stderr}" if result.stderr else ""
         return f"{self.head}--- log\n{self.log}--- output\n{result.stdout}{errors}--- exit {result.returncode}\n"
@@ -72,7 +72,7 @@ class Cases(unittest.TestCase):
             self.assertIn(f" {label}", outputs)
 
     def test_are_the_same_in_json(self) -> None:
-        """Each line of text has its object, which obeys the schema and ends with the same words."""
+        """Each line of text has an object, which conforms to the schema and ends with the same words."""
         import jsonschema  # noqa: PLC0415
 
         validator = jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text()))
@@ -144,7 +144,7 @@ class Streams(unittest.TestCase):
 
     def read_soon(self, descriptor: int) -> bytes:
         ready, _, _ = select.select([descriptor], [], [], SOON)
-        self.assertTrue(ready, "nothing came")
+        self.assertTrue(ready, "no output")
         return os.read(descriptor, 65536)
 
     def test_a_line_is_shown_at_once(self) -> None:
@@ -154,7 +154,7 @@ class Streams(unittest.TestCase):
             self.assertEqual(self.read_soon(process.stdout.fileno()).count(b"operational"), 1, number)
         process.stdin.write(b"can0 7")
         ready, _, _ = select.select([process.stdout], [], [], 0.2)
-        self.assertFalse(ready, "half a line is no frame")
+        self.assertFalse(ready, "an incomplete line is not a frame")
         process.stdin.write(b"06#04\n")
         self.assertIn(b"stopped", self.read_soon(process.stdout.fileno()))
         process.stdin.close()
@@ -185,7 +185,7 @@ class Streams(unittest.TestCase):
 
     def test_a_full_disk_is_told(self) -> None:
         if not os.path.exists("/dev/full"):
-            self.skipTest("SKIPPED: there is no /dev/full")
+            self.skipTest("SKIPPED: no /dev/full")
         with open("/dev/full", "wb") as full:
             process = self.start("-", stdout=full, stderr=subprocess.PIPE)
             _, errors = process.communicate(b"can0 706#05\n", timeout=SOON)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""edsc decode names every frame of the demo's network.
+"""edsc decode names every frame of the demo network.
 
     demo_test.py SOURCE_DIR EDSC DEMO
 """

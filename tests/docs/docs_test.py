@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""The documents are true: their commands run, their code is that of files which are built and tested, their links lead
-somewhere, and what they say a command prints is what it prints.
+"""The documents are correct: their commands succeed, their code is in files that are built and tested, the targets of their
+links exist, and the output of commands is as printed.
 
     docs_test.py SOURCE_DIR EDSC
 
 In README.md and docs/*.md
 - each line of a ```sh block is run in a copy of the repository, with edsc in the PATH. `./demo.sh` builds and runs there;
-  `./test.sh` is not run by itself, only looked for.
+  `./test.sh` is not run, but must exist.
 - a block under `<!-- run by: path -->` is run by that test, which names the document.
-- a block under `<!-- path -->` stands in that file, letter by letter.
-- a block under `<!-- output: command -->` is what the command prints.
+- a block under `<!-- path -->` is part of that file, character by character.
+- a block under `<!-- output: command -->` is the output of the command.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ def check_commands(document: Path, text: str, folder: Path, environment: dict[st
         program = folder / shlex.split(line)[0]
         if line in NOT_RUN_HERE:
             if not os.access(program, os.X_OK):
-                problems.append(f"{document}: {line}: no such program")
+                problems.append(f"{document}: {line}: not an executable program")
             continue
         result = run(line, folder, environment)
         if result.returncode != 0:
-            problems.append(f"{document}: `{line}` ended with {result.returncode}:\n{result.stdout}{result.stderr}")
+            problems.append(f"{document}: `{line}` failed with exit code {result.returncode}:\n{result.stdout}{result.stderr}")
     return problems
 
 
@@ -53,10 +53,10 @@ def check_block(document: Path, block: re.Match[str], source: Path, folder: Path
         return [] if printed == text else [f"{document}: {mark} differs; it prints:\n{printed}"]
     if mark and mark.startswith("run by: "):
         named = document.name in (source / mark.removeprefix("run by: ")).read_text(encoding="utf-8")
-        return [] if named else [f"{document}: {mark}: which does not name the document"]
+        return [] if named else [f"{document}: {mark}: the test does not name the document"]
     if mark:
         found = text in (source / mark).read_text(encoding="utf-8")
-        return [] if found else [f"{document}: the block under {mark} does not stand in that file"]
+        return [] if found else [f"{document}: the block under {mark} is not in that file"]
     if block["language"] == "sh":
         return check_commands(document, text, folder, environment)
     return []
@@ -65,7 +65,7 @@ def check_block(document: Path, block: re.Match[str], source: Path, folder: Path
 def check_links(document: Path, text: str, source: Path) -> list[str]:
     prose = BLOCK.sub("", text)
     return [
-        f"{document}: link to {target} leads nowhere"
+        f"{document}: the target of link {target} does not exist"
         for target in LINK.findall(prose)
         if not (source / document).parent.joinpath(target).exists()
     ]

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""generated/ holds, byte for byte, what edsc makes of the reference devices; from wherever it is called.
+"""generated/ is, byte for byte, the output of edsc for the reference devices, independent of the working directory.
 
     golden_test.py SOURCE_DIR EDSC
 """
@@ -33,7 +33,7 @@ def compare(committed: dict[str, bytes], made: dict[str, bytes], command: str) -
     problems = []
     for name in sorted(committed.keys() | made.keys()):
         if name not in made:
-            problems.append(f"generated/{name}: no data sheet makes this file any more: delete it")
+            problems.append(f"generated/{name}: not generated from any EDS: delete it")
         elif name not in committed:
             problems.append(f"generated/{name}: missing; update with: {command}")
         elif committed[name] != made[name]:
@@ -45,7 +45,7 @@ def compare(committed: dict[str, bytes], made: dict[str, bytes], command: str) -
 def main() -> int:
     source_dir, edsc = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
     sheets = sorted(path.name for path in (source_dir / "eds").glob("*.eds"))
-    problems = [] if sheets else ["eds/ holds no data sheet"]
+    problems = [] if sheets else ["eds/ has no EDS"]
     with tempfile.TemporaryDirectory() as temporary:
         scratch = Path(temporary)
         for sheet in sheets:
@@ -53,9 +53,9 @@ def main() -> int:
             generate(edsc, str(source_dir / "eds" / sheet), "absolute", scratch)
         relative, absolute = contents(scratch / "relative"), contents(scratch / "absolute")
     problems += compare(contents(source_dir / "generated"), relative, "tests/golden/regenerate.sh " + str(edsc))
-    problems += [f"{name}: differs when edsc is called with an absolute path from another folder"
+    problems += [f"{name}: differs if edsc is called with an absolute path from another folder"
                  for name in sorted(relative) if absolute.get(name) != relative[name]]
-    print("\n".join(problems) if problems else f"{len(relative)} files of {len(sheets)} devices are what edsc makes")
+    print("\n".join(problems) if problems else f"{len(relative)} files of {len(sheets)} devices are the output of edsc")
     return 1 if problems else 0
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Brings generated/ up to date with the data sheets of the reference devices, the templates and edsc.
+# Updates generated/ from the EDS files of the reference devices, the templates and edsc.
 #   tests/golden/regenerate.sh [EDSC]      EDSC: build/test/generator/edsc by default
 set -euo pipefail
 cd "$(dirname "$0")/../.."

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Each behaviour that a manual describes is shown by a test, or it is said why not; docs/manuals.md lists them all.
+"""Each behaviour that a manual describes has a test or a reason; docs/manuals.md lists all of them.
 
-    manuals_test.py SOURCE_DIR [--write]      --write makes docs/manuals.md anew
+    manuals_test.py SOURCE_DIR [--write]      --write generates docs/manuals.md
 
-NNN.md holds what manual NNN describes, one item a line: `- [NNN.n] text`.
-- A test that shows items says so in the lines right above it: `// shows 003.47, 004.58..004.66` above a TEST of
+NNN.md has the statements of manual NNN, one item per line: `- [NNN.n] text`.
+- A test that shows items lists them in the lines directly above it: `// shows 003.47, 004.58..004.66` above a TEST of
   GoogleTest, `# shows ...` in a trace, or above a function or the first statement of a Python test.
-- `// open ...` stands above a test that does not pass yet and is named DISABLED_ for that.
+- `// open ...` is above a test that does not pass yet and therefore has a name with DISABLED_.
 - out_of_reach.tsv: numbers, one of KINDS, reason.
-- readings.tsv: numbers, and which reading was taken where a manual is not clear or contradicts itself.
+- readings.tsv: numbers, and the reading of a statement that is unclear or contradicts another one.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class Item:
 def numbers_in(text: str) -> list[str]:
     """`003.1, 003.4..003.6` as single numbers."""
     if not all(NUMBER.fullmatch(part) for part in text.split(", ")):
-        raise ValueError(f"'{text}' is no list of numbers")
+        raise ValueError(f"'{text}' is not a list of numbers")
     return [f"{m[1]}.{n}" for m in NUMBER.finditer(text) for n in range(int(m[2]), int(m[3] or m[2]) + 1)]
 
 
@@ -61,14 +61,14 @@ def read_items(folder: Path, problems: list[str]) -> dict[str, Item]:
         for line in (folder / f"{manual}.md").read_text(encoding="utf-8").splitlines():
             if match := ITEM.fullmatch(line):
                 if match[1] in items:
-                    problems.append(f"[{match[1]}] exists twice")
+                    problems.append(f"duplicate item [{match[1]}]")
                 if not match[1].startswith(manual):
-                    problems.append(f"{manual}.md: [{match[1]}] is of another manual")
+                    problems.append(f"{manual}.md: [{match[1]}] belongs to another manual")
                 items[match[1]] = Item(match[1], match[2], heading)
             elif match := HEADING.fullmatch(line):
                 heading = match[1]
             elif line.startswith("- "):
-                problems.append(f"{manual}.md: no number: {line}")
+                problems.append(f"{manual}.md: missing item number: {line}")
     return items
 
 
@@ -83,12 +83,12 @@ def read_rows(path: Path, columns: int, items: dict[str, Item], problems: list[s
             if number in items:
                 rows.append((items[number], cells[1:]))
             else:
-                problems.append(f"{path.name}:{count}: there is no [{number}]")
+                problems.append(f"{path.name}:{count}: [{number}] does not exist")
     return rows
 
 
 def test_below(path: Path, lines: list[str], at: int) -> str | None:
-    """The test that an annotation in line `at` belongs to."""
+    """The test of an annotation in line `at`."""
     if path.suffix == ".trace":
         return f"{path.stem} (trace)"
     while at < len(lines) and lines[at].lstrip().startswith(("//", "#")):
@@ -115,7 +115,7 @@ def read_tests(tests: Path, items: dict[str, Item], problems: list[str]) -> None
             place = f"{path.relative_to(tests)}:{at + 1}"
             test = test_below(path, lines, at)
             if test is None:
-                problems.append(f"{place}: no test stands below")
+                problems.append(f"{place}: no test follows")
                 continue
             if path.suffix != ".trace" and path.name not in built:
                 problems.append(f"{place}: no CMakeLists.txt names {path.name}")
@@ -125,13 +125,13 @@ def read_tests(tests: Path, items: dict[str, Item], problems: list[str]) -> None
             for number in numbers_in(match[2]):
                 item = items.get(number)
                 if item is None:
-                    problems.append(f"{place}: there is no [{number}]")
+                    problems.append(f"{place}: [{number}] does not exist")
                 elif test not in item.tests:
                     item.tests.append(test)
                     if disabled and item.kind != "open":
-                        problems.append(f"{place}: [{number}] is not open in out_of_reach.tsv")
+                        problems.append(f"{place}: [{number}] is not `open` in out_of_reach.tsv")
                     elif not disabled and item.kind:
-                        problems.append(f"{place}: [{number}] is shown, but out_of_reach.tsv has it as {item.kind}")
+                        problems.append(f"{place}: [{number}] is shown, but is `{item.kind}` in out_of_reach.tsv")
 
 
 INTRODUCTION = """# Manuals
@@ -187,7 +187,7 @@ def main() -> int:
     items = read_items(folder, problems)
     for item, (kind, reason) in read_rows(folder / "out_of_reach.tsv", 3, items, problems):
         if item.kind:
-            problems.append(f"out_of_reach.tsv has [{item.number}] twice")
+            problems.append(f"out_of_reach.tsv: duplicate item [{item.number}]")
         if kind not in KINDS or not reason:
             problems.append(f"out_of_reach.tsv: [{item.number}] is '{kind}', because '{reason}'")
         item.kind, item.reason = kind, reason

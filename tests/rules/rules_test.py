@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
-"""Each rule fires on its wrong example, where the example says, and not on its right one; docs/rules.md shows them all.
+"""Each rule reports its wrong example, at the position in the example, and not its right one; docs/rules.md has all examples.
 
-    rules_test.py SOURCE_DIR EDSC [--write]      --write makes docs/rules.md anew
+    rules_test.py SOURCE_DIR EDSC [--write]      --write generates docs/rules.md
 
-examples.txt holds for each rule `@ id`, then `@@ bad` and `@@ good`, each followed by what it changes in base.eds; a rule may
-have several such pairs:
-- `[section]` names the section that the lines below belong to; a new one is added at the end, and to its object list
-- `Key=value` replaces the line with this key, or adds one; `+line` adds it as it is; `-Key` and `-[section]` take away
-- of a new object, missing keys mean a rw VAR of UNSIGNED8; SubNumber counts the sub-objects unless it is changed itself
-- a line with nothing but `^` says that the finding stands in the line above, in this column; without, in line 1
-Words behind `bad` and `good`: `raw` (the whole file, not a change), `escaped` (Python's escapes, and `x{n}` for n times
-x), `file=NAME`, `column=N` (of the line with the caret), `command=generate|format` (in place of check), `missing` (no
-file). `@@ bad options` is the options file. `severity=S` says which one the finding has where the rule has two.
+examples.txt has for each rule `@ id`, then `@@ bad` and `@@ good`, each followed by its changes of base.eds; a rule may have
+several such pairs:
+- `[section]` names the section of the lines below; a new one is added at the end, and to its object list
+- `Key=value` replaces the line with this key, or adds one; `+line` adds it as it is; `-Key` and `-[section]` remove
+- a new object with missing keys is a rw VAR of UNSIGNED8; SubNumber is the number of sub-objects unless it is set
+- a line with only `^` means that the position of the finding is in the line above, in this column; without it, in line 1
+Words after `bad` and `good`: `raw` (the whole file, not a change), `escaped` (Python's escapes, and `x{n}` for n times
+x), `file=NAME`, `column=N` (of the line with the caret), `command=generate|format` (instead of check), `missing` (no
+file). `@@ bad options` is the options file. `severity=S` is the severity of the finding if the rule has two.
 
-Whatever fires in any of the examples is a rule of the table, with a severity that its row has.
+Each finding of an example must be of a rule of the table, with a severity of its row.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ NEW_OBJECT_KEYS = {"ParameterName": "Example", "ObjectType": "0x7", "DataType": 
 @dataclass
 class Line:
     text: str
-    column: int | None = None  # where a finding is expected
+    column: int | None = None  # of the expected finding
 
 
 @dataclass
@@ -104,7 +104,7 @@ def read_examples(path: Path) -> dict[str, list[Example]]:
 
 
 class Sheet:
-    """The base sheet while a patch is applied."""
+    """The base EDS while changes are applied."""
 
     def __init__(self, text: str) -> None:
         self.head: list[Line] = []
@@ -205,7 +205,7 @@ class Place:
 
 
 def run(edsc: Path, folder: Path, example: Example, kind: str, base: str) -> tuple[list[tuple[str, str, Place]], Place]:
-    """What edsc finds in an example, and where its carets point."""
+    """The findings of edsc in an example, and the position of its caret."""
     block = example.blocks.get(kind, Block([kind]))
     file = block.option("file", "example.eds")
     lines = lines_of(block, base, file)
@@ -233,13 +233,13 @@ def check_example(edsc: Path, example: Example, base: str, severities: dict[str,
             found, expected = run(edsc, Path(folder), example, kind, base)
         for rule, severity, _ in found:
             if severity not in severities.get(rule, []):
-                problems.append(f"{example.rule}: {rule} fires as a {severity}, which its row does not have")
+                problems.append(f"{example.rule}: {rule} is reported as a {severity}, which its row does not have")
         wanted = example.blocks.get(kind, Block([])).option("severity", "")
         places = [place for rule, severity, place in found if rule == example.rule and severity.startswith(wanted)]
         if kind == "good" and places:
-            problems.append(f"{example.rule}: the right example fires it at {places}")
+            problems.append(f"{example.rule}: reported for the right example at {places}")
         if kind == "bad" and expected not in places:
-            problems.append(f"{example.rule}: the wrong example should fire it at {expected}; found {found}")
+            problems.append(f"{example.rule}: expected for the wrong example at {expected}, got {found}")
     return problems
 
 
@@ -298,7 +298,7 @@ def main() -> int:
     ids = [rule["id"] for rule in rules]
     severities = {rule["id"]: rule["severities"] for rule in rules}
     problems = [f"{rule}: no example" for rule in ids if rule not in examples]
-    problems += [f"{rule}: an example, but no rule" for rule in examples if rule not in ids]
+    problems += [f"{rule}: example of an unknown rule" for rule in examples if rule not in ids]
     clean = subprocess.run([edsc, "check", "base.eds", "--silence", "file-name"], cwd=folder, capture_output=True,
                            text=True)
     if clean.stdout.strip():
