@@ -1,5 +1,6 @@
 // expect: an event timer is for RPDOs, and for TPDOs of transmission types 254 and 255
-// .*canopen::TpdoNumber<1>.*false, 240, 0, 50, false} A synchronous TPDO is sent at its SYNC.
+// expect: canopen::TpdoNumber<1> .*false, 240, 0, 50, false}
+// A synchronous TPDO is sent at its SYNC.
 #include <canopen/pdo_check.hpp>
 #include <every_type/device.hpp>
 

@@ -18,6 +18,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from support.compilers import CLANG, GCC, SKIPPED, Compiler, compile_only, in_parallel, those_installed  # noqa: E402
 
 EXPECTATION = re.compile(r"^// expect: (.+)$", re.MULTILINE)
+CUT_OFF = re.compile(r"^// \.\*", re.MULTILINE)  # of a line that was wrapped
 UNUSED_IS_FINE = ("-Wno-unused",)
 
 
@@ -32,6 +33,8 @@ def run_case(job: tuple[Compiler, Path, tuple[Path, ...]]) -> str:
     expectations = EXPECTATION.findall(case.read_text())
     if not expectations:
         return f"{case.name}: its first line is not `// expect: regex`"
+    if CUT_OFF.search(case.read_text()):
+        return f"{case.name}: an expectation continues on the next line, which is not checked"
     good = compile_only(compiler, case, include, ("-DGOOD", *UNUSED_IS_FINE))
     if good.returncode != 0:
         return f"{compiler.name}, {case.name}: does not compile with GOOD:\n{good.stderr[:2000]}"
