@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "commands/commands.hpp"
+#include "device/option_table.hpp"
 #include "diagnostics/place.hpp"
 #include "diagnostics/print.hpp"
 #include "diagnostics/rule.hpp"
@@ -37,6 +38,7 @@ struct Settings {
   bool strict = false;
   bool keep_going = false;
   bool list_rules = false;
+  bool list_options = false;
   std::string explained_rule;
   ColorOption color;
 };
@@ -71,6 +73,27 @@ int list_rules(const std::string& format) {
       print_visibly(stdout, "{:<28} {:<8} {} ({})\n", rule.id, to_string(rule.severity), rule.meaning, rule.source);
     }
     rows.push_back(to_json(rule));
+  }
+  if (format != "text") fmt::print("{}\n", json_text(rows));
+  return exit_fine;
+}
+
+nlohmann::ordered_json to_json(const OptionRow& row) {
+  nlohmann::ordered_json json = {{"name", row.name}, {"group", row.group}, {"form", to_string(row.form)}, {"meaning", row.meaning}};
+  if (!row.default_value.empty()) json["default"] = nlohmann::ordered_json::parse(row.default_value);
+  if (!row.default_text.empty()) json["default_text"] = row.default_text;
+  if (row.form == OptionForm::number) json.update({{"minimum", row.min}, {"maximum", row.max}});
+  return json;
+}
+
+int list_options(const std::string& format) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const OptionRow& row : options_table) {
+    const std::string_view value = row.default_text.empty() ? row.default_value : row.default_text;
+    if (format == "text") {
+      print_visibly(stdout, "{:<36} {}{}\n", row.name, row.meaning, value.empty() ? "" : fmt::format(" (default: {})", value));
+    }
+    rows.push_back(to_json(row));
   }
   if (format != "text") fmt::print("{}\n", json_text(rows));
   return exit_fine;
@@ -138,6 +161,7 @@ class Report {
 
 int check(const Settings& settings) {
   if (settings.list_rules) return list_rules(settings.format);
+  if (settings.list_options) return list_options(settings.format);
   if (!settings.explained_rule.empty()) return explain(*find_rule(settings.explained_rule), settings.format);
   if (settings.paths.empty()) {
     print_visibly(stderr, "edsc check: FILE is required\n");
@@ -188,6 +212,7 @@ void add_check_command(CLI::App& app, int& exit_code) {
   command->add_flag("--keep-going", settings->keep_going, keep_going_help);
   command->add_flag("--strict", settings->strict, "warnings count as errors; notes do not");
   command->add_flag("--list-rules", settings->list_rules, "list the rules and end");
+  command->add_flag("--list-options", settings->list_options, "list the members of an options file and end");
   command->add_option("--explain", settings->explained_rule, "describe a rule and end")->check(check_rule);
   settings->color.add_to(*command);
   command->callback([settings, &exit_code] { exit_code = check(*settings); });

@@ -10,9 +10,11 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 
 #include "device/identifier.hpp"
 #include "device/index_range.hpp"
+#include "device/option_table.hpp"
 #include "eds/number.hpp"
 #include "text/suggestion.hpp"
 
@@ -21,52 +23,9 @@ namespace {
 
 using nlohmann::json;
 
-/// Members of canopen::DeviceOptions, by the type of their value.
-constexpr std::array runtime_flags = {
-    "pdo_extended_ids",
-    "tpdo_remote_frames",
-    "tpdo_remote_frames_can_be_disabled",
-    "tpdo_remote_types",
-    "inhibit_time_writable_while_valid",
-    "event_driven_on_change",
-    "tpdo_acyclic_on_change",
-    "pdo_mapping_writable_while_valid",
-    "mpdo",
-    "emcy_cob_id_writable_while_valid",
-    "emcy_stopped_keeps_last",
-    "error_history_keeps_resets",
-    "sdo_upload_size_indicated",
-    "sdo_length_codes",
-    "sdo_block_transfer",
-    "restore_needs_power_cycle",
-};
-constexpr std::array runtime_masks = {"pdo_cob_id_writable", "sync_cob_id_writable", "emcy_cob_id_writable"};
-constexpr std::array runtime_abort_codes = {"pdo_mapping_abort_code", "error_history_abort_code",
-                                            "storage_signature_abort_code"};
-
-/// Members that are not runtime options, or have another kind of value.
-constexpr std::array<std::string_view, 16> structured_options = {
-    "names",          "string_capacity", "settable",          "silence", "allow",      "connected_modules",
-    "static_mapping", "no_event",        "emergency_info",    "storing", "lss",        "stored_eds",
-    "$schema",        "reset_emergency", "pdo_reserved_can_ids", "zero_terminated_strings",
-};
-
 constexpr std::array<std::string_view, 3> allow_members = {"rule", "object", "reason"};
 constexpr const char* allow_form =
     "expected an array of objects: [{\"rule\": \"pdo-empty\", \"object\": \"1A00h\", \"reason\": \"mapped at start\"}]";
-
-struct NumberOption {
-  const char* name;
-  std::uint16_t low;
-  std::uint16_t high;
-};
-
-/// The longest inhibit time is less than half of the wrap-around time of canopen::TimePoint.
-constexpr std::array runtime_numbers = {
-    NumberOption{"inhibit_time_unit", 1, 32767},
-    NumberOption{"emcy_inhibit_time_step", 1, 65535},
-    NumberOption{"sdo_timeout", 0, 65535},
-};
 
 /// Enumerators of canopen::Storing that differ from the access type of an entry.
 constexpr std::array storing_names = {"always", "never", "with_node_id"};
@@ -131,52 +90,49 @@ class OptionsReader {
   }
 
  private:
+  using Read = void (OptionsReader::*)(const json& value);
+  struct StructuredOption {
+    std::string_view name;
+    Read read;
+  };
+  /// Returns the readers of the options with form `structured`.
+  static std::span<const StructuredOption> structured_options();
+
   void member(const std::string& name, const json& value) {
     if (name == "$schema") return;
-    if (name == "names") return each_entry(name, value, [&](EntryKey key, const json& v) { return name_of(key, v); });
-    if (name == "string_capacity") {
-      return each_entry(name, value, [&](EntryKey key, const json& v) { return capacity_of(key, v); });
+    const OptionRow* const row = find_option(name);
+    if (row == nullptr) return error(name, "unknown option" + did_you_mean(name, all_names()));
+    switch (row->form) {
+      case OptionForm::flag: return flag(*row, value);
+      case OptionForm::number: return number(*row, value);
+      case OptionForm::mask: return mask(*row, value);
+      case OptionForm::abort_code: return abort_code(*row, value);
+      case OptionForm::emergency_code: return emergency_code(*row, value);
+      case OptionForm::can_id_range: return can_id_range(*row, value);
+      case OptionForm::structured: break;
     }
-    if (name == "settable") return settable(value);
-    if (name == "silence") return silence(value);
-    if (name == "allow") return allow(value);
-    if (name == "connected_modules") return connected_modules(value);
-    if (name == "static_mapping") return static_mapping(value);
-    if (name == "no_event") return no_event(value);
-    if (name == "emergency_info") return emergency_info(value);
-    if (name == "storing") return storing(value);
-    if (name == "lss") return lss(value);
-    if (name == "stored_eds") return stored_eds(value);
-    if (name == "zero_terminated_strings") {
-      flag(name, value, options_.zero_terminated_strings);
-      return;
-    }
-    for (const char* option : runtime_flags) {
-      if (name != option) continue;
-      if (bool on = false; flag(name, value, on)) options_.runtime.emplace_back(name, on ? "true" : "false");
-      return;
-    }
-    for (const char* option : runtime_masks) {
-      if (name == option) return mask(name, value);
-    }
-    for (const char* option : runtime_abort_codes) {
-      if (name == option) return abort_code(name, value);
-    }
-    for (const NumberOption& option : runtime_numbers) {
-      if (name == option.name) return number(option, value);
-    }
-    if (name == "pdo_reserved_can_ids") return pdo_reserved_can_ids(value);
-    if (name == "reset_emergency") return reset_emergency(value);
-    error(name, "unknown option" + did_you_mean(name, all_names()));
+    const auto option = std::ranges::find(structured_options(), name, &StructuredOption::name);
+    (this->*option->read)(value);
   }
 
   static std::vector<std::string_view> all_names() {
-    std::vector<std::string_view> names{structured_options.begin(), structured_options.end()};
-    names.insert(names.end(), runtime_flags.begin(), runtime_flags.end());
-    names.insert(names.end(), runtime_masks.begin(), runtime_masks.end());
-    names.insert(names.end(), runtime_abort_codes.begin(), runtime_abort_codes.end());
-    for (const NumberOption& option : runtime_numbers) names.emplace_back(option.name);
+    std::vector<std::string_view> names{"$schema"};
+    for (const OptionRow& row : options_table) names.push_back(row.name);
     return names;
+  }
+
+  void set(const OptionRow& row, std::string value) { options_.runtime.emplace_back(row.name, std::move(value)); }
+
+  void names(const json& value) {
+    each_entry("names", value, [&](EntryKey key, const json& v) { return name_of(key, v); });
+  }
+
+  void string_capacity(const json& value) {
+    each_entry("string_capacity", value, [&](EntryKey key, const json& v) { return capacity_of(key, v); });
+  }
+
+  void zero_terminated_strings(const json& value) {
+    is_flag("zero_terminated_strings", value, options_.zero_terminated_strings);
   }
 
   void each_entry(const std::string& name, const json& value, const std::function<bool(EntryKey, const json&)>& take) {
@@ -344,7 +300,7 @@ class OptionsReader {
         settings.bit_rates = lss_bit_rates(path, v);
       } else if (std::ranges::find(lss_flags, name) == lss_flags.end()) {
         error(path, "unknown option");
-      } else if (bool on = false; flag(path, v, on)) {
+      } else if (bool on = false; is_flag(path, v, on)) {
         settings.flags[name] = on;
       }
     }
@@ -386,7 +342,7 @@ class OptionsReader {
     }
   }
 
-  bool flag(const std::string& name, const json& value, bool& target) {
+  bool is_flag(const std::string& name, const json& value, bool& target) {
     if (value.is_boolean()) {
       target = value.get<bool>();
     } else {
@@ -395,47 +351,50 @@ class OptionsReader {
     return value.is_boolean();
   }
 
-  void mask(const std::string& name, const json& value) {
+  void flag(const OptionRow& row, const json& value) {
+    if (bool on = false; is_flag(std::string{row.name}, value, on)) set(row, on ? "true" : "false");
+  }
+
+  void mask(const OptionRow& row, const json& value) {
     const auto bits = value.is_string() ? parse_unsigned(value.get<std::string>()) : std::nullopt;
-    if (!bits || *bits > 0xFFFF'FFFF) return error(name, "expected a 32-bit mask such as \"0x80000780\"");
-    options_.runtime.emplace_back(name, fmt::format("0x{:08X}", *bits));
+    if (!bits || *bits > 0xFFFF'FFFF) return error(row.name, "expected a 32-bit mask such as \"0x80000780\"");
+    set(row, fmt::format("0x{:08X}", *bits));
   }
 
-  void abort_code(const std::string& name, const json& value) {
+  void abort_code(const OptionRow& row, const json& value) {
     const auto code = value.is_string() ? parse_unsigned(value.get<std::string>()) : std::nullopt;
-    const bool known = std::ranges::any_of(canopen::abort_code_texts, [&](const canopen::AbortCodeText& row) {
-      return row.code != canopen::ok && static_cast<std::uint32_t>(row.code) == code;
+    const bool known = std::ranges::any_of(canopen::abort_code_texts, [&](const canopen::AbortCodeText& text) {
+      return text.code != canopen::ok && static_cast<std::uint32_t>(text.code) == code;
     });
-    if (!known) return error(name, "expected an abort code of CiA 301 such as \"0x06040041\"");
-    options_.runtime.emplace_back(name, fmt::format("0x{:08X}", *code));
+    if (!known) return error(row.name, "expected an abort code of CiA 301 such as \"0x06040041\"");
+    set(row, fmt::format("0x{:08X}", *code));
   }
 
-  void number(const NumberOption& option, const json& value) {
+  void number(const OptionRow& row, const json& value) {
     const std::uint64_t count = value.is_number_unsigned() ? value.get<std::uint64_t>() : 0;
-    if (!value.is_number_unsigned() || count < option.low || count > option.high) {
-      return error(option.name, fmt::format("expected a number from {} to {}", option.low, option.high));
+    if (!value.is_number_unsigned() || count < row.min || count > row.max) {
+      return error(row.name, fmt::format("expected a number from {} to {}", row.min, row.max));
     }
-    options_.runtime.emplace_back(option.name, fmt::format("{}", count));
+    set(row, fmt::format("{}", count));
   }
 
-  void pdo_reserved_can_ids(const json& value) {
+  void can_id_range(const OptionRow& row, const json& value) {
     const auto can_id = [&](std::size_t at) {
-      const bool there = value.is_array() && value.size() == 2 && value[at].is_string();
-      return there ? parse_unsigned(value[at].get<std::string>()) : std::nullopt;
+      const bool exists = value.is_array() && value.size() == 2 && value[at].is_string();
+      return exists ? parse_unsigned(value[at].get<std::string>()) : std::nullopt;
     };
     const auto first = can_id(0);
     const auto last = can_id(1);
     if (!first || !last || *first > *last || *last > 0x7FF) {
-      return error("pdo_reserved_can_ids",
-                   "expected the first and the last of a range of CAN-IDs: [\"0x080\", \"0x100\"]");
+      return error(row.name, "expected the first and the last of a range of CAN-IDs: [\"0x080\", \"0x100\"]");
     }
-    options_.runtime.emplace_back("pdo_reserved_can_ids", fmt::format("{{0x{:03X}, 0x{:03X}}}", *first, *last));
+    set(row, fmt::format("{{0x{:03X}, 0x{:03X}}}", *first, *last));
   }
 
-  void reset_emergency(const json& value) {
+  void emergency_code(const OptionRow& row, const json& value) {
     const auto code = value.is_string() ? parse_index(value.get<std::string>()) : std::nullopt;
-    if (!code || *code == 0) return error("reset_emergency", "expected an emergency error code such as \"FF00h\"");
-    options_.runtime.emplace_back("reset_emergency", fmt::format("0x{:04X}", *code));
+    if (!code || *code == 0) return error(row.name, "expected an emergency error code such as \"FF00h\"");
+    set(row, fmt::format("0x{:04X}", *code));
   }
 
   /// The position of a member's name, approximately: its first occurrence in quotes.
@@ -470,7 +429,7 @@ class OptionsReader {
     return std::string{colon == std::string_view::npos ? what : what.substr(colon + 2)};
   }
 
-  void error(const std::string& member, const std::string& message) {
+  void error(std::string_view member, const std::string& message) {
     const std::string place = member.empty() ? "" : fmt::format("{}: ", member);
     diagnostics_.error("options", position_of(member), fmt::format("{}{}", place, message));
   }
@@ -479,6 +438,28 @@ class OptionsReader {
   Diagnostics& diagnostics_;
   Options options_;
 };
+
+std::span<const OptionsReader::StructuredOption> OptionsReader::structured_options() {
+  static constexpr StructuredOption rows[] = {
+      {"names", &OptionsReader::names},
+      {"string_capacity", &OptionsReader::string_capacity},
+      {"settable", &OptionsReader::settable},
+      {"connected_modules", &OptionsReader::connected_modules},
+      {"silence", &OptionsReader::silence},
+      {"allow", &OptionsReader::allow},
+      {"static_mapping", &OptionsReader::static_mapping},
+      {"no_event", &OptionsReader::no_event},
+      {"emergency_info", &OptionsReader::emergency_info},
+      {"storing", &OptionsReader::storing},
+      {"zero_terminated_strings", &OptionsReader::zero_terminated_strings},
+      {"lss", &OptionsReader::lss},
+      {"stored_eds", &OptionsReader::stored_eds},
+  };
+  static_assert(std::ranges::all_of(options_table, [](const OptionRow& row) {
+    return (row.form == OptionForm::structured) == (std::ranges::find(rows, row.name, &StructuredOption::name) != std::end(rows));
+  }));
+  return rows;
+}
 
 }  // namespace
 
