@@ -11,19 +11,19 @@
 
 namespace edsc {
 
-/// `--color auto|always|never`, and what it comes to on this stream.
+/// `--color auto|always|never`.
 struct ColorOption {
   std::string when = "auto";
   void add_to(CLI::App& command);
   [[nodiscard]] bool on(std::FILE* stream) const;
 };
 
-/// Prints findings as text to a stream, `with_allowed` with the number of those that are allowed.
+/// Prints findings as text to a stream; `with_allowed` adds the number of allowed findings.
 void print_findings(std::FILE* stream, const Diagnostics& diagnostics, const ColorOption& color, bool with_allowed = false);
 
-/// What `--keep-going` does, of each command that has it.
+/// Help text of `--keep-going`.
 inline constexpr const char* keep_going_help =
-    "for the file of another manufacturer: its errors are warnings, and what is wrong is left out";
+    "for the EDS of a purchased device: errors become warnings, and what is wrong is left out";
 
 /// A node-ID option, checked to be 1..127.
 void add_node_id_option(CLI::App& command, std::optional<std::uint8_t>& node_id);
