@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "commands/commands.hpp"
-#include "device/option_table.hpp"
+#include "device/options/option_table.hpp"
 #include "diagnostics/place.hpp"
 #include "diagnostics/print.hpp"
 #include "diagnostics/rule.hpp"

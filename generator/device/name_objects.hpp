@@ -2,7 +2,7 @@
 #pragma once
 
 #include "device/device.hpp"
-#include "device/options.hpp"
+#include "device/options/options.hpp"
 
 namespace edsc {
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "device/device.hpp"
-#include "device/options.hpp"
+#include "device/options/options.hpp"
 
 namespace edsc {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "device/information.hpp"
-#include "device/options.hpp"
+#include "device/options/options.hpp"
 #include "eds/data_sheet.hpp"
 
 namespace edsc {

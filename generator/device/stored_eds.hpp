@@ -4,7 +4,7 @@
 #include <string>
 
 #include "device/device.hpp"
-#include "device/options.hpp"
+#include "device/options/options.hpp"
 
 namespace edsc {
 

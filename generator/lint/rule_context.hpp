@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "device/device.hpp"
-#include "device/options.hpp"
+#include "device/options/options.hpp"
 #include "diagnostics/diagnostics.hpp"
 #include "eds/data_sheet.hpp"
 

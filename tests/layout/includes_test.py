@@ -21,7 +21,7 @@ INCLUDE = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
 ROW = re.compile(r"^\| `((?:generator|bus|cli)(?:/\w+)?)/?` \| (.*?) \|", re.MULTILINE)
 MAX_FILES = 25
 # Folders with more files; they must not grow.
-LARGE = {"generator/device": 48, "generator/eds": 29, "generator/format": 26, "bus/conform": 33, "bus/conform/cases": 26}
+LARGE = {"generator/device": 46, "generator/eds": 29, "generator/format": 26, "bus/conform": 33, "bus/conform/cases": 26}
 
 
 def module_of(path: Path) -> str:

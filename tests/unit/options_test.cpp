@@ -1,4 +1,4 @@
-#include "device/options.hpp"
+#include "device/options/options.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "device/device.hpp"
-#include "device/options.hpp"
+#include "device/options/options.hpp"
 
 namespace edsc {
 

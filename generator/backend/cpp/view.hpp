@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "device/device.hpp"
-#include "device/options.hpp"
+#include "device/options/options.hpp"
 
 namespace edsc {
 

@@ -1,4 +1,4 @@
-#include "device/options.hpp"
+#include "device/options/options.hpp"
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@
 
 #include "device/identifier.hpp"
 #include "device/index_range.hpp"
-#include "device/option_table.hpp"
+#include "device/options/option_table.hpp"
 #include "eds/number.hpp"
 #include "text/suggestion.hpp"
 
