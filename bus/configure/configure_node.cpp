@@ -180,13 +180,13 @@ class Run {
 };
 
 /// Reads a number of two or four digits and the character after it; false if it is invalid, or above `most`.
-bool take(std::string_view& text, std::size_t digits, char behind, unsigned most, unsigned& number) {
+bool take(std::string_view& text, std::size_t digits, char separator, unsigned most, unsigned& number) {
   if (text.size() < digits) return false;
   const auto [end, error] = std::from_chars(text.data(), text.data() + digits, number);
   if (error != std::errc{} || end != text.data() + digits || number > most) return false;
   text.remove_prefix(digits);
-  if (behind == 0) return true;
-  if (!text.starts_with(behind)) return false;
+  if (separator == 0) return true;
+  if (!text.starts_with(separator)) return false;
   text.remove_prefix(1);
   return true;
 }

@@ -11,7 +11,7 @@ namespace {
 constexpr const char* head = R"(#compdef edsc
 # Completion of edsc for zsh: printed by `edsc completion zsh`.
 
-# A file, also behind ID=
+# A file, also after ID=
 _edsc_file() {
   compset -P '*='
   _files

@@ -32,10 +32,10 @@ void set(DocumentSection& section, std::string_view key, std::string value) {
     return;
   }
   const std::uint32_t order = spell_key(section.kind.kind, key).order;
-  const auto behind = std::ranges::find_if(section.entries, [&](const DocumentEntry& entry) {
+  const auto place = std::ranges::find_if(section.entries, [&](const DocumentEntry& entry) {
     return spell_key(section.kind.kind, entry.key).order > order;
   });
-  section.entries.insert(behind, {{}, std::string{key}, std::move(value)});
+  section.entries.insert(place, {{}, std::string{key}, std::move(value)});
 }
 
 /// Removes a key; its comments move to the next key, or to the section.
@@ -104,12 +104,12 @@ class DcfMaker {
     for (DocumentSection& section : document_.sections) {
       if (section.kind.kind == kind) return section;
     }
-    const auto behind = std::ranges::find_if(document_.sections,
+    const auto place = std::ranges::find_if(document_.sections,
                                              [](const DocumentSection& section) { return section.kind.kind > kind; });
     DocumentSection added;
     added.kind.kind = kind;
     added.title = spell_title(added.kind, {});
-    return *document_.sections.insert(behind, std::move(added));
+    return *document_.sections.insert(place, std::move(added));
   }
 
   /// The bit rate of a device that supports only one; unknown if it supports several.
@@ -184,18 +184,18 @@ class DcfMaker {
   }
 
   DocumentSection& compact_values_section(std::uint16_t index) {
-    auto behind = document_.sections.begin();
+    auto place = document_.sections.begin();
     for (auto at = document_.sections.begin(); at != document_.sections.end(); ++at) {
       constexpr SectionKind kinds[] = {SectionKind::object, SectionKind::sub_object, SectionKind::compact_names};
       if (at->kind.index != index) continue;
       if (at->kind.kind == SectionKind::compact_values) return *at;
-      if (std::ranges::find(kinds, at->kind.kind) != std::end(kinds)) behind = std::next(at);
+      if (std::ranges::find(kinds, at->kind.kind) != std::end(kinds)) place = std::next(at);
     }
     DocumentSection added;
     added.kind.kind = SectionKind::compact_values;
     added.kind.index = index;
     added.title = spell_title(added.kind, {});
-    return *document_.sections.insert(behind, std::move(added));
+    return *document_.sections.insert(place, std::move(added));
   }
 
   void configure_as_given(DocumentSection& section, std::uint8_t sub_index) {

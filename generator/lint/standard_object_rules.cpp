@@ -27,8 +27,8 @@ std::string_view type_name(canopen::DataType type) {
 void check_object_type(const RuleContext& context, const Object& object, const StandardObject& standard) {
   if (object.type == standard.type) return;
   const ObjectDescription* description = context.describe(object.index);
-  const bool told = description != nullptr && description->object_type.present;
-  context.report("standard-object-type", told ? description->object_type.position : object.position,
+  const bool described = description != nullptr && description->object_type.present;
+  context.report("standard-object-type", described ? description->object_type.position : object.position,
                  fmt::format("{} has object code {}; the {} of CiA 301 has {} (clause {})", named(object),
                              to_string(object.type), standard.name, to_string(standard.type), standard.clause),
                  {}, fmt::format("{} {}", standard.first, to_string(object.type)));

@@ -1,4 +1,4 @@
-// expect: cannot be mapped, its data sheet says PDOMapping=0
+// expect: cannot be mapped, its EDS says PDOMapping=0
 // expect: canopen::TpdoNumber<2>
 // expect: canopen::EntryNumber<1>
 // expect: ObjectAt<'1', '0', '0', '5', 'h', ':', '0', '0'>

@@ -1,4 +1,4 @@
-// expect: a constant of the data sheet cannot be set .*every_type::od::integer24_constant
+// expect: a constant of the EDS cannot be set .*every_type::od::integer24_constant
 // A constant of the EDS is in flash.
 #include <canopen/object_store.hpp>
 #include <every_type/device.hpp>

@@ -249,8 +249,8 @@ class EmergencyProducer {
     }
   }
 
-  /// Returns the position of the message that is `behind` places after the first one.
-  [[nodiscard]] std::uint8_t place(unsigned behind) const { return static_cast<std::uint8_t>((first_ + behind) % depth); }
+  /// Returns the position of the message that is `offset` places after the first one.
+  [[nodiscard]] std::uint8_t place(unsigned offset) const { return static_cast<std::uint8_t>((first_ + offset) % depth); }
 
   [[nodiscard]] static FrameWords message_of(std::uint16_t code, std::uint8_t bits, const EmergencyInfo& info) {
     return {code | std::uint32_t{bits} << 16 | std::uint32_t{info[0]} << 24, number_in(std::span{info}.subspan(1))};

@@ -365,7 +365,7 @@ class ObjectStore {
   template <DictionaryObject O>
   bool set(const typename O::type& value) {
     constexpr entry::Word word = word_of<O>();
-    static_assert(entry::place_of(word) == entry::Place::ram, "a constant of the data sheet cannot be set");
+    static_assert(entry::place_of(word) == entry::Place::ram, "a constant of the EDS cannot be set");
     const bool changed = std::memcmp(ram() + entry::offset_of(word), &value, sizeof value) != 0;
     std::memcpy(std::assume_aligned<alignof(typename O::type)>(ram() + entry::offset_of(word)), &value, sizeof value);
     return changed;

@@ -49,7 +49,7 @@ struct CheckedEntry {
 
   static_assert(has_object, "PDO mapping: the device has no such object");
   static_assert(!has_object || exists, "PDO mapping: the object has no such sub-index");
-  static_assert(!exists || !maps_nothing, "PDO mapping: the object cannot be mapped, its data sheet says PDOMapping=0");
+  static_assert(!exists || !maps_nothing, "PDO mapping: the object cannot be mapped, its EDS says PDOMapping=0");
   static_assert(!exists || maps_nothing || maps_here || Pdo::receive,
                 "PDO mapping: a TPDO carries ro, rw, rwr and const objects, none that are rww or wo");
   static_assert(!exists || maps_nothing || maps_here || !Pdo::receive,

@@ -321,12 +321,12 @@ class SdoServer {
 
   [[nodiscard]] AbortCode initiate_download(const std::array<std::uint8_t, 8>& request, auto& hooks) {
     if (const AbortCode code = find(entry::writable, AbortCode::read_only); code != ok) return code;
-    const bool told = (request[0] & sdo::size_indicated) != 0;
+    const bool indicated = (request[0] & sdo::size_indicated) != 0;
     if ((request[0] & sdo::expedited) != 0) {
-      const std::uint32_t size = told ? 4u - ((request[0] >> 2) & 3u) : size_unless_told();
+      const std::uint32_t size = indicated ? 4u - ((request[0] >> 2) & 3u) : size_without_indication();
       if (const AbortCode code = take_expedited(&request[4], size, hooks); code != ok) return code;
     } else {
-      size_indicated_ = told;
+      size_indicated_ = indicated;
       if (const AbortCode code = prepare(sdo::word_of(request), hooks); code != ok) return code;
       state_ = State::downloading;
     }
@@ -349,7 +349,7 @@ class SdoServer {
 
   /// Returns the size of an expedited download that does not indicate it: that of the entry, or four bytes if it
   /// is variable.
-  [[nodiscard]] std::uint32_t size_unless_told() const {
+  [[nodiscard]] std::uint32_t size_without_indication() const {
     const std::uint32_t size = EntryAccess<Device>::bytes_of(word_);
     return size - 1u < 4u ? size : 4u;
   }

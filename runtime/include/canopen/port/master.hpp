@@ -321,7 +321,7 @@ class Master {
     const NodeId node_id{static_cast<std::uint8_t>(frame.id & 0x7F)};
     if (!on_emergency || frame.extended || (frame.id & ~0x7Fu) != function_code::emcy || !node_id.valid()) return;
     if (const std::optional<EmergencyMessage> message = emergency_message(frame)) {
-      keep([this, node_id, told = *message] { on_emergency(node_id, told); });
+      keep([this, node_id, seen = *message] { on_emergency(node_id, seen); });
     }
   }
 

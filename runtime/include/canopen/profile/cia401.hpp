@@ -54,7 +54,7 @@ class DigitalInputs {
       const std::uint8_t before = Value::template get<std::uint8_t>(entries, block, 0);
       const auto after = static_cast<std::uint8_t>(settled(entries, block, levels) ^
                                                    Polarity::template get<std::uint8_t>(entries, block, 0));
-      if (after != before) Value::set(node, block, after, !tells(entries, block, before, after));
+      if (after != before) Value::set(node, block, after, !is_event(entries, block, before, after));
     }
   }
 
@@ -78,17 +78,17 @@ class DigitalInputs {
     }
   }
 
-  [[nodiscard]] static bool tells([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] std::uint8_t block,
+  [[nodiscard]] static bool is_event([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] std::uint8_t block,
                                   [[maybe_unused]] std::uint8_t before, [[maybe_unused]] std::uint8_t after) {
     if constexpr (Device::dictionary.has(0x6005, 0)) {
       if (!is_true(entries, Device::dictionary.find(0x6005, 0))) return false;
     }
     if constexpr (AnyChange::exists || LowToHigh::exists || HighToLow::exists) {
       const unsigned changed = before ^ after;
-      const unsigned told = (changed & AnyChange::template get<unsigned>(entries, block, 0)) |
+      const unsigned event = (changed & AnyChange::template get<unsigned>(entries, block, 0)) |
                             (changed & after & LowToHigh::template get<unsigned>(entries, block, 0)) |
                             (changed & before & HighToLow::template get<unsigned>(entries, block, 0));
-      return told != 0;
+      return event != 0;
     } else {
       return true;
     }
@@ -171,11 +171,11 @@ class AnalogueInputs {
       if (channel >= channels) return;
       const EntryAccess<Device> entries = node.entries();
       if (value == Value::template get<std::int16_t>(entries, channel, 0)) return;
-      const bool told = tells(entries, channel, value);
+      const bool event = is_event(entries, channel, value);
       if constexpr (has_delta) {
-        if (told) reported_[channel] = value;
+        if (event) reported_[channel] = value;
       }
-      Value::set(node, channel, value, !told);
+      Value::set(node, channel, value, !event);
     }
   }
 
@@ -191,7 +191,7 @@ class AnalogueInputs {
 
   struct NoDelta {};
 
-  [[nodiscard]] bool tells([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] std::uint8_t channel,
+  [[nodiscard]] bool is_event([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] std::uint8_t channel,
                            [[maybe_unused]] std::int16_t value) const {
     if constexpr (Device::dictionary.has(0x6423, 0)) {
       if (!is_true(entries, Device::dictionary.find(0x6423, 0))) return false;

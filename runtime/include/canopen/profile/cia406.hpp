@@ -34,9 +34,9 @@ class Encoder {
   void measured(Node& node, std::int32_t position, std::int16_t speed) {
     static_assert(has_position || has_single_position, "this device has neither 6004h nor this channel of 6020h");
     measured_ = position;
-    const std::int32_t told = wrapped(position, offset_);
-    if constexpr (has_position) set(node, 0x6020, Channel, told);
-    if constexpr (has_single_position) set(node, 0x6004, 0, told);
+    const std::int32_t reported = wrapped(position, offset_);
+    if constexpr (has_position) set(node, 0x6020, Channel, reported);
+    if constexpr (has_single_position) set(node, 0x6004, 0, reported);
     if constexpr (has_speed) set(node, 0x6030, Channel, speed);
   }
 
