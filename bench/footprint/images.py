@@ -46,7 +46,7 @@ def page(folder: Path) -> str:
     found = figures(folder)
     sheets = sorted({sheet for sheet, _ in found}, key=lambda sheet: (sheet.startswith("bench"), len(sheet), sheet))
     heads = " | ".join(f"{core}: flash | RAM | stack" for core in BOARDS.values())
-    lines = [f"| data sheet | {heads} |", "| --- |" + " --: |" * 3 * len(BOARDS)]
+    lines = [f"| EDS | {heads} |", "| --- |" + " --: |" * 3 * len(BOARDS)]
     for sheet in sheets:
         lines.append(f"| `{sheet}` | " + " | ".join(" | ".join(found.get((sheet, board), ("-",) * 3)) for board in BOARDS) + " |")
     return HEAD + "\n".join(lines) + "\n"

@@ -311,7 +311,7 @@ Bytes are those of a linked image for a Cortex-M0+ (`-Os`, arm-none-eabi-g++ 12)
 those of the C library that the image needs; RAM is `.data` and `.bss`. Instructions are those of a Cortex-M4 (`-O2`), counted
 by QEMU: the loop that asks and the store of the frame are in them. The device is `bench/ref.eds`: 76 indices, 212 entries, NMT
 slave, boot-up, heartbeat, SDO server (expedited and segmented), EMCY with a history of 8, SYNC, 4 RPDOs and 4 TPDOs of 4
-objects each. The other stacks were built and measured in the same way with the same dictionary; the best of them stands here.
+objects each. The other stacks were built and measured in the same way with the same dictionary; the table shows the best of them.
 A figure that is off by more than 0 % misses its goal.
 
 ## A whole device
@@ -327,7 +327,7 @@ members.
 
 ## Each service
 
-What it adds to the device above, its objects included: what is not in the data sheet is not in the image.
+Bytes added to the device above, including the objects. An image does not contain what is not in the EDS.
 
 {table("service", "flash", "RAM", rows=with_bytes(services(bench)))}
 

@@ -31,7 +31,7 @@ struct Port {
   std::size_t sent = 0;
 
   void write(std::span<const char> text) {
-    require(!text.empty(), "nothing is no answer");
+    require(!text.empty(), "an empty text is not an answer");
     const char last = text.back();
     require(last == canopen::slcan::end || last == canopen::slcan::refusal, "an answer has an end");
   }

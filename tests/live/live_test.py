@@ -178,7 +178,7 @@ class ScanOfAnEmptyBus(LiveTest):
     def test_what_is_no_address(self) -> None:
         result = subprocess.run([EDSC, "scan", "can0"], capture_output=True, text=True, timeout=600)
         self.assertEqual(result.returncode, WRONG_USAGE)
-        self.assertTrue(result.stderr.startswith('edsc: "can0" is no bus'), result.stderr)
+        self.assertTrue(result.stderr.startswith('edsc: "can0" is not a bus address'), result.stderr)
 
 
 class Read(LiveTest):

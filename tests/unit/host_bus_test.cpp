@@ -21,7 +21,7 @@ std::string refusal(const std::string& address) {
 
 TEST(HostBus, RefusesWhatIsNoAddressWithASentence) {
   for (const char* address : {"", "vcan0", "socketcan", "socketcan:", "usb:1", ":vcan0"}) {
-    EXPECT_EQ(refusal(address).find("\"" + std::string{address} + "\" is no bus: "), 0u) << refusal(address);
+    EXPECT_EQ(refusal(address).find("\"" + std::string{address} + "\" is not a bus address: "), 0u) << refusal(address);
   }
 }
 

@@ -171,7 +171,7 @@ TEST(NmtMaster, KnowsWhoHasBootedListedOrNot) {
   master.on_frame(bench::frame("77F 00"), TimePoint{});
   master.on_frame(bench::frame("720 7F"), TimePoint{});
   EXPECT_TRUE(master.has_booted(NodeId{127}));
-  EXPECT_FALSE(master.has_booted(NodeId{0x20})) << "a heartbeat is no boot-up message";
+  EXPECT_FALSE(master.has_booted(NodeId{0x20})) << "a heartbeat is not a boot-up message";
   EXPECT_EQ(log, (Lines{"(127 boot-up 00)", "(127 A)"}));
 }
 

@@ -29,7 +29,7 @@ TEST(PdoParameters, HaveACobIdThatNoOtherServiceNeeds) {
 TEST(PdoParameters, HaveACobIdOfElevenBitsUnlessBit29SaysOtherwise) {
   EXPECT_FALSE(is_legal(0x800, false));
   EXPECT_TRUE(is_legal(0x2000'0800, false));
-  EXPECT_TRUE(is_legal(0x4000'0180, true)) << "bit 30 is no identifier";
+  EXPECT_TRUE(is_legal(0x4000'0180, true)) << "bit 30 is not part of the CAN-ID";
   EXPECT_TRUE(is_legal(0x8000'0700, true)) << "a PDO that is not valid has none";
 }
 

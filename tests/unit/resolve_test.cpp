@@ -71,7 +71,7 @@ TEST(Resolve, FollowsADeftypeToItsBasicType) {
       "[0041]\nParameterName=Base\nObjectType=0x5\nDataType=0x0004\nAccessType=const\n" +
       var("2000", "Target", "0x0040"));
   EXPECT_EQ(text.entry(0x2000).type->type, DataType::integer32);
-  EXPECT_EQ(text.device.find(0x40), nullptr) << "a type is no part of the dictionary";
+  EXPECT_EQ(text.device.find(0x40), nullptr) << "a type is not part of the dictionary";
   EXPECT_EQ(text.device.types.size(), 2U);
   EXPECT_EQ(text.diagnostics.errors(), 0U);
 }

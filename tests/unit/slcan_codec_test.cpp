@@ -160,7 +160,7 @@ TEST(SlcanAdapter, FindsTheNextLineAfterRubbish) {
   (void)device.ask("O\r");
   EXPECT_EQ(device.ask("\xFF\x7Ft0800\r"), "z\r");
   EXPECT_EQ(device.ask(std::string(1000, 't') + "\r"), "\a") << "a line of any length";
-  EXPECT_EQ(device.ask("t0800\r\r\n\r"), "z\r") << "empty lines are no commands";
+  EXPECT_EQ(device.ask("t0800\r\r\n\r"), "z\r") << "empty lines are not commands";
   EXPECT_EQ(device.bus.take(), "080 | 080");
 }
 

@@ -63,7 +63,7 @@ struct Arguments {
     const char* begin = text.data() + (hex ? 2 : 0);
     const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value, hex ? 16 : 10);
     if (error != std::errc{} || end != text.data() + text.size() || value > most)
-      throw std::invalid_argument{std::string{option} + ": '" + std::string{text} + "' is no number up to " +
+      throw std::invalid_argument{std::string{option} + ": '" + std::string{text} + "' is not a number up to " +
                                   std::to_string(most)};
     return value;
   };

@@ -59,7 +59,7 @@ struct CheckedEntry {
   static_assert(!exists || !has_length || length_fits<O>(word),
                 "PDO mapping: the entry has another length than the object");
   static_assert(O::bits % Granularity == 0,
-                "PDO mapping: the entry's length is no multiple of the device's Granularity");
+                "PDO mapping: the entry's length is not a multiple of the device's Granularity");
   static_assert(End <= 64, "PDO mapping: the entry ends beyond the 64 bits of a PDO");
   static constexpr bool holds = true;
 };
@@ -71,7 +71,7 @@ struct CheckedEntry<D, Pdo, Number, Label, O, End, Granularity> {
   static_assert(O::index > 0x0008 || O::bits == dummy_bits[O::index > 0x0008 ? 0 : O::index],
                 "PDO mapping: the dummy has another length than its data type");
   static_assert(O::bits % Granularity == 0,
-                "PDO mapping: the entry's length is no multiple of the device's Granularity");
+                "PDO mapping: the entry's length is not a multiple of the device's Granularity");
   static_assert(End <= 64, "PDO mapping: the entry ends beyond the 64 bits of a PDO");
   static constexpr bool holds = true;
 };

@@ -116,7 +116,7 @@ class HostBus {
 
   [[noreturn]] static void refuse(const std::string& address) {
     throw std::invalid_argument{"\"" + address +
-                                "\" is no bus: write socketcan:INTERFACE, slcan:DEVICE[@BIT-RATE[,BAUD]] or "
+                                "\" is not a bus address: write socketcan:INTERFACE, slcan:DEVICE[@BIT-RATE[,BAUD]] or "
                                 "socketcand:HOST:PORT/INTERFACE"};
   }
 

@@ -30,7 +30,7 @@ class SocketcandPort : public StreamPort<SocketcandClient> {
       : StreamPort{connect_to(host, port), "socketcand at " + host + ":" + port} {
     const bool plain = bus.find_first_of(" <>") == std::string::npos;
     if (bus.empty() || bus.size() > SocketcandClient::longest_name || !plain) {
-      throw std::invalid_argument{"\"" + bus + "\" is no name of a bus: 1 to 16 characters"};
+      throw std::invalid_argument{"\"" + bus + "\" is not a bus name: 1 to 16 characters"};
     }
     protocol_.start(bus, now());
     connect(connect_timeout);
