@@ -486,7 +486,7 @@ int configure(LiveBus& bus, const Settings& settings, const Configuration& confi
   } else {
     print_json(settings, configuration, *work, steps, result, ending);
   }
-  return fine ? int{exit_fine} : exit_device_failed;
+  return fine ? exit_fine : exit_device_failed;
 }
 
 int run_configure(const Settings& settings) {

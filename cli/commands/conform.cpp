@@ -259,9 +259,9 @@ int run_conform(const Settings& settings) {
   report.version = EDSC_VERSION;
   return with_bus(settings.bus, [&](LiveBus& bus) {
     run_and_print(bus, settings, *loaded, run, *deviations, report);
-    if (!write_reports(settings, report, *loaded->device)) return int{exit_wrong_usage};
-    if (report.interrupted) return int{exit_interrupted};
-    return report.passed() ? int{exit_fine} : int{exit_device_failed};
+    if (!write_reports(settings, report, *loaded->device)) return exit_wrong_usage;
+    if (report.interrupted) return exit_interrupted;
+    return report.passed() ? exit_fine : exit_device_failed;
   });
 }
 

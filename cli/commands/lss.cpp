@@ -52,7 +52,7 @@ int failed(std::string_view service, const LssResult& result) {
 }
 
 int done_or_failed(std::string_view service, const LssResult& result) {
-  return result.done() ? int{exit_fine} : failed(service, result);
+  return result.done() ? exit_fine : failed(service, result);
 }
 
 Json address_json(const LssAddress& address) {
@@ -158,7 +158,7 @@ int assign_selected(LssSession& session, const Settings& settings) {
       return failed("bit-rate", result);
     }
   }
-  return settings.store ? done_or_failed("store", session.store()) : int{exit_fine};
+  return settings.store ? done_or_failed("store", session.store()) : exit_fine;
 }
 
 /// Fastscan finds the numbers that are not given. All slaves are in waiting state before and after.

@@ -69,7 +69,7 @@ int run_nmt(const Settings& settings) {
     Confirmation confirmation{bus, settings};
     bus.send_all(canopen::nmt_frame(settings.command->command, canopen::NodeId{settings.node}));
     bus.listen(canopen::from_milliseconds(10));  // the port may still hold the frame
-    if (settings.wait_ms == 0 || confirmation.comes_in_time()) return int{exit_fine};
+    if (settings.wait_ms == 0 || confirmation.comes_in_time()) return exit_fine;
     print_visibly(stderr, "edsc: node {} did not report {} within {} ms: {}\n", settings.node,
                   nmt_state_text(settings.command->leads_to), settings.wait_ms, confirmation.reason());
     return exit_device_failed;

@@ -134,7 +134,7 @@ int run_record(const Settings& settings) {
     const std::unique_ptr<std::FILE, Close> file{std::fopen(settings.output.c_str(), "we")};
     if (file) return record(bus, settings, file.get());
     print_visibly(stderr, "edsc: {}: {}\n", settings.output, std::strerror(errno));
-    return int{exit_wrong_usage};
+    return exit_wrong_usage;
   });
 }
 

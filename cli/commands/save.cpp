@@ -269,7 +269,7 @@ int save(LiveBus& bus, const Settings& settings, const LoadedDevice& loaded) {
   make_text(settings, loaded, saved);
   if (!write_text(settings, saved)) return exit_wrong_usage;
   report(settings, saved);
-  return saved.missing.empty() ? int{exit_fine} : exit_device_failed;
+  return saved.missing.empty() ? exit_fine : exit_device_failed;
 }
 
 int run_save(const Settings& settings) {

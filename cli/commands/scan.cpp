@@ -227,7 +227,7 @@ int run_scan(Settings settings) {
       print_visibly(stderr, "edsc: fastscan: {}\n", found.lss_failure);
       return exit_device_failed;
     }
-    if (!found.nodes.empty() || !found.unconfigured.empty()) return int{exit_fine};
+    if (!found.nodes.empty() || !found.unconfigured.empty()) return exit_fine;
     print_visibly(stderr, "edsc: no node answers on {}\n", settings.bus);
     return exit_device_failed;
   });

@@ -3,12 +3,10 @@
 
 namespace edsc {
 
-enum ExitCode : int {
-  exit_fine = 0,
-  exit_input_has_errors = 1,
-  exit_device_failed = 1,  ///< a device refused, did not answer or is missing; the bus was lost
-  exit_wrong_usage = 2,    ///< also: a file could not be read or written
-  exit_interrupted = 130,  ///< Ctrl-C or SIGTERM
-};
+inline constexpr int exit_fine = 0;
+inline constexpr int exit_input_has_errors = 1;
+inline constexpr int exit_device_failed = 1;  ///< a device refused, did not answer or does not exist; the bus was lost
+inline constexpr int exit_wrong_usage = 2;    ///< also: a file could not be read or written
+inline constexpr int exit_interrupted = 130;  ///< Ctrl-C or SIGTERM
 
 }  // namespace edsc
