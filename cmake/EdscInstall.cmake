@@ -8,7 +8,7 @@ set(document_dir ${CMAKE_INSTALL_DATADIR}/doc)
 
 if(TARGET edsc)
   install(TARGETS edsc RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
-  set(shell_files ${PROJECT_BINARY_DIR}/cli/shell)
+  set(shell_files ${PROJECT_BINARY_DIR}/generator/shell)
   install(FILES ${shell_files}/edsc.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME edsc
           COMPONENT program)
   install(FILES ${shell_files}/edsc.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions RENAME _edsc COMPONENT program)

@@ -105,7 +105,7 @@ class AnotherNode(CommandLine):
         five = re.sub(r"(\[1400sub1\][^[]*DefaultValue=)[^\n]*", r"\g<1>0x205", five)
         five = re.sub(r"(\[1400sub1\][^[]*ParameterValue=)[^\n]*", r"\g<1>0x285", five)
         result = self.edsc("format", self.write("five.dcf", five), "--dcf", "--node-id", 7)
-        self.assertIn("1400h:01 stays 0x00000285, a CAN-ID of node 5", result.stderr)
+        self.assertIn("1400h:01 remains 0x00000285, a CAN-ID of node 5", result.stderr)
         self.assertIn("[cob-id-node-id]", result.stderr)
 
     def test_is_configured_by_its_concise_dcf(self) -> None:
