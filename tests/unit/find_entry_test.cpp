@@ -72,7 +72,7 @@ TEST_F(FindEntry, SuggestsWhatWasMeant) {
 }
 
 TEST_F(FindEntry, AsksWhichEntryWhereANameIsTaken) {
-  EXPECT_NE(find("transmission_type").find("\"transmission_type\" may be 1400h:02"), std::string::npos)
+  EXPECT_NE(find("transmission_type").find("\"transmission_type\" is ambiguous: 1400h:02"), std::string::npos)
       << find("transmission_type");
   const FoundEntry whole = find_one_entry(*drive->device, "1018h");
   EXPECT_NE(whole.problem.find("1018h \"Identity object\" has sub-indices: 1018h:00"), std::string::npos)

@@ -22,9 +22,9 @@ TEST(ObjectRules, WarnOfEachMandatoryObjectThatIsMissing) {
   const CheckedObjects checked(var("1001", "Error register", "5", "ro"));
   std::vector<std::string> messages;
   for (const Diagnostic& diagnostic : checked.diagnostics.all()) {
-    if (diagnostic.rule == "mandatory-object") messages.push_back(diagnostic.message.substr(0, 5));
+    if (diagnostic.rule == "mandatory-object") messages.push_back(diagnostic.message);
   }
-  EXPECT_EQ(messages, (std::vector<std::string>{"1000h", "1018h"}));
+  EXPECT_EQ(messages, (std::vector<std::string>{"mandatory object 1000h is missing", "mandatory object 1018h is missing"}));
   EXPECT_EQ(checked.diagnostics.errors(), 0U);
 }
 
