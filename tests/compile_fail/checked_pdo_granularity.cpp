@@ -1,4 +1,4 @@
-// expect: no multiple of the device's Granularity
+// expect: not a multiple of the device's Granularity
 // expect: canopen::TpdoNumber<1>
 // expect: canopen::EntryNumber<1>
 // expect: ObjectAt<'2', '0', '0', '1', 'h', ':', '0', '0'>
