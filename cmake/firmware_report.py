@@ -169,7 +169,7 @@ def symbols_text(image: Image, kinds: str) -> list[str]:
 def objects_text(flash: Counter[str], ram: Counter[str], most: int | None = None) -> list[str]:
     both = flash + ram
     return [f"  {index}h  {flash[index]:6}  {ram[index]:6}" for index, _ in (
-        both.max_common(most) if most else sorted(both.items())) if index]
+        both.most_common(most) if most else sorted(both.items())) if index]
 
 
 def main() -> int:
