@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <canopen/profile/cia402_words.hpp>
+
 #include "conform/dut.hpp"
 
 namespace edsc::conform {
@@ -12,8 +14,8 @@ constexpr std::uint16_t statusword = 0x6041;
 constexpr std::uint16_t axis_distance = 0x800;  // between the objects of two axes
 constexpr unsigned max_axes = 8;
 
-/// Bit 2 of the statusword: the axis is in Operation enabled, Quick stop active or Fault reaction active.
-constexpr std::uint64_t power_is_on = 1U << 2;
+/// Set in Operation enabled, Quick stop active and Fault reaction active.
+constexpr std::uint64_t power_is_on = canopen::cia402::statusword::operation_enabled;
 
 bool is_drive(const Identity& identity) { return identity.device_type && (*identity.device_type & 0xFFFF) == drive_profile; }
 
