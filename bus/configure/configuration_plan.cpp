@@ -110,22 +110,12 @@ class Planner {
   /// A COB-ID or a counter that the DCF need not configure.
   void add(StepKind kind, std::uint16_t index, std::uint8_t sub_index, const ConfigurationValue* value,
            std::uint32_t off_set = 0, std::uint32_t off_cleared = 0) {
-    ConfigurationStep step{kind, entry_of(index, sub_index), value, {}, off_set, off_cleared, group_};
+    ConfigurationStep step{kind, live_entry(device_, index, sub_index), value, {}, off_set, off_cleared, group_};
     if (value != nullptr) {
       step.entry = value->entry;
       step.bytes = value->bytes;
     }
     steps_.push_back(std::move(step));
-  }
-
-  [[nodiscard]] LiveEntry entry_of(std::uint16_t index, std::uint8_t sub_index) const {
-    const Object* object = device_ == nullptr ? nullptr : device_->find(index);
-    const Entry* entry = object == nullptr ? nullptr : object->find(sub_index);
-    if (entry != nullptr) return live_entry(*object, *entry);
-    LiveEntry unknown;
-    unknown.index = index;
-    unknown.sub_index = sub_index;
-    return unknown;
   }
 
   [[nodiscard]] bool is_writable(std::uint16_t index, std::uint8_t sub_index) const {

@@ -133,15 +133,7 @@ std::vector<const Pdo*> Dut::pdos(PdoDirection direction) const {
 
 // ---- SDO ----
 
-LiveEntry Dut::live(std::uint16_t index, std::uint8_t sub_index) const {
-  const Object* const object = sheet_.find(index);
-  const Entry* const found = object == nullptr ? nullptr : object->find(sub_index);
-  if (found != nullptr) return live_entry(*object, *found);
-  LiveEntry bare;
-  bare.index = index;
-  bare.sub_index = sub_index;
-  return bare;
-}
+LiveEntry Dut::live(std::uint16_t index, std::uint8_t sub_index) const { return live_entry(&sheet_, index, sub_index); }
 
 SdoOutcome Dut::upload(std::uint16_t index, std::uint8_t sub_index, SdoTransfer transfer) {
   return edsc::upload(sdo_, live(index, sub_index), transfer);

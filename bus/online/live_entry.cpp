@@ -93,6 +93,16 @@ LiveEntry live_entry(const Object& object, const Entry& entry) {
   return {entry.index, entry.sub_index, &entry, entry.type, std::move(name)};
 }
 
+LiveEntry live_entry(const Device* device, std::uint16_t index, std::uint8_t sub_index) {
+  const Object* const object = device == nullptr ? nullptr : device->find(index);
+  const Entry* const entry = object == nullptr ? nullptr : object->find(sub_index);
+  if (entry != nullptr) return live_entry(*object, *entry);
+  LiveEntry address;
+  address.index = index;
+  address.sub_index = sub_index;
+  return address;
+}
+
 void set_type(LiveEntry& entry, const canopen::DataTypeRow& type) {
   entry.type = &type;
   entry.entry = nullptr;

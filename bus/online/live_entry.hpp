@@ -23,6 +23,8 @@ struct LiveEntry {
 };
 
 [[nodiscard]] LiveEntry live_entry(const Object& object, const Entry& entry);
+/// The entry of a device. Without a device, or if it does not have the entry: index and sub-index only.
+[[nodiscard]] LiveEntry live_entry(const Device* device, std::uint16_t index, std::uint8_t sub_index);
 
 /// A data type that replaces that of the EDS, whose access, limits and unit are then ignored.
 void set_type(LiveEntry& entry, const canopen::DataTypeRow& type);

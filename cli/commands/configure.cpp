@@ -90,16 +90,6 @@ constexpr std::uint32_t store_signature = 0x6576'6173;  ///< "save"
 constexpr unsigned shortest_store_ms = 5'000;           ///< a device may erase flash before it answers
 constexpr canopen::Duration after_nmt = canopen::from_milliseconds(10);
 
-LiveEntry entry_or_address(const Device* device, std::uint16_t index, std::uint8_t sub_index) {
-  const Object* object = device == nullptr ? nullptr : device->find(index);
-  const Entry* entry = object == nullptr ? nullptr : object->find(sub_index);
-  if (entry != nullptr) return live_entry(*object, *entry);
-  LiveEntry address;
-  address.index = index;
-  address.sub_index = sub_index;
-  return address;
-}
-
 bool refuse(const std::string& sentence) {
   print_visibly(stderr, "edsc: {}\n", sentence);
   return false;
@@ -133,7 +123,7 @@ bool read_dcf(const Settings& settings, Configuration& configuration) {
   if (diagnostics.errors() > 0) return false;
   for (const ConfiguredValue& value : values) {
     configuration.values.push_back(
-        {entry_or_address(configuration.device(), value.entry->index, value.entry->sub_index),
+        {live_entry(configuration.device(), value.entry->index, value.entry->sub_index),
          {value.data.begin(), value.data.end()},
          value.position});
   }
@@ -152,7 +142,7 @@ bool read_concise(const Settings& settings, Configuration& configuration) {
       read_concise_dcf({reinterpret_cast<const char*>(configuration.stream.data()), configuration.stream.size()});
   if (!entries) return refuse(settings.path + " is not a concise DCF: its length does not match its contents");
   for (const ConciseEntry& entry : *entries) {
-    configuration.values.push_back({entry_or_address(configuration.device(), entry.index, entry.sub_index),
+    configuration.values.push_back({live_entry(configuration.device(), entry.index, entry.sub_index),
                                     {entry.data.begin(), entry.data.end()},
                                     {}});
   }
