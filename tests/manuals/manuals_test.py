@@ -147,7 +147,7 @@ def cell(text: str) -> str:
 
 
 def describe(item: Item) -> str:
-    tests = ", ".join(f"`{test}`" for test in item.tests)
+    tests = ", ".join(f"`{test}`" for test in sorted(item.tests))
     parts = [f"{item.kind}: {cell(item.reason)}"] if item.kind else []
     parts += [tests] if tests else []
     parts += [f"Reading: {cell(item.reading)}"] if item.reading else []
