@@ -18,7 +18,7 @@ import jsonschema
 
 SOURCE_DIR = Path(sys.argv[1]).resolve()
 EDSC = Path(sys.argv[2]).resolve()
-BASE = (SOURCE_DIR / "tests/rules/base.eds").read_text(encoding="utf-8")
+BASE = (SOURCE_DIR / "tests/generator/lint/base.eds").read_text(encoding="utf-8")
 SCHEMA = json.loads((SOURCE_DIR / "tests/fixtures/sarif-2.1.0-subset.schema.json").read_text(encoding="utf-8"))
 
 FINE, INPUT_HAS_ERRORS, WRONG_USAGE = 0, 1, 2

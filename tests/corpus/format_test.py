@@ -184,7 +184,7 @@ def check_file(job: tuple[Path, Path, Path]) -> Outcome:
 
 
 def own_data_sheets(source_dir: Path) -> list[Path]:
-    folders = ("eds", "tests/fixtures", "tests/unit/fixture", "examples")
+    folders = ("eds", "tests/fixtures", "examples")
     return sorted(path for folder in folders for path in (source_dir / folder).rglob("*.eds"))
 
 

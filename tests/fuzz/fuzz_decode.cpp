@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t max_output_per_line = 16 * 1024;
 
 struct Nodes {
-  std::unique_ptr<LoadedDevice> axis = load(EDSC_SOURCE_DIR "/tests/decode/axis.dcf", 6);
+  std::unique_ptr<LoadedDevice> axis = load(EDSC_SOURCE_DIR "/tests/bus/decode/axis.dcf", 6);
   std::unique_ptr<LoadedDevice> mpdo = load(EDSC_SOURCE_DIR "/tests/fixtures/mpdo_device.eds", 7);
 
   static std::unique_ptr<LoadedDevice> load(const char* path, std::uint8_t node_id) {

@@ -25,7 +25,7 @@ class Axis {
   Axis() {
     Diagnostics diagnostics;
     LoadSettings settings;
-    settings.path = EDSC_SOURCE_DIR "/tests/decode/axis.dcf";
+    settings.path = EDSC_SOURCE_DIR "/tests/bus/decode/axis.dcf";
     settings.node_id = LivePort::node_id;
     settings.check = false;
     loaded_ = load_device(settings, diagnostics);

@@ -14,7 +14,7 @@
 
 #include "master/plant_master.hpp"
 #include "plant/plant.hpp"
-#include "unit/bench.hpp"
+#include "support/bench.hpp"
 
 namespace {
 

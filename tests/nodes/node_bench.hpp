@@ -9,7 +9,7 @@
 
 #include "shared/input_line.hpp"
 #include "shared/surroundings.hpp"
-#include "unit/bench.hpp"
+#include "support/bench.hpp"
 
 namespace bench {
 

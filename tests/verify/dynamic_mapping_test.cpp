@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "unit/bench.hpp"
+#include "support/bench.hpp"
 
 namespace {
 

@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+"""edsc conform with a live node: the commands of docs/conform.md do what the page says, and the reports conform to their
+schemas and can be read.
+
+    conform_test.py SOURCE_DIR EDSC RK5C [unittest arguments]
+
+RK5C is the program of the reference device. The blocks of the document that name this script are run in order in a copy of the
+files that they use; the lines of blocks without a language must be in the output of the commands before them.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import jsonschema
+
+SOURCE_DIR = Path(sys.argv[1]).resolve()
+EDSC = Path(sys.argv[2]).resolve()
+RK5C = Path(sys.argv[3]).resolve()
+ADDRESS = "socketcand:127.0.0.1:29536/vcan0"  # in the document
+BLOCK = re.compile(r"<!-- run by: tests/cli/live/conform_test.py -->\n```(\w*)\n(.*?)```", re.DOTALL)
+PATIENCE = "--timeout 60000"  # for an answer that must be received, even on a busy machine
+
+
+class Conform(unittest.TestCase):
+    maxDiff = None
+
+    def setUp(self) -> None:
+        self.folder = Path(tempfile.mkdtemp(prefix="edsc-conform-"))
+        self.addCleanup(shutil.rmtree, self.folder)
+        shutil.copytree(SOURCE_DIR / "eds", self.folder / "eds")
+        bus = self.start(EDSC, "bus", "--listen", "127.0.0.1:0")
+        self.address = bus.stdout.readline().strip()
+        self.assertRegex(self.address, "^socketcand:")
+        node = self.start(RK5C, self.address, "--node-id", "5")
+        while "pre-operational" not in (line := node.stdout.readline()):
+            self.assertTrue(line, "the node has ended")
+
+    def start(self, *arguments: object) -> subprocess.Popen[str]:
+        process = subprocess.Popen([*map(str, arguments)], cwd=self.folder, text=True, stdout=subprocess.PIPE,
+                                   stderr=subprocess.STDOUT)
+
+        def end() -> None:
+            process.kill()
+            process.communicate()
+
+        self.addCleanup(end)
+        return process
+
+    def run_line(self, line: str) -> subprocess.CompletedProcess[str]:
+        command = re.sub(rf"(edsc conform {ADDRESS} \S+ \S+)", rf"\1 {PATIENCE}", line).replace(ADDRESS, self.address)
+        environment = {**os.environ, "PATH": f"{EDSC.parent}{os.pathsep}{os.environ['PATH']}"}
+        return subprocess.run(["bash", "-c", command], cwd=self.folder, env=environment, capture_output=True, text=True)
+
+    def test_the_document(self) -> None:
+        blocks = BLOCK.findall((SOURCE_DIR / "docs/conform.md").read_text(encoding="utf-8"))
+        self.assertGreaterEqual(len(blocks), 6)
+        output = ""
+        for language, text in blocks:
+            if language == "sh":
+                output = ""
+                for line in text.splitlines():
+                    result = self.run_line(line)
+                    self.assertEqual(result.returncode, 0, f"{line}\n{result.stdout}{result.stderr}")
+                    output += result.stdout
+            else:
+                for line in text.splitlines():
+                    self.assertIn(line, output)
+        self.check_reports()
+
+    def check_reports(self) -> None:
+        report = json.loads((self.folder / "report.json").read_text(encoding="utf-8"))
+        schema = json.loads((SOURCE_DIR / "docs/schema/conform.schema.json").read_text(encoding="utf-8"))
+        jsonschema.Draft202012Validator(schema).validate(report)
+        self.assertTrue(report["passed"])
+        self.assertEqual(report["identity"]["differences"], None)
+        self.assertGreater(report["verdicts"]["passed"], 10)
+
+        suites = ElementTree.parse(self.folder / "report.xml").getroot()
+        tests = suites.findall("testsuite/testcase")
+        self.assertEqual(len(tests), int(suites.get("tests")))
+        self.assertEqual(len(tests), len(report["cases"]) + 3)  # and the checks of the whole run
+        self.assertEqual(len([test for test in tests if test.find("skipped") is not None]), int(suites.get("skipped")))
+
+        log = (self.folder / "frames.log").read_text(encoding="utf-8").splitlines()
+        self.assertEqual(len(log), sum(len(case["frames"]) for case in report["cases"]))
+        self.assertIn("2.5", (self.folder / "report.html").read_text(encoding="utf-8"))
+
+    def test_a_wrong_file_of_deviations_is_refused_at_its_line(self) -> None:
+        (self.folder / "wrong.json").write_text('{ "deviations": [\n  { "case": "8.4" } ] }\n', encoding="utf-8")
+        result = self.run_line(f"edsc conform {ADDRESS} 5 eds/rk5c.eds --deviations wrong.json")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("wrong.json:2:3: error: missing member reason\n", result.stderr)
+
+    def test_a_deviation_that_does_not_happen_is_an_error(self) -> None:
+        (self.folder / "unused.json").write_text('{"deviations": [{"case": "2.1", "reason": "x"}]}', encoding="utf-8")
+        result = self.run_line(f"edsc conform {ADDRESS} 5 eds/rk5c.eds --only 2.1 --deviations unused.json --quiet")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("unused deviation: unused.json:1: case 2.1 passed: x\n", result.stdout)
+
+    def test_the_command_of_a_failure_repeats_it(self) -> None:
+        first = self.run_line(f"edsc conform {ADDRESS} 5 eds/rk5c.eds --level all --only 8.4")
+        self.assertEqual(first.returncode, 1)
+        command = re.search(r"repeat with +(edsc conform .*)", first.stdout)[1]
+        again = self.run_line(command)
+        self.assertEqual(again.returncode, 1)
+        self.assertIn("8.4    failed", again.stdout)
+
+    def test_a_case_that_does_not_exist_is_wrong_usage(self) -> None:
+        result = self.run_line(f"edsc conform {ADDRESS} 5 eds/rk5c.eds --only 33.*")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("unknown case", result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[4:]], verbosity=2)

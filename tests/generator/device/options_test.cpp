@@ -1,0 +1,329 @@
+#include "device/options/options.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "support/diagnostic_matchers.hpp"
+
+namespace edsc {
+namespace {
+
+using Findings = std::vector<Finding>;
+using Runtime = std::vector<std::pair<std::string, std::string>>;
+
+struct ReadOptions {
+  explicit ReadOptions(std::string text)
+      : source("test.options.json", std::move(text)), options(read_options(source, diagnostics)) {}
+
+  SourceFile source;
+  Diagnostics diagnostics;
+  Options options;
+};
+
+TEST(OptionsFile, MayBeEmpty) {
+  const ReadOptions read(R"({ "$schema": "options.schema.json" })");
+  EXPECT_EQ(findings(read.diagnostics), Findings{});
+  EXPECT_FALSE(read.options.zero_terminated_strings);
+  EXPECT_EQ(read.options.runtime, Runtime{});
+}
+
+TEST(OptionsFile, NamesEntriesByIndexAndSubIndex) {
+  const ReadOptions read(R"({ "names": { "1018h:04": "serial", "2000": "speed", "2A:fF": "last" } })");
+  EXPECT_EQ(findings(read.diagnostics), Findings{});
+  EXPECT_EQ(read.options.names.at({0x1018, 4}), "serial");
+  EXPECT_EQ(read.options.names.at({0x2000, 0}), "speed");
+  EXPECT_EQ(read.options.names.at({0x2A, 0xFF}), "last");
+}
+
+TEST(OptionsFile, TakesNamesThatAreIdentifiersOnly) {
+  for (const char* name : {"", "class", "Speed", "1st", "a b", "a-b", "x;int y",
+                           "gr\xC3\xB6\xC3\x9F"
+                           "e",
+                           "type"}) {
+    const ReadOptions read("{\n  \"names\": {\n    \"2000h\": \"" + std::string{name} + "\"\n  }\n}\n");
+    EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(3, 5, "options")})) << name;
+    EXPECT_TRUE(read.options.names.empty()) << name;
+  }
+}
+
+TEST(OptionsFile, GivesStringsTheirCapacity) {
+  const ReadOptions read(R"({ "string_capacity": { "1008h:00": 15, "2000h": 0, "2001h": 65535 } })");
+  EXPECT_EQ(findings(read.diagnostics), Findings{});
+  EXPECT_EQ(read.options.string_capacity.at({0x1008, 0}), 15);
+  EXPECT_EQ(read.options.string_capacity.at({0x2001, 0}), 65535);
+}
+
+TEST(OptionsFile, RefusesACapacityOutside0To65535) {
+  for (const char* value : {"-1", "65536", "1.5", "\"15\"", "null"}) {
+    const ReadOptions read("{\n\"string_capacity\": { \"1008h\": " + std::string{value} + " } }");
+    EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(2, 22, "options")})) << value;
+  }
+}
+
+TEST(OptionsFile, ListsWhatTheApplicationSets) {
+  const ReadOptions read(R"({ "settable": ["1008h:00", "1018h:04"] })");
+  EXPECT_EQ(read.options.settable, (std::vector<EntryKey>{{0x1008, 0}, {0x1018, 4}}));
+}
+
+TEST(OptionsFile, ListsRulesToSilence) {
+  const ReadOptions read(R"({ "silence": ["sub-number", "object-type"] })");
+  ASSERT_EQ(read.options.silence.size(), 2U);
+  EXPECT_EQ(read.options.silence[0].rule, "sub-number");
+  EXPECT_EQ(read.options.silence[1].rule, "object-type");
+  EXPECT_EQ(read.options.silence[1].position.column, 29U);
+}
+
+TEST(OptionsFile, ListsAllowedFindings) {
+  const ReadOptions read(R"({ "allow": [
+{"rule": "pdo-empty", "reason": "mapped at \"start\""},
+{"rule": "live-default", "object": "6401h:03", "reason": "of the manual"}, {"object": "6040h", "rule": "a", "reason": "b"}] })");
+  EXPECT_TRUE(findings(read.diagnostics).empty());
+  ASSERT_EQ(read.options.allow.size(), 3U);
+  EXPECT_EQ(read.options.allow[0].rule, "pdo-empty");
+  EXPECT_EQ(read.options.allow[0].reason, "mapped at \"start\"");
+  EXPECT_EQ(read.options.allow[0].object, std::nullopt);
+  EXPECT_EQ(read.options.allow[0].position.line, 2U);
+  EXPECT_EQ(read.options.allow[1].object, (EntrySelector{0x6401, 3}));
+  EXPECT_EQ(read.options.allow[2].object, (EntrySelector{0x6040, std::nullopt}));
+}
+
+TEST(OptionsFile, RefusesAllowedFindingsWithoutRuleOrReason) {
+  for (const char* item : {R"("pdo-empty")", R"({"rule": "a"})", R"({"rule": "a", "reason": " "})", R"({"reason": "a"})",
+                           R"({"rule": 1, "reason": "a"})", R"({"rule": "a", "reason": "b", "object": "x"})",
+                           R"({"rule": "a", "reason": "b", "entry": "6040h"})"}) {
+    const ReadOptions read("{\"allow\": [" + std::string{item} + "]}");
+    EXPECT_EQ(read.diagnostics.errors(), 1U) << item;
+    EXPECT_TRUE(read.options.allow.empty()) << item;
+  }
+  EXPECT_EQ(ReadOptions(R"({"allow": {}})").diagnostics.errors(), 1U);
+}
+
+TEST(OptionsFile, NamesASimilarOption) {
+  const ReadOptions read(R"({ "setable": [], "sdo_timeot": 5, "colour": 1, "allow": [{"rul": "a"}] })");
+  std::string messages;
+  for (const Diagnostic& one : read.diagnostics.all()) messages += one.message + "\n";
+  EXPECT_EQ(messages,
+            "allow/rul: unknown member; did you mean \"rule\"?\n"
+            "colour: unknown option\n"
+            "sdo_timeot: unknown option; did you mean \"sdo_timeout\"?\n"
+            "setable: unknown option; did you mean \"settable\"?\n");
+}
+
+TEST(OptionsFile, SaysThatStringsEndWithAZero) {
+  EXPECT_TRUE(ReadOptions(R"({ "zero_terminated_strings": true })").options.zero_terminated_strings);
+  EXPECT_FALSE(ReadOptions(R"({ "zero_terminated_strings": false })").options.zero_terminated_strings);
+}
+
+TEST(OptionsFile, HandsEachDepartureToTheRuntime) {
+  for (const char* flag : {"pdo_extended_ids", "tpdo_remote_frames", "inhibit_time_writable_while_valid",
+                           "event_driven_on_change", "tpdo_acyclic_on_change", "pdo_mapping_writable_while_valid",
+                           "mpdo", "sdo_upload_size_indicated", "restore_needs_power_cycle",
+                           "tpdo_remote_frames_can_be_disabled", "tpdo_remote_types",
+                           "emcy_cob_id_writable_while_valid", "emcy_stopped_keeps_last", "sdo_length_codes"}) {
+    for (const char* value : {"true", "false"}) {
+      const ReadOptions read("{ \"" + std::string{flag} + "\": " + value + " }");
+      EXPECT_EQ(findings(read.diagnostics), Findings{}) << flag;
+      EXPECT_EQ(read.options.runtime, (Runtime{{flag, value}}));
+    }
+  }
+  for (const std::string mask : {"pdo_cob_id_writable", "sync_cob_id_writable", "emcy_cob_id_writable"}) {
+    EXPECT_EQ(ReadOptions("{ \"" + mask + "\": \"0x80000780\" }").options.runtime, (Runtime{{mask, "0x80000780"}}));
+  }
+  EXPECT_EQ(ReadOptions(R"({ "inhibit_time_unit": 1000 })").options.runtime, (Runtime{{"inhibit_time_unit", "1000"}}));
+  EXPECT_EQ(ReadOptions(R"({ "emcy_inhibit_time_step": 10 })").options.runtime, (Runtime{{"emcy_inhibit_time_step", "10"}}));
+  for (const std::string value : {"0", "1000", "65535"}) {
+    EXPECT_EQ(ReadOptions("{ \"sdo_timeout\": " + value + " }").options.runtime, (Runtime{{"sdo_timeout", value}}));
+  }
+  EXPECT_EQ(ReadOptions(R"({ "pdo_reserved_can_ids": ["0x80", "0x100"] })").options.runtime,
+            (Runtime{{"pdo_reserved_can_ids", "{0x080, 0x100}"}}));
+  EXPECT_EQ(ReadOptions(R"({ "reset_emergency": "ff00h" })").options.runtime, (Runtime{{"reset_emergency", "0xFF00"}}));
+  EXPECT_EQ(ReadOptions(R"({ "pdo_mapping_abort_code": "0x6040041" })").options.runtime,
+            (Runtime{{"pdo_mapping_abort_code", "0x06040041"}}));
+  EXPECT_EQ(ReadOptions(R"({ "error_history_abort_code": "0x06090031" })").options.runtime,
+            (Runtime{{"error_history_abort_code", "0x06090031"}}));
+  EXPECT_EQ(ReadOptions(R"({ "storage_signature_abort_code": "0x08000022" })").options.runtime,
+            (Runtime{{"storage_signature_abort_code", "0x08000022"}}));
+}
+
+TEST(OptionsFile, SaysHowLssConfiguresTheDevice) {
+  EXPECT_FALSE(ReadOptions("{}").options.lss.has_value());
+  EXPECT_EQ(ReadOptions(R"({ "lss": {} })").options.lss, LssSettings{});
+  EXPECT_EQ(ReadOptions(R"({ "lss": { "bit_rates": "fixed" } })").options.lss->bit_rates, 0);
+  EXPECT_EQ(ReadOptions(R"({ "lss": { "bit_rates": [10, 125, 1000] } })").options.lss->bit_rates, 0x0111);
+  EXPECT_EQ(ReadOptions(R"({ "lss": { "bit_rates": [500, "auto"] } })").options.lss->bit_rates, 0x0204);
+  const ReadOptions read(R"({ "lss": { "unconfigurable": false, "served_in_operational": true } })");
+  EXPECT_EQ(findings(read.diagnostics), Findings{});
+  EXPECT_EQ(read.options.lss->flags,
+            (std::map<std::string, bool>{{"served_in_operational", true}, {"unconfigurable", false}}));
+}
+
+TEST(OptionsFile, RefusesWhatLssDoesNotHave) {
+  for (const char* lss : {"true", "[125]", R"({ "bit_rates": [] })", R"({ "bit_rates": 125 })",
+                          R"({ "bit_rates": [100] })", R"({ "bit_rates": [0] })", R"({ "bit_rates": ["fixed"] })",
+                          R"({ "bit_rates": [125, true] })", R"({ "fastscan": 1 })", R"({ "fast_scan": true })"}) {
+    const ReadOptions read("{ \"lss\": " + std::string{lss} + " }");
+    EXPECT_EQ(read.diagnostics.errors(), 1u) << lss;
+  }
+}
+
+TEST(OptionsFile, SaysWhatTheDeviceKeepsOfItsDataSheet) {
+  EXPECT_EQ(ReadOptions(R"({ "stored_eds": false })").options.stored_eds, StoredEds::of_application);
+  EXPECT_EQ(ReadOptions(R"({ "stored_eds": true })").options.stored_eds, StoredEds::text);
+  EXPECT_EQ(ReadOptions(R"({ "stored_eds": "compressed" })").options.stored_eds, StoredEds::compressed);
+  for (const char* value : {"1", "\"gzip\"", "null", "[]"}) {
+    const ReadOptions read("{ \"stored_eds\": " + std::string{value} + " }");
+    EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(1, 3, "options")})) << value;
+  }
+}
+
+TEST(OptionsFile, MakesTheMappingOfAllPdosStatic) {
+  EXPECT_TRUE(ReadOptions(R"({ "static_mapping": true })").options.static_mapping.applies_to(0x1600));
+  EXPECT_FALSE(ReadOptions(R"({ "static_mapping": false })").options.static_mapping.applies_to(0x1600));
+}
+
+TEST(OptionsFile, MakesTheMappingOfSomePdosStatic) {
+  const ReadOptions read(R"({ "static_mapping": ["1600h", "17FF", "1A00h", "1bffh"] })");
+  EXPECT_EQ(findings(read.diagnostics), Findings{});
+  EXPECT_EQ(read.options.static_mapping.parameters, (std::vector<std::uint16_t>{0x1600, 0x17FF, 0x1A00, 0x1BFF}));
+  EXPECT_TRUE(read.options.static_mapping.applies_to(0x1A00));
+  EXPECT_FALSE(read.options.static_mapping.applies_to(0x1A01));
+}
+
+TEST(OptionsFile, RefusesAStaticMappingOfWhatIsNoMappingParameter) {
+  for (const char* index : {"15FFh", "1800h", "19FFh", "1C00h", "1600h:01", "", "11600h"}) {
+    const ReadOptions read("{\n  \"static_mapping\": [\"" + std::string{index} + "\"] }");
+    EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(2, 3, "options")})) << index;
+    EXPECT_TRUE(read.options.static_mapping.parameters.empty()) << index;
+  }
+}
+
+TEST(OptionsFile, NamesObjectsAndEntriesThatRaiseNoEvent) {
+  const ReadOptions read(R"({ "no_event": ["6401h", "6000h:02", "2000h:00"] })");
+  EXPECT_EQ(findings(read.diagnostics), Findings{});
+  EXPECT_EQ(read.options.no_event, (std::vector<EntrySelector>{{0x6401, {}}, {0x6000, 2}, {0x2000, 0}}));
+}
+
+TEST(OptionsFile, SaysWhatIsStored) {
+  const ReadOptions read(R"({ "storing": { "1005h": "with_node_id", "6010:01": "never", "6081h:00": "always" } })");
+  EXPECT_EQ(findings(read.diagnostics), Findings{});
+  using Row = std::pair<EntrySelector, std::string>;
+  EXPECT_EQ(read.options.storing,
+            (std::vector<Row>{{{0x1005, {}}, "with_node_id"}, {{0x6010, 1}, "never"}, {{0x6081, 0}, "always"}}));
+}
+
+TEST(OptionsFile, RefusesAnotherWayToStore) {
+  for (const char* member :
+       {R"("6010h": "by_access")", R"("6010h": true)", R"("6010h:100": "never")", R"("2000h": "with_node_id")"}) {
+    const ReadOptions read("{\n\"storing\": { " + std::string{member} + " } }");
+    EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(2, 14, "options")})) << member;
+    EXPECT_TRUE(read.options.storing.empty()) << member;
+  }
+}
+
+TEST(OptionsFile, GivesEmergenciesTheirBytes) {
+  const ReadOptions read(R"({ "emergency_info": { "8210h": "0900000000", "ff00": "0a0B0c0D0e" } })");
+  EXPECT_EQ(findings(read.diagnostics), Findings{});
+  EXPECT_EQ(read.options.emergency_info.at(0x8210), (EmergencyInfo{9, 0, 0, 0, 0}));
+  EXPECT_EQ(read.options.emergency_info.at(0xFF00), (EmergencyInfo{0x0A, 0x0B, 0x0C, 0x0D, 0x0E}));
+}
+
+TEST(OptionsFile, RefusesAnEmergencyWithoutCodeOrFiveBytes) {
+  for (const char* member :
+       {R"("": "0900000000")", R"("10000h": "0900000000")", R"("x": "0900000000")", R"("8210h": "09")",
+        R"("8210h": "090000000000")", R"("8210h": "09000000+1")", R"("8210h": "090000000x")", R"("8210h": 9)"}) {
+    const ReadOptions read("{ \"emergency_info\": { " + std::string{member} + " } }");
+    ASSERT_EQ(read.diagnostics.errors(), 1U) << member;
+    EXPECT_EQ(read.diagnostics.all().front().rule, "options") << member;
+    EXPECT_TRUE(read.options.emergency_info.empty()) << member;
+  }
+}
+
+TEST(OptionsFile, RefusesAValueOfTheWrongType) {
+  for (const char* member : {R"("names": [])",
+                             R"("names": { "2000h": 1 })",
+                             R"("string_capacity": 5)",
+                             R"("settable": "1008h:00")",
+                             R"("settable": [4104])",
+                             R"("silence": {})",
+                             R"("silence": [1])",
+                             R"("zero_terminated_strings": 1)",
+                             R"("pdo_extended_ids": "no")",
+                             R"("event_driven_on_change": null)",
+                             R"("pdo_cob_id_writable": 5)",
+                             R"("pdo_cob_id_writable": "all")",
+                             R"("pdo_cob_id_writable": "0x1FFFFFFFF")",
+                             R"("pdo_mapping_abort_code": 100925505)",
+                             R"("pdo_mapping_abort_code": "0")",
+                             R"("pdo_mapping_abort_code": "0x06040040")",
+                             R"("mpdo": 1)",
+                             R"("sync_cob_id_writable": true)",
+                             R"("inhibit_time_unit": 0)",
+                             R"("inhibit_time_unit": 32768)",
+                             R"("inhibit_time_unit": "100")",
+                             R"("emcy_inhibit_time_step": 0)",
+                             R"("emcy_inhibit_time_step": 65536)",
+                             R"("emcy_inhibit_time_step": -1)",
+                             R"("pdo_reserved_can_ids": "0x080")",
+                             R"("pdo_reserved_can_ids": ["0x080"])",
+                             R"("pdo_reserved_can_ids": ["0x100", "0x080"])",
+                             R"("pdo_reserved_can_ids": ["0x080", "0x800"])",
+                             R"("pdo_reserved_can_ids": ["x", "0x100"])",
+                             R"("pdo_reserved_can_ids": [128, 256])",
+                             R"("reset_emergency": 65280)",
+                             R"("reset_emergency": "0000h")",
+                             R"("reset_emergency": "x")",
+                             R"("static_mapping": "1600h")",
+                             R"("static_mapping": [5632])",
+                             R"("no_event": "6401h")",
+                             R"("no_event": [25601])",
+                             R"("no_event": ["6401h:100"])",
+                             R"("emergency_info": ["8210h"])"}) {
+    const ReadOptions read("{ " + std::string{member} + " }");
+    ASSERT_EQ(read.diagnostics.errors(), 1U) << member;
+    EXPECT_EQ(read.diagnostics.all().front().rule, "options") << member;
+    EXPECT_EQ(read.options.runtime, Runtime{}) << member;
+  }
+}
+
+TEST(OptionsFile, RefusesEntriesThatAreNone) {
+  for (const char* entry : {"", "h", "G000", "1018h:", "1018h:100", "10000h", "1018h:4:5", "-1"}) {
+    const ReadOptions read("{ \"settable\": [\"" + std::string{entry} + "\"] }");
+    EXPECT_EQ(read.diagnostics.errors(), 1U) << entry;
+    EXPECT_TRUE(read.options.settable.empty()) << entry;
+  }
+}
+
+TEST(OptionsFile, RefusesAnUnknownMemberWhereItStands) {
+  const ReadOptions read("{\n  \"zero_terminated_strings\": true,\n  \"colour\": 1\n}\n");
+  EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(3, 3, "options")}));
+  EXPECT_NE(read.diagnostics.all().front().message.find("colour"), std::string::npos);
+}
+
+TEST(OptionsFile, NamesThePathOfTheMemberThatIsWrong) {
+  const ReadOptions read("{ \"string_capacity\": { \"1008h\": true } }");
+  EXPECT_NE(read.diagnostics.all().front().message.find("string_capacity/1008h"), std::string::npos);
+}
+
+TEST(OptionsFile, ThatIsNoJsonIsAnErrorWhereItBreaks) {
+  EXPECT_EQ(findings(ReadOptions("{\n  \"settable\": [,]\n}\n").diagnostics), (Findings{error_at(2, 16, "options-syntax")}));
+  EXPECT_EQ(ReadOptions("").diagnostics.all().front().rule, "options-syntax");
+  EXPECT_EQ(ReadOptions("{").diagnostics.all().front().rule, "options-syntax");
+}
+
+TEST(OptionsFile, WithANumberThatNothingHoldsIsAnError) {
+  EXPECT_EQ(ReadOptions(R"({ "string_capacity": { "1008h": 1e999 } })").diagnostics.errors(), 1U);
+}
+
+TEST(OptionsFile, HoldsOneObject) {
+  for (const char* text : {"[]", "1", "\"names\"", "null"}) {
+    const ReadOptions read(text);
+    ASSERT_EQ(read.diagnostics.errors(), 1U) << text;
+    EXPECT_EQ(read.diagnostics.all().front().rule, "options") << text;
+  }
+}
+
+}  // namespace
+}  // namespace edsc

@@ -1,0 +1,112 @@
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "lint/rule_groups.hpp"
+#include "support/device_from_text.hpp"
+#include "values/value_text.hpp"
+
+namespace edsc {
+namespace {
+
+using Rules = std::vector<std::string>;
+
+struct CheckedObjects : DeviceFromText {
+  explicit CheckedObjects(std::string text) : DeviceFromText(std::move(text)) {
+    check_objects({device, sheet, options, diagnostics});
+  }
+};
+
+TEST(ObjectRules, WarnOfEachMandatoryObjectThatIsMissing) {
+  const CheckedObjects checked(var("1001", "Error register", "5", "ro"));
+  std::vector<std::string> messages;
+  for (const Diagnostic& diagnostic : checked.diagnostics.all()) {
+    if (diagnostic.rule == "mandatory-object") messages.push_back(diagnostic.message);
+  }
+  EXPECT_EQ(messages, (std::vector<std::string>{"mandatory object 1000h is missing", "mandatory object 1018h is missing"}));
+  EXPECT_EQ(checked.diagnostics.errors(), 0U);
+}
+
+TEST(ObjectLists, ThatLackManyObjectsAreOneFinding) {
+  std::string sheet = var("2000", "Value 1", "5") + var("2001", "Value 2", "5");
+  EXPECT_EQ(findings(CheckedObjects(sheet).diagnostics, "object-not-listed").size(), 2U);
+  for (const std::string_view index : {"2002", "2003", "2004", "2005"}) sheet += var(index, index, "5");
+  const CheckedObjects checked(sheet);
+  EXPECT_EQ(findings(checked.diagnostics, "object-not-listed").size(), 1U);
+  EXPECT_EQ(checked.finding("object-not-listed").places, 6U);
+}
+
+TEST(ObjectRules, AreSilentOnADefaultAtItsLimits) {
+  for (const char* value : {"-5", "0", "10"}) {
+    const CheckedObjects checked(
+        var("2000", "Value", "3", "rw", std::string{"LowLimit=-5\nHighLimit=10\nDefaultValue="} + value + "\n"));
+    EXPECT_EQ(rules_of(checked.diagnostics), Rules{}) << value;
+  }
+}
+
+TEST(ObjectRules, WarnOfADefaultBeyondItsLimits) {
+  const CheckedObjects below(var("2000", "Value", "3", "rw", "LowLimit=-5\nHighLimit=10\nDefaultValue=-6\n"));
+  EXPECT_EQ(findings(below.diagnostics, "default-outside-limits"),
+            (std::vector{warning_at(8, 14, "default-outside-limits")}));
+  EXPECT_NE(below.finding("default-outside-limits").message.find("2000h:00 \"Value\" is below"), std::string::npos);
+  const CheckedObjects above(var("2000", "Value", "3", "rw", "HighLimit=10\nDefaultValue=11\n"));
+  EXPECT_NE(above.finding("default-outside-limits").message.find("above"), std::string::npos);
+}
+
+/// CiA 301, 7.5.2.37: 255 if the file has no value.
+TEST(ObjectRules, BlameNoFileForADefaultThatItDoesNotHave) {
+  const CheckedObjects checked(group("1800", "Communication", "9", 2) +
+                               var("1800sub0", "Count", "5", "const", "DefaultValue=2\n") +
+                               var("1800sub2", "Type", "5", "rw", "HighLimit=240\n"));
+  EXPECT_EQ(checked.entry(0x1800, 2).default_value->bits, 255U);
+  EXPECT_TRUE(findings(checked.diagnostics, "default-outside-limits").empty());
+}
+
+TEST(ObjectRules, CompareLimitsAsTheTypeDoes) {
+  EXPECT_EQ(rules_of(CheckedObjects(var("2000", "V", "4", "rw", "LowLimit=0xFFFFFFFE\nHighLimit=1\n")).diagnostics), Rules{});
+  EXPECT_EQ(rules_of(CheckedObjects(var("2000", "V", "7", "rw", "LowLimit=1\nHighLimit=0xFFFFFFFE\n")).diagnostics), Rules{});
+  EXPECT_EQ(
+      rules_of(CheckedObjects(var("2000", "V", "8", "rw", "LowLimit=-1.5\nHighLimit=-0.5\nDefaultValue=-1\n")).diagnostics),
+      Rules{});
+  EXPECT_EQ(rules_of(CheckedObjects(var("2000", "V", "0x11", "rw", "LowLimit=-2\nHighLimit=1e300\n")).diagnostics), Rules{});
+}
+
+// Limits that cannot be checked are dropped when the device is resolved, so that every command sees the same device.
+
+TEST(UnusableLimits, AreDroppedWhereLowIsAboveHigh) {
+  const DeviceFromText read(var("2000", "Value", "3", "rw", "LowLimit=1000\nHighLimit=10\nDefaultValue=0\n"));
+  EXPECT_EQ(findings(read.diagnostics, "limits-order"), (std::vector{warning_at(6, 10, "limits-order")}));
+  EXPECT_FALSE(read.entry(0x2000).low_limit);
+  EXPECT_FALSE(read.entry(0x2000).high_limit);
+  EXPECT_EQ(parse_value_text(read.entry(0x2000), "500").problem, "");
+  const CheckedObjects checked(std::string{read.source.text()});
+  EXPECT_EQ(rules_of(checked.diagnostics), Rules{"limits-order"});
+}
+
+TEST(UnusableLimits, AreDroppedWhereATypeOfTheSheetHasThem) {
+  const DeviceFromText read("[0040]\nParameterName=Percent\nObjectType=5\nDataType=6\nLowLimit=100\nHighLimit=1\n" +
+                            var("2000", "Value", "0x40", "rw"));
+  EXPECT_EQ(rules_of(read.diagnostics), Rules{"limits-order"});
+  EXPECT_FALSE(read.entry(0x2000).low_limit);
+  EXPECT_FALSE(read.entry(0x2000).high_limit);
+}
+
+TEST(UnusableLimits, AreDroppedWhereOneFollowsTheNodeId) {
+  const std::string text = var("2000", "Value", "7", "rw", "LowLimit=1\nHighLimit=$NODEID+0x100\n");
+  const DeviceFromText read(text);
+  EXPECT_EQ(findings(read.diagnostics, "limit-formula"), (std::vector{warning_at(7, 11, "limit-formula")}));
+  EXPECT_TRUE(read.entry(0x2000).low_limit);
+  EXPECT_FALSE(read.entry(0x2000).high_limit);
+  const DeviceFromText node_5(text, {}, {"", 5});
+  EXPECT_EQ(node_5.entry(0x2000).high_limit.value().bits, 0x105U);
+}
+
+TEST(ObjectRules, DoNotCompareADefaultThatFollowsTheNodeId) {
+  const CheckedObjects checked(
+      var("2000", "Value", "7", "rw", "LowLimit=0x181\nHighLimit=0x1FF\nDefaultValue=$NODEID+0x180\n"));
+  EXPECT_EQ(rules_of(checked.diagnostics), Rules{});
+}
+
+}  // namespace
+}  // namespace edsc
