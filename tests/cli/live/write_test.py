@@ -1,0 +1,85 @@
+#!/usr/bin/env python3
+"""edsc write with live nodes on the virtual bus of `edsc bus`.
+
+    write_test.py SOURCE_DIR EDSC LIVE_NODES [unittest arguments]
+"""
+
+from __future__ import annotations
+
+from live import FAILED, FINE, PATIENCE_MS, WRONG_USAGE, LiveTest, run
+
+
+class Write(LiveTest):
+    def test_with_the_unit_and_read_back(self) -> None:
+        self.expect(self.edsc("write", 5, "speed", "1500 rpm", "--eds", "device.eds", "--verify"), FINE,
+                    "2004h:00 Speed = 1500 rpm, verified\n")
+        self.expect(self.edsc("write", 5, "label", "left axis", "--eds", "device.eds"), FINE, '2002h:00 Label = "left axis"\n')
+        self.expect(self.edsc("read", 5, "label", "speed", "--eds", "device.eds"), FINE,
+                    '2002h:00 Label = "left axis"\n2004h:00 Speed = 1500 rpm\n')
+
+    def test_a_value_in_brackets_is_no_list(self) -> None:
+        self.expect(self.edsc("write", 5, "label", "--eds", "device.eds", "--timeout", PATIENCE_MS, "--", "[a,b]"), FINE, '2002h:00 Label = "[a,b]"\n')
+        self.expect(self.edsc("write", 5, "label", "[a]", "[b]", "--eds", "device.eds"), FINE, '2002h:00 Label = "[a] [b]"\n')
+
+    def test_without_a_data_sheet(self) -> None:
+        self.expect(self.edsc("write", 5, "1017h", "500", "--type", "u16"), FINE, "1017h:00 = 500 (01F4h)\n")
+        self.expect(self.edsc("write", 5, "1017h", "--raw", "F4", "01"), FINE, "1017h:00 = F4 01\n")
+        self.assertEqual(self.network.frames("605"), ["605 2B 17 10 00 F4 01 00 00"] * 2)
+
+    def test_limits_are_looked_at_first(self) -> None:
+        self.expect(self.edsc("write", 5, "maximum_speed", 6001, "--eds", "device.eds"), WRONG_USAGE,
+                    stderr='edsc: 6001 is above the high limit of 2005h:00 "Maximum speed", 6000\n')
+        self.expect(self.edsc("write", 5, "1008h", "other", "--eds", "device.eds"), WRONG_USAGE,
+                    stderr="edsc: 1008h:00 Manufacturer device name is const; not written (--force writes anyway)\n")
+        self.assertEqual(self.network.frames("605"), [])
+
+    def test_force_leaves_them_to_the_device(self) -> None:
+        self.expect(self.edsc("write", 5, "maximum_speed", 6001, "--eds", "device.eds", "--force"), FAILED,
+                    stderr="edsc: 2005h:00 Maximum speed: refused by the device: 0609 0031h, value too high\n")
+        self.expect(self.edsc("write", 5, "1008h", "x", "--eds", "device.eds", "--force"), FAILED,
+                    stderr="edsc: 1008h:00 Manufacturer device name: refused by the device: 0601 0002h, write of a read-only object\n")
+
+    def test_a_value_that_reads_back_as_another(self) -> None:
+        self.expect(self.edsc("write", 5, "rounded_value", 15, "--eds", "device.eds", "--verify"), FAILED,
+                    stderr="edsc: 2009h:00 Rounded value: written, but it reads back as 10 (000Ah)\n")
+
+    def test_a_domain_from_a_file_by_block_transfer(self) -> None:
+        content = bytes(i % 251 for i in range(5000))
+        (self.folder / "firmware.bin").write_bytes(content)
+        self.expect(self.edsc("write", 5, "firmware", "--file", "firmware.bin", "--eds", "device.eds"), FINE,
+                    "2000h:00 Firmware: 5000 bytes from firmware.bin\n")
+        self.edsc("read", 5, "log", "--eds", "device.eds", "--file", "back.bin")
+        self.assertEqual((self.folder / "back.bin").read_bytes(), content)
+        self.assertEqual(self.network.frames("605")[0], "605 C6 00 20 00 88 13 00 00")
+
+    def test_a_file_without_an_eds_is_not_echoed(self) -> None:
+        (self.folder / "firmware.bin").write_bytes(bytes(1000))
+        self.expect(self.edsc("write", 5, "2000h", "--file", "firmware.bin"), FINE, "2000h:00: 1000 bytes from firmware.bin\n")
+
+    def test_by_segments_when_asked(self) -> None:
+        (self.folder / "firmware.bin").write_bytes(bytes(range(200)))
+        self.expect(self.edsc("write", 5, "2000h", "--file", "firmware.bin", "--segmented"), FINE,
+                    "2000h:00: 200 bytes from firmware.bin\n")
+        self.expect(self.edsc("read", 5, "2001h", "--file", "back.bin", "--eds", "device.eds", "--segmented"), FINE,
+                    "2001h:00 Log: 200 bytes to back.bin\n")
+        self.assertEqual((self.folder / "back.bin").read_bytes(), bytes(range(200)))
+        self.assertEqual([frame[:15] for frame in self.network.frames("605") if frame[7:15] in ("00 20 00", "01 20 00")],
+                         ["605 21 00 20 00", "605 40 01 20 00"])
+
+    def test_wrong_usage(self) -> None:
+        for arguments, words in (
+                (("1017h",), "VALUE or --file"),
+                (("1017h", "5"), "requires a type"),
+                (("1017h", "x", "--type", "u16"), "is not a number"),
+                (("1017h", "70000", "--type", "u16"), "does not fit into UNSIGNED16"),
+                (("1018h", "1", "--eds", "device.eds"), "1018h"),
+                (("firmware", "--file", "missing", "--eds", "device.eds"), "missing: No such file"),
+                (("firmware", "--file", ".", "--eds", "device.eds"), "edsc: .: Is a directory")):
+            with self.subTest(arguments=arguments):
+                result = self.edsc("write", 5, *arguments)
+                self.assertEqual((result.returncode, result.stdout), (WRONG_USAGE, ""))
+                self.assertIn(words, result.stderr)
+
+
+if __name__ == "__main__":
+    run()
