@@ -27,6 +27,10 @@ class Compiler:
         return self.command[0]
 
     @property
+    def is_clang(self) -> bool:
+        return "clang" in self.name
+
+    @property
     def installed(self) -> bool:
         return shutil.which(self.name) is not None
 
@@ -53,6 +57,18 @@ def compile_only(compiler: Compiler, source: Path, include: Sequence[Path],
     folders = [f"-I{folder}" for folder in include]
     return subprocess.run([*compiler.command, *FLAGS, *extra, *folders, str(source)], capture_output=True, text=True,
                           errors="replace", timeout=600)
+
+
+def precompiled(compiler: Compiler, text: str, include: Sequence[Path], folder: Path,
+                extra: Sequence[str] = ()) -> tuple[str, ...]:
+    """Compiles the headers that `text` includes once; returns the flags with which a source begins with them."""
+    header = folder / "precompiled.hpp"
+    header.write_text(text)
+    output = header.with_suffix(".pch" if compiler.is_clang else ".hpp.gch")
+    flags = [flag for flag in FLAGS if flag != "-fsyntax-only"]
+    subprocess.run([*compiler.command, *flags, *extra, *(f"-I{path}" for path in include), "-x", "c++-header",
+                    str(header), "-o", str(output)], check=True, timeout=600)
+    return ("-include-pch", str(output)) if compiler.is_clang else ("-Winvalid-pch", "-include", str(header))
 
 
 def in_parallel(job, arguments: Iterable) -> list:
