@@ -1,20 +1,44 @@
-# edsc_add_gtest(NAME LABEL label SOURCES file... [LIBRARIES target...] [NO_COVERAGE]): a GoogleTest program. Its includes are
+# edsc_add_test_program(NAME [LONG] SOURCE...): a program of the label `unit`, without its test. The whole suite builds it once,
+# with the sanitizers. Hundreds of small tests over inlined templates take longer to compile than to run: only those that run
+# for LONG are optimised, and no program with more than -O1.
+function(edsc_add_test_program name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "LONG" "" "")
+  add_executable(${name} ${arg_UNPARSED_ARGUMENTS})
+  if(NOT EDSC_GTEST_PROGRAMS)
+    set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)
+  endif()
+  target_compile_options(${name} PRIVATE ${EDSC_WARNINGS})
+  if(arg_LONG OR NOT EDSC_SANITIZE)
+    target_compile_options(${name} PRIVATE -O1)
+  endif()
+endfunction()
+
+# edsc_add_test_run(NAME COMMAND): the test that runs a program.
+function(edsc_add_test_run name)
+  if(EDSC_GTEST_PROGRAMS)
+    add_test(NAME ${name} COMMAND ${name} ${ARGN})
+    set_tests_properties(${name} PROPERTIES LABELS unit)
+  endif()
+endfunction()
+
+# edsc_add_gtest(NAME SOURCES file... [LIBRARIES target...] [LONG] [NO_COVERAGE]): a GoogleTest program. Its includes are
 # relative to tests/.
 # NO_COVERAGE: it does not cover the runtime, or covers no more than others that compile faster.
 function(edsc_add_gtest name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "NO_COVERAGE" "LABEL" "SOURCES;LIBRARIES")
-  add_executable(${name} ${arg_SOURCES})
+  cmake_parse_arguments(PARSE_ARGV 1 arg "LONG;NO_COVERAGE" "" "SOURCES;LIBRARIES")
+  set(long)
+  if(arg_LONG)
+    set(long LONG)
+  endif()
+  edsc_add_test_program(${name} ${long} ${arg_SOURCES})
   target_include_directories(${name} PRIVATE ${EDSC_TESTS_DIR})
-  # Hundreds of small tests over inlined templates: with more than -O1 they take minutes to compile.
-  target_compile_options(${name} PRIVATE ${EDSC_WARNINGS} -O1)
   target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} GTest::gtest_main)
   if(EDSC_COVERAGE AND NOT arg_NO_COVERAGE)
     target_compile_options(${name} PRIVATE -O0 --coverage)
     target_link_options(${name} PRIVATE --coverage)
     set_property(GLOBAL APPEND PROPERTY edsc_covering_tests ${name})
   endif()
-  add_test(NAME ${name} COMMAND ${name} --gtest_brief=1)
-  set_tests_properties(${name} PROPERTIES LABELS ${arg_LABEL})
+  edsc_add_test_run(${name} --gtest_brief=1)
 endfunction()
 
 # edsc_add_script(NAME LABEL label SCRIPT file [ARGUMENTS argument...] [PROPERTIES property value...]):
