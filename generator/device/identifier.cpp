@@ -21,6 +21,7 @@ consteval std::array<std::string_view, N> sorted(const char* const (&words)[N]) 
 
 /// Names that are not available for objects: keywords, alternative tokens, usual macros in lower case, and the members
 /// of each generated object.
+// clang-format off
 constexpr const char* word_list[] = {
     "alignas",       "alignof",     "and",          "and_eq",        "asm",          "assert",      "auto",
     "bitand",        "bitor",       "bits",         "bool",          "break",        "canopen",     "case",
@@ -41,10 +42,12 @@ constexpr const char* word_list[] = {
     "va_arg",        "virtual",     "void",         "volatile",      "wchar_t",      "while",       "xor",
     "xor_eq",        "access",
 };
+// clang-format on
 constexpr auto reserved_words = sorted(word_list);
 
 /// Further names that are not available for a namespace at global scope: functions of the C library, and the constants
 /// of canopen::entry in the generated tables.
+// clang-format off
 constexpr const char* namespace_list[] = {
     // C library and POSIX.
     "abort",  "abs",    "accept", "access", "acos",   "alarm",  "asin",   "atan",   "atexit",  "bind",   "brk",
@@ -61,6 +64,7 @@ constexpr const char* namespace_list[] = {
     "ro",     "rom",    "rpdo",   "rw",     "string", "time48", "tpdo",   "u8",     "u16",     "u24",    "u32",
     "u40",    "u48",    "u56",    "u64",    "wo",     "writable",
 };
+// clang-format on
 constexpr auto reserved_namespaces = sorted(namespace_list);
 
 struct Spelling {

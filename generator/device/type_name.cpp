@@ -15,6 +15,7 @@ struct TypeAlias {
   DataType type;
 };
 
+// clang-format off
 constexpr TypeAlias aliases[] = {
     {"bool", DataType::boolean},
     {"int8", DataType::integer8},
@@ -51,6 +52,7 @@ constexpr TypeAlias aliases[] = {
     {"double", DataType::real64},
     {"string", DataType::visible_string},
 };
+// clang-format on
 
 }  // namespace
 

@@ -25,6 +25,7 @@ struct AccessRow {
   std::string_view name;  ///< as an EDS spells it
 };
 
+// clang-format off
 inline constexpr AccessRow access_rows[] = {
     {Access::ro, true, false, true, false, "ro"},
     {Access::wo, false, true, false, true, "wo"},
@@ -33,6 +34,7 @@ inline constexpr AccessRow access_rows[] = {
     {Access::rww, true, true, false, true, "rww"},
     {Access::constant, true, false, true, false, "const"},
 };
+// clang-format on
 
 [[nodiscard]] constexpr const AccessRow& row_of(Access access) { return access_rows[static_cast<std::uint8_t>(access)]; }
 [[nodiscard]] constexpr bool readable(Access access) { return row_of(access).readable; }

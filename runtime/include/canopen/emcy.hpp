@@ -193,7 +193,7 @@ class EmergencyProducer {
   /// The history is served if count and elements of 1003h are in RAM.
   static constexpr entry::Word history_count = Device::dictionary.find(0x1003, 0);
   static constexpr entry::Word history_first = Device::dictionary.find(0x1003, 1);
-  static constexpr bool has_history = history_first > Dictionary::no_sub_index &&
+  static constexpr bool has_history = (history_first > Dictionary::no_sub_index) &&
                                       entry::place_of(history_count) == entry::Place::ram &&
                                       entry::place_of(history_first) == entry::Place::ram;
   static constexpr std::uint8_t history_capacity = [] {

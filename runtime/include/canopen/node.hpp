@@ -342,7 +342,7 @@ class Node {
   static constexpr bool has_heartbeat_time = Device::dictionary.has(0x1017, 0);
   static constexpr entry::Word clock_word = Device::dictionary.find(0x1013, 0);
   static constexpr bool has_clock =
-      clock_word > Dictionary::no_sub_index && entry::place_of(clock_word) == entry::Place::ram;
+      (clock_word > Dictionary::no_sub_index) && entry::place_of(clock_word) == entry::Place::ram;
   static constexpr entry::Kinds kinds = EntryAccess<Device>::kinds;
   static constexpr bool has_tpdos = TpdoService<Device>::count > 0;
   static constexpr bool has_rpdos = RpdoService<Device>::count > 0;

@@ -30,6 +30,7 @@ struct CobIdCase {
 };
 
 // CiA 301, 7.3.5, table 41.
+// clang-format off
 const CobIdCase cob_id_cases[] = {
     {"1800", 1, "$NODEID+0x180", false},
     {"1800", 1, "$NODEID+0x580", true},   // the device's own SDO response
@@ -54,6 +55,7 @@ const CobIdCase cob_id_cases[] = {
     {"1280", 2, "0x585", false},
     {"1280", 1, "0x701", true},
 };
+// clang-format on
 
 TEST(CobIdRules, RefuseACanIdThatCia301Restricts) {
   for (const CobIdCase& row : cob_id_cases) {
