@@ -70,7 +70,7 @@ std::string outcome_text(const SdoOutcome& outcome) {
   return outcome.end == SdoEnd::refused ? abort_text(outcome.code) : failure_text(outcome);
 }
 
-Dut::Dut(LiveBus& bus, const Device& sheet, Stimuli& stimuli, DutSettings settings)
+Dut::Dut(LiveBus& bus, const Device& sheet, Stimuli& stimuli, const DutSettings& settings)
     : bus_{bus},
       sheet_{sheet},
       stimuli_{stimuli},

@@ -67,7 +67,7 @@ struct DutSettings {
 
 class Dut {
  public:
-  Dut(LiveBus& bus, const Device& sheet, Stimuli& stimuli, DutSettings settings);
+  Dut(LiveBus& bus, const Device& sheet, Stimuli& stimuli, const DutSettings& settings);
   ~Dut();
   Dut(const Dut&) = delete;
   Dut& operator=(const Dut&) = delete;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "monitor/text_table.hpp"
 #include "text/counted.hpp"
 #include "text/utf8.hpp"
@@ -133,9 +135,7 @@ std::string cut_to_width(const std::string& line, std::size_t width) {
 }
 
 Json monitor_json(const MonitorState& state, const MonitorView& view, std::int64_t now_us) {
-  const auto rounded = [](double number) {
-    return static_cast<double>(static_cast<std::int64_t>(number * 10 + 0.5)) / 10;
-  };
+  const auto rounded = [](double number) { return std::round(number * 10) / 10; };
   Json json{{"version", 1},
             {"seconds", rounded(seconds(now_us - state.start_us()))},
             {"frames", state.frames().total()},

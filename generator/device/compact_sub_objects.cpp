@@ -32,7 +32,8 @@ SubObjectDescription count_description(const ObjectDescription& description, std
 SubObjectDescription element_description(const ObjectDescription& description, std::uint8_t sub_index,
                                          std::deque<std::string>& texts) {
   SubObjectDescription sub;
-  static_cast<EntryDescription&>(sub) = description;
+  const EntryDescription& keys = description;
+  static_cast<EntryDescription&>(sub) = keys;
   sub.sub_index = sub_index;
   sub.object_type = {};
   sub.denotation = {};

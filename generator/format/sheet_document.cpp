@@ -106,9 +106,15 @@ class SheetWriter {
     }
   }
 
-  void put_entry(EntryDescription entry) {
-    if (!sheet_.is_dcf) entry.parameter_value.present = false;
-    put<EntryDescription>(entry_keys, entry);
+  /// The keys that objects and sub-objects have in common.
+  void put_entry(const EntryDescription& entry) {
+    if (sheet_.is_dcf) {
+      put<EntryDescription>(entry_keys, entry);
+      return;
+    }
+    EntryDescription of_eds = entry;
+    of_eds.parameter_value.present = false;
+    put<EntryDescription>(entry_keys, of_eds);
   }
 
   const DataSheet& sheet_;

@@ -36,8 +36,8 @@ inline constexpr std::uint32_t bit_rates[] = {10'000,  20'000,  50'000,  100'000
 
 /// Returns the digit of the command S for a bit rate; empty if there is none.
 [[nodiscard]] constexpr std::optional<std::uint8_t> bit_rate_code(std::uint32_t bit_rate) {
-  for (std::uint8_t i = 0; i < std::size(bit_rates); ++i) {
-    if (bit_rates[i] == bit_rate) return i;
+  for (std::size_t i = 0; i < std::size(bit_rates); ++i) {
+    if (bit_rates[i] == bit_rate) return static_cast<std::uint8_t>(i);
   }
   return std::nullopt;
 }
