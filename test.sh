@@ -1,18 +1,54 @@
 #!/usr/bin/env bash
-# Runs the whole test suite: all tests with a release build; the unit and trace tests and a short run of each fuzz
-# target with AddressSanitizer and UBSan; the images of the reference devices for Cortex-M under QEMU.
-#   ./test.sh           all parts
-#   ./test.sh test      only the release build
-#   ./test.sh asan      only the sanitizers
-#   ./test.sh firmware  only the images
-# The last two use the program edsc of the release build, and build it there if it is missing.
 set -euo pipefail
 cd "$(dirname "$0")"
 
+help() {
+  cat <<'HELP'
+./test.sh [GEAR]...: tests edsc; installs missing Debian packages first.
+
+  gates     format, includes, words, schemas; what differs from origin/main compiles alone and passes clang-tidy
+            (less than 2 minutes; needs no build)
+  quick     the gates; the generated code, the short tests of the command line, the conformance test of the reference
+            devices; the unit and trace tests (about 3 minutes after a build)
+  test      a release build with all tests but the gates and the GoogleTest programs; all sources compile alone and
+            pass clang-tidy
+  asan      the GoogleTest programs (unit and trace tests) and a short run of each fuzz target with AddressSanitizer
+            and UBSan
+  firmware  the images of the reference devices for Cortex-M under QEMU
+
+Without a gear: gates, test, asan, firmware. The last two use the program edsc of the release build, and build it there
+if it is missing. The time of each test is printed at the end of a gear, slowest first.
+HELP
+}
+
+# run PRESET: a workflow preset and the times of its tests.
+run() {
+  local build=build/$1 status=0
+  case $1 in
+    gates | quick) build=build/test ;;
+    unit) build=build/asan ;;
+  esac
+  rm -f "$build/times-$1.xml"
+  echo "== $1"
+  cmake --workflow --preset "$1" || status=$?
+  .ci/test-times "$build/times-$1.xml"
+  return $status
+}
+
+gears=("$@")
+[ $# -gt 0 ] || gears=(gates test asan firmware)
+for gear in "${gears[@]}"; do
+  case $gear in
+    gates | quick | test | asan | firmware) ;;
+    -h | --help) help; exit ;;
+    *) echo "unknown gear $gear; see ./test.sh --help" >&2; exit 2 ;;
+  esac
+done
+
 .ci/install-packages test
-presets=("$@")
-[ $# -gt 0 ] || presets=(test asan firmware)
-for preset in "${presets[@]}"; do
-  echo "== $preset"
-  cmake --workflow --preset "$preset"
+for gear in "${gears[@]}"; do
+  case $gear in
+    quick) for part in gates quick unit; do run "$part"; done ;;
+    *) run "$gear" ;;
+  esac
 done

@@ -41,12 +41,18 @@ function(edsc_add_gtest name)
   edsc_add_test_run(${name} --gtest_brief=1)
 endfunction()
 
+# `./test.sh quick` also runs these scripts. They take seconds, conform_reference 40 of them.
+set(EDSC_QUICK_SCRIPTS check cli cli_diff cli_format completion conform_reference decode golden manuals options rules)
+
 # edsc_add_script(NAME LABEL label SCRIPT file [ARGUMENTS argument...] [PROPERTIES property value...]):
 # a Python script, called with the source folder and its arguments; exit code 77 means skipped.
 function(edsc_add_script name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "LABEL;SCRIPT" "ARGUMENTS;PROPERTIES")
+  if(name IN_LIST EDSC_QUICK_SCRIPTS)
+    list(APPEND arg_LABEL quick)
+  endif()
   add_test(NAME ${name} COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/${arg_SCRIPT} ${PROJECT_SOURCE_DIR}
                                 ${arg_ARGUMENTS})
-  set_tests_properties(${name} PROPERTIES LABELS ${arg_LABEL} SKIP_RETURN_CODE 77
+  set_tests_properties(${name} PROPERTIES LABELS "${arg_LABEL}" SKIP_RETURN_CODE 77
                                           ENVIRONMENT PYTHONDONTWRITEBYTECODE=1 ${arg_PROPERTIES})
 endfunction()

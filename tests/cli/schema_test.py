@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The schemas of docs/schema describe the output and input of edsc: `edsc dump` for all EDS files, options files and files of
-deviations.
+"""The schemas of docs/schema describe the output of edsc, such as `edsc dump` for all EDS files, and reject wrong input. The
+files of the repository that are input are checked by tests/gates/schemas.py.
 
     schema_test.py SOURCE_DIR EDSC [unittest arguments]
 
@@ -70,26 +70,7 @@ def validator(name: str) -> jsonschema.Draft202012Validator:
     return jsonschema.Draft202012Validator(json.loads((SCHEMAS / f"{name}.schema.json").read_text()))
 
 
-class Schemas(unittest.TestCase):
-    def test_are_schemas_with_a_name_of_their_own(self) -> None:
-        names = set()
-        for path in sorted(SCHEMAS.glob("*.json")):
-            schema = json.loads(path.read_text())
-            jsonschema.Draft202012Validator.check_schema(schema)
-            self.assertEqual(schema["$id"], f"urn:edsc:schema:{path.name.removesuffix('.schema.json')}")
-            names.add(schema["$id"])
-        self.assertGreaterEqual(len(names), 8)
-
-
 class Options(unittest.TestCase):
-    def test_files_of_this_repository_fit(self) -> None:
-        options = validator("options")
-        paths = [path for folder in ("eds", "tests", "examples") for path in (SOURCE_DIR / folder).rglob("*.options.json")]
-        self.assertGreaterEqual(len(paths), 15)
-        for path in paths:
-            with self.subTest(path=path):
-                options.validate(json.loads(path.read_text()))
-
     def test_that_are_wrong_do_not(self) -> None:
         for wrong in ({"no_such_member": 1}, {"settable": 1}, {"names": {"1017": "Not A Name"}}):
             with self.assertRaises(jsonschema.ValidationError):
@@ -97,13 +78,6 @@ class Options(unittest.TestCase):
 
 
 class Deviations(unittest.TestCase):
-    def test_files_of_this_repository_fit(self) -> None:
-        paths = [path for folder in ("eds", "tests", "examples") for path in (SOURCE_DIR / folder).rglob("*.deviations.json")]
-        self.assertGreaterEqual(len(paths), 1)
-        for path in paths:
-            with self.subTest(path=path):
-                validator("deviations").validate(json.loads(path.read_text()))
-
     def test_that_are_wrong_do_not(self) -> None:
         for wrong in ({"case": "3.7"}, {"case": "3.*", "reason": "x"}, {"case": "3.7", "reason": " "},
                       {"case": "3.7", "reason": "x", "object": "speed"}, {"case": "3.7", "reason": "x", "why": "y"}):
