@@ -109,22 +109,46 @@ void move_to_node(const Settings& settings, Input& input, Diagnostics& diagnosti
   read(settings, input, ignored);
 }
 
+/// The bytes of a file: `gzip`, `CP1252`.
+std::string_view byte_form(const SourceFile& source) {
+  if (source.packing() == Packing::gzip) return "gzip";
+  return source.encoding() == Encoding::utf8 ? "UTF-8 with a byte order mark" : to_string(source.encoding());
+}
+
 int check(const SourceFile& source, const std::string& text) {
   if (source.is_verbatim() && source.text() == text) return exit_fine;
+  if (source.text() == text) {
+    print_visibly(stderr, "{}: the file is {}; the canonical form is UTF-8\n", source.name(), byte_form(source));
+    return exit_input_has_errors;
+  }
   const auto [in_file, in_text] = std::ranges::mismatch(source.text(), text);
   const auto line = std::count(source.text().begin(), in_file, '\n') + 1;
   print_visibly(stderr, "{}:{}: the canonical form differs from here on\n", source.name(), line);
   return exit_input_has_errors;
 }
 
-int write(const std::string& path, std::string content) {
+/// Whether `path` is the file that was read, by any of its names.
+bool is_file_of(const SourceFile& source, const std::string& path) {
+  std::error_code error;
+  return std::filesystem::equivalent(source.name(), path, error);
+}
+
+int write(const Settings& settings, const SourceFile& source, const std::string& path, std::string content) {
   if (path.empty()) {
     write_output(content);
     return exit_fine;
   }
+  if (is_file_of(source, path) && source.packing() == Packing::gzip) {
+    print_visibly(stderr, "edsc: {}: a gzip file is not replaced by its text; name another file with -o\n", path);
+    return exit_wrong_usage;
+  }
   if (const std::string problem = write_files({{path, std::move(content)}}); !problem.empty()) {
     print_visibly(stderr, "edsc: {}\n", problem);
     return exit_wrong_usage;
+  }
+  const bool is_utf8 = source.encoding() == Encoding::ascii || source.encoding() == Encoding::utf8;
+  if (!is_utf8 && !settings.concise) {
+    print_visibly(stderr, "edsc: {}: converted from {} to UTF-8\n", path, to_string(source.encoding()));
   }
   return exit_fine;
 }
@@ -160,7 +184,7 @@ int format_file(const Settings& settings, const std::string& path) {
   print_findings(stderr, diagnostics, settings.color);
   if (diagnostics.errors() > 0) return exit_input_has_errors;
   if (settings.check) return check(*input.file, content);
-  return write(settings.in_place ? path : settings.output, std::move(content));
+  return write(settings, *input.file, settings.in_place ? path : settings.output, std::move(content));
 }
 
 int format(const Settings& settings) {

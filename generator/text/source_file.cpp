@@ -141,7 +141,8 @@ std::string_view to_string(Encoding encoding) {
   return "";
 }
 
-SourceFile::SourceFile(std::string name, std::string bytes) : name_(std::move(name)) {
+SourceFile::SourceFile(std::string name, std::string bytes, Packing packing)
+    : name_(std::move(name)), packing_(packing) {
   if (bytes.size() > max_bytes) {
     throw std::length_error(name_ + ": " + std::string(too_large));
   }
@@ -163,7 +164,7 @@ void SourceFile::decode(std::string bytes) {
   } else if (is_utf8(view)) {
     encoding_ = is_ascii(view) ? Encoding::ascii : Encoding::utf8;
     text_ = std::move(bytes);
-    is_verbatim_ = true;
+    is_verbatim_ = packing_ == Packing::none;
   } else {
     encoding_ = looks_like_cp437(view) ? Encoding::cp437 : Encoding::cp1252;
     text_ = encoding_ == Encoding::cp437 ? from_cp437(view) : from_cp1252(view);
@@ -210,7 +211,8 @@ std::unique_ptr<SourceFile> read_source_file(const std::string& path, std::strin
   std::string bytes;
   std::string why = is_standard_input ? read_all(stdin, bytes) : read_file(path, bytes);
   const std::string name = is_standard_input ? "<stdin>" : path;
-  if (why.empty() && is_gzip(bytes)) {
+  const Packing packing = is_gzip(bytes) ? Packing::gzip : Packing::none;
+  if (why.empty() && packing == Packing::gzip) {
     const std::string file = std::move(bytes);
     why = gunzip(file, SourceFile::max_unpacked_bytes, bytes);
   }
@@ -218,7 +220,7 @@ std::unique_ptr<SourceFile> read_source_file(const std::string& path, std::strin
     error = "cannot read " + name + ": " + why;
     return nullptr;
   }
-  return std::make_unique<SourceFile>(name, std::move(bytes));
+  return std::make_unique<SourceFile>(name, std::move(bytes), packing);
 }
 
 }  // namespace edsc

@@ -15,14 +15,18 @@ enum class Encoding : std::uint8_t { ascii, utf8, utf16_le, utf16_be, cp1252, cp
 
 [[nodiscard]] std::string_view to_string(Encoding encoding);
 
+/// How the bytes of a file are compressed.
+enum class Packing : std::uint8_t { none, gzip };
+
 class SourceFile {
  public:
   static constexpr std::size_t max_bytes = std::size_t{1} << 30;
   static constexpr std::size_t max_unpacked_bytes = std::size_t{1} << 26;  ///< of a gzip file
 
   /// `name` is the file name in diagnostics; `bytes` are decoded immediately, without the byte order mark. Undefined
-  /// characters of the encoding become U+FFFD. Throws std::length_error above `max_bytes`.
-  SourceFile(std::string name, std::string bytes);
+  /// characters of the encoding become U+FFFD. Throws std::length_error above `max_bytes`. `packing` is that of the
+  /// file; `bytes` are its unpacked contents.
+  SourceFile(std::string name, std::string bytes, Packing packing = Packing::none);
 
   SourceFile(const SourceFile&) = delete;
   SourceFile& operator=(const SourceFile&) = delete;
@@ -30,7 +34,8 @@ class SourceFile {
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::string_view text() const { return text_; }
   [[nodiscard]] Encoding encoding() const { return encoding_; }
-  /// Whether `text()` is the file byte for byte: ASCII or UTF-8, without byte order mark.
+  [[nodiscard]] Packing packing() const { return packing_; }
+  /// Whether `text()` is the file byte for byte: ASCII or UTF-8, without byte order mark, not packed.
   [[nodiscard]] bool is_verbatim() const { return is_verbatim_; }
   /// Number of lines; text after the last line end counts if it is not empty.
   [[nodiscard]] std::uint32_t lines() const;
@@ -44,6 +49,7 @@ class SourceFile {
   std::string name_;
   std::string text_;
   Encoding encoding_ = Encoding::ascii;
+  Packing packing_ = Packing::none;
   bool is_verbatim_ = false;
   std::vector<std::uint32_t> starts_;  ///< start of each line, and the end
 };

@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import gzip
 import json
 import os
 import re
@@ -57,6 +58,45 @@ class ManyFiles(CommandLine):
         self.expect(WRONG_USAGE, self.edsc("format", self.rough, self.canonical), "several files need --check or --in-place")
         self.expect(WRONG_USAGE, self.edsc("format", "-i", "-"), "standard input cannot be written")
         self.expect(WRONG_USAGE, self.edsc("format", "-i", self.rough, "-o", "x.eds"), "excludes")
+
+
+class OtherBytes(CommandLine):
+    """Files that are not UTF-8 text."""
+
+    def setUp(self) -> None:
+        super().setUp()
+        self.text = self.edsc("format", self.write("rough.eds", SMALL.replace("Device type", "Gerätetyp"))).stdout
+
+    def sheet(self, name: str, content: bytes) -> Path:
+        path = self.folder / name
+        path.write_bytes(content)
+        return path
+
+    def test_a_gzip_file_stays_one(self) -> None:
+        for text in (self.text, SMALL):
+            packed = self.sheet("packed.eds", gzip.compress(text.encode()))
+            before = packed.read_bytes()
+            self.expect(WRONG_USAGE, self.edsc("format", "-i", packed), "a gzip file is not replaced by its text")
+            self.expect(WRONG_USAGE, self.edsc("format", packed, "-o", packed), "a gzip file is not replaced by its text")
+            self.expect(INPUT_HAS_ERRORS, self.edsc("format", "--check", packed), "packed.eds:")
+            self.assertEqual(packed.read_bytes(), before)
+        self.expect(FINE, self.edsc("format", packed, "-o", "text.eds"))
+        self.assertTrue((self.folder / "text.eds").read_text().startswith("[FileInfo]\n"))
+
+    def test_a_canonical_gzip_file_is_not_canonical(self) -> None:
+        packed = self.sheet("packed.eds", gzip.compress(self.text.encode()))
+        self.expect(INPUT_HAS_ERRORS, self.edsc("format", "--check", packed), "the file is gzip; the canonical form is UTF-8")
+
+    def test_another_encoding_is_reported(self) -> None:
+        for name, encoding in (("CP1252", "cp1252"), ("UTF-16LE", "utf-16-le"), ("UTF-8 with a byte order mark", "utf-8-sig")):
+            with self.subTest(encoding=name):
+                sheet = self.sheet("a.eds", self.text.encode(encoding))
+                self.expect(INPUT_HAS_ERRORS, self.edsc("format", "--check", sheet), f"the file is {name}; the canonical form")
+                result = self.edsc("format", "-i", sheet)
+                self.expect(FINE, result)
+                self.assertEqual(f"converted from {name} to UTF-8" in result.stderr, encoding != "utf-8-sig", result.stderr)
+                self.assertEqual(sheet.read_bytes(), self.text.encode())
+                self.expect(FINE, self.edsc("format", "--check", sheet))
 
 
 class Comments(CommandLine):
