@@ -81,10 +81,9 @@ class CommentFinder {
     found_.outline.parts.push_back(part);
     apply_waiting(AllowanceScope::Kind::part);
     const std::string_view rest = trim(content.substr(end + 1));
-    if (rest.starts_with(';') || rest.starts_with('#')) {
-      read_comment(line, rest);
-      apply_waiting(AllowanceScope::Kind::part);
-    }
+    if (!rest.starts_with(';') && !rest.starts_with('#')) return;
+    for (const std::string_view comment : split_header_comment(rest)) read_comment(line, comment);
+    apply_waiting(AllowanceScope::Kind::part);
   }
 
   void read_entry(std::string_view content) {
@@ -133,5 +132,21 @@ class CommentFinder {
 }  // namespace
 
 AllowComments find_allow_comments(const SourceFile& source) { return CommentFinder{source}.run(); }
+
+bool is_for_edsc(std::string_view comment) {
+  return !comment.empty() && trim_left(comment.substr(1)).starts_with(mark);
+}
+
+std::vector<std::string_view> split_header_comment(std::string_view comment) {
+  std::vector<std::string_view> parts;
+  std::size_t start = 0;
+  for (std::size_t at = comment.find(';', 1); at != std::string_view::npos; at = comment.find(';', at + 1)) {
+    if (!is_for_edsc(comment.substr(at))) continue;
+    parts.push_back(trim(comment.substr(start, at - start)));
+    start = at;
+  }
+  parts.push_back(trim(comment.substr(start)));
+  return parts;
+}
 
 }  // namespace edsc

@@ -24,8 +24,14 @@ struct AllowComments {
 };
 
 /// Finds the comments and their targets in the lines of an EDS or DCF. A comment applies to the next line that is
-/// neither a comment nor empty: a key, or a whole section. A comment before the first section applies to the file, one
+/// neither a comment nor empty: a key, or a whole section. A comment before the first section applies to the file, those
 /// after a section header on the same line to that section.
 [[nodiscard]] AllowComments find_allow_comments(const SourceFile& source);
+
+/// Whether a comment, with its `;` or `#`, begins with `; edsc:`.
+[[nodiscard]] bool is_for_edsc(std::string_view comment);
+
+/// Splits the comment after a section header before each further `; edsc:`.
+[[nodiscard]] std::vector<std::string_view> split_header_comment(std::string_view comment);
 
 }  // namespace edsc

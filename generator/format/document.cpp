@@ -4,6 +4,11 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
+#include <utility>
+
+#include "eds/allow_comments.hpp"
+#include "text/ascii.hpp"
 
 namespace edsc {
 namespace {
@@ -40,7 +45,8 @@ class DocumentReader {
 
   DocumentSection read_section(const IniSection& section) {
     DocumentSection result;
-    result.remarks = take(count_up_to(section.line));
+    result.remarks = take(count_up_to(section.line - 1));
+    take_header(section, result);
     result.kind = read_section_name(section.name);
     result.title = section.name;
     result.entries.reserve(section.entries.size());
@@ -50,7 +56,17 @@ class DocumentReader {
     return result;
   }
 
-  /// The number of remarks before this line, or after the section header on it.
+  /// The remarks after the section header, on its line.
+  void take_header(const IniSection& section, DocumentSection& result) {
+    const bool is_first = &section == ini_.sections.data();
+    for (; taken_ < count_up_to(section.line); ++taken_) {
+      for (const std::string_view part : split_header_comment(ini_.remarks[taken_].text)) {
+        (is_first && is_for_edsc(part) ? result.header : result.remarks).push_back(remark_line(part));
+      }
+    }
+  }
+
+  /// The number of remarks up to this line.
   [[nodiscard]] std::size_t count_up_to(std::uint32_t line) const {
     std::size_t count = taken_;
     while (count < ini_.remarks.size() && ini_.remarks[count].line <= line) ++count;
@@ -74,7 +90,7 @@ class DocumentWriter {
     for (const DocumentSection& section : document.sections) {
       separate();
       put(section.remarks);
-      put("[", section.title, "]");
+      put("[", section.title, fmt::format("]{}{}", section.header.empty() ? "" : " ", fmt::join(section.header, " ")));
       for (const DocumentEntry& entry : section.entries) {
         put(entry.remarks);
         put(entry.key, "=", entry.value);
@@ -114,6 +130,20 @@ std::string remark_line(std::string_view text) {
   if (text.starts_with(';')) return std::string{text};
   if (text.starts_with('#')) return fmt::format(";{}", text.substr(1));
   return fmt::format("; {}", text);
+}
+
+void give_up_first_place(Document& document) {
+  if (document.sections.empty()) return;
+  DocumentSection& section = document.sections.front();
+  std::ranges::copy_if(section.remarks, std::back_inserter(document.head), is_for_edsc);
+  std::erase_if(section.remarks, is_for_edsc);
+  append(section.remarks, std::exchange(section.header, {}));
+}
+
+void take_first_place(Document& document) {
+  DocumentSection& section = document.sections.front();
+  std::ranges::copy_if(section.remarks, std::back_inserter(section.header), is_for_edsc);
+  std::erase_if(section.remarks, is_for_edsc);
 }
 
 void append(Remarks& remarks, const Remarks& more) { remarks.insert(remarks.end(), more.begin(), more.end()); }

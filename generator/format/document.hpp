@@ -22,6 +22,7 @@ struct DocumentSection {
   Remarks remarks;   ///< before it
   SectionName kind;  ///< the meaning of its title
   std::string title;
+  Remarks header;    ///< comments for edsc on its line: before the first section they would apply to the file
   std::vector<DocumentEntry> entries;
 };
 
@@ -40,6 +41,13 @@ struct Document {
 
 /// `text` as a line of a comment: `# a` and `a` become `; a`.
 [[nodiscard]] std::string remark_line(std::string_view text);
+
+/// To be called before another section becomes the first: comments for edsc before this one apply to the file and move
+/// to the top, those on its line move before it.
+void give_up_first_place(Document& document);
+
+/// To be called when another section has become the first: comments for edsc before it move to its line.
+void take_first_place(Document& document);
 
 /// Appends `more` to `remarks`.
 void append(Remarks& remarks, const Remarks& more);

@@ -106,6 +106,7 @@ class DcfMaker {
     }
     const auto place = std::ranges::find_if(document_.sections,
                                              [](const DocumentSection& section) { return section.kind.kind > kind; });
+    if (place == document_.sections.begin()) give_up_first_place(document_);
     DocumentSection added;
     added.kind.kind = kind;
     added.title = spell_title(added.kind, {});

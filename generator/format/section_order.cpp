@@ -8,8 +8,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "eds/allow_comments.hpp"
 #include "eds/object_lists.hpp"
-#include "text/ascii.hpp"
 
 namespace edsc {
 namespace {
@@ -25,9 +25,13 @@ bool is_object_list(SectionKind kind) {
   return kind >= SectionKind::mandatory_objects && kind <= SectionKind::manufacturer_objects;
 }
 
-void merge_remarks(DocumentSection& first, const DocumentSection& second) {
-  append(first.remarks, second.remarks);
-  for (const DocumentEntry& entry : second.entries) append(first.remarks, entry.remarks);
+/// On the first section of the file, comments for edsc must not be before it, where they would apply to the file.
+void merge_remarks(DocumentSection& first, bool is_first_of_file, const DocumentSection& second) {
+  Remarks remarks = second.remarks;
+  for (const DocumentEntry& entry : second.entries) append(remarks, entry.remarks);
+  for (std::string& remark : remarks) {
+    (is_first_of_file && is_for_edsc(remark) ? first.header : first.remarks).push_back(std::move(remark));
+  }
 }
 
 /// Groups of sections: single sections, each list with its objects, objects in no list, the rest.
@@ -57,18 +61,6 @@ Place place_of(const SectionName& name, const DataSheet& sheet) {
   return {list ? group_of_list(*list) + 1 : unlisted_objects, identity(name)};
 }
 
-bool is_for_edsc(const std::string& remark) {
-  return trim_left(std::string_view{remark}.substr(1)).starts_with("edsc:");
-}
-
-/// A comment `; edsc: allow` before the first section applies to the whole file: it remains there if another section
-/// becomes the first.
-void keep_at_top(Document& document) {
-  Remarks& remarks = document.sections.front().remarks;
-  std::ranges::copy_if(remarks, std::back_inserter(document.head), is_for_edsc);
-  std::erase_if(remarks, is_for_edsc);
-}
-
 }  // namespace
 
 void drop_second_sections(Document& document) {
@@ -79,7 +71,7 @@ void drop_second_sections(Document& document) {
     if (stands_once(section.kind.kind)) {
       const auto [at, is_new] = first.try_emplace(identity(section.kind), kept.size());
       if (!is_new) {
-        merge_remarks(kept[at->second], section);
+        merge_remarks(kept[at->second], at->second == 0, section);
         continue;
       }
     }
@@ -95,11 +87,13 @@ void order_sections(Document& document, const DataSheet& sheet) {
     order.emplace_back(place_of(document.sections[i].kind, sheet), i);
   }
   std::sort(order.begin(), order.end());
-  if (!order.empty() && order.front().second != 0) keep_at_top(document);
+  const bool first_moves = !order.empty() && order.front().second != 0;
+  if (first_moves) give_up_first_place(document);
   std::vector<DocumentSection> sorted;
   sorted.reserve(order.size());
   for (const auto& [place, i] : order) sorted.push_back(std::move(document.sections[i]));
   document.sections = std::move(sorted);
+  if (first_moves) take_first_place(document);
 }
 
 std::optional<ObjectListKind> list_for(std::uint16_t index, const DataSheet& sheet) {

@@ -109,6 +109,34 @@ class Comments(CommandLine):
         self.assertIn("\n; what follows\n[DeviceInfo]\n", result.stdout)
         self.assertEqual(self.edsc("format", self.write("b.eds", result.stdout)).stdout, result.stdout)
 
+    def test_that_allow_findings_of_a_section_do_not_become_those_of_the_file(self) -> None:
+        first, rest = re.search(r"(\[FileInfo\].*?)(\[.*)", SMALL, re.DOTALL).groups()
+        first = first.replace("[FileInfo]\n", "")
+        comments = "; edsc: allow file-name - x; y ; edsc: allow eds-version - as well"
+        inputs = {
+            "moved to the top": rest + comments.replace(" ; ", "\n; ") + "\n[FileInfo]\n" + first,
+            "on its line": f"[FileInfo] {comments}\n" + first + rest,
+            "of a duplicate section": "[FileInfo]\n" + first + rest + comments.replace(" ; ", "\n; ") + "\n[FileInfo]\n" + first,
+        }
+        for name, text in inputs.items():
+            with self.subTest(name):
+                made = self.edsc("format", self.write("a.eds", text)).stdout
+                self.assertTrue(made.startswith(f"[FileInfo] {comments}\n"), made[:200])
+                self.assertEqual(self.edsc("format", self.write("b.eds", made)).stdout, made)
+
+    def test_on_the_line_of_a_section_that_moves_go_before_it(self) -> None:
+        first, rest = re.search(r"(\[FileInfo\].*?)(\[.*)", SMALL, re.DOTALL).groups()
+        rest = rest.replace("[DeviceInfo]\n", "[DeviceInfo] ; edsc: allow a - b ; edsc: allow c - d\n", 1)
+        made = self.edsc("format", self.write("a.eds", rest + first)).stdout
+        self.assertIn("\n; edsc: allow a - b\n; edsc: allow c - d\n[DeviceInfo]\n", made)
+        self.assertTrue(made.startswith("[FileInfo]\n"), made[:200])
+
+    def test_of_the_file_stay_at_the_top_of_a_dcf_without_file_info(self) -> None:
+        rest = re.search(r"\[MandatoryObjects\].*", SMALL, re.DOTALL).group()
+        text = "; edsc: allow no-device-info - of the file\n" + rest
+        made = self.edsc("format", self.write("a.eds", text), "--dcf", "--node-id", 5).stdout
+        self.assertTrue(made.startswith("; edsc: allow no-device-info - of the file\n\n[DeviceComissioning]\n"), made[:200])
+
 
 class AnotherNode(CommandLine):
     """The node-ID-dependent values of a DCF change with its node-ID."""

@@ -38,6 +38,8 @@ TEST(AllowComments, ApplyToTheSectionOrLineThatFollows) {
   EXPECT_EQ(comments_of("[1000]\n; edsc: allow a - b\n; edsc: allow c - d\nDataType=7\n"),
             (Rows{"2 a: b, line 4", "3 c: d, line 4"}));
   EXPECT_EQ(comments_of("[FileInfo]\n[1000] ; edsc: allow a - b\nDataType=7\n"), (Rows{"2 a: b, section 2"}));
+  EXPECT_EQ(comments_of("[1000] ; edsc: allow a - b; c ;edsc: allow d - e\nDataType=7\n"),
+            (Rows{"1 a: b; c, section 1", "1 d: e, section 1"}));
 }
 
 TEST(AllowComments, WithoutALineThatFollows) {
