@@ -200,7 +200,7 @@ bool write_reports(const Settings& settings, const RunReport& report, const Devi
   for (const ReportFile& row : report_files) {
     if (!(settings.*row.path).empty()) files.push_back({settings.*row.path, row.make(report, sheet)});
   }
-  const std::string problem = write_files(files);
+  const std::string problem = write_files(files, {settings.sheet, settings.deviations});
   if (!problem.empty()) print_visibly(stderr, "edsc: {}\n", problem);
   return problem.empty();
 }

@@ -93,15 +93,17 @@ std::string depfile_text(const std::string& target, const std::vector<OutputFile
   return text + "\n";
 }
 
+/// Returns the headers and the depfile, and the names of all `inputs`.
 /// Releases data sheet and device as soon as the view is complete, since large ones need more memory than their files.
-std::vector<OutputFile> render_all(const Settings& settings, LoadedDevice& loaded, Diagnostics& diagnostics) {
+std::vector<OutputFile> render_all(const Settings& settings, LoadedDevice& loaded, Diagnostics& diagnostics,
+                                   std::vector<std::string>& inputs) {
   const auto templates = choose_templates(settings.templates);
   loaded.sheet = {};
   const auto view = cpp_view(*loaded.device, loaded.options, diagnostics);
   const fs::path folder = fs::path{settings.output} / loaded.device->name;
   loaded.device.reset();
   std::vector<OutputFile> files;
-  std::vector<std::string> inputs{settings.load.path};
+  inputs = {settings.load.path};
   if (loaded.options_source) inputs.push_back(loaded.options_source->name());
   for (const ChosenTemplate& one : templates) {
     if (one.built_in.file_name == stored_eds_header && view["stored_eds"].is_null()) continue;
@@ -128,11 +130,12 @@ int generate(const Settings& settings) {
   diagnostics.drop_notes();
   const auto loaded = load_device(settings.load, diagnostics);
   std::vector<OutputFile> files;
+  std::vector<std::string> inputs;
   std::vector<LeftOut> left_out;
   const bool is_device = loaded->device.has_value();
   if (is_device) left_out = all_left_out(*loaded);
   const bool has_hint = can_keep_going(*loaded, diagnostics);
-  if (is_device && diagnostics.errors() == 0) files = render_all(settings, *loaded, diagnostics);
+  if (is_device && diagnostics.errors() == 0) files = render_all(settings, *loaded, diagnostics, inputs);
   print_findings(stderr, diagnostics, settings.color);
   if (loaded->unreadable) return exit_wrong_usage;
   if (!is_device || diagnostics.errors() > 0) {
@@ -143,7 +146,7 @@ int generate(const Settings& settings) {
     fmt::print(stderr, "{}", left_out_text(left_out));
   }
 
-  if (const std::string problem = write_files(files); !problem.empty()) {
+  if (const std::string problem = write_files(files, inputs); !problem.empty()) {
     print_visibly(stderr, "edsc: {}\n", problem);
     return exit_wrong_usage;
   }

@@ -223,9 +223,11 @@ void report(const Settings& settings, const Saved& saved) {
 }
 
 /// Returns false if the file cannot be written.
-bool write_text(const Settings& settings, const Saved& saved) {
+bool write_text(const Settings& settings, const LoadedDevice& loaded, const Saved& saved) {
   if (!settings.output.empty()) {
-    const std::string problem = write_files({{settings.output, saved.text}});
+    std::vector<std::string> inputs;
+    if (!loaded.sheet.is_dcf) inputs.push_back(settings.path);  // a DCF may be replaced by a newer one
+    const std::string problem = write_files({{settings.output, saved.text}}, inputs);
     return problem.empty() || fail(problem);
   }
   write_output(saved.text);
@@ -267,7 +269,7 @@ int save(LiveBus& bus, const Settings& settings, const LoadedDevice& loaded) {
   }
   choose_values(settings, loaded, saved);
   make_text(settings, loaded, saved);
-  if (!write_text(settings, saved)) return exit_wrong_usage;
+  if (!write_text(settings, loaded, saved)) return exit_wrong_usage;
   report(settings, saved);
   return saved.missing.empty() ? exit_fine : exit_device_failed;
 }

@@ -92,6 +92,21 @@ class Target {
     return error ? folder().string() + ": " + error.message() : "";
   }
 
+  /// The message if it is the file of `input`, also by a hard link or symlink.
+  [[nodiscard]] std::string conflict_with(const std::string& input) const {
+    struct stat other {};
+    if (!status_ || ::stat(input.c_str(), &other) != 0) return "";
+    const bool is_same = status_->st_dev == other.st_dev && status_->st_ino == other.st_ino;
+    return is_same ? file_->path + ": is the same file as the input " + input : "";
+  }
+
+  /// The message if both would have the same name in the same folder.
+  [[nodiscard]] std::string conflict_with(const Target& other) const {
+    std::error_code error;
+    const bool is_same = path_.filename() == other.path_.filename() && fs::equivalent(folder(), other.folder(), error);
+    return is_same ? file_->path + ": is the same file as the output " + other.file_->path : "";
+  }
+
   /// Whether the file already has its content, by its current state.
   [[nodiscard]] bool is_up_to_date() {
     struct stat status {};
@@ -249,6 +264,19 @@ std::string for_each(std::vector<Target>& targets, Action action) {
   return "";
 }
 
+/// The first output that is an input, or another output.
+std::string find_conflict(const std::vector<Target>& targets, const std::vector<std::string>& inputs) {
+  for (auto target = targets.begin(); target != targets.end(); ++target) {
+    for (const std::string& input : inputs) {
+      if (std::string problem = target->conflict_with(input); !problem.empty()) return problem;
+    }
+    for (auto other = targets.begin(); other != target; ++other) {
+      if (std::string problem = target->conflict_with(*other); !problem.empty()) return problem;
+    }
+  }
+  return "";
+}
+
 std::string write_targets(std::vector<Target>& files, std::vector<Target>& streams) {
   std::string problem = for_each(files, [](Target& one) { return one.write_temporary(); });
   if (problem.empty()) problem = for_each(streams, [](Target& one) { return one.write_into_stream(); });
@@ -260,18 +288,20 @@ std::string write_targets(std::vector<Target>& files, std::vector<Target>& strea
 
 }  // namespace
 
-std::string write_files(const std::vector<OutputFile>& files) {
+std::string write_files(const std::vector<OutputFile>& files, const std::vector<std::string>& inputs) {
   std::vector<Target> replaced, streams;
   for (const OutputFile& file : files) {
     Target target{file};
     if (std::string problem = target.find(); !problem.empty()) return problem;
     (target.is_stream() ? streams : replaced).push_back(std::move(target));
   }
+  if (std::string problem = find_conflict(replaced, inputs); !problem.empty()) return problem;
   Folders folders;
   for (const Target& target : replaced) {
     if (std::string problem = target.make_folder(); !problem.empty()) return problem;
     folders.open(target.folder());
   }
+  if (std::string problem = find_conflict(replaced, {}); !problem.empty()) return problem;
   folders.lock();
   std::erase_if(replaced, [](Target& target) { return target.is_up_to_date(); });
   const bool any_replaced = !replaced.empty();

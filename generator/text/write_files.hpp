@@ -19,9 +19,11 @@ struct OutputFile {
 /// - A symlink remains; its target is replaced.
 /// - A device, FIFO or socket is not replaced; the content is written into it. The same holds for descriptors of this
 ///   process, such as /dev/stdout.
+/// - A file that is also one of `inputs`, by whatever name, or that two outputs would be, is an error, and nothing is
+///   written.
 /// - Two processes that write several files into one folder wait for each other, so that the files match.
 ///
 /// Returns an error message; empty on success.
-[[nodiscard]] std::string write_files(const std::vector<OutputFile>& files);
+[[nodiscard]] std::string write_files(const std::vector<OutputFile>& files, const std::vector<std::string>& inputs = {});
 
 }  // namespace edsc

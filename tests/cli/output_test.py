@@ -156,6 +156,25 @@ class InPlace(Output):
         self.assertEqual((sheet.stat().st_uid, sheet.stat().st_gid), (NOBODY, NOBODY))
 
 
+class SameFile(Output):
+    def test_generate_does_not_replace_its_input(self) -> None:
+        sheet = self.folder / "device.eds"
+        shutil.copy(SHEET, sheet)
+        (self.folder / "device.options.json").write_text("{}")
+        os.link(sheet, self.folder / "hard.d")
+        (self.folder / "soft.d").symlink_to("device.options.json")
+        for depfile, named in (("device.eds", "device.eds"), ("hard.d", "device.eds"), ("soft.d", "device.options.json")):
+            result = self.edsc("generate", "device.eds", "-o", "out", "--depfile", depfile)
+            self.expect(WRONG_USAGE, result, f"{depfile}: is the same file as the input {named}")
+        self.assertEqual(sheet.read_bytes(), SHEET.read_bytes())
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_generate_does_not_write_two_outputs_to_one_file(self) -> None:
+        result = self.edsc("generate", SHEET, "-o", "out", "--name", NAME, "--depfile", f"out/{NAME}/pdo.hpp")
+        self.expect(WRONG_USAGE, result, f"out/{NAME}/pdo.hpp: is the same file as the output")
+        self.assertEqual(contents(self.folder), {})
+
+
 class SeveralAtOnce(Output):
     def headers(self, *arguments: object) -> dict[str, bytes]:
         folder = self.folder / f"alone{len(os.listdir(self.folder))}"

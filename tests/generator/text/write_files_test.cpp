@@ -165,6 +165,37 @@ TEST_F(WriteFiles, RefusesASymlinkThatLeadsToItselfOrToAFolder) {
   }
 }
 
+TEST_F(WriteFiles, RefusesAnOutputThatIsAnInputByAnyOfItsNames) {
+  ASSERT_EQ(write_files({{path("input"), "mine"}}), "");
+  fs::create_hard_link(path("input"), path("hard"));
+  fs::create_symlink("hard", path("symbolic"));
+  for (const char* name : {"input", "hard", "symbolic"}) {
+    EXPECT_EQ(write_files({{path("one.hpp"), "1"}, {path(name), "2"}}, {path("missing"), path("input")}),
+              path(name) + ": is the same file as the input " + path("input"));
+    EXPECT_EQ(content_of(path("input")), "mine");
+    EXPECT_EQ(files(), (Names{"hard", "input", "symbolic"}));
+  }
+}
+
+TEST_F(WriteFiles, RefusesTwoOutputsThatAreOneFile) {
+  fs::create_symlink("one.hpp", path("link.hpp"));
+  for (const char* name : {"one.hpp", "./one.hpp", "link.hpp"}) {
+    EXPECT_EQ(write_files({{path("one.hpp"), "1"}, {path(name), "2"}}),
+              path(name) + ": is the same file as the output " + path("one.hpp"));
+    EXPECT_EQ(files(), Names{});
+  }
+  EXPECT_NE(write_files({{path("new/one.hpp"), "1"}, {path("new/../new/one.hpp"), "2"}}), "");
+  EXPECT_EQ(files(), Names{});
+}
+
+TEST_F(WriteFiles, SeparatesHardLinks) {
+  ASSERT_EQ(write_files({{path("one.hpp"), "before"}}), "");
+  fs::create_hard_link(path("one.hpp"), path("two.hpp"));
+  EXPECT_EQ(write_files({{path("one.hpp"), "1"}, {path("two.hpp"), "2"}}), "");
+  EXPECT_EQ(content_of(path("one.hpp")), "1");
+  EXPECT_EQ(content_of(path("two.hpp")), "2");
+}
+
 TEST_F(WriteFiles, KeepsTheModeOfAReplacedFile) {
   ASSERT_EQ(write_files({{path("one.hpp"), "before"}}), "");
   const auto mode = fs::perms::owner_all | fs::perms::group_read;
