@@ -72,7 +72,7 @@ std::unique_ptr<LoadedDevice> load_committed(std::unique_ptr<SourceFile> source,
   const std::string options_path = std::filesystem::path{path}.replace_extension(".options.json").string();
   loaded->options_source = read_git_file(revision, options_path).source;
   if (loaded->options_source) loaded->options = read_options(*loaded->options_source, diagnostics);
-  for (const SilencedRule& silenced : loaded->options.silence) diagnostics.silence(silenced.rule);
+  silence_by_options(*loaded, diagnostics);
   resolve_and_check(*loaded, {path, "", "", settings.node_id}, diagnostics);
   return reported(std::move(loaded), diagnostics, settings);
 }

@@ -47,12 +47,7 @@ void read_options_file(const std::string& path, LoadedDevice& loaded, Diagnostic
   loaded.options_source = read_or_report(path, loaded, diagnostics);
   if (loaded.unreadable) return;
   loaded.options = read_options(*loaded.options_source, diagnostics);
-  for (const SilencedRule& silenced : loaded.options.silence) {
-    if (find_rule(silenced.rule) == nullptr) {
-      diagnostics.error("options", silenced.position, "silence: " + unknown_rule(silenced.rule));
-    }
-    diagnostics.silence(silenced.rule);
-  }
+  silence_by_options(loaded, diagnostics);
 }
 
 void allow_by_options(const LoadedDevice& loaded, Diagnostics& diagnostics) {
@@ -107,6 +102,15 @@ std::unique_ptr<LoadedDevice> load_device(const LoadSettings& settings, Diagnost
   if (settings.static_mapping) loaded->options.static_mapping.all = true;
   resolve_and_check(*loaded, settings, diagnostics);
   return loaded;
+}
+
+void silence_by_options(const LoadedDevice& loaded, Diagnostics& diagnostics) {
+  for (const SilencedRule& silenced : loaded.options.silence) {
+    if (find_rule(silenced.rule) == nullptr) {
+      diagnostics.error("options", silenced.position, "silence: " + unknown_rule(silenced.rule));
+    }
+    diagnostics.silence(silenced.rule);
+  }
 }
 
 bool can_keep_going(const LoadedDevice& loaded, const Diagnostics& diagnostics) {

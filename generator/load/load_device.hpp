@@ -37,6 +37,9 @@ struct LoadedDevice {
 /// result.
 [[nodiscard]] std::unique_ptr<LoadedDevice> load_device(const LoadSettings& settings, Diagnostics& diagnostics);
 
+/// Silences the rules that the options name. An unknown rule is an error.
+void silence_by_options(const LoadedDevice& loaded, Diagnostics& diagnostics);
+
 /// Whether `--keep-going` turns all errors into warnings.
 [[nodiscard]] bool can_keep_going(const LoadedDevice& loaded, const Diagnostics& diagnostics);
 

@@ -154,6 +154,20 @@ class Git(CommandLine):
         options.unlink()
         self.expect(INPUT_HAS_ERRORS, self.against("HEAD", self.sheet), "[identifier]")
 
+    def test_reports_an_unknown_rule_in_the_options_of_the_revision(self) -> None:
+        options = self.write("eds/device.options.json", '{"silence": ["no-such-rule"]}')
+        self.git("add", ".")
+        self.git("commit", "-q", "-m", "wrong")
+        options.write_text("{}")
+        self.expect(WRONG_USAGE, self.against("HEAD", self.sheet), 'silence: unknown rule "no-such-rule"', "HEAD:eds/device.options.json:1:")
+        for name in ("silence", "allow"):
+            options.write_text(json.dumps({name: [{"rule": "no-such-rule", "reason": "x"} if name == "allow" else "no-such-rule"]}))
+            self.git("commit", "-q", "-a", "--allow-empty", "-m", name)
+            here = self.edsc("diff", self.sheet, self.sheet)
+            self.expect(WRONG_USAGE, here, f'{name}: unknown rule "no-such-rule"')
+            options.write_text("{}")
+            self.expect(WRONG_USAGE, self.against("HEAD", self.sheet), f'{name}: unknown rule "no-such-rule"')
+
     def test_takes_many_files(self) -> None:
         other = self.write("eds/other.eds", SMALL)
         self.git("add", ".")
