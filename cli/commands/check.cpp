@@ -114,10 +114,11 @@ class Report {
     }
   }
 
-  /// Not in SARIF, where findings of `--keep-going` state what is left out.
+  /// In SARIF they are notifications: they are consequences of the findings, and do not have a rule.
   void add_left_out(const std::vector<LeftOut>& left_out) {
     if (format_ == "text") fmt::print("{}", left_out_text(left_out));
     for (const LeftOut& one : left_out) {
+      if (format_ == "sarif") sarif_.notify(one.position, "left out: " + one.what);
       const Place place = place_of(one.position);
       json_["left_out"].push_back(
           {{"file", place.file}, {"line", place.line}, {"column", place.column}, {"what", one.what}});

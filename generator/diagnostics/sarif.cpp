@@ -101,6 +101,12 @@ void SarifLog::add(const Diagnostics& diagnostics) {
   }
 }
 
+void SarifLog::notify(const Position& position, const std::string& message) {
+  json notification = {{"level", "note"}, {"message", {{"text", message}}}};
+  if (position.file != nullptr) notification["locations"] = {location_of(position)};
+  notifications_.push_back(std::move(notification));
+}
+
 nlohmann::ordered_json SarifLog::document() const {
   json run = {{"tool", {{"driver", driver_}}}, {"columnKind", "unicodeCodePoints"}};
   if (!notifications_.empty()) {

@@ -29,6 +29,9 @@ class SarifLog {
   /// The source files need not outlive this call.
   void add(const Diagnostics& diagnostics);
 
+  /// Adds a notification of the run, which is not a finding.
+  void notify(const Position& position, const std::string& message);
+
   [[nodiscard]] nlohmann::ordered_json document() const;
 
  private:

@@ -53,7 +53,16 @@ class CheckTest(unittest.TestCase):
     def sarif(self, *arguments: str) -> dict:
         document = json.loads(self.run_edsc("check", "--format", "sarif", *arguments).stdout)
         jsonschema.validate(document, SCHEMA)
+        self.each_rule_is_known(document)
         return document
+
+    def each_rule_is_known(self, document: dict) -> None:
+        for run in document["runs"]:
+            rules = {rule["id"] for rule in run["tool"]["driver"]["rules"]}
+            self.assertLessEqual({result["ruleId"] for result in run["results"]}, rules)
+            for invocation in run.get("invocations", []):
+                named = {one["associatedRule"]["id"] for one in invocation["toolExecutionNotifications"] if "associatedRule" in one}
+                self.assertLessEqual(named, rules)
 
 
 class Severities(CheckTest):
@@ -342,6 +351,15 @@ class Sarif(CheckTest):
         notification = run["invocations"][0]["toolExecutionNotifications"][0]
         self.assertEqual(notification["associatedRule"]["id"], "stray-line")
         self.assertEqual(notification["message"]["text"], "10 more findings of stray-line")
+
+    def test_states_what_is_left_out(self) -> None:
+        arguments = (self.sheet(ERROR), "--keep-going", "--silence", ERROR[2])
+        _, findings = self.check(*arguments)
+        run = self.sarif(*arguments)["runs"][0]
+        notifications = [one for invocation in run["invocations"] for one in invocation["toolExecutionNotifications"]]
+        self.assertEqual([(one["message"]["text"], one["locations"][0]["physicalLocation"]["region"]["startLine"]) for one in notifications],
+                         [(f"left out: {one['what']}", one["line"]) for one in findings["left_out"]])
+        self.assertTrue(notifications)
 
     def test_of_a_file_that_cannot_be_read(self) -> None:
         result = self.run_edsc("check", "--format", "sarif", "missing.eds")
