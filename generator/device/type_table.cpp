@@ -41,6 +41,14 @@ constexpr ComplexMember complex_members[] = {
     {0x22, 3, 3, DataType::unsigned8},
     // Identity
     {0x23, 1, 4, DataType::unsigned32},
+    // OS debug record: command, status, reply
+    {0x24, 1, 1, DataType::octet_string},
+    {0x24, 2, 2, DataType::unsigned8},
+    {0x24, 3, 3, DataType::octet_string},
+    // OS command record: command, status, reply
+    {0x25, 1, 1, DataType::octet_string},
+    {0x25, 2, 2, DataType::unsigned8},
+    {0x25, 3, 3, DataType::octet_string},
 };
 
 const DataTypeRow* basic_type(std::uint64_t code) {

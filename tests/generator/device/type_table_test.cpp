@@ -32,7 +32,7 @@ struct PredefinedRecord {
   int beyond;  ///< the sub-index after the last one
 };
 
-/// CiA 301, 7.4.8: the records with the data types 20h to 23h.
+/// CiA 301, 7.4.8: the records with the data types 20h to 25h.
 const PredefinedRecord predefined_records[] = {
     {"0x0020",
      {{1, DataType::unsigned32},  // COB-ID
@@ -54,6 +54,16 @@ const PredefinedRecord predefined_records[] = {
       {3, DataType::unsigned32},   // revision number
       {4, DataType::unsigned32}},  // serial number
      5},
+    {"0x0024",
+     {{1, DataType::octet_string},  // command to the debugger
+      {2, DataType::unsigned8},     // status
+      {3, DataType::octet_string}},  // reply
+     4},
+    {"0x0025",
+     {{1, DataType::octet_string},  // command to the operating system
+      {2, DataType::unsigned8},     // status
+      {3, DataType::octet_string}},  // reply
+     4},
 };
 
 TEST(TypeTable, GivesEachMemberOfAPredefinedRecordItsType) {
