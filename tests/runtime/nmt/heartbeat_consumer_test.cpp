@@ -187,6 +187,21 @@ TEST(HeartbeatConsumer, RefusesTwoTimesForOneNode) {
   EXPECT_EQ(listener.check(1, 0x0005'00C8), canopen::ok) << "the other one is not used any more";
 }
 
+TEST(HeartbeatConsumer, IgnoresTheLaterOfTwoStoredTimesForOneNode) {
+  Listener<3> listener;
+  listener.watch(0, 0x0006'0064);
+  listener.watch(2, 0x0006'03E8);
+  EXPECT_EQ(listener.hear("706 05"), "6 started 05");
+  EXPECT_EQ(listener.pass(100ms), "6 lost 05") << "after the time of the first one";
+  EXPECT_EQ(listener.pass(1s), "");
+  EXPECT_EQ(listener.hear("706 05"), "6 back 05");
+  EXPECT_EQ(listener.check(0, 0x0006'0065), AbortCode::parameter_incompatible) << "as long as there are two";
+  listener.watch(0, 0);
+  EXPECT_EQ(listener.hear("706 05"), "6 started 05");
+  EXPECT_EQ(listener.pass(999ms), "");
+  EXPECT_EQ(listener.pass(1ms), "6 lost 05");
+}
+
 TEST(HeartbeatConsumer, ANewValueForgetsTheNode) {
   Listener<1> listener;
   listener.watch(0, 0x0005'0064);
