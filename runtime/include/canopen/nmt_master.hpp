@@ -553,13 +553,13 @@ class NmtMaster {
     entry.silent = false;
     stop_watching(i);
     if (!booting_) return;
-    entry.dropped = entry.asked;
-    sdo_.node_reset(slaves_[i].node_id, now_);
     if (entry.step != Step::idle || slaves_[i].has(slave_assignment::boot)) {
       identify(i);
     } else {
+      entry.dropped = entry.asked;
       entry.complete = false;
     }
+    sdo_.node_reset(slaves_[i].node_id, now_);  // `done` of the application may call `configured`: of no effect any more
   }
 
   /// Handles the loss of a slave (CiA 302-2, error handling): all nodes are stopped or reset, or only the

@@ -409,6 +409,55 @@ TEST(NmtBoot, ABootUpEndsWhatWasRequestedBefore) {
   }
 }
 
+/// A transfer that configures a slave: its end is the end of the configuration.
+struct Configuration {
+  static void done(void* context, NodeId node_id, const SdoAnswer& answer) {
+    auto& desk = *static_cast<Desk*>(context);
+    desk.master.configured(node_id, answer.result, desk.now);
+  }
+  static SdoRequest write(Desk& desk, std::uint16_t index, std::span<const std::uint8_t> bytes) {
+    SdoRequest request;
+    request.index = index;
+    request.download = true;
+    request.bytes = bytes;
+    request.done = done;
+    request.context = &desk;
+    return request;
+  }
+};
+
+TEST(NmtBoot, AConfigurationThatABootUpEndsHasNotFailed) {
+  Desk desk{{slave(5)}};
+  desk.start();
+  desk.take("705 00");
+  desk.take(device_type);
+  const std::array<std::uint8_t, 1> value{1};
+  EXPECT_TRUE(desk.master.request(NodeId{5}, Configuration::write(desk, 0x2001, value), desk.now));
+  EXPECT_EQ(desk.bus.take(), "605 2F 01 20 00 01 00 00 00");
+  EXPECT_EQ(desk.take("705 00"), "605 80 01 20 00 22 00 00 08 | 605 40 00 10 00 00 00 00 00");
+  EXPECT_EQ(desk.log(), (Lines{"5 boot-up", "5 configure", "5 boot-up"}));
+  EXPECT_TRUE(desk.told.results.empty());
+  desk.take(device_type);
+  EXPECT_TRUE(desk.master.request(NodeId{5}, Configuration::write(desk, 0x2001, value), desk.now));
+  desk.take("585 60 01 20 00 00 00 00 00");
+  EXPECT_EQ(desk.log(), (Lines{"5 configure", "5 0", "5 not watched: no heartbeat time and no guard time in the network list",
+                               "network started"}));
+}
+
+TEST(NmtBoot, ABootUpInTheMiddleOfTheConciseDcfBeginsItAnew) {
+  NmtSlave listed = slave(5);
+  listed.concise_dcf = dcf;
+  Desk desk{{listed}};
+  desk.start();
+  desk.take("705 00");
+  EXPECT_EQ(desk.take(device_type), "605 21 0C 20 00 05 00 00 00");
+  EXPECT_EQ(desk.take("585 60 0C 20 00 00 00 00 00"), "605 05 68 65 6C 6C 6F 00 00");
+  EXPECT_EQ(desk.take("705 00"), "605 80 0C 20 00 22 00 00 08 | 605 40 00 10 00 00 00 00 00");
+  EXPECT_EQ(desk.take("585 20 00 00 00 00 00 00 00"), "") << "to the last segment before the reset";
+  EXPECT_EQ(desk.take(device_type), "605 21 0C 20 00 05 00 00 00");
+  EXPECT_EQ(desk.log(), (Lines{"5 boot-up", "5 boot-up"}));
+}
+
 // The queue
 
 TEST(NmtBoot, TheApplicationAndTheMasterShareTheQueueOfANode) {
