@@ -72,6 +72,20 @@ struct ObjectHandler {
   static constexpr bool is_good = true;
 };
 
+/// The objects without which a service never calls its handler. Handlers of error control are accepted by each device:
+/// code that several devices share passes those of heartbeat and of guarding, of which a device may have one.
+template <class Device, class H>
+struct ServiceHandler {
+  static constexpr bool has(std::uint16_t index) { return Device::dictionary.has(index, 0); }
+  static_assert(!is_of<H, SyncHandler> || has(0x1005),
+                "on_sync: this device does not have 1005h, so that the handler can never be called");
+  static_assert(!is_of<H, TimeHandler> || has(0x1012),
+                "on_time_of_day: this device does not have 1012h, so that the handler can never be called");
+  static_assert(!is_of<H, EmergencyHandler> || has(0x1028),
+                "on_emergency: this device does not have 1028h, so that the handler can never be called");
+  static constexpr bool is_good = KnownHandler<H>::is_good;
+};
+
 template <class Device, class H, class... Handlers>
 [[nodiscard]] constexpr bool check_handler() {
   if constexpr (called<H> != Called::by_service) {
@@ -80,7 +94,7 @@ template <class Device, class H, class... Handlers>
     return ObjectHandler<Object, pdo_detail::LabelOf<Object>, called<H>,
                          Device::dictionary.find(Object::index, Object::sub_index), count>::is_good;
   } else {
-    return KnownHandler<H>::is_good;
+    return ServiceHandler<Device, H>::is_good;
   }
 }
 
