@@ -164,7 +164,7 @@ std::string Trace::sdo_response(const Frame& frame, const KnownNode& node, std::
   const std::string entry = entry_name(node, open.index, open.sub_index);
   switch (frame.data[0] >> 5) {
     case 0: return fmt::format("{} segment {}", node.name, segment_text(frame));
-    case 1: return fmt::format("{} segment taken", node.name);
+    case 1: return fmt::format("{} segment confirmed", node.name);
     case 2: {
       const bool expedited = (frame.data[0] & 2) != 0;
       if (!expedited) return fmt::format("{} {}: {} bytes follow", node.name, entry, bits_of(frame, 32, 32));
