@@ -1,6 +1,7 @@
 /// The basic data types of CiA 301, 7.4.7, table 44, one row each. The generator and the runtime share this table.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string_view>
 
@@ -71,6 +72,15 @@ inline constexpr DataTypeRow data_types[] = {
     {DataType::unicode_string, DataClass::string, 0, "UNICODE_STRING", "canopen::UnicodeString"},
     {DataType::domain, DataClass::domain, 0, "DOMAIN", "canopen::Domain"},
 };
+
+/// Bits of the data types 0001h..0008h, by index: those that an RPDO may map as dummies (CiA 301, 7.4.7.1).
+inline constexpr auto dummy_bits = [] {
+  std::array<std::uint8_t, 9> bits{};
+  for (const DataTypeRow& row : data_types) {
+    if (static_cast<std::uint8_t>(row.type) < bits.size()) bits[static_cast<std::uint8_t>(row.type)] = row.bits;
+  }
+  return bits;
+}();
 
 /// Returns the row of a basic data type by its index in the object dictionary (0001h..001Bh); null if it is not one.
 [[nodiscard]] constexpr const DataTypeRow* find_data_type(std::uint32_t index) {

@@ -11,6 +11,7 @@
 #include <tuple>
 #include <utility>
 
+#include "canopen/data_type.hpp"
 #include "canopen/dictionary.hpp"
 #include "canopen/pdo.hpp"
 #include "canopen/pdo_label.hpp"
@@ -19,9 +20,6 @@
 namespace canopen {
 
 namespace pdo_detail {
-
-/// Bits of the dummies 0001h to 0008h (CiA 301, 7.4.7.1).
-inline constexpr std::uint8_t dummy_bits[] = {0, 1, 8, 16, 32, 8, 16, 32, 32};
 
 /// Whether the length of a mapping entry fits the object in the dictionary: a BOOLEAN may occupy a byte, a string up to
 /// its capacity.

@@ -11,6 +11,7 @@
 
 #include "canopen/abort_code.hpp"
 #include "canopen/cob_id.hpp"
+#include "canopen/data_type.hpp"
 #include "canopen/device_options.hpp"
 #include "canopen/object_store.hpp"
 #include "canopen/pdo_list.hpp"
@@ -37,9 +38,6 @@ class MappedObject {
 /// addressing mode.
 inline constexpr std::uint8_t source_multiplexed = 254;
 inline constexpr std::uint8_t destination_multiplexed = 255;
-
-/// Bits of the data types 0001h..0008h, which an RPDO may map as dummies (CiA 301, 7.4.7.1).
-inline constexpr std::uint8_t dummy_bits[] = {0, 1, 8, 16, 32, 8, 16, 32, 32};
 
 [[nodiscard]] constexpr bool is_rpdo_mapping(std::uint16_t index) { return index >> 9 == rpdo_indices.mapping >> 9; }
 [[nodiscard]] constexpr bool is_tpdo_mapping(std::uint16_t index) { return index >> 9 == tpdo_indices.mapping >> 9; }
