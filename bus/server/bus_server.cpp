@@ -87,17 +87,19 @@ void BusServer::turn(std::chrono::milliseconds wait, const sigset_t* signals) {
   const int count = ::ppoll(ready.data(), ready.size(), &span, signals);
   if (count < 0 && errno != EINTR) fail("poll");
   if (count < 0) return;
+  const auto now = Clock::now();
   std::vector<std::unique_ptr<BusClient>> leaving;
   for (std::size_t i = 1; i < ready.size(); ++i) {
     auto& client = clients_[i - 1];
     const bool heard = (ready[i].revents & (POLLIN | POLLHUP | POLLERR)) != 0;
-    if (!heard || hear(*client)) continue;
+    // The request of a client may have arrived after the wait, if this process was suspended for long.
+    if ((!heard && !is_overdue(*client, now)) || hear(*client)) continue;
     static_cast<void>(client->flush());
     leaving.push_back(std::move(client));
   }
   std::erase(clients_, nullptr);
   if (ready[0].revents != 0) welcome();
-  flush();
+  flush(now);
 }
 
 void BusServer::welcome() {
@@ -172,16 +174,19 @@ std::chrono::milliseconds BusServer::until_handshake_ends(std::chrono::milliseco
   return at_most;
 }
 
-/// Sends pending data. Disconnects clients that are lost, read too slowly or do not open a bus.
-void BusServer::flush() {
-  const auto now = Clock::now();
+bool BusServer::is_overdue(const BusClient& client, Clock::time_point now) const {
+  return !client.bus() && now - client.since() >= limits_.handshake;
+}
+
+/// Sends pending data. Disconnects clients that are lost, read too slowly or had not opened a bus in time.
+void BusServer::flush(Clock::time_point now) {
   std::erase_if(clients_, [&](const std::unique_ptr<BusClient>& client) {
     if (!client->flush()) return true;
     if (client->backlog() > limits_.backlog) {
       report(*client, "it reads too slowly: " + std::to_string(client->backlog()) + " bytes are pending");
       return true;
     }
-    if (client->bus() || now - client->since() < limits_.handshake) return false;
+    if (!is_overdue(*client, now)) return false;
     client->refuse("no bus was opened in time");
     static_cast<void>(client->flush());
     report(*client, "it did not open a bus within " + std::to_string(limits_.handshake.count()) + " ms");

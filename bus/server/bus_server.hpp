@@ -58,7 +58,9 @@ class BusServer {
   [[nodiscard]] bool open_bus(BusClient& client);
   void deliver(const BusClient& sender);
   [[nodiscard]] std::chrono::milliseconds until_handshake_ends(std::chrono::milliseconds at_most) const;
-  void flush();
+  /// Whether its time to open a bus is over.
+  [[nodiscard]] bool is_overdue(const BusClient& client, Clock::time_point now) const;
+  void flush(Clock::time_point now);
   void report(const BusClient& client, const std::string& message) const;
 
   ListenAddress address_;

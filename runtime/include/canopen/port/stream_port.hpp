@@ -120,16 +120,17 @@ class StreamPort {
     const TimePoint end = now() + timeout;
     const auto connecting = [this] { return protocol_.state() == Protocol::State::connecting; };
     while (connecting()) {
+      const TimePoint before = pass_time();  // what had arrived by then is read, even if this process is suspended later
       flush();
       for (std::size_t reads = 0; connecting(); ++reads) {
         while (connecting() && has_more()) (void)protocol_.on_character(bytes_[read_++], present_);
         if (!connecting() || reads == reads_at_once || !read_some()) break;
       }
-      protocol_.on_time(pass_time());
+      protocol_.on_time(before);
       flush();
       if (!connecting()) break;
-      if (present_ >= end) throw std::system_error{std::make_error_code(std::errc::timed_out), name_};
-      events_.wait(host_loop::until(protocol_.next_deadline(), present_, end - present_));
+      if (before >= end) throw std::system_error{std::make_error_code(std::errc::timed_out), name_};
+      events_.wait(host_loop::until(protocol_.next_deadline(), before, end - before));
     }
     if (protocol_.state() == Protocol::State::refused) {
       const std::string why{protocol_.problem()};
