@@ -120,6 +120,7 @@ std::vector<LiveEntry> configuration_entries(const Device& device) {
 NodeConfiguration read_configuration(SdoAccess& node, const Device& device, const std::vector<LiveEntry>& entries,
                                      const std::function<void(std::size_t done)>& progress) {
   NodeConfiguration found;
+  const unsigned boot_ups = node.boot_ups();
   unsigned silent = 0;
   std::uint16_t mapping = 0;
   std::uint8_t count = 0;
@@ -128,6 +129,8 @@ NodeConfiguration read_configuration(SdoAccess& node, const Device& device, cons
     progress(i);
     if (entry.sub_index != 0 && entry.index == mapping && entry.sub_index > count) continue;
     SdoOutcome outcome = upload(node, entry);
+    found.restarted = node.boot_ups() != boot_ups;
+    if (found.restarted) return found;
     silent = outcome.end == SdoEnd::no_answer ? silent + 1 : 0;
     if (silent == max_silent) {
       found.lost = true;

@@ -25,6 +25,7 @@ struct NodeConfiguration {
   std::vector<LiveEntry> process_data;  ///< entries that a valid RPDO writes, or that are commands of the profile
   std::vector<UnreadValue> unread;      ///< except entries that currently have no value
   bool lost = false;                    ///< the node stopped answering
+  bool restarted = false;               ///< the node booted up: values from before and after it do not belong together
 };
 
 /// The entries that can be read and written, ascending, except DOMAINs and those excluded by `is_left_out` and
@@ -32,7 +33,7 @@ struct NodeConfiguration {
 [[nodiscard]] std::vector<LiveEntry> configuration_entries(const Device& device);
 
 /// Reads these entries; of a mapping parameter, only the number of entries in its sub-index 0. `progress` is called
-/// before each entry. Throws Interrupted, BusLost.
+/// before each entry. Ends early if the node is lost or restarts. Throws Interrupted, BusLost.
 [[nodiscard]] NodeConfiguration read_configuration(SdoAccess& node, const Device& device,
                                                    const std::vector<LiveEntry>& entries,
                                                    const std::function<void(std::size_t done)>& progress);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <canopen/error_control.hpp>
+#include <canopen/nmt.hpp>
 #include <cstring>
 #include <span>
 
@@ -32,6 +34,11 @@ bool is_abort_of(const Frame& frame, canopen::NodeId node) {
          frame.id == canopen::default_sdo(node).response.can_id() && frame.data[0] == canopen::sdo::abort_command;
 }
 
+bool is_boot_up_of(const Frame& frame, canopen::NodeId node) {
+  const auto message = canopen::error_control_message(frame);
+  return message && message->node_id == node && !message->toggle && message->state == canopen::NmtState::initialisation;
+}
+
 /// An expedited response that does not state its size (CiA 301, 7.2.4.3.6).
 bool is_upload_without_size(const Frame& frame) {
   using namespace canopen::sdo;
@@ -48,6 +55,7 @@ struct Observed {
   bool heard = false;            ///< the device has answered
   bool ended_by_device = false;  ///< an abort of the device ended the transfer
   bool size_told = true;
+  unsigned boot_ups = 0;
   std::optional<ForeignAbort> foreign_abort{};  ///< an abort that the client has ignored
 
   [[nodiscard]] bool busy() const { return client.busy(); }
@@ -57,6 +65,7 @@ struct Observed {
     const bool of_server = !frame.extended && frame.id == canopen::default_sdo(node).response.can_id();
     const bool was_busy = client.busy();
     client.on_frame(frame, now);
+    if (is_boot_up_of(frame, node)) ++boot_ups;
     if (!of_server) return;
     heard = true;
     const bool ended = was_busy && !client.busy();
@@ -118,6 +127,7 @@ void SdoAccess::take_frames(Duration span) {
     const canopen::TimePoint present = bus_.now();
     const auto frame = bus_.receive(present < end ? end - present : Duration{0});
     if (frame) client_.on_frame(*frame, bus_.now());
+    if (frame && is_boot_up_of(*frame, node_)) ++boot_ups_;
     if (Interruption::noted()) throw Interrupted{};
     if (!frame && bus_.now() >= end) return;
   }
@@ -131,6 +141,7 @@ SdoOutcome SdoAccess::finish(std::uint32_t entry, bool block) {
     client_.cancel(AbortCode::general, bus_.now());
     return true;
   });
+  boot_ups_ += observed.boot_ups;
   if (interrupted) throw Interrupted{};
   SdoOutcome outcome;
   outcome.code = client_.result();

@@ -95,6 +95,9 @@ class SdoAccess {
 
   [[nodiscard]] canopen::NodeId node() const { return node_; }
 
+  /// The number of boot-up messages of the node that were received during transfers.
+  [[nodiscard]] unsigned boot_ups() const { return boot_ups_; }
+
   /// Applies to the next transfers.
   void set_timeout(unsigned milliseconds) { settings_.timeout_ms = milliseconds; }
 
@@ -111,6 +114,7 @@ class SdoAccess {
   SdoSettings settings_;
   Client client_;          ///< the only client of the SDO, since it must recognize late responses
   bool no_block_ = false;  ///< the device did not answer a block transfer
+  unsigned boot_ups_ = 0;
 };
 
 }  // namespace edsc

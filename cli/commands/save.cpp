@@ -264,6 +264,10 @@ int save(LiveBus& bus, const Settings& settings, const LoadedDevice& loaded) {
     fail(fmt::format("node {} no longer answers; nothing saved", settings.node));
     return exit_device_failed;
   }
+  if (saved.found.restarted) {
+    fail(fmt::format("node {} has restarted while its values were read; nothing saved", settings.node));
+    return exit_device_failed;
+  }
   for (const UnreadValue& unread : saved.found.unread) {
     saved.missing.push_back({unread.entry, failure_text(unread.outcome)});
   }

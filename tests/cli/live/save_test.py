@@ -148,6 +148,21 @@ class SaveOfForeignSlaves(LiveTest):
         self.assertEqual(self.edsc("save", 5, "foreign.eds", "-o", "after.dcf").returncode, FINE)
         self.assertEqual((self.folder / "before.dcf").read_text(), (self.folder / "after.dcf").read_text())
 
+    def test_a_device_that_restarts_in_the_middle(self) -> None:
+        slave = self.slave()
+        slave.entries[(0x2000, 0)] = b"\x34\x12"
+        upload = slave.take
+
+        def take(can_id: int, data: bytes, now: float) -> None:
+            upload(can_id, data, now)
+            if data[:4] == bytes.fromhex("40002000"):
+                slave.reset()
+
+        slave.take = take
+        self.expect(self.edsc("save", 5, "foreign.eds", "-o", "axis.dcf"), FAILED, "",
+                    NOT_COMPARED + "edsc: node 5 has restarted while its values were read; nothing saved\n")
+        self.assertFalse((self.folder / "axis.dcf").exists())
+
     def test_what_cannot_be_read_or_written_is_listed(self) -> None:
         slave = self.slave()
         del slave.entries[(0x1017, 0)]
