@@ -50,13 +50,13 @@ class LssMaster {
   constexpr explicit LssMaster(B& can_bus, LssTimeouts timeouts = {}) : bus_{can_bus}, timeouts_{timeouts} {}
 
   /// Switches all slaves to this state. No response.
-  bool switch_state_global(LssState state, TimePoint now) {
+  [[nodiscard]] bool switch_state_global(LssState state, TimePoint now) {
     return begin(lss::Command::switch_state_global, static_cast<std::uint32_t>(state), lss::Command::none, Duration{0},
                  now);
   }
 
   /// Switches the slave with this address to the configuration state.
-  bool switch_state_selective(const LssAddress& address, TimePoint now) {
+  [[nodiscard]] bool switch_state_selective(const LssAddress& address, TimePoint now) {
     if (busy()) return false;
     words_ = {address.vendor_id, address.product_code, address.revision_number, address.serial_number};
     return begin_sequence(lss::Command::select_vendor_id, lss::Command::select_serial_number, lss::Command::selected,
@@ -64,13 +64,13 @@ class LssMaster {
   }
 
   /// Configures the node-ID of the slave in configuration state: 1..127, or 255 to remove it.
-  bool configure_node_id(NodeId node_id, TimePoint now) {
+  [[nodiscard]] bool configure_node_id(NodeId node_id, TimePoint now) {
     return begin(lss::Command::configure_node_id, node_id.value(), now);
   }
 
   /// Configures the bit rate of the slave in configuration state. It is used after `activate_bit_timing`, or after it
   /// has been stored and power has been switched off and on.
-  bool configure_bit_timing(LssBitTiming bit_timing, TimePoint now) {
+  [[nodiscard]] bool configure_bit_timing(LssBitTiming bit_timing, TimePoint now) {
     const std::uint32_t word = bit_timing.table | static_cast<std::uint32_t>(bit_timing.index) << 8;
     return begin(lss::Command::configure_bit_timing, word, now);
   }
@@ -78,25 +78,25 @@ class LssMaster {
   /// Activates the new bit rate of all slaves in configuration state. No response. They continue for one delay and
   /// are silent for another one, during which the master's own controller must switch over. Done when both delays
   /// have elapsed.
-  bool activate_bit_timing(std::chrono::duration<std::uint16_t, std::milli> switch_delay, TimePoint now) {
+  [[nodiscard]] bool activate_bit_timing(std::chrono::duration<std::uint16_t, std::milli> switch_delay, TimePoint now) {
     return begin(lss::Command::activate_bit_timing, switch_delay.count(), lss::Command::none,
                  Duration{switch_delay.count() * 2000u}, now);
   }
 
   /// Makes the slave in configuration state store its node-ID and bit rate.
-  bool store_configuration(TimePoint now) {
+  [[nodiscard]] bool store_configuration(TimePoint now) {
     return begin(lss::Command::store_configuration, 0, lss::Command::store_configuration, timeouts_.store, now);
   }
 
   /// Inquires a value of the slave in configuration state; `value()` returns it.
-  bool inquire_vendor_id(TimePoint now) { return begin(lss::Command::inquire_vendor_id, 0, now); }
-  bool inquire_product_code(TimePoint now) { return begin(lss::Command::inquire_product_code, 0, now); }
-  bool inquire_revision_number(TimePoint now) { return begin(lss::Command::inquire_revision_number, 0, now); }
-  bool inquire_serial_number(TimePoint now) { return begin(lss::Command::inquire_serial_number, 0, now); }
-  bool inquire_node_id(TimePoint now) { return begin(lss::Command::inquire_node_id, 0, now); }
+  [[nodiscard]] bool inquire_vendor_id(TimePoint now) { return begin(lss::Command::inquire_vendor_id, 0, now); }
+  [[nodiscard]] bool inquire_product_code(TimePoint now) { return begin(lss::Command::inquire_product_code, 0, now); }
+  [[nodiscard]] bool inquire_revision_number(TimePoint now) { return begin(lss::Command::inquire_revision_number, 0, now); }
+  [[nodiscard]] bool inquire_serial_number(TimePoint now) { return begin(lss::Command::inquire_serial_number, 0, now); }
+  [[nodiscard]] bool inquire_node_id(TimePoint now) { return begin(lss::Command::inquire_node_id, 0, now); }
 
   /// Asks whether slaves with such an address exist, in any state. Done: at least one does.
-  bool identify_remote_slave(const LssAddressRange& range, TimePoint now) {
+  [[nodiscard]] bool identify_remote_slave(const LssAddressRange& range, TimePoint now) {
     if (busy()) return false;
     words_ = {range.vendor_id,         range.product_code,      range.revision_number_low, range.revision_number_high,
               range.serial_number_low, range.serial_number_high};
@@ -105,18 +105,18 @@ class LssMaster {
   }
 
   /// Asks whether slaves without node-ID exist. Done: at least one does.
-  bool identify_non_configured_remote_slave(TimePoint now) {
+  [[nodiscard]] bool identify_non_configured_remote_slave(TimePoint now) {
     return begin(lss::Command::identify_non_configured, 0, lss::Command::identified_non_configured, timeouts_.answer,
                  now);
   }
 
   /// Finds one slave without node-ID and switches it to the configuration state; `address()` is its address. If there
   /// are several slaves, it finds the one with the lowest numbers. 133 steps.
-  bool fastscan(TimePoint now) { return fastscan({}, 0, now); }
+  [[nodiscard]] bool fastscan(TimePoint now) { return fastscan({}, 0, now); }
 
   /// The same for slaves whose first `known` numbers, 0..4, are those of `address`: 33 steps fewer for each, one more
   /// to check it.
-  bool fastscan(const LssAddress& address, std::uint8_t known, TimePoint now) {
+  [[nodiscard]] bool fastscan(const LssAddress& address, std::uint8_t known, TimePoint now) {
     if (busy() || known > 4) return false;
     words_ = {address.vendor_id, address.product_code, address.revision_number, address.serial_number};
     known_ = known;
@@ -129,7 +129,7 @@ class LssMaster {
   /// Finds the slave without node-ID with the lowest address above this one, and switches it to the configuration
   /// state. With the address found last, it finds the next slave, as long as all slaves remain without node-ID; they
   /// must be in the waiting state. Up to 140 steps more than a Fastscan.
-  bool fastscan_above(const LssAddress& address, std::uint8_t known, TimePoint now) {
+  [[nodiscard]] bool fastscan_above(const LssAddress& address, std::uint8_t known, TimePoint now) {
     if (!fastscan(address, known, now)) return false;
     branch_ = 4;
     climb();

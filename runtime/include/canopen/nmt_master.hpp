@@ -172,7 +172,7 @@ class NmtMaster {
   }
 
   /// Sends a command to one node, or to all nodes with node-ID 0. Returns false if the bus had no room; it is not sent.
-  bool command(NmtCommand command, NodeId node_id) {
+  [[nodiscard]] bool command(NmtCommand command, NodeId node_id) {
     if (!bus_.send(nmt_frame(command, node_id))) return false;
     for (std::size_t i = 0; i < slaves_.size(); ++i) {
       if (node_id.value() == 0 || slaves_[i].node_id == node_id) expect_after(command, i);

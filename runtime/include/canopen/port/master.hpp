@@ -141,7 +141,7 @@ class Master {
   }
 
   /// Sends an NMT command to one node, or to all nodes with node-ID 0. Returns false if the bus had no room.
-  bool command(NmtCommand command, NodeId node_id) { return nmt_.command(command, node_id); }
+  [[nodiscard]] bool command(NmtCommand command, NodeId node_id) { return nmt_.command(command, node_id); }
 
   /// Resets and boots a slave again, for instance after a failure.
   void boot(NodeId node_id) { nmt_.boot(node_id, bus_.now()); }
