@@ -8,7 +8,6 @@
 #pragma once
 
 #include <cstdint>
-#include <cstring>
 #include <span>
 #include <tuple>
 #include <type_traits>
@@ -16,11 +15,9 @@
 
 #include "canopen/abort_code.hpp"
 #include "canopen/dictionary.hpp"
-#include "canopen/nmt.hpp"
 #include "canopen/object.hpp"
-#include "canopen/pdo.hpp"
-#include "canopen/rpdo.hpp"
 #include "canopen/storage.hpp"
+#include "canopen/value_bits.hpp"
 
 namespace canopen {
 
@@ -155,31 +152,6 @@ constexpr decltype(auto) call(F& handler, [[maybe_unused]] Node& node, const Arg
   } else {
     static_assert(std::is_invocable_v<F&, Node&, const Arguments&...>, "a handler takes (value) or (node, value)");
     return handler(node, arguments...);
-  }
-}
-
-/// Returns the value in the bytes of an SDO download.
-template <DictionaryObject O>
-[[nodiscard]] typename O::type value_from(std::span<std::uint8_t> bytes) {
-  using T = typename O::type;
-  if constexpr (std::is_same_v<T, Domain>) {
-    const auto size = static_cast<std::uint32_t>(bytes.size());
-    return Domain{bytes.data(), size, size};
-  } else if constexpr (O::bits == 0) {
-    T text{};
-    text.size = static_cast<std::uint16_t>(bytes.size());
-    if (!bytes.empty()) std::memcpy(text.bytes.data(), bytes.data(), bytes.size());
-    return text;
-  } else if constexpr (std::is_same_v<T, bool>) {
-    return bytes[0] != 0;
-  } else if constexpr (O::bits == sizeof(T) * 8) {
-    T value;
-    std::memcpy(&value, bytes.data(), sizeof value);
-    return value;
-  } else {
-    std::uint64_t raw = 0;
-    std::memcpy(&raw, bytes.data(), O::bits / 8);
-    return pdo_detail::from_bits<T, O::bits>(raw);
   }
 }
 
@@ -318,7 +290,7 @@ class HandlerSet {
   static AbortCode offer_write(WriteHandler<O, F>& handler, Node& node, std::uint32_t key,
                                std::span<std::uint8_t> bytes) {
     if (key != object_key(O::index, O::sub_index)) return ok;
-    return handler_detail::write(handler, node, handler_detail::value_from<O>(bytes));
+    return handler_detail::write(handler, node, value_detail::value_from<O>(bytes));
   }
 
   template <class Handler, class Node>

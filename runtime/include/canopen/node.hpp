@@ -292,7 +292,7 @@ class Node {
   [[nodiscard]] bool send_mpdo(const MpdoDestination& to) {
     static_assert(O::bits >= 1 && O::bits <= 32, "a multiplex PDO carries a value of 32 bits at most");
     constexpr std::uint32_t mask = 0xFFFF'FFFF >> (32 - O::bits);
-    return send_mpdo(to, static_cast<std::uint32_t>(pdo_detail::to_bits(get<O>())) & mask);
+    return send_mpdo(to, static_cast<std::uint32_t>(value_detail::to_bits(get<O>())) & mask);
   }
 
   /// Binds a DOMAIN to memory: a download may fill all of it, an upload sends the first `size` bytes.

@@ -37,7 +37,7 @@ struct Padded : O {
 /// always have this length.
 template <class O, std::uint16_t Bytes>
 struct FixedString : O {
-  static_assert(pdo_detail::StringValue<typename O::type>, "only a string has a length to be fixed");
+  static_assert(value_detail::StringValue<typename O::type>, "only a string has a length to be fixed");
   static_assert(Bytes <= O::type::capacity(), "the entry is longer than the string can be");
   static constexpr std::uint16_t bits = Bytes * 8;
 };

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <bit>
-#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -13,9 +12,14 @@
 #include <utility>
 
 #include "canopen/bit_copy.hpp"
-#include "canopen/value.hpp"
+#include "canopen/value_bits.hpp"
 
 namespace canopen::pdo_detail {
+
+using value_detail::from_bits;
+using value_detail::raw_of;
+using value_detail::StringValue;
+using value_detail::to_bits;
 
 /// The data bytes of a frame; all eight may be accessed, whatever the length of the PDO.
 using Data = std::array<std::uint8_t, 8>;
@@ -45,46 +49,6 @@ using WordOf = std::conditional_t<
     Bytes == 1, std::uint8_t,
     std::conditional_t<Bytes == 2, std::uint16_t, std::conditional_t<Bytes == 4, std::uint32_t, std::uint64_t>>>;
 
-/// A string value of the dictionary: `T::size` bytes; the remaining bytes of its entry are zero.
-template <class T>
-concept StringValue = requires(T value) {
-  value.bytes[0];
-  { value.size } -> std::convertible_to<std::size_t>;
-};
-
-/// Text, which ends at its first 00h; an octet string is as long as its entry.
-template <class T>
-concept TextValue = StringValue<T> && std::constructible_from<T, const char*>;
-
-/// Returns the bits of a value as on the wire; above those of its type, signed values are sign-extended.
-template <class T>
-[[nodiscard]] constexpr auto raw_of(const T& value) {
-  if constexpr (std::is_same_v<T, float>) {
-    return std::bit_cast<std::uint32_t>(value);
-  } else if constexpr (std::is_same_v<T, double>) {
-    return std::bit_cast<std::uint64_t>(value);
-  } else if constexpr (std::is_same_v<T, TimeOfDay> || std::is_same_v<T, TimeDifference>) {
-    return value.milliseconds | (static_cast<std::uint64_t>(value.days) << 32);
-  } else if constexpr (StringValue<T>) {
-    std::uint64_t raw = 0;
-    for (std::size_t i = 0; i < value.size && i < sizeof raw; ++i) raw |= std::uint64_t{value.bytes[i]} << (8 * i);
-    return raw;
-  } else if constexpr (sizeof(T) <= sizeof(std::uint32_t)) {
-    return static_cast<std::uint32_t>(value);
-  } else {
-    return static_cast<std::uint64_t>(value);
-  }
-}
-
-template <class T>
-[[nodiscard]] constexpr std::uint64_t to_bits(const T& value) {
-  if constexpr (std::is_signed_v<T> && std::is_integral_v<T>) {
-    return static_cast<std::uint64_t>(value);
-  } else {
-    return raw_of(value);
-  }
-}
-
 /// Returns a value whose low `Bits` bits are valid; the others are undefined.
 template <unsigned Bits, class T>
 [[nodiscard]] constexpr Raw<Bits> unmasked(const T& value) {
@@ -102,41 +66,6 @@ template <unsigned Bits, class T>
     return unmasked<Bits>(value);
   } else {
     return unmasked<Bits>(value) & static_cast<Raw<Bits>>(mask(Bits));
-  }
-}
-
-template <class T, unsigned Bits>
-[[nodiscard]] constexpr T string_from_bits(std::uint64_t raw) {
-  constexpr std::size_t entry_bytes = Bits / 8;
-  T value;
-  for (std::size_t i = 0; i < entry_bytes && i < T::capacity(); ++i) {
-    const auto byte = static_cast<std::uint8_t>(raw >> (8 * i));
-    if (TextValue<T> && byte == 0) break;
-    value.bytes[i] = byte;
-    value.size = static_cast<std::uint16_t>(i + 1);
-  }
-  return value;
-}
-
-/// Returns a value from its `Bits` bits; the other bits of `raw` must be zero.
-template <class T, unsigned Bits>
-[[nodiscard]] constexpr T from_bits(std::uint64_t raw) {
-  if constexpr (std::is_same_v<T, float>) {
-    return std::bit_cast<float>(static_cast<std::uint32_t>(raw));
-  } else if constexpr (std::is_same_v<T, double>) {
-    return std::bit_cast<double>(raw);
-  } else if constexpr (std::is_same_v<T, TimeOfDay> || std::is_same_v<T, TimeDifference>) {
-    return T{static_cast<std::uint32_t>(raw), static_cast<std::uint16_t>(raw >> 32)};
-  } else if constexpr (StringValue<T>) {
-    return string_from_bits<T, Bits>(raw);
-  } else if constexpr (std::is_signed_v<T> && Bits <= 32) {
-    constexpr unsigned unused = 32 - Bits;
-    return static_cast<T>(static_cast<std::int32_t>(static_cast<std::uint32_t>(raw) << unused) >> unused);
-  } else if constexpr (std::is_signed_v<T>) {
-    constexpr unsigned unused = 64 - Bits;
-    return static_cast<T>(static_cast<std::int64_t>(raw << unused) >> unused);
-  } else {
-    return static_cast<T>(raw);
   }
 }
 

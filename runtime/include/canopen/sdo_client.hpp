@@ -14,12 +14,12 @@
 #include "canopen/cob_id.hpp"
 #include "canopen/crc16.hpp"
 #include "canopen/frame.hpp"
-#include "canopen/handlers.hpp"
 #include "canopen/node_id.hpp"
 #include "canopen/object.hpp"
 #include "canopen/result.hpp"
 #include "canopen/sdo_protocol.hpp"
 #include "canopen/time.hpp"
+#include "canopen/value_bits.hpp"
 
 namespace canopen {
 
@@ -162,14 +162,14 @@ class SdoClient {
       result_ = AbortCode::length_mismatch;
       return std::nullopt;
     }
-    return handler_detail::value_from<O>(std::span{number_}.first(size));
+    return value_detail::value_from<O>(std::span{number_}.first(size));
   }
 
   /// Starts to write an object of a generated dictionary.
   template <DictionaryObject O>
   requires(O::bits > 0) bool write(const typename O::type& value, TimePoint now) {
     if (busy()) return false;
-    const std::uint64_t raw = pdo_detail::to_bits(value);
+    const std::uint64_t raw = value_detail::to_bits(value);
     std::memcpy(number_.data(), &raw, sizeof raw);
     return download(O::index, O::sub_index, std::span{number_}.first((O::bits + 7u) / 8u), now);
   }

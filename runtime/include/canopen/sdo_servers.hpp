@@ -9,7 +9,6 @@
 
 #include "canopen/abort_code.hpp"
 #include "canopen/cob_id.hpp"
-#include "canopen/communication_parameters.hpp"
 #include "canopen/frame.hpp"
 #include "canopen/object_store.hpp"
 #include "canopen/sdo_protocol.hpp"

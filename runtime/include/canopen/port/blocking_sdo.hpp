@@ -24,13 +24,13 @@
 
 #include "canopen/abort_code.hpp"
 #include "canopen/frame.hpp"
-#include "canopen/handlers.hpp"
 #include "canopen/node_id.hpp"
 #include "canopen/remote.hpp"
 #include "canopen/result.hpp"
 #include "canopen/sdo_client.hpp"
 #include "canopen/sdo_queue.hpp"
 #include "canopen/time.hpp"
+#include "canopen/value_bits.hpp"
 
 namespace canopen {
 
@@ -54,7 +54,7 @@ template <NumberObject O>
   if (received != size && (answer.size_known || received < size)) return AbortCode::length_mismatch;
   std::array<std::uint8_t, 8> bytes{};
   std::memcpy(bytes.data(), answer.data.data(), size);
-  return handler_detail::value_from<O>(std::span{bytes}.first(size));
+  return value_detail::value_from<O>(std::span{bytes}.first(size));
 }
 
 /// Access to the objects of a device by their generated types, with an `Sdo` that has
@@ -128,7 +128,7 @@ class BlockingObjects {
  private:
   template <class O>
   [[nodiscard]] Result<void> write_number(typename O::type value) {
-    const std::uint64_t raw = pdo_detail::to_bits(value);
+    const std::uint64_t raw = value_detail::to_bits(value);
     std::array<std::uint8_t, sizeof raw> bytes{};
     std::memcpy(bytes.data(), &raw, sizeof raw);
     return sdo_.download(node_, O::index, O::sub_index, std::span{bytes}.first((O::bits + 7u) / 8u));

@@ -130,11 +130,11 @@ struct Codec {
 
 template <class Entry>
 typename Entry::type value_of(std::uint64_t raw) {
-  return canopen::pdo_detail::from_bits<typename Entry::type, Entry::bits>(raw);
+  return canopen::value_detail::from_bits<typename Entry::type, Entry::bits>(raw);
 }
 template <class Entry>
 std::uint64_t raw_of(const typename Entry::type& value) {
-  return canopen::pdo_detail::to_bits(value) & canopen::pdo_detail::mask(Entry::bits);
+  return canopen::value_detail::to_bits(value) & canopen::pdo_detail::mask(Entry::bits);
 }
 
 template <std::uint64_t Seed, std::size_t... I>
