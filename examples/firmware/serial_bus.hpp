@@ -4,6 +4,7 @@
 #include <array>
 #include <canopen/bus_status.hpp>
 #include <canopen/frame.hpp>
+#include <canopen/port/slcan_adapter.hpp>
 #include <canopen/port/slcan_codec.hpp>
 #include <canopen/time.hpp>
 #include <cstddef>

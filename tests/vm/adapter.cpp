@@ -7,7 +7,7 @@
 #include <atomic>
 #include <canopen/node.hpp>
 #include <canopen/port/event_descriptor.hpp>
-#include <canopen/port/slcan_codec.hpp>
+#include <canopen/port/slcan_adapter.hpp>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>

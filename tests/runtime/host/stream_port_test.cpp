@@ -9,7 +9,7 @@
 #include <unistd.h>
 #include <canopen/port/blocking_sdo.hpp>
 #include <canopen/port/host_bus.hpp>
-#include <canopen/port/slcan_codec.hpp>
+#include <canopen/port/slcan_adapter.hpp>
 
 #include <atomic>
 #include <cstdlib>

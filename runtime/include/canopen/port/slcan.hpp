@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "canopen/port/slcan_codec.hpp"
+#include "canopen/port/slcan_host.hpp"
 #include "canopen/port/stream_port.hpp"
 
 namespace canopen {
