@@ -14,17 +14,12 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstdio>
-#include <cstring>
 #include <deque>
 #include <functional>
 #include <list>
 #include <map>
 #include <optional>
 #include <span>
-#include <string>
-#include <tuple>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -38,54 +33,13 @@
 #include "canopen/node_id.hpp"
 #include "canopen/pdo_list.hpp"
 #include "canopen/port/blocking_sdo.hpp"
+#include "canopen/port/master_remote.hpp"
+#include "canopen/port/master_text.hpp"
 #include "canopen/result.hpp"
 #include "canopen/sdo_queue.hpp"
 #include "canopen/time.hpp"
 
 namespace canopen {
-
-namespace master_detail {
-
-/// Number of the only PDO in a list with a layout; 0: none or several have it.
-template <class Layout, class List>
-inline constexpr std::uint16_t number_in = 0;
-template <class Layout, class... Pdos>
-inline constexpr std::uint16_t number_in<Layout, PdoList<Pdos...>> =
-    (unsigned{std::is_base_of_v<Layout, Pdos>} + ... + 0u) == 1
-        ? static_cast<std::uint16_t>((unsigned{std::is_base_of_v<Layout, Pdos> ? Pdos::number : std::uint16_t{0}} +
-                                      ... + 0u))
-        : std::uint16_t{0};
-
-}  // namespace master_detail
-
-/// `node 5: product code 1018h:02 is not the one of 1F86h: expected 00010001h, seen 00020001h`
-[[nodiscard]] inline std::string boot_text(NodeId node_id, const BootResult& result) {
-  const auto print = [](const char* format, auto... numbers) {
-    char text[64];
-    std::snprintf(text, sizeof text, format, numbers...);
-    return std::string{text};
-  };
-  std::string text = "node " + std::to_string(node_id.value()) + ": " + std::string{to_text(result.status)};
-  if (result.abort_code != ok) {
-    const auto code = static_cast<unsigned>(result.abort_code);
-    if (result.index != 0) text += print(": %04Xh:%02X", unsigned{result.index}, unsigned{result.sub_index});
-    text += print(": %04X %04Xh, ", code >> 16, code & 0xFFFF) + std::string{to_text(result.abort_code)};
-  } else if (result.index != 0) {
-    text += print(": expected %08Xh, seen %08Xh", unsigned{result.expected}, unsigned{result.seen});
-  }
-  return text;
-}
-
-/// `node 5: lost, last state operational`
-[[nodiscard]] inline std::string event_text(NodeId node_id, NmtMasterEvent event, NmtState state) {
-  std::string text = "node " + std::to_string(node_id.value()) + ": " + std::string{to_text(event)};
-  const bool has_state = event != NmtMasterEvent::boot_up && event != NmtMasterEvent::not_watched;
-  if (has_state) text += (event == NmtMasterEvent::lost ? ", last state " : ": ") + std::string{to_text(state)};
-  return text;
-}
-
-template <class Device, BlockingBus B>
-class MasterRemote;
 
 /// Handlers are called only from `poll`, in the order of the events. They may use SDO transfers, during which the
 /// master continues to monitor its slaves; they may not call `poll`. Exceptions of the bus are passed on.
@@ -531,87 +485,6 @@ class Master {
   std::array<std::uint32_t, 128> boots_{};          ///< boot-up messages, by node-ID
   std::array<std::uint8_t, 128> to_configure_{};  ///< pending calls of `on_configure`, by node-ID
   std::deque<std::function<void()>> waiting_;
-};
-
-/// A device on the bus, with its generated types: its objects by SDO, its PDOs by their layouts.
-template <class Device, BlockingBus B>
-class MasterRemote {
- public:
-  MasterRemote(Master<B>& master, NodeId node_id) : master_{master}, node_id_{node_id} {}
-
-  [[nodiscard]] NodeId node_id() const { return node_id_; }
-
-  /// Reads an object.
-  template <DictionaryObject O>
-  [[nodiscard]] auto read() {
-    return objects().template read<O>();
-  }
-  /// Writes an object. A value outside the limits is rejected without sending a frame.
-  template <DictionaryObject O, class V>
-  Result<void> write(V value) {
-    return objects().template write<O>(value);
-  }
-  /// Writes a constant, whose limits the compiler checks.
-  template <DictionaryObject O, auto Value>
-  Result<void> write() {
-    return objects().template write<O, Value>();
-  }
-
-  /// Calls the handler from now on with the values of each TPDO with this layout: `handler(values...)`. Its COB-ID is
-  /// read from the node, again after each boot-up, and updated when it is written through the master. 0800 0022h: the
-  /// PDO is not valid; the handler is discarded.
-  template <class Layout, class F>
-  Result<void> on_pdo(F handler) {
-    const Result<std::uint32_t> cob_id = master_.pdo_cob_id(node_id_, tpdo_index<Layout>());
-    if (!cob_id) return cob_id.abort_code();
-    master_.pdos_.push_back({node_id_.value(), tpdo_index<Layout>(), *cob_id, Layout::size,
-                             [handler = std::move(handler)](const Frame& frame) mutable {
-                               std::apply(handler, Layout::unpack(frame));
-                             }});
-    return ok;
-  }
-
-  /// Sends an RPDO with these values. 060A 0023h: the bus has no room.
-  template <class Layout, class... Values>
-  Result<void> send(const Values&... values) {
-    constexpr std::uint16_t number = master_detail::number_in<Layout, typename Device::Rpdos>;
-    static_assert(number != 0, "no RPDO of this device has this layout, or several have");
-    const Result<std::uint32_t> cob_id =
-        master_.pdo_cob_id(node_id_, static_cast<std::uint16_t>(rpdo_indices.communication + number - 1));
-    if (!cob_id) return cob_id.abort_code();
-    Frame frame = frame_of(*cob_id);
-    Layout::pack_into(frame, values...);
-    return master_.bus_.send(frame) ? ok : AbortCode::no_resource;
-  }
-
-  /// Requests a TPDO with a remote frame. 060A 0023h: the bus has no room.
-  template <class Layout>
-  Result<void> request() {
-    const Result<std::uint32_t> cob_id = master_.pdo_cob_id(node_id_, tpdo_index<Layout>());
-    if (!cob_id) return cob_id.abort_code();
-    Frame frame = frame_of(*cob_id);
-    frame.remote = true;
-    frame.size = Layout::size;
-    return master_.bus_.send(frame) ? ok : AbortCode::no_resource;
-  }
-
- private:
-  template <class Layout>
-  [[nodiscard]] static constexpr std::uint16_t tpdo_index() {
-    constexpr std::uint16_t number = master_detail::number_in<Layout, typename Device::Tpdos>;
-    static_assert(number != 0, "no TPDO of this device has this layout, or several have");
-    return static_cast<std::uint16_t>(tpdo_indices.communication + number - 1);
-  }
-  [[nodiscard]] static Frame frame_of(std::uint32_t cob_id) {
-    Frame frame{};
-    frame.extended = (cob_id & 0x2000'0000) != 0;
-    frame.id = cob_id & 0x1FFF'FFFF;
-    return frame;
-  }
-  [[nodiscard]] BlockingObjects<Device, Master<B>> objects() { return {master_, node_id_}; }
-
-  Master<B>& master_;
-  NodeId node_id_;
 };
 
 }  // namespace canopen
