@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -17,8 +16,10 @@
 #include "canopen/error_control.hpp"
 #include "canopen/frame.hpp"
 #include "canopen/heartbeat_consumer.hpp"
+#include "canopen/identity_check.hpp"
 #include "canopen/network_list.hpp"
 #include "canopen/nmt.hpp"
+#include "canopen/nmt_master_event.hpp"
 #include "canopen/node_guarding.hpp"
 #include "canopen/node_id.hpp"
 #include "canopen/sdo_client.hpp"
@@ -26,58 +27,6 @@
 #include "canopen/time.hpp"
 
 namespace canopen {
-
-/// Returns the frame of a command to one node, or to all nodes with node-ID 0.
-[[nodiscard]] constexpr Frame nmt_frame(NmtCommand command, NodeId node_id) {
-  Frame frame{};
-  frame.id = function_code::nmt;
-  frame.size = 2;
-  frame.data[0] = static_cast<std::uint8_t>(command);
-  frame.data[1] = node_id.value();
-  return frame;
-}
-
-/// Events of a slave.
-enum class NmtMasterEvent : std::uint8_t {
-  boot_up,           ///< its boot-up message
-  state_changed,     ///< its first state, or a different one
-  unexpected_state,  ///< guarding: a state other than the one commanded
-  toggle_error,      ///< guarding: a response with the same toggle bit as the previous one
-  lost,              ///< no heartbeat or guarding response within its time
-  back,              ///< the first one after it was lost
-  not_watched,       ///< it has booted, but its loss will not be detected: the list has no heartbeat and no guarding
-                     ///< times for it
-};
-
-[[nodiscard]] constexpr std::string_view to_text(NmtMasterEvent event) {
-  switch (event) {
-    case NmtMasterEvent::boot_up: return "boot-up";
-    case NmtMasterEvent::state_changed: return "NMT state changed";
-    case NmtMasterEvent::unexpected_state: return "NMT state is not the commanded one";
-    case NmtMasterEvent::toggle_error: return "toggle bit of node guarding did not alternate";
-    case NmtMasterEvent::lost: return "lost";
-    case NmtMasterEvent::back: return "back";
-    case NmtMasterEvent::not_watched: return "not watched: no heartbeat time and no guard time in the network list";
-  }
-  return "unknown event";
-}
-
-/// One number of a slave's identity: the entry to read, the expected value, and the boot status if it differs.
-struct IdentityCheck {
-  std::uint16_t index;
-  std::uint8_t sub_index;
-  std::uint32_t NmtSlave::*expected;
-  BootStatus failure;
-};
-
-/// In the order of the boot-up process. The first one is always read, to check whether the node responds.
-inline constexpr IdentityCheck identity_checks[] = {
-    {0x1000, 0, &NmtSlave::device_type, BootStatus::device_type},
-    {0x1018, 1, &NmtSlave::vendor_id, BootStatus::vendor_id},
-    {0x1018, 2, &NmtSlave::product_code, BootStatus::product_code},
-    {0x1018, 3, &NmtSlave::revision_number, BootStatus::revision_number},
-    {0x1018, 4, &NmtSlave::serial_number, BootStatus::serial_number},
-};
 
 /// Boots up to `Count` slaves and monitors them (CiA 302-2, boot NMT slave). Each slave is reset. After its boot-up
 /// message, or after a second because the message may have been missed, it is
