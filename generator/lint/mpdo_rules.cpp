@@ -1,7 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <canopen/mpdo.hpp>
+#include <canopen/mpdo_lists.hpp>
+#include <canopen/pdo_mapping.hpp>
 #include <canopen/transmission_type.hpp>
 
 #include "device/pdo_defaults.hpp"

@@ -29,7 +29,7 @@
 #include "canopen/heartbeat.hpp"
 #include "canopen/heartbeat_consumer.hpp"
 #include "canopen/lss_handler.hpp"
-#include "canopen/mpdo.hpp"
+#include "canopen/mpdo_service.hpp"
 #include "canopen/nmt.hpp"
 #include "canopen/node_guarding.hpp"
 #include "canopen/node_id.hpp"
@@ -731,7 +731,7 @@ class Node {
   [[nodiscard]] AbortCode check_communication(std::uint16_t index, std::uint8_t sub_index,
                                               std::span<std::uint8_t> bytes) {
     if constexpr (MpdoService<Device>::exists) {
-      if (const AbortCode code = mpdos_.check(entries(), index, sub_index, bytes); code != ok) return code;
+      if (const AbortCode code = MpdoCheck<Device>::check(entries(), index, sub_index, bytes); code != ok) return code;
     }
     if constexpr (Device::dictionary.takes_writes(0x1400, 0x15FF) || Device::dictionary.takes_writes(0x1800, 0x19FF)) {
       if (is_rpdo_communication(index) || is_tpdo_communication(index)) {

@@ -64,9 +64,9 @@ TEST(MpdoLists, OfTheirNumberOneByteIsLookedAt) {
   Bench device;
   // The bytes after this one would mean a block of 255 objects.
   const std::array<std::uint8_t, 4> memory{1, 0xFF, 0xFF, 0xFF};
-  using Service = canopen::MpdoService<mpdo_device::Device>;
-  EXPECT_EQ(Service::check(device.node.entries(), 0x1FA0, 0, std::span{memory}.first(1)), canopen::ok);
-  EXPECT_EQ(Service::check(device.node.entries(), 0x1FD0, 0, std::span{memory}.first(1)), canopen::ok);
+  using Check = canopen::MpdoCheck<mpdo_device::Device>;
+  EXPECT_EQ(Check::check(device.node.entries(), 0x1FA0, 0, std::span{memory}.first(1)), canopen::ok);
+  EXPECT_EQ(Check::check(device.node.entries(), 0x1FD0, 0, std::span{memory}.first(1)), canopen::ok);
 }
 
 // DAM consumer
