@@ -16,6 +16,7 @@
 #include "canopen/parameter_column.hpp"
 #include "canopen/pdo.hpp"
 #include "canopen/pdo_list.hpp"
+#include "canopen/static_tpdos.hpp"
 #include "canopen/sync.hpp"
 #include "canopen/time.hpp"
 #include "canopen/transmission_type.hpp"
@@ -37,6 +38,7 @@ class TpdoService {
  public:
   using Pdos = ServedPdos<Device::dictionary, tpdo_indices, typename Device::Tpdos>;
   using Mapped = MappedPlaces<Device, tpdo_indices, Pdos>;
+  using Static = StaticTpdos<Device, Pdos, Mapped>;
   static constexpr std::size_t count = Pdos::count;
   static constexpr bool has_dynamic_mapping = Mapped::any;
 
@@ -70,7 +72,7 @@ class TpdoService {
   void changed([[maybe_unused]] EntryAccess<Device> entries, std::uint16_t index, std::uint8_t sub_index) {
     if (!Device::triggers_event(index, sub_index)) return;
     const std::uint32_t key = object_key(index, sub_index);
-    for (const std::uint32_t row : carriers) {
+    for (const std::uint32_t row : Static::carriers) {
       if (row >> 8 == key) slots_[row & 0xFF].flags |= changed_bit;
     }
     if constexpr (has_dynamic_mapping) {
@@ -82,7 +84,7 @@ class TpdoService {
 
   /// Whether a TPDO maps an object now, or can do so: `changed` must be called for it.
   [[nodiscard]] static bool carries(EntryAccess<Device> entries, std::uint32_t key) {
-    for (const std::uint32_t row : carriers) {
+    for (const std::uint32_t row : Static::carriers) {
       if (row >> 8 == key) return true;
     }
     if constexpr (has_dynamic_mapping) {
@@ -211,27 +213,6 @@ class TpdoService {
   static constexpr std::array<std::uint8_t, count> sizes = [] {
     std::array<std::uint8_t, count> rows{};
     Pdos::for_each([&]<class Pdo, std::size_t I>() { rows[I] = Pdo::size; });
-    return rows;
-  }();
-
-  static constexpr std::size_t mapped_objects = [] {
-    std::size_t sum = 0;
-    Pdos::for_each([&]<class Pdo, std::size_t I>() { sum += Mapped::capacities[I] == 0 ? Pdo::entries : 0; });
-    return sum;
-  }();
-
-  /// index << 16 | sub-index << 8 | position of the TPDO, for each statically mapped object.
-  static constexpr std::array<std::uint32_t, mapped_objects> carriers = [] {
-    static_assert(count <= 0x100);
-    std::array<std::uint32_t, mapped_objects> rows{};
-    std::size_t at = 0;
-    Pdos::for_each([&]<class Pdo, std::size_t I>() {
-      if constexpr (Mapped::capacities[I] == 0) {
-        Pdo::for_each([&]<class O, std::size_t>() {
-          rows[at++] = (object_key(O::index, O::sub_index) << 8) | static_cast<std::uint32_t>(I);
-        });
-      }
-    });
     return rows;
   }();
 
@@ -366,26 +347,7 @@ class TpdoService {
     if constexpr (has_dynamic_mapping) {
       if (Mapped::is_dynamic(which)) pack_mapped(which, store.entries(), data);
     }
-    pack_static(which, store, data, Pdos{}, std::make_index_sequence<count>{});
-  }
-
-  template <class... Pdo, std::size_t... I>
-  static void pack_static([[maybe_unused]] std::size_t which, [[maybe_unused]] const ObjectStore<Device>& store,
-                          [[maybe_unused]] Data& data, PdoList<Pdo...>, std::index_sequence<I...>) {
-    (pack_if<Pdo, Mapped::capacities[I] == 0>(which == I, store, data), ...);
-  }
-
-  template <class Pdo, bool IsStatic>
-  static void pack_if([[maybe_unused]] bool it_is, [[maybe_unused]] const ObjectStore<Device>& store,
-                      [[maybe_unused]] Data& data) {
-    if constexpr (IsStatic) {
-      if (it_is) pack_objects<Pdo>(store, data, std::make_index_sequence<Pdo::entries>{});
-    }
-  }
-
-  template <class Pdo, std::size_t... I>
-  static void pack_objects([[maybe_unused]] const ObjectStore<Device>& store, Data& data, std::index_sequence<I...>) {
-    Pdo::pack_into_words(data, store.template get<typename Pdo::template Entry<I>>()...);
+    Static::pack(which, store, data, Pdos{}, std::make_index_sequence<count>{});
   }
 
   void pack_mapped(std::size_t which, EntryAccess<Device> entries, Data& data) const {
