@@ -23,7 +23,7 @@ from support.compilers import (ARM_GCC, CLANG, GCC, Compiler, compile_only, in_p
 # These need an operating system, whose errors they throw.
 HOSTED_ONLY = ("port/descriptor.hpp", "port/event_descriptor.hpp", "port/file_storage.hpp", "port/host_bus.hpp",
                "port/host_loop.hpp", "port/simulated_device.hpp", "port/slcan.hpp", "port/socketcan.hpp",
-               "port/socketcand.hpp", "port/stream_port.hpp")
+               "port/socketcan_frame.hpp", "port/socketcand.hpp", "port/stream_port.hpp")
 
 
 @dataclass(frozen=True)

@@ -33,6 +33,7 @@
 #include "canopen/frame.hpp"
 #include "canopen/port/event_descriptor.hpp"
 #include "canopen/port/host_loop.hpp"
+#include "canopen/port/socketcan_frame.hpp"
 #include "canopen/send_queue.hpp"
 #include "canopen/time.hpp"
 
@@ -101,7 +102,8 @@ class SocketCan {
     if constexpr (most <= CAN_RAW_FILTER_MAX) {
       std::array<can_filter, most> filters;
       std::size_t count = 0;
-      for_each_accepted_frame(node, [&](const AcceptedFrame& frame) { filters[count++] = filter_of(frame); });
+      for_each_accepted_frame(node,
+                              [&](const AcceptedFrame& frame) { filters[count++] = socketcan::filter_of(frame); });
       accept(filters.data(), count);
     }
   }
@@ -120,7 +122,7 @@ class SocketCan {
         status_.state = BusState::active;  // a controller that receives frames is on the bus
       } else if (status_ == reported_) {
         ++read_;
-        return PortEvent{frame_of(raw), last_, status_};
+        return PortEvent{socketcan::frame_of(raw), last_, status_};
       }
       if (const auto changed = status_event()) return changed;
     }
@@ -162,13 +164,13 @@ class SocketCan {
     if (index == 0) throw_errno("CAN interface \"" + interface_ + "\"");
     Descriptor fresh = opened(::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW), "socket");
     const can_err_mask_t errors = CAN_ERR_CRTL | CAN_ERR_BUSOFF | CAN_ERR_RESTARTED;
-    set_option(fresh, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, errors);
-    set_option(fresh, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, int{0});
-    set_option(fresh, SOL_SOCKET, SO_TIMESTAMPNS, int{1});
-    set_option(fresh, SOL_SOCKET, SO_RXQ_OVFL, int{1});
-    set_option(fresh, SOL_SOCKET, SO_RCVBUF, receive_buffer);
+    socketcan::set_option(fresh, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, errors);
+    socketcan::set_option(fresh, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, int{0});
+    socketcan::set_option(fresh, SOL_SOCKET, SO_TIMESTAMPNS, int{1});
+    socketcan::set_option(fresh, SOL_SOCKET, SO_RXQ_OVFL, int{1});
+    socketcan::set_option(fresh, SOL_SOCKET, SO_RCVBUF, receive_buffer);
     // Only few frames of one socket wait in the kernel, where none can overtake them.
-    set_option(fresh, SOL_SOCKET, SO_SNDBUF, int{0});
+    socketcan::set_option(fresh, SOL_SOCKET, SO_SNDBUF, int{0});
     if (!filters_.empty()) set_filters(fresh);
     sockaddr_can address{};
     address.can_family = AF_CAN;
@@ -210,19 +212,7 @@ class SocketCan {
     status_.state = BusState::active;
   }
 
-  template <class Value>
-  static void set_option(const Descriptor& socket, int level, int name, const Value& value) {
-    if (::setsockopt(socket.number(), level, name, &value, sizeof value) != 0) throw_errno("CAN socket option");
-  }
-
   // Filters
-
-  [[nodiscard]] static can_filter filter_of(const AcceptedFrame& frame) {
-    can_filter filter{};
-    filter.can_id = frame.id | (frame.extended ? CAN_EFF_FLAG : 0u) | (frame.remote ? CAN_RTR_FLAG : 0u);
-    filter.can_mask = (frame.extended ? CAN_EFF_MASK : CAN_SFF_MASK) | CAN_EFF_FLAG | CAN_RTR_FLAG;
-    return filter;
-  }
 
   /// Sets the filters. They change rarely: the kernel is called only if they do.
   void accept(const can_filter* filters, std::size_t count) {
@@ -235,7 +225,7 @@ class SocketCan {
   }
 
   void accept_all() {
-    if (!filters_.empty()) accept(&every_frame, 1);
+    if (!filters_.empty()) accept(&socketcan::every_frame, 1);
   }
 
   void set_filters(const Descriptor& socket) const {
@@ -249,10 +239,7 @@ class SocketCan {
 
   /// Returns false if the socket has no room, or the interface is down.
   [[nodiscard]] bool write(const Frame& frame) {
-    can_frame raw{};
-    raw.can_id = frame.id | (frame.extended ? CAN_EFF_FLAG : 0u) | (frame.remote ? CAN_RTR_FLAG : 0u);
-    raw.can_dlc = frame.size;
-    std::memcpy(raw.data, frame.data.data(), frame.data.size());
+    const can_frame raw = socketcan::raw_of(frame);
     ssize_t written = 0;
     do {
       written = ::write(socket_.number(), &raw, sizeof raw);
@@ -291,7 +278,7 @@ class SocketCan {
   [[nodiscard]] bool read_batch() {
     read_ = received_count_ = 0;
     std::array<iovec, batch> parts;
-    std::array<Control, batch> control;
+    std::array<socketcan::Control, batch> control;
     std::array<mmsghdr, batch> headers;
     for (std::size_t i = 0; i < batch; ++i) {
       parts[i] = {&received_[i], sizeof received_[i]};
@@ -308,7 +295,7 @@ class SocketCan {
     }
     received_count_ = static_cast<std::size_t>(count);
     drained_ = received_count_ < batch;
-    const Clocks clocks = read_clocks();
+    const socketcan::Clocks clocks = socketcan::read_clocks();
     for (std::size_t i = 0; i < received_count_; ++i) times_[i] = time_of(headers[i].msg_hdr, clocks);
     return true;
   }
@@ -324,24 +311,9 @@ class SocketCan {
     }
   }
 
-  [[nodiscard]] static std::int64_t nanoseconds(const timespec& time) {
-    return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
-  }
-
-  /// The same time on two clocks.
-  struct Clocks {
-    std::int64_t real;  ///< CLOCK_REALTIME in ns
-    TimePoint monotonic;
-  };
-  [[nodiscard]] static Clocks read_clocks() {
-    timespec clock{};
-    ::clock_gettime(CLOCK_REALTIME, &clock);
-    return {nanoseconds(clock), now()};
-  }
-
   /// Returns when a frame was received: the kernel's time stamp, converted to the clock of `now`. Counts frames that
   /// were lost before it.
-  [[nodiscard]] TimePoint time_of(msghdr& message, const Clocks& clocks) {
+  [[nodiscard]] TimePoint time_of(msghdr& message, const socketcan::Clocks& clocks) {
     constexpr std::int64_t most = 1'000'000'000;  // older ones mean that the clock was set
     TimePoint time = clocks.monotonic;
     for (cmsghdr* part = CMSG_FIRSTHDR(&message); part != nullptr; part = CMSG_NXTHDR(&message, part)) {
@@ -349,7 +321,7 @@ class SocketCan {
       if (part->cmsg_type == SCM_TIMESTAMPNS) {
         timespec stamp{};
         std::memcpy(&stamp, CMSG_DATA(part), sizeof stamp);
-        const std::int64_t age = clocks.real - nanoseconds(stamp);
+        const std::int64_t age = clocks.real - socketcan::nanoseconds(stamp);
         const bool plausible = age > 0 && age < most;
         if (plausible) time = TimePoint{time.since_start() - Duration{static_cast<std::uint32_t>(age / 1'000)}};
       } else if (part->cmsg_type == SO_RXQ_OVFL) {
@@ -360,16 +332,6 @@ class SocketCan {
       }
     }
     return time;
-  }
-
-  [[nodiscard]] static Frame frame_of(const can_frame& raw) {
-    Frame frame{};
-    frame.extended = (raw.can_id & CAN_EFF_FLAG) != 0;
-    frame.remote = (raw.can_id & CAN_RTR_FLAG) != 0;
-    frame.id = raw.can_id & (frame.extended ? CAN_EFF_MASK : CAN_SFF_MASK);
-    frame.size = std::min<std::uint8_t>(raw.can_dlc, 8);
-    std::memcpy(frame.data.data(), raw.data, frame.data.size());
-    return frame;
   }
 
   // Status
@@ -408,12 +370,6 @@ class SocketCan {
     reported_ = status_;
     return PortEvent{std::nullopt, last_, status_};
   }
-
-  struct Control {
-    alignas(cmsghdr) char bytes[CMSG_SPACE(sizeof(timespec)) + CMSG_SPACE(sizeof(std::uint32_t))];
-  };
-
-  static constexpr can_filter every_frame{0, 0};
 
   std::string interface_;
   EventDescriptor events_;
