@@ -9,8 +9,8 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <canopen/host/socketcan.hpp>
 #include <canopen/node.hpp>
-#include <canopen/port/socketcan.hpp>
 #include <csignal>
 #include <cstdint>
 #include <cstdio>

@@ -1,8 +1,8 @@
 /// Measures the CPU time of a VirtualBus in simulated time with 127 nodes at 1 Mbit/s. `virtual_bus [MINUTES]`. The
 /// checksum includes all frames and their times: another implementation must have the same one.
 #include <can_2053c/device.hpp>
+#include <canopen/host/virtual_bus.hpp>
 #include <canopen/node.hpp>
-#include <canopen/port/virtual_bus.hpp>
 #include <cpd/device.hpp>
 #include <rk5c/device.hpp>
 

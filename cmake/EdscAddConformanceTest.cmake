@@ -11,7 +11,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/EdscAddDictionary.cmake)
 #   enable_testing()
 #   edsc_add_conformance_test(pump_conforms pump APPLICATION pump_application.hpp PumpApplication)
 #
-# APPLICATION  a header and its class with the handlers of the device; canopen/port/simulated_device.hpp describes the class.
+# APPLICATION  a header and its class with the handlers of the device; canopen/host/simulated_device.hpp describes the class.
 #              Add sources and libraries that it needs to the target NAME, with target_sources and target_link_libraries.
 # NODE_ID      node-ID of the device; default: that of the dictionary or of its DCF, else 5.
 # LEVEL        read, communication or all (default: a simulated device cannot cause damage).
@@ -72,8 +72,8 @@ function(edsc_add_conformance_test name dictionary)
   set(source ${CMAKE_CURRENT_BINARY_DIR}/edsc/${name}.cpp)
   file(CONFIGURE OUTPUT ${source} @ONLY CONTENT [[
 // Made by edsc_add_conformance_test.
-#include <canopen/port/simulated_device.hpp>
 #include <@namespace@/device.hpp>
+#include <canopen/host/simulated_device.hpp>
 @include@
 int main(int argc, char** argv) { return canopen::simulate_device<@namespace@::Device@application@>(argc, argv); }
 ]])

@@ -1,5 +1,5 @@
 # The target `coverage`: runs all GoogleTest programs of the runtime and prints which lines of each of its headers they
-# reach and which they do not. Fails below 95 %. The sockets of port/socketcan.hpp are tested in the virtual machine.
+# reach and which they do not. Fails below 95 %. The sockets of host/socketcan.hpp are tested in the virtual machine.
 find_program(GCOVR gcovr REQUIRED)
 get_property(programs GLOBAL PROPERTY edsc_covering_tests)
 set(runs)
@@ -9,8 +9,8 @@ endforeach()
 add_custom_target(
   coverage
   ${runs}
-  COMMAND ${GCOVR} --root ${PROJECT_SOURCE_DIR} --filter ${PROJECT_SOURCE_DIR}/runtime/ --exclude .*/port/socketcan.hpp
-          --exclude .*/port/socketcan_frame.hpp
+  COMMAND ${GCOVR} --root ${PROJECT_SOURCE_DIR} --filter ${PROJECT_SOURCE_DIR}/runtime/ --exclude .*/host/socketcan.hpp
+          --exclude .*/host/socketcan_frame.hpp
           --delete --fail-under-line 95 ${CMAKE_CURRENT_BINARY_DIR}
   WORKING_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}
   COMMENT "Line coverage of the runtime"

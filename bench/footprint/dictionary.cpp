@@ -1,7 +1,7 @@
 /// Only the values of a device and the search by index and sub-index.
 #include "../cortex_m/startup.hpp"
 
-#include <canopen/object_store.hpp>
+#include <canopen/od/object_store.hpp>
 #include <cstdint>
 #include <device/device.hpp>
 

@@ -2,7 +2,7 @@
 #include "../cortex_m/count.hpp"
 #include "../cortex_m/startup.hpp"
 
-#include <canopen/object_store.hpp>
+#include <canopen/od/object_store.hpp>
 #include <cstdint>
 #include <device/device.hpp>
 

@@ -5,8 +5,8 @@
 #endif
 
 #include <array>
-#include <canopen/object_store.hpp>
-#include <canopen/sdo_server.hpp>
+#include <canopen/od/object_store.hpp>
+#include <canopen/sdo/sdo_server.hpp>
 #include <cstdint>
 #include <cstring>
 #include <device/device.hpp>

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <canopen/cob_id.hpp>
+#include <canopen/can/cob_id.hpp>
 #include <cctype>
 #include <map>
 #include <optional>

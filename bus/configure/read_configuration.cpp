@@ -1,7 +1,7 @@
 #include "configure/read_configuration.hpp"
 
 #include <algorithm>
-#include <canopen/cob_id.hpp>
+#include <canopen/can/cob_id.hpp>
 #include <map>
 #include <optional>
 #include <set>

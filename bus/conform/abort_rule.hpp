@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <array>
-#include <canopen/abort_code.hpp>
+#include <canopen/base/abort_code.hpp>
 
 namespace edsc::conform {
 

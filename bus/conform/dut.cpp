@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <canopen/error_control.hpp>
-#include <canopen/nmt_master.hpp>
-#include <canopen/sdo_client.hpp>
+#include <canopen/nmt/error_control.hpp>
+#include <canopen/nmt_master/nmt_master.hpp>
+#include <canopen/sdo/sdo_client.hpp>
 #include <cstring>
 
 #include "configure/configuration_plan.hpp"

@@ -9,12 +9,12 @@
 /// The same function runs on a real bus and in simulated time: time passes only while a member waits.
 #pragma once
 
-#include <canopen/cob_id.hpp>
-#include <canopen/frame.hpp>
-#include <canopen/nmt.hpp>
-#include <canopen/node_id.hpp>
-#include <canopen/sdo_protocol.hpp>
-#include <canopen/time.hpp>
+#include <canopen/base/clock.hpp>
+#include <canopen/can/cob_id.hpp>
+#include <canopen/can/frame.hpp>
+#include <canopen/can/node_id.hpp>
+#include <canopen/nmt/nmt.hpp>
+#include <canopen/sdo/sdo_protocol.hpp>
 #include <cstdint>
 #include <functional>
 #include <map>

@@ -1,8 +1,8 @@
 /// Results of a case and of a run, as reports show them.
 #pragma once
 
-#include <canopen/frame.hpp>
-#include <canopen/time.hpp>
+#include <canopen/base/clock.hpp>
+#include <canopen/can/frame.hpp>
 #include <cstdint>
 #include <optional>
 #include <span>

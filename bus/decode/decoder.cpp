@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <canopen/cob_id.hpp>
-#include <canopen/lss_protocol.hpp>
-#include <canopen/nmt.hpp>
+#include <canopen/can/cob_id.hpp>
+#include <canopen/lss/lss_protocol.hpp>
+#include <canopen/nmt/nmt.hpp>
 #include <iterator>
 
 #include "decode/emergency_text.hpp"

@@ -1,8 +1,8 @@
 #include "decode/emergency_text.hpp"
 
 #include <algorithm>
-#include <canopen/emcy_consumer.hpp>
-#include <canopen/error_register.hpp>
+#include <canopen/emcy/emcy_consumer.hpp>
+#include <canopen/emcy/error_register.hpp>
 
 #include "values/append.hpp"
 

@@ -1,7 +1,7 @@
 /// Error frames of SocketCAN as text: reports of the controller, not frames of the bus (linux/can/error.h).
 #pragma once
 
-#include <canopen/frame.hpp>
+#include <canopen/can/frame.hpp>
 #include <string>
 
 namespace edsc {

@@ -9,7 +9,7 @@
 /// and lengths of two digits are CAN FD. A frame without time and interface, 123#DEADBEEF, is also a line.
 #pragma once
 
-#include <canopen/frame.hpp>
+#include <canopen/can/frame.hpp>
 #include <cstdint>
 #include <string_view>
 

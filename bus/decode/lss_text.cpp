@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <canopen/lss_protocol.hpp>
+#include <canopen/lss/lss_protocol.hpp>
 #include <iterator>
 #include <string_view>
 

@@ -1,7 +1,7 @@
 /// LSS messages as text (CiA 305).
 #pragma once
 
-#include <canopen/frame.hpp>
+#include <canopen/can/frame.hpp>
 #include <string>
 
 namespace edsc {

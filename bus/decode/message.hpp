@@ -1,8 +1,8 @@
 /// The meaning of a frame: its service and contents, for people and for programs.
 #pragma once
 
-#include <canopen/data_type.hpp>
-#include <canopen/frame.hpp>
+#include <canopen/can/frame.hpp>
+#include <canopen/od/data_type.hpp>
 #include <cstdint>
 #include <span>
 #include <string>

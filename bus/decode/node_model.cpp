@@ -1,7 +1,7 @@
 #include "decode/node_model.hpp"
 
 #include <algorithm>
-#include <canopen/pdo_mapping.hpp>
+#include <canopen/pdo/pdo_mapping.hpp>
 
 namespace edsc {
 namespace {

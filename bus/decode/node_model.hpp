@@ -1,7 +1,7 @@
 /// CAN-IDs and PDO layouts of a node, by its EDS and by what the log has written to it.
 #pragma once
 
-#include <canopen/cob_id.hpp>
+#include <canopen/can/cob_id.hpp>
 #include <cstdint>
 #include <map>
 #include <optional>

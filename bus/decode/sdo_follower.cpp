@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <canopen/abort_code.hpp>
-#include <canopen/crc16.hpp>
+#include <canopen/base/abort_code.hpp>
+#include <canopen/base/crc16.hpp>
 #include <iterator>
 
 #include "text/counted.hpp"

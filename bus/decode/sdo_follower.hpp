@@ -3,7 +3,7 @@
 
 #include <array>
 #include <bitset>
-#include <canopen/sdo_protocol.hpp>
+#include <canopen/sdo/sdo_protocol.hpp>
 #include <cstdint>
 #include <optional>
 #include <span>

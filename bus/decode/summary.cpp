@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <canopen/abort_code.hpp>
+#include <canopen/base/abort_code.hpp>
 #include <iterator>
 #include <vector>
 

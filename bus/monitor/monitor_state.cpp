@@ -1,6 +1,6 @@
 #include "monitor/monitor_state.hpp"
 
-#include <canopen/port/virtual_bus.hpp>
+#include <canopen/host/virtual_bus.hpp>
 
 #include "online/nmt_text.hpp"
 

@@ -1,7 +1,7 @@
 /// Compares the identity of a device on the bus with an EDS.
 #pragma once
 
-#include <canopen/lss_protocol.hpp>
+#include <canopen/lss/lss_protocol.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <canopen/port/host_bus.hpp>
+#include <canopen/host/host_bus.hpp>
 #include <system_error>
 
 #include "online/simulated_port.hpp"

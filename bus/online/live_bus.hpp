@@ -2,8 +2,8 @@
 #pragma once
 
 #include <algorithm>
-#include <canopen/frame.hpp>
-#include <canopen/time.hpp>
+#include <canopen/base/clock.hpp>
+#include <canopen/can/frame.hpp>
 #include <functional>
 #include <memory>
 #include <optional>

@@ -1,7 +1,7 @@
 /// An entry of a live node: its description, and its value as text and as JSON.
 #pragma once
 
-#include <canopen/data_type.hpp>
+#include <canopen/od/data_type.hpp>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <span>

@@ -1,7 +1,7 @@
 /// LSS services for commands (CiA 305); each call waits until the service ends.
 #pragma once
 
-#include <canopen/lss_master.hpp>
+#include <canopen/lss/lss_master.hpp>
 #include <functional>
 #include <string>
 

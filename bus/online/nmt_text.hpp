@@ -1,7 +1,7 @@
 /// NMT states and commands as text.
 #pragma once
 
-#include <canopen/nmt.hpp>
+#include <canopen/nmt/nmt.hpp>
 #include <cstdint>
 #include <optional>
 #include <string_view>

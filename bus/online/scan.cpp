@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <canopen/error_control.hpp>
-#include <canopen/sdo_client.hpp>
+#include <canopen/nmt/error_control.hpp>
+#include <canopen/sdo/sdo_client.hpp>
 #include <cstring>
 #include <list>
 

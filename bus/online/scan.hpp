@@ -1,8 +1,8 @@
 /// Finds the nodes on a bus: those that answer over SDO, and those that send heartbeats.
 #pragma once
 
-#include <canopen/lss_protocol.hpp>
-#include <canopen/nmt.hpp>
+#include <canopen/lss/lss_protocol.hpp>
+#include <canopen/nmt/nmt.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>

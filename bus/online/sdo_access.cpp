@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <canopen/error_control.hpp>
-#include <canopen/nmt.hpp>
+#include <canopen/nmt/error_control.hpp>
+#include <canopen/nmt/nmt.hpp>
 #include <cstring>
 #include <span>
 

@@ -1,9 +1,9 @@
 /// SDO access to entries of a remote node, for commands.
 #pragma once
 
-#include <canopen/abort_code.hpp>
-#include <canopen/node_id.hpp>
-#include <canopen/sdo_client.hpp>
+#include <canopen/base/abort_code.hpp>
+#include <canopen/can/node_id.hpp>
+#include <canopen/sdo/sdo_client.hpp>
 #include <cstdint>
 #include <functional>
 #include <optional>

@@ -10,8 +10,8 @@
 
 #include <algorithm>
 #include <array>
+#include <canopen/host/simulation_codec.hpp>
 #include <cerrno>
-#include <canopen/port/simulation_codec.hpp>
 #include <chrono>
 #include <csignal>
 #include <cstring>

@@ -1,11 +1,11 @@
-/// A device that is a program in simulated time (runtime/include/canopen/port/simulation_codec.hpp has the protocol).
+/// A device that is a program in simulated time (runtime/include/canopen/host/simulation_codec.hpp has the protocol).
 #pragma once
 
 #include <sys/types.h>
 
-#include <canopen/abort_code.hpp>
-#include <canopen/error_register.hpp>
-#include <canopen/port/descriptor.hpp>
+#include <canopen/base/abort_code.hpp>
+#include <canopen/emcy/error_register.hpp>
+#include <canopen/host/descriptor.hpp>
 #include <cstdint>
 #include <deque>
 #include <optional>

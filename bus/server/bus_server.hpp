@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "canopen/frame.hpp"
+#include "canopen/can/frame.hpp"
 #include "server/bus_client.hpp"
 #include "server/listen_address.hpp"
 #include "server/socketcand_text.hpp"

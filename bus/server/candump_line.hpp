@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "canopen/frame.hpp"
+#include "canopen/can/frame.hpp"
 #include "server/socketcand_text.hpp"
 
 namespace edsc {

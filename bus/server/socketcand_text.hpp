@@ -1,5 +1,5 @@
 /// The server's side of the socketcand protocol as text: elements such as "< send 123 2 11 22 >", one frame each. The
-/// client's side is canopen/port/socketcand_codec.hpp.
+/// client's side is canopen/host/socketcand_codec.hpp.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include <optional>
 #include <string_view>
 
-#include "canopen/frame.hpp"
+#include "canopen/can/frame.hpp"
 
 namespace edsc::socketcand {
 

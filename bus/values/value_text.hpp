@@ -9,7 +9,7 @@
 ///   TIME_DIFFERENCE         3 d 12:34:56.789
 #pragma once
 
-#include <canopen/data_type.hpp>
+#include <canopen/od/data_type.hpp>
 #include <cstdint>
 #include <span>
 #include <string>

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include <canopen/error_control.hpp>
-#include <canopen/nmt_master.hpp>
+#include <canopen/nmt/error_control.hpp>
+#include <canopen/nmt_master/nmt_master.hpp>
 #include <cstring>
 #include <nlohmann/json.hpp>
 

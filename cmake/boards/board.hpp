@@ -1,7 +1,7 @@
 /// What a program asks of its board. Each board folder has a source that does it.
 #pragma once
 
-#include <canopen/time.hpp>
+#include <canopen/base/clock.hpp>
 #include <cstdint>
 #include <optional>
 #include <span>

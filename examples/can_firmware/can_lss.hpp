@@ -1,7 +1,7 @@
 /// LSS settings in flash, and the bit rate of the board's CAN controller.
 #pragma once
 
-#include <canopen/lss_options.hpp>
+#include <canopen/lss/lss_options.hpp>
 #include <canopen/port/bit_timing.hpp>
 #include <cstddef>
 #include <cstdint>

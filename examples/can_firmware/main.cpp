@@ -1,9 +1,9 @@
 /// Firmware of one device on a CAN bus: its node with the board's CAN controller, its parameters in flash, and LSS if
 /// the build does not set a node-ID. The build and the parts are tested, but the firmware has not yet run on a board.
 #include <array>
-#include <canopen/accepted_frames.hpp>
-#include <canopen/flash_storage.hpp>
 #include <canopen/node.hpp>
+#include <canopen/node/accepted_frames.hpp>
+#include <canopen/storage/flash_storage.hpp>
 #include <optional>
 #include <span>
 #include EDSC_DEVICE_HEADER

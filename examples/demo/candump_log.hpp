@@ -1,8 +1,8 @@
 /// Writes the frames of a bus in the format of `candump -L`, for `edsc decode` and other tools.
 #pragma once
 
-#include <canopen/frame.hpp>
-#include <canopen/time.hpp>
+#include <canopen/base/clock.hpp>
+#include <canopen/can/frame.hpp>
 #include <cstdio>
 #include <string>
 

@@ -1,7 +1,7 @@
 /// A table of a device's PDO bit layouts.
 #pragma once
 
-#include <canopen/description.hpp>
+#include <canopen/od/description.hpp>
 #include <span>
 #include <string_view>
 #include <vector>

@@ -1,9 +1,9 @@
 /// A small master on the simulated bus: NMT commands, SDO by object, and PDOs by layout.
 #pragma once
 
-#include <canopen/nmt.hpp>
-#include <canopen/port/virtual_bus.hpp>
-#include <canopen/sdo_client.hpp>
+#include <canopen/host/virtual_bus.hpp>
+#include <canopen/nmt/nmt.hpp>
+#include <canopen/sdo/sdo_client.hpp>
 #include <cstdint>
 #include <functional>
 #include <map>

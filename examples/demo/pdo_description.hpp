@@ -1,7 +1,7 @@
 /// The layout of a generated PDO as data for output, derived from its type.
 #pragma once
 
-#include <canopen/pdo_list.hpp>
+#include <canopen/pdo/pdo_list.hpp>
 #include <cstdint>
 #include <string_view>
 #include <vector>

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <canopen/abort_code.hpp>
-#include <canopen/cob_id.hpp>
-#include <canopen/nmt.hpp>
 #include <bit>
+#include <canopen/base/abort_code.hpp>
+#include <canopen/can/cob_id.hpp>
+#include <canopen/nmt/nmt.hpp>
 
 namespace demo {
 namespace {

@@ -1,10 +1,10 @@
 /// A readable trace of a bus: each frame with its time, CAN-ID, bytes, and meaning with the names of the EDS files.
 #pragma once
 
-#include <canopen/description.hpp>
-#include <canopen/frame.hpp>
-#include <canopen/node_id.hpp>
-#include <canopen/time.hpp>
+#include <canopen/base/clock.hpp>
+#include <canopen/can/frame.hpp>
+#include <canopen/can/node_id.hpp>
+#include <canopen/od/description.hpp>
 #include <map>
 #include <span>
 #include <string>

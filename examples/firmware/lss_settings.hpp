@@ -2,10 +2,10 @@
 #pragma once
 
 #include <array>
-#include <canopen/flash_storage.hpp>
-#include <canopen/lss_handler.hpp>
-#include <canopen/lss_protocol.hpp>
-#include <canopen/node_id.hpp>
+#include <canopen/can/node_id.hpp>
+#include <canopen/lss/lss_handler.hpp>
+#include <canopen/lss/lss_protocol.hpp>
+#include <canopen/storage/flash_storage.hpp>
 #include <cstdint>
 
 #include "board.hpp"

@@ -1,7 +1,7 @@
 /// Firmware of one device: its node uses SLCAN on the board's serial line, its parameters are in flash, and it has LSS
 /// if the build does not set a node-ID.
-#include <canopen/flash_storage.hpp>
 #include <canopen/node.hpp>
+#include <canopen/storage/flash_storage.hpp>
 #include EDSC_DEVICE_HEADER
 
 #include "board.hpp"

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <array>
-#include <canopen/bus_status.hpp>
-#include <canopen/frame.hpp>
+#include <canopen/base/clock.hpp>
+#include <canopen/can/bus_status.hpp>
+#include <canopen/can/frame.hpp>
 #include <canopen/port/slcan_adapter.hpp>
 #include <canopen/port/slcan_codec.hpp>
-#include <canopen/time.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <optional>

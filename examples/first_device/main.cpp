@@ -1,6 +1,6 @@
 /// A pump on a simulated bus: a master starts it and sends a speed, the pump answers with its pressure.
+#include <canopen/host/virtual_bus.hpp>
 #include <canopen/node.hpp>
-#include <canopen/port/virtual_bus.hpp>
 #include <cstdio>
 #include <pump/device.hpp>
 

@@ -1,7 +1,7 @@
 /// The master of one servo drive, node 5, which docs/master.md describes.
 #pragma once
 
-#include <canopen/port/master.hpp>
+#include <canopen/master.hpp>
 #include <cpc_tc1/device.hpp>
 #include <cpc_tc1/pdo.hpp>
 #include <cstdint>

@@ -1,6 +1,6 @@
 /// The master of the plant on a bus of the host: `master BUS [CYCLE_MS]` until SIGINT or SIGTERM.
 #include <atomic>
-#include <canopen/port/host_bus.hpp>
+#include <canopen/host/host_bus.hpp>
 #include <charconv>
 #include <chrono>
 #include <csignal>

@@ -8,7 +8,7 @@
 #include <can_2024c/device.hpp>
 #include <can_2053c/device.hpp>
 #include <can_2057c/device.hpp>
-#include <canopen/port/master.hpp>
+#include <canopen/master.hpp>
 #include <cstdint>
 #include <cstdio>
 #include <functional>

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <array>
-#include <canopen/bus_status.hpp>
-#include <canopen/frame.hpp>
-#include <canopen/time.hpp>
+#include <canopen/base/clock.hpp>
+#include <canopen/can/bus_status.hpp>
+#include <canopen/can/frame.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <deque>

@@ -1,11 +1,11 @@
 /// A servo drive on SocketCAN: `socketcan_drive can0 5` is node 5 on can0 until it gets SIGINT or SIGTERM.
 #include <atomic>
+#include <canopen/host/socketcan.hpp>
 #include <canopen/node.hpp>
-#include <canopen/port/socketcan.hpp>
 #include <charconv>
+#include <cpc_tc1/device.hpp>
 #include <csignal>
 #include <cstdio>
-#include <cpc_tc1/device.hpp>
 #include <string_view>
 
 namespace od = cpc_tc1::od;

@@ -3,10 +3,10 @@
 #define EDSC_CAN_2017C_DEVICE_HPP
 
 #include <array>
-#include <canopen/bytes.hpp>
-#include <canopen/cob_id_check.hpp>
-#include <canopen/device_options.hpp>
-#include <canopen/pdo_list.hpp>
+#include <canopen/base/bytes.hpp>
+#include <canopen/can/cob_id_check.hpp>
+#include <canopen/od/device_options.hpp>
+#include <canopen/pdo/pdo_list.hpp>
 
 #include "dictionary.hpp"
 #include "pdo.hpp"

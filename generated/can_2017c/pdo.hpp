@@ -2,8 +2,8 @@
 #ifndef EDSC_CAN_2017C_PDO_HPP
 #define EDSC_CAN_2017C_PDO_HPP
 
-#include <canopen/pdo.hpp>
-#include <canopen/pdo_check.hpp>
+#include <canopen/pdo/pdo.hpp>
+#include <canopen/pdo/pdo_check.hpp>
 
 #include "dictionary.hpp"
 

@@ -2,7 +2,7 @@
 #ifndef EDSC_CAN_2024C_DESCRIPTION_HPP
 #define EDSC_CAN_2024C_DESCRIPTION_HPP
 
-#include <canopen/description.hpp>
+#include <canopen/od/description.hpp>
 
 namespace can_2024c {
 

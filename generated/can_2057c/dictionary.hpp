@@ -8,8 +8,8 @@
 #include <limits>
 #include <span>
 
-#include <canopen/dictionary.hpp>
-#include <canopen/object.hpp>
+#include <canopen/od/dictionary.hpp>
+#include <canopen/od/object.hpp>
 
 namespace can_2057c {
 
@@ -1533,7 +1533,7 @@ inline constexpr Constants constants{
     .manufacturer_software_version = {"V1.00"},
 };
 
-/// Tables for the search by index and sub-index; canopen/dictionary.hpp describes their format.
+/// Tables for the search by index and sub-index; canopen/od/dictionary.hpp describes their format.
 namespace table {
 
 using namespace canopen::entry;

@@ -2,7 +2,7 @@
 #ifndef EDSC_CPC_TC1_DESCRIPTION_HPP
 #define EDSC_CPC_TC1_DESCRIPTION_HPP
 
-#include <canopen/description.hpp>
+#include <canopen/od/description.hpp>
 
 namespace cpc_tc1 {
 

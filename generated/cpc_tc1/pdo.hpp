@@ -2,8 +2,8 @@
 #ifndef EDSC_CPC_TC1_PDO_HPP
 #define EDSC_CPC_TC1_PDO_HPP
 
-#include <canopen/pdo.hpp>
-#include <canopen/pdo_check.hpp>
+#include <canopen/pdo/pdo.hpp>
+#include <canopen/pdo/pdo_check.hpp>
 
 #include "dictionary.hpp"
 

@@ -2,7 +2,7 @@
 #ifndef EDSC_CPD_DESCRIPTION_HPP
 #define EDSC_CPD_DESCRIPTION_HPP
 
-#include <canopen/description.hpp>
+#include <canopen/od/description.hpp>
 
 namespace cpd {
 

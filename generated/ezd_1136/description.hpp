@@ -2,7 +2,7 @@
 #ifndef EDSC_EZD_1136_DESCRIPTION_HPP
 #define EDSC_EZD_1136_DESCRIPTION_HPP
 
-#include <canopen/description.hpp>
+#include <canopen/od/description.hpp>
 
 namespace ezd_1136 {
 

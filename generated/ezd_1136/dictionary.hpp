@@ -8,8 +8,8 @@
 #include <limits>
 #include <span>
 
-#include <canopen/dictionary.hpp>
-#include <canopen/object.hpp>
+#include <canopen/od/dictionary.hpp>
+#include <canopen/od/object.hpp>
 
 namespace ezd_1136 {
 
@@ -1364,7 +1364,7 @@ inline constexpr Constants constants{
     .manufacturer_software_version = {"1.0"},
 };
 
-/// Tables for the search by index and sub-index; canopen/dictionary.hpp describes their format.
+/// Tables for the search by index and sub-index; canopen/od/dictionary.hpp describes their format.
 namespace table {
 
 using namespace canopen::entry;

@@ -2,7 +2,7 @@
 #ifndef EDSC_RK5C_DESCRIPTION_HPP
 #define EDSC_RK5C_DESCRIPTION_HPP
 
-#include <canopen/description.hpp>
+#include <canopen/od/description.hpp>
 
 namespace rk5c {
 

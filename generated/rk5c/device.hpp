@@ -3,11 +3,11 @@
 #define EDSC_RK5C_DEVICE_HPP
 
 #include <array>
-#include <canopen/bytes.hpp>
-#include <canopen/cob_id_check.hpp>
-#include <canopen/device_options.hpp>
-#include <canopen/lss_options.hpp>
-#include <canopen/pdo_list.hpp>
+#include <canopen/base/bytes.hpp>
+#include <canopen/can/cob_id_check.hpp>
+#include <canopen/lss/lss_options.hpp>
+#include <canopen/od/device_options.hpp>
+#include <canopen/pdo/pdo_list.hpp>
 
 #include "dictionary.hpp"
 #include "pdo.hpp"

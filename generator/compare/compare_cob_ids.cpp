@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <canopen/cob_id.hpp>
+#include <canopen/can/cob_id.hpp>
 #include <cstdint>
 
 #include "compare/compare_entries.hpp"

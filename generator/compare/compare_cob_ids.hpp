@@ -1,7 +1,7 @@
 /// Compares COB-IDs by meaning: CAN-ID and flags (CiA 301, 7.5.2.5 to 7.5.2.37).
 #pragma once
 
-#include <canopen/data_type.hpp>
+#include <canopen/od/data_type.hpp>
 #include <optional>
 #include <string>
 #include <vector>

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <canopen/cob_id.hpp>
+#include <canopen/can/cob_id.hpp>
 #include <optional>
 #include <utility>
 

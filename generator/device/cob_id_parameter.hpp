@@ -1,7 +1,7 @@
 /// The COB-IDs in the object dictionary and their default values in CiA 301, one row per kind of object.
 #pragma once
 
-#include <canopen/cob_id.hpp>
+#include <canopen/can/cob_id.hpp>
 #include <cstdint>
 #include <optional>
 #include <span>

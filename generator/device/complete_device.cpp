@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <canopen/cob_id.hpp>
-#include <canopen/pdo_parameters.hpp>
+#include <canopen/can/cob_id.hpp>
+#include <canopen/pdo/pdo_parameters.hpp>
 
 #include "device/cob_id_parameter.hpp"
 #include "device/index_range.hpp"

@@ -3,8 +3,8 @@
 /// point.
 #pragma once
 
-#include <canopen/access.hpp>
-#include <canopen/data_type.hpp>
+#include <canopen/od/access.hpp>
+#include <canopen/od/data_type.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>

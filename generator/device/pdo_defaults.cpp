@@ -1,6 +1,6 @@
 #include "device/pdo_defaults.hpp"
 
-#include <canopen/cob_id.hpp>
+#include <canopen/can/cob_id.hpp>
 
 namespace edsc {
 

@@ -1,7 +1,7 @@
 #include "device/resolve_pdos.hpp"
 
 #include <algorithm>
-#include <canopen/pdo_mapping.hpp>
+#include <canopen/pdo/pdo_mapping.hpp>
 
 #include "device/limits.hpp"
 

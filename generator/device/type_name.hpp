@@ -1,7 +1,7 @@
 /// Data types by name, for messages: an EDS names them by number.
 #pragma once
 
-#include <canopen/data_type.hpp>
+#include <canopen/od/data_type.hpp>
 #include <string_view>
 
 namespace edsc {

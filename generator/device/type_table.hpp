@@ -1,7 +1,7 @@
 /// The data types that DataType can name: basic and complex types of CiA 301, and those that the EDS defines.
 #pragma once
 
-#include <canopen/data_type.hpp>
+#include <canopen/od/data_type.hpp>
 #include <cstdint>
 #include <optional>
 #include <string_view>

@@ -1,7 +1,7 @@
 /// Parses the values of an EDS: numbers, node-ID formulas, strings (CiA 306-1, 4.6.2.3).
 #pragma once
 
-#include <canopen/data_type.hpp>
+#include <canopen/od/data_type.hpp>
 #include <cstdint>
 #include <optional>
 

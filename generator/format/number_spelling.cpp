@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <canopen/access.hpp>
+#include <canopen/od/access.hpp>
 #include <charconv>
 #include <optional>
 

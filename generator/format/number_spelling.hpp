@@ -1,7 +1,7 @@
 /// The canonical spelling of numbers, with the same base and value.
 #pragma once
 
-#include <canopen/data_type.hpp>
+#include <canopen/od/data_type.hpp>
 #include <cstdint>
 #include <string>
 #include <string_view>

@@ -2,7 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <canopen/cob_id_check.hpp>
+#include <canopen/can/cob_id_check.hpp>
 #include <map>
 #include <optional>
 #include <string>

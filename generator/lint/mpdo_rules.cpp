@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <canopen/mpdo_lists.hpp>
-#include <canopen/pdo_mapping.hpp>
-#include <canopen/transmission_type.hpp>
+#include <canopen/pdo/mpdo_lists.hpp>
+#include <canopen/pdo/pdo_mapping.hpp>
+#include <canopen/pdo/transmission_type.hpp>
 
 #include "device/pdo_defaults.hpp"
 #include "lint/rule_groups.hpp"

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <canopen/cob_id.hpp>
-#include <canopen/pdo_parameters.hpp>
-#include <canopen/transmission_type.hpp>
+#include <canopen/can/cob_id.hpp>
+#include <canopen/pdo/pdo_parameters.hpp>
+#include <canopen/pdo/transmission_type.hpp>
 
 #include "device/pdo_defaults.hpp"
 #include "lint/rule_groups.hpp"

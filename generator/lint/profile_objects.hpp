@@ -2,7 +2,7 @@
 #pragma once
 
 #include <array>
-#include <canopen/data_type.hpp>
+#include <canopen/od/data_type.hpp>
 #include <cstdint>
 #include <string_view>
 

@@ -1,8 +1,8 @@
 /// The objects of the communication profile, one row each: CiA 301, 7.5.2.
 #pragma once
 
-#include <canopen/access.hpp>
-#include <canopen/data_type.hpp>
+#include <canopen/od/access.hpp>
+#include <canopen/od/data_type.hpp>
 #include <cstdint>
 #include <span>
 #include <string_view>

@@ -9,7 +9,7 @@
 
 #include <algorithm>
 #include <array>
-#include <canopen/port/descriptor.hpp>
+#include <canopen/host/descriptor.hpp>
 #include <cerrno>
 #include <charconv>
 #include <cstdio>

@@ -5,7 +5,7 @@
 // expect: canopen::Dummy<5, 16>
 //
 // An UNSIGNED8 has 8 bits.
-#include <canopen/pdo_check.hpp>
+#include <canopen/pdo/pdo_check.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

@@ -1,6 +1,6 @@
 // expect: its COB-ID is restricted .*canopen::TpdoNumber<1> .*canopen::CanId<'5', '8', '1', 'h'>
 // 580h + node-ID is the COB-ID of the default SDO's answers.
-#include <canopen/pdo_check.hpp>
+#include <canopen/pdo/pdo_check.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

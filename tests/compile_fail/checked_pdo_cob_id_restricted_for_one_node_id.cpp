@@ -1,6 +1,6 @@
 // expect: its COB-ID is restricted .*canopen::RpdoNumber<1> .*canopen::CanId<'5', '0', '3', 'h'>
 // 502h + 127 is 581h.
-#include <canopen/pdo_check.hpp>
+#include <canopen/pdo/pdo_check.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

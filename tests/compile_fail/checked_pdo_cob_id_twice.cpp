@@ -2,7 +2,7 @@
 // expect: DistinctCobIds<canopen::TpdoNumber<1>, canopen::TpdoNumber<2>, canopen::CanId<'1', '8', '0', 'h'>
 //
 // A frame has one producer.
-#include <canopen/pdo_check.hpp>
+#include <canopen/pdo/pdo_check.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

@@ -1,6 +1,6 @@
 // expect: sub-index 4 of its communication parameter is reserved .*canopen::TpdoNumber<2>
 // The device has 1801h:04.
-#include <canopen/pdo_check.hpp>
+#include <canopen/pdo/pdo_check.hpp>
 #include <mapped_strings/device.hpp>
 
 namespace od = mapped_strings::od;

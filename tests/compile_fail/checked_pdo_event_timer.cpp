@@ -1,7 +1,7 @@
 // expect: an event timer is for RPDOs, and for TPDOs of transmission types 254 and 255
 // expect: canopen::TpdoNumber<1> .*false, 240, 0, 50, false}
 // A synchronous TPDO is sent at its SYNC.
-#include <canopen/pdo_check.hpp>
+#include <canopen/pdo/pdo_check.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

@@ -5,7 +5,7 @@
 // expect: every_type::od::boolean_value
 //
 // Granularity 8: whole bytes only.
-#include <canopen/pdo_check.hpp>
+#include <canopen/pdo/pdo_check.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

@@ -2,7 +2,7 @@
 // expect: canopen::TpdoNumber<1>.*false, 1, 100, 0, false}
 //
 // A synchronous TPDO is sent at its SYNC.
-#include <canopen/pdo_check.hpp>
+#include <canopen/pdo/pdo_check.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

@@ -5,7 +5,7 @@
 // expect: other::od::access_ro
 //
 // The object has 16 bits.
-#include <canopen/pdo_check.hpp>
+#include <canopen/pdo/pdo_check.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

@@ -5,7 +5,7 @@
 // expect: other::od::target_torque
 //
 // The device does not have 6071h.
-#include <canopen/pdo_check.hpp>
+#include <canopen/pdo/pdo_check.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

@@ -4,7 +4,7 @@
 // expect: every_type::od::access_ro
 //
 // A CAN frame has at most 64 data bits.
-#include <canopen/pdo_check.hpp>
+#include <canopen/pdo/pdo_check.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

@@ -1,6 +1,6 @@
 // expect: 64 objects at most .*canopen::TpdoNumber<2> .*every_type::od::boolean_value
 // A mapping parameter has at most 64 entries.
-#include <canopen/pdo_check.hpp>
+#include <canopen/pdo/pdo_check.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

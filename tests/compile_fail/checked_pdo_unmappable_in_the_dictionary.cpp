@@ -5,7 +5,7 @@
 // expect: other::od::cob_id_sync
 //
 // The check uses the dictionary, not the object type.
-#include <canopen/pdo_check.hpp>
+#include <canopen/pdo/pdo_check.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

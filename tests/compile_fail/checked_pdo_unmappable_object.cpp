@@ -5,7 +5,7 @@
 // expect: every_type::od::cob_id_sync
 //
 // The EDS has PDOMapping=0.
-#include <canopen/pdo_check.hpp>
+#include <canopen/pdo/pdo_check.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

@@ -5,7 +5,7 @@
 // expect: canopen::TpdoNumber<1>
 //
 // A string is a variable-length data type.
-#include <canopen/pdo_check.hpp>
+#include <canopen/pdo/pdo_check.hpp>
 #include <mapped_strings/device.hpp>
 
 namespace od = mapped_strings::od;

@@ -1,6 +1,6 @@
 // expect: the device has no communication parameter for it .*canopen::RpdoNumber<2>
 // The device has one RPDO.
-#include <canopen/pdo_check.hpp>
+#include <canopen/pdo/pdo_check.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

@@ -5,7 +5,7 @@
 // expect: other::od::access_ro
 //
 // An RPDO cannot write an object that is not writable over the bus.
-#include <canopen/pdo_check.hpp>
+#include <canopen/pdo/pdo_check.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

@@ -1,6 +1,6 @@
 // expect: its transmission type is reserved .*canopen::RpdoNumber<1>.*false, 253, 0, 0, false}
 // A remote frame cannot request an RPDO.
-#include <canopen/pdo_check.hpp>
+#include <canopen/pdo/pdo_check.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

@@ -1,6 +1,6 @@
 // expect: its transmission type is reserved .*canopen::TpdoNumber<1>.*false, 241, 0, 0, false}
 // 241 to 251 are reserved.
-#include <canopen/pdo_check.hpp>
+#include <canopen/pdo/pdo_check.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

@@ -24,8 +24,8 @@ CUT_OFF = re.compile(r"^// \.\*", re.MULTILINE)  # of a line that was wrapped
 UNUSED_IS_FINE = ("-Wno-unused",)
 # What nearly all cases include, compiled once for each compiler: it takes most of the time of a case.
 COMMON_HEADERS = """#include <canopen/node.hpp>
-#include <canopen/pdo_compatible.hpp>
-#include <canopen/remote.hpp>
+#include <canopen/pdo/pdo_compatible.hpp>
+#include <canopen/sdo/remote_node.hpp>
 #include <every_type/device.hpp>
 """
 

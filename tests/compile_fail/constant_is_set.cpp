@@ -1,6 +1,6 @@
 // expect: a constant of the EDS cannot be set .*every_type::od::integer24_constant
 // A constant of the EDS is in flash.
-#include <canopen/object_store.hpp>
+#include <canopen/od/object_store.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

@@ -1,6 +1,6 @@
 // expect: longer than the string can be .*FixedString<mapped_strings::od::state
 // The string has at most five bytes.
-#include <canopen/pdo_check.hpp>
+#include <canopen/pdo/pdo_check.hpp>
 #include <mapped_strings/device.hpp>
 
 namespace od = mapped_strings::od;

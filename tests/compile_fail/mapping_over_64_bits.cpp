@@ -3,7 +3,7 @@
 // expect: every_type::od::unsigned8_value
 //
 // A CAN frame has at most 64 data bits.
-#include <canopen/object_store.hpp>
+#include <canopen/od/object_store.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

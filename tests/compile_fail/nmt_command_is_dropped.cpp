@@ -1,6 +1,6 @@
 // expect: ignoring return value
 // An NMT command is not sent if the bus has no room.
-#include <canopen/nmt_master.hpp>
+#include <canopen/nmt_master/nmt_master.hpp>
 
 #ifdef __clang__
 #pragma clang diagnostic error "-Wunused-result"

@@ -1,6 +1,6 @@
 // expect: this device has no such object .*other::od::target_torque
 // An object of another device need not exist in this one.
-#include <canopen/object_store.hpp>
+#include <canopen/od/object_store.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

@@ -1,6 +1,6 @@
 // expect: candidate expects 3 arguments, 4 provided|too many arguments to function call, expected 3, have 4
 // TPDO 1 maps three objects.
-#include <canopen/object_store.hpp>
+#include <canopen/od/object_store.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

@@ -1,6 +1,6 @@
 // expect: every_type::od::integer24_value|integer24_value::type
 // A speed is not a position, and a struct is not a number.
-#include <canopen/object_store.hpp>
+#include <canopen/od/object_store.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

@@ -4,7 +4,7 @@
 // expect: canopen::ObjectAt<'0', '0', '0', '0', 'h', ':', '0', '0'>, canopen::pdo_detail::NoObject
 //
 // Bit 16 is a BOOLEAN, the INTEGER24 begins at bit 17.
-#include <canopen/pdo_compatible.hpp>
+#include <canopen/pdo/pdo_compatible.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

@@ -3,7 +3,7 @@
 // expect: every_type::od::access_rw
 //
 // TPDO 1 has 41 bits.
-#include <canopen/pdo_compatible.hpp>
+#include <canopen/pdo/pdo_compatible.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

@@ -4,7 +4,7 @@
 // expect: canopen::ObjectAt<'2', '6', '0', '4', 'h', ':', '0', '0'>, every_type::od::access_rwr
 //
 // The object has 16 bits.
-#include <canopen/pdo_compatible.hpp>
+#include <canopen/pdo/pdo_compatible.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

@@ -1,6 +1,6 @@
 // expect: outside the limits of the object .*every_type::od::integer8_value
 // A master cannot write a constant outside the limits of the EDS.
-#include <canopen/remote.hpp>
+#include <canopen/sdo/remote_node.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

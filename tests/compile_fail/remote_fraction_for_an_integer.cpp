@@ -1,6 +1,6 @@
 // expect: ValueFor .*every_type::od::integer24_value
 // A master cannot write a fraction to an integer.
-#include <canopen/remote.hpp>
+#include <canopen/sdo/remote_node.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

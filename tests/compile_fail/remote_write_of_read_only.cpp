@@ -1,6 +1,6 @@
 // expect: RemoteWritable .*every_type::od::integer24_constant
 // A master cannot write an object that can only be read over the bus.
-#include <canopen/remote.hpp>
+#include <canopen/sdo/remote_node.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

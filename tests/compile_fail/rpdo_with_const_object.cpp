@@ -4,7 +4,7 @@
 // expect: mapped_strings::od::serial_number
 //
 // A constant cannot be written.
-#include <canopen/pdo.hpp>
+#include <canopen/pdo/pdo.hpp>
 #include <mapped_strings/device.hpp>
 
 namespace od = mapped_strings::od;

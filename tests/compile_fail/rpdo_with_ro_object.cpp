@@ -3,7 +3,7 @@
 // expect: every_type::od::access_ro
 //
 // An RPDO cannot write an object that is not writable over the bus.
-#include <canopen/object_store.hpp>
+#include <canopen/od/object_store.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

@@ -3,7 +3,7 @@
 // expect: every_type::od::access_rwr
 //
 // Only a TPDO can map a process input (rwr).
-#include <canopen/object_store.hpp>
+#include <canopen/od/object_store.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

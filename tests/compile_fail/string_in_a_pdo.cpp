@@ -3,7 +3,7 @@
 // expect: every_type::od::visible_string_value
 //
 // A string is a variable-length data type.
-#include <canopen/object_store.hpp>
+#include <canopen/od/object_store.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

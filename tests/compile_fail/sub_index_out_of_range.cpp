@@ -1,6 +1,6 @@
 // expect: integer16_array has the sub-indices 0\.\.3
 // The array has three elements.
-#include <canopen/object_store.hpp>
+#include <canopen/od/object_store.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

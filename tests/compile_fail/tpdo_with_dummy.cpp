@@ -1,6 +1,6 @@
 // expect: a TPDO may not carry this object .*canopen::EntryNumber<2> .*canopen::Dummy<5, 8>
 // A dummy reserves bits in an RPDO that the device ignores.
-#include <canopen/pdo.hpp>
+#include <canopen/pdo/pdo.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

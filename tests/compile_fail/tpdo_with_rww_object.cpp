@@ -3,7 +3,7 @@
 // expect: every_type::od::access_rww
 //
 // Only an RPDO can map a process output (rww).
-#include <canopen/object_store.hpp>
+#include <canopen/od/object_store.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

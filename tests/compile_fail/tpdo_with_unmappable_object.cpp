@@ -3,7 +3,7 @@
 // expect: every_type::od::cob_id_sync
 //
 // The EDS has PDOMapping=0.
-#include <canopen/object_store.hpp>
+#include <canopen/od/object_store.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

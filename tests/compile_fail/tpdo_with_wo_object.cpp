@@ -3,7 +3,7 @@
 // expect: every_type::od::access_wo
 //
 // A TPDO cannot send an object that is not readable over the bus.
-#include <canopen/pdo.hpp>
+#include <canopen/pdo/pdo.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

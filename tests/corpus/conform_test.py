@@ -39,7 +39,7 @@ NODE_ID = 5
 SHEETS_PER_PROGRAM = 12
 FLAGS = "-std=c++20 -O0 -w -fno-exceptions -fno-rtti"
 SHOWN = 6  # maximum of printed problems per file
-MAIN = """#include <canopen/port/simulated_device.hpp>
+MAIN = """#include <canopen/host/simulated_device.hpp>
 
 extern const std::span<const canopen::SimulatedDevice> devices;
 
@@ -114,7 +114,7 @@ class Driver:
 
     def program_of(self, jobs: list[Job], name: str) -> Path | None:
         """Returns None if it does not compile."""
-        lines = ["#include <canopen/port/simulated_node.hpp>", *(f"#include <{job.name}/device.hpp>" for job in jobs)]
+        lines = ["#include <canopen/host/simulated_node.hpp>", *(f"#include <{job.name}/device.hpp>" for job in jobs)]
         rows = ", ".join(f'{{"{job.name}", canopen::make_simulated_node<{job.name}::Device>}}' for job in jobs)
         lines += [f"static constexpr canopen::SimulatedDevice all[] = {{{rows}}};",
                   "extern const std::span<const canopen::SimulatedDevice> devices;",

@@ -2,7 +2,7 @@
 /// reads the same frame.
 #include <cstdlib>
 
-#include "canopen/port/socketcand_codec.hpp"
+#include "canopen/host/socketcand_codec.hpp"
 #include "server/socketcand_text.hpp"
 
 namespace {

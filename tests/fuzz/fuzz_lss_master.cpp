@@ -2,7 +2,7 @@
 /// order, waits no longer than specified, and ends each service.
 ///
 /// An input is a sequence of steps of twelve bytes: an action, a choice, eight bytes of data, and two numbers.
-#include <canopen/lss_master.hpp>
+#include <canopen/lss/lss_master.hpp>
 
 #include <algorithm>
 #include <cstring>

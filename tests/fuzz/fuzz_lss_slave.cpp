@@ -2,7 +2,7 @@
 ///
 /// An input is a sequence of steps of ten bytes: an additional action, the time that passes, and the data of a frame.
 #include <algorithm>
-#include <canopen/lss_slave.hpp>
+#include <canopen/lss/lss_slave.hpp>
 
 #include "fuzz.hpp"
 

@@ -4,7 +4,7 @@
 ///
 /// An input is a configuration of five bytes and a sequence of steps of twelve: an action, a choice, eight bytes of
 /// data, and two numbers.
-#include <canopen/nmt_master.hpp>
+#include <canopen/nmt_master/nmt_master.hpp>
 
 #include <cstring>
 #include <map>

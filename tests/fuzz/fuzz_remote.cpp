@@ -3,7 +3,7 @@
 ///
 /// An input is a byte of settings and a sequence of steps of twelve bytes: an action, a choice, eight bytes of data,
 /// and two numbers.
-#include <canopen/remote.hpp>
+#include <canopen/sdo/remote_node.hpp>
 #include <sample/device.hpp>
 
 #include <cstring>

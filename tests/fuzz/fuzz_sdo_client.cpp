@@ -3,7 +3,7 @@
 ///
 /// An input is a sequence of steps of nine bytes: a control byte and an answer. Bits 0..2 of the control byte select
 /// the action, bits 3..5 the number of frames that the bus accepts; bit 6 puts the client's entry into the answer.
-#include <canopen/sdo_client.hpp>
+#include <canopen/sdo/sdo_client.hpp>
 
 #include <algorithm>
 #include <cstdio>

@@ -4,8 +4,8 @@
 /// An input is a sequence of steps of nine bytes: a control byte and a request. Bit 7 of the control byte takes the
 /// index from a table, as random ones rarely exist; bits 4..6 select an additional action; bits 0..3 are the number of
 /// answers that the bus accepts.
-#include <canopen/object_store.hpp>
-#include <canopen/sdo_server.hpp>
+#include <canopen/od/object_store.hpp>
+#include <canopen/sdo/sdo_server.hpp>
 #include <sample/device.hpp>
 
 #include <array>

@@ -2,9 +2,9 @@
 /// of the channel, and understand the next line.
 ///
 /// An input is what the host or the adapter sends: the first byte selects which one, and how time passes.
+#include <canopen/host/slcan_host.hpp>
 #include <canopen/port/slcan_adapter.hpp>
 #include <canopen/port/slcan_codec.hpp>
-#include <canopen/port/slcan_host.hpp>
 #include <span>
 #include <string_view>
 

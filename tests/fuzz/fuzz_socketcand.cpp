@@ -1,7 +1,7 @@
 /// Arbitrary text from a socketcand server: a client decodes only well-formed frames and understands the next message.
 ///
 /// An input is the text of the server; after an even first byte it greets the client first.
-#include <canopen/port/socketcand_codec.hpp>
+#include <canopen/host/socketcand_codec.hpp>
 #include <string_view>
 
 #include "fuzz.hpp"

@@ -4,8 +4,8 @@
 ///
 /// An input is a byte of settings and a sequence of changes of four bytes: the kind, the position (two bytes),
 /// and a value.
-#include <canopen/flash_storage.hpp>
 #include <canopen/node.hpp>
+#include <canopen/storage/flash_storage.hpp>
 #include <every_service/device.hpp>
 
 #include <cmath>

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <array>
-#include <canopen/frame.hpp>
-#include <canopen/time.hpp>
+#include <canopen/base/clock.hpp>
+#include <canopen/can/frame.hpp>
 #include <cstdint>
 #include <cstring>
 #include <map>

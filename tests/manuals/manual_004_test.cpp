@@ -1,7 +1,7 @@
 /// Manual 004: the position sensor RK5C as node 5.
 #include <gtest/gtest.h>
 
-#include <canopen/port/memory_storage.hpp>
+#include <canopen/host/memory_storage.hpp>
 #include <rk5c/device.hpp>
 
 #include "manual_bench.hpp"

@@ -1,8 +1,8 @@
 /// The master of foreign_slaves_test.py: `boot_master BUS NODE[:heartbeat=MS][:product=CODE]...` until SIGTERM. It
 /// boots the nodes and configures each one with a number in 2000h and a longer value in 2001h, which it reads back.
 #include <atomic>
-#include <canopen/port/host_bus.hpp>
-#include <canopen/port/master.hpp>
+#include <canopen/host/host_bus.hpp>
+#include <canopen/host/master.hpp>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>

@@ -90,7 +90,8 @@ RUNTIME_PROGRAMS = (
     gtest("profile_tests", f"{RUNTIME}profile/"),
     gtest("cia402_tests", f"{RUNTIME}profile/"),
     gtest("can_controller_tests", f"{RUNTIME}port/"),
-    gtest("port_tests", f"{RUNTIME}port/", f"{RUNTIME}send_queue.hpp", f"{RUNTIME}accepted_frames.hpp"),
+    gtest("port_tests", f"{RUNTIME}host/", f"{RUNTIME}port/", f"{RUNTIME}can/send_queue.hpp",
+          f"{RUNTIME}node/accepted_frames.hpp"),
     gtest("model_tests", RUNTIME),
     gtest("runtime_tests", RUNTIME),
     gtest("node_tests", RUNTIME),
@@ -112,6 +113,6 @@ def edsc_project(root: Path, edsc: Path | None) -> Project:
         "runtime", ("runtime/include/",), RUNTIME_PROGRAMS,
         cmake_options=("-DCMAKE_BUILD_TYPE=None", NO_WARNINGS, "-DEDSC_BUILD_EXAMPLES=OFF", *given),
         # The sockets of the kernel are tested in a virtual machine.
-        excluded=(f"{RUNTIME}port/socketcan.hpp", f"{RUNTIME}port/socketcan_frame.hpp"))
+        excluded=(f"{RUNTIME}host/socketcan.hpp", f"{RUNTIME}host/socketcan_frame.hpp"))
     return Project(root, (host, runtime), ("generator", "bus", "cli", "runtime/include"),
                    root / "tests/mutation/equivalents.tsv")

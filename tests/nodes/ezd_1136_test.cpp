@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <canopen/port/virtual_bus.hpp>
+#include <canopen/host/virtual_bus.hpp>
 #include <string>
 
 #include "node_bench.hpp"

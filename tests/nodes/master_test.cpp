@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <array>
-#include <canopen/port/virtual_bus.hpp>
-#include <canopen/port/virtual_bus_port.hpp>
+#include <canopen/host/virtual_bus.hpp>
+#include <canopen/host/virtual_bus_port.hpp>
 #include <functional>
 #include <optional>
 #include <string>

@@ -1,7 +1,7 @@
 /// A runnable node on a bus that records frames, with its log.
 #pragma once
 
-#include <canopen/node_id.hpp>
+#include <canopen/can/node_id.hpp>
 #include <optional>
 #include <string>
 #include <string_view>

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <canopen/port/virtual_bus.hpp>
+#include <canopen/host/virtual_bus.hpp>
 #include <filesystem>
 #include <memory>
 #include <optional>

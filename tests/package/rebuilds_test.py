@@ -21,7 +21,7 @@ edsc_add_dictionary(sensor EDS sensor.eds)
 add_executable(sensor_test sensor.cpp other.cpp)
 target_link_libraries(sensor_test PRIVATE sensor)
 """
-MAIN = """#include <canopen/object_store.hpp>
+MAIN = """#include <canopen/od/object_store.hpp>
 #include <sensor/device.hpp>
 
 int main() {

@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <canopen/abort_code.hpp>
-#include <canopen/frame.hpp>
-#include <canopen/node_id.hpp>
-#include <canopen/time.hpp>
+#include <canopen/base/abort_code.hpp>
+#include <canopen/base/clock.hpp>
+#include <canopen/can/frame.hpp>
+#include <canopen/can/node_id.hpp>
 #include <chrono>
 #include <optional>
 

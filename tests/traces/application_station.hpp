@@ -1,7 +1,7 @@
 /// A station that runs the application of a device, as in examples/nodes.
 #pragma once
 
-#include <canopen/node_id.hpp>
+#include <canopen/can/node_id.hpp>
 #include <memory>
 #include <string_view>
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <array>
+#include <canopen/host/memory_storage.hpp>
 #include <canopen/node.hpp>
-#include <canopen/port/memory_storage.hpp>
 #include <deque>
 #include <memory>
 #include <optional>

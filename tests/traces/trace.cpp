@@ -1,7 +1,7 @@
 #include "trace.hpp"
 
 #include <algorithm>
-#include <canopen/lss_protocol.hpp>
+#include <canopen/lss/lss_protocol.hpp>
 #include <cstdio>
 #include <fstream>
 #include <sstream>

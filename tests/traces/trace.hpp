@@ -27,11 +27,11 @@
 /// each one goes to all nodes except its sender.
 #pragma once
 
-#include <canopen/emcy.hpp>
-#include <canopen/error_register.hpp>
-#include <canopen/frame.hpp>
-#include <canopen/node_id.hpp>
-#include <canopen/time.hpp>
+#include <canopen/base/clock.hpp>
+#include <canopen/can/frame.hpp>
+#include <canopen/can/node_id.hpp>
+#include <canopen/emcy/emcy_producer.hpp>
+#include <canopen/emcy/error_register.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <istream>

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <canopen/lss_protocol.hpp>
+#include <canopen/lss/lss_protocol.hpp>
 #include <sstream>
 #include <stdexcept>
 #include <string>

@@ -21,9 +21,9 @@ from support.compilers import (ARM_GCC, CLANG, GCC, Compiler, compile_only, in_p
                                those_installed)
 
 # These need an operating system, whose errors they throw.
-HOSTED_ONLY = ("port/descriptor.hpp", "port/event_descriptor.hpp", "port/file_storage.hpp", "port/host_bus.hpp",
-               "port/host_loop.hpp", "port/simulated_device.hpp", "port/slcan.hpp", "port/socketcan.hpp",
-               "port/socketcan_frame.hpp", "port/socketcand.hpp", "port/stream_port.hpp")
+HOSTED_ONLY = ("host/descriptor.hpp", "host/event_descriptor.hpp", "host/file_storage.hpp", "host/host_bus.hpp",
+               "host/host_loop.hpp", "host/simulated_device.hpp", "host/slcan.hpp", "host/socketcan.hpp",
+               "host/socketcan_frame.hpp", "host/socketcand.hpp", "host/stream_port.hpp")
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 
 #include <array>
 #include <canopen/node.hpp>
-#include <canopen/object_store.hpp>
+#include <canopen/od/object_store.hpp>
 #include <cstdint>
 #include <dynamic_mapping/device.hpp>
 #include <string>

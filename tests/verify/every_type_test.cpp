@@ -5,7 +5,7 @@
 #include <array>
 #include <bit>
 #include <canopen/node.hpp>
-#include <canopen/object_store.hpp>
+#include <canopen/od/object_store.hpp>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>

@@ -5,8 +5,8 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <canopen/host/event_descriptor.hpp>
 #include <canopen/node.hpp>
-#include <canopen/port/event_descriptor.hpp>
 #include <canopen/port/slcan_adapter.hpp>
 #include <csignal>
 #include <cstdio>

@@ -1,6 +1,6 @@
 /// Tests `vm_node` with the SDO client of the runtime over sockets: `vm_client BUS NODE-ID`. Exit code 0: passed.
-#include <canopen/port/blocking_sdo.hpp>
-#include <canopen/port/host_bus.hpp>
+#include <canopen/host/blocking_sdo.hpp>
+#include <canopen/host/host_bus.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <every_service/device.hpp>

@@ -1,6 +1,6 @@
 /// Many frames through two ports: `vm_frames BUS BUS COUNT` sends COUNT frames at full speed on the first bus and
 /// receives them from the second. None may be lost or reordered.
-#include <canopen/port/host_bus.hpp>
+#include <canopen/host/host_bus.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>

@@ -3,8 +3,8 @@
 #include <poll.h>
 
 #include <atomic>
+#include <canopen/host/host_bus.hpp>
 #include <canopen/node.hpp>
-#include <canopen/port/host_bus.hpp>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>

@@ -1,6 +1,6 @@
 /// Frames wait in order of priority if the interface has no space: `vm_urgent BUS` sends frames 701h until forty of
 /// them wait, then eight frames 081h, prints the number of frames 701h, and sends until no frame waits.
-#include <canopen/port/host_bus.hpp>
+#include <canopen/host/host_bus.hpp>
 #include <cstdio>
 #include <stdexcept>
 

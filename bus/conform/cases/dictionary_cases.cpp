@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <canopen/abort_code.hpp>
-#include <canopen/access.hpp>
+#include <canopen/base/abort_code.hpp>
+#include <canopen/od/access.hpp>
 #include <cstddef>
 #include <optional>
 #include <string>

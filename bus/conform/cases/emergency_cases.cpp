@@ -1,7 +1,7 @@
 /// Emergency (CiA 301, 7.2.7): the error register 1001h, the error history 1003h, and the EMCY that an error causes.
 #include <fmt/format.h>
 
-#include <canopen/error_register.hpp>
+#include <canopen/emcy/error_register.hpp>
 
 #include "conform/cases/setup.hpp"
 

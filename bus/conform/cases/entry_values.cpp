@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <canopen/access.hpp>
-#include <canopen/data_type.hpp>
+#include <canopen/od/access.hpp>
+#include <canopen/od/data_type.hpp>
 #include <cmath>
 #include <limits>
 

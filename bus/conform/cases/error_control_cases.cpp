@@ -1,8 +1,8 @@
 /// Error control (CiA 301, 7.2.8.3.2): node and life guarding, heartbeat, and which of the two is active.
 #include <fmt/format.h>
 
-#include <canopen/error_control.hpp>
-#include <canopen/error_register.hpp>
+#include <canopen/emcy/error_register.hpp>
+#include <canopen/nmt/error_control.hpp>
 
 #include "conform/cases/setup.hpp"
 

@@ -1,7 +1,7 @@
 /// LSS (CiA 305): node-ID and bit timing over the bus.
 #include <fmt/format.h>
 
-#include <canopen/lss_protocol.hpp>
+#include <canopen/lss/lss_protocol.hpp>
 
 #include "conform/cases/setup.hpp"
 

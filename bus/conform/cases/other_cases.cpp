@@ -1,8 +1,8 @@
 /// Stored parameters (1010h, 1011h, 1020h; CiA 301, 7.5.2.13, 7.5.2.14 and 7.5.2.23) and restricted CAN-IDs (7.3.5).
 #include <fmt/format.h>
 
-#include <canopen/cob_id.hpp>
-#include <canopen/cob_id_check.hpp>
+#include <canopen/can/cob_id.hpp>
+#include <canopen/can/cob_id_check.hpp>
 
 #include "conform/cases/setup.hpp"
 #include "conform/cases/storage_setup.hpp"

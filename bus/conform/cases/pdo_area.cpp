@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <canopen/pdo_mapping.hpp>
-#include <canopen/transmission_type.hpp>
+#include <canopen/pdo/pdo_mapping.hpp>
+#include <canopen/pdo/transmission_type.hpp>
 #include <iterator>
 #include <utility>
 

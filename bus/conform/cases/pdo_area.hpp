@@ -1,8 +1,8 @@
 /// Shared by the cases of the PDO area: a TPDO as the device has it, its configuration, and the SYNC of the test.
 #pragma once
 
-#include <canopen/cob_id.hpp>
-#include <canopen/nmt.hpp>
+#include <canopen/can/cob_id.hpp>
+#include <canopen/nmt/nmt.hpp>
 #include <cstdint>
 #include <functional>
 #include <map>

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <canopen/pdo_parameters.hpp>
+#include <canopen/pdo/pdo_parameters.hpp>
 
 namespace edsc::conform {
 namespace pdo_area {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <canopen/pdo_mapping.hpp>
+#include <canopen/pdo/pdo_mapping.hpp>
 #include <functional>
 #include <iterator>
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <canopen/nmt.hpp>
+#include <canopen/nmt/nmt.hpp>
 #include <memory>
 #include <utility>
 

@@ -2,10 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <canopen/abort_code.hpp>
-#include <canopen/access.hpp>
-#include <canopen/cob_id.hpp>
-#include <canopen/sdo_client.hpp>
+#include <canopen/base/abort_code.hpp>
+#include <canopen/can/cob_id.hpp>
+#include <canopen/od/access.hpp>
+#include <canopen/sdo/sdo_client.hpp>
 #include <map>
 #include <optional>
 #include <string>

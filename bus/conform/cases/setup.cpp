@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <canopen/cob_id_check.hpp>
-#include <canopen/pdo_list.hpp>
+#include <canopen/can/cob_id_check.hpp>
+#include <canopen/pdo/pdo_list.hpp>
 
 namespace edsc::conform {
 namespace {

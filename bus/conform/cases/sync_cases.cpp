@@ -1,7 +1,7 @@
 /// SYNC (CiA 301, 7.2.5): producer and consumer, with and without counter.
 #include <fmt/format.h>
 
-#include <canopen/sync.hpp>
+#include <canopen/sync/sync.hpp>
 
 #include "conform/cases/setup.hpp"
 #include "conform/cases/storage_setup.hpp"

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <can_2024c/device.hpp>
-#include <canopen/frame.hpp>
-#include <canopen/node_id.hpp>
+#include <canopen/can/frame.hpp>
+#include <canopen/can/node_id.hpp>
 
 #include "shared/description.hpp"
 #include "shared/io_module.hpp"

@@ -1,9 +1,9 @@
 /// A servo drive with device profile 402 whose EDS has six objects of the profile: no mode of operation, no ramps.
 #pragma once
 
-#include <canopen/abort_code.hpp>
-#include <canopen/lss_handler.hpp>
-#include <canopen/lss_protocol.hpp>
+#include <canopen/base/abort_code.hpp>
+#include <canopen/lss/lss_handler.hpp>
+#include <canopen/lss/lss_protocol.hpp>
 #include <canopen/node.hpp>
 #include <cpc_tc1/device.hpp>
 #include <cstdint>

@@ -2,7 +2,7 @@
 /// and speed.
 #pragma once
 
-#include <canopen/abort_code.hpp>
+#include <canopen/base/abort_code.hpp>
 #include <canopen/node.hpp>
 #include <cpd/device.hpp>
 #include <cstdint>

@@ -1,7 +1,7 @@
 /// A closed-loop stepper drive: alarms, warnings, and a statusword with manufacturer-specific bits.
 #pragma once
 
-#include <canopen/abort_code.hpp>
+#include <canopen/base/abort_code.hpp>
 #include <canopen/node.hpp>
 #include <cmath>
 #include <cstdint>

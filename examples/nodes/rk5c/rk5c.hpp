@@ -2,7 +2,7 @@
 #pragma once
 
 #include <array>
-#include <canopen/nmt.hpp>
+#include <canopen/nmt/nmt.hpp>
 #include <canopen/node.hpp>
 #include <canopen/profile/cia406.hpp>
 #include <cstdint>

@@ -1,7 +1,7 @@
 /// A line that simulates an input of a node, such as `digital 1 0x55`: a name and its arguments.
 #pragma once
 
-#include <canopen/bus_status.hpp>
+#include <canopen/can/bus_status.hpp>
 #include <charconv>
 #include <cstddef>
 #include <cstdint>

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <array>
-#include <canopen/lss_handler.hpp>
-#include <canopen/lss_protocol.hpp>
-#include <canopen/node_id.hpp>
+#include <canopen/can/node_id.hpp>
+#include <canopen/lss/lss_handler.hpp>
+#include <canopen/lss/lss_protocol.hpp>
 #include <cstdint>
 #include <iterator>
 #include <string>

@@ -1,7 +1,7 @@
 /// The non-volatile memory of a node: a file, or memory of the process.
 #pragma once
 
-#include <canopen/port/file_storage.hpp>
+#include <canopen/host/file_storage.hpp>
 #include <cstdint>
 #include <cstring>
 #include <optional>

@@ -1,11 +1,11 @@
 /// NMT state, RUN and ERR indicators (CiA 303-3) of a node as lines of its log, one line for each change.
 #pragma once
 
-#include <canopen/bus_status.hpp>
-#include <canopen/heartbeat_consumer.hpp>
-#include <canopen/indicator.hpp>
-#include <canopen/nmt.hpp>
-#include <canopen/node_id.hpp>
+#include <canopen/can/bus_status.hpp>
+#include <canopen/can/node_id.hpp>
+#include <canopen/indicator/indicator.hpp>
+#include <canopen/nmt/heartbeat_consumer.hpp>
+#include <canopen/nmt/nmt.hpp>
 #include <cstdint>
 #include <string>
 #include <string_view>

@@ -20,8 +20,8 @@
 
 #include <array>
 #include <atomic>
-#include <canopen/node_id.hpp>
-#include <canopen/port/host_bus.hpp>
+#include <canopen/can/node_id.hpp>
+#include <canopen/host/host_bus.hpp>
 #include <cerrno>
 #include <charconv>
 #include <csignal>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <canopen/base/clock.hpp>
 #include <canopen/profile/cia402_axis.hpp>
-#include <canopen/time.hpp>
 #include <cmath>
 #include <cstdint>
 #include <limits>

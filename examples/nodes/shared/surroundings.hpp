@@ -1,7 +1,7 @@
 /// The environment of a node on a host: its settings, its storage and a log.
 #pragma once
 
-#include <canopen/node_id.hpp>
+#include <canopen/can/node_id.hpp>
 #include <cstdint>
 #include <functional>
 #include <map>

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <canopen/cob_id_check.hpp>
+#include <canopen/can/cob_id_check.hpp>
 #include <string>
 #include <vector>
 

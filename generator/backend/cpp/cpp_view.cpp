@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <canopen/lss_options.hpp>
+#include <canopen/lss/lss_options.hpp>
 #include <iterator>
 #include <map>
 #include <string>

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <bit>
-#include <canopen/cob_id.hpp>
+#include <canopen/can/cob_id.hpp>
 
 #include "backend/cpp/configured_view.hpp"
 #include "backend/cpp/information_view.hpp"

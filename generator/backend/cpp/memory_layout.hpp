@@ -1,5 +1,5 @@
 /// The memory layout of a device: constants in flash, values in RAM, and the tables to find them, as lines of C++ for
-/// the templates. canopen/dictionary.hpp describes the words of the tables.
+/// the templates. canopen/od/dictionary.hpp describes the words of the tables.
 #pragma once
 
 #include <cstddef>

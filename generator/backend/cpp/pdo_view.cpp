@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <canopen/pdo_parameters.hpp>
+#include <canopen/pdo/pdo_parameters.hpp>
 #include <string>
 #include <vector>
 

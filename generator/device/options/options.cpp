@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <canopen/abort_code.hpp>
-#include <canopen/lss_options.hpp>
+#include <canopen/base/abort_code.hpp>
+#include <canopen/lss/lss_options.hpp>
 #include <functional>
 #include <iterator>
 #include <nlohmann/json.hpp>

@@ -1,7 +1,7 @@
 /// Mutants of EMCY, SYNC, error control, storage, NMT and LSS.
-#include <canopen/abort_code.hpp>
-#include <canopen/cob_id.hpp>
-#include <canopen/nmt.hpp>
+#include <canopen/base/abort_code.hpp>
+#include <canopen/can/cob_id.hpp>
+#include <canopen/nmt/nmt.hpp>
 #include <cstring>
 #include <initializer_list>
 

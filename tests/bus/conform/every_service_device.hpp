@@ -1,7 +1,7 @@
 /// The good device of these tests, with every service.
 #pragma once
 
-#include <canopen/port/simulated_node.hpp>
+#include <canopen/host/simulated_node.hpp>
 
 namespace edsc::conform {
 

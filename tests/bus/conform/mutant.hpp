@@ -1,8 +1,8 @@
 /// A wrong device: a good one, with a wire to the test that changes frames.
 #pragma once
 
-#include <canopen/frame.hpp>
-#include <canopen/time.hpp>
+#include <canopen/base/clock.hpp>
+#include <canopen/can/frame.hpp>
 #include <cstdint>
 #include <functional>
 #include <span>

@@ -1,6 +1,6 @@
 /// Devices with wrong PDOs: their mappings, when they send them, and their data.
-#include <canopen/abort_code.hpp>
-#include <canopen/nmt.hpp>
+#include <canopen/base/abort_code.hpp>
+#include <canopen/nmt/nmt.hpp>
 #include <optional>
 #include <utility>
 

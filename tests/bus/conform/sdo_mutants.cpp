@@ -1,6 +1,6 @@
 /// Devices with a wrong SDO server or object dictionary.
-#include <canopen/abort_code.hpp>
-#include <canopen/sdo_protocol.hpp>
+#include <canopen/base/abort_code.hpp>
+#include <canopen/sdo/sdo_protocol.hpp>
 #include <cstdint>
 #include <functional>
 #include <string>

@@ -4,7 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <canopen/nmt_master.hpp>
+#include <canopen/nmt_master/nmt_master.hpp>
 #include <cstdio>
 #include <string>
 #include <vector>

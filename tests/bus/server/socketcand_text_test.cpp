@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "canopen/port/socketcand_codec.hpp"
+#include "canopen/host/socketcand_codec.hpp"
 
 namespace {
 

@@ -2,9 +2,9 @@
 /// node-ID, for LSS. Each prints a line when it is up.
 #include <algorithm>
 #include <atomic>
+#include <canopen/host/host_bus.hpp>
+#include <canopen/host/memory_storage.hpp>
 #include <canopen/node.hpp>
-#include <canopen/port/host_bus.hpp>
-#include <canopen/port/memory_storage.hpp>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -13,7 +13,6 @@
 #include <string>
 #include <thread>
 #include <vector>
-
 
 namespace od = live_device::od;
 

@@ -93,7 +93,7 @@ def main() -> int:
         page: with_table(page.read_text(encoding="utf-8"), table(options)),
         schema: json.dumps(schema_of(options, old_schema), indent=2, ensure_ascii=False) + "\n",
     }
-    header = source_dir / "runtime/include/canopen/device_options.hpp"
+    header = source_dir / "runtime/include/canopen/od/device_options.hpp"
     problems = runtime_problems(header.read_text(encoding="utf-8"), options)
     for path, text in texts.items():
         if "--write" in sys.argv:

@@ -1,5 +1,5 @@
-#include <canopen/cob_id_check.hpp>
 #include <gtest/gtest.h>
+#include <canopen/can/cob_id_check.hpp>
 
 #include <optional>
 #include <string>

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <canopen/bit_copy.hpp>
+#include <canopen/base/bit_copy.hpp>
 
 #include <array>
 #include <cstdint>

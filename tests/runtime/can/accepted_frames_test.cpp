@@ -1,6 +1,6 @@
 /// The frames that a node accepts: all that its services need, and none for a service that it does not have.
 #include <gtest/gtest.h>
-#include <canopen/accepted_frames.hpp>
+#include <canopen/node/accepted_frames.hpp>
 
 #include <cstring>
 #include <every_service/device.hpp>

@@ -2,7 +2,7 @@
 /// configurable COB-ID transmits or receives on them.
 #include <gtest/gtest.h>
 
-#include <canopen/accepted_frames.hpp>
+#include <canopen/node/accepted_frames.hpp>
 #include <cstring>
 #include <every_service/device.hpp>
 #include <settable_sdo/device.hpp>

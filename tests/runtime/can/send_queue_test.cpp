@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <canopen/send_queue.hpp>
+#include <canopen/can/send_queue.hpp>
 
 #include <string>
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
-#include <canopen/port/blocking_sdo.hpp>
-#include <canopen/port/socketcan.hpp>
+#include <canopen/host/blocking_sdo.hpp>
+#include <canopen/host/socketcan.hpp>
 
 #include <sample/device.hpp>
 #include <system_error>

@@ -1,7 +1,7 @@
 /// A file as the storage of a node: what another process reads from it, and what happens if it cannot be written.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
-#include <canopen/port/file_storage.hpp>
+#include <canopen/host/file_storage.hpp>
 
 #include <cstdlib>
 #include <filesystem>

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
-#include <canopen/port/blocking_sdo.hpp>
-#include <canopen/port/host_bus.hpp>
+#include <canopen/host/blocking_sdo.hpp>
+#include <canopen/host/host_bus.hpp>
 
 #include <stdexcept>
 #include <string>

@@ -1,6 +1,6 @@
 /// The master of a host: which frames belong to which of its transfers.
 #include <gtest/gtest.h>
-#include <canopen/port/master.hpp>
+#include <canopen/host/master.hpp>
 
 #include <array>
 #include <deque>

@@ -1,8 +1,8 @@
 /// SLCAN character by character: the adapter, the host, and both connected to each other.
 #include <gtest/gtest.h>
+#include <canopen/host/slcan_host.hpp>
 #include <canopen/port/slcan_adapter.hpp>
 #include <canopen/port/slcan_codec.hpp>
-#include <canopen/port/slcan_host.hpp>
 
 #include <string>
 #include <vector>

@@ -1,6 +1,6 @@
 /// The client of socketcand, message by message.
 #include <gtest/gtest.h>
-#include <canopen/port/socketcand_codec.hpp>
+#include <canopen/host/socketcand_codec.hpp>
 
 #include <string>
 

@@ -7,8 +7,8 @@
 #include <sys/socket.h>
 #include <termios.h>
 #include <unistd.h>
-#include <canopen/port/blocking_sdo.hpp>
-#include <canopen/port/host_bus.hpp>
+#include <canopen/host/blocking_sdo.hpp>
+#include <canopen/host/host_bus.hpp>
 #include <canopen/port/slcan_adapter.hpp>
 
 #include <atomic>

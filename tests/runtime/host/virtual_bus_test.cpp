@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
+#include <canopen/host/key_tree.hpp>
+#include <canopen/host/virtual_bus.hpp>
 #include <canopen/node.hpp>
-#include <canopen/port/key_tree.hpp>
-#include <canopen/port/virtual_bus.hpp>
 
 #include <algorithm>
 #include <random>

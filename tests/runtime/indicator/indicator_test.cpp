@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <canopen/indicator.hpp>
+#include <canopen/indicator/indicator.hpp>
 
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 /// An LSS slave with a device that records its events.
 #pragma once
 
-#include <canopen/lss_slave.hpp>
+#include <canopen/lss/lss_slave.hpp>
 #include <cstdint>
 #include <string>
 #include <vector>

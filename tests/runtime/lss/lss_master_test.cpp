@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <canopen/lss_master.hpp>
-#include <canopen/port/virtual_bus.hpp>
+#include <canopen/host/virtual_bus.hpp>
+#include <canopen/lss/lss_master.hpp>
 #include <deque>
 #include <random>
 #include <string>

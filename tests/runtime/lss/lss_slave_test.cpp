@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <canopen/lss_slave.hpp>
+#include <canopen/lss/lss_slave.hpp>
 #include <random>
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <canopen/error_behavior.hpp>
+#include <canopen/nmt/error_behavior.hpp>
 
 namespace {
 

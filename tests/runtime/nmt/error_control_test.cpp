@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <canopen/error_control.hpp>
+#include <canopen/nmt/error_control.hpp>
 
 #include "support/bench.hpp"
 

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <canopen/heartbeat_consumer.hpp>
+#include <canopen/nmt/heartbeat_consumer.hpp>
 
 #include <can_2057c/device.hpp>
 #include <cpc_tc1/device.hpp>

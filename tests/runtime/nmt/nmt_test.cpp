@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <canopen/port/memory_storage.hpp>
+#include <canopen/host/memory_storage.hpp>
 #include <self_starting/device.hpp>
 #include <vector>
 

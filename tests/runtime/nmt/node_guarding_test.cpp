@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <canopen/node_guarding.hpp>
+#include <canopen/nmt/node_guarding.hpp>
 
 #include <can_2057c/device.hpp>
 #include <string>

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <canopen/network_list.hpp>
+#include <canopen/nmt_master/network_list.hpp>
 
 #include <array>
 #include <nmt_master/device.hpp>

@@ -1,8 +1,8 @@
 /// The boot-up of slaves by an NMT master in the cases that occur in a plant: configuration, requests of the
 /// application over the same SDO, slaves that reset, are slow, are silent or are replaced, and a full bus.
 #include <gtest/gtest.h>
-#include <canopen/nmt_master.hpp>
-#include <canopen/port/virtual_bus.hpp>
+#include <canopen/host/virtual_bus.hpp>
+#include <canopen/nmt_master/nmt_master.hpp>
 
 #include <array>
 #include <list>

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
-#include <canopen/nmt_master.hpp>
-#include <canopen/port/virtual_bus.hpp>
+#include <canopen/host/virtual_bus.hpp>
+#include <canopen/nmt_master/nmt_master.hpp>
 
 #include <array>
 #include <list>

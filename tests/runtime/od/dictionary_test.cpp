@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <canopen/dictionary.hpp>
+#include <canopen/od/dictionary.hpp>
 
 #include <cstdint>
 #include <sample/dictionary.hpp>

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <array>
-#include <canopen/entry_search.hpp>
+#include <canopen/od/entry_search.hpp>
 #include <cstdint>
 #include <sample/device.hpp>
 #include <type_traits>

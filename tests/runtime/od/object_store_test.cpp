@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <canopen/object_store.hpp>
+#include <canopen/od/object_store.hpp>
 
 #include <array>
 #include <cstdint>

@@ -1,10 +1,10 @@
 /// Multiplex PDOs frame by frame: destination and source addressing mode, as consumer and as producer.
 #include <gtest/gtest.h>
 
-#include <canopen/port/virtual_bus.hpp>
+#include <array>
+#include <canopen/host/virtual_bus.hpp>
 #include <mpdo_device/device.hpp>
 #include <pdo_device/device.hpp>
-#include <array>
 #include <span>
 #include <vector>
 

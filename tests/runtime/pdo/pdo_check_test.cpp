@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
-#include <canopen/pdo_check.hpp>
-#include <canopen/pdo_compatible.hpp>
+#include <canopen/pdo/pdo_check.hpp>
+#include <canopen/pdo/pdo_compatible.hpp>
 
 #include <array>
 #include <cstdint>

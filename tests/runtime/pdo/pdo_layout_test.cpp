@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <canopen/pdo.hpp>
+#include <canopen/pdo/pdo.hpp>
 
 #include <array>
 #include <cstdint>

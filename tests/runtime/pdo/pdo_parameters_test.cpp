@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <canopen/pdo_parameters.hpp>
+#include <canopen/pdo/pdo_parameters.hpp>
 
 #include <vector>
 

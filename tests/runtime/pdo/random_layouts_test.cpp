@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <canopen/bit_copy.hpp>
+#include <canopen/base/bit_copy.hpp>
 #include <cstdint>
 #include <set>
 #include <vector>

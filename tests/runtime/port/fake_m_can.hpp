@@ -6,8 +6,8 @@
 
 #include <algorithm>
 #include <array>
-#include <canopen/arbitration.hpp>
-#include <canopen/frame.hpp>
+#include <canopen/can/arbitration.hpp>
+#include <canopen/can/frame.hpp>
 #include <cstdint>
 #include <cstring>
 #include <initializer_list>

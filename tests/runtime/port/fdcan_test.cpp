@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include <canopen/accepted_frames.hpp>
 #include <canopen/node.hpp>
+#include <canopen/node/accepted_frames.hpp>
 #include <canopen/port/fdcan.hpp>
 #include <cstddef>
 #include <optional>

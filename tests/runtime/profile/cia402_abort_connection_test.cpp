@@ -2,7 +2,7 @@
 /// (CiA 402-2).
 #include <gtest/gtest.h>
 
-#include <canopen/bus_status.hpp>
+#include <canopen/can/bus_status.hpp>
 #include <string>
 
 #include "cia402_bench.hpp"

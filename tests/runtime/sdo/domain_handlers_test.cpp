@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <canopen/domain_handlers.hpp>
+#include <canopen/sdo/domain_handlers.hpp>
 
 #include <string>
 #include <tuple>

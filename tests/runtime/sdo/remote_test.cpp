@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
-#include <canopen/port/blocking_sdo.hpp>
-#include <canopen/port/virtual_bus_port.hpp>
-#include <canopen/remote.hpp>
+#include <canopen/host/blocking_sdo.hpp>
+#include <canopen/host/virtual_bus_port.hpp>
+#include <canopen/sdo/remote_node.hpp>
 
 #include <array>
 #include <cmath>

@@ -1,8 +1,8 @@
 /// Only an SDO server with the values of a device: requests and answers as the eight bytes of their frames.
 #pragma once
 
-#include <canopen/object_store.hpp>
-#include <canopen/sdo_server.hpp>
+#include <canopen/od/object_store.hpp>
+#include <canopen/sdo/sdo_server.hpp>
 #include <cstdio>
 #include <functional>
 #include <sample/device.hpp>

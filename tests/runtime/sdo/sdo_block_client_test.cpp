@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <canopen/sdo_client.hpp>
+#include <canopen/sdo/sdo_client.hpp>
 
 #include <array>
 #include <numeric>

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
-#include <canopen/port/virtual_bus.hpp>
-#include <canopen/sdo_client.hpp>
+#include <canopen/host/virtual_bus.hpp>
+#include <canopen/sdo/sdo_client.hpp>
 
 #include <array>
 #include <string>

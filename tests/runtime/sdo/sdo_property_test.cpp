@@ -1,7 +1,7 @@
 /// A client and a server on a wire that loses and repeats frames: each transfer ends on both sides, with the right
 /// bytes or with an abort.
 #include <gtest/gtest.h>
-#include <canopen/sdo_client.hpp>
+#include <canopen/sdo/sdo_client.hpp>
 
 #include <algorithm>
 #include <deque>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <array>
-#include <canopen/flash_storage.hpp>
+#include <canopen/storage/flash_storage.hpp>
 #include <cstring>
 #include <limits>
 #include <span>

@@ -1,8 +1,8 @@
 /// Two pages of flash: values survive a power loss at any moment.
 #include <gtest/gtest.h>
-#include <canopen/flash_storage.hpp>
+#include <canopen/storage/flash_storage.hpp>
 
-#include <canopen/crc16.hpp>
+#include <canopen/base/crc16.hpp>
 #include <memory>
 #include <stored_device/device.hpp>
 #include <string_view>

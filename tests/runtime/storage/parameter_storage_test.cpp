@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <array>
-#include <canopen/port/memory_storage.hpp>
+#include <canopen/host/memory_storage.hpp>
 #include <every_service/device.hpp>
 #include <longer_label/device.hpp>
 #include <stored_device/device.hpp>

@@ -1,8 +1,8 @@
 /// Store and restore as described in the manuals of the reference devices.
 #include <gtest/gtest.h>
 
-#include <canopen/port/memory_storage.hpp>
 #include <can_2057c/device.hpp>
+#include <canopen/host/memory_storage.hpp>
 #include <cpc_tc1/device.hpp>
 #include <cpd/device.hpp>
 #include <rk5c/device.hpp>

@@ -2,7 +2,7 @@
 /// the default, and EMCY 6300h reports it.
 #include <gtest/gtest.h>
 
-#include <canopen/port/memory_storage.hpp>
+#include <canopen/host/memory_storage.hpp>
 #include <cstring>
 #include <every_service/device.hpp>
 

@@ -1,7 +1,7 @@
 /// The layouts whose codecs are compared with hand-written ones in instructions and time.
 #pragma once
 
-#include <canopen/pdo.hpp>
+#include <canopen/pdo/pdo.hpp>
 #include <cstdint>
 
 namespace codec {

@@ -16,7 +16,7 @@ Can can;
 }  // namespace
 
 #ifdef STORED
-#include <canopen/flash_storage.hpp>
+#include <canopen/storage/flash_storage.hpp>
 
 extern "C" bool flash_erase(std::uint8_t page);
 extern "C" bool flash_write(std::uint8_t page, std::uint32_t offset, const std::uint8_t* words, std::size_t size);

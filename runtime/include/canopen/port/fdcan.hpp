@@ -14,9 +14,9 @@
 #include <optional>
 #include <span>
 
-#include "canopen/accepted_frames.hpp"
-#include "canopen/bus_status.hpp"
-#include "canopen/frame.hpp"
+#include "canopen/can/bus_status.hpp"
+#include "canopen/can/frame.hpp"
+#include "canopen/node/accepted_frames.hpp"
 #include "canopen/port/bit_timing.hpp"
 #include "canopen/port/can_controller.hpp"
 

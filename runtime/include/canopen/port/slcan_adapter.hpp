@@ -6,9 +6,9 @@
 #include <span>
 #include <string_view>
 
-#include "canopen/frame.hpp"
+#include "canopen/base/clock.hpp"
+#include "canopen/can/frame.hpp"
 #include "canopen/port/slcan_codec.hpp"
-#include "canopen/time.hpp"
 
 namespace canopen {
 

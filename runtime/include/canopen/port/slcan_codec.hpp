@@ -16,7 +16,7 @@
 #include <span>
 #include <string_view>
 
-#include "canopen/frame.hpp"
+#include "canopen/can/frame.hpp"
 
 namespace canopen {
 

@@ -6,9 +6,9 @@
 #include <cstring>
 #include <span>
 
-#include "canopen/abort_code.hpp"
-#include "canopen/dictionary.hpp"
-#include "canopen/object_store.hpp"
+#include "canopen/base/abort_code.hpp"
+#include "canopen/od/dictionary.hpp"
+#include "canopen/od/object_store.hpp"
 
 namespace canopen {
 

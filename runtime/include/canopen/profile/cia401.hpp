@@ -16,10 +16,10 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "canopen/bus_status.hpp"
-#include "canopen/heartbeat_consumer.hpp"
-#include "canopen/nmt.hpp"
-#include "canopen/object_store.hpp"
+#include "canopen/can/bus_status.hpp"
+#include "canopen/nmt/heartbeat_consumer.hpp"
+#include "canopen/nmt/nmt.hpp"
+#include "canopen/od/object_store.hpp"
 #include "canopen/profile/channels.hpp"
 
 namespace canopen {

@@ -16,10 +16,11 @@
 #include <optional>
 #include <type_traits>
 
-#include "canopen/emcy.hpp"
-#include "canopen/error_register.hpp"
-#include "canopen/handlers.hpp"
-#include "canopen/nmt.hpp"
+#include "canopen/base/clock.hpp"
+#include "canopen/emcy/emcy_producer.hpp"
+#include "canopen/emcy/error_register.hpp"
+#include "canopen/nmt/nmt.hpp"
+#include "canopen/node/handlers.hpp"
 #include "canopen/profile/cia402_axis.hpp"
 #include "canopen/profile/cia402_homing.hpp"
 #include "canopen/profile/cia402_objects.hpp"
@@ -29,7 +30,6 @@
 #include "canopen/profile/cia402_state_machine.hpp"
 #include "canopen/profile/cia402_window.hpp"
 #include "canopen/profile/cia402_words.hpp"
-#include "canopen/time.hpp"
 
 namespace canopen::cia402 {
 

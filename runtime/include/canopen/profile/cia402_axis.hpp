@@ -4,7 +4,7 @@
 #include <concepts>
 #include <cstdint>
 
-#include "canopen/time.hpp"
+#include "canopen/base/clock.hpp"
 
 namespace canopen::cia402 {
 

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "canopen/access.hpp"
-#include "canopen/object.hpp"
+#include "canopen/od/access.hpp"
+#include "canopen/od/object.hpp"
 
 namespace canopen::cia402::object {
 

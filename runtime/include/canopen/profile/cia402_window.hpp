@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "canopen/time.hpp"
+#include "canopen/base/clock.hpp"
 
 namespace canopen::cia402 {
 

@@ -13,9 +13,9 @@
 #include <cstdint>
 #include <cstring>
 
-#include "canopen/abort_code.hpp"
-#include "canopen/handlers.hpp"
-#include "canopen/object.hpp"
+#include "canopen/base/abort_code.hpp"
+#include "canopen/node/handlers.hpp"
+#include "canopen/od/object.hpp"
 #include "canopen/profile/channels.hpp"
 
 namespace canopen {

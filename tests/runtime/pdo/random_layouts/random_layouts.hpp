@@ -2,7 +2,7 @@
 #pragma once
 
 #include <array>
-#include <canopen/pdo.hpp>
+#include <canopen/pdo/pdo.hpp>
 #include <cstdint>
 #include <span>
 #include <utility>

@@ -1,0 +1,60 @@
+/// Copies and clears bytes.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#include "canopen/base/optimization.hpp"
+
+namespace canopen {
+
+namespace bytes_detail {
+
+/// Copies byte by byte: the library's memcpy and memset would add hundreds of bytes to an image. The fence keeps the
+/// compiler from replacing these loops with calls of them.
+[[gnu::noinline]] inline void copy_by_loop(std::uint8_t* to, const std::uint8_t* from, std::size_t size) {
+  for (const std::uint8_t* const end = to + size; to != end;) {
+    *to++ = *from++;
+    std::atomic_signal_fence(std::memory_order_acq_rel);
+  }
+}
+
+[[gnu::noinline]] inline void clear_by_loop(std::uint8_t* to, std::size_t size) {
+  for (const std::uint8_t* const end = to + size; to != end;) {
+    *to++ = 0;
+    std::atomic_signal_fence(std::memory_order_acq_rel);
+  }
+}
+
+}  // namespace bytes_detail
+
+/// Copies any number of bytes.
+inline void copy_bytes(void* to, const void* from, std::size_t size) {
+  if constexpr (prefers_size) {
+    bytes_detail::copy_by_loop(static_cast<std::uint8_t*>(to), static_cast<const std::uint8_t*>(from), size);
+  } else if (size != 0) {
+    std::memcpy(to, from, size);
+  }
+}
+
+/// Copies a small number of bytes, for which a call of memcpy would take longer.
+inline void copy_few_bytes(std::uint8_t* to, const std::uint8_t* from, std::size_t size) {
+  if constexpr (prefers_size) {
+    bytes_detail::copy_by_loop(to, from, size);
+  } else {
+    for (const std::uint8_t* const end = to + size; to != end;) *to++ = *from++;
+  }
+}
+
+/// Clears any number of bytes.
+inline void clear_bytes(void* to, std::size_t size) {
+  if constexpr (prefers_size) {
+    bytes_detail::clear_by_loop(static_cast<std::uint8_t*>(to), size);
+  } else {
+    std::memset(to, 0, size);
+  }
+}
+
+}  // namespace canopen

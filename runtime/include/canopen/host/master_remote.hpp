@@ -1,0 +1,116 @@
+/// A device of a master on a host, with its generated types.
+#pragma once
+
+#include <cstdint>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include "canopen/base/abort_code.hpp"
+#include "canopen/base/result.hpp"
+#include "canopen/can/frame.hpp"
+#include "canopen/can/node_id.hpp"
+#include "canopen/host/blocking_sdo.hpp"
+#include "canopen/od/object.hpp"
+#include "canopen/pdo/pdo_list.hpp"
+
+namespace canopen {
+
+template <BlockingBus B>
+class Master;
+
+namespace master_detail {
+
+/// Number of the only PDO in a list with a layout; 0: none or several have it.
+template <class Layout, class List>
+inline constexpr std::uint16_t number_in = 0;
+template <class Layout, class... Pdos>
+inline constexpr std::uint16_t number_in<Layout, PdoList<Pdos...>> =
+    (unsigned{std::is_base_of_v<Layout, Pdos>} + ... + 0u) == 1
+        ? static_cast<std::uint16_t>((unsigned{std::is_base_of_v<Layout, Pdos> ? Pdos::number : std::uint16_t{0}} +
+                                      ... + 0u))
+        : std::uint16_t{0};
+
+}  // namespace master_detail
+
+/// A device on the bus, with its generated types: its objects by SDO, its PDOs by their layouts.
+template <class Device, BlockingBus B>
+class MasterRemote {
+ public:
+  MasterRemote(Master<B>& master, NodeId node_id) : master_{master}, node_id_{node_id} {}
+
+  [[nodiscard]] NodeId node_id() const { return node_id_; }
+
+  /// Reads an object.
+  template <DictionaryObject O>
+  [[nodiscard]] auto read() {
+    return objects().template read<O>();
+  }
+  /// Writes an object. A value outside the limits is rejected without sending a frame.
+  template <DictionaryObject O, class V>
+  Result<void> write(V value) {
+    return objects().template write<O>(value);
+  }
+  /// Writes a constant, whose limits the compiler checks.
+  template <DictionaryObject O, auto Value>
+  Result<void> write() {
+    return objects().template write<O, Value>();
+  }
+
+  /// Calls the handler from now on with the values of each TPDO with this layout: `handler(values...)`. Its COB-ID is
+  /// read from the node, again after each boot-up, and updated when it is written through the master. 0800 0022h: the
+  /// PDO is not valid; the handler is discarded.
+  template <class Layout, class F>
+  Result<void> on_pdo(F handler) {
+    const Result<std::uint32_t> cob_id = master_.pdo_cob_id(node_id_, tpdo_index<Layout>());
+    if (!cob_id) return cob_id.abort_code();
+    master_.pdos_.push_back(
+        {node_id_.value(), tpdo_index<Layout>(), *cob_id, Layout::size,
+         [handler = std::move(handler)](const Frame& frame) mutable { std::apply(handler, Layout::unpack(frame)); }});
+    return ok;
+  }
+
+  /// Sends an RPDO with these values. 060A 0023h: the bus has no room.
+  template <class Layout, class... Values>
+  Result<void> send(const Values&... values) {
+    constexpr std::uint16_t number = master_detail::number_in<Layout, typename Device::Rpdos>;
+    static_assert(number != 0, "no RPDO of this device has this layout, or several have");
+    const Result<std::uint32_t> cob_id =
+        master_.pdo_cob_id(node_id_, static_cast<std::uint16_t>(rpdo_indices.communication + number - 1));
+    if (!cob_id) return cob_id.abort_code();
+    Frame frame = frame_of(*cob_id);
+    Layout::pack_into(frame, values...);
+    return master_.bus_.send(frame) ? ok : AbortCode::no_resource;
+  }
+
+  /// Requests a TPDO with a remote frame. 060A 0023h: the bus has no room.
+  template <class Layout>
+  Result<void> request() {
+    const Result<std::uint32_t> cob_id = master_.pdo_cob_id(node_id_, tpdo_index<Layout>());
+    if (!cob_id) return cob_id.abort_code();
+    Frame frame = frame_of(*cob_id);
+    frame.remote = true;
+    frame.size = Layout::size;
+    return master_.bus_.send(frame) ? ok : AbortCode::no_resource;
+  }
+
+ private:
+  template <class Layout>
+  [[nodiscard]] static constexpr std::uint16_t tpdo_index() {
+    constexpr std::uint16_t number = master_detail::number_in<Layout, typename Device::Tpdos>;
+    static_assert(number != 0, "no TPDO of this device has this layout, or several have");
+    return static_cast<std::uint16_t>(tpdo_indices.communication + number - 1);
+  }
+  [[nodiscard]] static Frame frame_of(std::uint32_t cob_id) {
+    Frame frame{};
+    frame.extended = (cob_id & 0x2000'0000) != 0;
+    frame.id = cob_id & 0x1FFF'FFFF;
+    return frame;
+  }
+  [[nodiscard]] BlockingObjects<Device, Master<B>> objects() { return {master_, node_id_}; }
+
+  Master<B>& master_;
+  NodeId node_id_;
+};
+
+}  // namespace canopen

@@ -1,0 +1,254 @@
+/// A CAN bus within a process, with its own time: for tests, simulations and demonstrations. Host side.
+#pragma once
+
+#include <algorithm>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "canopen/base/clock.hpp"
+#include "canopen/can/arbitration.hpp"
+#include "canopen/can/frame.hpp"
+#include "canopen/host/key_tree.hpp"
+
+namespace canopen {
+
+/// Returns the bits of a frame on the wire without stuff bits, from start of frame to the end of the intermission
+/// (ISO 11898-1).
+[[nodiscard]] constexpr std::uint32_t bits_on_wire(const Frame& frame) {
+  const std::uint32_t data = frame.remote ? 0u : 8u * frame.size;
+  return (frame.extended ? 67u : 47u) + data;
+}
+
+/// A bus with endpoints: each frame that one sends is received by all others, lowest CAN-ID first among those that
+/// wait. With a bit rate, a frame takes its time on the wire; without one it takes none. Frames sent while others are
+/// delivered wait for their turn: there is no recursion.
+///
+/// The bus reads the deadline of an endpoint when it may have changed: at the beginning of `run_for` and `settle`,
+/// after a frame has been transmitted, and after `on_time` or `send` of this endpoint. An application may therefore use
+/// its nodes freely between two calls of `run_for`, and in all callbacks of a frame. Only if `on_time` of one endpoint
+/// changes the node of another, `Endpoint::deadline_changed()` must be called.
+class VirtualBus {
+ public:
+  /// One participant: a Bus for the frames it sends. It lives as long as the bus and does not move.
+  class Endpoint {
+   public:
+    /// Appends a frame to the endpoint's queue; false if `queue_limit` frames are already waiting.
+    bool send(const Frame& frame) {
+      if (waiting_.size() >= queue_limit) return false;
+      waiting_.push_back(frame);
+      if (waiting_.size() == 1) bus_.waits(*this);
+      deadline_changed();
+      return true;
+    }
+
+    /// Discards the waiting frames and the one on the wire, like a device that loses power.
+    void discard() {
+      waiting_.clear();
+      bus_.waits(*this);
+      if (bus_.on_wire_ && bus_.on_wire_->sender == this) bus_.on_wire_.reset();
+      deadline_changed();
+    }
+
+    /// Makes the bus read the deadline again. Only needed if `on_time` of another endpoint has changed it.
+    void deadline_changed() {
+      if (!std::exchange(outdated_, true)) bus_.outdated_.push_back(place_);
+    }
+
+    /// Called with each frame that another endpoint has sent.
+    std::function<void(const Frame&, TimePoint now)> on_frame;
+    /// Called when the time returned by `next_deadline` has come.
+    std::function<void(TimePoint now)> on_time;
+    std::function<std::optional<TimePoint>()> next_deadline;
+    /// Maximum number of frames that wait for the wire.
+    std::size_t queue_limit = 16;
+
+   private:
+    friend class VirtualBus;
+    Endpoint(VirtualBus& bus, std::size_t place) : bus_{bus}, place_{place} {}
+
+    VirtualBus& bus_;
+    std::size_t place_;
+    bool outdated_ = false;  ///< the bus must read the deadline again
+    std::deque<Frame> waiting_;
+  };
+
+  /// Called with each frame after its transmission.
+  using Listener = std::function<void(const Frame&, TimePoint now)>;
+
+  VirtualBus() = default;
+  /// Bit rate in bit/s; 0: frames take no time.
+  explicit VirtualBus(std::uint32_t bit_rate) : bit_rate_{bit_rate} {}
+  VirtualBus(const VirtualBus&) = delete;
+  VirtualBus& operator=(const VirtualBus&) = delete;
+
+  [[nodiscard]] Endpoint& attach() {
+    const std::size_t place = endpoints_.size();
+    waiting_.resize(place + 1);
+    deadlines_.resize(place + 1);
+    Endpoint& endpoint = *endpoints_.emplace_back(new Endpoint{*this, place});
+    endpoint.deadline_changed();
+    return endpoint;
+  }
+
+  /// Connects a node, constructed with this endpoint, to the frames and the time of the bus.
+  template <class Node>
+  static void connect(Endpoint& endpoint, Node& node) {
+    endpoint.on_frame = [&node](const Frame& frame, TimePoint now) { node.on_frame(frame, now); };
+    endpoint.on_time = [&node](TimePoint now) { node.on_time(now); };
+    endpoint.next_deadline = [&node] { return node.next_deadline(); };
+  }
+
+  void listen(Listener listener) { listeners_.push_back(std::move(listener)); }
+
+  [[nodiscard]] TimePoint now() const { return TimePoint{Duration{static_cast<std::uint32_t>(now_)}}; }
+
+  /// Returns the microseconds since the bus was created. Does not wrap.
+  [[nodiscard]] std::uint64_t elapsed() const { return now_ - start_; }
+
+  /// Returns how long this frame occupies the wire.
+  [[nodiscard]] Duration duration_of(const Frame& frame) const {
+    if (bit_rate_ == 0) return Duration{0};
+    return Duration{static_cast<std::uint32_t>(std::uint64_t{bits_on_wire(frame)} * 1'000'000 / bit_rate_)};
+  }
+
+  /// Lets this time pass: frames and deadlines in their order, including those at its end.
+  void run_for(Duration span) {
+    const Time end = now_ + span.count();
+    all_deadlines_changed();
+    while (step(end)) {
+    }
+    now_ = std::max(now_, end);
+  }
+
+  /// Lets time pass like `run_for`, but stops when `done()` is true after a frame or a deadline.
+  template <std::predicate Done>
+  void run_until(Done done, Duration span) {
+    const Time end = now_ + span.count();
+    all_deadlines_changed();
+    while (!done()) {
+      if (step(end)) continue;
+      now_ = std::max(now_, end);
+      return;
+    }
+  }
+
+  /// Delivers all waiting frames, and those that they cause, without waiting for deadlines. Stops after `most` frames,
+  /// because two endpoints may respond to each other indefinitely; returns their number.
+  std::size_t settle(std::size_t most = 10'000) {
+    all_deadlines_changed();
+    std::size_t frames = 0;
+    for (; frames < most; ++frames) {
+      serve_deadlines();
+      if (!begin_frame()) break;
+      now_ = std::max(now_, wire_free_);
+      end_frame();
+    }
+    return frames;
+  }
+
+ private:
+  /// Microseconds, with an offset so that earlier times are not negative. The low 32 bits are the TimePoint.
+  using Time = KeyTree::Key;
+
+  struct OnWire {
+    Endpoint* sender;
+    Frame frame;
+  };
+
+  /// Executes the next event until `end`; false if there is none.
+  bool step(Time end) {
+    serve_deadlines();
+    (void)begin_frame();
+    Time next = deadlines_.least();
+    if (on_wire_) next = std::min(next, wire_free_);
+    if (next > end) return false;
+    now_ = std::max(now_, next);
+    if (on_wire_ && wire_free_ <= now_) end_frame();
+    return true;
+  }
+
+  /// Calls each endpoint whose time has come once. One that wants to be called again at once is called in the
+  /// next step.
+  void serve_deadlines() {
+    ask_for_deadlines();
+    for (std::size_t i = 0; (i = deadlines_.first_up_to(now_, i)) != KeyTree::no_place; ++i) {
+      Endpoint& endpoint = *endpoints_[i];
+      if (endpoint.on_time) endpoint.on_time(now());
+      endpoint.deadline_changed();
+      ask_for_deadlines();
+    }
+    for (std::size_t i = 0; (i = deadlines_.first_up_to(now_, i)) != KeyTree::no_place; ++i) {
+      deadlines_.set(i, KeyTree::none);
+      endpoints_[i]->deadline_changed();
+    }
+  }
+
+  void ask_for_deadlines() {
+    while (!outdated_.empty()) {
+      Endpoint& endpoint = *endpoints_[outdated_.back()];
+      outdated_.pop_back();
+      endpoint.outdated_ = false;
+      const auto deadline = endpoint.next_deadline ? endpoint.next_deadline() : std::nullopt;
+      deadlines_.set(endpoint.place_, deadline ? time_of(*deadline) : KeyTree::none);
+    }
+  }
+
+  void all_deadlines_changed() {
+    for (const auto& endpoint : endpoints_) endpoint->deadline_changed();
+  }
+
+  /// Converts a time that is less than half the range of TimePoint away from now.
+  [[nodiscard]] Time time_of(TimePoint moment) const {
+    const auto ahead = static_cast<std::int32_t>((moment - now()).count());
+    return now_ + static_cast<Time>(std::int64_t{ahead});
+  }
+
+  /// Updates arbitration after a change of the endpoint's first waiting frame.
+  void waits(const Endpoint& endpoint) {
+    const bool any = !endpoint.waiting_.empty();
+    waiting_.set(endpoint.place_, any ? arbitration_value(endpoint.waiting_.front()) : KeyTree::none);
+  }
+
+  /// Starts the frame that wins arbitration, if the wire is free.
+  bool begin_frame() {
+    if (on_wire_) return true;
+    if (waiting_.least() == KeyTree::none) return false;
+    Endpoint& winner = *endpoints_[waiting_.first_up_to(waiting_.least())];
+    on_wire_ = OnWire{&winner, winner.waiting_.front()};
+    winner.waiting_.pop_front();
+    waits(winner);
+    winner.deadline_changed();  // it has room again
+    wire_free_ = now_ + duration_of(on_wire_->frame).count();
+    return true;
+  }
+
+  void end_frame() {
+    const OnWire done = *std::exchange(on_wire_, std::nullopt);
+    for (const Listener& listener : listeners_) listener(done.frame, now());
+    for (std::size_t i = 0; i < endpoints_.size(); ++i) {
+      Endpoint& endpoint = *endpoints_[i];
+      if (&endpoint != done.sender && endpoint.on_frame) endpoint.on_frame(done.frame, now());
+    }
+    all_deadlines_changed();
+  }
+
+  std::vector<std::unique_ptr<Endpoint>> endpoints_;
+  std::vector<Listener> listeners_;
+  KeyTree waiting_;                    ///< arbitration value of each endpoint's first frame
+  KeyTree deadlines_;                  ///< a Time for each endpoint, except those in `outdated_`
+  std::vector<std::size_t> outdated_;  ///< positions of endpoints whose deadline must be read
+  std::optional<OnWire> on_wire_;
+  static constexpr Time start_ = Time{1} << 32;
+  Time now_ = start_;
+  Time wire_free_ = now_;
+  std::uint32_t bit_rate_ = 0;
+};
+
+}  // namespace canopen

@@ -1,0 +1,109 @@
+/// Checks the handlers of a node at its declaration: a handler that can never be called does not compile. The
+/// compiler's message names the object.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "canopen/base/label.hpp"
+#include "canopen/lss/lss_handler.hpp"
+#include "canopen/node/handlers.hpp"
+#include "canopen/od/dictionary.hpp"
+#include "canopen/sdo/domain_handlers.hpp"
+#include "canopen/storage/storage.hpp"
+
+namespace canopen {
+
+namespace handler_detail {
+
+template <class H>
+inline constexpr bool is_service_handler =
+    is_of<H, StateHandler> || is_of<H, SyncHandler> || is_of<H, TimeHandler> || is_of<H, HeartbeatHandler> ||
+    is_of<H, LifeGuardingHandler> || is_of<H, EmergencyHandler> || is_of<H, ErrorHandler> || is_of<H, RpdoHandler>;
+
+/// Whether a node accepts a type as a handler, a storage or an LSS port.
+template <class H>
+inline constexpr bool is_handler = is_access_handler<H> || is_service_handler<H> || domain_detail::is_reader<H> ||
+                                   domain_detail::is_writer<H> || storage_detail::is_stored_in<H> ||
+                                   lss_detail::is_handler<H>;
+
+template <class H>
+struct KnownHandler {
+  static_assert(is_handler<H>,
+                "not a handler: pass on_write<object>(...), on_read<object>(...), on_state(...) or another on_...(); "
+                "a node-ID is NodeId{n}");
+  static constexpr bool is_good = true;
+};
+
+/// The event that a handler is called for.
+enum class Called : std::uint8_t { by_service, on_upload, on_download };
+
+template <class H>
+inline constexpr Called called = Called::by_service;
+template <class O, class F>
+inline constexpr Called called<ReadHandler<O, F>> = Called::on_upload;
+template <class O, class F>
+inline constexpr Called called<DomainReadHandler<O, F>> = Called::on_upload;
+template <class O, class F>
+inline constexpr Called called<WriteHandler<O, F>> = Called::on_download;
+template <class O, class F>
+inline constexpr Called called<DomainWriteHandler<O, F>> = Called::on_download;
+
+/// Whether two handlers are called for the same event of the same object.
+template <class H, class Other>
+[[nodiscard]] constexpr bool is_same_call() {
+  if constexpr (called<H> == called<Other> && called<H> != Called::by_service) {
+    return H::object::index == Other::object::index && H::object::sub_index == Other::object::sub_index;
+  } else {
+    return false;
+  }
+}
+
+/// The handlers of one object: the event they are called for, its entry in the device's dictionary, and their number.
+template <class Object, class Label, Called When, entry::Word Entry, std::size_t Count>
+struct ObjectHandler {
+  static constexpr bool exists = Entry > Dictionary::no_sub_index;
+  static_assert(exists, "handler: this device does not have the object");
+  static_assert(!exists || When != Called::on_download || (Entry & entry::writable) != 0,
+                "on_write: the object is ro or const, so that the handler can never be called");
+  static_assert(!exists || When != Called::on_upload || (Entry & entry::readable) != 0,
+                "on_read: the object is wo, so that the handler can never be called");
+  static_assert(Count == 1, "handler: the object has two of them; join them to one");
+  static constexpr bool is_good = true;
+};
+
+/// The objects without which a service never calls its handler. Handlers of error control are accepted by each device:
+/// code that several devices share passes those of heartbeat and of guarding, of which a device may have one.
+template <class Device, class H>
+struct ServiceHandler {
+  static constexpr bool has(std::uint16_t index) { return Device::dictionary.has(index, 0); }
+  static_assert(!is_of<H, SyncHandler> || has(0x1005),
+                "on_sync: this device does not have 1005h, so that the handler can never be called");
+  static_assert(!is_of<H, TimeHandler> || has(0x1012),
+                "on_time_of_day: this device does not have 1012h, so that the handler can never be called");
+  static_assert(!is_of<H, EmergencyHandler> || has(0x1028),
+                "on_emergency: this device does not have 1028h, so that the handler can never be called");
+  static constexpr bool is_good = KnownHandler<H>::is_good;
+};
+
+template <class Device, class H, class... Handlers>
+[[nodiscard]] constexpr bool check_handler() {
+  if constexpr (called<H> != Called::by_service) {
+    using Object = typename H::object;
+    constexpr std::size_t count = (std::size_t{is_same_call<H, Handlers>()} + ...);
+    return ObjectHandler<Object, pdo_detail::LabelOf<Object>, called<H>,
+                         Device::dictionary.find(Object::index, Object::sub_index), count>::is_good;
+  } else {
+    return ServiceHandler<Device, H>::is_good;
+  }
+}
+
+}  // namespace handler_detail
+
+/// Whether each of these handlers can be called in a node of this device; does not compile if one cannot.
+template <class Device, class... Handlers>
+[[nodiscard]] constexpr bool checked_handlers() {
+  return (true && ... && handler_detail::check_handler<Device, Handlers, Handlers...>());
+}
+
+}  // namespace canopen

@@ -1,0 +1,120 @@
+/// Which PDOs of a device are multiplex PDOs, or can become one by SDO.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "canopen/can/cob_id.hpp"
+#include "canopen/od/dictionary.hpp"
+#include "canopen/od/object_store.hpp"
+#include "canopen/pdo/mpdo_lists.hpp"
+#include "canopen/pdo/pdo_list.hpp"
+#include "canopen/pdo/pdo_mapping.hpp"
+#include "canopen/pdo/transmission_type.hpp"
+
+namespace canopen {
+
+/// The PDOs of one direction that are MPDOs or can become one by SDO; `Pdos` is the device's list. With a static
+/// mapping, a PDO is an MPDO if it does not have a layout.
+template <class Device, PdoIndices Indices, class Pdos>
+class MultiplexedPdos {
+  template <class Pdo>
+  [[nodiscard]] static constexpr bool may_be() {
+    constexpr std::uint16_t mapping = Indices.mapping + Pdo::number - 1;
+    if (!Device::options.mpdo) return false;
+    if (!Device::dictionary.has(Indices.communication + Pdo::number - 1, pdo_parameter::cob_id)) return false;
+    if (entry::wire_bytes(Device::dictionary.find(mapping, 0)) != 1) return false;
+    return Pdo::entries == 0 || mapping_capacity(Device::dictionary, mapping) != 0;
+  }
+
+ public:
+  /// Location of its parameters; 0 or 1 is one that does not exist.
+  struct Parameters {
+    std::uint16_t number;
+    entry::Word mapped_objects;
+    entry::Word cob_id;
+    entry::Word transmission_type;
+    entry::Word inhibit_time;
+  };
+
+  static constexpr std::size_t count = [] {
+    std::size_t sum = 0;
+    Pdos::for_each([&]<class Pdo, std::size_t>() { sum += may_be<Pdo>() ? 1 : 0; });
+    return sum;
+  }();
+
+  static constexpr std::array<Parameters, count> rows = [] {
+    std::array<Parameters, count> found{};
+    std::size_t i = 0;
+    Pdos::for_each([&]<class Pdo, std::size_t>() {
+      constexpr std::uint16_t index = Indices.communication + Pdo::number - 1;
+      const Dictionary& dictionary = Device::dictionary;
+      if (!may_be<Pdo>()) return;
+      found[i++] = {Pdo::number, dictionary.find(Indices.mapping + Pdo::number - 1, 0),
+                    dictionary.find(index, pdo_parameter::cob_id),
+                    dictionary.find(index, pdo_parameter::transmission_type),
+                    dictionary.find(index, pdo_parameter::inhibit_time)};
+    });
+    return found;
+  }();
+
+  /// Returns the one with this communication or mapping parameter; null if it cannot be an MPDO.
+  [[nodiscard]] static const Parameters* with_parameter(std::uint16_t index) {
+    for (const Parameters& row : rows) {
+      if (((static_cast<unsigned>(row.number - 1) ^ index) & 0x1FF) == 0) return &row;
+    }
+    return nullptr;
+  }
+
+  /// Returns `source_multiplexed`, `destination_multiplexed`, or the number of mapped objects.
+  [[nodiscard]] static std::uint32_t mode(EntryAccess<Device> entries, const Parameters& row) {
+    return entries.number(row.mapped_objects);
+  }
+
+  [[nodiscard]] static bool event_driven(EntryAccess<Device> entries, const Parameters& row) {
+    return row.transmission_type <= Dictionary::no_sub_index ||
+           transmission_of(entries.number(row.transmission_type)) == Transmission::event_driven;
+  }
+
+  /// Returns the first usable one with this mode; null if there is none.
+  [[nodiscard]] static const Parameters* find(EntryAccess<Device> entries, std::uint8_t wanted) {
+    for (const Parameters& row : rows) {
+      if (mode(entries, row) == wanted && is_usable(entries.number(row.cob_id)) && event_driven(entries, row)) {
+        return &row;
+      }
+    }
+    return nullptr;
+  }
+};
+
+/// The MPDOs that a device can have.
+template <class Device>
+struct MpdoFeatures {
+  using Rpdos = MultiplexedPdos<Device, rpdo_indices, typename Device::Rpdos>;
+  using Tpdos = MultiplexedPdos<Device, tpdo_indices, typename Device::Tpdos>;
+  using Scanned = MpdoLists<Device, ScannedObjects>;
+  using Dispatched = MpdoLists<Device, DispatchedObjects>;
+
+  /// Whether an MPDO of this direction can contain an entry.
+  [[nodiscard]] static constexpr bool carries(entry::Word word, entry::Word direction) {
+    const std::uint8_t bytes = entry::wire_bytes(word);
+    return word > Dictionary::no_sub_index && (word & direction) != 0 && bytes >= 1 && bytes <= 4;
+  }
+
+  /// Number of objects that a SAM-MPDO can contain.
+  static constexpr std::size_t scannable = [] {
+    std::size_t count = 0;
+    if (!Device::options.mpdo) return count;
+    Device::dictionary.for_each_entry(
+        [&](std::uint16_t, std::uint8_t, entry::Word word) { count += carries(word, entry::tpdo) ? 1 : 0; });
+    return count;
+  }();
+
+  static constexpr bool receives = Rpdos::count > 0;
+  static constexpr bool sends_destination = Tpdos::count > 0;
+  static constexpr bool sends_source = sends_destination && Scanned::room > 0 && scannable > 0;
+  static constexpr bool exists = receives || sends_destination;
+};
+
+}  // namespace canopen

@@ -1,0 +1,302 @@
+/// PDO layouts as types, which are computed, checked, packed and unpacked at compile time (CiA 301, 7.2.2).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <tuple>
+#include <utility>
+
+#include "canopen/base/label.hpp"
+#include "canopen/can/frame.hpp"
+#include "canopen/od/dictionary.hpp"
+#include "canopen/od/object.hpp"
+#include "canopen/pdo/pdo_codec.hpp"
+
+namespace canopen {
+
+/// A dummy entry of an RPDO, which this device ignores (CiA 301, 7.4.7.1: indices 0001h..0008h).
+template <std::uint16_t DataTypeIndex, std::uint16_t Bits>
+struct Dummy {
+  using type = std::uint64_t;
+  static constexpr std::uint16_t index = DataTypeIndex;
+  static constexpr std::uint8_t sub_index = 0;
+  static constexpr Access access = Access::wo;
+  static constexpr Mappable mappable = Mappable::rpdo;
+  static constexpr std::uint16_t bits = Bits;
+};
+
+/// An entry that occupies more bits in a PDO than its type has: a BOOLEAN in a whole byte, as many devices send it.
+template <class O, std::uint16_t Bits>
+struct Padded : O {
+  static_assert(Bits >= O::bits);
+  static constexpr std::uint16_t bits = Bits;
+};
+
+/// A string with a fixed number of bytes in a PDO: text is padded with 00h and ends at the first one, octet strings
+/// always have this length.
+template <class O, std::uint16_t Bytes>
+struct FixedString : O {
+  static_assert(value_detail::StringValue<typename O::type>, "only a string has a length to be fixed");
+  static_assert(Bytes <= O::type::capacity(), "the entry is longer than the string can be");
+  static constexpr std::uint16_t bits = Bytes * 8;
+};
+
+template <class O>
+inline constexpr bool is_dummy = O::index < 0x0020;
+
+/// An object whose length does not depend on its value: not a string or DOMAIN.
+template <class O>
+concept FixedLength = DictionaryObject<O> &&(O::bits > 0);
+
+/// An object that can be mapped into a TPDO: the EDS has PDOMapping=1 and access ro, rw, rwr or const.
+template <class O>
+concept TpdoMappable = DictionaryObject<O> && allows(O::mappable, Mappable::tpdo);
+
+/// An object that can be mapped into an RPDO: the EDS has PDOMapping=1 and access rw, rww or wo.
+template <class O>
+concept RpdoMappable = DictionaryObject<O> && allows(O::mappable, Mappable::rpdo);
+
+namespace pdo_detail {
+
+inline constexpr unsigned frame_data_align = 4;
+static_assert(offsetof(Frame, data) % frame_data_align == 0 && alignof(Frame) % frame_data_align == 0);
+
+template <class A, class B>
+inline constexpr bool same_object = A::index == B::index&& A::sub_index == B::sub_index;
+
+template <class Layout, class Label, class O>
+struct MappedObject {
+  static_assert(Layout::template maps<O>, "this PDO does not map the object");
+  static constexpr bool found = Layout::template maps<O>;
+};
+
+// Checks one entry at a time, so that the compiler's message names the wrong one.
+
+template <class Number, class Label, class O, unsigned Begin>
+struct PdoEntry {
+  static_assert(FixedLength<O>,
+                "a PDO carries no value without a fixed length: no DOMAIN, and strings as FixedString only");
+  static_assert(Begin > 64 || Begin + O::bits <= 64,
+                "the objects of this PDO are longer than its 64 bits together (CiA 301, 7.5.2.36)");
+  static constexpr bool fits = true;
+};
+
+template <class Number, class Label, class O>
+struct TpdoEntry {
+  static_assert(O::mappable != Mappable::no, "a TPDO may not carry this object: PDOMapping=0");
+  static_assert(O::mappable == Mappable::no || TpdoMappable<O>,
+                "a TPDO may not carry this object: its access is wo or rww");
+  static constexpr bool fits = true;
+};
+
+template <class Number, class Label, class O>
+struct RpdoEntry {
+  static_assert(O::mappable != Mappable::no, "an RPDO may not carry this object: PDOMapping=0");
+  static_assert(O::mappable == Mappable::no || RpdoMappable<O>,
+                "an RPDO may not carry this object: its access is ro, rwr or const");
+  static constexpr bool fits = true;
+};
+
+/// Whether each object can be mapped into a PDO of this direction.
+template <template <class, class, class> class EntryCheck, class Positions, class... Objects>
+struct Direction;
+template <template <class, class, class> class EntryCheck, std::size_t... I, class... Objects>
+struct Direction<EntryCheck, std::index_sequence<I...>, Objects...> {
+  static constexpr bool fits = (true && ... && EntryCheck<EntryNumber<I + 1>, LabelOf<Objects>, Objects>::fits);
+};
+
+/// First bit of each entry, and the end of the last one.
+template <class... Objects>
+inline constexpr std::array<unsigned, sizeof...(Objects) + 1> offsets_of = [] {
+  std::array<unsigned, sizeof...(Objects) + 1> at{};
+  unsigned i = 0;
+  ((at[i + 1] = at[i] + Objects::bits, ++i), ...);
+  return at;
+}();
+
+/// Whether each object has a fixed length and ends within the frame.
+template <class Positions, class... Objects>
+struct Room;
+template <std::size_t... I, class... Objects>
+struct Room<std::index_sequence<I...>, Objects...> {
+  static constexpr bool suffices =
+      (true && ... && PdoEntry<EntryNumber<I + 1>, LabelOf<Objects>, Objects, offsets_of<Objects...>[I]>::fits);
+};
+
+}  // namespace pdo_detail
+
+/// The layout of a PDO made of `Objects`, in their order, least significant bit first. It does not need a dictionary: a
+/// master or an analyser can use it as well as the device.
+///
+/// Each function takes the data bytes of a frame, or the frame. The alignment of a frame's data is known, which saves
+/// instructions on processors that need aligned words.
+template <DictionaryObject... Objects>
+struct PdoLayout {
+  static constexpr std::size_t entries = sizeof...(Objects);
+  static_assert(entries <= 64, "a PDO maps 64 objects at most (CiA 301, 7.5.2.36)");
+  static_assert(pdo_detail::Room<std::index_sequence_for<Objects...>, Objects...>::suffices);
+  static constexpr unsigned bits = (0u + ... + Objects::bits);
+  static constexpr std::uint8_t size = (bits + 7) / 8;  ///< data bytes of the frame
+
+  using Data = std::array<std::uint8_t, 8>;
+  using Values = std::tuple<typename Objects::type...>;
+
+  /// First bit of each entry, and the end of the last one.
+  static constexpr std::array<unsigned, entries + 1> offsets = pdo_detail::offsets_of<Objects...>;
+
+  /// The object of entry `I`.
+  template <std::size_t I>
+  using Entry = std::tuple_element_t<I, std::tuple<Objects...>>;
+
+  /// Whether an object is mapped.
+  template <class O>
+  static constexpr bool maps = (pdo_detail::same_object<O, Objects> || ...);
+
+  /// Position of the entry that maps an object, from 0; the first one if there are several.
+  template <class O>
+  static constexpr std::size_t position_of = [] {
+    static_assert(pdo_detail::MappedObject<PdoLayout, pdo_detail::LabelOf<O>, O>::found);
+    std::size_t position = 0;
+    static_cast<void>(((pdo_detail::same_object<O, Objects> || (++position, false)) || ...));
+    return position;
+  }();
+
+  /// Returns the data bytes for these values.
+  [[nodiscard]] static constexpr Data pack(const typename Objects::type&... values) {
+    Data data{};
+    pack_aligned<1>(data, values...);
+    return data;
+  }
+
+  /// Writes these values to the first `size` bytes.
+  static constexpr void pack_into(Data& data, const typename Objects::type&... values) {
+    pack_aligned<1>(data, values...);
+  }
+
+  /// The same for data at an address that is a multiple of four, as in a frame.
+  static constexpr void pack_into_words(Data& data, const typename Objects::type&... values) {
+    pack_aligned<pdo_detail::frame_data_align>(data, values...);
+  }
+
+  /// The same for a frame; sets its length.
+  static constexpr void pack_into(Frame& frame, const typename Objects::type&... values) {
+    frame.size = size;
+    pack_aligned<pdo_detail::frame_data_align>(frame.data, values...);
+  }
+
+  /// Returns the values in these data bytes.
+  [[nodiscard]] static constexpr Values unpack(const Data& data) {
+    return unpack_aligned<1>(data, std::index_sequence_for<Objects...>{});
+  }
+  [[nodiscard]] static constexpr Values unpack(const Frame& frame) {
+    return unpack_aligned<pdo_detail::frame_data_align>(frame.data, std::index_sequence_for<Objects...>{});
+  }
+
+  /// Returns the value of entry `I` of these data bytes.
+  template <std::size_t I>
+  [[nodiscard]] static constexpr typename Entry<I>::type get(const Data& data) {
+    return get_aligned<I, 1>(data);
+  }
+  template <std::size_t I>
+  [[nodiscard]] static constexpr typename Entry<I>::type get(const Frame& frame) {
+    return get_from_words<I>(frame.data);
+  }
+
+  /// The same for data at an address that is a multiple of four.
+  template <std::size_t I>
+  [[nodiscard]] static constexpr typename Entry<I>::type get_from_words(const Data& data) {
+    return get_aligned<I, pdo_detail::frame_data_align>(data);
+  }
+
+  /// Returns the value of an object in these data bytes.
+  template <DictionaryObject O>
+  [[nodiscard]] static constexpr typename O::type get(const Data& data) {
+    return get_aligned<position_of<O>, 1>(data);
+  }
+  template <DictionaryObject O>
+  [[nodiscard]] static constexpr typename O::type get(const Frame& frame) {
+    return get_aligned<position_of<O>, pdo_detail::frame_data_align>(frame.data);
+  }
+
+  /// Sets the value of entry `I`. All other bits keep their value.
+  template <std::size_t I>
+  static constexpr void set(Data& data, const typename Entry<I>::type& value) {
+    pdo_detail::replace<offsets[I], Entry<I>::bits>(data, value);
+  }
+  template <std::size_t I>
+  static constexpr void set(Frame& frame, const typename Entry<I>::type& value) {
+    pdo_detail::replace<offsets[I], Entry<I>::bits, pdo_detail::frame_data_align>(frame.data, value);
+  }
+
+  /// Sets the value of an object. All other bits keep their value.
+  template <DictionaryObject O>
+  static constexpr void set(Data& data, const typename O::type& value) {
+    set<position_of<O>>(data, value);
+  }
+  template <DictionaryObject O>
+  static constexpr void set(Frame& frame, const typename O::type& value) {
+    set<position_of<O>>(frame, value);
+  }
+
+  /// Sets the value of entry `I`, whose bits must be zero.
+  template <std::size_t I>
+  static constexpr void put(Data& data, const typename Entry<I>::type& value) {
+    pdo_detail::put<offsets[I], Entry<I>::bits>(data, value);
+  }
+  template <std::size_t I>
+  static constexpr void put(Frame& frame, const typename Entry<I>::type& value) {
+    pdo_detail::put<offsets[I], Entry<I>::bits, pdo_detail::frame_data_align>(frame.data, value);
+  }
+
+  /// Calls `visit.template operator()<O, I>()` for each entry in order.
+  template <class Visit>
+  static constexpr void for_each(Visit&& visit) {
+    [&]<std::size_t... I>(std::index_sequence<I...>) { (visit.template operator()<Objects, I>(), ...); }
+    (std::index_sequence_for<Objects...>{});
+  }
+
+ private:
+  template <unsigned Align>
+  static constexpr void pack_aligned([[maybe_unused]] Data& data, const typename Objects::type&... values) {
+    constexpr pdo_detail::Chunks chunks = pdo_detail::chunks_of(offsets);
+    [&]<std::size_t... C>(std::index_sequence<C...>) {
+      (store_chunk<Align, chunks.rows[C].first, chunks.rows[C].bits>(data, std::index_sequence_for<Objects...>{},
+                                                                     values...),
+       ...);
+    }
+    (std::make_index_sequence<chunks.count>{});
+  }
+
+  template <unsigned Align, unsigned First, unsigned Bits, std::size_t... I>
+  static constexpr void store_chunk(Data& data, std::index_sequence<I...>, const typename Objects::type&... values) {
+    pdo_detail::store_bytes<Bits / 8, pdo_detail::alignment_at(Align, First / 8)>(
+        data.data() + First / 8, static_cast<pdo_detail::ChunkWord<Bits>>(
+                                     (pdo_detail::ChunkWord<Bits>{0} | ... |
+                                      pdo_detail::part_of_chunk<offsets[I], Objects::bits, First, Bits>(values))));
+  }
+
+  template <std::size_t I, unsigned Align>
+  [[nodiscard]] static constexpr typename Entry<I>::type get_aligned(const Data& data) {
+    return pdo_detail::value_at<typename Entry<I>::type, offsets[I], Entry<I>::bits, Align>(data);
+  }
+
+  template <unsigned Align, std::size_t... I>
+  [[nodiscard]] static constexpr Values unpack_aligned([[maybe_unused]] const Data& data, std::index_sequence<I...>) {
+    return Values{pdo_detail::value_at<typename Objects::type, offsets[I], Objects::bits, Align, true>(data)...};
+  }
+};
+
+/// A PDO that a device transmits.
+template <DictionaryObject... Objects>
+struct Tpdo : PdoLayout<Objects...> {
+  static_assert(pdo_detail::Direction<pdo_detail::TpdoEntry, std::index_sequence_for<Objects...>, Objects...>::fits);
+};
+
+/// A PDO that a device receives.
+template <DictionaryObject... Objects>
+struct Rpdo : PdoLayout<Objects...> {
+  static_assert(pdo_detail::Direction<pdo_detail::RpdoEntry, std::index_sequence_for<Objects...>, Objects...>::fits);
+};
+
+}  // namespace canopen

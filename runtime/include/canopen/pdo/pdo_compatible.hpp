@@ -1,0 +1,121 @@
+/// Whether one device's RPDO can consume another's TPDO: both layouts agree on each bit that is used.
+///
+///     static_assert(canopen::compatible<drive::Tpdo2, plc::Rpdo1>);
+///     static_assert(canopen::CompatiblePdos<drive::Tpdo2, plc::Rpdo1>::hold);  // names the entry that differs
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+
+#include "canopen/base/label.hpp"
+#include "canopen/pdo/pdo.hpp"
+
+namespace canopen {
+
+namespace pdo_detail {
+
+/// Meaning of an entry's bits; types of the same kind and length are compatible.
+enum class EntryKind : std::uint8_t { boolean, unsigned_integer, signed_integer, real, time, string };
+
+template <class T>
+[[nodiscard]] constexpr EntryKind kind_of() {
+  if constexpr (std::is_same_v<T, bool>) {
+    return EntryKind::boolean;
+  } else if constexpr (std::is_floating_point_v<T>) {
+    return EntryKind::real;
+  } else if constexpr (std::is_same_v<T, TimeOfDay> || std::is_same_v<T, TimeDifference>) {
+    return EntryKind::time;
+  } else if constexpr (StringValue<T>) {
+    return EntryKind::string;
+  } else {
+    return std::is_signed_v<T> ? EntryKind::signed_integer : EntryKind::unsigned_integer;
+  }
+}
+
+enum class Link : std::uint8_t { fits, too_short, nothing_begins_there, other_length, other_kind };
+
+/// Placeholder in a message for a missing object.
+struct NoObject {
+  static constexpr std::uint16_t index = 0;
+  static constexpr std::uint8_t sub_index = 0;
+};
+
+/// Returns the entry of a layout that begins at this bit; `entries` if none does.
+template <class Layout>
+[[nodiscard]] constexpr std::size_t entry_at(unsigned bit) {
+  std::size_t i = 0;
+  while (i < Layout::entries && Layout::offsets[i] != bit) ++i;
+  return i;
+}
+
+template <class Layout, std::size_t I>
+[[nodiscard]] constexpr auto entry_or_none() {
+  if constexpr (I < Layout::entries) {
+    return std::type_identity<typename Layout::template Entry<I>>{};
+  } else {
+    return std::type_identity<NoObject>{};
+  }
+}
+
+/// Entry `I` of the consumer, and the producer's entry at the same bit. A dummy ignores its bits.
+template <class Produced, class Consumed, std::size_t I>
+struct LinkOf {
+  using Consumer = typename Consumed::template Entry<I>;
+  using Producer = typename decltype(entry_or_none<Produced, entry_at<Produced>(Consumed::offsets[I])>())::type;
+
+  static constexpr Link value = [] {
+    if (Consumed::offsets[I + 1] > Produced::bits) return Link::too_short;
+    if constexpr (is_dummy<Consumer>) {
+      return Link::fits;
+    } else if constexpr (std::is_same_v<Producer, NoObject>) {
+      return Link::nothing_begins_there;
+    } else if constexpr (Producer::bits != Consumer::bits) {
+      return Link::other_length;
+    } else {
+      return kind_of<typename Producer::type>() == kind_of<typename Consumer::type>() ? Link::fits : Link::other_kind;
+    }
+  }();
+};
+
+template <class Produced, class Consumed>
+[[nodiscard]] constexpr bool all_links_fit() {
+  return []<std::size_t... I>(std::index_sequence<I...>) {
+    return (true && ... && (LinkOf<Produced, Consumed, I>::value == Link::fits));
+  }
+  (std::make_index_sequence<Consumed::entries>{});
+}
+
+/// Checks one entry of an RPDO, so that the compiler's message names both objects.
+template <class Number, class ConsumerLabel, class Consumer, class ProducerLabel, class Producer, Link L>
+struct CompatibleEntry {
+  static_assert(L != Link::too_short, "PDO link: the TPDO ends before this entry of the RPDO does");
+  static_assert(L != Link::nothing_begins_there,
+                "PDO link: no entry of the TPDO begins where this one of the RPDO does");
+  static_assert(L != Link::other_length, "PDO link: the entry of the TPDO has another length than that of the RPDO");
+  static_assert(L != Link::other_kind, "PDO link: the entry of the TPDO is of another kind than that of the RPDO");
+  static constexpr bool fits = L == Link::fits;
+};
+
+template <std::size_t I, class Link>
+using CheckedLink = CompatibleEntry<EntryNumber<I + 1>, LabelOf<typename Link::Consumer>, typename Link::Consumer,
+                                    LabelOf<typename Link::Producer>, typename Link::Producer, Link::value>;
+
+}  // namespace pdo_detail
+
+/// Whether the TPDO has, for every entry of the RPDO, one at the same bit, of the same length and kind: BOOLEAN,
+/// unsigned, signed, real, time or string. A dummy is compatible with anything. The TPDO may be longer.
+template <class Produced, class Consumed>
+inline constexpr bool compatible = pdo_detail::all_links_fit<Produced, Consumed>();
+
+/// The same check with a message that names the entry that differs and the objects on both sides.
+template <class Produced, class Consumed>
+struct CompatiblePdos {
+  static constexpr bool hold = []<std::size_t... I>(std::index_sequence<I...>) {
+    return (true && ... && pdo_detail::CheckedLink<I, pdo_detail::LinkOf<Produced, Consumed, I>>::fits);
+  }
+  (std::make_index_sequence<Consumed::entries>{});
+};
+
+}  // namespace canopen

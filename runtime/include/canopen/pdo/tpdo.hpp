@@ -1,0 +1,388 @@
+/// The TPDOs of a device (CiA 301, 7.2.2): when they are sent, and with which data.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include "canopen/base/clock.hpp"
+#include "canopen/base/optimization.hpp"
+#include "canopen/can/cob_id.hpp"
+#include "canopen/can/frame.hpp"
+#include "canopen/od/object_store.hpp"
+#include "canopen/pdo/communication_parameters.hpp"
+#include "canopen/pdo/mapped_places.hpp"
+#include "canopen/pdo/parameter_column.hpp"
+#include "canopen/pdo/pdo.hpp"
+#include "canopen/pdo/pdo_list.hpp"
+#include "canopen/pdo/static_tpdos.hpp"
+#include "canopen/pdo/transmission_type.hpp"
+#include "canopen/sync/sync.hpp"
+
+namespace canopen {
+
+/// All TPDOs of one device, with the present values of 1800h and the following parameters.
+///
+///   type 0         at the SYNC after a mapped object has changed
+///   type 1..240    at every n-th SYNC, counted from the SYNC whose counter is the SYNC start value
+///   type 252       on a remote frame, with the data of the last SYNC
+///   type 253       on a remote frame
+///   type 254, 255  when a mapped object has changed, when the event timer has elapsed, and once on entering
+///                  Operational; never within the inhibit time after the last transmission
+///
+/// TPDOs of all types respond to a remote frame if bit 30 of their COB-ID allows it.
+template <class Device>
+class TpdoService {
+ public:
+  using Pdos = ServedPdos<Device::dictionary, tpdo_indices, typename Device::Tpdos>;
+  using Mapped = MappedPlaces<Device, tpdo_indices, Pdos>;
+  using Static = StaticTpdos<Device, Pdos, Mapped>;
+  static constexpr std::size_t count = Pdos::count;
+  static constexpr bool has_dynamic_mapping = Mapped::any;
+
+  void enter_operational(ObjectStore<Device>& store, TimePoint now) {
+    for (std::size_t i = 0; i < count; ++i) {
+      slots_[i].flags = 0;
+      activate(i, store, now);
+      if (Device::options.event_driven_on_change) slots_[i].flags |= changed_bit;
+    }
+  }
+
+  /// Marks the TPDOs that map `O` to be sent, because it has a new value. Returns false if there are none.
+  template <DictionaryObject O>
+  bool changed([[maybe_unused]] EntryAccess<Device> entries) {
+    bool carried = false;
+    if constexpr (Device::triggers_event(O::index, O::sub_index)) {
+      Pdos::for_each([&]<class Pdo, std::size_t I>() {
+        if constexpr (Mapped::capacities[I] != 0) {
+          if (!Mapped::carries(I, entries, object_key(O::index, O::sub_index))) return;
+        } else if constexpr (!Pdo::template maps<O>) {
+          return;
+        }
+        slots_[I].flags |= changed_bit;
+        carried = true;
+      });
+    }
+    return carried;
+  }
+
+  /// The same for an object that is known only by index and sub-index.
+  void changed([[maybe_unused]] EntryAccess<Device> entries, std::uint16_t index, std::uint8_t sub_index) {
+    if (!Device::triggers_event(index, sub_index)) return;
+    const std::uint32_t key = object_key(index, sub_index);
+    for (const std::uint32_t row : Static::carriers) {
+      if (row >> 8 == key) slots_[row & 0xFF].flags |= changed_bit;
+    }
+    if constexpr (has_dynamic_mapping) {
+      for (std::size_t i = 0; i < count; ++i) {
+        if (Mapped::carries(i, entries, key)) slots_[i].flags |= changed_bit;
+      }
+    }
+  }
+
+  /// Whether a TPDO maps an object now, or can do so: `changed` must be called for it.
+  [[nodiscard]] static bool carries(EntryAccess<Device> entries, std::uint32_t key) {
+    for (const std::uint32_t row : Static::carriers) {
+      if (row >> 8 == key) return true;
+    }
+    if constexpr (has_dynamic_mapping) {
+      for (std::size_t i = 0; i < count; ++i) {
+        if (Mapped::carries(i, entries, key)) return true;
+      }
+    }
+    return false;
+  }
+
+  /// Applies a new value of a communication or mapping parameter, 1800h..1BFFh.
+  void parameter_changed(ObjectStore<Device>& store, std::uint16_t index, std::uint8_t sub_index, TimePoint now) {
+    const std::size_t i = place_of_pdo<Pdos>(index);
+    if (i == count) return;
+    if (!is_tpdo_mapping(index)) {
+      if (sub_index == pdo_parameter::inhibit_time) return;
+      if (sub_index == pdo_parameter::event_timer) return start_event_timer(slots_[i], i, store.entries(), now);
+    }
+    const bool sends_changes = (slots_[i].flags & event_driven) != 0;
+    slots_[i].flags &= static_cast<std::uint8_t>(sends_changes ? inhibited | changed_bit : inhibited);
+    activate(i, store, now);
+  }
+
+  /// Handles a SYNC: the TPDOs that wait for it are sent if `now` is set, otherwise they become due. Those of type 252
+  /// sample their data. Returns false if any is due.
+  template <Bus B>
+  [[nodiscard]] bool on_sync(ObjectStore<Device>& store, B& bus, Sync sync, bool now) {
+    for (std::size_t i = 0; i < count; ++i) {
+      Slot& slot = slots_[i];
+      if (slot.type > last_cyclic) {
+        if (has_samples && slot.type == remote_synchronous) sample(i, store);
+      } else if (wants_sync(i, store.entries(), sync)) {
+        now = now && send(slot, i, store, bus);
+        slot.flags = static_cast<std::uint8_t>(now ? slot.flags & ~(changed_bit | due | asked) : slot.flags | due);
+      }
+    }
+    return now;
+  }
+
+  /// Discards the TPDOs of the last SYNC, because the synchronous window has elapsed.
+  void miss_sync() {
+    for (Slot& slot : slots_) {
+      if (slot.type <= last_cyclic) slot.flags &= static_cast<std::uint8_t>(~due);
+    }
+  }
+
+  /// Handles a remote frame that requests the TPDO with this CAN-ID.
+  void on_remote(EntryAccess<Device> entries, std::uint32_t can_id) {
+    if constexpr (Device::options.tpdo_remote_frames) {
+      for (std::size_t i = 0; i < count; ++i) {
+        if (slots_[i].type != inactive && cob_id_of(i, entries) == can_id) slots_[i].flags |= asked;
+      }
+    }
+  }
+
+  /// Sends what is due. Returns false if the bus had no room; the rest remains due.
+  template <Bus B>
+  bool serve(ObjectStore<Device>& store, B& bus, TimePoint now) {
+    for (std::size_t i = 0; i < count; ++i) {
+      Slot& slot = slots_[i];
+      if (is_inhibited(slot, now) || (!wanted(slot) && !event_timer_expired(slot, now))) continue;
+      const bool is_sampled = has_samples && slot.type == remote_synchronous;
+      if (!(is_sampled ? send_sample(slot, i, store, bus) : send(slot, i, store, bus))) return false;
+      sent(slot, i, store.entries(), now);
+    }
+    return true;
+  }
+
+  /// Returns when the next TPDO is to be sent; not later than `now` if one is already waiting.
+  [[nodiscard]] std::optional<TimePoint> next_deadline(TimePoint now) const {
+    std::optional<TimePoint> next;
+    for (const Slot& slot : slots_) {
+      if (!wanted(slot) && (slot.flags & timed) == 0) continue;
+      TimePoint at = wanted(slot) || event_timer_expired(slot, now) ? now : slot.times.event_due;
+      if ((slot.flags & inhibited) != 0 && is_ahead(slot.times.inhibit_end, inhibit_unit, now) &&
+          slot.times.inhibit_end > at)
+        at = slot.times.inhibit_end;
+      if (!next || at < *next) next = at;
+    }
+    return next;
+  }
+
+ private:
+  enum Flag : std::uint8_t {
+    changed_bit = 2,    ///< a mapped object has a new value
+    due = 4,            ///< due at a SYNC
+    timed = 8,          ///< event_due is valid
+    inhibited = 16,     ///< inhibit_end is valid
+    event_driven = 32,  ///< of type 254 or 255
+    before_start = 64,  ///< the SYNC with the start value has not been received yet
+    asked = 128,        ///< requested by a remote frame
+  };
+
+  static constexpr std::uint8_t last_cyclic = 240;
+  static constexpr std::uint8_t inactive = 251;  ///< not valid, not mapped, or the node is not Operational
+  static constexpr std::uint8_t remote_synchronous = 252;
+  static constexpr std::uint8_t first_event_driven = 254;
+  static constexpr std::uint8_t event_driven_type = 255;  ///< of a TPDO without a transmission type
+
+  template <std::uint8_t SubIndex>
+  using Column = ParameterColumn<Device, Pdos, tpdo_indices.communication, SubIndex>;
+  static constexpr bool has_inhibit_time = Column<pdo_parameter::inhibit_time>::exists;
+  static constexpr bool has_event_timer = Column<pdo_parameter::event_timer>::exists;
+  static constexpr bool has_sync_start = Column<pdo_parameter::sync_start>::exists;
+  static constexpr bool has_samples = Device::options.tpdo_remote_frames && SyncConsumer<Device>::exists;
+
+  static constexpr std::uint32_t event_unit = from_milliseconds(1).count();
+  static constexpr std::uint32_t inhibit_unit = Device::options.inhibit_time_unit;
+
+  using Data = std::array<std::uint8_t, 8>;
+
+  struct Times {
+    TimePoint event_due;
+    TimePoint inhibit_end;
+  };
+
+  struct Slot {
+    Times times;  ///< for type 252, which does not use them, the data of the last SYNC
+    std::uint8_t flags;
+    std::uint8_t type;
+    std::uint8_t syncs;  ///< types 1..240: SYNCs until it is due
+    std::uint8_t size;   ///< data bytes
+  };
+
+  /// Data bytes of TPDOs with static mapping.
+  static constexpr std::array<std::uint8_t, count> sizes = [] {
+    std::array<std::uint8_t, count> rows{};
+    Pdos::for_each([&]<class Pdo, std::size_t I>() { rows[I] = Pdo::size; });
+    return rows;
+  }();
+
+  [[nodiscard]] static std::uint32_t cob_id_of(std::size_t i, EntryAccess<Device> entries) {
+    return Column<pdo_parameter::cob_id>::get(entries, i, CobId::invalid_bit);
+  }
+
+  /// Returns one of the other parameters; 0 if it does not exist.
+  template <std::uint8_t SubIndex>
+  [[nodiscard]] static std::uint16_t parameter(std::size_t i, EntryAccess<Device> entries) {
+    return static_cast<std::uint16_t>(Column<SubIndex>::get(entries, i, 0));
+  }
+
+  /// Looks up the mapping and returns its data bytes.
+  std::uint8_t look_up(std::size_t i, [[maybe_unused]] EntryAccess<Device> entries) {
+    if constexpr (has_dynamic_mapping) {
+      if (Mapped::is_dynamic(i)) return places_.look_up(i, entries, [](MappedObject) { return false; });
+    }
+    return sizes[i];
+  }
+
+  void activate(std::size_t i, ObjectStore<Device>& store, TimePoint now) {
+    Slot& slot = slots_[i];
+    const EntryAccess<Device> entries = store.entries();
+    slot.type = inactive;
+    slot.size = look_up(i, entries);
+    const CobId cob_id{cob_id_of(i, entries)};
+    if (slot.size == 0 || !cob_id.valid() || !may_be_written(cob_id, true, true)) return;
+    slot.type = static_cast<std::uint8_t>(Column<pdo_parameter::transmission_type>::get(entries, i, event_driven_type));
+    if (slot.type >= first_event_driven) {
+      slot.flags |= event_driven;
+      return start_event_timer(slot, i, entries, now);
+    }
+    slot.flags &= static_cast<std::uint8_t>(~inhibited);
+    if (slot.type <= last_cyclic) {
+      slot.syncs = slot.type;
+      if (has_sync_start && parameter<pdo_parameter::sync_start>(i, entries) != 0) slot.flags |= before_start;
+    } else if (slot.type == remote_synchronous) {
+      sample(i, store);
+    }
+  }
+
+  /// Whether a TPDO of types 0..240 is to be sent at this SYNC.
+  [[nodiscard]] bool wants_sync(std::size_t i, EntryAccess<Device> entries, Sync sync) {
+    Slot& slot = slots_[i];
+    if (slot.type == 0) return (slot.flags & changed_bit) != 0 || !Device::options.tpdo_acyclic_on_change;
+    if (has_sync_start && (slot.flags & before_start) != 0) {
+      if (sync.counter != 0 && sync.counter != parameter<pdo_parameter::sync_start>(i, entries)) return false;
+      slot.flags &= static_cast<std::uint8_t>(~before_start);
+    }
+    if (slot.syncs > 1) {
+      --slot.syncs;
+      return false;
+    }
+    slot.syncs = slot.type;
+    return true;
+  }
+
+  /// Whether a TPDO is to be sent for any reason except its event timer.
+  [[nodiscard]] static bool wanted(const Slot& slot) {
+    if ((slot.flags & (due | asked)) != 0) return true;
+    constexpr std::uint8_t event = event_driven | changed_bit;
+    return Device::options.event_driven_on_change && (slot.flags & event) == event;
+  }
+
+  static void start_event_timer(Slot& slot, std::size_t i, EntryAccess<Device> entries, TimePoint now) {
+    slot.flags &= static_cast<std::uint8_t>(~timed);
+    if ((slot.flags & event_driven) != 0) go_on_with_event_timer(slot, i, entries, now);
+  }
+
+  /// Sets the event timer to one period after the last time, so that it does not drift; to one period from now if that
+  /// has passed or the timer was not running.
+  [[gnu::noinline]] static void go_on_with_event_timer([[maybe_unused]] Slot& slot, [[maybe_unused]] std::size_t i,
+                                                       [[maybe_unused]] EntryAccess<Device> entries,
+                                                       [[maybe_unused]] TimePoint now) {
+    if constexpr (has_event_timer) {
+      const Duration period = from_milliseconds(parameter<pdo_parameter::event_timer>(i, entries));
+      TimePoint next = slot.times.event_due + period;
+      if ((slot.flags & timed) == 0 || !is_within(next, period, now)) next = now + period;
+      slot.times.event_due = next;
+      slot.flags &= static_cast<std::uint8_t>(~timed);
+      if (period.count() != 0) slot.flags |= timed;
+    }
+  }
+
+  [[nodiscard]] static bool event_timer_expired(const Slot& slot, TimePoint now) {
+    return has_event_timer && (slot.flags & timed) != 0 && !is_ahead(slot.times.event_due, event_unit, now);
+  }
+
+  /// Whether the inhibit time is running; ends it if it has elapsed.
+  [[nodiscard]] static bool is_inhibited(Slot& slot, TimePoint now) {
+    if ((slot.flags & inhibited) == 0) return false;
+    if (is_ahead(slot.times.inhibit_end, inhibit_unit, now)) return true;
+    slot.flags &= static_cast<std::uint8_t>(~inhibited);
+    return false;
+  }
+
+  template <Bus B>
+  [[nodiscard]] bool send(const Slot& slot, std::size_t which, ObjectStore<Device>& store, B& bus) {
+    const std::uint32_t cob_id = cob_id_of(which, store.entries());
+    if constexpr (prefers_size) {
+      FrameWords words;
+      pack(which, store, reinterpret_cast<Data&>(words));
+      return send_configured(bus, cob_id, slot.size, words.first, words.second);
+    } else {
+      if (!is_usable(cob_id)) return true;
+      Frame frame;
+      frame.id = cob_id & 0x1FFF'FFFF;
+      frame.extended = (cob_id & CobId::extended_bit) != 0;
+      frame.size = slot.size;
+      pack(which, store, frame.data);
+      return bus.send(frame);
+    }
+  }
+
+  /// Sends the data of the last SYNC.
+  template <Bus B>
+  [[nodiscard]] bool send_sample(const Slot& slot, std::size_t which, ObjectStore<Device>& store, B& bus) {
+    return send_configured(bus, cob_id_of(which, store.entries()), slot.size,
+                           slot.times.event_due.since_start().count(), slot.times.inhibit_end.since_start().count());
+  }
+
+  void sample([[maybe_unused]] std::size_t which, [[maybe_unused]] ObjectStore<Device>& store) {
+    if constexpr (has_samples) {
+      slots_[which].times = Times{};
+      pack(which, store, reinterpret_cast<Data&>(slots_[which].times));
+    }
+  }
+
+  /// Writes the values of the mapped objects to data, which must be zero and aligned to four bytes.
+  void pack(std::size_t which, ObjectStore<Device>& store, Data& data) const {
+    if constexpr (has_dynamic_mapping) {
+      if (Mapped::is_dynamic(which)) pack_mapped(which, store.entries(), data);
+    }
+    Static::pack(which, store, data, Pdos{}, std::make_index_sequence<count>{});
+  }
+
+  void pack_mapped(std::size_t which, EntryAccess<Device> entries, Data& data) const {
+    using Runs = typename Mapped::Runs;
+    const auto* run = places_.of(which);
+    for (unsigned at = 0, end = slots_[which].size * 8u / Runs::unit; at < end; ++run) {
+      const unsigned length = Runs::length(*run);
+      const auto offset = static_cast<entry::Word>(Runs::offset(*run));
+      const std::uint8_t* const from = (*run & Runs::apart) == 0 ? entries.ram(offset) : entries.constant(offset);
+      if constexpr (!Runs::has_bits) {
+        copy_value(data.data() + at, from, length);
+      } else if ((*run & Runs::nothing) != Runs::nothing) {
+        put_bits(data.data(), at, length, take_bits(from, 0, length));
+      }
+      at += length;
+    }
+  }
+
+  /// Starts the inhibit time, and the event timer again: from when it elapsed, so that the period does not drift,
+  /// or from now.
+  void sent(Slot& slot, std::size_t i, EntryAccess<Device> entries, TimePoint now) {
+    slot.flags &= static_cast<std::uint8_t>(~(changed_bit | due | asked));
+    if ((slot.flags & event_driven) == 0) return;
+    if constexpr (has_inhibit_time) {
+      const Duration inhibit = inhibit_duration(Device::options, parameter<pdo_parameter::inhibit_time>(i, entries));
+      if (inhibit.count() != 0) slot.flags |= inhibited;
+      slot.times.inhibit_end = now + inhibit;
+    }
+    go_on_with_event_timer(slot, i, entries, now);
+  }
+
+  struct Nothing {};
+
+  std::array<Slot, count> slots_{};
+  [[no_unique_address]] std::conditional_t<has_dynamic_mapping, Mapped, Nothing> places_{};
+};
+
+}  // namespace canopen

@@ -1,0 +1,327 @@
+/// Which values of a device "save" stores, and their order in storage; computed at compile time (CiA 301, 7.5.2.13).
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include "canopen/od/device_options.hpp"
+#include "canopen/od/dictionary.hpp"
+#include "canopen/od/value.hpp"
+
+namespace canopen {
+
+/// Values that are stored and restored together.
+enum class ParameterSection : std::uint8_t {
+  communication,  ///< 1000h..1FFFh
+  manufacturer,   ///< 2000h..5FFFh
+  application,    ///< 6000h..9FFFh
+  other,          ///< A000h..FFFFh
+  with_node_id,   ///< entries whose stored value is valid only for the node-ID it was stored with, and that "load" does
+                  ///< not affect
+  configuration,  ///< 1020h
+};
+inline constexpr std::size_t parameter_sections = 6;
+
+/// Bit n is section n.
+using SectionSet = std::uint8_t;
+[[nodiscard]] constexpr SectionSet set_of(ParameterSection section) {
+  return static_cast<SectionSet>(1u << static_cast<unsigned>(section));
+}
+inline constexpr SectionSet all_sections = (1u << parameter_sections) - 1;
+
+/// The sections of 1000h..1FFFh, which a reset communication loads.
+inline constexpr SectionSet communication_sections = set_of(ParameterSection::communication) |
+                                                     set_of(ParameterSection::with_node_id) |
+                                                     set_of(ParameterSection::configuration);
+
+/// The sections of a sub-index of 1010h and 1011h. Sub-indices that are not listed belong to the application.
+struct ParameterRange {
+  std::uint8_t sub_index;
+  SectionSet sections;
+};
+inline constexpr ParameterRange parameter_ranges[] = {
+    {1, all_sections},
+    {2, communication_sections},
+    {3, set_of(ParameterSection::application)},
+    {4, set_of(ParameterSection::manufacturer)},
+};
+
+[[nodiscard]] constexpr SectionSet sections_of(std::uint8_t sub_index) {
+  for (const ParameterRange& row : parameter_ranges) {
+    if (row.sub_index == sub_index) return row.sections;
+  }
+  return 0;
+}
+
+/// Consecutive bytes of Values that are stored.
+struct StoredRun {
+  std::uint16_t offset;
+  std::uint16_t size;
+};
+
+namespace parameter_detail {
+
+struct SectionRow {
+  std::uint16_t last;
+  ParameterSection section;
+};
+inline constexpr SectionRow section_rows[] = {
+    {0x101F, ParameterSection::communication}, {0x1020, ParameterSection::configuration},
+    {0x1FFF, ParameterSection::communication}, {0x5FFF, ParameterSection::manufacturer},
+    {0x9FFF, ParameterSection::application},   {0xFFFF, ParameterSection::other},
+};
+
+[[nodiscard]] constexpr ParameterSection section_of(std::uint16_t index) {
+  const SectionRow* row = section_rows;
+  while (index > row->last) ++row;
+  return row->section;
+}
+
+struct IndexRange {
+  std::uint16_t first;
+  std::uint16_t last;
+};
+
+/// Writable objects of the communication profile that are not parameters: errors, time stamps, commands.
+inline constexpr IndexRange no_parameters[] = {
+    {0x1001, 0x1003}, {0x1010, 0x1011}, {0x1013, 0x1013}, {0x1023, 0x1026}, {0x1F50, 0x1F57}, {0x1F82, 0x1F83},
+};
+
+[[nodiscard]] constexpr bool can_be_parameter(std::uint16_t index) {
+  for (const IndexRange& row : no_parameters) {
+    if (index >= row.first && index <= row.last) return false;
+  }
+  return true;
+}
+
+/// Whether an entry is readable and writable, and not process data: rww is a process output, rwr an input (CiA
+/// 306-1, 4.6.2).
+[[nodiscard]] constexpr bool has_access_of_parameter(entry::Word word) {
+  const bool to_tpdo = (word & entry::tpdo) != 0;
+  const bool from_rpdo = (word & entry::rpdo) != 0;
+  return (word & entry::rw) == entry::rw && to_tpdo == from_rpdo;
+}
+
+[[nodiscard]] constexpr std::uint32_t mix(std::uint32_t hash, std::uint32_t word) {
+  return (std::rotl(hash, 5) ^ word) * 0x9E37'79B1u;
+}
+
+/// Adds the limits of an entry to the hash. The limits of array elements have sub-index 1.
+[[nodiscard]] constexpr std::uint32_t mix_limits(std::uint32_t hash, const Dictionary& dictionary, std::uint16_t index,
+                                                 std::uint8_t sub_index) {
+  const bool array = entry::kind_of(dictionary.find_index(index)) == entry::Kind::array;
+  const std::uint32_t key = object_key(index, array && sub_index > 1 ? std::uint8_t{1} : sub_index);
+  // By position: with UBSan, g++ 12 does not accept a pointer to a row of a table as a constant.
+  const std::size_t narrow = dictionary_detail::position_of_key(dictionary.limits, key);
+  if (narrow < dictionary.limits.size()) {
+    hash = mix(mix(hash, dictionary.limits[narrow].low), dictionary.limits[narrow].high);
+  }
+  const std::size_t wide = dictionary_detail::position_of_key(dictionary.wide_limits, key);
+  if (wide < dictionary.wide_limits.size()) {
+    for (const std::uint64_t limit : {dictionary.wide_limits[wide].low, dictionary.wide_limits[wide].high}) {
+      hash = mix(mix(hash, static_cast<std::uint32_t>(limit)), static_cast<std::uint32_t>(limit >> 32));
+    }
+  }
+  return hash;
+}
+
+}  // namespace parameter_detail
+
+/// Selects the entries to store: those in RAM that are readable and writable over the bus, except DOMAINs, process data
+/// (access rww or rwr, or mapped into a PDO by the EDS) and objects that are not parameters. The options of the device
+/// can change this.
+template <class Device>
+class ParameterLayout {
+  static constexpr std::size_t ram_bytes = sizeof(typename Device::Values);
+  static_assert(ram_bytes <= 0xFFFF, "runs of stored values are counted with 16 bits");
+
+  // Owner of a byte of Values: a section, or one of these.
+  static constexpr std::uint8_t padding = 0xFF;
+  static constexpr std::uint8_t not_stored = 0xFE;
+
+  [[nodiscard]] static constexpr Storing storing([[maybe_unused]] std::uint16_t index,
+                                                 [[maybe_unused]] std::uint8_t sub_index) {
+    if constexpr (requires { Device::storing(index, sub_index); }) {
+      return Device::storing(index, sub_index);
+    } else {
+      return Storing::by_access;
+    }
+  }
+
+  template <class Pdos>
+  static constexpr std::size_t entries_of = [] {
+    std::size_t entries = 0;
+    Pdos::for_each([&]<class Pdo, std::size_t>() { entries += Pdo::entries; });
+    return entries;
+  }();
+
+  /// The objects that the EDS maps into PDOs.
+  static constexpr auto carried = [] {
+    std::array<std::uint32_t, entries_of<typename Device::Rpdos> + entries_of<typename Device::Tpdos>> keys{};
+    std::size_t i = 0;
+    const auto add = [&]<class Pdo, std::size_t>() {
+      Pdo::for_each([&]<class O, std::size_t>() { keys[i++] = object_key(O::index, O::sub_index); });
+    };
+    Device::Rpdos::for_each(add);
+    Device::Tpdos::for_each(add);
+    return keys;
+  }();
+
+  /// Returns the owner of the entries of an object that are parameters.
+  [[nodiscard]] static constexpr std::uint8_t parameter_owner(std::uint16_t index) {
+    if (!parameter_detail::can_be_parameter(index)) return not_stored;
+    return static_cast<std::uint8_t>(parameter_detail::section_of(index));
+  }
+
+  [[nodiscard]] static constexpr std::uint8_t owner_of(std::uint16_t index, std::uint8_t sub_index, entry::Word word,
+                                                       std::uint8_t as_parameter) {
+    if (entry::is_domain(word)) return not_stored;
+    switch (storing(index, sub_index)) {
+      case Storing::never: return not_stored;
+      case Storing::always: return static_cast<std::uint8_t>(parameter_detail::section_of(index));
+      case Storing::with_node_id: return static_cast<std::uint8_t>(ParameterSection::with_node_id);
+      case Storing::by_access: break;
+    }
+    return parameter_detail::has_access_of_parameter(word) ? as_parameter : not_stored;
+  }
+
+  /// Sets the owner of the bytes of an entry.
+  static constexpr void give(std::uint8_t* bytes, std::uint16_t index, std::uint8_t sub_index, entry::Word word,
+                             std::uint8_t owner) {
+    std::uint8_t* const begin = bytes + entry::offset_of(word);
+    for (std::uint8_t* at = begin + memory_bytes(index, sub_index, word); at != begin;) *--at = owner;
+  }
+
+  [[nodiscard]] static constexpr std::size_t memory_bytes(std::uint16_t index, std::uint8_t sub_index,
+                                                          entry::Word word) {
+    if (entry::is_domain(word)) return sizeof(Domain);
+    if (entry::is_string(word)) {
+      const bool terminated =
+          Device::dictionary.zero_terminated_strings && entry::type_of(word) == entry::visible_string;
+      return sizeof(std::uint16_t) + string_capacity(object_key(index, sub_index)) + (terminated ? 1 : 0);
+    }
+    const std::size_t size = entry::wire_bytes(word);
+    return size <= 2 ? size : size <= 4 ? 4 : 8;
+  }
+
+  [[nodiscard]] static constexpr std::size_t string_capacity(std::uint32_t key) {
+    const std::span<const Limits> rows = Device::dictionary.limits;
+    const std::size_t position = dictionary_detail::position_of_key(rows, key);
+    return position < rows.size() ? rows[position].high : 0;
+  }
+
+  /// Calls `visit(index, sub_index, word)` for each entry in RAM.
+  template <class Visit>
+  static constexpr void for_each_in_ram(Visit&& visit) {
+    Device::dictionary.for_each_entry([&](std::uint16_t index, std::uint8_t sub_index, entry::Word word) {
+      if (entry::place_of(word) == entry::Place::ram) visit(index, sub_index, word);
+    });
+  }
+
+  static constexpr std::array<std::uint8_t, ram_bytes> owners = [] {
+    std::array<std::uint8_t, ram_bytes> bytes{};
+    for (std::uint8_t& byte : bytes) byte = padding;
+    std::uint16_t object = 0;
+    std::uint8_t as_parameter = not_stored;
+    for_each_in_ram([&](std::uint16_t index, std::uint8_t sub_index, entry::Word word) {
+      if (index != object) as_parameter = parameter_owner(index);
+      object = index;
+      give(bytes.data(), index, sub_index, word, owner_of(index, sub_index, word, as_parameter));
+    });
+    for (const std::uint32_t key : carried) {
+      const auto index = static_cast<std::uint16_t>(key >> 8);
+      const auto sub_index = static_cast<std::uint8_t>(key);
+      const entry::Word word = Device::dictionary.find(index, sub_index);
+      if (word <= Dictionary::no_sub_index || entry::place_of(word) != entry::Place::ram) continue;
+      if (storing(index, sub_index) == Storing::by_access) give(bytes.data(), index, sub_index, word, not_stored);
+    }
+    return bytes;
+  }();
+
+  /// Calls `visit(section, run)` for each run, in memory order. Padding between two values of a section belongs to it.
+  template <class Visit>
+  static constexpr void for_each_run(Visit&& visit) {
+    const std::uint8_t* const bytes = owners.data();
+    for (std::size_t at = 0; at < ram_bytes; ++at) {
+      const std::uint8_t owner = bytes[at];
+      if (owner >= parameter_sections) continue;
+      const std::size_t begin = at;
+      for (std::size_t next = at + 1; next < ram_bytes && (bytes[next] == owner || bytes[next] == padding); ++next) {
+        if (bytes[next] == owner) at = next;
+      }
+      visit(owner, StoredRun{static_cast<std::uint16_t>(begin), static_cast<std::uint16_t>(at + 1 - begin)});
+    }
+  }
+
+ public:
+  /// Position in `runs` of the first run of each section.
+  static constexpr std::array<std::uint16_t, parameter_sections + 1> firsts = [] {
+    std::array<std::uint16_t, parameter_sections + 1> counts{};
+    for_each_run([&](std::uint8_t section, StoredRun) { ++counts[section + 1u]; });
+    for (std::size_t i = 0; i < parameter_sections; ++i)
+      counts[i + 1] = static_cast<std::uint16_t>(counts[i + 1] + counts[i]);
+    return counts;
+  }();
+
+  static constexpr std::array<StoredRun, firsts[parameter_sections]> runs = [] {
+    std::array<StoredRun, firsts[parameter_sections]> rows{};
+    auto next = firsts;
+    for_each_run([&](std::uint8_t section, StoredRun run) { rows[next[section]++] = run; });
+    return rows;
+  }();
+
+  /// Bytes of the values of each section.
+  static constexpr std::array<std::uint16_t, parameter_sections> sizes = [] {
+    std::array<std::uint16_t, parameter_sections> bytes{};
+    for_each_run([&](std::uint8_t section, StoredRun run) {
+      bytes[section] = static_cast<std::uint16_t>(bytes[section] + run.size);
+    });
+    return bytes;
+  }();
+
+  /// Identifies the stored bytes of each section, so that those of another dictionary are not loaded: a hash of the
+  /// entries, their types, limits and positions in storage.
+  static constexpr std::array<std::uint32_t, parameter_sections> signatures = [] {
+    std::array<std::uint16_t, ram_bytes> places{};
+    std::array<std::uint16_t, parameter_sections> next{};
+    for_each_run([&](std::uint8_t section, StoredRun run) {
+      std::uint16_t place = next[section];
+      std::uint16_t* const begin = places.data() + run.offset;
+      for (std::uint16_t* at = begin; at != begin + run.size; ++at) *at = place++;
+      next[section] = place;
+    });
+    std::array<std::uint32_t, parameter_sections> hashes{};
+    for (std::uint32_t i = 0; i < parameter_sections; ++i) hashes[i] = parameter_detail::mix(0x811C'9DC5u, i);
+    for_each_in_ram([&](std::uint16_t index, std::uint8_t sub_index, entry::Word word) {
+      const std::uint8_t section = owners[entry::offset_of(word)];
+      if (section >= parameter_sections) return;
+      std::uint32_t& hash = hashes[section];
+      hash = parameter_detail::mix(hash, object_key(index, sub_index));
+      hash = parameter_detail::mix(hash, entry::type_of(word) | places[entry::offset_of(word)]);
+      if ((word & entry::limited) != 0) {
+        hash = parameter_detail::mix_limits(hash, Device::dictionary, index, sub_index);
+      }
+    });
+    return hashes;
+  }();
+
+  /// Whether an entry is stored.
+  [[nodiscard]] static constexpr bool stores(std::uint16_t index, std::uint8_t sub_index) {
+    const entry::Word word = Device::dictionary.find(index, sub_index);
+    return word > Dictionary::no_sub_index && entry::place_of(word) == entry::Place::ram &&
+           owners[entry::offset_of(word)] < parameter_sections;
+  }
+
+  /// The same at run time, for an entry in RAM.
+  [[nodiscard]] static bool stores(entry::Word word) {
+    const std::uint16_t offset = entry::offset_of(word);
+    for (const StoredRun& run : runs) {
+      if (offset >= run.offset && offset - run.offset < run.size) return true;
+    }
+    return false;
+  }
+};
+
+}  // namespace canopen
