@@ -65,8 +65,9 @@ bool report_unknown_command(const CLI::App& app) {
   const auto words = app.remaining(false);
   if (names.empty() || words.empty() || words.front().starts_with('-')) return false;
   const std::string word = without_mark(words.front());
-  edsc::print_visibly(stderr, "{}: unknown command {}{}\n", app.get_parent() == nullptr ? "edsc" : "edsc " + app.get_name(),
-                      edsc::quote(word), edsc::did_you_mean(word, names));
+  edsc::print_visibly(stderr, "{}: unknown command {}{}\n",
+                      app.get_parent() == nullptr ? "edsc" : "edsc " + app.get_name(), edsc::quote(word),
+                      edsc::did_you_mean(word, names));
   return true;
 }
 

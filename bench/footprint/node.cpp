@@ -47,7 +47,8 @@ void program() {
   for (;;) {
     Mailbox& box = receive();
     if ((box.status & 2) != 0) {
-      node.on_frame(canopen::make_frame(box.id, static_cast<std::uint8_t>(box.size), {box.data[0], box.data[1]}), now());
+      node.on_frame(canopen::make_frame(box.id, static_cast<std::uint8_t>(box.size), {box.data[0], box.data[1]}),
+                    now());
     }
     node.on_time(now());
   }

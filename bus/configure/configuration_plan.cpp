@@ -240,8 +240,9 @@ std::string words_of(std::string_view name) {
 constexpr std::array commissioning_names = {"nodeid", "nodeaddress", "nodenumber", "canaddress", "baud", "bitrate"};
 constexpr std::array commissioning_words = {" can speed "};
 /// Other nodes, and other interfaces than CAN.
-constexpr std::array other_words = {" remote ", " consumer ", " producer ", " client ", " server ", " master ", " rs232 ",
-                                    " rs422 ",  " rs485 ",    " usb ",      " uart ",   " serial ", " modbus "};
+constexpr std::array other_words = {" remote ", " consumer ", " producer ", " client ", " server ",
+                                    " master ", " rs232 ",    " rs422 ",    " rs485 ",  " usb ",
+                                    " uart ",   " serial ",   " modbus "};
 
 bool contains_one_of(std::string_view text, std::span<const char* const> parts) {
   return std::ranges::any_of(parts, [&](std::string_view part) { return text.find(part) != std::string_view::npos; });

@@ -28,16 +28,15 @@ Bytes bytes_of(std::uint32_t word) {
   return bytes;
 }
 
-bool can_be_read(const LiveEntry& entry) {
-  return entry.entry == nullptr || canopen::readable(entry.entry->access);
-}
+bool can_be_read(const LiveEntry& entry) { return entry.entry == nullptr || canopen::readable(entry.entry->access); }
 
 /// Whether the node has the value, ignoring a trailing 00h of a VISIBLE_STRING.
 bool holds(const LiveEntry& entry, const SdoOutcome& outcome, std::span<const std::uint8_t> bytes) {
   if (reads_back(outcome, bytes)) return true;
   if (entry.type == nullptr || entry.type->type != canopen::DataType::visible_string) return false;
   const auto text = [](std::span<const std::uint8_t> with_padding) {
-    while (!with_padding.empty() && with_padding.back() == 0) with_padding = with_padding.first(with_padding.size() - 1);
+    while (!with_padding.empty() && with_padding.back() == 0)
+      with_padding = with_padding.first(with_padding.size() - 1);
     return with_padding;
   };
   return std::ranges::equal(text(outcome.bytes), text(bytes));
@@ -138,8 +137,8 @@ class Run {
   /// The numbers are low byte first and as long as each other, or one of them is empty.
   void restore(const ConfigurationStep& step) {
     const Bytes& before = cleared_[key(step.entry)];
-    const bool more = std::ranges::lexicographical_compare(before.rbegin(), before.rend(), step.bytes.rbegin(),
-                                                           step.bytes.rend());
+    const bool more =
+        std::ranges::lexicographical_compare(before.rbegin(), before.rend(), step.bytes.rbegin(), step.bytes.rend());
     const Bytes& wanted = before.empty() || more ? step.bytes : before;
     if (std::ranges::any_of(wanted, [](std::uint8_t byte) { return byte != 0; })) write(step, wanted);
   }

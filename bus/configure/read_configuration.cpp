@@ -26,12 +26,8 @@ struct CommandsOfProfile {
 };
 
 constexpr CommandsOfProfile profile_commands[] = {
-    {402, {0x6040, 0x6040}, true},
-    {401, {0x6200, 0x6200}},
-    {401, {0x6220, 0x6227}},
-    {401, {0x6300, 0x6300}},
-    {401, {0x6320, 0x6320}},
-    {401, {0x6410, 0x6414}},
+    {402, {0x6040, 0x6040}, true}, {401, {0x6200, 0x6200}}, {401, {0x6220, 0x6227}},
+    {401, {0x6300, 0x6300}},       {401, {0x6320, 0x6320}}, {401, {0x6410, 0x6414}},
 };
 
 bool is_profile_command(std::uint16_t profile, std::uint16_t index) {
@@ -77,7 +73,8 @@ std::set<Key> written_by_rpdos(const Device& device, const Values& values) {
   for (const Object& object : device.objects) {
     if (object.index < first || object.index > last) continue;
     const auto mapping = static_cast<std::uint16_t>(object.index + to_mapping);
-    const bool valid = (values.find(object.index, 1).value_or(canopen::CobId::invalid_bit) & canopen::CobId::invalid_bit) == 0;
+    const bool valid =
+        (values.find(object.index, 1).value_or(canopen::CobId::invalid_bit) & canopen::CobId::invalid_bit) == 0;
     const std::uint32_t count = valid ? values.find(mapping, 0).value_or(0) : 0;
     for (std::uint32_t i = 1; i <= count && i <= 64; ++i) {
       const std::uint32_t mapped = values.find(mapping, static_cast<std::uint8_t>(i)).value_or(0);

@@ -17,11 +17,14 @@ constexpr unsigned max_axes = 8;
 /// Set in Operation enabled, Quick stop active and Fault reaction active.
 constexpr std::uint64_t power_is_on = canopen::cia402::statusword::operation_enabled;
 
-bool is_drive(const Identity& identity) { return identity.device_type && (*identity.device_type & 0xFFFF) == drive_profile; }
+bool is_drive(const Identity& identity) {
+  return identity.device_type && (*identity.device_type & 0xFFFF) == drive_profile;
+}
 
 std::string why_axis_may_move(SdoAccess& node, std::uint16_t index) {
   const SdoOutcome read = node.upload(index, 0);
-  if (!read.done() || read.bytes.empty()) return fmt::format("{} cannot be read: {}", label(index, 0), outcome_text(read));
+  if (!read.done() || read.bytes.empty())
+    return fmt::format("{} cannot be read: {}", label(index, 0), outcome_text(read));
   const std::uint64_t status = number_of(read.bytes);
   if ((status & power_is_on) == 0) return {};
   return fmt::format("{} is {:04X}h (enabled)", label(index, 0), status);

@@ -109,7 +109,8 @@ const Entry& Dut::need_writable(std::uint16_t index, std::uint8_t sub_index) {
 
 std::optional<std::uint64_t> Dut::default_of(std::uint16_t index, std::uint8_t sub_index) const {
   const Entry* const found = entry(index, sub_index);
-  if (found == nullptr || !found->default_value || found->type == nullptr || found->type->bits == 0) return std::nullopt;
+  if (found == nullptr || !found->default_value || found->type == nullptr || found->type->bits == 0)
+    return std::nullopt;
   const std::uint64_t bits = found->default_value->bits + (found->default_value->plus_node_id ? node().value() : 0U);
   const unsigned size = found->type->bits;
   return size >= 64 ? bits : bits & ((std::uint64_t{1} << size) - 1);
@@ -169,7 +170,9 @@ Bytes Dut::read(std::uint16_t index, std::uint8_t sub_index) {
   return std::move(outcome.bytes);
 }
 
-std::uint64_t Dut::read_number(std::uint16_t index, std::uint8_t sub_index) { return number_of(read(index, sub_index)); }
+std::uint64_t Dut::read_number(std::uint16_t index, std::uint8_t sub_index) {
+  return number_of(read(index, sub_index));
+}
 
 void Dut::write(std::uint16_t index, std::uint8_t sub_index, std::uint64_t number) {
   const Bytes bytes = bytes_of(index, sub_index, number);
@@ -261,8 +264,7 @@ SdoOutcome Dut::download_segmented(std::uint16_t index, std::uint8_t sub_index, 
 
 Dut::Values Dut::values() {
   Values found;
-  NodeConfiguration configuration =
-      read_configuration(sdo_, sheet_, configuration_entries(sheet_), [](std::size_t) {});
+  NodeConfiguration configuration = read_configuration(sdo_, sheet_, configuration_entries(sheet_), [](std::size_t) {});
   for (ReadValue& value : configuration.values) {
     found[{value.entry.index, value.entry.sub_index}] = std::move(value.bytes);
   }
@@ -366,9 +368,8 @@ Dut::Match Dut::with_id(std::uint32_t can_id) {
 
 Dut::Match Dut::with_cob_id(std::uint32_t cob_id) {
   const canopen::CobId id{cob_id};
-  return [id](const Frame& frame) {
-    return frame.id == id.can_id() && frame.extended == id.extended() && !frame.remote;
-  };
+  return
+      [id](const Frame& frame) { return frame.id == id.can_id() && frame.extended == id.extended() && !frame.remote; };
 }
 
 Dut::Match Dut::error_control() const { return with_id(0x700U + node().value()); }

@@ -37,9 +37,9 @@
 
 namespace edsc::conform {
 
+using canopen::Duration;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
-using canopen::Duration;
 using Bytes = std::vector<std::uint8_t>;
 
 /// Ends a case with another verdict than passed. Only members of Dut throw it.
@@ -155,7 +155,9 @@ class Dut {
   std::optional<SeenFrame> wait_for(const Match& match, Duration span) { return wait_for(match, span, mark()); }
   /// Waits for `span` and returns all matching frames that were received.
   std::vector<SeenFrame> collect(const Match& match, Duration span);
-  void pass_time(Duration span) { (void)collect([](const canopen::Frame&) { return false; }, span); }
+  void pass_time(Duration span) {
+    (void)collect([](const canopen::Frame&) { return false; }, span);
+  }
   /// Frames received since the mark.
   [[nodiscard]] std::vector<SeenFrame> received_since(Mark since, const Match& match) const;
   [[nodiscard]] std::uint64_t now() const;  ///< microseconds since the run began
@@ -165,7 +167,7 @@ class Dut {
   [[nodiscard]] static Match with_cob_id(std::uint32_t cob_id);
   [[nodiscard]] Match error_control() const;  ///< 700h + node-ID
   [[nodiscard]] Match boot_up() const;
-  [[nodiscard]] Match heartbeat() const;      ///< error control without boot-up messages
+  [[nodiscard]] Match heartbeat() const;  ///< error control without boot-up messages
 
   // ---- NMT ----
 

@@ -25,7 +25,8 @@ std::string missing_permission(const CaseRow& row, const DutSettings& settings) 
 }
 
 bool is_selected(const CaseRow& row, const std::vector<std::string>& only) {
-  return only.empty() || std::ranges::any_of(only, [&](const std::string& pattern) { return matches(pattern, row.id); });
+  return only.empty() ||
+         std::ranges::any_of(only, [&](const std::string& pattern) { return matches(pattern, row.id); });
 }
 
 /// Runs the case and puts the values of the device back. Throws Interrupted and BusLost.

@@ -18,7 +18,7 @@ struct RunSettings {
   std::vector<std::string> only;  ///< patterns such as `3.*`; empty: all cases
   /// Before each case.
   std::function<void(const CaseRow& row, std::size_t done, std::size_t of)> began = [](const CaseRow&, std::size_t,
-                                                                                     std::size_t) {};
+                                                                                       std::size_t) {};
   /// After each case. May change the result in the report.
   std::function<void(CaseResult& result)> ended = [](CaseResult&) {};
 };

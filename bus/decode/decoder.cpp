@@ -76,8 +76,7 @@ void wrong_length(const Frame& frame, std::string_view right, Message& message) 
     message.text += "a remote frame, not a frame with data";
     return;
   }
-  fmt::format_to(std::back_inserter(message.text), "{}, not {}", counted(unsigned{frame.size}, "byte"),
-                 right);
+  fmt::format_to(std::back_inserter(message.text), "{}, not {}", counted(unsigned{frame.size}, "byte"), right);
 }
 
 std::uint64_t word_of(const Frame& frame) {

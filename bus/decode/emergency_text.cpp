@@ -198,9 +198,8 @@ std::string_view emergency_text(std::uint16_t code, std::uint16_t profile) {
   }
   // Other profiles define their own codes in the error classes of CiA 301.
   const auto is_known = [](std::uint16_t wanted) {
-    return std::ranges::any_of(canopen::emergency_code_texts, [&](const canopen::EmergencyCodeText& row) {
-      return (wanted & row.mask) == row.code;
-    });
+    return std::ranges::any_of(canopen::emergency_code_texts,
+                               [&](const canopen::EmergencyCodeText& row) { return (wanted & row.mask) == row.code; });
   };
   return canopen::emergency_text(is_known(code) ? code : static_cast<std::uint16_t>(code & 0xF000));
 }

@@ -86,7 +86,8 @@ void LogDecoder::finish(std::string& complaints) {
   }
   if (complaints_ > max_complaints) {
     fmt::format_to(std::back_inserter(complaints), "{}: {} like {}\n", printable(settings_.log_name),
-                   counted(complaints_ - max_complaints, "more line"), complaints_ - max_complaints == 1 ? "this" : "these");
+                   counted(complaints_ - max_complaints, "more line"),
+                   complaints_ - max_complaints == 1 ? "this" : "these");
   }
 }
 

@@ -228,7 +228,9 @@ void SdoFollower::initiate_download(const TimedFrame& frame, const NodeModel* mo
   expedited_ = (data[0] & canopen::sdo::expedited) != 0;
   if (!expedited_) {
     if (sized) announced_ = canopen::sdo::word_of(data);
-    if (announced_) fmt::format_to(std::back_inserter(message.text), ", {} {}", counted(*announced_, "byte"), *announced_ == 1 ? "follows" : "follow");
+    if (announced_)
+      fmt::format_to(std::back_inserter(message.text), ", {} {}", counted(*announced_, "byte"),
+                     *announced_ == 1 ? "follows" : "follow");
     return;
   }
   append(expedited_value(data));
@@ -257,7 +259,9 @@ void SdoFollower::upload_answer(const TimedFrame& frame, Message& message) {
   if (sized) announced_ = canopen::sdo::word_of(data);
   put_transfer(TransferStep::part, message);
   message.text += verb(false) + label_;
-  if (announced_) fmt::format_to(std::back_inserter(message.text), ", {} {}", counted(*announced_, "byte"), *announced_ == 1 ? "follows" : "follow");
+  if (announced_)
+    fmt::format_to(std::back_inserter(message.text), ", {} {}", counted(*announced_, "byte"),
+                   *announced_ == 1 ? "follows" : "follow");
 }
 
 /// A data segment of either direction. One with the toggle bit of the last one is a repetition of it.
@@ -299,7 +303,9 @@ void SdoFollower::initiate_block_download(const TimedFrame& frame, const NodeMod
   const Data& data = frame.frame.data;
   client_crc_ = (data[0] & canopen::sdo::crc_supported) != 0;
   if ((data[0] & canopen::sdo::block_size_indicated) != 0) announced_ = canopen::sdo::word_of(data);
-  if (announced_) fmt::format_to(std::back_inserter(message.text), ", {} {}", counted(*announced_, "byte"), *announced_ == 1 ? "follows" : "follow");
+  if (announced_)
+    fmt::format_to(std::back_inserter(message.text), ", {} {}", counted(*announced_, "byte"),
+                   *announced_ == 1 ? "follows" : "follow");
 }
 
 void SdoFollower::initiate_block_upload(const TimedFrame& frame, const NodeModel* model, Message& message) {
@@ -423,7 +429,9 @@ void SdoFollower::block_upload_answer(const TimedFrame& frame, Message& message)
   if ((data[0] & canopen::sdo::block_size_indicated) != 0) announced_ = canopen::sdo::word_of(data);
   phase_ = Phase::block_answered;
   message.text += verb(false) + label_;
-  if (announced_) fmt::format_to(std::back_inserter(message.text), ", {} {}", counted(*announced_, "byte"), *announced_ == 1 ? "follows" : "follow");
+  if (announced_)
+    fmt::format_to(std::back_inserter(message.text), ", {} {}", counted(*announced_, "byte"),
+                   *announced_ == 1 ? "follows" : "follow");
   put_transfer(TransferStep::part, message);
 }
 

@@ -141,8 +141,8 @@ std::string Summary::text() const {
   for (std::size_t id = 0; id < node_ids; ++id) {
     const Transfers& one = transfers_[id];
     if (is_grouped(id) || one.finished + one.aborted == 0) continue;
-    fmt::format_to(put, "node {:<4}  {}, {} aborted", id,
-                   counted(one.finished + one.aborted, "SDO transfer"), one.aborted);
+    fmt::format_to(put, "node {:<4}  {}, {} aborted", id, counted(one.finished + one.aborted, "SDO transfer"),
+                   one.aborted);
     if (one.timed > 0) {
       fmt::format_to(put, ", {:.3f} ms on average, {:.3f} ms maximum",
                      static_cast<double>(one.sum_us) / 1e3 / static_cast<double>(one.timed),
@@ -151,7 +151,8 @@ std::string Summary::text() const {
     out += '\n';
   }
   for (const auto& [key, count] : aborts_)
-    if (!is_grouped(key.first)) fmt::format_to(put, "node {:<4}  abort {}: {}\n", key.first, abort_text(key.second), count);
+    if (!is_grouped(key.first))
+      fmt::format_to(put, "node {:<4}  abort {}: {}\n", key.first, abort_text(key.second), count);
   for (const auto& [key, count] : emergencies_)
     fmt::format_to(put, "node {:<4}  EMCY {:04X}h: {}\n", key.first, key.second, count);
   out += silent;

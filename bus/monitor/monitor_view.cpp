@@ -63,8 +63,8 @@ void append_nodes(std::vector<std::string>& lines, const MonitorState& state, co
   TextTable table;
   table.add({"node", "name", "state", "heard", "last EMCY"});
   for (const auto& [node_id, node] : state.nodes()) {
-    table.add({fmt::format("{:>4}", node_id), node.name.empty() ? "-" : node.name,
-               state_text(node), age_text(node, now_us), emergency_text(node, now_us)});
+    table.add({fmt::format("{:>4}", node_id), node.name.empty() ? "-" : node.name, state_text(node),
+               age_text(node, now_us), emergency_text(node, now_us)});
   }
   const std::size_t first = lines.size() + 1;
   append_table(lines, table, view.colour);

@@ -94,8 +94,8 @@ std::string identity_differences(const Identity& sheet, const Identity& device) 
   std::string text;
   for (const Number& number : numbers) {
     if (!differs(sheet.*number.value, device.*number.value)) continue;
-    text += fmt::format("{}{} is {:08X}h, expected {:08X}h", text.empty() ? "" : "; ", number.name, *(device.*number.value),
-                        *(sheet.*number.value));
+    text += fmt::format("{}{} is {:08X}h, expected {:08X}h", text.empty() ? "" : "; ", number.name,
+                        *(device.*number.value), *(sheet.*number.value));
   }
   return text;
 }

@@ -31,8 +31,8 @@ void set_type(LiveEntry& entry, const canopen::DataTypeRow& type);
 
 /// The value of the node. If the response does not state the size: the size of the data type, and a string without
 /// trailing 00h.
-[[nodiscard]] SdoOutcome upload(SdoAccess& node, const LiveEntry& entry,
-                                SdoTransfer transfer = SdoTransfer::segmented, const SdoProgress& progress = {});
+[[nodiscard]] SdoOutcome upload(SdoAccess& node, const LiveEntry& entry, SdoTransfer transfer = SdoTransfer::segmented,
+                                const SdoProgress& progress = {});
 
 /// Whether these bytes were read back. If the response did not state the size, further bytes are ignored.
 [[nodiscard]] bool reads_back(const SdoOutcome& outcome, std::span<const std::uint8_t> bytes);

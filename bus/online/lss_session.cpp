@@ -137,7 +137,8 @@ LssResult LssSession::confirm(const LssAddress& address) {
   LssAddress inquired;
   const std::string expected = to_text(address);
   if (const LssResult result = inquire_address(inquired); !result.done()) {
-    return {fmt::format("found {}, but no slave with this address answers an inquiry ({})", expected, result.failure), 0};
+    return {fmt::format("found {}, but no slave with this address answers an inquiry ({})", expected, result.failure),
+            0};
   }
   if (inquired == address) return {};
   return {fmt::format("found {}, but the slave in configuration state has {}", expected, to_text(inquired)), 0};

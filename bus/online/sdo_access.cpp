@@ -187,8 +187,8 @@ AbortCode UploadBuffer::append(std::span<const std::uint8_t> piece) {
   return canopen::ok;
 }
 
-SdoOutcome SdoAccess::upload(std::uint16_t index, std::uint8_t sub_index, SdoTransfer how,
-                             const SdoProgress& progress, std::optional<std::size_t> type_size) {
+SdoOutcome SdoAccess::upload(std::uint16_t index, std::uint8_t sub_index, SdoTransfer how, const SdoProgress& progress,
+                             std::optional<std::size_t> type_size) {
   UploadBuffer bytes{type_size ? *type_size + type_margin : settings_.max_bytes};
   bool too_long = false;
   auto take = [&](std::uint32_t /*offset*/, std::span<const std::uint8_t> piece, bool /*last*/) {

@@ -53,7 +53,8 @@ SimulatedAddress parse_address(const std::string& address) {
     const auto node_id = simulation::number(device.substr(0, comma), 10, 255U);
     const std::string_view name = device.substr(std::min(comma + 1, device.size()));
     const bool good_node_id = node_id && ((*node_id >= 1 && *node_id <= 127) || *node_id == 255);
-    const bool good_name = name.find_first_of(" \n") == std::string_view::npos && (comma == device.size()) == name.empty();
+    const bool good_name =
+        name.find_first_of(" \n") == std::string_view::npos && (comma == device.size()) == name.empty();
     if (good_node_id && good_name) return {std::string{rest.substr(0, at)}, *node_id, std::string{name}};
   }
   throw std::invalid_argument{

@@ -168,7 +168,7 @@ FoundEntry by_address(const Device& device, const EntryAddress& address) {
   const Entry* entry = object->find(*address.sub_index);
   if (entry == nullptr) {
     return no_entry(fmt::format("{} \"{}\" has no sub-index {:02X}h; it has {}", index_label(object->index),
-                               object->name, *address.sub_index, sub_indices_of(*object)));
+                                object->name, *address.sub_index, sub_indices_of(*object)));
   }
   return found(*object, entry);
 }
@@ -185,7 +185,7 @@ std::optional<FoundEntry> by_both_names(const Device& device, std::string_view t
     if (text[at] == ':' && rest.starts_with(':')) rest.remove_prefix(1);
     if (const Entry* entry = find_in(*object, trim(rest))) return found(*object, entry);
     return no_entry(fmt::format("{} \"{}\" has no entry \"{}\"; it has {}", index_label(object->index), object->name,
-                               trim(rest), sub_indices_of(*object)));
+                                trim(rest), sub_indices_of(*object)));
   }
   return std::nullopt;
 }
@@ -200,7 +200,8 @@ FoundEntry by_entry_name(const Device& device, std::string_view text) {
     }
   }
   if (matches.size() == 1) return matches.front();
-  if (matches.empty()) return no_entry(fmt::format("the device has no object \"{}\"{}", text, near_names(device, text)));
+  if (matches.empty())
+    return no_entry(fmt::format("the device has no object \"{}\"{}", text, near_names(device, text)));
   std::string sentence = fmt::format("\"{}\" is ambiguous:", text);
   for (std::size_t i = 0; i < std::min(matches.size(), max_suggestions); ++i) {
     sentence += fmt::format("{} {}", i == 0 ? "" : " or", entry_title(*matches[i].object, *matches[i].entry));

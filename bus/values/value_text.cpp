@@ -30,7 +30,7 @@ using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::uint32_t milliseconds_per_day = 24 * 60 * 60 * 1000;
 constexpr std::uint32_t time_mask = 0x0FFF'FFFF;  ///< 28 bits of milliseconds, 4 are reserved
-constexpr std::size_t max_shown_bytes = 32;      ///< of a DOMAIN
+constexpr std::size_t max_shown_bytes = 32;       ///< of a DOMAIN
 constexpr std::chrono::sys_days time_epoch = std::chrono::year{1984} / 1 / 1;
 
 std::uint64_t mask_of(unsigned bits) { return bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1; }

@@ -92,7 +92,8 @@ void add_bus_command(CLI::App& app, int& exit_code) {
   command->add_option("--clients", settings->limits.clients, "maximum number of connected clients")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command->add_flag("--log", settings->log, "print all frames as lines of candump -L, and the addresses on standard error");
+  command->add_flag("--log", settings->log,
+                    "print all frames as lines of candump -L, and the addresses on standard error");
   command->callback([settings, &exit_code] { exit_code = serve(*settings); });
 }
 

@@ -79,7 +79,8 @@ int list_rules(const std::string& format) {
 }
 
 nlohmann::ordered_json to_json(const OptionRow& row) {
-  nlohmann::ordered_json json = {{"name", row.name}, {"group", row.group}, {"form", to_string(row.form)}, {"meaning", row.meaning}};
+  nlohmann::ordered_json json = {
+      {"name", row.name}, {"group", row.group}, {"form", to_string(row.form)}, {"meaning", row.meaning}};
   if (!row.default_value.empty()) json["default"] = nlohmann::ordered_json::parse(row.default_value);
   if (!row.default_text.empty()) json["default_text"] = row.default_text;
   if (row.form == OptionForm::number) json.update({{"minimum", row.min}, {"maximum", row.max}});
@@ -91,7 +92,8 @@ int list_options(const std::string& format) {
   for (const OptionRow& row : options_table) {
     const std::string_view value = row.default_text.empty() ? row.default_value : row.default_text;
     if (format == "text") {
-      print_visibly(stdout, "{:<36} {}{}\n", row.name, row.meaning, value.empty() ? "" : fmt::format(" (default: {})", value));
+      print_visibly(stdout, "{:<36} {}{}\n", row.name, row.meaning,
+                    value.empty() ? "" : fmt::format(" (default: {})", value));
     }
     rows.push_back(to_json(row));
   }
@@ -133,7 +135,8 @@ class Report {
  private:
   static std::vector<SarifRule> sarif_rules() {
     std::vector<SarifRule> rules;
-    for (const Rule& rule : all_rules()) rules.push_back({rule.id, rule.severity, rule.meaning, rule.source, url_of(rule)});
+    for (const Rule& rule : all_rules())
+      rules.push_back({rule.id, rule.severity, rule.meaning, rule.source, url_of(rule)});
     return rules;
   }
 

@@ -52,8 +52,8 @@ struct Settings {
 
 /// The values to write, and the data to which they point.
 struct Configuration {
-  std::unique_ptr<LoadedDevice> loaded;  ///< null: a concise DCF without EDS
-  std::vector<std::uint8_t> stream;      ///< of a concise DCF
+  std::unique_ptr<LoadedDevice> loaded;    ///< null: a concise DCF without EDS
+  std::vector<std::uint8_t> stream;        ///< of a concise DCF
   std::vector<ConfigurationValue> values;  ///< except those that are left out
   std::size_t left_out = 0;
   std::optional<ConfigurationTime> time;  ///< of 1020h
@@ -122,10 +122,9 @@ bool read_dcf(const Settings& settings, Configuration& configuration) {
   print_findings(stderr, diagnostics, ColorOption{});
   if (diagnostics.errors() > 0) return false;
   for (const ConfiguredValue& value : values) {
-    configuration.values.push_back(
-        {live_entry(configuration.device(), value.entry->index, value.entry->sub_index),
-         {value.data.begin(), value.data.end()},
-         value.position});
+    configuration.values.push_back({live_entry(configuration.device(), value.entry->index, value.entry->sub_index),
+                                    {value.data.begin(), value.data.end()},
+                                    value.position});
   }
   configuration.time = time_of(configuration, values);
   return true;
@@ -142,9 +141,8 @@ bool read_concise(const Settings& settings, Configuration& configuration) {
       read_concise_dcf({reinterpret_cast<const char*>(configuration.stream.data()), configuration.stream.size()});
   if (!entries) return refuse(settings.path + " is not a concise DCF: its length does not match its contents");
   for (const ConciseEntry& entry : *entries) {
-    configuration.values.push_back({live_entry(configuration.device(), entry.index, entry.sub_index),
-                                    {entry.data.begin(), entry.data.end()},
-                                    {}});
+    configuration.values.push_back(
+        {live_entry(configuration.device(), entry.index, entry.sub_index), {entry.data.begin(), entry.data.end()}, {}});
   }
   return true;
 }
@@ -178,11 +176,9 @@ std::string shown(const LiveEntry& entry, const std::vector<std::uint8_t>& bytes
 std::string written_by(const ConfigurationStep& step) {
   switch (step.kind) {
     case StepKind::write: return " = " + shown(step.entry, step.bytes);
-    case StepKind::switch_on:
-      return step.bytes.empty() ? " as before" : " = " + shown(step.entry, step.bytes);
+    case StepKind::switch_on: return step.bytes.empty() ? " as before" : " = " + shown(step.entry, step.bytes);
     case StepKind::restore:
-      return step.bytes.empty() ? " as before"
-                                : fmt::format(" as before, at least {}", shown(step.entry, step.bytes));
+      return step.bytes.empty() ? " as before" : fmt::format(" as before, at least {}", shown(step.entry, step.bytes));
     case StepKind::switch_off:
     case StepKind::clear: break;
   }
@@ -208,11 +204,11 @@ std::string change_text(const Change& change) {
 
 void print_withheld(const Work& work, bool compared) {
   for (const Change& change : work.withheld) {
-    const std::string what = compared ? change_text(change)
-                                      : title(change.value.entry) + " = " +
-                                            shown(change.value.entry, change.value.bytes);
-    print_visibly(stderr, "edsc: not written, the node's own node-ID or bit rate: {} (--node-id-and-bit-rate writes it)\n",
-               what);
+    const std::string what = compared
+                                 ? change_text(change)
+                                 : title(change.value.entry) + " = " + shown(change.value.entry, change.value.bytes);
+    print_visibly(
+        stderr, "edsc: not written, the node's own node-ID or bit rate: {} (--node-id-and-bit-rate writes it)\n", what);
   }
 }
 
@@ -245,8 +241,7 @@ bool is_right_device(LiveBus& bus, SdoAccess& node, const Settings& settings, co
     ending.not_compared = "identity (a concise DCF does not state it; --eds names the EDS of the device)";
     return true;
   }
-  const NodeCheck check =
-      check_node(node, *configuration.device(), settings.concise ? settings.sheet : settings.path);
+  const NodeCheck check = check_node(node, *configuration.device(), settings.concise ? settings.sheet : settings.path);
   ending.not_compared = check.not_compared;
   return check.problem.empty() || refuse(check.problem + "; --force writes anyway");
 }
@@ -269,7 +264,8 @@ std::string compared_text(const Work& work) {
   const auto unknown = static_cast<std::size_t>(
       std::ranges::count_if(work.changes, [](const Change& change) { return !change.before.has_value(); }));
   const std::size_t differing = work.changes.size() - unknown;
-  std::string text = fmt::format("{} of {} {}", differing, counted(work.compared, "value"), differing == 1 ? "differs" : "differ");
+  std::string text =
+      fmt::format("{} of {} {}", differing, counted(work.compared, "value"), differing == 1 ? "differs" : "differ");
   if (unknown != 0) text += fmt::format(", {} cannot be compared", unknown);
   return text;
 }
@@ -438,9 +434,9 @@ int configure(LiveBus& bus, const Settings& settings, const Configuration& confi
     };
     return work();
   };
-  const std::optional<Work> work = settings.all ? all_values(settings, configuration) : with_progress("compared", [&] {
-    return what_differs(node, settings, configuration, hooks);
-  });
+  const std::optional<Work> work =
+      settings.all ? all_values(settings, configuration)
+                   : with_progress("compared", [&] { return what_differs(node, settings, configuration, hooks); });
   if (!work) {
     refuse(fmt::format("node {} no longer answers; nothing written", settings.node));
     return exit_device_failed;
@@ -512,7 +508,8 @@ void add_configure_command(CLI::App& app, int& exit_code) {
   command->add_option("--eds", settings->sheet, "EDS for a concise DCF: names, and the identity to check")
       ->type_name("FILE")
       ->needs(concise);
-  command->add_flag("--store", settings->store, "store the parameters of the node (1010h) after a successful configuration");
+  command->add_flag("--store", settings->store,
+                    "store the parameters of the node (1010h) after a successful configuration");
   command->add_flag("--start", settings->start, "start the node after a successful configuration");
   command->add_flag("--keep-state", settings->keep_state, "do not set the node to Pre-operational first");
   command->add_flag("--all", settings->all, "write all values, not only those that differ from the node's");

@@ -183,7 +183,7 @@ std::optional<DeclaredDeviations> load_deviations(const Settings& settings) {
 
 /// A report in a file, and the option that names it.
 struct ReportFile {
-  std::string Settings::* path;
+  std::string Settings::*path;
   std::string (*make)(const RunReport& run, const Device& sheet);
 };
 
@@ -298,7 +298,9 @@ void add_conform_command(CLI::App& app, int& exit_code) {
       ->check([](const std::string& text) {
         return text.find('=') != std::string::npos ? std::string{} : "\"" + text + "\" is not CASE=COMMAND";
       });
-  command->add_option("--deviations", settings->deviations, "declared deviations of the node, with their reasons: a JSON file")
+  command
+      ->add_option("--deviations", settings->deviations,
+                   "declared deviations of the node, with their reasons: a JSON file")
       ->type_name("FILE");
   command->add_option("--html", settings->html, "write the report as one HTML file")->type_name("FILE");
   command->add_option("--junit", settings->junit, "write it as JUnit XML")->type_name("FILE");

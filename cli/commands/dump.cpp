@@ -61,7 +61,8 @@ void add_dump_command(CLI::App& app, int& exit_code) {
   auto settings = std::make_shared<Settings>();
   command->add_option("FILE", settings->load.path, "EDS, DCF, XDD or XDC")->required();
   add_node_id_option(*command, settings->load.node_id);
-  command->add_option("--options", settings->load.options_path, "options file (default: FILE's name with .options.json, if there)");
+  command->add_option("--options", settings->load.options_path,
+                      "options file (default: FILE's name with .options.json, if there)");
   command->add_flag("--cpp", settings->cpp, "add the view of the C++ templates");
   command->add_flag("--keep-going", settings->load.keep_going, keep_going_help);
   settings->color.add_to(*command);

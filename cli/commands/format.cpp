@@ -84,8 +84,9 @@ void convert(const Settings& settings, Input& input, Diagnostics& diagnostics) {
   input.has_values_for_eds = sheet.is_dcf && ends_with_ignoring_case(settings.output, ".eds");
   std::filesystem::path path = settings.output.empty() ? settings.paths.front() : settings.output;
   if (settings.output.empty()) path.replace_extension(sheet.is_dcf ? ".dcf" : ".eds");
-  input.source = std::make_unique<SourceFile>(sheet.is_dcf && !sheet.commissioning.present ? "converted.dcf" : "converted.eds",
-                                              to_text(document_of(sheet, path.filename().string())));
+  input.source =
+      std::make_unique<SourceFile>(sheet.is_dcf && !sheet.commissioning.present ? "converted.dcf" : "converted.eds",
+                                   to_text(document_of(sheet, path.filename().string())));
 }
 
 std::string canonical_text(const Settings& settings, const Input& input) {

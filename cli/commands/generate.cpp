@@ -110,7 +110,8 @@ std::vector<OutputFile> render_all(const Settings& settings, LoadedDevice& loade
     files.push_back({(folder / one.built_in.file_name).string(), one.rendered(view)});
     if (one.replacement) inputs.push_back(one.replacement->name());
   }
-  if (!settings.depfile.empty()) files.push_back({settings.depfile, depfile_text(settings.depfile_target, files, inputs)});
+  if (!settings.depfile.empty())
+    files.push_back({settings.depfile, depfile_text(settings.depfile_target, files, inputs)});
   return files;
 }
 
@@ -172,7 +173,8 @@ void add_generate_command(CLI::App& app, int& exit_code) {
                            to_namespace(name));
       });
   add_node_id_option(*command, settings->load.node_id);
-  command->add_option("--options", settings->load.options_path, "options file (default: FILE's name with .options.json, if there)");
+  command->add_option("--options", settings->load.options_path,
+                      "options file (default: FILE's name with .options.json, if there)");
   command->add_flag("--static-mapping", settings->load.static_mapping,
                     "no PDO can be mapped over the bus, for smaller firmware");
   command->add_option("--templates", settings->templates, "folder with templates that replace the built-in ones")

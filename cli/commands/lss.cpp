@@ -98,9 +98,9 @@ int inquire(LssSession& session, const Settings& settings) {
     print(json);
   } else {
     print_visibly(stdout, "{}, {}\n", to_text(address),
-               !node_id.done() ? "node-ID not reported"
-               : has_node_id   ? fmt::format("node-ID {}", node_id.value)
-                               : "no node-ID");
+                  !node_id.done() ? "node-ID not reported"
+                  : has_node_id   ? fmt::format("node-ID {}", node_id.value)
+                                  : "no node-ID");
   }
   return exit_fine;
 }

@@ -77,8 +77,8 @@ class Monitor {
     while (!Interruption::noted()) {
       take_frames(between_pictures, [this](const Message& message) {
         const std::string who = message.node_id == 0 ? "" : fmt::format("node {} ", message.node_id);
-        print_visibly(stdout, "{:>12.6f}  {:<9} {}{}\n", static_cast<double>(now_us_) / 1e6, service_label(message), who,
-                   message.text);
+        print_visibly(stdout, "{:>12.6f}  {:<9} {}{}\n", static_cast<double>(now_us_) / 1e6, service_label(message),
+                      who, message.text);
         flush_output();
       });
     }
@@ -107,8 +107,7 @@ class Monitor {
   template <class OnNews>
   void take_frames(canopen::Duration span, OnNews on_news) {
     const canopen::TimePoint end = bus_.now() + span;
-    for (canopen::TimePoint present = bus_.now(); present < end && !Interruption::noted();
-         present = bus_.now()) {
+    for (canopen::TimePoint present = bus_.now(); present < end && !Interruption::noted(); present = bus_.now()) {
       const auto frame = bus_.receive(end - present);
       advance();
       if (!frame) continue;
@@ -177,9 +176,8 @@ void add_monitor_command(CLI::App& app, int& exit_code) {
       ->check([](const std::string& text) {
         return parse_node_file(text) ? std::string{} : "\"" + text + "\" is not of the form NODE-ID=FILE";
       });
-  auto* once =
-      command->add_option("--once", settings->once_seconds, "print one table after this many seconds")
-          ->check(CLI::Range(0.01, 86'400.0));
+  auto* once = command->add_option("--once", settings->once_seconds, "print one table after this many seconds")
+                   ->check(CLI::Range(0.01, 86'400.0));
   command->add_option("--bit-rate", settings->bit_rate, "kbit/s of the bus, for its load (without stuff bits)")
       ->check(CLI::Range(5, 1000));
   add_format_option(*command, settings->format);

@@ -70,8 +70,8 @@ class Recorder {
   /// Returns false if the file cannot be written.
   bool run() {
     using namespace std::chrono;
-    const auto end = steady_clock::now() + duration_cast<steady_clock::duration>(
-                                               duration<double>{settings_.seconds.value_or(max_seconds)});
+    const auto end = steady_clock::now() +
+                     duration_cast<steady_clock::duration>(duration<double>{settings_.seconds.value_or(max_seconds)});
     while (!Interruption::noted() && frames_ != settings_.count) {
       const auto left = duration_cast<milliseconds>(end - steady_clock::now());
       if (left <= milliseconds{0}) break;
@@ -145,7 +145,8 @@ void add_record_command(CLI::App& app, int& exit_code) {
   command->footer(examples);
   auto settings = std::make_shared<Settings>();
   add_bus_argument(*command, settings->bus);
-  command->add_option("-o,--output", settings->output, "file to write; emptied at the start (default: standard output)")->type_name("FILE");
+  command->add_option("-o,--output", settings->output, "file to write; emptied at the start (default: standard output)")
+      ->type_name("FILE");
   command->add_option("--seconds", settings->seconds, "end after this time")->check(CLI::Range(0.01, 1e9));
   command->add_option("--count", settings->count, "end after this number of frames")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 62));

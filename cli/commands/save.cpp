@@ -190,10 +190,8 @@ void make_text(const Settings& settings, const LoadedDevice& loaded, Saved& save
 Json rows_of(const std::vector<Missing>& missing) {
   Json rows = Json::array();
   for (const Missing& one : missing) {
-    rows.push_back({{"index", one.entry.index},
-                    {"sub_index", one.entry.sub_index},
-                    {"name", one.entry.name},
-                    {"text", one.what}});
+    rows.push_back(
+        {{"index", one.entry.index}, {"sub_index", one.entry.sub_index}, {"name", one.entry.name}, {"text", one.what}});
   }
   return rows;
 }
@@ -217,7 +215,8 @@ void report(const Settings& settings, const Saved& saved) {
   std::string text = fmt::format("node {}: {} entries read, {} values saved", settings.node,
                                  saved.found.values.size() + saved.found.process_data.size(), saved.values.size());
   if (!settings.output.empty()) text += " to " + settings.output;
-  if (!saved.found.process_data.empty()) text += fmt::format(", {} left out (process data)", saved.found.process_data.size());
+  if (!saved.found.process_data.empty())
+    text += fmt::format(", {} left out (process data)", saved.found.process_data.size());
   if (!saved.missing.empty()) text += fmt::format(", {} not saved", saved.missing.size());
   print_visibly(settings.output.empty() ? stderr : stdout, "{}\n", text);
 }

@@ -103,8 +103,8 @@ void print_misfits(const std::vector<FoundNode>& nodes, const std::vector<Candid
     const auto nearest = nearest_misfit(nodes, candidate);
     if (!nearest) continue;
     print_visibly(stdout, "{} does not match any node; node {}{}: {}\n", candidate.path, nearest->node->node_id,
-               nodes.size() > 1 ? " is the closest" : "",
-               identity_differences(candidate.identity, identity_of(*nearest->node)));
+                  nodes.size() > 1 ? " is the closest" : "",
+                  identity_differences(candidate.identity, identity_of(*nearest->node)));
   }
 }
 

@@ -97,10 +97,10 @@ int write_entry(LiveBus& bus, const Settings& settings, const LiveEntry& entry,
   }
   const std::string verified = settings.verify ? ", verified" : "";
   if (settings.file.empty()) {
-    print_visibly(stdout, "{} = {}{}\n", title(entry), settings.raw ? hex_bytes(bytes) : value_of(entry, bytes), verified);
+    print_visibly(stdout, "{} = {}{}\n", title(entry), settings.raw ? hex_bytes(bytes) : value_of(entry, bytes),
+                  verified);
   } else {
-    print_visibly(stdout, "{}: {} from {}{}\n", title(entry), counted(bytes.size(), "byte"),
-               settings.file, verified);
+    print_visibly(stdout, "{}: {} from {}{}\n", title(entry), counted(bytes.size(), "byte"), settings.file, verified);
   }
   return exit_fine;
 }

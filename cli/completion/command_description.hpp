@@ -22,7 +22,7 @@ struct OptionDescription {
 
 struct CommandDescription {
   std::vector<std::string> path;  ///< `lss`, `inquire`; empty for the program
-  std::string group;  ///< heading in the help
+  std::string group;              ///< heading in the help
   std::string text;
   std::string examples;  ///< lines after `Examples:`
   std::vector<OptionDescription> options;

@@ -24,9 +24,10 @@ void print_findings(std::FILE* stream, const Diagnostics& diagnostics, const Col
 }
 
 void add_node_id_option(CLI::App& command, std::optional<std::uint8_t>& node_id) {
-  command.add_option_function<unsigned>(
-             "--node-id", [&node_id](unsigned value) { node_id = static_cast<std::uint8_t>(value); },
-             "evaluate $NODEID formulas for this node-ID (1..127)")
+  command
+      .add_option_function<unsigned>(
+          "--node-id", [&node_id](unsigned value) { node_id = static_cast<std::uint8_t>(value); },
+          "evaluate $NODEID formulas for this node-ID (1..127)")
       ->check(CLI::Range(1, 127));
 }
 

@@ -19,7 +19,8 @@ struct ColorOption {
 };
 
 /// Prints findings as text to a stream; `with_allowed` adds the number of allowed findings.
-void print_findings(std::FILE* stream, const Diagnostics& diagnostics, const ColorOption& color, bool with_allowed = false);
+void print_findings(std::FILE* stream, const Diagnostics& diagnostics, const ColorOption& color,
+                    bool with_allowed = false);
 
 /// Help text of `--keep-going`.
 inline constexpr const char* keep_going_help =

@@ -20,7 +20,8 @@ std::string left_out_text(const std::vector<LeftOut>& left_out) {
   std::string text;
   for (const LeftOut& one : left_out) {
     const Place place = place_of(one.position);
-    text += fmt::format("{}:{}:{}: left out: {}\n", printable(place.file), place.line, place.column, printable(one.what));
+    text +=
+        fmt::format("{}:{}:{}: left out: {}\n", printable(place.file), place.line, place.column, printable(one.what));
   }
   return text;
 }

@@ -50,7 +50,7 @@ std::unique_ptr<LoadedDevice> load_live_device(const std::string& path, std::uin
   if (loaded->device) {
     if (diagnostics.errors() > 0) {
       print_visibly(stderr, "edsc: {}: {}; what is wrong is left out (\"edsc check --keep-going\" lists it)\n",
-                 printable(path), counted(diagnostics.errors(), "error"));
+                    printable(path), counted(diagnostics.errors(), "error"));
     }
     return loaded;
   }
@@ -86,9 +86,11 @@ NodeCheck check_node(SdoAccess& node, const Device& device, const std::string& p
   NodeCheck check;
   check.not_compared = not_compared_text(path, not_compared(expected, found));
   const IdentityMatch match = compare_identity(expected, found);
-  if (match == IdentityMatch::same || match == IdentityMatch::minor_revision || match == IdentityMatch::unknown) return check;
-  check.problem = fmt::format("node {} is not the device of {}: {}; \"edsc scan BUS --eds FILE\" finds the node of a file",
-                              node.node().value(), path, identity_differences(expected, found));
+  if (match == IdentityMatch::same || match == IdentityMatch::minor_revision || match == IdentityMatch::unknown)
+    return check;
+  check.problem =
+      fmt::format("node {} is not the device of {}: {}; \"edsc scan BUS --eds FILE\" finds the node of a file",
+                  node.node().value(), path, identity_differences(expected, found));
   return check;
 }
 

@@ -54,9 +54,8 @@ std::uint16_t statusword_after(std::uint16_t controlword) {
 
 /// A drive's answer to its controlword.
 template <class Statusword>
-constexpr auto answer_controlword = [](auto& node, std::uint16_t controlword) {
-  node.template set<Statusword>(statusword_after(controlword));
-};
+constexpr auto answer_controlword =
+    [](auto& node, std::uint16_t controlword) { node.template set<Statusword>(statusword_after(controlword)); };
 
 template <class VendorId, class ProductCode, class RevisionNumber, class DeviceName>
 void show_identity(demo::Master& master, NodeId node) {
@@ -71,23 +70,28 @@ void show_identity(demo::Master& master, NodeId node) {
 void show_identities(demo::Master& master) {
   {
     namespace id = ezd_1136::od::identity_object;
-    show_identity<id::vendor_id, id::product_code, id::revision_number, ezd_1136::od::manufacturer_device_name>(master, stepper_id);
+    show_identity<id::vendor_id, id::product_code, id::revision_number, ezd_1136::od::manufacturer_device_name>(
+        master, stepper_id);
   }
   {
     namespace id = cpd::od::identity_object;
-    show_identity<id::vendor_id, id::product_code, id::revision_number, cpd::od::manufacturer_device_name>(master, spindle_id);
+    show_identity<id::vendor_id, id::product_code, id::revision_number, cpd::od::manufacturer_device_name>(master,
+                                                                                                           spindle_id);
   }
   {
     namespace id = cpc_tc1::od::identity_object;
-    show_identity<id::vendor_id, id::product_code, id::revision_number, cpc_tc1::od::manufacturer_device_name>(master, drive_id);
+    show_identity<id::vendor_id, id::product_code, id::revision_number, cpc_tc1::od::manufacturer_device_name>(
+        master, drive_id);
   }
   {
     namespace id = can_2053c::od::identity_object;
-    show_identity<id::vendor_id, id::product_code, id::revision_number, can_2053c::od::manufacturer_device_name>(master, inputs_id);
+    show_identity<id::vendor_id, id::product_code, id::revision_number, can_2053c::od::manufacturer_device_name>(
+        master, inputs_id);
   }
   {
     namespace id = rk5c::od::identity_object;
-    show_identity<id::vendor_id, id::product_code, id::revision_number, rk5c::od::manufacturer_device_name>(master, sensor_id);
+    show_identity<id::vendor_id, id::product_code, id::revision_number, rk5c::od::manufacturer_device_name>(master,
+                                                                                                            sensor_id);
   }
 }
 
@@ -144,9 +148,8 @@ int run_demo(demo::CandumpLog& log) {
   auto& drive_port = bus.attach();
   auto drive = canopen::make_node<cpc_tc1::Device>(
       drive_port, drive_id, canopen::on_write<cpc_tc1::od::controlword>(answer_controlword<cpc_tc1::od::statusword>),
-      canopen::on_write<cpc_tc1::od::target_velocity>([](auto& node, std::int32_t velocity) {
-        node.template set<cpc_tc1::od::velocity_actual_value>(velocity);
-      }));
+      canopen::on_write<cpc_tc1::od::target_velocity>(
+          [](auto& node, std::int32_t velocity) { node.template set<cpc_tc1::od::velocity_actual_value>(velocity); }));
   auto& inputs_port = bus.attach();
   auto inputs = canopen::make_node<can_2053c::Device>(inputs_port, inputs_id);
   auto& sensor_port = bus.attach();
@@ -177,7 +180,8 @@ int run_demo(demo::CandumpLog& log) {
 
   heading("PDOs: the master enables the drives, an input changes, the sensor moves, the drive turns");
   std::int32_t position = 0;
-  master.on_tpdo(sensor_id, 1, [&position](const canopen::Frame& frame) { position = rk5c::Tpdo1::get<0>(frame.data); });
+  master.on_tpdo(sensor_id, 1,
+                 [&position](const canopen::Frame& frame) { position = rk5c::Tpdo1::get<0>(frame.data); });
   for (const std::uint16_t controlword : std::array<std::uint16_t, 3>{0x06, 0x07, 0x0F}) {
     master.send_rpdo<cpd::Rpdo1>(spindle_id, 1, cpd::Rpdo1::pack(controlword));
     master.send_rpdo<cpc_tc1::Rpdo1>(drive_id, 1, cpc_tc1::Rpdo1::pack(controlword));

@@ -18,7 +18,8 @@ void Master::command(canopen::NmtCommand command, canopen::NodeId node) {
 
 void Master::on_frame(const canopen::Frame& frame, canopen::TimePoint now) {
   const bool error_control = (frame.id & 0x780) == canopen::function_code::error_control;
-  if (error_control && frame.size == 1 && frame.data[0] == 0) booted_.insert(static_cast<std::uint8_t>(frame.id & 0x7F));
+  if (error_control && frame.size == 1 && frame.data[0] == 0)
+    booted_.insert(static_cast<std::uint8_t>(frame.id & 0x7F));
   if (active_ != nullptr) active_->on_frame(frame, now);
   if (const auto receiver = receivers_.find(frame.id); receiver != receivers_.end()) receiver->second(frame);
 }

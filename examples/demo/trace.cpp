@@ -51,7 +51,8 @@ std::uint64_t bits_of(const Frame& frame, unsigned offset, unsigned bits) {
 std::string entry_name(const KnownNode& node, std::uint16_t index, std::uint8_t sub_index) {
   const auto* row = canopen::find_description(node.names, index, sub_index);
   if (row == nullptr) return fmt::format("{:04X}h:{:02X}", index, sub_index);
-  return fmt::format("{:04X}h:{:02X} {}{}{}", index, sub_index, row->object, row->entry.empty() ? "" : ", ", row->entry);
+  return fmt::format("{:04X}h:{:02X} {}{}{}", index, sub_index, row->object, row->entry.empty() ? "" : ", ",
+                     row->entry);
 }
 
 const canopen::DataTypeRow* entry_type(const KnownNode& node, std::uint16_t index, std::uint8_t sub_index) {
@@ -82,7 +83,8 @@ std::uint16_t index_of(const Frame& frame) { return static_cast<std::uint16_t>(f
 
 std::string abort_text(const Frame& frame) {
   const auto code = static_cast<std::uint32_t>(bits_of(frame, 32, 32));
-  return fmt::format("abort {:04X} {:04X}h {}", code >> 16, code & 0xFFFF, canopen::to_text(static_cast<canopen::AbortCode>(code)));
+  return fmt::format("abort {:04X} {:04X}h {}", code >> 16, code & 0xFFFF,
+                     canopen::to_text(static_cast<canopen::AbortCode>(code)));
 }
 
 std::string_view state_name(unsigned state) {
@@ -128,13 +130,18 @@ std::string Trace::meaning(const Frame& frame) {
   switch (frame.id & 0x780) {
     case canopen::function_code::emcy: return fmt::format("EMCY   {}", node.name);
     case canopen::function_code::error_control:
-      return fmt::format("{} {} {}", frame.data[0] == 0 ? "BOOT  " : "HEART ", node.name, state_name(frame.data[0] & 0x7Fu));
+      return fmt::format("{} {} {}", frame.data[0] == 0 ? "BOOT  " : "HEART ", node.name,
+                         state_name(frame.data[0] & 0x7Fu));
     case canopen::function_code::sdo_request: return "SDO >  " + sdo_request(frame, node, id);
     case canopen::function_code::sdo_response: return "SDO <  " + sdo_response(frame, node, id);
-    case 0x180: case 0x280: case 0x380: case 0x480:
-      return pdo(frame, node, true, static_cast<std::uint16_t>((frame.id & 0x780) / 0x100));
-    case 0x200: case 0x300: case 0x400: case 0x500:
-      return pdo(frame, node, false, static_cast<std::uint16_t>((frame.id & 0x780) / 0x100 - 1));
+    case 0x180:
+    case 0x280:
+    case 0x380:
+    case 0x480: return pdo(frame, node, true, static_cast<std::uint16_t>((frame.id & 0x780) / 0x100));
+    case 0x200:
+    case 0x300:
+    case 0x400:
+    case 0x500: return pdo(frame, node, false, static_cast<std::uint16_t>((frame.id & 0x780) / 0x100 - 1));
     default: return "";
   }
 }

@@ -34,7 +34,8 @@ class Trace {
   [[nodiscard]] std::string meaning(const canopen::Frame& frame);
   [[nodiscard]] std::string sdo_request(const canopen::Frame& frame, const KnownNode& node, std::uint8_t id);
   [[nodiscard]] std::string sdo_response(const canopen::Frame& frame, const KnownNode& node, std::uint8_t id);
-  [[nodiscard]] std::string pdo(const canopen::Frame& frame, const KnownNode& node, bool transmit, std::uint16_t number) const;
+  [[nodiscard]] std::string pdo(const canopen::Frame& frame, const KnownNode& node, bool transmit,
+                                std::uint16_t number) const;
 
   /// The entry of the last SDO request to a node, which segments do not repeat.
   struct Mux {

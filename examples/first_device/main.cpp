@@ -19,7 +19,7 @@ int main() {
   bus.connect(port, node);
 
   node.start(bus.now());
-  master.send({.id = 0x000, .size = 2, .data = {0x01, 0x05}});                               // NMT: start node 5
+  master.send({.id = 0x000, .size = 2, .data = {0x01, 0x05}});                              // NMT: start node 5
   master.send({.id = 0x205, .size = pump::Rpdo1::size, .data = pump::Rpdo1::pack(1'680)});  // RPDO 1
   bus.settle();
   return node.get<pump::od::pressure>() == 420 ? 0 : 1;

@@ -112,7 +112,8 @@ class PlantMaster {
   }
   template <class Device, class GuardTime, class LifeTimeFactor>
   [[nodiscard]] canopen::Result<void> guarded(canopen::MasterRemote<Device, B>& node) const {
-    return all({node.template write<GuardTime>(guard_time(cycle_)), node.template write<LifeTimeFactor>(life_time_factor)});
+    return all(
+        {node.template write<GuardTime>(guard_time(cycle_)), node.template write<LifeTimeFactor>(life_time_factor)});
   }
   /// Returns the first failure of several transfers.
   [[nodiscard]] static canopen::Result<void> all(std::initializer_list<canopen::Result<void>> results) {

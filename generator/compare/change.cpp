@@ -135,9 +135,16 @@ std::string message_of(const Change& change) {
 Change& Changes::add(ChangeId id, std::string entry, std::string name, const Position& old_position,
                      const Position& new_position) {
   const ChangeKind& kind = kind_of(id);
-  return all_.emplace_back(Change{
-      id, std::move(entry), std::move(name), {}, {}, old_position, new_position, kind.breaks_master, kind.breaks_pdo,
-      kind.breaks_source});
+  return all_.emplace_back(Change{id,
+                                  std::move(entry),
+                                  std::move(name),
+                                  {},
+                                  {},
+                                  old_position,
+                                  new_position,
+                                  kind.breaks_master,
+                                  kind.breaks_pdo,
+                                  kind.breaks_source});
 }
 
 void Changes::keep(Audience audience) {

@@ -162,8 +162,8 @@ class DeviceComparison {
   void compare_names(const std::string& label, const Named& a, const Named& b) {
     if (a.identifier == b.identifier && a.name == b.name) return;
     const bool compiles = a.identifier == b.identifier;
-    Change& change = changes_.add(compiles ? ChangeId::name : ChangeId::identifier, label, b.name,
-                                  a.position, b.position);
+    Change& change =
+        changes_.add(compiles ? ChangeId::name : ChangeId::identifier, label, b.name, a.position, b.position);
     change.old_value = compiles ? fmt::format("\"{}\"", a.name) : a.identifier;
     change.new_value = compiles ? fmt::format("\"{}\"", b.name) : b.identifier;
   }

@@ -100,7 +100,8 @@ class PdoComparison {
     const CobIdService service = after_.direction == PdoDirection::receive ? CobIdService::rpdo : CobIdService::tpdo;
     for (CobIdChange& found : compare_cob_ids(old_id, new_id, type, service)) {
       const ChangeId id = found.id == ChangeId::pdo_cob_id && !is_used_ ? ChangeId::default_value : found.id;
-      Change& change = add(id, old_id ? old_id->position : before_.position, new_id ? new_id->position : after_.position);
+      Change& change =
+          add(id, old_id ? old_id->position : before_.position, new_id ? new_id->position : after_.position);
       if (id == ChangeId::default_value && new_entry != nullptr) change.name = new_entry->name;
       change.old_value = std::move(found.old_value);
       change.new_value = std::move(found.new_value);

@@ -102,10 +102,10 @@ std::string changes_as_text(const Changes& changes, bool colour) {
   for (const Change& change : changes.all()) {
     const std::string_view start = !colour ? "" : change.is_breaking() ? "\x1B[1;31m" : "\x1B[1;32m";
     const std::string name = change.name.empty() ? "" : fmt::format(" \"{}\"", change.name);
-    text += fmt::format("{}: {}{}{}: {}{}: {} [{}] (was {})\n", printable(place_text(change.new_position)), start,
-                        verdict_of(change), colour ? "\x1B[0m" : "", change.entry, printable(name),
-                        printable(message_of(change)), kind_of(change.id).name,
-                        printable(place_text(change.old_position)));
+    text +=
+        fmt::format("{}: {}{}{}: {}{}: {} [{}] (was {})\n", printable(place_text(change.new_position)), start,
+                    verdict_of(change), colour ? "\x1B[0m" : "", change.entry, printable(name),
+                    printable(message_of(change)), kind_of(change.id).name, printable(place_text(change.old_position)));
   }
   return text +
          fmt::format("{} breaking, {} compatible\n", changes.breaking(), changes.all().size() - changes.breaking());
@@ -114,8 +114,8 @@ std::string changes_as_text(const Changes& changes, bool colour) {
 std::string changes_as_markdown(const Changes& changes, std::string_view before, std::string_view after) {
   const std::size_t breaking = changes.breaking();
   const std::size_t compatible = changes.all().size() - breaking;
-  std::string text = fmt::format("### {} against {}\n\n**{} breaking**, {} compatible\n", cell(after), cell(before), breaking,
-                                 compatible);
+  std::string text = fmt::format("### {} against {}\n\n**{} breaking**, {} compatible\n", cell(after), cell(before),
+                                 breaking, compatible);
   if (breaking > 0) text += "\n" + markdown_table(changes, true);
   if (compatible > 0) {
     text += fmt::format("\n<details>\n<summary>{} compatible</summary>\n\n{}\n</details>\n", compatible,

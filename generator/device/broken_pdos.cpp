@@ -58,8 +58,8 @@ Finding check_dummy(const Device& device, const Pdo& pdo, const PdoEntry& entry)
     return BrokenPdo{"pdo-variable-length", fmt::format("{} {}, a variable-length data type", maps(pdo, entry), dummy)};
   }
   if (entry.bits != bits) {
-    return BrokenPdo{"pdo-length",
-                     fmt::format("{} {} of {}, which has {}", maps(pdo, entry), counted(entry.bits, "bit"), dummy, bits)};
+    return BrokenPdo{"pdo-length", fmt::format("{} {} of {}, which has {}", maps(pdo, entry),
+                                               counted(entry.bits, "bit"), dummy, bits)};
   }
   return {};
 }
@@ -89,8 +89,7 @@ Finding check_object(const Device& device, const Options& options, const Pdo& pd
     const Object* object = device.find(entry.index);
     const std::string label = entry_label(entry.index, entry.sub_index);
     if (object == nullptr) {
-      return BrokenPdo{"pdo-object", fmt::format("{} {}, which does not exist", maps(pdo, entry), label),
-                       label};
+      return BrokenPdo{"pdo-object", fmt::format("{} {}, which does not exist", maps(pdo, entry), label), label};
     }
     return BrokenPdo{
         "pdo-object",
@@ -118,8 +117,9 @@ Finding check_object(const Device& device, const Options& options, const Pdo& pd
                                                         quoted_object(entry), object.type->name)};
   }
   if (object.type->bits != entry.bits && !is_boolean_in_a_byte(entry)) {
-    return BrokenPdo{"pdo-length", fmt::format("{} {} of {}, which is {} and has {}", maps(pdo, entry), counted(entry.bits, "bit"),
-                                               quoted_object(entry), object.type->name, object.type->bits)};
+    return BrokenPdo{"pdo-length",
+                     fmt::format("{} {} of {}, which is {} and has {}", maps(pdo, entry), counted(entry.bits, "bit"),
+                                 quoted_object(entry), object.type->name, object.type->bits)};
   }
   return {};
 }

@@ -18,7 +18,7 @@ struct CobIdParameter {
   std::uint16_t first, last;  ///< indices
   std::uint8_t first_sub_index, last_sub_index;
   CobIdService service;
-  bool has_valid_bit;       ///< bit 31: does not exist
+  bool has_valid_bit;        ///< bit 31: does not exist
   std::uint32_t predefined;  ///< of `first`: the pre-defined connection set (7.3.5), or bit 31 alone
   std::uint16_t step;        ///< from one index to the next
   bool plus_node_id;         ///< the node-ID is added to `predefined`

@@ -116,10 +116,10 @@ class CompactPdos {
       ++sub_index;
       if ((mask_ >> (sub_index - 1U) & 1U) == 0) continue;
       const CobIdParameter* const cob_id = find_cob_id_parameter(object.index, sub_index);
-      Entry& entry = add_entry(
-          object, sub_index,
-          cob_id != nullptr ? fmt::format("{} used by {}", row.name, direction.name) : std::string{row.name}, row.type,
-          Access::rw);
+      Entry& entry =
+          add_entry(object, sub_index,
+                    cob_id != nullptr ? fmt::format("{} used by {}", row.name, direction.name) : std::string{row.name},
+                    row.type, Access::rw);
       if (cob_id != nullptr) entry.default_value = predefined_cob_id(*cob_id, object.index, device_.node_id, position_);
       if (row.name == transmission_type) entry.default_value = value(default_transmission_type);
     }

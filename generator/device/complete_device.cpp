@@ -98,8 +98,8 @@ class Completion {
       return;
     }
     diagnostics_.warning("sub-index-0-value", count.default_value->position,
-                         fmt::format("{} is {}, but the highest sub-index described is {}; using {}",
-                                     named(count), count.default_value->bits, highest, highest));
+                         fmt::format("{} is {}, but the highest sub-index described is {}; using {}", named(count),
+                                     count.default_value->bits, highest, highest));
     set(count, highest, sub_index_0_clause);
   }
 

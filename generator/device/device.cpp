@@ -28,8 +28,8 @@ const Entry* Object::find(std::uint8_t sub_index) const {
 
 std::uint8_t Object::highest_sub_index() const {
   constexpr std::uint8_t structure = 0xFF;
-  const auto last = std::find_if(entries.rbegin(), entries.rend(),
-                                 [](const Entry& entry) { return entry.sub_index != structure; });
+  const auto last =
+      std::find_if(entries.rbegin(), entries.rend(), [](const Entry& entry) { return entry.sub_index != structure; });
   return last != entries.rend() ? last->sub_index : 0;
 }
 

@@ -50,13 +50,13 @@ struct Entry {
   std::uint32_t octets = 0;  ///< of a string: the length that its DEFTYPE states, in bytes; 0 where none does
   canopen::Access access = canopen::Access::rw;
   bool pdo_mapping = false;
-  std::uint32_t obj_flags = 0;  ///< not accessed by configuration tools: bit 0 write, bit 1 read
+  std::uint32_t obj_flags = 0;         ///< not accessed by configuration tools: bit 0 write, bit 1 read
   std::optional<Value> default_value;  ///< of a DCF: the ParameterValue, if any
   std::optional<Value> low_limit;
   std::optional<Value> high_limit;
-  Position position;            ///< the section
-  Position access_position;     ///< for findings about AccessType
-  Position mapping_position;    ///< for findings about PDOMapping
+  Position position;          ///< the section
+  Position access_position;   ///< for findings about AccessType
+  Position mapping_position;  ///< for findings about PDOMapping
 
   // Further keys of a DCF.
   std::string denotation;     ///< the user's name
@@ -77,8 +77,8 @@ struct Object {
   std::uint16_t index = 0;
   ObjectType type = ObjectType::var;
   std::string name;
-  std::string identifier;        ///< unique in the device
-  std::vector<Entry> entries;    ///< ascending by sub-index; exactly one for a VAR or DOMAIN
+  std::string identifier;      ///< unique in the device
+  std::vector<Entry> entries;  ///< ascending by sub-index; exactly one for a VAR or DOMAIN
   Position position;
   std::string denotation;
   std::uint32_t obj_flags = 0;
@@ -98,22 +98,22 @@ struct PdoEntry {
   std::uint16_t index = 0;
   std::uint8_t sub_index = 0;
   std::uint8_t bits = 0;
-  const Entry* object = nullptr;                 ///< null if the entry does not exist
-  const canopen::DataTypeRow* dummy = nullptr;   ///< set if the index is that of a data type
-  Position place;                                ///< the mapping value
+  const Entry* object = nullptr;                ///< null if the entry does not exist
+  const canopen::DataTypeRow* dummy = nullptr;  ///< set if the index is that of a data type
+  Position place;                               ///< the mapping value
 };
 
 /// A PDO with its default communication and mapping parameters.
 struct Pdo {
   PdoDirection direction = PdoDirection::receive;
-  std::uint16_t number = 1;            ///< 1..512
+  std::uint16_t number = 1;  ///< 1..512
   const Object* communication = nullptr;
-  const Object* mapping = nullptr;     ///< null if the object is missing
-  std::vector<PdoEntry> entries;       ///< their number is sub-index 0
-  Position position;                   ///< the communication parameter's section, else the mapping parameter's
-  bool multiplexed = false;            ///< sub-index 0 of its mapping is 254 or 255: an MPDO, which has no entries
-  bool dynamic = false;                ///< the mapping can be changed: the mapping parameter is in RAM
-  bool broken = false;                 ///< the mapping is invalid
+  const Object* mapping = nullptr;  ///< null if the object is missing
+  std::vector<PdoEntry> entries;    ///< their number is sub-index 0
+  Position position;                ///< the communication parameter's section, else the mapping parameter's
+  bool multiplexed = false;         ///< sub-index 0 of its mapping is 254 or 255: an MPDO, which has no entries
+  bool dynamic = false;             ///< the mapping can be changed: the mapping parameter is in RAM
+  bool broken = false;              ///< the mapping is invalid
 
   [[nodiscard]] unsigned bits() const;
 };
@@ -137,18 +137,18 @@ struct TypeDefinition {
 
 struct Device {
   const SourceFile* source = nullptr;
-  std::string name;             ///< C++ namespace
+  std::string name;  ///< C++ namespace
   std::string vendor_name;
   std::string product_name;
   std::uint32_t vendor_number = 0;
   std::uint32_t product_number = 0;
   std::uint32_t revision_number = 0;
-  std::optional<std::uint8_t> node_id;    ///< fixed at generation time
-  std::vector<std::uint16_t> dummies;     ///< data type indices that RPDOs may map as dummy entries
-  std::vector<Object> objects;            ///< ascending by index
-  std::vector<TypeDefinition> types;      ///< ascending by index: for DataType, not part of the dictionary
-  std::vector<Pdo> pdos;                  ///< RPDOs, then TPDOs, each ascending by number
-  Information information;                ///< the other contents of the data sheet
+  std::optional<std::uint8_t> node_id;  ///< fixed at generation time
+  std::vector<std::uint16_t> dummies;   ///< data type indices that RPDOs may map as dummy entries
+  std::vector<Object> objects;          ///< ascending by index
+  std::vector<TypeDefinition> types;    ///< ascending by index: for DataType, not part of the dictionary
+  std::vector<Pdo> pdos;                ///< RPDOs, then TPDOs, each ascending by number
+  Information information;              ///< the other contents of the data sheet
 
   [[nodiscard]] const Object* find(std::uint16_t index) const;
   [[nodiscard]] const Entry* find(std::uint16_t index, std::uint8_t sub_index) const;

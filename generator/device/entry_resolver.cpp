@@ -37,7 +37,8 @@ constexpr ImpliedType implied_types[] = {
 /// `: REAL32 is 0x0008` for `float`; empty if the word is not a data type.
 std::string number_of_type(std::string_view name) {
   const DataTypeRow* const type = find_type_by_name(name);
-  return type == nullptr ? std::string{} : fmt::format(": {} is 0x{:04X}", type->name, static_cast<unsigned>(type->type));
+  return type == nullptr ? std::string{}
+                         : fmt::format(": {} is 0x{:04X}", type->name, static_cast<unsigned>(type->type));
 }
 
 /// Whether an entry of unknown type becomes a DOMAIN, bytes that are not interpreted. Entries of the communication
@@ -138,7 +139,8 @@ std::optional<ValueType> EntryResolver::data_type(const EntryDescription& descri
   return ValueType{};
 }
 
-std::optional<ValueType> EntryResolver::missing_data_type(const EntryDescription& description, const EntryPlace& place) {
+std::optional<ValueType> EntryResolver::missing_data_type(const EntryDescription& description,
+                                                          const EntryPlace& place) {
   const auto object_type = number_of(description.object_type);
   if (object_type == static_cast<std::uint64_t>(ObjectType::domain)) {
     diagnostics_.warning("data-type", description.position, "missing DataType; assuming DOMAIN from ObjectType");

@@ -40,8 +40,8 @@ class Comparison {
       if (entry != nullptr) {
         compare_values(sub, *entry);
       } else {
-        add(sub.position, fmt::format("{} {}", entry_label(description.index, sub.sub_index),
-                                      quote(sub.parameter_name.text)));
+        add(sub.position,
+            fmt::format("{} {}", entry_label(description.index, sub.sub_index), quote(sub.parameter_name.text)));
       }
     }
   }

@@ -54,8 +54,8 @@ std::string_view implied_count_clause(std::uint16_t index) {
 /// Whether a VAR or DOMAIN with sub-objects is a value, and the index of the sub-objects is wrong: it has its own data
 /// type, states no sub-objects, and sub-index 0 is missing.
 bool describes_a_value(const ObjectDescription& description) {
-  const bool counts = std::ranges::any_of(
-      description.sub_objects, [](const SubObjectDescription& sub) { return sub.sub_index == 0; });
+  const bool counts =
+      std::ranges::any_of(description.sub_objects, [](const SubObjectDescription& sub) { return sub.sub_index == 0; });
   return !counts && !strip_inline_comment(description.data_type.text).empty() &&
          number_of(description.sub_number).value_or(0) == 0 && number_of(description.compact_sub_obj).value_or(0) == 0;
 }
@@ -138,10 +138,10 @@ ObjectType ObjectResolver::object_type(const ObjectDescription& description) {
 
 void ObjectResolver::report_stray_sub_objects(const ObjectDescription& description, ObjectType type) {
   for (const SubObjectDescription& sub : description.sub_objects) {
-    diagnostics_.warning("sub-object-without-object", sub.position,
-                         fmt::format("{} is a {} and cannot have sub-objects; {} {} is left out",
-                                     index_label(description.index), to_string(type),
-                                     entry_label(description.index, sub.sub_index), quote(sub.parameter_name.text)));
+    diagnostics_.warning(
+        "sub-object-without-object", sub.position,
+        fmt::format("{} is a {} and cannot have sub-objects; {} {} is left out", index_label(description.index),
+                    to_string(type), entry_label(description.index, sub.sub_index), quote(sub.parameter_name.text)));
   }
 }
 

@@ -101,8 +101,8 @@ class Resolver {
     entries_ += device_.objects.back().entries.size();
     if (entries_ <= max_entries) return true;
     diagnostics_.error("dictionary-size", last.position,
-                       fmt::format("a device can have at most {} entries; everything after {} is left out",
-                                   max_entries, index_label(last.index)));
+                       fmt::format("a device can have at most {} entries; everything after {} is left out", max_entries,
+                                   index_label(last.index)));
     return false;
   }
 
@@ -110,9 +110,9 @@ class Resolver {
   void check_option_keys() {
     const auto check = [&](const EntryKey& key, std::string_view option) {
       if (device_.find(key.first, key.second) != nullptr) return;
-      diagnostics_.error("options", Position{sheet_.source},
-                         fmt::format("option {} names {}, which is not in the EDS", option,
-                                     entry_label(key.first, key.second)));
+      diagnostics_.error(
+          "options", Position{sheet_.source},
+          fmt::format("option {} names {}, which is not in the EDS", option, entry_label(key.first, key.second)));
     };
     for (const auto& [key, name] : options_.names) check(key, "names");
     for (const auto& [key, capacity] : options_.string_capacity) check(key, "string_capacity");

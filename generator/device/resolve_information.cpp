@@ -74,7 +74,8 @@ class InformationReader {
   Information read() {
     for (const auto& row : file_texts) information_.file.*row.to = (sheet_.file_info.*row.from).text;
     information_.comments = lines_of(sheet_.comments);
-    for (const Tool& tool : sheet_.tools) information_.tools.push_back({std::string{tool.name.text}, std::string{tool.command.text}});
+    for (const Tool& tool : sheet_.tools)
+      information_.tools.push_back({std::string{tool.name.text}, std::string{tool.command.text}});
     read_capabilities();
     read_commissioning();
     read_dynamic_channels();

@@ -112,8 +112,10 @@ class ModuleResolver {
       if (entry == nullptr) return;
       free = entry->type->bits;
       if (free < bits) {
-        diagnostics_.warning("module-count", extension.count.position,
-                             fmt::format("{} into {}", bits == 1 ? "1 bit does not fit" : fmt::format("{} bits do not fit", bits), entry->type->name));
+        diagnostics_.warning(
+            "module-count", extension.count.position,
+            fmt::format("{} into {}", bits == 1 ? "1 bit does not fit" : fmt::format("{} bits do not fit", bits),
+                        entry->type->name));
       }
     }
     free -= std::min(free, bits);

@@ -19,7 +19,9 @@ constexpr ParameterIndices parameter_indices[] = {
     {PdoDirection::transmit, 0x1800, 0x1A00},
 };
 
-std::uint64_t default_of(const Entry* entry) { return entry != nullptr && entry->default_value ? entry->default_value->bits : 0; }
+std::uint64_t default_of(const Entry* entry) {
+  return entry != nullptr && entry->default_value ? entry->default_value->bits : 0;
+}
 
 /// The default mapping: sub-index 0 is the number of objects, sub-indices 1.. the objects.
 std::vector<PdoEntry> default_mapping(const Device& device, const Object& mapping) {
@@ -69,9 +71,7 @@ bool carries_a_string(const Pdo& pdo) {
 
 /// Whether sub-index 0 includes empty or missing entries: the PDO has the layout without them, which a dynamic mapping
 /// cannot express.
-bool has_gaps(const Pdo& pdo) {
-  return !pdo.multiplexed && pdo.entries.size() != default_of(pdo.mapping->find(0));
-}
+bool has_gaps(const Pdo& pdo) { return !pdo.multiplexed && pdo.entries.size() != default_of(pdo.mapping->find(0)); }
 
 /// Whether the mapping can be changed: all entries of its parameter are writable, or set by the application. A PDO
 /// without a COB-ID is not served.

@@ -22,8 +22,7 @@ void resolve_stored_eds(Device& device, const Options& options, Diagnostics& dia
   if (options.stored_eds == StoredEds::of_application) return;
   const Entry* const sheet = find_entry(device, store_eds);
   if (sheet == nullptr || sheet->type->kind != canopen::DataClass::domain || !is_read_only(*sheet)) {
-    diagnostics.error("options", Position{device.source},
-                      "option stored_eds: the EDS has no read-only DOMAIN 1021h");
+    diagnostics.error("options", Position{device.source}, "option stored_eds: the EDS has no read-only DOMAIN 1021h");
     return;
   }
   Entry* const format = find_entry(device, store_format);

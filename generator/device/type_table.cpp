@@ -70,7 +70,7 @@ const SubObjectDescription* find_sub(const ObjectDescription& object, std::uint8
 }
 
 class DefinitionReader {
-  static constexpr int max_steps = 8;              ///< from a DEFTYPE to its basic type
+  static constexpr int max_steps = 8;               ///< from a DEFTYPE to its basic type
   static constexpr std::uint64_t max_octets = 256;  ///< longer types are a DOMAIN, in memory of the application
 
  public:
@@ -166,8 +166,8 @@ class DefinitionReader {
     const std::string length = type.octets != 0 ? fmt::format(" of {}", counted(type.octets, "byte")) : "";
     diagnostics_.note("type-length", object.default_value.position,
                       fmt::format("{} {} has {}: its objects are of type {}{}", index_label(object.index),
-                                  quote(object.parameter_name.text), counted(number_of(object.default_value).value_or(0), "bit"),
-                                  type.row->name, length));
+                                  quote(object.parameter_name.text),
+                                  counted(number_of(object.default_value).value_or(0), "bit"), type.row->name, length));
   }
 
   std::optional<Value> limit(const Field& field, Limit which, const DataTypeRow& type) {

@@ -27,7 +27,7 @@ std::size_t Allowances::KeyHash::operator()(const Key& key) const {
   const AllowanceScope& scope = key.scope;
   const std::uint64_t place = (std::uint64_t{scope.line} << 32U) | (std::uint64_t{scope.index} << 16U) |
                               (std::uint64_t{scope.sub_index} << 8U) | static_cast<std::uint64_t>(scope.kind);
-  return std::hash<std::string_view>{}(key.rule) ^ (std::hash<std::uint64_t>{}(place) * 31U);
+  return std::hash<std::string_view>{}(key.rule) ^ (std::hash<std::uint64_t>{}(place)*31U);
 }
 
 void Allowances::set_outline(SheetOutline outline) {

@@ -43,7 +43,7 @@ struct AllowanceScope {
 struct Allowance {
   std::string rule;
   std::string reason;
-  Position position;  ///< of the allowance itself
+  Position position;       ///< of the allowance itself
   bool in_source = false;  ///< a comment in the EDS; otherwise a member of the options file
   AllowanceScope scope;
   std::size_t findings = 0;  ///< number of findings that it applied to

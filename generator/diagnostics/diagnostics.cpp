@@ -9,12 +9,9 @@ namespace edsc {
 
 std::string_view to_string(Severity severity) {
   switch (severity) {
-    case Severity::note:
-      return "note";
-    case Severity::warning:
-      return "warning";
-    case Severity::error:
-      return "error";
+    case Severity::note: return "note";
+    case Severity::warning: return "warning";
+    case Severity::error: return "error";
   }
   return "";
 }
@@ -115,7 +112,8 @@ void Diagnostics::count(Severity severity) {
 
 bool Diagnostics::is_tolerated(const Diagnostic& diagnostic) const {
   return foreign_file_ != nullptr && diagnostic.severity == Severity::error &&
-         diagnostic.position.file == foreign_file_ && std::ranges::find(fatal_rules_, diagnostic.rule) == fatal_rules_.end();
+         diagnostic.position.file == foreign_file_ &&
+         std::ranges::find(fatal_rules_, diagnostic.rule) == fatal_rules_.end();
 }
 
 bool Diagnostics::drop_silenced(const Diagnostic& diagnostic) {

@@ -23,12 +23,9 @@ struct Palette {
 
   [[nodiscard]] std::string_view of(Severity severity) const {
     switch (severity) {
-      case Severity::note:
-        return note;
-      case Severity::warning:
-        return warning;
-      case Severity::error:
-        return error;
+      case Severity::note: return note;
+      case Severity::warning: return warning;
+      case Severity::error: return error;
     }
     return {};
   }

@@ -16,7 +16,7 @@ struct Rule {
   std::string_view id;
   Severity severity;  ///< of most findings
   std::string_view meaning;
-  std::string_view source;     ///< clause of a CiA document, or "edsc" for a rule of this compiler
+  std::string_view source;      ///< clause of a CiA document, or "edsc" for a rule of this compiler
   Severity mildest = severity;  ///< if the value can still be read, or the fault is harmless
 
   [[nodiscard]] constexpr bool allows(Severity other) const { return other == severity || other == mildest; }
@@ -51,7 +51,8 @@ inline constexpr Rule rows[] = {
     Rule{"dummy-usage", warning, "DummyNNNN is not 0 or 1, or NNNN is not a basic data type", "CiA 306-1, 4.6.4"},
     Rule{"section-spelling", note, "a section that CiA 306 spells differently", "CiA 306-1, 5.3"},
     Rule{"commissioned-node-id", note, "a DCF without NodeID", "CiA 306-1, 5.3"},
-    Rule{"commissioned-baud-rate", warning, "Baudrate is not a CANopen bit rate, or not one of the device", "CiA 306-1, 5.3"},
+    Rule{"commissioned-baud-rate", warning, "Baudrate is not a CANopen bit rate, or not one of the device",
+         "CiA 306-1, 5.3"},
     // [DeviceInfo].
     Rule{"no-device-info", warning, "missing section [DeviceInfo]", "CiA 306-1, 4.5"},
     Rule{"device-info-flag", warning, "a key of [DeviceInfo] is not 0 or 1", "CiA 306-1, 4.5"},
@@ -67,7 +68,8 @@ inline constexpr Rule rows[] = {
     // Sections besides those of objects.
     Rule{"comments", warning, "Lines differs from the number of lines in [Comments]", "CiA 306-1, 4.7"},
     Rule{"tools", warning, "Items differs from the number of sections [ToolX]", "CiA 306-1, 4"},
-    Rule{"dynamic-segment", warning, "a segment of [DynamicChannels] cannot be read, or the count differs", "CiA 306-1, 4.8"},
+    Rule{"dynamic-segment", warning, "a segment of [DynamicChannels] cannot be read, or the count differs",
+         "CiA 306-1, 4.8"},
     Rule{"commissioning", warning, "a number of [DeviceComissioning] cannot be read", "CiA 306-1, 5.3"},
     Rule{"modules", warning, "NrOfEntries of [SupportedModules] differs from the number of modules", "CiA 306-1, 6"},
     Rule{"connected-module", error, "a connected module is not supported", "CiA 306-1, 6"},
@@ -102,9 +104,11 @@ inline constexpr Rule rows[] = {
     Rule{"standard-data-type", warning, "wrong data type for an object of CiA 301", "CiA 301, 7.5.2"},
     Rule{"standard-access", warning, "an access type that CiA 301 does not allow for the object", "CiA 301, 7.5.2"},
     Rule{"standard-sub-index", warning, "a sub-index that CiA 301 does not define for the object", "CiA 301, 7.5.2"},
-    Rule{"standard-sub-index-missing", warning, "missing sub-index that CiA 301 requires for the object", "CiA 301, 7.5.2"},
+    Rule{"standard-sub-index-missing", warning, "missing sub-index that CiA 301 requires for the object",
+         "CiA 301, 7.5.2"},
     Rule{"heartbeat-consumer", warning, "1016h monitors an invalid node-ID, or a node twice", "CiA 301, 7.5.2.19"},
-    Rule{"two-error-controls", warning, "heartbeat and node guarding are both enabled by default", "CiA 301, 7.2.8.2.2"},
+    Rule{"two-error-controls", warning, "heartbeat and node guarding are both enabled by default",
+         "CiA 301, 7.2.8.2.2"},
     Rule{"sync-counter", warning, "1019h is 1 or above 240", "CiA 301, 7.5.2.22"},
     Rule{"error-behavior", warning, "1029h has a reserved value", "CiA 301, 7.5.2.32"},
     Rule{"storage-capability", warning, "1010h or 1011h has reserved bits set", "CiA 301, 7.5.2.13"},
@@ -120,10 +124,12 @@ inline constexpr Rule rows[] = {
     Rule{"sub-index-255", warning, "sub-index FFh does not describe its object", "CiA 301, 7.4.4"},
     Rule{"compact-sub-obj", error, "CompactSubObj is not a number of 0..254", "CiA 306-1, 4.6.2.6", warning},
     Rule{"entry-count", warning, "NrOfEntries differs from the number of entries", "CiA 306-1, 4.6.2.6"},
-    Rule{"compact-entry", warning, "an entry of [HHHHName], [HHHHValue] or [HHHHDenotation] for an unknown sub-index", "CiA 306-1, 4.6.2.6"},
+    Rule{"compact-entry", warning, "an entry of [HHHHName], [HHHHValue] or [HHHHDenotation] for an unknown sub-index",
+         "CiA 306-1, 4.6.2.6"},
     Rule{"compact-pdo", warning, "CompactPDO or the number of its PDOs is too large", "CiA 306-1, 4.5"},
     Rule{"object-links", warning, "ObjectLinks contains an invalid index", "CiA 306-1, 4.6.2"},
-    Rule{"sub-index-base", warning, "sub-indices that look decimal: 10h without Ah, 16h without 10h", "CiA 306-1, 4.6.2"},
+    Rule{"sub-index-base", warning, "sub-indices that look decimal: 10h without Ah, 16h without 10h",
+         "CiA 306-1, 4.6.2"},
     Rule{"array-data-type", warning, "elements of an ARRAY have different data types", "CiA 301, 7.4.3"},
     Rule{"parameter-name", warning, "an object without a name", "CiA 306-1, 4.6.2"},
     Rule{"data-type", error, "DataType is missing or unknown", "CiA 301, 7.4.7", warning},
@@ -162,21 +168,24 @@ inline constexpr Rule rows[] = {
     Rule{"cob-id-missing", note, "a COB-ID without default value, or 0", "CiA 301, 7.3.5"},
     Rule{"cob-id-frame", error, "an 11-bit CAN-ID with more than 11 bits", "CiA 301, 7.5.2.35"},
     Rule{"cob-id-restricted", error, "a restricted CAN-ID", "CiA 301, 7.3.5"},
-    Rule{"cob-id-node-id", warning, "a CAN-ID of one node in an EDS for any node, or the node-ID is added twice", "CiA 301, 7.3.5"},
+    Rule{"cob-id-node-id", warning, "a CAN-ID of one node in an EDS for any node, or the node-ID is added twice",
+         "CiA 301, 7.3.5"},
     Rule{"cob-id-twice", warning, "several services with the same CAN-ID", "CiA 301, 7.3.5"},
     Rule{"default-sdo-cob-id", warning, "the default SDO does not have its pre-defined CAN-IDs", "CiA 301, 7.5.2.33"},
     // PDOs.
     Rule{"pdo-pair", warning, "a PDO without communication or mapping parameter", "CiA 301, 7.5.2.35"},
     Rule{"pdo-object", error, "a PDO maps an object that does not exist", "CiA 301, 7.5.2.36", warning},
     Rule{"pdo-mappable", error, "a PDO maps an object that is not PDO-mappable", "CiA 301, 7.5.2.36", warning},
-    Rule{"pdo-direction", error, "a PDO maps an object mappable only in the other direction", "CiA 301, 7.5.2.36", warning},
+    Rule{"pdo-direction", error, "a PDO maps an object mappable only in the other direction", "CiA 301, 7.5.2.36",
+         warning},
     Rule{"pdo-length", error, "a PDO maps an object with the wrong length", "CiA 301, 7.5.2.36", warning},
     Rule{"pdo-boolean-byte", warning, "a PDO maps a BOOLEAN as a byte", "CiA 301, 7.5.2.36"},
     Rule{"pdo-variable-length", error, "a PDO maps a variable-length data type", "CiA 301, 7.5.2.36", warning},
     Rule{"pdo-dummy", error, "a PDO maps a dummy entry that is not allowed", "CiA 301, 7.4.7.1", warning},
     Rule{"pdo-size", error, "a PDO is longer than 64 bits", "CiA 301, 7.5.2.36", warning},
     Rule{"pdo-entries", error, "a PDO maps more than 64 objects", "CiA 301, 7.5.2.36", warning},
-    Rule{"pdo-mapping-count", warning, "a PDO maps more objects than its mapping parameter has sub-indices", "CiA 301, 7.5.2.36"},
+    Rule{"pdo-mapping-count", warning, "a PDO maps more objects than its mapping parameter has sub-indices",
+         "CiA 301, 7.5.2.36"},
     Rule{"pdo-mapping-gap", warning, "an empty entry within a PDO mapping", "CiA 301, 7.5.2.36"},
     Rule{"pdo-object-twice", warning, "a PDO maps an object twice", "CiA 301, 7.5.2.36"},
     Rule{"pdo-empty", note, "a valid PDO without mapped objects", "CiA 301, 7.5.2.36"},
@@ -187,14 +196,18 @@ inline constexpr Rule rows[] = {
     Rule{"pdo-sync", warning, "a synchronous PDO, but 1005h is missing", "CiA 301, 7.5.2.5"},
     Rule{"pdo-remote", warning, "an RTR-only TPDO whose COB-ID does not allow RTR", "CiA 301, 7.5.2.37"},
     Rule{"pdo-inhibit-time", warning, "the inhibit time is longer than the event timer", "CiA 301, 7.5.2.37"},
-    Rule{"pdo-time-unused", note, "an inhibit time or event timer that the transmission type does not use", "CiA 301, 7.5.2.37"},
+    Rule{"pdo-time-unused", note, "an inhibit time or event timer that the transmission type does not use",
+         "CiA 301, 7.5.2.37"},
     Rule{"pdo-compatibility-entry", note, "sub-index 4 of a PDO communication parameter", "CiA 301, 7.5.2.37"},
     Rule{"pdo-sync-start", warning, "a SYNC start value without effect", "CiA 301, 7.5.2.37"},
     // Multiplex PDOs.
     Rule{"mpdo-option", warning, "a multiplex PDO, but the option mpdo is not set", "CiA 301, 7.2.2.5"},
-    Rule{"mpdo-transmission-type", warning, "a multiplex PDO whose transmission type is not 254 or 255", "CiA 301, 7.2.2.5"},
-    Rule{"mpdo-list", warning, "an MPDO in source addressing mode without scanner or dispatching list", "CiA 301, 7.2.2.5"},
-    Rule{"mpdo-list-object", warning, "a scanner or dispatching list contains an object that an MPDO cannot map", "CiA 301, 7.2.2.5"},
+    Rule{"mpdo-transmission-type", warning, "a multiplex PDO whose transmission type is not 254 or 255",
+         "CiA 301, 7.2.2.5"},
+    Rule{"mpdo-list", warning, "an MPDO in source addressing mode without scanner or dispatching list",
+         "CiA 301, 7.2.2.5"},
+    Rule{"mpdo-list-object", warning, "a scanner or dispatching list contains an object that an MPDO cannot map",
+         "CiA 301, 7.2.2.5"},
     Rule{"mpdo-second-producer", warning, "two TPDOs in source addressing mode", "CiA 301, 7.2.2.5"},
     // Device profiles.
     Rule{"device-type", note, "1000h without default value", "CiA 301, 7.5.2.1"},
@@ -247,8 +260,9 @@ class RuleId {
   }
   /// A rule with several severities converts to a rule with some of them.
   template <Severity... others>
-    requires(sizeof...(others) > sizeof...(severities) && (rule_table::is_one_of<severities, others...> && ...))
-  constexpr RuleId(const RuleId<others...>& other) : row_{&other.row()} {}
+  requires(sizeof...(others) > sizeof...(severities) &&
+           (rule_table::is_one_of<severities, others...> && ...)) constexpr RuleId(const RuleId<others...>& other)
+      : row_{&other.row()} {}
 
   [[nodiscard]] constexpr const Rule& row() const { return *row_; }
   [[nodiscard]] constexpr std::string_view id() const { return row_->id; }

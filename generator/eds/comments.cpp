@@ -35,13 +35,16 @@ Comments read_comments(const SourceFile& source, const IniSection& section, Diag
   Comments comments;
   comments.present = true;
   comments.text.reserve(section.entries.size());
-  read_keys(source, section, diagnostics, [&](std::string_view key) -> KeyMatch {
-    if (equal_ignoring_case(key, count_key)) {
-      return {true, &comments.lines};
-    }
-    const std::optional<std::uint32_t> number = number_behind(line_prefix, key);
-    return number ? KeyMatch{true, &numbered_field(comments.text, *number)} : KeyMatch{};
-  }, count_key);
+  read_keys(
+      source, section, diagnostics,
+      [&](std::string_view key) -> KeyMatch {
+        if (equal_ignoring_case(key, count_key)) {
+          return {true, &comments.lines};
+        }
+        const std::optional<std::uint32_t> number = number_behind(line_prefix, key);
+        return number ? KeyMatch{true, &numbered_field(comments.text, *number)} : KeyMatch{};
+      },
+      count_key);
   check_count(source, section, comments, diagnostics);
   return comments;
 }

@@ -83,9 +83,9 @@ class DataSheetReader {
       diagnostics_.error("section-name", position,
                          fmt::format("{} is not a valid section name: {}", quote(section.name), name.remark));
     } else if (name.kind == SectionKind::unknown) {
-      diagnostics_.warning("unknown-section", position,
-                           fmt::format("unknown section {}; it is left out{}", quote(section.name),
-                                       similar_section(section.name)));
+      diagnostics_.warning(
+          "unknown-section", position,
+          fmt::format("unknown section {}; it is left out{}", quote(section.name), similar_section(section.name)));
     } else if (name.has_short_index) {
       diagnostics_.warning(
           "section-name", position,
@@ -121,8 +121,9 @@ class DataSheetReader {
     sheet_.file_info.position = place_of(section);
     place_fields(file_info_keys, place_of(section), sheet_.file_info);
     if (section != nullptr) {
-      read_keys(source_, *section, diagnostics_,
-                [&](std::string_view key) { return find_key(file_info_keys, key, sheet_.file_info); }, file_info_keys);
+      read_keys(
+          source_, *section, diagnostics_,
+          [&](std::string_view key) { return find_key(file_info_keys, key, sheet_.file_info); }, file_info_keys);
     }
   }
 
@@ -132,10 +133,13 @@ class DataSheetReader {
     sheet_.device_info.position = place_of(section);
     place_fields(device_info_keys, place_of(section), sheet_.device_info);
     if (section != nullptr) {
-      read_keys(source_, *section, diagnostics_, [&](std::string_view key) {
-        const KeyMatch match = find_key(device_info_keys, key, sheet_.device_info);
-        return match.is_known ? match : find_baud_rate(key);
-      }, device_info_keys);
+      read_keys(
+          source_, *section, diagnostics_,
+          [&](std::string_view key) {
+            const KeyMatch match = find_key(device_info_keys, key, sheet_.device_info);
+            return match.is_known ? match : find_baud_rate(key);
+          },
+          device_info_keys);
     }
   }
 
@@ -163,9 +167,10 @@ class DataSheetReader {
     sheet_.commissioning.position = place_of(section);
     place_fields(commissioning_keys, place_of(section), sheet_.commissioning);
     if (section != nullptr) {
-      read_keys(source_, *section, diagnostics_,
-                [&](std::string_view key) { return find_key(commissioning_keys, key, sheet_.commissioning); },
-                commissioning_keys);
+      read_keys(
+          source_, *section, diagnostics_,
+          [&](std::string_view key) { return find_key(commissioning_keys, key, sheet_.commissioning); },
+          commissioning_keys);
     }
   }
 

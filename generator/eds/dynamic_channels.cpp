@@ -48,10 +48,13 @@ DynamicChannels read_dynamic_channels(const SourceFile& source, const IniSection
   DynamicChannels channels;
   channels.present = true;
   channels.nr_of_segments.position = section_position(source, section);
-  read_keys(source, section, diagnostics, [&](std::string_view key) {
-    return equal_ignoring_case(key, segment_count_key) ? KeyMatch{true, &channels.nr_of_segments}
-                                               : find_segment_key(key, channels);
-  }, segment_count_key);
+  read_keys(
+      source, section, diagnostics,
+      [&](std::string_view key) {
+        return equal_ignoring_case(key, segment_count_key) ? KeyMatch{true, &channels.nr_of_segments}
+                                                           : find_segment_key(key, channels);
+      },
+      segment_count_key);
   const std::string_view text = strip_inline_comment(channels.nr_of_segments.text);
   const std::optional<std::uint64_t> count = text.empty() ? std::optional<std::uint64_t>{0} : parse_unsigned(text);
   if (!count || *count != channels.segments.size()) {

@@ -70,9 +70,8 @@ class IniReader {
     if (first == std::string_view::npos || text[first] != '<') {
       return false;
     }
-    diagnostics_.error(
-        "xml-file", {&source_},
-        "this is XML, perhaps a device description of CiA 311; expected the INI format of CiA 306");
+    diagnostics_.error("xml-file", {&source_},
+                       "this is XML, perhaps a device description of CiA 311; expected the INI format of CiA 306");
     return true;
   }
 
@@ -103,9 +102,8 @@ class IniReader {
 
   void report_hash_comment(std::string_view line, std::string_view comment) {
     if (!found_hash_comment_) {
-      warning(
-          "hash-comment", line, comment.substr(0, 1),
-          "a comment begins with ';' in CiA 306, not with '#'; reading all lines that begin with '#' as comments");
+      warning("hash-comment", line, comment.substr(0, 1),
+              "a comment begins with ';' in CiA 306, not with '#'; reading all lines that begin with '#' as comments");
     }
     found_hash_comment_ = true;
   }

@@ -79,8 +79,9 @@ class ModuleReader {
     if (section.name.kind == SectionKind::module_info) {
       has_info_ = true;
       place_fields(info_keys, section_position(source_, keys), module_);
-      read_keys(source_, keys, diagnostics_, [&](std::string_view key) { return find_key(info_keys, key, module_); },
-                info_keys);
+      read_keys(
+          source_, keys, diagnostics_, [&](std::string_view key) { return find_key(info_keys, key, module_); },
+          info_keys);
     } else if (section.name.kind == SectionKind::module_comments) {
       module_.comments = read_comments(source_, keys, diagnostics_);
     } else if (section.name.kind == SectionKind::module_fixed_objects) {
@@ -97,10 +98,13 @@ class ModuleReader {
     extension.index = index;
     place_entry(section_position(source_, section), extension);
     place_fields(extension_keys, section_position(source_, section), extension);
-    read_keys(source_, section, diagnostics_, [&](std::string_view key) {
-      const KeyMatch match = find_entry_key(key, extension);
-      return match.is_known ? match : find_key(extension_keys, key, extension);
-    }, entry_key_table(), extension_keys);
+    read_keys(
+        source_, section, diagnostics_,
+        [&](std::string_view key) {
+          const KeyMatch match = find_entry_key(key, extension);
+          return match.is_known ? match : find_key(extension_keys, key, extension);
+        },
+        entry_key_table(), extension_keys);
   }
 
   const SourceFile& source_;
@@ -145,9 +149,12 @@ Modules read_modules(const SourceFile& source, const ModuleSections& sections, D
     ModuleReader(source, module, diagnostics).read(of_module);
   }
   if (sections.supported != nullptr) {
-    read_keys(source, *sections.supported, diagnostics, [&](std::string_view key) {
-      return equal_ignoring_case(key, module_count_key) ? KeyMatch{true, &modules.nr_of_entries} : KeyMatch{};
-    }, module_count_key);
+    read_keys(
+        source, *sections.supported, diagnostics,
+        [&](std::string_view key) {
+          return equal_ignoring_case(key, module_count_key) ? KeyMatch{true, &modules.nr_of_entries} : KeyMatch{};
+        },
+        module_count_key);
   }
   check_count(source, sections.supported, modules, diagnostics);
   if (sections.connected != nullptr) {

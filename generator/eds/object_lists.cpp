@@ -45,8 +45,7 @@ class ObjectListReader {
         add({list, static_cast<std::uint16_t>(*index), entry.field.position});
       } else {
         diagnostics_.error("number", entry.field.position,
-                           fmt::format("{} is not a valid index; expected 0x0001 to 0xFFFF",
-                                       quote(entry.field.text)));
+                           fmt::format("{} is not a valid index; expected 0x0001 to 0xFFFF", quote(entry.field.text)));
       }
     }
   }
@@ -115,12 +114,9 @@ void report_not_listed(const DataSheet& sheet, Diagnostics& diagnostics) {
 
 std::string_view section_name(ObjectListKind kind) {
   switch (kind) {
-    case ObjectListKind::mandatory:
-      return "MandatoryObjects";
-    case ObjectListKind::optional:
-      return "OptionalObjects";
-    case ObjectListKind::manufacturer:
-      return "ManufacturerObjects";
+    case ObjectListKind::mandatory: return "MandatoryObjects";
+    case ObjectListKind::optional: return "OptionalObjects";
+    case ObjectListKind::manufacturer: return "ManufacturerObjects";
   }
   return "";
 }

@@ -99,17 +99,21 @@ class ObjectReader {
   }
 
   void read_object(const IniSection& section, ObjectDescription& object) {
-    read_keys(source_, section, diagnostics_, [&](std::string_view key) {
-      const KeyMatch match = find_entry_key(key, object);
-      return match.is_known ? match : find_key<ObjectDescription>(object_keys, key, object);
-    }, entry_keys, object_keys);
+    read_keys(
+        source_, section, diagnostics_,
+        [&](std::string_view key) {
+          const KeyMatch match = find_entry_key(key, object);
+          return match.is_known ? match : find_key<ObjectDescription>(object_keys, key, object);
+        },
+        entry_keys, object_keys);
   }
 
   void read_sub_object(const ObjectSection& section, SubObjectDescription& sub_object) {
     sub_object.sub_index = section.name.sub_index;
     place_entry(section_position(source_, *section.section), sub_object);
-    read_keys(source_, *section.section, diagnostics_,
-              [&](std::string_view key) { return find_entry_key(key, sub_object); }, entry_keys);
+    read_keys(
+        source_, *section.section, diagnostics_, [&](std::string_view key) { return find_entry_key(key, sub_object); },
+        entry_keys);
   }
 
   std::vector<NumberedField> read_list(const IniSection& section) {

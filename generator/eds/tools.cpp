@@ -19,9 +19,12 @@ constexpr std::string_view tool_count_key = "Items";
 
 void check_count(const SourceFile& source, const IniSection& list, std::size_t tools, Diagnostics& diagnostics) {
   Field items;
-  read_keys(source, list, diagnostics, [&](std::string_view key) {
-    return equal_ignoring_case(key, tool_count_key) ? KeyMatch{true, &items} : KeyMatch{};
-  }, tool_count_key);
+  read_keys(
+      source, list, diagnostics,
+      [&](std::string_view key) {
+        return equal_ignoring_case(key, tool_count_key) ? KeyMatch{true, &items} : KeyMatch{};
+      },
+      tool_count_key);
   const std::optional<std::uint64_t> count = number_of(items);
   if (!count || *count != tools) {
     diagnostics.warning("tools", items.present ? items.position : section_position(source, list),
@@ -45,8 +48,8 @@ std::vector<Tool> read_tools(const SourceFile& source, const IniSection* list, s
     Tool& tool = tools.emplace_back();
     tool.number = number;
     place_fields(tool_keys, section_position(source, *section), tool);
-    read_keys(source, *section, diagnostics, [&](std::string_view key) { return find_key(tool_keys, key, tool); },
-              tool_keys);
+    read_keys(
+        source, *section, diagnostics, [&](std::string_view key) { return find_key(tool_keys, key, tool); }, tool_keys);
   }
   if (list != nullptr) {
     check_count(source, *list, tools.size(), diagnostics);

@@ -22,7 +22,7 @@ struct DocumentSection {
   Remarks remarks;   ///< before it
   SectionName kind;  ///< the meaning of its title
   std::string title;
-  Remarks header;    ///< comments for edsc on its line: before the first section they would apply to the file
+  Remarks header;  ///< comments for edsc on its line: before the first section they would apply to the file
   std::vector<DocumentEntry> entries;
 };
 

@@ -6,8 +6,8 @@
 #include <iterator>
 #include <map>
 #include <set>
-#include <vector>
 #include <utility>
+#include <vector>
 
 #include "device/index_range.hpp"
 #include "device/value.hpp"
@@ -56,7 +56,12 @@ class DcfMaker {
 
   DcfMaker(Document& document, const DataSheet& sheet, const Device& device, const GivenValues& given,
            std::optional<unsigned> bit_rate)
-      : document_(document), sheet_(sheet), device_(device), values_(DcfValues::all), given_(&given), bit_rate_(bit_rate) {}
+      : document_(document),
+        sheet_(sheet),
+        device_(device),
+        values_(DcfValues::all),
+        given_(&given),
+        bit_rate_(bit_rate) {}
 
   void make() {
     commission();
@@ -105,7 +110,7 @@ class DcfMaker {
       if (section.kind.kind == kind) return section;
     }
     const auto place = std::ranges::find_if(document_.sections,
-                                             [](const DocumentSection& section) { return section.kind.kind > kind; });
+                                            [](const DocumentSection& section) { return section.kind.kind > kind; });
     if (place == document_.sections.begin()) give_up_first_place(document_);
     DocumentSection added;
     added.kind.kind = kind;
@@ -181,7 +186,8 @@ class DcfMaker {
   /// Whether a sub-index does not have its own section.
   static bool is_element(const ObjectDescription& object, std::uint8_t sub_index) {
     return sub_index != 0 && object.compact_sub_obj.present &&
-           std::ranges::find(object.sub_objects, sub_index, &SubObjectDescription::sub_index) == object.sub_objects.end();
+           std::ranges::find(object.sub_objects, sub_index, &SubObjectDescription::sub_index) ==
+               object.sub_objects.end();
   }
 
   DocumentSection& compact_values_section(std::uint16_t index) {

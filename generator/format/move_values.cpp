@@ -24,7 +24,11 @@ constexpr std::uint64_t node_id_bits = 0x7F;
 class ValueMover {
  public:
   ValueMover(const DataSheet& sheet, const Device& device, std::uint8_t node_id, Diagnostics& diagnostics)
-      : sheet_(sheet), device_(device), own_(device.node_id.value_or(0)), node_id_(node_id), diagnostics_(diagnostics) {}
+      : sheet_(sheet),
+        device_(device),
+        own_(device.node_id.value_or(0)),
+        node_id_(node_id),
+        diagnostics_(diagnostics) {}
 
   void move(DocumentSection& section) {
     const ObjectDescription* const object = find_object(sheet_, section.kind.index);
@@ -58,7 +62,8 @@ class ValueMover {
                             entry->type->kind == canopen::DataClass::signed_integer;
     if (!value || !is_integer) return;
     const bool is_cob_id = find_cob_id_parameter(index, sub_index) != nullptr;
-    const std::uint64_t bits = entry->type->bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << entry->type->bits) - 1;
+    const std::uint64_t bits =
+        entry->type->bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << entry->type->bits) - 1;
     const std::uint64_t compared = is_cob_id ? bits & ~flag_bits : bits;
     if (default_value && default_value->plus_node_id) {
       if (((value->bits ^ (default_value->bits + own_)) & compared) == 0) {

@@ -57,9 +57,8 @@ std::vector<CobIdUse> cob_ids_of(const Device& device) {
 bool check_frame(const RuleContext& context, const CobIdUse& use) {
   const std::uint32_t highest = use.of(last_node_id).value();
   if (!use.valid() || use.cob_id.extended() || (highest & 0x1FFF'F800U) == 0) return true;
-  context.report(
-      "cob-id-frame", use.place(),
-      fmt::format("{} has more than 11 bits, but bit 29 selects an 11-bit CAN-ID", named(*use.entry)));
+  context.report("cob-id-frame", use.place(),
+                 fmt::format("{} has more than 11 bits, but bit 29 selects an 11-bit CAN-ID", named(*use.entry)));
   return false;
 }
 

@@ -54,8 +54,7 @@ void check_baud_rates(const RuleContext& context) {
 void check_granularity(const RuleContext& context) {
   const Field& field = context.sheet.device_info.granularity;
   if (field.empty() || number_of(field).value_or(max_granularity + 1) <= max_granularity) return;
-  context.report("granularity", field.position,
-                 fmt::format("Granularity must be 0..64, not {}", quote(field.text)));
+  context.report("granularity", field.position, fmt::format("Granularity must be 0..64, not {}", quote(field.text)));
 }
 
 struct PdoCount {
@@ -116,9 +115,8 @@ void check_lss(const RuleContext& context) {
   if (number_of(field).value_or(0) == 0) return;
   for (std::uint8_t sub_index = 1; sub_index <= 4; ++sub_index) {
     if (context.device.find(0x1018, sub_index) != nullptr) continue;
-    context.report(
-        "lss-identity", field.position,
-        fmt::format("LSS requires all of 1018h, but {} is missing", entry_label(0x1018, sub_index)));
+    context.report("lss-identity", field.position,
+                   fmt::format("LSS requires all of 1018h, but {} is missing", entry_label(0x1018, sub_index)));
     return;
   }
 }

@@ -152,8 +152,7 @@ void check_commissioning(const RuleContext& context) {
     context.report("section-spelling", place, "CiA 306 spells this section [DeviceComissioning]");
   }
   if (!context.device.node_id) {
-    context.report("commissioned-node-id", commissioning.node_id.position,
-                   "missing NodeID; expected 1..127");
+    context.report("commissioned-node-id", commissioning.node_id.position, "missing NodeID; expected 1..127");
   }
   check_commissioned_baud_rate(context);
 }

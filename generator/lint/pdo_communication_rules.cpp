@@ -57,9 +57,9 @@ void check_remote(const RuleContext& context, const Pdo& pdo, std::uint64_t type
   const auto value = communication_default(pdo, cob_id);
   const bool remote = transmission == Transmission::remote || transmission == Transmission::remote_synchronous;
   if (!remote || !value || canopen::CobId{static_cast<std::uint32_t>(*value)}.rtr_allowed()) return;
-  context.report("pdo-remote", default_place(*pdo.communication->find(transmission_type_sub_index)),
-                 fmt::format("{} is RTR-only (transmission type {}), but its COB-ID does not allow RTR",
-                             pdo_label(pdo), type));
+  context.report(
+      "pdo-remote", default_place(*pdo.communication->find(transmission_type_sub_index)),
+      fmt::format("{} is RTR-only (transmission type {}), but its COB-ID does not allow RTR", pdo_label(pdo), type));
 }
 
 void check_time(const RuleContext& context, const Pdo& pdo, std::uint8_t sub_index, bool used, std::uint64_t type) {

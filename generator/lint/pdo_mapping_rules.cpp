@@ -78,8 +78,8 @@ void check_granularity_of_mappings(const RuleContext& context) {
         std::ranges::find_if(pdo.entries, [&](const PdoEntry& entry) { return entry.bits % *granularity != 0; });
     if (finer == pdo.entries.end()) continue;
     context.report("pdo-granularity", finer->place,
-                   fmt::format("{} entry {} maps {} of {}, but Granularity is {}", pdo_label(pdo),
-                               finer->position, counted(finer->bits, "bit"), mapped_name(*finer), *granularity),
+                   fmt::format("{} entry {} maps {} of {}, but Granularity is {}", pdo_label(pdo), finer->position,
+                               counted(finer->bits, "bit"), mapped_name(*finer), *granularity),
                    {{field.position, "Granularity"}});
     return;
   }

@@ -138,7 +138,7 @@ void report_unused_allowances(const LoadedDevice& loaded, Diagnostics& diagnosti
 void resolve_and_check(LoadedDevice& loaded, const LoadSettings& settings, Diagnostics& diagnostics) {
   allow_findings(loaded, diagnostics);
   loaded.sheet = is_xml(*loaded.source) ? read_xdd(*loaded.source, diagnostics)
-                                         : read_data_sheet(parse_ini(*loaded.source, diagnostics), diagnostics);
+                                        : read_data_sheet(parse_ini(*loaded.source, diagnostics), diagnostics);
   if (loaded.sheet.objects.empty()) return;
   if (is_xml(*loaded.source) && loaded.options.stored_eds != StoredEds::of_application) {
     diagnostics.error("options", Position{loaded.source.get()},

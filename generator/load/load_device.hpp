@@ -15,12 +15,12 @@ namespace edsc {
 
 struct LoadSettings {
   std::string path;
-  std::string options_path;             ///< empty: `NAME.options.json` beside the EDS, if it exists
-  std::string name;                     ///< C++ namespace; empty: from the file name
+  std::string options_path;  ///< empty: `NAME.options.json` beside the EDS, if it exists
+  std::string name;          ///< C++ namespace; empty: from the file name
   std::optional<std::uint8_t> node_id;
-  bool static_mapping = false;          ///< of all PDOs, regardless of the options file
-  bool check = true;                    ///< run the rules over the device
-  bool keep_going = false;              ///< errors in the EDS become warnings; what is wrong is left out
+  bool static_mapping = false;  ///< of all PDOs, regardless of the options file
+  bool check = true;            ///< run the rules over the device
+  bool keep_going = false;      ///< errors in the EDS become warnings; what is wrong is left out
 };
 
 /// A device and the files to which its positions point.

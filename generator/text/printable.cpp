@@ -43,9 +43,8 @@ char32_t code_point_of(std::string_view sequence) {
 }  // namespace
 
 bool is_hidden(char32_t code_point) {
-  return std::ranges::any_of(hidden_code_points, [&](const CodePoints& row) {
-    return code_point >= row.first && code_point <= row.last;
-  });
+  return std::ranges::any_of(hidden_code_points,
+                             [&](const CodePoints& row) { return code_point >= row.first && code_point <= row.last; });
 }
 
 Sequence first_sequence(std::string_view text) {
@@ -66,9 +65,11 @@ void append_printable(std::string& out, std::string_view text) {
     } else if (is_white_space(text.front())) {
       out += ' ';
     } else if (length == 1 && static_cast<unsigned char>(text.front()) >= 0x80) {
-      fmt::format_to(std::back_inserter(out), "<{:02X}>", static_cast<unsigned>(static_cast<unsigned char>(text.front())));
+      fmt::format_to(std::back_inserter(out), "<{:02X}>",
+                     static_cast<unsigned>(static_cast<unsigned char>(text.front())));
     } else {
-      fmt::format_to(std::back_inserter(out), "<U+{:04X}>", static_cast<unsigned>(code_point_of(text.substr(0, length))));
+      fmt::format_to(std::back_inserter(out), "<U+{:04X}>",
+                     static_cast<unsigned>(code_point_of(text.substr(0, length))));
     }
     text.remove_prefix(length);
   }

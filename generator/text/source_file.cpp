@@ -125,18 +125,12 @@ std::string read_file(const std::string& path, std::string& bytes) {
 
 std::string_view to_string(Encoding encoding) {
   switch (encoding) {
-    case Encoding::ascii:
-      return "ASCII";
-    case Encoding::utf8:
-      return "UTF-8";
-    case Encoding::utf16_le:
-      return "UTF-16LE";
-    case Encoding::utf16_be:
-      return "UTF-16BE";
-    case Encoding::cp1252:
-      return "CP1252";
-    case Encoding::cp437:
-      return "CP437";
+    case Encoding::ascii: return "ASCII";
+    case Encoding::utf8: return "UTF-8";
+    case Encoding::utf16_le: return "UTF-16LE";
+    case Encoding::utf16_be: return "UTF-16BE";
+    case Encoding::cp1252: return "CP1252";
+    case Encoding::cp437: return "CP437";
   }
   return "";
 }

@@ -214,9 +214,9 @@ class Target {
   static bool is_on_disk(int descriptor) { return ::fsync(descriptor) == 0 || errno == EINVAL || errno == ENOSYS; }
 
   const OutputFile* file_;
-  fs::path path_;                     ///< after resolving all symlinks
+  fs::path path_;                      ///< after resolving all symlinks
   std::optional<struct stat> status_;  ///< of the original target
-  std::optional<int> descriptor_;     ///< of this process
+  std::optional<int> descriptor_;      ///< of this process
   std::string temporary_;
   bool exists_ = false;
   bool replaced_ = false;

@@ -24,6 +24,7 @@ struct OutputFile {
 /// - Two processes that write several files into one folder wait for each other, so that the files match.
 ///
 /// Returns an error message; empty on success.
-[[nodiscard]] std::string write_files(const std::vector<OutputFile>& files, const std::vector<std::string>& inputs = {});
+[[nodiscard]] std::string write_files(const std::vector<OutputFile>& files,
+                                      const std::vector<std::string>& inputs = {});
 
 }  // namespace edsc

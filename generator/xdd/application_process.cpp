@@ -165,8 +165,7 @@ void ApplicationProcess::read_access(pugi::xml_node element, Parameter& paramete
   }
   if (equal_ignoring_case(word.text, "noAccess")) {
     access_type.text = default_access_type;
-    xml_.diagnostics().warning("access-type", word.position,
-                               "CiA 306 cannot express noAccess; assuming ro");
+    xml_.diagnostics().warning("access-type", word.position, "CiA 306 cannot express noAccess; assuming ro");
   }
 }
 

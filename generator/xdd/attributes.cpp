@@ -90,8 +90,8 @@ Field respell(XmlDocument& xml, const Field& field, Spelling spelling) {
 
 void report_unknown_attribute(XmlDocument& xml, pugi::xml_node element, pugi::xml_attribute attribute) {
   xml.note_once("xml-element", std::string{local_name(element)} + "@" + attribute.name(), xml.position(attribute),
-                fmt::format("unknown attribute {} of {}; it is left out, here and elsewhere",
-                            quote(attribute.name()), local_name(element)));
+                fmt::format("unknown attribute {} of {}; it is left out, here and elsewhere", quote(attribute.name()),
+                            local_name(element)));
 }
 
 void report_unknown_element(XmlDocument& xml, pugi::xml_node element) {
@@ -101,8 +101,9 @@ void report_unknown_element(XmlDocument& xml, pugi::xml_node element) {
 }
 
 void note_silent(XmlDocument& xml, pugi::xml_node element) {
-  const bool says_something = element.first_attribute() || !std::string_view{element.text().get()}.empty() ||
-                              element.find_child([](pugi::xml_node child) { return child.type() == pugi::node_element; });
+  const bool says_something =
+      element.first_attribute() || !std::string_view{element.text().get()}.empty() ||
+      element.find_child([](pugi::xml_node child) { return child.type() == pugi::node_element; });
   if (says_something) xml.note_not_in_eds(path_of(element), xml.position(element));
 }
 

@@ -14,8 +14,6 @@
 #include "diagnostics/diagnostics.hpp"
 #include "eds/data_sheet.hpp"
 #include "xdd/not_in_eds.hpp"
-#include "eds/data_sheet.hpp"
-#include "xdd/not_in_eds.hpp"
 
 namespace edsc {
 

@@ -12,7 +12,8 @@ struct Bus {
 auto make(Bus& bus) {
   const auto changed = [](std::int16_t) {};
 #ifdef GOOD
-  return canopen::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::on_write<od::integer16_value>(changed));
+  return canopen::make_node<every_type::Device>(bus, canopen::NodeId{5},
+                                                canopen::on_write<od::integer16_value>(changed));
 #else
   return canopen::make_node<every_type::Device>(bus, canopen::NodeId{5}, changed);
 #endif

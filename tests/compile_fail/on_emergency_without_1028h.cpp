@@ -14,5 +14,6 @@ auto make(Bus& bus) {
 #else
   using Device = sdo_device::Device;
 #endif
-  return canopen::make_node<Device>(bus, canopen::NodeId{5}, canopen::on_emergency([](const canopen::ConsumedEmergency&) {}));
+  return canopen::make_node<Device>(bus, canopen::NodeId{5},
+                                    canopen::on_emergency([](const canopen::ConsumedEmergency&) {}));
 }

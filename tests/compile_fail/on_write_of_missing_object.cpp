@@ -19,5 +19,6 @@ auto make(Bus& bus) {
 #else
   using object = other::od::target_torque;
 #endif
-  return canopen::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::on_write<object>([](std::int16_t) {}));
+  return canopen::make_node<every_type::Device>(bus, canopen::NodeId{5},
+                                                canopen::on_write<object>([](std::int16_t) {}));
 }

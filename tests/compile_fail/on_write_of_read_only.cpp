@@ -15,5 +15,6 @@ auto make(Bus& bus) {
 #else
   using object = od::error_register;
 #endif
-  return canopen::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::on_write<object>([](std::uint8_t) {}));
+  return canopen::make_node<every_type::Device>(bus, canopen::NodeId{5},
+                                                canopen::on_write<object>([](std::uint8_t) {}));
 }

@@ -1,5 +1,5 @@
-// expect: COB-ID: it is restricted .*canopen::ObjectAt<'1', '2', '0', '1', 'h', ':', '0', '2'> .*canopen::CanId<'0', '0', '0', 'h'>
-// Frames of a server with CAN-ID 0 would be NMT commands.
+// expect: COB-ID: it is restricted .*canopen::ObjectAt<'1', '2', '0', '1', 'h', ':', '0', '2'> .*canopen::CanId<'0',
+// '0', '0', 'h'> Frames of a server with CAN-ID 0 would be NMT commands.
 #include <canopen/can/cob_id_check.hpp>
 
 #ifdef GOOD

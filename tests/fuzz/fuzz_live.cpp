@@ -70,23 +70,27 @@ void read_node(LiveBus& bus, const Axis& axis) {
   SdoAccess node{bus, canopen::NodeId{LivePort::node_id}, {20, 4096}};
   const std::vector<LiveEntry> entries = configuration_entries(axis.device());
   const NodeConfiguration found = read_configuration(node, axis.device(), entries, [](std::size_t) {});
-  require(found.values.size() + found.unread.size() + found.process_data.size() <= entries.size(), "each entry counts once");
+  require(found.values.size() + found.unread.size() + found.process_data.size() <= entries.size(),
+          "each entry counts once");
   for (const ReadValue& value : found.values) {
     const unsigned bits = value.entry.type->bits;
-    require(bits == 0 ? value.bytes.size() <= 4096 : value.bytes.size() == (bits + 7u) / 8u, "a value has the size of its type");
+    require(bits == 0 ? value.bytes.size() <= 4096 : value.bytes.size() == (bits + 7u) / 8u,
+            "a value has the size of its type");
   }
 }
 
 void configure(LiveBus& bus, const Axis& axis, const ObedientServer& server, bool undisturbed) {
   SdoAccess node{bus, canopen::NodeId{LivePort::node_id}, {20, 4096}};
   const auto steps = plan_configuration(axis.values(), &axis.device());
-  const ConfigurationResult result = configure_node(node, steps, {[](std::size_t, std::size_t) {}, [] { return false; }});
+  const ConfigurationResult result =
+      configure_node(node, steps, {[](std::size_t, std::size_t) {}, [] { return false; }});
   require(result.written <= result.values && result.verified <= result.written, "what is verified was written");
   if (!undisturbed) return;
   require(result.done() && result.verified == result.values, "an obedient node is configured");
   for (const ConfigurationValue& value : axis.values()) {
     const auto found = server.values.find(Axis::key(value.entry.index, value.entry.sub_index));
-    require(found != server.values.end() && found->second == value.bytes, "an obedient node has the values of the configuration");
+    require(found != server.values.end() && found->second == value.bytes,
+            "an obedient node has the values of the configuration");
   }
 }
 

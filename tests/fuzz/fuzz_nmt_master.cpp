@@ -67,7 +67,8 @@ struct Bus {
       const bool heartbeat_time = frame.data[1] == 0x17 && frame.data[2] == 0x10 && frame.data[3] == 0;
       require(specifier == 2 || specifier == 3 || specifier == 4 || (specifier == 1 && heartbeat_time),
               "a master that boots a slave reads, and writes 1017h");
-      require(specifier != 1 || world.slaves[(frame.id & 0x7F) - 1].heartbeat_time != 0, "who is guarded has no heartbeat");
+      require(specifier != 1 || world.slaves[(frame.id & 0x7F) - 1].heartbeat_time != 0,
+              "who is guarded has no heartbeat");
     }
     return world.take();
   }
@@ -130,7 +131,8 @@ Frame frame_of(const Step& step) {
       frame.id = 0x580u + node_id;
       if ((step.choice & 8) == 0) {
         const std::uint32_t entry = asked[step.other % std::size(asked)];
-        frame.data[0] = (step.choice & 0x10) != 0 ? (step.other & 0x40) != 0 ? 0x60 : 0x80 : static_cast<std::uint8_t>(0x43 | (step.choice >> 3 & 0xC));
+        frame.data[0] = (step.choice & 0x10) != 0 ? (step.other & 0x40) != 0 ? 0x60 : 0x80
+                                                  : static_cast<std::uint8_t>(0x43 | (step.choice >> 3 & 0xC));
         frame.data[1] = static_cast<std::uint8_t>(entry >> 8);
         frame.data[2] = static_cast<std::uint8_t>(entry >> 16);
         frame.data[3] = static_cast<std::uint8_t>(entry);

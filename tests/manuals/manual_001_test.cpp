@@ -72,12 +72,12 @@ TEST(Manual001, HasFourPdosOfEachDirectionAndTheirDefaultMapping) {
 // shows 001.49, 001.51..001.53, 001.94, 001.96, 001.97, 001.101, 001.103
 TEST(Manual001, HasTheParametersOfTheDrive) {
   constexpr manual::Entry entries[] = {
-      {0x211E, 0, 2, rw, 10},          {0x211F, 0, 2, rw, 500},         {0x21E8, 0, 4, rw, 0},
-      {0x603F, 0, 2, ro, 0}, {0x605A, 0, 2, rw, 2},           {0x605B, 0, 2, rw, 0},           {0x605C, 0, 2, rw, 1},
-      {0x605E, 0, 2, rw, 2}, {0x6071, 0, 2, rw, 0},           {0x6074, 0, 2, ro, 0},           {0x6078, 0, 2, ro, 0},
-      {0x607C, 0, 4, rw, 0}, {0x607D, 1, 4, rw, 0x88CA'6C00}, {0x607D, 2, 4, rw, 0x7735'9400}, {0x6082, 0, 4, rw, 0},
-      {0x6087, 0, 4, rw, 0}, {0x6098, 0, 1, rw, 0},           {0x60B0, 0, 4, rw, 0},           {0x60FD, 0, 4, ro, 0},
-      {0x60FE, 1, 4, rw, 0}, {0x6502, 0, 4, ro, 37},
+      {0x211E, 0, 2, rw, 10},          {0x211F, 0, 2, rw, 500},         {0x21E8, 0, 4, rw, 0}, {0x603F, 0, 2, ro, 0},
+      {0x605A, 0, 2, rw, 2},           {0x605B, 0, 2, rw, 0},           {0x605C, 0, 2, rw, 1}, {0x605E, 0, 2, rw, 2},
+      {0x6071, 0, 2, rw, 0},           {0x6074, 0, 2, ro, 0},           {0x6078, 0, 2, ro, 0}, {0x607C, 0, 4, rw, 0},
+      {0x607D, 1, 4, rw, 0x88CA'6C00}, {0x607D, 2, 4, rw, 0x7735'9400}, {0x6082, 0, 4, rw, 0}, {0x6087, 0, 4, rw, 0},
+      {0x6098, 0, 1, rw, 0},           {0x60B0, 0, 4, rw, 0},           {0x60FD, 0, 4, ro, 0}, {0x60FE, 1, 4, rw, 0},
+      {0x6502, 0, 4, ro, 37},
   };
   Drive drive;
   manual::expect_entries(drive, entries);

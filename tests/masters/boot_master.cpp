@@ -65,7 +65,8 @@ int main(int argc, char** argv) {
     canopen::HostBus bus{argv[1]};
     std::vector<canopen::NmtSlave> slaves;
     for (int i = 2; i < argc; ++i) slaves.push_back(slave_of(argv[i]));
-    canopen::Master master{bus, slaves, {}, {.timeout = std::chrono::seconds{2}, .block_transfer = true, .block_threshold = 8}};
+    canopen::Master master{
+        bus, slaves, {}, {.timeout = std::chrono::seconds{2}, .block_transfer = true, .block_threshold = 8}};
     master.on_configure = [&](NodeId node_id) { return configure(master, node_id); };
     master.on_booted = [](NodeId node_id, const canopen::BootResult& result) { log(boot_text(node_id, result)); };
     master.on_event = [](canopen::NmtMasterEvent event, NodeId node_id, canopen::NmtState state) {

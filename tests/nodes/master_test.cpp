@@ -231,8 +231,8 @@ struct Boot : testing::Test {
   Boot() {
     canopen::VirtualBus::connect(end, module);
     module.start(bus.now());
-    const canopen::NmtSlave slave{
-        NodeId{5}, canopen::slave_assignment::listed | canopen::slave_assignment::boot | canopen::slave_assignment::mandatory};
+    const canopen::NmtSlave slave{NodeId{5}, canopen::slave_assignment::listed | canopen::slave_assignment::boot |
+                                                 canopen::slave_assignment::mandatory};
     master.emplace(port, std::vector{slave});
     inputs.emplace(*master, NodeId{5});
     master->on_booted = [this](NodeId node_id, const canopen::BootResult& result) {
@@ -331,7 +331,8 @@ TEST(MasterText, TellsNodeEntryReasonAndNumbers) {
             "node 5: configuration failed: 2001h:03: 0609 0031h, value too high");
   EXPECT_EQ(event_text(NodeId{5}, canopen::NmtMasterEvent::lost, canopen::NmtState::operational),
             "node 5: lost, last state operational");
-  EXPECT_EQ(event_text(NodeId{5}, canopen::NmtMasterEvent::boot_up, canopen::NmtState::initialisation), "node 5: boot-up");
+  EXPECT_EQ(event_text(NodeId{5}, canopen::NmtMasterEvent::boot_up, canopen::NmtState::initialisation),
+            "node 5: boot-up");
 }
 
 }  // namespace

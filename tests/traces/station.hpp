@@ -30,8 +30,7 @@ class Station {
   [[nodiscard]] virtual canopen::AbortCode set(std::uint16_t index, std::uint8_t sub_index, const Value& value) = 0;
   virtual void emergency(const Emergency& error) = 0;
   /// A line of input for the application. Returns false if it does not know the line, or without an application.
-  [[nodiscard]] virtual bool input([[maybe_unused]] const std::string& line,
-                                   [[maybe_unused]] canopen::TimePoint now) {
+  [[nodiscard]] virtual bool input([[maybe_unused]] const std::string& line, [[maybe_unused]] canopen::TimePoint now) {
     return false;
   }
   virtual void emergency_over(canopen::ErrorRegister bits) = 0;

@@ -26,7 +26,7 @@ struct Raised {
   std::uint32_t cob_id = 0;  ///< 1014h:00
   std::uint16_t code = 0;
   bool by_stimulus = false;
-  Dut::Mark since = 0;       ///< before the error
+  Dut::Mark since = 0;  ///< before the error
   SeenFrame message;
 };
 
@@ -172,7 +172,8 @@ void history_follows(Dut& dut) {
     std::uint8_t place = 1;
     // A device may record the end of an error as well.
     if (over && (dut.read_number(error_history, 1) & 0xFFFF) == 0 && recorded >= 2) place = 2;
-    dut.expect_equal(dut.read_number(error_history, place) & 0xFFFF, code, label(error_history, place) + ", bits 0 to 15");
+    dut.expect_equal(dut.read_number(error_history, place) & 0xFFFF, code,
+                     label(error_history, place) + ", bits 0 to 15");
     ++place;
     if (count == 0 || recorded != count + 1 || !dut.has(error_history, place)) return;
     dut.expect_equal(dut.read_number(error_history, place), newest, label(error_history, place) + ", the error before");

@@ -83,8 +83,8 @@ class Slave {
   /// Identify remote slave: `low` and `high` of revision and serial number.
   [[nodiscard]] bool identifies(std::uint32_t product_code, std::pair<std::uint32_t, std::uint32_t> revision,
                                 std::pair<std::uint32_t, std::uint32_t> serial) const {
-    const std::uint32_t words[] = {numbers_[0],    product_code, revision.first, revision.second,
-                                   serial.first, serial.second};
+    const std::uint32_t words[] = {numbers_[0],     product_code, revision.first,
+                                   revision.second, serial.first, serial.second};
     return in_sequence(Command::identify_vendor_id, words, Command::identified);
   }
 
@@ -150,13 +150,15 @@ void switch_global(Dut& dut) {
   slave.send(Command::switch_state_global, static_cast<std::uint32_t>(LssState::configuration));
   slave.expect_says(Command::inquire_node_id, dut.node().value(), "the node-ID");
   slave.wait();
-  dut.expect(!slave.answer(Command::switch_state_global, since, milliseconds{1}), "no answer to switch state global", "one");
+  dut.expect(!slave.answer(Command::switch_state_global, since, milliseconds{1}), "no answer to switch state global",
+             "one");
   dut.expect(!slave.ask(Command::inquire_node_id), "no answer to inquire node-ID in the waiting state", "one");
 }
 
 void inquire_identity(Dut& dut) {
   with_slave(dut, [](const Slave& slave) {
-    constexpr std::string_view names[] = {"the vendor-ID", "the product code", "the revision number", "the serial number"};
+    constexpr std::string_view names[] = {"the vendor-ID", "the product code", "the revision number",
+                                          "the serial number"};
     for (std::uint8_t i = 0; i < 4; ++i) {
       const auto command = static_cast<Command>(static_cast<std::uint8_t>(Command::inquire_vendor_id) + i);
       slave.expect_says(command, slave.numbers()[i], std::string{names[i]});
@@ -176,7 +178,8 @@ void waiting(Dut& dut) {
                                 Command::configure_bit_timing}) {
     // Invalid values, so that a slave that is not waiting does not change its configuration.
     const std::uint32_t word = command == Command::configure_bit_timing ? 0xFF7F : 0;
-    dut.expect(!slave.ask(command, word), fmt::format("no answer to {:02X}h in the waiting state", static_cast<unsigned>(command)), "one");
+    dut.expect(!slave.ask(command, word),
+               fmt::format("no answer to {:02X}h in the waiting state", static_cast<unsigned>(command)), "one");
   }
 }
 
@@ -197,7 +200,8 @@ void identify(Dut& dut) {
   }
   if (serial != 0) expect_identified(false, slave.identifies(product, each, {0, serial - 1}), "lower serial numbers");
   if (revision < 0xFFFF'0000) {
-    expect_identified(false, slave.identifies(product, {revision + major, 0xFFFF'FFFF}, each), "higher revision numbers");
+    expect_identified(false, slave.identifies(product, {revision + major, 0xFFFF'FFFF}, each),
+                      "higher revision numbers");
   }
   if (revision >= major) {
     expect_identified(false, slave.identifies(product, {0, revision - major}, each), "lower revision numbers");
@@ -231,7 +235,8 @@ bool scan(Dut& dut, const Slave& slave, const Scan& step) {
 
 void fastscan_configured(Dut& dut) {
   const Slave slave{dut};
-  dut.expect(!scan(dut, slave, {0, lss::fastscan_reset, 0, 0}), "no answer to Fastscan from a device with a node-ID", "one");
+  dut.expect(!scan(dut, slave, {0, lss::fastscan_reset, 0, 0}), "no answer to Fastscan from a device with a node-ID",
+             "one");
 }
 
 /// Configures the node-ID of a slave without one and expects its boot-up message.
@@ -239,7 +244,8 @@ void give_node_id(Dut& dut, const Slave& slave) {
   slave.configure(dut.node());
   const Dut::Mark since = dut.mark();
   slave.wait();
-  dut.expect(dut.wait_for(dut.boot_up(), milliseconds{5000}, since).has_value(), "a boot-up message with the new node-ID", "none");
+  dut.expect(dut.wait_for(dut.boot_up(), milliseconds{5000}, since).has_value(),
+             "a boot-up message with the new node-ID", "none");
   dut.pass_time(milliseconds{50});
 }
 
@@ -288,8 +294,8 @@ void fastscan(Dut& dut) {
     const auto expect_answer = [&](const Scan& step, bool expected) {
       const bool got = scan(dut, slave, step);
       dut.expect(got == expected,
-                 fmt::format("{} to Fastscan for {:08X}h from bit {} on (LSSSub {})", expected ? "an answer" : "no answer",
-                             step.number, step.bit_check, step.sub),
+                 fmt::format("{} to Fastscan for {:08X}h from bit {} on (LSSSub {})",
+                             expected ? "an answer" : "no answer", step.number, step.bit_check, step.sub),
                  got ? "one" : "none");
     };
     expect_answer({0, lss::fastscan_reset, 0, 0}, true);
@@ -362,7 +368,8 @@ void new_node_id(Dut& dut) {
 /// Reserved indices of table 0, and reserved tables.
 void wrong_bit_timing(Dut& dut) {
   with_slave(dut, [](const Slave& slave) {
-    for (const auto& [table, index] : {std::pair{0, 5}, std::pair{0, 10}, std::pair{0, 255}, std::pair{1, 0}, std::pair{127, 0}}) {
+    for (const auto& [table, index] :
+         {std::pair{0, 5}, std::pair{0, 10}, std::pair{0, 255}, std::pair{1, 0}, std::pair{127, 0}}) {
       slave.expect_error(Command::configure_bit_timing, static_cast<std::uint32_t>(table | index << 8), 1,
                          fmt::format("configure bit timing of table {}, index {}", table, index));
     }
@@ -381,7 +388,8 @@ void store(Dut& dut) {
     dut.enter(NmtState::pre_operational);
     const Dut::Mark since = dut.mark();
     if (dut.stimuli().power_cycle()) {
-      dut.expect(dut.wait_for(dut.boot_up(), milliseconds{5000}, since).has_value(), "a boot-up message after power-on", "none");
+      dut.expect(dut.wait_for(dut.boot_up(), milliseconds{5000}, since).has_value(), "a boot-up message after power-on",
+                 "none");
       dut.pass_time(milliseconds{50});
     } else {
       dut.reset(NmtCommand::reset_node);
@@ -401,7 +409,8 @@ void activate(Dut& dut) {
   with_slave(dut, [&](const Slave& slave) {
     const Dut::Mark since = dut.mark();
     slave.send(Command::activate_bit_timing, delay.count() / 1000);
-    dut.expect(!slave.answer(Command::activate_bit_timing, since, delay / 2), "no answer to activate bit timing", "one");
+    dut.expect(!slave.answer(Command::activate_bit_timing, since, delay / 2), "no answer to activate bit timing",
+               "one");
     dut.pass_time(delay - delay / 4);
     const Dut::Mark silent = dut.mark();
     slave.send(Command::inquire_node_id);

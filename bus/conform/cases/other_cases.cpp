@@ -60,7 +60,8 @@ void save(Dut& dut) {
     expect_value(dut, changed, changed.value, "after \"save\" and a reset");
     const Dut::Mark since = dut.mark();
     if (!dut.stimuli().power_cycle()) return;
-    dut.expect(dut.wait_for(dut.boot_up(), milliseconds{5000}, since).has_value(), "a boot-up message after power-on", "none");
+    dut.expect(dut.wait_for(dut.boot_up(), milliseconds{5000}, since).has_value(), "a boot-up message after power-on",
+               "none");
     dut.pass_time(milliseconds{50});
     expect_value(dut, changed, changed.value, "after \"save\" and power-on");
   });

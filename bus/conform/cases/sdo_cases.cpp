@@ -62,8 +62,9 @@ template <typename Condition>
 Entries numbers_with(Dut& dut, Condition condition) {
   Entries found = entries_with(dut, [&](const LiveEntry& e) { return is_plain_parameter(e) && condition(e); });
   if (!found.empty()) return found;
-  found = entries_with(
-      dut, [&](const LiveEntry& e) { return is_application_parameter(dut.sheet(), e) && is_number(e) && condition(e); });
+  found = entries_with(dut, [&](const LiveEntry& e) {
+    return is_application_parameter(dut.sheet(), e) && is_number(e) && condition(e);
+  });
   if (!found.empty()) dut.need_permission(Permission::application);
   return found;
 }

@@ -51,20 +51,23 @@ void expect_runs(Dut& dut, bool runs, std::size_t frames, const std::string& wha
   }
 }
 
-/// Table 39 of CiA 301: PDO in Operational only; SDO, SYNC and EMCY in Pre-operational and Operational; error control in
-/// all three.
+/// Table 39 of CiA 301: PDO in Operational only; SDO, SYNC and EMCY in Pre-operational and Operational; error control
+/// in all three.
 void expect_services(Dut& dut, const Services& services, NmtState state) {
   const std::string in = fmt::format(" in {}", to_text(state));
   if (services.state) dut.expect_state(state);
   const Dut::Mark since = dut.mark();
   dut.pass_time(cycle * cycles);
   const auto sent = [&](std::uint32_t cob_id) { return dut.received_since(since, Dut::with_cob_id(cob_id)).size(); };
-  if (services.tpdo) expect_runs(dut, canopen::serves_pdo(state), sent(*services.tpdo), "TPDOs with an event timer of 50 ms" + in);
-  if (services.sync) expect_runs(dut, canopen::serves_sync(state), sent(*services.sync), "SYNCs with a period of 50 ms" + in);
+  if (services.tpdo)
+    expect_runs(dut, canopen::serves_pdo(state), sent(*services.tpdo), "TPDOs with an event timer of 50 ms" + in);
+  if (services.sync)
+    expect_runs(dut, canopen::serves_sync(state), sent(*services.sync), "SYNCs with a period of 50 ms" + in);
 
   const SdoOutcome outcome = dut.upload(0x1000);
   if (canopen::serves_sdo(state)) {
-    dut.expect(outcome.done() || outcome.end == SdoEnd::refused, "an answer to an SDO request" + in, outcome_text(outcome));
+    dut.expect(outcome.done() || outcome.end == SdoEnd::refused, "an answer to an SDO request" + in,
+               outcome_text(outcome));
   } else {
     dut.expect(outcome.end == SdoEnd::no_answer, "no answer to an SDO request" + in, outcome_text(outcome));
   }

@@ -25,7 +25,8 @@ void Storage::load() const {
 
 void Storage::expect_refused(std::uint16_t index) const {
   const std::string_view right = index == store_parameters ? "save" : "load";
-  for (const std::string_view letters : {std::string_view{"wron"}, std::string_view{right == "save" ? "evas" : "daol"}}) {
+  for (const std::string_view letters :
+       {std::string_view{"wron"}, std::string_view{right == "save" ? "evas" : "daol"}}) {
     dut_.expect_abort(dut_.command(index, sub_index_, signature(letters)), abort_rule::signature,
                       "\"" + std::string{letters} + "\" to " + label(index, sub_index_));
   }

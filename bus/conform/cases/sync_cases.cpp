@@ -25,7 +25,8 @@ void set_overflow(Dut& dut, std::uint8_t overflow) {
 std::uint32_t need_producer(Dut& dut) {
   const std::uint32_t cob_id = stop_sync(dut);
   dut.need_writable(sync_period);
-  if (!can_produce_sync(dut, cob_id)) dut.not_applicable("the device does not produce SYNC: bit 30 of 1005h:00 cannot be 1");
+  if (!can_produce_sync(dut, cob_id))
+    dut.not_applicable("the device does not produce SYNC: bit 30 of 1005h:00 cannot be 1");
   return cob_id;
 }
 
@@ -51,11 +52,13 @@ void count_messages(Dut& dut) {
   const std::uint64_t written = dut.now();
   const std::vector<SeenFrame> seen = syncs_since(dut, since, cob_id, period * 50);
   dut.expect(seen.size() >= 2, "SYNCs every 20 ms", fmt::format("{} in a second", seen.size()));
-  dut.expect_time(seen.front().at - began, 0, written - began + period.count(), "the first SYNC after 1006h:00 is written");
+  dut.expect_time(seen.front().at - began, 0, written - began + period.count(),
+                  "the first SYNC after 1006h:00 is written");
   for (std::size_t i = 0; i < seen.size(); ++i) {
     dut.expect_equal(seen[i].frame.size, 0, "bytes of a SYNC without counter");
     if (i == 0) continue;
-    dut.expect_time(seen[i].at - seen[i - 1].at, period.count() * 9 / 10, period.count() * 11 / 10, "the time between two SYNCs");
+    dut.expect_time(seen[i].at - seen[i - 1].at, period.count() * 9 / 10, period.count() * 11 / 10,
+                    "the time between two SYNCs");
   }
   const std::uint64_t mean = (seen.back().at - seen.front().at) / (seen.size() - 1);
   dut.expect_time(mean, period.count() * 49 / 50, period.count() * 51 / 50, "the mean time between SYNCs");
@@ -110,7 +113,8 @@ void invalid_overflow(Dut& dut) {
   stop_sync(dut);
   const std::uint64_t before = dut.read_number(sync_overflow);
   for (const std::uint64_t reserved : {1U, 241U, 255U}) {
-    dut.expect_abort(dut.download(sync_overflow, 0, reserved), abort_rule::value, fmt::format("{} to 1019h:00", reserved));
+    dut.expect_abort(dut.download(sync_overflow, 0, reserved), abort_rule::value,
+                     fmt::format("{} to 1019h:00", reserved));
     dut.expect_equal(dut.read_number(sync_overflow), before, "1019h:00 afterwards");
   }
 }

@@ -144,7 +144,8 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
       "  block on|off                     something keeps the shaft from turning\n"
       "  position N                       the shaft is turned by hand, without power\n"};
 
-  Ezd1136(B& bus, nodes::Surroundings& around) : Node{bus, around, around.node_id.value_or(canopen::NodeId{1}), axis, {}, {}, {}, {}, {}, {}} {}
+  Ezd1136(B& bus, nodes::Surroundings& around)
+      : Node{bus, around, around.node_id.value_or(canopen::NodeId{1}), axis, {}, {}, {}, {}, {}, {}} {}
 
   void restarted() {
     alarm_ = 0;

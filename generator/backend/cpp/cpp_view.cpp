@@ -327,8 +327,7 @@ ordered_json lss_view(const Device& device, const Options& options) {
   const Capabilities& capabilities = device.information.capabilities;
   if (!options.lss && !capabilities.lss_supported.value_or(false)) return nullptr;
   const LssSettings settings = options.lss.value_or(LssSettings{});
-  std::string members =
-      fmt::format(".bit_rates = 0x{:04X}", settings.bit_rates.value_or(lss_bit_rates(capabilities)));
+  std::string members = fmt::format(".bit_rates = 0x{:04X}", settings.bit_rates.value_or(lss_bit_rates(capabilities)));
   for (const char* flag : lss_flags) {
     if (const auto at = settings.flags.find(flag); at != settings.flags.end()) {
       members += fmt::format(",\n      .{} = {}", flag, at->second);
@@ -404,8 +403,9 @@ ordered_json cpp_view(const Device& device, const Options& options, Diagnostics&
                      emergency_rows(options), "any_emergency_info", !options.emergency_info.empty(), "descriptions",
                      description_rows(device), "node_id",
                      device.node_id ? ordered_json(*device.node_id) : ordered_json(nullptr), "dummies",
-                     dummy_mask(device), "granularity", device.information.capabilities.granularity.value_or(1), "lss", lss_view(device, options), "stored_eds",
-                     stored_eds_view(device, options), "storing", storing_rows(options), "any_storing", !options.storing.empty());
+                     dummy_mask(device), "granularity", device.information.capabilities.granularity.value_or(1), "lss",
+                     lss_view(device, options), "stored_eds", stored_eds_view(device, options), "storing",
+                     storing_rows(options), "any_storing", !options.storing.empty());
 }
 
 }  // namespace edsc

@@ -37,8 +37,7 @@ ordered_json value_view(const Value& value, const canopen::DataTypeRow& type) {
     case DataClass::real:
       if (type.bits == 32) return std::bit_cast<float>(static_cast<std::uint32_t>(value.bits));
       return std::bit_cast<double>(value.bits);
-    case DataClass::string:
-      return type.type == canopen::DataType::octet_string ? hex_pairs(value.bytes) : value.bytes;
+    case DataClass::string: return type.type == canopen::DataType::octet_string ? hex_pairs(value.bytes) : value.bytes;
     case DataClass::domain: return nullptr;
   }
   return fmt::format("$NODEID+0x{:X}", value.bits);
@@ -116,7 +115,9 @@ ordered_json pdo_view(const Pdo& pdo) {
     row["sub_index"] = entry.sub_index;
     row["offset"] = offset;
     row["bits"] = entry.bits;
-    row["name"] = entry.object != nullptr ? entry.object->name : entry.dummy != nullptr ? std::string{entry.dummy->name} : "";
+    row["name"] = entry.object != nullptr  ? entry.object->name
+                  : entry.dummy != nullptr ? std::string{entry.dummy->name}
+                                           : "";
     row["dummy"] = entry.dummy != nullptr;
     offset += entry.bits;
     entries.push_back(std::move(row));

@@ -125,7 +125,8 @@ Provable provable_of(const Device& device, const Pdo& pdo) {
 
 /// Whether the PDO can be checked.
 bool is_checked(const Pdo& pdo) {
-  return pdo.mapping != nullptr && !is_left_out(pdo) && pdo.communication != nullptr && pdo.communication->find(1) != nullptr;
+  return pdo.mapping != nullptr && !is_left_out(pdo) && pdo.communication != nullptr &&
+         pdo.communication->find(1) != nullptr;
 }
 
 /// `canopen::PdoParameters{.cob_id = 0x180, .plus_node_id = true}`, without members that have their default.

@@ -1,4 +1,5 @@
-/// The table of options: what a device does that an EDS cannot express. docs/options.md and its schema are made from it.
+/// The table of options: what a device does that an EDS cannot express. docs/options.md and its schema are made from
+/// it.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +23,8 @@ enum class OptionForm : std::uint8_t {
 };
 
 [[nodiscard]] constexpr std::string_view to_string(OptionForm form) {
-  constexpr std::string_view names[] = {"flag", "number", "mask", "abort_code", "emergency_code", "can_id_range", "structured"};
+  constexpr std::string_view names[] = {"flag",           "number",       "mask",      "abort_code",
+                                        "emergency_code", "can_id_range", "structured"};
   return names[static_cast<std::size_t>(form)];
 }
 
@@ -48,9 +50,11 @@ inline constexpr OptionRow rows[] = {
      "ARRAY, `{\"2000h:01\": \"p\"}` gives `gains_p`"},
     {"string_capacity", structured, "C++", "capacity in bytes of strings in RAM, by entry", "",
      "length of the default value, else 16"},
-    {"settable", structured, "C++", "`const` or `ro` entries that the application sets at start-up; they are placed in RAM"},
+    {"settable", structured, "C++",
+     "`const` or `ro` entries that the application sets at start-up; they are placed in RAM"},
     {"connected_modules", structured, "EDS",
-     "modules connected to a modular device: numbers from [SupportedModules], by slot", "", "[ConnectedModules] of a DCF"},
+     "modules connected to a modular device: numbers from [SupportedModules], by slot", "",
+     "[ConnectedModules] of a DCF"},
     {"silence", structured, "check",
      "ids of rules whose warnings and notes are not reported; errors are silenced for `edsc check` only"},
     {"allow", structured, "check",
@@ -71,7 +75,8 @@ inline constexpr OptionRow rows[] = {
     {"pdo_extended_ids", flag, "PDO", "PDOs may use 29-bit CAN-IDs; if false, 0609 0030h", "true"},
     {"tpdo_remote_frames", flag, "PDO",
      "TPDOs answer remote frames; if false, bit 30 of their COB-ID must be 1, else 0609 0030h", "true"},
-    {"tpdo_remote_frames_can_be_disabled", flag, "PDO", "bit 30 of a TPDO's COB-ID may be 1; if false, 0609 0030h", "true"},
+    {"tpdo_remote_frames_can_be_disabled", flag, "PDO", "bit 30 of a TPDO's COB-ID may be 1; if false, 0609 0030h",
+     "true"},
     {"tpdo_remote_types", flag, "PDO", "TPDOs accept transmission types 252 and 253; if false, 0609 0030h", "true"},
     {"inhibit_time_unit", number, "PDO", "unit of the inhibit time 1800h..19FFh:03, in us", "100", "", 1,
      32767},  // less than half of the time after which canopen::TimePoint wraps
@@ -82,30 +87,36 @@ inline constexpr OptionRow rows[] = {
      "the event timer only",
      "true"},
     {"tpdo_acyclic_on_change", flag, "PDO",
-     "a TPDO of transmission type 0 is sent at the next SYNC after a mapped object has changed; if false, at every SYNC", "true"},
+     "a TPDO of transmission type 0 is sent at the next SYNC after a mapped object has changed; if false, at every SYNC",
+     "true"},
     {"pdo_mapping_writable_while_valid", flag, "PDO",
-     "1600h..17FFh and 1A00h..1BFFh may be written while the PDO is valid if sub-index 0 is 0; if false, 0601 0000h", "false"},
+     "1600h..17FFh and 1A00h..1BFFh may be written while the PDO is valid if sub-index 0 is 0; if false, 0601 0000h",
+     "false"},
     {"pdo_mapping_abort_code", abort_code, "PDO",
      "abort code for a number of mapped objects that does not give a valid mapping", "\"0x06040042\""},
-    {"mpdo", flag, "PDO", "multiplex PDOs are supported: sub-index 0 of a mapping may be 254 or 255, [see below](#multiplex-pdos)",
-     "false"},
-    {"sync_cob_id_writable", mask, "SYNC and EMCY", "writable bits of 1005h; the other bits keep their value", all_bits},
-    {"emcy_cob_id_writable", mask, "SYNC and EMCY", "writable bits of 1014h; the other bits keep their value", all_bits},
+    {"mpdo", flag, "PDO",
+     "multiplex PDOs are supported: sub-index 0 of a mapping may be 254 or 255, [see below](#multiplex-pdos)", "false"},
+    {"sync_cob_id_writable", mask, "SYNC and EMCY", "writable bits of 1005h; the other bits keep their value",
+     all_bits},
+    {"emcy_cob_id_writable", mask, "SYNC and EMCY", "writable bits of 1014h; the other bits keep their value",
+     all_bits},
     {"emcy_cob_id_writable_while_valid", flag, "SYNC and EMCY",
      "the CAN-ID in 1014h may be changed while EMCY is valid; if false, 0609 0030h", "false"},
-    {"emcy_inhibit_time_step", number, "SYNC and EMCY", "1015h accepts only multiples of this value, in units of 100 us; 0609 0030h for others",
-     "1", "", 1, 65535},
-    {"emcy_stopped_keeps_last", flag, "SYNC and EMCY", "after Stopped, only the last pending EMCY is sent; if false, all", "false"},
+    {"emcy_inhibit_time_step", number, "SYNC and EMCY",
+     "1015h accepts only multiples of this value, in units of 100 us; 0609 0030h for others", "1", "", 1, 65535},
+    {"emcy_stopped_keeps_last", flag, "SYNC and EMCY",
+     "after Stopped, only the last pending EMCY is sent; if false, all", "false"},
     {"emergency_info", structured, "SYNC and EMCY",
-     "bytes 3 to 7 of EMCYs that the runtime sends on its own, by emergency error code: `{\"8210h\": \"0900000000\"}`", "",
-     "zero"},
+     "bytes 3 to 7 of EMCYs that the runtime sends on its own, by emergency error code: `{\"8210h\": \"0900000000\"}`",
+     "", "zero"},
     {"reset_emergency", emergency_code, "SYNC and EMCY",
      "emergency error code of an EMCY sent before a reset by NMT command, with the manufacturer-specific bit of 1001h: "
      "`\"FF00h\"`",
      "", "none"},
-    {"error_history_keeps_resets", flag, "SYNC and EMCY", "1003h also records EMCYs that report the end of an error", "false"},
-    {"error_history_abort_code", abort_code, "SYNC and EMCY", "abort code for a write of a value other than 0 to 1003h:00",
-     "\"0x06090030\""},
+    {"error_history_keeps_resets", flag, "SYNC and EMCY", "1003h also records EMCYs that report the end of an error",
+     "false"},
+    {"error_history_abort_code", abort_code, "SYNC and EMCY",
+     "abort code for a write of a value other than 0 to 1003h:00", "\"0x06090030\""},
     {"storing", structured, "storage",
      "objects or entries that 1010h stores differently from what their access type implies: `{\"6010h:01\": \"never\"}`, [see "
      "below](#stored-parameters)"},
@@ -113,21 +124,22 @@ inline constexpr OptionRow rows[] = {
      "abort code for a write of a value other than \"save\" to 1010h or \"load\" to 1011h", "\"0x08000020\""},
     {"restore_needs_power_cycle", flag, "storage",
      "after \"load\", NMT resets keep the values in use; the defaults become active at the next power-on", "false"},
-    {"sdo_upload_size_indicated", flag, "SDO", "expedited upload responses indicate the data size; if false, command byte 42h",
-     "true"},
+    {"sdo_upload_size_indicated", flag, "SDO",
+     "expedited upload responses indicate the data size; if false, command byte 42h", "true"},
     {"sdo_length_codes", flag, "SDO",
      "abort code 0607 0012h for a value that is too long, 0607 0013h for one that is too short; if false, 0607 0010h for both",
      "true"},
     {"sdo_block_transfer", flag, "SDO", "SDO block transfer is supported; if false, 0504 0001h", "false"},
     {"sdo_timeout", number, "SDO",
-     "ms without a frame from the client after which a segmented or block transfer is aborted with 0504 0000h; 0: never", "",
-     "1000 with `sdo_block_transfer`, else 0", 0, 65535},
+     "ms without a frame from the client after which a segmented or block transfer is aborted with 0504 0000h; 0: never",
+     "", "1000 with `sdo_block_transfer`, else 0", 0, 65535},
     {"zero_terminated_strings", structured, "SDO", "VISIBLE_STRINGs are transmitted with a terminating 00h", "false"},
-    {"lss", structured, "LSS", "LSS configuration of the device; a device with this member supports LSS, [see below](#lss)", "",
+    {"lss", structured, "LSS",
+     "LSS configuration of the device; a device with this member supports LSS, [see below](#lss)", "",
      "from LSS_Supported and BaudRate_*"},
     {"stored_eds", structured, "EDS",
-     "1021h holds the EDS: `true` as text, `\"compressed\"` as a gzip file, [see below](#the-eds-stored-in-the-device)", "false",
-     "false: the DOMAIN that the application binds"},
+     "1021h holds the EDS: `true` as text, `\"compressed\"` as a gzip file, [see below](#the-eds-stored-in-the-device)",
+     "false", "false: the DOMAIN that the application binds"},
 };
 
 }  // namespace option_table

@@ -456,7 +456,8 @@ std::span<const OptionsReader::StructuredOption> OptionsReader::structured_optio
       {"stored_eds", &OptionsReader::stored_eds},
   };
   static_assert(std::ranges::all_of(options_table, [](const OptionRow& row) {
-    return (row.form == OptionForm::structured) == (std::ranges::find(rows, row.name, &StructuredOption::name) != std::end(rows));
+    return (row.form == OptionForm::structured) ==
+           (std::ranges::find(rows, row.name, &StructuredOption::name) != std::end(rows));
   }));
   return rows;
 }

@@ -93,8 +93,7 @@ TEST(ConfigurationPlan, StartsASyncProducerBehindItsPeriodAndOverflow) {
 
 TEST(ConfigurationPlan, RestoresTheSyncPeriodThatTheDcfDoesNotHave) {
   const DeviceFromText device{var("1006", "a", "7", "rw") + var("1019", "b", "5", "rw")};
-  EXPECT_EQ(plan({{0x1019, 0, {16}}}, &device.device),
-            (Steps{"clear 1006h:00", "1019h:00 = 10", "restore 1006h:00"}));
+  EXPECT_EQ(plan({{0x1019, 0, {16}}}, &device.device), (Steps{"clear 1006h:00", "1019h:00 = 10", "restore 1006h:00"}));
   EXPECT_EQ(plan({{0x1019, 0, {16}}}), (Steps{"1019h:00 = 10"}));
 }
 
@@ -120,14 +119,15 @@ TEST(NodeIdAndBitRate, AreKnownByTheirName) {
     named.name = std::move(name);
     return sets_node_id_or_bit_rate(named);
   };
-  for (const char* name : {"Node-ID", "Node ID", "CANopen NodeID", "CAN Node-ID", "Device, ucSetBaudIndex_2510h2",
-                           "CAN bit rate", "CAN Bitrate", "BaudRate", "Baudrate Set", "ulSetNodeId_2510h1",
-                           "CAN bus baud rate", "Bus bit rate", "Fieldbus baudrate", "CANopen slave node-ID",
-                           "CAN speed"}) {
+  for (const char* name :
+       {"Node-ID", "Node ID", "CANopen NodeID", "CAN Node-ID", "Device, ucSetBaudIndex_2510h2", "CAN bit rate",
+        "CAN Bitrate", "BaudRate", "Baudrate Set", "ulSetNodeId_2510h1", "CAN bus baud rate", "Bus bit rate",
+        "Fieldbus baudrate", "CANopen slave node-ID", "CAN speed"}) {
     EXPECT_TRUE(sets(0x2000, name)) << name;
   }
-  for (const char* name : {"Inhibit time EMCY", "RS232 Baudrate", "MODBUS RTU Baudrate", "Gain",
-                           "Remote TPDO number and node-ID", "Node-ID of the SDO server", "Scan speed", "UsbBaudrate"}) {
+  for (const char* name :
+       {"Inhibit time EMCY", "RS232 Baudrate", "MODBUS RTU Baudrate", "Gain", "Remote TPDO number and node-ID",
+        "Node-ID of the SDO server", "Scan speed", "UsbBaudrate"}) {
     EXPECT_FALSE(sets(0x2000, name)) << name;
   }
   EXPECT_FALSE(sets(0x1016, "Consumer heartbeat time, Node-ID 1"));

@@ -41,7 +41,9 @@ std::uint32_t word_at(const Frame& frame, std::size_t first) {
   return word;
 }
 
-void put_word(Frame& frame, std::size_t first, std::uint32_t word) { std::memcpy(&frame.data[first], &word, sizeof word); }
+void put_word(Frame& frame, std::size_t first, std::uint32_t word) {
+  std::memcpy(&frame.data[first], &word, sizeof word);
+}
 
 bool is_data(const Frame& frame, std::uint32_t id) { return frame.id == id && !frame.remote && !frame.extended; }
 bool is_emcy(const Frame& frame, std::uint16_t code) {
@@ -172,7 +174,8 @@ Change pretends(NmtCommand command) {
   return [=](Wire& wire, Frame& frame) {
     if (!is_nmt(frame, command)) return;
     wire.drop();
-    wire.request(make(0, {static_cast<std::uint8_t>(NmtCommand::enter_pre_operational), static_cast<std::uint8_t>(node)}));
+    wire.request(
+        make(0, {static_cast<std::uint8_t>(NmtCommand::enter_pre_operational), static_cast<std::uint8_t>(node)}));
     wire.send(make(error_control_id, {0}));
   };
 }
@@ -306,7 +309,8 @@ std::vector<Mutant> control_mutants() {
       {"sync-jitter", jitters(), {}},
       {"sync-with-byte", always_counts(), {}},
       {"sync-after-period-is-written",
-       adds([](const Frame& frame) { return is_download_answer(frame, 0x1006); }, make(sync_id, {})), {}},
+       adds([](const Frame& frame) { return is_download_answer(frame, 0x1006); }, make(sync_id, {})),
+       {}},
       {"sync-counts-twice", {}, sync_doubled()},
       {"sync-counter-from-0", counts_from_0(), {}},
       {"overflow-takes-reserved", takes(0x1019, AbortCode::invalid_value), {}},
@@ -318,9 +322,16 @@ std::vector<Mutant> control_mutants() {
       {"guard-time-one-byte", says_size(0x100C, 0x4F), {}},
       {"guard-time-missing", lacks(0x100C), {}},
       {"guarding-missing", {}, drops(is_guarding_request)},
-      {"guarding-twice", {}, [](Wire& wire, Frame& frame) { if (is_guarding_request(frame)) wire.request(frame); }},
+      {"guarding-twice",
+       {},
+       [](Wire& wire, Frame& frame) {
+         if (is_guarding_request(frame)) wire.request(frame);
+       }},
       {"guarding-without-toggle",
-       [](Wire&, Frame& frame) { if (is_heartbeat(frame)) frame.data[0] &= 0x7F; }, {}},
+       [](Wire&, Frame& frame) {
+         if (is_heartbeat(frame)) frame.data[0] &= 0x7F;
+       },
+       {}},
       {"guarding-for-others", {}, guards_for_others()},
       {"guard-time-forgotten", {}, forgets(0x100C, 0)},
       {"life-time-factor-forgotten", {}, forgets(0x100D, 0)},
@@ -337,11 +348,15 @@ std::vector<Mutant> control_mutants() {
       {"heartbeat-each-second", drops_some(is_heartbeat, 2), {}},
       {"heartbeat-says-operational", sets_byte(is_heartbeat, 0, 5), {}},
       {"heartbeat-with-toggle",
-       [](Wire&, Frame& frame) { if (is_heartbeat(frame)) frame.data[0] |= 0x80; }, {}},
+       [](Wire&, Frame& frame) {
+         if (is_heartbeat(frame)) frame.data[0] |= 0x80;
+       },
+       {}},
       {"heartbeat-never-off", {}, writes(0x1017, 0, 100)},
       {"consumer-takes-duplicate", takes(0x1016, AbortCode::parameter_incompatible), {}},
       {"consumer-duplicate-abort-code",
-       aborts_with(0x1016, AbortCode::parameter_incompatible, AbortCode::no_object), {}},
+       aborts_with(0x1016, AbortCode::parameter_incompatible, AbortCode::no_object),
+       {}},
       // Storage
       {"save-takes-each-signature", {}, takes_each_signature(0x1010, save)},
       {"load-takes-each-signature", {}, takes_each_signature(0x1011, load)},
@@ -358,7 +373,8 @@ std::vector<Mutant> control_mutants() {
       // NMT
       {"boot-up-missing", drops(is_boot_up), {}},
       {"boot-up-twice", repeats(is_boot_up), {}},
-      {"boot-up-at-stop", {},
+      {"boot-up-at-stop",
+       {},
        adds([](const Frame& frame) { return is_nmt(frame, NmtCommand::stop); }, make(error_control_id, {0}))},
       {"reset-node-ignored", {}, ignores(NmtCommand::reset_node)},
       {"reset-communication-ignored", {}, ignores(NmtCommand::reset_communication)},

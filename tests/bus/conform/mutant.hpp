@@ -38,9 +38,9 @@ class Wire {
 using Change = std::function<void(Wire& wire, canopen::Frame& frame)>;
 
 struct Mutant {
-  std::string_view name;  ///< `abort-code-of-missing-sub-index`
-  Change of_answers;      ///< frames of the device; empty: unchanged
-  Change of_requests;     ///< frames of the test
+  std::string_view name;                           ///< `abort-code-of-missing-sub-index`
+  Change of_answers;                               ///< frames of the device; empty: unchanged
+  Change of_requests;                              ///< frames of the test
   std::function<void(std::string& eds)> of_eds{};  ///< the text of the EDS, before the test reads it
 };
 

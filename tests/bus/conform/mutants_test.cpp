@@ -37,8 +37,8 @@ std::string failed_cases(const RunReport& report) {
 int show(const Mutant& mutant, const std::vector<std::string>& only) {
   const RunReport report = run_every_service(mutant, only);
   for (const CaseResult& result : report.cases) {
-    std::printf("%-6s %-20s %s\n", std::string{result.row->id}.c_str(), std::string{row_of(result.verdict).text}.c_str(),
-                std::string{result.row->title}.c_str());
+    std::printf("%-6s %-20s %s\n", std::string{result.row->id}.c_str(),
+                std::string{row_of(result.verdict).text}.c_str(), std::string{result.row->title}.c_str());
     for (const std::string& text : {result.reason, result.expected, result.got}) {
       if (!text.empty()) std::printf("         %s\n", text.c_str());
     }
@@ -69,7 +69,8 @@ std::vector<std::string> gaps(const std::map<std::string, std::string>& failed) 
     for (std::string id; words >> id;) covered.insert(id);
   }
   for (const CaseRow* row : all_cases()) {
-    if (!covered.contains(std::string{row->id})) problems.push_back("case " + std::string{row->id} + ": no mutant fails it");
+    if (!covered.contains(std::string{row->id}))
+      problems.push_back("case " + std::string{row->id} + ": no mutant fails it");
   }
   return problems;
 }

@@ -24,7 +24,8 @@ class Motor {
   }
   void start(auto& node) { static_cast<void>(node.template set<od::producer_heartbeat_time>(500)); }
   void tick(auto& node, canopen::TimePoint now) {
-    if (now.since_start().count() % 1000 != 0) std::printf("tick at %u\n", static_cast<unsigned>(now.since_start().count()));
+    if (now.since_start().count() % 1000 != 0)
+      std::printf("tick at %u\n", static_cast<unsigned>(now.since_start().count()));
     const std::int32_t position = node.template get<od::position_actual_value>();
     static_cast<void>(node.template set<od::position_actual_value>(position + velocity_));
   }

@@ -16,7 +16,7 @@ namespace edsc {
 namespace {
 
 std::string sub_object(std::string_view index, int sub_index, std::string_view data_type, std::string_view access,
-                std::string_view value) {
+                       std::string_view value) {
   return fmt::format("[{}sub{:X}]\nParameterName={}\nDataType={}\nAccessType={}\nDefaultValue={}\n", index, sub_index,
                      sub_index == 0 ? "Count" : fmt::format("Entry {}", sub_index), data_type, access, value);
 }
@@ -208,8 +208,8 @@ TEST(StaticMapping, LeavesSmallConstantsInTheTable) {
 
 TEST(DynamicMapping, GivesTheCountOfAnArrayAnAddressBesideItsElements) {
   DeviceFromText text{tpdo() + "[2006]\nParameterName=Inputs\nObjectType=8\nSubNumber=3\n" +
-                      sub_object("2006", 0, "5", "const", "2") + "PDOMapping=1\n" + sub_object("2006", 1, "5", "ro", "0") +
-                      sub_object("2006", 2, "5", "ro", "0")};
+                      sub_object("2006", 0, "5", "const", "2") + "PDOMapping=1\n" +
+                      sub_object("2006", 1, "5", "ro", "0") + sub_object("2006", 2, "5", "ro", "0")};
   EXPECT_TRUE(word_of(text, "2006h").starts_with("array"));
   const auto words = subs_of(text);
   ASSERT_GE(words.size(), 2U);
@@ -251,8 +251,9 @@ TEST(DynamicMapping, IsServedFromAnEmptyLayoutToo) {
 
 TEST(DynamicMapping, IsStaticWhereItsDefaultCountsWhatMapsNothing) {
   const std::string input = var("2000", "Input", "5", "ro", "PDOMapping=1\n");
-  const std::string gap = communication("1800") + group("1A00", "Mapping", "9", 3) + sub_object("1A00", 0, "5", "rw", "2") +
-                          sub_object("1A00", 1, "7", "rw", "0") + sub_object("1A00", 2, "7", "rw", "0x20000008");
+  const std::string gap = communication("1800") + group("1A00", "Mapping", "9", 3) +
+                          sub_object("1A00", 0, "5", "rw", "2") + sub_object("1A00", 1, "7", "rw", "0") +
+                          sub_object("1A00", 2, "7", "rw", "0x20000008");
   DeviceFromText text{gap + input};
   EXPECT_FALSE(text.device.pdos.at(0).dynamic);
   EXPECT_EQ(served(text, "tpdos"), (std::vector<std::string>{"1 Tpdo1"}));

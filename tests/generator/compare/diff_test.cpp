@@ -241,7 +241,8 @@ TEST(Diff, KeepsWhatConcernsAnAudience) {
   source.changes.keep(Audience::source);
   EXPECT_EQ(source.short_list(),
             (List{"identifier 2000h source", "access-reduced 2000h:00 source", "object-added 2002h"}));
-  Compared node_id(var("1014", "EMCY", "7", "rw", "DefaultValue=0x81\n"), var("1014", "EMCY", "7", "rw", "DefaultValue=0x82\n"));
+  Compared node_id(var("1014", "EMCY", "7", "rw", "DefaultValue=0x81\n"),
+                   var("1014", "EMCY", "7", "rw", "DefaultValue=0x82\n"));
   node_id.changes.keep(Audience::source);
   EXPECT_EQ(node_id.short_list(), List{});
 }

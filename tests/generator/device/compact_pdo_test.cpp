@@ -22,7 +22,8 @@ const std::string object = var("2000", "Value", "5");
 TEST(CompactPdo, DescribesAllPdosThatAreOnlyCounted) {
   const DeviceFromText text(device_info("0x17", 2, 1) + object);
   ASSERT_EQ(text.device.pdos.size(), 3U);
-  for (const std::uint16_t index : std::initializer_list<std::uint16_t>{0x1400, 0x1401, 0x1600, 0x1601, 0x1800, 0x1A00}) {
+  for (const std::uint16_t index :
+       std::initializer_list<std::uint16_t>{0x1400, 0x1401, 0x1600, 0x1601, 0x1800, 0x1A00}) {
     EXPECT_NE(text.device.find(index), nullptr) << index;
   }
   EXPECT_EQ(text.device.find(0x1402), nullptr);

@@ -78,7 +78,7 @@ TEST(CompleteDevice, HasThePredefinedCobIdsWhereTheFileHasNone) {
   for (const Predefined& row : predefined) {
     const auto index = static_cast<std::uint16_t>(std::stoul(row.index, nullptr, 16));
     const auto sub_index = static_cast<std::uint8_t>(row.sub_index);
-    for (const std::string& missing : std::vector<std::string> {"-", "0", "0x0"}) {
+    for (const std::string& missing : std::vector<std::string>{"-", "0", "0x0"}) {
       const DeviceFromText text(object_with(row, missing));
       EXPECT_EQ(cob_id(text, index, sub_index), row.cob_id) << row.index << " " << missing;
       EXPECT_FALSE(text.entry(index, sub_index).default_value->clause.empty()) << row.index;
@@ -91,8 +91,7 @@ TEST(CompleteDevice, NotesACobIdThatItSupplies) {
   const Diagnostic& note = missing.finding("cob-id-missing");
   EXPECT_EQ(note.severity, Severity::note);
   EXPECT_EQ(note.position.line, 1U);
-  EXPECT_EQ(note.message,
-            "1014h:00 \"COB-ID EMCY\" has no default value; using $NODEID+0x80 (CiA 301, 7.5.2.17)");
+  EXPECT_EQ(note.message, "1014h:00 \"COB-ID EMCY\" has no default value; using $NODEID+0x80 (CiA 301, 7.5.2.17)");
   const DeviceFromText zero(record("1201", {"0", "-"}));
   EXPECT_EQ(zero.line_of("cob-id-missing"), "DefaultValue=0");
   EXPECT_EQ(zero.finding("cob-id-missing").message,
@@ -171,7 +170,8 @@ TEST(CompleteDevice, CompletesModules) {
 
 TEST(CompleteDevice, SendsPdosWithoutTransmissionTypeAtAnEvent) {
   for (const std::string& index : std::vector<std::string>{"1400", "1800"}) {
-    const DeviceFromText text(group(index, "PDO", "0x9", 3) + var(index + "sub0", "Count", "5", "const", "DefaultValue=2\n") +
+    const DeviceFromText text(group(index, "PDO", "0x9", 3) +
+                              var(index + "sub0", "Count", "5", "const", "DefaultValue=2\n") +
                               var(index + "sub1", "COB-ID", "7", "rw", "DefaultValue=0x80000000\n") +
                               var(index + "sub2", "Transmission type", "5"));
     EXPECT_EQ(text.entry(index == "1400" ? 0x1400 : 0x1800, 2).default_value->bits, 255U);
@@ -182,7 +182,8 @@ TEST(CompleteDevice, SendsPdosWithoutTransmissionTypeAtAnEvent) {
 TEST(CompleteDevice, TakesNoReservedTransmissionType) {
   const auto type_of = [](std::string_view index, const std::string& type) {
     const std::string sub{index};
-    const DeviceFromText text(group(index, "PDO", "0x9", 3) + var(sub + "sub0", "Count", "5", "const", "DefaultValue=2\n") +
+    const DeviceFromText text(group(index, "PDO", "0x9", 3) +
+                              var(sub + "sub0", "Count", "5", "const", "DefaultValue=2\n") +
                               var(sub + "sub1", "COB-ID", "7", "rw", "DefaultValue=0x80000000\n") +
                               var(sub + "sub2", "Transmission type", "5", "rw", "DefaultValue=" + type + "\n"));
     return text.device.objects.front().find(2)->default_value->bits;

@@ -91,9 +91,10 @@ TEST(OptionsFile, ListsAllowedFindings) {
 }
 
 TEST(OptionsFile, RefusesAllowedFindingsWithoutRuleOrReason) {
-  for (const char* item : {R"("pdo-empty")", R"({"rule": "a"})", R"({"rule": "a", "reason": " "})", R"({"reason": "a"})",
-                           R"({"rule": 1, "reason": "a"})", R"({"rule": "a", "reason": "b", "object": "x"})",
-                           R"({"rule": "a", "reason": "b", "entry": "6040h"})"}) {
+  for (const char* item :
+       {R"("pdo-empty")", R"({"rule": "a"})", R"({"rule": "a", "reason": " "})", R"({"reason": "a"})",
+        R"({"rule": 1, "reason": "a"})", R"({"rule": "a", "reason": "b", "object": "x"})",
+        R"({"rule": "a", "reason": "b", "entry": "6040h"})"}) {
     const ReadOptions read("{\"allow\": [" + std::string{item} + "]}");
     EXPECT_EQ(read.diagnostics.errors(), 1U) << item;
     EXPECT_TRUE(read.options.allow.empty()) << item;
@@ -118,11 +119,11 @@ TEST(OptionsFile, SaysThatStringsEndWithAZero) {
 }
 
 TEST(OptionsFile, HandsEachDepartureToTheRuntime) {
-  for (const char* flag : {"pdo_extended_ids", "tpdo_remote_frames", "inhibit_time_writable_while_valid",
-                           "event_driven_on_change", "tpdo_acyclic_on_change", "pdo_mapping_writable_while_valid",
-                           "mpdo", "sdo_upload_size_indicated", "restore_needs_power_cycle",
-                           "tpdo_remote_frames_can_be_disabled", "tpdo_remote_types",
-                           "emcy_cob_id_writable_while_valid", "emcy_stopped_keeps_last", "sdo_length_codes"}) {
+  for (const char* flag :
+       {"pdo_extended_ids", "tpdo_remote_frames", "inhibit_time_writable_while_valid", "event_driven_on_change",
+        "tpdo_acyclic_on_change", "pdo_mapping_writable_while_valid", "mpdo", "sdo_upload_size_indicated",
+        "restore_needs_power_cycle", "tpdo_remote_frames_can_be_disabled", "tpdo_remote_types",
+        "emcy_cob_id_writable_while_valid", "emcy_stopped_keeps_last", "sdo_length_codes"}) {
     for (const char* value : {"true", "false"}) {
       const ReadOptions read("{ \"" + std::string{flag} + "\": " + value + " }");
       EXPECT_EQ(findings(read.diagnostics), Findings{}) << flag;
@@ -133,7 +134,8 @@ TEST(OptionsFile, HandsEachDepartureToTheRuntime) {
     EXPECT_EQ(ReadOptions("{ \"" + mask + "\": \"0x80000780\" }").options.runtime, (Runtime{{mask, "0x80000780"}}));
   }
   EXPECT_EQ(ReadOptions(R"({ "inhibit_time_unit": 1000 })").options.runtime, (Runtime{{"inhibit_time_unit", "1000"}}));
-  EXPECT_EQ(ReadOptions(R"({ "emcy_inhibit_time_step": 10 })").options.runtime, (Runtime{{"emcy_inhibit_time_step", "10"}}));
+  EXPECT_EQ(ReadOptions(R"({ "emcy_inhibit_time_step": 10 })").options.runtime,
+            (Runtime{{"emcy_inhibit_time_step", "10"}}));
   for (const std::string value : {"0", "1000", "65535"}) {
     EXPECT_EQ(ReadOptions("{ \"sdo_timeout\": " + value + " }").options.runtime, (Runtime{{"sdo_timeout", value}}));
   }
@@ -308,7 +310,8 @@ TEST(OptionsFile, NamesThePathOfTheMemberThatIsWrong) {
 }
 
 TEST(OptionsFile, ThatIsNoJsonIsAnErrorWhereItBreaks) {
-  EXPECT_EQ(findings(ReadOptions("{\n  \"settable\": [,]\n}\n").diagnostics), (Findings{error_at(2, 16, "options-syntax")}));
+  EXPECT_EQ(findings(ReadOptions("{\n  \"settable\": [,]\n}\n").diagnostics),
+            (Findings{error_at(2, 16, "options-syntax")}));
   EXPECT_EQ(ReadOptions("").diagnostics.all().front().rule, "options-syntax");
   EXPECT_EQ(ReadOptions("{").diagnostics.all().front().rule, "options-syntax");
 }

@@ -98,12 +98,12 @@ TEST(Resolve, ReadsTheLengthThatADeftypeStates) {
     std::uint32_t octets;
   };
   const Row rows[] = {
-      {"7", "32", DataType::unsigned32, 0},        {"6", "16", DataType::unsigned16, 0},
-      {"5", "8", DataType::unsigned8, 0},          {"4", "0x20", DataType::integer32, 0},
-      {"7", "0", DataType::unsigned32, 0},         {"7", "", DataType::unsigned32, 0},
-      {"7", "24", DataType::octet_string, 3},      {"9", "160", DataType::visible_string, 20},
-      {"0xA", "64", DataType::octet_string, 8},    {"0xF", "0x8000", DataType::domain, 0},
-      {"7", "2056", DataType::domain, 0},          {"7", "20", DataType::domain, 0},
+      {"7", "32", DataType::unsigned32, 0},     {"6", "16", DataType::unsigned16, 0},
+      {"5", "8", DataType::unsigned8, 0},       {"4", "0x20", DataType::integer32, 0},
+      {"7", "0", DataType::unsigned32, 0},      {"7", "", DataType::unsigned32, 0},
+      {"7", "24", DataType::octet_string, 3},   {"9", "160", DataType::visible_string, 20},
+      {"0xA", "64", DataType::octet_string, 8}, {"0xF", "0x8000", DataType::domain, 0},
+      {"7", "2056", DataType::domain, 0},       {"7", "20", DataType::domain, 0},
   };
   for (const Row& row : rows) {
     const DeviceFromText text(deftype("0042", row.data_type, row.bits) + var("2000", "Value", "0x42"));
@@ -171,10 +171,10 @@ TEST(Resolve, TakesTheLimitsOfADeftypeWhereAnEntryHasNone) {
 }
 
 TEST(Resolve, ReadsARangeTypeAsCanFestivalWritesIt) {
-  const DeviceFromText text(group("00A0", "UNSIGNED16[5-60]", "0x9", 4) + sub("00A0", 0, "Count", "5") +
-                            sub("00A0", 1, "Type", "5", "DefaultValue=6\n") +
-                            sub("00A0", 2, "Minimum Value", "6", "DefaultValue=5\n") +
-                            sub("00A0", 3, "Maximum Value", "6", "DefaultValue=0x3C\n") + var("2000", "Speed", "0x00A0"));
+  const DeviceFromText text(
+      group("00A0", "UNSIGNED16[5-60]", "0x9", 4) + sub("00A0", 0, "Count", "5") +
+      sub("00A0", 1, "Type", "5", "DefaultValue=6\n") + sub("00A0", 2, "Minimum Value", "6", "DefaultValue=5\n") +
+      sub("00A0", 3, "Maximum Value", "6", "DefaultValue=0x3C\n") + var("2000", "Speed", "0x00A0"));
   EXPECT_EQ(text.entry(0x2000).type->type, DataType::unsigned16);
   EXPECT_EQ(text.entry(0x2000).low_limit->bits, 5U);
   EXPECT_EQ(text.entry(0x2000).high_limit->bits, 60U);
@@ -186,8 +186,8 @@ TEST(Resolve, ReadsARangeTypeAsCanFestivalWritesIt) {
 TEST(Resolve, GivesTheMembersOfADefstructToARecordOfItsType) {
   const DeviceFromText text(group("0060", "Axis", "0x6", 3) + sub("0060", 0, "Count", "5", "DefaultValue=2\n") +
                             sub("0060", 1, "Position", "6", "DefaultValue=0x0004\n") +
-                            sub("0060", 2, "Speed", "6", "DefaultValue=0x0003\n") +
-                            group("2000", "X axis", "0x9", 3) + "DataType=0x0060\n" + sub("2000", 0, "Count", "5") +
+                            sub("0060", 2, "Speed", "6", "DefaultValue=0x0003\n") + group("2000", "X axis", "0x9", 3) +
+                            "DataType=0x0060\n" + sub("2000", 0, "Count", "5") +
                             "[2000sub1]\nParameterName=Position\nAccessType=rw\n"
                             "[2000sub2]\nParameterName=Speed\nAccessType=rw\n");
   EXPECT_EQ(text.entry(0x2000, 1).type->type, DataType::integer32);
@@ -197,7 +197,8 @@ TEST(Resolve, GivesTheMembersOfADefstructToARecordOfItsType) {
 
 TEST(Resolve, GivesTheMembersOfAPredefinedRecordToOneOfItsType) {
   const DeviceFromText text(group("1018", "Identity object", "0x9", 2) + "DataType=0x0023\n" +
-                            sub("1018", 0, "Count", "5", "DefaultValue=1\n") + "[1018sub1]\nParameterName=Vendor-ID\nAccessType=ro\n");
+                            sub("1018", 0, "Count", "5", "DefaultValue=1\n") +
+                            "[1018sub1]\nParameterName=Vendor-ID\nAccessType=ro\n");
   EXPECT_EQ(text.entry(0x1018, 1).type->type, DataType::unsigned32);
   EXPECT_EQ(rules_of(text.diagnostics), Rules{});
 }
@@ -649,17 +650,22 @@ TEST(Resolve, ReadsTheDefaultMapping) {
 // ---- text ----
 
 TEST(Resolve, MakesADeviceThatOwnsItsText) {
-  const DeviceFromText text("[FileInfo]\nDescription=a drive\n[DeviceComissioning]\nNodeName=left\n[Comments]\nLines=1\n"
-                            "Line1=nothing to say\n[Tools]\nItems=1\n[Tool1]\nName=tune\nCommand=tune.exe\n" +
-                                var("2000", "Value", "7", "rw",
-                                    "Denotation=torque\nUnit=mNm\nFactor=0.1\nDescription=of the motor\nParamRefd=x\n"),
-                            {}, {}, "test.dcf");
+  const DeviceFromText text(
+      "[FileInfo]\nDescription=a drive\n[DeviceComissioning]\nNodeName=left\n[Comments]\nLines=1\n"
+      "Line1=nothing to say\n[Tools]\nItems=1\n[Tool1]\nName=tune\nCommand=tune.exe\n" +
+          var("2000", "Value", "7", "rw",
+              "Denotation=torque\nUnit=mNm\nFactor=0.1\nDescription=of the motor\nParamRefd=x\n"),
+      {}, {}, "test.dcf");
   const Information& information = text.device.information;
   const Entry& entry = text.entry(0x2000);
-  const std::vector<std::string_view> texts = {information.file.description, information.commissioning.value().node_name,
-                                               information.comments.at(0),   information.tools.at(0).command,
-                                               entry.denotation,             entry.unit,
-                                               entry.factor,                 entry.description,
+  const std::vector<std::string_view> texts = {information.file.description,
+                                               information.commissioning.value().node_name,
+                                               information.comments.at(0),
+                                               information.tools.at(0).command,
+                                               entry.denotation,
+                                               entry.unit,
+                                               entry.factor,
+                                               entry.description,
                                                entry.param_refd};
   const std::vector<std::string_view> wanted = {"a drive", "left", "nothing to say", "tune.exe", "torque",
                                                 "mNm",     "0.1",  "of the motor",   "x"};

@@ -75,8 +75,7 @@ TEST(StoredEdsOption, NeedsADomainThatIsReadOnly) {
 }
 
 TEST(StoredEdsOption, NeedsAFormatWhereItIsCompressed) {
-  const std::string no_format =
-      "option stored_eds: the EDS has no read-only integer 1022h for the format";
+  const std::string no_format = "option stored_eds: the EDS has no read-only integer 1022h for the format";
   EXPECT_EQ(complaint(device_type + store_eds_object, StoredEds::compressed), no_format);
   const std::string writable = var("1022", "Store format", "5", "rw");
   EXPECT_EQ(complaint(device_type + store_eds_object + writable, StoredEds::text), no_format);

@@ -55,13 +55,13 @@ const PredefinedRecord predefined_records[] = {
       {4, DataType::unsigned32}},  // serial number
      5},
     {"0x0024",
-     {{1, DataType::octet_string},  // command to the debugger
-      {2, DataType::unsigned8},     // status
+     {{1, DataType::octet_string},   // command to the debugger
+      {2, DataType::unsigned8},      // status
       {3, DataType::octet_string}},  // reply
      4},
     {"0x0025",
-     {{1, DataType::octet_string},  // command to the operating system
-      {2, DataType::unsigned8},     // status
+     {{1, DataType::octet_string},   // command to the operating system
+      {2, DataType::unsigned8},      // status
       {3, DataType::octet_string}},  // reply
      4},
 };

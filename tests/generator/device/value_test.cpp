@@ -390,9 +390,10 @@ TEST(LimitValue, BeyondItsTypeLimitsNothing) {
     DataType type;
     const char* text;
   };
-  for (const Row& row : {Row{Limit::low, DataType::unsigned16, "-4096"}, Row{Limit::high, DataType::unsigned8, "0xFFFF"},
-                         Row{Limit::high, DataType::integer32, "4294967295"}, Row{Limit::low, DataType::integer8, "-129"},
-                         Row{Limit::high, DataType::real32, "1e300"}, Row{Limit::low, DataType::real32, "-1e300"}}) {
+  for (const Row& row :
+       {Row{Limit::low, DataType::unsigned16, "-4096"}, Row{Limit::high, DataType::unsigned8, "0xFFFF"},
+        Row{Limit::high, DataType::integer32, "4294967295"}, Row{Limit::low, DataType::integer8, "-129"},
+        Row{Limit::high, DataType::real32, "1e300"}, Row{Limit::low, DataType::real32, "-1e300"}}) {
     const ParsedLimit parsed(row.which, row.type, row.text);
     EXPECT_FALSE(parsed.value) << row.text;
     EXPECT_EQ(findings(parsed.diagnostics), warning_of("number-range")) << row.text;

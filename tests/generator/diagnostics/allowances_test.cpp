@@ -33,8 +33,9 @@ TEST(AllowComments, ApplyToTheFileBeforeTheFirstSection) {
 }
 
 TEST(AllowComments, ApplyToTheSectionOrLineThatFollows) {
-  EXPECT_EQ(comments_of("[FileInfo]\n;edsc:allow a - b - c\n\n; some words\n[1000]\n# edsc: allow d - e\nDataType=7\nx=1\n"),
-            (Rows{"2 a: b - c, section 5", "6 d: e, line 7"}));
+  EXPECT_EQ(
+      comments_of("[FileInfo]\n;edsc:allow a - b - c\n\n; some words\n[1000]\n# edsc: allow d - e\nDataType=7\nx=1\n"),
+      (Rows{"2 a: b - c, section 5", "6 d: e, line 7"}));
   EXPECT_EQ(comments_of("[1000]\n; edsc: allow a - b\n; edsc: allow c - d\nDataType=7\n"),
             (Rows{"2 a: b, line 4", "3 c: d, line 4"}));
   EXPECT_EQ(comments_of("[FileInfo]\n[1000] ; edsc: allow a - b\nDataType=7\n"), (Rows{"2 a: b, section 2"}));
@@ -47,8 +48,10 @@ TEST(AllowComments, WithoutALineThatFollows) {
 }
 
 TEST(AllowComments, OfAnotherForm) {
-  EXPECT_EQ(comments_of("; edsc: allow\n; edsc: deny a - b\n; edsc: allow a\n; edsc: allow a -\n; edsc: allow a b\n; edsc allow a - b\n"),
-            (Rows{"1 : , file", "2 : , file", "3 a: , file", "4 a: , file", "5 a: , file"}));
+  EXPECT_EQ(
+      comments_of(
+          "; edsc: allow\n; edsc: deny a - b\n; edsc: allow a\n; edsc: allow a -\n; edsc: allow a b\n; edsc allow a - b\n"),
+      (Rows{"1 : , file", "2 : , file", "3 a: , file", "4 a: , file", "5 a: , file"}));
 }
 
 class AllowancesOfASheet : public testing::Test {
@@ -83,11 +86,11 @@ class AllowancesOfASheet : public testing::Test {
 
   const SourceFile source_{"a.eds",
                            "[OptionalObjects]\nSupportedObjects=2\n1=0x1003\n2=0x2000\n"  // 1
-                           "[1003]\nSubNumber=2\n"                                       // 5
-                           "[1003sub0]\nDataType=5\n"                                    // 7
-                           "[1003sub1]\nDataType=7\n"                                    // 9
-                           "[1003Value]\nNrOfEntries=1\n1=5\n"                           // 11
-                           "[2000]\nDataType=7\n"};                                      // 14
+                           "[1003]\nSubNumber=2\n"                                        // 5
+                           "[1003sub0]\nDataType=5\n"                                     // 7
+                           "[1003sub1]\nDataType=7\n"                                     // 9
+                           "[1003Value]\nNrOfEntries=1\n1=5\n"                            // 11
+                           "[2000]\nDataType=7\n"};                                       // 14
   Allowances allowances_;
 };
 

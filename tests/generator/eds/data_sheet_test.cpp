@@ -161,9 +161,10 @@ TEST(DataSheet, ReadsDummyUsage) {
 }
 
 TEST(DataSheet, ReadsTheListsOfACompactForm) {
-  const ReadSheet read(one_object +
-                  "CompactSubObj=3\n[1005Name]\nNrOfEntries=2\n1=One\n3=Three\n[1005value]\nNrOfEntries=1\n2=0x20\n"
-                  "[1005Denotation]\nNrOfEntries=1\n1=Mine\n");
+  const ReadSheet read(
+      one_object +
+      "CompactSubObj=3\n[1005Name]\nNrOfEntries=2\n1=One\n3=Three\n[1005value]\nNrOfEntries=1\n2=0x20\n"
+      "[1005Denotation]\nNrOfEntries=1\n1=Mine\n");
   EXPECT_EQ(findings(read.diagnostics), Findings{});
   const ObjectDescription& object = read.sheet.objects.at(0);
   EXPECT_EQ(object.compact_sub_obj.text, "3");
@@ -189,9 +190,9 @@ TEST(DataSheet, AddsNothingToWhatTheIniReaderReported) {
 
 TEST(DataSheet, ReadsTheSectionsOfEveryModule) {
   const ReadSheet read(one_object +
-                  "[SupportedModules]\nNrOfEntries=12\n"
-                  "[m12comments]\nLines=0\n[M12ModuleInfo]\nProductName=Twelve\n[M12Fixed2000]\nDataType=5\n"
-                  "[M12Fixed2000Sub1]\nDataType=6\n[M12SubExt6000]\nCount=0;4\nObjExtend=8\nDataType=5\n");
+                       "[SupportedModules]\nNrOfEntries=12\n"
+                       "[m12comments]\nLines=0\n[M12ModuleInfo]\nProductName=Twelve\n[M12Fixed2000]\nDataType=5\n"
+                       "[M12Fixed2000Sub1]\nDataType=6\n[M12SubExt6000]\nCount=0;4\nObjExtend=8\nDataType=5\n");
   ASSERT_EQ(read.sheet.modules.supported.size(), 1U);
   const ModuleDescription& module = read.sheet.modules.supported[0];
   EXPECT_EQ(module.number, 12);
@@ -208,16 +209,16 @@ TEST(DataSheet, ReadsTheSectionsOfEveryModule) {
 }
 
 TEST(DataSheet, WarnsOfSectionsOfAModuleThatStandTwice) {
-  const ReadSheet read(one_object +
-                  "[SupportedModules]\nNrOfEntries=1\n[M1ModuleInfo]\nProductName=A\n[m1moduleinfo]\nProductName=B\n");
+  const ReadSheet read(
+      one_object + "[SupportedModules]\nNrOfEntries=1\n[M1ModuleInfo]\nProductName=A\n[m1moduleinfo]\nProductName=B\n");
   EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(11, 2, "duplicate-section")}));
   EXPECT_EQ(read.sheet.modules.supported[0].product_name.text, "A");
 }
 
 TEST(DataSheet, WarnsOfUnknownKeysInEverySection) {
-  for (const std::string name : {"Tools", "Tool1", "DynamicChannels", "SupportedModules", "ConnectedModules",
-                                 "M1ModuleInfo", "M1Comments", "M1FixedObjects", "M1SubExtends", "M1SubExt6000",
-                                 "1005ObjectLinks", "Comments"}) {
+  for (const std::string name :
+       {"Tools", "Tool1", "DynamicChannels", "SupportedModules", "ConnectedModules", "M1ModuleInfo", "M1Comments",
+        "M1FixedObjects", "M1SubExtends", "M1SubExt6000", "1005ObjectLinks", "Comments"}) {
     const ReadSheet read(one_object + "[" + name + "]\nAnything=1\n");
     EXPECT_EQ(findings(read.diagnostics, "unknown-key"), (Findings{warning_at(8, 1, "unknown-key")})) << name;
   }
@@ -255,7 +256,7 @@ TEST(DataSheet, RefusesNamesThatAreNoIndexOrSubIndex) {
 
 TEST(DataSheet, WarnsOfUnknownKeys) {
   const ReadSheet read(one_object +
-                  "Colour=red\n[1005sub1]\nSubNumber=1\n[DeviceInfo]\nBaudRate_fast=1\n[FileInfo]\nCustomer=x\n");
+                       "Colour=red\n[1005sub1]\nSubNumber=1\n[DeviceInfo]\nBaudRate_fast=1\n[FileInfo]\nCustomer=x\n");
   EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(13, 1, "unknown-key"), warning_at(11, 1, "unknown-key"),
                                                   warning_at(7, 1, "unknown-key"), warning_at(9, 1, "unknown-key")}));
 }
@@ -362,7 +363,8 @@ class ListOfAnObject : public testing::TestWithParam<ListCase> {};
 
 TEST_P(ListOfAnObject, IsGivenByItsIndex) {
   const std::string index = GetParam().index;
-  const ReadSheet read("[" + std::string(GetParam().list) + "]\nSupportedObjects=1\n1=0x" + index + "\n[" + index + "]\n");
+  const ReadSheet read("[" + std::string(GetParam().list) + "]\nSupportedObjects=1\n1=0x" + index + "\n[" + index +
+                       "]\n");
   const Findings wrong{warning_at(3, 3, "object-list")};
   EXPECT_EQ(findings(read.diagnostics), GetParam().is_right ? Findings{} : wrong);
 }

@@ -36,7 +36,8 @@ TEST(CommentsSection, CountsItsLines) {
 // ---- [FileInfo] and [DeviceInfo] ----
 
 TEST(FileInfoSection, KeepsDatesAsTheyAreWritten) {
-  const ReadSections read("[FileInfo]\nCreationDate=2016-03-25\nCreationTime=17:24:43\nFileVersion=-\nLastEDS=drive.eds\n");
+  const ReadSections read(
+      "[FileInfo]\nCreationDate=2016-03-25\nCreationTime=17:24:43\nFileVersion=-\nLastEDS=drive.eds\n");
   const FileInformation& file = read.device.information.file;
   EXPECT_EQ(file.creation_date, "2016-03-25");
   EXPECT_EQ(file.creation_time, "17:24:43");
@@ -99,7 +100,8 @@ TEST(CommissioningSection, IsMissingInAnEds) { EXPECT_FALSE(ReadSections("").dev
 // ---- [Tools] ----
 
 TEST(ToolsSection, NamesProgramsAndTheirCommands) {
-  const ReadSections read("[Tool2]\nName=Scope\nCommand=scope.exe\n[Tools]\nItems=2\n[Tool1]\nName=Setup\nCommand=a b\n");
+  const ReadSections read(
+      "[Tool2]\nName=Scope\nCommand=scope.exe\n[Tools]\nItems=2\n[Tool1]\nName=Setup\nCommand=a b\n");
   ASSERT_EQ(read.device.information.tools.size(), 2U);
   EXPECT_EQ(read.device.information.tools[0].name, "Setup");
   EXPECT_EQ(read.device.information.tools[0].command, "a b");
@@ -127,11 +129,14 @@ TEST(DynamicChannelsSection, HoldsSegments) {
   EXPECT_EQ(rules_of(read.diagnostics), Rules{});
 }
 
-TEST(DynamicChannelsSection, MayBeEmpty) { EXPECT_EQ(rules_of(ReadSections("[DynamicChannels]\n").diagnostics), Rules{}); }
+TEST(DynamicChannelsSection, MayBeEmpty) {
+  EXPECT_EQ(rules_of(ReadSections("[DynamicChannels]\n").diagnostics), Rules{});
+}
 
 TEST(DynamicChannelsSection, WarnsOfRangesThatAreNone) {
   for (const char* range : {"A080", "0xA0BF-0xA080", "0xA080..0xA0BF", "0x1A080"}) {
-    const ReadSections read("[DynamicChannels]\nNrOfSeg=1\nType1=7\nDir1=ro\nRange1=" + std::string{range} + "\nPPOffset1=0\n");
+    const ReadSections read("[DynamicChannels]\nNrOfSeg=1\nType1=7\nDir1=ro\nRange1=" + std::string{range} +
+                            "\nPPOffset1=0\n");
     EXPECT_EQ(findings(read.diagnostics, "dynamic-segment"), (std::vector{warning_at(5, 8, "dynamic-segment")}))
         << range;
   }

@@ -209,20 +209,20 @@ TEST(CanonicalForm, KeepsTheCommentOfAListedObject) {
 TEST(CanonicalForm, KeepsTheCommentBeforeTheNumberOfListedObjects) {
   for (const char* list : {"MandatoryObjects", "OptionalObjects", "ManufacturerObjects"}) {
     for (const char* key : {"SupportedObjects=1", "Supported Objects=1", "SUPPORTEDOBJECTS=0x1 ; one"}) {
-      const std::string text = formatted(std::string{"["} + list + "]\n; about the list\n" + key +
-                                         "\n1=0x2000\n[2000]\nDataType=5\n");
+      const std::string text =
+          formatted(std::string{"["} + list + "]\n; about the list\n" + key + "\n1=0x2000\n[2000]\nDataType=5\n");
       EXPECT_NE(text.find("; about the list\n"), std::string::npos) << list << ' ' << key << '\n' << text;
     }
   }
-  const std::string text = formatted(
-      "[ManufacturerObjects]\n; about the list\nSupportedObjects=1\n1=0x2000\n[2000]\nDataType=5\n");
+  const std::string text =
+      formatted("[ManufacturerObjects]\n; about the list\nSupportedObjects=1\n1=0x2000\n[2000]\nDataType=5\n");
   EXPECT_NE(text.find("[ManufacturerObjects]\n; about the list\nSupportedObjects=1\n1=0x2000\n"), std::string::npos)
       << text;
 }
 
 TEST(CanonicalForm, KeepsCommentsOfAListThatHasNoObjects) {
-  const std::string text = formatted(
-      "[OptionalObjects]\n; none yet\nSupportedObjects=0\n; gone\n1=0x1008\n[2000]\nDataType=5\n");
+  const std::string text =
+      formatted("[OptionalObjects]\n; none yet\nSupportedObjects=0\n; gone\n1=0x1008\n[2000]\nDataType=5\n");
   EXPECT_NE(text.find("[OptionalObjects]\n; none yet\n; gone\nSupportedObjects=0\n"), std::string::npos) << text;
 }
 
@@ -385,8 +385,8 @@ TEST(MakeDcf, GivesCommandsNoValue) {
   const std::string clears = group("1003", "Errors", "8", 2) +
                              var("1003sub0", "Number of errors", "5", "rw", "DefaultValue=0\n") +
                              var("1003sub1", "Error", "7", "ro");
-  const std::string control = group("1F51", "Program control", "8", 1) + "DataType=5\nAccessType=rw\nCompactSubObj=1\n" +
-                              "[1F51Value]\nNrOfEntries=1\n1=1\n";
+  const std::string control = group("1F51", "Program control", "8", 1) +
+                              "DataType=5\nAccessType=rw\nCompactSubObj=1\n" + "[1F51Value]\nNrOfEntries=1\n1=1\n";
   const std::string other = var("2000", "Value", "5", "rw", "DefaultValue=3\n");
   for (const std::string& head : {std::string{}, std::string{"[DeviceComissioning]\nNodeID=5\n"}}) {
     const std::string dcf = Formatted(head + clears + stores + control + other, std::uint8_t{5}).dcf(DcfValues::all);

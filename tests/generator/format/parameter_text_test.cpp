@@ -51,7 +51,9 @@ TEST(ParameterText, SpellsEachTypeSoThatItReadsBack) {
     ASSERT_EQ(text, value.text) << value.data_type;
     const DeviceFromText dcf{"[DeviceComissioning]\nNodeID=5\n[2000]\nParameterName=A\nObjectType=7\nDataType=" +
                                  std::to_string(value.data_type) + "\nAccessType=rw\nParameterValue=" + *text + "\n",
-                             {}, {}, "test.dcf"};
+                             {},
+                             {},
+                             "test.dcf"};
     Diagnostics diagnostics;
     const auto read = configured_values(dcf.sheet, dcf.device, diagnostics);
     ASSERT_EQ(read.size(), 1u) << *text;

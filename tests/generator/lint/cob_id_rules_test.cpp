@@ -102,9 +102,12 @@ TEST(CobIdRules, FindANodeIdThatIsAddedTwice) {
 
 TEST(CobIdRules, RefuseToSendOnTheCanIdOfSync) {
   EXPECT_EQ(found_in_tpdo_1("0x80", "cob-id-twice").size(), 1U);
-  EXPECT_EQ(found_in_tpdo_1("0x80", "cob-id-twice", std::nullopt, var("1005", "SYNC", "7", "rw", "DefaultValue=0x80\n")).size(), 1U);
+  EXPECT_EQ(found_in_tpdo_1("0x80", "cob-id-twice", std::nullopt, var("1005", "SYNC", "7", "rw", "DefaultValue=0x80\n"))
+                .size(),
+            1U);
   EXPECT_TRUE(found_in_tpdo_1("0x80000080", "cob-id-twice").empty()) << "off";
-  EXPECT_TRUE(found_in_tpdo_1("$NODEID+0x80", "cob-id-twice").empty()) << "that of EMCY, which the device does not have";
+  EXPECT_TRUE(found_in_tpdo_1("$NODEID+0x80", "cob-id-twice").empty())
+      << "that of EMCY, which the device does not have";
 }
 
 TEST(CobIdRules, ReportACanIdOfManyServicesOnce) {

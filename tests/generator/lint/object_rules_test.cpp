@@ -24,7 +24,8 @@ TEST(ObjectRules, WarnOfEachMandatoryObjectThatIsMissing) {
   for (const Diagnostic& diagnostic : checked.diagnostics.all()) {
     if (diagnostic.rule == "mandatory-object") messages.push_back(diagnostic.message);
   }
-  EXPECT_EQ(messages, (std::vector<std::string>{"mandatory object 1000h is missing", "mandatory object 1018h is missing"}));
+  EXPECT_EQ(messages,
+            (std::vector<std::string>{"mandatory object 1000h is missing", "mandatory object 1018h is missing"}));
   EXPECT_EQ(checked.diagnostics.errors(), 0U);
 }
 
@@ -64,12 +65,16 @@ TEST(ObjectRules, BlameNoFileForADefaultThatItDoesNotHave) {
 }
 
 TEST(ObjectRules, CompareLimitsAsTheTypeDoes) {
-  EXPECT_EQ(rules_of(CheckedObjects(var("2000", "V", "4", "rw", "LowLimit=0xFFFFFFFE\nHighLimit=1\n")).diagnostics), Rules{});
-  EXPECT_EQ(rules_of(CheckedObjects(var("2000", "V", "7", "rw", "LowLimit=1\nHighLimit=0xFFFFFFFE\n")).diagnostics), Rules{});
+  EXPECT_EQ(rules_of(CheckedObjects(var("2000", "V", "4", "rw", "LowLimit=0xFFFFFFFE\nHighLimit=1\n")).diagnostics),
+            Rules{});
+  EXPECT_EQ(rules_of(CheckedObjects(var("2000", "V", "7", "rw", "LowLimit=1\nHighLimit=0xFFFFFFFE\n")).diagnostics),
+            Rules{});
   EXPECT_EQ(
-      rules_of(CheckedObjects(var("2000", "V", "8", "rw", "LowLimit=-1.5\nHighLimit=-0.5\nDefaultValue=-1\n")).diagnostics),
+      rules_of(
+          CheckedObjects(var("2000", "V", "8", "rw", "LowLimit=-1.5\nHighLimit=-0.5\nDefaultValue=-1\n")).diagnostics),
       Rules{});
-  EXPECT_EQ(rules_of(CheckedObjects(var("2000", "V", "0x11", "rw", "LowLimit=-2\nHighLimit=1e300\n")).diagnostics), Rules{});
+  EXPECT_EQ(rules_of(CheckedObjects(var("2000", "V", "0x11", "rw", "LowLimit=-2\nHighLimit=1e300\n")).diagnostics),
+            Rules{});
 }
 
 // Limits that cannot be checked are dropped when the device is resolved, so that every command sees the same device.

@@ -64,7 +64,8 @@ TEST(Gzip, RefusesWhatIsMadeToFillTheMemory) {
 TEST(Gzip, UnpacksAFileOfManyEqualObjects) {
   std::string text;
   for (int i = 0; text.size() < 3 * most; ++i) {
-    text += "[" + std::to_string(2000 + i) + "]\nParameterName=Object\nObjectType=0x7\nDataType=0x0007\nAccessType=rw\n\n";
+    text +=
+        "[" + std::to_string(2000 + i) + "]\nParameterName=Object\nObjectType=0x7\nDataType=0x0007\nAccessType=rw\n\n";
   }
   std::string content;
   EXPECT_EQ(gunzip(gzip(text), 4 * most, content), "");

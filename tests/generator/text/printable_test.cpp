@@ -26,15 +26,17 @@ TEST(Printable, ShowsWhatATerminalWouldObey) {
 TEST(Printable, LetsNoControlAndNoDirectionMarkThrough) {
   for (char32_t c = 0; c < 0x3000; ++c) {
     const bool is_control = c < 0x20 || (c >= 0x7F && c < 0xA0);
-    const bool is_mark = c == 0x061C || c == 0x200E || c == 0x200F || (c >= 0x202A && c <= 0x202E) ||
-                         (c >= 0x2066 && c <= 0x2069);
+    const bool is_mark =
+        c == 0x061C || c == 0x200E || c == 0x200F || (c >= 0x202A && c <= 0x202E) || (c >= 0x2066 && c <= 0x2069);
     EXPECT_TRUE(is_hidden(c) || !(is_control || is_mark)) << static_cast<unsigned>(c);
     EXPECT_EQ(printable(utf8(c)).find(utf8(c)) == std::string::npos, is_hidden(c)) << static_cast<unsigned>(c);
   }
 }
 
 TEST(Printable, ShowsBytesThatAreNotUtf8) {
-  EXPECT_EQ(printable("a\x9B" "31m\xFF"), "a<9B>31m<FF>");
+  EXPECT_EQ(printable("a\x9B"
+                      "31m\xFF"),
+            "a<9B>31m<FF>");
   EXPECT_EQ(printable("\xE2\x80"), "<E2><80>");
   EXPECT_EQ(printable("\xC0\x9B"), "<C0><9B>");
 }

@@ -138,10 +138,10 @@ TEST(Xdd, ReadsAnyNamespacePrefix) {
 
 TEST(Xdd, ReadsTheTextInUtf8WhateverItsDeclarationSays) {
   const ReadXdd read("<?xml version='1.0' encoding='UTF-16'?>" +
-                  Profile{"<CANopenObject index='2000' name='W\xC3\xA4rme'/>", "", "", ""}.text());
+                     Profile{"<CANopenObject index='2000' name='W\xC3\xA4rme'/>", "", "", ""}.text());
   EXPECT_EQ(read.object().parameter_name.text, "W\xC3\xA4rme");
   const ReadXdd windows("<?xml version='1.0' encoding='utf-8'?>" +
-                     Profile{"<CANopenObject index='2000' name='W\xE4rme'/>", "", "", ""}.text());
+                        Profile{"<CANopenObject index='2000' name='W\xE4rme'/>", "", "", ""}.text());
   EXPECT_EQ(windows.object().parameter_name.text, "W\xC3\xA4rme");
 }
 
@@ -193,7 +193,7 @@ TEST(XddParameter, GivesTypeAccessValuesAndLimits) {
 
 TEST(XddParameter, NamesAnObjectWithoutName) {
   const ReadXdd read(Profile{"<CANopenObject index='2000' uniqueIDRef='p'/>",
-                          parameter("<label lang='de'>Drehzahl</label><label lang='en'>Speed</label>"), "", ""});
+                             parameter("<label lang='de'>Drehzahl</label><label lang='en'>Speed</label>"), "", ""});
   EXPECT_EQ(read.object().parameter_name.text, "Speed");
 }
 
@@ -214,7 +214,8 @@ TEST(XddParameter, SpellsTheAccessAsAnEdsDoes) {
                                   {"write", "wo"},           {"readWrite", "rw"},
                                   {"readWriteInput", "rwr"}, {"readWriteOutput", "rww"}};
   for (const AccessCase& one : cases) {
-    const ReadXdd document(Profile{referring_object, parameter("<INT/>", "access='" + std::string{one.word} + "'"), "", ""});
+    const ReadXdd document(
+        Profile{referring_object, parameter("<INT/>", "access='" + std::string{one.word} + "'"), "", ""});
     EXPECT_EQ(document.object().access_type.text, one.access_type);
   }
   const ReadXdd none(Profile{referring_object, parameter("<INT/>", "access='noAccess'"), "", ""});
@@ -247,17 +248,17 @@ TEST(XddParameter, TakesABitStringWithoutValueForADomain) {
 
 TEST(XddParameter, SpellsTruthAsANumber) {
   const ReadXdd read(Profile{referring_object + "<CANopenObject index='2001' dataType='01' defaultValue='false'/>",
-                          parameter("<BOOL/><defaultValue value='true'/>"), "", ""});
+                             parameter("<BOOL/><defaultValue value='true'/>"), "", ""});
   EXPECT_EQ(read.object(0).default_value.text, "1");
   EXPECT_EQ(read.object(1).default_value.text, "0");
 }
 
 TEST(XddParameter, FollowsEnumsAndDerivedTypes) {
   const ReadXdd read(Profile{referring_object,
-                          "<dataTypeList><derived uniqueID='d'><dataTypeIDRef uniqueIDRef='e'/></derived>"
-                          "<enum uniqueID='e'><USINT/><enumValue value='0'/></enum></dataTypeList>" +
-                              parameter("<dataTypeIDRef uniqueIDRef='d'/>"),
-                          "", ""});
+                             "<dataTypeList><derived uniqueID='d'><dataTypeIDRef uniqueIDRef='e'/></derived>"
+                             "<enum uniqueID='e'><USINT/><enumValue value='0'/></enum></dataTypeList>" +
+                                 parameter("<dataTypeIDRef uniqueIDRef='d'/>"),
+                             "", ""});
   EXPECT_EQ(findings(read.diagnostics), Findings{});
   EXPECT_EQ(read.object().data_type.text, "0x0005");
 }
@@ -308,8 +309,8 @@ TEST(XddParameter, LeavesToItsTemplateWhatItDoesNotSay) {
 
 TEST(XddParameter, WarnsOfAllowedValuesThatAreNoRange) {
   const ReadXdd read(Profile{referring_object,
-                          parameter("<UINT/><allowedValues><value value='1'/><value value='5'/></allowedValues>"), "",
-                          ""});
+                             parameter("<UINT/><allowedValues><value value='1'/><value value='5'/></allowedValues>"),
+                             "", ""});
   EXPECT_EQ(findings(read.diagnostics, "xml-element").size(), 1U);
   EXPECT_FALSE(read.object().low_limit.present);
 }
@@ -321,7 +322,7 @@ TEST(XddParameter, WarnsOfAReferenceToNothing) {
 
 TEST(XddParameter, LeavesOutAnObjectThatCanopenEditorHasDisabled) {
   const ReadXdd read(Profile{referring_object + "<CANopenObject index='2001'/>",
-                          parameter("<UINT/><property name='CO_disabled' value='true'/>"), "", ""});
+                             parameter("<UINT/><property name='CO_disabled' value='true'/>"), "", ""});
   EXPECT_EQ(findings(read.diagnostics), (Findings{note_at(first_line, 2, "xml-element")}));
   ASSERT_EQ(read.sheet.objects.size(), 1U);
   EXPECT_EQ(read.object().index, 0x2001);
@@ -343,8 +344,8 @@ TEST(XddMapping, RestrictsTheDirectionByTheAccess) {
       {"ro", "RPDO", "ro", "0", 1},  {"wo", "TPDO", "wo", "0", 1},     {"rwr", "RPDO", "rwr", "0", 1}};
   for (const MappingCase& one : cases) {
     const ReadXdd read(Profile{"<CANopenObject index='2000' accessType='" + std::string{one.access} + "' PDOmapping='" +
-                                std::string{one.mapping} + "'/>",
-                            "", "", ""});
+                                   std::string{one.mapping} + "'/>",
+                               "", "", ""});
     EXPECT_EQ(read.object().access_type.text, one.eds_access) << one.access << " " << one.mapping;
     EXPECT_EQ(read.object().pdo_mapping.text, one.eds_mapping) << one.access << " " << one.mapping;
     EXPECT_EQ(findings(read.diagnostics, "pdo-mapping").size(), one.warnings) << one.access << " " << one.mapping;
@@ -461,7 +462,9 @@ TEST(XddErrors, ReportsXmlThatIsNoProfile) {
   EXPECT_EQ(findings(other.diagnostics, "xml-element").size(), 1U);
 }
 
-TEST(XddErrors, ReportsAnEmptyObjectList) { EXPECT_EQ(findings(ReadXdd(Profile{}).diagnostics, "no-objects").size(), 1U); }
+TEST(XddErrors, ReportsAnEmptyObjectList) {
+  EXPECT_EQ(findings(ReadXdd(Profile{}).diagnostics, "no-objects").size(), 1U);
+}
 
 TEST(XddErrors, WarnsOnceOfWhatItDoesNotKnow) {
   const ReadXdd read(

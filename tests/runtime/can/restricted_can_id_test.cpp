@@ -30,8 +30,8 @@ constexpr std::uint32_t produces = 0x4000'0000;
 constexpr std::uint32_t consumes = 0x8000'0000;
 
 constexpr Entry sent[] = {
-    {0x1005, 0, produces}, {0x1012, 0, produces}, {0x1014, 0, 0}, {0x1800, 1, 0}, {0x1801, 1, 0}, {0x1802, 1, 0},
-    {0x1803, 1, 0},
+    {0x1005, 0, produces}, {0x1012, 0, produces}, {0x1014, 0, 0}, {0x1800, 1, 0},
+    {0x1801, 1, 0},        {0x1802, 1, 0},        {0x1803, 1, 0},
 };
 
 struct Seen {

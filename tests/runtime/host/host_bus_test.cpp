@@ -25,8 +25,6 @@ TEST(HostBus, RefusesWhatIsNoAddressWithASentence) {
   }
 }
 
-TEST(HostBus, TellsWhatCannotBeOpened) {
-  EXPECT_THROW(canopen::HostBus{"socketcan:no-such-can"}, std::system_error);
-}
+TEST(HostBus, TellsWhatCannotBeOpened) { EXPECT_THROW(canopen::HostBus{"socketcan:no-such-can"}, std::system_error); }
 
 }  // namespace

@@ -96,9 +96,7 @@ TEST(Master, GoesOnWithASlaveThatDoesNotLetItsCobIdsBeRead) {
   const std::array<std::uint8_t, 4> off{0x81, 0x01, 0x00, 0x80};
   master.on_configure = [&](NodeId node_id) { return master.download(node_id, 0x1800, 1, off); };
   bool booted = false;
-  master.on_booted = [&](NodeId, const canopen::BootResult& result) {
-    booted = result == canopen::BootStatus::booted;
-  };
+  master.on_booted = [&](NodeId, const canopen::BootResult& result) { booted = result == canopen::BootStatus::booted; };
   master.start();
   bus.waiting.push_back(frame("705 00"));
   for (int i = 0; i < 100 && !booted; ++i) master.poll(50ms);

@@ -241,7 +241,8 @@ class Server {
   /// Sends as much of it as the connection accepts, if it is still open.
   void try_to_say(std::string_view text) const {
     pollfd room{client_.number(), POLLOUT, 0};
-    if (::poll(&room, 1, 10) == 1) (void)::send(client_.number(), text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (::poll(&room, 1, 10) == 1)
+      (void)::send(client_.number(), text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   }
   /// Returns whether exactly these characters are received.
   [[nodiscard]] bool hears(std::string_view wanted) {

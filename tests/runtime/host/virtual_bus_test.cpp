@@ -219,8 +219,8 @@ TEST(VirtualBus, TimePassesUntilAConditionHolds) {
   std::string received;
   tester.on_frame = [&](const Frame& frame, TimePoint) { received = bench::text(frame); };
   const auto any = [&] { return !received.empty(); };
-  tester.send(frame("081"));          // 47 us; not received by its sender
-  device.send(frame("181 01"));       // 55 us after that
+  tester.send(frame("081"));     // 47 us; not received by its sender
+  device.send(frame("181 01"));  // 55 us after that
   device.send(frame("281 01 02 03"));
   bus.run_until(any, 1ms);
   EXPECT_EQ(received, "181 01");

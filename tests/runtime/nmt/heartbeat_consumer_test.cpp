@@ -60,7 +60,7 @@ class Listener {
       char state_text[8];
       std::snprintf(state_text, sizeof state_text, "%02X", static_cast<unsigned>(state));
       listener.reported_ += (listener.reported_.empty() ? "" : " | ") + std::to_string(node_id.value()) + " " +
-                        event_names[static_cast<int>(event)] + " " + state_text;
+                            event_names[static_cast<int>(event)] + " " + state_text;
     }
   };
 

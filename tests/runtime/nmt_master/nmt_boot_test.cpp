@@ -259,9 +259,9 @@ TEST(NmtBoot, AConfigurationThatABootUpHasOvertakenDoesNotCount) {
   EXPECT_EQ(desk.log(), (Lines{"5 boot-up", "5 configure", "5 boot-up", "5 configure"}));
 }
 
-constexpr std::uint8_t dcf[] = {2,    0,    0, 0,                                           // two entries
-                                0x0C, 0x20, 0, 5, 0, 0, 0, 'h', 'e', 'l', 'l', 'o',        // 200Ch: a string
-                                0x17, 0x10, 0, 2, 0, 0, 0, 0x32, 0};                        // 1017h = 50
+constexpr std::uint8_t dcf[] = {2,    0,    0, 0,                                     // two entries
+                                0x0C, 0x20, 0, 5, 0, 0, 0, 'h',  'e', 'l', 'l', 'o',  // 200Ch: a string
+                                0x17, 0x10, 0, 2, 0, 0, 0, 0x32, 0};                  // 1017h = 50
 
 TEST(NmtBoot, WritesTheConciseDcfBeforeTheApplicationConfigures) {
   NmtSlave with_dcf = slave(5);
@@ -359,8 +359,7 @@ TEST(NmtBoot, TellsThatALossWillNotBeNoticed) {
   desk.take(device_type);
   desk.log();
   desk.master.configured(NodeId{5}, canopen::ok, desk.now);
-  EXPECT_EQ(desk.log(),
-            (Lines{"5 0", "5 not watched: no heartbeat time and no guard time in the network list"}));
+  EXPECT_EQ(desk.log(), (Lines{"5 0", "5 not watched: no heartbeat time and no guard time in the network list"}));
 }
 
 TEST(NmtBoot, EveryEventAndStateHasAText) {
@@ -440,8 +439,9 @@ TEST(NmtBoot, AConfigurationThatABootUpEndsHasNotFailed) {
   desk.take(device_type);
   EXPECT_TRUE(desk.master.request(NodeId{5}, Configuration::write(desk, 0x2001, value), desk.now));
   desk.take("585 60 01 20 00 00 00 00 00");
-  EXPECT_EQ(desk.log(), (Lines{"5 configure", "5 0", "5 not watched: no heartbeat time and no guard time in the network list",
-                               "network started"}));
+  EXPECT_EQ(desk.log(),
+            (Lines{"5 configure", "5 0", "5 not watched: no heartbeat time and no guard time in the network list",
+                   "network started"}));
 }
 
 TEST(NmtBoot, ABootUpInTheMiddleOfTheConciseDcfBeginsItAnew) {
@@ -494,8 +494,7 @@ TEST(NmtBoot, RefusesMoreRequestsThanFit) {
   desk.start();
   Transfer transfers[6];
   for (int i = 0; i < 4; ++i) EXPECT_TRUE(desk.master.request(NodeId{9}, transfers[i].read(0x2001, 0), desk.now)) << i;
-  EXPECT_EQ(desk.master.request(NodeId{9}, transfers[4].read(0x2001, 0), desk.now).abort_code(),
-            AbortCode::no_resource)
+  EXPECT_EQ(desk.master.request(NodeId{9}, transfers[4].read(0x2001, 0), desk.now).abort_code(), AbortCode::no_resource)
       << "three wait";
   EXPECT_EQ(transfers[4].calls, 0);
   desk.bus.take();
@@ -532,7 +531,8 @@ TEST(NmtBoot, BootsWhenTheBusHasRoomAgainWhereverItHadNone) {
       }
     };
     const auto run = [&] {
-      for (const char* text : {"705 00", device_type, "585 4B 17 10 00 00 00 00 00", "585 60 17 10 00 00 00 00 00", "705 7F"}) {
+      for (const char* text :
+           {"705 00", device_type, "585 4B 17 10 00 00 00 00 00", "585 60 17 10 00 00 00 00 00", "705 7F"}) {
         step(text);
         desk.pass(1ms);
       }

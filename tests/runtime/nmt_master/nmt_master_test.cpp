@@ -421,10 +421,10 @@ TEST(NmtMaster, SetsTheHeartbeatOfASlaveThatHasNone) {
   network.pass(0ms);
   network.master.start(network.bus.now());
   EXPECT_EQ(network.pass(60ms),
-            (Lines{"000 82 00", "705 00", "(5 boot-up 00)", "605 40 00 10 00 00 00 00 00", "585 43 00 10 00 91 01 0F 00",
-                   "605 40 17 10 00 00 00 00 00", "585 4B 17 10 00 00 00 00 00", "605 2B 17 10 00 32 00 00 00",
-                   "585 60 17 10 00 00 00 00 00", "(5 state 7F)", "(5 0)", "(network started)", "000 01 05",
-                   "(5 state 05)"}));
+            (Lines{"000 82 00", "705 00", "(5 boot-up 00)", "605 40 00 10 00 00 00 00 00",
+                   "585 43 00 10 00 91 01 0F 00", "605 40 17 10 00 00 00 00 00", "585 4B 17 10 00 00 00 00 00",
+                   "605 2B 17 10 00 32 00 00 00", "585 60 17 10 00 00 00 00 00", "(5 state 7F)", "(5 0)",
+                   "(network started)", "000 01 05", "(5 state 05)"}));
   device.switch_off();
   EXPECT_EQ(network.pass(1s).front(), "(5 lost 05)");
 }
@@ -607,14 +607,14 @@ TEST(NmtMaster, BootsANetworkOfFive) {
   late.switch_on();
   keep_told(network.pass(1s));
   EXPECT_EQ(told, (Lines{
-                      "000 82 00",                                             //
-                      "(2 boot-up 00)", "(2 state 7F)", "(2 0)", "000 01 02",  //
-                      "(3 boot-up 00)", "(3 state 7F)", "(3 0)", "000 01 03",  //
-                      "(4 boot-up 00)", "(4 M)",                               //
-                      "(3 state 05)",   "(2 state 05)",                        //
-                      "(6 B)",          "(5 B)",                               //
-                      "(6 boot-up 00)", "(6 state 7F)", "(6 0)", "(network started)", "000 01 06", "(6 state 05)",
-                      "000 80 05",
+                      "000 82 00",                                                 //
+                      "(2 boot-up 00)", "(2 state 7F)", "(2 0)",     "000 01 02",  //
+                      "(3 boot-up 00)", "(3 state 7F)", "(3 0)",     "000 01 03",  //
+                      "(4 boot-up 00)", "(4 M)",                                   //
+                      "(3 state 05)",   "(2 state 05)",                            //
+                      "(6 B)",          "(5 B)",                                   //
+                      "(6 boot-up 00)", "(6 state 7F)", "(6 0)",     "(network started)",
+                      "000 01 06",      "(6 state 05)", "000 80 05",
                   }));
   EXPECT_EQ(fourth.state(), NmtState::pre_operational);
   EXPECT_EQ(late.state(), NmtState::operational);

@@ -99,7 +99,11 @@ struct Plant {
     for (std::uint8_t i = 0; i < slave_count; ++i) {
       devices.emplace_back(bus, static_cast<std::uint8_t>(i + 1), seed * 100 + i);
       NmtSlave slave{NodeId{static_cast<std::uint8_t>(i + 1)},
-                     assignment::listed | assignment::boot | assignment::mandatory, 0xF0191, 0x1234, 0x10001, 0x10002};
+                     assignment::listed | assignment::boot | assignment::mandatory,
+                     0xF0191,
+                     0x1234,
+                     0x10001,
+                     0x10002};
       slave.heartbeat_time = 100;
       slaves.push_back(slave);
       configurations[i].plant = this;
@@ -153,7 +157,8 @@ struct Plant {
     port.full = random() % 3 == 0 ? 0.3 : 0;
     if (random() % 40 == 0) master->start(bus.now());
     if (random() % 10 == 0) {  // another client sends a request
-      other.send(Frame{.id = static_cast<std::uint32_t>(0x601 + random() % slave_count), .size = 8, .data = {0x40, 0x00, 0x10}});
+      other.send(Frame{
+          .id = static_cast<std::uint32_t>(0x601 + random() % slave_count), .size = 8, .data = {0x40, 0x00, 0x10}});
     }
   }
 

@@ -68,9 +68,8 @@ TEST(WriteHandler, ThatSetsItsObjectHasTheLastWord) {
 }
 
 TEST(WriteHandler, ThatSetsAStringHasTheLastWord) {
-  auto device = with(canopen::on_write<od::text>([](auto& node, const auto&) {
-    static_cast<void>(node.template set<od::text>("cut"));
-  }));
+  auto device = with(canopen::on_write<od::text>(
+      [](auto& node, const auto&) { static_cast<void>(node.template set<od::text>("cut")); }));
   device.ask("605 23 06 20 00 61 62 63 64");
   EXPECT_EQ(device.node.get<od::text>().view(), "cut");
 }
@@ -141,8 +140,8 @@ TEST(RequestInAWriteHandler, OfAnRpdoComesAfterItsOtherObjects) {
 }
 
 TEST(RequestInADomainHandler, WaitsForTheSdoAnswer) {
-  auto device = with(canopen::on_domain_write<od::stream>(
-      [](auto& node, std::uint32_t, std::span<const std::uint8_t>, bool last) {
+  auto device = with(
+      canopen::on_domain_write<od::stream>([](auto& node, std::uint32_t, std::span<const std::uint8_t>, bool last) {
         if (last) node.request(NmtCommand::reset_node, canopen::TimePoint{});
       }));
   EXPECT_EQ(device.ask("605 23 08 20 00 01 02 03 04"), "585 60 08 20 00 00 00 00 00 | 705 00");
@@ -206,8 +205,9 @@ TEST(Emergency, ThatFindsNoRoomIsCounted) {
   device.pass(1s);
   EXPECT_EQ(device.node.lost_emergencies(), 36);
   device.bus.room = 100;
-  EXPECT_EQ(device.pass(0s), "085 01 00 01 00 00 00 00 00 | 085 02 00 01 00 00 00 00 00 | "
-                             "085 03 00 01 00 00 00 00 00 | 085 28 00 01 00 00 00 00 00");
+  EXPECT_EQ(device.pass(0s),
+            "085 01 00 01 00 00 00 00 00 | 085 02 00 01 00 00 00 00 00 | "
+            "085 03 00 01 00 00 00 00 00 | 085 28 00 01 00 00 00 00 00");
   EXPECT_EQ(device.node.lost_emergencies(), 36);
 }
 

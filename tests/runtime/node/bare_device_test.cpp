@@ -91,7 +91,8 @@ TEST(BareDevice, HasTheCanIdOfTime) {
 TEST(BareDevice, NeverSendsOnCanId0) {
   Bench device;
   std::string sent = device.ask(bench::start) + " | ";
-  for (const char* request : {"000 80 05", "000 01 05", "080", "100 00 00 00 00 00 00", "205 01", "605 40 00 10 00 00 00 00 00"})
+  for (const char* request :
+       {"000 80 05", "000 01 05", "080", "100 00 00 00 00 00 00", "205 01", "605 40 00 10 00 00 00 00 00"})
     sent += device.ask(request) + " | ";
   device.node.emergency(0x1000, canopen::ErrorRegister::generic);
   sent += device.pass(10s);

@@ -48,12 +48,18 @@ struct Scattered {
   static constexpr std::array<canopen::entry::Word, Count> entries = [] {
     std::array<canopen::entry::Word, Count> made{};
     canopen::entry::Word offset = 0;
-    for (canopen::entry::Word& word : made) word = canopen::entry::ram | canopen::entry::u8 | canopen::entry::rw | offset++;
+    for (canopen::entry::Word& word : made)
+      word = canopen::entry::ram | canopen::entry::u8 | canopen::entry::rw | offset++;
     return made;
   }();
 
-  static constexpr Dictionary dictionary{
-      .runs = runs, .entries = entries, .groups = {}, .subs = {}, .limits = {}, .wide_limits = {}, .constants = nullptr};
+  static constexpr Dictionary dictionary{.runs = runs,
+                                         .entries = entries,
+                                         .groups = {},
+                                         .subs = {},
+                                         .limits = {},
+                                         .wide_limits = {},
+                                         .constants = nullptr};
   static_assert(dictionary.well_formed());
 };
 

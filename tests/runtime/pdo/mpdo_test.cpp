@@ -38,11 +38,17 @@ struct DeviceWithList {
   static constexpr entry::Word entries[] = {entry::array | 0};
   static constexpr canopen::Group groups[] = {{.ram = 0, .rom = 0, .subs = 0, .highest = 4, .stride = 8}};
   static constexpr entry::Word subs[] = {entry::ram | entry::rw | Count, entry::ram | entry::rw | Element | 8};
-  static constexpr canopen::Dictionary dictionary{
-      .runs = runs, .entries = entries, .groups = groups, .subs = subs, .limits = {}, .wide_limits = {}, .constants = nullptr};
+  static constexpr canopen::Dictionary dictionary{.runs = runs,
+                                                  .entries = entries,
+                                                  .groups = groups,
+                                                  .subs = subs,
+                                                  .limits = {},
+                                                  .wide_limits = {},
+                                                  .constants = nullptr};
 };
 template <entry::Word Count, entry::Word Element, std::uint16_t Index = 0x1FA0>
-constexpr std::uint8_t scanned = canopen::MpdoLists<DeviceWithList<Index, Count, Element>, canopen::ScannedObjects>::capacity(Index);
+constexpr std::uint8_t scanned =
+    canopen::MpdoLists<DeviceWithList<Index, Count, Element>, canopen::ScannedObjects>::capacity(Index);
 template <entry::Word Count, entry::Word Element, std::uint16_t Index = 0x1FD0>
 constexpr std::uint8_t dispatched =
     canopen::MpdoLists<DeviceWithList<Index, Count, Element>, canopen::DispatchedObjects>::capacity(Index);
@@ -57,8 +63,10 @@ template <class Element>
 using ListsOf = canopen::MpdoLists<DeviceWithList<0x1FA0, entry::u8, entry::u32>, Element>;
 static_assert(ListsOf<canopen::ScannedObjects>::contain(0x1FA0) && ListsOf<canopen::ScannedObjects>::contain(0x1FCF));
 static_assert(!ListsOf<canopen::ScannedObjects>::contain(0x1F9F) && !ListsOf<canopen::ScannedObjects>::contain(0x1FD0));
-static_assert(ListsOf<canopen::DispatchedObjects>::contain(0x1FD0) && ListsOf<canopen::DispatchedObjects>::contain(0x1FFF));
-static_assert(!ListsOf<canopen::DispatchedObjects>::contain(0x1FCF) && !ListsOf<canopen::DispatchedObjects>::contain(0x2000));
+static_assert(ListsOf<canopen::DispatchedObjects>::contain(0x1FD0) &&
+              ListsOf<canopen::DispatchedObjects>::contain(0x1FFF));
+static_assert(!ListsOf<canopen::DispatchedObjects>::contain(0x1FCF) &&
+              !ListsOf<canopen::DispatchedObjects>::contain(0x2000));
 
 TEST(MpdoLists, OfTheirNumberOneByteIsLookedAt) {
   Bench device;

@@ -32,7 +32,9 @@ std::string count(Bench& device, std::uint16_t index, std::uint32_t value) { ret
 std::string map(Bench& device, std::uint16_t index, std::uint8_t entry, std::uint32_t value) {
   return write(device, index, entry, value, 4);
 }
-std::string cob_id(Bench& device, std::uint16_t index, std::uint32_t value) { return write(device, index, 1, value, 4); }
+std::string cob_id(Bench& device, std::uint16_t index, std::uint32_t value) {
+  return write(device, index, 1, value, 4);
+}
 
 /// Maps these objects to TPDO4 or RPDO3, which are empty and invalid by default.
 std::string remap(Bench& device, std::uint16_t mapping, const std::vector<std::uint32_t>& objects) {
@@ -53,8 +55,13 @@ struct DeviceOf {
   static constexpr std::uint32_t dummies = 0;
   static constexpr canopen::Run runs[] = {{0x2000, 0}, {0xFFFF, 1}};
   static constexpr entry::Word entries[] = {Word};
-  static constexpr canopen::Dictionary dictionary{
-      .runs = runs, .entries = entries, .groups = {}, .subs = {}, .limits = {}, .wide_limits = {}, .constants = nullptr};
+  static constexpr canopen::Dictionary dictionary{.runs = runs,
+                                                  .entries = entries,
+                                                  .groups = {},
+                                                  .subs = {},
+                                                  .limits = {},
+                                                  .wide_limits = {},
+                                                  .constants = nullptr};
 };
 template <entry::Word Word>
 constexpr std::size_t bytes_of_a_run = sizeof(typename canopen::MappedRun<DeviceOf<Word>>::Word);

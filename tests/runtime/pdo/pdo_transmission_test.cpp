@@ -273,8 +273,9 @@ TEST(RpdoType1, IsForgottenWhenTheNodeLeavesOperational) {
 
 TEST(RpdoDeadline, IsMissedAfterTheEventTimer) {
   std::string log;
-  auto device = bench::with<pdo_device::Device>(
-      canopen::on_rpdo([&](RpdoEvent event, std::uint16_t number) { log += "0+-!?"[static_cast<int>(event)] + std::to_string(number) + " "; }));
+  auto device = bench::with<pdo_device::Device>(canopen::on_rpdo([&](RpdoEvent event, std::uint16_t number) {
+    log += "0+-!?"[static_cast<int>(event)] + std::to_string(number) + " ";
+  }));
   device.ask("605 2B 00 14 05 0A 00 00 00");  // 10 ms
   device.ask(bench::start);
   EXPECT_EQ(device.pass(1s), "");  // the deadline runs from the first frame on

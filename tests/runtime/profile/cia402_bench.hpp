@@ -27,7 +27,8 @@ class PlainDrive : public nodes::DriveNode<PlainDrive<B>, cia402_drive::Device, 
   using Base = nodes::DriveNode<PlainDrive<B>, cia402_drive::Device, B, canopen::cia402::Options{}>;
 
  public:
-  PlainDrive(B& bus, nodes::Surroundings& around) : Base{bus, around, around.node_id.value_or(canopen::NodeId{5}), plain_axis} {}
+  PlainDrive(B& bus, nodes::Surroundings& around)
+      : Base{bus, around, around.node_id.value_or(canopen::NodeId{5}), plain_axis} {}
 
   [[nodiscard]] auto& device_control() { return this->drive_; }
 };

@@ -75,7 +75,8 @@ static_assert(canopen::check_value<Ratio>(-0.625F) == AbortCode::value_too_low);
 static_assert(canopen::check_value<Ratio>(2) == AbortCode::value_too_high);
 static_assert(canopen::check_value<AtMost>(2.0) == canopen::ok && canopen::check_value<AtMost>(-1e300) == canopen::ok);
 static_assert(canopen::check_value<AtMost>(2.5) == AbortCode::value_too_high);
-static_assert(canopen::check_value<AtLeast>(-2.0) == canopen::ok && canopen::check_value<AtLeast>(1e300) == canopen::ok);
+static_assert(canopen::check_value<AtLeast>(-2.0) == canopen::ok &&
+              canopen::check_value<AtLeast>(1e300) == canopen::ok);
 static_assert(canopen::check_value<AtLeast>(-2.5) == AbortCode::value_too_low);
 static_assert(canopen::check_value<AtMost>(std::numeric_limits<double>::quiet_NaN()) == AbortCode::invalid_value);
 static_assert(canopen::check_value<AtLeast>(std::numeric_limits<double>::quiet_NaN()) == AbortCode::invalid_value);

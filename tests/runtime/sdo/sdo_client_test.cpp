@@ -269,8 +269,9 @@ TEST(SdoClient, IgnoresTheSegmentsOfAnEarlierTransferUntilItsOwnHasBegun) {
   SdoClient client{bus, NodeId{5}, 100ms};
   std::array<std::uint8_t, 32> memory{};
   client.upload(0x1008, 0, memory, TimePoint{});
-  for (const char* stale : {"585 00 41 42 43 44 45 46 47", "585 10 41 42 43 44 45 46 47", "585 20 00 00 00 00 00 00 00",
-                            "585 A2 02 7F 00 00 00 00 00", "585 A1 00 00 00 00 00 00 00", "585 C1 00 00 00 00 00 00 00"}) {
+  for (const char* stale :
+       {"585 00 41 42 43 44 45 46 47", "585 10 41 42 43 44 45 46 47", "585 20 00 00 00 00 00 00 00",
+        "585 A2 02 7F 00 00 00 00 00", "585 A1 00 00 00 00 00 00 00", "585 C1 00 00 00 00 00 00 00"}) {
     client.on_frame(frame(stale), TimePoint{});
     EXPECT_TRUE(client.busy()) << stale;
   }

@@ -123,8 +123,8 @@ TEST(StreamedDomain, IsReadFromTheApplicationPieceByPiece) {
 
 TEST(StreamedDomain, IsGivenToTheApplicationPieceByPiece) {
   std::string log;
-  auto device = bench::with<sdo_device::Device>(canopen::on_domain_write<od::firmware>(
-      [&](std::uint32_t offset, std::span<const std::uint8_t> bytes, bool last) {
+  auto device = bench::with<sdo_device::Device>(
+      canopen::on_domain_write<od::firmware>([&](std::uint32_t offset, std::span<const std::uint8_t> bytes, bool last) {
         log += std::to_string(offset) + "+" + std::to_string(bytes.size()) + (last ? "! " : " ");
       }));
   device.ask("605 21 00 20 00 09 00 00 00");

@@ -12,8 +12,8 @@
 
 namespace {
 
-using canopen::MemoryStorage;
 using canopen::AbortCode;
+using canopen::MemoryStorage;
 using canopen::NodeId;
 using canopen::Storing;
 namespace od = stored_device::od;
@@ -689,8 +689,8 @@ TEST(VerifyConfiguration, IsZeroWhenAParameterHasChanged) {
 TEST(VerifyConfiguration, IsZeroWhenAWriteHandlerSetsItsObject) {
   MemoryStorage storage;
   auto device = powered(storage, canopen::on_write<od::profile_acceleration>([](auto& node, std::uint32_t value) {
-    return node.template set<od::profile_acceleration>(value < 2000 ? value : 2000);
-  }));
+                          return node.template set<od::profile_acceleration>(value < 2000 ? value : 2000);
+                        }));
   configure(device);
   device.ask("605 23 83 60 00 D1 07 00 00");
   EXPECT_EQ(device.ask(configuration_date), "585 43 20 10 01 34 3C 00 00") << "2000 it was before";
@@ -702,9 +702,9 @@ TEST(VerifyConfiguration, IsZeroWhenAWriteHandlerSetsItsObject) {
 TEST(VerifyConfiguration, IsZeroWhenAWriteHandlerSetsAnotherObject) {
   MemoryStorage storage;
   auto device = powered(storage, canopen::on_write<od::controlword>([](auto& node, std::uint16_t value) {
-    const std::array<std::uint8_t, 4> acceleration{static_cast<std::uint8_t>(value), 7, 0, 0};
-    return node.set(0x6083, 0, acceleration);
-  }));
+                          const std::array<std::uint8_t, 4> acceleration{static_cast<std::uint8_t>(value), 7, 0, 0};
+                          return node.set(0x6083, 0, acceleration);
+                        }));
   configure(device);
   device.ask("605 2B 40 60 00 D0 00 00 00");
   EXPECT_EQ(device.ask(configuration_date), "585 43 20 10 01 34 3C 00 00") << "2000 it was before";
@@ -726,9 +726,9 @@ TEST(VerifyConfiguration, IsZeroWhenTheApplicationSetsAParameter) {
 TEST(VerifyConfiguration, StaysWithWhatTheApplicationSetsInInitialisation) {
   MemoryStorage storage;
   auto device = powered(storage, canopen::on_state([](auto& node, canopen::NmtState state) {
-    if (state != canopen::NmtState::initialisation) return;
-    EXPECT_EQ(node.template set<od::profile_acceleration>(3000), canopen::ok);
-  }));
+                          if (state != canopen::NmtState::initialisation) return;
+                          EXPECT_EQ(node.template set<od::profile_acceleration>(3000), canopen::ok);
+                        }));
   configure(device);
   device.ask(save_all);
   device.ask(bench::reset_node);

@@ -105,9 +105,9 @@ TEST(StoredCobIds, ThatAreRestrictedLeaveTheDefault) {
     std::uint32_t flags;
     std::uint32_t normal;
   };
-  for (const Row& row : {Row{0x1005, 0, 0x4000'0000, 0x80}, Row{0x1012, 0, 0xC000'0000, 0x100},
-                         Row{0x1014, 0, 0, 0x85}, Row{0x1201, 1, 0, 0x8000'0000}, Row{0x1201, 2, 0, 0x8000'0000},
-                         Row{0x1400, 1, 0, 0x205}, Row{0x1800, 1, 0, 0x185}}) {
+  for (const Row& row : {Row{0x1005, 0, 0x4000'0000, 0x80}, Row{0x1012, 0, 0xC000'0000, 0x100}, Row{0x1014, 0, 0, 0x85},
+                         Row{0x1201, 1, 0, 0x8000'0000}, Row{0x1201, 2, 0, 0x8000'0000}, Row{0x1400, 1, 0, 0x205},
+                         Row{0x1800, 1, 0, 0x185}}) {
     for (const std::uint32_t can_id : {0x000u, 0x101u, 0x585u, 0x605u, 0x77Fu, 0x800u}) {
       MemoryStorage storage = stored({{row.index, row.sub_index, can_id | row.flags}});
       Device device{canopen::stored_in(storage)};

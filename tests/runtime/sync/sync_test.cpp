@@ -245,7 +245,8 @@ TEST(Time, IdentifierStaysWhileItIsInUse) {
 TEST(EmcyConsumer, HearsTheNodesOf1028h) {
   std::string log;
   auto device = bench::with<sync_device::Device>(canopen::on_emergency([&](canopen::ConsumedEmergency emergency) {
-    log += std::to_string(emergency.sub_index) + ":" + std::string{canopen::emergency_text(emergency.message.code)} + " ";
+    log +=
+        std::to_string(emergency.sub_index) + ":" + std::string{canopen::emergency_text(emergency.message.code)} + " ";
   }));
   device.ask("082 10 82 11 09 00 00 00 00");
   device.ask("082 10 82 11 09");  // incomplete EMCY

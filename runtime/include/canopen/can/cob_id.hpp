@@ -141,8 +141,8 @@ inline constexpr CobIdEntries cob_id_entries[] = {
 /// compare an address with null at compile time (GCC bug 71962).
 [[nodiscard]] constexpr std::optional<CobIdEntries> find_cob_id_entries(std::uint16_t index, std::uint8_t sub_index) {
   for (const CobIdEntries& row : cob_id_entries) {
-    const bool fits = index >= row.first && index <= row.last && sub_index >= row.first_sub_index &&
-                      sub_index <= row.last_sub_index;
+    const bool fits =
+        index >= row.first && index <= row.last && sub_index >= row.first_sub_index && sub_index <= row.last_sub_index;
     if (fits) return row;
   }
   return std::nullopt;

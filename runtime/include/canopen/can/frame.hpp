@@ -67,7 +67,10 @@ static_assert(sizeof(FrameWords) == sizeof Frame::data);
                                       bool remote = false) {
   static_assert(std::endian::native == std::endian::little);
   const auto byte = [](std::uint32_t word, unsigned shift) { return static_cast<std::uint8_t>(word >> shift); };
-  return {id, size, extended, remote,
+  return {id,
+          size,
+          extended,
+          remote,
           {byte(words.first, 0), byte(words.first, 8), byte(words.first, 16), byte(words.first, 24),
            byte(words.second, 0), byte(words.second, 8), byte(words.second, 16), byte(words.second, 24)}};
 }

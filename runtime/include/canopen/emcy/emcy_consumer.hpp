@@ -25,9 +25,8 @@ struct EmergencyMessage {
 /// Returns the message in a frame; empty if it has fewer than eight bytes.
 [[nodiscard]] constexpr std::optional<EmergencyMessage> emergency_message(const Frame& frame) {
   if (frame.remote || frame.size < 8) return std::nullopt;
-  EmergencyMessage message{static_cast<std::uint16_t>(frame.data[0] | (frame.data[1] << 8)),
-                           static_cast<ErrorRegister>(frame.data[2]),
-                           {}};
+  EmergencyMessage message{
+      static_cast<std::uint16_t>(frame.data[0] | (frame.data[1] << 8)), static_cast<ErrorRegister>(frame.data[2]), {}};
   for (std::size_t i = 0; i < message.info.size(); ++i) message.info[i] = frame.data[3 + i];
   return message;
 }

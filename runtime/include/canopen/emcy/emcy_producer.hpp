@@ -36,14 +36,9 @@ enum class ServiceError : std::uint8_t {
 };
 
 inline constexpr std::uint16_t service_error_codes[] = {
-    emergency_code::pdo_length,
-    emergency_code::rpdo_timeout,
-    emergency_code::sync_length,
-    emergency_code::mpdo_destination,
-    emergency_code::error_control,
-    emergency_code::overrun,
-    emergency_code::bus_passive,
-    emergency_code::bus_off,
+    emergency_code::pdo_length,       emergency_code::rpdo_timeout,  emergency_code::sync_length,
+    emergency_code::mpdo_destination, emergency_code::error_control, emergency_code::overrun,
+    emergency_code::bus_passive,      emergency_code::bus_off,
 };
 
 /// The errors of one device. Each error that appears is sent once, with the present register, and recorded in the
@@ -250,7 +245,9 @@ class EmergencyProducer {
   }
 
   /// Returns the position of the message that is `offset` places after the first one.
-  [[nodiscard]] std::uint8_t place(unsigned offset) const { return static_cast<std::uint8_t>((first_ + offset) % depth); }
+  [[nodiscard]] std::uint8_t place(unsigned offset) const {
+    return static_cast<std::uint8_t>((first_ + offset) % depth);
+  }
 
   [[nodiscard]] static FrameWords message_of(std::uint16_t code, std::uint8_t bits, const EmergencyInfo& info) {
     return {code | std::uint32_t{bits} << 16 | std::uint32_t{info[0]} << 24, number_in(std::span{info}.subspan(1))};

@@ -22,14 +22,14 @@ enum class ErrorRegister : std::uint8_t {
 
 /// Emergency error codes (CiA 301, 7.2.7.1, table 26).
 namespace emergency_code {
-inline constexpr std::uint16_t reset = 0x0000;  ///< an error has disappeared
+inline constexpr std::uint16_t reset = 0x0000;     ///< an error has disappeared
 inline constexpr std::uint16_t data_set = 0x6300;  ///< stored parameters have been lost
 inline constexpr std::uint16_t communication = 0x8100;
 inline constexpr std::uint16_t overrun = 0x8110;  ///< frames have been lost
 inline constexpr std::uint16_t bus_passive = 0x8120;
-inline constexpr std::uint16_t error_control = 0x8130;  ///< a monitored node or the guarding master is lost
-inline constexpr std::uint16_t bus_off = 0x8140;  ///< recovered from bus-off
-inline constexpr std::uint16_t pdo_length = 0x8210;  ///< a PDO is shorter than its mapping
+inline constexpr std::uint16_t error_control = 0x8130;     ///< a monitored node or the guarding master is lost
+inline constexpr std::uint16_t bus_off = 0x8140;           ///< recovered from bus-off
+inline constexpr std::uint16_t pdo_length = 0x8210;        ///< a PDO is shorter than its mapping
 inline constexpr std::uint16_t mpdo_destination = 0x8230;  ///< the destination of a DAM-MPDO does not exist
 inline constexpr std::uint16_t sync_length = 0x8240;
 inline constexpr std::uint16_t rpdo_timeout = 0x8250;

@@ -272,7 +272,7 @@ class BlockingSdo {
   SdoClientOptions options_;
   std::map<std::uint8_t, SdoClient<B>> clients_;
   std::set<std::uint8_t> in_use_;  ///< node-IDs
-  std::deque<Frame> early_;  ///< received before the request was sent; not yet passed to `on_frame`
+  std::deque<Frame> early_;        ///< received before the request was sent; not yet passed to `on_frame`
 };
 
 /// A device on the bus, with its generated types.

@@ -55,7 +55,7 @@ class KeyTree {
   }
 
  private:
-  std::size_t leaves_ = 1;  ///< a power of two
+  std::size_t leaves_ = 1;                 ///< a power of two
   std::vector<Key> least_ = {none, none};  ///< of each subtree; root 1, leaves in the last half
 };
 

@@ -50,7 +50,7 @@ template <BlockingBus B>
 class Master {
  public:
   static constexpr std::size_t max_slaves = 127;
-  static constexpr std::size_t max_requests = 64;  ///< of the application that may wait; further ones: 060A 0023h
+  static constexpr std::size_t max_requests = 64;       ///< of the application that may wait; further ones: 060A 0023h
   static constexpr std::size_t max_nodes_at_once = 16;  ///< few enough for timely responses at 20 kbit/s
   static constexpr std::size_t max_upload = 16 * 1024 * 1024;  ///< bytes; 0504 0005h: a value is longer
 
@@ -223,9 +223,9 @@ class Master {
 
   struct PdoHandler {
     std::uint8_t node_id;
-    std::uint16_t index;    ///< of the communication parameter
-    std::uint32_t cob_id;   ///< bit 29 is set for extended frames; `no_cob_id`: the PDO is not valid
-    std::uint8_t size;      ///< bytes that it requires
+    std::uint16_t index;   ///< of the communication parameter
+    std::uint32_t cob_id;  ///< bit 29 is set for extended frames; `no_cob_id`: the PDO is not valid
+    std::uint8_t size;     ///< bytes that it requires
     std::function<void(const Frame&)> call;
   };
 
@@ -379,7 +379,8 @@ class Master {
 
   /// Applies a written COB-ID, and completes the transfer.
   void on_transfer(Transfer& ended) {
-    if (ended.download && ended.result == ok && is_pdo_cob_id(ended.index, ended.sub_index) && ended.bytes.size() == 4) {
+    if (ended.download && ended.result == ok && is_pdo_cob_id(ended.index, ended.sub_index) &&
+        ended.bytes.size() == 4) {
       set_cob_id(ended.node_id, ended.index, number_of(ended.bytes));
     }
     if (!ended.done) return;
@@ -482,7 +483,7 @@ class Master {
   std::list<Transfer> transfers_;
   std::deque<PdoHandler> pdos_;
   std::map<std::pair<std::uint8_t, std::uint16_t>, std::uint32_t> cob_ids_;
-  std::array<std::uint32_t, 128> boots_{};          ///< boot-up messages, by node-ID
+  std::array<std::uint32_t, 128> boots_{};        ///< boot-up messages, by node-ID
   std::array<std::uint8_t, 128> to_configure_{};  ///< pending calls of `on_configure`, by node-ID
   std::deque<std::function<void()>> waiting_;
 };

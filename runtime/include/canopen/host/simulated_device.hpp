@@ -1,5 +1,5 @@
-/// A device as a program in simulated time: `edsc` starts it and talks to it over standard input and output, one answer for
-/// one request. It needs no CAN interface and no clock, and it is as fast as the computer. POSIX, host side.
+/// A device as a program in simulated time: `edsc` starts it and talks to it over standard input and output, one answer
+/// for one request. It needs no CAN interface and no clock, and it is as fast as the computer. POSIX, host side.
 ///
 ///     // conform.cpp; edsc_add_conformance_test writes it
 ///     #include <canopen/host/simulated_device.hpp>
@@ -9,8 +9,8 @@
 ///
 ///     edsc read simulated:build/conform@5 5 1018h:01 --type u32
 ///
-/// `PumpApplication` is default-constructible, once per power-on, and has what the device does with its objects. The same
-/// class serves a real bus: `canopen::make_node<pump::Device>(bus, node_id, application.handlers())`.
+/// `PumpApplication` is default-constructible, once per power-on, and has what the device does with its objects. The
+/// same class serves a real bus: `canopen::make_node<pump::Device>(bus, node_id, application.handlers())`.
 ///
 ///     class PumpApplication {
 ///      public:
@@ -18,17 +18,19 @@
 ///         return std::tuple{canopen::on_write<od::speed_setpoint>([this](std::uint16_t speed) { speed_ = speed; })};
 ///       }
 ///       void start(auto& node) { node.template set<od::pressure>(0); }                     // optional: after power-on
-///       void tick(auto& node, canopen::TimePoint) {                                        // optional: each millisecond
+///       void tick(auto& node, canopen::TimePoint) {                                        // optional: each
+///       millisecond
 ///         node.template set<od::pressure>(static_cast<std::uint16_t>(speed_ / 4));
 ///       }
 ///      private:
 ///       std::uint16_t speed_ = 0;
 ///     };
 ///
-/// A device whose dictionary has 1010h or 1011h gets a storage in memory, and one with LSS a port that stores node-ID and bit
-/// rate, where the handlers do not bring their own.
+/// A device whose dictionary has 1010h or 1011h gets a storage in memory, and one with LSS a port that stores node-ID
+/// and bit rate, where the handlers do not bring their own.
 ///
-/// The protocol is in `host/simulation_codec.hpp`. What the application prints on standard output goes to standard error.
+/// The protocol is in `host/simulation_codec.hpp`. What the application prints on standard output goes to standard
+/// error.
 #pragma once
 
 #include <fcntl.h>

@@ -1,5 +1,6 @@
 /// A node of some device behind one interface, for programs that simulate several devices: a source that includes one
-/// device and this header compiles the node alone, without the bus and the protocol of host/simulated_device.hpp. Host side.
+/// device and this header compiles the node alone, without the bus and the protocol of host/simulated_device.hpp. Host
+/// side.
 #pragma once
 
 #include <concepts>
@@ -146,11 +147,13 @@ class NodeOf final : public SimulatedNode {
   void emergency_over(ErrorRegister bits) override { node_.emergency_over(bits); }
 
  private:
-  using Node = decltype(make_node<Device>(std::declval<SimulatedBus&>(), NodeId{},
-                                          complete<Device>(std::declval<SimulatedMemory&>(),
-                                                           std::declval<Application&>().handlers())));
+  using Node = decltype(make_node<Device>(
+      std::declval<SimulatedBus&>(), NodeId{},
+      complete<Device>(std::declval<SimulatedMemory&>(), std::declval<Application&>().handlers())));
 
-  static constexpr bool has_tick = requires(Application& application, Node& node) { application.tick(node, TimePoint{}); };
+  static constexpr bool has_tick = requires(Application & application, Node& node) {
+    application.tick(node, TimePoint{});
+  };
   static constexpr Duration tick_period{1'000};
   /// A node has to be served every half hour at least.
   static constexpr Duration longest_pause{1'000'000'000};

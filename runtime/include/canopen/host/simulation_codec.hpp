@@ -1,20 +1,22 @@
-/// The protocol, version 1, between `edsc` and the program of a simulated device: lines of text with words separated by one
-/// blank. CAN-IDs, indices, codes and bytes are hexadecimal, all else decimal. The program begins with `edsc-simulation 1`. It
-/// obeys
+/// The protocol, version 1, between `edsc` and the program of a simulated device: lines of text with words separated by
+/// one blank. CAN-IDs, indices, codes and bytes are hexadecimal, all else decimal. The program begins with
+/// `edsc-simulation 1`. It obeys
 ///
 ///     node NODE-ID [NAME]          a new bus of 1 Mbit/s, a new node with empty storage, power-on at time 0
 ///     send CAN-ID[X] [BYTES]       another participant sends a data frame; X: 29 bits
 ///     send CAN-ID[X]R LENGTH       the same with a remote frame
-///     run MICROSECONDS             lets this time pass, at most until the device has sent a frame. The answer is the time since
-///                                  `node` in us, and the frame: `TIME` or `TIME CAN-ID[X] [BYTES]` or `TIME CAN-ID[X]R LENGTH`
+///     run MICROSECONDS             lets this time pass, at most until the device has sent a frame. The answer is the
+///     time since
+///                                  `node` in us, and the frame: `TIME` or `TIME CAN-ID[X] [BYTES]` or `TIME CAN-ID[X]R
+///                                  LENGTH`
 ///     set INDEX SUB BYTES          the application sets an object, bytes as SDO sends them
 ///     emergency CODE REGISTER      the application reports an error with these bits of 1001h
 ///     emergency_over REGISTER      the error has gone
 ///     power_cycle                  off and on; storage is kept
 ///
-/// `send` does not have an answer. That of `node` is `ok`, or `no` from a program that does not have this device. The last four
-/// answer `ok`, `refused ABORT-CODE`, or `no` from a program that cannot do it, and let no time pass. The program ends with its
-/// input, with exit code 0, or with 2 at a line that is not one of these.
+/// `send` does not have an answer. That of `node` is `ok`, or `no` from a program that does not have this device. The
+/// last four answer `ok`, `refused ABORT-CODE`, or `no` from a program that cannot do it, and let no time pass. The
+/// program ends with its input, with exit code 0, or with 2 at a line that is not one of these.
 #pragma once
 
 #include <charconv>

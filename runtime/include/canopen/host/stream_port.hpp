@@ -120,7 +120,8 @@ class StreamPort {
     const TimePoint end = now() + timeout;
     const auto connecting = [this] { return protocol_.state() == Protocol::State::connecting; };
     while (connecting()) {
-      const TimePoint before = pass_time();  // what had arrived by then is read, even if this process is suspended later
+      const TimePoint before =
+          pass_time();  // what had arrived by then is read, even if this process is suspended later
       flush();
       for (std::size_t reads = 0; connecting(); ++reads) {
         while (connecting() && has_more()) (void)protocol_.on_character(bytes_[read_++], present_);

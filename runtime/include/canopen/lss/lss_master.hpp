@@ -91,7 +91,9 @@ class LssMaster {
   /// Inquires a value of the slave in configuration state; `value()` returns it.
   [[nodiscard]] bool inquire_vendor_id(TimePoint now) { return begin(lss::Command::inquire_vendor_id, 0, now); }
   [[nodiscard]] bool inquire_product_code(TimePoint now) { return begin(lss::Command::inquire_product_code, 0, now); }
-  [[nodiscard]] bool inquire_revision_number(TimePoint now) { return begin(lss::Command::inquire_revision_number, 0, now); }
+  [[nodiscard]] bool inquire_revision_number(TimePoint now) {
+    return begin(lss::Command::inquire_revision_number, 0, now);
+  }
   [[nodiscard]] bool inquire_serial_number(TimePoint now) { return begin(lss::Command::inquire_serial_number, 0, now); }
   [[nodiscard]] bool inquire_node_id(TimePoint now) { return begin(lss::Command::inquire_node_id, 0, now); }
 
@@ -328,8 +330,8 @@ class LssMaster {
   lss::Command answer_ = lss::Command::none;
   LssOutcome outcome_ = LssOutcome::done;
   std::uint8_t known_ = 0;
-  std::uint8_t number_ = 0;  ///< fastscan: LSSSub
-  std::uint8_t bit_ = 0;     ///< fastscan: BitCheck
+  std::uint8_t number_ = 0;          ///< fastscan: LSSSub
+  std::uint8_t bit_ = 0;             ///< fastscan: BitCheck
   std::uint8_t branch_ = no_branch;  ///< above an address: the number that differs from it
   std::uint32_t asked_ = 0;          ///< the number with the changed bit
   bool confirming_ = false;

@@ -77,8 +77,8 @@ class HeartbeatConsumer {
   }
 
   /// Sets all entries from 1016h. Stored values can contain a node twice, which a write cannot (7.5.2.19: 0604 0043h).
-  /// The later entry is then ignored as long as the earlier one monitors the node, as if its write had been rejected: one
-  /// bad entry must not stop the monitoring of all nodes, and an SDO upload shows the master what is stored.
+  /// The later entry is then ignored as long as the earlier one monitors the node, as if its write had been rejected:
+  /// one bad entry must not stop the monitoring of all nodes, and an SDO upload shows the master what is stored.
   template <class Device>
   void configure(EntryAccess<Device> entries) {
     for (std::size_t i = 0; i < Count; ++i) {

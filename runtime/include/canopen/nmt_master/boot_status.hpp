@@ -54,8 +54,8 @@ inline constexpr BootStatusText boot_status_texts[] = {
 /// How a boot-up ended, and why.
 struct BootResult {
   BootStatus status = BootStatus::booted;
-  AbortCode abort_code = ok;   ///< of the SDO transfer that caused the status, or of the application's configuration
-  std::uint16_t index = 0;     ///< entry of that transfer, or of the identity number that differs; 0: none
+  AbortCode abort_code = ok;  ///< of the SDO transfer that caused the status, or of the application's configuration
+  std::uint16_t index = 0;    ///< entry of that transfer, or of the identity number that differs; 0: none
   std::uint8_t sub_index = 0;
   std::uint32_t expected = 0;  ///< identity number in the network list
   std::uint32_t seen = 0;      ///< identity number of the node, if `abort_code` is `ok`

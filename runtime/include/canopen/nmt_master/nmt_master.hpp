@@ -218,7 +218,7 @@ class NmtMaster {
     bool silent = false;     ///< it has not responded
     bool was_reset = false;
     bool beats_in_time = false;  ///< 1017h is shorter than the consumer's time
-    bool complete = false;  ///< has booted and is not lost
+    bool complete = false;       ///< has booted and is not lost
   };
 
   [[nodiscard]] static bool wants_sdo(const Entry& entry) {
@@ -508,7 +508,8 @@ class NmtMaster {
       entry.dropped = entry.asked;
       entry.complete = false;
     }
-    sdo_.node_reset(slaves_[i].node_id, now_);  // `done` of the application may call `configured`: of no effect any more
+    sdo_.node_reset(slaves_[i].node_id,
+                    now_);  // `done` of the application may call `configured`: of no effect any more
   }
 
   /// Handles the loss of a slave (CiA 302-2, error handling): all nodes are stopped or reset, or only the
@@ -637,9 +638,7 @@ class NmtMaster {
     }
   }
 
-  void on_no_response(std::size_t i, const SdoAnswer& answer) {
-    retry(i, failure(i, BootStatus::no_response, answer));
-  }
+  void on_no_response(std::size_t i, const SdoAnswer& answer) { retry(i, failure(i, BootStatus::no_response, answer)); }
 
   /// Schedules the next attempt for a slave that does not respond.
   void retry(std::size_t i, const BootResult& result) {

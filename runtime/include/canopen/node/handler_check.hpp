@@ -23,9 +23,9 @@ inline constexpr bool is_service_handler =
 
 /// Whether a node accepts a type as a handler, a storage or an LSS port.
 template <class H>
-inline constexpr bool is_handler = is_access_handler<H> || is_service_handler<H> || domain_detail::is_reader<H> ||
-                                   domain_detail::is_writer<H> || storage_detail::is_stored_in<H> ||
-                                   lss_detail::is_handler<H>;
+inline constexpr bool is_handler =
+    is_access_handler<H> || is_service_handler<H> || domain_detail::is_reader<H> || domain_detail::is_writer<H> ||
+    storage_detail::is_stored_in<H> || lss_detail::is_handler<H>;
 
 template <class H>
 struct KnownHandler {

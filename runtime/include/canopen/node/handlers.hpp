@@ -219,7 +219,9 @@ class HandlerSet {
   static constexpr bool has_access_handlers = (handler_detail::is_access_handler<Handlers> || ...);
 
   /// Whether the object with this key has a write handler.
-  [[nodiscard]] static bool handles([[maybe_unused]] std::uint32_t key) { return ((key == handler_detail::written_key<Handlers>) || ...); }
+  [[nodiscard]] static bool handles([[maybe_unused]] std::uint32_t key) {
+    return ((key == handler_detail::written_key<Handlers>) || ...);
+  }
 
   /// Calls the write handlers of `O`; returns the first abort code.
   template <DictionaryObject O, class Node>

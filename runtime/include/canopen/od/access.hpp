@@ -18,10 +18,10 @@ enum class Access : std::uint8_t {
 
 struct AccessRow {
   Access access;
-  bool readable;      ///< by SDO
-  bool writable;      ///< by SDO
-  bool in_tpdo;       ///< may be mapped into a TPDO
-  bool in_rpdo;       ///< may be mapped into an RPDO
+  bool readable;          ///< by SDO
+  bool writable;          ///< by SDO
+  bool in_tpdo;           ///< may be mapped into a TPDO
+  bool in_rpdo;           ///< may be mapped into an RPDO
   std::string_view name;  ///< as an EDS spells it
 };
 
@@ -36,7 +36,9 @@ inline constexpr AccessRow access_rows[] = {
 };
 // clang-format on
 
-[[nodiscard]] constexpr const AccessRow& row_of(Access access) { return access_rows[static_cast<std::uint8_t>(access)]; }
+[[nodiscard]] constexpr const AccessRow& row_of(Access access) {
+  return access_rows[static_cast<std::uint8_t>(access)];
+}
 [[nodiscard]] constexpr bool readable(Access access) { return row_of(access).readable; }
 [[nodiscard]] constexpr bool writable(Access access) { return row_of(access).writable; }
 

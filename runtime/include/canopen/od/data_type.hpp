@@ -40,7 +40,7 @@ enum class DataClass : std::uint8_t { boolean, unsigned_integer, signed_integer,
 struct DataTypeRow {
   DataType type;
   DataClass kind;
-  std::uint8_t bits;  ///< on the wire; 0: variable length
+  std::uint8_t bits;          ///< on the wire; 0: variable length
   std::string_view name;      ///< as CiA 301 spells it
   std::string_view cpp_type;  ///< type that an application uses; for a string, its class template
 };

@@ -53,8 +53,8 @@ inline constexpr Word r64 = type_word(Class::real, 8);
 inline constexpr Word time48 = u48;  ///< TIME_OF_DAY and TIME_DIFFERENCE have the same layout in memory and on the wire
 inline constexpr Word visible_string = type_word(Class::special, 0);  ///< a StringStorage of text
 inline constexpr Word octet_string = type_word(Class::special, 3);    ///< a StringStorage of bytes, also UNICODE_STRING
-inline constexpr Word domain = type_word(Class::special, 1);   ///< a Domain
-inline constexpr Word boolean = type_word(Class::special, 2);  ///< a bool: one byte, 0 or 1
+inline constexpr Word domain = type_word(Class::special, 1);          ///< a Domain
+inline constexpr Word boolean = type_word(Class::special, 2);         ///< a bool: one byte, 0 or 1
 
 // Access rights.
 inline constexpr Word readable = Word{1} << 24;
@@ -79,7 +79,9 @@ inline constexpr Word record = static_cast<Word>(Kind::record) << kind_shift;
 inline constexpr Word gap = 0;  ///< a sub-index of a record that does not exist
 
 [[nodiscard]] constexpr std::uint16_t offset_of(Word word) { return static_cast<std::uint16_t>(word & offset_mask); }
-[[nodiscard]] constexpr std::uint8_t size_of(Word word) { return static_cast<std::uint8_t>((word >> size_shift) & 0xF); }
+[[nodiscard]] constexpr std::uint8_t size_of(Word word) {
+  return static_cast<std::uint8_t>((word >> size_shift) & 0xF);
+}
 [[nodiscard]] constexpr Class class_of(Word word) { return static_cast<Class>((word >> class_shift) & 3); }
 [[nodiscard]] constexpr Place place_of(Word word) { return static_cast<Place>((word >> place_shift) & 3); }
 [[nodiscard]] constexpr Kind kind_of(Word word) { return static_cast<Kind>(word >> kind_shift); }
@@ -182,7 +184,7 @@ struct Dictionary {
   std::span<const entry::Word> subs;
   std::span<const Limits> limits;
   std::span<const WideLimits> wide_limits;
-  const void* constants;  ///< base of `rom` offsets
+  const void* constants;                 ///< base of `rom` offsets
   bool zero_terminated_strings = false;  ///< VISIBLE_STRINGs are sent with a trailing 00h, as in manual 003
 
   static constexpr entry::Word no_object = 0;
@@ -263,7 +265,9 @@ struct Dictionary {
     }
   }
 
-  [[nodiscard]] constexpr const Limits* find_limits(std::uint32_t key) const { return dictionary_detail::find_by_key(limits, key); }
+  [[nodiscard]] constexpr const Limits* find_limits(std::uint32_t key) const {
+    return dictionary_detail::find_by_key(limits, key);
+  }
   [[nodiscard]] constexpr const WideLimits* find_wide_limits(std::uint32_t key) const {
     return dictionary_detail::find_by_key(wide_limits, key);
   }

@@ -54,14 +54,16 @@ struct ByHash {
   static constexpr std::uint32_t last_slot = slots - 1;
   static constexpr std::uint32_t used_slots = std::min<std::uint32_t>(slots, count + count / 8 + 1);
   using Displacement = std::conditional_t<slot_bits <= 8, std::uint8_t, std::uint16_t>;
-  static constexpr std::size_t bytes = slots * sizeof(std::uint16_t) + buckets * sizeof(Displacement) +
-                                       (used_slots - count) * sizeof(Word);
+  static constexpr std::size_t bytes =
+      slots * sizeof(std::uint16_t) + buckets * sizeof(Displacement) + (used_slots - count) * sizeof(Word);
 
   [[nodiscard]] static constexpr std::uint32_t hash(std::uint16_t index, std::uint32_t multiplier) {
     return index * multiplier;
   }
   [[nodiscard]] static constexpr std::uint32_t bucket_of(std::uint32_t hash) { return hash >> (32 - bucket_bits); }
-  [[nodiscard]] static constexpr std::uint32_t place_of(std::uint32_t hash) { return hash >> (32 - bucket_bits - slot_bits); }
+  [[nodiscard]] static constexpr std::uint32_t place_of(std::uint32_t hash) {
+    return hash >> (32 - bucket_bits - slot_bits);
+  }
 
   struct Table {
     bool found = false;
@@ -82,7 +84,8 @@ struct ByHash {
   static constexpr void fill(Buckets& filled, std::uint32_t multiplier) {
     const Dictionary& source = dictionary;
     for (std::size_t run = 0; run + 1 < source.runs.size(); ++run) {
-      const std::uint32_t length = static_cast<std::uint32_t>(source.runs[run + 1].position) - source.runs[run].position;
+      const std::uint32_t length =
+          static_cast<std::uint32_t>(source.runs[run + 1].position) - source.runs[run].position;
       for (std::uint32_t i = 0; i < length; ++i) {
         ++filled.ends[bucket_of(hash(static_cast<std::uint16_t>(source.runs[run].first + i), multiplier))];
       }
@@ -113,7 +116,8 @@ struct ByHash {
         made.words[slot] = filled.words[i];
         continue;
       }
-      while (i-- > begin) made.indices[(place_of(hash(filled.indices[i], made.multiplier)) + displacement) & last_slot] = 0;
+      while (i-- > begin)
+        made.indices[(place_of(hash(filled.indices[i], made.multiplier)) + displacement) & last_slot] = 0;
       return false;
     }
     return true;

@@ -47,7 +47,8 @@ struct VisibleString : StringStorage<Capacity> {
       ++this->size;
     }
   }
-  constexpr VisibleString(const char* text) : VisibleString{std::string_view{text}} {}  // NOLINT(google-explicit-constructor)
+  constexpr VisibleString(const char* text)
+      : VisibleString{std::string_view{text}} {}  // NOLINT(google-explicit-constructor)
 
   [[nodiscard]] std::string_view view() const {
     return {reinterpret_cast<const char*>(this->bytes.data()), this->size};

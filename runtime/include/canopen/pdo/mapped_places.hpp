@@ -71,7 +71,8 @@ class MappedPlaces {
   /// Looks up the objects of a PDO. `watched(mapped)` returns whether a new value of an object needs more than to be
   /// stored. Returns the data bytes of the PDO's frame; 0 if it does not map anything.
   template <class Watched>
-  std::uint8_t look_up(std::size_t pdo, [[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] Watched watched) {
+  std::uint8_t look_up(std::size_t pdo, [[maybe_unused]] EntryAccess<Device> entries,
+                       [[maybe_unused]] Watched watched) {
     if constexpr (count != 0) {
       const MappingParameter mapping = parameter(pdo, entries);
       if (mapping.count() > capacity(pdo)) return 0;
@@ -131,8 +132,9 @@ class MappedPlaces {
   }();
 
   /// Whether all PDOs can map the same number of objects.
-  static constexpr bool is_regular =
-      count > 0 && std::ranges::all_of(capacities, [](std::uint8_t capacity) { return capacity == capacities[0]; });
+  static constexpr bool is_regular = count > 0 && std::ranges::all_of(capacities, [](std::uint8_t capacity) {
+                                       return capacity == capacities[0];
+                                     });
 
   [[nodiscard]] static std::uint8_t capacity(std::size_t pdo) {
     if constexpr (is_regular) {

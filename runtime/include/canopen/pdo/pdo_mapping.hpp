@@ -63,7 +63,7 @@ template <class Device>
   }
   const entry::Word word = EntryAccess<Device>::find(mapped.index(), mapped.sub_index());
   if ((word & (tpdo ? entry::tpdo : entry::rpdo)) == 0) return not_mappable;  // also if it does not exist
-  if (entry::place_of(word) > entry::Place::rom) return not_mappable;  // an immediate value has no address
+  if (entry::place_of(word) > entry::Place::rom) return not_mappable;         // an immediate value has no address
   if (EntryAccess<Device>::kinds.booleans && entry::is_boolean(word) && bits == 1) return word;
   return bits != 0 && bits == EntryAccess<Device>::bytes_of(word) * 8u ? word : not_mappable;
 }
@@ -194,7 +194,8 @@ template <class Device>
   if constexpr (!Device::options.pdo_mapping_writable_while_valid) {
     const auto communication = static_cast<std::uint16_t>(index - (rpdo_indices.mapping - rpdo_indices.communication));
     const entry::Word cob_id = entries.find(communication, pdo_parameter::cob_id);
-    if (cob_id > Dictionary::no_sub_index && CobId{entries.number(cob_id)}.valid()) return AbortCode::unsupported_access;
+    if (cob_id > Dictionary::no_sub_index && CobId{entries.number(cob_id)}.valid())
+      return AbortCode::unsupported_access;
   }
   const MappingParameter mapping{entries.ram(entries.find(index, 0)), entries.ram(entries.find(index, 1))};
   if (sub_index == 0) {

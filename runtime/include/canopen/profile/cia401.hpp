@@ -79,15 +79,15 @@ class DigitalInputs {
   }
 
   [[nodiscard]] static bool is_event([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] std::uint8_t block,
-                                  [[maybe_unused]] std::uint8_t before, [[maybe_unused]] std::uint8_t after) {
+                                     [[maybe_unused]] std::uint8_t before, [[maybe_unused]] std::uint8_t after) {
     if constexpr (Device::dictionary.has(0x6005, 0)) {
       if (!is_true(entries, Device::dictionary.find(0x6005, 0))) return false;
     }
     if constexpr (AnyChange::exists || LowToHigh::exists || HighToLow::exists) {
       const unsigned changed = before ^ after;
       const unsigned event = (changed & AnyChange::template get<unsigned>(entries, block, 0)) |
-                            (changed & after & LowToHigh::template get<unsigned>(entries, block, 0)) |
-                            (changed & before & HighToLow::template get<unsigned>(entries, block, 0));
+                             (changed & after & LowToHigh::template get<unsigned>(entries, block, 0)) |
+                             (changed & before & HighToLow::template get<unsigned>(entries, block, 0));
       return event != 0;
     } else {
       return true;
@@ -192,7 +192,7 @@ class AnalogueInputs {
   struct NoDelta {};
 
   [[nodiscard]] bool is_event([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] std::uint8_t channel,
-                           [[maybe_unused]] std::int16_t value) const {
+                              [[maybe_unused]] std::int16_t value) const {
     if constexpr (Device::dictionary.has(0x6423, 0)) {
       if (!is_true(entries, Device::dictionary.find(0x6423, 0))) return false;
     }

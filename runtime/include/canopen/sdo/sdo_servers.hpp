@@ -108,7 +108,8 @@ class SdoServers {
   }();
 
   /// Returns a COB-ID in the format of `cob_id_of`; `invalid_bit` if this server does not have a usable one.
-  [[nodiscard]] static std::uint32_t cob_id_of_server(std::size_t i, std::uint8_t sub_index, ObjectStore<Device>& store) {
+  [[nodiscard]] static std::uint32_t cob_id_of_server(std::size_t i, std::uint8_t sub_index,
+                                                      ObjectStore<Device>& store) {
     if (i == 0) {
       const std::uint32_t base =
           sub_index == request_sub_index ? function_code::sdo_request : function_code::sdo_response;

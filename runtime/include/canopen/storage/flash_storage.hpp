@@ -158,7 +158,7 @@ class FlashStorage {
   }
 
   Pages& pages_;
-  Header header_{};             ///< of the image being written, or of the page that was checked
+  Header header_{};            ///< of the image being written, or of the page that was checked
   std::uint32_t written_ = 0;  ///< of the image being written
   std::uint32_t size_ = 0;     ///< of the present image
   std::uint32_t erasures_ = 0;

@@ -28,9 +28,7 @@ inline constexpr std::uint8_t highest_sync_counter = 240;
 [[nodiscard]] constexpr bool is_span(Duration span) { return span.count() - 1u < longest_span.count(); }
 
 /// Whether 1006h accepts a value, including 0.
-[[nodiscard]] constexpr bool is_sync_period(std::uint32_t microseconds) {
-  return microseconds <= longest_span.count();
-}
+[[nodiscard]] constexpr bool is_sync_period(std::uint32_t microseconds) { return microseconds <= longest_span.count(); }
 
 /// Whether 1019h accepts a counter overflow value: 0, or 2 to 240 (CiA 301, 7.5.2.22).
 [[nodiscard]] constexpr bool is_sync_overflow(std::uint32_t value) {
@@ -76,18 +74,16 @@ class SyncConsumer {
 template <class Device>
 class SyncProducer {
  public:
-  static constexpr bool exists =
-      SyncConsumer<Device>::exists && Device::dictionary.has(0x1006, 0) &&
-      (entry::place_of(Device::dictionary.find(0x1005, 0)) == entry::Place::ram ||
-       entry::place_of(Device::dictionary.find(0x1006, 0)) == entry::Place::ram);
+  static constexpr bool exists = SyncConsumer<Device>::exists && Device::dictionary.has(0x1006, 0) &&
+                                 (entry::place_of(Device::dictionary.find(0x1005, 0)) == entry::Place::ram ||
+                                  entry::place_of(Device::dictionary.find(0x1006, 0)) == entry::Place::ram);
 
   /// Handles a new value of 1005h or 1006h, or a state in which SYNCs are sent: the first one is due one period later.
   /// The counter starts with 1 if `restart` is set (after Stopped and at boot-up) and when production starts.
   [[gnu::noinline]] void start(const ObjectStore<Device>& store, TimePoint now, bool restart) {
     const Duration period = period_of(store);
     const std::uint32_t cob_id = store.template number<0x1005, 0>();
-    const bool produces =
-        (cob_id & CobId::no_rtr_bit) != 0 && is_span(period) && is_usable(cob_id & CobId::identifier);
+    const bool produces = (cob_id & CobId::no_rtr_bit) != 0 && is_span(period) && is_usable(cob_id & CobId::identifier);
     if (restart || !running_) counter_ = 0;
     running_ = produces;
     due_ = now + period;
@@ -102,7 +98,8 @@ class SyncProducer {
     const std::uint8_t overflow = SyncConsumer<Device>::overflow_of(store);
     const std::uint8_t counter = counter_ < overflow ? static_cast<std::uint8_t>(counter_ + 1) : std::uint8_t{1};
     const std::uint32_t cob_id = store.template number<0x1005, 0>();
-    if (!send_configured(bus, cob_id & CobId::identifier, overflow != 0 ? 1 : 0, overflow != 0 ? counter : 0u)) return false;
+    if (!send_configured(bus, cob_id & CobId::identifier, overflow != 0 ? 1 : 0, overflow != 0 ? counter : 0u))
+      return false;
     counter_ = counter;
     const Duration period = period_of(store);
     due_ = due_ + period;

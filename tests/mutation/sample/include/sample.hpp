@@ -31,9 +31,7 @@ inline int sum_up_to(int last) {
   return sum;
 }
 
-inline std::string greeting(const std::string& name) {
-  return "Hello, " + name;
-}
+inline std::string greeting(const std::string& name) { return "Hello, " + name; }
 
 inline int value_of(int key) {
   for (const Row& row : rows) {
