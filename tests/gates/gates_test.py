@@ -17,7 +17,7 @@ SOURCE_DIR = Path(sys.argv[1]).resolve()
 PYTHON_WITH_JSONSCHEMA = sys.argv[2]
 GATES = SOURCE_DIR / "tests/gates"
 LAYOUT = SOURCE_DIR / "tests/layout"
-HEADER = "runtime/include/canopen/planted.hpp"
+HEADER = "runtime/include/canopen/base/planted.hpp"
 AUTHOR = ("-c", "user.name=x", "-c", "user.email=x@example.org", "-c", "commit.gpgsign=false")
 
 
