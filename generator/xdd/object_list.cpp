@@ -155,7 +155,7 @@ class ObjectListReader {
     static_cast<void>(read_entry(element, sub_object));
     take_from_object(of_object, sub_object);
     finish(sub_object);
-    list.push_back(std::move(sub_object));
+    list.push_back(sub_object);
   }
 
   std::optional<std::uint16_t> read_number(pugi::xml_node element, std::string_view name, std::size_t max_digits) {

@@ -444,7 +444,7 @@ class Master {
 
   /// Reads the known COB-IDs of a node again. `done`, if any, is called at the end of the last one; false:
   /// there are none.
-  bool read_cob_ids(NodeId node_id, std::function<void(AbortCode)> done = {}) {
+  bool read_cob_ids(NodeId node_id, const std::function<void(AbortCode)>& done = {}) {
     std::vector<std::uint16_t> indices;
     for (const auto& [key, cob_id] : cob_ids_) {
       if (key.first == node_id.value()) indices.push_back(key.second);
