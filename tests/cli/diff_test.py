@@ -159,7 +159,8 @@ class Git(CommandLine):
         self.git("add", ".")
         self.git("commit", "-q", "-m", "wrong")
         options.write_text("{}")
-        self.expect(WRONG_USAGE, self.against("HEAD", self.sheet), 'silence: unknown rule "no-such-rule"', "HEAD:eds/device.options.json:1:")
+        self.expect(WRONG_USAGE, self.against("HEAD", self.sheet), 'silence: unknown rule "no-such-rule"',
+                    f"HEAD:{options}:1:")
         for name in ("silence", "allow"):
             options.write_text(json.dumps({name: [{"rule": "no-such-rule", "reason": "x"} if name == "allow" else "no-such-rule"]}))
             self.git("commit", "-q", "-a", "--allow-empty", "-m", name)
