@@ -8,13 +8,15 @@
 
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/object_store.hpp"
+#include "canopen/pdo/mapped_places.hpp"
 #include "canopen/pdo/pdo_list.hpp"
 
 namespace canopen {
 
-/// The objects of the TPDOs of a device whose mapping is static. `Mapped` tells which PDOs have a dynamic one.
-template <class Device, class Pdos, class Mapped>
+/// The objects of the TPDOs of a device whose mapping is static.
+template <class Device, class Pdos>
 struct StaticTpdos {
+  using Mapped = MappedPlaces<Device, tpdo_indices, Pdos>;  ///< tells which PDOs have a dynamic mapping
   using Data = std::array<std::uint8_t, 8>;
   static constexpr std::size_t count = Pdos::count;
 

@@ -38,7 +38,7 @@ class TpdoService {
  public:
   using Pdos = ServedPdos<Device::dictionary, tpdo_indices, typename Device::Tpdos>;
   using Mapped = MappedPlaces<Device, tpdo_indices, Pdos>;
-  using Static = StaticTpdos<Device, Pdos, Mapped>;
+  using Static = StaticTpdos<Device, Pdos>;
   static constexpr std::size_t count = Pdos::count;
   static constexpr bool has_dynamic_mapping = Mapped::any;
 
