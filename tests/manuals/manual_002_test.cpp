@@ -52,8 +52,8 @@ TEST(Manual002, HasTheObjectsOf94) {
   manual::expect_entries(drive, entries);
 }
 
-// shows 002.3, 002.4, 002.72, 002.73, 002.81..002.83, 002.86, 002.143, 002.144, 002.147..002.151, 002.156..002.161,
-// 002.163..002.168 shows 002.171..002.173
+// shows 002.3, 002.4, 002.72, 002.73, 002.81..002.83, 002.86, 002.143, 002.144, 002.147..002.151, 002.156..002.161
+// shows 002.163..002.168, 002.171..002.173
 TEST(Manual002, HasEightPdosOfWhichThePairOf1IsActive) {
   constexpr manual::Entry entries[] = {
       {0x1400, 0, 1, ro, 2},           {0x1400, 1, 4, rw, 0x205},       {0x1400, 2, 1, rw, 255},
