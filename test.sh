@@ -8,10 +8,10 @@ help() {
 
   gates     format, includes, words, schemas; what differs from origin/main compiles alone and passes clang-tidy
             (less than 2 minutes; needs no build)
+  sources   each source and public header compiles alone and passes clang-tidy; each gate detects a planted fault
   quick     the gates; the generated code, the short tests of the command line, the conformance test of the reference
             devices; the unit and trace tests (about 3 minutes after a build)
-  test      a release build with all tests but the gates and the GoogleTest programs; all sources compile alone and
-            pass clang-tidy
+  test      a release build with all tests but those of the other gears
   asan      the GoogleTest programs (unit and trace tests) and a short run of each fuzz target with AddressSanitizer
             and UBSan
   firmware  the images of the reference devices for Cortex-M under QEMU
@@ -25,7 +25,7 @@ HELP
 run() {
   local build=build/$1 status=0
   case $1 in
-    gates | quick) build=build/test ;;
+    gates | sources | quick) build=build/test ;;
     unit) build=build/asan ;;
   esac
   rm -f "$build/times-$1.xml"
@@ -39,7 +39,7 @@ gears=("$@")
 [ $# -gt 0 ] || gears=(gates test asan firmware)
 for gear in "${gears[@]}"; do
   case $gear in
-    gates | quick | test | asan | firmware) ;;
+    gates | sources | quick | test | asan | firmware) ;;
     -h | --help) help; exit ;;
     *) echo "unknown gear $gear; see ./test.sh --help" >&2; exit 2 ;;
   esac

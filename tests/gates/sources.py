@@ -3,9 +3,9 @@
 
     sources.py SOURCE_DIR BUILD_DIR [--all]
 
-Without --all, only what differs from origin/main: the changed files and those that include them, nearest first, at most
-`MAX_ALONE`, and clang-tidy of the changed folders. All of them if there is no origin/main. BUILD_DIR is a build with Ninja; what is
-up to date in it is not built again.
+Without --all, only what differs from origin/main, or what the last commit changed if nothing differs: the changed files and
+those that include them, nearest first, at most `MAX_ALONE`, and clang-tidy of the changed folders. All of them if there is no
+origin/main. BUILD_DIR is a build with Ninja; what is up to date in it is not built again.
 """
 
 from __future__ import annotations
@@ -31,6 +31,8 @@ def changed_files(source_dir: Path) -> set[str] | None:
     base = git(source_dir, "merge-base", "HEAD", "origin/main")
     if not base:
         return None
+    if base == git(source_dir, "rev-parse", "HEAD"):  # as in a fresh clone: the last commit
+        base = git(source_dir, "rev-parse", "HEAD~1") or base
     return {*git(source_dir, "diff", "--name-only", base[0]), *git(source_dir, "ls-files", "--others", "--exclude-standard")}
 
 
@@ -68,7 +70,7 @@ def selected(source_dir: Path, rows: list[list[str]], changed: set[str]) -> list
     alone = {sources[0]: file for kind, file, *sources in rows if kind == "alone"}
     near = [name for name in by_distance(changed, includers(source_dir)) if name in alone]
     if len(near) > MAX_ALONE:
-        print(f"{MAX_ALONE} of {len(near)} sources that include what changed; the test all_sources compiles all")
+        print(f"{MAX_ALONE} of {len(near)} sources that include what changed; ./test.sh sources compiles all")
     folders = {folder_of(name) for name in changed if name.endswith((".cpp", ".hpp"))}
     tidy = [file for kind, file, *sources in rows if kind == "tidy" and (
         not changed.isdisjoint(sources) or (len(sources) > 1 and folders.intersection(map(folder_of, sources))))]
