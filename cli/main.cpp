@@ -103,8 +103,9 @@ int main(int argc, char** argv) {
   app.footer("'edsc COMMAND --help' shows a command's options and examples.");
   int exit_code = edsc::exit_fine;
   for (const edsc::CommandRow& row : edsc::commands) {
-    row.add(app, exit_code);
-    app.get_subcommands([](CLI::App*) { return true; }).back()->group(row.group);
+    CLI::App* const command = app.add_subcommand(row.name, row.description);
+    row.add_options(*command, exit_code);
+    command->group(row.group);  // later, because subcommands inherit it
   }
   int output_error = 0;
   try {
@@ -114,6 +115,8 @@ int main(int argc, char** argv) {
     errno = 0;
     exit_code = app.exit(problem) == 0 ? edsc::exit_fine : edsc::exit_wrong_usage;
     output_error = errno;
+  } catch (const edsc::Exit& exit) {
+    exit_code = exit.code;
   } catch (const std::system_error& problem) {
     output_error = problem.code().value();
     exit_code = report(problem);

@@ -16,7 +16,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/EdscAddDictionary.cmake)
 # NODE_ID      node-ID of the device; default: that of the dictionary or of its DCF, else 5.
 # LEVEL        read, communication or all (default: a simulated device cannot cause damage).
 # DEVIATIONS   a file that declares which cases deviate, and why.
-# ARGUMENTS    further arguments of `edsc conform`, such as --junit or --only.
+# ARGUMENTS    further arguments of `edsc conform`, such as --junit, --only or --options.
 #
 # `ctest -L conformance` runs these tests. They are not added if BUILD_TESTING is off, nor in a cross build, whose devices are
 # not compiled for the machine that runs edsc.

@@ -2,10 +2,10 @@
 # libedsc-dev_VERSION_all.deb with the files to compile a device.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME edsc)
-# The maintainer of the packages: `-DEDSC_MAINTAINER="Name <address>"`.
-set(EDSC_MAINTAINER "Seed 57085386 maintainers <maintainers@users.noreply.h-seed-57085386.example>"
-    CACHE STRING "Maintainer of the Debian packages")
-set(CPACK_PACKAGE_CONTACT ${EDSC_MAINTAINER})
+# The maintainer of the packages, whom Debian requires with an address: `-DEDSC_MAINTAINER="Name <address>"`. No mail reaches
+# the default, whose domain is reserved for that (RFC 2606).
+set(EDSC_MAINTAINER "edsc maintainers <maintainers@edsc.invalid>" CACHE STRING "Maintainer of the Debian packages")
+set(CPACK_PACKAGE_CONTACT "${EDSC_MAINTAINER}")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_COMPONENTS_ALL program development)
 set(CPACK_STRIP_FILES ON)

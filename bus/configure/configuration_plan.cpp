@@ -40,10 +40,10 @@ constexpr GuardedCobId guarded_cob_ids[] = {
 };
 
 /// Objects that are not in the order of their index: the SYNC overflow before the period, the SYNC producer after it.
-struct Place {
+struct MovedObject {
   std::uint16_t index, before;
 };
-constexpr Place places[] = {{0x1019, 0x1005}, {0x1005, 0x1008}};
+constexpr MovedObject moved_objects[] = {{0x1019, 0x1005}, {0x1005, 0x1008}};
 
 constexpr std::uint16_t sync_period = 0x1006;
 constexpr std::uint16_t sync_overflow = 0x1019;
@@ -67,7 +67,7 @@ const GuardedCobId* guard_of(const LiveEntry& entry) {
 /// Ascending, application after communication.
 std::uint64_t order_of(const LiveEntry& entry) {
   std::uint64_t place = entry.index * 2U + 1U;
-  for (const Place& row : places) {
+  for (const MovedObject& row : moved_objects) {
     if (row.index == entry.index) place = row.before * 2U;
   }
   const bool communication = entry.index < 0x2000;

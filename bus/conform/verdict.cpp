@@ -44,6 +44,7 @@ std::string repeat_command(const RunReport& run, const CaseRow& row) {
   const Level level = std::max(run.level, row.level);
   const Permission permissions = run.permissions | row.needs;
   std::string command = fmt::format("edsc conform {} {} {}", shell_word(run.bus), run.node, shell_word(run.sheet));
+  if (!run.options.empty()) command += " --options " + shell_word(run.options);
   if (level != Level::read) fmt::format_to(std::back_inserter(command), " --level {}", row_of(level).name);
   for (const PermissionRow& permission : permission_options) {
     if (level == Level::all || !includes(permissions, permission.permission)) continue;

@@ -76,6 +76,7 @@ struct RunReport {
   std::string bus;  ///< the address
   std::uint8_t node = 0;
   std::string sheet;            ///< path as it was given
+  std::string options;          ///< path of the options file if it was given
   std::string sheet_hash;       ///< SHA-256 of the file, hexadecimal digits
   std::string product, vendor;  ///< as in the EDS
   std::string identity;         ///< differences from the EDS; empty: none

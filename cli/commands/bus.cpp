@@ -1,15 +1,14 @@
 #include <fmt/format.h>
-#include <signal.h>
 
 #include <algorithm>
-#include <atomic>
-#include <system_error>
 
 #include "commands/commands.hpp"
 #include "server/bus_server.hpp"
 #include "server/candump_line.hpp"
+#include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/output.hpp"
+#include "shared/waiting_signals.hpp"
 #include "text/printable.hpp"
 
 namespace edsc {
@@ -28,30 +27,6 @@ struct Settings {
   bool log = false;
 };
 
-std::atomic<bool> stop{false};
-
-/// SIGINT and SIGTERM end the command; they are delivered only while it waits.
-class EndingSignals {
- public:
-  EndingSignals() {
-    struct sigaction action {};
-    action.sa_handler = [](int) { stop = true; };
-    sigset_t ending{};
-    sigemptyset(&ending);
-    for (const int signal : {SIGINT, SIGTERM}) {
-      sigaction(signal, &action, nullptr);
-      sigaddset(&ending, signal);
-    }
-    sigprocmask(SIG_BLOCK, &ending, &while_waiting_);
-    for (const int signal : {SIGINT, SIGTERM}) sigdelset(&while_waiting_, signal);
-  }
-
-  [[nodiscard]] const sigset_t* while_waiting() const { return &while_waiting_; }
-
- private:
-  sigset_t while_waiting_{};
-};
-
 /// A bus name is a word of up to 15 characters that is valid in an address and in a line of candump.
 std::string bad_bus_name(const std::string& name) {
   const bool good = !name.empty() && name.size() <= 15 && std::all_of(name.begin(), name.end(), [](unsigned char c) {
@@ -62,7 +37,7 @@ std::string bad_bus_name(const std::string& name) {
 
 int serve(const Settings& settings) {
   const ListenAddress address = parse_listen_address(settings.listen);
-  const EndingSignals signals;
+  const WaitingSignals signals({SIGINT, SIGTERM}, 0);
   BusEvents events;
   events.on_frame = [&settings](const canopen::Frame& frame, const std::string& bus, socketcand::TimeStamp time) {
     if (settings.log) print_visibly(stdout, "{}\n", candump_line(frame, bus, time));
@@ -72,7 +47,7 @@ int serve(const Settings& settings) {
   for (const std::string& bus : settings.buses) {
     print_visibly(settings.log ? stderr : stdout, "socketcand:{}/{}\n", to_text(server.address()), bus);
   }
-  while (!stop) {
+  while (!WaitingSignals::noted()) {
     flush_output();
     server.turn(std::chrono::minutes{1}, signals.while_waiting());
   }
@@ -81,20 +56,17 @@ int serve(const Settings& settings) {
 
 }  // namespace
 
-void add_bus_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("bus", "virtual CAN buses on this machine, for socketcand clients");
-  command->footer(examples);
-  auto settings = std::make_shared<Settings>();
-  command->add_option("--listen", settings->listen, "HOST:PORT; port 0: any free port")->capture_default_str();
-  command->add_option("--bus", settings->buses, "name of a bus; may be given several times")
+void add_bus_options(CLI::App& command, int& exit_code) {
+  Settings& settings = define_command(command, examples, serve, exit_code);
+  command.add_option("--listen", settings.listen, "HOST:PORT; port 0: any free port")->capture_default_str();
+  command.add_option("--bus", settings.buses, "name of a bus; may be given several times")
       ->check(bad_bus_name)
       ->capture_default_str();
-  command->add_option("--clients", settings->limits.clients, "maximum number of connected clients")
+  command.add_option("--clients", settings.limits.clients, "maximum number of connected clients")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command->add_flag("--log", settings->log,
-                    "print all frames as lines of candump -L, and the addresses on standard error");
-  command->callback([settings, &exit_code] { exit_code = serve(*settings); });
+  command.add_flag("--log", settings.log,
+                   "print all frames as lines of candump -L, and the addresses on standard error");
 }
 
 }  // namespace edsc

@@ -14,6 +14,7 @@
 #include "diagnostics/unknown_rule.hpp"
 #include "load/load_device.hpp"
 #include "shared/common_options.hpp"
+#include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/left_out_text.hpp"
 #include "text/printable.hpp"
@@ -66,16 +67,8 @@ int explain(const Rule& rule, const std::string& format) {
   return exit_fine;
 }
 
-int list_rules(const std::string& format) {
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (const Rule& rule : all_rules()) {
-    if (format == "text") {
-      print_visibly(stdout, "{:<28} {:<8} {} ({})\n", rule.id, to_string(rule.severity), rule.meaning, rule.source);
-    }
-    rows.push_back(to_json(rule));
-  }
-  if (format != "text") fmt::print("{}\n", json_text(rows));
-  return exit_fine;
+std::string to_line(const Rule& rule) {
+  return fmt::format("{:<28} {:<8} {} ({})", rule.id, to_string(rule.severity), rule.meaning, rule.source);
 }
 
 nlohmann::ordered_json to_json(const OptionRow& row) {
@@ -87,14 +80,17 @@ nlohmann::ordered_json to_json(const OptionRow& row) {
   return json;
 }
 
-int list_options(const std::string& format) {
+std::string to_line(const OptionRow& row) {
+  const std::string_view value = row.default_text.empty() ? row.default_value : row.default_text;
+  return fmt::format("{:<36} {}{}", row.name, row.meaning, value.empty() ? "" : fmt::format(" (default: {})", value));
+}
+
+/// Lists a table, a row on each line, or as JSON.
+template <class Rows>
+int list(const Rows& table, const std::string& format) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (const OptionRow& row : options_table) {
-    const std::string_view value = row.default_text.empty() ? row.default_value : row.default_text;
-    if (format == "text") {
-      print_visibly(stdout, "{:<36} {}{}\n", row.name, row.meaning,
-                    value.empty() ? "" : fmt::format(" (default: {})", value));
-    }
+  for (const auto& row : table) {
+    if (format == "text") print_visibly(stdout, "{}\n", to_line(row));
     rows.push_back(to_json(row));
   }
   if (format != "text") fmt::print("{}\n", json_text(rows));
@@ -164,8 +160,8 @@ class Report {
 };
 
 int check(const Settings& settings) {
-  if (settings.list_rules) return list_rules(settings.format);
-  if (settings.list_options) return list_options(settings.format);
+  if (settings.list_rules) return list(all_rules(), settings.format);
+  if (settings.list_options) return list(options_table, settings.format);
   if (!settings.explained_rule.empty()) return explain(*find_rule(settings.explained_rule), settings.format);
   if (settings.paths.empty()) {
     print_visibly(stderr, "edsc check: FILE is required\n");
@@ -199,27 +195,21 @@ std::string check_rule(const std::string& id) {
 
 }  // namespace
 
-void add_check_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("check", "check EDS, DCF and XDD files");
-  command->footer(examples);
-  auto settings = std::make_shared<Settings>();
-  command->add_option("FILE", settings->paths, "EDS, DCF, XDD or XDC files");
-  command->add_option("--format", settings->format, "text, json or sarif")
-      ->check(CLI::IsMember({"text", "json", "sarif"}))
-      ->capture_default_str();
-  command->add_option("--options", settings->options_path,
-                      "options file (default: FILE's name with .options.json, if there)");
-  add_node_id_option(*command, settings->node_id);
-  command->add_option("--silence", settings->silence, "rule not to report; may be given more than once")
+void add_check_options(CLI::App& command, int& exit_code) {
+  Settings& settings = define_command(command, examples, check, exit_code);
+  command.add_option("FILE", settings.paths, "EDS, DCF, XDD or XDC files");
+  add_choice(command, "--format", settings.format, {"text", "json", "sarif"}, "text, json or sarif");
+  add_options_option(command, settings.options_path);
+  add_node_id_option(command, settings.node_id);
+  command.add_option("--silence", settings.silence, "rule not to report; may be given more than once")
       ->allow_extra_args(false)
       ->check(check_rule);
-  command->add_flag("--keep-going", settings->keep_going, keep_going_help);
-  command->add_flag("--strict", settings->strict, "warnings count as errors; notes do not");
-  command->add_flag("--list-rules", settings->list_rules, "list the rules and end");
-  command->add_flag("--list-options", settings->list_options, "list the members of an options file and end");
-  command->add_option("--explain", settings->explained_rule, "describe a rule and end")->check(check_rule);
-  settings->color.add_to(*command);
-  command->callback([settings, &exit_code] { exit_code = check(*settings); });
+  command.add_flag("--keep-going", settings.keep_going, keep_going_help);
+  command.add_flag("--strict", settings.strict, "warnings count as errors; notes do not");
+  command.add_flag("--list-rules", settings.list_rules, "list the rules and end");
+  command.add_flag("--list-options", settings.list_options, "list the members of an options file and end");
+  command.add_option("--explain", settings.explained_rule, "describe a rule and end")->check(check_rule);
+  settings.color.add_to(command);
 }
 
 }  // namespace edsc

@@ -5,53 +5,57 @@
 
 namespace edsc {
 
-/// Each adds its subcommand; when that is chosen, parsing runs it and stores its exit code.
-void add_generate_command(CLI::App& app, int& exit_code);
-void add_check_command(CLI::App& app, int& exit_code);
-void add_dump_command(CLI::App& app, int& exit_code);
-void add_format_command(CLI::App& app, int& exit_code);
-void add_diff_command(CLI::App& app, int& exit_code);
-void add_decode_command(CLI::App& app, int& exit_code);
-/// Describes all subcommands of `app`, including those added later.
-void add_completion_command(CLI::App& app, int& exit_code);
-void add_bus_command(CLI::App& app, int& exit_code);
-void add_scan_command(CLI::App& app, int& exit_code);
-void add_read_command(CLI::App& app, int& exit_code);
-void add_write_command(CLI::App& app, int& exit_code);
-void add_configure_command(CLI::App& app, int& exit_code);
-void add_save_command(CLI::App& app, int& exit_code);
-void add_conform_command(CLI::App& app, int& exit_code);
-void add_monitor_command(CLI::App& app, int& exit_code);
-void add_record_command(CLI::App& app, int& exit_code);
-void add_nmt_command(CLI::App& app, int& exit_code);
-void add_lss_command(CLI::App& app, int& exit_code);
+/// Each adds the options and examples of its command; when that is chosen, parsing runs it and stores its exit code.
+using AddOptions = void(CLI::App& command, int& exit_code);
 
-/// A command and the group that the help and the manual page list it in.
+AddOptions add_generate_options;
+AddOptions add_check_options;
+AddOptions add_dump_options;
+AddOptions add_format_options;
+AddOptions add_diff_options;
+AddOptions add_scan_options;
+AddOptions add_read_options;
+AddOptions add_write_options;
+AddOptions add_configure_options;
+AddOptions add_save_options;
+AddOptions add_monitor_options;
+AddOptions add_nmt_options;
+AddOptions add_lss_options;
+AddOptions add_conform_options;
+AddOptions add_bus_options;
+AddOptions add_record_options;
+AddOptions add_decode_options;
+AddOptions add_completion_options;
+
+/// A command, and the group that the help and the manual page list it in.
 struct CommandRow {
   const char* group;
-  void (*add)(CLI::App& app, int& exit_code);
+  const char* name;
+  const char* description;
+  AddOptions* add_options;
 };
 
 /// In the order of the help.
 inline constexpr CommandRow commands[] = {
-    {"EDS files", add_generate_command},
-    {"EDS files", add_check_command},
-    {"EDS files", add_dump_command},
-    {"EDS files", add_format_command},
-    {"EDS files", add_diff_command},
-    {"Bus", add_scan_command},
-    {"Bus", add_read_command},
-    {"Bus", add_write_command},
-    {"Bus", add_configure_command},
-    {"Bus", add_save_command},
-    {"Bus", add_monitor_command},
-    {"Bus", add_nmt_command},
-    {"Bus", add_lss_command},
-    {"Bus", add_conform_command},
-    {"Bus", add_bus_command},
-    {"Logs", add_record_command},
-    {"Logs", add_decode_command},
-    {"Shell", add_completion_command},
+    {"EDS files", "generate", "generate C++ headers for one device", add_generate_options},
+    {"EDS files", "check", "check EDS, DCF and XDD files", add_check_options},
+    {"EDS files", "dump", "print the resolved device as JSON", add_dump_options},
+    {"EDS files", "format", "write an EDS or DCF in canonical form; make DCFs; convert XDD and XDC",
+     add_format_options},
+    {"EDS files", "diff", "compare two EDS files; report breaking changes", add_diff_options},
+    {"Bus", "scan", "find and identify the nodes on a bus", add_scan_options},
+    {"Bus", "read", "read objects of a node over SDO", add_read_options},
+    {"Bus", "write", "write an object of a node over SDO", add_write_options},
+    {"Bus", "configure", "write the values of a DCF that differ from those of a node", add_configure_options},
+    {"Bus", "save", "read the configuration of a node and write it as a DCF", add_save_options},
+    {"Bus", "monitor", "show nodes, states, PDO values, rates and load of a bus, live", add_monitor_options},
+    {"Bus", "nmt", "start, stop or reset nodes", add_nmt_options},
+    {"Bus", "lss", "configure node-ID and bit rate of devices (CiA 305)", add_lss_options},
+    {"Bus", "conform", "test a node against CiA 301 and its EDS", add_conform_options},
+    {"Bus", "bus", "virtual CAN buses on this machine, for socketcand clients", add_bus_options},
+    {"Logs", "record", "write the frames of a bus as a candump log", add_record_options},
+    {"Logs", "decode", "decode the frames of a candump log", add_decode_options},
+    {"Shell", "completion", "print the completion for a shell, or the manual page", add_completion_options},
 };
 
 }  // namespace edsc

@@ -1,9 +1,10 @@
 #include <fmt/format.h>
 
-#include <memory>
+#include <string>
 
 #include "commands/commands.hpp"
-#include "completion/command_description.hpp"
+#include "completion/command_parts.hpp"
+#include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 
 namespace edsc {
@@ -14,23 +15,28 @@ constexpr const char* examples = R"(Examples:
   edsc completion zsh >~/.zfunc/_edsc          for zsh, in a folder of its fpath
   edsc completion man | man -l -               the manual page)";
 
-std::string text_of(const std::string& kind, const CommandDescription& program) {
-  if (kind == "bash") return bash_completion(program);
-  if (kind == "zsh") return zsh_completion(program);
-  return man_page(program, EDSC_VERSION);
+struct Settings {
+  const CLI::App* program = nullptr;
+  std::string kind;
+};
+
+std::string text_of(const Settings& settings) {
+  if (settings.kind == "bash") return bash_completion(*settings.program);
+  if (settings.kind == "zsh") return zsh_completion(*settings.program);
+  return man_page(*settings.program, EDSC_VERSION);
+}
+
+int run_completion(const Settings& settings) {
+  fmt::print("{}", text_of(settings));
+  return exit_fine;
 }
 
 }  // namespace
 
-void add_completion_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("completion", "print the completion for a shell, or the manual page");
-  command->footer(examples);
-  auto kind = std::make_shared<std::string>();
-  command->add_option("KIND", *kind, "what to print")->required()->check(CLI::IsMember({"bash", "zsh", "man"}));
-  command->callback([kind, &app, &exit_code] {
-    fmt::print("{}", text_of(*kind, describe_commands(app)));
-    exit_code = exit_fine;
-  });
+void add_completion_options(CLI::App& command, int& exit_code) {
+  Settings& settings = define_command(command, examples, run_completion, exit_code);
+  settings.program = command.get_parent();
+  command.add_option("KIND", settings.kind, "what to print")->required()->check(CLI::IsMember({"bash", "zsh", "man"}));
 }
 
 }  // namespace edsc

@@ -1,9 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <csignal>
 #include <cstdlib>
-#include <fstream>
 #include <map>
 #include <memory>
 
@@ -21,13 +19,12 @@
 #include "online/live_bus.hpp"
 #include "online/simulated_port.hpp"
 #include "shared/common_options.hpp"
+#include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/live_device.hpp"
 #include "shared/live_options.hpp"
 #include "shared/output.hpp"
 #include "shared/with_bus.hpp"
-#include "text/printable.hpp"
-#include "text/write_files.hpp"
 
 namespace edsc {
 namespace {
@@ -47,10 +44,9 @@ constexpr const char* examples = R"(Examples:
   edsc conform socketcan:can0 5 drive.eds --stimulus 5.4="ssh bench pull-sensor-plug"
   edsc conform --list                                              all cases, with the clause)";
 
-struct Settings {
-  std::string bus;
-  std::uint8_t node = 0;
+struct Settings : NodeSettings {
   std::string sheet;
+  std::string options;
   std::string level = "read";
   bool store = false, application = false, outputs = false;
   std::vector<std::string> only;
@@ -59,8 +55,8 @@ struct Settings {
   bool list = false;
   bool quiet = false;
   std::uint32_t seed = 1;
-  SdoSettings sdo;
   ColorOption color;
+  std::vector<const CLI::Option*> required;  ///< unless `list`
 };
 
 /// Tolerance for times on a real bus: half a tick of 100 Hz, and the preceding frames on the bus.
@@ -136,12 +132,13 @@ void list_cases() {
   }
 }
 
-/// The device of the EDS and its findings. Null if the file cannot be read, with the reason printed.
+/// The device of the EDS and its findings. Null if a file cannot be read, with the reason printed.
 std::unique_ptr<LoadedDevice> load_sheet(const Settings& settings, conform::SheetFindings& findings) {
   Diagnostics diagnostics;
   diagnostics.drop_notes();
   LoadSettings load;
   load.path = settings.sheet;
+  load.options_path = settings.options;
   load.node_id = settings.node;
   auto loaded = load_device(load, diagnostics);
   findings = conform::sheet_findings(diagnostics);
@@ -170,10 +167,7 @@ std::optional<DeclaredDeviations> load_deviations(const Settings& settings) {
   if (settings.deviations.empty()) return declared;
   std::string problem;
   declared.source = read_source_file(settings.deviations, problem);
-  if (!declared.source) {
-    print_visibly(stderr, "edsc: {}\n", problem);
-    return std::nullopt;
-  }
+  if (!declared.source) fail(problem);
   Diagnostics diagnostics;
   declared.all = conform::read_deviations(*declared.source, diagnostics);
   print_findings(stderr, diagnostics, settings.color);
@@ -194,15 +188,13 @@ constexpr ReportFile report_files[] = {
     {&Settings::log, [](const RunReport& run, const Device&) { return conform::candump_log(run); }},
 };
 
-/// Returns false if one of them cannot be written; the reason is printed.
-bool write_reports(const Settings& settings, const RunReport& report, const Device& sheet) {
+/// Ends the command if one of them cannot be written.
+void write_reports(const Settings& settings, const RunReport& report, const Device& sheet) {
   std::vector<OutputFile> files;
   for (const ReportFile& row : report_files) {
     if (!(settings.*row.path).empty()) files.push_back({settings.*row.path, row.make(report, sheet)});
   }
-  const std::string problem = write_files(files, {settings.sheet, settings.deviations});
-  if (!problem.empty()) print_visibly(stderr, "edsc: {}\n", problem);
-  return problem.empty();
+  write_all_files(files, {settings.sheet, settings.deviations});
 }
 
 /// Runs the cases and prints their results as they complete.
@@ -238,6 +230,13 @@ void run_and_print(LiveBus& bus, const Settings& settings, const LoadedDevice& l
 }
 
 int run_conform(const Settings& settings) {
+  if (settings.list) {
+    list_cases();
+    return exit_fine;
+  }
+  for (const CLI::Option* option : settings.required) {
+    if (option->count() == 0) throw CLI::RequiredError(option->get_name());
+  }
   conform::SheetFindings findings;
   const auto loaded = load_sheet(settings, findings);
   const auto deviations = load_deviations(settings);
@@ -253,13 +252,14 @@ int run_conform(const Settings& settings) {
   RunReport report;
   report.bus = settings.bus;
   report.sheet = settings.sheet;
+  report.options = settings.options;
   report.sheet_hash = hash_of_file(settings.sheet);
   report.product = loaded->device->product_name;
   report.vendor = loaded->device->vendor_name;
   report.version = EDSC_VERSION;
   return with_bus(settings.bus, [&](LiveBus& bus) {
     run_and_print(bus, settings, *loaded, run, *deviations, report);
-    if (!write_reports(settings, report, *loaded->device)) return exit_wrong_usage;
+    write_reports(settings, report, *loaded->device);
     if (report.interrupted) return exit_interrupted;
     return report.passed() ? exit_fine : exit_device_failed;
   });
@@ -267,23 +267,19 @@ int run_conform(const Settings& settings) {
 
 }  // namespace
 
-void add_conform_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("conform", "test a node against CiA 301 and its EDS");
-  command->footer(examples);
-  auto settings = std::make_shared<Settings>();
-  auto* bus = add_bus_argument(*command, settings->bus);
-  auto* node = add_node_argument(*command, settings->node);
-  auto* sheet =
-      command->add_option("FILE", settings->sheet, "description of the node: EDS, DCF, XDD or XDC")->required();
-  command->add_option("--level", settings->level, "what the test may do to the node: read, communication or all")
-      ->check(CLI::IsMember({"read", "communication", "all"}))
-      ->capture_default_str();
-  command->add_flag("--store", settings->store,
-                    "store and restore parameters (1010h, 1011h), then restore the original values");
-  command->add_flag("--application", settings->application,
-                    "write objects from 2000h, then restore the original values");
-  command->add_flag("--outputs", settings->outputs, "send RPDOs and SYNC: outputs may move");
-  command->add_option("--only", settings->only, "cases to run: 2.5 or 3.*; may be given more than once")
+void add_conform_options(CLI::App& command, int& exit_code) {
+  Settings& settings = define_command(command, examples, run_conform, exit_code);
+  auto* bus = add_bus_argument(command, settings.bus);
+  auto* node = add_node_argument(command, settings.node);
+  auto* sheet = command.add_option("FILE", settings.sheet, "description of the node: EDS, DCF, XDD or XDC")->required();
+  add_options_option(command, settings.options);
+  add_choice(command, "--level", settings.level, {"read", "communication", "all"},
+             "what the test may do to the node: read, communication or all");
+  command.add_flag("--store", settings.store,
+                   "store and restore parameters (1010h, 1011h), then restore the original values");
+  command.add_flag("--application", settings.application, "write objects from 2000h, then restore the original values");
+  command.add_flag("--outputs", settings.outputs, "send RPDOs and SYNC: outputs may move");
+  command.add_option("--only", settings.only, "cases to run: 2.5 or 3.*; may be given more than once")
       ->type_name("CASE")
       ->allow_extra_args(false)
       ->check([](const std::string& pattern) {
@@ -292,38 +288,27 @@ void add_conform_command(CLI::App& app, int& exit_code) {
             std::ranges::any_of(rows, [&](const CaseRow* row) { return conform::matches(pattern, row->id); });
         return names_one ? std::string{} : "unknown case \"" + pattern + "\"; --list prints the cases";
       });
-  command->add_option("--stimulus", settings->stimuli, "command that acts on the node in a case: 5.4=COMMAND")
+  command.add_option("--stimulus", settings.stimuli, "command that acts on the node in a case: 5.4=COMMAND")
       ->type_name("CASE=COMMAND")
       ->allow_extra_args(false)
       ->check([](const std::string& text) {
         return text.find('=') != std::string::npos ? std::string{} : "\"" + text + "\" is not CASE=COMMAND";
       });
   command
-      ->add_option("--deviations", settings->deviations,
-                   "declared deviations of the node, with their reasons: a JSON file")
+      .add_option("--deviations", settings.deviations,
+                  "declared deviations of the node, with their reasons: a JSON file")
       ->type_name("FILE");
-  command->add_option("--html", settings->html, "write the report as one HTML file")->type_name("FILE");
-  command->add_option("--junit", settings->junit, "write it as JUnit XML")->type_name("FILE");
-  command->add_option("--json", settings->json, "write it as JSON")->type_name("FILE");
-  command->add_option("--log", settings->log, "write the frames as a candump log")->type_name("FILE");
-  command->add_option("--seed", settings->seed, "seed of the randomly chosen accesses")->capture_default_str();
-  command->add_flag("--quiet", settings->quiet, "print only failures and the result");
-  add_timeout_option(*command, settings->sdo.timeout_ms);
-  settings->color.add_to(*command);
-  command->add_flag_callback(
-      "--list", [settings] { settings->list = true; }, "list the cases and what they need, and end");
+  command.add_option("--html", settings.html, "write the report as one HTML file")->type_name("FILE");
+  command.add_option("--junit", settings.junit, "write it as JUnit XML")->type_name("FILE");
+  command.add_option("--json", settings.json, "write it as JSON")->type_name("FILE");
+  command.add_option("--log", settings.log, "write the frames as a candump log")->type_name("FILE");
+  command.add_option("--seed", settings.seed, "seed of the randomly chosen accesses")->capture_default_str();
+  command.add_flag("--quiet", settings.quiet, "print only failures and the result");
+  add_timeout_option(command, settings.sdo.timeout_ms);
+  settings.color.add_to(command);
+  command.add_flag("--list", settings.list, "list the cases and what they need, and end");
   for (CLI::Option* option : {bus, node, sheet}) option->required(false);
-  command->callback([settings, bus, node, sheet, &exit_code] {
-    if (settings->list) {
-      list_cases();
-      exit_code = exit_fine;
-      return;
-    }
-    for (const CLI::Option* option : {bus, node, sheet}) {
-      if (option->count() == 0) throw CLI::RequiredError(option->get_name());
-    }
-    exit_code = run_conform(*settings);
-  });
+  settings.required = {bus, node, sheet};
 }
 
 }  // namespace edsc

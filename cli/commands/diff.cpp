@@ -10,6 +10,7 @@
 #include "diagnostics/rule.hpp"
 #include "load/load_device.hpp"
 #include "shared/common_options.hpp"
+#include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/git_file.hpp"
 #include "text/printable.hpp"
@@ -117,7 +118,15 @@ void print(Pair& pair, const Settings& settings) {
                                : new_file_as_markdown(after));
 }
 
+void check_files(const Settings& settings) {
+  if (settings.against.empty() && settings.files.size() != 2) {
+    throw CLI::ValidationError("FILE", "expected two files, OLD and NEW; --against git:REF accepts any number");
+  }
+  if (settings.against.empty() && settings.allow_new) throw CLI::RequiresError("--allow-new", "--against");
+}
+
 int diff(const Settings& settings) {
+  check_files(settings);
   auto pairs = load_pairs(settings);
   if (!pairs) return exit_wrong_usage;
   Changes all;
@@ -139,45 +148,25 @@ int diff(const Settings& settings) {
   return fails ? exit_input_has_errors : exit_fine;
 }
 
-void check_files(const Settings& settings) {
-  if (settings.against.empty() && settings.files.size() != 2) {
-    throw CLI::ValidationError("FILE", "expected two files, OLD and NEW; --against git:REF accepts any number");
-  }
-  if (settings.against.empty() && settings.allow_new) throw CLI::RequiresError("--allow-new", "--against");
-}
-
 }  // namespace
 
-void add_diff_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("diff", "compare two EDS files; report breaking changes");
-  command->footer(examples);
-  auto settings = std::make_shared<Settings>();
-  command->add_option("FILE", settings->files, "OLD and NEW, each an EDS, DCF, XDD or XDC; with --against NEW files")
+void add_diff_options(CLI::App& command, int& exit_code) {
+  Settings& settings = define_command(command, examples, diff, exit_code);
+  command.add_option("FILE", settings.files, "OLD and NEW, each an EDS, DCF, XDD or XDC; with --against NEW files")
       ->required();
-  command->add_option("--against", settings->against, "git:REF: compare each FILE with the one of this git revision")
+  command.add_option("--against", settings.against, "git:REF: compare each FILE with the one of this git revision")
       ->check([](const std::string& value) {
         const bool is_git = value.starts_with(git_prefix) && value.size() > git_prefix.size();
         return is_git ? std::string{} : fmt::format("expected git:REF, got {}", value);
       });
-  command->add_flag("--allow-new", settings->allow_new, "with --against: a FILE that REF does not have is new");
-  command->add_option("--format", settings->format, "text, json or markdown")
-      ->check(CLI::IsMember({"text", "json", "markdown"}))
-      ->capture_default_str();
-  command
-      ->add_option("--audience", settings->audience,
-                   "whose breaking changes to report: all, wire (masters, PDO partners) or source (C++ code)")
-      ->check(CLI::IsMember({"all", "wire", "source"}))
-      ->capture_default_str();
-  command->add_option("--fail-on", settings->fail_on, "changes that cause exit code 1")
-      ->check(CLI::IsMember({"breaking", "any", "never"}))
-      ->capture_default_str();
-  add_node_id_option(*command, settings->node_id);
-  command->add_flag("--keep-going", settings->keep_going, "compare despite errors; what is wrong is left out");
-  settings->color.add_to(*command);
-  command->callback([settings, &exit_code] {
-    check_files(*settings);
-    exit_code = diff(*settings);
-  });
+  command.add_flag("--allow-new", settings.allow_new, "with --against: a FILE that REF does not have is new");
+  add_choice(command, "--format", settings.format, {"text", "json", "markdown"}, "text, json or markdown");
+  add_choice(command, "--audience", settings.audience, {"all", "wire", "source"},
+             "whose breaking changes to report: all, wire (masters, PDO partners) or source (C++ code)");
+  add_choice(command, "--fail-on", settings.fail_on, {"breaking", "any", "never"}, "changes that cause exit code 1");
+  add_node_id_option(command, settings.node_id);
+  command.add_flag("--keep-going", settings.keep_going, "compare despite errors; what is wrong is left out");
+  settings.color.add_to(command);
 }
 
 }  // namespace edsc

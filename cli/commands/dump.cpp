@@ -8,6 +8,7 @@
 #include "device/broken_pdos.hpp"
 #include "load/load_device.hpp"
 #include "shared/common_options.hpp"
+#include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 #include "text/printable.hpp"
 
@@ -47,26 +48,20 @@ int dump(const Settings& settings) {
   print_findings(stderr, diagnostics, settings.color);
   if (loaded->unreadable) return exit_wrong_usage;
   const bool failed = !loaded->device || is_incomplete(diagnostics);
-  if (!failed) {
-    fmt::print("{}\n", json_text(view));
-  }
+  if (!failed) fmt::print("{}\n", json_text(view));
   return failed ? exit_input_has_errors : exit_fine;
 }
 
 }  // namespace
 
-void add_dump_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("dump", "print the resolved device as JSON");
-  command->footer(examples);
-  auto settings = std::make_shared<Settings>();
-  command->add_option("FILE", settings->load.path, "EDS, DCF, XDD or XDC")->required();
-  add_node_id_option(*command, settings->load.node_id);
-  command->add_option("--options", settings->load.options_path,
-                      "options file (default: FILE's name with .options.json, if there)");
-  command->add_flag("--cpp", settings->cpp, "add the view of the C++ templates");
-  command->add_flag("--keep-going", settings->load.keep_going, keep_going_help);
-  settings->color.add_to(*command);
-  command->callback([settings, &exit_code] { exit_code = dump(*settings); });
+void add_dump_options(CLI::App& command, int& exit_code) {
+  Settings& settings = define_command(command, examples, dump, exit_code);
+  command.add_option("FILE", settings.load.path, "EDS, DCF, XDD or XDC")->required();
+  add_node_id_option(command, settings.load.node_id);
+  add_options_option(command, settings.load.options_path);
+  command.add_flag("--cpp", settings.cpp, "add the view of the C++ templates");
+  command.add_flag("--keep-going", settings.load.keep_going, keep_going_help);
+  settings.color.add_to(command);
 }
 
 }  // namespace edsc

@@ -13,11 +13,11 @@
 #include "format/move_values.hpp"
 #include "format/sheet_document.hpp"
 #include "shared/common_options.hpp"
+#include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/output.hpp"
 #include "text/printable.hpp"
 #include "text/source_file.hpp"
-#include "text/write_files.hpp"
 #include "xdd/read_xdd.hpp"
 
 namespace edsc {
@@ -134,34 +134,22 @@ bool is_file_of(const SourceFile& source, const std::string& path) {
   return std::filesystem::equivalent(source.name(), path, error);
 }
 
-int write(const Settings& settings, const SourceFile& source, const std::string& path, std::string content) {
-  if (path.empty()) {
-    write_output(content);
-    return exit_fine;
+void write(const Settings& settings, const SourceFile& source, const std::string& path, std::string content) {
+  if (source.packing() == Packing::gzip && is_file_of(source, path)) {
+    fail(fmt::format("{}: a gzip file is not replaced by its text; name another file with -o", path));
   }
-  if (is_file_of(source, path) && source.packing() == Packing::gzip) {
-    print_visibly(stderr, "edsc: {}: a gzip file is not replaced by its text; name another file with -o\n", path);
-    return exit_wrong_usage;
-  }
-  if (const std::string problem = write_files({{path, std::move(content)}}); !problem.empty()) {
-    print_visibly(stderr, "edsc: {}\n", problem);
-    return exit_wrong_usage;
-  }
+  write_output(path, std::move(content));
   const bool is_utf8 = source.encoding() == Encoding::ascii || source.encoding() == Encoding::utf8;
-  if (!is_utf8 && !settings.concise) {
+  if (!path.empty() && !is_utf8 && !settings.concise) {
     print_visibly(stderr, "edsc: {}: converted from {} to UTF-8\n", path, to_string(source.encoding()));
   }
-  return exit_fine;
 }
 
 int format_file(const Settings& settings, const std::string& path) {
   Input input;
   std::string error;
   input.file = read_source_file(path, error);
-  if (!input.file) {
-    print_visibly(stderr, "edsc: {}\n", error);
-    return exit_wrong_usage;
-  }
+  if (!input.file) fail(error);
   Diagnostics diagnostics;
   if (is_xml(*input.file)) {
     if (settings.check || settings.in_place) {
@@ -172,9 +160,7 @@ int format_file(const Settings& settings, const std::string& path) {
     }
   }
   if (input.has_values_for_eds) {
-    print_visibly(
-        stderr, "edsc: {}: an XDC has the values of one node, which an EDS cannot have; name the output .dcf\n", path);
-    return exit_wrong_usage;
+    fail(path + ": an XDC has the values of one node, which an EDS cannot have; name the output .dcf");
   }
   if (diagnostics.errors() == 0) read(settings, input, diagnostics);
   if (diagnostics.errors() == 0) move_to_node(settings, input, diagnostics);
@@ -185,13 +171,8 @@ int format_file(const Settings& settings, const std::string& path) {
   print_findings(stderr, diagnostics, settings.color);
   if (diagnostics.errors() > 0) return exit_input_has_errors;
   if (settings.check) return check(*input.file, content);
-  return write(settings, *input.file, settings.in_place ? path : settings.output, std::move(content));
-}
-
-int format(const Settings& settings) {
-  int worst = exit_fine;
-  for (const std::string& path : settings.paths) worst = std::max(worst, format_file(settings, path));
-  return worst;
+  write(settings, *input.file, settings.in_place ? path : settings.output, std::move(content));
+  return exit_fine;
 }
 
 void check_usage(const Settings& settings) {
@@ -206,34 +187,40 @@ void check_usage(const Settings& settings) {
   }
 }
 
+int format(const Settings& settings) {
+  check_usage(settings);
+  int worst = exit_fine;
+  for (const std::string& path : settings.paths) {
+    try {
+      worst = std::max(worst, format_file(settings, path));
+    } catch (const Exit& exit) {  // of this file
+      worst = std::max(worst, exit.code);
+    }
+  }
+  return worst;
+}
+
 }  // namespace
 
-void add_format_command(CLI::App& app, int& exit_code) {
-  CLI::App* command =
-      app.add_subcommand("format", "write an EDS or DCF in canonical form; make DCFs; convert XDD and XDC");
-  command->footer(examples);
-  auto settings = std::make_shared<Settings>();
-  command->add_option("FILE", settings->paths, "EDS, DCF, XDD or XDC; - is standard input")->required();
+void add_format_options(CLI::App& command, int& exit_code) {
+  Settings& settings = define_command(command, examples, format, exit_code);
+  command.add_option("FILE", settings.paths, "EDS, DCF, XDD or XDC; - is standard input")->required();
   auto* output =
-      command->add_option("-o,--output", settings->output, "file to write; may be FILE (default: standard output)");
-  auto* in_place = command->add_flag("-i,--in-place", settings->in_place, "write each FILE itself");
-  auto* check = command->add_flag("--check", settings->check,
-                                  "write nothing; list each FILE that is not canonical; exit code 1 if there is one");
-  auto* dcf = command->add_flag("--dcf", settings->dcf,
-                                "make a DCF: [DeviceComissioning], and the ParameterValues that differ from defaults");
-  auto* all = command->add_flag("--all", settings->all, "with --dcf: a ParameterValue for each writable entry");
-  auto* concise = command->add_flag("--concise", settings->concise,
-                                    "write the concise DCF: what differs from the defaults, as object 1F22h holds it");
-  add_node_id_option(*command, settings->node_id);
-  settings->color.add_to(*command);
+      command.add_option("-o,--output", settings.output, "file to write; may be FILE (default: standard output)");
+  auto* in_place = command.add_flag("-i,--in-place", settings.in_place, "write each FILE itself");
+  auto* check = command.add_flag("--check", settings.check,
+                                 "write nothing; list each FILE that is not canonical; exit code 1 if there is one");
+  auto* dcf = command.add_flag("--dcf", settings.dcf,
+                               "make a DCF: [DeviceComissioning], and the ParameterValues that differ from defaults");
+  auto* all = command.add_flag("--all", settings.all, "with --dcf: a ParameterValue for each writable entry");
+  auto* concise = command.add_flag("--concise", settings.concise,
+                                   "write the concise DCF: what differs from the defaults, as object 1F22h holds it");
+  add_node_id_option(command, settings.node_id);
+  settings.color.add_to(command);
   check->excludes(output)->excludes(dcf)->excludes(concise)->excludes(in_place);
   in_place->excludes(output)->excludes(dcf)->excludes(concise);
   dcf->excludes(concise)->needs("--node-id");
   all->needs(dcf);
-  command->callback([settings, &exit_code] {
-    check_usage(*settings);
-    exit_code = format(*settings);
-  });
 }
 
 }  // namespace edsc

@@ -10,8 +10,10 @@
 #include "device/identifier.hpp"
 #include "load/load_device.hpp"
 #include "shared/common_options.hpp"
+#include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/left_out_text.hpp"
+#include "shared/output.hpp"
 #include "text/printable.hpp"
 #include "text/write_files.hpp"
 
@@ -146,11 +148,7 @@ int generate(const Settings& settings) {
   if (settings.load.keep_going || diagnostics.any_silenced() || !lists_all(diagnostics)) {
     fmt::print(stderr, "{}", left_out_text(left_out));
   }
-
-  if (const std::string problem = write_files(files, inputs); !problem.empty()) {
-    print_visibly(stderr, "edsc: {}\n", problem);
-    return exit_wrong_usage;
-  }
+  write_all_files(files, inputs);
   if (settings.verbose) {
     for (const OutputFile& file : files) print_visibly(stdout, "{}\n", file.path);
   }
@@ -159,33 +157,28 @@ int generate(const Settings& settings) {
 
 }  // namespace
 
-void add_generate_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("generate", "generate C++ headers for one device");
-  command->footer(examples);
-  auto settings = std::make_shared<Settings>();
-  command->add_option("FILE", settings->load.path, "EDS, DCF, XDD or XDC")->required();
-  command->add_option("-o,--output", settings->output, "folder; the headers are written to its subfolder NAME")
+void add_generate_options(CLI::App& command, int& exit_code) {
+  Settings& settings = define_command(command, examples, generate, exit_code);
+  command.add_option("FILE", settings.load.path, "EDS, DCF, XDD or XDC")->required();
+  command.add_option("-o,--output", settings.output, "folder; the headers are written to its subfolder NAME")
       ->required();
-  command->add_option("--name", settings->load.name, "C++ namespace (default: the file's name)")
+  command.add_option("--name", settings.load.name, "C++ namespace (default: the file's name)")
       ->check([](const std::string& name) {
         if (!name.empty() && to_namespace(name) == name) return std::string{};
         return fmt::format("expected a namespace in snake_case, such as \"{1}\", not \"{0}\"", name,
                            to_namespace(name));
       });
-  add_node_id_option(*command, settings->load.node_id);
-  command->add_option("--options", settings->load.options_path,
-                      "options file (default: FILE's name with .options.json, if there)");
-  command->add_flag("--static-mapping", settings->load.static_mapping,
-                    "no PDO can be mapped over the bus, for smaller firmware");
-  command->add_option("--templates", settings->templates, "folder with templates that replace the built-in ones")
+  add_node_id_option(command, settings.load.node_id);
+  add_options_option(command, settings.load.options_path);
+  command.add_flag("--static-mapping", settings.load.static_mapping,
+                   "no PDO can be mapped over the bus, for smaller firmware");
+  command.add_option("--templates", settings.templates, "folder with templates that replace the built-in ones")
       ->check(CLI::ExistingDirectory);
-  command->add_option("--depfile", settings->depfile, "write what the headers depend on, for make and ninja");
-  command->add_option("--depfile-target", settings->depfile_target,
-                      "target of the dependencies (default: the headers)");
-  command->add_flag("--keep-going", settings->load.keep_going, keep_going_help);
-  command->add_flag("-v,--verbose", settings->verbose, "print the names of the files that are written");
-  settings->color.add_to(*command);
-  command->callback([settings, &exit_code] { exit_code = generate(*settings); });
+  command.add_option("--depfile", settings.depfile, "write what the headers depend on, for make and ninja");
+  command.add_option("--depfile-target", settings.depfile_target, "target of the dependencies (default: the headers)");
+  command.add_flag("--keep-going", settings.load.keep_going, keep_going_help);
+  command.add_flag("-v,--verbose", settings.verbose, "print the names of the files that are written");
+  settings.color.add_to(command);
 }
 
 }  // namespace edsc

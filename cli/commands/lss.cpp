@@ -4,6 +4,8 @@
 
 #include "commands/commands.hpp"
 #include "online/lss_session.hpp"
+#include "shared/common_options.hpp"
+#include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/live_options.hpp"
 #include "shared/output.hpp"
@@ -36,23 +38,19 @@ struct Settings {
   unsigned step_ms = 20;
   std::string format = "text";
   std::optional<std::uint32_t> vendor, product, revision, serial;
-  unsigned node_id = 0;
+  std::uint8_t node_id = 0;
   std::optional<unsigned> kbit;
   bool store = false;
   std::uint16_t delay_ms = 500;
   LssState state = LssState::waiting;
+  std::string (*service)(LssSession&, const Settings&) = nullptr;  ///< the subcommand; see ServiceRow
 };
 
 using Json = nlohmann::ordered_json;
-using Step = std::function<int(LssSession&, const Settings&)>;
 
-int failed(std::string_view service, const LssResult& result) {
-  print_visibly(stderr, "edsc: {}: {}\n", service, result.failure);
-  return exit_device_failed;
-}
-
-int done_or_failed(std::string_view service, const LssResult& result) {
-  return result.done() ? exit_fine : failed(service, result);
+/// `store: the device does not answer`; empty if the service succeeded.
+std::string problem_of(std::string_view service, const LssResult& result) {
+  return result.done() ? "" : fmt::format("{}: {}", service, result.failure);
 }
 
 Json address_json(const LssAddress& address) {
@@ -79,17 +77,18 @@ std::uint8_t known_numbers(const Settings& settings) {
   return known;
 }
 
-int select(LssSession& session, const Settings& settings) {
-  return done_or_failed("select", session.select(address_of(settings)));
+std::string select(LssSession& session, const Settings& settings) {
+  return problem_of("select", session.select(address_of(settings)));
 }
 
-int switch_state(LssSession& session, const Settings& settings) {
-  return done_or_failed("state", session.switch_state(settings.state));
+std::string switch_state(LssSession& session, const Settings& settings) {
+  return problem_of("state", session.switch_state(settings.state));
 }
 
-int inquire(LssSession& session, const Settings& settings) {
+std::string inquire(LssSession& session, const Settings& settings) {
   LssAddress address;
-  if (const LssResult result = session.inquire_address(address); !result.done()) return failed("inquire", result);
+  const LssResult result = session.inquire_address(address);
+  if (!result.done()) return problem_of("inquire", result);
   const LssResult node_id = session.inquire_node_id();
   const bool has_node_id = node_id.done() && node_id.value != canopen::unconfigured_node_id.value();
   if (settings.format == "json") {
@@ -102,22 +101,22 @@ int inquire(LssSession& session, const Settings& settings) {
                   : has_node_id   ? fmt::format("node-ID {}", node_id.value)
                                   : "no node-ID");
   }
-  return exit_fine;
+  return "";
 }
 
-int configure_node_id(LssSession& session, const Settings& settings) {
-  return done_or_failed("node-id", session.configure_node_id(static_cast<std::uint8_t>(settings.node_id)));
+std::string configure_node_id(LssSession& session, const Settings& settings) {
+  return problem_of("node-id", session.configure_node_id(settings.node_id));
 }
 
-int configure_bit_rate(LssSession& session, const Settings& settings) {
-  return done_or_failed("bit-rate", session.configure_bit_rate(*settings.kbit));
+std::string configure_bit_rate(LssSession& session, const Settings& settings) {
+  return problem_of("bit-rate", session.configure_bit_rate(*settings.kbit));
 }
 
-int activate(LssSession& session, const Settings& settings) {
-  return done_or_failed("activate", session.activate(settings.delay_ms));
+std::string activate(LssSession& session, const Settings& settings) {
+  return problem_of("activate", session.activate(settings.delay_ms));
 }
 
-int store(LssSession& session, const Settings& /*settings*/) { return done_or_failed("store", session.store()); }
+std::string store(LssSession& session, const Settings& /*settings*/) { return problem_of("store", session.store()); }
 
 void print_found(const std::vector<LssAddress>& found) {
   Json json{{"version", 1}, {"unconfigured", Json::array()}};
@@ -126,7 +125,7 @@ void print_found(const std::vector<LssAddress>& found) {
 }
 
 /// Prints the slaves found even if the search is interrupted or fails.
-int fastscan(LssSession& session, const Settings& settings) {
+std::string fastscan(LssSession& session, const Settings& settings) {
   const bool text = settings.format == "text";
   std::vector<LssAddress> found;
   LssResult result;
@@ -143,59 +142,55 @@ int fastscan(LssSession& session, const Settings& settings) {
     throw;
   }
   if (!text) print_found(found);
-  if (!result.done()) return failed("fastscan", result);
-  if (!found.empty()) return exit_fine;
-  return failed("fastscan", {session.reason_for_silence(), 0});
+  if (result.done() && found.empty()) result.failure = session.reason_for_silence();
+  return problem_of("fastscan", result);
 }
 
 /// Configures the selected slave.
-int assign_selected(LssSession& session, const Settings& settings) {
-  if (const LssResult result = session.configure_node_id(static_cast<std::uint8_t>(settings.node_id)); !result.done()) {
-    return failed("node-id", result);
-  }
-  if (settings.kbit) {
-    if (const LssResult result = session.configure_bit_rate(*settings.kbit); !result.done()) {
-      return failed("bit-rate", result);
-    }
-  }
-  return settings.store ? done_or_failed("store", session.store()) : exit_fine;
+std::string assign_selected(LssSession& session, const Settings& settings) {
+  std::string problem = configure_node_id(session, settings);
+  if (problem.empty() && settings.kbit) problem = configure_bit_rate(session, settings);
+  if (problem.empty() && settings.store) problem = store(session, settings);
+  return problem;
 }
 
-/// Fastscan finds the numbers that are not given. All slaves are in waiting state before and after.
-int assign(LssSession& session, const Settings& settings) {
+/// Selects the slave with these numbers; Fastscan finds those that are not given, in `address`.
+std::string select_or_find(LssSession& session, LssAddress& address, std::uint8_t known) {
+  if (known == 4) return problem_of("select", session.select(address));
+  if (!session.fastscan(address, known).done()) return problem_of("fastscan", {session.reason_for_silence(), 0});
+  const LssResult confirmed = session.confirm(address);
+  if (!confirmed.done()) session.switch_state(LssState::waiting);
+  return problem_of("fastscan", confirmed);
+}
+
+/// All slaves are in waiting state before and after.
+std::string assign(LssSession& session, const Settings& settings) {
   LssAddress address = address_of(settings);
-  const std::uint8_t known = known_numbers(settings);
   session.switch_state(LssState::waiting);
-  const LssResult found = known == 4 ? session.select(address) : session.fastscan(address, known);
-  if (!found.done() && known != 4) return failed("fastscan", {session.reason_for_silence(), 0});
-  if (!found.done()) return failed("select", found);
-  if (known != 4) {
-    if (const LssResult confirmed = session.confirm(address); !confirmed.done()) {
-      session.switch_state(LssState::waiting);
-      return failed("fastscan", confirmed);
-    }
-  }
-  const int exit_code = assign_selected(session, settings);
+  std::string problem = select_or_find(session, address, known_numbers(settings));
+  if (!problem.empty()) return problem;
+  problem = assign_selected(session, settings);
   session.switch_state(LssState::waiting);
-  if (exit_code != exit_fine) return exit_code;
+  if (!problem.empty()) return problem;
   if (settings.format == "json") {
     print({{"version", 1}, {"address", address_json(address)}, {"node_id", settings.node_id}});
   } else {
     print_visibly(stdout, "{}: node-ID {}{}\n", to_text(address), settings.node_id, settings.store ? ", stored" : "");
   }
-  return exit_fine;
+  return "";
 }
 
-int run_lss(const Settings& settings, const Step& step) {
+int run_lss(const Settings& settings) {
   return with_bus(settings.bus, [&](LiveBus& bus) {
     canopen::LssTimeouts timeouts;
     timeouts.answer = canopen::Duration{settings.timeout_ms * 1000U};
     timeouts.store = std::max(timeouts.store, timeouts.answer);
     timeouts.fastscan_step = canopen::Duration{settings.step_ms * 1000U};
     LssSession session{bus, timeouts};
-    const int exit_code = step(session, settings);
+    const std::string problem = settings.service(session, settings);
+    if (!problem.empty()) print_visibly(stderr, "edsc: {}\n", problem);
     bus.listen(canopen::from_milliseconds(10));  // the port may still hold the last frame
-    return exit_code;
+    return problem.empty() ? exit_fine : exit_device_failed;
   });
 }
 
@@ -208,77 +203,92 @@ void add_address_options(CLI::App& command, Settings& settings, bool required) {
   for (CLI::Option* option : {vendor, product, revision, serial}) option->required(required);
 }
 
-CLI::Option* add_bit_rate(CLI::App& command, const std::string& name, Settings& settings) {
-  return command
+void add_bit_rate(CLI::App& command, const std::string& name, Settings& settings, bool required) {
+  command
       .add_option_function<std::string>(
           name,
           [&settings](const std::string& text) {
             settings.kbit = text == "auto" ? automatic : parse_count(text).value_or(automatic);
           },
           "1000, 800, 500, 250, 125, 50, 20 or 10 kbit/s, or auto")
-      ->check(CLI::IsMember({"1000", "800", "500", "250", "125", "50", "20", "10", "auto"}));
+      ->check(CLI::IsMember({"1000", "800", "500", "250", "125", "50", "20", "10", "auto"}))
+      ->required(required);
 }
 
-CLI::Option* add_new_node_id(CLI::App& command, const std::string& name, Settings& settings) {
-  return command
-      .add_option_function<std::string>(
-          name, [&settings](const std::string& text) { settings.node_id = parse_count(text).value_or(0); },
-          "the new node-ID: 1..127, or 255 to remove it")
-      ->check([](const std::string& text) {
-        const auto number = parse_count(text, 255).value_or(0);
-        const bool known = (number >= 1 && number <= 127) || number == 255;
-        return known ? std::string{} : "\"" + text + "\" is not a node-ID from 1 to 127 or 255";
-      });
+void add_new_node_id(CLI::App& command, const std::string& name, Settings& settings) {
+  const auto parse = [](const std::string& text) {
+    return parse_count(text) == 255 ? std::optional<std::uint8_t>{255} : parse_node(text);
+  };
+  add_parsed(command, name, settings.node_id, parse, "a node-ID from 1 to 127 or 255",
+             "the new node-ID: 1..127, or 255 to remove it")
+      ->required();
 }
+
+void add_assign_options(CLI::App& command, Settings& settings) {
+  add_address_options(command, settings, false);
+  add_new_node_id(command, "--node-id", settings);
+  add_bit_rate(command, "--bit-rate", settings, false);
+  command.add_flag("--store", settings.store, "store the node-ID in the device");
+  add_format_option(command, settings.format);
+}
+
+void add_fastscan_options(CLI::App& command, Settings& settings) {
+  add_address_options(command, settings, false);
+  add_format_option(command, settings.format);
+}
+
+void add_state_argument(CLI::App& command, Settings& settings) {
+  const auto set = [&settings](const std::string& text) {
+    settings.state = text == "waiting" ? LssState::waiting : LssState::configuration;
+  };
+  command.add_option_function<std::string>("STATE", set, "waiting or configuration")
+      ->required()
+      ->check(CLI::IsMember({"waiting", "configuration"}));
+}
+
+void add_delay_option(CLI::App& command, Settings& settings) {
+  command.add_option("--delay", settings.delay_ms, "switch delay in ms, before and after the switch")
+      ->capture_default_str();
+}
+
+/// A subcommand.
+struct ServiceRow {
+  const char* name;
+  const char* description;
+  std::string (*perform)(LssSession& session, const Settings& settings);  ///< returns an error message, or nothing
+  void (*add_options)(CLI::App& command, Settings& settings);
+};
+
+constexpr ServiceRow services[] = {
+    {"assign", "select or find one device and configure its node-ID", assign, add_assign_options},
+    {"fastscan", "find devices without node-ID, all or those with these numbers", fastscan, add_fastscan_options},
+    {"select", "switch one device to configuration state", select,
+     [](CLI::App& command, Settings& settings) { add_address_options(command, settings, true); }},
+    {"state", "switch all devices to a state", switch_state, add_state_argument},
+    {"inquire", "inquire the LSS address and node-ID of the device in configuration state", inquire,
+     [](CLI::App& command, Settings& settings) { add_format_option(command, settings.format); }},
+    {"node-id", "configure the node-ID of the device in configuration state", configure_node_id,
+     [](CLI::App& command, Settings& settings) { add_new_node_id(command, "NODE", settings); }},
+    {"bit-rate", "configure the bit rate of the device in configuration state", configure_bit_rate,
+     [](CLI::App& command, Settings& settings) { add_bit_rate(command, "KBIT", settings, true); }},
+    {"store", "store node-ID and bit rate in the device in configuration state", store, nullptr},
+    {"activate", "activate the new bit rate of the devices in configuration state", activate, add_delay_option},
+};
 
 }  // namespace
 
-void add_lss_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("lss", "configure node-ID and bit rate of devices (CiA 305)");
-  command->footer(examples);
-  command->require_subcommand(1);
-  auto settings = std::make_shared<Settings>();
-  add_bus_argument(*command, settings->bus);
-  add_timeout_option(*command, settings->timeout_ms);
-  add_step_option(*command, settings->step_ms);
-  const auto add = [&](const char* name, const char* description, const Step& step) {
-    CLI::App* service = command->add_subcommand(name, description);
+void add_lss_options(CLI::App& command, int& exit_code) {
+  Settings& settings = define_command(command, examples, run_lss, exit_code);
+  command.require_subcommand(1);
+  add_bus_argument(command, settings.bus);
+  add_timeout_option(command, settings.timeout_ms);
+  add_step_option(command, settings.step_ms);
+  for (const ServiceRow& row : services) {
+    CLI::App* service = command.add_subcommand(row.name, row.description);
     service->fallthrough();
-    service->callback([settings, step, &exit_code] { exit_code = run_lss(*settings, step); });
-    return service;
-  };
-  const auto with_json = [&](CLI::App* service) { add_format_option(*service, settings->format); };
-
-  CLI::App* assigned = add("assign", "select or find one device and configure its node-ID", assign);
-  add_address_options(*assigned, *settings, false);
-  add_new_node_id(*assigned, "--node-id", *settings)->required();
-  add_bit_rate(*assigned, "--bit-rate", *settings);
-  assigned->add_flag("--store", settings->store, "store the node-ID in the device");
-  with_json(assigned);
-  CLI::App* found = add("fastscan", "find devices without node-ID, all or those with these numbers", fastscan);
-  add_address_options(*found, *settings, false);
-  with_json(found);
-  add_address_options(*add("select", "switch one device to configuration state", select), *settings, true);
-  add("state", "switch all devices to a state", switch_state)
-      ->add_option_function<std::string>(
-          "STATE",
-          [settings](const std::string& text) {
-            settings->state = text == "waiting" ? LssState::waiting : LssState::configuration;
-          },
-          "waiting or configuration")
-      ->required()
-      ->check(CLI::IsMember({"waiting", "configuration"}));
-  with_json(add("inquire", "inquire the LSS address and node-ID of the device in configuration state", inquire));
-  add_new_node_id(*add("node-id", "configure the node-ID of the device in configuration state", configure_node_id),
-                  "NODE", *settings)
-      ->required();
-  add_bit_rate(*add("bit-rate", "configure the bit rate of the device in configuration state", configure_bit_rate),
-               "KBIT", *settings)
-      ->required();
-  add("store", "store node-ID and bit rate in the device in configuration state", store);
-  add("activate", "activate the new bit rate of the devices in configuration state", activate)
-      ->add_option("--delay", settings->delay_ms, "switch delay in ms, before and after the switch")
-      ->capture_default_str();
+    service->callback([&settings, &row] { settings.service = row.perform; });
+    if (row.add_options != nullptr) row.add_options(*service, settings);
+  }
 }
 
 }  // namespace edsc

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "commands/commands.hpp"
 #include "decode/decoder.hpp"
 #include "decode/print_message.hpp"
@@ -9,6 +7,7 @@
 #include "monitor/terminal.hpp"
 #include "online/live_bus.hpp"
 #include "shared/common_options.hpp"
+#include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/live_device.hpp"
 #include "shared/live_options.hpp"
@@ -44,9 +43,9 @@ struct NodeFile {
 
 std::optional<NodeFile> parse_node_file(const std::string& text) {
   const std::size_t equals = text.find('=');
-  const auto node_id = parse_count(text.substr(0, equals), 127);
-  if (equals == std::string::npos || equals + 1 == text.size() || node_id.value_or(0) == 0) return std::nullopt;
-  return NodeFile{static_cast<std::uint8_t>(*node_id), text.substr(equals + 1)};
+  const auto node_id = parse_node(text.substr(0, equals));
+  if (equals == std::string::npos || equals + 1 == text.size() || !node_id) return std::nullopt;
+  return NodeFile{*node_id, text.substr(equals + 1)};
 }
 
 constexpr canopen::Duration between_pictures = canopen::from_milliseconds(100);
@@ -57,7 +56,7 @@ class Monitor {
   Monitor(LiveBus& bus, const Settings& settings, const std::vector<KnownNode>& known)
       : bus_{bus}, decoder_{known}, view_{settings.bus, settings.bit_rate, false} {
     for (const KnownNode& node : known) state_.set_name(node.node_id, node.device->product_name);
-    begin_ = last_ = bus_.now();
+    last_ = bus_.now();
     state_.start(0);
   }
 
@@ -143,17 +142,17 @@ class Monitor {
   MonitorView view_;
   MonitorState state_;
   Message message_;
-  canopen::TimePoint begin_, last_;
+  canopen::TimePoint last_;
   std::int64_t now_us_ = 0;
 };
 
 int run_monitor(const Settings& settings) {
+  if (settings.format == "json" && !settings.once_seconds) throw CLI::RequiresError("--format json", "--once");
   std::vector<std::unique_ptr<LoadedDevice>> devices;
   std::vector<KnownNode> known;
   for (const std::string& text : settings.nodes) {
     const auto node = parse_node_file(text);
     devices.push_back(load_live_device(node->path, node->node_id));
-    if (!devices.back()) return exit_wrong_usage;
     known.push_back({node->node_id, &*devices.back()->device});
   }
   return with_bus(settings.bus, [&](LiveBus& bus) {
@@ -165,27 +164,21 @@ int run_monitor(const Settings& settings) {
 
 }  // namespace
 
-void add_monitor_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("monitor", "show nodes, states, PDO values, rates and load of a bus, live");
-  command->footer(examples);
-  auto settings = std::make_shared<Settings>();
-  add_bus_argument(*command, settings->bus);
-  command->add_option("--node", settings->nodes, "node-ID and its EDS; may be given more than once")
+void add_monitor_options(CLI::App& command, int& exit_code) {
+  Settings& settings = define_command(command, examples, run_monitor, exit_code);
+  add_bus_argument(command, settings.bus);
+  command.add_option("--node", settings.nodes, "node-ID and its EDS; may be given more than once")
       ->type_name("ID=FILE")
       ->allow_extra_args(false)
       ->check([](const std::string& text) {
         return parse_node_file(text) ? std::string{} : "\"" + text + "\" is not of the form NODE-ID=FILE";
       });
-  auto* once = command->add_option("--once", settings->once_seconds, "print one table after this many seconds")
-                   ->check(CLI::Range(0.01, 86'400.0));
-  command->add_option("--bit-rate", settings->bit_rate, "kbit/s of the bus, for its load (without stuff bits)")
+  command.add_option("--once", settings.once_seconds, "print one table after this many seconds")
+      ->check(CLI::Range(0.01, 86'400.0));
+  command.add_option("--bit-rate", settings.bit_rate, "kbit/s of the bus, for its load (without stuff bits)")
       ->check(CLI::Range(5, 1000));
-  add_format_option(*command, settings->format);
-  settings->color.add_to(*command);
-  command->callback([settings, once, &exit_code] {
-    if (settings->format == "json" && once->count() == 0) throw CLI::RequiresError("--format json", "--once");
-    exit_code = run_monitor(*settings);
-  });
+  add_format_option(command, settings.format);
+  settings.color.add_to(command);
 }
 
 }  // namespace edsc

@@ -5,13 +5,14 @@
 #include "commands/commands.hpp"
 #include "monitor/progress_line.hpp"
 #include "online/live_bus.hpp"
+#include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/live_device.hpp"
 #include "shared/live_options.hpp"
+#include "shared/output.hpp"
 #include "shared/with_bus.hpp"
 #include "text/counted.hpp"
 #include "text/printable.hpp"
-#include "text/write_files.hpp"
 
 namespace edsc {
 namespace {
@@ -24,9 +25,7 @@ constexpr const char* examples = R"(Examples:
   edsc read socketcan:can0 5 1018h:02 --type u32                      without an EDS
   edsc read socketcan:can0 5 1021h --eds drive.eds --file stored.eds  a DOMAIN to a file)";
 
-struct Settings {
-  std::string bus;
-  std::uint8_t node = 0;
+struct Settings : NodeSettings {
   std::vector<std::string> objects;
   std::string sheet;
   const canopen::DataTypeRow* type = nullptr;
@@ -36,7 +35,6 @@ struct Settings {
   bool all = false;
   bool block = false;
   bool segmented = false;
-  SdoSettings sdo;
 };
 
 using Json = nlohmann::ordered_json;
@@ -65,24 +63,17 @@ std::vector<Chosen> all_entries(const Device& device) {
   return entries;
 }
 
-/// Returns false if an object is unknown, which is reported.
-bool choose_entries(const Settings& settings, const Device* device, std::vector<Chosen>& entries) {
-  if (settings.all) {
-    entries = all_entries(*device);
-    return true;
-  }
+std::vector<Chosen> choose_entries(const Settings& settings, const Device* device) {
+  if (settings.all) return all_entries(*device);
+  std::vector<Chosen> chosen;
   for (const std::string& text : settings.objects) {
-    NamedEntries named = name_entries(device, text);
-    if (!named.problem.empty()) {
-      print_visibly(stderr, "edsc: {}\n", named.problem);
-      return false;
-    }
-    for (LiveEntry& entry : named.entries) {
+    std::vector<LiveEntry> entries = name_entries(device, text);
+    for (LiveEntry& entry : entries) {
       if (settings.type != nullptr) set_type(entry, *settings.type);
-      entries.push_back({std::move(entry), named.entries.size() > 1});
+      chosen.push_back({std::move(entry), entries.size() > 1});
     }
   }
-  return true;
+  return chosen;
 }
 
 /// The value of sub-index 0 of the current object.
@@ -119,16 +110,14 @@ bool may_be_refused(const Chosen& chosen, const EntryCount& count, const SdoOutc
          ((range == 0x1600 || range == 0x1A00) && count.leaves_out(chosen.entry));
 }
 
-SdoOutcome read_value(SdoAccess& node, const LiveEntry& entry, const Settings& settings) {
+SdoOutcome read_entry(SdoAccess& node, const LiveEntry& entry, const Settings& settings) {
   ProgressLine progress;
   const bool block = !settings.segmented && (settings.block || best_transfer(entry) == SdoTransfer::block);
-  return upload(node, entry, block ? SdoTransfer::block : SdoTransfer::segmented, [&](std::size_t done, std::size_t) {
+  const SdoProgress show = [&](std::size_t done, std::size_t) {
     if (progress.due()) progress.show(fmt::format("{}: {}", title(entry), counted(done, "byte")));
-  });
-}
-
-SdoOutcome read_entry(SdoAccess& node, const LiveEntry& entry, const Settings& settings) {
-  SdoOutcome outcome = read_value(node, entry, settings);
+  };
+  SdoOutcome outcome = upload(node, entry, block ? SdoTransfer::block : SdoTransfer::segmented, show);
+  progress.hide();
   report_broken_block(entry, outcome);
   return outcome;
 }
@@ -142,15 +131,8 @@ void print_line(const LiveEntry& entry, const SdoOutcome& outcome, bool raw) {
 }
 
 int save(const Settings& settings, const LiveEntry& entry, const SdoOutcome& outcome) {
-  if (!outcome.done()) {
-    print_line(entry, outcome, false);
-    return exit_device_failed;
-  }
-  const std::string problem = write_files({{settings.file, std::string{outcome.bytes.begin(), outcome.bytes.end()}}});
-  if (!problem.empty()) {
-    print_visibly(stderr, "edsc: {}\n", problem);
-    return exit_wrong_usage;
-  }
+  if (!outcome.done()) fail(title(entry) + ": " + failure_text(outcome), exit_device_failed);
+  write_all_files({{settings.file, std::string{outcome.bytes.begin(), outcome.bytes.end()}}});
   print_visibly(stdout, "{}: {} to {}\n", title(entry), counted(outcome.bytes.size(), "byte"), settings.file);
   return exit_fine;
 }
@@ -189,49 +171,37 @@ int read_entries(LiveBus& bus, const Settings& settings, const std::vector<Chose
 }
 
 int run_read(const Settings& settings) {
-  std::unique_ptr<LoadedDevice> loaded;
-  if (!settings.sheet.empty()) {
-    loaded = load_live_device(settings.sheet, settings.node);
-    if (!loaded) return exit_wrong_usage;
-  }
-  std::vector<Chosen> entries;
-  if (!choose_entries(settings, loaded ? &*loaded->device : nullptr, entries)) return exit_wrong_usage;
+  if (!settings.all && settings.objects.empty()) throw CLI::RequiresError("OBJECT or --all", 1);
+  const auto loaded = settings.sheet.empty() ? nullptr : load_live_device(settings.sheet, settings.node);
+  const std::vector<Chosen> entries = choose_entries(settings, device_of(loaded));
   if (!settings.file.empty() && entries.size() != 1) {
-    print_visibly(stderr, "edsc: --file takes the value of one entry, not of {}\n", entries.size());
-    return exit_wrong_usage;
+    fail(fmt::format("--file takes the value of one entry, not of {}", entries.size()));
   }
   return with_bus(settings.bus, [&](LiveBus& bus) { return read_entries(bus, settings, entries); });
 }
 
 }  // namespace
 
-void add_read_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("read", "read objects of a node over SDO");
-  command->footer(examples);
-  auto settings = std::make_shared<Settings>();
-  add_bus_argument(*command, settings->bus);
-  add_node_argument(*command, settings->node);
-  auto* objects = command->add_option("OBJECT", settings->objects, "6064h, 1018h:02, or a name from the EDS");
+void add_read_options(CLI::App& command, int& exit_code) {
+  Settings& settings = define_command(command, examples, run_read, exit_code);
+  add_node_arguments(command, settings);
+  auto* objects = command.add_option("OBJECT", settings.objects, "6064h, 1018h:02, or a name from the EDS");
   auto* sheet =
-      command->add_option("--eds", settings->sheet, "description of the node: EDS, DCF, XDD or XDC")->type_name("FILE");
-  auto* all = command->add_flag("--all", settings->all, "all readable entries of the EDS except DOMAINs");
+      command.add_option("--eds", settings.sheet, "description of the node: EDS, DCF, XDD or XDC")->type_name("FILE");
+  auto* all = command.add_flag("--all", settings.all, "all readable entries of the EDS except DOMAINs");
   all->needs(sheet)->excludes(objects);
-  add_type_option(*command, settings->type);
-  add_format_option(*command, settings->format);
-  auto* raw = command->add_flag("--raw", settings->raw, "values as bytes");
+  add_type_option(command, settings.type);
+  add_format_option(command, settings.format);
+  auto* raw = command.add_flag("--raw", settings.raw, "values as bytes");
   auto* file =
-      command->add_option("--file", settings->file, "write the bytes of one entry to this file")->type_name("FILE");
+      command.add_option("--file", settings.file, "write the bytes of one entry to this file")->type_name("FILE");
   file->excludes(all)->excludes(raw);
-  auto* block = command->add_flag("--block", settings->block, "block transfer for all data types");
-  command->add_flag("--segmented", settings->segmented, "no block transfer")->excludes(block);
-  command->add_option("--max-bytes", settings->sdo.max_bytes, "maximum bytes of a variable-length value")
+  auto* block = command.add_flag("--block", settings.block, "block transfer for all data types");
+  command.add_flag("--segmented", settings.segmented, "no block transfer")->excludes(block);
+  command.add_option("--max-bytes", settings.sdo.max_bytes, "maximum bytes of a variable-length value")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 30))
       ->capture_default_str();
-  add_timeout_option(*command, settings->sdo.timeout_ms);
-  command->callback([settings, &exit_code] {
-    if (!settings->all && settings->objects.empty()) throw CLI::RequiresError("OBJECT or --all", 1);
-    exit_code = run_read(*settings);
-  });
+  add_timeout_option(command, settings.sdo.timeout_ms);
 }
 
 }  // namespace edsc

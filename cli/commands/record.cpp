@@ -11,6 +11,7 @@
 #include "commands/commands.hpp"
 #include "online/live_bus.hpp"
 #include "server/candump_line.hpp"
+#include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/live_options.hpp"
 #include "shared/with_bus.hpp"
@@ -116,8 +117,7 @@ int record(LiveBus& bus, const Settings& settings, std::FILE* file) {
     if (!recorder.run()) {
       // main reports write errors of standard output
       if (settings.output.empty()) throw std::system_error{errno, std::generic_category(), "standard output"};
-      print_visibly(stderr, "edsc: {}: {}\n", settings.output, errno != 0 ? std::strerror(errno) : "cannot be written");
-      return exit_wrong_usage;
+      fail(fmt::format("{}: {}", settings.output, errno != 0 ? std::strerror(errno) : "cannot be written"));
     }
   } catch (const BusLost&) {
     std::fflush(file);
@@ -132,27 +132,23 @@ int run_record(const Settings& settings) {
   return with_bus(settings.bus, [&](LiveBus& bus) {
     if (settings.output.empty()) return record(bus, settings, stdout);
     const std::unique_ptr<std::FILE, Close> file{std::fopen(settings.output.c_str(), "we")};
-    if (file) return record(bus, settings, file.get());
-    print_visibly(stderr, "edsc: {}: {}\n", settings.output, std::strerror(errno));
-    return exit_wrong_usage;
+    if (!file) fail(fmt::format("{}: {}", settings.output, std::strerror(errno)));
+    return record(bus, settings, file.get());
   });
 }
 
 }  // namespace
 
-void add_record_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("record", "write the frames of a bus as a candump log");
-  command->footer(examples);
-  auto settings = std::make_shared<Settings>();
-  add_bus_argument(*command, settings->bus);
-  command->add_option("-o,--output", settings->output, "file to write; emptied at the start (default: standard output)")
+void add_record_options(CLI::App& command, int& exit_code) {
+  Settings& settings = define_command(command, examples, run_record, exit_code);
+  add_bus_argument(command, settings.bus);
+  command.add_option("-o,--output", settings.output, "file to write; emptied at the start (default: standard output)")
       ->type_name("FILE");
-  command->add_option("--seconds", settings->seconds, "end after this time")->check(CLI::Range(0.01, 1e9));
-  command->add_option("--count", settings->count, "end after this number of frames")
+  command.add_option("--seconds", settings.seconds, "end after this time")->check(CLI::Range(0.01, 1e9));
+  command.add_option("--count", settings.count, "end after this number of frames")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 62));
-  command->add_option("--interface", settings->interface, "name of the interface in the log (default: that of BUS)")
+  command.add_option("--interface", settings.interface, "name of the interface in the log (default: that of BUS)")
       ->check(bad_interface);
-  command->callback([settings, &exit_code] { exit_code = run_record(*settings); });
 }
 
 }  // namespace edsc

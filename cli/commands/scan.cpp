@@ -1,5 +1,6 @@
 #include "online/scan.hpp"
 
+#include <fmt/color.h>
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -11,6 +12,7 @@
 #include "online/lss_session.hpp"
 #include "online/nmt_text.hpp"
 #include "shared/common_options.hpp"
+#include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/live_device.hpp"
 #include "shared/live_options.hpp"
@@ -127,8 +129,7 @@ void print_text(const Findings& found, const std::vector<Candidate>& candidates,
   }
   const std::vector<std::string> lines = table.lines();
   for (std::size_t i = found.nodes.empty() ? lines.size() : 0; i < lines.size(); ++i) {
-    const bool bold = colour && i == 0;
-    fmt::print("{}{}{}\n", bold ? "\x1B[1m" : "", lines[i], bold ? "\x1B[0m" : "");
+    fmt::print("{}\n", fmt::format(colour && i == 0 ? fmt::emphasis::bold : fmt::text_style{}, "{}", lines[i]));
   }
   print_misfits(found.nodes, candidates);
   for (const canopen::LssAddress& address : found.unconfigured) {
@@ -136,19 +137,22 @@ void print_text(const Findings& found, const std::vector<Candidate>& candidates,
   }
 }
 
-Json number_or_null(std::optional<std::uint32_t> number) { return number ? Json(*number) : Json(nullptr); }
+template <class Value>
+Json or_null(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
 
 Json as_json(const FoundNode& node, const std::vector<Candidate>& candidates) {
   Json json{{"node_id", node.node_id}};
   json["state"] = node.state ? Json(nmt_state_text(*node.state)) : Json(nullptr);
   json["answers_sdo"] = node.answers_sdo;
-  json["device_type"] = number_or_null(node.device_type);
+  json["device_type"] = or_null(node.device_type);
   json["profile"] = node.device_type ? Json(*node.device_type & 0xFFFF) : Json(nullptr);
-  json["vendor_id"] = number_or_null(node.vendor_id);
-  json["product_code"] = number_or_null(node.product_code);
-  json["revision_number"] = number_or_null(node.revision_number);
-  json["serial_number"] = number_or_null(node.serial_number);
-  json["name"] = node.name ? Json(*node.name) : Json(nullptr);
+  json["vendor_id"] = or_null(node.vendor_id);
+  json["product_code"] = or_null(node.product_code);
+  json["revision_number"] = or_null(node.revision_number);
+  json["serial_number"] = or_null(node.serial_number);
+  json["name"] = or_null(node.name);
   json["data_sheets"] = Json::array();
   json["misfits"] = Json::array();
   for (const Candidate& candidate : candidates) {
@@ -181,18 +185,18 @@ void print_json(const Findings& found, const std::vector<Candidate>& candidates)
 
 constexpr std::uint8_t any_node = 1;  ///< the identity of a device does not depend on its node-ID
 
-/// Returns false if an EDS cannot be read, which is reported.
-bool load_candidates(const Settings& settings, std::vector<Candidate>& candidates) {
+std::vector<Candidate> load_candidates(const Settings& settings) {
+  std::vector<Candidate> candidates;
   for (const std::string& path : settings.sheets) {
-    const auto loaded = load_live_device(path, any_node);
-    if (!loaded) return false;
-    candidates.push_back({path, identity_of(*loaded->device)});
+    candidates.push_back({path, identity_of(*load_live_device(path, any_node)->device)});
   }
-  return true;
+  return candidates;
 }
 
 void find_nodes(LiveBus& bus, const Settings& settings, Findings& found) {
-  scan(bus, settings.scan, found.nodes);
+  ScanSettings nodes = settings.scan;
+  nodes.nodes = parse_node_list(settings.nodes);
+  scan(bus, nodes, found.nodes);
   if (!settings.lss) return;
   canopen::LssTimeouts timeouts;
   timeouts.answer = canopen::Duration{settings.scan.timeout_ms * 1000U};
@@ -202,10 +206,8 @@ void find_nodes(LiveBus& bus, const Settings& settings, Findings& found) {
   found.lss_failure = result.failure;
 }
 
-int run_scan(Settings settings) {
-  settings.scan.nodes = parse_node_list(settings.nodes);
-  std::vector<Candidate> candidates;
-  if (!load_candidates(settings, candidates)) return exit_wrong_usage;
+int run_scan(const Settings& settings) {
+  const std::vector<Candidate> candidates = load_candidates(settings);
   return with_bus(settings.bus, [&](LiveBus& bus) {
     Findings found;
     const auto show = [&] {
@@ -223,40 +225,33 @@ int run_scan(Settings settings) {
       throw;
     }
     show();
-    if (!found.lss_failure.empty()) {
-      print_visibly(stderr, "edsc: fastscan: {}\n", found.lss_failure);
-      return exit_device_failed;
-    }
+    if (!found.lss_failure.empty()) fail("fastscan: " + found.lss_failure, exit_device_failed);
     if (!found.nodes.empty() || !found.unconfigured.empty()) return exit_fine;
-    print_visibly(stderr, "edsc: no node answers on {}\n", settings.bus);
-    return exit_device_failed;
+    fail("no node answers on " + settings.bus, exit_device_failed);
   });
 }
 
 }  // namespace
 
-void add_scan_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("scan", "find and identify the nodes on a bus");
-  command->footer(examples);
-  auto settings = std::make_shared<Settings>();
-  add_bus_argument(*command, settings->bus);
-  command->add_option("--nodes", settings->nodes, "node-IDs to scan: 1..127, or a list such as 1,3,8..20")
+void add_scan_options(CLI::App& command, int& exit_code) {
+  Settings& settings = define_command(command, examples, run_scan, exit_code);
+  add_bus_argument(command, settings.bus);
+  command.add_option("--nodes", settings.nodes, "node-IDs to scan: 1..127, or a list such as 1,3,8..20")
       ->check([](const std::string& text) {
         return parse_node_list(text).empty() ? "\"" + text + "\" is not a list of node-IDs" : std::string{};
       })
       ->capture_default_str();
-  add_timeout_option(*command, settings->scan.timeout_ms);
-  command->add_option("--listen", settings->scan.listen_ms, "minimum ms to listen for heartbeats")
+  add_timeout_option(command, settings.scan.timeout_ms);
+  command.add_option("--listen", settings.scan.listen_ms, "minimum ms to listen for heartbeats")
       ->check(CLI::Range(0, 600'000))
       ->capture_default_str();
-  command->add_option("--eds", settings->sheets, "EDS to compare with; may be given more than once")
+  command.add_option("--eds", settings.sheets, "EDS to compare with; may be given more than once")
       ->allow_extra_args(false)
       ->type_name("FILE");
-  auto* lss = command->add_flag("--lss", settings->lss, "also find devices without node-ID, by LSS Fastscan");
-  add_step_option(*command, settings->lss_step_ms)->needs(lss);
-  add_format_option(*command, settings->format);
-  settings->color.add_to(*command);
-  command->callback([settings, &exit_code] { exit_code = run_scan(*settings); });
+  auto* lss = command.add_flag("--lss", settings.lss, "also find devices without node-ID, by LSS Fastscan");
+  add_step_option(command, settings.lss_step_ms)->needs(lss);
+  add_format_option(command, settings.format);
+  settings.color.add_to(command);
 }
 
 }  // namespace edsc

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "commands/commands.hpp"
 #include "monitor/progress_line.hpp"
 #include "online/live_bus.hpp"
+#include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/live_device.hpp"
 #include "shared/live_options.hpp"
@@ -21,9 +23,7 @@ constexpr const char* examples = R"(Examples:
   edsc write socketcan:can0 5 1017h F4 01 --raw                               as bytes
   edsc write socketcan:can0 5 1F50h:01 --file firmware.bin --eds drive.eds    a DOMAIN from a file)";
 
-struct Settings {
-  std::string bus;
-  std::uint8_t node = 0;
+struct Settings : NodeSettings {
   std::string object;
   std::vector<std::string> value;
   std::string sheet;
@@ -34,17 +34,10 @@ struct Settings {
   bool verify = false;
   bool block = false;
   bool segmented = false;
-  SdoSettings sdo;
 };
 
 /// Minimum size for a block transfer.
 constexpr std::size_t long_value = 128;
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
-  return text;
-}
 
 /// The value to write, or an error message.
 ParsedValue value_to_write(const Settings& settings, const LiveEntry& entry) {
@@ -53,7 +46,7 @@ ParsedValue value_to_write(const Settings& settings, const LiveEntry& entry) {
     (void)read_bytes(settings.file, value.bytes, value.problem);
     return value;
   }
-  const std::string text = joined(settings.value);
+  const std::string text = fmt::format("{}", fmt::join(settings.value, " "));
   if (settings.raw) return parse_value_text(*find_type("octets"), text);
   if (entry.entry != nullptr && !settings.force) return parse_value_text(*entry.entry, text);
   if (entry.type != nullptr) return parse_value_text(*entry.type, text);
@@ -61,10 +54,10 @@ ParsedValue value_to_write(const Settings& settings, const LiveEntry& entry) {
   return value;
 }
 
-std::string access_problem(const LiveEntry& entry) {
-  if (entry.entry == nullptr || canopen::writable(entry.entry->access)) return {};
-  return fmt::format("{} is {}; not written (--force writes anyway)", title(entry),
-                     canopen::row_of(entry.entry->access).name);
+void check_access(const LiveEntry& entry) {
+  if (entry.entry == nullptr || canopen::writable(entry.entry->access)) return;
+  fail(fmt::format("{} is {}; not written (--force writes anyway)", title(entry),
+                   canopen::row_of(entry.entry->access).name));
 }
 
 SdoOutcome download(SdoAccess& node, const LiveEntry& entry, const Settings& settings,
@@ -78,9 +71,9 @@ SdoOutcome download(SdoAccess& node, const LiveEntry& entry, const Settings& set
                        bytes.size() >= long_value ? show : SdoProgress{});
 }
 
-int failed(const LiveEntry& entry, std::string_view what) {
-  print_visibly(stderr, "edsc: {}: {}\n", title(entry), what);
-  return exit_device_failed;
+/// Ends the command.
+[[noreturn]] void fail_at(const LiveEntry& entry, const std::string& what) {
+  fail(title(entry) + ": " + what, exit_device_failed);
 }
 
 int write_entry(LiveBus& bus, const Settings& settings, const LiveEntry& entry,
@@ -88,12 +81,12 @@ int write_entry(LiveBus& bus, const Settings& settings, const LiveEntry& entry,
   SdoAccess node{bus, canopen::NodeId{settings.node}, settings.sdo};
   const SdoOutcome outcome = download(node, entry, settings, bytes);
   report_broken_block(entry, outcome);
-  if (!outcome.done()) return failed(entry, failure_text(outcome));
+  if (!outcome.done()) fail_at(entry, failure_text(outcome));
   if (settings.verify) {
     const SdoOutcome back = upload(node, entry, settings.segmented ? SdoTransfer::segmented : best_transfer(entry));
     report_broken_block(entry, back);
-    if (!back.done()) return failed(entry, "written, but not read back: " + failure_text(back));
-    if (!reads_back(back, bytes)) return failed(entry, "written, but it reads back as " + value_of(entry, back.bytes));
+    if (!back.done()) fail_at(entry, "written, but not read back: " + failure_text(back));
+    if (!reads_back(back, bytes)) fail_at(entry, "written, but it reads back as " + value_of(entry, back.bytes));
   }
   const std::string verified = settings.verify ? ", verified" : "";
   if (settings.file.empty()) {
@@ -106,54 +99,35 @@ int write_entry(LiveBus& bus, const Settings& settings, const LiveEntry& entry,
 }
 
 int run_write(const Settings& settings) {
-  std::unique_ptr<LoadedDevice> loaded;
-  if (!settings.sheet.empty()) {
-    loaded = load_live_device(settings.sheet, settings.node);
-    if (!loaded) return exit_wrong_usage;
-  }
-  NamedEntries named = name_entry(loaded ? &*loaded->device : nullptr, settings.object);
-  ParsedValue value;
-  std::string problem = named.problem;
-  if (problem.empty() && settings.type != nullptr) set_type(named.entries.front(), *settings.type);
-  if (problem.empty() && !settings.force) problem = access_problem(named.entries.front());
-  if (problem.empty()) {
-    value = value_to_write(settings, named.entries.front());
-    problem = value.problem;
-  }
-  if (!problem.empty()) {
-    print_visibly(stderr, "edsc: {}\n", problem);
-    return exit_wrong_usage;
-  }
-  return with_bus(settings.bus,
-                  [&](LiveBus& bus) { return write_entry(bus, settings, named.entries.front(), value.bytes); });
+  if (settings.file.empty() && settings.value.empty()) throw CLI::RequiresError("VALUE or --file", 1);
+  const auto loaded = settings.sheet.empty() ? nullptr : load_live_device(settings.sheet, settings.node);
+  LiveEntry entry = name_entry(device_of(loaded), settings.object);
+  if (settings.type != nullptr) set_type(entry, *settings.type);
+  if (!settings.force) check_access(entry);
+  const ParsedValue value = value_to_write(settings, entry);
+  if (!value.ok()) fail(value.problem);
+  return with_bus(settings.bus, [&](LiveBus& bus) { return write_entry(bus, settings, entry, value.bytes); });
 }
 
 }  // namespace
 
-void add_write_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("write", "write an object of a node over SDO");
-  command->footer(examples);
-  auto settings = std::make_shared<Settings>();
-  add_bus_argument(*command, settings->bus);
-  add_node_argument(*command, settings->node);
-  command->add_option("OBJECT", settings->object, "6064h, 1018h:02, or a name from the EDS")->required();
-  auto* value = command->add_option("VALUE", settings->value, "1500, 5DCh, \"500 ms\", text; with --raw bytes");
-  command->add_option("--eds", settings->sheet, "description of the node: EDS, DCF, XDD or XDC")->type_name("FILE");
-  add_type_option(*command, settings->type);
-  auto* raw = command->add_flag("--raw", settings->raw, "VALUE is bytes, as hexadecimal digits");
-  command->add_option("--file", settings->file, "write the bytes of this file")
+void add_write_options(CLI::App& command, int& exit_code) {
+  Settings& settings = define_command(command, examples, run_write, exit_code);
+  add_node_arguments(command, settings);
+  command.add_option("OBJECT", settings.object, "6064h, 1018h:02, or a name from the EDS")->required();
+  auto* value = command.add_option("VALUE", settings.value, "1500, 5DCh, \"500 ms\", text; with --raw bytes");
+  command.add_option("--eds", settings.sheet, "description of the node: EDS, DCF, XDD or XDC")->type_name("FILE");
+  add_type_option(command, settings.type);
+  auto* raw = command.add_flag("--raw", settings.raw, "VALUE is bytes, as hexadecimal digits");
+  command.add_option("--file", settings.file, "write the bytes of this file")
       ->type_name("FILE")
       ->excludes(value)
       ->excludes(raw);
-  command->add_flag("--force", settings->force, "write regardless of access type and limits");
-  command->add_flag("--verify", settings->verify, "read the value back and compare it");
-  auto* block = command->add_flag("--block", settings->block, "block transfer also for short values");
-  command->add_flag("--segmented", settings->segmented, "no block transfer")->excludes(block);
-  add_timeout_option(*command, settings->sdo.timeout_ms);
-  command->callback([settings, &exit_code] {
-    if (settings->file.empty() && settings->value.empty()) throw CLI::RequiresError("VALUE or --file", 1);
-    exit_code = run_write(*settings);
-  });
+  command.add_flag("--force", settings.force, "write regardless of access type and limits");
+  command.add_flag("--verify", settings.verify, "read the value back and compare it");
+  auto* block = command.add_flag("--block", settings.block, "block transfer also for short values");
+  command.add_flag("--segmented", settings.segmented, "no block transfer")->excludes(block);
+  add_timeout_option(command, settings.sdo.timeout_ms);
 }
 
 }  // namespace edsc

@@ -1,10 +1,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <functional>
 #include <iterator>
 
-#include "completion/command_description.hpp"
+#include "completion/command_parts.hpp"
 
 namespace edsc {
 namespace {
@@ -40,60 +39,64 @@ constexpr const char* tail = R"(  esac
 complete -F _edsc edsc
 )";
 
-using Visit = std::function<void(const CommandDescription&)>;
-
-void for_each(const CommandDescription& command, const Visit& visit) {
-  visit(command);
-  for (const CommandDescription& sub : command.commands) for_each(sub, visit);
+/// The command and its subcommands, each before its own.
+CommandList all_below(const CLI::App& command) {
+  CommandList all{&command};
+  for (const CLI::App* sub : subcommands_of(command)) {
+    const CommandList below = all_below(*sub);
+    all.insert(all.end(), below.begin(), below.end());
+  }
+  return all;
 }
 
-std::string path_of(const CommandDescription& command) { return fmt::format("{}", fmt::join(command.path, " ")); }
+std::string names_of_all(const CommandList& commands) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : commands) names.push_back(command->get_name());
+  return fmt::format("{}", fmt::join(names, " "));
+}
 
-std::string values_of(const OptionDescription& option) {
-  switch (option.value) {
-    case ValueKind::words: return fmt::format("_edsc_words \"{}\"", fmt::join(option.words, " "));
-    case ValueKind::folder: return "_edsc_files -d";
-    case ValueKind::file: return "_edsc_files -f";
-    case ValueKind::none:
-    case ValueKind::number: break;
-  }
-  return ":";
+/// `_edsc_words "..."` after the command, or what completes its first argument.
+std::string first_word(const CLI::App& command) {
+  const CommandList subcommands = subcommands_of(command);
+  if (!subcommands.empty()) return fmt::format("_edsc_words \"{}\"", names_of_all(subcommands));
+  const OptionList arguments = arguments_of(command);
+  return arguments.empty() ? ":" : value_of(*arguments.front()).bash;
 }
 
 }  // namespace
 
-std::string bash_completion(const CommandDescription& program) {
+std::string bash_completion(const CLI::App& program) {
+  const CommandList commands = all_below(program);
   std::string out = head;
   const auto put = std::back_inserter(out);
-  for_each(program, [&](const CommandDescription& command) {
-    for (const CommandDescription& sub : command.commands) {
-      fmt::format_to(put, "      \"{}/{}\") command=\"{}\" ;;\n", path_of(command), sub.path.back(), path_of(sub));
+  for (const CLI::App* command : commands) {
+    for (const CLI::App* sub : subcommands_of(*command)) {
+      fmt::format_to(put, "      \"{}/{}\") command=\"{}\" ;;\n", path_of(*command), sub->get_name(), path_of(*sub));
     }
-  });
+  }
   out += "    esac\n  done\n  case \"$command/$previous\" in\n";
-  for_each(program, [&](const CommandDescription& command) {
-    for (const OptionDescription& option : command.options) {
-      if (option.value == ValueKind::none) continue;
-      std::string patterns;
-      for (const std::string& name : option.names) {
-        patterns += fmt::format("{}\"{}/{}\"", patterns.empty() ? "" : " | ", path_of(command), name);
+  for (const CLI::App* command : commands) {
+    for (const CLI::Option* option : options_of(*command)) {
+      const OptionValue value = value_of(*option);
+      if (value.name.empty()) continue;
+      std::vector<std::string> patterns;
+      for (const std::string& name : names_of(*option)) {
+        patterns.push_back(fmt::format("\"{}/{}\"", path_of(*command), name));
       }
-      fmt::format_to(put, "    {}) {}; return ;;\n", patterns, values_of(option));
+      fmt::format_to(put, "    {}) {}; return ;;\n", fmt::join(patterns, " | "), value.bash);
     }
-  });
+  }
   out += "  esac\n  case \"$command\" in\n";
-  for_each(program, [&](const CommandDescription& command) {
-    std::string options, commands;
-    for (const OptionDescription& option : command.options) {
-      for (const std::string& name : option.names) options += (options.empty() ? "" : " ") + name;
+  for (const CLI::App* command : commands) {
+    std::vector<std::string> options;
+    for (const CLI::Option* option : options_of(*command)) {
+      for (std::string& name : names_of(*option)) options.push_back(std::move(name));
     }
-    for (const CommandDescription& sub : command.commands) commands += (commands.empty() ? "" : " ") + sub.path.back();
-    const std::string words = command.arguments.empty() ? ":" : values_of(command.arguments.front());
     fmt::format_to(put,
                    "    \"{}\")\n      if [[ $current == -* ]]; then\n        _edsc_words \"{}\"\n      else\n        "
                    "{}\n      fi\n      ;;\n",
-                   path_of(command), options, commands.empty() ? words : fmt::format("_edsc_words \"{}\"", commands));
-  });
+                   path_of(*command), fmt::join(options, " "), first_word(*command));
+  }
   return out + tail;
 }
 

@@ -1,11 +1,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <iterator>
+#include <cctype>
 #include <string_view>
 
-#include "completion/command_description.hpp"
+#include "completion/command_parts.hpp"
 
 namespace edsc {
 namespace {
@@ -49,99 +48,67 @@ std::string escaped(std::string_view text) {
   return out;
 }
 
-/// A sentence, wrapped to the line length recommended by mandoc.
-std::string filled(std::string_view text) {
-  constexpr std::size_t max_columns = 78;
-  std::string out, line;
-  const auto end_line = [&] {
-    out += escaped(line) + "\n";
-    line.clear();
-  };
-  while (!text.empty()) {
-    const std::size_t blank = std::min(text.find_first_of(" \n"), text.size());
-    const std::string_view word = text.substr(0, blank);
-    if (!line.empty() && line.size() + 1 + word.size() > max_columns) end_line();
-    if (!line.empty() && !word.empty()) line += ' ';
-    line += word;
-    text.remove_prefix(std::min(blank + 1, text.size()));
-  }
-  end_line();
-  return out;
+std::string upper_case(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return text;
 }
 
 /// `Say what is wrong.`
-std::string sentence(std::string text) {
-  if (!text.empty() && text.front() >= 'a' && text.front() <= 'z')
-    text.front() = static_cast<char>(text.front() - 'a' + 'A');
-  if (!text.ends_with('.')) text += '.';
-  return text;
+std::string sentence(const std::string& text) {
+  return upper_case(text.substr(0, 1)) + text.substr(1) + (text.ends_with('.') ? "" : ".");
 }
 
-std::string upper_case(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
-  return text;
-}
+std::string name_of(const CLI::App& command) { return escaped("edsc " + path_of(command)); }
 
-std::string name_of(const CommandDescription& command) {
-  return escaped(command.path.empty() ? "edsc" : fmt::format("edsc {}", fmt::join(command.path, " ")));
-}
-
-void append_synopsis(std::string& out, const CommandDescription& command) {
-  const auto put = std::back_inserter(out);
-  for (const CommandDescription& sub : command.commands) append_synopsis(out, sub);
-  if (!command.commands.empty()) return;
-  fmt::format_to(put, ".br\n.B {}\n", name_of(command));
-  if (!command.options.empty()) out += "[\\fIoptions\\fR]\n";
-  for (const OptionDescription& argument : command.arguments) {
-    const std::string name = escaped(argument.names.front()) + (argument.repeats ? "..." : "");
-    const std::string word = fmt::format("\\fI{}\\fR", name);
-    out += (argument.required ? word : "[" + word + "]") + "\n";
+/// The commands without subcommands, which are those that a user calls.
+void append_synopsis(std::string& out, const CLI::App& command) {
+  for (const CLI::App* sub : subcommands_of(command)) append_synopsis(out, *sub);
+  if (!subcommands_of(command).empty()) return;
+  if (!out.ends_with(".ad l\n")) out += ".br\n";
+  out += fmt::format(".B {}\n[\\fIoptions\\fR]\n", name_of(command));
+  for (const CLI::Option* argument : arguments_of(command)) {
+    const std::string name = escaped(argument->get_name()) + (repeats(*argument) ? "..." : "");
+    const bool required = argument->get_required();
+    out += fmt::format("{}\\fI{}\\fR{}\n", required ? "" : "[", name, required ? "" : "]");
   }
 }
 
-void append_option(std::string& out, const OptionDescription& option, bool argument) {
-  const auto put = std::back_inserter(out);
-  std::string names;
-  for (const std::string& name : option.names) {
-    names += fmt::format("{}\\f{}{}\\fR", names.empty() ? "" : ", ", argument ? 'I' : 'B', escaped(name));
+void append_option(std::string& out, const CLI::Option& option) {
+  const bool is_argument = option.get_positional();
+  std::vector<std::string> names;
+  for (const std::string& name : names_of(option)) {
+    names.push_back(fmt::format("\\f{}{}\\fR", is_argument ? 'I' : 'B', escaped(name)));
   }
-  const std::string value = argument ? "" : value_words(option);
-  fmt::format_to(put, ".TP\n{}{}\n", names, value.empty() ? "" : fmt::format(" \\fI{}\\fR", escaped(value)));
-  const bool words = argument && option.value == ValueKind::words;
-  out += filled(words ? option.text + ": " + value_words(option) : option.text);
+  const OptionValue value = value_of(option);
+  std::string text = option.get_description();
+  std::string type;
+  if (is_argument && value.is_choice) text += ": " + value.name;
+  if (!is_argument && !value.name.empty()) type = fmt::format(" \\fI{}\\fR", escaped(value.name));
+  out += fmt::format(".TP\n{}{}\n{}\n", fmt::join(names, ", "), type, escaped(text));
 }
 
-void append_command(std::string& out, const CommandDescription& command) {
-  const auto put = std::back_inserter(out);
-  if (command.commands.empty()) {
-    fmt::format_to(put, ".SS {}\n{}", name_of(command), filled(sentence(command.text)));
-    for (const OptionDescription& argument : command.arguments) append_option(out, argument, true);
-    for (const OptionDescription& option : command.options) append_option(out, option, false);
-    if (!command.examples.empty()) fmt::format_to(put, ".PP\n.nf\n{}\n.fi\n", escaped(command.examples));
-    return;
+void append_command(std::string& out, const CLI::App& command) {
+  const CommandList subcommands = subcommands_of(command);
+  for (const CLI::App* sub : subcommands) append_command(out, *sub);
+  if (subcommands.empty()) {
+    out += fmt::format(".SS {}\n{}\n", name_of(command), escaped(sentence(command.get_description())));
+    for (const CLI::Option* argument : arguments_of(command)) append_option(out, *argument);
+    for (const CLI::Option* option : options_of(command)) append_option(out, *option);
   }
-  for (const CommandDescription& sub : command.commands) append_command(out, sub);
-  if (!command.path.empty() && !command.examples.empty())
-    fmt::format_to(put, ".PP\n.nf\n{}\n.fi\n", escaped(command.examples));
+  const std::string examples = examples_of(command);
+  if (!examples.empty()) out += fmt::format(".PP\n.nf\n{}\n.fi\n", escaped(examples));
 }
 
 }  // namespace
 
-std::string man_page(const CommandDescription& program, const std::string& version) {
-  std::string out;
-  const auto put = std::back_inserter(out);
-  fmt::format_to(put, ".TH EDSC 1 \"\" \"edsc {}\" \"User Commands\"\n", escaped(version));
+std::string man_page(const CLI::App& program, const std::string& version) {
+  std::string out = fmt::format(".TH EDSC 1 \"\" \"edsc {}\" \"User Commands\"\n", escaped(version));
   out += ".SH NAME\nedsc \\- compiler for CANopen Electronic Data Sheets\n.SH SYNOPSIS\n.nh\n.ad l\n";
-  std::string synopsis;
-  append_synopsis(synopsis, program);
-  out += synopsis.substr(std::string_view{".br\n"}.size());  // none before the first
-  out += ".ad b\n.hy\n.SH DESCRIPTION\n" + filled(program.text);
-  for (const std::string& group : groups_of(program)) {
-    fmt::format_to(put, ".SH COMMANDS: {}\n", escaped(upper_case(group)));
-    for (const CommandDescription& command : program.commands) {
-      if (command.group == group) append_command(out, command);
-    }
+  append_synopsis(out, program);
+  out += fmt::format(".ad b\n.hy\n.SH DESCRIPTION\n{}\n", escaped(program.get_description()));
+  for (const auto& [group, commands] : groups_of(program)) {
+    out += fmt::format(".SH COMMANDS: {}\n", escaped(upper_case(group)));
+    for (const CLI::App* command : commands) append_command(out, *command);
   }
   return out + tail;
 }

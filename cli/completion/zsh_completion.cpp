@@ -1,9 +1,8 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <iterator>
 
-#include "completion/command_description.hpp"
+#include "completion/command_parts.hpp"
 
 namespace edsc {
 namespace {
@@ -33,73 +32,61 @@ std::string quoted(const std::string& text) {
   return out;
 }
 
-std::string action_of(const OptionDescription& option) {
-  switch (option.value) {
-    case ValueKind::none: return "";
-    case ValueKind::words: return fmt::format("({})", fmt::join(option.words, " "));
-    case ValueKind::folder: return "_files -/";
-    case ValueKind::file: return "_edsc_file";
-    case ValueKind::number: return " ";
-  }
-  return "";
-}
-
 /// `'*--filter[show only ...]:TEXT:_edsc_file'`, one for each of its names.
-void append_option(std::string& out, const OptionDescription& option) {
-  for (const std::string& name : option.names) {
-    fmt::format_to(std::back_inserter(out), " \\\n    '{}{}[{}]", option.repeats ? "*" : "", name, quoted(option.text));
-    if (option.value != ValueKind::none) {
-      fmt::format_to(std::back_inserter(out), ":{}:{}", quoted(value_words(option)), action_of(option));
-    }
+void append_option(std::string& out, const CLI::Option& option) {
+  const OptionValue value = value_of(option);
+  for (const std::string& name : names_of(option)) {
+    fmt::format_to(std::back_inserter(out), " \\\n    '{}{}[{}]", repeats(option) ? "*" : "", name,
+                   quoted(option.get_description()));
+    if (!value.name.empty()) fmt::format_to(std::back_inserter(out), ":{}:{}", quoted(value.name), value.zsh);
     out += '\'';
   }
 }
 
-void append_argument(std::string& out, const OptionDescription& argument) {
-  fmt::format_to(std::back_inserter(out), " \\\n    '{}:{}:{}'",
-                 argument.repeats    ? "*"
-                 : argument.required ? ""
-                                     : ":",
-                 quoted(argument.names.front()), action_of(argument));
+void append_argument(std::string& out, const CLI::Option& argument) {
+  const char* count = repeats(argument) ? "*" : argument.get_required() ? "" : ":";
+  fmt::format_to(std::back_inserter(out), " \\\n    '{}:{}:{}'", count, quoted(argument.get_name()),
+                 value_of(argument).zsh);
 }
 
 /// `_edsc_lss_inquire`
-std::string function_of(const CommandDescription& command) {
-  return command.path.empty() ? "_edsc" : fmt::format("_edsc_{}", fmt::join(command.path, "_"));
+std::string function_of(const CLI::App& command) {
+  return command.get_parent() == nullptr ? "_edsc" : "_edsc_" + path_of(command, "_");
 }
 
 /// The subcommands of a command, each group under its name.
-void append_choices(std::string& out, const CommandDescription& command) {
+void append_choices(std::string& out, const CLI::App& command) {
   const auto put = std::back_inserter(out);
   out += "      local -a commands\n";
-  for (const std::string& group : groups_of(command)) {
+  for (const auto& [group, commands] : groups_of(command)) {
     out += "      commands=(\n";
-    for (const CommandDescription& sub : command.commands) {
-      if (sub.group == group) fmt::format_to(put, "        '{}:{}'\n", sub.path.back(), quoted(sub.text));
+    for (const CLI::App* sub : commands) {
+      fmt::format_to(put, "        '{}:{}'\n", sub->get_name(), quoted(sub->get_description()));
     }
     fmt::format_to(put, "      )\n      _describe '{}' commands && ret=0\n",
                    group == "Subcommands" ? "command" : quoted(group));
   }
 }
 
-void append_function(std::string& out, const CommandDescription& command) {
+void append_function(std::string& out, const CLI::App& command) {
   const auto put = std::back_inserter(out);
-  for (const CommandDescription& sub : command.commands) append_function(out, sub);
-  const bool chooses = !command.commands.empty();
+  const CommandList subcommands = subcommands_of(command);
+  for (const CLI::App* sub : subcommands) append_function(out, *sub);
+  const bool chooses = !subcommands.empty();
   fmt::format_to(put, "{}() {{\n", function_of(command));
   if (chooses) out += "  local state line ret=1\n";
   fmt::format_to(put, "  _arguments -S{}", chooses ? " -C" : "");
-  for (const OptionDescription& option : command.options) append_option(out, option);
+  for (const CLI::Option* option : options_of(command)) append_option(out, *option);
   if (chooses) {
     out += " \\\n    '1: :->command' \\\n    '*:: :->arguments' && ret=0\n  case $state in\n    command)\n";
     append_choices(out, command);
     out += "      ;;\n    arguments)\n      case $line[1] in\n";
-    for (const CommandDescription& sub : command.commands) {
-      fmt::format_to(put, "        {}) {} && ret=0 ;;\n", sub.path.back(), function_of(sub));
+    for (const CLI::App* sub : subcommands) {
+      fmt::format_to(put, "        {}) {} && ret=0 ;;\n", sub->get_name(), function_of(*sub));
     }
     out += "      esac\n      ;;\n  esac\n  return ret\n";
   } else {
-    for (const OptionDescription& argument : command.arguments) append_argument(out, argument);
+    for (const CLI::Option* argument : arguments_of(command)) append_argument(out, *argument);
     out += '\n';
   }
   out += "}\n\n";
@@ -107,7 +94,7 @@ void append_function(std::string& out, const CommandDescription& command) {
 
 }  // namespace
 
-std::string zsh_completion(const CommandDescription& program) {
+std::string zsh_completion(const CLI::App& program) {
   std::string out = head;
   append_function(out, program);
   return out + "_edsc \"$@\"\n";

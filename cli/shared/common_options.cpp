@@ -8,10 +8,14 @@
 
 namespace edsc {
 
+CLI::Option* add_choice(CLI::App& command, const char* name, std::string& value, const std::vector<std::string>& words,
+                        const char* description) {
+  return command.add_option(name, value, description)->check(CLI::IsMember(words))->capture_default_str();
+}
+
 void ColorOption::add_to(CLI::App& command) {
-  command.add_option("--color", when, "colour the findings: auto (on a terminal, NO_COLOR unset), always, never")
-      ->check(CLI::IsMember({"auto", "always", "never"}))
-      ->capture_default_str();
+  add_choice(command, "--color", when, {"auto", "always", "never"},
+             "colour the findings: auto (on a terminal, NO_COLOR unset), always, never");
 }
 
 bool ColorOption::on(std::FILE* stream) const {
@@ -21,6 +25,10 @@ bool ColorOption::on(std::FILE* stream) const {
 
 void print_findings(std::FILE* stream, const Diagnostics& diagnostics, const ColorOption& color, bool with_allowed) {
   print_text(stream, diagnostics, color.on(stream), with_allowed);
+}
+
+void add_options_option(CLI::App& command, std::string& path) {
+  command.add_option("--options", path, "options file (default: FILE's name with .options.json, if there)");
 }
 
 void add_node_id_option(CLI::App& command, std::optional<std::uint8_t>& node_id) {

@@ -6,10 +6,28 @@
 #include <cstdio>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "diagnostics/diagnostics.hpp"
 
 namespace edsc {
+
+/// An option that accepts one of these words.
+CLI::Option* add_choice(CLI::App& command, const char* name, std::string& value, const std::vector<std::string>& words,
+                        const char* description);
+
+/// An option or argument whose text `parse` converts to a value; nothing is an error: `"x" is not a data type`.
+template <class Value, class Parse>
+CLI::Option* add_parsed(CLI::App& command, const std::string& name, Value& value, Parse parse,
+                        const std::string& expected, const std::string& description) {
+  const auto set = [&value, parse](const std::string& text) {
+    if (const auto parsed = parse(text)) value = *parsed;
+  };
+  return command.add_option_function<std::string>(name, set, description)
+      ->check([parse, expected](const std::string& text) {
+        return parse(text) ? std::string{} : "\"" + text + "\" is not " + expected;
+      });
+}
 
 /// `--color auto|always|never`.
 struct ColorOption {
@@ -21,6 +39,9 @@ struct ColorOption {
 /// Prints findings as text to a stream; `with_allowed` adds the number of allowed findings.
 void print_findings(std::FILE* stream, const Diagnostics& diagnostics, const ColorOption& color,
                     bool with_allowed = false);
+
+/// `--options FILE` of a device.
+void add_options_option(CLI::App& command, std::string& path);
 
 /// Help text of `--keep-going`.
 inline constexpr const char* keep_going_help =

@@ -9,6 +9,7 @@
 
 #include "online/identity.hpp"
 #include "shared/common_options.hpp"
+#include "shared/exit_code.hpp"
 #include "text/counted.hpp"
 #include "text/printable.hpp"
 #include "values/find_entry.hpp"
@@ -16,15 +17,10 @@
 namespace edsc {
 namespace {
 
-NamedEntries by_address(const std::string& text) {
+LiveEntry by_address(const std::string& text) {
   const auto address = parse_entry_address(text);
-  if (!address) {
-    return {{}, fmt::format("\"{}\" is not an address such as 1018h:01; names require an EDS (--eds)", text)};
-  }
-  LiveEntry entry;
-  entry.index = address->index;
-  entry.sub_index = address->sub_index.value_or(0);
-  return {{entry}, ""};
+  if (!address) fail(fmt::format("\"{}\" is not an address such as 1018h:01; names require an EDS (--eds)", text));
+  return live_entry(nullptr, address->index, address->sub_index.value_or(0));
 }
 
 /// The numbers of the identity that the file or the node does not state.
@@ -55,43 +51,45 @@ std::unique_ptr<LoadedDevice> load_live_device(const std::string& path, std::uin
     return loaded;
   }
   print_findings(stderr, diagnostics, ColorOption{});
-  return nullptr;
+  throw Exit{};
 }
 
-NamedEntries name_entries(const Device* device, const std::string& text) {
-  if (device == nullptr) return by_address(text);
+std::vector<LiveEntry> name_entries(const Device* device, const std::string& text) {
+  if (device == nullptr) return {by_address(text)};
   const FoundEntry found = find_entry(*device, text);
-  if (!found.ok()) return {{}, found.problem};
-  if (found.entry != nullptr) return {{live_entry(*found.object, *found.entry)}, ""};
-  NamedEntries named;
+  if (!found.ok()) fail(found.problem);
+  if (found.entry != nullptr) return {live_entry(*found.object, *found.entry)};
+  std::vector<LiveEntry> entries;
   for (const Entry& entry : found.object->entries) {
-    if (canopen::readable(entry.access)) named.entries.push_back(live_entry(*found.object, entry));
+    if (canopen::readable(entry.access)) entries.push_back(live_entry(*found.object, entry));
   }
-  if (named.entries.empty()) {
-    named.problem =
-        fmt::format("{} \"{}\" has no entry that can be read", index_label(found.object->index), found.object->name);
+  if (entries.empty()) {
+    fail(fmt::format("{} \"{}\" has no entry that can be read", index_label(found.object->index), found.object->name));
   }
-  return named;
+  return entries;
 }
 
-NamedEntries name_entry(const Device* device, const std::string& text) {
+LiveEntry name_entry(const Device* device, const std::string& text) {
   if (device == nullptr) return by_address(text);
   const FoundEntry found = find_one_entry(*device, text);
-  if (!found.ok()) return {{}, found.problem};
-  return {{live_entry(*found.object, *found.entry)}, ""};
+  if (!found.ok()) fail(found.problem);
+  return live_entry(*found.object, *found.entry);
 }
 
-NodeCheck check_node(SdoAccess& node, const Device& device, const std::string& path) {
+void check_node(SdoAccess& node, const Device& device, const std::string& path, std::string_view hint) {
   const Identity found = read_identity(node), expected = identity_of(device);
-  NodeCheck check;
-  check.not_compared = not_compared_text(path, not_compared(expected, found));
   const IdentityMatch match = compare_identity(expected, found);
-  if (match == IdentityMatch::same || match == IdentityMatch::minor_revision || match == IdentityMatch::unknown)
-    return check;
-  check.problem =
-      fmt::format("node {} is not the device of {}: {}; \"edsc scan BUS --eds FILE\" finds the node of a file",
-                  node.node().value(), path, identity_differences(expected, found));
-  return check;
+  if (match == IdentityMatch::major_revision || match == IdentityMatch::other) {
+    fail(fmt::format("node {} is not the device of {}: {}; \"edsc scan BUS --eds FILE\" finds the node of a file; {}",
+                     node.node().value(), path, identity_differences(expected, found), hint),
+         exit_device_failed);
+  }
+  report_not_compared(node, not_compared_text(path, not_compared(expected, found)));
+}
+
+void report_not_compared(const SdoAccess& node, const std::string& what) {
+  if (what.empty()) return;
+  print_visibly(stderr, "edsc: node {}: not compared: {}\n", node.node().value(), what);
 }
 
 void report_broken_block(const LiveEntry& entry, const SdoOutcome& outcome) {

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "load/load_device.hpp"
@@ -10,29 +11,28 @@
 
 namespace edsc {
 
-/// Loads the device of an EDS for this node. What is wrong is left out, and the number of errors is printed. Null if
-/// the file cannot be read as an EDS, with the reason printed.
+/// Loads the device of an EDS for this node. What is wrong is left out, and the number of errors is printed.
+/// Ends the command if the file cannot be read as an EDS.
 [[nodiscard]] std::unique_ptr<LoadedDevice> load_live_device(const std::string& path, std::uint8_t node);
 
-/// Finds the entries that a text names: one, or all readable ones of an object with sub-indices. Without a device the
-/// text must be an address. `problem` is an error message.
-struct NamedEntries {
-  std::vector<LiveEntry> entries;
-  std::string problem;
-};
+/// The device, if one was loaded.
+[[nodiscard]] inline const Device* device_of(const std::unique_ptr<LoadedDevice>& loaded) {
+  return loaded ? &*loaded->device : nullptr;
+}
 
-[[nodiscard]] NamedEntries name_entries(const Device* device, const std::string& text);
+/// Finds the entries that a text names: one, or all readable ones of an object with sub-indices. Without a device the
+/// text must be an address. Ends the command if it names none.
+[[nodiscard]] std::vector<LiveEntry> name_entries(const Device* device, const std::string& text);
 
 /// Finds the entry that a text names.
-[[nodiscard]] NamedEntries name_entry(const Device* device, const std::string& text);
+[[nodiscard]] LiveEntry name_entry(const Device* device, const std::string& text);
 
-/// The result of comparing the identity of a node with a file.
-struct NodeCheck {
-  std::string problem;       ///< empty: no contradiction
-  std::string not_compared;  ///< `vendor-ID (not in drive.eds)`
-};
+/// Compares the identity of a node with a file. Prints which numbers could not be compared; ends the command if others
+/// differ, with a hint.
+void check_node(SdoAccess& node, const Device& device, const std::string& path, std::string_view hint);
 
-[[nodiscard]] NodeCheck check_node(SdoAccess& node, const Device& device, const std::string& path);
+/// Reports that the identity or some of its numbers were not compared; nothing for an empty text.
+void report_not_compared(const SdoAccess& node, const std::string& what);
 
 /// Reports a failed block transfer that was followed by a segmented transfer.
 void report_broken_block(const LiveEntry& entry, const SdoOutcome& outcome);

@@ -5,17 +5,9 @@
 #include <set>
 
 #include "online/live_entry.hpp"
+#include "shared/common_options.hpp"
 
 namespace edsc {
-namespace {
-
-std::optional<std::uint8_t> parse_node(const std::string& text) {
-  const auto number = parse_count(text, 127);
-  if (!number || *number == 0) return std::nullopt;
-  return static_cast<std::uint8_t>(*number);
-}
-
-}  // namespace
 
 CLI::Option* add_bus_argument(CLI::App& command, std::string& bus) {
   return command
@@ -26,13 +18,12 @@ CLI::Option* add_bus_argument(CLI::App& command, std::string& bus) {
 }
 
 CLI::Option* add_node_argument(CLI::App& command, std::uint8_t& node) {
-  return command
-      .add_option_function<std::string>(
-          "NODE", [&node](const std::string& text) { node = parse_node(text).value_or(0); }, "node-ID, 1..127")
-      ->required()
-      ->check([](const std::string& text) {
-        return parse_node(text) ? std::string{} : "\"" + text + "\" is not a node-ID from 1 to 127";
-      });
+  return add_parsed(command, "NODE", node, parse_node, "a node-ID from 1 to 127", "node-ID, 1..127")->required();
+}
+
+void add_node_arguments(CLI::App& command, NodeSettings& settings) {
+  add_bus_argument(command, settings.bus);
+  add_node_argument(command, settings.node);
 }
 
 CLI::Option* add_timeout_option(CLI::App& command, unsigned& milliseconds) {
@@ -48,20 +39,17 @@ CLI::Option* add_step_option(CLI::App& command, unsigned& milliseconds) {
 }
 
 CLI::Option* add_format_option(CLI::App& command, std::string& format) {
-  return command.add_option("--format", format, "text or json")
-      ->check(CLI::IsMember({"text", "json"}))
-      ->capture_default_str();
+  return add_choice(command, "--format", format, {"text", "json"}, "text or json");
 }
 
 CLI::Option* add_type_option(CLI::App& command, const canopen::DataTypeRow*& type) {
-  return command
-      .add_option_function<std::string>(
-          "--type", [&type](const std::string& text) { type = find_type(text); },
-          "data type instead of that of the EDS: bool, u8..u64, i8..i64, f32, f64, string, unicode, octets, time, "
-          "span, domain")
-      ->check([](const std::string& text) {
-        return find_type(text) != nullptr ? std::string{} : "\"" + text + "\" is not a data type";
-      });
+  const auto parse = [](const std::string& text) -> std::optional<const canopen::DataTypeRow*> {
+    const canopen::DataTypeRow* const found = find_type(text);
+    return found != nullptr ? std::optional{found} : std::nullopt;
+  };
+  return add_parsed(command, "--type", type, parse, "a data type",
+                    "data type instead of that of the EDS: bool, u8..u64, i8..i64, f32, f64, string, unicode, octets, "
+                    "time, span, domain");
 }
 
 std::optional<std::uint32_t> parse_count(const std::string& text, std::uint32_t most) {
@@ -78,6 +66,12 @@ std::optional<std::uint32_t> parse_count(const std::string& text, std::uint32_t 
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number, base);
   if (error != std::errc{} || end != digits.data() + digits.size() || number > most) return std::nullopt;
   return number;
+}
+
+std::optional<std::uint8_t> parse_node(const std::string& text) {
+  const auto number = parse_count(text, 127);
+  if (!number || *number == 0) return std::nullopt;
+  return static_cast<std::uint8_t>(*number);
 }
 
 std::vector<std::uint8_t> parse_node_list(const std::string& text) {
@@ -98,12 +92,8 @@ std::vector<std::uint8_t> parse_node_list(const std::string& text) {
 
 CLI::Option* add_count_option(CLI::App& command, const std::string& name, std::optional<std::uint32_t>& number,
                               const std::string& description) {
-  return command
-      .add_option_function<std::string>(
-          name, [&number](const std::string& text) { number = parse_count(text); }, description)
-      ->check([](const std::string& text) {
-        return parse_count(text) ? std::string{} : "\"" + text + "\" is not a number; expected 31, 0x1F or 1Fh";
-      });
+  const auto parse = [](const std::string& text) { return parse_count(text); };
+  return add_parsed(command, name, number, parse, "a number; expected 31, 0x1F or 1Fh", description);
 }
 
 }  // namespace edsc

@@ -8,13 +8,25 @@
 #include <string>
 #include <vector>
 
+#include "online/sdo_access.hpp"
+
 namespace edsc {
+
+/// What the commands for one node have in common.
+struct NodeSettings {
+  std::string bus;
+  std::uint8_t node = 0;
+  SdoSettings sdo;
+};
 
 /// `BUS`
 CLI::Option* add_bus_argument(CLI::App& command, std::string& bus);
 
 /// `NODE`: 1..127.
 CLI::Option* add_node_argument(CLI::App& command, std::uint8_t& node);
+
+/// `BUS NODE`
+void add_node_arguments(CLI::App& command, NodeSettings& settings);
 
 /// `--timeout MS`
 CLI::Option* add_timeout_option(CLI::App& command, unsigned& milliseconds);
@@ -30,6 +42,9 @@ CLI::Option* add_type_option(CLI::App& command, const canopen::DataTypeRow*& typ
 
 /// Parses a number: 31, 0x1F or 1Fh. Nothing if it is invalid, or above `most`.
 [[nodiscard]] std::optional<std::uint32_t> parse_count(const std::string& text, std::uint32_t most = 0xFFFF'FFFF);
+
+/// Parses a node-ID, 1 to 127.
+[[nodiscard]] std::optional<std::uint8_t> parse_node(const std::string& text);
 
 /// Parses `1..127`, `5` or `1,3,8..20`: ascending, each once. Empty if invalid.
 [[nodiscard]] std::vector<std::uint8_t> parse_node_list(const std::string& text);

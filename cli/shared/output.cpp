@@ -9,6 +9,9 @@
 #include <cstring>
 #include <iostream>
 #include <system_error>
+#include <utility>
+
+#include "shared/exit_code.hpp"
 
 namespace edsc {
 namespace {
@@ -41,6 +44,18 @@ void write_output(std::string_view text) {
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) {
     throw std::system_error{errno, std::generic_category(), problem};
   }
+}
+
+void write_output(const std::string& path, std::string text, const std::vector<std::string>& inputs) {
+  if (path.empty()) {
+    write_output(text);
+  } else {
+    write_all_files({{path, std::move(text)}}, inputs);
+  }
+}
+
+void write_all_files(const std::vector<OutputFile>& files, const std::vector<std::string>& inputs) {
+  if (const std::string failure = write_files(files, inputs); !failure.empty()) fail(failure);
 }
 
 void flush_output() {

@@ -1,7 +1,11 @@
 /// Standard output; write errors are errors of the command.
 #pragma once
 
+#include <string>
 #include <string_view>
+#include <vector>
+
+#include "text/write_files.hpp"
 
 namespace edsc {
 
@@ -15,6 +19,13 @@ void occupy_standard_descriptors();
 
 /// Throws std::system_error on a write error.
 void write_output(std::string_view text);
+
+/// Writes a file, or standard output if the path is empty. Ends the command if it cannot be written, or is one of
+/// `inputs`.
+void write_output(const std::string& path, std::string text, const std::vector<std::string>& inputs = {});
+
+/// Writes all files or none; ends the command if one of them cannot be written, or is one of `inputs`.
+void write_all_files(const std::vector<OutputFile>& files, const std::vector<std::string>& inputs = {});
 
 /// Flushes standard output immediately, for commands that run until they are interrupted. Throws std::system_error on a
 /// write error.

@@ -107,6 +107,18 @@ class Conform(unittest.TestCase):
         self.assertEqual(result.returncode, 1)
         self.assertIn("unused deviation: unused.json:1: case 2.1 passed: x\n", result.stdout)
 
+    def test_a_named_options_file_replaces_the_one_beside_the_eds(self) -> None:
+        (self.folder / "other.json").write_text('{"inhibit_time_unit": 0}', encoding="utf-8")
+        result = self.run_line(f"edsc conform {ADDRESS} 5 eds/rk5c.eds --only 1.0 --options other.json")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("other.json:1:", result.stdout)
+        self.assertRegex(result.stdout, "repeat with +edsc conform .* --options other.json --only 1.0")
+
+    def test_a_missing_options_file_is_wrong_usage(self) -> None:
+        result = self.run_line(f"edsc conform {ADDRESS} 5 eds/rk5c.eds --options missing.json")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("missing.json", result.stderr)
+
     def test_the_command_of_a_failure_repeats_it(self) -> None:
         first = self.run_line(f"edsc conform {ADDRESS} 5 eds/rk5c.eds --level all --only 8.4")
         self.assertEqual(first.returncode, 1)

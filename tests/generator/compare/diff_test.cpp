@@ -255,7 +255,7 @@ std::string identity(const std::string& product, const std::string& revision) {
          var("1018sub3", "Revision number", "7", "ro", "DefaultValue=" + revision + "\n");
 }
 
-TEST(Diff, WantsAHigherMajorRevisionForABreakingChange) {  // CiA 301, 7.5.2.19: bits 31..16
+TEST(Diff, WantsAHigherMajorRevisionForABreakingChange) {  // CiA 301, 7.5.2.21: bits 31..16
   const std::string missing = "revision-unchanged 1018h:03 master";
   const auto changed = [](const std::string& old_revision, const std::string& new_revision) {
     return compare(identity("1", old_revision) + with("", "rw"), identity("1", new_revision) + with("", "ro")).back();
