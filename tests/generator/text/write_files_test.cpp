@@ -173,7 +173,7 @@ TEST_F(WriteFiles, RefusesAnOutputThatIsAnInputByAnyOfItsNames) {
     EXPECT_EQ(write_files({{path("one.hpp"), "1"}, {path(name), "2"}}, {path("missing"), path("input")}),
               path(name) + ": is the same file as the input " + path("input"));
     EXPECT_EQ(content_of(path("input")), "mine");
-    EXPECT_EQ(files(), (Names{"hard", "input", "symbolic"}));
+    EXPECT_FALSE(fs::exists(path("one.hpp")));
   }
 }
 
