@@ -32,8 +32,8 @@ void require(bool holds, const char* what) {
   std::abort();
 }
 
-/// Counts allocations from the heap while the node runs.
-bool running = false;
+/// Counts allocations from the heap while the node runs, in its thread: libFuzzer has others.
+thread_local bool running = false;
 unsigned allocations = 0;
 
 struct Device : every_service::Device {
