@@ -4,7 +4,7 @@
     sources.py SOURCE_DIR BUILD_DIR [--all]
 
 Without --all, only what differs from origin/main, or what the last commit changed if nothing differs: the changed files and
-those that include them, nearest first, at most `MAX_ALONE`, and clang-tidy of the changed folders. All of them if there is no
+those that include them, nearest first, at most `MAX_ALONE`, and clang-tidy of the changed folders; nothing if more than `MAX_ALONE` sources differ. All of them if there is no
 origin/main. BUILD_DIR is a build with Ninja; what is up to date in it is not built again.
 """
 
@@ -68,6 +68,9 @@ def folder_of(name: str) -> str:
 def selected(source_dir: Path, rows: list[list[str]], changed: set[str]) -> list[str]:
     """Returns the files to build. A command of cli/ is one row for clang-tidy, a folder of the libraries is one row."""
     alone = {sources[0]: file for kind, file, *sources in rows if kind == "alone"}
+    if len(changed.intersection(alone)) > MAX_ALONE:
+        print(f"more than {MAX_ALONE} sources differ: ./test.sh sources compiles all")
+        return []
     near = [name for name in by_distance(changed, includers(source_dir)) if name in alone]
     if len(near) > MAX_ALONE:
         print(f"{MAX_ALONE} of {len(near)} sources that include what changed; ./test.sh sources compiles all")
@@ -85,7 +88,7 @@ def main() -> int:
         lines = (build_dir / "gates/targets.tsv").read_text(encoding="utf-8").splitlines()
         files = selected(source_dir, [line.split("\t") for line in lines], changed)
     if not files:
-        print("no source differs from origin/main")
+        print("no source to compile")
         return 0
     return subprocess.run(["cmake", "--build", build_dir, "--target", *files, "--", "-k", "0"]).returncode
 
