@@ -33,8 +33,8 @@ function(edsc_add_dictionary target)
 
   set(output_dir ${CMAKE_CURRENT_BINARY_DIR}/edsc/${target})
   set(depfile ${output_dir}/${arg_NAMESPACE}.d)
-  set(headers device.hpp dictionary.hpp pdo.hpp description.hpp)
-  list(TRANSFORM headers PREPEND ${output_dir}/${arg_NAMESPACE}/)
+  include(${CMAKE_CURRENT_FUNCTION_LIST_DIR}/EdscHeaders.cmake)
+  list(TRANSFORM EDSC_HEADERS PREPEND ${output_dir}/${arg_NAMESPACE}/ OUTPUT_VARIABLE headers)
 
   set(stamp ${output_dir}/${arg_NAMESPACE}.stamp)
   set(arguments ${eds} -o ${output_dir} --name ${arg_NAMESPACE} --depfile ${depfile} --depfile-target ${stamp})

@@ -1,4 +1,6 @@
-# Writes OUTPUT: TEMPLATES and REPORT_TEMPLATES (lists of *.mustache files) as string literals. Run with cmake -P.
+# Writes OUTPUT: TEMPLATES and REPORT_TEMPLATES (lists of *.mustache files) as string literals. Those that are in OPTIONAL need
+# the member of the view of their name. Run with cmake -P.
+cmake_policy(VERSION 3.25)
 set(text "#include \"backend/render.hpp\"\n\nnamespace edsc {\n")
 
 function(embed function)
@@ -7,7 +9,11 @@ function(embed function)
     get_filename_component(name ${file} NAME)
     string(REGEX REPLACE "\\.mustache$" "" name ${name})
     file(READ ${file} content)
-    string(APPEND code "      {\"${name}\", R\"mustache(${content})mustache\"},\n")
+    set(needed "")
+    if(name IN_LIST OPTIONAL)
+      string(REGEX REPLACE "\\.[^.]*$" "" needed ${name})
+    endif()
+    string(APPEND code "      {\"${name}\", R\"mustache(${content})mustache\", \"${needed}\"},\n")
   endforeach()
   string(APPEND code "  };\n  return templates;\n}\n")
   set(text "${text}${code}" PARENT_SCOPE)

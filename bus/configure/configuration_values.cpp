@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <cstring>
 
-#include "format/concise_dcf.hpp"
-#include "format/configured_values.hpp"
+#include "format/dcf/concise_dcf.hpp"
+#include "format/dcf/configured_values.hpp"
 
 namespace edsc {
 namespace {

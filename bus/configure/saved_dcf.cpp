@@ -7,10 +7,11 @@
 
 #include "device/index_range.hpp"
 #include "device/resolve.hpp"
+#include "device/types/value_bytes.hpp"
 #include "eds/ini.hpp"
 #include "format/canonical_form.hpp"
-#include "format/configured_values.hpp"
-#include "format/parameter_text.hpp"
+#include "format/dcf/configured_values.hpp"
+#include "format/dcf/parameter_text.hpp"
 #include "format/section_order.hpp"
 
 namespace edsc {
@@ -27,12 +28,12 @@ std::string bytes_in_dcf(const Entry& entry, const std::vector<std::uint8_t>& by
 
 /// Whether the value is the default value of the EDS for this node.
 bool is_default(const Entry& entry, const std::vector<std::uint8_t>& bytes) {
-  return entry.default_value && bytes_in_dcf(entry, bytes) == data_of(*entry.default_value, *entry.type);
+  return entry.default_value && bytes_in_dcf(entry, bytes) == bytes_of(*entry.default_value, *entry.type);
 }
 
 /// Whether the element of a compact form does not have its own section.
 bool is_compact(const DataSheet& sheet, const LiveEntry& entry) {
-  const ObjectDescription* object = find_object(sheet, entry.index);
+  const ObjectDescription* object = sheet.find(entry.index);
   if (object == nullptr || entry.sub_index == 0 || !object->compact_sub_obj.present) return false;
   return std::ranges::find(object->sub_objects, entry.sub_index, &SubObjectDescription::sub_index) ==
          object->sub_objects.end();
@@ -115,7 +116,7 @@ std::map<std::pair<std::uint16_t, std::uint8_t>, std::string> values_in(const st
   const SourceFile source{"saved.dcf", text};
   const IniFile ini = parse_ini(source, ignored);
   const DataSheet sheet = read_data_sheet(ini, ignored);
-  const Device device = resolve_device(sheet, {}, {"", node}, ignored);
+  const Device device = resolve_device(sheet, {}, node, ignored);
   std::map<std::pair<std::uint16_t, std::uint8_t>, std::string> values;
   for (ConfiguredValue& value : configured_values(sheet, device, ignored)) {
     values[{value.entry->index, value.entry->sub_index}] = std::move(value.data);

@@ -8,7 +8,7 @@
 
 #include "configure/read_configuration.hpp"
 #include "eds/data_sheet.hpp"
-#include "format/make_dcf.hpp"
+#include "format/dcf/make_dcf.hpp"
 #include "text/source_file.hpp"
 
 namespace edsc {

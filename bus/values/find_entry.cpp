@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "device/identifier.hpp"
+#include "backend/cpp/identifier.hpp"
 #include "eds/ini.hpp"
 #include "eds/number.hpp"
 #include "text/ascii.hpp"

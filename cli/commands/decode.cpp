@@ -11,7 +11,7 @@
 #include "commands/commands.hpp"
 #include "decode/log_decoder.hpp"
 #include "decode/log_reader.hpp"
-#include "device/broken_pdos.hpp"
+#include "device/pdo/resolve_pdos.hpp"
 #include "eds/number.hpp"
 #include "load/load_device.hpp"
 #include "shared/common_options.hpp"

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "backend/cpp/identifier.hpp"
 #include "commands/commands.hpp"
 #include "compare/compare_devices.hpp"
 #include "compare/print_changes.hpp"
@@ -72,7 +73,7 @@ std::unique_ptr<LoadedDevice> load_committed(std::unique_ptr<SourceFile> source,
   if (settings.keep_going) diagnostics.keep_going(loaded->source.get(), fatal_rules());
   const std::string options_path = std::filesystem::path{path}.replace_extension(".options.json").string();
   loaded->options_source = read_git_file(revision, options_path).source;
-  if (loaded->options_source) loaded->options = read_options(*loaded->options_source, diagnostics);
+  if (loaded->options_source) loaded->options = read_options(*loaded->options_source, is_identifier, diagnostics);
   silence_by_options(*loaded, diagnostics);
   resolve_and_check(*loaded, {path, "", "", settings.node_id}, diagnostics);
   return reported(std::move(loaded), diagnostics, settings);

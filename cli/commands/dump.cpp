@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "backend/cpp/configured_view.hpp"
-#include "backend/cpp/view.hpp"
+#include "backend/cpp/cpp_view.hpp"
+#include "backend/json/device_view.hpp"
 #include "commands/commands.hpp"
-#include "device/broken_pdos.hpp"
+#include "device/pdo/resolve_pdos.hpp"
 #include "load/load_device.hpp"
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"

@@ -8,9 +8,9 @@
 #include "device/resolve.hpp"
 #include "eds/ini.hpp"
 #include "format/canonical_form.hpp"
-#include "format/concise_dcf.hpp"
-#include "format/make_dcf.hpp"
-#include "format/move_values.hpp"
+#include "format/dcf/concise_dcf.hpp"
+#include "format/dcf/make_dcf.hpp"
+#include "format/dcf/move_values.hpp"
 #include "format/sheet_document.hpp"
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"
@@ -68,7 +68,7 @@ void read(const Settings& settings, Input& input, Diagnostics& diagnostics) {
   if (input.ini.sections.empty()) return;
   input.sheet = read_data_sheet(input.ini, diagnostics);
   Diagnostics ignored;
-  input.device = resolve_device(input.sheet, {}, {"", settings.node_id}, ignored);
+  input.device = resolve_device(input.sheet, {}, settings.node_id, ignored);
 }
 
 /// Converts an XDD to an EDS, an XDC to a DCF. Reports losses as notes.

@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "backend/cpp/view.hpp"
+#include "backend/cpp/cpp_view.hpp"
+#include "backend/cpp/identifier.hpp"
 #include "backend/render.hpp"
 #include "commands/commands.hpp"
-#include "device/identifier.hpp"
 #include "load/load_device.hpp"
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"
@@ -26,9 +26,6 @@ constexpr const char* examples = R"(Examples:
   edsc generate eds/drive.eds -o build/generated           headers for namespace drive
   edsc generate drive.eds -o out --name axis1 --node-id 5  a second one, with its node-ID fixed
   edsc generate vendor.eds -o out --keep-going             leave out what is wrong in the EDS of a purchased device)";
-
-/// Only for a device that stores its EDS.
-constexpr std::string_view stored_eds_header = "stored_eds.hpp";
 
 struct Settings {
   LoadSettings load;
@@ -108,7 +105,7 @@ std::vector<OutputFile> render_all(const Settings& settings, LoadedDevice& loade
   inputs = {settings.load.path};
   if (loaded.options_source) inputs.push_back(loaded.options_source->name());
   for (const ChosenTemplate& one : templates) {
-    if (one.built_in.file_name == stored_eds_header && view["stored_eds"].is_null()) continue;
+    if (!one.built_in.needed.empty() && view.at(std::string{one.built_in.needed}).is_null()) continue;
     files.push_back({(folder / one.built_in.file_name).string(), one.rendered(view)});
     if (one.replacement) inputs.push_back(one.replacement->name());
   }

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "backend/cpp/pdo_view.hpp"
+#include "backend/cpp/views.hpp"
 #include "diagnostics/place.hpp"
 #include "text/printable.hpp"
 

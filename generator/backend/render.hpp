@@ -12,6 +12,7 @@ namespace edsc {
 struct Template {
   std::string_view file_name;  ///< of the generated file, such as `dictionary.hpp`
   std::string_view text;
+  std::string_view needed = {};  ///< a member of the view; if it is null, the file is not generated
 };
 
 /// The templates of the generated headers, in the order of writing their files.

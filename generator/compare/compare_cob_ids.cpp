@@ -1,11 +1,9 @@
-#include "compare/compare_cob_ids.hpp"
+#include "compare/compare_parts.hpp"
 
 #include <fmt/format.h>
 
 #include <canopen/can/cob_id.hpp>
 #include <cstdint>
-
-#include "compare/compare_entries.hpp"
 
 namespace edsc {
 namespace {

@@ -6,8 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "compare/compare_entries.hpp"
-#include "compare/compare_pdos.hpp"
+#include "compare/compare_parts.hpp"
 
 namespace edsc {
 namespace {

@@ -1,16 +1,14 @@
-#include "compare/compare_entries.hpp"
+#include "compare/compare_parts.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "compare/compare_cob_ids.hpp"
-#include "compare/compare_pdos.hpp"
 #include "device/cob_id_parameter.hpp"
+#include "device/types/value_bytes.hpp"
 
 namespace edsc {
 namespace {
@@ -57,8 +55,7 @@ long double limit_number(const std::optional<Value>& limit, const DataTypeRow& t
   if (!limit) return missing;
   if (type.kind == DataClass::signed_integer) return static_cast<long double>(static_cast<std::int64_t>(limit->bits));
   if (type.kind == DataClass::unsigned_integer) return static_cast<long double>(limit->bits);
-  if (type.bits == 32) return std::bit_cast<float>(static_cast<std::uint32_t>(limit->bits));
-  return std::bit_cast<double>(limit->bits);
+  return real_of(limit->bits, type);
 }
 
 long double lowest(const DataTypeRow& type) {
@@ -213,9 +210,7 @@ std::string value_text(const std::optional<Value>& value, const DataTypeRow& typ
   if (value->plus_node_id) return fmt::format("$NODEID+0x{:X}", value->bits);
   switch (type.kind) {
     case DataClass::string: return fmt::format("\"{}\"", value->bytes);
-    case DataClass::real:
-      if (type.bits == 32) return fmt::format("{}", std::bit_cast<float>(static_cast<std::uint32_t>(value->bits)));
-      return fmt::format("{}", std::bit_cast<double>(value->bits));
+    case DataClass::real: return real_text(value->bits, type);
     case DataClass::signed_integer: return fmt::format("{}", static_cast<std::int64_t>(value->bits));
     case DataClass::boolean:
     case DataClass::unsigned_integer:

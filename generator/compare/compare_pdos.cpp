@@ -1,21 +1,18 @@
-#include "compare/compare_pdos.hpp"
+#include "compare/compare_parts.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <canopen/can/cob_id.hpp>
 #include <optional>
 #include <utility>
 
-#include "compare/compare_cob_ids.hpp"
-#include "compare/compare_entries.hpp"
 #include "device/cob_id_parameter.hpp"
+#include "device/pdo/pdo_defaults.hpp"
 
 namespace edsc {
 namespace {
 
 constexpr std::uint8_t cob_id_sub_index = 1;
-constexpr std::uint8_t transmission_type_sub_index = 2;
 constexpr std::uint8_t first_timing_sub_index =
     3;  ///< inhibit time; then compatibility entry, event timer, SYNC start value
 
@@ -24,11 +21,6 @@ const Entry* parameter(const Pdo& pdo, std::uint8_t sub_index) {
 }
 
 std::optional<Value> default_of(const Entry* entry) { return entry != nullptr ? entry->default_value : std::nullopt; }
-
-bool is_on(const Pdo& pdo) {
-  const auto cob_id = default_of(parameter(pdo, cob_id_sub_index));
-  return cob_id && canopen::CobId{static_cast<std::uint32_t>(cob_id->bits)}.valid();
-}
 
 /// The properties of an entry that matter to a PDO partner.
 struct LayoutEntry {
@@ -68,7 +60,7 @@ Position mapping_position(const Pdo& pdo, std::size_t entry) {
 class PdoComparison {
  public:
   PdoComparison(const Pdo& before, const Pdo& after, Changes& changes)
-      : before_{before}, after_{after}, changes_{changes}, is_used_{is_on(before) || is_on(after)} {}
+      : before_{before}, after_{after}, changes_{changes}, is_used_{on_by_default(before) || on_by_default(after)} {}
 
   void compare() {
     compare_state();
@@ -85,8 +77,8 @@ class PdoComparison {
   }
 
   void compare_state() {
-    if (is_on(before_) == is_on(after_)) return;
-    report(cob_id_sub_index, is_on(before_) ? ChangeId::pdo_disabled : ChangeId::pdo_enabled);
+    if (on_by_default(before_) == on_by_default(after_)) return;
+    report(cob_id_sub_index, on_by_default(before_) ? ChangeId::pdo_disabled : ChangeId::pdo_enabled);
   }
 
   /// CAN-ID and flags, except for the valid bit of the PDO.
@@ -178,7 +170,8 @@ void compare_pdos(const Device& before, const Device& after, Changes& changes) {
     if (const Pdo* const same = find(after, pdo)) {
       PdoComparison{pdo, *same, changes}.compare();
     } else {
-      changes.add(ChangeId::pdo_removed, pdo_label(pdo), "", pdo.position, {after.source}).breaks_pdo = is_on(pdo);
+      changes.add(ChangeId::pdo_removed, pdo_label(pdo), "", pdo.position, {after.source}).breaks_pdo =
+          on_by_default(pdo);
     }
   }
   for (const Pdo& pdo : after.pdos) {

@@ -41,13 +41,11 @@ const CobIdParameter* find_cob_id_parameter(std::uint16_t index, std::uint8_t su
 
 Value predefined_cob_id(const CobIdParameter& parameter, std::uint16_t index, std::optional<std::uint8_t> node_id,
                         const Position& position) {
-  Value value;
-  value.bits = parameter.predefined_of(index) + (parameter.plus_node_id ? node_id.value_or(0) : 0);
-  value.plus_node_id = parameter.plus_node_id && !node_id;
-  value.hexadecimal = true;
-  value.position = position;
-  value.clause = parameter.clause;
-  return value;
+  return {.bits = parameter.predefined_of(index) + (parameter.plus_node_id ? node_id.value_or(0) : 0),
+          .plus_node_id = parameter.plus_node_id && !node_id,
+          .hexadecimal = true,
+          .position = position,
+          .clause = parameter.clause};
 }
 
 }  // namespace edsc

@@ -27,8 +27,6 @@ struct CobIdParameter {
   [[nodiscard]] std::uint32_t predefined_of(std::uint16_t index) const {
     return predefined + std::uint32_t{step} * (index - first);
   }
-  /// Whether the pre-defined connection set defines a CAN-ID for it.
-  [[nodiscard]] bool is_predefined() const { return canopen::CobId{predefined}.valid(); }
 };
 
 /// All rows, ascending by index.

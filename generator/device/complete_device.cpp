@@ -40,10 +40,6 @@ struct StorageCapability {
 constexpr StorageCapability storage_capabilities[] = {{0x1010, 0x3, "7.5.2.13"}, {0x1011, 0x1, "7.5.2.14"}};
 constexpr std::uint64_t on_command = 1;
 
-std::string named(const Entry& entry) {
-  return fmt::format("{} \"{}\"", entry_label(entry.index, entry.sub_index), entry.name);
-}
-
 std::string spelled(const Value& value) {
   if (value.plus_node_id) return fmt::format("$NODEID+0x{:X}", value.bits);
   return value.hexadecimal ? fmt::format("0x{:X}", value.bits) : fmt::format("{}", value.bits);
@@ -106,7 +102,7 @@ class Completion {
   // ---- COB-IDs ----
 
   void complete_cob_id(const CobIdParameter& parameter, Entry& entry) {
-    Value own = predefined_cob_id(parameter, entry.index, device_.node_id, place_of(entry));
+    Value own = predefined_cob_id(parameter, entry.index, device_.node_id, default_place(entry));
     if (!holds(entry, own.bits)) return;
     if (entry.index == default_sdo) return fix_default_sdo(parameter, std::move(own), entry);
     if (!entry.default_value) {
@@ -212,16 +208,8 @@ class Completion {
 
   // ---- helpers ----
 
-  static Position place_of(const Entry& entry) {
-    return entry.default_value ? entry.default_value->position : entry.position;
-  }
-
   static void set(Entry& entry, std::uint64_t bits, std::string_view clause) {
-    Value value;
-    value.bits = bits;
-    value.position = place_of(entry);
-    value.clause = clause;
-    entry.default_value = std::move(value);
+    entry.default_value = Value{.bits = bits, .position = default_place(entry), .clause = clause};
   }
 
   static std::string by(std::string_view clause) { return fmt::format("CiA 301, {}", clause); }

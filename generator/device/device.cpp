@@ -21,8 +21,7 @@ std::string_view to_string(ObjectType type) {
 }
 
 const Entry* Object::find(std::uint8_t sub_index) const {
-  const auto at = std::lower_bound(entries.begin(), entries.end(), sub_index,
-                                   [](const Entry& entry, std::uint8_t wanted) { return entry.sub_index < wanted; });
+  const auto at = std::ranges::lower_bound(entries, sub_index, {}, &Entry::sub_index);
   return at != entries.end() && at->sub_index == sub_index ? &*at : nullptr;
 }
 
@@ -40,8 +39,7 @@ unsigned Pdo::bits() const {
 }
 
 const Object* Device::find(std::uint16_t index) const {
-  const auto at = std::lower_bound(objects.begin(), objects.end(), index,
-                                   [](const Object& object, std::uint16_t wanted) { return object.index < wanted; });
+  const auto at = std::ranges::lower_bound(objects, index, {}, &Object::index);
   return at != objects.end() && at->index == index ? &*at : nullptr;
 }
 
@@ -50,11 +48,21 @@ const Entry* Device::find(std::uint16_t index, std::uint8_t sub_index) const {
   return object == nullptr ? nullptr : object->find(sub_index);
 }
 
+Position default_place(const Entry& entry) {
+  return entry.default_value ? entry.default_value->position : entry.position;
+}
+
 std::string entry_label(std::uint16_t index, std::uint8_t sub_index) {
   return fmt::format(FMT_COMPILE("{:04X}h:{:02X}"), index, sub_index);
 }
 
 std::string index_label(std::uint16_t index) { return fmt::format(FMT_COMPILE("{:04X}h"), index); }
+
+std::string named(const Entry& entry) {
+  return fmt::format("{} \"{}\"", entry_label(entry.index, entry.sub_index), entry.name);
+}
+
+std::string named(const Object& object) { return fmt::format("{} \"{}\"", index_label(object.index), object.name); }
 
 std::string pdo_label(const Pdo& pdo) {
   return fmt::format("{} {}", pdo.direction == PdoDirection::receive ? "RPDO" : "TPDO", pdo.number);

@@ -33,11 +33,11 @@ enum class ObjectType : std::uint8_t {
 /// 754 pattern.
 struct Value {
   std::uint64_t bits = 0;
-  bool plus_node_id = false;  ///< the node-ID must be added when it is known
-  bool hexadecimal = false;   ///< as written in the EDS
-  std::string bytes;          ///< of strings
-  Position position;          ///< in the file; of its section if the value is missing
-  std::string_view clause;    ///< of CiA 301, if the value comes from there; otherwise empty
+  bool plus_node_id = false;     ///< the node-ID must be added when it is known
+  bool hexadecimal = false;      ///< as written in the EDS
+  std::string bytes = {};        ///< of strings
+  Position position = {};        ///< in the file; of its section if the value is missing
+  std::string_view clause = {};  ///< of CiA 301, if the value comes from there; otherwise empty
 };
 
 /// One entry of the object dictionary, with an index and sub-index.
@@ -45,7 +45,7 @@ struct Entry {
   std::uint16_t index = 0;
   std::uint8_t sub_index = 0;
   std::string name;        ///< ParameterName
-  std::string identifier;  ///< name in C++, unique in its object; of a VAR, unique in the device
+  std::string identifier;  ///< name in generated code, unique in its object; a back end sets it
   const canopen::DataTypeRow* type = nullptr;
   std::uint32_t octets = 0;  ///< of a string: the length that its DEFTYPE states, in bytes; 0 where none does
   canopen::Access access = canopen::Access::rw;
@@ -77,7 +77,7 @@ struct Object {
   std::uint16_t index = 0;
   ObjectType type = ObjectType::var;
   std::string name;
-  std::string identifier;      ///< unique in the device
+  std::string identifier;      ///< name in generated code, unique in the device; a back end sets it
   std::vector<Entry> entries;  ///< ascending by sub-index; exactly one for a VAR or DOMAIN
   Position position;
   std::string denotation;
@@ -137,7 +137,7 @@ struct TypeDefinition {
 
 struct Device {
   const SourceFile* source = nullptr;
-  std::string name;  ///< C++ namespace
+  std::string name;  ///< in generated code
   std::string vendor_name;
   std::string product_name;
   std::uint32_t vendor_number = 0;
@@ -154,10 +154,17 @@ struct Device {
   [[nodiscard]] const Entry* find(std::uint16_t index, std::uint8_t sub_index) const;
 };
 
+/// The position of the default value of an entry, or of its section if it has none.
+[[nodiscard]] Position default_place(const Entry& entry);
+
 /// `1018h:01`
 [[nodiscard]] std::string entry_label(std::uint16_t index, std::uint8_t sub_index);
 /// `1018h`
 [[nodiscard]] std::string index_label(std::uint16_t index);
+/// `6040h:00 "Controlword"`
+[[nodiscard]] std::string named(const Entry& entry);
+/// `1018h "Identity object"`
+[[nodiscard]] std::string named(const Object& object);
 /// `RPDO 2`
 [[nodiscard]] std::string pdo_label(const Pdo& pdo);
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "device/type_table.hpp"
+#include "device/types/type_table.hpp"
 #include "diagnostics/quote.hpp"
 
 namespace edsc {

@@ -3,21 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 
-#include "device/broken_pdos.hpp"
-#include "device/compact_pdo.hpp"
 #include "device/complete_device.hpp"
-#include "device/entry_resolver.hpp"
-#include "device/identifier.hpp"
 #include "device/index_range.hpp"
-#include "device/name_objects.hpp"
-#include "device/object_resolver.hpp"
+#include "device/objects/entry_resolver.hpp"
+#include "device/objects/object_resolver.hpp"
+#include "device/objects/resolve_modules.hpp"
+#include "device/pdo/resolve_pdos.hpp"
 #include "device/resolve_information.hpp"
-#include "device/resolve_modules.hpp"
-#include "device/resolve_pdos.hpp"
 #include "device/stored_eds.hpp"
-#include "device/type_table.hpp"
+#include "device/types/type_table.hpp"
 #include "diagnostics/quote.hpp"
 #include "eds/number.hpp"
 #include "text/source_file.hpp"
@@ -27,17 +22,15 @@ namespace {
 
 constexpr std::size_t max_entries = 0x20000;
 
-std::string namespace_of(const std::string& file) { return to_namespace(std::filesystem::path{file}.stem().string()); }
-
 class Resolver {
  public:
-  Resolver(const DataSheet& sheet, const Options& options, const ResolveSettings& settings, Diagnostics& diagnostics)
-      : sheet_{sheet}, options_{options}, settings_{settings}, diagnostics_{diagnostics} {}
+  Resolver(const DataSheet& sheet, const Options& options, std::optional<std::uint8_t> node_id,
+           Diagnostics& diagnostics)
+      : sheet_{sheet}, options_{options}, node_id_{node_id}, diagnostics_{diagnostics} {}
 
   Device resolve() {
     device_.source = sheet_.source;
-    device_.name = settings_.name.empty() ? namespace_of(sheet_.source->name()) : settings_.name;
-    device_.node_id = settings_.node_id ? settings_.node_id : commissioned_node_id();
+    device_.node_id = node_id_ ? node_id_ : commissioned_node_id();
     device_.information = resolve_information(sheet_, options_, diagnostics_);
     resolve_identity();
     for (const NumberedField& dummy : sheet_.dummy_usage) {
@@ -47,7 +40,6 @@ class Resolver {
     }
     resolve_objects();
     complete_device(device_, diagnostics_);
-    name_objects(device_, options_);
     check_option_keys();
     resolve_pdos(device_, options_);
     mark_broken_pdos(device_, options_, diagnostics_);
@@ -149,7 +141,7 @@ class Resolver {
 
   const DataSheet& sheet_;
   const Options& options_;
-  const ResolveSettings& settings_;
+  std::optional<std::uint8_t> node_id_;
   Diagnostics& diagnostics_;
   Device device_;
   std::size_t entries_ = 0;
@@ -157,9 +149,9 @@ class Resolver {
 
 }  // namespace
 
-Device resolve_device(const DataSheet& sheet, const Options& options, const ResolveSettings& settings,
+Device resolve_device(const DataSheet& sheet, const Options& options, std::optional<std::uint8_t> node_id,
                       Diagnostics& diagnostics) {
-  return Resolver{sheet, options, settings, diagnostics}.resolve();
+  return Resolver{sheet, options, node_id, diagnostics}.resolve();
 }
 
 }  // namespace edsc

@@ -4,67 +4,14 @@
 
 #include <algorithm>
 
+#include "device/information_rows.hpp"
 #include "diagnostics/quote.hpp"
 #include "eds/number.hpp"
 
 namespace edsc {
 namespace {
 
-/// A field that is copied unchanged.
-template <typename Source, typename Target>
-struct TextRow {
-  Field Source::*from;
-  std::string Target::*to;
-};
-
-template <typename Source, typename Target, typename Number>
-struct NumberRow {
-  Field Source::*from;
-  std::optional<Number> Target::*to;
-};
-
-constexpr TextRow<FileInfo, FileInformation> file_texts[] = {
-    {&FileInfo::file_name, &FileInformation::file_name},
-    {&FileInfo::file_version, &FileInformation::file_version},
-    {&FileInfo::file_revision, &FileInformation::file_revision},
-    {&FileInfo::eds_version, &FileInformation::eds_version},
-    {&FileInfo::description, &FileInformation::description},
-    {&FileInfo::creation_time, &FileInformation::creation_time},
-    {&FileInfo::creation_date, &FileInformation::creation_date},
-    {&FileInfo::created_by, &FileInformation::created_by},
-    {&FileInfo::modification_time, &FileInformation::modification_time},
-    {&FileInfo::modification_date, &FileInformation::modification_date},
-    {&FileInfo::modified_by, &FileInformation::modified_by},
-    {&FileInfo::last_eds, &FileInformation::last_eds},
-};
-
-constexpr NumberRow<DeviceInfo, Capabilities, bool> device_flags[] = {
-    {&DeviceInfo::simple_boot_up_master, &Capabilities::simple_boot_up_master},
-    {&DeviceInfo::simple_boot_up_slave, &Capabilities::simple_boot_up_slave},
-    {&DeviceInfo::group_messaging, &Capabilities::group_messaging},
-    {&DeviceInfo::lss_supported, &Capabilities::lss_supported},
-};
-
-constexpr NumberRow<DeviceInfo, Capabilities, std::uint32_t> device_numbers[] = {
-    {&DeviceInfo::granularity, &Capabilities::granularity},
-    {&DeviceInfo::dynamic_channels_supported, &Capabilities::dynamic_channels_supported},
-    {&DeviceInfo::nr_of_rx_pdo, &Capabilities::nr_of_rx_pdo},
-    {&DeviceInfo::nr_of_tx_pdo, &Capabilities::nr_of_tx_pdo},
-    {&DeviceInfo::compact_pdo, &Capabilities::compact_pdo},
-};
-
-constexpr TextRow<DeviceCommissioning, Commissioning> commissioning_texts[] = {
-    {&DeviceCommissioning::node_name, &Commissioning::node_name},
-    {&DeviceCommissioning::network_name, &Commissioning::network_name},
-    {&DeviceCommissioning::node_refd, &Commissioning::node_refd},
-    {&DeviceCommissioning::net_refd, &Commissioning::net_refd},
-};
-
-constexpr NumberRow<DeviceCommissioning, Commissioning, std::uint32_t> commissioning_numbers[] = {
-    {&DeviceCommissioning::baudrate, &Commissioning::baudrate},
-    {&DeviceCommissioning::net_number, &Commissioning::net_number},
-    {&DeviceCommissioning::lss_serial_number, &Commissioning::lss_serial_number},
-};
+namespace rows = information_rows;
 
 class InformationReader {
  public:
@@ -72,7 +19,7 @@ class InformationReader {
       : sheet_{sheet}, options_{options}, diagnostics_{diagnostics} {}
 
   Information read() {
-    for (const auto& row : file_texts) information_.file.*row.to = (sheet_.file_info.*row.from).text;
+    read_rows(rows::file_texts, sheet_.file_info, information_.file, "device-info");
     information_.comments = lines_of(sheet_.comments);
     for (const Tool& tool : sheet_.tools)
       information_.tools.push_back({std::string{tool.name.text}, std::string{tool.command.text}});
@@ -86,6 +33,16 @@ class InformationReader {
  private:
   std::optional<std::uint32_t> number(const Field& field, WarningRule rule) {
     return read_number(field, rule, diagnostics_);
+  }
+
+  void read(const Field& field, WarningRule, std::string& text) { text = field.text; }
+  void read(const Field& field, WarningRule, std::optional<bool>& value) { value = flag(field); }
+  void read(const Field& field, WarningRule rule, std::optional<std::uint32_t>& value) { value = number(field, rule); }
+
+  /// Invalid numbers are reported with `rule`.
+  template <typename Rows, typename Source, typename Target>
+  void read_rows(const Rows& rows, const Source& source, Target& target, WarningRule rule) {
+    for (const auto& row : rows) read(source.*row.from, rule, target.*row.to);
   }
 
   /// The rules report values other than 0 and 1.
@@ -104,8 +61,8 @@ class InformationReader {
     Capabilities& capabilities = information_.capabilities;
     const DeviceInfo& info = sheet_.device_info;
     capabilities.order_code = info.order_code.text;
-    for (const auto& row : device_flags) capabilities.*row.to = flag(info.*row.from);
-    for (const auto& row : device_numbers) capabilities.*row.to = number(info.*row.from, "device-info");
+    read_rows(rows::device_flags, info, capabilities, "device-info");
+    read_rows(rows::device_numbers, info, capabilities, "device-info");
     for (const DeviceInfo::BaudRate& rate : info.baud_rates) {
       if (flag(rate.field).value_or(false)) capabilities.baud_rates.push_back(rate.kbit_per_second);
     }
@@ -116,9 +73,9 @@ class InformationReader {
     const DeviceCommissioning& section = sheet_.commissioning;
     if (!section.present) return;
     Commissioning& commissioning = information_.commissioning.emplace();
-    for (const auto& row : commissioning_texts) commissioning.*row.to = (section.*row.from).text;
-    for (const auto& row : commissioning_numbers) commissioning.*row.to = number(section.*row.from, "commissioning");
-    commissioning.canopen_manager = flag(section.canopen_manager);
+    read_rows(rows::commissioning_texts, section, commissioning, "commissioning");
+    read_rows(rows::commissioning_numbers, section, commissioning, "commissioning");
+    read_rows(rows::commissioning_flags, section, commissioning, "commissioning");
   }
 
   void read_dynamic_channels() {
@@ -149,10 +106,12 @@ class InformationReader {
 
   void read_modules() {
     for (const ModuleDescription& module : sheet_.modules.supported) {
-      information_.supported_modules.push_back({module.number, std::string{module.product_name.text},
-                                                std::string{module.order_code.text},
-                                                number(module.product_version, "modules"),
-                                                number(module.product_revision, "modules"), lines_of(module.comments)});
+      ModuleInformation& added = information_.supported_modules.emplace_back();
+      added.number = module.number;
+      added.product_name = module.product_name.text;
+      added.order_code = module.order_code.text;
+      read_rows(rows::module_numbers, module, added, "modules");
+      added.comments = lines_of(module.comments);
     }
     information_.connected_modules = options_.connected_modules;
     if (!information_.connected_modules.empty()) return;

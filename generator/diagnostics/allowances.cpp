@@ -1,7 +1,6 @@
 #include "diagnostics/allowances.hpp"
 
 #include <algorithm>
-#include <functional>
 #include <iterator>
 #include <utility>
 
@@ -10,25 +9,11 @@ namespace {
 
 using Kind = AllowanceScope::Kind;
 
-AllowanceScope at_line(Kind kind, std::uint32_t line) {
-  AllowanceScope scope;
-  scope.kind = kind;
-  scope.line = line;
-  return scope;
-}
-
 bool is_before(const SheetPart& a, const SheetPart& b) {
   return a.line != b.line ? a.line < b.line : a.column < b.column;
 }
 
 }  // namespace
-
-std::size_t Allowances::KeyHash::operator()(const Key& key) const {
-  const AllowanceScope& scope = key.scope;
-  const std::uint64_t place = (std::uint64_t{scope.line} << 32U) | (std::uint64_t{scope.index} << 16U) |
-                              (std::uint64_t{scope.sub_index} << 8U) | static_cast<std::uint64_t>(scope.kind);
-  return std::hash<std::string_view>{}(key.rule) ^ (std::hash<std::uint64_t>{}(place)*31U);
-}
 
 void Allowances::set_outline(SheetOutline outline) {
   outline_ = std::move(outline);
@@ -44,18 +29,15 @@ void Allowances::add(Allowance allowance) {
 std::optional<std::size_t> Allowances::find(std::string_view rule, const Position& position) const {
   if (all_.empty() || position.file != outline_.file) return std::nullopt;
   if (position.line != 0) {
-    if (const auto found = find(rule, at_line(Kind::line, position.line))) return found;
+    if (const auto found = find(rule, AllowanceScope{Kind::line, position.line})) return found;
     const auto line = std::ranges::lower_bound(outline_.lines, position.line, {}, &SheetPart::line);
     if (line != outline_.lines.end() && line->line == position.line) {
       if (const auto found = find_object(rule, *line)) return found;
     }
-    SheetPart place;
-    place.line = position.line;
-    place.column = position.column;
-    const auto next = std::ranges::upper_bound(outline_.parts, place, is_before);
+    const auto next = std::ranges::upper_bound(outline_.parts, SheetPart{position.line, position.column}, is_before);
     if (next != outline_.parts.begin()) {
       const SheetPart& part = *std::prev(next);
-      if (const auto found = find(rule, at_line(Kind::part, part.line))) return found;
+      if (const auto found = find(rule, AllowanceScope{Kind::part, part.line})) return found;
       if (const auto found = find_object(rule, part)) return found;
     }
   }
@@ -69,16 +51,10 @@ std::optional<std::size_t> Allowances::find(std::string_view rule, const Allowan
 
 std::optional<std::size_t> Allowances::find_object(std::string_view rule, const SheetPart& part) const {
   if (!part.index) return std::nullopt;
-  AllowanceScope scope;
-  scope.index = *part.index;
   if (part.sub_index) {
-    scope.kind = Kind::entry;
-    scope.sub_index = *part.sub_index;
-    if (const auto found = find(rule, scope)) return found;
-    scope.sub_index = 0;
+    if (const auto found = find(rule, AllowanceScope{Kind::entry, 0, *part.index, *part.sub_index})) return found;
   }
-  scope.kind = Kind::object;
-  return find(rule, scope);
+  return find(rule, AllowanceScope{Kind::object, 0, *part.index});
 }
 
 }  // namespace edsc

@@ -1,12 +1,13 @@
 /// Findings that a comment in the EDS or the options file allows, each with a reason.
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
 #include "diagnostics/position.hpp"
@@ -17,8 +18,8 @@ namespace edsc {
 struct SheetPart {
   std::uint32_t line = 0;
   std::uint32_t column = 0;
-  std::optional<std::uint16_t> index;     ///< of the described object
-  std::optional<std::uint8_t> sub_index;  ///< of its entry; 0 for the section of an object
+  std::optional<std::uint16_t> index = {};     ///< of the described object
+  std::optional<std::uint8_t> sub_index = {};  ///< of its entry; 0 for the section of an object
 };
 
 /// The positions of the parts of a data sheet.
@@ -37,7 +38,7 @@ struct AllowanceScope {
   std::uint16_t index = 0;
   std::uint8_t sub_index = 0;
 
-  bool operator==(const AllowanceScope&) const = default;
+  auto operator<=>(const AllowanceScope&) const = default;
 };
 
 struct Allowance {
@@ -65,10 +66,7 @@ class Allowances {
   struct Key {
     std::string rule;
     AllowanceScope scope;
-    bool operator==(const Key&) const = default;
-  };
-  struct KeyHash {
-    std::size_t operator()(const Key& key) const;
+    auto operator<=>(const Key&) const = default;
   };
 
   [[nodiscard]] std::optional<std::size_t> find(std::string_view rule, const AllowanceScope& scope) const;
@@ -76,7 +74,7 @@ class Allowances {
 
   SheetOutline outline_;
   std::vector<Allowance> all_;
-  std::unordered_map<Key, std::size_t, KeyHash> places_;
+  std::map<Key, std::size_t> places_;
 };
 
 }  // namespace edsc

@@ -1,28 +1,14 @@
 #include "diagnostics/diagnostics.hpp"
 
 #include <algorithm>
-#include <functional>
 #include <limits>
 #include <utility>
 
 namespace edsc {
 
 std::string_view to_string(Severity severity) {
-  switch (severity) {
-    case Severity::note: return "note";
-    case Severity::warning: return "warning";
-    case Severity::error: return "error";
-  }
-  return "";
-}
-
-std::size_t Diagnostics::KindHash::operator()(const Kind& kind) const {
-  return std::hash<std::string_view>{}(kind.rule) ^ (std::hash<const SourceFile*>{}(kind.file) << 1U) ^
-         static_cast<std::size_t>(kind.severity);
-}
-
-std::size_t Diagnostics::CauseHash::operator()(const Cause& cause) const {
-  return KindHash{}(cause.kind) ^ (std::hash<std::string>{}(cause.words) << 1U);
+  constexpr std::string_view words[] = {"note", "warning", "error"};
+  return words[static_cast<std::size_t>(severity)];
 }
 
 void Diagnostics::report(Diagnostic diagnostic) {
@@ -40,7 +26,7 @@ void Diagnostics::report(Diagnostic diagnostic) {
   }
   const Kind kind{diagnostic.position.file, diagnostic.rule, diagnostic.severity};
   if (join(kind, diagnostic)) return;
-  count(diagnostic.severity);
+  ++counts_[diagnostic.severity];
   Tally& tally = tallies_[kind];
   ++tally.found;
   if (tally.found <= max_per_rule) {
@@ -72,26 +58,6 @@ bool Diagnostics::join(const Kind& kind, Diagnostic& diagnostic) {
   return true;
 }
 
-void Diagnostics::error(ErrorRule rule, const Position& position, std::string message, std::vector<Note> notes,
-                        std::string cause) {
-  report({Severity::error, rule.id(), position, std::move(message), std::move(notes), std::move(cause)});
-}
-
-void Diagnostics::warning(WarningRule rule, const Position& position, std::string message, std::vector<Note> notes,
-                          std::string cause) {
-  report({Severity::warning, rule.id(), position, std::move(message), std::move(notes), std::move(cause)});
-}
-
-void Diagnostics::note(NoteRule rule, const Position& position, std::string message, std::vector<Note> notes,
-                       std::string cause) {
-  report({Severity::note, rule.id(), position, std::move(message), std::move(notes), std::move(cause)});
-}
-
-void Diagnostics::usual(AnyRule rule, const Position& position, std::string message, std::vector<Note> notes,
-                        std::string cause) {
-  report({rule.row().severity, rule.id(), position, std::move(message), std::move(notes), std::move(cause)});
-}
-
 void Diagnostics::silence(std::string rule) { silenced_.push_back({std::move(rule)}); }
 
 bool Diagnostics::has_silenced(std::string_view rule) const {
@@ -102,12 +68,6 @@ bool Diagnostics::counts_only(std::string_view rule, Severity severity, const So
   const Severity listed_as = strict_ && severity == Severity::warning ? Severity::error : severity;
   const auto found = tallies_.find(Kind{file, rule, listed_as});
   return found != tallies_.end() && found->second.found >= max_per_rule;
-}
-
-void Diagnostics::count(Severity severity) {
-  errors_ += severity == Severity::error ? 1 : 0;
-  warnings_ += severity == Severity::warning ? 1 : 0;
-  notes_ += severity == Severity::note ? 1 : 0;
 }
 
 bool Diagnostics::is_tolerated(const Diagnostic& diagnostic) const {

@@ -1,12 +1,14 @@
 /// Diagnostics: faults with severity and position.
 #pragma once
 
+#include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -36,18 +38,34 @@ struct Diagnostic {
   std::size_t unnamed = 0;  ///< number of places that are neither `position` nor in the notes
 };
 
+/// The number of findings of each severity.
+struct SeverityCounts {
+  std::array<std::size_t, 3> counts{};
+
+  [[nodiscard]] std::size_t& operator[](Severity severity) { return counts[static_cast<std::size_t>(severity)]; }
+  [[nodiscard]] std::size_t operator[](Severity severity) const { return counts[static_cast<std::size_t>(severity)]; }
+};
+
 /// Collects the findings for one or more files, in the order in which they are reported.
 class Diagnostics {
  public:
   void error(ErrorRule rule, const Position& position, std::string message, std::vector<Note> notes = {},
-             std::string cause = {});
+             std::string cause = {}) {
+    report({Severity::error, rule.id(), position, std::move(message), std::move(notes), std::move(cause)});
+  }
   void warning(WarningRule rule, const Position& position, std::string message, std::vector<Note> notes = {},
-               std::string cause = {});
+               std::string cause = {}) {
+    report({Severity::warning, rule.id(), position, std::move(message), std::move(notes), std::move(cause)});
+  }
   void note(NoteRule rule, const Position& position, std::string message, std::vector<Note> notes = {},
-            std::string cause = {});
+            std::string cause = {}) {
+    report({Severity::note, rule.id(), position, std::move(message), std::move(notes), std::move(cause)});
+  }
   /// Reports a finding with the usual severity of the rule.
   void usual(AnyRule rule, const Position& position, std::string message, std::vector<Note> notes = {},
-             std::string cause = {});
+             std::string cause = {}) {
+    report({rule.row().severity, rule.id(), position, std::move(message), std::move(notes), std::move(cause)});
+  }
   /// Adds a finding of another collection.
   void report(Diagnostic diagnostic);
 
@@ -76,9 +94,9 @@ class Diagnostics {
 
   /// The listed findings. `errors()`, `warnings()` and `notes()` also count the suppressed ones.
   [[nodiscard]] const std::vector<Diagnostic>& all() const { return all_; }
-  [[nodiscard]] std::size_t errors() const { return errors_; }
-  [[nodiscard]] std::size_t warnings() const { return warnings_; }
-  [[nodiscard]] std::size_t notes() const { return notes_; }
+  [[nodiscard]] std::size_t errors() const { return counts_[Severity::error]; }
+  [[nodiscard]] std::size_t warnings() const { return counts_[Severity::warning]; }
+  [[nodiscard]] std::size_t notes() const { return counts_[Severity::note]; }
   /// The number of findings of `rule` in `file` after the first `max_per_rule`, which are counted only.
   struct Suppressed {
     const SourceFile* file;
@@ -111,18 +129,12 @@ class Diagnostics {
     const SourceFile* file;
     std::string_view rule;
     Severity severity;
-    bool operator==(const Kind&) const = default;
-  };
-  struct KindHash {
-    std::size_t operator()(const Kind& kind) const;
+    auto operator<=>(const Kind&) const = default;
   };
   struct Cause {
     Kind kind;
     std::string words;
-    bool operator==(const Cause&) const = default;
-  };
-  struct CauseHash {
-    std::size_t operator()(const Cause& cause) const;
+    auto operator<=>(const Cause&) const = default;
   };
   struct Silenced {
     std::string rule;
@@ -134,7 +146,6 @@ class Diagnostics {
     std::size_t suppressed_row = 0;  ///< in `suppressed_`, once more than `max_per_rule` were found
   };
 
-  void count(Severity severity);
   /// Whether the finding is another place of a listed finding, or of one that is only counted.
   bool join(const Kind& kind, Diagnostic& diagnostic);
   [[nodiscard]] bool is_tolerated(const Diagnostic& diagnostic) const;
@@ -142,13 +153,11 @@ class Diagnostics {
   [[nodiscard]] bool set_aside(Diagnostic& diagnostic);
 
   std::vector<Diagnostic> all_;
-  std::unordered_map<Kind, Tally, KindHash> tallies_;
-  std::unordered_map<Cause, std::size_t, CauseHash> first_of_cause_;  ///< index in `all_`; may be beyond its end
+  std::map<Kind, Tally> tallies_;
+  std::map<Cause, std::size_t> first_of_cause_;  ///< index in `all_`; may be beyond its end
   std::vector<Suppressed> suppressed_;
   std::vector<Silenced> silenced_;
-  std::size_t errors_ = 0;
-  std::size_t warnings_ = 0;
-  std::size_t notes_ = 0;
+  SeverityCounts counts_;
   bool strict_ = false;
   bool drop_notes_ = false;
   bool silence_errors_ = false;

@@ -19,36 +19,23 @@ namespace {
 
 /// ANSI escape sequences, or nothing.
 struct Palette {
-  std::string_view place, error, warning, note, caret, reset;
+  std::string_view place;
+  std::string_view severities[3];  ///< in the order of Severity
+  std::string_view caret, reset;
 
-  [[nodiscard]] std::string_view of(Severity severity) const {
-    switch (severity) {
-      case Severity::note: return note;
-      case Severity::warning: return warning;
-      case Severity::error: return error;
-    }
-    return {};
-  }
+  [[nodiscard]] std::string_view of(Severity severity) const { return severities[static_cast<std::size_t>(severity)]; }
 };
 
 constexpr Palette plain{};
-constexpr Palette coloured{"\x1B[1m", "\x1B[1;31m", "\x1B[1;35m", "\x1B[1;36m", "\x1B[1;32m", "\x1B[0m"};
+constexpr Palette coloured{"\x1B[1m", {"\x1B[1;36m", "\x1B[1;35m", "\x1B[1;31m"}, "\x1B[1;32m", "\x1B[0m"};
 
 std::string file_name(const SourceFile* file) { return file == nullptr ? std::string() : printable(file->name()); }
 
 /// The numbers of findings of one file.
 struct FileSum {
   const SourceFile* file;
-  std::size_t errors = 0;
-  std::size_t warnings = 0;
-  std::size_t notes = 0;
+  SeverityCounts counts = {};
   std::size_t allowed = 0;
-
-  void add(Severity severity, std::size_t count) {
-    errors += severity == Severity::error ? count : 0;
-    warnings += severity == Severity::warning ? count : 0;
-    notes += severity == Severity::note ? count : 0;
-  }
 };
 
 std::vector<FileSum> sums_by_file(const Diagnostics& diagnostics, bool with_allowed) {
@@ -58,10 +45,10 @@ std::vector<FileSum> sums_by_file(const Diagnostics& diagnostics, bool with_allo
     return found != sums.end() ? *found : sums.emplace_back(FileSum{file});
   };
   for (const Diagnostic& diagnostic : diagnostics.all()) {
-    sum_of(diagnostic.position.file).add(diagnostic.severity, 1);
+    ++sum_of(diagnostic.position.file).counts[diagnostic.severity];
   }
   for (const Diagnostics::Suppressed& suppressed : diagnostics.suppressed()) {
-    sum_of(suppressed.file).add(suppressed.severity, suppressed.count);
+    sum_of(suppressed.file).counts[suppressed.severity] += suppressed.count;
   }
   if (with_allowed && diagnostics.allowed_findings() > 0) {
     sum_of(diagnostics.allowed().front().diagnostic.position.file).allowed += diagnostics.allowed_findings();
@@ -98,13 +85,10 @@ class TextPrinter {
     if (sum.file != nullptr) {
       append("{}: ", file_name(sum.file));
     }
-    append("{}, {}", counted(sum.errors, "error"), counted(sum.warnings, "warning"));
-    if (sum.notes > 0) {
-      append(", {}", counted(sum.notes, "note"));
-    }
-    if (sum.allowed > 0) {
-      append(", {} allowed", sum.allowed);
-    }
+    const std::size_t notes = sum.counts[Severity::note];
+    append("{}, {}", counted(sum.counts[Severity::error], "error"), counted(sum.counts[Severity::warning], "warning"));
+    if (notes > 0) append(", {}", counted(notes, "note"));
+    if (sum.allowed > 0) append(", {} allowed", sum.allowed);
     out_ += '\n';
   }
 

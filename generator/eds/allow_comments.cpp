@@ -5,7 +5,7 @@
 
 #include "eds/ini.hpp"
 #include "eds/number.hpp"
-#include "eds/section_name.hpp"
+#include "eds/sections/section_name.hpp"
 #include "text/ascii.hpp"
 #include "text/source_file.hpp"
 
@@ -14,11 +14,6 @@ namespace {
 
 constexpr std::string_view mark = "edsc:";
 constexpr std::string_view verb = "allow";
-
-bool is_object_list(SectionKind kind) {
-  return kind == SectionKind::mandatory_objects || kind == SectionKind::optional_objects ||
-         kind == SectionKind::manufacturer_objects;
-}
 
 bool is_compact_list(SectionKind kind) {
   return kind == SectionKind::compact_names || kind == SectionKind::compact_values ||
@@ -75,7 +70,7 @@ class CommentFinder {
     section_ = read_section_name(trim(content.substr(1, end - 1)));
     SheetPart part;
     part.line = line_number_;
-    const bool is_object = section_.kind >= SectionKind::object && section_.kind <= SectionKind::object_links;
+    const bool is_object = is_object_section(section_.kind);
     if (is_object) part.index = section_.index;
     if (is_object && !is_compact_list(section_.kind)) part.sub_index = section_.sub_index;
     found_.outline.parts.push_back(part);

@@ -11,17 +11,13 @@
 #include <utility>
 
 #include "diagnostics/quote.hpp"
-#include "eds/comments.hpp"
-#include "eds/duplicates.hpp"
-#include "eds/dynamic_channels.hpp"
-#include "eds/keys.hpp"
-#include "eds/modules.hpp"
 #include "eds/number.hpp"
-#include "eds/object_lists.hpp"
-#include "eds/object_sections.hpp"
-#include "eds/section_name.hpp"
-#include "eds/sheet_keys.hpp"
-#include "eds/tools.hpp"
+#include "eds/sections/duplicates.hpp"
+#include "eds/sections/object_lists.hpp"
+#include "eds/sections/object_sections.hpp"
+#include "eds/sections/other_sections.hpp"
+#include "eds/sections/section_keys.hpp"
+#include "eds/sections/section_name.hpp"
 #include "text/source_file.hpp"
 #include "text/suggestion.hpp"
 
@@ -31,10 +27,6 @@ namespace {
 constexpr std::string_view dummy_prefix = "Dummy";
 constexpr std::size_t dummy_digits = 4;
 constexpr std::uint16_t last_dummy = 0xFF;
-
-constexpr bool is_object_kind(SectionKind kind) {
-  return kind >= SectionKind::object && kind <= SectionKind::object_links;
-}
 
 constexpr bool is_module_kind(SectionKind kind) {
   return kind >= SectionKind::module_info && kind <= SectionKind::module_sub_extension;
@@ -49,9 +41,11 @@ class DataSheetReader {
     sheet_.source = &source_;
     if (!ini_.sections.empty()) {  // otherwise the INI reader has reported why
       sort_sections();
-      read_file_info();
-      read_device_info();
-      read_commissioning();
+      const auto none = [](std::string_view) -> Field* { return nullptr; };
+      read_single(SectionKind::file_info, file_info_keys, sheet_.file_info, none);
+      read_single(SectionKind::device_info, device_info_keys, sheet_.device_info,
+                  [&](std::string_view key) { return find_baud_rate(key); });
+      read_single(SectionKind::device_commissioning, commissioning_keys, sheet_.commissioning, none);
       read_dummy_usage();
       read_others();
       read_objects();
@@ -65,7 +59,7 @@ class DataSheetReader {
     for (const IniSection& section : ini_.sections) {
       const SectionName name = read_section_name(section.name);
       report_name(section, name);
-      if (is_object_kind(name.kind)) {
+      if (is_object_section(name.kind)) {
         object_sections_.push_back({name, &section});
       } else if (is_module_kind(name.kind)) {
         module_sections_.push_back({name, &section});
@@ -110,68 +104,33 @@ class DataSheetReader {
   /// The section of a kind that occurs once, or null.
   [[nodiscard]] const IniSection* single(SectionKind kind) const { return single_[static_cast<std::size_t>(kind)]; }
 
-  /// The position for a missing field of this section: the section, or the file if the section is missing too.
-  [[nodiscard]] Position place_of(const IniSection* section) const {
-    return section == nullptr ? Position{&source_} : section_position(source_, *section);
-  }
-
-  void read_file_info() {
-    const IniSection* const section = single(SectionKind::file_info);
-    sheet_.file_info.present = section != nullptr;
-    sheet_.file_info.position = place_of(section);
-    place_fields(file_info_keys, place_of(section), sheet_.file_info);
-    if (section != nullptr) {
-      read_keys(
-          source_, *section, diagnostics_,
-          [&](std::string_view key) { return find_key(file_info_keys, key, sheet_.file_info); }, file_info_keys);
-    }
-  }
-
-  void read_device_info() {
-    const IniSection* const section = single(SectionKind::device_info);
-    sheet_.device_info.present = section != nullptr;
-    sheet_.device_info.position = place_of(section);
-    place_fields(device_info_keys, place_of(section), sheet_.device_info);
-    if (section != nullptr) {
-      read_keys(
-          source_, *section, diagnostics_,
-          [&](std::string_view key) {
-            const KeyMatch match = find_key(device_info_keys, key, sheet_.device_info);
-            return match.is_known ? match : find_baud_rate(key);
-          },
-          device_info_keys);
-    }
+  /// Reads a section that occurs once into its struct; `find_other` finds the fields of keys that are not in the table.
+  template <typename Struct, std::size_t n, typename FindOther>
+  void read_single(SectionKind kind, const KeyRow<Struct> (&keys)[n], Struct& target, FindOther find_other) {
+    const IniSection* const section = single(kind);
+    target.present = section != nullptr;
+    target.position = section == nullptr ? Position{&source_} : section_position(source_, *section);
+    place_fields(keys, target.position, target);
+    if (section == nullptr) return;
+    read_keys(
+        source_, *section, diagnostics_,
+        [&](std::string_view key) {
+          Field* const field = find_key(keys, key, target);
+          return field != nullptr ? field : find_other(key);
+        },
+        keys);
   }
 
   /// `BaudRate_125` etc., including rates for which CiA 306 does not define a key.
-  KeyMatch find_baud_rate(std::string_view key) {
-    if (!starts_with_ignoring_case(key, baud_rate_prefix)) {
-      return {};
-    }
+  Field* find_baud_rate(std::string_view key) {
+    if (!starts_with_ignoring_case(key, baud_rate_prefix)) return nullptr;
     const std::optional<std::uint64_t> rate = parse_unsigned(key.substr(baud_rate_prefix.size()));
-    if (!rate || *rate > std::numeric_limits<std::uint16_t>::max()) {
-      return {};
-    }
+    if (!rate || *rate > std::numeric_limits<std::uint16_t>::max()) return nullptr;
     std::vector<DeviceInfo::BaudRate>& rates = sheet_.device_info.baud_rates;
     const auto kbit_per_second = static_cast<std::uint16_t>(*rate);
     const auto [place, is_new] = baud_rate_places_.try_emplace(kbit_per_second, rates.size());
-    if (is_new) {
-      rates.push_back({kbit_per_second, {}});
-    }
-    return {true, &rates[place->second].field};
-  }
-
-  void read_commissioning() {
-    const IniSection* const section = single(SectionKind::device_commissioning);
-    sheet_.commissioning.present = section != nullptr;
-    sheet_.commissioning.position = place_of(section);
-    place_fields(commissioning_keys, place_of(section), sheet_.commissioning);
-    if (section != nullptr) {
-      read_keys(
-          source_, *section, diagnostics_,
-          [&](std::string_view key) { return find_key(commissioning_keys, key, sheet_.commissioning); },
-          commissioning_keys);
-    }
+    if (is_new) rates.push_back({kbit_per_second, {}});
+    return &rates[place->second].field;
   }
 
   void read_dummy_usage() {
@@ -181,18 +140,15 @@ class DataSheetReader {
   }
 
   /// `Dummy0005`: the index of a data type, in hexadecimal.
-  KeyMatch find_dummy(std::string_view key) {
+  Field* find_dummy(std::string_view key) {
     if (!starts_with_ignoring_case(key, dummy_prefix) || key.size() != dummy_prefix.size() + dummy_digits) {
-      return {};
+      return nullptr;
     }
     const std::optional<std::uint16_t> index = parse_hex(key.substr(dummy_prefix.size()), dummy_digits);
-    if (!index || *index == 0 || *index > last_dummy) {
-      return {};
-    }
+    if (!index || *index == 0 || *index > last_dummy) return nullptr;
     std::vector<NumberedField>& dummies = sheet_.dummy_usage;
-    const auto found = std::find_if(dummies.begin(), dummies.end(),
-                                    [&](const NumberedField& known) { return known.number == *index; });
-    return {true, found != dummies.end() ? &found->field : &dummies.emplace_back(NumberedField{*index, {}}).field};
+    const auto found = std::ranges::find(dummies, *index, &NumberedField::number);
+    return found != dummies.end() ? &found->field : &dummies.emplace_back(NumberedField{*index, {}}).field;
   }
 
   void read_others() {
@@ -214,9 +170,10 @@ class DataSheetReader {
       return;
     }
     sheet_.objects = edsc::read_objects(source_, std::move(object_sections_), {}, diagnostics_);
-    const ObjectListSections lists{single(SectionKind::mandatory_objects), single(SectionKind::optional_objects),
-                                   single(SectionKind::manufacturer_objects)};
-    sheet_.listed = read_object_lists(source_, lists, diagnostics_);
+    sheet_.listed = read_object_lists(source_,
+                                      {single(SectionKind::mandatory_objects), single(SectionKind::optional_objects),
+                                       single(SectionKind::manufacturer_objects)},
+                                      diagnostics_);
     compare_lists_with_objects(sheet_, diagnostics_);
   }
 
@@ -232,6 +189,27 @@ class DataSheetReader {
 };
 
 }  // namespace
+
+const SubObjectDescription* ObjectDescription::find(std::uint64_t sub_index) const {
+  const auto at = std::ranges::find(sub_objects, sub_index, &SubObjectDescription::sub_index);
+  return at != sub_objects.end() ? &*at : nullptr;
+}
+
+const ObjectDescription* DataSheet::find(std::uint64_t index) const {
+  const auto at = std::ranges::lower_bound(objects, index, {}, &ObjectDescription::index);
+  return at != objects.end() && at->index == index ? &*at : nullptr;
+}
+
+ValueFields DataSheet::values_of(const ObjectDescription& object, std::uint8_t sub_index, bool has_sub_indices) const {
+  if (const SubObjectDescription* sub = object.find(sub_index)) return {&sub->default_value, &sub->parameter_value};
+  if (has_sub_indices && sub_index == 0) return {};
+  ValueFields fields{&object.default_value, &object.parameter_value};
+  const auto value = std::ranges::find(object.compact_values, sub_index, &NumberedField::number);
+  if (has_sub_indices && value != object.compact_values.end()) {
+    (is_dcf ? fields.parameter_value : fields.default_value) = &value->field;
+  }
+  return fields;
+}
 
 DataSheet read_data_sheet(const IniFile& ini, Diagnostics& diagnostics) {
   return DataSheetReader(ini, diagnostics).read();

@@ -66,6 +66,8 @@ struct ObjectDescription : EntryDescription {
   std::vector<NumberedField> compact_values;
   std::vector<NumberedField> compact_denotations;
   std::vector<NumberedField> object_links;
+
+  [[nodiscard]] const SubObjectDescription* find(std::uint64_t sub_index) const;
 };
 
 enum class ObjectListKind : std::uint8_t { mandatory, optional, manufacturer };
@@ -159,6 +161,12 @@ struct Modules {
   std::vector<NumberedField> connected;      ///< of a DCF: the module number at each place
 };
 
+/// The keys with the values of an entry; null for an element of a compact form without its own section.
+struct ValueFields {
+  const Field* default_value = nullptr;
+  const Field* parameter_value = nullptr;
+};
+
 struct DataSheet {
   const SourceFile* source = nullptr;
   bool is_dcf = false;  ///< it has [DeviceComissioning], or its name ends in .dcf or .xdc
@@ -175,6 +183,14 @@ struct DataSheet {
   std::vector<ObjectDescription> objects;  ///< ascending by index, each index once
   /// Texts that fields point to and that do not occur in the source in this form. Copies of the data sheet share them.
   std::shared_ptr<const std::deque<std::string>> texts;
+
+  /// The description of an object, or null.
+  [[nodiscard]] const ObjectDescription* find(std::uint64_t index) const;
+
+  /// The values of a sub-index of an object of this data sheet, or of a VAR. Those of a compact form are
+  /// ParameterValues in a DCF, and default values in an EDS (CiA 306-1, 5).
+  [[nodiscard]] ValueFields values_of(const ObjectDescription& object, std::uint8_t sub_index,
+                                      bool has_sub_indices) const;
 };
 
 /// Sorts an INI file into a data sheet. Unknown sections and keys are reported; of duplicate sections or keys, the

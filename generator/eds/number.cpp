@@ -12,7 +12,7 @@ namespace {
 
 /// Removes the prefix for the base; "0" alone is a decimal number.
 int take_base(std::string_view& text) {
-  if (text.starts_with("0x") || text.starts_with("0X")) {
+  if (is_hexadecimal(text)) {
     text.remove_prefix(2);
     return 16;
   }
@@ -44,6 +44,31 @@ std::optional<std::uint64_t> parse_decimal(std::string_view text) {
   text = trim(text);
   while (text.size() > 1 && text[0] == '0' && is_digit(text[1])) text.remove_prefix(1);
   return parse_unsigned(text);
+}
+
+std::optional<double> parse_real(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0;
+  const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool is_whole = result.ec == std::errc{} && result.ptr == text.data() + text.size();
+  return is_whole ? std::optional{value} : std::nullopt;
+}
+
+bool is_hexadecimal(std::string_view digits) { return digits.starts_with("0x") || digits.starts_with("0X"); }
+
+std::string_view without_c_suffix(std::string_view digits) {
+  while (digits.size() > 1 && std::string_view{"uUlL"}.find(digits.back()) != std::string_view::npos) {
+    digits.remove_suffix(1);
+  }
+  return digits;
+}
+
+Formula split_formula(std::string_view text) {
+  const std::size_t plus = text.find('+');
+  const std::string_view first = trim(text.substr(0, plus));
+  if (plus == std::string_view::npos) return {first, std::nullopt};
+  const std::string_view second = trim(text.substr(plus + 1));
+  return first.starts_with('$') ? Formula{first, second} : Formula{second, first};
 }
 
 bool is_octal(std::string_view text) {

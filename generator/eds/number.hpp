@@ -17,6 +17,22 @@ struct Field;
 /// The same without octal numbers: a version 08 is eight, 010 is ten.
 [[nodiscard]] std::optional<std::uint64_t> parse_decimal(std::string_view text);
 
+/// Reads a decimal number with a fraction or exponent, also with `+`. Returns nothing if any other text remains.
+[[nodiscard]] std::optional<double> parse_real(std::string_view text);
+
+/// Whether a number begins with 0x.
+[[nodiscard]] bool is_hexadecimal(std::string_view digits);
+
+/// `12LL`, `0xFFu`: removes C suffixes, which are not allowed in an EDS.
+[[nodiscard]] std::string_view without_c_suffix(std::string_view digits);
+
+/// The parts of `$NODEID+0x180` and `0x180 + $NodeID` (CiA 306-1, 4.6.2.3), without blanks around them.
+struct Formula {
+  std::string_view variable;                 ///< with its `$`
+  std::optional<std::string_view> constant;  ///< nothing for the variable alone
+};
+[[nodiscard]] Formula split_formula(std::string_view text);
+
 /// Whether a leading 0 changes the value: 010 is eight.
 [[nodiscard]] bool is_octal(std::string_view text);
 

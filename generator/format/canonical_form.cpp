@@ -2,7 +2,7 @@
 
 #include "format/object_list_sections.hpp"
 #include "format/section_order.hpp"
-#include "format/spell_section.hpp"
+#include "format/spelling/spell_section.hpp"
 
 namespace edsc {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "eds/ini.hpp"
-#include "eds/section_name.hpp"
+#include "eds/sections/section_name.hpp"
 
 namespace edsc {
 

@@ -8,21 +8,14 @@
 #include <vector>
 
 #include "eds/number.hpp"
-#include "eds/object_lists.hpp"
-#include "format/key_table.hpp"
+#include "eds/sections/object_lists.hpp"
 #include "format/section_order.hpp"
+#include "format/spelling/key_table.hpp"
 
 namespace edsc {
 namespace {
 
-constexpr std::string_view count_key = "SupportedObjects";
-constexpr std::string_view misspelled_count_key = "Supported Objects";
-
-constexpr std::pair<ObjectListKind, SectionKind> lists[] = {
-    {ObjectListKind::mandatory, SectionKind::mandatory_objects},
-    {ObjectListKind::optional, SectionKind::optional_objects},
-    {ObjectListKind::manufacturer, SectionKind::manufacturer_objects},
-};
+constexpr ObjectListKind lists[] = {ObjectListKind::mandatory, ObjectListKind::optional, ObjectListKind::manufacturer};
 
 /// The contents of an old list other than objects.
 struct OldList {
@@ -40,21 +33,17 @@ class ListWriter {
     }
     std::map<SectionKind, OldList> old;
     for (DocumentSection& section : document_.sections) {
-      if (is_list(section.kind.kind)) old[section.kind.kind] = take_apart(section);
+      if (is_object_list(section.kind.kind)) old[section.kind.kind] = take_apart(section);
     }
-    for (const auto& [list, kind] : lists) write_list(list, kind, old[kind]);
+    for (const ObjectListKind list : lists) write_list(list, old[section_of(list)]);
   }
 
  private:
-  static bool is_list(SectionKind kind) {
-    return std::ranges::any_of(lists, [&](const auto& row) { return row.second == kind; });
-  }
-
   OldList take_apart(DocumentSection& section) {
     OldList old;
     for (DocumentEntry& entry : section.entries) {
       const KeySpelling key = spell_key(section.kind.kind, entry.key);
-      if (key.value == ValueKind::count || equal_ignoring_case(entry.key, misspelled_count_key)) {
+      if (key.value == ValueKind::count || equal_ignoring_case(entry.key, supported_objects.misspelling)) {
         append(old.remarks, entry.remarks);
       } else if (key.is_known) {
         keep_remarks(entry, old);
@@ -68,18 +57,17 @@ class ListWriter {
 
   void keep_remarks(const DocumentEntry& entry, OldList& old) {
     const auto index = parse_unsigned(strip_inline_comment(entry.value));
-    const bool stays = index && *index <= 0xFFFF &&
-                       find_object(sheet_, static_cast<std::uint16_t>(*index)) != nullptr &&
-                       list_for(static_cast<std::uint16_t>(*index), sheet_);
+    const bool stays = index && sheet_.find(*index) != nullptr && list_for(static_cast<std::uint16_t>(*index), sheet_);
     append(stays ? remarks_[static_cast<std::uint16_t>(*index)] : old.remarks, entry.remarks);
   }
 
-  void write_list(ObjectListKind list, SectionKind kind, OldList& old) {
+  void write_list(ObjectListKind list, OldList& old) {
     const std::vector<std::uint16_t>& objects = listed_[list];
-    DocumentSection* const section = find_or_add(kind, !objects.empty());
+    DocumentSection* const section = find_or_add(section_of(list), !objects.empty());
     if (section == nullptr) return;
-    section->title = section_name(list);
-    section->entries.push_back({std::move(old.remarks), std::string{count_key}, fmt::format("{}", objects.size())});
+    section->title = section_title(section_of(list));
+    section->entries.push_back(
+        {std::move(old.remarks), std::string{supported_objects.name}, fmt::format("{}", objects.size())});
     for (std::size_t i = 0; i < objects.size(); ++i) {
       section->entries.push_back(
           {std::move(remarks_[objects[i]]), fmt::format("{}", i + 1), fmt::format("0x{:04X}", objects[i])});

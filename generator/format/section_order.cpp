@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "eds/allow_comments.hpp"
-#include "eds/object_lists.hpp"
+#include "eds/sections/object_lists.hpp"
 
 namespace edsc {
 namespace {
@@ -20,10 +20,6 @@ std::uint32_t identity(const SectionName& name) {
 }
 
 bool stands_once(SectionKind kind) { return kind <= SectionKind::object_links; }
-
-bool is_object_list(SectionKind kind) {
-  return kind >= SectionKind::mandatory_objects && kind <= SectionKind::manufacturer_objects;
-}
 
 /// On the first section of the file, comments for edsc must not be before it, where they would apply to the file.
 void merge_remarks(DocumentSection& first, bool is_first_of_file, const DocumentSection& second) {
@@ -55,7 +51,7 @@ Place place_of(const SectionName& name, const DataSheet& sheet) {
     return {group_of_list(static_cast<ObjectListKind>(list)), 0};
   }
   if (name.kind < SectionKind::object) return {static_cast<std::uint32_t>(name.kind), 0};
-  const bool has_object = name.kind != SectionKind::object_links || find_object(sheet, name.index) != nullptr;
+  const bool has_object = name.kind != SectionKind::object_links || sheet.find(name.index) != nullptr;
   if (!stands_once(name.kind) || !has_object) return {};
   const auto list = list_for(name.index, sheet);
   return {list ? group_of_list(*list) + 1 : unlisted_objects, identity(name)};
@@ -100,11 +96,6 @@ std::optional<ObjectListKind> list_for(std::uint16_t index, const DataSheet& she
   if (const auto list = list_of(index)) return list;
   const auto listed = std::ranges::find(sheet.listed, index, &ListedObject::index);
   return listed != sheet.listed.end() ? std::optional{listed->list} : std::nullopt;
-}
-
-const ObjectDescription* find_object(const DataSheet& sheet, std::uint16_t index) {
-  const auto at = std::ranges::lower_bound(sheet.objects, index, {}, &ObjectDescription::index);
-  return at != sheet.objects.end() && at->index == index ? &*at : nullptr;
 }
 
 }  // namespace edsc

@@ -17,7 +17,4 @@ void order_sections(Document& document, const DataSheet& sheet);
 /// none.
 [[nodiscard]] std::optional<ObjectListKind> list_for(std::uint16_t index, const DataSheet& sheet);
 
-/// The description of an object, or null.
-[[nodiscard]] const ObjectDescription* find_object(const DataSheet& sheet, std::uint16_t index);
-
 }  // namespace edsc

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <span>
+#include <cstddef>
 #include <string_view>
 #include <utility>
 
-#include "eds/sheet_keys.hpp"
+#include "eds/sections/section_keys.hpp"
 #include "format/object_list_sections.hpp"
 #include "text/ascii.hpp"
 
@@ -45,7 +45,7 @@ class SheetWriter {
     write_dummies();
     if (sheet_.commissioning.present) {
       add_section("DeviceComissioning");
-      put<DeviceCommissioning>(commissioning_keys, sheet_.commissioning);
+      put(commissioning_keys, sheet_.commissioning);
     }
     for (const ObjectDescription& object : sheet_.objects) write_object(object);
     renew_object_lists(document_, sheet_);
@@ -63,10 +63,10 @@ class SheetWriter {
     document_.sections.back().entries.push_back({{}, std::string{key}, one_line(value)});
   }
 
-  template <typename Struct>
-  void put(std::span<const KeyRow<Struct>> keys, const Struct& source) {
+  template <typename Struct, std::size_t n>
+  void put(const KeyRow<Struct> (&keys)[n], const Struct& source) {
     for (const KeyRow<Struct>& row : keys) {
-      if (row.field != nullptr && (source.*row.field).present) put(row.name, (source.*row.field).text);
+      if (row.field != nullptr && (source.*row.field).present) put(row.key.name, (source.*row.field).text);
     }
   }
 
@@ -76,13 +76,13 @@ class SheetWriter {
     info.eds_version.text = eds_version;
     info.file_name.present = info.eds_version.present = true;
     add_section("FileInfo");
-    put<FileInfo>(file_info_keys, info);
+    put(file_info_keys, info);
   }
 
   void write_device_info() {
     if (!sheet_.device_info.present && sheet_.device_info.baud_rates.empty()) return;
     add_section("DeviceInfo");
-    put<DeviceInfo>(device_info_keys, sheet_.device_info);
+    put(device_info_keys, sheet_.device_info);
     for (const DeviceInfo::BaudRate& rate : sheet_.device_info.baud_rates) {
       put(fmt::format("{}{}", baud_rate_prefix, rate.kbit_per_second), rate.field.text);
     }
@@ -99,7 +99,7 @@ class SheetWriter {
   void write_object(const ObjectDescription& object) {
     add_section(fmt::format("{:04X}", object.index));
     put_entry(object);
-    put<ObjectDescription>(object_keys, object);
+    put(object_keys, object);
     for (const SubObjectDescription& sub_object : object.sub_objects) {
       add_section(fmt::format("{:04X}sub{:X}", object.index, sub_object.sub_index));
       put_entry(sub_object);
@@ -109,12 +109,12 @@ class SheetWriter {
   /// The keys that objects and sub-objects have in common.
   void put_entry(const EntryDescription& entry) {
     if (sheet_.is_dcf) {
-      put<EntryDescription>(entry_keys, entry);
+      put(entry_keys, entry);
       return;
     }
     EntryDescription of_eds = entry;
     of_eds.parameter_value.present = false;
-    put<EntryDescription>(entry_keys, of_eds);
+    put(entry_keys, of_eds);
   }
 
   const DataSheet& sheet_;

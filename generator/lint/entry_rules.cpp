@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "device/pdo_defaults.hpp"
+#include "device/pdo/pdo_defaults.hpp"
 #include "diagnostics/quote.hpp"
 #include "eds/number.hpp"
 #include "lint/rule_groups.hpp"

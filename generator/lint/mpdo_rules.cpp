@@ -5,7 +5,8 @@
 #include <canopen/pdo/pdo_mapping.hpp>
 #include <canopen/pdo/transmission_type.hpp>
 
-#include "device/pdo_defaults.hpp"
+#include "device/options/option_table.hpp"
+#include "device/pdo/pdo_defaults.hpp"
 #include "lint/rule_groups.hpp"
 
 namespace edsc {
@@ -14,8 +15,8 @@ namespace {
 constexpr unsigned max_mpdo_bits = 32;
 
 bool served(const Options& options) {
-  return std::ranges::find(options.runtime, std::pair<std::string, std::string>{"mpdo", "true"}) !=
-         options.runtime.end();
+  return std::ranges::any_of(
+      options.runtime, [](const RuntimeOption& option) { return option.row->name == "mpdo" && option.value != 0; });
 }
 
 std::uint64_t mapped_objects(const Pdo& pdo) { return pdo.mapping->find(0)->default_value->bits; }

@@ -3,7 +3,7 @@
 #include <string_view>
 #include <unordered_map>
 
-#include "device/identifier.hpp"
+#include "backend/cpp/identifier.hpp"
 #include "lint/rule_groups.hpp"
 #include "lint/standard_objects.hpp"
 #include "text/ascii.hpp"
@@ -115,14 +115,14 @@ void check_names(const RuleContext& context) {
   Scope scope;
   const auto fill = [&](Scope& names) {
     for (const Object& object : context.device.objects) {
-      names.add(object.identifier, name_place(context.describe(object.index), object.position),
+      names.add(object.identifier, name_place(context.sheet.find(object.index), object.position),
                 index_label(object.index));
     }
   };
   for (const Object& object : context.device.objects) {
     if (is_one_of_many(object.index)) continue;
     if (may_be_changed(object.identifier) && !named_by_options(context, object.index, 0)) {
-      const Position place = name_place(context.describe(object.index), object.position);
+      const Position place = name_place(context.sheet.find(object.index), object.position);
       check_name(context, {index_label(object.index), object.name, object.identifier, place}, scope, fill);
     }
     if (object.type == ObjectType::record) check_entry_names(context, object);

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "device/value.hpp"
+#include "device/types/value.hpp"
 #include "lint/rule_groups.hpp"
 
 namespace edsc {

@@ -5,7 +5,7 @@
 #include <canopen/pdo/pdo_parameters.hpp>
 #include <canopen/pdo/transmission_type.hpp>
 
-#include "device/pdo_defaults.hpp"
+#include "device/pdo/pdo_defaults.hpp"
 #include "lint/rule_groups.hpp"
 
 namespace edsc {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <unordered_map>
 
-#include "device/pdo_defaults.hpp"
+#include "device/pdo/pdo_defaults.hpp"
 #include "eds/number.hpp"
 #include "lint/rule_groups.hpp"
 #include "text/counted.hpp"

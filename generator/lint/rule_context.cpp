@@ -1,8 +1,5 @@
 #include "lint/rule_context.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <utility>
 
 namespace edsc {
@@ -12,19 +9,11 @@ void RuleContext::report(AnyRule rule, const Position& position, std::string mes
   diagnostics.usual(rule, position, std::move(message), std::move(notes), std::move(cause));
 }
 
-const ObjectDescription* RuleContext::describe(std::uint16_t index) const {
-  const auto at = std::lower_bound(sheet.objects.begin(), sheet.objects.end(), index,
-                                   [](const ObjectDescription& object, std::uint16_t i) { return object.index < i; });
-  return at != sheet.objects.end() && at->index == index ? &*at : nullptr;
-}
-
 const EntryDescription* RuleContext::describe(const Entry& entry) const {
-  const ObjectDescription* object = describe(entry.index);
+  const ObjectDescription* object = sheet.find(entry.index);
   if (object == nullptr) return nullptr;
-  for (const SubObjectDescription& sub_object : object->sub_objects) {
-    if (sub_object.sub_index == entry.sub_index) return &sub_object;
-  }
-  return object;
+  const SubObjectDescription* sub_object = object->find(entry.sub_index);
+  return sub_object != nullptr ? sub_object : static_cast<const EntryDescription*>(object);
 }
 
 Position RuleContext::place_of(const Entry& entry, Field EntryDescription::*key) const {
@@ -32,15 +21,5 @@ Position RuleContext::place_of(const Entry& entry, Field EntryDescription::*key)
   if (description == nullptr || !(description->*key).present) return entry.position;
   return (description->*key).position;
 }
-
-Position default_place(const Entry& entry) {
-  return entry.default_value ? entry.default_value->position : entry.position;
-}
-
-std::string named(const Entry& entry) {
-  return fmt::format("{} \"{}\"", entry_label(entry.index, entry.sub_index), entry.name);
-}
-
-std::string named(const Object& object) { return fmt::format("{} \"{}\"", index_label(object.index), object.name); }
 
 }  // namespace edsc

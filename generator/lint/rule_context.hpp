@@ -28,21 +28,11 @@ struct RuleContext {
   /// The whole file.
   [[nodiscard]] Position whole_file() const { return Position{device.source}; }
 
-  /// The description of an object, or null.
-  [[nodiscard]] const ObjectDescription* describe(std::uint16_t index) const;
   /// The section that describes an entry; for an element of a compact object, that of the object.
   [[nodiscard]] const EntryDescription* describe(const Entry& entry) const;
 
   /// The position of a key of an entry, or of its section if the key is missing.
   [[nodiscard]] Position place_of(const Entry& entry, Field EntryDescription::*key) const;
 };
-
-/// The position of the default value of an entry, or of its section if it has none.
-[[nodiscard]] Position default_place(const Entry& entry);
-
-/// `6040h:00 "Controlword"`
-[[nodiscard]] std::string named(const Entry& entry);
-/// `1018h "Identity object"`
-[[nodiscard]] std::string named(const Object& object);
 
 }  // namespace edsc

@@ -26,7 +26,7 @@ std::string_view type_name(canopen::DataType type) {
 
 void check_object_type(const RuleContext& context, const Object& object, const StandardObject& standard) {
   if (object.type == standard.type) return;
-  const ObjectDescription* description = context.describe(object.index);
+  const ObjectDescription* description = context.sheet.find(object.index);
   const bool described = description != nullptr && description->object_type.present;
   context.report("standard-object-type", described ? description->object_type.position : object.position,
                  fmt::format("{} has object code {}; the {} of CiA 301 has {} (clause {})", named(object),

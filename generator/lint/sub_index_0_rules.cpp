@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "device/index_range.hpp"
-#include "device/object_structure.hpp"
+#include "device/objects/object_structure.hpp"
 #include "lint/rule_groups.hpp"
 
 namespace edsc {

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "backend/cpp/identifier.hpp"
+#include "backend/cpp/name_objects.hpp"
 #include "device/resolve.hpp"
 #include "diagnostics/quote.hpp"
 #include "diagnostics/rule.hpp"
@@ -46,7 +48,7 @@ void read_options_file(const std::string& path, LoadedDevice& loaded, Diagnostic
   if (path.empty()) return;
   loaded.options_source = read_or_report(path, loaded, diagnostics);
   if (loaded.unreadable) return;
-  loaded.options = read_options(*loaded.options_source, diagnostics);
+  loaded.options = read_options(*loaded.options_source, is_identifier, diagnostics);
   silence_by_options(loaded, diagnostics);
 }
 
@@ -144,7 +146,8 @@ void resolve_and_check(LoadedDevice& loaded, const LoadSettings& settings, Diagn
     diagnostics.error("options", Position{loaded.source.get()},
                       "option stored_eds: 1021h holds an EDS, but this file is not an EDS");
   }
-  loaded.device = resolve_device(loaded.sheet, loaded.options, {settings.name, settings.node_id}, diagnostics);
+  loaded.device = resolve_device(loaded.sheet, loaded.options, settings.node_id, diagnostics);
+  name_objects(*loaded.device, loaded.options, settings.name);
   if (settings.check) check_device(*loaded.device, loaded.sheet, loaded.options, diagnostics);
 }
 

@@ -31,15 +31,6 @@ constexpr CodePoints hidden_code_points[] = {
 bool is_white_space(char c) { return c == '\t' || c == '\n' || c == '\r'; }
 bool is_plain(char c) { return c >= ' ' && c <= '~'; }
 
-/// Of a well-formed sequence.
-char32_t code_point_of(std::string_view sequence) {
-  const auto byte = [&](std::size_t at) { return static_cast<char32_t>(static_cast<unsigned char>(sequence[at])); };
-  constexpr char32_t lead_masks[] = {0, 0x7F, 0x1F, 0x0F, 0x07};
-  char32_t code_point = byte(0) & lead_masks[sequence.size()];
-  for (std::size_t at = 1; at < sequence.size(); ++at) code_point = (code_point << 6U) | (byte(at) & 0x3FU);
-  return code_point;
-}
-
 }  // namespace
 
 bool is_hidden(char32_t code_point) {

@@ -21,49 +21,26 @@ constexpr std::string_view utf16_be_mark = "\xFE\xFF";
 
 constexpr std::string_view too_large = "larger than 1 GiB";
 
-/// Reads the code units of UTF-16.
-class Utf16Reader {
- public:
-  Utf16Reader(std::string_view bytes, Encoding encoding)
-      : bytes_(bytes), high_(encoding == Encoding::utf16_be ? 0 : 1) {}
-
-  [[nodiscard]] bool at_end() const { return at_ + 1 >= bytes_.size(); }
-  [[nodiscard]] bool has_odd_byte() const { return bytes_.size() % 2 != 0; }
-  [[nodiscard]] char32_t peek() const { return (byte(high_) << 8U) | byte(1 - high_); }
-
-  char32_t next_code_point() {
-    const char32_t unit = take();
-    const bool is_high_surrogate = unit >= 0xD800 && unit < 0xDC00;
-    const bool is_low_surrogate = unit >= 0xDC00 && unit < 0xE000;
-    if (is_high_surrogate && !at_end() && peek() >= 0xDC00 && peek() < 0xE000) {
-      return 0x10000 + ((unit - 0xD800) << 10U) + (take() - 0xDC00);
-    }
-    return is_high_surrogate || is_low_surrogate ? replacement_character : unit;
-  }
-
- private:
-  [[nodiscard]] char32_t byte(std::size_t offset) const { return static_cast<unsigned char>(bytes_[at_ + offset]); }
-  char32_t take() {
-    const char32_t unit = peek();
-    at_ += 2;
-    return unit;
-  }
-
-  std::string_view bytes_;
-  std::size_t high_;  ///< position of the high byte in a pair
-  std::size_t at_ = 0;
-};
-
+/// A surrogate without its partner, and an odd byte at the end, become U+FFFD.
 std::string from_utf16(std::string_view bytes, Encoding encoding) {
+  const std::size_t high = encoding == Encoding::utf16_be ? 0 : 1;  // position of the high byte in a pair
+  const auto byte = [&](std::size_t at) { return static_cast<char32_t>(static_cast<unsigned char>(bytes[at])); };
+  const auto unit = [&](std::size_t at) {
+    return at + 1 < bytes.size() ? byte(at + high) << 8U | byte(at + 1 - high) : char32_t{0};
+  };
   std::string text;
   text.reserve(bytes.size() / 2 + bytes.size() / 16);
-  Utf16Reader reader(bytes, encoding);
-  while (!reader.at_end()) {
-    append_utf8(text, reader.next_code_point());
+  for (std::size_t at = 0; at + 1 < bytes.size(); at += 2) {
+    char32_t code_point = unit(at);
+    if ((code_point & 0xFC00) == 0xD800 && (unit(at + 2) & 0xFC00) == 0xDC00) {
+      code_point = 0x10000 + ((code_point & 0x3FF) << 10U) + (unit(at + 2) & 0x3FF);
+      at += 2;
+    } else if ((code_point & 0xF800) == 0xD800) {
+      code_point = replacement_character;
+    }
+    append_utf8(text, code_point);
   }
-  if (reader.has_odd_byte()) {
-    append_utf8(text, replacement_character);
-  }
+  if (bytes.size() % 2 != 0) append_utf8(text, replacement_character);
   return text;
 }
 
@@ -124,15 +101,8 @@ std::string read_file(const std::string& path, std::string& bytes) {
 }  // namespace
 
 std::string_view to_string(Encoding encoding) {
-  switch (encoding) {
-    case Encoding::ascii: return "ASCII";
-    case Encoding::utf8: return "UTF-8";
-    case Encoding::utf16_le: return "UTF-16LE";
-    case Encoding::utf16_be: return "UTF-16BE";
-    case Encoding::cp1252: return "CP1252";
-    case Encoding::cp437: return "CP437";
-  }
-  return "";
+  constexpr std::string_view names[] = {"ASCII", "UTF-8", "UTF-16LE", "UTF-16BE", "CP1252", "CP437"};
+  return names[static_cast<std::size_t>(encoding)];
 }
 
 SourceFile::SourceFile(std::string name, std::string bytes, Packing packing)

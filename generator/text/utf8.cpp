@@ -83,42 +83,34 @@ bool is_utf8(std::string_view text) {
   return true;
 }
 
+char32_t code_point_of(std::string_view sequence) {
+  constexpr char32_t lead_masks[] = {0, 0x7F, 0x1F, 0x0F, 0x07};
+  char32_t code_point = static_cast<unsigned char>(sequence[0]) & lead_masks[sequence.size()];
+  for (const char c : sequence.substr(1)) code_point = (code_point << 6U) | (static_cast<unsigned char>(c) & 0x3FU);
+  return code_point;
+}
+
 void append_utf8(std::string& text, char32_t code_point) {
-  const auto append = [&](char32_t bits) { text += static_cast<char>(static_cast<unsigned char>(bits)); };
   if (code_point < 0x80) {
-    append(code_point);
-  } else if (code_point < 0x800) {
-    append(0xC0U | (code_point >> 6U));
-    append(0x80U | (code_point & 0x3FU));
-  } else if (code_point < 0x10000) {
-    append(0xE0U | (code_point >> 12U));
-    append(0x80U | ((code_point >> 6U) & 0x3FU));
-    append(0x80U | (code_point & 0x3FU));
-  } else {
-    append(0xF0U | (code_point >> 18U));
-    append(0x80U | ((code_point >> 12U) & 0x3FU));
-    append(0x80U | ((code_point >> 6U) & 0x3FU));
-    append(0x80U | (code_point & 0x3FU));
+    text += static_cast<char>(code_point);
+    return;
   }
+  const unsigned more = code_point < 0x800 ? 1 : code_point < 0x10000 ? 2 : 3;  // bytes after the first
+  constexpr char32_t lead_bits[] = {0, 0xC0, 0xE0, 0xF0};
+  text += static_cast<char>(lead_bits[more] | (code_point >> (6 * more)));
+  for (unsigned i = more; i-- > 0;) text += static_cast<char>(0x80U | ((code_point >> (6 * i)) & 0x3FU));
 }
 
 std::u16string to_utf16(std::string_view text) {
   std::u16string out;
-  for (std::size_t i = 0; i < text.size();) {
-    const auto lead = static_cast<unsigned char>(text[i]);
-    const std::size_t length = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : lead >= 0xC0 ? 2 : 1;
-    std::uint32_t code_point = length == 1 ? lead : lead & (0xFFu >> (length + 1));
-    for (std::size_t k = 1; k < length && i + k < text.size(); ++k) {
-      code_point = (code_point << 6) | (static_cast<unsigned char>(text[i + k]) & 0x3Fu);
-    }
+  for_each_code_point(text, [&](char32_t code_point) {
     if (code_point >= 0x10000) {
-      out += static_cast<char16_t>(0xD800 + ((code_point - 0x10000) >> 10));
-      out += static_cast<char16_t>(0xDC00 + ((code_point - 0x10000) & 0x3FF));
+      out += static_cast<char16_t>(0xD800 + ((code_point - 0x10000) >> 10U));
+      out += static_cast<char16_t>(0xDC00 + ((code_point - 0x10000) & 0x3FFU));
     } else {
       out += static_cast<char16_t>(code_point);
     }
-    i += length;
-  }
+  });
   return out;
 }
 

@@ -8,7 +8,7 @@
 
 #include "diagnostics/quote.hpp"
 #include "eds/ini.hpp"
-#include "eds/object_lists.hpp"
+#include "eds/sections/object_lists.hpp"
 #include "text/source_file.hpp"
 #include "xdd/application_process.hpp"
 #include "xdd/attributes.hpp"

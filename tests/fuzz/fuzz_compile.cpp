@@ -2,7 +2,9 @@
 ///
 /// An input is an EDS; one that begins with `{` is an options file, a line `%%` and an EDS. Each odd length means a
 /// node-ID. Every fourth input is rendered: rendering takes most of the time and finds the least.
-#include "backend/cpp/view.hpp"
+#include "backend/cpp/cpp_view.hpp"
+#include "backend/cpp/identifier.hpp"
+#include "backend/json/device_view.hpp"
 #include "backend/render.hpp"
 #include "fuzz.hpp"
 #include "load/load_device.hpp"
@@ -20,7 +22,7 @@ void split(const std::string& input, LoadedDevice& loaded, Diagnostics& diagnost
     return;
   }
   loaded.options_source = std::make_unique<SourceFile>("fuzz.options.json", input.substr(0, end));
-  loaded.options = read_options(*loaded.options_source, diagnostics);
+  loaded.options = read_options(*loaded.options_source, is_identifier, diagnostics);
   for (const SilencedRule& silenced : loaded.options.silence) diagnostics.silence(silenced.rule);
   loaded.source = std::make_unique<SourceFile>("fuzz.eds", input.substr(end + options_end.size()));
 }

@@ -1,6 +1,6 @@
 /// Arbitrary bytes as a concise DCF (1F22h): its entries make up the whole stream; nothing beyond it is read.
-#include "format/concise_dcf.hpp"
-#include "format/configured_values.hpp"
+#include "device/types/value_bytes.hpp"
+#include "format/dcf/concise_dcf.hpp"
 #include "fuzz.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

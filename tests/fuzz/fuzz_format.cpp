@@ -8,9 +8,9 @@
 #include "compare/print_changes.hpp"
 #include "device/resolve.hpp"
 #include "eds/data_sheet.hpp"
-#include "format/concise_dcf.hpp"
+#include "format/dcf/concise_dcf.hpp"
+#include "format/dcf/make_dcf.hpp"
 #include "format/document.hpp"
-#include "format/make_dcf.hpp"
 #include "fuzz.hpp"
 #include "text/source_file.hpp"
 
@@ -24,7 +24,7 @@ struct Read {
     if (ini.sections.empty()) return;
     sheet = read_data_sheet(ini, diagnostics);
     Diagnostics ignored;
-    device = resolve_device(sheet, {}, {"", node_id}, ignored);
+    device = resolve_device(sheet, {}, node_id, ignored);
   }
   Read(const Read&) = delete;
   Read& operator=(const Read&) = delete;

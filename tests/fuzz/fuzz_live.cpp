@@ -10,7 +10,7 @@
 #include "configure/configure_node.hpp"
 #include "configure/read_configuration.hpp"
 #include "decode/decoder.hpp"
-#include "format/configured_values.hpp"
+#include "device/types/value_bytes.hpp"
 #include "live_port.hpp"
 #include "load/load_device.hpp"
 #include "monitor/monitor_view.hpp"
@@ -32,7 +32,7 @@ class Axis {
     require(loaded_->device.has_value(), "the data sheet can be read");
     for (const LiveEntry& entry : configuration_entries(device())) {
       if (is_left_out(entry) || !entry.entry->default_value) continue;
-      const std::string bytes = data_of(*entry.entry->default_value, *entry.type);
+      const std::string bytes = bytes_of(*entry.entry->default_value, *entry.type);
       values_.push_back({entry, {bytes.begin(), bytes.end()}, {}});
     }
     require(values_.size() > 20, "there is much to configure");

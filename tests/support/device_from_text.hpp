@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "backend/cpp/name_objects.hpp"
 #include "device/resolve.hpp"
 #include "eds/data_sheet.hpp"
 #include "eds/ini.hpp"
@@ -20,14 +21,22 @@
 
 namespace edsc {
 
+/// A name for the device, else that of its file, and its node-ID.
+struct DeviceSettings {
+  std::string name;
+  std::optional<std::uint8_t> node_id;
+};
+
 /// Also owns everything that the positions of the device refer to.
 struct DeviceFromText {
-  explicit DeviceFromText(std::string text, Options given = {}, ResolveSettings settings = {},
+  explicit DeviceFromText(std::string text, Options given = {}, DeviceSettings settings = {},
                           std::string file = "test.eds")
       : source(std::move(file), std::move(text)),
         options(std::move(given)),
         sheet(read_data_sheet(parse_ini(source, diagnostics), diagnostics)),
-        device(resolve_device(sheet, options, settings, diagnostics)) {}
+        device(resolve_device(sheet, options, settings.node_id, diagnostics)) {
+    name_objects(device, options, settings.name);
+  }
 
   SourceFile source;
   Diagnostics diagnostics;

@@ -16,7 +16,7 @@
 #include "conform/cases/sdo_frames.hpp"
 #include "conform/dut.hpp"
 #include "device/index_range.hpp"
-#include "device/object_structure.hpp"
+#include "device/objects/object_structure.hpp"
 #include "values/value_text.hpp"
 
 namespace edsc::conform {

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "configure/configuration_plan.hpp"
-#include "device/value.hpp"
+#include "device/types/value.hpp"
 #include "text/utf8.hpp"
 
 namespace edsc::conform {

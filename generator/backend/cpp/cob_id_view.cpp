@@ -1,4 +1,4 @@
-#include "backend/cpp/cob_id_view.hpp"
+#include "backend/cpp/views.hpp"
 
 #include <fmt/format.h>
 

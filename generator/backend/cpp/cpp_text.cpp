@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 
+#include "backend/cpp/placement.hpp"
+#include "device/types/value_bytes.hpp"
 #include "text/printable.hpp"
 #include "text/utf8.hpp"
 
@@ -16,15 +17,16 @@ namespace {
 using canopen::DataClass;
 using canopen::DataType;
 
-template <class Real>
-std::string real_literal(Real value, std::string_view type, std::string_view suffix) {
+std::string real_literal(std::uint64_t bits, const canopen::DataTypeRow& row, std::string_view type,
+                         std::string_view suffix) {
+  const double value = real_of(bits, row);
   if (std::isnan(value)) return fmt::format("std::numeric_limits<{}>::quiet_NaN()", type);
   if (std::isinf(value)) {
     return fmt::format("{}std::numeric_limits<{}>::infinity()", value < 0 ? "-" : "", type);
   }
-  std::string text = fmt::format("{}", value);
+  std::string text = real_text(bits, row);
   if (text.find_first_of(".e") == std::string::npos) text += ".0";
-  return text + std::string{suffix};
+  return text.append(suffix);
 }
 
 std::string signed_literal(std::uint64_t bits) {
@@ -67,10 +69,8 @@ std::string cpp_literal(const Value& value, const canopen::DataTypeRow& type) {
     case DataClass::signed_integer: return signed_literal(value.bits);
     case DataClass::unsigned_integer: return unsigned_literal(value, type);
     case DataClass::real:
-      if (type.bits == 32) {
-        return real_literal(std::bit_cast<float>(static_cast<std::uint32_t>(value.bits)), "float", "f");
-      }
-      return real_literal(std::bit_cast<double>(value.bits), "double", "");
+      return type.bits == 32 ? real_literal(value.bits, type, "float", "f")
+                             : real_literal(value.bits, type, "double", "");
     case DataClass::time:
       return fmt::format("{{{}, {}}}", value.bits & 0x0FFF'FFFF, static_cast<std::uint16_t>(value.bits >> 32));
     case DataClass::string:
@@ -82,9 +82,31 @@ std::string cpp_literal(const Value& value, const canopen::DataTypeRow& type) {
   return "{}";
 }
 
-std::string cpp_initializer(const Value& value, const canopen::DataTypeRow& type) {
-  const std::string literal = cpp_literal(value, type);
-  return type.kind == DataClass::string && literal.front() != '{' ? "{" + literal + "}" : literal;
+std::string cpp_initializer(const Entry& entry) {
+  if (entry.default_value) {
+    const std::string literal = cpp_literal(*entry.default_value, *entry.type);
+    return entry.type->kind == DataClass::string && literal.front() != '{' ? "{" + literal + "}" : literal;
+  }
+  if (entry.type->kind == DataClass::boolean) return "false";
+  return entry.type->bits == 0 || entry.type->kind == DataClass::time ? "{}" : "0";
+}
+
+std::string cpp_type(const Entry& entry, const Options& options) {
+  if (entry.type->kind != DataClass::string) return std::string{entry.type->cpp_type};
+  return fmt::format("{}<{}>", entry.type->cpp_type, string_bytes(entry, options));
+}
+
+std::string type_word(const canopen::DataTypeRow& type) {
+  switch (type.kind) {
+    case DataClass::boolean: return "boolean";
+    case DataClass::signed_integer: return fmt::format("i{}", type.bits);
+    case DataClass::unsigned_integer: return fmt::format("u{}", type.bits);
+    case DataClass::real: return fmt::format("r{}", type.bits);
+    case DataClass::time: return fmt::format("time{}", type.bits);
+    case DataClass::string: return type.type == DataType::visible_string ? "visible_string" : "octet_string";
+    case DataClass::domain: break;
+  }
+  return "domain";
 }
 
 std::string cpp_string(std::string_view text) {
@@ -114,10 +136,6 @@ std::string cpp_comment(std::string_view text) {
     at -= std::min(at, backslash_trigraph.size());  // the rest may be another one
   }
   return out;
-}
-
-std::size_t wire_length(const Value& value, const canopen::DataTypeRow& type) {
-  return type.type == DataType::unicode_string ? to_utf16(value.bytes).size() * 2 : value.bytes.size();
 }
 
 }  // namespace edsc

@@ -1,56 +1,114 @@
-/// The memory layout of a device: constants in flash, values in RAM, and the tables to find them, as lines of C++ for
-/// the templates. canopen/od/dictionary.hpp describes the words of the tables.
+/// The memory layout of a device: which struct holds each value, and the tables to find it. Decisions only:
+/// layout_view() spells them in C++. canopen/od/dictionary.hpp describes the tables.
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "backend/cpp/placement.hpp"
 #include "device/device.hpp"
 #include "device/options/options.hpp"
 
 namespace edsc {
 
-/// A member of a generated struct.
+/// A member of a generated struct: the value of an entry, the elements of an ARRAY, or a struct of a record type.
 struct Member {
-  std::string type;
+  std::string type;  ///< in C++
   std::string name;
-  std::string initializer;  ///< empty in structs that are zero after a reset
-  std::string comment;
-  unsigned alignment = 1;
-  std::size_t size = 0;            ///< bytes
   const Object* object = nullptr;  ///< the object of the value
+  const Entry* entry = nullptr;    ///< of a single value
+  std::vector<Member> parts;       ///< of a record type
+  unsigned alignment = 1;
+  std::size_t size = 0;  ///< bytes
 };
 
 struct Struct {
-  std::string type;  ///< name of the struct
-  std::string name;  ///< of the member or variable that has this type
-  std::string comment;
+  std::string_view comment;
+  std::string type;             ///< name of the struct
+  std::string name;             ///< of the member or variable that has this type
   std::vector<Member> members;  ///< widest alignment first: no padding between them
 };
 
-/// A row of a table, and its comment.
-struct TableRow {
-  std::string text;
-  std::string comment;
+/// A member of a struct, whose offset is the location of a value.
+struct Location {
+  std::string type;    ///< `Values`, `Constants` or a record type; empty: the start of the group
+  std::string member;  ///< its path: `application_preset.speed`
+
+  auto operator<=>(const Location&) const = default;
+};
+
+/// The word of an entry.
+struct Word {
+  MemoryPlace place = MemoryPlace::ram;
+  Location location = {};    ///< in RAM or flash
+  std::uint16_t number = 0;  ///< an immediate value
+  bool hexadecimal = false;  ///< its spelling
+  std::string type = {};     ///< constant of canopen::entry, as `access`
+  std::string_view access = {};
+  bool tpdo = false, rpdo = false, limited = false;
+
+  auto operator<=>(const Word&) const = default;
+};
+
+/// Consecutive indices from `first` on, and the position of the first one's row.
+struct RunRow {
+  std::uint16_t first;
+  std::size_t position;
+};
+
+/// The row of an index: its word, or the position of the group of an object with sub-indices.
+struct EntryRow {
+  const Object* object;
+  std::optional<Word> word;
+  std::size_t group = 0;
+  bool is_array = false;  ///< the elements share one word
+};
+
+/// The row of a sub-index; nothing for a gap.
+struct SubRow {
+  std::optional<Word> word;
+  const Object* first_of = nullptr;  ///< in the first row of a group
+};
+
+struct GroupRow {
+  const Object* object;
+  Location ram, rom;
+  std::size_t subs;
+  std::uint8_t highest;
+  unsigned stride;
+};
+
+struct LimitRow {
+  const Entry* entry;
+  std::uint64_t low, high;
+};
+
+/// A value to which the node-ID is added.
+struct NodeIdRow {
+  const Entry* entry;
+  Location location;
+  std::optional<std::size_t> offset;  ///< of an element, in its array
 };
 
 struct MemoryLayout {
   std::vector<Struct> record_types;  ///< shared by all records of equal shape
   std::vector<Struct> values;        ///< the non-empty parts of Values
   Struct constants;
-  std::vector<TableRow> runs, entries, groups, subs, limits, wide_limits;
-  std::vector<TableRow> node_id_relative_communication, node_id_relative_application;
+  std::vector<RunRow> runs;
+  std::vector<EntryRow> entries;
+  std::vector<GroupRow> groups;
+  std::vector<SubRow> subs;
+  std::vector<LimitRow> limits, wide_limits;  ///< ascending
+  std::vector<NodeIdRow> node_id_relative_communication, node_id_relative_application;
   std::uint32_t longest_download = 4;
 };
 
+/// Reports the first object that does not fit into the address range of the tables.
 [[nodiscard]] MemoryLayout lay_out(const Device& device, const Options& options, Diagnostics& diagnostics);
-
-/// An ARRAY whose elements 1..N have the same numeric type, access and limits: one template in C++.
-[[nodiscard]] bool describes_uniform_array(const Object& object);
-
-/// The C++ type of an entry; a string with its capacity.
-[[nodiscard]] std::string cpp_type(const Entry& entry, const Options& options);
 
 }  // namespace edsc

@@ -1,4 +1,4 @@
-#include "backend/cpp/pdo_view.hpp"
+#include "backend/cpp/views.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "backend/cpp/cpp_text.hpp"
-#include "backend/cpp/memory_layout.hpp"
+#include "backend/cpp/placement.hpp"
 #include "device/cob_id_parameter.hpp"
 #include "device/complete_device.hpp"
 
@@ -187,6 +187,21 @@ ordered_json pdo_rows(const Device& device) {
       row["left_out"] = fmt::format("{}", fmt::join(provable.left_out, ", "));
     }
     rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+ordered_json served_pdos(const Device& device, PdoDirection direction) {
+  ordered_json rows = ordered_json::array();
+  for (const Pdo& pdo : device.pdos) {
+    if (pdo.direction != direction || pdo.communication == nullptr || pdo.mapping == nullptr) continue;
+    if (has_wrong_cob_id(pdo)) continue;
+    const bool empty = pdo.broken || pdo.entries.empty();
+    if (empty && !pdo.dynamic && !pdo.multiplexed) continue;
+    const std::string_view kind = direction == PdoDirection::receive ? "Rpdo" : "Tpdo";
+    rows.push_back({{"number", pdo.number},
+                    {"layout", empty ? fmt::format("canopen::{}<>", kind) : fmt::format("{}{}", kind, pdo.number)},
+                    {"separator", rows.empty() ? "" : ","}});
   }
   return rows;
 }

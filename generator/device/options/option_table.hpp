@@ -11,7 +11,7 @@
 namespace edsc {
 
 /// How an option is written in the options file. A row with a form other than `structured` sets the member of
-/// canopen::DeviceOptions of the same name; a structured option has a reader of its own in options.cpp.
+/// canopen::DeviceOptions of the same name; a structured option has a reader of its own in structured_options.cpp.
 enum class OptionForm : std::uint8_t {
   flag,            ///< true or false
   number,          ///< min to max

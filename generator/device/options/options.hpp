@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -67,8 +68,20 @@ struct AllowedFindings {
   Position position;
 };
 
+struct OptionRow;
+
+/// A deviation from CiA 301 for the runtime: a member of canopen::DeviceOptions.
+struct RuntimeOption {
+  const OptionRow* row;
+  std::uint32_t value;     ///< 0 or 1 of a flag
+  std::uint32_t last = 0;  ///< of a range; `value` is the first
+};
+
+/// Whether a text can be the name of an object in the generated code.
+using NameCheck = bool (*)(std::string_view name);
+
 struct Options {
-  /// C++ names that replace those made from ParameterName.
+  /// Names in the generated code that replace those made from ParameterName.
   std::map<EntryKey, std::string> names;
   /// Maximum bytes of a string in RAM.
   std::map<EntryKey, std::uint16_t> string_capacity;
@@ -90,8 +103,8 @@ struct Options {
   /// Set if the options file has LSS options: the device then supports LSS regardless of the EDS.
   std::optional<LssSettings> lss;
   StoredEds stored_eds = StoredEds::of_application;
-  /// Deviations from CiA 301 for the runtime: member of canopen::DeviceOptions and its value in C++.
-  std::vector<std::pair<std::string, std::string>> runtime;
+  /// In the order of the file.
+  std::vector<RuntimeOption> runtime;
   /// Expected findings.
   std::vector<AllowedFindings> allow;
 
@@ -101,6 +114,6 @@ struct Options {
 };
 
 /// Reads an options file. Unknown members and invalid values are errors, with the path of the member.
-[[nodiscard]] Options read_options(const SourceFile& source, Diagnostics& diagnostics);
+[[nodiscard]] Options read_options(const SourceFile& source, NameCheck is_name, Diagnostics& diagnostics);
 
 }  // namespace edsc

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "configure/configure_node.hpp"
-#include "format/concise_dcf.hpp"
+#include "format/dcf/concise_dcf.hpp"
 #include "support/device_from_text.hpp"
 
 namespace edsc {

@@ -91,20 +91,25 @@ TEST(CppLiteral, OfAUnicodeStringIsUtf16) {
   EXPECT_EQ(literal(DataType::unicode_string, "\"?\\"), "u\"\\x22\" u\"\\x3F\" u\"\\x5C\" u\"\"");
 }
 
-TEST(WireLength, OfAUnicodeStringCountsItsCodeUnits) {
-  Value value;
-  value.bytes = "a\xC3\xB6\xF0\x9F\x9A\x80";
-  EXPECT_EQ(wire_length(value, row(DataType::unicode_string)), 8U);
-  EXPECT_EQ(wire_length(value, row(DataType::visible_string)), 7U);
+TEST(CppInitializer, PutsATextInBraces) {
+  Entry entry;
+  entry.default_value.emplace().bytes = "hi";
+  entry.type = &row(DataType::visible_string);
+  EXPECT_EQ(cpp_initializer(entry), "{\"hi\"}");
+  entry.type = &row(DataType::octet_string);
+  EXPECT_EQ(cpp_initializer(entry), "{0x68, 0x69}");
+  entry.default_value->bits = 7;
+  entry.type = &row(DataType::unsigned8);
+  EXPECT_EQ(cpp_initializer(entry), "7");
 }
 
-TEST(CppInitializer, PutsATextInBraces) {
-  Value value;
-  value.bytes = "hi";
-  EXPECT_EQ(cpp_initializer(value, row(DataType::visible_string)), "{\"hi\"}");
-  EXPECT_EQ(cpp_initializer(value, row(DataType::octet_string)), "{0x68, 0x69}");
-  value.bits = 7;
-  EXPECT_EQ(cpp_initializer(value, row(DataType::unsigned8)), "7");
+TEST(TypeWord, IsAConstantOfTheRuntimeForEachDataType) {
+  std::string words;
+  for (const canopen::DataTypeRow& type : canopen::data_types) words += type_word(type) + " ";
+  EXPECT_EQ(
+      words,
+      "boolean i8 i16 i24 i32 i40 i48 i56 i64 u8 u16 u24 u32 u40 u48 u56 u64 r32 r64 time48 time48 visible_string "
+      "octet_string octet_string domain ");
 }
 
 TEST(CppString, EscapesWhatWouldEndOrChangeIt) {

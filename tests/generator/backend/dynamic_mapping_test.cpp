@@ -8,8 +8,9 @@
 #include <string_view>
 #include <vector>
 
+#include "backend/cpp/cpp_view.hpp"
 #include "backend/cpp/memory_layout.hpp"
-#include "backend/cpp/view.hpp"
+#include "backend/cpp/views.hpp"
 #include "support/device_from_text.hpp"
 
 namespace edsc {
@@ -48,17 +49,27 @@ bool first_is_dynamic(const DeviceFromText& text) { return text.device.pdos.at(0
 
 MemoryLayout layout_of(DeviceFromText& text) { return lay_out(text.device, text.options, text.diagnostics); }
 
+/// The rows of a table in C++, each with its comment.
+std::vector<std::pair<std::string, std::string>> table_of(DeviceFromText& text, const char* table) {
+  std::vector<std::pair<std::string, std::string>> rows;
+  const auto view = layout_view(layout_of(text));
+  for (const auto& row : view[table]["rows"]) {
+    rows.emplace_back(row["text"].get<std::string>(), row.value("remark", ""));
+  }
+  return rows;
+}
+
 /// The word of a VAR, or those of the sub-indices of a RECORD or ARRAY, as in the table.
 std::string word_of(DeviceFromText& text, std::string_view label) {
-  for (const TableRow& row : layout_of(text).entries) {
-    if (row.comment.starts_with(label)) return row.text;
+  for (const auto& [word, comment] : table_of(text, "entries")) {
+    if (comment.starts_with(fmt::format("  // {}", label))) return word;
   }
   return "";
 }
 
 std::vector<std::string> subs_of(DeviceFromText& text) {
   std::vector<std::string> words;
-  for (const TableRow& row : layout_of(text).subs) words.push_back(row.text);
+  for (const auto& [word, comment] : table_of(text, "subs")) words.push_back(word);
   return words;
 }
 
@@ -215,10 +226,10 @@ TEST(DynamicMapping, GivesTheCountOfAnArrayAnAddressBesideItsElements) {
   ASSERT_GE(words.size(), 2U);
   EXPECT_EQ(words.at(words.size() - 2), "rom | u8 | ro | tpdo");
   EXPECT_EQ(words.back(), "ram | u8 | ro");
-  const TableRow inputs = layout_of(text).groups.back();
-  EXPECT_TRUE(inputs.text.starts_with(
-      "{.ram = offsetof(Values, application_cleared.inputs), .rom = offsetof(Constants, inputs)"))
-      << inputs.text;
+  const std::string inputs = table_of(text, "groups").back().first;
+  EXPECT_TRUE(
+      inputs.starts_with("{.ram = offsetof(Values, application_cleared.inputs), .rom = offsetof(Constants, inputs)"))
+      << inputs;
 }
 
 TEST(DynamicMapping, OffersNoConstantToAnRpdo) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "backend/cpp/views.hpp"
 #include "support/device_from_text.hpp"
 
 namespace edsc {
@@ -59,7 +60,8 @@ TEST(UniformArray, HasTheSameLimitsForAllElements) {
 
 std::vector<std::string> limits_of(DeviceFromText& text) {
   std::vector<std::string> limits;
-  for (const TableRow& row : lay_out(text.device, text.options, text.diagnostics).limits) limits.push_back(row.text);
+  const auto view = layout_view(lay_out(text.device, text.options, text.diagnostics));
+  for (const auto& row : view["limits"]["rows"]) limits.push_back(row["text"].get<std::string>());
   return limits;
 }
 
@@ -84,8 +86,8 @@ constexpr std::string_view dynamic_tpdo =
 /// `array` or `record`: the kind of 2000h in the table of objects.
 std::string kind_of_2000h(const std::string& file) {
   DeviceFromText text(file);
-  for (const TableRow& row : lay_out(text.device, text.options, text.diagnostics).entries) {
-    if (row.comment.starts_with("2000h")) return row.text.substr(0, row.text.find(' '));
+  for (const EntryRow& row : lay_out(text.device, text.options, text.diagnostics).entries) {
+    if (row.object->index == 0x2000) return row.is_array ? "array" : "record";
   }
   return "";
 }

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "backend/cpp/view.hpp"
+#include "backend/cpp/cpp_view.hpp"
 #include "support/device_from_text.hpp"
 
 namespace edsc {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "backend/cpp/view.hpp"
+#include "backend/json/device_view.hpp"
 #include "support/device_from_text.hpp"
 
 namespace edsc {

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "backend/cpp/view.hpp"
+#include "backend/cpp/cpp_view.hpp"
 #include "device/stored_eds.hpp"
 #include "support/device_from_text.hpp"
 #include "text/gzip.hpp"

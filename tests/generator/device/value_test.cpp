@@ -1,4 +1,4 @@
-#include "device/value.hpp"
+#include "device/types/value.hpp"
 
 #include <gtest/gtest.h>
 

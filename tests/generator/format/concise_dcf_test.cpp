@@ -1,5 +1,5 @@
 /// The concise DCF of object 1F22h (CiA 302-3).
-#include "format/concise_dcf.hpp"
+#include "format/dcf/concise_dcf.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

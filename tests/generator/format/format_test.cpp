@@ -6,12 +6,12 @@
 
 #include <string>
 
-#include "backend/cpp/view.hpp"
+#include "backend/json/device_view.hpp"
 #include "device/resolve.hpp"
 #include "eds/ini.hpp"
-#include "format/key_table.hpp"
-#include "format/make_dcf.hpp"
-#include "format/number_spelling.hpp"
+#include "format/dcf/make_dcf.hpp"
+#include "format/spelling/key_table.hpp"
+#include "format/spelling/number_spelling.hpp"
 #include "support/device_from_text.hpp"
 #include "text/source_file.hpp"
 
@@ -24,7 +24,7 @@ struct Formatted {
       : source("test.eds", std::move(text)),
         ini(parse_ini(source, diagnostics)),
         sheet(read_data_sheet(ini, diagnostics)),
-        device(resolve_device(sheet, {}, {"", node_id}, diagnostics)) {}
+        device(resolve_device(sheet, {}, node_id, diagnostics)) {}
 
   [[nodiscard]] std::string text() const { return to_text(canonical_form(ini, sheet, device)); }
 

@@ -1,5 +1,5 @@
 /// All keys of CiA 306-1, section by section.
-#include "format/key_table.hpp"
+#include "format/spelling/key_table.hpp"
 
 #include <gtest/gtest.h>
 

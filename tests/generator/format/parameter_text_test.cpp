@@ -1,5 +1,5 @@
 /// Values of a device as the ParameterValues of a DCF.
-#include "format/parameter_text.hpp"
+#include "format/dcf/parameter_text.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "format/canonical_form.hpp"
-#include "format/configured_values.hpp"
-#include "format/make_dcf.hpp"
+#include "format/dcf/configured_values.hpp"
+#include "format/dcf/make_dcf.hpp"
 #include "support/device_from_text.hpp"
 
 namespace edsc {

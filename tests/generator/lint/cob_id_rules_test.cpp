@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "backend/cpp/view.hpp"
+#include "backend/cpp/cpp_view.hpp"
 #include "device/cob_id_parameter.hpp"
 #include "support/device_from_text.hpp"
 

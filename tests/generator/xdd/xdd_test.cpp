@@ -7,7 +7,8 @@
 #include <string_view>
 #include <utility>
 
-#include "backend/cpp/view.hpp"
+#include "backend/cpp/name_objects.hpp"
+#include "backend/json/device_view.hpp"
 #include "device/resolve.hpp"
 #include "eds/ini.hpp"
 #include "lint/check_device.hpp"
@@ -557,7 +558,8 @@ const Profile pump_xdd{
 /// The view without members that depend on the file.
 nlohmann::ordered_json view_of(const DataSheet& sheet, Diagnostics& diagnostics) {
   const Options options;
-  Device device = resolve_device(sheet, options, {"pump", std::nullopt}, diagnostics);
+  Device device = resolve_device(sheet, options, {}, diagnostics);
+  name_objects(device, options, "pump");
   check_device(device, sheet, options, diagnostics);
   nlohmann::ordered_json view = device_view(device).flatten();
   for (auto row = view.begin(); row != view.end();) {

@@ -1,0 +1,194 @@
+#include "backend/cpp/views.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "backend/cpp/cpp_text.hpp"
+#include "backend/cpp/identifier.hpp"
+#include "backend/cpp/json_object.hpp"
+#include "backend/cpp/placement.hpp"
+#include "text/source_file.hpp"
+#include "text/utf8.hpp"
+
+namespace edsc {
+namespace {
+
+using canopen::DataClass;
+using canopen::Mappable;
+using nlohmann::ordered_json;
+
+std::string_view access_enumerator(canopen::Access access) {
+  return access == canopen::Access::constant ? "constant" : canopen::row_of(access).name;
+}
+
+std::string_view mappable_enumerator(Mappable mappable) {
+  switch (mappable) {
+    case Mappable::no: return "no";
+    case Mappable::tpdo: return "tpdo";
+    case Mappable::rpdo: return "rpdo";
+    case Mappable::both: return "both";
+  }
+  return "no";
+}
+
+/// `text`, padded with blanks to a common column.
+std::string padded(std::string text, std::size_t column) {
+  if (!is_ascii(text)) return fmt::format("{:<{}}", text, column);  // knows characters of two columns
+  text.resize(std::max(text.size(), column), ' ');
+  return text;
+}
+
+/// The name of an element without its number: "field" for "Field 1", "Field1" and, for sub-index 0Ah, "Field A".
+std::string without_number(const Entry& element) {
+  const std::string name = to_snake_case(element.name);
+  const std::string hexadecimal = fmt::format("{:x}", element.sub_index);
+  std::string rest;
+  for (std::size_t begin = 0; begin < name.size();) {
+    const std::size_t end = std::min(name.find('_', begin), name.size());
+    std::string word = name.substr(begin, end - begin);
+    begin = end + 1;
+    if (word == hexadecimal || word == "0" + hexadecimal) continue;
+    std::erase_if(word, [](char c) { return c >= '0' && c <= '9'; });
+    if (!word.empty()) rest += (rest.empty() ? "" : "_") + word;
+  }
+  return rest;
+}
+
+class ObjectTypes {
+ public:
+  ObjectTypes(const Device& device, const Options& options) : device_{device}, options_{options} {
+    const std::string& path = device.source->name();
+    file_ = cpp_comment(path.substr(path.find_last_of('/') + 1));
+    for (const Object& object : device.objects) static_cast<void>(names_.take(object.identifier, ""));
+  }
+
+  [[nodiscard]] ordered_json view() {
+    ordered_json rows = json_array(device_.objects.size());
+    for (const Object& object : device_.objects) rows.push_back(object_row(object));
+    return rows;
+  }
+
+ private:
+  [[nodiscard]] ordered_json object_row(const Object& object) {
+    if (!object.has_sub_indices()) return json_object("var", entry_row(object.entries.front(), hexadecimal(0)));
+    if (describes_uniform_array(object)) return json_object("array", array_row(object));
+    return json_object("record", record_row(object));
+  }
+
+  [[nodiscard]] ordered_json record_row(const Object& object) const {
+    ordered_json entries = json_array(object.entries.size());
+    for (const Entry& entry : object.entries) entries.push_back(entry_row(entry, hexadecimal(entry.sub_index)));
+    return json_object("identifier", object.identifier, "comment",
+                       fmt::format("{}.  {}", cpp_comment(object.name), index_label(object.index)), "entries",
+                       std::move(entries));
+  }
+
+  [[nodiscard]] ordered_json array_row(const Object& object) {
+    const Entry& first = object.entries[1];
+    const std::size_t length = object.entries.size() - 1;
+    const std::string label = fmt::format("{}:01..{:02X}", index_label(object.index), length);
+    ordered_json count = entry_row(object.entries.front(), "0x00");
+    count["array_identifier"] = object.identifier;
+    return json_object("comment", comment(first, object.name, label), "identifier", object.identifier, "name",
+                       cpp_string(object.name), "base", base(first, "SubIndex"), "constants", constants(first),
+                       "length", length, "count", std::move(count), "elements", element_names(object));
+  }
+
+  /// Elements that have their own name, such as `gains_p` for `gains<1>`; null if there are none.
+  [[nodiscard]] ordered_json element_names(const Object& object) {
+    std::map<std::string, int> names;
+    for (const Entry& entry : object.entries) {
+      if (entry.sub_index != 0) ++names[without_number(entry)];
+    }
+    ordered_json rows = ordered_json::array();
+    for (const Entry& entry : object.entries) {
+      if (entry.sub_index == 0 || !has_own_name(object, entry, names)) continue;
+      const std::string suffix = fmt::format("{:04x}_{:02x}", entry.index, entry.sub_index);
+      rows.push_back(json_object("comment", comment(entry, entry.name, entry_label(entry.index, entry.sub_index)),
+                                 "identifier", names_.take(element_name(object, entry), suffix), "number",
+                                 entry.sub_index));
+    }
+    if (rows.empty()) return nullptr;
+    return json_object("array", object.identifier, "rows", std::move(rows));
+  }
+
+  /// Whether the options name an element, or its name differs from those of the object and of the other elements by
+  /// more than a number. `names`: the number of elements by name without number.
+  [[nodiscard]] bool has_own_name(const Object& object, const Entry& element,
+                                  const std::map<std::string, int>& names) const {
+    if (options_.names.contains({element.index, element.sub_index})) return true;
+    const std::string name = without_number(element);
+    if (name.empty() || name == to_snake_case(object.name)) return false;
+    if (object.entries.size() == 2) return name == to_snake_case(element.name);
+    return names.at(name) == 1;
+  }
+
+  [[nodiscard]] static std::string element_name(const Object& object, const Entry& element) {
+    std::string name = element.identifier;
+    if (name.ends_with('_')) name.pop_back();  // which distinguishes C++ keywords
+    return name.starts_with(object.identifier + "_") ? name : object.identifier + "_" + name;
+  }
+
+  [[nodiscard]] ordered_json entry_row(const Entry& entry, const std::string& sub_index) const {
+    return json_object("comment", comment(entry, entry.name, entry_label(entry.index, entry.sub_index)), "identifier",
+                       entry.identifier, "name", cpp_string(entry.name), "base", base(entry, sub_index), "constants",
+                       constants(entry));
+  }
+
+  [[nodiscard]] static ordered_json constants(const Entry& entry) {
+    ordered_json rows = ordered_json::array();
+    const auto add = [&](const char* name, const std::optional<Value>& value) {
+      if (!value || value->plus_node_id) return;
+      rows.push_back(json_object("name", name, "value", cpp_literal(*value, *entry.type)));
+    };
+    add("low_limit", entry.low_limit);
+    add("high_limit", entry.high_limit);
+    return rows;
+  }
+
+  [[nodiscard]] static std::string hexadecimal(std::uint8_t sub_index) { return fmt::format("0x{:02X}", sub_index); }
+
+  [[nodiscard]] std::string base(const Entry& entry, const std::string& sub_index) const {
+    std::string text = fmt::format("canopen::Object<0x{:04X}, {}, {}, canopen::Access::{}", entry.index, sub_index,
+                                   cpp_type(entry, options_), access_enumerator(entry.access));
+    const bool odd_size =
+        (entry.type->kind == DataClass::signed_integer || entry.type->kind == DataClass::unsigned_integer) &&
+        entry.type->bits % 8 == 0 && (entry.type->bits & (entry.type->bits - 1)) != 0;
+    if (entry.mappable() != Mappable::no || odd_size) {
+      text += ", canopen::Mappable::";
+      text += mappable_enumerator(entry.mappable());
+    }
+    if (odd_size) text += fmt::format(", {}", entry.type->bits);
+    return text + ">";
+  }
+
+  /// `Statusword.  6041h:00  UNSIGNED16  ro  TPDO                cpc-tc1.eds:412`
+  [[nodiscard]] std::string comment(const Entry& entry, std::string_view name, const std::string& label) const {
+    std::string text =
+        fmt::format("{}.  {}  {}  {}", cpp_comment(name), label, entry.type->name, canopen::row_of(entry.access).name);
+    switch (entry.mappable()) {
+      case Mappable::no: break;
+      case Mappable::tpdo: text += "  TPDO"; break;
+      case Mappable::rpdo: text += "  RPDO"; break;
+      case Mappable::both: text += "  PDO"; break;
+    }
+    return fmt::format("{}  {}:{}", padded(std::move(text), 78), file_, entry.position.line);
+  }
+
+  const Device& device_;
+  const Options& options_;
+  std::string file_;
+  IdentifierScope names_;  ///< of all objects, then of elements
+};
+
+}  // namespace
+
+ordered_json object_types_view(const Device& device, const Options& options) {
+  return ObjectTypes{device, options}.view();
+}
+
+}  // namespace edsc

@@ -1,0 +1,102 @@
+#include "backend/cpp/views.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <canopen/lss/lss_options.hpp>
+#include <iterator>
+#include <string>
+#include <utility>
+
+#include "backend/cpp/json_object.hpp"
+#include "device/options/option_table.hpp"
+
+namespace edsc {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json storing_rows(const Options& options) {
+  ordered_json rows = json_array(options.storing.size());
+  for (const auto& [entry, how] : options.storing) {
+    std::string condition = fmt::format("index == 0x{:04X}", entry.index);
+    if (entry.sub_index) condition += fmt::format(" && sub_index == 0x{:02X}", *entry.sub_index);
+    rows.push_back(json_object("condition", std::move(condition), "storing", how));
+  }
+  return rows;
+}
+
+/// The condition for entries that trigger an event: not in the option no_event.
+ordered_json event_conditions(const Options& options) {
+  ordered_json rows = json_array(options.no_event.size());
+  for (const EntrySelector& entry : options.no_event) {
+    std::string condition = fmt::format("index != 0x{:04X}", entry.index);
+    if (entry.sub_index) condition = fmt::format("({} || sub_index != 0x{:02X})", condition, *entry.sub_index);
+    rows.push_back(json_object("condition", std::move(condition), "separator", rows.empty() ? "" : " &&\n           "));
+  }
+  return rows;
+}
+
+ordered_json emergency_rows(const Options& options) {
+  ordered_json rows = json_array(options.emergency_info.size());
+  for (const auto& [code, bytes] : options.emergency_info) {
+    rows.push_back(json_object("code", fmt::format("0x{:04X}", code), "bytes",
+                               fmt::format("{{{{0x{:02X}}}}}", fmt::join(bytes, ", 0x"))));
+  }
+  return rows;
+}
+
+/// The value of a member of canopen::DeviceOptions.
+std::string cpp_value(const RuntimeOption& option) {
+  switch (option.row->form) {
+    case OptionForm::flag: return option.value != 0 ? "true" : "false";
+    case OptionForm::mask:
+    case OptionForm::abort_code: return fmt::format("0x{:08X}", option.value);
+    case OptionForm::emergency_code: return fmt::format("0x{:04X}", option.value);
+    case OptionForm::can_id_range: return fmt::format("{{0x{:03X}, 0x{:03X}}}", option.value, option.last);
+    case OptionForm::number:
+    case OptionForm::structured: break;
+  }
+  return fmt::format("{}", option.value);
+}
+
+ordered_json runtime_rows(const Options& options) {
+  ordered_json rows = json_array(options.runtime.size());
+  for (const RuntimeOption& option : options.runtime) {
+    rows.push_back(json_object("name", option.row->name, "value", cpp_value(option)));
+  }
+  return rows;
+}
+
+/// The bit rates of the EDS in the format of canopen::LssOptions::bit_rates.
+std::uint16_t lss_bit_rates(const Capabilities& capabilities) {
+  unsigned mask = 0;
+  for (std::size_t i = 0; i < std::size(canopen::lss::bit_rates); ++i) {
+    const std::uint16_t rate = canopen::lss::bit_rates[i];
+    if (rate != 0 && std::ranges::find(capabilities.baud_rates, rate) != capabilities.baud_rates.end()) mask |= 1u << i;
+  }
+  return static_cast<std::uint16_t>(mask);
+}
+
+/// The members of canopen::LssOptions in its order for a device with LSS; otherwise null.
+ordered_json lss_view(const Device& device, const Options& options) {
+  const Capabilities& capabilities = device.information.capabilities;
+  if (!options.lss && !capabilities.lss_supported.value_or(false)) return nullptr;
+  const LssSettings settings = options.lss.value_or(LssSettings{});
+  std::string members = fmt::format(".bit_rates = 0x{:04X}", settings.bit_rates.value_or(lss_bit_rates(capabilities)));
+  for (const char* flag : lss_flags) {
+    if (const auto at = settings.flags.find(flag); at != settings.flags.end()) {
+      members += fmt::format(",\n      .{} = {}", flag, at->second);
+    }
+  }
+  return json_object("members", std::move(members));
+}
+
+}  // namespace
+
+OptionsView options_view(const Device& device, const Options& options) {
+  return {runtime_rows(options), event_conditions(options), emergency_rows(options), lss_view(device, options),
+          storing_rows(options)};
+}
+
+}  // namespace edsc

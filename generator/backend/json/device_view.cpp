@@ -1,0 +1,223 @@
+#include "backend/json/device_view.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <canopen/can/cob_id.hpp>
+
+#include "backend/json/information_view.hpp"
+#include "device/types/value.hpp"
+#include "device/types/value_bytes.hpp"
+#include "text/source_file.hpp"
+
+namespace edsc {
+namespace {
+
+using canopen::DataClass;
+using nlohmann::ordered_json;
+
+/// Numbers as numbers, strings as text, OCTET_STRINGs as hexadecimal digits, formulas as `$NODEID+0x180`.
+ordered_json value_view(const Value& value, const canopen::DataTypeRow& type) {
+  switch (type.kind) {
+    case DataClass::boolean: return value.bits != 0;
+    case DataClass::signed_integer:
+      if (value.plus_node_id) break;
+      return static_cast<std::int64_t>(value.bits);
+    case DataClass::unsigned_integer:
+    case DataClass::time:
+      if (value.plus_node_id) break;
+      return value.bits;
+    case DataClass::real: return real_of(value.bits, type);
+    case DataClass::string: return type.type == canopen::DataType::octet_string ? hex_pairs(value.bytes) : value.bytes;
+    case DataClass::domain: return nullptr;
+  }
+  return fmt::format("$NODEID+0x{:X}", value.bits);
+}
+
+/// Adds a key only if the data sheet states a value.
+void add_text(const char* key, std::string_view text, ordered_json& view) {
+  if (!text.empty()) view[key] = text;
+}
+
+ordered_json entry_view(const Entry& entry) {
+  ordered_json view;
+  view["index"] = entry.index;
+  view["sub_index"] = entry.sub_index;
+  view["name"] = entry.name;
+  view["identifier"] = entry.identifier;
+  view["data_type"] = entry.type->name;
+  view["bits"] = entry.type->bits;
+  if (entry.octets != 0) view["octets"] = entry.octets;
+  view["access"] = canopen::row_of(entry.access).name;
+  view["pdo_mapping"] = entry.pdo_mapping;
+  if (entry.default_value) view["default_value"] = value_view(*entry.default_value, *entry.type);
+  if (entry.default_value && !entry.default_value->clause.empty()) {
+    view["default_by"] = fmt::format("CiA 301, {}", entry.default_value->clause);
+  }
+  if (entry.low_limit) view["low_limit"] = value_view(*entry.low_limit, *entry.type);
+  if (entry.high_limit) view["high_limit"] = value_view(*entry.high_limit, *entry.type);
+  if (entry.obj_flags != 0) view["obj_flags"] = entry.obj_flags;
+  add_text("denotation", entry.denotation, view);
+  add_text("param_refd", entry.param_refd, view);
+  add_text("upload_file", entry.upload_file, view);
+  add_text("download_file", entry.download_file, view);
+  add_text("unit", entry.unit, view);
+  add_text("factor", entry.factor, view);
+  add_text("description", entry.description, view);
+  view["line"] = entry.position.line;
+  return view;
+}
+
+/// A sub-index of a communication parameter, and its key in a PDO.
+struct PdoParameter {
+  std::uint8_t sub_index;
+  const char* key;
+};
+
+constexpr PdoParameter pdo_parameters[] = {
+    {1, "cob_id"}, {2, "transmission_type"}, {3, "inhibit_time"}, {5, "event_timer"}, {6, "sync_start_value"},
+};
+
+/// The default values of the existing communication parameters.
+void add_pdo_parameters(const Pdo& pdo, ordered_json& view) {
+  for (const PdoParameter& parameter : pdo_parameters) {
+    const Entry* const entry = pdo.communication != nullptr ? pdo.communication->find(parameter.sub_index) : nullptr;
+    if (entry == nullptr || !entry->default_value) continue;
+    const Value& value = *entry->default_value;
+    if (parameter.sub_index == 1) view["valid"] = canopen::CobId{static_cast<std::uint32_t>(value.bits)}.valid();
+    view[parameter.key] = value_view(value, *entry->type);
+  }
+}
+
+ordered_json pdo_view(const Pdo& pdo) {
+  ordered_json view;
+  view["direction"] = pdo.direction == PdoDirection::receive ? "receive" : "transmit";
+  view["number"] = pdo.number;
+  view["bits"] = pdo.bits();
+  view["dynamic"] = pdo.dynamic;
+  view["broken"] = pdo.broken;
+  add_pdo_parameters(pdo, view);
+  view["line"] = pdo.position.line;
+  ordered_json entries = ordered_json::array();
+  unsigned offset = 0;
+  for (const PdoEntry& entry : pdo.entries) {
+    ordered_json row;
+    row["index"] = entry.index;
+    row["sub_index"] = entry.sub_index;
+    row["offset"] = offset;
+    row["bits"] = entry.bits;
+    row["name"] = entry.object != nullptr  ? entry.object->name
+                  : entry.dummy != nullptr ? std::string{entry.dummy->name}
+                                           : "";
+    row["dummy"] = entry.dummy != nullptr;
+    offset += entry.bits;
+    entries.push_back(std::move(row));
+  }
+  view["entries"] = std::move(entries);
+  return view;
+}
+
+ordered_json type_view(const TypeDefinition& type) {
+  const auto name_of = [](const canopen::DataTypeRow* row) {
+    return row != nullptr ? ordered_json(row->name) : ordered_json(nullptr);
+  };
+  ordered_json view;
+  view["index"] = type.index;
+  view["name"] = type.name;
+  if (type.kind == ObjectType::defstruct) {
+    ordered_json members = ordered_json::array();
+    for (const TypeReference& member : type.members) members.push_back(name_of(member.row));
+    view["members"] = std::move(members);
+  } else {
+    view["data_type"] = name_of(type.type.row);
+  }
+  if (type.type.octets != 0) view["octets"] = type.type.octets;
+  if (type.low_limit) view["low_limit"] = value_view(*type.low_limit, *type.type.row);
+  if (type.high_limit) view["high_limit"] = value_view(*type.high_limit, *type.type.row);
+  view["line"] = type.position.line;
+  return view;
+}
+
+ordered_json object_view(const Object& object) {
+  ordered_json view;
+  view["index"] = object.index;
+  view["object_type"] = to_string(object.type);
+  view["name"] = object.name;
+  view["identifier"] = object.identifier;
+  add_text("denotation", object.denotation, view);
+  if (object.obj_flags != 0) view["obj_flags"] = object.obj_flags;
+  if (!object.links.empty()) view["links"] = object.links;
+  view["line"] = object.position.line;
+  ordered_json entries = ordered_json::array();
+  for (const Entry& entry : object.entries) entries.push_back(entry_view(entry));
+  view["entries"] = std::move(entries);
+  return view;
+}
+
+/// A value that CiA 301 fixes remains the default value.
+void separate(const Entry& entry, const DataSheet& sheet, const ObjectDescription& object, const Device& device,
+              ordered_json& row) {
+  const bool has_sub_indices = device.find(entry.index)->has_sub_indices();
+  const ValueFields fields = sheet.values_of(object, entry.sub_index, has_sub_indices);
+  // A value in the section of a compact form is not that of one element.
+  const bool is_common = has_sub_indices && fields.parameter_value == &object.parameter_value;
+  if (is_common || fields.parameter_value == nullptr || !fields.parameter_value->present ||
+      fields.parameter_value->empty())
+    return;
+  if (!entry.default_value || !entry.default_value->clause.empty()) return;
+  Diagnostics ignored;
+  const auto default_value = parse_value(*fields.default_value, *entry.type, device.node_id, ignored);
+  ordered_json separated;
+  for (auto& [key, value] : row.items()) {
+    if (key != "default_value") {
+      separated[key] = std::move(value);
+      continue;
+    }
+    if (default_value) separated["default_value"] = value_view(*default_value, *entry.type);
+    separated["parameter_value"] = std::move(value);
+  }
+  row = std::move(separated);
+}
+
+}  // namespace
+
+ordered_json device_view(const Device& device) {
+  ordered_json view;
+  view["schema"] = 2;
+  const std::string& path = device.source->name();
+  view["source"] = path.substr(path.find_last_of('/') + 1);
+  view["name"] = device.name;
+  view["vendor_name"] = device.vendor_name;
+  view["vendor_number"] = device.vendor_number;
+  view["product_name"] = device.product_name;
+  view["product_number"] = device.product_number;
+  view["revision_number"] = device.revision_number;
+  view["node_id"] = device.node_id ? ordered_json(*device.node_id) : ordered_json(nullptr);
+  view["dummies"] = device.dummies;
+  add_information(device.information, view);
+  ordered_json types = ordered_json::array();
+  for (const TypeDefinition& type : device.types) types.push_back(type_view(type));
+  view["types"] = std::move(types);
+  ordered_json objects = ordered_json::array();
+  for (const Object& object : device.objects) objects.push_back(object_view(object));
+  view["objects"] = std::move(objects);
+  ordered_json pdos = ordered_json::array();
+  for (const Pdo& pdo : device.pdos) pdos.push_back(pdo_view(pdo));
+  view["pdos"] = std::move(pdos);
+  return view;
+}
+
+void separate_configured_values(const DataSheet& sheet, const Device& device, ordered_json& view) {
+  if (!sheet.is_dcf) return;
+  for (ordered_json& object_row : view["objects"]) {
+    const auto index = object_row["index"].get<std::uint16_t>();
+    const ObjectDescription* const object = sheet.find(index);
+    if (object == nullptr) continue;
+    for (ordered_json& row : object_row["entries"]) {
+      const Entry* const entry = device.find(index, row["sub_index"].get<std::uint8_t>());
+      if (entry != nullptr) separate(*entry, sheet, *object, device, row);
+    }
+  }
+}
+
+}  // namespace edsc

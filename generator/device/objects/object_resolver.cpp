@@ -1,0 +1,221 @@
+#include "device/objects/object_resolver.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <deque>
+#include <span>
+#include <string>
+
+#include "device/index_range.hpp"
+#include "device/objects/compact_sub_objects.hpp"
+#include "device/objects/object_type_name.hpp"
+#include "diagnostics/quote.hpp"
+#include "eds/number.hpp"
+
+namespace edsc {
+namespace {
+
+using canopen::DataClass;
+using canopen::DataType;
+
+constexpr std::array object_types = {ObjectType::domain, ObjectType::deftype, ObjectType::defstruct,
+                                     ObjectType::var,    ObjectType::array,   ObjectType::record};
+
+/// The value of sub-index 0 that the EDS does not state: the highest sub-index, but 0 errors in the pre-defined error
+/// field (CiA 301, 7.5.2.4), and the number of mapped objects in a mapping (7.5.2.36).
+std::uint8_t implied_count(const Object& object) {
+  constexpr std::uint16_t pre_defined_error_field = 0x1003;
+  if (object.index == pre_defined_error_field) return 0;
+  if (!contains(mapping_parameters, object.index)) return object.highest_sub_index();
+  std::uint8_t count = 0;
+  for (const Entry& entry : object.entries) {
+    const bool is_next = entry.sub_index == count + 1;
+    if (is_next && entry.default_value && entry.default_value->bits != 0) ++count;
+  }
+  return count;
+}
+
+/// The clause of CiA 301 that defines sub-index 0.
+std::string_view implied_count_clause(std::uint16_t index) {
+  if (index == 0x1003) return "7.5.2.4";
+  if (!contains(mapping_parameters, index)) return "7.4.4";
+  return index < 0x1A00 ? "7.5.2.36" : "7.5.2.38";
+}
+
+/// Whether a VAR or DOMAIN with sub-objects is a value, and the index of the sub-objects is wrong: it has its own data
+/// type, states no sub-objects, and sub-index 0 is missing.
+bool describes_a_value(const ObjectDescription& description) {
+  return description.find(0) == nullptr && !strip_inline_comment(description.data_type.text).empty() &&
+         number_of(description.sub_number).value_or(0) == 0 && number_of(description.compact_sub_obj).value_or(0) == 0;
+}
+
+}  // namespace
+
+Entry count_entry(std::uint16_t index, std::uint8_t highest, const Position& position) {
+  Entry entry;
+  entry.index = index;
+  entry.name = "Highest sub-index supported";
+  entry.type = canopen::find_data_type(static_cast<std::uint32_t>(DataType::unsigned8));
+  entry.access = canopen::Access::constant;
+  entry.position = entry.access_position = entry.mapping_position = position;
+  entry.default_value = Value{.bits = highest, .position = position};
+  return entry;
+}
+
+std::optional<Object> ObjectResolver::resolve(const ObjectDescription& description) {
+  std::optional<Object> result{std::in_place};
+  Object& object = *result;
+  object.index = description.index;
+  object.position = description.position;
+  object.name = description.parameter_name.text;
+  object.denotation = description.denotation.text;
+  object.type = object_type(description);
+  if (object.name.empty()) {
+    diagnostics_.warning("parameter-name", description.position, "missing ParameterName");
+  }
+  resolve_links(description, object);
+  if (object.has_sub_indices()) {
+    object.obj_flags = entries_.obj_flags(description);
+    resolve_sub_objects(description, object);
+  } else if (auto entry = entries_.resolve(description, {description.index, 0}, object.name)) {
+    object.obj_flags = entry->obj_flags;
+    object.entries.push_back(std::move(*entry));
+  }
+  if (object.entries.empty()) return std::nullopt;
+  return result;
+}
+
+ObjectType ObjectResolver::object_type(const ObjectDescription& description) {
+  const bool has_subs = !description.sub_objects.empty() || number_of(description.compact_sub_obj).value_or(0) > 0;
+  const ObjectType fallback = has_subs ? ObjectType::record : ObjectType::var;
+  const Field& field = description.object_type;
+  const std::string_view text = strip_inline_comment(field.text);
+  if (!field.present || text.empty()) {
+    if (has_subs) {
+      diagnostics_.warning("object-type", description.position,
+                           "missing ObjectType of an object with sub-objects; assuming RECORD");
+    }
+    return fallback;
+  }
+  const auto named = object_type_named(text);
+  if (named) report_object_type_name(*named, field, diagnostics_);
+  const auto code = named ? static_cast<std::uint64_t>(*named) : parse_unsigned(text);
+  const auto known =
+      std::ranges::find_if(object_types, [&](ObjectType type) { return code == static_cast<std::uint64_t>(type); });
+  if (known == object_types.end()) {
+    diagnostics_.warning(
+        "object-type", field.position,
+        fmt::format("{} is not an object code of CiA 301; assuming {}", quote(text), to_string(fallback)));
+    return fallback;
+  }
+  if (*known == ObjectType::deftype || *known == ObjectType::defstruct) {
+    diagnostics_.warning(
+        "object-type", field.position,
+        fmt::format("a {} must have an index below 1000h; assuming {}", to_string(*known), to_string(fallback)));
+    return fallback;
+  }
+  const bool is_simple = *known == ObjectType::var || *known == ObjectType::domain;
+  if (!is_simple || !has_subs) return *known;
+  if (describes_a_value(description)) {
+    report_stray_sub_objects(description, *known);
+    return *known;
+  }
+  diagnostics_.warning("object-type", field.position,
+                       fmt::format("a {} cannot have sub-objects; assuming RECORD", to_string(*known)));
+  return ObjectType::record;
+}
+
+void ObjectResolver::report_stray_sub_objects(const ObjectDescription& description, ObjectType type) {
+  for (const SubObjectDescription& sub : description.sub_objects) {
+    diagnostics_.warning(
+        "sub-object-without-object", sub.position,
+        fmt::format("{} is a {} and cannot have sub-objects; {} {} is left out", index_label(description.index),
+                    to_string(type), entry_label(description.index, sub.sub_index), quote(sub.parameter_name.text)));
+  }
+}
+
+void ObjectResolver::resolve_links(const ObjectDescription& description, Object& object) {
+  for (const NumberedField& link : description.object_links) {
+    const auto index = number_of(link.field);
+    if (index && *index <= 0xFFFF) {
+      object.links.push_back(static_cast<std::uint16_t>(*index));
+    } else {
+      diagnostics_.warning("object-links", link.field.position,
+                           fmt::format("{} is not the index of an object", quote(link.field.text)));
+    }
+  }
+}
+
+void ObjectResolver::resolve_sub_objects(const ObjectDescription& description, Object& object) {
+  if (has_compact_form(description)) {
+    std::deque<std::string> texts;
+    for (const SubObjectDescription& sub : unfold_sub_objects(description, is_dcf_, texts, diagnostics_)) {
+      resolve_sub_object(sub, description, object);
+    }
+  } else {
+    object.entries.reserve(description.sub_objects.size());
+    for (const SubObjectDescription& sub : description.sub_objects) resolve_sub_object(sub, description, object);
+  }
+  if (object.entries.empty()) {
+    diagnostics_.warning(
+        "no-sub-objects", description.position,
+        fmt::format("{} {} has no sub-objects and is left out", to_string(object.type), index_label(object.index)));
+    return;
+  }
+  check_sub_number(description);
+  check_sub_indices(description);
+  supply_sub_index_0(description, object);
+}
+
+void ObjectResolver::resolve_sub_object(const SubObjectDescription& sub, const ObjectDescription& description,
+                                        Object& object) {
+  const EntryPlace place{description.index, sub.sub_index, true, number_of(description.data_type)};
+  if (auto entry = entries_.resolve(sub, place, sub.parameter_name.text)) object.entries.push_back(std::move(*entry));
+}
+
+void ObjectResolver::check_sub_number(const ObjectDescription& description) {
+  const Field& field = description.sub_number;
+  if (!field.present || number_of(description.compact_sub_obj).value_or(0) > 0) return;
+  const std::size_t count = description.sub_objects.size();
+  if (number_of(field) == count) return;
+  diagnostics_.warning("sub-number", field.position,
+                       fmt::format("SubNumber is {}, but {} described; using {}", strip_inline_comment(field.text),
+                                   count == 1 ? "1 sub-object is" : fmt::format("{} sub-objects are", count), count));
+}
+
+/// Sub-indices are hexadecimal (CiA 306-1, 4.6.2). If a sub-index is missing, but its decimal number exists as a
+/// hexadecimal one, the author may have counted in decimal: 10h instead of Ah, 16h instead of 10h.
+void ObjectResolver::check_sub_indices(const ObjectDescription& description) {
+  struct Slip {
+    std::uint8_t before, meant, written;
+  };
+  constexpr Slip slips[] = {{0x09, 0x0A, 0x10}, {0x0F, 0x10, 0x16}};
+  for (const Slip& slip : slips) {
+    const SubObjectDescription* const written = description.find(slip.written);
+    if (written == nullptr || !description.find(slip.before) || description.find(slip.meant)) continue;
+    diagnostics_.warning(
+        "sub-index-base", written->position,
+        fmt::format("sub-indices are hexadecimal: this is {:X}h; did you mean {:X}h, which is missing?", slip.written,
+                    slip.meant));
+  }
+}
+
+void ObjectResolver::supply_sub_index_0(const ObjectDescription& description, Object& object) {
+  if (object.entries.front().sub_index != 0) {
+    const std::uint8_t highest = object.highest_sub_index();
+    diagnostics_.warning(
+        "sub-index-0", description.position,
+        fmt::format("{} has no sub-index 0; assuming one with the value {}", index_label(object.index), highest));
+    object.entries.insert(object.entries.begin(), count_entry(description.index, highest, description.position));
+    return;
+  }
+  Entry& first = object.entries.front();
+  if (!first.default_value && first.type->kind == DataClass::unsigned_integer && object.entries.size() > 1) {
+    first.default_value =
+        Value{.bits = implied_count(object), .position = first.position, .clause = implied_count_clause(object.index)};
+  }
+}
+
+}  // namespace edsc

@@ -1,0 +1,313 @@
+#include "device/options/structured_options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <canopen/lss/lss_options.hpp>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "device/index_range.hpp"
+#include "device/options/option_table.hpp"
+#include "eds/number.hpp"
+#include "text/suggestion.hpp"
+
+namespace edsc {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::array<std::string_view, 3> allow_members = {"rule", "object", "reason"};
+constexpr const char* allow_form =
+    "expected an array of objects: [{\"rule\": \"pdo-empty\", \"object\": \"1A00h\", \"reason\": \"mapped at start\"}]";
+
+/// Enumerators of canopen::Storing that differ from the access type of an entry.
+constexpr std::array storing_names = {"always", "never", "with_node_id"};
+
+/// Ten hexadecimal digits: five bytes.
+std::optional<EmergencyInfo> parse_emergency_info(std::string_view text) {
+  EmergencyInfo bytes{};
+  if (text.size() != 2 * bytes.size()) return std::nullopt;
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    const auto byte = parse_unsigned(fmt::format("0x{}", text.substr(2 * i, 2)));
+    if (!byte) return std::nullopt;
+    bytes[i] = static_cast<std::uint8_t>(*byte);
+  }
+  return bytes;
+}
+
+/// What `parse` reads from a text; nothing for another value.
+template <class Parse>
+auto parsed(const json& value, Parse parse) {
+  return value.is_string() ? parse(value.get<std::string>()) : decltype(parse("")){};
+}
+
+class StructuredOptions {
+ public:
+  StructuredOptions(NameCheck is_name, OptionFile& file, Options& options)
+      : is_name_{is_name}, file_{file}, options_{options} {}
+
+  void read(std::string_view name, const json& value) {
+    struct Reader {
+      std::string_view name;
+      void (StructuredOptions::*read)(const json& value);
+    };
+    static constexpr Reader readers[] = {
+        {"names", &StructuredOptions::names},
+        {"string_capacity", &StructuredOptions::string_capacity},
+        {"settable", &StructuredOptions::settable},
+        {"connected_modules", &StructuredOptions::connected_modules},
+        {"silence", &StructuredOptions::silence},
+        {"allow", &StructuredOptions::allow},
+        {"static_mapping", &StructuredOptions::static_mapping},
+        {"no_event", &StructuredOptions::no_event},
+        {"emergency_info", &StructuredOptions::emergency_info},
+        {"storing", &StructuredOptions::storing},
+        {"zero_terminated_strings", &StructuredOptions::zero_terminated_strings},
+        {"lss", &StructuredOptions::lss},
+        {"stored_eds", &StructuredOptions::stored_eds},
+    };
+    static_assert(std::ranges::all_of(options_table, [](const OptionRow& row) {
+      const bool is_read = std::ranges::find(readers, row.name, &Reader::name) != std::end(readers);
+      return (row.form == OptionForm::structured) == is_read;
+    }));
+    (this->*std::ranges::find(readers, name, &Reader::name)->read)(value);
+  }
+
+ private:
+  /// Calls `take` for each item of an array; it returns false for an invalid one.
+  template <class Take>
+  void each_item(std::string_view name, const json& value, const char* meaning, Take take,
+                 const char* item_meaning = nullptr) {
+    if (!value.is_array()) return file_.error(name, meaning);
+    for (const json& item : value) {
+      if (!take(item)) file_.error(name, item_meaning != nullptr ? item_meaning : meaning);
+    }
+  }
+
+  /// The same for each member of an object, by entry.
+  template <class Take>
+  void each_entry(const std::string& name, const json& value, Take take) {
+    if (!value.is_object())
+      return file_.error(name, "expected an object with one member per entry, such as \"1018h:04\"");
+    for (const auto& [entry, v] : value.items()) {
+      const auto key = parse_entry_key(entry);
+      if (!key) {
+        file_.error(name + "/" + entry, "not an entry such as \"1018h:04\"");
+      } else if (!take(*key, v)) {
+        file_.error(name + "/" + entry, "invalid value for this option");
+      }
+    }
+  }
+
+  /// Appends what `parse` reads from each text of an array.
+  template <class List, class Parse>
+  void append_each(std::string_view name, const json& value, const char* meaning, List& list, Parse parse,
+                   const char* item_meaning = nullptr) {
+    const auto take = [&](const json& item) {
+      const auto found = parsed(item, parse);
+      if (found) list.push_back(*found);
+      return found.has_value();
+    };
+    each_item(name, value, meaning, take, item_meaning);
+  }
+
+  void names(const json& value) {
+    each_entry("names", value, [&](EntryKey key, const json& v) {
+      if (!v.is_string() || !is_name_(v.get_ref<const std::string&>())) return false;
+      options_.names[key] = v.get<std::string>();
+      return true;
+    });
+  }
+
+  void string_capacity(const json& value) {
+    each_entry("string_capacity", value, [&](EntryKey key, const json& v) {
+      if (!v.is_number_unsigned() || v > 0xFFFFU) return false;
+      options_.string_capacity[key] = v.get<std::uint16_t>();
+      return true;
+    });
+  }
+
+  void settable(const json& value) {
+    append_each("settable", value, "expected an array of entries such as \"1018h:04\"", options_.settable,
+                parse_entry_key, "not an entry such as \"1018h:04\"");
+  }
+
+  void silence(const json& value) {
+    append_each("silence", value, "expected an array of rule ids", options_.silence, [&](const std::string& rule) {
+      return std::optional{SilencedRule{rule, file_.position_of(rule)}};
+    });
+  }
+
+  void allow(const json& value) {
+    if (!value.is_array()) return file_.error("allow", allow_form);
+    for (const json& item : value) allow_one(item);
+  }
+
+  void allow_one(const json& item) {
+    if (!item.is_object()) return file_.error("allow", allow_form);
+    AllowedFindings allowed;
+    for (const auto& [name, v] : item.items()) {
+      const std::string text = v.is_string() ? v.get<std::string>() : std::string{};
+      const auto object = name == "object" ? parse_entry_selector(text) : std::nullopt;
+      if (name == "rule" && !text.empty()) {
+        allowed.rule = text;
+      } else if (name == "reason" && text.find_first_not_of(" \t\r\n") != std::string::npos) {
+        allowed.reason = text;
+      } else if (name == "object" && object) {
+        allowed.object = object;
+      } else if (std::ranges::find(allow_members, name) == allow_members.end()) {
+        return file_.error("allow/" + name, "unknown member" + did_you_mean(name, allow_members));
+      } else {
+        return file_.error("allow/" + name, name == "object"
+                                                ? "not an object or entry such as \"6040h\" or \"6401h:03\""
+                                                : "expected a non-empty string");
+      }
+    }
+    if (allowed.rule.empty() || allowed.reason.empty()) {
+      return file_.error("allow", allowed.rule.empty() ? "missing member rule" : "missing member reason");
+    }
+    allowed.position = file_.position_of_text(json(allowed.reason).dump());
+    options_.allow.push_back(std::move(allowed));
+  }
+
+  void connected_modules(const json& value) {
+    each_item("connected_modules", value, "expected an array of numbers of [SupportedModules]", [&](const json& item) {
+      const bool fits = item.is_number_unsigned() && item >= 1U && item <= 0xFFFFU;
+      if (fits) options_.connected_modules.push_back(item.get<std::uint16_t>());
+      return fits;
+    });
+  }
+
+  void static_mapping(const json& value) {
+    if (value.is_boolean()) {
+      options_.static_mapping.all = value.get<bool>();
+      return;
+    }
+    append_each("static_mapping", value, "expected true, or an array of mapping parameters such as \"1A00h\"",
+                options_.static_mapping.parameters, [](const std::string& text) {
+                  const auto index = parse_index(text);
+                  return index && contains(mapping_parameters, *index) ? index : std::nullopt;
+                });
+  }
+
+  void no_event(const json& value) {
+    append_each("no_event", value, "expected an array of objects or entries such as \"6401h\" or \"6401h:03\"",
+                options_.no_event, parse_entry_selector);
+  }
+
+  void emergency_info(const json& value) {
+    if (!value.is_object()) {
+      return file_.error("emergency_info",
+                         "expected an object with one member for each error code: {\"8210h\": \"0900000000\"}");
+    }
+    for (const auto& [code, bytes] : value.items()) {
+      const auto number = parse_index(code);
+      const auto info = parsed(bytes, parse_emergency_info);
+      if (number && info) {
+        options_.emergency_info[*number] = *info;
+      } else {
+        file_.error("emergency_info/" + code,
+                    number ? "expected five bytes as ten hexadecimal digits" : "not a code such as \"8210h\"");
+      }
+    }
+  }
+
+  void storing(const json& value) {
+    if (!value.is_object()) {
+      return file_.error("storing",
+                         "expected an object with one member for each object or entry: {\"6010h:01\": \"never\"}");
+    }
+    for (const auto& [text, how] : value.items()) {
+      const auto entry = parse_entry_selector(text);
+      const bool known =
+          std::ranges::any_of(storing_names, [&spelling = how](const char* name) { return spelling == name; });
+      if (entry && how == "with_node_id" && (entry->index < 0x1000 || entry->index > 0x1FFF)) {
+        file_.error("storing/" + text, "with_node_id is for objects 1000h..1FFFh");
+      } else if (entry && known) {
+        options_.storing.emplace_back(*entry, how.get<std::string>());
+      } else {
+        file_.error("storing/" + text,
+                    entry ? "expected always, never or with_node_id" : "not an object or entry such as \"6010h:01\"");
+      }
+    }
+  }
+
+  void zero_terminated_strings(const json& value) {
+    if (const auto on = flag("zero_terminated_strings", value)) options_.zero_terminated_strings = *on;
+  }
+
+  void lss(const json& value) {
+    if (!value.is_object()) {
+      return file_.error("lss", "expected an object: {\"bit_rates\": [125, 500], \"fastscan\": false}");
+    }
+    LssSettings& settings = options_.lss.emplace();
+    for (const auto& [name, v] : value.items()) {
+      const std::string path = "lss/" + name;
+      if (name == "bit_rates") {
+        settings.bit_rates = lss_bit_rates(path, v);
+      } else if (std::ranges::find(lss_flags, name) == lss_flags.end()) {
+        file_.error(path, "unknown option");
+      } else if (const auto on = flag(path, v)) {
+        settings.flags[name] = *on;
+      }
+    }
+  }
+
+  /// One bit for each index of table 0 of CiA 305; none for a fixed bit rate.
+  std::optional<std::uint16_t> lss_bit_rates(const std::string& path, const json& value) {
+    if (value == "fixed") return std::uint16_t{0};
+    unsigned mask = 0;
+    bool valid = value.is_array() && !value.empty();
+    for (const json& item : valid ? value : json::array()) {
+      const auto bit = lss_bit_rate(item);
+      valid = valid && bit.has_value();
+      mask |= 1U << bit.value_or(0);
+    }
+    if (valid) return static_cast<std::uint16_t>(mask);
+    file_.error(path,
+                "expected \"fixed\", or an array of bit rates of CiA 301 in kbit/s, such as [125, 500], and \"auto\"");
+    return std::nullopt;
+  }
+
+  /// The index of table 0.
+  static std::optional<std::size_t> lss_bit_rate(const json& value) {
+    if (value == "auto") return canopen::lss::automatic_bit_rate;
+    if (!value.is_number_unsigned() || value == 0) return std::nullopt;
+    const auto* const at = std::ranges::find(canopen::lss::bit_rates, value.get<std::uint64_t>());
+    if (at == std::end(canopen::lss::bit_rates)) return std::nullopt;
+    return static_cast<std::size_t>(at - std::begin(canopen::lss::bit_rates));
+  }
+
+  void stored_eds(const json& value) {
+    if (value.is_boolean()) {
+      options_.stored_eds = value.get<bool>() ? StoredEds::text : StoredEds::of_application;
+    } else if (value == "compressed") {
+      options_.stored_eds = StoredEds::compressed;
+    } else {
+      file_.error("stored_eds", "expected true, false or \"compressed\"");
+    }
+  }
+
+  std::optional<bool> flag(std::string_view name, const json& value) {
+    if (value.is_boolean()) return value.get<bool>();
+    file_.error(name, "expected true or false");
+    return std::nullopt;
+  }
+
+  NameCheck is_name_;
+  OptionFile& file_;
+  Options& options_;
+};
+
+}  // namespace
+
+void read_structured_option(std::string_view name, const nlohmann::json& value, NameCheck is_name, OptionFile& file,
+                            Options& options) {
+  StructuredOptions{is_name, file, options}.read(name, value);
+}
+
+}  // namespace edsc

@@ -1,0 +1,16 @@
+/// Options with a form of their own: lists, and objects by entry.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string_view>
+
+#include "device/options/option_file.hpp"
+#include "device/options/options.hpp"
+
+namespace edsc {
+
+/// Reads the value of an option whose row has the form `structured`. Reports invalid values, which are left out.
+void read_structured_option(std::string_view name, const nlohmann::json& value, NameCheck is_name, OptionFile& file,
+                            Options& options);
+
+}  // namespace edsc

@@ -1,0 +1,49 @@
+#include "eds/sections/other_sections.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "eds/number.hpp"
+#include "eds/sections/section_keys.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr std::string_view count_key = comments_keys[0].name;
+
+void check_count(const SourceFile& source, const IniSection& section, const Comments& comments,
+                 Diagnostics& diagnostics) {
+  if (!comments.lines.present) {
+    diagnostics.warning("comments", section_position(source, section),
+                        fmt::format("missing {} in [{}]", count_key, section.name));
+    return;
+  }
+  const std::optional<std::uint64_t> count = number_of(comments.lines);
+  const bool counts_up = comments.text.empty() || comments.text.back().number == comments.text.size();
+  if (!count || *count != comments.text.size() || !counts_up) {
+    diagnostics.warning("comments", comments.lines.position,
+                        fmt::format("the lines are not numbered 1 to {}; there are {}",
+                                    strip_inline_comment(comments.lines.text), comments.text.size()));
+  }
+}
+
+}  // namespace
+
+Comments read_comments(const SourceFile& source, const IniSection& section, Diagnostics& diagnostics) {
+  Comments comments;
+  comments.present = true;
+  comments.text.reserve(section.entries.size());
+  read_keys(
+      source, section, diagnostics,
+      [&](std::string_view key) {
+        if (equal_ignoring_case(key, count_key)) return &comments.lines;
+        const std::optional<std::uint32_t> number = number_in(comments_keys[1], key);
+        return number ? &numbered_field(comments.text, *number) : nullptr;
+      },
+      count_key);
+  check_count(source, section, comments, diagnostics);
+  return comments;
+}
+
+}  // namespace edsc

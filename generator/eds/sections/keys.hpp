@@ -1,0 +1,101 @@
+/// Keys of sections as rows of tables, and reading them into the members of a struct.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "diagnostics/diagnostics.hpp"
+#include "eds/data_sheet.hpp"
+#include "eds/ini.hpp"
+#include "eds/sections/duplicates.hpp"
+
+namespace edsc {
+
+/// How the value of a key is written.
+enum class ValueKind : std::uint8_t {
+  text,
+  number,
+  access,
+  typed,  ///< a value of the entry's data type
+  count,  ///< of the entries of this section
+};
+
+/// A key as CiA 306 spells it. A name that ends in `#` or `%` stands for keys that end in a number, or in four
+/// hexadecimal digits.
+struct SectionKey {
+  std::string_view name;
+  ValueKind value = ValueKind::text;
+  std::uint8_t hex_digits = 1;  ///< of a number
+
+  [[nodiscard]] constexpr bool is_numbered() const { return name.ends_with('#') || name.ends_with('%'); }
+};
+
+/// A key and its destination; null for numbered keys.
+template <typename Struct>
+struct KeyRow {
+  SectionKey key;
+  Field Struct::*field;
+};
+
+/// Returns the field of a key, or null.
+template <typename Struct, std::size_t n>
+[[nodiscard]] Field* find_key(const KeyRow<Struct> (&table)[n], std::string_view key, Struct& target) {
+  for (const KeyRow<Struct>& row : table) {
+    if (!row.key.is_numbered() && equal_ignoring_case(row.key.name, key)) return &(target.*row.field);
+  }
+  return nullptr;
+}
+
+/// Sets the position of each field, in case it is missing.
+template <typename Struct, std::size_t n>
+void place_fields(const KeyRow<Struct> (&table)[n], const Position& position, Struct& target) {
+  for (const KeyRow<Struct>& row : table) {
+    if (row.field != nullptr) (target.*row.field).position = position;
+  }
+}
+
+[[nodiscard]] Field make_field(const SourceFile& source, const IniEntry& entry);
+
+/// Returns the field of `number`; adds one if necessary.
+[[nodiscard]] Field& numbered_field(std::vector<NumberedField>& fields, std::uint32_t number);
+
+/// Returns the number of a numbered key: 3 in `Line3` for `Line#`. Nothing for any other key.
+[[nodiscard]] std::optional<std::uint32_t> number_in(const SectionKey& row, std::string_view key);
+
+/// `known` are the keys of the section, for a suggestion in the message.
+void report_unknown_key(const SourceFile& source, const IniSection& section, const IniEntry& entry,
+                        std::span<const std::string_view> known, Diagnostics& diagnostics);
+
+inline void append_names(std::vector<std::string_view>& names, std::string_view name) { names.push_back(name); }
+
+template <typename Struct, std::size_t n>
+void append_names(std::vector<std::string_view>& names, const KeyRow<Struct> (&table)[n]) {
+  for (const KeyRow<Struct>& row : table) {
+    if (!row.key.is_numbered()) names.push_back(row.key.name);
+  }
+}
+
+/// Stores each value in the field that `find` returns for its key, or null. `known` are names and tables of the keys
+/// that it finds.
+template <typename Find, typename... Known>
+void read_keys(const SourceFile& source, const IniSection& section, Diagnostics& diagnostics, Find find,
+               const Known&... known) {
+  for (const IniEntry& entry : section.entries) {
+    Field* const field = find(entry.key);
+    if (field == nullptr) {
+      std::vector<std::string_view> names;
+      (append_names(names, known), ...);
+      report_unknown_key(source, section, entry, names, diagnostics);
+    } else if (field->present) {
+      report_duplicate_key(source, entry, field->position, diagnostics);
+    } else {
+      *field = make_field(source, entry);
+    }
+  }
+}
+
+}  // namespace edsc

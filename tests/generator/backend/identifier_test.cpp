@@ -1,0 +1,95 @@
+#include "backend/cpp/identifier.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace edsc {
+namespace {
+
+struct NameRow {
+  const char* parameter_name;
+  const char* identifier;
+};
+
+TEST(Identifier, IsTheParameterNameInSnakeCase) {
+  for (const NameRow& row : {
+           NameRow{"Position actual value", "position_actual_value"},
+           NameRow{"COB-ID SYNC", "cob_id_sync"},
+           NameRow{"Statusword", "statusword"},
+           NameRow{"NrOfRxPDO", "nr_of_rx_pdo"},
+           NameRow{"RxPDOMapping", "rx_pdo_mapping"},
+           NameRow{"COB-IDs used", "cob_ids_used"},
+           NameRow{"number of PDOs", "number_of_pdos"},
+           NameRow{"Drive.Axis[1].Speed (rpm)", "drive_axis_1_speed_rpm"},
+           NameRow{"  blanks   between  ", "blanks_between"},
+           NameRow{"already_snake_case", "already_snake_case"},
+           NameRow{"__leading and trailing__", "leading_and_trailing"},
+       }) {
+    EXPECT_EQ(to_snake_case(row.parameter_name), row.identifier) << row.parameter_name;
+  }
+}
+
+TEST(Identifier, ThatBeginsWithADigitGetsALetterBefore) {
+  EXPECT_EQ(to_snake_case("24V supply"), "n_24v_supply");
+  EXPECT_EQ(to_snake_case("1"), "n_1");
+}
+
+TEST(Identifier, WritesLettersBeyondAsciiOutWhereThatIsUsual) {
+  EXPECT_EQ(to_snake_case("Gerätezustand"), "geraetezustand");
+  EXPECT_EQ(to_snake_case("Größe"), "groesse");
+  EXPECT_EQ(to_snake_case("Temperature [°C]"), "temperature_deg_c");
+  EXPECT_EQ(to_snake_case("time in µs"), "time_in_us");
+  EXPECT_EQ(to_snake_case("R = 5 Ω"), "r_5_ohm");
+  EXPECT_EQ(to_snake_case("vitesse désirée"), "vitesse_desiree");
+}
+
+TEST(Identifier, IsEmptyWhenNoLetterAndNoDigitIsLeft) {
+  for (const char* name : {"", " ", "---", "_", "*/", "速度", "\xF0\x9F\x9A\x80"}) {
+    EXPECT_EQ(to_snake_case(name), "") << name;
+  }
+}
+
+TEST(Identifier, IsNoWordOfTheLanguage) {
+  EXPECT_EQ(to_snake_case("Default"), "default_");
+  EXPECT_EQ(to_snake_case("SWITCH"), "switch_");
+  EXPECT_EQ(to_snake_case("xor eq"), "xor_eq_");
+  EXPECT_EQ(to_snake_case("static cast"), "static_cast_");
+}
+
+TEST(Identifier, IsNoUsualMacroAndNoMemberOfAGeneratedObject) {
+  for (const char* name : {"errno", "linux", "unix", "stdin", "assert", "offsetof", "type", "index", "sub_index",
+                           "name", "bits", "access", "mappable", "low_limit", "high_limit", "od", "std", "canopen"}) {
+    EXPECT_EQ(to_snake_case(name), std::string{name} + "_");
+  }
+}
+
+TEST(Identifier, SurvivesTextThatEndsInsideACodePoint) {
+  EXPECT_EQ(to_snake_case("speed \xC3"), "speed");
+  EXPECT_EQ(to_snake_case("\xE2\x84"), "");
+}
+
+TEST(CamelCase, JoinsTheWords) {
+  EXPECT_EQ(to_camel_case("tpdo_communication_parameter"), "TpdoCommunicationParameter");
+  EXPECT_EQ(to_camel_case("n_24v_supply"), "N24vSupply");
+  EXPECT_EQ(to_camel_case("default_"), "Default");
+  EXPECT_EQ(to_camel_case(""), "");
+}
+
+TEST(IdentifierScope, GivesEachNameOnce) {
+  IdentifierScope scope;
+  EXPECT_EQ(scope.take("speed", "2000"), "speed");
+  EXPECT_EQ(scope.take("speed", "2001"), "speed_2001");
+  EXPECT_EQ(scope.take("speed", "2001"), "speed_2001_2");
+  EXPECT_EQ(scope.take("speed", "2001"), "speed_2001_3");
+  EXPECT_EQ(scope.take("speed_2001", "2002"), "speed_2001_2002");
+}
+
+TEST(IdentifierScope, PutsOneUnderscoreBeforeTheSuffix) {
+  IdentifierScope scope;
+  EXPECT_EQ(scope.take("default_", "2000"), "default_");
+  EXPECT_EQ(scope.take("default_", "2001"), "default_2001");
+}
+
+}  // namespace
+}  // namespace edsc
