@@ -49,19 +49,15 @@ constexpr std::uint16_t sync_period = 0x1006;
 constexpr std::uint16_t sync_overflow = 0x1019;
 constexpr std::uint16_t mapping_after_communication = 0x0200;
 
-bool is_in(const IndexRange& range, std::uint16_t index) { return index >= range.first && index <= range.last; }
-
 bool is_pdo_communication(std::uint16_t index) { return (index & 0xFE00) == 0x1400 || (index & 0xFE00) == 0x1800; }
-bool is_pdo_mapping(std::uint16_t index) { return (index & 0xFE00) == 0x1600 || (index & 0xFE00) == 0x1A00; }
+bool is_pdo_mapping(std::uint16_t index) { return contains(mapping_parameters, index); }
 
 const GuardedCobId* guard_of(const LiveEntry& entry) {
-  for (const GuardedCobId& guard : guarded_cob_ids) {
-    if (is_in(guard.objects, entry.index) && entry.sub_index >= guard.first_sub_index &&
-        entry.sub_index <= guard.last_sub_index) {
-      return &guard;
-    }
-  }
-  return nullptr;
+  const auto* guard = std::ranges::find_if(guarded_cob_ids, [&](const GuardedCobId& row) {
+    return entry.index >= row.objects.first && entry.index <= row.objects.last &&
+           entry.sub_index >= row.first_sub_index && entry.sub_index <= row.last_sub_index;
+  });
+  return guard == std::end(guarded_cob_ids) ? nullptr : guard;
 }
 
 /// Ascending, application after communication.
@@ -104,7 +100,7 @@ class Planner {
   using Values = std::vector<const ConfigurationValue*>;
 
   void add(StepKind kind, const ConfigurationValue& value) {
-    steps_.push_back({kind, value.entry, &value, value.bytes, 0, 0, group_});
+    add(kind, value.entry.index, value.entry.sub_index, &value);
   }
 
   /// A COB-ID or a counter that the DCF need not configure.
@@ -210,17 +206,6 @@ class Planner {
   unsigned groups_ = 0;
 };
 
-/// The letters and digits of a name, in lower case: `CAN bit rate`, `CanBitRate` and `CAN_Bitrate` are equal.
-std::string squashed(std::string_view name) {
-  std::string text;
-  for (const char c : name) {
-    if (std::isalnum(static_cast<unsigned char>(c)) != 0) {
-      text += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    }
-  }
-  return text;
-}
-
 /// The words of a name in lower case, between blanks: ` can bit rate ` for `CAN bit rate`, `CanBitRate` and
 /// `CAN_Bit-Rate`.
 std::string words_of(std::string_view name) {
@@ -257,8 +242,9 @@ bool sets_node_id_or_bit_rate(const LiveEntry& entry) {
   if (entry.index == node_id_of_cia301_v3) return true;
   if (entry.index < first_of_manufacturer || entry.entry == nullptr) return false;
   const std::string words = words_of(entry.name);
-  const bool named =
-      contains_one_of(squashed(entry.name), commissioning_names) || contains_one_of(words, commissioning_words);
+  std::string squashed = words;  // `CAN bit rate`, `CanBitRate` and `CAN_Bitrate` are equal
+  std::erase(squashed, ' ');
+  const bool named = contains_one_of(squashed, commissioning_names) || contains_one_of(words, commissioning_words);
   return named && !contains_one_of(words, other_words);
 }
 

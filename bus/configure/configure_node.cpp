@@ -3,29 +3,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <chrono>
-#include <cstring>
 #include <map>
 #include <set>
 #include <span>
+
+#include "device/types/little_endian.hpp"
+#include "values/number_text.hpp"
+#include "values/parse_value.hpp"
 
 namespace edsc {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-std::optional<std::uint32_t> word_of(const Bytes& bytes) {
-  if (bytes.size() != sizeof(std::uint32_t)) return std::nullopt;
-  std::uint32_t word = 0;
-  std::memcpy(&word, bytes.data(), sizeof word);
-  return word;
-}
+constexpr std::size_t word_size = 4;
 
-Bytes bytes_of(std::uint32_t word) {
-  Bytes bytes(sizeof word);
-  std::memcpy(bytes.data(), &word, sizeof word);
-  return bytes;
+std::optional<std::uint32_t> word_of(const Bytes& bytes) {
+  return bytes.size() == word_size ? std::optional{static_cast<std::uint32_t>(number_of(bytes))} : std::nullopt;
 }
 
 bool can_be_read(const LiveEntry& entry) { return entry.entry == nullptr || canopen::readable(entry.entry->access); }
@@ -55,7 +49,7 @@ class Run {
       hooks_.progress(result_.written, result_.values);
       if (step.group == 0 || !given_up_.contains(step.group)) carry_out(step);
     }
-    for (std::size_t i = 0; i < refused_.size() && !is_lost(); ++i) try_again(*refused_[i]);
+    for (std::size_t i = 0; i < refused_.size() && !is_lost(); ++i) write(*refused_[i], refused_[i]->bytes, true);
     for (std::size_t i = 0; i < written_.size() && !is_lost(); ++i) {
       hooks_.progress(i, written_.size());
       verify(*written_[i]);
@@ -84,28 +78,18 @@ class Run {
     }
   }
 
-  void write(const ConfigurationStep& step, const Bytes& bytes) {
+  /// A refused value is written again after all others.
+  void write(const ConfigurationStep& step, const Bytes& bytes, bool is_again = false) {
     const SdoOutcome outcome = node_.download(step.entry.index, step.entry.sub_index, bytes);
     if (outcome.done()) {
-      if (counts(step)) note_written(step);
-      return;
-    }
-    if (outcome.end == SdoEnd::refused && step.group == 0 && step.kind == StepKind::write) {
+      if (!counts(step)) return;
+      ++result_.written;
+      written_.push_back(&step);
+    } else if (outcome.end == SdoEnd::refused && step.group == 0 && step.kind == StepKind::write && !is_again) {
       refused_.push_back(&step);
-      return;
+    } else {
+      fail(step, outcome);
     }
-    fail(step, outcome);
-  }
-
-  void try_again(const ConfigurationStep& step) {
-    const SdoOutcome outcome = node_.download(step.entry.index, step.entry.sub_index, step.bytes);
-    if (outcome.done()) return note_written(step);
-    fail(step, outcome);
-  }
-
-  void note_written(const ConfigurationStep& step) {
-    ++result_.written;
-    written_.push_back(&step);
   }
 
   /// Stores the previous value for `switch_on`, unless it was disabled.
@@ -117,13 +101,13 @@ class Run {
     const std::uint32_t off = (*cob_id | step.off_set) & ~step.off_cleared;
     if (off == *cob_id) return;
     before_[key(step.entry)] = *cob_id;
-    write(step, bytes_of(off));
+    write(step, bytes_of(off, word_size));
   }
 
   void switch_on(const ConfigurationStep& step) {
     if (!step.bytes.empty()) return write(step, step.bytes);
     const auto before = before_.find(key(step.entry));
-    if (before != before_.end()) write(step, bytes_of(before->second));
+    if (before != before_.end()) write(step, bytes_of(before->second, word_size));
   }
 
   void clear(const ConfigurationStep& step) {
@@ -178,18 +162,6 @@ class Run {
   std::set<unsigned> given_up_;
 };
 
-/// Reads a number of two or four digits and the character after it; false if it is invalid, or above `most`.
-bool take(std::string_view& text, std::size_t digits, char separator, unsigned most, unsigned& number) {
-  if (text.size() < digits) return false;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + digits, number);
-  if (error != std::errc{} || end != text.data() + digits || number > most) return false;
-  text.remove_prefix(digits);
-  if (separator == 0) return true;
-  if (!text.starts_with(separator)) return false;
-  text.remove_prefix(1);
-  return true;
-}
-
 }  // namespace
 
 ConfigurationResult configure_node(SdoAccess& node, const std::vector<ConfigurationStep>& steps,
@@ -220,19 +192,16 @@ Comparison compare_configuration(SdoAccess& node, const std::vector<Configuratio
 }
 
 std::optional<ConfigurationTime> parse_configuration_time(std::string_view date, std::string_view time) {
-  using namespace std::chrono;
-  unsigned month_number = 0, day_number = 0, year_number = 0, hour = 0, minute = 0;
-  if (!take(date, 2, '-', 12, month_number) || !take(date, 2, '-', 31, day_number)) return std::nullopt;
-  if (!take(date, 4, 0, 9999, year_number) || !date.empty()) return std::nullopt;
-  if (!take(time, 2, ':', 12, hour) || !take(time, 2, 0, 59, minute)) return std::nullopt;
-  const bool afternoon = time == "PM" || time == "pm";
-  if ((!afternoon && time != "AM" && time != "am") || hour == 0) return std::nullopt;
-  const year_month_day day{year{static_cast<int>(year_number)}, month{month_number}, std::chrono::day{day_number}};
-  if (!day.ok()) return std::nullopt;
-  const auto days_since = (sys_days{day} - sys_days{year{1984} / January / 1}).count();
-  if (days_since < 0) return std::nullopt;
-  const unsigned hours = hour % 12 + (afternoon ? 12 : 0);
-  return ConfigurationTime{static_cast<std::uint32_t>(days_since), (hours * 60 + minute) * 60'000};
+  const auto day = parse_form<3>(date, "00-00-0000");  // month, day, year
+  const auto clock = parse_form<2>(time.substr(0, 5), "00:00");
+  if (!day || !clock) return std::nullopt;
+  const auto days = days_of_date((*day)[2], (*day)[0], (*day)[1]);
+  const auto [hour, minute] = *clock;
+  const std::string_view half = time.substr(5);
+  const bool afternoon = half == "PM" || half == "pm";
+  if (!days || (!afternoon && half != "AM" && half != "am") || hour == 0 || hour > 12 || minute > 59)
+    return std::nullopt;
+  return ConfigurationTime{*days, ((hour % 12 + (afternoon ? 12 : 0)) * 60 + minute) * 60'000};
 }
 
 std::optional<ConfigurationTime> read_configuration_time(SdoAccess& node) {
@@ -247,7 +216,7 @@ std::optional<ConfigurationTime> read_configuration_time(SdoAccess& node) {
 
 std::string write_configuration_time(SdoAccess& node, ConfigurationTime time) {
   for (const auto& [sub_index, word] : {std::pair{std::uint8_t{1}, time.date}, std::pair{std::uint8_t{2}, time.time}}) {
-    const SdoOutcome outcome = node.download(0x1020, sub_index, bytes_of(word));
+    const SdoOutcome outcome = node.download(0x1020, sub_index, bytes_of(word, word_size));
     if (!outcome.done()) return failure_text(outcome);
   }
   return {};

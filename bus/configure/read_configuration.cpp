@@ -8,6 +8,7 @@
 
 #include "configure/configuration_plan.hpp"
 #include "device/index_range.hpp"
+#include "device/types/little_endian.hpp"
 
 namespace edsc {
 namespace {
@@ -47,9 +48,7 @@ class Values {
   Values(const Device& device, const std::vector<ReadValue>& values) : device_{device} {
     for (const ReadValue& value : values) {
       if (value.bytes.size() > sizeof(std::uint32_t)) continue;
-      std::uint32_t number = 0;
-      for (std::size_t i = value.bytes.size(); i-- > 0;) number = number << 8 | value.bytes[i];
-      numbers_[{value.entry.index, value.entry.sub_index}] = number;
+      numbers_[{value.entry.index, value.entry.sub_index}] = static_cast<std::uint32_t>(number_of(value.bytes));
     }
   }
 

@@ -6,27 +6,39 @@ namespace edsc::conform {
 namespace {
 
 constexpr AreaRow area_rows[] = {
-    {"1", "EDS", sheet_cases},
-    {"2", "SDO", sdo_cases},
-    {"3", "PDO", pdo_cases},
-    {"4", "Object dictionary", dictionary_cases},
-    {"5", "Emergency", emergency_cases},
-    {"6", "SYNC", sync_cases},
-    {"7", "Error control", error_control_cases},
-    {"8", "Stored parameters and CAN-IDs", other_cases},
-    {"9", "NMT states", state_cases},
-    {"10", "NMT transitions", transition_cases},
-    {"11", "LSS", lss_cases},
+    {"1", "EDS", {sheet_cases}},
+    {"2", "SDO", {sdo_access_cases, sdo_segment_cases, sdo_block_cases, sdo_parameter_cases}},
+    {"3",
+     "PDO",
+     {pdo_parameter_cases, tpdo_event_cases, tpdo_sync_cases, tpdo_silence_cases, new_mapping_cases,
+      refused_mapping_cases}},
+    {"4", "Object dictionary", {dictionary_cases}},
+    {"5", "Emergency", {emergency_cases}},
+    {"6", "SYNC", {sync_cases}},
+    {"7", "Error control", {guarding_cases, heartbeat_cases, error_control_cases}},
+    {"8", "Stored parameters and CAN-IDs", {storage_cases}},
+    {"9", "NMT states", {state_cases}},
+    {"10", "NMT transitions", {transition_cases}},
+    {"11", "LSS", {lss_cases}},
 };
 
 }  // namespace
 
 std::span<const AreaRow> areas() { return area_rows; }
 
+std::vector<const CaseRow*> cases_of(const AreaRow& area) {
+  std::vector<const CaseRow*> cases;
+  for (const CaseTable table : area.tables) {
+    if (table == nullptr) continue;
+    for (const CaseRow& row : table()) cases.push_back(&row);
+  }
+  return cases;
+}
+
 std::vector<const CaseRow*> all_cases() {
   std::vector<const CaseRow*> all;
   for (const AreaRow& area : area_rows) {
-    for (const CaseRow& row : area.cases()) all.push_back(&row);
+    for (const CaseRow* row : cases_of(area)) all.push_back(row);
   }
   return all;
 }

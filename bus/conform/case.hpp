@@ -2,6 +2,7 @@
 /// device.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -68,16 +69,19 @@ struct CaseRow {
   void (*run)(Dut&) = nullptr;
 };
 
+using CaseTable = std::span<const CaseRow> (*)();
+
 struct AreaRow {
-  std::string_view id;     ///< `2`: the first part of the ids of its cases
-  std::string_view title;  ///< `SDO`
-  std::span<const CaseRow> (*cases)();
+  std::string_view id;                ///< `2`: the first part of the ids of its cases
+  std::string_view title;             ///< `SDO`
+  std::array<CaseTable, 6> tables{};  ///< in the order in which they run; the last ones may be null
 };
 
 /// The areas in the order in which they run.
 [[nodiscard]] std::span<const AreaRow> areas();
 
-/// All cases, area by area.
+/// The cases of an area; all cases, area by area.
+[[nodiscard]] std::vector<const CaseRow*> cases_of(const AreaRow& area);
 [[nodiscard]] std::vector<const CaseRow*> all_cases();
 
 /// The area that a case belongs to.
@@ -86,15 +90,25 @@ struct AreaRow {
 /// Whether a pattern names the case: `2.5`, `3.*`, `*`.
 [[nodiscard]] bool matches(std::string_view pattern, std::string_view id);
 
-// One file for each area in cases/.
+// One file in cases/ for each table.
 [[nodiscard]] std::span<const CaseRow> sheet_cases();
-[[nodiscard]] std::span<const CaseRow> sdo_cases();
-[[nodiscard]] std::span<const CaseRow> pdo_cases();
+[[nodiscard]] std::span<const CaseRow> sdo_access_cases();
+[[nodiscard]] std::span<const CaseRow> sdo_segment_cases();
+[[nodiscard]] std::span<const CaseRow> sdo_block_cases();
+[[nodiscard]] std::span<const CaseRow> sdo_parameter_cases();
+[[nodiscard]] std::span<const CaseRow> pdo_parameter_cases();
+[[nodiscard]] std::span<const CaseRow> tpdo_event_cases();
+[[nodiscard]] std::span<const CaseRow> tpdo_sync_cases();
+[[nodiscard]] std::span<const CaseRow> tpdo_silence_cases();
+[[nodiscard]] std::span<const CaseRow> new_mapping_cases();
+[[nodiscard]] std::span<const CaseRow> refused_mapping_cases();
 [[nodiscard]] std::span<const CaseRow> dictionary_cases();
 [[nodiscard]] std::span<const CaseRow> emergency_cases();
 [[nodiscard]] std::span<const CaseRow> sync_cases();
+[[nodiscard]] std::span<const CaseRow> guarding_cases();
+[[nodiscard]] std::span<const CaseRow> heartbeat_cases();
 [[nodiscard]] std::span<const CaseRow> error_control_cases();
-[[nodiscard]] std::span<const CaseRow> other_cases();
+[[nodiscard]] std::span<const CaseRow> storage_cases();
 [[nodiscard]] std::span<const CaseRow> state_cases();
 [[nodiscard]] std::span<const CaseRow> transition_cases();
 [[nodiscard]] std::span<const CaseRow> lss_cases();

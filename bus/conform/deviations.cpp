@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string_view>
 
 #include "device/device.hpp"
@@ -228,12 +229,25 @@ std::vector<Deviation> read_deviations(const SourceFile& source, Diagnostics& di
 
 void apply_deviations(std::span<const Deviation> deviations, CaseResult& result) {
   if (result.verdict != Verdict::failed) return;
-  const std::vector<EntryAddress> named = entries_in(result.expected + ' ' + result.got);
+  const bool knows_each = !result.failed_entries.empty();
+  const std::vector<EntryAddress> named =
+      knows_each ? result.failed_entries : entries_in(result.expected + ' ' + result.got);
+  std::vector<const Deviation*> declared;
   for (const Deviation& deviation : deviations) {
-    if (!applies(deviation, result, named)) continue;
-    result.verdict = Verdict::deviates;
+    if (applies(deviation, result, named)) declared.push_back(&deviation);
+  }
+  const auto is_declared = [&](const EntryAddress& entry) {
+    return std::ranges::any_of(declared,
+                               [&](const Deviation* row) { return !row->object || covers(*row->object, entry); });
+  };
+  if (declared.empty() || (knows_each && !std::ranges::all_of(named, is_declared))) return;
+  result.verdict = Verdict::deviates;
+  std::set<std::string> reasons;
+  for (const Deviation* row : declared) {
+    const std::string reason = reason_of(*row);
+    if (!reasons.insert(reason).second) continue;
     if (!result.deviation.empty()) result.deviation += "; ";
-    result.deviation += reason_of(deviation);
+    result.deviation += reason;
   }
 }
 

@@ -26,7 +26,7 @@ struct Deviation {
 [[nodiscard]] std::vector<Deviation> read_deviations(const SourceFile& source, Diagnostics& diagnostics);
 
 /// Sets the verdict of a failed case with a declaration to `deviates`. A declaration with an object does not apply to a
-/// failure that names only other entries.
+/// failure that names only other entries. If the case tries many entries, each that failed must be declared.
 void apply_deviations(std::span<const Deviation> deviations, CaseResult& result);
 
 /// Fills `unused_deviations` with the declarations whose case passed.

@@ -4,7 +4,7 @@
 
 #include <canopen/profile/cia402_words.hpp>
 
-#include "conform/dut.hpp"
+#include "conform/dut/dut.hpp"
 
 namespace edsc::conform {
 namespace {

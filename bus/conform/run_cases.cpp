@@ -42,6 +42,7 @@ CaseResult run_case(const CaseRow& row, Dut& dut) {
     result.expected = std::move(end.expected);
     result.got = std::move(end.got);
     result.rule = std::move(end.rule);
+    result.failed_entries = std::move(end.failed_entries);
   }
   dut.end_case(result);
   return result;
@@ -66,15 +67,11 @@ void run_selected(const std::vector<const CaseRow*>& rows, Dut& dut, const RunSe
 
 std::string identity_text(const Identity& identity) {
   std::string text;
-  const auto add = [&text](std::string_view name, const std::optional<std::uint32_t>& number) {
-    if (!number) return;
-    text += fmt::format("{}{} {:04X} {:04X}h", text.empty() ? "" : ", ", name, *number >> 16, *number & 0xFFFF);
-  };
-  add("device type", identity.device_type);
-  add("vendor-ID", identity.vendor_id);
-  add("product code", identity.product_code);
-  add("revision number", identity.revision_number);
-  add("serial number", identity.serial_number);
+  for (const IdentityNumber& row : identity_numbers) {
+    const std::optional<std::uint32_t> number = identity.*row.value;
+    if (!number) continue;
+    text += fmt::format("{}{} {:04X} {:04X}h", text.empty() ? "" : ", ", row.name, *number >> 16, *number & 0xFFFF);
+  }
   return text;
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "conform/case.hpp"
-#include "conform/dut.hpp"
+#include "conform/dut/dut.hpp"
 #include "conform/verdict.hpp"
 
 namespace edsc::conform {

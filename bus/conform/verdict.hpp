@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "conform/case.hpp"
+#include "values/find_entry.hpp"
 
 namespace edsc::conform {
 
@@ -56,7 +57,8 @@ struct CaseResult {
   std::string expected;  ///< of a failure: `0609 0011h, sub-index does not exist`
   std::string got;       ///< of a failure: `no answer within 500 ms`
   std::string rule;      ///< of `edsc check`, if an error in the EDS is the cause of the failure; empty: none
-  std::vector<std::string> warnings;  ///< accepted differences from CiA 301
+  std::vector<EntryAddress> failed_entries;  ///< all that failed, of a case that tries many; else empty
+  std::vector<std::string> warnings;         ///< accepted differences from CiA 301
   std::vector<SeenFrame> frames;
   std::optional<std::size_t> until_failure;  ///< number of frames before it; the others put values back
   std::string deviation;                     ///< the reason in the file of deviations

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <canopen/emcy/emcy_consumer.hpp>
-#include <canopen/emcy/error_register.hpp>
-
-#include "values/append.hpp"
+#include <iterator>
 
 namespace edsc {
 namespace {
@@ -174,21 +172,9 @@ constexpr ProfileCode profile_codes[] = {
     {drives, 0xF004, "control, additional functions"},
 };
 
-struct RegisterBit {
-  canopen::ErrorRegister bit;
-  std::string_view text;
-};
-
-constexpr RegisterBit register_bits[] = {
-    {canopen::ErrorRegister::generic, "generic"},
-    {canopen::ErrorRegister::current, "current"},
-    {canopen::ErrorRegister::voltage, "voltage"},
-    {canopen::ErrorRegister::temperature, "temperature"},
-    {canopen::ErrorRegister::communication, "communication"},
-    {canopen::ErrorRegister::device_profile, "device profile"},
-    {static_cast<canopen::ErrorRegister>(0x40), "reserved bit 6"},
-    {canopen::ErrorRegister::manufacturer, "manufacturer"},
-};
+/// The bits of 1001h, from bit 0 (CiA 301, 7.5.2.2).
+constexpr std::string_view register_bits[] = {"generic",       "current",        "voltage",        "temperature",
+                                              "communication", "device profile", "reserved bit 6", "manufacturer"};
 
 }  // namespace
 
@@ -205,14 +191,14 @@ std::string_view emergency_text(std::uint16_t code, std::uint16_t profile) {
 }
 
 void append_error_register(std::string& text, std::uint8_t error_register) {
-  const char* separator = "";
-  for (const RegisterBit& row : register_bits) {
-    if ((error_register & static_cast<std::uint8_t>(row.bit)) == 0) continue;
+  if (error_register == 0) text += "no error";
+  std::string_view separator;
+  for (std::size_t bit = 0; bit < std::size(register_bits); ++bit) {
+    if ((error_register >> bit & 1) == 0) continue;
     text += separator;
-    text += row.text;
+    text += register_bits[bit];
     separator = ", ";
   }
-  if (*separator == '\0') text += "no error";
 }
 
 }  // namespace edsc

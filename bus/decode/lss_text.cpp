@@ -16,11 +16,9 @@ using canopen::lss::Command;
 /// The data after the text of a command.
 enum class Content : std::uint8_t {
   nothing,
-  number,      ///< bytes 1..4
   mode,        ///< byte 1: waiting or configuration
   node_id,     ///< byte 1
   bit_timing,  ///< bytes 1, 2: table and index
-  delay,       ///< bytes 1, 2: switch delay in ms
   error,       ///< bytes 1, 2: error code and specific error
   fastscan,    ///< ID number, bit check, part, next part
 };
@@ -29,39 +27,41 @@ struct LssRow {
   Command command;
   bool from_master;
   Content content;
-  std::string_view words;
+  std::string_view words;  ///< {0} is the number in bytes 1 to 4, {1} that in bytes 1 and 2
 };
 
 constexpr LssRow rows[] = {
     {Command::switch_state_global, true, Content::mode, "switch state global: "},
-    {Command::select_vendor_id, true, Content::number, "switch state selective: vendor-ID "},
-    {Command::select_product_code, true, Content::number, "switch state selective: product code "},
-    {Command::select_revision_number, true, Content::number, "switch state selective: revision number "},
-    {Command::select_serial_number, true, Content::number, "switch state selective: serial number "},
+    {Command::select_vendor_id, true, Content::nothing, "switch state selective: vendor-ID {0:08X}h"},
+    {Command::select_product_code, true, Content::nothing, "switch state selective: product code {0:08X}h"},
+    {Command::select_revision_number, true, Content::nothing, "switch state selective: revision number {0:08X}h"},
+    {Command::select_serial_number, true, Content::nothing, "switch state selective: serial number {0:08X}h"},
     {Command::selected, false, Content::nothing, "in configuration, selected by its LSS address"},
     {Command::configure_node_id, true, Content::node_id, "configure node-ID "},
     {Command::configure_node_id, false, Content::error, "configure node-ID: "},
     {Command::configure_bit_timing, true, Content::bit_timing, "configure bit timing: "},
     {Command::configure_bit_timing, false, Content::error, "configure bit timing: "},
-    {Command::activate_bit_timing, true, Content::delay, "activate bit timing: switch delay "},
+    {Command::activate_bit_timing, true, Content::nothing, "activate bit timing: switch delay {1} ms"},
     {Command::store_configuration, true, Content::nothing, "store configuration"},
     {Command::store_configuration, false, Content::error, "store configuration: "},
     {Command::inquire_vendor_id, true, Content::nothing, "inquire vendor-ID"},
-    {Command::inquire_vendor_id, false, Content::number, "vendor-ID "},
+    {Command::inquire_vendor_id, false, Content::nothing, "vendor-ID {0:08X}h"},
     {Command::inquire_product_code, true, Content::nothing, "inquire product code"},
-    {Command::inquire_product_code, false, Content::number, "product code "},
+    {Command::inquire_product_code, false, Content::nothing, "product code {0:08X}h"},
     {Command::inquire_revision_number, true, Content::nothing, "inquire revision number"},
-    {Command::inquire_revision_number, false, Content::number, "revision number "},
+    {Command::inquire_revision_number, false, Content::nothing, "revision number {0:08X}h"},
     {Command::inquire_serial_number, true, Content::nothing, "inquire serial number"},
-    {Command::inquire_serial_number, false, Content::number, "serial number "},
+    {Command::inquire_serial_number, false, Content::nothing, "serial number {0:08X}h"},
     {Command::inquire_node_id, true, Content::nothing, "inquire node-ID"},
     {Command::inquire_node_id, false, Content::node_id, "node-ID "},
-    {Command::identify_vendor_id, true, Content::number, "identify remote slave: vendor-ID "},
-    {Command::identify_product_code, true, Content::number, "identify remote slave: product code "},
-    {Command::identify_revision_number_low, true, Content::number, "identify remote slave: revision number from "},
-    {Command::identify_revision_number_high, true, Content::number, "identify remote slave: revision number to "},
-    {Command::identify_serial_number_low, true, Content::number, "identify remote slave: serial number from "},
-    {Command::identify_serial_number_high, true, Content::number, "identify remote slave: serial number to "},
+    {Command::identify_vendor_id, true, Content::nothing, "identify remote slave: vendor-ID {0:08X}h"},
+    {Command::identify_product_code, true, Content::nothing, "identify remote slave: product code {0:08X}h"},
+    {Command::identify_revision_number_low, true, Content::nothing,
+     "identify remote slave: revision number from {0:08X}h"},
+    {Command::identify_revision_number_high, true, Content::nothing,
+     "identify remote slave: revision number to {0:08X}h"},
+    {Command::identify_serial_number_low, true, Content::nothing, "identify remote slave: serial number from {0:08X}h"},
+    {Command::identify_serial_number_high, true, Content::nothing, "identify remote slave: serial number to {0:08X}h"},
     {Command::identified, false, Content::nothing, "identified"},
     {Command::identify_non_configured, true, Content::nothing, "identify slaves without node-ID"},
     {Command::identified_non_configured, false, Content::nothing, "a slave without node-ID"},
@@ -107,10 +107,6 @@ void append_fastscan(std::string& text, const canopen::Frame& frame) {
 void append_content(std::string& text, const LssRow& row, const canopen::Frame& frame) {
   switch (row.content) {
     case Content::nothing: return;
-    case Content::number:
-      append_hex(text, canopen::lss::word_of(frame), 8);
-      text += 'h';
-      return;
     case Content::mode:
       text += frame.data[1] == 0 ? "waiting" : frame.data[1] == 1 ? "configuration" : "an unknown mode";
       return;
@@ -119,10 +115,6 @@ void append_content(std::string& text, const LssRow& row, const canopen::Frame& 
       if (frame.data[1] == canopen::unconfigured_node_id.value()) text += " (none)";
       return;
     case Content::bit_timing: return append_bit_timing(text, frame.data[1], frame.data[2]);
-    case Content::delay:
-      append_decimal(text, frame.data[1] | static_cast<unsigned>(frame.data[2]) << 8);
-      text += " ms";
-      return;
     case Content::error:
       text += error_words(row.command, frame.data[1]);
       if (frame.data[1] != 0) fmt::format_to(std::back_inserter(text), " ({}, {})", frame.data[1], frame.data[2]);
@@ -140,7 +132,8 @@ bool append_lss_text(std::string& text, const canopen::Frame& frame, bool from_m
   }
   for (const LssRow& row : rows) {
     if (row.command != static_cast<Command>(frame.data[0]) || row.from_master != from_master) continue;
-    text += row.words;
+    const std::uint32_t word = canopen::lss::word_of(frame);
+    fmt::format_to(std::back_inserter(text), fmt::runtime(row.words), word, word & 0xFFFF);
     append_content(text, row, frame);
     return true;
   }

@@ -99,13 +99,12 @@ struct Message {
 
   /// Resets to the initial state, but keeps the memory of its texts.
   void clear() {
-    std::string kept_text = std::move(text);
-    std::vector<MessageValue> kept_values = std::move(values);
-    *this = Message{};
-    kept_text.clear();
-    kept_values.clear();
-    text = std::move(kept_text);
-    values = std::move(kept_values);
+    Message initial;
+    initial.text.swap(text);
+    initial.values.swap(values);
+    *this = std::move(initial);
+    text.clear();
+    values.clear();
   }
 };
 

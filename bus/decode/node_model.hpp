@@ -20,7 +20,6 @@ struct PdoField {
   std::uint8_t sub_index = 0;
   std::uint8_t offset = 0;  ///< in bits
   std::uint8_t bits = 0;
-  bool dummy = false;
   DriveWord drive_word = DriveWord::none;
   const Entry* entry = nullptr;                ///< null: a dummy, or an entry that does not exist
   const canopen::DataTypeRow* type = nullptr;  ///< null if neither is known
@@ -56,11 +55,15 @@ class NodeModel {
   [[nodiscard]] std::uint16_t profile() const { return profile_; }
 
   [[nodiscard]] const std::vector<PdoLayout>& pdos() const { return pdos_; }
-  [[nodiscard]] std::optional<canopen::CobId> sync() const { return cob_id(0x1005); }
-  [[nodiscard]] std::optional<canopen::CobId> time() const { return cob_id(0x1012); }
-  [[nodiscard]] std::optional<canopen::CobId> emcy() const { return cob_id(0x1014); }
+  /// Not valid if the node does not have the service.
+  [[nodiscard]] canopen::CobId sync() const { return cob_id(0x1005); }
+  [[nodiscard]] canopen::CobId time() const { return cob_id(0x1012); }
+  [[nodiscard]] canopen::CobId emcy() const { return cob_id(0x1014); }
   /// The servers from 1201h on; every node has the default SDO.
   [[nodiscard]] std::vector<SdoServerIds> further_sdo_servers() const;
+
+  /// Whether an entry is a controlword or statusword of this device.
+  [[nodiscard]] DriveWord drive_word(std::uint16_t index, std::uint8_t sub_index) const;
 
   /// `Statusword, 16 bits`: the meaning of a value of a mapping parameter.
   [[nodiscard]] std::string mapped_name(std::uint32_t mapping) const;
@@ -78,8 +81,7 @@ class NodeModel {
   using Parameters = std::map<Key, std::uint32_t>;
 
   [[nodiscard]] std::optional<std::uint32_t> parameter(std::uint16_t index, std::uint8_t sub_index) const;
-  [[nodiscard]] std::optional<canopen::CobId> cob_id(std::uint16_t index) const;
-  [[nodiscard]] canopen::CobId pdo_cob_id(const Pdo& pdo) const;
+  [[nodiscard]] canopen::CobId cob_id(std::uint16_t index, std::uint8_t sub_index = 0) const;
   [[nodiscard]] PdoField field(std::uint32_t mapping) const;
   void lay_out(std::size_t pdo);
   void lay_out_all();

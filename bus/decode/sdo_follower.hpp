@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "decode/message.hpp"
@@ -23,8 +24,7 @@ class SdoFollower {
 
   /// Decodes a frame of the client or server into `message`. `model` may be null: objects then have no names. The
   /// values of the message are valid until the next frame.
-  void request(const TimedFrame& frame, const NodeModel* model, Message& message);
-  void response(const TimedFrame& frame, const NodeModel* model, Message& message);
+  void follow(const TimedFrame& frame, bool from_client, const NodeModel* model, Message& message);
 
   /// Whether a transfer is in progress.
   [[nodiscard]] bool open() const { return phase_ != Phase::idle; }
@@ -46,44 +46,57 @@ class SdoFollower {
     block_ended,     ///< the sender has ended the transfer
   };
 
-  void begin(const TimedFrame& frame, const NodeModel* model, bool download, bool block, Message& message);
-  void initiate_download(const TimedFrame& frame, const NodeModel* model, Message& message);
-  void initiate_block_download(const TimedFrame& frame, const NodeModel* model, Message& message);
-  void initiate_block_upload(const TimedFrame& frame, const NodeModel* model, Message& message);
-  void upload_answer(const TimedFrame& frame, Message& message);
-  void segment(const TimedFrame& frame, bool from_client, Message& message);
-  void segment_confirmed(const TimedFrame& frame, bool last, Message& message);
-  void block_segment(const canopen::sdo::Data& data, Message& message);
-  void block_confirmed(const canopen::sdo::Data& data, Message& message);
-  void block_end(const canopen::sdo::Data& data, Message& message);
-  void block_upload_command(const TimedFrame& frame, const NodeModel* model, Message& message);
-  void block_download_answer(const TimedFrame& frame, Message& message);
-  void block_upload_answer(const TimedFrame& frame, Message& message);
-  void abort(const TimedFrame& frame, Message& message);
-  void finish(const TimedFrame& frame, Message& message);
-  void stray(std::string_view what, Message& message);
+  /// The present frame, and what it means.
+  struct Step {
+    const TimedFrame& timed;
+    const canopen::sdo::Data& data;
+    const NodeModel* model;
+    Message& message;
+  };
+
+  void request(const Step& step);
+  void response(const Step& step);
+  [[nodiscard]] bool continues(bool expected, std::string_view what, const Step& step) const;
+  void part(std::string_view what, const Step& step) const;
+  void begin(const Step& step, bool download, std::string_view how = {});
+  void announce(bool has_size, const Step& step);
+  void abort(const Step& step);
+  void finish(const Step& step);
+
+  // Expedited and segmented transfer
+  [[nodiscard]] std::span<const std::uint8_t> expedited_value(const canopen::sdo::Data& data) const;
+  void initiate_download(const Step& step);
+  void upload_answer(const Step& step);
+  void segment(const Step& step, bool from_client);
+  void segment_confirmed(const Step& step);
+
+  // Block transfer: sdo_block_follower.cpp
+  void initiate_block_download(const Step& step);
+  void initiate_block_upload(const Step& step);
+  void block_upload_command(const Step& step);
+  void block_download_answer(const Step& step);
+  void block_upload_answer(const Step& step);
+  void block_segment(const Step& step);
+  void block_confirmed(const Step& step);
+  void block_end(const Step& step);
+  void flush_held(std::size_t bytes);
 
   void append(std::span<const std::uint8_t> bytes);
-  [[nodiscard]] std::span<const std::uint8_t> expedited_value(const canopen::sdo::Data& data) const;
-  /// The value of a mapping parameter; 0 for other objects.
-  [[nodiscard]] std::uint32_t mapped_object() const;
-  void flush_held(std::size_t bytes);
   void put_value(Message& message) const;
-  void put_part(std::uint32_t offset, std::uint32_t bytes, bool last, Message& message) const;
-  void put_duration(const TimedFrame& frame, Message& message) const;
-  void put_transfer(TransferStep step, Message& message) const;
+  void put_bytes(std::uint32_t offset, std::uint32_t bytes, bool last, const Step& step) const;
+  void put_duration(const Step& step) const;
+  void put_transfer(TransferStep transfer_step, Message& message) const;
 
   Phase phase_ = Phase::idle;
   bool download_ = false;
   bool expedited_ = false;
   bool last_seen_ = false;
   bool complete_ = true;  ///< no part is missing from the log
-  bool has_start_ = false;
   bool client_crc_ = false, crc_used_ = false;
   bool toggle_ = false;  ///< of the next segment
   std::uint16_t index_ = 0;
   std::uint8_t sub_index_ = 0;
-  std::int64_t start_ = 0;  ///< us
+  std::optional<std::int64_t> start_;  ///< us
   std::optional<std::uint32_t> announced_;
   std::uint32_t total_ = 0;
   std::uint16_t crc_ = 0;

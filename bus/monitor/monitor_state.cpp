@@ -2,7 +2,7 @@
 
 #include <canopen/host/virtual_bus.hpp>
 
-#include "online/nmt_text.hpp"
+#include "values/nmt_text.hpp"
 
 namespace edsc {
 namespace {
@@ -10,11 +10,6 @@ namespace {
 constexpr std::int64_t second_us = 1'000'000;
 
 }  // namespace
-
-void Rate::take(double seconds) {
-  per_second_ = seconds > 0 ? static_cast<double>(total_ - taken_) / seconds : 0;
-  taken_ = total_;
-}
 
 bool MonitorState::add(const canopen::Frame& frame, const Message& message, std::int64_t now_us) {
   frames_.count();
@@ -24,7 +19,7 @@ bool MonitorState::add(const canopen::Frame& frame, const Message& message, std:
     case Service::heartbeat:
     case Service::guarding: return add_state(message, now_us);
     case Service::tpdo:
-    case Service::rpdo: return add_pdo(message, now_us);
+    case Service::rpdo: return add_pdo(message);
     case Service::emcy: {
       MonitoredNode& node = node_of(message.node_id);
       ++node.emergencies;
@@ -33,16 +28,12 @@ bool MonitorState::add(const canopen::Frame& frame, const Message& message, std:
       node.emergency_us = now_us;
       return true;
     }
-    case Service::sync:
-    case Service::time: {
-      const auto [row, first] = others_.try_emplace(canopen::cob_id_of(frame));
-      row->second.count();
-      return first;
-    }
     case Service::sdo: return message.step == TransferStep::finished || message.step == TransferStep::aborted;
     case Service::nmt: add_command(frame); return true;
     case Service::lss:
     case Service::error_frame: return true;
+    case Service::sync:
+    case Service::time:
     case Service::unknown: {
       const auto [row, first] = others_.try_emplace(canopen::cob_id_of(frame));
       row->second.count();
@@ -61,16 +52,16 @@ MonitoredNode& MonitorState::node_of(std::uint8_t node_id) {
 /// Nodes do not confirm NMT commands: the new state is assumed until error control reports it.
 void MonitorState::add_command(const canopen::Frame& frame) {
   if (frame.remote || frame.size < 2 || frame.data[1] >= commanded_.size()) return;
-  for (const NmtCommandText& row : nmt_command_texts) {
-    if (static_cast<std::uint8_t>(row.command) != frame.data[0]) continue;
-    const bool resets = row.leads_to == canopen::NmtState::initialisation;
-    const std::string_view state = resets ? "" : nmt_state_text(row.leads_to);
-    const std::uint8_t node_id = frame.data[1];
-    for (std::size_t id = 1; id < commanded_.size(); ++id) {
-      if (node_id != 0 && id != node_id) continue;
-      commanded_[id] = state;
-      if (nodes_.contains(static_cast<std::uint8_t>(id))) assume(static_cast<std::uint8_t>(id), state);
-    }
+  const auto command = static_cast<canopen::NmtCommand>(frame.data[0]);
+  const NmtCommandText* const row = find_nmt_command(&NmtCommandText::command, command);
+  if (row == nullptr) return;
+  const bool resets = row->leads_to == canopen::NmtState::initialisation;
+  const std::string_view state = resets ? "" : nmt_state_text(row->leads_to);
+  const std::uint8_t node_id = frame.data[1];
+  for (std::uint8_t id = 1; id < commanded_.size(); ++id) {
+    if (node_id != 0 && id != node_id) continue;
+    commanded_[id] = state;
+    if (nodes_.contains(id)) assume(id, state);
   }
 }
 
@@ -95,14 +86,13 @@ bool MonitorState::add_state(const Message& message, std::int64_t now_us) {
   return changed;
 }
 
-bool MonitorState::add_pdo(const Message& message, std::int64_t now_us) {
+bool MonitorState::add_pdo(const Message& message) {
   // A node sends PDOs only in Operational.
   if (message.service == Service::tpdo && message.node_id != 0) {
     assume(message.node_id, nmt_state_text(canopen::NmtState::operational));
   }
   MonitoredPdo& pdo = pdos_[{message.node_id, message.service == Service::tpdo, message.number}];
   pdo.frames.count();
-  pdo.seen_us = now_us;
   if (pdo.text == message.text && pdo.frames.total() > 1) return false;
   pdo.text = message.text;
   pdo.values.clear();
@@ -113,30 +103,24 @@ bool MonitorState::add_pdo(const Message& message, std::int64_t now_us) {
   return true;
 }
 
+template <class Update>
+void MonitorState::update_rates(Update update) {
+  update(frames_);
+  update(bits_);
+  for (auto& [key, pdo] : pdos_) update(pdo.frames);
+  for (auto& [cob_id, rate] : others_) update(rate);
+}
+
 void MonitorState::pass(std::int64_t now_us) {
   if (now_us - tick_us_ < second_us) return;
-  take_rates(static_cast<double>(now_us - tick_us_) / second_us);
+  const double seconds = static_cast<double>(now_us - tick_us_) / second_us;
+  update_rates([seconds](Rate& rate) { rate.take(seconds); });
   tick_us_ = now_us;
 }
 
 void MonitorState::end(std::int64_t now_us) {
-  const auto all = [&](Rate& rate) {
-    Rate whole;
-    whole.count(rate.total());
-    whole.take(static_cast<double>(now_us - start_us()) / second_us);
-    rate = whole;
-  };
-  all(frames_);
-  all(bits_);
-  for (auto& [key, pdo] : pdos_) all(pdo.frames);
-  for (auto& [cob_id, rate] : others_) all(rate);
-}
-
-void MonitorState::take_rates(double seconds) {
-  frames_.take(seconds);
-  bits_.take(seconds);
-  for (auto& [key, pdo] : pdos_) pdo.frames.take(seconds);
-  for (auto& [cob_id, rate] : others_) rate.take(seconds);
+  const double seconds = static_cast<double>(now_us - start_us_) / second_us;
+  update_rates([seconds](Rate& rate) { rate.take_all(seconds); });
 }
 
 }  // namespace edsc

@@ -18,7 +18,15 @@ class Rate {
  public:
   void count(std::uint64_t amount = 1) { total_ += amount; }
   /// Call once a second.
-  void take(double seconds);
+  void take(double seconds) {
+    per_second_ = seconds > 0 ? static_cast<double>(total_ - taken_) / seconds : 0;
+    taken_ = total_;
+  }
+  /// The rate over the whole time.
+  void take_all(double seconds) {
+    taken_ = 0;
+    take(seconds);
+  }
   [[nodiscard]] std::uint64_t total() const { return total_; }
   [[nodiscard]] double per_second() const { return per_second_; }
 
@@ -49,7 +57,6 @@ struct MonitoredNode {
 struct MonitoredPdo {
   std::string text;                                         ///< the values by name
   std::vector<std::pair<std::string, std::string>> values;  ///< name and value of each known object
-  std::int64_t seen_us = 0;
   Rate frames;
 };
 
@@ -77,7 +84,7 @@ class MonitorState {
   [[nodiscard]] const std::map<std::uint32_t, Rate>& others() const { return others_; }  ///< by COB-ID
   [[nodiscard]] const Rate& frames() const { return frames_; }
   [[nodiscard]] const Rate& bits() const { return bits_; }
-  [[nodiscard]] std::int64_t start_us() const { return start_us_.value_or(0); }
+  [[nodiscard]] std::int64_t start_us() const { return start_us_; }
 
   /// The start of counting the rates.
   void start(std::int64_t now_us) { start_us_ = tick_us_ = now_us; }
@@ -87,17 +94,16 @@ class MonitorState {
   void add_command(const canopen::Frame& frame);
   void assume(std::uint8_t node_id, std::string_view state);
   bool add_state(const Message& message, std::int64_t now_us);
-  bool add_pdo(const Message& message, std::int64_t now_us);
-  void take_rates(double seconds);
+  bool add_pdo(const Message& message);
+  template <class Update>
+  void update_rates(Update update);
 
   std::map<std::uint8_t, MonitoredNode> nodes_;
   std::array<std::string, 128> commanded_;  ///< state after the last NMT command, by node-ID
   std::map<PdoKey, MonitoredPdo> pdos_;
   std::map<std::uint32_t, Rate> others_;
   Rate frames_, bits_;
-  std::string sync_, time_;
-  std::optional<std::int64_t> start_us_;
-  std::int64_t tick_us_ = 0;
+  std::int64_t start_us_ = 0, tick_us_ = 0;
 };
 
 }  // namespace edsc

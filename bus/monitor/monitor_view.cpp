@@ -17,6 +17,8 @@ constexpr const char* bold = "\x1B[1m";
 constexpr const char* red = "\x1B[31m";
 constexpr const char* plain = "\x1B[0m";
 
+Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
+
 double seconds(std::int64_t microseconds) { return static_cast<double>(microseconds) / 1e6; }
 
 /// Percent of the bit rate, without stuff bits.
@@ -52,6 +54,7 @@ std::string emergency_text(const MonitoredNode& node, std::int64_t now_us) {
 
 /// The lines of a table after a bold heading.
 void append_table(std::vector<std::string>& lines, const TextTable& table, bool colour) {
+  lines.emplace_back();
   const std::vector<std::string> rows = table.lines();
   for (std::size_t i = 0; i < rows.size(); ++i) {
     lines.push_back(colour && i == 0 ? bold + rows[i] + plain : rows[i]);
@@ -66,9 +69,8 @@ void append_nodes(std::vector<std::string>& lines, const MonitorState& state, co
     table.add({fmt::format("{:>4}", node_id), node.name.empty() ? "-" : node.name, state_text(node),
                age_text(node, now_us), emergency_text(node, now_us)});
   }
-  const std::size_t first = lines.size() + 1;
+  std::size_t row = lines.size() + 2;
   append_table(lines, table, view.colour);
-  std::size_t row = first;
   for (const auto& [node_id, node] : state.nodes()) {
     const bool bad = node.is_late(now_us) || node.error_code != 0;
     if (view.colour && bad) lines[row] = red + lines[row] + plain;
@@ -84,7 +86,6 @@ void append_pdos(std::vector<std::string>& lines, const MonitorState& state, con
     table.add(
         {fmt::format("{:>4}", key.node_id), pdo_label(key), fmt::format("{:.1f}", pdo.frames.per_second()), pdo.text});
   }
-  lines.emplace_back();
   append_table(lines, table, view.colour);
 }
 
@@ -95,7 +96,6 @@ void append_others(std::vector<std::string>& lines, const MonitorState& state, c
   for (const auto& [cob_id, rate] : state.others()) {
     table.add({other_label(cob_id), fmt::format("{:.1f}", rate.per_second()), fmt::format("{}", rate.total())});
   }
-  lines.emplace_back();
   append_table(lines, table, view.colour);
 }
 
@@ -107,7 +107,6 @@ std::vector<std::string> monitor_lines(const MonitorState& state, const MonitorV
                                  counted(state.frames().total(), "frame"), state.frames().per_second());
   if (const auto percent = load(state, view)) head += fmt::format("  load {:.1f} %", *percent);
   lines.push_back(std::move(head));
-  lines.emplace_back();
   append_nodes(lines, state, view, now_us);
   append_pdos(lines, state, view);
   append_others(lines, state, view);
@@ -144,17 +143,17 @@ Json monitor_json(const MonitorState& state, const MonitorView& view, std::int64
   json["load_percent"] = percent ? Json(rounded(*percent)) : Json(nullptr);
   json["nodes"] = Json::array();
   for (const auto& [node_id, node] : state.nodes()) {
-    Json row{{"node_id", node_id}};
-    row["name"] = node.name.empty() ? Json(nullptr) : Json(node.name);
-    row["state"] = node.state.empty() ? Json(nullptr) : Json(node.state);
-    row["assumed_state"] = node.assumed.empty() ? Json(nullptr) : Json(node.assumed);
-    row["heartbeats"] = node.heartbeats;
-    row["heard_ms_ago"] = node.heard_us ? Json((now_us - *node.heard_us) / 1000) : Json(nullptr);
-    row["late"] = node.is_late(now_us);
-    row["emergencies"] = node.emergencies;
-    row["last_emergency"] =
-        node.emergencies == 0 ? Json(nullptr) : Json{{"code", node.error_code}, {"text", node.emergency}};
-    json["nodes"].push_back(std::move(row));
+    json["nodes"].push_back(
+        {{"node_id", node_id},
+         {"name", text_or_null(node.name)},
+         {"state", text_or_null(node.state)},
+         {"assumed_state", text_or_null(node.assumed)},
+         {"heartbeats", node.heartbeats},
+         {"heard_ms_ago", node.heard_us ? Json((now_us - *node.heard_us) / 1000) : Json(nullptr)},
+         {"late", node.is_late(now_us)},
+         {"emergencies", node.emergencies},
+         {"last_emergency",
+          node.emergencies == 0 ? Json(nullptr) : Json{{"code", node.error_code}, {"text", node.emergency}}}});
   }
   json["pdos"] = Json::array();
   for (const auto& [key, pdo] : state.pdos()) {

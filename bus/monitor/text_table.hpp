@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "text/printable.hpp"
+#include "text/utf8.hpp"
 
 namespace edsc {
 
@@ -22,14 +23,14 @@ class TextTable {
     std::vector<std::size_t> widths;
     for (const auto& row : rows_) {
       widths.resize(std::max(widths.size(), row.size()), 0);
-      for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width_of(row[i]));
+      for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], count_code_points(row[i]));
     }
     std::vector<std::string> lines;
     for (const auto& row : rows_) {
       std::string line;
       for (std::size_t i = 0; i < row.size(); ++i) {
         line += row[i];
-        line.append(widths[i] - width_of(row[i]) + 2, ' ');
+        line.append(widths[i] - count_code_points(row[i]) + 2, ' ');
       }
       line.erase(line.find_last_not_of(' ') + 1);
       lines.push_back(std::move(line));
@@ -38,11 +39,6 @@ class TextTable {
   }
 
  private:
-  [[nodiscard]] static std::size_t width_of(const std::string& text) {
-    return static_cast<std::size_t>(
-        std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
-  }
-
   std::vector<std::vector<std::string>> rows_;
 };
 

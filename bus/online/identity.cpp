@@ -2,27 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <cstring>
-
+#include "device/types/little_endian.hpp"
 #include "online/sdo_access.hpp"
 
 namespace edsc {
 namespace {
-
-struct Number {
-  std::string_view name, key;
-  std::optional<std::uint32_t> Identity::*value;
-  IdentityMatch difference;
-  bool usual = true;  ///< every EDS should state it
-};
-
-constexpr Number numbers[] = {
-    {"device type", "device_type", &Identity::device_type, IdentityMatch::other},
-    {"vendor-ID", "vendor_id", &Identity::vendor_id, IdentityMatch::other},
-    {"product code", "product_code", &Identity::product_code, IdentityMatch::other},
-    {"revision number", "revision_number", &Identity::revision_number, IdentityMatch::major_revision},
-    {"serial number", "serial_number", &Identity::serial_number, IdentityMatch::other, false},
-};
 
 std::optional<std::uint32_t> default_of(const Device& device, std::uint16_t index, std::uint8_t sub_index) {
   const Entry* entry = device.find(index, sub_index);
@@ -33,14 +17,6 @@ std::optional<std::uint32_t> default_of(const Device& device, std::uint16_t inde
 std::optional<std::uint32_t> unless_zero(std::optional<std::uint32_t> number, std::uint32_t otherwise = 0) {
   if (number.value_or(0) == 0) number = otherwise;
   return *number == 0 ? std::nullopt : number;
-}
-
-std::optional<std::uint32_t> read_word(SdoAccess& node, std::uint16_t index, std::uint8_t sub_index) {
-  std::uint32_t number = 0;
-  const SdoOutcome outcome = node.upload(index, sub_index, SdoTransfer::segmented, {}, sizeof number);
-  if (!outcome.done() || outcome.bytes.size() != sizeof number) return std::nullopt;
-  std::memcpy(&number, outcome.bytes.data(), sizeof number);
-  return number;
 }
 
 bool differs(std::optional<std::uint32_t> a, std::optional<std::uint32_t> b) { return a && b && *a != *b; }
@@ -60,24 +36,25 @@ Identity identity_of(const Device& device) {
 }
 
 Identity read_identity(SdoAccess& node) {
-  return {read_word(node, 0x1000, 0), read_word(node, 0x1018, 1), read_word(node, 0x1018, 2),
-          read_word(node, 0x1018, 3), read_word(node, 0x1018, 4)};
+  Identity identity;
+  for (const IdentityNumber& number : identity_numbers) {
+    constexpr std::size_t size = 4;
+    const SdoOutcome outcome = node.upload(number.index, number.sub_index, SdoTransfer::segmented, {}, size);
+    if (!outcome.done() || outcome.bytes.size() != size) continue;
+    identity.*number.value = static_cast<std::uint32_t>(number_of(outcome.bytes));
+  }
+  return identity;
 }
 
 std::string_view to_text(IdentityMatch match) {
-  switch (match) {
-    case IdentityMatch::same: return "same device";
-    case IdentityMatch::minor_revision: return "other minor revision";
-    case IdentityMatch::major_revision: return "other major revision";
-    case IdentityMatch::other: return "other device";
-    case IdentityMatch::unknown: return "not known";
-  }
-  return {};
+  constexpr std::string_view texts[] = {"same device", "other minor revision", "other major revision", "other device",
+                                        "not known"};
+  return texts[static_cast<std::size_t>(match)];
 }
 
 IdentityMatch compare_identity(const Identity& sheet, const Identity& device) {
   IdentityMatch match = IdentityMatch::unknown;
-  for (const Number& number : numbers) {
+  for (const IdentityNumber& number : identity_numbers) {
     const auto expected = sheet.*number.value, found = device.*number.value;
     if (!expected || !found) continue;
     if (*expected == *found) {
@@ -92,7 +69,7 @@ IdentityMatch compare_identity(const Identity& sheet, const Identity& device) {
 
 std::string identity_differences(const Identity& sheet, const Identity& device) {
   std::string text;
-  for (const Number& number : numbers) {
+  for (const IdentityNumber& number : identity_numbers) {
     if (!differs(sheet.*number.value, device.*number.value)) continue;
     text += fmt::format("{}{} is {:08X}h, expected {:08X}h", text.empty() ? "" : "; ", number.name,
                         *(device.*number.value), *(sheet.*number.value));
@@ -102,13 +79,14 @@ std::string identity_differences(const Identity& sheet, const Identity& device) 
 
 unsigned count_differences(const Identity& sheet, const Identity& device) {
   unsigned count = 0;
-  for (const Number& number : numbers) count += differs(sheet.*number.value, device.*number.value) ? 1 : 0;
+  for (const IdentityNumber& number : identity_numbers)
+    count += differs(sheet.*number.value, device.*number.value) ? 1 : 0;
   return count;
 }
 
 std::vector<NotCompared> not_compared(const Identity& sheet, const Identity& device) {
   std::vector<NotCompared> missing;
-  for (const Number& number : numbers) {
+  for (const IdentityNumber& number : identity_numbers) {
     const bool in_sheet = (sheet.*number.value).has_value(), in_device = (device.*number.value).has_value();
     if ((in_sheet && in_device) || (!number.usual && !in_sheet)) continue;
     missing.push_back({number.name, number.key, in_sheet});

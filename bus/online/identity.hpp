@@ -19,10 +19,6 @@ struct Identity {
   std::optional<std::uint32_t> device_type, vendor_id, product_code, revision_number, serial_number;
 };
 
-/// The identity in an EDS: 1000h and 1018h, else [DeviceInfo]; the serial number is LSS_SerialNumber of a DCF. The
-/// number 0 means unknown.
-[[nodiscard]] Identity identity_of(const Device& device);
-
 enum class IdentityMatch : std::uint8_t {
   same,            ///< all numbers that both state are equal
   minor_revision,  ///< except for the minor revision: the CANopen behaviour is the same
@@ -30,6 +26,29 @@ enum class IdentityMatch : std::uint8_t {
   other,           ///< another device type, vendor, product or serial number
   unknown,         ///< no number that both state
 };
+
+/// One of the numbers, and the object that has it.
+struct IdentityNumber {
+  std::string_view name;  ///< `vendor-ID`
+  std::string_view key;   ///< in JSON: `vendor_id`
+  std::uint16_t index;
+  std::uint8_t sub_index;
+  std::optional<std::uint32_t> Identity::*value;
+  IdentityMatch difference;  ///< of two devices that differ in it
+  bool usual = true;         ///< every EDS should state it
+};
+
+inline constexpr IdentityNumber identity_numbers[] = {
+    {"device type", "device_type", 0x1000, 0, &Identity::device_type, IdentityMatch::other},
+    {"vendor-ID", "vendor_id", 0x1018, 1, &Identity::vendor_id, IdentityMatch::other},
+    {"product code", "product_code", 0x1018, 2, &Identity::product_code, IdentityMatch::other},
+    {"revision number", "revision_number", 0x1018, 3, &Identity::revision_number, IdentityMatch::major_revision},
+    {"serial number", "serial_number", 0x1018, 4, &Identity::serial_number, IdentityMatch::other, false},
+};
+
+/// The identity in an EDS: 1000h and 1018h, else [DeviceInfo]; the serial number is LSS_SerialNumber of a DCF. The
+/// number 0 means unknown.
+[[nodiscard]] Identity identity_of(const Device& device);
 
 /// `same device`
 [[nodiscard]] std::string_view to_text(IdentityMatch match);

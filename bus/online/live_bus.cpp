@@ -25,7 +25,6 @@ class HostPort final : public BusPort {
   std::optional<Frame> receive(Duration timeout) override { return bus_.receive(timeout); }
   TimePoint now() const override { return canopen::HostBus::now(); }
   TimePoint received_at() const override { return bus_.received_at(); }
-  int file_descriptor() const override { return bus_.file_descriptor(); }
 
  private:
   canopen::HostBus bus_;

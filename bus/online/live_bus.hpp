@@ -35,8 +35,6 @@ class BusPort {
   [[nodiscard]] virtual canopen::TimePoint now() const = 0;
   /// The time of reception of the last frame of `receive`.
   [[nodiscard]] virtual canopen::TimePoint received_at() const = 0;
-  /// Readable when frames are pending.
-  [[nodiscard]] virtual int file_descriptor() const = 0;
   /// The longest wait of one `receive`; interruptions are checked after it.
   [[nodiscard]] virtual canopen::Duration longest_at_once() const { return canopen::from_milliseconds(50); }
 };
@@ -65,7 +63,6 @@ class LiveBus {
   [[nodiscard]] BusPort& port() { return *port_; }
 
   [[nodiscard]] canopen::TimePoint now() const { return port_->now(); }
-  [[nodiscard]] int file_descriptor() const { return port_->file_descriptor(); }
   /// The time of reception of the last frame of `receive`.
   [[nodiscard]] canopen::TimePoint received_at() const { return port_->received_at(); }
 

@@ -6,7 +6,9 @@
 #include <bit>
 #include <cmath>
 
+#include "device/types/little_endian.hpp"
 #include "eds/ini.hpp"
+#include "text/counted.hpp"
 #include "text/utf8.hpp"
 #include "values/value_text.hpp"
 
@@ -22,21 +24,19 @@ struct TypeName {
   DataType type;
 };
 
+/// Short names, except of integers and REALs: a letter and the number of bits.
 constexpr TypeName type_names[] = {
-    {"bool", DataType::boolean},        {"i8", DataType::integer8},
-    {"i16", DataType::integer16},       {"i24", DataType::integer24},
-    {"i32", DataType::integer32},       {"i40", DataType::integer40},
-    {"i48", DataType::integer48},       {"i56", DataType::integer56},
-    {"i64", DataType::integer64},       {"u8", DataType::unsigned8},
-    {"u16", DataType::unsigned16},      {"u24", DataType::unsigned24},
-    {"u32", DataType::unsigned32},      {"u40", DataType::unsigned40},
-    {"u48", DataType::unsigned48},      {"u56", DataType::unsigned56},
-    {"u64", DataType::unsigned64},      {"f32", DataType::real32},
-    {"f64", DataType::real64},          {"string", DataType::visible_string},
-    {"octets", DataType::octet_string}, {"unicode", DataType::unicode_string},
-    {"time", DataType::time_of_day},    {"span", DataType::time_difference},
-    {"domain", DataType::domain},
+    {"bool", DataType::boolean},           {"string", DataType::visible_string}, {"octets", DataType::octet_string},
+    {"unicode", DataType::unicode_string}, {"time", DataType::time_of_day},      {"span", DataType::time_difference},
 };
+
+std::string short_name(const canopen::DataTypeRow& type) {
+  for (const TypeName& row : type_names) {
+    if (row.type == type.type) return std::string{row.name};
+  }
+  const char letter = type.kind == DataClass::real ? 'f' : type.kind == DataClass::signed_integer ? 'i' : 'u';
+  return fmt::format("{}{}", letter, type.bits);
+}
 
 /// A number, string or boolean of JSON; null for other types, and if the number of bytes does not match the type.
 Json json_value(const canopen::DataTypeRow* type, std::span<const std::uint8_t> bytes) {
@@ -46,16 +46,12 @@ Json json_value(const canopen::DataTypeRow* type, std::span<const std::uint8_t> 
     while (text.ends_with('\0')) text.pop_back();
     return is_utf8(text) ? Json(text) : Json(nullptr);
   }
-  if (type->bits == 0 || bytes.size() != (type->bits + 7U) / 8U) return nullptr;
-  std::uint64_t number = 0;
-  for (std::size_t i = bytes.size(); i-- > 0;) number = number << 8 | bytes[i];
+  if (type->bits == 0 || bytes.size() != bytes_for(type->bits)) return nullptr;
+  const std::uint64_t number = number_of(bytes);
   switch (type->kind) {
     case DataClass::boolean: return number != 0;
     case DataClass::unsigned_integer: return number;
-    case DataClass::signed_integer: {
-      const unsigned unused = 64U - type->bits;
-      return static_cast<std::int64_t>(number << unused) >> unused;
-    }
+    case DataClass::signed_integer: return sign_extended(number, type->bits);
     case DataClass::real: {
       const double real =
           type->bits == 64 ? std::bit_cast<double>(number) : std::bit_cast<float>(static_cast<std::uint32_t>(number));
@@ -68,19 +64,11 @@ Json json_value(const canopen::DataTypeRow* type, std::span<const std::uint8_t> 
   return nullptr;
 }
 
-std::string_view to_text(SdoEnd end) {
-  switch (end) {
-    case SdoEnd::done: return "done";
-    case SdoEnd::refused: return "refused";
-    case SdoEnd::no_answer: return "no_answer";
-    case SdoEnd::broken: return "broken";
-  }
-  return {};
-}
+constexpr std::string_view result_names[] = {"done", "refused", "no_answer", "broken"};  ///< by SdoEnd
 
 /// The size of a number, and of a string whose DEFTYPE states its length.
 std::optional<std::size_t> size_of_type(const LiveEntry& entry) {
-  if (entry.type != nullptr && entry.type->bits != 0) return (entry.type->bits + 7U) / 8U;
+  if (entry.type != nullptr && entry.type->bits != 0) return bytes_for(entry.type->bits);
   if (entry.entry != nullptr && entry.entry->octets != 0) return entry.entry->octets;
   return std::nullopt;
 }
@@ -112,7 +100,7 @@ SdoOutcome upload(SdoAccess& node, const LiveEntry& entry, SdoTransfer transfer,
   SdoOutcome outcome = node.upload(entry.index, entry.sub_index, transfer, progress, size_of_type(entry));
   if (outcome.size_told || entry.type == nullptr) return outcome;
   if (entry.type->bits != 0) {
-    outcome.bytes.resize(std::min<std::size_t>(outcome.bytes.size(), (entry.type->bits + 7U) / 8U));
+    outcome.bytes.resize(std::min<std::size_t>(outcome.bytes.size(), bytes_for(entry.type->bits)));
   } else if (entry.type->type == DataType::visible_string) {
     while (!outcome.bytes.empty() && outcome.bytes.back() == 0) outcome.bytes.pop_back();
   }
@@ -129,17 +117,10 @@ std::string title(const LiveEntry& entry) {
   return entry_label(entry.index, entry.sub_index) + (entry.name.empty() ? "" : " " + entry.name);
 }
 
-std::string hex_bytes(std::span<const std::uint8_t> bytes) {
-  std::string text;
-  for (const std::uint8_t byte : bytes) text += fmt::format("{}{:02X}", text.empty() ? "" : " ", byte);
-  return text;
-}
-
 std::string value_of(const LiveEntry& entry, std::span<const std::uint8_t> bytes) {
   if (entry.type == nullptr) return bytes.empty() ? "nothing" : hex_bytes(bytes);
   if (entry.type->kind == DataClass::domain) {
-    return fmt::format("{} ({} {})", value_text(*entry.type, bytes), bytes.size(),
-                       bytes.size() == 1 ? "byte" : "bytes");
+    return fmt::format("{} ({})", value_text(*entry.type, bytes), counted(bytes.size(), "byte"));
   }
   return entry.entry != nullptr ? value_text(*entry.entry, bytes) : value_text(*entry.type, bytes);
 }
@@ -148,7 +129,7 @@ Json as_json(const LiveEntry& entry, const SdoOutcome& outcome, std::span<const 
   Json json{{"index", entry.index}, {"sub_index", entry.sub_index}};
   json["name"] = entry.name.empty() ? Json(nullptr) : Json(entry.name);
   json["type"] = entry.type == nullptr ? Json(nullptr) : Json(entry.type->name);
-  json["result"] = to_text(outcome.end);
+  json["result"] = result_names[static_cast<std::size_t>(outcome.end)];
   if (outcome.done()) {
     json["bytes"] = hex_bytes(bytes);
     json["value"] = json_value(entry.type, bytes);
@@ -161,13 +142,10 @@ Json as_json(const LiveEntry& entry, const SdoOutcome& outcome, std::span<const 
 }
 
 const canopen::DataTypeRow* find_type(std::string_view name) {
-  for (const TypeName& row : type_names) {
-    if (equal_ignoring_case(row.name, name)) return canopen::find_data_type(static_cast<std::uint32_t>(row.type));
-  }
-  for (const canopen::DataTypeRow& row : canopen::data_types) {
-    if (equal_ignoring_case(row.name, name)) return &row;
-  }
-  return nullptr;
+  const auto found = std::ranges::find_if(canopen::data_types, [&](const canopen::DataTypeRow& row) {
+    return equal_ignoring_case(short_name(row), name) || equal_ignoring_case(row.name, name);
+  });
+  return found == std::end(canopen::data_types) ? nullptr : found;
 }
 
 SdoTransfer best_transfer(const LiveEntry& entry) {

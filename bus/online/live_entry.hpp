@@ -10,6 +10,7 @@
 
 #include "device/device.hpp"
 #include "online/sdo_access.hpp"
+#include "values/append.hpp"
 
 namespace edsc {
 
@@ -42,9 +43,6 @@ void set_type(LiveEntry& entry, const canopen::DataTypeRow& type);
 
 /// `123456 inc`; of a DOMAIN the first bytes and the length, without a type all bytes.
 [[nodiscard]] std::string value_of(const LiveEntry& entry, std::span<const std::uint8_t> bytes);
-
-/// `40 E2 01 00`
-[[nodiscard]] std::string hex_bytes(std::span<const std::uint8_t> bytes);
 
 /// The result of reading or writing an entry (docs/schema/read.schema.json).
 [[nodiscard]] nlohmann::ordered_json as_json(const LiveEntry& entry, const SdoOutcome& outcome,

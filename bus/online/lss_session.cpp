@@ -16,28 +16,35 @@ using canopen::LssState;
 /// The maximum number of slaves in a network.
 constexpr std::size_t max_slaves = 127;
 
-}  // namespace
+/// What the error codes of a slave mean (CiA 305).
+struct Refusal {
+  LssService service;
+  canopen::LssError error;
+  std::string_view text;
+};
 
-std::string LssSession::refusal(Service service) const {
-  const canopen::LssError error = master_.error();
+constexpr Refusal refusals[] = {
+    {LssService::configure_node_id, canopen::lss::node_id_out_of_range, "the node-ID is out of the slave's range"},
+    {LssService::configure_bit_timing, canopen::lss::bit_timing_not_supported, "the slave does not have this bit rate"},
+    {LssService::store, canopen::lss::store_not_supported, "the slave does not store its configuration"},
+    {LssService::store, canopen::lss::storage_access_error, "the slave cannot access its storage"},
+};
+
+std::string refusal_text(LssService service, canopen::LssError error) {
   if (error.code == canopen::lss::implementation_specific) {
     return fmt::format("refused: manufacturer-specific error {}", error.specific);
   }
   std::string_view text = "unknown error";
-  if (service == Service::configure_node_id && error == canopen::lss::node_id_out_of_range) {
-    text = "the node-ID is out of the slave's range";
-  } else if (service == Service::configure_bit_timing && error == canopen::lss::bit_timing_not_supported) {
-    text = "the slave does not have this bit rate";
-  } else if (service == Service::store && error == canopen::lss::store_not_supported) {
-    text = "the slave does not store its configuration";
-  } else if (service == Service::store && error == canopen::lss::storage_access_error) {
-    text = "the slave cannot access its storage";
+  for (const Refusal& row : refusals) {
+    if (row.service == service && row.error == error) text = row.text;
   }
   return fmt::format("refused: error {}, {}", error.code, text);
 }
 
+}  // namespace
+
 template <class Begin>
-LssResult LssSession::perform(Service service, Begin begin) {
+LssResult LssSession::perform(LssService service, Begin begin) {
   (void)begin(bus_.now());
   bool interrupted = false;
   run(bus_, master_, [&] {
@@ -51,18 +58,18 @@ LssResult LssSession::perform(Service service, Begin begin) {
   }
   switch (master_.outcome()) {
     case LssOutcome::done: return {"", master_.value()};
-    case LssOutcome::refused: return {refusal(service), 0};
+    case LssOutcome::refused: return {refusal_text(service, master_.error()), 0};
     case LssOutcome::no_answer: return {"no answer", 0};
   }
   return {};
 }
 
 LssResult LssSession::switch_state(LssState state) {
-  return perform(Service::other, [&](auto now) { return master_.switch_state_global(state, now); });
+  return perform(LssService::other, [&](auto now) { return master_.switch_state_global(state, now); });
 }
 
 LssResult LssSession::select(const LssAddress& address) {
-  return perform(Service::other, [&](auto now) { return master_.switch_state_selective(address, now); });
+  return perform(LssService::other, [&](auto now) { return master_.switch_state_selective(address, now); });
 }
 
 LssResult LssSession::inquire_address(LssAddress& address) {
@@ -78,7 +85,7 @@ LssResult LssSession::inquire_address(LssAddress& address) {
       {&Master::inquire_serial_number, &LssAddress::serial_number},
   };
   for (const Inquiry& inquiry : inquiries) {
-    const LssResult result = perform(Service::other, [&](auto now) { return (master_.*inquiry.begin)(now); });
+    const LssResult result = perform(LssService::other, [&](auto now) { return (master_.*inquiry.begin)(now); });
     if (!result.done()) return result;
     address.*inquiry.number = result.value;
   }
@@ -86,13 +93,13 @@ LssResult LssSession::inquire_address(LssAddress& address) {
 }
 
 LssResult LssSession::inquire_node_id() {
-  LssResult result = perform(Service::other, [&](auto now) { return master_.inquire_node_id(now); });
+  LssResult result = perform(LssService::other, [&](auto now) { return master_.inquire_node_id(now); });
   result.value &= 0xFF;
   return result;
 }
 
 LssResult LssSession::configure_node_id(std::uint8_t node_id) {
-  return perform(Service::configure_node_id,
+  return perform(LssService::configure_node_id,
                  [&](auto now) { return master_.configure_node_id(canopen::NodeId{node_id}, now); });
 }
 
@@ -102,33 +109,29 @@ LssResult LssSession::configure_bit_rate(unsigned kbit) {
     const auto* rate = std::ranges::find(canopen::lss::bit_rates, kbit);
     index = static_cast<std::uint8_t>(rate - std::begin(canopen::lss::bit_rates));
   }
-  return perform(Service::configure_bit_timing, [&](auto now) {
+  return perform(LssService::configure_bit_timing, [&](auto now) {
     return master_.configure_bit_timing({0, index}, now);
   });
 }
 
 LssResult LssSession::activate(std::uint16_t delay_ms) {
-  return perform(Service::other, [&](auto now) {
+  return perform(LssService::other, [&](auto now) {
     return master_.activate_bit_timing(std::chrono::duration<std::uint16_t, std::milli>{delay_ms}, now);
   });
 }
 
 LssResult LssSession::store() {
-  return perform(Service::store, [&](auto now) { return master_.store_configuration(now); });
+  return perform(LssService::store, [&](auto now) { return master_.store_configuration(now); });
 }
 
 LssResult LssSession::identify_non_configured() {
-  return perform(Service::other, [&](auto now) { return master_.identify_non_configured_remote_slave(now); });
+  return perform(LssService::other, [&](auto now) { return master_.identify_non_configured_remote_slave(now); });
 }
 
-LssResult LssSession::fastscan(LssAddress& address, std::uint8_t known) {
-  LssResult result = perform(Service::other, [&](auto now) { return master_.fastscan(address, known, now); });
-  if (result.done()) address = master_.address();
-  return result;
-}
-
-LssResult LssSession::fastscan_above(LssAddress& address, std::uint8_t known) {
-  LssResult result = perform(Service::other, [&](auto now) { return master_.fastscan_above(address, known, now); });
+LssResult LssSession::fastscan(LssAddress& address, std::uint8_t known, bool above) {
+  LssResult result = perform(LssService::other, [&](auto now) {
+    return above ? master_.fastscan_above(address, known, now) : master_.fastscan(address, known, now);
+  });
   if (result.done()) address = master_.address();
   return result;
 }
@@ -161,7 +164,7 @@ LssResult LssSession::find_unconfigured(const std::function<void(const LssAddres
     switch_state(LssState::waiting);
     if (!confirmed.done()) return confirmed;
     found(address);
-    result = fastscan_above(address, known);
+    result = fastscan(address, known, true);
     if (result.done() && address == last) return {"found " + to_text(address) + " again", 0};
   }
   switch_state(LssState::waiting);

@@ -17,6 +17,9 @@ struct LssResult {
   [[nodiscard]] bool done() const { return failure.empty(); }
 };
 
+/// The services whose error codes have a meaning.
+enum class LssService : std::uint8_t { other, configure_node_id, configure_bit_timing, store };
+
 /// `vendor-ID 00000093h, product code 43354B52h, revision 00010001h, serial number 15011234h`
 [[nodiscard]] std::string to_text(const canopen::LssAddress& address);
 
@@ -37,8 +40,8 @@ class LssSession {
   [[nodiscard]] LssResult identify_non_configured();
 
   /// Switches the slave without node-ID whose first `known` numbers match `address` to configuration state, and fills
-  /// in the other numbers.
-  [[nodiscard]] LssResult fastscan(canopen::LssAddress& address, std::uint8_t known);
+  /// in the other numbers. `above`: the next one above `address`.
+  [[nodiscard]] LssResult fastscan(canopen::LssAddress& address, std::uint8_t known, bool above = false);
 
   /// Why Fastscan did not find a slave: a slave without node-ID may not support Fastscan.
   [[nodiscard]] std::string reason_for_silence();
@@ -54,12 +57,8 @@ class LssSession {
                               const canopen::LssAddress& among = {}, std::uint8_t known = 0);
 
  private:
-  enum class Service : std::uint8_t { other, configure_node_id, configure_bit_timing, store };
-
   template <class Begin>
-  LssResult perform(Service service, Begin begin);
-  [[nodiscard]] LssResult fastscan_above(canopen::LssAddress& address, std::uint8_t known);
-  [[nodiscard]] std::string refusal(Service service) const;
+  LssResult perform(LssService service, Begin begin);
 
   LiveBus& bus_;
   canopen::LssMaster<LiveBus> master_;

@@ -4,8 +4,11 @@
 #include <array>
 #include <canopen/nmt/error_control.hpp>
 #include <canopen/sdo/sdo_client.hpp>
-#include <cstring>
+#include <iterator>
 #include <list>
+#include <span>
+
+#include "device/types/little_endian.hpp"
 
 namespace edsc {
 namespace {
@@ -21,24 +24,20 @@ constexpr std::size_t max_at_once = 16;
 constexpr std::uint32_t longest_heartbeat_ms = 5'000;
 constexpr Duration look_again = canopen::from_milliseconds(5);
 
-/// A value that is read from a node: a number of up to 32 bits, or its name.
+/// An entry that is read from a node.
 struct Question {
   std::uint16_t index;
-  std::uint8_t sub_index;
-  std::size_t size;  ///< bytes, in case the response does not state them
-  std::optional<std::uint32_t> FoundNode::*number;
+  std::uint8_t sub_index = 0;
 };
 
-/// The first one shows that the node exists.
-constexpr Question questions[] = {
-    {0x1000, 0, 4, &FoundNode::device_type},
-    {0x1018, 1, 4, &FoundNode::vendor_id},
-    {0x1018, 2, 4, &FoundNode::product_code},
-    {0x1018, 3, 4, &FoundNode::revision_number},
-    {0x1018, 4, 4, &FoundNode::serial_number},
-    {0x1017, 0, 2, &FoundNode::heartbeat_ms},
-    {0x1008, 0, 0, nullptr},
-};
+/// The identity, whose first number shows that the node exists; the heartbeat time; the name.
+constexpr std::size_t heartbeat_question = std::size(identity_numbers), name_question = heartbeat_question + 1;
+constexpr std::size_t question_count = name_question + 1;
+
+constexpr Question question(std::size_t number) {
+  if (number < heartbeat_question) return {identity_numbers[number].index, identity_numbers[number].sub_index};
+  return number == heartbeat_question ? Question{0x1017} : Question{0x1008};
+}
 
 /// The requests to one node, one after the other.
 class Interview {
@@ -64,31 +63,31 @@ class Interview {
 
   void cancel() { client_.cancel(canopen::AbortCode::general, bus_.now()); }
 
-  [[nodiscard]] bool over() const { return next_ == std::size(questions); }
+  [[nodiscard]] bool over() const { return next_ == question_count; }
   [[nodiscard]] std::optional<TimePoint> next_deadline() const { return client_.next_deadline(); }
 
  private:
-  void ask() { (void)client_.upload(questions[next_].index, questions[next_].sub_index, memory_, bus_.now()); }
+  void ask() { (void)client_.upload(question(next_).index, question(next_).sub_index, memory_, bus_.now()); }
 
   /// A node that did not answer once is not queried again.
   void go_on() {
     if (over() || client_.busy()) return;
-    if (client_.result() == canopen::ok) take(questions[next_]);
+    if (client_.result() == canopen::ok) take(client_.data());
     const bool silent = client_.result() == canopen::AbortCode::timeout;
-    next_ = silent ? std::size(questions) : next_ + 1;
+    next_ = silent ? question_count : next_ + 1;
     if (!over()) ask();
   }
 
-  void take(const Question& question) {
-    const auto bytes = client_.data();
-    if (question.number == nullptr) {
+  /// The response may not state the size of a number.
+  void take(std::span<const std::uint8_t> bytes) {
+    if (next_ == name_question) {
       node_.name.emplace(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-      while (!node_.name->empty() && node_.name->back() == '\0') node_.name->pop_back();
+      node_.name->erase(node_.name->find_last_not_of('\0') + 1);
       return;
     }
-    std::uint32_t number = 0;
-    std::memcpy(&number, bytes.data(), std::min(bytes.size(), question.size));
-    node_.*question.number = number;
+    const bool heartbeat = next_ == heartbeat_question;
+    auto& number = heartbeat ? node_.heartbeat_ms : node_.identity.*identity_numbers[next_].value;
+    number = static_cast<std::uint32_t>(number_of(bytes.first(std::min<std::size_t>(bytes.size(), heartbeat ? 2 : 4))));
   }
 
   LiveBus& bus_;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "online/identity.hpp"
 #include "online/live_bus.hpp"
 
 namespace edsc {
@@ -23,7 +24,7 @@ struct FoundNode {
   std::uint8_t node_id = 0;
   bool answers_sdo = false;
   std::optional<canopen::NmtState> state;  ///< reported by error control
-  std::optional<std::uint32_t> device_type, vendor_id, product_code, revision_number, serial_number;
+  Identity identity;
   std::optional<std::uint32_t> heartbeat_ms;  ///< 1017h
   std::optional<std::string> name;            ///< 1008h
 };

@@ -2,12 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <canopen/nmt/error_control.hpp>
-#include <canopen/nmt/nmt.hpp>
 #include <cstring>
-#include <span>
+#include <iterator>
 
 #include "device/device.hpp"
+#include "values/append.hpp"
 
 namespace edsc {
 namespace {
@@ -27,11 +28,6 @@ canopen::SdoClientOptions options_of(const SdoSettings& settings, bool block) {
   options.timeout = Duration{settings.timeout_ms * 1000U};
   options.block_transfer = block;
   return options;
-}
-
-bool is_abort_of(const Frame& frame, canopen::NodeId node) {
-  return frame.size == 8 && !frame.remote && !frame.extended &&
-         frame.id == canopen::default_sdo(node).response.can_id() && frame.data[0] == canopen::sdo::abort_command;
 }
 
 bool is_boot_up_of(const Frame& frame, canopen::NodeId node) {
@@ -70,7 +66,7 @@ struct Observed {
     heard = true;
     const bool ended = was_busy && !client.busy();
     if (ended && is_upload_without_size(frame)) size_told = false;
-    if (!is_abort_of(frame, node)) return;
+    if (frame.size != 8 || frame.remote || frame.data[0] != canopen::sdo::abort_command) return;
     if (ended) {
       ended_by_device = true;
     } else if (canopen::sdo::multiplexer_of(frame.data) != entry) {
@@ -81,23 +77,15 @@ struct Observed {
 };
 
 /// Abort codes of the protocol itself: another kind of transfer may succeed.
-bool is_of_protocol(AbortCode code) {
-  switch (code) {
-    case AbortCode::toggle_bit:
-    case AbortCode::timeout:
-    case AbortCode::command_specifier:
-    case AbortCode::block_size:
-    case AbortCode::sequence_number:
-    case AbortCode::crc: return true;
-    default: return false;
-  }
-}
+constexpr AbortCode protocol_codes[] = {AbortCode::toggle_bit, AbortCode::timeout,         AbortCode::command_specifier,
+                                        AbortCode::block_size, AbortCode::sequence_number, AbortCode::crc};
 
 }  // namespace
 
 std::string abort_text(AbortCode code) {
-  const auto number = static_cast<std::uint32_t>(code);
-  return fmt::format("{:04X} {:04X}h, {}", number >> 16, number & 0xFFFF, canopen::to_text(code));
+  std::string text;
+  append_abort(text, static_cast<std::uint32_t>(code), ", ");
+  return text;
 }
 
 std::string failure_text(const SdoOutcome& outcome) {
@@ -167,7 +155,8 @@ SdoOutcome SdoAccess::transfer(SdoTransfer how, std::uint32_t entry, Begin begin
     client_.set_options(options_of(settings_, true));
     begin();
     SdoOutcome outcome = finish(entry, true);
-    const bool broke = outcome.end == SdoEnd::no_answer || is_of_protocol(outcome.code);
+    const bool broke =
+        outcome.end == SdoEnd::no_answer || std::ranges::find(protocol_codes, outcome.code) != std::end(protocol_codes);
     if (outcome.done() || (!no_block_ && !broke)) return outcome;
     if (!no_block_) {
       failure = failure_text(outcome);

@@ -74,7 +74,6 @@ bool SimulatedPort::is_address(std::string_view text) { return text.starts_with(
 
 SimulatedPort::SimulatedPort(const std::string& address) {
   const SimulatedAddress parsed = parse_address(address);
-  program_ = parsed.program;
   start(parsed.program);
   try {
     const std::string line = read_line();

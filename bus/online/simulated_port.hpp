@@ -39,8 +39,6 @@ class SimulatedPort final : public BusPort {
   /// The simulated time, from 0.
   [[nodiscard]] canopen::TimePoint now() const override;
   [[nodiscard]] canopen::TimePoint received_at() const override { return received_at_; }
-  /// Descriptor of the connection to the program. Not readable between two calls.
-  [[nodiscard]] int file_descriptor() const override { return connection_.number(); }
   /// The program simulates seconds in less than a millisecond.
   [[nodiscard]] canopen::Duration longest_at_once() const override { return canopen::from_milliseconds(10'000); }
 
@@ -69,7 +67,6 @@ class SimulatedPort final : public BusPort {
   /// The response to a request without simulated time.
   [[nodiscard]] std::optional<canopen::AbortCode> ask(const std::string& request);
 
-  std::string program_;
   pid_t process_ = -1;
   canopen::Descriptor connection_;
   std::string requests_;  ///< not written yet

@@ -3,87 +3,53 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <utility>
 
 namespace edsc {
-namespace {
-
-using Command = BusClient::Command;
-
-/// The supported commands of the protocol.
-struct CommandName {
-  std::string_view name;
-  Command command;
-  bool needs_bus;
-};
-constexpr std::array command_names{
-    CommandName{"open", Command::open, false},      CommandName{"rawmode", Command::rawmode, true},
-    CommandName{"bcmmode", Command::bcmmode, true}, CommandName{"send", Command::send, true},
-    CommandName{"sendrtr", Command::send, true},    CommandName{"echo", Command::echo, false},
-};
-
-}  // namespace
 
 BusClient::BusClient(int socket, std::string name) : socket_{socket}, name_{std::move(name)} {}
 
 BusClient::~BusClient() { ::close(socket_); }
 
 ClientRequest BusClient::take(char c) {
+  using enum socketcand::ElementReader::Found;
   switch (reader_.take(c)) {
-    case socketcand::ElementReader::Found::nothing: return ClientRequest::nothing;
-    case socketcand::ElementReader::Found::element: return on_element(reader_.element());
-    case socketcand::ElementReader::Found::too_long: return leave("element too long");
+    case nothing: return {};
+    case element: return on_element(reader_.element());
+    case too_long: break;
   }
-  return ClientRequest::nothing;
+  constexpr const char* reason = "element too long";
+  refuse(reason);
+  return {ClientRequest::Kind::leave, reason};
 }
 
 ClientRequest BusClient::on_element(std::string_view element) {
-  const std::string_view name = socketcand::Words{element}.next();
-  for (const CommandName& known : command_names) {
-    if (known.name != name) continue;
-    if (known.needs_bus && !bus_) {
-      refuse("no bus is open");
-      return ClientRequest::nothing;
-    }
-    return on_command(known.command, element);
+  std::string_view rest = element;
+  const std::string_view command = canopen::socketcand::take_word(rest);
+  const bool sends = command == "send" || command == "sendrtr", selects = command == "rawmode" || command == "bcmmode";
+  if (command == "open") return on_open(rest);
+  if ((sends || selects) && !bus_) {
+    refuse("no bus is open");
+  } else if (selects) {
+    raw_ = command == "rawmode";
+    put("< ok >");
+  } else if (sends) {
+    if (const auto frame = socketcand::parse_send(element)) return {ClientRequest::Kind::send_frame, {}, *frame};
+    refuse("syntax error in send command");
+  } else if (command == "echo") {
+    put("< echo >");
+  } else {
+    refuse("unknown command");
   }
-  refuse("unknown command");
-  return ClientRequest::nothing;
+  return {};
 }
 
-ClientRequest BusClient::on_command(Command command, std::string_view element) {
-  switch (command) {
-    case Command::open: {
-      socketcand::Words words{element};
-      static_cast<void>(words.next());
-      wanted_bus_ = words.next();
-      if (!bus_ && words.at_end()) return ClientRequest::open_bus;
-      refuse(bus_ ? "a bus is already open" : "syntax error in open command");
-      return ClientRequest::nothing;
-    }
-    case Command::rawmode:
-    case Command::bcmmode:
-      raw_ = command == Command::rawmode;
-      put("< ok >");
-      return ClientRequest::nothing;
-    case Command::echo: put("< echo >"); return ClientRequest::nothing;
-    case Command::send:
-      if (const auto frame = socketcand::parse_send(element)) {
-        frame_ = *frame;
-        return ClientRequest::send_frame;
-      }
-      refuse("syntax error in send command");
-      return ClientRequest::nothing;
-  }
-  return ClientRequest::nothing;
-}
-
-ClientRequest BusClient::leave(std::string reason) {
-  refuse(reason);
-  leaves_because_ = std::move(reason);
-  return ClientRequest::leave;
+ClientRequest BusClient::on_open(std::string_view rest) {
+  std::string bus{canopen::socketcand::take_word(rest)};
+  if (!bus_ && canopen::socketcand::take_word(rest).empty()) return {ClientRequest::Kind::open_bus, std::move(bus)};
+  refuse(bus_ ? "a bus is already open" : "syntax error in open command");
+  return {};
 }
 
 void BusClient::opened(std::size_t bus) {

@@ -13,13 +13,18 @@
 
 namespace edsc {
 
-/// The request of a client's element to the server.
-enum class ClientRequest { nothing, open_bus, send_frame, leave };
+/// What a client's element asks the server for.
+struct ClientRequest {
+  enum class Kind { nothing, open_bus, send_frame, leave };
+
+  Kind kind = Kind::nothing;
+  std::string text{};      ///< of `open_bus`, the name of the bus; of `leave`, the reason
+  canopen::Frame frame{};  ///< of `send_frame`
+};
 
 class BusClient {
  public:
   using Clock = std::chrono::steady_clock;
-  enum class Command { open, rawmode, bcmmode, send, echo };
 
   /// Takes the connected, non-blocking socket; `name` identifies the client in messages.
   BusClient(int socket, std::string name);
@@ -39,14 +44,9 @@ class BusClient {
   /// True in the raw mode: the client receives all frames of its bus.
   [[nodiscard]] bool listens() const { return raw_; }
 
-  /// Reads one byte from the client. `open_bus`: answer with `opened` or `refuse`; `send_frame`: send `frame()` to the
-  /// bus; `leave`: close the connection, for the reason in `leaves_because`.
+  /// Reads one byte from the client. `open_bus`: answer with `opened` or `refuse`; `send_frame`: send it to the bus;
+  /// `leave`: close the connection.
   [[nodiscard]] ClientRequest take(char c);
-
-  /// The bus name of an `open_bus`.
-  [[nodiscard]] const std::string& wanted_bus() const { return wanted_bus_; }
-  [[nodiscard]] const canopen::Frame& frame() const { return frame_; }
-  [[nodiscard]] const std::string& leaves_because() const { return leaves_because_; }
 
   void opened(std::size_t bus);
 
@@ -64,17 +64,13 @@ class BusClient {
 
  private:
   [[nodiscard]] ClientRequest on_element(std::string_view element);
-  [[nodiscard]] ClientRequest on_command(Command command, std::string_view element);
-  [[nodiscard]] ClientRequest leave(std::string reason);
+  [[nodiscard]] ClientRequest on_open(std::string_view rest);
 
   int socket_;
   std::string name_;
   socketcand::ElementReader reader_;
   std::optional<std::size_t> bus_;
   bool raw_ = false;
-  std::string wanted_bus_;
-  canopen::Frame frame_;
-  std::string leaves_because_;
   std::string backlog_;
   std::size_t written_ = 0;  ///< of the backlog
   Clock::time_point since_ = Clock::now();

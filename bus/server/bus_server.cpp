@@ -19,7 +19,7 @@ namespace edsc {
 namespace {
 
 /// Maximum bytes read from one client before the next one is served.
-constexpr std::size_t bytes_a_turn = 4096;
+constexpr std::size_t bytes_at_once = 4096;
 
 [[noreturn]] void fail(const std::string& what) { throw std::system_error{errno, std::generic_category(), what}; }
 
@@ -77,7 +77,7 @@ void BusServer::listen() {
   address_.port = address_of(bound, size).port;
 }
 
-void BusServer::turn(std::chrono::milliseconds wait, const sigset_t* signals) {
+void BusServer::poll_once(std::chrono::milliseconds wait, const sigset_t* signals) {
   std::vector<pollfd> ready{{listener_, POLLIN, 0}};
   for (const auto& client : clients_) {
     ready.push_back({client->socket(), static_cast<short>(POLLIN | (client->backlog() > 0 ? POLLOUT : 0)), 0});
@@ -91,18 +91,18 @@ void BusServer::turn(std::chrono::milliseconds wait, const sigset_t* signals) {
   std::vector<std::unique_ptr<BusClient>> leaving;
   for (std::size_t i = 1; i < ready.size(); ++i) {
     auto& client = clients_[i - 1];
-    const bool heard = (ready[i].revents & (POLLIN | POLLHUP | POLLERR)) != 0;
+    const bool readable = (ready[i].revents & (POLLIN | POLLHUP | POLLERR)) != 0;
     // The request of a client may have arrived after the wait, if this process was suspended for long.
-    if ((!heard && !is_overdue(*client, now)) || hear(*client)) continue;
+    if ((!readable && !is_overdue(*client, now)) || receive(*client)) continue;
     static_cast<void>(client->flush());
     leaving.push_back(std::move(client));
   }
   std::erase(clients_, nullptr);
-  if (ready[0].revents != 0) welcome();
+  if (ready[0].revents != 0) accept();
   flush(now);
 }
 
-void BusServer::welcome() {
+void BusServer::accept() {
   sockaddr_storage from{};
   socklen_t size = sizeof from;
   const int socket = ::accept4(listener_, reinterpret_cast<sockaddr*>(&from), &size, SOCK_NONBLOCK | SOCK_CLOEXEC);
@@ -117,12 +117,12 @@ void BusServer::welcome() {
   }
   client->refuse("too many clients");
   static_cast<void>(client->flush());
-  report(*client, "too many clients");
+  log(*client, "too many clients");
 }
 
 /// Reads the input of the client. Returns false if it must be disconnected.
-bool BusServer::hear(BusClient& client) {
-  std::array<char, bytes_a_turn> bytes{};
+bool BusServer::receive(BusClient& client) {
+  std::array<char, bytes_at_once> bytes{};
   const ssize_t size = ::recv(client.socket(), bytes.data(), bytes.size(), 0);
   if (size < 0) return errno == EAGAIN || errno == EINTR;
   set_option(client.socket(), IPPROTO_TCP, TCP_QUICKACK);  // otherwise a client without TCP_NODELAY waits for it
@@ -132,35 +132,35 @@ bool BusServer::hear(BusClient& client) {
   return size > 0;
 }
 
-bool BusServer::answer(BusClient& client, ClientRequest request) {
-  switch (request) {
-    case ClientRequest::nothing: return true;
-    case ClientRequest::open_bus: return open_bus(client);
-    case ClientRequest::send_frame: deliver(client); return true;
-    case ClientRequest::leave: report(client, client.leaves_because()); return false;
+/// Returns false if the client must be disconnected.
+bool BusServer::answer(BusClient& client, const ClientRequest& request) {
+  switch (request.kind) {
+    case ClientRequest::Kind::nothing: return true;
+    case ClientRequest::Kind::open_bus: return open_bus(client, request.text);
+    case ClientRequest::Kind::send_frame: deliver(client, request.frame); return true;
+    case ClientRequest::Kind::leave: log(client, request.text); return false;
   }
   return true;
 }
 
-bool BusServer::open_bus(BusClient& client) {
-  const auto found = std::find(buses_.begin(), buses_.end(), client.wanted_bus());
+bool BusServer::open_bus(BusClient& client, const std::string& name) {
+  const auto found = std::find(buses_.begin(), buses_.end(), name);
   if (found == buses_.end()) {
     client.refuse("could not open bus");
-    report(client, "bus \"" + client.wanted_bus() + "\" does not exist");
+    log(client, "bus \"" + name + "\" does not exist");
     return false;
   }
   client.opened(static_cast<std::size_t>(found - buses_.begin()));
   return true;
 }
 
-void BusServer::deliver(const BusClient& sender) {
+void BusServer::deliver(const BusClient& sender, const canopen::Frame& frame) {
   const auto time = present();
-  const auto text = socketcand::received_text(sender.frame(), time);
+  const std::string text = socketcand::received_text(frame, time);
   for (const auto& client : clients_) {
-    if (client && client.get() != &sender && client->listens() && client->bus() == sender.bus())
-      client->put(text.view());
+    if (client && client.get() != &sender && client->listens() && client->bus() == sender.bus()) client->put(text);
   }
-  events_.on_frame(sender.frame(), buses_[*sender.bus()], time);
+  events_.on_frame(frame, buses_[*sender.bus()], time);
 }
 
 /// The time until the next client exceeds its time to open a bus.
@@ -183,18 +183,18 @@ void BusServer::flush(Clock::time_point now) {
   std::erase_if(clients_, [&](const std::unique_ptr<BusClient>& client) {
     if (!client->flush()) return true;
     if (client->backlog() > limits_.backlog) {
-      report(*client, "it reads too slowly: " + std::to_string(client->backlog()) + " bytes are pending");
+      log(*client, "it reads too slowly: " + std::to_string(client->backlog()) + " bytes are pending");
       return true;
     }
     if (!is_overdue(*client, now)) return false;
     client->refuse("no bus was opened in time");
     static_cast<void>(client->flush());
-    report(*client, "it did not open a bus within " + std::to_string(limits_.handshake.count()) + " ms");
+    log(*client, "it did not open a bus within " + std::to_string(limits_.handshake.count()) + " ms");
     return true;
   });
 }
 
-void BusServer::report(const BusClient& client, const std::string& message) const {
+void BusServer::log(const BusClient& client, const std::string& message) const {
   events_.on_trouble("client " + client.name() + " is disconnected: " + message);
 }
 

@@ -46,22 +46,22 @@ class BusServer {
 
   /// Waits for requests of clients, at most for this time, and serves them. `signals` is the signal mask during the
   /// wait; a signal ends it.
-  void turn(std::chrono::milliseconds wait, const sigset_t* signals = nullptr);
+  void poll_once(std::chrono::milliseconds wait, const sigset_t* signals = nullptr);
 
  private:
   using Clock = BusClient::Clock;
 
   void listen();
-  void welcome();
-  [[nodiscard]] bool hear(BusClient& client);
-  [[nodiscard]] bool answer(BusClient& client, ClientRequest request);
-  [[nodiscard]] bool open_bus(BusClient& client);
-  void deliver(const BusClient& sender);
+  void accept();
+  [[nodiscard]] bool receive(BusClient& client);
+  [[nodiscard]] bool answer(BusClient& client, const ClientRequest& request);
+  [[nodiscard]] bool open_bus(BusClient& client, const std::string& name);
+  void deliver(const BusClient& sender, const canopen::Frame& frame);
   [[nodiscard]] std::chrono::milliseconds until_handshake_ends(std::chrono::milliseconds at_most) const;
   /// Whether its time to open a bus is over.
   [[nodiscard]] bool is_overdue(const BusClient& client, Clock::time_point now) const;
   void flush(Clock::time_point now);
-  void report(const BusClient& client, const std::string& message) const;
+  void log(const BusClient& client, const std::string& message) const;
 
   ListenAddress address_;
   std::vector<std::string> buses_;

@@ -14,6 +14,8 @@ struct BitPattern {
   std::string_view text;
 };
 
+using Rows = std::span<const BitPattern>;
+
 /// The first matching row is used.
 constexpr BitPattern drive_states[] = {
     {0x4F, 0x00, "not ready to switch on"}, {0x4F, 0x40, "switch on disabled"},
@@ -37,19 +39,12 @@ constexpr BitPattern status_bits[] = {
 
 constexpr BitPattern control_bits[] = {{0x0100, 0x0100, ", halt"}};
 
-bool fits(const BitPattern& row, std::uint16_t value) { return (value & row.mask) == row.value; }
-
-void append_first(std::string& text, std::span<const BitPattern> rows, std::uint16_t value) {
+/// The texts of the rows that match, or of the first one alone.
+void append_matching(std::string& text, Rows rows, std::uint16_t value, bool first_alone) {
   for (const BitPattern& row : rows) {
-    if (!fits(row, value)) continue;
+    if ((value & row.mask) != row.value) continue;
     text += row.text;
-    return;
-  }
-}
-
-void append_all(std::string& text, std::span<const BitPattern> rows, std::uint16_t value) {
-  for (const BitPattern& row : rows) {
-    if (fits(row, value)) text += row.text;
+    if (first_alone) return;
   }
 }
 
@@ -66,15 +61,11 @@ DriveWord drive_word_at(std::uint16_t index, std::uint8_t sub_index) {
 }
 
 void append_drive_word(std::string& text, DriveWord word, std::uint16_t value) {
-  append_hex(text, value, 4);
-  text += "h ";
-  if (word == DriveWord::statusword) {
-    append_first(text, drive_states, value);
-    append_all(text, status_bits, value);
-  } else {
-    append_first(text, drive_commands, value);
-    append_all(text, control_bits, value);
-  }
+  append_hex_number(text, value, 4);
+  text += " ";
+  const bool status = word == DriveWord::statusword;
+  append_matching(text, status ? Rows{drive_states} : Rows{drive_commands}, value, true);
+  append_matching(text, status ? Rows{status_bits} : Rows{control_bits}, value, false);
 }
 
 }  // namespace edsc

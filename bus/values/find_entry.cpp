@@ -3,15 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cstdlib>
 #include <utility>
 #include <vector>
 
 #include "backend/cpp/identifier.hpp"
 #include "eds/ini.hpp"
-#include "eds/number.hpp"
 #include "text/ascii.hpp"
+#include "values/number_text.hpp"
 
 namespace edsc {
 namespace {
@@ -20,20 +18,9 @@ constexpr std::size_t max_suggestions = 3;
 constexpr std::size_t max_listed = 8;  ///< sub-indices in a message
 
 /// `2`, `0x2`, `02h`; after an index with h, all digits are hexadecimal.
-std::optional<std::uint8_t> parse_sub_index(std::string_view text, bool hexadecimal) {
-  if (text.ends_with('h') || text.ends_with('H')) {
-    hexadecimal = true;
-    text.remove_suffix(1);
-  }
-  if (text.starts_with("0x") || text.starts_with("0X")) {
-    hexadecimal = true;
-    text.remove_prefix(2);
-  }
-  unsigned number = 0;
-  const char* const end = text.data() + text.size();
-  const auto parsed = std::from_chars(text.data(), end, number, hexadecimal ? 16 : 10);
-  if (parsed.ec != std::errc{} || parsed.ptr != end || number > 0xFF) return std::nullopt;
-  return static_cast<std::uint8_t>(number);
+std::optional<std::uint8_t> parse_sub_index(std::string_view text, int base) {
+  const Digits digits = digits_of(text, base);
+  return parse_whole<std::uint8_t>(digits.text, digits.base);
 }
 
 bool same_name(std::string_view text, std::string_view identifier, std::string_view name) {
@@ -51,7 +38,7 @@ const Entry* find_in(const Object& object, std::string_view text) {
   const auto same = [&](const Entry& entry) { return same_name(text, entry.identifier, entry.name); };
   const auto at = std::ranges::find_if(object.entries, same);
   if (at != object.entries.end()) return &*at;
-  const auto sub_index = parse_sub_index(text, false);
+  const auto sub_index = parse_sub_index(text, 10);
   return sub_index ? object.find(*sub_index) : nullptr;
 }
 
@@ -73,6 +60,13 @@ std::string sub_indices_of(const Object& object) {
     text += fmt::format(" ... {} {}", entry_label(last.index, last.sub_index), last.identifier);
   }
   return text;
+}
+
+/// `1018h:01 identity_object.vendor_id`
+std::string entry_title(const Object& object, const Entry& entry) {
+  const std::string label = entry_label(entry.index, entry.sub_index);
+  if (!object.has_sub_indices()) return fmt::format("{} {}", label, object.identifier);
+  return fmt::format("{} {}.{}", label, object.identifier, entry.identifier);
 }
 
 // Suggestions
@@ -215,21 +209,14 @@ FoundEntry by_entry_name(const Device& device, std::string_view text) {
 std::optional<EntryAddress> parse_entry_address(std::string_view text) {
   text = trim(text);
   const std::size_t colon = text.find(':');
-  std::string_view index_text = text.substr(0, colon);
-  bool hexadecimal = true;
-  if (index_text.starts_with("0x") || index_text.starts_with("0X")) {
-    index_text.remove_prefix(2);
-    hexadecimal = false;
-  } else if (index_text.ends_with('h') || index_text.ends_with('H')) {
-    index_text.remove_suffix(1);
-  }
-  if (index_text.size() != 4) return std::nullopt;
-  const auto index = parse_hex(index_text, 4);
-  if (!index) return std::nullopt;
+  const std::string_view index_text = text.substr(0, colon);
+  const std::string_view digits = digits_of(index_text).text;
+  const auto index = parse_whole<std::uint16_t>(digits, 16);
+  if (!index || digits.size() != 4) return std::nullopt;
   if (colon == std::string_view::npos) return EntryAddress{*index, std::nullopt};
-  const auto sub_index = parse_sub_index(text.substr(colon + 1), hexadecimal);
-  if (!sub_index) return std::nullopt;
-  return EntryAddress{*index, sub_index};
+  const bool has_prefix = digits.data() != index_text.data();
+  const auto sub_index = parse_sub_index(text.substr(colon + 1), has_prefix ? 10 : 16);
+  return sub_index ? std::optional{EntryAddress{*index, sub_index}} : std::nullopt;
 }
 
 FoundEntry find_entry(const Device& device, std::string_view text) {
@@ -247,12 +234,6 @@ FoundEntry find_one_entry(const Device& device, std::string_view text) {
                                  result.object->name, sub_indices_of(*result.object));
   }
   return result;
-}
-
-std::string entry_title(const Object& object, const Entry& entry) {
-  const std::string label = entry_label(entry.index, entry.sub_index);
-  if (!object.has_sub_indices()) return fmt::format("{} {}", label, object.identifier);
-  return fmt::format("{} {}.{}", label, object.identifier, entry.identifier);
 }
 
 }  // namespace edsc

@@ -39,7 +39,4 @@ struct FoundEntry {
 /// The same for a single entry: an object with sub-indices is an error that lists them.
 [[nodiscard]] FoundEntry find_one_entry(const Device& device, std::string_view text);
 
-/// `1018h:01 identity_object.vendor_id`
-[[nodiscard]] std::string entry_title(const Object& object, const Entry& entry);
-
 }  // namespace edsc

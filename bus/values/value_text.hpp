@@ -1,4 +1,4 @@
-/// Converts values between text for people and the bytes of an SDO or PDO, low byte first.
+/// The bytes of an SDO or PDO, low byte first, as text for people. `parse_value.hpp` reads the same text.
 ///
 ///   BOOLEAN                 true
 ///   UNSIGNED8..64           567 (0237h), with a unit 1500 rpm
@@ -10,18 +10,18 @@
 #pragma once
 
 #include <canopen/od/data_type.hpp>
+#include <chrono>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "device/device.hpp"
 
 namespace edsc {
 
-/// The days of TIME_OF_DAY count from 1984-01-01 (CiA 301, 7.1.6.6): `2024-01-31 12:34:56.789`.
-void append_time_of_day(std::string& text, std::uint32_t days, std::uint32_t milliseconds);
+/// The days of TIME_OF_DAY and 1020h count from here (CiA 301, 7.1.6.6).
+inline constexpr std::chrono::sys_days time_epoch = std::chrono::year{1984} / 1 / 1;
 
 /// A number in the low `bits` bits: for BOOLEAN, integers, REAL and times; for other types as hexadecimal digits.
 void append_number(std::string& text, const canopen::DataTypeRow& type, std::uint64_t number, unsigned bits,
@@ -43,22 +43,9 @@ void append_quoted(std::string& out, std::string_view text);
 [[nodiscard]] std::string value_text(const canopen::DataTypeRow& type, std::span<const std::uint8_t> bytes);
 [[nodiscard]] std::string value_text(const Entry& entry, std::span<const std::uint8_t> bytes);
 
+/// A limit; with an unknown node-ID, as a formula.
+[[nodiscard]] std::string limit_text(const Value& limit, const canopen::DataTypeRow& type);
 /// `0..3000 rpm`: the limits in the EDS; empty if it has none.
 [[nodiscard]] std::string limits_text(const Entry& entry);
-
-/// The value of a text, or an error message.
-struct ParsedValue {
-  std::vector<std::uint8_t> bytes;  ///< as transmitted
-  std::string problem;              ///< empty on success
-
-  [[nodiscard]] bool ok() const { return problem.empty(); }
-};
-
-/// Parses the output of `value_text()`, and 0x1F, 1Fh, 0b101 for integers. An INTEGER may be given by its bits: 0xFFFF
-/// is -1 as INTEGER16. Quotation marks around a string are removed, and escapes in it are resolved; a string without
-/// them is used unchanged. A DOMAIN is given as hexadecimal digits.
-[[nodiscard]] ParsedValue parse_value_text(const canopen::DataTypeRow& type, std::string_view text);
-/// Checks the limits of the entry; its unit may follow the number.
-[[nodiscard]] ParsedValue parse_value_text(const Entry& entry, std::string_view text);
 
 }  // namespace edsc

@@ -49,7 +49,7 @@ int serve(const Settings& settings) {
   }
   while (!WaitingSignals::noted()) {
     flush_output();
-    server.turn(std::chrono::minutes{1}, signals.while_waiting());
+    server.poll_once(std::chrono::minutes{1}, signals.while_waiting());
   }
   return exit_fine;
 }

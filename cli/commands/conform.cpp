@@ -7,13 +7,13 @@
 
 #include "commands/commands.hpp"
 #include "conform/deviations.hpp"
-#include "conform/report_html.hpp"
-#include "conform/report_json.hpp"
-#include "conform/report_junit.hpp"
-#include "conform/report_log.hpp"
-#include "conform/report_text.hpp"
+#include "conform/report/candump_log.hpp"
+#include "conform/report/html_report.hpp"
+#include "conform/report/json_report.hpp"
+#include "conform/report/junit_report.hpp"
+#include "conform/report/sha256.hpp"
+#include "conform/report/text_report.hpp"
 #include "conform/run_cases.hpp"
-#include "conform/sha256.hpp"
 #include "load/load_device.hpp"
 #include "monitor/progress_line.hpp"
 #include "online/live_bus.hpp"
@@ -122,12 +122,12 @@ Permission permissions_of(const Settings& settings, Level level) {
 void list_cases() {
   for (const conform::AreaRow& area : conform::areas()) {
     fmt::print("{} {}\n", area.id, area.title);
-    for (const CaseRow& row : area.cases()) {
-      std::string needs = fmt::format("--level {}", row_of(row.level).name);
+    for (const CaseRow* row : conform::cases_of(area)) {
+      std::string needs = fmt::format("--level {}", row_of(row->level).name);
       for (const conform::PermissionRow& option : conform::permission_options) {
-        if (includes(row.needs, option.permission)) needs += fmt::format(" {}", option.option);
+        if (includes(row->needs, option.permission)) needs += fmt::format(" {}", option.option);
       }
-      fmt::print("  {:<6} {} ({}; {})\n", row.id, row.title, row.clause, needs);
+      fmt::print("  {:<6} {} ({}; {})\n", row->id, row->title, row->clause, needs);
     }
   }
 }

@@ -9,8 +9,8 @@
 #include <map>
 
 #include "commands/commands.hpp"
-#include "decode/log_decoder.hpp"
-#include "decode/log_reader.hpp"
+#include "decode/log/log_decoder.hpp"
+#include "decode/log/log_reader.hpp"
 #include "device/pdo/resolve_pdos.hpp"
 #include "eds/number.hpp"
 #include "load/load_device.hpp"

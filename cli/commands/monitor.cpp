@@ -2,7 +2,7 @@
 
 #include "commands/commands.hpp"
 #include "decode/decoder.hpp"
-#include "decode/print_message.hpp"
+#include "decode/log/print_message.hpp"
 #include "monitor/monitor_view.hpp"
 #include "monitor/terminal.hpp"
 #include "online/live_bus.hpp"

@@ -5,12 +5,12 @@
 #include "commands/commands.hpp"
 #include "online/error_control_watch.hpp"
 #include "online/live_bus.hpp"
-#include "online/nmt_text.hpp"
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/live_options.hpp"
 #include "shared/with_bus.hpp"
+#include "values/nmt_text.hpp"
 
 namespace edsc {
 namespace {
@@ -75,10 +75,13 @@ void add_nmt_options(CLI::App& command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_nmt, exit_code);
   add_bus_argument(command, settings.bus);
   std::vector<std::string> names;
-  for (const NmtCommandText& row : nmt_command_texts) names.emplace_back(row.text);
+  for (const NmtCommandText& row : nmt_command_texts) names.emplace_back(row.argument);
   command
       .add_option_function<std::string>(
-          "COMMAND", [&settings](const std::string& text) { settings.command = find_nmt_command(text); },
+          "COMMAND",
+          [&settings](const std::string& text) {
+            settings.command = find_nmt_command(&NmtCommandText::argument, std::string_view{text});
+          },
           "start, stop, pre-operational, reset-node or reset-communication")
       ->required()
       ->check(CLI::IsMember(names));

@@ -10,7 +10,6 @@
 #include "online/device_profile.hpp"
 #include "online/identity.hpp"
 #include "online/lss_session.hpp"
-#include "online/nmt_text.hpp"
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
@@ -18,6 +17,7 @@
 #include "shared/live_options.hpp"
 #include "shared/with_bus.hpp"
 #include "text/printable.hpp"
+#include "values/nmt_text.hpp"
 
 namespace edsc {
 namespace {
@@ -54,10 +54,6 @@ struct Findings {
 
 using Json = nlohmann::ordered_json;
 
-Identity identity_of(const FoundNode& node) {
-  return {node.device_type, node.vendor_id, node.product_code, node.revision_number, node.serial_number};
-}
-
 std::string hex_or_dash(std::optional<std::uint32_t> number) { return number ? fmt::format("{:08X}h", *number) : "-"; }
 
 bool fits(IdentityMatch match) {
@@ -68,11 +64,11 @@ bool fits(IdentityMatch match) {
 std::string fits_text(const FoundNode& node, const std::vector<Candidate>& candidates) {
   std::string text;
   for (const Candidate& candidate : candidates) {
-    const IdentityMatch match = compare_identity(candidate.identity, identity_of(node));
+    const IdentityMatch match = compare_identity(candidate.identity, node.identity);
     if (!fits(match)) continue;
     text += (text.empty() ? "" : ", ") + candidate.path;
     std::string remark{match == IdentityMatch::same ? "" : to_text(match)};
-    if (const auto missing = not_compared(candidate.identity, identity_of(node)); !missing.empty()) {
+    if (const auto missing = not_compared(candidate.identity, node.identity); !missing.empty()) {
       remark += fmt::format("{}{} not compared", remark.empty() ? "" : "; ", names_of(missing));
     }
     if (!remark.empty()) text += fmt::format(" ({})", remark);
@@ -90,9 +86,8 @@ struct Nearest {
 std::optional<Nearest> nearest_misfit(const std::vector<FoundNode>& nodes, const Candidate& candidate) {
   std::optional<Nearest> nearest;
   for (const FoundNode& node : nodes) {
-    const Identity identity = identity_of(node);
-    if (fits(compare_identity(candidate.identity, identity))) return std::nullopt;
-    const unsigned differences = count_differences(candidate.identity, identity);
+    if (fits(compare_identity(candidate.identity, node.identity))) return std::nullopt;
+    const unsigned differences = count_differences(candidate.identity, node.identity);
     if (differences == 0 || (nearest && nearest->differences <= differences)) continue;
     nearest = Nearest{&node, differences};
   }
@@ -106,7 +101,7 @@ void print_misfits(const std::vector<FoundNode>& nodes, const std::vector<Candid
     if (!nearest) continue;
     print_visibly(stdout, "{} does not match any node; node {}{}: {}\n", candidate.path, nearest->node->node_id,
                   nodes.size() > 1 ? " is the closest" : "",
-                  identity_differences(candidate.identity, identity_of(*nearest->node)));
+                  identity_differences(candidate.identity, nearest->node->identity));
   }
 }
 
@@ -116,13 +111,15 @@ void print_text(const Findings& found, const std::vector<Candidate>& candidates,
   if (!candidates.empty()) head.emplace_back("EDS");
   table.add(std::move(head));
   for (const FoundNode& node : found.nodes) {
+    const Identity& identity = node.identity;
     std::vector<std::string> row{
-        fmt::format("{:>4}", node.node_id), std::string{node.state ? nmt_state_text(*node.state) : "-"},
-        hex_or_dash(node.vendor_id),        hex_or_dash(node.product_code),
-        hex_or_dash(node.revision_number),  hex_or_dash(node.serial_number)};
-    row.push_back(!node.answers_sdo  ? "no answer over SDO"
-                  : node.device_type ? fmt::format("{:08X}h {}", *node.device_type, profile_text(*node.device_type))
-                                     : "-");
+        fmt::format("{:>4}", node.node_id),    std::string{node.state ? nmt_state_text(*node.state) : "-"},
+        hex_or_dash(identity.vendor_id),       hex_or_dash(identity.product_code),
+        hex_or_dash(identity.revision_number), hex_or_dash(identity.serial_number)};
+    row.push_back(!node.answers_sdo ? "no answer over SDO"
+                  : identity.device_type
+                      ? fmt::format("{:08X}h {}", *identity.device_type, profile_text(*identity.device_type))
+                      : "-");
     row.push_back(node.name ? *node.name : "-");
     if (!candidates.empty()) row.push_back(fits_text(node, candidates));
     table.add(std::move(row));
@@ -146,24 +143,25 @@ Json as_json(const FoundNode& node, const std::vector<Candidate>& candidates) {
   Json json{{"node_id", node.node_id}};
   json["state"] = node.state ? Json(nmt_state_text(*node.state)) : Json(nullptr);
   json["answers_sdo"] = node.answers_sdo;
-  json["device_type"] = or_null(node.device_type);
-  json["profile"] = node.device_type ? Json(*node.device_type & 0xFFFF) : Json(nullptr);
-  json["vendor_id"] = or_null(node.vendor_id);
-  json["product_code"] = or_null(node.product_code);
-  json["revision_number"] = or_null(node.revision_number);
-  json["serial_number"] = or_null(node.serial_number);
+  const Identity& identity = node.identity;
+  json["device_type"] = or_null(identity.device_type);
+  json["profile"] = identity.device_type ? Json(*identity.device_type & 0xFFFF) : Json(nullptr);
+  json["vendor_id"] = or_null(identity.vendor_id);
+  json["product_code"] = or_null(identity.product_code);
+  json["revision_number"] = or_null(identity.revision_number);
+  json["serial_number"] = or_null(identity.serial_number);
   json["name"] = or_null(node.name);
   json["data_sheets"] = Json::array();
   json["misfits"] = Json::array();
   for (const Candidate& candidate : candidates) {
-    const IdentityMatch match = compare_identity(candidate.identity, identity_of(node));
+    const IdentityMatch match = compare_identity(candidate.identity, node.identity);
     if (!fits(match)) {
-      const std::string differences = identity_differences(candidate.identity, identity_of(node));
+      const std::string differences = identity_differences(candidate.identity, node.identity);
       json["misfits"].push_back({{"file", candidate.path}, {"differences", differences}});
       continue;
     }
     Json sheet{{"file", candidate.path}, {"fit", to_text(match)}, {"not_compared", Json::array()}};
-    for (const NotCompared& number : not_compared(candidate.identity, identity_of(node))) {
+    for (const NotCompared& number : not_compared(candidate.identity, node.identity)) {
       sheet["not_compared"].push_back(number.key);
     }
     json["data_sheets"].push_back(std::move(sheet));

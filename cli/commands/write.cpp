@@ -11,7 +11,7 @@
 #include "shared/with_bus.hpp"
 #include "text/counted.hpp"
 #include "text/printable.hpp"
-#include "values/value_text.hpp"
+#include "values/parse_value.hpp"
 
 namespace edsc {
 namespace {

@@ -25,7 +25,7 @@ void check(std::string_view element) {
   const std::size_t size = canopen::socketcand::encode(*frame, sent);
   require(socketcand::parse_send(inside({sent.data(), size})) == frame);
   const auto text = socketcand::received_text(*frame, {1, 2});
-  std::string_view received = inside(text.view());
+  std::string_view received = inside(text);
   static_cast<void>(canopen::socketcand::take_word(received));
   require(canopen::socketcand::decode(received, frame->remote) == frame);
 }

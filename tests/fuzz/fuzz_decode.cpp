@@ -2,7 +2,7 @@
 /// PDOs (node 7).
 #include <nlohmann/json.hpp>
 
-#include "decode/log_decoder.hpp"
+#include "decode/log/log_decoder.hpp"
 #include "fuzz.hpp"
 #include "load/load_device.hpp"
 #include "text/utf8.hpp"

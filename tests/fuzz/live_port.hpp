@@ -131,7 +131,6 @@ class LivePort final : public BusPort {
 
   canopen::TimePoint now() const override { return now_; }
   canopen::TimePoint received_at() const override { return now_; }
-  int file_descriptor() const override { return -1; }
 
  private:
   static canopen::Frame frame(std::uint32_t id, const std::uint8_t* data, std::size_t size) {

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "conform/case.hpp"
-#include "conform/cases/entry_results.hpp"
-#include "conform/cases/entry_values.hpp"
-#include "conform/cases/sdo_frames.hpp"
-#include "conform/dut.hpp"
+#include "conform/cases/sdo/sdo_frames.hpp"
+#include "conform/cases/shared/entry_results.hpp"
+#include "conform/cases/shared/entry_values.hpp"
+#include "conform/dut/dut.hpp"
 #include "device/index_range.hpp"
 #include "device/objects/object_structure.hpp"
 #include "values/value_text.hpp"
@@ -32,7 +32,7 @@ bool lacks_flag(const Dut& dut, const LiveEntry& entry, std::uint32_t flag) {
   return (flags_of(dut.sheet(), entry) & flag) == 0;
 }
 
-std::size_t type_bytes(const LiveEntry& entry) { return (entry.type->bits + 7U) / 8U; }
+std::size_t type_bytes(const LiveEntry& entry) { return bytes_for(entry.type->bits); }
 
 // Reading
 

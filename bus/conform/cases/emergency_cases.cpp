@@ -3,7 +3,7 @@
 
 #include <canopen/emcy/error_register.hpp>
 
-#include "conform/cases/setup.hpp"
+#include "conform/cases/shared/setup.hpp"
 
 namespace edsc::conform {
 namespace emergency_area {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "conform/case.hpp"
-#include "conform/dut.hpp"
+#include "conform/dut/dut.hpp"
 #include "conform/sheet_findings.hpp"
 
 namespace edsc::conform {

@@ -3,8 +3,8 @@
 
 #include <canopen/sync/sync.hpp>
 
-#include "conform/cases/setup.hpp"
-#include "conform/cases/storage_setup.hpp"
+#include "conform/cases/shared/setup.hpp"
+#include "conform/cases/shared/storage_setup.hpp"
 
 namespace edsc::conform {
 namespace sync_area {
@@ -194,8 +194,7 @@ void stored_values(Dut& dut) {
   with_storage(dut, save_communication(dut), [&dut](const Storage& storage) {
     const std::uint32_t cob_id = stop_sync(dut);
     const auto set = [&dut](std::uint16_t index, std::uint64_t value) {
-      const Entry* const entry = dut.entry(index);
-      if (entry != nullptr && canopen::writable(entry->access)) dut.write(index, 0, value);
+      if (dut.is_writable(index)) dut.write(index, 0, value);
     };
     set(sync_overflow, 7);
     set(sync_cob_id, cob_id == 0x6A0 ? 0x6A1 : 0x6A0);  // not used in the pre-defined connection set

@@ -9,12 +9,6 @@
 
 namespace edsc {
 
-std::uint64_t number_from(std::span<const std::uint8_t> bytes) {
-  std::uint64_t number = 0;
-  for (std::size_t i = bytes.size(); i-- > 0;) number = number << 8 | bytes[i];
-  return number;
-}
-
 void append_bytes(std::string& bytes, std::uint64_t number, unsigned count) {
   for (unsigned i = 0; i < count; ++i) bytes += static_cast<char>(number >> (8 * i));
 }

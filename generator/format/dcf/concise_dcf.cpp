@@ -28,7 +28,7 @@ std::optional<std::vector<ConciseEntry>> read_concise_dcf(std::string_view strea
   const auto number = [&stream](unsigned count) {
     const std::vector<std::uint8_t> bytes{stream.begin(), stream.begin() + count};
     stream.remove_prefix(count);
-    return number_from(bytes);
+    return number_of(bytes);
   };
   constexpr std::size_t head = 7;
   if (stream.size() < 4) return std::nullopt;

@@ -53,7 +53,7 @@ std::optional<std::string> parameter_text(const Entry& entry, Bytes bytes) {
   if (type.kind == DataClass::domain) return std::nullopt;
   if (type.kind == DataClass::string) return string_text(type, bytes);
   if (bytes.size() != (type.bits + 7U) / 8U) return std::nullopt;
-  const std::uint64_t bits = number_from(bytes);
+  const std::uint64_t bits = number_of(bytes);
   const bool hexadecimal = !entry.default_value || entry.default_value->hexadecimal;
   switch (type.kind) {
     case DataClass::boolean: return std::string{bits != 0 ? "1" : "0"};

@@ -10,14 +10,14 @@
 #include <vector>
 
 #include "conform/deviations.hpp"
-#include "conform/report_facts.hpp"
-#include "conform/report_html.hpp"
-#include "conform/report_json.hpp"
-#include "conform/report_junit.hpp"
-#include "conform/report_log.hpp"
-#include "conform/report_text.hpp"
-#include "conform/sha256.hpp"
-#include "decode/log_line.hpp"
+#include "conform/report/candump_log.hpp"
+#include "conform/report/html_report.hpp"
+#include "conform/report/json_report.hpp"
+#include "conform/report/junit_report.hpp"
+#include "conform/report/report_facts.hpp"
+#include "conform/report/sha256.hpp"
+#include "conform/report/text_report.hpp"
+#include "decode/log/log_line.hpp"
 #include "support/device_from_text.hpp"
 #include "text/utf8.hpp"
 
@@ -514,6 +514,22 @@ TEST(ConformDeviations, OfAnObjectDoNotHideFailuresOfOthers) {
   EXPECT_EQ(verdict("1801h:02 is written"), Verdict::failed);
   EXPECT_EQ(verdict("1801h:02 and 1800h:02 are written"), Verdict::deviates);
   EXPECT_EQ(verdict("no answer"), Verdict::deviates) << "a failure that names no entry may be that of the object";
+}
+
+TEST(ConformDeviations, CoverEachEntryThatFails) {
+  const ReadDeviations read{R"({"deviations": [{"case": "3.7", "object": "1800h:01", "reason": "x"},
+                                               {"case": "3.7", "object": "1801h", "reason": "x"}]})"};
+  const auto result_with = [&](std::vector<EntryAddress> entries) {
+    CaseResult result = failure(sync_row, "each COB-ID", "1800h:01: accepted; and others");
+    result.failed_entries = std::move(entries);
+    apply_deviations(read.rows, result);
+    return result;
+  };
+  const EntryAddress first{0x1800, std::uint8_t{1}}, second{0x1801, std::uint8_t{1}}, third{0x1802, std::uint8_t{1}};
+  EXPECT_EQ(result_with({first, second}).verdict, Verdict::deviates);
+  EXPECT_EQ(result_with({first, second}).deviation, "x") << "the same reason once";
+  EXPECT_EQ(result_with({first, third}).verdict, Verdict::failed);
+  EXPECT_EQ(result_with({third}).verdict, Verdict::failed);
 }
 
 TEST(ConformDeviations, AreUnusedWhereTheirCasePasses) {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "conform/stimuli.hpp"
+#include "conform/dut/stimuli.hpp"
 #include "mutant.hpp"
 #include "online/live_bus.hpp"
 
@@ -45,7 +45,6 @@ class SimulationPort final : public BusPort {
     return canopen::TimePoint{canopen::Duration{static_cast<std::uint32_t>(device_.elapsed())}};
   }
   canopen::TimePoint received_at() const override { return now(); }
-  int file_descriptor() const override { return -1; }
 
  private:
   struct Waiting {

@@ -31,7 +31,7 @@ struct Bench {
 
   /// Waits up to ten seconds until this many clients are connected.
   void expect_clients(std::size_t wanted) {
-    for (int i = 0; i < 10'000 && server.clients() != wanted; ++i) server.turn(milliseconds{1});
+    for (int i = 0; i < 10'000 && server.clients() != wanted; ++i) server.poll_once(milliseconds{1});
     EXPECT_EQ(server.clients(), wanted);
   }
 
@@ -73,7 +73,7 @@ class Client {
 
   /// Returns what has been received after the server has processed all requests.
   std::string hear() {
-    for (int i = 0; i < 5; ++i) bench_.server.turn(milliseconds{1});
+    for (int i = 0; i < 5; ++i) bench_.server.poll_once(milliseconds{1});
     return take();
   }
 
@@ -107,7 +107,7 @@ class Client {
     std::string heard;
     const auto end = std::chrono::steady_clock::now() + milliseconds{10'000};
     while (!done(heard) && std::chrono::steady_clock::now() < end) {
-      bench_.server.turn(milliseconds{1});
+      bench_.server.poll_once(milliseconds{1});
       heard += take();
     }
     return heard;
@@ -182,7 +182,7 @@ TEST(BusServer, GivesAllClientsTheFramesInOneOrder) {
   for (int i = 0; i < frames; ++i) {
     first.say("< send 101 1 " + std::to_string(i % 100) + " >");
     second.say("< send 102 1 " + std::to_string(i % 100) + " >");
-    if (i % 10 == 0) bench.server.turn(milliseconds{0});
+    if (i % 10 == 0) bench.server.poll_once(milliseconds{0});
   }
   const std::string heard = third.hear_elements(2 * frames);
   EXPECT_TRUE(heard == fourth.hear_elements(2 * frames));
@@ -209,13 +209,13 @@ TEST(BusServer, CarriesMoreThanASocketHoldsWithoutLoss) {
       const std::string_view piece = rest.substr(0, 2000);
       sender.say(piece);
       rest.remove_prefix(piece.size());
-      bench.server.turn(milliseconds{0});
+      bench.server.poll_once(milliseconds{0});
       const std::string got = other.take();
       heard += static_cast<std::size_t>(std::count(got.begin(), got.end(), '>'));
     }
   }
   for (int i = 0; i < 10'000 && heard < 1000u * rounds; ++i) {
-    bench.server.turn(milliseconds{1});
+    bench.server.poll_once(milliseconds{1});
     const std::string got = other.take();
     heard += static_cast<std::size_t>(std::count(got.begin(), got.end(), '>'));
   }
@@ -237,7 +237,7 @@ TEST(BusServer, SendsAClientAwayThatReadsTooSlowly) {
       sender.say(many);
       sent += 100;
     }
-    bench.server.turn(milliseconds{1});
+    bench.server.poll_once(milliseconds{1});
     const std::string got = other.take();
     heard += static_cast<std::size_t>(std::count(got.begin(), got.end(), '>'));
   }
@@ -246,7 +246,7 @@ TEST(BusServer, SendsAClientAwayThatReadsTooSlowly) {
   EXPECT_TRUE(bench.trouble[0].ends_with(" bytes are pending")) << bench.trouble[0];
   EXPECT_EQ(bench.server.clients(), 2u);
   for (int i = 0; i < 10'000 && heard < sent; ++i) {
-    bench.server.turn(milliseconds{1});
+    bench.server.poll_once(milliseconds{1});
     const std::string got = other.take();
     heard += static_cast<std::size_t>(std::count(got.begin(), got.end(), '>'));
   }
@@ -316,7 +316,7 @@ TEST(BusServer, SendsSilentClientsAwayAndGivesTheirPlacesToOthers) {
   Bench bench{{64, 4096, milliseconds{1000}}};
   std::vector<std::unique_ptr<Client>> silent;
   for (int i = 0; i < 64; ++i) silent.push_back(std::make_unique<Client>(bench));
-  for (int i = 0; i < 10'000 && bench.trouble.size() < silent.size(); ++i) bench.server.turn(milliseconds{1});
+  for (int i = 0; i < 10'000 && bench.trouble.size() < silent.size(); ++i) bench.server.poll_once(milliseconds{1});
   ASSERT_EQ(bench.trouble.size(), 64u);
   EXPECT_EQ(bench.server.clients(), 0u);
   EXPECT_TRUE(bench.trouble[0].ends_with("is disconnected: it did not open a bus within 1000 ms")) << bench.trouble[0];

@@ -30,8 +30,8 @@ TEST(ValueBytes, OfAUnicodeStringAreItsCodeUnits) {
 }
 
 TEST(ValueBytes, GiveTheNumberAgain) {
-  EXPECT_EQ(number_from(std::array<std::uint8_t, 3>{0x08, 0x07, 0x06}), 0x060708U);
-  EXPECT_EQ(number_from(std::array<std::uint8_t, 0>{}), 0U);
+  EXPECT_EQ(number_of(std::array<std::uint8_t, 3>{0x08, 0x07, 0x06}), 0x060708U);
+  EXPECT_EQ(number_of(std::array<std::uint8_t, 0>{}), 0U);
 }
 
 TEST(SignExtended, IsTheNumberOfATwosComplement) {

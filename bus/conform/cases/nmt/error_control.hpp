@@ -1,0 +1,43 @@
+/// Shared by the cases of error control (CiA 301, 7.2.8.3.2): guarding requests and heartbeats.
+#pragma once
+
+#include <canopen/nmt/nmt.hpp>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "conform/cases/shared/setup.hpp"
+
+namespace edsc::conform::error_control_area {
+
+using canopen::NmtCommand;
+using canopen::NmtState;
+
+inline constexpr std::uint16_t guard_time = 0x100C, life_time_factor = 0x100D;
+inline constexpr std::uint16_t consumer_time = 0x1016, producer_time = 0x1017;
+inline constexpr std::uint8_t toggle_bit = 0x80;
+
+/// The time that a device may need to answer a guarding request.
+inline constexpr Duration to_answer = milliseconds{50};
+
+/// Not applicable if the EDS does not have node guarding. Disables heartbeat, which excludes guarding.
+void need_guarding(Dut& dut);
+/// Sends one guarding request and returns all error control messages that answer it.
+[[nodiscard]] std::vector<SeenFrame> answers(Dut& dut);
+/// Sends one guarding request, expects one message of one byte, and returns the byte.
+std::uint8_t guard(Dut& dut);
+void expect_guarded(Dut& dut, NmtState state, bool toggle);
+
+/// The EMCY with which the device reports a lost node. Inconclusive if the EDS does not have 1014h.
+[[nodiscard]] Dut::Match error_control_event(Dut& dut);
+void expect_not_lost(Dut& dut, const Dut::Match& event, Dut::Mark since, const std::string& when);
+
+/// The heartbeat time of the cases.
+inline constexpr Duration beat = milliseconds{100};
+
+void start_heartbeat(Dut& dut);
+/// Expects a heartbeat with this state in each period, and no other frame with its CAN-ID.
+void expect_heartbeats(Dut& dut, NmtState state, Duration period, unsigned count);
+void expect_no_heartbeats(Dut& dut);
+
+}  // namespace edsc::conform::error_control_area

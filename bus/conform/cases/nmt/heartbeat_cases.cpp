@@ -1,0 +1,165 @@
+/// Heartbeat producer and consumer (CiA 301, 7.2.8.3.2.2 and 7.2.8.2.2).
+#include <fmt/format.h>
+
+#include <canopen/can/node_id.hpp>
+
+#include "conform/case.hpp"
+#include "conform/cases/nmt/error_control.hpp"
+
+namespace edsc::conform {
+namespace error_control_area {
+namespace {
+
+using canopen::NodeId;
+
+/// A heartbeat producer that the test simulates, and the entry of 1016h that monitors it.
+class Producer {
+ public:
+  explicit Producer(Dut& dut) : dut_{dut} {
+    const std::optional<Value>& limit = dut.need_writable(consumer_time, 1).high_limit;
+    node_ = free_node_id(dut);
+    if (limit && limit->bits < value(milliseconds{0xFFFF})) {
+      dut.not_applicable(fmt::format("the EDS limits 1016h:01 to {:X}h, which is too low for a node-ID", limit->bits));
+    }
+  }
+
+  void watch(Duration time, std::uint8_t sub_index = 1) const { dut_.write(consumer_time, sub_index, value(time)); }
+
+  [[nodiscard]] std::uint64_t value(Duration time) const {
+    return std::uint64_t{node_.value()} << 16 | time.count() / 1000;
+  }
+
+  /// Sends one heartbeat and returns the time.
+  std::uint64_t beat(NmtState state = NmtState::operational) const {
+    dut_.send(0x700U + node_.value(), Bytes{static_cast<std::uint8_t>(state)});
+    return dut_.now();
+  }
+
+  /// Sends `count` heartbeats with this period and returns the time of the last one.
+  std::uint64_t beats(Duration period, unsigned count) const {
+    std::uint64_t last = beat();
+    for (unsigned i = 1; i < count; ++i) {
+      dut_.pass_time(period);
+      last = beat();
+    }
+    return last;
+  }
+
+ private:
+  Dut& dut_;
+  NodeId node_;
+};
+
+constexpr Duration watched = milliseconds{200};
+
+/// Expects the heartbeat event: an EMCY with 8130h one consumer heartbeat time after the last heartbeat.
+void expect_lost(Dut& dut, const Dut::Match& event, Dut::Mark since, std::uint64_t last) {
+  const auto seen = dut.wait_for(event, watched * 3, since);
+  dut.expect(seen.has_value(), "an EMCY with code 8130h after the consumer heartbeat time of 200 ms", "none");
+  dut.expect_time(seen->at - last, watched.count(), watched.count() * 5 / 4, "the EMCY after the last heartbeat");
+}
+
+// ---- heartbeat producer ----
+
+void write_heartbeat(Dut& dut) {
+  dut.need_writable(producer_time);
+  for (const std::uint64_t time : {500U, 1000U, 0U}) {
+    dut.write(producer_time, 0, time);
+    const Bytes read = dut.read(producer_time);
+    dut.expect_equal(read.size(), 2, "bytes of 1017h:00");
+    dut.expect_equal(number_of(read), time, "1017h:00");
+  }
+}
+
+void count_heartbeats(Dut& dut) {
+  start_heartbeat(dut);
+  expect_heartbeats(dut, NmtState::pre_operational, beat, 20);
+}
+
+void stop_heartbeat(Dut& dut) {
+  start_heartbeat(dut);
+  dut.expect(!dut.collect(dut.heartbeat(), beat * 3).empty(), "a heartbeat every 100 ms", "none");
+  dut.write(producer_time, 0, 0);
+  expect_no_heartbeats(dut);
+}
+
+// ---- heartbeat consumer ----
+
+void duplicate_consumer(Dut& dut) {
+  dut.need_writable(consumer_time, 2);
+  const Producer producer{dut};
+  producer.watch(watched);
+  producer.watch(watched);
+  const std::uint64_t before = dut.read_number(consumer_time, 2);
+  dut.expect_equal(dut.read_number(consumer_time, 1), producer.value(watched), "1016h:01");
+  dut.expect_abort(dut.download(consumer_time, 2, producer.value(watched)), abort_rule::duplicate,
+                   "the node-ID of 1016h:01 written to 1016h:02");
+  dut.expect_equal(dut.read_number(consumer_time, 2), before, "1016h:02 afterwards");
+}
+
+void heartbeats_in_time(Dut& dut) {
+  const Producer producer{dut};
+  const Dut::Match event = error_control_event(dut);
+  const Dut::Mark since = dut.mark();
+  producer.watch(watched);
+  dut.pass_time(watched * 3);
+  expect_not_lost(dut, event, since, "before the first heartbeat");
+  const std::uint64_t last = producer.beats(watched / 2, 12);
+  expect_not_lost(dut, event, since, "while heartbeats are sent every 100 ms");
+  expect_lost(dut, event, since, last);
+}
+
+void heartbeats_too_late(Dut& dut) {
+  const Producer producer{dut};
+  const Dut::Match event = error_control_event(dut);
+  producer.watch(watched);
+  for (unsigned i = 0; i < 2; ++i) {
+    const Dut::Mark since = dut.mark();
+    expect_lost(dut, event, since, producer.beat());
+    dut.pass_time(watched * 2);
+    dut.expect_equal(dut.received_since(since, event).size(), 1, "EMCYs with code 8130h for one lost node");
+  }
+}
+
+void consumer_after_reset(Dut& dut) {
+  const Producer producer{dut};
+  const Dut::Match event = error_control_event(dut);
+  producer.watch(watched);
+  (void)producer.beats(watched / 2, 3);
+  Dut::Mark since = dut.mark();
+  dut.reset(NmtCommand::reset_node);
+  dut.pass_time(watched * 3);
+  const std::uint64_t started = dut.received_since(since, dut.boot_up()).back().at;
+  for (const SeenFrame& seen : dut.received_since(since, event)) {
+    dut.expect(seen.at < started, "no EMCY with code 8130h after a reset, before the first heartbeat", "one");
+  }
+  since = dut.mark();
+  producer.watch(watched);
+  dut.pass_time(watched * 3);
+  expect_not_lost(dut, event, since, "before the first heartbeat");
+  expect_lost(dut, event, since, producer.beat());
+}
+
+constexpr CaseRow heartbeat_rows[] = {
+    {"7.101", "1017h keeps the written values", "CiA 301, 7.5.2.20", Level::communication, Permission::none,
+     write_heartbeat},
+    {"7.102", "The device sends a heartbeat with the NMT state in each period of 1017h", "CiA 301, 7.2.8.3.2.2",
+     Level::communication, Permission::none, count_heartbeats},
+    {"7.103", "With 1017h = 0 the device sends no heartbeat", "CiA 301, 7.5.2.20", Level::communication,
+     Permission::none, stop_heartbeat},
+    {"7.104", "1016h refuses a second entry for the same node", "CiA 301, 7.5.2.19", Level::communication,
+     Permission::none, duplicate_consumer},
+    {"7.105", "A node whose heartbeats are in time is not reported as lost", "CiA 301, 7.2.8.2.2 and 7.5.2.19",
+     Level::communication, Permission::none, heartbeats_in_time},
+    {"7.106", "A node whose heartbeat is late is reported as lost after the time of 1016h",
+     "CiA 301, 7.2.8.2.2 and 7.5.2.19", Level::communication, Permission::none, heartbeats_too_late},
+    {"7.107", "After a reset a node is monitored from its first heartbeat on", "CiA 301, 7.2.8.2.2 and 7.5.2.19",
+     Level::communication, Permission::none, consumer_after_reset},
+};
+
+}  // namespace
+}  // namespace error_control_area
+
+std::span<const CaseRow> heartbeat_cases() { return error_control_area::heartbeat_rows; }
+
+}  // namespace edsc::conform

@@ -1,0 +1,234 @@
+/// Mappings that the device must refuse, and objects that it must accept (CiA 301, 7.5.2.36 and 7.5.2.38).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <canopen/pdo/pdo_mapping.hpp>
+#include <functional>
+#include <iterator>
+
+#include "conform/case.hpp"
+#include "conform/cases/pdo/remapping.hpp"
+
+namespace edsc::conform {
+namespace pdo_area {
+namespace {
+
+using Code = canopen::AbortCode;
+
+/// An object that does not exist or cannot be mapped: step 3 of the procedure.
+constexpr AbortRule wrong_object{{Code::not_mappable, Code::no_object}, {}};
+/// A mapping that is not possible: step 4 of the procedure.
+constexpr AbortRule wrong_mapping{{Code::pdo_length, Code::no_object, Code::not_mappable},
+                                  {Code::unsupported_access, Code::general}};
+/// A number of objects that sub-index 0 cannot hold may also be an invalid value.
+constexpr AbortRule wrong_count{{Code::pdo_length, Code::no_object, Code::not_mappable},
+                                {Code::unsupported_access, Code::invalid_value, Code::value_too_high}};
+
+/// Runs a check for each valid PDO that maps objects; enables it if necessary. Not applicable without one.
+template <class Check>
+void for_each_active(Dut& dut, Check check) {
+  std::vector<Remapping> all = all_remappings(dut);
+  bool any = false;
+  for (Remapping& remapping : all) {
+    if (remapping.found_count() == 0 || !remapping.can_be_valid() || remapping.found_count() > remapping.capacity())
+      continue;
+    const std::vector<Mapped> mapping = new_mapping(dut, remapping);
+    if (mapping.empty()) continue;
+    any = true;
+    if (!remapping.is_valid()) remapping.enable();
+    check(remapping, mapping);
+    remapping.put_back();
+  }
+  if (!any) dut.not_applicable("no PDO whose mapping is rw maps an object and has a usable CAN-ID");
+}
+
+/// The fewest objects with more than 64 bits in total; repeats objects if there are not enough. Empty if the PDO cannot
+/// map that number.
+std::vector<Mapped> too_long_mapping(const Dut& dut, const Remapping& remapping) {
+  std::vector<Mapped> objects = mappable_objects(dut, remapping.pdo().direction);
+  std::ranges::stable_sort(objects, std::ranges::greater{}, &Mapped::bits);
+  std::vector<Mapped> mapping;
+  for (std::size_t i = 0; !objects.empty() && bits_of(mapping) <= 64; ++i) {
+    if (mapping.size() == remapping.capacity()) return {};
+    mapping.push_back(objects[i % objects.size()]);
+  }
+  return mapping;
+}
+
+/// A random selection, different for each PDO and the same in each run with the same seed.
+std::vector<Mapped> some_of(Dut& dut, const std::vector<Mapped>& objects) {
+  constexpr std::size_t most = 4;
+  std::vector<Mapped> chosen;
+  std::ranges::sample(objects, std::back_inserter(chosen), most, dut.random());
+  return chosen;
+}
+
+void takes_objects(Dut& dut, PdoDirection direction, const std::vector<Mapped>& objects, const char* none) {
+  std::vector<Remapping> all = remappings(dut, {direction});
+  if (objects.empty()) dut.not_applicable(none);
+  for (Remapping& remapping : all) {
+    for (const Mapped& mapped : some_of(dut, objects)) remapping.remap({mapped});
+    remapping.put_back();
+  }
+}
+
+/// The device refuses the entry or, at the latest, the mapping as a whole.
+void refuses_objects(Dut& dut, PdoDirection direction, const std::vector<Mapped>& objects, const char* none) {
+  std::vector<Remapping> all = remappings(dut, {direction});
+  if (objects.empty()) dut.not_applicable(none);
+  for (Remapping& remapping : all) {
+    for (const Mapped& mapped : some_of(dut, objects)) {
+      remapping.begin();
+      const SdoOutcome outcome = remapping.map(1, mapped);
+      if (outcome.done()) {
+        dut.expect_abort(remapping.set_count(1), wrong_mapping,
+                         remapping.mapping_text(1, mapped) + ", then 1 to " + remapping.entry_name(0));
+      } else {
+        dut.expect_abort(outcome, wrong_object, remapping.mapping_text(1, mapped));
+      }
+      remapping.expect_unchanged(0, 0);
+    }
+    remapping.put_back();
+  }
+}
+
+std::vector<Mapped> with_access(const Dut& dut, canopen::Access first, canopen::Access second) {
+  return objects_where(
+      dut, [=](const Entry& entry) { return entry.pdo_mapping && (entry.access == first || entry.access == second); });
+}
+
+std::vector<Mapped> outputs(const Dut& dut) { return with_access(dut, canopen::Access::rww, canopen::Access::wo); }
+std::vector<Mapped> inputs(const Dut& dut) { return with_access(dut, canopen::Access::rwr, canopen::Access::ro); }
+std::vector<Mapped> unmappable(const Dut& dut) {
+  return objects_where(dut, [](const Entry& entry) { return !entry.pdo_mapping; });
+}
+
+constexpr const char* no_output = "the EDS has no object with PDOMapping=1 that is rww or wo";
+constexpr const char* no_input = "the EDS has no object with PDOMapping=1 that is rwr or ro";
+constexpr const char* no_unmappable = "the EDS has no object with PDOMapping=0";
+
+// ---- without the procedure ----
+
+void refuses_entry_of_active_mapping(Dut& dut) {
+  for_each_active(dut, [&](Remapping& remapping, const std::vector<Mapped>& mapping) {
+    const SdoOutcome outcome = remapping.map(1, mapping.front());
+    dut.expect_abort(outcome, abort_rule::mapping_in_use,
+                     remapping.mapping_text(1, mapping.front()) + " while the PDO is valid");
+    remapping.expect_unchanged(1, remapping.found().front().value());
+  });
+}
+
+void refuses_mapping_of_valid_pdo(Dut& dut) {
+  for_each_active(dut, [&](Remapping& remapping, const std::vector<Mapped>& mapping) {
+    SdoOutcome outcome = remapping.set_count(0);
+    std::string what = "0 written to " + remapping.entry_name(0);
+    for (std::uint8_t i = 1; outcome.done() && i <= mapping.size(); ++i) {
+      outcome = remapping.map(i, mapping[i - 1U]);
+      what = remapping.mapping_text(i, mapping[i - 1U]);
+    }
+    if (outcome.done()) {
+      outcome = remapping.set_count(static_cast<std::uint8_t>(mapping.size()));
+      what = fmt::format("{} written to {}", mapping.size(), remapping.entry_name(0));
+    }
+    dut.expect_abort(outcome, abort_rule::mapping_in_use, what + " while the PDO is valid");
+  });
+}
+
+// ---- impossible mappings ----
+
+void refuses_too_many_objects(Dut& dut) {
+  for (Remapping& remapping : all_remappings(dut)) {
+    remapping.begin();
+    const auto count = static_cast<std::uint8_t>(remapping.capacity() + 1);
+    dut.expect_abort(
+        remapping.set_count(count), wrong_count,
+        fmt::format("{} written to {}, which has {} entries", count, remapping.entry_name(0), remapping.capacity()));
+    remapping.expect_unchanged(0, 0);
+    remapping.put_back();
+  }
+}
+
+void refuses_too_many_bits(Dut& dut) {
+  std::string reason = "the EDS does not allow a mapping of more than 64 bits";
+  bool any = false;
+  for (Remapping& remapping : all_remappings(dut)) {
+    const std::vector<Mapped> mapping = too_long_mapping(dut, remapping);
+    if (mapping.empty()) continue;
+    remapping.begin();
+    std::uint8_t count = 0;
+    SdoOutcome outcome;
+    while (outcome.done() && count < mapping.size()) {
+      outcome = remapping.map(static_cast<std::uint8_t>(count + 1), mapping[count]);
+      ++count;
+    }
+    const bool is_again = std::ranges::count(mapping, mapping[count - 1U]) > 1;
+    if (!outcome.done() && count < mapping.size() && is_again) {
+      reason = fmt::format("{} does not map {} twice", pdo_label(remapping.pdo()), objects_text({mapping[count - 1U]}));
+    } else {
+      dut.expect(outcome.done() || count == mapping.size(), remapping.mapping_text(count, mapping[count - 1U]),
+                 outcome_text(outcome));
+      if (outcome.done()) outcome = remapping.set_count(count);
+      dut.expect_abort(outcome, wrong_mapping,
+                       fmt::format("{} with {} bits", pdo_label(remapping.pdo()), bits_of(mapping)));
+      remapping.expect_unchanged(0, 0);
+      any = true;
+    }
+    remapping.put_back();
+  }
+  if (!any) dut.not_applicable(reason);
+}
+
+// ---- which objects ----
+
+void takes_output_in_rpdo(Dut& dut) { takes_objects(dut, PdoDirection::receive, outputs(dut), no_output); }
+void refuses_input_in_rpdo(Dut& dut) { refuses_objects(dut, PdoDirection::receive, inputs(dut), no_input); }
+void refuses_unmappable_in_rpdo(Dut& dut) {
+  refuses_objects(dut, PdoDirection::receive, unmappable(dut), no_unmappable);
+}
+void takes_input_in_tpdo(Dut& dut) { takes_objects(dut, PdoDirection::transmit, inputs(dut), no_input); }
+void refuses_output_in_tpdo(Dut& dut) { refuses_objects(dut, PdoDirection::transmit, outputs(dut), no_output); }
+void refuses_unmappable_in_tpdo(Dut& dut) {
+  refuses_objects(dut, PdoDirection::transmit, unmappable(dut), no_unmappable);
+}
+
+void takes_dummy_in_rpdo(Dut& dut) {
+  std::vector<Mapped> dummies;
+  const unsigned granularity = dut.sheet().information.capabilities.granularity.value_or(8);
+  for (const std::uint16_t index : dut.sheet().dummies) {
+    if (index >= std::size(canopen::dummy_bits)) continue;
+    const std::uint8_t bits = canopen::dummy_bits[index];
+    if (bits != 0 && (granularity == 0 || bits % granularity == 0)) dummies.push_back({index, 0, bits});
+  }
+  takes_objects(dut, PdoDirection::receive, dummies, "the EDS has no dummy object in [DummyUsage]");
+}
+
+constexpr CaseRow refused_mapping_rows[] = {
+    {"3.23", "A mapping entry is not changed while the PDO is valid and maps objects", "CiA 301, 7.5.2.36", with_writes,
+     no_permission, refuses_entry_of_active_mapping},
+    {"3.24", "A mapping is not changed while the PDO is valid", "CiA 301, 7.5.2.36", with_writes, no_permission,
+     refuses_mapping_of_valid_pdo},
+    {"3.25", "More objects than the mapping parameter has entries are refused", "CiA 301, 7.5.2.36", with_writes,
+     no_permission, refuses_too_many_objects},
+    {"3.26", "A mapping of more than 64 bits is refused", "CiA 301, 7.5.2.36", with_writes, no_permission,
+     refuses_too_many_bits},
+    {"3.27", "An RPDO can map an object that is rww or wo", "CiA 301, 7.5.2.36", with_writes, no_permission,
+     takes_output_in_rpdo},
+    {"3.28", "An RPDO does not map an object that is rwr or ro", "CiA 301, 7.5.2.36", with_writes, no_permission,
+     refuses_input_in_rpdo},
+    {"3.29", "An RPDO does not map an object with PDOMapping=0", "CiA 301, 7.5.2.36", with_writes, no_permission,
+     refuses_unmappable_in_rpdo},
+    {"3.30", "A TPDO can map an object that is rwr or ro", "CiA 301, 7.5.2.38", with_writes, no_permission,
+     takes_input_in_tpdo},
+    {"3.31", "A TPDO does not map an object that is rww or wo", "CiA 301, 7.5.2.38", with_writes, no_permission,
+     refuses_output_in_tpdo},
+    {"3.32", "A TPDO does not map an object with PDOMapping=0", "CiA 301, 7.5.2.38", with_writes, no_permission,
+     refuses_unmappable_in_tpdo},
+    {"3.33", "An RPDO can map a dummy object", "CiA 301, 7.4.7.1", with_writes, no_permission, takes_dummy_in_rpdo},
+};
+
+}  // namespace
+}  // namespace pdo_area
+
+std::span<const CaseRow> refused_mapping_cases() { return pdo_area::refused_mapping_rows; }
+
+}  // namespace edsc::conform

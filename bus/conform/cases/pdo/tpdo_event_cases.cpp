@@ -1,0 +1,196 @@
+/// TPDOs in Operational that follow a remote frame, an event or the event timer (CiA 301, 7.2.2.2 and 7.5.2.37).
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "conform/case.hpp"
+#include "conform/cases/pdo/tested_tpdos.hpp"
+
+namespace edsc::conform {
+namespace pdo_area {
+namespace {
+
+// ---- remote frames ----
+
+/// Whether node guarding shows that the bus transmits remote frames.
+bool answers_node_guarding(Dut& dut) {
+  if (!dut.has(0x100C) || (dut.has(0x1017) && dut.read_number(0x1017) != 0)) return false;
+  const Dut::Mark since = dut.mark();
+  dut.send_remote(0x700U + dut.node().value(), 1);
+  return dut.wait_for(dut.error_control(), to_answer, since).has_value();
+}
+
+SeenFrame ask(Dut& dut, const Tpdo& tpdo, bool bus_is_known) {
+  const Dut::Mark since = dut.mark();
+  dut.send(make_remote_frame(tpdo.cob_id, tpdo.size()));
+  if (dut.wait_for(tpdo.frames(), to_answer, since)) {
+    dut.pass_time(silence);
+    const std::vector<SeenFrame> all = dut.received_since(since, tpdo.frames());
+    dut.expect(all.size() == 1, fmt::format("one {} after a remote frame", tpdo.name()), frames_text(all));
+    return all.front();
+  }
+  if (!bus_is_known && !dut.simulated() && !answers_node_guarding(dut)) {
+    dut.inconclusive(tpdo.name() +
+                     " does not answer a remote frame, and it is unknown whether the bus transmits remote frames");
+  }
+  dut.fail(tpdo.name() + " after a remote frame", fmt::format("no frame within {} ms", to_answer.count() / 1000));
+}
+
+/// With bit 30 of the COB-ID set, a remote frame is not answered.
+void expect_no_answer_where_not_allowed(Dut& dut, const Tpdo& tpdo, Transmission wanted) {
+  wanted.remote_frames = false;
+  if (configure(dut, tpdo, wanted)) return;
+  settle(dut, tpdo);
+  if (changes_by_itself(dut, tpdo)) return;
+  dut.send(make_remote_frame(tpdo.cob_id, tpdo.size()));
+  expect_none(dut, tpdo, dut.collect(tpdo.frames(), silence), "after a remote frame that bit 30 of its COB-ID forbids");
+}
+
+/// Type 252: the TPDO has the values at the last SYNC.
+void expect_sample_of_sync(Dut& dut, const Tpdo& tpdo, bool bus_is_known) {
+  SyncSource sync{dut};
+  Event event{dut, tpdo.mapping};
+  Image at_sync = read_image(dut, tpdo.mapping);
+  expect_none(dut, tpdo, sync.send_and_collect(tpdo.frames()), "at a SYNC, without a remote frame");
+  const Image after_sync = read_image(dut, tpdo.mapping);
+  at_sync.known &= ~(at_sync.bits ^ after_sync.bits);
+  (void)event.apply();
+  expect_data(dut, tpdo, ask(dut, tpdo, bus_is_known), at_sync);
+}
+
+// ---- events ----
+
+/// Expects that an event sends the TPDO once, with the new values.
+void expect_event(Dut& dut, const Tpdo& tpdo, Event& event, bool counts) {
+  const Dut::Mark since = dut.mark();
+  if (!event.apply()) no_stimulus(dut, tpdo);
+  const std::string when = fmt::format("after {} has changed", event.object());
+  const SeenFrame seen = expect_frame(dut, tpdo, since, to_answer, when);
+  if (!counts) return;
+  expect_present_data(dut, tpdo, seen, read_image(dut, tpdo.mapping));
+  dut.pass_time(silence);
+  const std::vector<SeenFrame> all = dut.received_since(since, tpdo.frames());
+  dut.expect(all.size() == 1, fmt::format("one {} {}", tpdo.name(), when), frames_text(all));
+}
+
+constexpr std::uint16_t inhibit_time = 1000;  ///< 100 ms
+constexpr std::uint32_t inhibit_us = 100'000;
+
+/// Expects the inhibit time between two frames, and that the second event is not lost.
+void expect_inhibit_time(Dut& dut, const Tpdo& tpdo, Event& event, bool counts) {
+  const Dut::Mark since = dut.mark();
+  if (!event.apply()) no_stimulus(dut, tpdo);
+  (void)expect_frame(dut, tpdo, since, to_answer, "after an event");
+  const Dut::Mark after_first = dut.mark();
+  if (!event.apply()) no_stimulus(dut, tpdo);
+  const Duration longest = to_answer + Duration{inhibit_us};
+  const SeenFrame last = expect_frame(dut, tpdo, after_first, longest, "after an event within the inhibit time");
+  const std::vector<SeenFrame> all = dut.received_since(since, tpdo.frames());
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    const std::uint64_t time = all[i].at - all[i - 1].at;
+    dut.expect_time(time, inhibit_us - wire_us, std::max<std::uint64_t>(time, longest.count()),
+                    fmt::format("time between two {} with an inhibit time", tpdo.name()));
+  }
+  if (counts) expect_present_data(dut, tpdo, last, read_image(dut, tpdo.mapping));
+}
+
+/// The event timer is the maximum time between two frames; without a change also the minimum time.
+void expect_period(Dut& dut, const Tpdo& tpdo, const std::vector<SeenFrame>& frames, std::uint64_t period_us) {
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    const bool may_be_event = i == 1 || !(frames[i].frame == frames[i - 1].frame);
+    dut.expect_time(frames[i].at - frames[i - 1].at, may_be_event ? 0 : period_us - wire_us, period_us + wire_us,
+                    fmt::format("time between two {} with an event timer of {} ms", tpdo.name(), period_us / 1000));
+  }
+}
+
+void sends_on_remote_frame(Dut& dut) {
+  bool bus_is_known = false;
+  std::vector<Transmission> transmissions{{.type = remote, .remote_frames = true}, {.remote_frames = true}};
+  if (dut.has(0x1005) && dut.allowed(Permission::outputs)) {
+    transmissions.push_back({.type = remote_synchronous, .remote_frames = true});
+  }
+  for_each_tpdo(dut, transmissions, [&](const Tpdo& tpdo, const Transmission& wanted) {
+    const bool only_when_asked = wanted.type != event_driven;
+    if (!only_when_asked) settle(dut, tpdo);
+    const bool changes = changes_by_itself(dut, tpdo);
+    dut.expect(!(changes && only_when_asked),
+               fmt::format("no {} of type {} without a remote frame", tpdo.name(), wanted.type), "a frame without one");
+    if (changes) return;
+    if (wanted.type == remote_synchronous) return expect_sample_of_sync(dut, tpdo, bus_is_known);
+    for (int i = 0; i < 2; ++i) {
+      const Image before = read_image(dut, tpdo.mapping);
+      expect_present_data(dut, tpdo, ask(dut, tpdo, bus_is_known), before);
+      bus_is_known = true;
+    }
+    if (!only_when_asked) expect_no_answer_where_not_allowed(dut, tpdo, wanted);
+  });
+}
+
+void sends_on_event(Dut& dut) {
+  std::optional<Tpdo> without_stimulus;
+  bool any = false;
+  for_each_tpdo(dut, {Transmission{}}, [&](const Tpdo& tpdo, const Transmission&) {
+    settle(dut, tpdo);
+    const bool changes = changes_by_itself(dut, tpdo);
+    Event event{dut, tpdo.mapping};
+    if (!find_event(dut, tpdo, event,
+                    [&](Dut::Mark since) { return dut.wait_for(tpdo.frames(), to_answer, since).has_value(); })) {
+      without_stimulus = tpdo;
+      return;
+    }
+    settle(dut, tpdo);
+    expect_event(dut, tpdo, event, !changes);
+    expect_event(dut, tpdo, event, !changes);
+    any = true;
+    if (configure(dut, tpdo, {.inhibit_time = inhibit_time})) return;
+    settle(dut, tpdo);
+    dut.pass_time(Duration{inhibit_us});
+    expect_inhibit_time(dut, tpdo, event, !changes);
+  });
+  if (!any && without_stimulus) no_stimulus(dut, *without_stimulus);
+}
+
+void sends_by_event_timer(Dut& dut) {
+  Tested tested{dut};
+  for (const Tpdo& tpdo : tpdos(dut)) {
+    dut.enter(NmtState::pre_operational);
+    const std::uint16_t timer = timer_of(dut, tpdo);
+    if (!tested.configured(tpdo, {.event_timer = timer})) continue;
+    const std::uint32_t period_us = timer * 1000U;
+    const Dut::Mark since = dut.mark();
+    dut.enter(NmtState::operational);
+    const Image before = read_image(dut, tpdo.mapping);
+    constexpr unsigned periods = 5;
+    dut.pass_time(Duration{period_us * periods + period_us / 2});
+    const std::vector<SeenFrame> frames = dut.received_since(since, tpdo.frames());
+    dut.expect(frames.size() >= periods,
+               fmt::format("{} {} times in {} periods of its event timer", tpdo.name(), periods, periods),
+               frames_text(frames));
+    expect_period(dut, tpdo, frames, period_us);
+    expect_present_data(dut, tpdo, frames.back(), before);
+    if (within_limits(dut, tpdo.index, timer_parameter, 0) == 0) {
+      dut.write(tpdo.index, timer_parameter, 0);
+      settle(dut, tpdo);
+      (void)changes_by_itself(dut, tpdo);
+    }
+    dut.enter(NmtState::pre_operational);
+    put_back(dut, tpdo);
+  }
+  tested.need_one();
+}
+
+constexpr CaseRow tpdo_event_rows[] = {
+    {"3.3", "In Operational a remote frame is answered by its TPDO", "CiA 301, 7.2.2.3", with_writes, no_permission,
+     sends_on_remote_frame},
+    {"3.4", "In Operational a TPDO is sent once for each event, but not within its inhibit time", "CiA 301, 7.5.2.37",
+     with_writes, no_permission, sends_on_event},
+    {"3.5", "In Operational a TPDO is sent when its event timer elapses", "CiA 301, 7.5.2.37", with_writes,
+     no_permission, sends_by_event_timer},
+};
+
+}  // namespace
+}  // namespace pdo_area
+
+std::span<const CaseRow> tpdo_event_cases() { return pdo_area::tpdo_event_rows; }
+
+}  // namespace edsc::conform

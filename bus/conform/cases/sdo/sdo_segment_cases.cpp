@@ -1,0 +1,76 @@
+/// Segmented transfer (CiA 301, 7.2.4.3.4 to 7.2.4.3.7).
+#include <canopen/od/access.hpp>
+
+#include "conform/case.hpp"
+#include "conform/cases/sdo/sdo_area.hpp"
+#include "conform/cases/sdo/sdo_frames.hpp"
+
+namespace edsc::conform {
+namespace sdo_area {
+namespace {
+
+/// The server may upload a value of four bytes expedited or in a segment.
+void read_short_value_segmented(Dut& dut) {
+  dut.need(device_type);
+  const Bytes value = upload_by_segments(dut, device_type, 0);
+  dut.expect(value == dut.read(device_type), "the same 4 bytes as before", hex_bytes(value));
+}
+
+void read_long_value(Dut& dut) {
+  const LiveEntry entry = need_long_entry(dut);
+  expect_length(dut, entry, upload_by_segments(dut, entry.index, entry.sub_index).size());
+}
+
+void wrong_toggle_bit(Dut& dut) {
+  const LiveEntry entry = need_long_entry(dut);
+  (void)initiate_upload(dut, entry.index, entry.sub_index);
+  dut.expect_abort(dut.exchange(sdo_frame(0x60 | sdo::toggle)), abort_rule::toggle_bit,
+                   "the first segment of " + title(entry) + " requested with toggle bit 1");
+  expect_served(dut);
+}
+
+void read_segmented(Dut& dut) {
+  const LiveEntry first = need_long_entry(dut);
+  for (const LiveEntry& entry : draw(dut, long_entries(dut))) {
+    if (is_segmented(dut, entry))
+      expect_length(dut, entry, upload_by_segments(dut, entry.index, entry.sub_index).size());
+  }
+  const Bytes value = upload_by_segments(dut, first.index, first.sub_index);
+  const bool constant = first.entry->access == canopen::Access::constant;
+  dut.expect(!constant || value == dut.read(first.index, first.sub_index), "the same bytes of " + title(first),
+             hex_bytes(value));
+}
+
+/// A wrong toggle bit is refused, and the value is not stored.
+void write_segmented(Dut& dut, std::uint16_t index) {
+  const std::uint64_t value = other_time(dut, index);
+  const std::uint64_t before = dut.read_number(index);
+  const Bytes bytes = dut.bytes_of(index, 0, value);
+  dut.expect_abort(download_with_wrong_toggle(dut, index, 0, bytes), abort_rule::toggle_bit,
+                   "a first segment with toggle bit 1");
+  dut.expect_equal(dut.read_number(index), before, label(index, 0) + " after a wrong toggle bit");
+  download_by_segments(dut, index, 0, bytes);
+  dut.expect_equal(dut.read_number(index), value, label(index, 0));
+}
+
+constexpr CaseRow sdo_segment_rows[] = {
+    {"2.13", "1000h:00 is read by a client that accepts segments", "CiA 301, 7.2.4.3.5", Level::read, none,
+     read_short_value_segmented},
+    {"2.14", "100Ch:00 is written in a segment", "CiA 301, 7.2.4.3.4", Level::communication, none,
+     with_index<write_segmented, guard_time>},
+    {"2.15", "1017h:00 is written in a segment", "CiA 301, 7.2.4.3.4", Level::communication, none,
+     with_index<write_segmented, heartbeat_time>},
+    {"2.16", "A value of more than four bytes is uploaded in segments", "CiA 301, 7.2.4.3.6", Level::read, none,
+     read_long_value},
+    {"2.17", "A segment requested with the wrong toggle bit is refused", "CiA 301, 7.2.4.3.7", Level::read, none,
+     wrong_toggle_bit},
+    {"2.18", "Randomly selected long values are completely uploaded in segments", "CiA 301, 7.2.4.3.7", Level::read,
+     none, read_segmented},
+};
+
+}  // namespace
+}  // namespace sdo_area
+
+std::span<const CaseRow> sdo_segment_cases() { return sdo_area::sdo_segment_rows; }
+
+}  // namespace edsc::conform

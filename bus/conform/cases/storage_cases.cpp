@@ -1,0 +1,152 @@
+/// Area 8: stored parameters (1010h, 1011h, 1020h; CiA 301, 7.5.2.13, 7.5.2.14 and 7.5.2.23), and the table of the
+/// area.
+#include <fmt/format.h>
+
+#include "conform/cases/restricted_can_ids.hpp"
+#include "conform/cases/shared/setup.hpp"
+#include "conform/cases/shared/storage_setup.hpp"
+
+namespace edsc::conform {
+namespace storage_area {
+namespace {
+
+using canopen::NmtCommand;
+using canopen::NmtState;
+
+constexpr std::uint16_t store_parameters = 0x1010, restore_parameters = 0x1011, verify_configuration = 0x1020;
+constexpr std::uint8_t date = 1, time = 2;
+
+/// A parameter with a value that is neither the stored one nor the default value.
+struct Changed {
+  Parameter parameter;
+  std::uint64_t before = 0, value = 0;
+};
+
+Changed change_parameter(Dut& dut) {
+  const std::optional<Parameter> parameter = harmless_parameter(dut);
+  if (!parameter)
+    dut.not_applicable("the EDS has no parameter of 1000h to 1FFFh that can be changed without an effect");
+  const std::uint64_t before = dut.read_number(parameter->index, parameter->sub_index);
+  const std::uint64_t value = other_value(dut, *parameter);
+  dut.write(parameter->index, parameter->sub_index, value);
+  return {*parameter, before, value};
+}
+
+void expect_value(Dut& dut, const Changed& changed, std::uint64_t value, const std::string& when) {
+  dut.expect_equal(dut.read_number(changed.parameter.index, changed.parameter.sub_index), value,
+                   changed.parameter.name() + " " + when);
+}
+
+/// A wrong signature is refused, and nothing is stored.
+template <std::uint8_t sub_index>
+void wrong_save(Dut& dut) {
+  with_storage(dut, sub_index, [&dut](const Storage& storage) {
+    const Changed changed = change_parameter(dut);
+    storage.expect_refused(store_parameters);
+    storage.reset();
+    expect_value(dut, changed, changed.before, "after a wrong signature and a reset (not stored)");
+  });
+}
+
+/// After "save" the value remains after a reset, and after a power cycle if a stimulus can cause one.
+template <std::uint8_t sub_index>
+void save(Dut& dut) {
+  with_storage(dut, sub_index, [&dut](const Storage& storage) {
+    const Changed changed = change_parameter(dut);
+    storage.save();
+    storage.reset();
+    expect_value(dut, changed, changed.value, "after \"save\" and a reset");
+    const Dut::Mark since = dut.mark();
+    if (!dut.stimuli().power_cycle()) return;
+    dut.expect(dut.wait_for(dut.boot_up(), milliseconds{5000}, since).has_value(), "a boot-up message after power-on",
+               "none");
+    dut.pass_time(milliseconds{50});
+    expect_value(dut, changed, changed.value, "after \"save\" and power-on");
+  });
+}
+
+/// A wrong signature is refused, and the stored value remains.
+template <std::uint8_t sub_index>
+void wrong_load(Dut& dut) {
+  need_command(dut, restore_parameters, sub_index);
+  with_storage(dut, sub_index, [&dut](const Storage& storage) {
+    const Changed changed = change_parameter(dut);
+    storage.save();
+    storage.expect_refused(restore_parameters);
+    storage.reset();
+    expect_value(dut, changed, changed.value, "after a wrong signature and a reset (still stored)");
+  });
+}
+
+/// "load" restores the default values at the next reset.
+template <std::uint8_t sub_index>
+void load(Dut& dut) {
+  need_command(dut, restore_parameters, sub_index);
+  with_storage(dut, sub_index, [&dut](const Storage& storage) {
+    const Changed changed = change_parameter(dut);
+    const Parameter& parameter = changed.parameter;
+    storage.save();
+    storage.load();
+    if (dut.read_number(parameter.index, parameter.sub_index) != changed.value) {
+      dut.warn(parameter.name() + " changes at \"load\"; in CiA 301 the default values become valid at the next reset");
+    }
+    storage.reset();
+    if (const auto by_default = dut.default_of(parameter.index, parameter.sub_index)) {
+      return expect_value(dut, changed, *by_default, "after \"load\" and a reset (default value)");
+    }
+    const std::uint64_t read = dut.read_number(parameter.index, parameter.sub_index);
+    dut.expect(read != changed.value, parameter.name() + " after \"load\" and a reset: not the stored value",
+               fmt::format("{:X}h", read));
+  });
+}
+
+/// 1020h is stored with the configuration, and set to 0 when the configuration changes.
+void verify(Dut& dut) {
+  dut.need_writable(verify_configuration, date);
+  dut.need_writable(verify_configuration, time);
+  with_storage(dut, Storage::all, [&dut](const Storage& storage) {
+    const auto expect_both = [&dut](std::uint64_t first, std::uint64_t second, const std::string& when) {
+      dut.expect_equal(dut.read_number(verify_configuration, date), first, "1020h:01 " + when);
+      dut.expect_equal(dut.read_number(verify_configuration, time), second, "1020h:02 " + when);
+    };
+    constexpr std::uint64_t days = 15'000, milliseconds_of_day = 43'200'000;
+    dut.write(verify_configuration, date, days);
+    dut.write(verify_configuration, time, milliseconds_of_day);
+    storage.save();
+    storage.reset();
+    expect_both(days, milliseconds_of_day, "after \"save\" and a reset");
+    if (!harmless_parameter(dut)) return;
+    (void)change_parameter(dut);
+    expect_both(0, 0, "after a parameter has changed");
+  });
+}
+
+constexpr CaseRow rows[] = {
+    {"8.1", "1010h:01 refuses a signature other than \"save\" and stores nothing", "CiA 301, 7.5.2.13",
+     Level::communication, Permission::store, wrong_save<Storage::all>},
+    {"8.2", "\"save\" to 1010h:01 stores all parameters", "CiA 301, 7.5.2.13", Level::communication, Permission::store,
+     save<Storage::all>},
+    {"8.3", "1011h:01 refuses a signature other than \"load\" and keeps the stored values", "CiA 301, 7.5.2.14",
+     Level::communication, Permission::store, wrong_load<Storage::all>},
+    {"8.4", "\"load\" to 1011h:01 restores the default values at the next reset", "CiA 301, 7.5.2.14",
+     Level::communication, Permission::store, load<Storage::all>},
+    {"8.5", "1010h:02 refuses a signature other than \"save\" and stores nothing", "CiA 301, 7.5.2.13",
+     Level::communication, Permission::store, wrong_save<Storage::communication>},
+    {"8.6", "\"save\" to 1010h:02 stores the communication parameters", "CiA 301, 7.5.2.13", Level::communication,
+     Permission::store, save<Storage::communication>},
+    {"8.7", "1011h:02 refuses a signature other than \"load\" and keeps the stored values", "CiA 301, 7.5.2.14",
+     Level::communication, Permission::store, wrong_load<Storage::communication>},
+    {"8.8", "\"load\" to 1011h:02 restores the default values at the next reset communication", "CiA 301, 7.5.2.14",
+     Level::communication, Permission::store, load<Storage::communication>},
+    {"8.9", "1020h is stored, and set to 0 when a parameter changes", "CiA 301, 7.5.2.23", Level::communication,
+     Permission::store, verify},
+    {"8.10", "COB-IDs refuse the restricted CAN-IDs", "CiA 301, 7.3.5, table 41", Level::communication,
+     Permission::none, restricted_can_ids},
+};
+
+}  // namespace
+}  // namespace storage_area
+
+std::span<const CaseRow> storage_cases() { return storage_area::rows; }
+
+}  // namespace edsc::conform

@@ -1,0 +1,274 @@
+/// The device under test, as a case sees it: its EDS, its answers, the frames on the bus, and time.
+///
+/// A case is a function that reads like its clause:
+///
+///     void missing_sub_index(Dut& dut) {
+///       dut.expect_abort(dut.upload(0x1000, 1), abort_rule::no_sub_index);
+///     }
+///
+/// The same function runs on a real bus and in simulated time: time passes only while a member waits.
+#pragma once
+
+#include <canopen/base/clock.hpp>
+#include <canopen/can/cob_id.hpp>
+#include <canopen/can/frame.hpp>
+#include <canopen/can/node_id.hpp>
+#include <canopen/nmt/nmt.hpp>
+#include <canopen/sdo/sdo_protocol.hpp>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <random>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "conform/dut/abort_rule.hpp"
+#include "conform/dut/stimuli.hpp"
+#include "conform/sheet_findings.hpp"
+#include "conform/verdict.hpp"
+#include "device/device.hpp"
+#include "device/types/little_endian.hpp"
+#include "online/live_bus.hpp"
+#include "online/live_entry.hpp"
+#include "online/sdo_access.hpp"
+#include "values/append.hpp"
+
+namespace edsc::conform {
+
+using canopen::Duration;
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using Bytes = std::vector<std::uint8_t>;
+
+/// Ends a case with another verdict than passed. Only members of Dut throw it.
+struct CaseEnd {
+  Verdict verdict;
+  std::string reason;
+  std::string expected;
+  std::string got;
+  std::string rule{};                          ///< of `edsc check` that reports the cause in the EDS
+  std::vector<EntryAddress> failed_entries{};  ///< all of them, of a case that tries many
+};
+
+struct DutSettings {
+  canopen::NodeId node{1};
+  SdoSettings sdo;
+  Level level = Level::read;
+  Permission permissions = Permission::none;
+  bool simulated = false;  ///< time passes only while the test waits
+  /// By how much a time on the bus may differ, without the lag of the test itself. Not 0 in simulated time either: a
+  /// frame waits until the bus is free.
+  Duration tolerance = microseconds{500};
+  std::uint32_t seed = 1;
+  /// Findings of `edsc check` in the EDS; std::nullopt if it was not checked.
+  std::optional<SheetFindings> findings{};
+};
+
+class Dut {
+ public:
+  Dut(LiveBus& bus, const Device& sheet, Stimuli& stimuli, const DutSettings& settings);
+  ~Dut();
+  Dut(const Dut&) = delete;
+  Dut& operator=(const Dut&) = delete;
+
+  // ---- the EDS ----
+
+  [[nodiscard]] const Device& sheet() const { return sheet_; }
+  [[nodiscard]] canopen::NodeId node() const { return settings_.node; }
+  [[nodiscard]] const std::optional<SheetFindings>& findings() const { return settings_.findings; }
+  [[nodiscard]] bool has(std::uint16_t index, std::uint8_t sub_index = 0) const;
+  [[nodiscard]] const Entry* entry(std::uint16_t index, std::uint8_t sub_index = 0) const;
+  /// Whether the EDS has the entry, and its AccessType allows the access.
+  [[nodiscard]] bool is_readable(std::uint16_t index, std::uint8_t sub_index = 0) const;
+  [[nodiscard]] bool is_writable(std::uint16_t index, std::uint8_t sub_index = 0) const;
+  /// Returns the entry. The case is not applicable if the EDS does not have it.
+  const Entry& need(std::uint16_t index, std::uint8_t sub_index = 0);
+  /// Like `need`, but the entry must also be writable.
+  const Entry& need_writable(std::uint16_t index, std::uint8_t sub_index = 0);
+  /// The default value; std::nullopt if the EDS has none, and for a variable-length data type.
+  [[nodiscard]] std::optional<std::uint64_t> default_of(std::uint16_t index, std::uint8_t sub_index = 0) const;
+  /// All entries, ascending.
+  [[nodiscard]] std::vector<LiveEntry> entries() const;
+  /// TPDOs or RPDOs of the EDS that have a communication parameter (1800h or 1400h and above).
+  [[nodiscard]] std::vector<const Pdo*> pdos(PdoDirection direction) const;
+  [[nodiscard]] bool allowed(Permission permission) const { return includes(settings_.permissions, permission); }
+
+  // ---- SDO ----
+
+  /// Reads or writes an entry through the default SDO: expedited if four bytes suffice, else segmented or in blocks.
+  /// A write first reads the present value, which is put back when the case ends.
+  [[nodiscard]] SdoOutcome upload(std::uint16_t index, std::uint8_t sub_index = 0,
+                                  SdoTransfer transfer = SdoTransfer::segmented);
+  [[nodiscard]] SdoOutcome download(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> value,
+                                    SdoTransfer transfer = SdoTransfer::segmented);
+  /// Writes a number, little-endian, as 1 to 8 bytes: the size of the entry's data type in the EDS (4 without one).
+  [[nodiscard]] SdoOutcome download(std::uint16_t index, std::uint8_t sub_index, std::uint64_t number);
+  [[nodiscard]] Bytes bytes_of(std::uint16_t index, std::uint8_t sub_index, std::uint64_t number) const;
+
+  /// Returns the value. The case fails if the device does not answer with one.
+  Bytes read(std::uint16_t index, std::uint8_t sub_index = 0);
+  std::uint64_t read_number(std::uint16_t index, std::uint8_t sub_index = 0);
+  /// Writes. The case fails if the device does not confirm the write.
+  void write(std::uint16_t index, std::uint8_t sub_index, std::uint64_t number);
+  /// Writes without reading the present value: "save", "load", and what a case undoes itself.
+  [[nodiscard]] SdoOutcome command(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> value);
+  /// Reads an entry that the case then writes frame by frame. The value is put back when the case ends.
+  void remember(std::uint16_t index, std::uint8_t sub_index);
+
+  /// Sends one request to the default SDO server and returns its next frame; std::nullopt after the timeout. A transfer
+  /// that remains open is aborted by `end_transfer` or when the case ends.
+  std::optional<canopen::sdo::Data> exchange(const canopen::sdo::Data& request);
+  /// Sends a request without waiting for an answer, such as a segment of a block.
+  void request(const canopen::sdo::Data& request);
+  /// Returns the next frame of the server without a request, such as a segment of a block upload.
+  std::optional<canopen::sdo::Data> answer();
+  /// Aborts a transfer that `exchange` or `request` has left open.
+  void end_transfer(std::uint16_t index = 0, std::uint8_t sub_index = 0);
+
+  // ---- all values at once ----
+
+  using Key = std::pair<std::uint16_t, std::uint8_t>;
+  using Values = std::map<Key, Bytes>;
+
+  /// Returns the present values of the entries that "save" may store, and of 1020h.
+  [[nodiscard]] Values values();
+  /// Writes the values that differ now, also at 2000h and above, without recording the present ones. A value that
+  /// cannot be written adds a warning.
+  void restore(const Values& values);
+
+  // ---- frames ----
+
+  /// A position in the recorded frames.
+  using Mark = std::size_t;
+  using Match = std::function<bool(const canopen::Frame&)>;
+
+  [[nodiscard]] Mark mark() const { return frames_.size(); }
+  void send(const canopen::Frame& frame);
+  void send(std::uint32_t can_id, std::span<const std::uint8_t> data);
+  void send_remote(std::uint32_t can_id, std::uint8_t size);
+  /// Returns the first matching frame that was received since the mark. Waits for at most `span`.
+  std::optional<SeenFrame> wait_for(const Match& match, Duration span, Mark since);
+  std::optional<SeenFrame> wait_for(const Match& match, Duration span) { return wait_for(match, span, mark()); }
+  /// Waits for `span` and returns all matching frames that were received.
+  std::vector<SeenFrame> collect(const Match& match, Duration span);
+  void pass_time(Duration span) {
+    (void)collect([](const canopen::Frame&) { return false; }, span);
+  }
+  /// Frames received since the mark.
+  [[nodiscard]] std::vector<SeenFrame> received_since(Mark since, const Match& match) const;
+  [[nodiscard]] std::uint64_t now() const;  ///< microseconds since the run began
+
+  [[nodiscard]] static Match with_id(std::uint32_t can_id);
+  /// Matches data frames with the CAN-ID of a COB-ID as an object holds it. Ignores bit 31 (valid).
+  [[nodiscard]] static Match with_cob_id(std::uint32_t cob_id);
+  [[nodiscard]] Match error_control() const;  ///< 700h + node-ID
+  [[nodiscard]] Match boot_up() const;
+  [[nodiscard]] Match heartbeat() const;  ///< error control without boot-up messages
+
+  // ---- NMT ----
+
+  /// NMT to this node.
+  void nmt(canopen::NmtCommand command);
+  /// Sends reset node or reset communication and waits for the boot-up message. The case fails without it.
+  void reset(canopen::NmtCommand command);
+  /// Sends the command for the state and gives the device time to follow. Initialisation is a reset node.
+  void enter(canopen::NmtState state);
+  /// Enables a heartbeat of at most 100 ms, or selects node guarding. Returns false if the device has neither.
+  bool watch_state();
+  /// Returns the NMT state in the next error control message; std::nullopt without one. Call `watch_state` first.
+  std::optional<canopen::NmtState> state();
+  /// Fails if the next error control message has another state or is missing.
+  void expect_state(canopen::NmtState state);
+
+  // ---- verdicts ----
+
+  [[noreturn]] void fail(std::string expected, std::string got, std::vector<EntryAddress> failed_entries = {});
+  /// Fails because of an error in the EDS, which a rule of `edsc check` reports: no device could pass with this EDS.
+  [[noreturn]] void fail_by_sheet(std::string_view rule, std::string expected, std::string got);
+  void expect(bool condition, const std::string& expected, const std::string& got) {
+    if (!condition) fail(expected, got);
+  }
+  /// Expects an SDO abort with a code of the rule.
+  void expect_abort(const SdoOutcome& outcome, const AbortRule& rule, const std::string& what = {});
+  /// Expects an abort as the answer to `exchange`.
+  void expect_abort(const std::optional<canopen::sdo::Data>& answer, const AbortRule& rule,
+                    const std::string& what = {});
+  void expect_done(const SdoOutcome& outcome, const std::string& what);
+  void expect_equal(std::uint64_t got, std::uint64_t expected, const std::string& what);
+  /// Expects a measured time, in microseconds, within limits widened by the tolerance. Inconclusive if it misses the
+  /// limits by no more than the tolerance and the lag of the test together.
+  void expect_time(std::uint64_t measured, std::uint64_t low, std::uint64_t high, const std::string& what);
+  void warn(std::string text) { warnings_.push_back(std::move(text)); }
+  [[noreturn]] void not_applicable(std::string reason);
+  [[noreturn]] void inconclusive(std::string reason);
+  /// Ends the case as inconclusive if the run does not have the permission.
+  void need_permission(Permission permission);
+
+  /// By how much a time may differ: the tolerance of the run.
+  [[nodiscard]] Duration tolerance() const;
+  [[nodiscard]] bool simulated() const { return settings_.simulated; }
+
+  // ---- actions on the device that do not use the bus ----
+
+  [[nodiscard]] Stimuli& stimuli() { return stimuli_; }
+  std::mt19937& random() { return random_; }
+
+  // ---- for the runner ----
+
+  /// The result names what could not be put back. Throws Interrupted, BusLost.
+  void begin_case(const CaseRow& row);
+  void end_case(CaseResult& result);
+  /// Puts back what was changed and not yet put back: at an interruption, and at the end. Returns what could not be.
+  std::vector<std::string> put_back();
+  /// Finds the NMT state of the device before the run, if error control reports it. Returns what could not be put back.
+  [[nodiscard]] std::vector<std::string> find_state();
+  [[nodiscard]] std::uint64_t lag() const { return lag_; }
+
+ private:
+  [[nodiscard]] LiveEntry live(std::uint16_t index, std::uint8_t sub_index) const;
+  void record(const canopen::Frame& frame, canopen::TimePoint at, bool sent);
+  void remember_entry(const LiveEntry& entry);
+  void remember_configuration();
+  void take_frame(Duration longest);
+  [[nodiscard]] std::vector<std::string> restore_values(const Values& values, bool application);
+
+  LiveBus& bus_;
+  const Device& sheet_;
+  Stimuli& stimuli_;
+  DutSettings settings_;
+  SdoAccess sdo_;
+  std::mt19937 random_;
+
+  std::vector<SeenFrame> frames_;  ///< of this case
+  std::vector<std::string> warnings_;
+  canopen::TimePoint last_time_;
+  std::uint64_t elapsed_ = 0;  ///< microseconds since the run began, at last_time_
+  std::uint64_t lag_ = 0;
+  std::uint64_t case_began_ = 0;
+
+  std::map<Key, Bytes> changed_;        ///< values before this case
+  std::map<Key, Bytes> configuration_;  ///< of the whole device, before the first reset
+  std::set<Key> unreadable_;            ///< written, but not readable: not put back
+  bool configuration_known_ = false;
+  bool was_reset_ = false;
+  bool state_changed_ = false;
+  bool transfer_open_ = false;
+  std::optional<Mark> failed_;                    ///< where the case failed
+  bool guarded_ = false;                          ///< the state is read by node guarding
+  Mark next_answer_ = 0;                          ///< of `answer`
+  Mark last_match_ = 0;                           ///< of `wait_for`
+  std::optional<canopen::NmtState> found_state_;  ///< before the run
+};
+
+/// `1017h:00`
+[[nodiscard]] std::string label(std::uint16_t index, std::uint8_t sub_index);
+/// `0609 0011h, sub-index does not exist`, `no answer`, `done`, `the value 01 02`.
+[[nodiscard]] std::string outcome_text(const SdoOutcome& outcome);
+/// `12.003 ms`
+[[nodiscard]] std::string milliseconds_text(std::uint64_t microseconds);
+
+}  // namespace edsc::conform

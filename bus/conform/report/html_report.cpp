@@ -1,0 +1,149 @@
+#include "conform/report/html_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "backend/render.hpp"
+#include "conform/report/decoded_frames.hpp"
+#include "conform/report/report_facts.hpp"
+#include "decode/log/print_message.hpp"
+#include "text/counted.hpp"
+#include "values/append.hpp"
+
+namespace edsc::conform {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+/// Null for an empty text: the template omits the section.
+json shown(const std::string& text) { return text.empty() ? json(nullptr) : json(text); }
+
+std::string data_text(const canopen::Frame& frame) {
+  if (frame.remote) return fmt::format("remote {}", frame.size);
+  return hex_bytes(data_of(frame));
+}
+
+json frame_view(const SeenFrame& seen, const Message& message) {
+  const bool received = !seen.sent && !message.problem;
+  return {{"at", time_text(seen.at)},
+          {"direction", direction_text(seen)},
+          {"can_id", fmt::format("{:0{}X}", seen.frame.id, seen.frame.extended ? 8 : 3)},
+          {"data", data_text(seen.frame)},
+          {"service", service_label(message)},
+          {"meaning", message.text},
+          {"frame_class", message.problem ? "failed"
+                          : received      ? "received"
+                                          : "sent"}};
+}
+
+json frames_view(const CaseResult& result, const RunReport& run, const Device& sheet) {
+  std::size_t left_out = result.judged_frames().size() - std::min(result.judged_frames().size(), max_html_frames);
+  json frames = json::array();
+  decode_frames(result, run.node, sheet, [&](const SeenFrame& seen, const Message& message) {
+    if (left_out > 0) {
+      --left_out;
+    } else {
+      frames.push_back(frame_view(seen, message));
+    }
+  });
+  return frames;
+}
+
+std::string frames_remark(std::size_t frames) {
+  if (frames == 0) return "no frames";
+  if (frames <= max_html_frames) return {};
+  return fmt::format("{} not shown; --log writes all frames", counted(frames - max_html_frames, "earlier frame"));
+}
+
+/// The note of a case whose details are closed.
+std::string note_of(const CaseResult& result) {
+  if (!result.deviation.empty()) return result.deviation;
+  if (!result.reason.empty() || result.warnings.empty()) return result.reason;
+  return "warning: " + result.warnings.front();
+}
+
+json case_view(const CaseResult& result, const RunReport& run, const Device& sheet) {
+  const CaseRow& row = *result.row;
+  const bool ran = result.verdict != Verdict::not_run;
+  return {{"id", row.id},
+          {"title", row.title},
+          {"verdict", row_of(result.verdict).name},
+          {"verdict_text", row_of(result.verdict).text},
+          {"took", shown(ran ? duration_text(result.took) : "")},
+          {"open", result.verdict == Verdict::failed},
+          {"note", shown(note_of(result))},
+          {"clause", row.clause},
+          {"expected", shown(result.expected)},
+          {"got", shown(result.got)},
+          {"rule", shown(result.rule)},
+          {"warnings", result.warnings},
+          {"not_put_back", result.not_put_back},
+          {"lag", duration_text(result.lag)},
+          {"repeat", repeat_command(run, row)},
+          {"remark", shown(frames_remark(result.judged_frames().size()))},
+          {"has_frames", !result.judged_frames().empty()},
+          {"frames", frames_view(result, run, sheet)}};
+}
+
+json count_view(const VerdictRow& row, std::size_t count) {
+  return {{"name", row.name},
+          {"text", row.text},
+          {"count", count},
+          {"class", count == 0 ? "none" : fmt::format("some {}", row.name)}};
+}
+
+json area_view(const AreaCount& area, const RunReport& run, const Device& sheet) {
+  json counts = json::array();
+  for (const VerdictRow& row : verdicts) {
+    counts.push_back(count_view(row, area.of_verdict[static_cast<std::size_t>(row.verdict)]));
+  }
+  json cases = json::array();
+  for (const CaseResult& result : run.cases) {
+    if (&area_of(*result.row) == area.area) cases.push_back(case_view(result, run, sheet));
+  }
+  return {{"area_id", area.area->id},
+          {"area_title", area.area->title},
+          {"case_count", area.cases},
+          {"counts", std::move(counts)},
+          {"cases", std::move(cases)}};
+}
+
+}  // namespace
+
+std::string html_report(const RunReport& run, const Device& sheet) {
+  const std::vector<std::string> problems = run_problems(run);
+  json totals = json::array();
+  json filters = json::array();
+  for (const VerdictRow& row : verdicts) {
+    totals.push_back(count_view(row, run.count(row.verdict)));
+    if (run.count(row.verdict) > 0) filters.push_back(totals.back());
+  }
+  json areas = json::array();
+  for (const AreaCount& area : count_by_area(run)) areas.push_back(area_view(area, run, sheet));
+  const json view = {{"result", run.passed() ? "passed" : "failed"},
+                     {"sentence", result_sentence(run)},
+                     {"has_problems", !problems.empty()},
+                     {"problems", problems},
+                     {"product", run.product.empty() ? fmt::format("node {}", run.node) : run.product},
+                     {"vendor", shown(run.vendor)},
+                     {"identity", shown(run.read_identity)},
+                     {"differences", shown(run.identity)},
+                     {"sheet", run.sheet},
+                     {"sheet_hash", shown(run.sheet_hash)},
+                     {"node", run.node},
+                     {"bus", run.bus},
+                     {"level", level_text(run)},
+                     {"seed", run.seed},
+                     {"max_lag", duration_text(max_lag(run))},
+                     {"version", run.version},
+                     {"all_count", run.cases.size()},
+                     {"verdicts", totals},
+                     {"totals", totals},
+                     {"filters", filters},
+                     {"areas", std::move(areas)}};
+  return render_html(report_templates().front().text, view);
+}
+
+}  // namespace edsc::conform

@@ -1,0 +1,96 @@
+#include "conform/report/report_facts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "text/counted.hpp"
+
+namespace edsc::conform {
+
+std::vector<AreaCount> count_by_area(const RunReport& run) {
+  std::vector<AreaCount> counts;
+  for (const CaseResult& result : run.cases) {
+    const AreaRow& area = area_of(*result.row);
+    auto found = std::ranges::find(counts, &area, &AreaCount::area);
+    if (found == counts.end()) found = counts.insert(found, AreaCount{&area});
+    ++found->of_verdict[static_cast<std::size_t>(result.verdict)];
+    ++found->cases;
+  }
+  return counts;
+}
+
+std::uint64_t max_lag(const RunReport& run) {
+  std::uint64_t lag = 0;
+  for (const CaseResult& result : run.cases) lag = std::max(lag, result.lag);
+  return lag;
+}
+
+std::string level_text(const RunReport& run) {
+  std::string text = fmt::format("level {}", row_of(run.level).name);
+  std::string_view separator = " with ";
+  if (run.level == Level::all) return text;
+  for (const std::string_view name : permission_names(run.permissions)) {
+    text.append(separator).append(name);
+    separator = " and ";
+  }
+  return text;
+}
+
+std::vector<std::string> run_problems(const RunReport& run) {
+  std::vector<std::string> problems;
+  for (const std::string& unused : run.unused_deviations)
+    problems.push_back(fmt::format("unused deviation: {}", unused));
+  for (const std::string& left : run.not_put_back) problems.push_back(fmt::format("not put back: {}", left));
+  if (run.interrupted) problems.emplace_back("the run was interrupted");
+  if (!run.lost.empty()) problems.push_back(fmt::format("the run ended early: {}", run.lost));
+  return problems;
+}
+
+std::string result_sentence(const RunReport& run) {
+  if (run.cases.empty()) return "no case ran";
+  const std::size_t failed = run.count(Verdict::failed);
+  const std::string cases = counted(run.cases.size(), "case");
+  std::string text =
+      failed == 0 ? fmt::format("none of {} failed", cases) : fmt::format("{} of {} failed", failed, cases);
+  std::string_view separator = "; ";
+  for (const VerdictRow& row : verdicts) {
+    const std::size_t count = run.count(row.verdict);
+    if (count == 0 || row.verdict == Verdict::failed) continue;
+    const bool plural = row.verdict == Verdict::deviates && count > 1;
+    fmt::format_to(std::back_inserter(text), "{}{} {}", separator, count, plural ? "deviate as declared" : row.text);
+    separator = ", ";
+  }
+  return text;
+}
+
+std::vector<std::string_view> permission_names(Permission permissions) {
+  std::vector<std::string_view> names;
+  for (const PermissionRow& row : permission_options) {
+    if (includes(permissions, row.permission)) names.push_back(row.option.substr(row.option.find_first_not_of('-')));
+  }
+  return names;
+}
+
+std::string message_of(const CaseResult& result) {
+  if (result.verdict == Verdict::failed) {
+    std::string text = fmt::format("expected {}; got {}", result.expected, result.got);
+    if (!result.rule.empty()) text += fmt::format("; rule {} of edsc check reports it in the EDS", result.rule);
+    return text;
+  }
+  const std::string_view text = row_of(result.verdict).text;
+  const std::string& reason = result.verdict == Verdict::deviates ? result.deviation : result.reason;
+  return reason.empty() ? std::string{text} : fmt::format("{}: {}", text, reason);
+}
+
+std::string time_text(std::uint64_t microseconds) {
+  return fmt::format("{}.{:06}", microseconds / 1'000'000, microseconds % 1'000'000);
+}
+
+std::string duration_text(std::uint64_t microseconds) {
+  if (microseconds < 1'000'000) return fmt::format("{:.1f} ms", static_cast<double>(microseconds) / 1e3);
+  return fmt::format("{:.3f} s", static_cast<double>(microseconds) / 1e6);
+}
+
+}  // namespace edsc::conform

@@ -1,0 +1,58 @@
+/// A candump log, line by line, to text or JSON.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "decode/decoder.hpp"
+#include "decode/log/log_line.hpp"
+#include "decode/log/message_filter.hpp"
+#include "decode/log/print_message.hpp"
+#include "decode/log/summary.hpp"
+
+namespace edsc {
+
+struct LogDecoderSettings {
+  std::string log_name;   ///< in error messages
+  std::string interface;  ///< ignore frames of other interfaces; empty: all
+  bool json = false;
+  bool color = false;
+  MessageFilter filter;  ///< frames to show; all frames are evaluated
+};
+
+class LogDecoder {
+ public:
+  /// Maximum number of listed errors; any more are counted.
+  static constexpr std::size_t max_complaints = 50;
+
+  LogDecoder(const std::vector<KnownNode>& nodes, NodeLabels labels, LogDecoderSettings settings);
+
+  /// Appends the decoded line to `out`, and errors to `complaints`.
+  void decode(std::string_view line, std::size_t line_number, std::string& out, std::string& complaints);
+
+  /// Appends the errors at the end of the log: unfinished transfers, and the number of errors that were not listed.
+  void finish(std::string& complaints);
+
+  [[nodiscard]] const Summary& summary() const { return summary_; }
+  [[nodiscard]] bool skipped_lines() const { return summary_.broken_lines() > 0; }
+
+ private:
+  void complain(std::size_t line_number, std::string_view what, std::string& complaints);
+  void count_time(LogLine& line);
+
+  LogDecoderSettings settings_;
+  NodeLabels labels_;
+  Decoder decoder_;
+  Message message_;
+  Summary summary_;
+  std::size_t complaints_ = 0;
+
+  // candump -t d writes the time since the previous frame.
+  bool has_time_ = false, from_zero_ = false, deltas_ = false;
+  std::int64_t last_time_ = 0, sum_ = 0;
+};
+
+}  // namespace edsc

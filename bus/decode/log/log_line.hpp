@@ -1,0 +1,40 @@
+/// A line of a candump log, in any format of candump:
+///
+///   (1436509052.249713) vcan0 123#DEADBEEF                    -L, also followed by R or T
+///    vcan0  123   [4]  DE AD BE EF                            on the screen, also with -a and -x
+///    (1436509052.249713)  vcan0  123   [4]  DE AD BE EF       -t a, d, z
+///    (2015-07-10 08:17:32.249713)  vcan0  123   [4]  DE ...   -t A
+///
+/// 123#R8 and `remote request` are remote frames; CAN-IDs of eight digits are extended, or flags of an error frame; ##
+/// and lengths of two digits are CAN FD. A frame without time and interface, 123#DEADBEEF, is also a line.
+#pragma once
+
+#include <canopen/can/frame.hpp>
+#include <cstdint>
+#include <string_view>
+
+namespace edsc {
+
+enum class LogLineKind : std::uint8_t {
+  blank,
+  frame,
+  error_frame,  ///< the CAN-ID holds flags of linux/can/error.h
+  remark,       ///< a line that candump -e writes below an error frame
+  can_fd,
+  broken,
+};
+
+/// Texts are views of the line.
+struct LogLine {
+  LogLineKind kind = LogLineKind::blank;
+  bool has_time = false;
+  std::int64_t microseconds = 0;  ///< since the time origin of the log
+  std::string_view time;          ///< as written, without parentheses
+  std::string_view interface;
+  canopen::Frame frame;
+  std::string_view problem;  ///< of a broken line: the fault, as part of a sentence
+};
+
+[[nodiscard]] LogLine parse_log_line(std::string_view text);
+
+}  // namespace edsc

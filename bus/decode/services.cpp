@@ -1,0 +1,78 @@
+#include "decode/services.hpp"
+
+#include <fmt/compile.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <canopen/od/data_type.hpp>
+#include <iterator>
+
+#include "decode/emergency_text.hpp"
+#include "device/types/little_endian.hpp"
+#include "text/counted.hpp"
+#include "values/append.hpp"
+#include "values/nmt_text.hpp"
+#include "values/value_text.hpp"
+
+namespace edsc {
+
+using canopen::Frame;
+
+void wrong_length(const Frame& frame, std::string_view right, Message& message) {
+  message.problem = true;
+  if (frame.remote) {
+    message.text += "a remote frame, not a frame with data";
+  } else {
+    fmt::format_to(std::back_inserter(message.text), "{}, not {}", counted(unsigned{frame.size}, "byte"), right);
+  }
+}
+
+void decode_nmt(const Frame& frame, Message& message) {
+  message.service = Service::nmt;
+  if (frame.remote || frame.size < 2) return wrong_length(frame, "the 2 of a command", message);
+  message.node_id = frame.data[1];
+  const auto command = static_cast<canopen::NmtCommand>(frame.data[0]);
+  if (const NmtCommandText* row = find_nmt_command(&NmtCommandText::command, command)) {
+    message.text += message.command = row->text;
+  } else {
+    fmt::format_to(std::back_inserter(message.text), "unknown command {}", frame.data[0]);
+    message.problem = true;
+  }
+  if (message.node_id == 0) message.text += ", all nodes";
+}
+
+void decode_sync(const Frame& frame, Message& message) {
+  message.service = Service::sync;
+  if (frame.remote || frame.size > 1) return wrong_length(frame, "0 or 1", message);
+  if (frame.size == 0) return;
+  message.counter = frame.data[0];
+  message.text += "counter ";
+  append_decimal(message.text, frame.data[0]);
+}
+
+void decode_time(const Frame& frame, Message& message) {
+  message.service = Service::time;
+  if (frame.remote || frame.size < 6) return wrong_length(frame, "6", message);
+  const auto* type = canopen::find_data_type(static_cast<std::uint32_t>(canopen::DataType::time_of_day));
+  append_number(message.text, *type, number_of(data_of(frame)), type->bits);
+}
+
+void decode_emcy(const Frame& frame, std::uint16_t profile, Message& message) {
+  message.service = Service::emcy;
+  if (frame.remote || frame.size < 3) return wrong_length(frame, "8", message);
+  message.error_code = static_cast<std::uint16_t>(frame.data[0] | frame.data[1] << 8);
+  message.error_register = frame.data[2];
+  const bool gone = message.error_code <= 0x00FF;
+  message.problem = !gone;
+  fmt::format_to(std::back_inserter(message.text), FMT_COMPILE("{:04X}h {}, error register {:02X}h ("),
+                 message.error_code, emergency_text(message.error_code, profile), message.error_register);
+  append_error_register(message.text, message.error_register);
+  message.text += ')';
+  const auto manufacturer = data_of(frame).subspan(3);
+  if (std::ranges::any_of(manufacturer, [](std::uint8_t byte) { return byte != 0; })) {
+    message.text += ", manufacturer ";
+    append_hex_bytes(message.text, manufacturer);
+  }
+}
+
+}  // namespace edsc
