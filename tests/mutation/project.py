@@ -84,6 +84,9 @@ HOST_PROGRAMS = (
     script("completion", "cli/completion_test.py", "cli/completion/"),
     script("rules", "generator/lint/rules_test.py", "generator/lint/", "generator/eds/", "generator/xdd/",
            "generator/diagnostics/"),
+    script("options", "generator/device/options_test.py", "generator/device/options/"),
+    script("cli_diff", "cli/diff_test.py", "generator/compare/", "cli/"),
+    script("cli_format", "cli/format_test.py", "generator/format/", "cli/"),
     script("cli", "cli/cli_test.py", *HOST),
 )
 RUNTIME_PROGRAMS = (

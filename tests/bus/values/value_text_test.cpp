@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "values/parse_value.hpp"
+
 namespace edsc {
 namespace {
 

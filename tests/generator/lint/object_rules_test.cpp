@@ -5,7 +5,7 @@
 
 #include "lint/rule_groups.hpp"
 #include "support/device_from_text.hpp"
-#include "values/value_text.hpp"
+#include "values/parse_value.hpp"
 
 namespace edsc {
 namespace {
