@@ -247,6 +247,18 @@ TEST(Diff, KeepsWhatConcernsAnAudience) {
   EXPECT_EQ(node_id.short_list(), List{});
 }
 
+TEST(Diff, KeepsAChangeForAPdoPartnerOnTheWireOnly) {
+  const auto changes_for = [](Audience audience) {
+    Compared compared(pdo("0x181", "255", {"0x20000010"}), pdo("0x281", "255", {"0x20000010"}));
+    compared.changes.keep(audience);
+    return compared.short_list();
+  };
+  ASSERT_EQ(changes_for(Audience::all).size(), 1U);
+  EXPECT_NE(changes_for(Audience::all).front().find(" pdo"), std::string::npos);
+  EXPECT_EQ(changes_for(Audience::wire), changes_for(Audience::all));
+  EXPECT_EQ(changes_for(Audience::source), List{});
+}
+
 /// 1018h with these numbers.
 std::string identity(const std::string& product, const std::string& revision) {
   return group("1018", "Identity", "9", 4) + var("1018sub0", "n", "5", "ro", "DefaultValue=3\n") +
