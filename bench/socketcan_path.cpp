@@ -43,8 +43,8 @@ const can_frame read_word = frame(request, {0x40, 0x01, 0x20, 0x00, 0, 0, 0, 0})
 /// A blocking socket.
 class RawSocket {
  public:
-  explicit RawSocket(const std::string& interface)
-      : socket_{::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW), "socket"} {
+  explicit RawSocket(const std::string& interface) : socket_{::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW)} {
+    if (!socket_) canopen::throw_errno("socket");
     sockaddr_can address{};
     address.can_family = AF_CAN;
     address.can_ifindex = static_cast<int>(::if_nametoindex(interface.c_str()));

@@ -42,7 +42,8 @@ TEST(OptionsFile, MayBeEmpty) {
 }
 
 TEST(OptionsFile, NamesEntriesByIndexAndSubIndex) {
-  const ReadOptions read(R"({ "names": { "1018h:04": "serial", "2000": "speed", "2A:fF": "last", "FFFFh": "highest" } })");
+  const ReadOptions read(
+      R"({ "names": { "1018h:04": "serial", "2000": "speed", "2A:fF": "last", "FFFFh": "highest" } })");
   EXPECT_EQ(findings(read.diagnostics), Findings{});
   EXPECT_EQ(read.options.names.at({0x1018, 4}), "serial");
   EXPECT_EQ(read.options.names.at({0x2000, 0}), "speed");
