@@ -199,6 +199,25 @@ TEST(SlcanPort, SendsUrgentFramesFirstWhenTheLineIsFull) {
   EXPECT_GE(line.size() - line.find("t0800\r"), 63 * heartbeat.size()) << "it has overtaken those that waited";
 }
 
+TEST(SlcanPort, HasAnEventWhenAFullLineHasRoomAgain) {
+  Device device;
+  std::optional<HostBus> bus;
+  {
+    const Worker worker{[&] { device.work(); }};
+    bus.emplace("slcan:" + device.name());
+  }
+  while (bus->receive(10ms)) {
+  }
+  while (bus->waiting() < 10) ASSERT_TRUE(bus->send(bench::frame("705 05")));  // the line is no longer read
+  pollfd event{bus->file_descriptor(), POLLIN, 0};
+  EXPECT_EQ(::poll(&event, 1, 0), 0);
+  while (!read_some(device.line()).empty()) {
+  }
+  EXPECT_EQ(::poll(&event, 1, 60'000), 1);
+  EXPECT_EQ(text_of(bus->receive(0us)), "none");
+  EXPECT_EQ(bus->waiting(), 0u);
+}
+
 TEST(SlcanPort, ThrowsWhenTheLineIsGone) {
   Device device;
   std::optional<HostBus> bus;
@@ -358,6 +377,18 @@ TEST(SocketcandPort, GivesUpAServerThatSaysMuchAndNeverOpensTheBus) {
   }
   noise.join();
   EXPECT_FALSE(flood->is_over());
+}
+
+TEST(SocketcandPort, DiscardsWaitingFramesWhenTheBusIsOff) {
+  Server server;
+  std::thread greeting{[&] { server.greet(); }};
+  HostBus bus{server.address("vcan0")};
+  greeting.join();
+  while (bus.waiting() < 10) ASSERT_TRUE(bus.send(bench::frame("705 05")));  // the server does not read
+  server.say("< error 040 1.5 >");
+  EXPECT_EQ(text_of(bus.receive(100ms)), "none");
+  EXPECT_EQ(bus.waiting(), 0u);
+  EXPECT_FALSE(bus.send(bench::frame("705 05")));
 }
 
 TEST(SocketcandPort, TellsOfALostServer) {

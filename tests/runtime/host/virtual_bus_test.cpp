@@ -174,6 +174,30 @@ TEST(VirtualBus, AsksAnEndpointForItsDeadlineOnlyWhenItMayHaveChanged) {
   EXPECT_LE(asked, 1u);
 }
 
+TEST(VirtualBus, SettlesTwoEndpointsThatAnswerEachOtherForTheGivenNumberOfFrames) {
+  VirtualBus bus;
+  auto& left = bus.attach();
+  auto& right = bus.attach();
+  left.on_frame = [&](const Frame&, TimePoint) { (void)left.send(frame("181 01")); };
+  right.on_frame = [&](const Frame&, TimePoint) { (void)right.send(frame("182 01")); };
+  (void)left.send(frame("181 01"));
+  EXPECT_EQ(bus.settle(10), 10u);
+}
+
+TEST(VirtualBus, SettlesADeadlineThatItsOwnerHasChangedMeanwhile) {
+  VirtualBus bus;
+  std::optional<TimePoint> due;
+  auto& endpoint = bus.attach();
+  endpoint.next_deadline = [&] { return due; };
+  endpoint.on_time = [&](TimePoint) {
+    due.reset();
+    (void)endpoint.send(frame("181 01"));
+  };
+  bus.run_for(1ms);
+  due = bus.now();
+  EXPECT_EQ(bus.settle(), 1u);
+}
+
 TEST(VirtualBus, AnEndpointWhoseDeadlineAnotherOneHasChangedSaysSo) {
   VirtualBus bus;
   std::optional<TimePoint> begin{TimePoint{5ms}};
