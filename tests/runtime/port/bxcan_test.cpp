@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <canopen/port/bxcan.hpp>
+#include <canopen/port/interrupt_port.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -69,6 +70,7 @@ struct FakeController {
   Status master_status{*this};
   std::uint32_t transmit_status = 0x1C00'0000;
   Fifo receive_fifo[1] = {{*this}};
+  std::uint32_t interrupts = 0;
   std::uint32_t error_status = 0;
   std::uint32_t bit_timing = 0;
   Mailbox transmit[3];
@@ -117,6 +119,15 @@ TEST_F(BxCan, GoesOnTheBusWithItsBitTiming) {
   EXPECT_EQ(controller.filter_active, 1u);
   EXPECT_EQ(controller.filters[0].mask, 0u);
   EXPECT_EQ(controller.filter_master & 1, 0u);
+}
+
+TEST_F(BxCan, InterruptsForAFrameAndForAFreeMailbox) {
+  static_assert(canopen::InterruptingController<canopen::BxCan<>>);
+  bus.enable_interrupts();
+  EXPECT_EQ(controller.interrupts, 0x03u);  // IER.FMPIE0, IER.TMEIE
+  bus.acknowledge_interrupts();
+  EXPECT_EQ(controller.transmit_status, 0x0001'0101u);  // TSR.RQCP0 to RQCP2 are cleared by writing 1
+  EXPECT_EQ(offsetof(canopen::BxCanRegisters, interrupts), 0x014u);
 }
 
 TEST_F(BxCan, DoesNotStartWithoutAClock) {

@@ -108,13 +108,20 @@ class MCan {
   [[nodiscard]] bool on_the_bus() const { return (cccr_ & initialize) == 0 && (state_ & off) == 0; }
   [[nodiscard]] std::uint32_t requests() const { return requests_; }
   [[nodiscard]] bool classic() const { return (cccr_ & 0x0000'0344) == 0; }  // no FDOE, BRSE, DAR, ASM
+  /// Whether the interrupt of line 0 is enabled for received frames, and for every Tx buffer that has been sent.
+  [[nodiscard]] bool interrupts() const {
+    const std::uint32_t enabled = 1u << 0 | (chip_ == Chip::g4 ? 1u << 7 : 1u << 9);  // RF0NE, TCE
+    return values_[IE] == enabled && values_[ILE] == 1 && values_[ILS] == 0 &&
+           values_[TXBTIE] == (1u << place_.transmitted) - 1;
+  }
+  [[nodiscard]] std::uint32_t acknowledged() const { return values_[IR]; }
   [[nodiscard]] std::uint32_t value(unsigned which) const { return values_[which]; }
 
  private:
   enum Name : std::uint8_t {
     // clang-format off
-    CCCR, NBTP, ECR, PSR, IR, IE, RXGFC, GFC, SIDFC, XIDFC, XIDAM, RXF0C, RXF0S, RXF0A, RXBC, RXF1C, RXESC, TXBC, TXFQS,
-    TXESC, TXBRP, TXBAR, TXBCR, TXBTO, TXEFC, names
+    CCCR, NBTP, ECR, PSR, IR, IE, ILS, ILE, RXGFC, GFC, SIDFC, XIDFC, XIDAM, RXF0C, RXF0S, RXF0A, RXBC, RXF1C, RXESC, TXBC, TXFQS,
+    TXESC, TXBRP, TXBAR, TXBCR, TXBTO, TXBTIE, TXEFC, names
     // clang-format on
   };
   static constexpr std::uint32_t initialize = 1, change_enable = 2, monitor = 1 << 5, off = 1 << 7;
@@ -127,19 +134,19 @@ class MCan {
   };
 
   struct Common {
-    Register cccr, nbtp, ecr, psr, ir, ie;
+    Register cccr, nbtp, ecr, psr, ir, ie, ils, ile;
   };
 
  public:
   // --- for the driver ----------------------------------------------------------------------------------------------
 
-  Common common{{*this, Name::CCCR}, {*this, Name::NBTP}, {*this, Name::ECR},
-                {*this, Name::PSR},  {*this, Name::IR},   {*this, Name::IE}};
+  Common common{{*this, Name::CCCR}, {*this, Name::NBTP}, {*this, Name::ECR}, {*this, Name::PSR},
+                {*this, Name::IR},   {*this, Name::IE},   {*this, Name::ILS}, {*this, Name::ILE}};
   Register rxgfc{*this, Name::RXGFC}, gfc{*this, Name::GFC}, sidfc{*this, Name::SIDFC}, xidfc{*this, Name::XIDFC},
       xidam{*this, Name::XIDAM}, rxf0c{*this, Name::RXF0C}, rxf0s{*this, Name::RXF0S}, rxf0a{*this, Name::RXF0A},
       rxbc{*this, Name::RXBC}, rxf1c{*this, Name::RXF1C}, rxesc{*this, Name::RXESC}, txbc{*this, Name::TXBC},
       txfqs{*this, Name::TXFQS}, txesc{*this, Name::TXESC}, txbrp{*this, Name::TXBRP}, txbar{*this, Name::TXBAR},
-      txbcr{*this, Name::TXBCR}, txbto{*this, Name::TXBTO}, txefc{*this, Name::TXEFC};
+      txbcr{*this, Name::TXBCR}, txbto{*this, Name::TXBTO}, txbtie{*this, Name::TXBTIE}, txefc{*this, Name::TXEFC};
 
  private:
   /// The sections of the message RAM, in words.
@@ -148,7 +155,7 @@ class MCan {
   };
 
   [[nodiscard]] bool protected_register(Name name) const {
-    static constexpr Name open[] = {CCCR, IR, IE, RXF0A, TXBAR, TXBCR};
+    static constexpr Name open[] = {CCCR, IR, IE, ILS, ILE, RXF0A, TXBAR, TXBCR, TXBTIE};
     return std::find(std::begin(open), std::end(open), name) == std::end(open);
   }
 

@@ -3,6 +3,7 @@
 #include <canopen/node.hpp>
 #include <canopen/node/accepted_frames.hpp>
 #include <canopen/port/fdcan.hpp>
+#include <canopen/port/interrupt_port.hpp>
 #include <cstddef>
 #include <optional>
 #include <sample/device.hpp>
@@ -130,6 +131,18 @@ TEST(FdcanBitTiming, HasTheSamplePointOfCia301) {
   EXPECT_EQ(canopen::bit_timing(80'000'000, 10'000, range), (canopen::BitTiming{40, 174, 25, 25}));     // 87.5 %
   EXPECT_EQ(canopen::bit_timing(8'000'000, 1'000'000, range), (canopen::BitTiming{1, 6, 1, 1}));
   EXPECT_EQ(canopen::bit_timing(170'000'000, 800'000, range), std::nullopt);
+}
+
+TYPED_TEST(Fdcan, InterruptsForAFrameAndForAFreeBuffer) {
+  static_assert(canopen::InterruptingController<typename TestFixture::Bus>);
+  this->go_on_the_bus();
+  EXPECT_FALSE(this->controller.interrupts());
+  this->bus.enable_interrupts();
+  EXPECT_TRUE(this->controller.interrupts());
+  this->go_on_the_bus();
+  EXPECT_TRUE(this->controller.interrupts()) << "also after a change of the bit rate";
+  this->bus.acknowledge_interrupts();
+  EXPECT_EQ(this->controller.acknowledged(), chip<TypeParam> == fake::Chip::g4 ? 0x81u : 0x201u);  // IR.RF0N, IR.TC
 }
 
 TYPED_TEST(Fdcan, GoesOnTheBusWithItsBitTiming) {

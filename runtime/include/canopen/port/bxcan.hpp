@@ -1,4 +1,5 @@
-/// The CAN controller bxCAN of STM32F0, F1, F2, F3, F4, F7 and L4. Polled, without operating system or interrupts.
+/// The CAN controller bxCAN of STM32F0, F1, F2, F3, F4, F7 and L4. Without operating system; polled, or
+/// with interrupts in an InterruptPort.
 ///
 ///     canopen::BxCan<> bus{*reinterpret_cast<canopen::BxCanRegisters*>(0x4000'6400)};
 ///     const bool up = bus.start(42'000'000, 500'000);  // the clock of APB1; clock and pins must be enabled
@@ -165,6 +166,12 @@ class BxCan {
     return frame;
   }
 
+  /// Interrupts for a received frame and for a mailbox that has become free.
+  void enable_interrupts() { registers_.interrupts = frame_received | mailbox_free; }
+
+  /// In the interrupt, before `receive` until there is no frame: that ends the other one.
+  void acknowledge_interrupts() { registers_.transmit_status = 1 << 0 | 1 << 8 | 1 << 16; }  // RQCP0 to RQCP2
+
   /// Returns the status of the controller if it has changed since the last call.
   [[nodiscard]] std::optional<BusStatus> status_change() {
     const std::uint32_t errors = registers_.error_status;
@@ -183,6 +190,8 @@ class BxCan {
   static constexpr std::uint32_t pending = 3;                    // RFxR.FMP
   static constexpr std::uint32_t overrun = 1 << 4;               // RFxR.FOVR
   static constexpr std::uint32_t release = 1 << 5;               // RFxR.RFOM
+  static constexpr std::uint32_t mailbox_free = 1 << 0;          // IER.TMEIE
+  static constexpr std::uint32_t frame_received = 1 << 1;        // IER.FMPIE0
 
   /// Returns the identifier in the format of mailboxes and filters.
   [[nodiscard]] static constexpr std::uint32_t word_of(std::uint32_t id, bool is_extended, bool is_remote) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "canopen/base/shared_number.hpp"
 #include "canopen/can/bus_status.hpp"
 #include "canopen/can/frame.hpp"
 #include "canopen/node/accepted_frames.hpp"
@@ -43,15 +44,16 @@ template <class Condition>
   return false;
 }
 
-/// Reports changes of a controller's status to a node.
+/// Reports changes of a controller's status to a node. `note_overrun` may be called in an interrupt.
 class StatusReport {
  public:
   /// Records that frames have been lost.
-  void note_overrun() { overrun_ = true; }
+  void note_overrun() { overruns_.publish(static_cast<std::uint16_t>(overruns_.own() + 1)); }
 
   [[nodiscard]] std::optional<BusStatus> change(BusState state) {
-    const BusStatus status{state, overrun_};
-    overrun_ = false;
+    const std::uint16_t overruns = overruns_.read();
+    const BusStatus status{state, overruns != seen_};
+    seen_ = overruns;
     if (status == reported_) return std::nullopt;
     reported_ = status;
     return status;
@@ -59,7 +61,8 @@ class StatusReport {
 
  private:
   BusStatus reported_{};
-  bool overrun_ = false;
+  SharedNumber<std::uint16_t> overruns_;
+  std::uint16_t seen_ = 0;
 };
 
 }  // namespace canopen

@@ -1,6 +1,6 @@
 /// The CAN controller FDCAN of STM32, Bosch's M_CAN: as in STM32G4, G0, H5, L5 and U5, whose chip divides the message
-/// RAM, and as in STM32H7, where the driver divides it. Classic CAN frames. Polled, without operating system or
-/// interrupts.
+/// RAM, and as in STM32H7, where the driver divides it. Classic CAN frames. Without operating system; polled,
+/// or with interrupts in an InterruptPort.
 ///
 ///     canopen::FdcanG4 bus{*reinterpret_cast<canopen::FdcanG4Registers*>(0x4000'6400),
 ///                          reinterpret_cast<volatile std::uint32_t*>(0x4000'A400)};
@@ -37,7 +37,9 @@ struct CommonRegisters {
   Register reserved_048[2];
   Register ir;  ///< interrupts, 050h
   Register ie;
-  Register reserved_058[10];
+  Register ils;  ///< interrupt line select
+  Register ile;  ///< interrupt line enable
+  Register reserved_060[8];
 };
 
 /// Layout of a controller's filters, Rx FIFO 0 and Tx queue, in words of the message RAM.
@@ -77,6 +79,8 @@ struct FdcanG4Registers {
   fdcan::Register txbar;  ///< Tx buffer add request
   fdcan::Register txbcr;  ///< Tx buffer cancellation request
   fdcan::Register txbto;  ///< Tx buffer transmission occurred, 0D4h
+  fdcan::Register reserved_0d8;
+  fdcan::Register txbtie;  ///< Tx buffer transmission interrupt enable
 };
 
 /// The register block (reference manual RM0433, chapter "FD controller area network").
@@ -102,7 +106,9 @@ struct FdcanH7Registers {
   fdcan::Register txbar;  ///< Tx buffer add request, 0D0h
   fdcan::Register txbcr;  ///< Tx buffer cancellation request
   fdcan::Register txbto;  ///< Tx buffer transmission occurred
-  fdcan::Register reserved_0dc[5];
+  fdcan::Register reserved_0dc;
+  fdcan::Register txbtie;  ///< Tx buffer transmission interrupt enable, 0E0h
+  fdcan::Register reserved_0e4[3];
   fdcan::Register txefc;  ///< Tx event FIFO configuration, 0F0h
 };
 
@@ -111,6 +117,7 @@ struct FdcanOfG4 {
   using Registers = FdcanG4Registers;
   static constexpr fdcan::MessageRam message_ram{28, 8, 3, 3, 18, 158, 212};
   static constexpr std::uint32_t lost = 1 << 2;  ///< IR.RF0L
+  static constexpr std::uint32_t sent = 1 << 7;  ///< IR.TC
 
   /// Only the number of filters can be configured.
   static void divide(auto& registers, std::uint32_t /*first_word*/) {
@@ -124,6 +131,7 @@ struct FdcanOfH7 {
   using Registers = FdcanH7Registers;
   static constexpr fdcan::MessageRam message_ram{64, 16, 64, 16, 4, 352, 416};
   static constexpr std::uint32_t lost = 1 << 3;  ///< IR.RF0L
+  static constexpr std::uint32_t sent = 1 << 9;  ///< IR.TC
 
   /// Start addresses are in bytes, because their two lowest bits are not part of the fields. Unused parts are empty.
   static void divide(auto& registers, std::uint32_t first_word) {
@@ -170,7 +178,7 @@ class Fdcan {
     if (!wait_until([this] { return (registers_.common.cccr & change_enable) != 0; })) return false;
     registers_.common.nbtp = (timing->resynchronization - 1u) << 25 | (timing->prescaler - 1u) << 16 |
                              (timing->before_sample - 1u) << 8 | (timing->after_sample - 1u);
-    registers_.common.ie = 0;
+    registers_.common.ie = interrupts_;
     registers_.xidam = all_extended;
     Chip::divide(registers_, first_word_);
     registers_.common.cccr = initialize | change_enable | modes;
@@ -278,6 +286,18 @@ class Fdcan {
     return frame;
   }
 
+  /// Interrupts of line 0 for a received frame and for one that has been sent.
+  void enable_interrupts() {
+    interrupts_ = frame_received | Chip::sent;
+    registers_.txbtie = (1u << layout.transmitted) - 1;
+    registers_.common.ils = 0;
+    registers_.common.ie = interrupts_;
+    registers_.common.ile = 1;
+  }
+
+  /// In the interrupt, before `receive` until there is no frame.
+  void acknowledge_interrupts() { registers_.common.ir = frame_received | Chip::sent; }
+
   /// Returns the status of the controller if it has changed since the last call. Call it in every cycle of the loop: it
   /// starts the recovery of a controller in bus-off, which takes 129 times 11 recessive bits.
   [[nodiscard]] std::optional<BusStatus> status_change() {
@@ -291,15 +311,16 @@ class Fdcan {
   }
 
  private:
-  static constexpr std::uint32_t initialize = 1 << 0;     // CCCR.INIT
-  static constexpr std::uint32_t change_enable = 1 << 1;  // CCCR.CCE
-  static constexpr std::uint32_t silent = 1 << 5;         // CCCR.MON
-  static constexpr std::uint32_t passive = 1 << 5;        // PSR.EP
-  static constexpr std::uint32_t bus_off = 1 << 7;        // PSR.BO
-  static constexpr std::uint32_t message_lost = 1 << 25;  // RXF0S.RF0L
-  static constexpr std::uint32_t queue_full = 1 << 21;    // TXFQS.TFQF
-  static constexpr std::uint32_t extended = 1 << 30;      // R0.XTD, T0.XTD
-  static constexpr std::uint32_t remote = 1 << 29;        // R0.RTR, T0.RTR
+  static constexpr std::uint32_t initialize = 1 << 0;      // CCCR.INIT
+  static constexpr std::uint32_t change_enable = 1 << 1;   // CCCR.CCE
+  static constexpr std::uint32_t silent = 1 << 5;          // CCCR.MON
+  static constexpr std::uint32_t passive = 1 << 5;         // PSR.EP
+  static constexpr std::uint32_t bus_off = 1 << 7;         // PSR.BO
+  static constexpr std::uint32_t frame_received = 1 << 0;  // IE.RF0N, IR.RF0N
+  static constexpr std::uint32_t message_lost = 1 << 25;   // RXF0S.RF0L
+  static constexpr std::uint32_t queue_full = 1 << 21;     // TXFQS.TFQF
+  static constexpr std::uint32_t extended = 1 << 30;       // R0.XTD, T0.XTD
+  static constexpr std::uint32_t remote = 1 << 29;         // R0.RTR, T0.RTR
   static constexpr std::uint32_t all_standard = 0x7FF;
   static constexpr std::uint32_t all_extended = 0x1FFF'FFFF;
   static constexpr std::uint32_t into_fifo = 1;           // SFEC, EFEC: store in Rx FIFO 0
@@ -330,7 +351,8 @@ class Fdcan {
 
   Registers& registers_;
   volatile std::uint32_t* ram_;
-  std::uint32_t kept_ = 0;  ///< requests that wait for the next start
+  std::uint32_t kept_ = 0;        ///< requests that wait for the next start
+  std::uint32_t interrupts_ = 0;  ///< IE, after `enable_interrupts`
   std::uint16_t first_word_;
   StatusReport report_;
   bool filtered_ = false;  ///< by `accept` or `accept_all`
