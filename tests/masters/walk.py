@@ -301,6 +301,7 @@ class Walk:
             self.wire.forget(can_id)
             self.wire.send(0x080)
             self.check("tpdo", f"{name} in Pre-operational", self.wire.receive(can_id, SHORT), None)
+            self.write(PRODUCER_HEARTBEAT, 0, 10)
             self.nmt(START)
             if by_sync:
                 self.wire.receive(can_id, SHORT)
@@ -310,11 +311,8 @@ class Walk:
                 self.tpdo_content(name, "sync", can_id, entries)
             self.remote_tpdo(index, name, cob_id, entries)
             self.timed_tpdo(index, name, cob_id, entries)
-            self.nmt(STOP)
-            self.wire.pass_on()
-            for _ in range(100):
-                if self.wire.receive(can_id, SHORT) is None:  # all frames on their way have been received
-                    break
+            self.change_state(f"TPDO {name}", STOP, STATES["stopped"][1])  # what it sent before has been received
+            self.wire.forget(can_id)
             self.wire.send(0x080)
             self.check("tpdo", f"{name} in Stopped", self.wire.receive(can_id, SHORT), None)
             self.reset()

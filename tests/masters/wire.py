@@ -27,11 +27,6 @@ class Wire:
         self.bus = can.Bus(**options)
         self.waiting: deque[tuple[float, int, bytes]] = deque(maxlen=10000)
 
-    def pass_on(self) -> None:
-        """Waits until an SLCAN adapter has sent all frames that it was given; discards what it receives meanwhile."""
-        if self.slcan:
-            self.bus.get_version(60)
-
     def close(self) -> None:
         self.bus.shutdown()
 
