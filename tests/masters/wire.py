@@ -22,7 +22,6 @@ class Wire:
         else:
             options = {"interface": "socketcan", "channel": address.removeprefix("socketcan:")}
         self.socketcand = options["interface"] == "socketcand"
-        self.slcan = options["interface"] == "slcan"
         self.socketcan = options["interface"] == "socketcan"
         self.bus = can.Bus(**options)
         self.waiting: deque[tuple[float, int, bytes]] = deque(maxlen=10000)
