@@ -108,4 +108,12 @@ class LssDevice {
 inline constexpr auto to_waiting = "7E5 04 00 00 00 00 00 00 00";
 inline constexpr auto to_configuration = "7E5 04 01 00 00 00 00 00 00";
 
+/// A slave in configuration state.
+template <canopen::LssOptions options = canopen::LssOptions{}>
+struct ConfiguredDevice : LssDevice<options> {
+  explicit ConfiguredDevice(canopen::NodeId persistent = canopen::NodeId{5}) : LssDevice<options>{persistent} {
+    this->ask(to_configuration);
+  }
+};
+
 }  // namespace bench

@@ -1,12 +1,13 @@
+/// The NMT master: commands, the boot-up of slaves, and NMT start-up.
 #include <gtest/gtest.h>
 #include <canopen/host/virtual_bus.hpp>
 #include <canopen/nmt_master/nmt_master.hpp>
 
 #include <array>
-#include <list>
 #include <string>
 #include <vector>
 
+#include "nmt_master_bench.hpp"
 #include "support/bench.hpp"
 
 namespace {
@@ -14,133 +15,22 @@ namespace {
 using canopen::BootStatus;
 using canopen::Frame;
 using canopen::NmtCommand;
-using canopen::NmtMasterEvent;
 using canopen::NmtSlave;
-using canopen::NmtStartUp;
 using canopen::NmtState;
 using canopen::NodeId;
 using canopen::TimePoint;
 using canopen::VirtualBus;
-namespace od = sample::od;
+using master_bench::Host;
+using master_bench::Network;
+using master_bench::Slave;
+using master_bench::slave_with_identity;
 namespace assignment = canopen::slave_assignment;
 namespace start_up = canopen::nmt_start_up;
 using namespace std::chrono_literals;
 
-constexpr const char* event_names[] = {"boot-up", "state", "unexpected state", "toggle error", "lost", "back"};
-
-/// Records the events of the master.
-struct Host {
-  std::vector<std::string>* log;
-
-  void happened(NmtMasterEvent event, NodeId node_id, NmtState state) {
-    if (event == NmtMasterEvent::not_watched) return;  // true of most slaves here
-    char text[40];
-    std::snprintf(text, sizeof text, "(%d %s %02X)", node_id.value(), event_names[static_cast<int>(event)],
-                  static_cast<unsigned>(state));
-    log->push_back(text);
-  }
-  void booted(NodeId node_id, BootStatus status) {
-    log->push_back("(" + std::to_string(node_id.value()) + " " + static_cast<char>(status) + ")");
-  }
-  void network_started() { log->push_back("(network started)"); }
-  void boot_time_elapsed() { log->push_back("(boot time elapsed)"); }
-};
-
-/// The sample device as a slave on the bus: with a heartbeat every 50 ms after each reset, or guarded.
-class Slave {
- public:
-  Slave(VirtualBus& bus, std::uint8_t node_id, bool beats)
-      : bus_{bus}, end_{bus.attach()}, node_{end_, NodeId{node_id}}, node_id_{node_id}, beats_{beats} {
-    end_.on_frame = [this](const Frame& frame, TimePoint now) { on_frame(frame, now); };
-    end_.on_time = [this](TimePoint now) {
-      if (on_) node_.on_time(now);
-    };
-    end_.next_deadline = [this]() -> std::optional<TimePoint> { return on_ ? node_.next_deadline() : std::nullopt; };
-  }
-
-  void switch_on() {
-    on_ = true;
-    node_.start(bus_.now());
-    after_reset();
-  }
-  void switch_off() { on_ = false; }
-
-  [[nodiscard]] NmtState state() const { return node_.state(); }
-
- private:
-  void on_frame(const Frame& frame, TimePoint now) {
-    if (!on_) return;
-    if (canopen::is_guarding_request(frame, node_id_) && !beats_) {
-      guarding_.on_request(0, 0, now);
-      EXPECT_TRUE(guarding_.serve(end_, node_id_, node_.state()));
-      return;
-    }
-    node_.on_frame(frame, now);
-    const auto command = canopen::nmt_command(frame, node_id_);
-    if (command == NmtCommand::reset_node || command == NmtCommand::reset_communication) after_reset();
-  }
-
-  void after_reset() {
-    guarding_.reset();
-    if (beats_) {
-      EXPECT_EQ(node_.set<od::producer_heartbeat_time>(50), canopen::ok);
-    }
-  }
-
-  VirtualBus& bus_;
-  VirtualBus::Endpoint& end_;
-  canopen::Node<sample::Device, VirtualBus::Endpoint> node_;
-  canopen::NodeGuardingSlave guarding_{};
-  NodeId node_id_;
-  bool beats_;
-  bool on_ = false;
-};
-
-/// A master, its slaves, and everything that happens, in order: frames as in a candump log, events of the master in
-/// brackets. PDOs are left out; so are heartbeats and guarding unless they are requested.
-struct Network {
-  Network(std::vector<NmtSlave> list, NmtStartUp how)
-      : slaves{std::move(list)}, master{end, slaves, how, 100ms, Host{&log}} {
-    VirtualBus::connect(end, master);
-    bus.listen([this](const Frame& frame, TimePoint) {
-      const std::uint32_t function = frame.id & ~0x7Fu;
-      const bool boot_up = function == 0x700 && !frame.remote && frame.data[0] == 0;
-      if (function >= 0x180 && function < 0x580) return;
-      if (function == 0x700 && !boot_up && !with_error_control) return;
-      log.push_back(bench::text(frame));
-    });
-  }
-
-  Slave& slave(std::uint8_t node_id, bool beats) { return devices.emplace_back(bus, node_id, beats); }
-
-  /// Returns what happens during this time.
-  std::vector<std::string> pass(canopen::Duration span) {
-    bus.run_for(span);
-    return std::exchange(log, {});
-  }
-
-  VirtualBus bus;
-  std::vector<std::string> log;
-  bool with_error_control = false;
-  std::vector<NmtSlave> slaves;
-  VirtualBus::Endpoint& end = bus.attach();
-  canopen::NmtMaster<VirtualBus::Endpoint, 8, Host> master;
-  std::list<Slave> devices;
-};
-
 using Lines = std::vector<std::string>;
 
 constexpr std::uint32_t guarded = (100u << 16) | (3u << 8);  ///< every 100 ms, lost after 300 ms
-
-/// The identity of the sample device.
-NmtSlave slave_with_identity(std::uint8_t node_id, std::uint32_t bits) {
-  NmtSlave slave{NodeId{node_id}, bits};
-  slave.device_type = 0xF0191;
-  slave.vendor_id = 0x1234;
-  slave.product_code = 0x10001;
-  slave.revision_number = 0x10002;
-  return slave;
-}
 
 constexpr std::uint32_t plain = assignment::listed | assignment::boot;
 constexpr std::uint32_t mandatory = plain | assignment::mandatory;
@@ -368,215 +258,6 @@ TEST(NmtMaster, TellsWhenTheBootTimeHasElapsed) {
   EXPECT_EQ(network.pass(400ms), (Lines{"705 00", "(5 boot-up 00)", "605 40 00 10 00 00 00 00 00",
                                         "585 43 00 10 00 91 01 0F 00", "(5 0)", "(network started)", "000 01 05"}))
       << "it is still waited for";
-}
-
-// Error control
-
-TEST(NmtMaster, GuardsASlaveAndComparesItsState) {
-  Network network{{NmtSlave{NodeId{5}, plain | guarded}}, {}};
-  network.with_error_control = true;
-  network.slave(5, false).switch_on();
-  network.pass(0ms);
-  network.master.start(network.bus.now());
-  EXPECT_EQ(network.pass(50ms),
-            (Lines{"(network started)", "000 82 00", "705 00", "(5 boot-up 00)", "605 40 00 10 00 00 00 00 00",
-                   "585 43 00 10 00 91 01 0F 00", "705 R 1", "705 7F", "(5 state 7F)", "(5 0)", "000 01 05"}));
-  EXPECT_EQ(network.pass(100ms), (Lines{"705 R 1", "705 85", "(5 state 05)"}));
-  EXPECT_EQ(network.master.state(NodeId{5}), NmtState::operational);
-  EXPECT_EQ(network.pass(100ms), (Lines{"705 R 1", "705 05"}));
-}
-
-TEST(NmtMaster, TellsThatASlaveIsNotInTheStateItWasCommandedTo) {
-  Network network{{NmtSlave{NodeId{5}, plain | guarded}}, {}};
-  network.slave(5, false).switch_on();
-  network.pass(0ms);
-  network.master.start(network.bus.now());
-  network.pass(150ms);
-  VirtualBus::Endpoint& other = network.bus.attach();
-  other.send(bench::frame("000 02 05"));
-  EXPECT_EQ(network.pass(100ms), (Lines{"000 02 05", "(5 state 04)", "(5 unexpected state 04)"}));
-}
-
-TEST(NmtMaster, WaitsForTheHeartbeatBeforeTheStart) {
-  NmtSlave slave{NodeId{5}, plain};
-  slave.heartbeat_time = 100;
-  Network network{{slave}, {}};
-  network.with_error_control = true;
-  network.slave(5, true).switch_on();
-  network.pass(0ms);
-  network.master.start(network.bus.now());
-  EXPECT_EQ(network.pass(0ms),
-            (Lines{"(network started)", "000 82 00", "705 00", "(5 boot-up 00)", "605 40 00 10 00 00 00 00 00",
-                   "705 7F", "(5 state 7F)", "585 43 00 10 00 91 01 0F 00", "605 40 17 10 00 00 00 00 00",
-                   "585 4B 17 10 00 32 00 00 00", "(5 0)", "000 01 05"}));
-  EXPECT_EQ(network.pass(50ms), (Lines{"705 05", "(5 state 05)"}));
-}
-
-TEST(NmtMaster, SetsTheHeartbeatOfASlaveThatHasNone) {
-  NmtSlave slave{NodeId{5}, mandatory};
-  slave.heartbeat_time = 100;
-  Network network{{slave}, {}};
-  Slave& device = network.slave(5, false);
-  device.switch_on();
-  network.pass(0ms);
-  network.master.start(network.bus.now());
-  EXPECT_EQ(network.pass(60ms),
-            (Lines{"000 82 00", "705 00", "(5 boot-up 00)", "605 40 00 10 00 00 00 00 00",
-                   "585 43 00 10 00 91 01 0F 00", "605 40 17 10 00 00 00 00 00", "585 4B 17 10 00 00 00 00 00",
-                   "605 2B 17 10 00 32 00 00 00", "585 60 17 10 00 00 00 00 00", "(5 state 7F)", "(5 0)",
-                   "(network started)", "000 01 05", "(5 state 05)"}));
-  device.switch_off();
-  EXPECT_EQ(network.pass(1s).front(), "(5 lost 05)");
-}
-
-/// A master and a slave with a heartbeat time, until 1017h is read; the test writes the frames of the slave.
-struct Asked {
-  explicit Asked(std::uint16_t heartbeat_time) {
-    slaves[0].heartbeat_time = heartbeat_time;
-    master.start(TimePoint{});
-    EXPECT_EQ(answer("705 00"), "000 82 00 | 605 40 00 10 00 00 00 00 00");
-    EXPECT_EQ(answer("585 43 00 10 00 91 01 0F 00"), "605 40 17 10 00 00 00 00 00");
-  }
-  std::string answer(const std::string& text) {
-    master.on_frame(bench::frame(text), now);
-    return bus.take();
-  }
-
-  bench::RecordingBus bus;
-  Lines log;
-  TimePoint now{};
-  std::array<NmtSlave, 1> slaves{NmtSlave{NodeId{5}, mandatory}};
-  canopen::NmtMaster<bench::RecordingBus, 1, Host> master{bus, slaves, {}, 100ms, Host{&log}};
-};
-
-TEST(NmtMaster, LeavesAHeartbeatTimeThatIsShortEnough) {
-  EXPECT_EQ(Asked{600}.answer("585 4B 17 10 00 90 01 00 00"), "") << "400 ms";
-  EXPECT_EQ(Asked{600}.answer("585 4B 17 10 00 91 01 00 00"), "605 2B 17 10 00 2C 01 00 00") << "401 ms: 300 ms then";
-  EXPECT_EQ(Asked{600}.answer("585 4B 17 10 00 00 00 00 00"), "605 2B 17 10 00 2C 01 00 00");
-  EXPECT_EQ(Asked{1}.answer("585 4B 17 10 00 00 00 00 00"), "605 2B 17 10 00 01 00 00 00");
-  EXPECT_EQ(Asked{600}.answer("585 80 17 10 00 01 00 01 06"), "605 2B 17 10 00 2C 01 00 00") << "write-only";
-}
-
-TEST(NmtMaster, ASlaveWithoutItsHeartbeatIsNotStarted) {
-  Asked plant{100};
-  EXPECT_EQ(plant.answer("585 4B 17 10 00 32 00 00 00"), "");
-  plant.master.on_time(TimePoint{99ms});
-  EXPECT_EQ(plant.log, (Lines{"(5 boot-up 00)"}));
-  plant.master.on_time(TimePoint{100ms});
-  EXPECT_EQ(plant.log, (Lines{"(5 boot-up 00)", "(5 K)"}));
-  EXPECT_FALSE(plant.master.network_started());
-  EXPECT_EQ(plant.bus.take(), "");
-}
-
-TEST(NmtMaster, ASlaveThatCannotHaveAHeartbeatIsNotStarted) {
-  Asked plant{100};
-  plant.answer("585 80 17 10 00 00 00 02 06");
-  EXPECT_EQ(plant.answer("585 80 17 10 00 00 00 02 06"), "");
-  EXPECT_EQ(plant.log, (Lines{"(5 boot-up 00)", "(5 K)"}));
-}
-
-TEST(NmtMaster, ASlaveThatDoesNotAnswerGuardingIsNotStarted) {
-  Network network{{NmtSlave{NodeId{5}, mandatory | guarded}}, {}};
-  network.with_error_control = true;
-  network.slave(5, true).switch_on();  // with a heartbeat it does not answer guarding
-  network.devices.front().switch_off();
-  network.pass(0ms);
-  network.master.start(network.bus.now());
-  network.bus.attach().send(bench::frame("705 00"));
-  network.pass(0ms);
-  network.bus.attach().send(bench::frame("585 43 00 10 00 91 01 0F 00"));
-  EXPECT_EQ(network.pass(299ms), (Lines{"585 43 00 10 00 91 01 0F 00", "705 R 1", "705 R 1", "705 R 1"}));
-  EXPECT_EQ(network.pass(1s), (Lines{"(5 lost 00)", "(5 F)"}));
-}
-
-TEST(NmtMaster, ASlaveThatIsOperationalAlreadyMayBeKeptAlive) {
-  NmtSlave alive{NodeId{5}, plain | assignment::keep_alive};
-  alive.heartbeat_time = 100;
-  Network network{{alive, NmtSlave{NodeId{6}, plain}}, {}};
-  Slave& device = network.slave(5, true);
-  device.switch_on();
-  network.bus.attach().send(bench::frame("000 01 05"));
-  network.pass(10ms);
-  network.pass(0ms);
-  network.master.start(network.bus.now());
-  EXPECT_EQ(network.pass(100ms), (Lines{"(network started)", "000 82 06", "605 40 00 10 00 00 00 00 00",
-                                        "585 43 00 10 00 91 01 0F 00", "(5 state 05)", "(5 L)"}));
-  EXPECT_EQ(device.state(), NmtState::operational);
-}
-
-TEST(NmtMaster, ASlaveToBeKeptAliveThatIsNotOperationalIsReset) {
-  NmtSlave alive{NodeId{5}, plain | assignment::keep_alive | guarded};
-  Network network{{alive}, {}};
-  network.slave(5, false).switch_on();
-  network.pass(0ms);
-  network.master.start(network.bus.now());
-  EXPECT_EQ(network.pass(0ms),
-            (Lines{"(network started)", "605 40 00 10 00 00 00 00 00", "585 43 00 10 00 91 01 0F 00", "(5 state 7F)",
-                   "000 82 05", "705 00", "(5 boot-up 00)", "605 40 00 10 00 00 00 00 00",
-                   "585 43 00 10 00 91 01 0F 00", "(5 state 7F)", "(5 0)", "000 01 05"}));
-}
-
-// A lost slave
-
-TEST(NmtMaster, ResetsALostSlaveAndBootsItAgain) {
-  NmtSlave slave{NodeId{5}, mandatory};
-  slave.heartbeat_time = 100;
-  Network network{{slave}, {}};
-  Slave& device = network.slave(5, true);
-  device.switch_on();
-  network.pass(0ms);
-  network.master.start(network.bus.now());
-  network.pass(50ms);
-  device.switch_off();
-  EXPECT_EQ(network.pass(99ms), Lines{});
-  EXPECT_EQ(network.pass(1ms), (Lines{"(5 lost 05)", "000 81 05"}));
-  EXPECT_EQ(network.master.state(NodeId{5}), std::nullopt);
-  device.switch_on();
-  EXPECT_EQ(network.pass(10ms), (Lines{"705 00", "(5 boot-up 00)", "605 40 00 10 00 00 00 00 00", "(5 back 7F)",
-                                       "585 43 00 10 00 91 01 0F 00", "605 40 17 10 00 00 00 00 00",
-                                       "585 4B 17 10 00 32 00 00 00", "(5 0)", "000 01 05"}));
-}
-
-TEST(NmtMaster, StopsAllNodesWhenAMandatorySlaveIsLost) {
-  Network network{{NmtSlave{NodeId{5}, mandatory | guarded}, NmtSlave{NodeId{6}, plain | guarded}},
-                  {start_up::stop_all, 0ms}};
-  Slave& fifth = network.slave(5, false);
-  Slave& sixth = network.slave(6, false);
-  fifth.switch_on();
-  sixth.switch_on();
-  network.pass(0ms);
-  network.master.start(network.bus.now());
-  network.pass(150ms);
-  fifth.switch_off();
-  EXPECT_EQ(network.pass(500ms), (Lines{"(5 lost 05)", "000 02 00", "(6 state 04)"}));
-  EXPECT_EQ(sixth.state(), NmtState::stopped);
-}
-
-TEST(NmtMaster, ResetsAllNodesWhenAMandatorySlaveIsLost) {
-  Network network{{NmtSlave{NodeId{5}, mandatory | guarded}, NmtSlave{NodeId{6}, plain | guarded}},
-                  {start_up::reset_all, 0ms}};
-  Slave& fifth = network.slave(5, false);
-  network.slave(6, false).switch_on();
-  fifth.switch_on();
-  network.pass(0ms);
-  network.master.start(network.bus.now());
-  network.pass(150ms);
-  fifth.switch_off();
-  const Lines lines = network.pass(500ms);
-  ASSERT_GE(lines.size(), 4u);
-  EXPECT_EQ(Lines(lines.begin(), lines.begin() + 4), (Lines{"(5 lost 05)", "000 81 00", "706 00", "(6 boot-up 00)"}));
-  EXPECT_EQ(lines.back(), "(6 state 05)");
-}
-
-TEST(NmtMaster, ResetsAnOptionalSlaveAlone) {
-  Network network{{NmtSlave{NodeId{6}, plain | guarded}}, {start_up::stop_all | start_up::reset_all, 0ms}};
-  Slave& sixth = network.slave(6, false);
-  sixth.switch_on();
-  network.pass(0ms);
-  network.master.start(network.bus.now());
-  network.pass(150ms);
-  sixth.switch_off();
-  EXPECT_EQ(network.pass(400ms), (Lines{"(6 lost 05)", "000 81 06"}));
 }
 
 // Five slaves: one of another type, one missing, one late

@@ -1,11 +1,13 @@
 /// Only an SDO server with the values of a device: requests and answers as the eight bytes of their frames.
 #pragma once
 
+#include <canopen/base/crc16.hpp>
 #include <canopen/od/object_store.hpp>
 #include <canopen/sdo/sdo_server.hpp>
 #include <cstdio>
 #include <functional>
 #include <sample/device.hpp>
+#include <span>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -28,6 +30,13 @@ inline std::string text_of(const canopen::sdo::Data& data) {
     text += piece;
   }
   return text;
+}
+
+/// The CRC of block transfers: two bytes as in a frame.
+inline std::string crc_text(std::span<const std::uint8_t> bytes) {
+  std::uint16_t crc = 0;
+  for (const std::uint8_t byte : bytes) crc = canopen::crc16_ccitt(crc, byte);
+  return text_of({static_cast<std::uint8_t>(crc & 0xFF), static_cast<std::uint8_t>(crc >> 8)}).substr(0, 5);
 }
 
 /// The sample device with block transfer.

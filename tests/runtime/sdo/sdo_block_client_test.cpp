@@ -1,65 +1,20 @@
+/// The SDO client with block transfer: uploads and downloads.
 #include <gtest/gtest.h>
 #include <canopen/sdo/sdo_client.hpp>
 
-#include <array>
-#include <numeric>
 #include <string>
-#include <vector>
 
+#include "counting.hpp"
+#include "sdo_client_bench.hpp"
 #include "support/bench.hpp"
 
 namespace {
 
-using bench::frame;
+using bench::counting;
 using canopen::AbortCode;
-using canopen::NodeId;
-using canopen::SdoClientOptions;
-using canopen::TimePoint;
+using client_bench::bytes_of;
+using client_bench::Client;
 using namespace std::chrono_literals;
-
-constexpr SdoClientOptions with_blocks{.timeout = 100ms, .block_transfer = true, .block_threshold = 4};
-
-/// A client; the test acts as the server. Frames are written as their eight bytes.
-struct Client {
-  explicit Client(SdoClientOptions options = with_blocks) : client{bus, NodeId{5}, options} {}
-
-  std::string take() {
-    std::string text = bus.take();
-    for (std::size_t at = 0; (at = text.find("605 ", at)) != std::string::npos;) text.erase(at, 4);
-    return text;
-  }
-  std::string answer(const std::string& bytes) {
-    client.on_frame(frame("585 " + bytes), now);
-    return take();
-  }
-  std::string pass(canopen::Duration span) {
-    now = now + span;
-    client.on_time(now);
-    return take();
-  }
-  std::string upload() {
-    EXPECT_TRUE(client.upload(0x2012, 0, memory, now));
-    return take();
-  }
-  std::string download(std::span<const std::uint8_t> bytes) {
-    EXPECT_TRUE(client.download(0x2012, 0, bytes, now));
-    return take();
-  }
-
-  bench::RecordingBus bus;
-  std::array<std::uint8_t, 100> memory{};
-  TimePoint now{};
-  canopen::SdoClient<bench::RecordingBus> client;
-};
-
-template <std::size_t Size>
-std::array<std::uint8_t, Size> counting() {
-  std::array<std::uint8_t, Size> bytes;
-  std::iota(bytes.begin(), bytes.end(), std::uint8_t{1});
-  return bytes;
-}
-
-std::vector<std::uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
 
 // Upload
 
@@ -312,126 +267,6 @@ TEST(SdoBlockClientDownload, AbortsWhatDoesNotFit) {
   }
 }
 
-// Streamed in pieces
-
-TEST(SdoClientPieces, AnUploadGoesToASink) {
-  Client client;
-  std::vector<std::uint8_t> taken;
-  std::vector<bool> lasts;
-  auto take = [&](std::uint32_t offset, std::span<const std::uint8_t> bytes, bool last) {
-    EXPECT_EQ(offset, taken.size());
-    taken.insert(taken.end(), bytes.begin(), bytes.end());
-    lasts.push_back(last);
-    return canopen::ok;
-  };
-  EXPECT_TRUE(client.client.upload(0x2012, 0, canopen::sink_of(take), client.now));
-  client.answer("C6 12 20 00 0D 00 00 00");
-  client.answer("01 53 61 6D 70 6C 65 20");
-  client.answer("82 64 65 76 69 63 65 00");
-  EXPECT_EQ(lasts.size(), 1u);
-  client.answer("C5 61 AE 00 00 00 00 00");
-  EXPECT_EQ(taken, bytes_of("Sample device"));
-  EXPECT_EQ(lasts, (std::vector<bool>{false, true}));
-  EXPECT_TRUE(client.client.data().empty());
-}
-
-TEST(SdoClientPieces, ASinkMayEndTheTransfer) {
-  Client client{{}};
-  auto take = [](std::uint32_t, std::span<const std::uint8_t>, bool) { return AbortCode::not_stored; };
-  client.client.upload(0x2012, 0, canopen::sink_of(take), client.now);
-  client.take();
-  EXPECT_EQ(client.answer("4B 12 20 00 01 02 00 00"), "80 12 20 00 20 00 00 08");
-}
-
-auto give_sample_device = [](std::uint32_t offset, std::span<std::uint8_t> bytes) -> canopen::Result<std::uint32_t> {
-  const std::string_view rest = std::string_view{"Sample device"}.substr(offset, bytes.size());
-  std::copy(rest.begin(), rest.end(), bytes.begin());
-  return static_cast<std::uint32_t>(rest.size());
-};
-
-TEST(SdoClientPieces, ADownloadComesFromASourceOfUnknownSize) {
-  Client client;
-  client.client.download(0x2012, 0, canopen::source_of(give_sample_device), client.now);
-  EXPECT_EQ(client.take(), "C4 12 20 00 00 00 00 00");
-  EXPECT_EQ(client.answer("A4 12 20 00 7F 00 00 00"), "01 53 61 6D 70 6C 65 20 | 82 64 65 76 69 63 65 00");
-  EXPECT_EQ(client.answer("A2 01 7F 00 00 00 00 00"), "81 64 65 76 69 63 65 00");
-  EXPECT_EQ(client.answer("A2 01 7F 00 00 00 00 00"), "C5 61 AE 00 00 00 00 00");
-}
-
-TEST(SdoClientPieces, ADownloadComesFromASourceOfKnownSizeBySegments) {
-  Client client{{}};
-  client.client.download(0x2012, 0, canopen::source_of(give_sample_device, 13), client.now);
-  EXPECT_EQ(client.take(), "21 12 20 00 0D 00 00 00");
-  EXPECT_EQ(client.answer("60 12 20 00 00 00 00 00"), "00 53 61 6D 70 6C 65 20");
-  EXPECT_EQ(client.answer("20 00 00 00 00 00 00 00"), "13 64 65 76 69 63 65 00");
-}
-
-TEST(SdoClientPieces, ASourceThatRunsDryOrFailsEndsTheTransfer) {
-  Client client{{}};
-  client.client.download(0x2012, 0, canopen::source_of(give_sample_device, 20), client.now);
-  client.take();
-  client.answer("60 12 20 00 00 00 00 00");
-  EXPECT_EQ(client.answer("20 00 00 00 00 00 00 00"), "80 12 20 00 24 00 00 08");
-  auto fail = [](std::uint32_t, std::span<std::uint8_t>) {
-    return canopen::Result<std::uint32_t>{AbortCode::hardware};
-  };
-  client.client.download(0x2012, 0, canopen::source_of(fail), client.now);
-  client.take();
-  EXPECT_EQ(client.answer("60 12 20 00 00 00 00 00"), "80 12 20 00 00 00 06 06");
-}
-
-// A transfer that is abandoned
-
-TEST(SdoClient, TellsTheServerThatTheApplicationEndsTheTransfer) {
-  Client client;
-  client.upload();
-  client.client.cancel(AbortCode::general, client.now);
-  EXPECT_EQ(client.take(), "80 12 20 00 00 00 00 08");
-  EXPECT_EQ(client.client.result(), AbortCode::general);
-  EXPECT_FALSE(client.client.busy());
-}
-
-TEST(SdoClient, IsBusyUntilItsAbortIsSent) {
-  Client client;
-  client.upload();
-  client.bus.room = 0;
-  EXPECT_EQ(client.pass(100ms), "");
-  EXPECT_TRUE(client.client.busy());
-  EXPECT_FALSE(client.client.upload(0x2012, 0, client.memory, client.now));
-  client.bus.room = 1;
-  EXPECT_EQ(client.pass(1ms), "80 12 20 00 00 00 04 05");
-  EXPECT_FALSE(client.client.busy());
-}
-
-TEST(SdoClient, DropsAnAbortThatFindsNoRoomForALongTime) {
-  Client client;
-  client.upload();
-  client.bus.room = 0;
-  client.pass(100ms);
-  client.pass(99ms);
-  EXPECT_TRUE(client.client.busy());
-  client.pass(1ms);
-  EXPECT_FALSE(client.client.busy());
-  EXPECT_EQ(client.client.result(), AbortCode::timeout);
-  EXPECT_EQ(client.client.next_deadline(), std::nullopt);
-  client.bus.room = 1;
-  EXPECT_EQ(client.pass(1ms), "");
-  EXPECT_EQ(client.upload(), "A4 12 20 00 7F 04 00 00");
-}
-
-TEST(SdoClient, LateSegmentsOfABlockUploadBelongToNoOtherTransfer) {
-  Client client;
-  client.upload();
-  client.answer("C2 12 20 00 0E 00 00 00");
-  client.client.cancel(AbortCode::general, client.now);
-  client.take();
-  client.client.upload(0x1000, 0, client.memory, client.now);
-  EXPECT_EQ(client.take(), "") << "a segment may look like any answer";
-  EXPECT_EQ(client.answer("43 00 10 00 00 00 00 00"), "");  // segment 67
-  EXPECT_TRUE(client.client.busy());
-  EXPECT_EQ(client.pass(100ms), "A4 00 10 00 7F 04 00 00");
-}
-
 TEST(SdoBlockClientDownload, IgnoresTheConfirmationOfAnEarlierOneBeforeItHasBegun) {
   Client client;
   const auto bytes = counting<7>();
@@ -439,18 +274,6 @@ TEST(SdoBlockClientDownload, IgnoresTheConfirmationOfAnEarlierOneBeforeItHasBegu
   EXPECT_EQ(client.answer("A2 01 7F 00 00 00 00 00"), "");
   EXPECT_EQ(client.answer("A1 00 00 00 00 00 00 00"), "");
   EXPECT_EQ(client.answer("A4 12 20 00 7F 00 00 00"), "81 01 02 03 04 05 06 07");
-}
-
-TEST(SdoClient, SpeaksToAServerOnOtherCanIds) {
-  bench::RecordingBus bus;
-  canopen::SdoClient client{bus, {canopen::CobId{0x6E1}, canopen::CobId{0x2000'1234}}};
-  std::array<std::uint8_t, 4> memory{};
-  client.upload(0x1000, 0, memory, TimePoint{});
-  EXPECT_EQ(bus.take(), "6E1 40 00 10 00 00 00 00 00");
-  client.on_frame(frame("234 43 00 10 00 91 01 0F 00"), TimePoint{});
-  EXPECT_TRUE(client.busy());
-  client.on_frame(frame("00001234 43 00 10 00 91 01 0F 00"), TimePoint{});
-  EXPECT_EQ(client.result(), canopen::ok);
 }
 
 }  // namespace
