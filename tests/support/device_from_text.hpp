@@ -93,6 +93,12 @@ inline std::string var(std::string_view index, std::string_view name, std::strin
   return text.append(more);
 }
 
+/// A sub-object: `[2000sub1]` and its keys.
+inline std::string sub(std::string_view index, int number, std::string_view name, std::string_view data_type,
+                       std::string_view more = "") {
+  return var(std::string{index} + "sub" + std::to_string(number), name, data_type, "rw", more);
+}
+
 /// The section of a RECORD or ARRAY without its sub-objects; `sub_objects` is the value of SubNumber.
 inline std::string group(std::string_view index, std::string_view name, std::string_view object_type, int sub_objects) {
   std::string text{"["};

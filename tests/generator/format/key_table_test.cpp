@@ -196,5 +196,13 @@ TEST(KeyTable, SpellsTheTitlesOfCia306) {
   }
 }
 
+TEST(KeyTable, SpellsEveryKeyThatItKnows) {
+  EXPECT_EQ(spell_key(SectionKind::device_info, "baudrate_500").name, "BaudRate_500");
+  EXPECT_EQ(spell_key(SectionKind::dummy_usage, "dummy001a").name, "Dummy001A");
+  EXPECT_EQ(spell_key(SectionKind::device_commissioning, "nodeid").name, "NodeID");
+  EXPECT_FALSE(spell_key(SectionKind::sub_object, "SubNumber").is_known);
+  EXPECT_FALSE(spell_key(SectionKind::unknown, "ParameterName").is_known);
+}
+
 }  // namespace
 }  // namespace edsc

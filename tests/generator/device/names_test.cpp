@@ -1,0 +1,90 @@
+/// C++ names of the device and its objects, and options that name entries.
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "support/device_from_text.hpp"
+
+namespace edsc {
+namespace {
+
+// ---- names ----
+
+TEST(Names, AreUniqueInTheDevice) {
+  const DeviceFromText text(var("2000", "Speed", "5") + var("2001", "speed", "5") + var("2002", "SPEED!", "5") +
+                            var("2003", "speed_2001", "5"));
+  std::set<std::string> names;
+  for (const Object& object : text.device.objects) names.insert(object.identifier);
+  EXPECT_EQ(names.size(), 4U);
+  EXPECT_EQ(text.device.find(0x2000)->identifier, "speed");
+  EXPECT_EQ(text.device.find(0x2001)->identifier, "speed_2001");
+}
+
+TEST(Names, OfSubObjectsAreUniqueInTheirObject) {
+  const DeviceFromText text(group("2000", "Group", "0x9", 4) + sub("2000", 0, "Value", "5") +
+                            sub("2000", 1, "Value", "5") + sub("2000", 2, "Value", "5") + sub("2000", 3, "", "5"));
+  EXPECT_EQ(text.entry(0x2000, 0).identifier, "value");
+  EXPECT_EQ(text.entry(0x2000, 1).identifier, "value_01");
+  EXPECT_EQ(text.entry(0x2000, 2).identifier, "value_02");
+  EXPECT_EQ(text.entry(0x2000, 3).identifier, "sub_03");
+}
+
+TEST(Names, OfSubIndex0ThatRepeatTheObjectAreTheStandardOne) {
+  const DeviceFromText text(group("2000", "Group", "0x9", 2) + sub("2000", 0, "Group", "5") +
+                            sub("2000", 1, "One", "5"));
+  EXPECT_EQ(text.entry(0x2000, 0).identifier, "highest_sub_index_supported");
+}
+
+TEST(Names, ComeFromTheOptionsWhereTheseHaveOne) {
+  Options options;
+  options.names[{0x2000, 0}] = "target";
+  const DeviceFromText text(var("2000", "Sollwert", "5"), options);
+  EXPECT_EQ(text.device.find(0x2000)->identifier, "target");
+}
+
+TEST(Names, OfTheDeviceComeFromTheFile) {
+  const auto name_of = [](const char* file) { return DeviceFromText(var("2000", "V", "5"), {}, {}, file).device.name; };
+  EXPECT_EQ(name_of("drives/EZD-1136.eds"), "ezd_1136");
+  EXPECT_EQ(name_of("1.eds"), "n_1");
+  EXPECT_EQ(name_of("---.eds"), "device");
+  EXPECT_EQ(name_of("namespace.eds"), "namespace_");
+  EXPECT_EQ(DeviceFromText(var("2000", "V", "5"), {}, {"axis1", std::nullopt}).device.name, "axis1");
+}
+
+TEST(Names, OfTheDeviceHideNoFunctionOfTheCLibraryAndNoWordOfTheTables) {
+  for (const char* word : {"signal", "time", "read", "index", "array", "record", "domain", "ram", "string"}) {
+    EXPECT_EQ(DeviceFromText(var("2000", "V", "5"), {}, {}, std::string{word} + ".eds").device.name,
+              std::string{word} + "_");
+  }
+}
+
+// ---- options ----
+
+TEST(Options, MustSpeakOfEntriesThatExist) {
+  Options options;
+  options.settable.push_back({0x2000, 1});
+  options.string_capacity[{0x2001, 0}] = 4;
+  options.names[{0x2000, 0}] = "fine";
+  const DeviceFromText text(var("2000", "Value", "5"), options);
+  EXPECT_EQ(findings(text.diagnostics, "options").size(), 2U);
+  EXPECT_EQ(text.diagnostics.errors(), 2U);
+}
+
+TEST(Options, MustSpeakOfObjectsThatExist) {
+  Options options;
+  options.no_event = {{0x2000, {}}, {0x2000, 0}, {0x2000, 1}, {0x2001, {}}};
+  options.static_mapping.parameters = {0x1A00};
+  const DeviceFromText text(var("2000", "Value", "5"), options);
+  std::vector<std::string> messages;
+  for (const Diagnostic& finding : text.diagnostics.all()) {
+    if (finding.rule == "options") messages.push_back(finding.message);
+  }
+  EXPECT_EQ(messages, (std::vector<std::string>{"option no_event names 2000h:01, which is not in the EDS",
+                                                "option no_event names 2001h, which is not in the EDS",
+                                                "option static_mapping names 1A00h, which is not in the EDS"}));
+}
+
+}  // namespace
+}  // namespace edsc
