@@ -48,5 +48,6 @@ struct Mutant {
 [[nodiscard]] std::vector<Mutant> sdo_mutants();
 [[nodiscard]] std::vector<Mutant> pdo_mutants();
 [[nodiscard]] std::vector<Mutant> control_mutants();
+[[nodiscard]] std::vector<Mutant> network_mutants();
 
 }  // namespace edsc::conform

@@ -1,0 +1,130 @@
+/// Declared deviations of a device.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "conform/deviations.hpp"
+#include "report_runs.hpp"
+#include "support/device_from_text.hpp"
+
+namespace edsc::conform {
+namespace {
+
+struct ReadDeviations {
+  explicit ReadDeviations(std::string text)
+      : source{"pump.json", std::move(text)}, rows{read_deviations(source, diagnostics)} {}
+
+  [[nodiscard]] std::string problem() const {
+    if (diagnostics.all().empty()) return {};
+    const Diagnostic& first = diagnostics.all().front();
+    return fmt::format("{}:{}: {}", first.position.line, first.position.column, first.message);
+  }
+
+  Diagnostics diagnostics;
+  SourceFile source;
+  std::vector<Deviation> rows;
+};
+
+TEST(ConformDeviations, AreRead) {
+  const ReadDeviations read{R"({ "$schema": "deviations.schema.json",
+  "deviations": [
+    { "case": "3.7", "object": "1800h:02", "reason": "type 0 at every SYNC", "source": "manual, page 12" },
+    { "case": "8.4", "reason": "loads after a power cycle" } ] })"};
+  EXPECT_EQ(read.problem(), "");
+  ASSERT_EQ(read.rows.size(), 2u);
+  EXPECT_EQ(read.rows[0].id, "3.7");
+  EXPECT_EQ(read.rows[0].object, (EntryAddress{0x1800, 2}));
+  EXPECT_EQ(read.rows[1].object, std::nullopt);
+  EXPECT_EQ(read.rows[1].position.line, 4u);
+}
+
+TEST(ConformDeviations, AreReadStrictly) {
+  const std::pair<const char*, const char*> wrong[] = {
+      {"[]", "1:1: expected one JSON object"},
+      {"{}", "1:1: missing member deviations"},
+      {R"({"deviations": 1})",
+       R"(1:2: expected an array of objects: [{"case": "3.7", "object": "1800h:02", "reason": "..."}])"},
+      {R"({"deviations": [1]})",
+       R"(1:2: expected an array of objects: [{"case": "3.7", "object": "1800h:02", "reason": "..."}])"},
+      {"{\"deviations\": [],\n \"more\": 1}", "2:2: unknown member more"},
+      {R"({"deviation": []})", "1:2: unknown member deviation; did you mean \"deviations\"?"},
+      {R"({"deviations": [{"case": "3.7"}]})", "1:17: missing member reason"},
+      {R"({"deviations": [{"reason": "x"}]})", "1:17: missing member case"},
+      {"{\"deviations\": [{\"case\": \"3.7\", \"reason\": \"x\"},\n  {\"case\": \"3.700\", \"reason\": \"x\"}]}",
+       "2:4: case: unknown case 3.700; edsc conform --list prints the cases"},
+      {R"({"deviations": [{"case": "3.7", "reason": " "}]})", "1:33: reason: expected a non-empty string"},
+      {R"({"deviations": [{"case": "3.7", "reason": 5}]})", "1:33: reason: expected a non-empty string"},
+      {R"({"deviations": [{"case": "3.7", "reason": "x", "object": "speed"}]})",
+       "1:48: object: expected an object or entry such as \"1800h\" or \"1800h:02\""},
+      {R"({"deviations": [{"case": "3.7", "reason": "x", "resaon": "y"}]})",
+       "1:48: unknown member resaon; did you mean \"reason\"?"},
+      {R"({"deviations": [{"case": "3.7", "reason": "x", "case": "3.6"}]})", "1:48: duplicate member case"},
+  };
+  for (const auto& [text, problem] : wrong) EXPECT_EQ(ReadDeviations{text}.problem(), problem) << text;
+  const std::string syntax = ReadDeviations{"{\"deviations\": [\n  {\"case\": \"3.7\" \"reason\": 1}]}"}.problem();
+  EXPECT_TRUE(syntax.starts_with("2:25: not JSON: ")) << syntax;
+  EXPECT_EQ(ReadDeviations{std::string{"{\"deviations\": \"\xFF\"}"}}.rows.size(), 0u);
+}
+
+TEST(ConformDeviations, TurnAFailureIntoADeviation) {
+  const ReadDeviations read{R"({"deviations": [{"case": "3.7", "reason": "at every SYNC", "source": "page 12"}]})"};
+  CaseResult declared = failure(sync_row, "no TPDO", "TPDO 1");
+  apply_deviations(read.rows, declared);
+  EXPECT_EQ(declared.verdict, Verdict::deviates);
+  EXPECT_EQ(declared.deviation, "at every SYNC (page 12)");
+  CaseResult other = failure(read_row, "0602 0000h", "no answer");
+  apply_deviations(read.rows, other);
+  EXPECT_EQ(other.verdict, Verdict::failed);
+  CaseResult passed = result_of(sync_row, Verdict::passed);
+  apply_deviations(read.rows, passed);
+  EXPECT_EQ(passed.verdict, Verdict::passed);
+}
+
+TEST(ConformDeviations, OfAnObjectDoNotHideFailuresOfOthers) {
+  const ReadDeviations read{R"({"deviations": [{"case": "3.7", "object": "1800h", "reason": "x"}]})"};
+  const auto verdict = [&](const std::string& got) {
+    CaseResult result = failure(sync_row, "0601 0000h", got);
+    apply_deviations(read.rows, result);
+    return result.verdict;
+  };
+  EXPECT_EQ(verdict("1800h:02 is written"), Verdict::deviates);
+  EXPECT_EQ(verdict("1801h:02 is written"), Verdict::failed);
+  EXPECT_EQ(verdict("1801h:02 and 1800h:02 are written"), Verdict::deviates);
+  EXPECT_EQ(verdict("no answer"), Verdict::deviates) << "a failure that names no entry may be that of the object";
+}
+
+TEST(ConformDeviations, CoverEachEntryThatFails) {
+  const ReadDeviations read{R"({"deviations": [{"case": "3.7", "object": "1800h:01", "reason": "x"},
+                                               {"case": "3.7", "object": "1801h", "reason": "x"}]})"};
+  const auto result_with = [&](std::vector<EntryAddress> entries) {
+    CaseResult result = failure(sync_row, "each COB-ID", "1800h:01: accepted; and others");
+    result.failed_entries = std::move(entries);
+    apply_deviations(read.rows, result);
+    return result;
+  };
+  const EntryAddress first{0x1800, std::uint8_t{1}}, second{0x1801, std::uint8_t{1}}, third{0x1802, std::uint8_t{1}};
+  EXPECT_EQ(result_with({first, second}).verdict, Verdict::deviates);
+  EXPECT_EQ(result_with({first, second}).deviation, "x") << "the same reason once";
+  EXPECT_EQ(result_with({first, third}).verdict, Verdict::failed);
+  EXPECT_EQ(result_with({third}).verdict, Verdict::failed);
+}
+
+TEST(ConformDeviations, AreUnusedWhereTheirCasePasses) {
+  const ReadDeviations read{R"({"deviations": [{"case": "3.7", "reason": "x"},
+ {"case": "8.4", "reason": "y"}]})"};
+  RunReport run;
+  run.cases = {result_of(sync_row, Verdict::passed)};
+  find_unused_deviations(read.rows, run);
+  EXPECT_EQ(run.unused_deviations, std::vector<std::string>{"pump.json:1: case 3.7 passed: x"});
+  for (const Verdict verdict : {Verdict::deviates, Verdict::not_applicable, Verdict::inconclusive, Verdict::not_run}) {
+    RunReport other;
+    other.cases = {result_of(sync_row, verdict)};
+    find_unused_deviations(read.rows, other);
+    EXPECT_TRUE(other.unused_deviations.empty());
+  }
+}
+
+}  // namespace
+}  // namespace edsc::conform

@@ -1,0 +1,163 @@
+/// The result of a hand-made conformance run, and its report as text.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "conform/report/html_report.hpp"
+#include "conform/report/json_report.hpp"
+#include "conform/report/junit_report.hpp"
+#include "conform/report/report_facts.hpp"
+#include "conform/report/text_report.hpp"
+#include "report_runs.hpp"
+#include "support/device_from_text.hpp"
+
+namespace edsc::conform {
+namespace {
+
+// ---- result of a run ----
+
+TEST(ConformRun, PassesWithoutFailureAndProblem) {
+  RunReport run = every_verdict();
+  EXPECT_FALSE(run.passed());
+  EXPECT_EQ(run.count(Verdict::failed), 1u);
+  run.cases.erase(run.cases.begin() + 1);
+  EXPECT_TRUE(run.passed());
+  EXPECT_FALSE(RunReport{}.passed()) << "no case ran";
+  for (auto spoil : {+[](RunReport& r) { r.unused_deviations.emplace_back("3.7"); },
+                     +[](RunReport& r) { r.not_put_back.emplace_back("1017h:00"); },
+                     +[](RunReport& r) { r.interrupted = true; }, +[](RunReport& r) { r.lost = "the bus is lost"; }}) {
+    RunReport spoiled = run;
+    spoil(spoiled);
+    EXPECT_FALSE(spoiled.passed());
+  }
+}
+
+TEST(ConformRun, NamesTheCommandThatRepeatsACase) {
+  RunReport run = every_verdict();
+  EXPECT_EQ(repeat_command(run, read_row),
+            "edsc conform socketcan:can0 5 eds/pump.eds --level communication --store --only 2.6 --seed 7");
+  EXPECT_EQ(repeat_command(run, outputs_row),
+            "edsc conform socketcan:can0 5 eds/pump.eds --level communication --store --outputs --only 5.4 --seed 7");
+  run.level = Level::all;
+  EXPECT_EQ(repeat_command(run, save_row),
+            "edsc conform socketcan:can0 5 eds/pump.eds --level all --only 8.4 --seed 7");
+  run.level = Level::read;
+  run.permissions = Permission::none;
+  run.sheet = "my pump's.eds";
+  EXPECT_EQ(repeat_command(run, read_row), R"(edsc conform socketcan:can0 5 'my pump'\''s.eds' --only 2.6 --seed 7)");
+}
+
+// ---- text ----
+
+TEST(ConformText, ShowsOfAFailureAllThatIsNeededToRepeatIt) {
+  const RunReport run = every_verdict();
+  const TextReport report{run, sheet().device, false};
+  EXPECT_EQ(
+      report.of(run.cases[1]),
+      "2.6    failed                A missing object is refused\n"
+      "       clause        CiA 301, 7.2.4.3.17\n"
+      "       expected      0602 0000h, object does not exist\n"
+      "       got           0609 0011h, sub-index does not exist\n"
+      "       frames        12.003481 TX 605 40 04 10 00 00 00 00 00 SDO >    node 5  read 1004h:00\n"
+      "                     12.004000 RX 585 80 04 10 00 11 00 09 06 SDO <    node 5  abort 0609 0011h sub-index does "
+      "not exist, read of 1004h:00, 0.519 ms\n"
+      "       repeat with   edsc conform socketcan:can0 5 eds/pump.eds --level communication --store --only 2.6 "
+      "--seed 7\n");
+}
+
+TEST(ConformReports, NameTheRuleThatReportsAFailureInTheEds) {
+  RunReport run = every_verdict();
+  run.cases[1].rule = "sync-missing";
+  const std::string text = TextReport{run, sheet().device, false}.of(run.cases[1]);
+  EXPECT_NE(text.find("       EDS           rule sync-missing of edsc check reports it\n"), std::string::npos) << text;
+  for (const std::string& report : {html_report(run, sheet().device), junit_report(run, sheet().device)}) {
+    EXPECT_NE(report.find("rule sync-missing of edsc check reports it"), std::string::npos);
+  }
+  EXPECT_EQ(nlohmann::json::parse(json_report(run, sheet().device))["cases"][1]["rule"], "sync-missing");
+}
+
+TEST(ConformText, HasALineForEachOtherCase) {
+  const RunReport run = every_verdict();
+  const TextReport report{run, sheet().device, false};
+  EXPECT_EQ(report.of(run.cases[0]),
+            "8.4    passed                Values are restored\n"
+            "       warning       0800 0000h in place of 0601 0002h\n");
+  EXPECT_EQ(report.of(run.cases[2]),
+            "2.14   not applicable        100Ch is written in segments (100Ch:00 does not exist in the EDS)\n");
+  EXPECT_EQ(report.of(run.cases[3]),
+            "3.7    deviates as declared  A TPDO of type 0 is sent after an event\n"
+            "       reason        sent at every SYNC (manual, page 12)\n");
+}
+
+TEST(ConformText, IsColouredOnlyWhenItIsAskedFor) {
+  const RunReport run = every_verdict();
+  const auto whole = [&](bool color) {
+    const TextReport report{run, sheet().device, color};
+    std::string text = report.head();
+    for (const CaseResult& result : run.cases) text += report.of(result);
+    return text + report.summary();
+  };
+  EXPECT_EQ(whole(false).find('\x1B'), std::string::npos);
+  EXPECT_NE(whole(true).find("\x1b[32mpassed\x1b[0m"), std::string::npos);
+}
+
+TEST(ConformText, ShortensLongListsOfFrames) {
+  RunReport run = every_verdict();
+  CaseResult& failed = run.cases[1];
+  failed.frames.assign(100, seen(5'000'000, false, 0x705, {0x05}));
+  failed.frames.back() = seen(6'000'000, false, 0x705, {0x7F});
+  const std::string text = TextReport{run, sheet().device, false}.of(failed);
+  EXPECT_NE(text.find("frames        80 earlier frames not shown; --log writes all frames\n"), std::string::npos)
+      << text;
+  EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(text, '\n')), 4 + 1 + TextReport::max_frames + 1);
+  EXPECT_NE(text.find("6.000000 RX 705 7F"), std::string::npos) << text;
+}
+
+TEST(ConformText, SumsUpByArea) {
+  RunReport run = every_verdict();
+  run.cases.resize(3);
+  run.unused_deviations = {"pump.json:4: case 8.4 passed: restored after a power cycle"};
+  EXPECT_EQ((TextReport{run, sheet().device, false}.summary()),
+            "\n"
+            "area                                  cases  passed  failed  not applicable\n"
+            "8      Stored parameters and CAN-IDs      1       1       0               0\n"
+            "2      SDO                                2       0       1               1\n"
+            "       all                                3       1       1               1\n"
+            "\n"
+            "       identity      vendor-ID 0000 0319h\n"
+            "       test lag      0.1 ms at most\n"
+            "       problem       unused deviation: pump.json:4: case 8.4 passed: restored after a power cycle\n"
+            "failed: 1 of 3 cases failed; 1 passed, 1 not applicable\n");
+}
+
+TEST(ConformText, SaysWhyNoCaseRan) {
+  RunReport run;
+  run.lost = "node 5 does not answer";
+  EXPECT_EQ((TextReport{run, sheet().device, false}.summary()),
+            "\n"
+            "       test lag      0.0 ms at most\n"
+            "       problem       the run ended early: node 5 does not answer\n"
+            "failed: no case ran\n");
+}
+
+TEST(ConformText, NamesWhatTheRunMayDo) {
+  RunReport run = every_verdict();
+  EXPECT_EQ(level_text(run), "level communication with store");
+  run.permissions = Permission::store | Permission::outputs;
+  EXPECT_EQ(level_text(run), "level communication with store and outputs");
+  run.level = Level::all;
+  EXPECT_EQ(level_text(run), "level all");
+}
+
+TEST(ConformText, ShowsHostileBytesWithoutEffect) {
+  const RunReport run = hostile_run();
+  const TextReport report{run, sheet().device, false};
+  std::string text = report.head();
+  for (const CaseResult& result : run.cases) text += report.of(result);
+  expect_harmless(text + report.summary());
+}
+
+}  // namespace
+}  // namespace edsc::conform
