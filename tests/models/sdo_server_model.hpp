@@ -6,71 +6,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
-#include <initializer_list>
 #include <optional>
-#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "sdo_model_types.hpp"
+
 namespace model {
-
-using Octets = std::vector<std::uint8_t>;
-/// The eight data bytes of an SDO frame.
-using Data = std::array<std::uint8_t, 8>;
-using Answers = std::span<const Data>;
-
-enum class Type { boolean, unsigned_integer, signed_integer, real32, string, domain };
-
-struct Entry {
-  std::uint16_t index = 0;
-  std::uint8_t sub_index = 0;
-  Type type{};
-  bool readable = false;
-  bool writable = false;
-  std::size_t size = 0;  ///< bytes; maximum of a string or DOMAIN
-  std::optional<double> low{};
-  std::optional<double> high{};
-  Octets value{};
-
-  [[nodiscard]] bool variable() const { return type == Type::string || type == Type::domain; }
-};
-
-/// The abort codes of table 22.
-using Code = std::uint32_t;
-constexpr Code toggle_bit = 0x0503'0000;
-constexpr Code timeout = 0x0504'0000;
-constexpr Code command_specifier = 0x0504'0001;
-constexpr Code block_size = 0x0504'0002;
-constexpr Code sequence_number = 0x0504'0003;
-constexpr Code crc_error = 0x0504'0004;
-constexpr Code write_only = 0x0601'0001;
-constexpr Code read_only = 0x0601'0002;
-constexpr Code no_object = 0x0602'0000;
-constexpr Code length_mismatch = 0x0607'0010;
-constexpr Code too_long = 0x0607'0012;
-constexpr Code too_short = 0x0607'0013;
-constexpr Code no_sub_index = 0x0609'0011;
-constexpr Code invalid_value = 0x0609'0030;
-constexpr Code value_too_high = 0x0609'0031;
-constexpr Code value_too_low = 0x0609'0032;
-constexpr Code no_data = 0x0800'0024;
-
-using Codes = std::initializer_list<Code>;
-
-/// CRC of 7.2.4.3.16: x^16 + x^12 + x^5 + 1, initial value 0, bit by bit.
-inline std::uint16_t crc_of(const Octets& bytes) {
-  unsigned crc = 0;
-  for (const std::uint8_t byte : bytes) {
-    for (int bit = 7; bit >= 0; --bit) {
-      const bool carry = ((crc >> 15 & 1u) ^ (byte >> bit & 1u)) != 0;
-      crc = (crc << 1 & 0xFFFF) ^ (carry ? 0x1021u : 0u);
-    }
-  }
-  return static_cast<std::uint16_t>(crc);
-}
 
 class SdoServer {
  public:
@@ -366,148 +312,18 @@ class SdoServer {
 
   // ---- block download (7.2.4.3.9 to 7.2.4.3.11)
 
-  const char* block_download() {
-    if ((q()[0] & 1) != 0) return block_download_end();
-    begin();
-    if (entry_ == nullptr) return aborts({missing_}, "no such object or sub-index");
-    if (!entry_->writable) return aborts({read_only}, "0601 0002h: a read-only object is written");
-    announced_.reset();
-    if ((q()[0] & 2) != 0) {
-      announced_ = word(q());
-      if (const std::uint32_t code = length_error(*announced_); code != 0)
-        return aborts({code}, "the length does not fit");
-    }
-    crc_ = (q()[0] & 4) != 0;
-    // The server chooses the segments of a sub-block: 1..127.
-    if (answers_.size() != 1 || answers_[0][4] < 1 || answers_[0][4] > 127) return "a block size is 1..127";
-    start_sub_block(answers_[0][4]);
-    last_arrived_ = false;
-    return expect(frame(0xA4, block_size_), "a block download is confirmed: A4h, CRC supported");
-  }
-
-  void start_sub_block(std::uint8_t segments) {
-    phase_ = Phase::block_download;
-    block_size_ = segments;
-    in_order_ = 0;
-  }
-
-  const char* block_download_segment() {
-    const unsigned number = q()[0] & 0x7F;
-    // 0 is not a sequence number, and a number above the block size cannot belong to this sub-block.
-    if (number == 0 || number > block_size_) return aborts({sequence_number}, "0504 0003h: invalid sequence number");
-    const bool last = (q()[0] & 0x80) != 0;
-    if (number == in_order_ + 1) {
-      ++in_order_;
-      taken_.insert(taken_.end(), q().begin() + 1, q().end());
-      last_arrived_ = last;
-      // The last segment may have up to seven unused bytes.
-      if (too_many(taken_.size() - (last ? 7 : 0)) && answers_abort())
-        return aborts({too_long, length_mismatch}, "too many bytes");
-    }
-    // Segments after a gap are ignored; the confirmation at the end of the sub-block requests them again.
-    if (!last && number != block_size_) return answers_.empty() ? nullptr : "segments of a sub-block are not answered";
-    const unsigned confirmed = in_order_;
-    if (answers_.size() != 1 || answers_[0][2] < 1 || answers_[0][2] > 127) return "a block size is 1..127";
-    if (last_arrived_) {
-      phase_ = Phase::block_download_end;
-      block_size_ = answers_[0][2];
-    } else {
-      start_sub_block(answers_[0][2]);
-    }
-    return expect(Data{0xA2, static_cast<std::uint8_t>(confirmed), block_size_}, "a sub-block is confirmed");
-  }
-
-  const char* block_download_end() {
-    if (phase_ != Phase::block_download_end) return unknown_command();
-    Octets bytes(taken_.begin(), taken_.end() - (q()[0] >> 2 & 7));
-    const bool crc_right = !crc_ || crc_of(bytes) == (q()[1] | q()[2] << 8);
-    const std::uint32_t length = length_error(bytes.size());
-    Code announced = 0;
-    if (announced_ && bytes.size() != *announced_) announced = bytes.size() < *announced_ ? too_short : too_long;
-    // If both the CRC and the length are wrong, either code is allowed.
-    if (!crc_right && announced != 0) return aborts({crc_error, length_mismatch, announced}, "CRC and length");
-    if (!crc_right && length != 0) return aborts({crc_error, length}, "CRC and length");
-    if (!crc_right) return aborts({crc_error}, "0504 0004h: the CRC is wrong");
-    if (announced != 0) return aborts({length_mismatch, announced}, "another length than announced");
-    return take(bytes, Data{0xA1}, "the end of a block download is confirmed");
-  }
+  const char* block_download();
+  void start_sub_block(std::uint8_t segments);
+  const char* block_download_segment();
+  const char* block_download_end();
 
   // ---- block upload (7.2.4.3.12 to 7.2.4.3.15)
 
-  const char* block_upload() {
-    switch (q()[0] & 3) {
-      case 0: return initiate_block_upload();
-      case 1:
-        if (phase_ != Phase::block_upload_end) return unknown_command();
-        finish();
-        return answers_.empty() ? nullptr : "the client's end is not answered";
-      case 2: return confirm_block_upload();
-      default:
-        if (phase_ != Phase::block_upload_initiated) return unknown_command();
-        return expect_sub_block();
-    }
-  }
-
-  const char* initiate_block_upload() {
-    begin();
-    const bool size_right = q()[4] >= 1 && q()[4] <= 127;
-    if (entry_ == nullptr || !entry_->readable) {
-      const std::uint32_t code = entry_ == nullptr ? missing_ : write_only;
-      return size_right ? aborts({code}, "what cannot be read") : aborts({code, block_size}, "what cannot be read");
-    }
-    if (!size_right) return aborts({block_size}, "0504 0002h: the block size is not 1..127");
-    // Protocol switch threshold: a normal upload is allowed if the value is not longer. 0: not allowed.
-    if (q()[5] != 0 && entry_->value.size() <= q()[5] && answers_.size() == 1 && answers_[0][0] >> 5 == 2)
-      return answer_upload();
-    if (entry_->value.empty() && answers_abort()) return aborts({no_data}, "0800 0024h: no data");
-    crc_ = (q()[0] & 4) != 0;
-    block_size_ = q()[4];
-    position_ = 0;
-    phase_ = Phase::block_upload_initiated;
-    return expect(frame(0xC6, static_cast<std::uint32_t>(entry_->value.size())), "a block upload tells its size: C6h");
-  }
-
+  const char* block_upload();
+  const char* initiate_block_upload();
   /// Expects a sub-block of up to block_size_ segments, starting at position_.
-  const char* expect_sub_block() {
-    phase_ = Phase::block_upload_sent;
-    const std::size_t size = entry_->value.size();
-    std::size_t from = position_;
-    for (in_order_ = 1;; ++in_order_) {
-      const std::size_t length = std::min<std::size_t>(7, size - from);
-      const bool last = from + length == size;
-      Data segment{static_cast<std::uint8_t>(last ? in_order_ | 0x80 : in_order_)};
-      copy_value(from, length, segment);
-      if (answers_.size() < in_order_ || answers_[in_order_ - 1] != segment) return "a segment of a block upload";
-      from += length;
-      last_arrived_ = last;
-      if (last || in_order_ == block_size_) break;
-    }
-    return answers_.size() == in_order_ ? nullptr : "no more segments than the block size";
-  }
-
-  const char* confirm_block_upload() {
-    if (phase_ != Phase::block_upload_sent) return unknown_command();
-    const unsigned confirmed = q()[1];
-    const bool size_right = q()[2] >= 1 && q()[2] <= 127;
-    if (confirmed > in_order_)
-      return size_right ? aborts({sequence_number}, "0504 0003h: more segments confirmed than sent")
-                        : aborts({sequence_number, block_size}, "more segments confirmed than sent");
-    const std::size_t size = entry_->value.size();
-    if (confirmed == in_order_ && last_arrived_) {
-      // No sub-block follows: a server may or may not check its size.
-      if (!size_right && answers_abort()) return aborts({block_size}, "0504 0002h");
-      phase_ = Phase::block_upload_end;
-      const std::size_t unused = size == 0 ? 7 : (7 - size % 7) % 7;
-      const std::uint16_t crc = crc_ ? crc_of(entry_->value) : std::uint16_t{0};
-      return expect(Data{static_cast<std::uint8_t>(0xC1 | unused << 2), static_cast<std::uint8_t>(crc),
-                         static_cast<std::uint8_t>(crc >> 8)},
-                    "the end of a block upload");
-    }
-    if (!size_right) return aborts({block_size}, "0504 0002h: the block size is not 1..127");
-    block_size_ = q()[2];
-    position_ += std::size_t{7} * confirmed;
-    return expect_sub_block();
-  }
+  const char* expect_sub_block();
+  const char* confirm_block_upload();
 
   std::vector<Entry> entries_;
   Phase phase_ = Phase::idle;
@@ -528,80 +344,5 @@ class SdoServer {
   const Entry* written_ = nullptr;
   Entry* spoilt_ = nullptr;
 };
-
-inline std::string SdoServer::key() const {
-  if (phase_ == Phase::idle) return "idle";
-  const auto part = [](std::size_t position, std::size_t end) {
-    return position == 0 ? 'b' : position + 7 >= end ? 'e' : 'm';
-  };
-  char text[80];
-  const std::size_t end = phase_ == Phase::upload || phase_ >= Phase::block_upload_initiated ? entry_->value.size()
-                          : announced_                                                       ? *announced_
-                                                                                             : entry_->size;
-  const bool block = phase_ != Phase::download && phase_ != Phase::upload;
-  const unsigned sub_block = !block                         ? 0
-                             : in_order_ == 0               ? 1
-                             : in_order_ == 1               ? 2
-                             : in_order_ + 1 == block_size_ ? 4
-                             : in_order_ == block_size_     ? 5
-                                                            : 3;
-  const std::size_t position =
-      phase_ == Phase::upload || phase_ >= Phase::block_upload_initiated ? position_ : taken_.size();
-  std::snprintf(text, sizeof text, "%d %04X:%02X t%d %c %c%c%c n%u b%d", static_cast<int>(phase_),
-                static_cast<unsigned>(entry_->index), static_cast<unsigned>(entry_->sub_index), toggle_,
-                part(position, end), announced_ ? 's' : '-', block && crc_ ? 'c' : '-',
-                block && last_arrived_ ? 'l' : '-', sub_block,
-                block_size_ == 1     ? 1
-                : block_size_ == 127 ? 3
-                                     : 2);
-  return text;
-}
-
-inline std::vector<Data> SdoServer::suggestions() const {
-  std::vector<Data> list;
-  const auto add = [&list](Data data) { list.push_back(data); };
-  const auto byte = [](std::size_t value) { return static_cast<std::uint8_t>(value); };
-  const Data content{0, 'a', 'b', 'c', 'd', 'e', 'f', 'g'};
-  const auto content_with = [&](std::size_t command) {
-    Data data = content;
-    data[0] = byte(command);
-    return data;
-  };
-  switch (phase_) {
-    case Phase::idle: break;
-    case Phase::download: {
-      const std::size_t left =
-          announced_.value_or(static_cast<std::uint32_t>(std::min<std::size_t>(entry_->size, 20))) - taken_.size();
-      add(left > 7 ? content_with(toggle_) : content_with(toggle_ | (7 - left) << 1 | 1u));
-      add(content_with(toggle_ | 5u << 1));
-      break;
-    }
-    case Phase::upload: add({toggle_ == 0 ? byte(0x60) : byte(0x70)}); break;
-    case Phase::block_download: {
-      add(content_with(in_order_ + 1));
-      add(content_with((in_order_ + 1) | 0x80u));
-      add(content_with(block_size_));
-      add(content_with(block_size_ | 0x80u));
-      break;
-    }
-    case Phase::block_download_end:
-      for (std::size_t unused = 0; unused < 8; ++unused) {
-        Octets bytes(taken_.begin(), taken_.end() - static_cast<int>(unused));
-        const std::uint16_t crc = crc_of(bytes);
-        add({byte(0xC1 | unused << 2), byte(crc), byte(crc >> 8)});
-      }
-      break;
-    case Phase::block_upload_initiated: add({0xA3}); break;
-    case Phase::block_upload_sent:
-      for (const unsigned size : {1u, 3u, 127u}) {
-        add({0xA2, byte(in_order_), byte(size)});
-        add({0xA2, byte(in_order_ - 1), byte(size)});
-        add({0xA2, 0, byte(size)});
-      }
-      break;
-    case Phase::block_upload_end: add({0xA1}); break;
-  }
-  return list;
-}
 
 }  // namespace model
