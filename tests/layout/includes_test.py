@@ -31,7 +31,7 @@ LARGE = "tests/layout/large.tsv"
 MAX_LINES = 400
 MAX_FILES = 25
 # Folders of similar data files, which a program reads as a whole; they have no limit.
-DATA_FOLDERS = ("tests/compile_fail", "tests/decode/cases", "tests/fixtures", "tests/traces")
+DATA_FOLDERS = ("tests/compile_fail", "tests/bus/decode/cases", "tests/fixtures", "tests/traces")
 GENERATED = "generated/"  # the EDS determines the length of these files
 
 
