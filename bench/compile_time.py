@@ -3,7 +3,7 @@
 
     compile_time.py EDSC RUNTIME_INCLUDE_DIR
 
-Prints for each EDS of this folder the wall time and the peak memory of edsc, and of g++ and clang++ for the device header
+Prints for each EDS of sheets.py the wall time and the peak memory of edsc, and of g++ and clang++ for the device header
 alone, at -O2 with the compilers' default limits for constant expressions. Best of three runs.
 """
 
@@ -16,7 +16,8 @@ import tempfile
 import time
 from pathlib import Path
 
-SHEETS = ["ref", "bench100", "rec100x9", "bench1000", "eds1000", "eds5000"]
+import sheets
+
 COMPILERS = ["g++", "clang++"]
 RUNS = 3
 
@@ -39,11 +40,11 @@ def best(command: list[str]) -> str:
 
 def main() -> None:
     edsc, runtime = sys.argv[1], sys.argv[2]
-    here = Path(__file__).parent
     print(f"{'':12}{'edsc':>17}" + "".join(f"{compiler + ' -O2':>19}" for compiler in COMPILERS))
     with tempfile.TemporaryDirectory() as folder:
-        for sheet in SHEETS:
-            row = best([edsc, "generate", str(here / f"{sheet}.eds"), "-o", folder, "--name", "device"])
+        for sheet in sheets.SHEETS:
+            path = sheets.write(sheet, Path(folder))
+            row = best([edsc, "generate", str(path), "-o", folder, "--name", "device"])
             source = Path(folder) / "device.cpp"
             source.write_text("#include <device/device.hpp>\n", encoding="utf-8")
             for compiler in COMPILERS:

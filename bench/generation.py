@@ -21,6 +21,8 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
+import sheets
+
 HERE = Path(__file__).parent
 
 # Seconds of other tools, measured on a machine of the same kind (2 cores, gcc 12.2 -O2).
@@ -65,12 +67,12 @@ def main() -> None:
     arguments = parser.parse_args()
     print(f"{'':12}{'MB':>7}{'wall s':>9}{'CPU s':>8}{'memory MB':>11}{'MB/s':>7}{'instructions':>14}   times the speed of")
     with tempfile.TemporaryDirectory() as folder:
-        sheets = {name: HERE / f"{name}.eds" for name in ("eds1000", "eds5000")}
+        measured = {name: sheets.write(name, Path(folder)) for name in ("eds1000", "eds5000")}
         for objects in (5000, 10000, 20000):
-            sheet = sheets[f"{objects} x 5"] = Path(folder) / f"big{objects}.eds"
+            sheet = measured[f"{objects} x 5"] = Path(folder) / f"big{objects}.eds"
             with sheet.open("w") as file:  # in a separate process: the memory of this one counts for its children
                 subprocess.run([sys.executable, HERE / "make_eds.py", str(objects), "--subs", "5"], stdout=file, check=True)
-        for name, sheet in sheets.items():
+        for name, sheet in measured.items():
             def command(output: int) -> list[str]:
                 return [arguments.edsc, "generate", str(sheet), "-o", f"{folder}/{output}", "--name", "device"]
 

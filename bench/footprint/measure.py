@@ -17,16 +17,20 @@ import argparse
 import hashlib
 import re
 import subprocess
+import sys
 import tempfile
 from collections.abc import Iterable, Sequence
 from dataclasses import astuple, dataclass
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-SHEETS = HERE.parent
+BENCH = HERE.parent
 COMPILER = ("arm-none-eabi-g++", "-std=c++20", "-mthumb", "-ffunction-sections", "-fdata-sections", "-fno-exceptions",
             "-fno-rtti", "-fno-threadsafe-statics", "-Wall", "-Wextra", "-Wno-register", "--specs=nano.specs",
-            "-nostartfiles", "-Wl,--gc-sections", f"-T{SHEETS / 'cortex_m/firmware.ld'}")
+            "-nostartfiles", "-Wl,--gc-sections", f"-T{BENCH / 'cortex_m/firmware.ld'}")
+sys.path.insert(0, str(BENCH))
+import sheets  # noqa: E402
+
 SMALL = ("-mcpu=cortex-m0plus", "-Os")
 FAST = ("-mcpu=cortex-m4", "-O2", "-DCOUNT")
 
@@ -116,7 +120,7 @@ class Bench:
             return made
         made.mkdir()
         sheet = made / "device.eds"
-        text = (SHEETS / f"{variant.sheet}.eds").read_text(encoding="latin-1")
+        text = sheet_text(variant.sheet)
         sheet.write_text(changed(text, variant), encoding="latin-1")
         if variant.block_transfer:
             (made / "device.options.json").write_text('{ "sdo_block_transfer": true }', encoding="utf-8")
@@ -179,6 +183,11 @@ def changed(text: str, variant: Variant) -> str:
     objects = "".join(f"0=0x{entry.index:04X}\n" for entry in variant.added if entry.sub_index is None)
     text = text.replace("[OptionalObjects]\n", "[OptionalObjects]\n" + objects, 1)
     return renumbered(text + "\n" + "".join(entry.text() for entry in variant.added))
+
+
+def sheet_text(name: str) -> str:
+    """The text of an EDS of sheets.py, or of one with this path relative to bench/."""
+    return sheets.make(name) if name in sheets.SHEETS else (BENCH / f"{name}.eds").read_text(encoding="latin-1")
 
 
 def renumbered(sheet: str) -> str:
