@@ -16,7 +16,7 @@ TEST(Names, AreUniqueInTheDevice) {
   const DeviceFromText text(var("2000", "Speed", "5") + var("2001", "speed", "5") + var("2002", "SPEED!", "5") +
                             var("2003", "speed_2001", "5"));
   std::set<std::string> names;
-  for (const Object& object : text.device.objects) names.insert(object.identifier);
+  for (const Object& each : text.device.objects) names.insert(each.identifier);
   EXPECT_EQ(names.size(), 4U);
   EXPECT_EQ(text.device.find(0x2000)->identifier, "speed");
   EXPECT_EQ(text.device.find(0x2001)->identifier, "speed_2001");
