@@ -83,6 +83,21 @@ inline constexpr std::uint8_t block_end_mask = 0xE3;             ///< of an end 
 }
 [[nodiscard]] constexpr std::uint32_t multiplexer_of(const Data& data) { return multiplexer(index_of(data), data[3]); }
 
+/// Whether a response contains an index and sub-index: initiate responses and aborts.
+[[nodiscard]] constexpr bool has_multiplexer(const Data& response) {
+  switch (server_command(response[0])) {
+    case ServerCommand::initiate_upload:
+    case ServerCommand::initiate_download:
+    case ServerCommand::abort: return true;
+    case ServerCommand::block_upload: return (response[0] & 1) == 0;
+    case ServerCommand::block_download: return (response[0] & 3) == 0;
+    case ServerCommand::upload_segment:
+    case ServerCommand::download_segment:
+    case ServerCommand::reserved: return false;
+  }
+  return false;
+}
+
 constexpr void put_multiplexer(Data& data, std::uint16_t index, std::uint8_t sub_index) {
   data[1] = static_cast<std::uint8_t>(index & 0xFF);
   data[2] = static_cast<std::uint8_t>(index >> 8);
