@@ -1,10 +1,11 @@
-/// Copies and clears bytes.
+/// Copies, clears and reads bytes.
 #pragma once
 
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <span>
 
 #include "canopen/base/optimization.hpp"
 
@@ -55,6 +56,13 @@ inline void clear_bytes(void* to, std::size_t size) {
   } else {
     std::memset(to, 0, size);
   }
+}
+
+/// Returns a little-endian number of up to four bytes.
+[[nodiscard]] constexpr std::uint32_t little_endian_number(std::span<const std::uint8_t> bytes) {
+  std::uint32_t number = 0;
+  for (std::size_t i = bytes.size(); i > 0; --i) number = (number << 8) | bytes[i - 1];
+  return number;
 }
 
 }  // namespace canopen

@@ -41,8 +41,10 @@ struct NmtSlave {
   [[nodiscard]] constexpr std::uint8_t life_time_factor() const { return static_cast<std::uint8_t>(assignment >> 8); }
   [[nodiscard]] constexpr std::uint16_t guard_time() const { return static_cast<std::uint16_t>(assignment >> 16); }
 
-  /// Whether a loss of the slave is detected, by heartbeat or guarding.
-  [[nodiscard]] constexpr bool watched() const { return heartbeat_time != 0 || guard_time() != 0; }
+  /// Whether a loss of the slave is detected by heartbeat; otherwise by guarding; or not at all.
+  [[nodiscard]] constexpr bool beats() const { return heartbeat_time != 0; }
+  [[nodiscard]] constexpr bool guarded() const { return !beats() && guard_time() != 0; }
+  [[nodiscard]] constexpr bool watched() const { return beats() || guarded(); }
 };
 
 /// Settings for all slaves.

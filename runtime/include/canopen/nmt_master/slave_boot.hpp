@@ -1,0 +1,269 @@
+/// Boot-up of one slave as a state machine: identity, configuration, heartbeat time (CiA 302-2, boot NMT slave).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <tuple>
+#include <utility>
+
+#include "canopen/base/abort_code.hpp"
+#include "canopen/base/clock.hpp"
+#include "canopen/nmt_master/boot_status.hpp"
+#include "canopen/nmt_master/concise_dcf.hpp"
+#include "canopen/nmt_master/identity_check.hpp"
+#include "canopen/nmt_master/network_list.hpp"
+#include "canopen/sdo/sdo_queue.hpp"
+
+namespace canopen {
+
+/// What follows after a step of the boot-up.
+enum class BootNext : std::uint8_t {
+  request,        ///< the next request of the boot-up, or nothing
+  finish,         ///< the boot-up has ended, with a result
+  retry,          ///< the slave does not respond; the result says to what
+  configure,      ///< the application configures the slave
+  watch,          ///< its heartbeat time has been written: error control is started with its next heartbeat
+  error_control,  ///< error control is started
+};
+
+/// The master sends the requests, starts error control and knows the time. The entry of the slave in the network list
+/// is passed to each call.
+class SlaveBoot {
+ public:
+  enum class Step : std::uint8_t {
+    idle,                    ///< not started, or ended
+    waiting,                 ///< for a boot-up message, or for the next attempt without one
+    identifying,             ///< reading the number `check_`, or about to read it
+    downloading,             ///< writing an entry of the concise DCF
+    configuring,             ///< by the application
+    reading_heartbeat_time,  ///< of 1017h
+    writing_heartbeat_time,
+    starting_error_control,  ///< waiting for the first heartbeat or guarding response
+  };
+
+  [[nodiscard]] Step step() const { return step_; }
+  void enter(Step next) { step_ = next; }
+
+  /// Whether the slave is in a step before error control.
+  [[nodiscard]] bool is_before_error_control() const {
+    return step_ >= Step::identifying && step_ < Step::starting_error_control;
+  }
+
+  /// Returns when waiting for the slave ends, in `waiting` and `starting_error_control`.
+  [[nodiscard]] TimePoint deadline() const { return deadline_; }
+  void set_deadline(TimePoint time) { deadline_ = time; }
+  [[nodiscard]] bool has_deadline() const { return step_ == Step::waiting || step_ == Step::starting_error_control; }
+
+  /// Starts again from the beginning. The response to a request that is still in the queue will be ignored.
+  void restart() {
+    const bool asked = asked_;
+    *this = SlaveBoot{};
+    asked_ = dropped_ = asked;
+  }
+
+  /// Waits for the boot-up message, or for the next attempt.
+  void wait(TimePoint until) {
+    step_ = Step::waiting;
+    ignore_response();
+    deadline_ = until;
+  }
+
+  /// Starts with the first number of the identity.
+  void identify() {
+    step_ = Step::identifying;
+    ignore_response();
+    check_ = 0;
+  }
+
+  /// Ignores the response to a request that is in the queue.
+  void ignore_response() { dropped_ = asked_; }
+
+  // What is known of the slave
+
+  /// Its boot-up message has been received: it is served before slaves that do not respond.
+  void report_boot_up() {
+    booted_up_ = true;
+    silent_ = false;
+  }
+  void report_reset() {
+    was_reset_ = true;
+    booted_up_ = false;
+  }
+  void report_silence() {
+    booted_up_ = false;
+    silent_ = true;
+  }
+
+  [[nodiscard]] bool booted_up() const { return booted_up_; }
+  [[nodiscard]] bool was_reset() const { return was_reset_; }
+  void set_reset(bool reset) { was_reset_ = reset; }
+
+  /// Whether the slave has not responded, so that it may be in Stopped and gets a command. One that may have been
+  /// Operational since before the start of the master does not get any.
+  [[nodiscard]] bool may_be_stopped(const NmtSlave& slave) const {
+    return silent_ && !(slave.has(slave_assignment::keep_alive) && !was_reset_);
+  }
+
+  /// Whether the slave may have been Operational since before the master's start; checked before anything is changed.
+  [[nodiscard]] bool may_be_kept_alive(const NmtSlave& slave) const {
+    return slave.has(slave_assignment::keep_alive) && !was_reset_ && !booted_up_;
+  }
+
+  // SDO
+
+  /// Whether the boot-up continues with a request, which is not in the queue yet.
+  [[nodiscard]] bool wants_sdo() const {
+    switch (step_) {
+      case Step::identifying:
+      case Step::downloading:
+      case Step::reading_heartbeat_time:
+      case Step::writing_heartbeat_time: return !asked_;
+      case Step::idle:
+      case Step::waiting:
+      case Step::configuring:
+      case Step::starting_error_control: return false;
+    }
+    return false;
+  }
+
+  /// Returns the present request, without the function that receives its response.
+  [[nodiscard]] SdoRequest request(const NmtSlave& slave) {
+    SdoRequest request;
+    std::tie(request.index, request.sub_index) = entry(slave);
+    request.download = step_ == Step::downloading || step_ == Step::writing_heartbeat_time;
+    if (step_ == Step::downloading) {
+      request.bytes = *dcf_.data(slave.concise_dcf);
+    } else if (request.download) {
+      request.bytes = std::span{number_}.first(2);
+    } else {
+      request.memory = number_;
+    }
+    return request;
+  }
+  void set_asked(bool queued) { asked_ = queued; }
+
+  /// Processes the response to the present request. `result` is set if the boot-up ends or is tried again.
+  [[nodiscard]] BootNext on_answer(const NmtSlave& slave, const SdoAnswer& answer, BootResult& result) {
+    asked_ = false;
+    if (std::exchange(dropped_, false)) return BootNext::request;
+    if (answer.result == AbortCode::timeout) return no_response(slave, answer, result);
+    switch (step_) {
+      case Step::identifying: return identity_read(slave, answer, result);
+      case Step::downloading:
+        if (answer.result != ok) return failure(slave, BootStatus::configuration, answer, result);
+        dcf_.advance(slave.concise_dcf);
+        return download(slave, result);
+      case Step::reading_heartbeat_time: return heartbeat_time_read(slave, answer);
+      case Step::writing_heartbeat_time: return heartbeat_time_written(slave, answer, result);
+      case Step::idle:
+      case Step::waiting:
+      case Step::configuring:
+      case Step::starting_error_control: break;
+    }
+    return BootNext::request;
+  }
+
+  /// Continues after the configuration by the application.
+  [[nodiscard]] BootNext on_configured(const NmtSlave& slave) {
+    if (!slave.beats()) return BootNext::error_control;
+    step_ = Step::reading_heartbeat_time;
+    return BootNext::request;
+  }
+
+ private:
+  static constexpr std::size_t checks = std::size(identity_checks);
+
+  /// Returns the index and sub-index of the present request.
+  [[nodiscard]] std::pair<std::uint16_t, std::uint8_t> entry(const NmtSlave& slave) const {
+    if (step_ == Step::identifying) return {identity_checks[check_].index, identity_checks[check_].sub_index};
+    if (step_ != Step::downloading) return {std::uint16_t{0x1017}, std::uint8_t{0}};
+    return {dcf_.index(slave.concise_dcf), dcf_.sub_index(slave.concise_dcf)};
+  }
+
+  /// The boot-up ends because of a failed transfer.
+  [[nodiscard]] BootNext failure(const NmtSlave& slave, BootStatus status, const SdoAnswer& answer,
+                                 BootResult& result) const {
+    const auto [index, sub_index] = entry(slave);
+    result = {status, answer.result, index, sub_index};
+    return BootNext::finish;
+  }
+
+  [[nodiscard]] BootNext no_response(const NmtSlave& slave, const SdoAnswer& answer, BootResult& result) const {
+    (void)failure(slave, BootStatus::no_response, answer, result);
+    return BootNext::retry;
+  }
+
+  // Identity: 1000h, then the numbers of 1018h that the network list has
+
+  [[nodiscard]] BootNext identity_read(const NmtSlave& slave, const SdoAnswer& answer, BootResult& result) {
+    const IdentityCheck& check = identity_checks[check_];
+    const bool answered = answer.result == ok;
+    if (check_ == 0 && !answered) return no_response(slave, answer, result);
+    const std::uint32_t expected = slave.*check.expected;
+    if (expected != 0 && (!answered || little_endian_number(answer.data) != expected)) {
+      const BootNext next = failure(slave, check.failure, answer, result);
+      result.expected = expected;
+      result.seen = little_endian_number(answer.data);
+      return next;
+    }
+    do {
+      ++check_;
+    } while (check_ < checks && slave.*identity_checks[check_].expected == 0);
+    if (check_ < checks) return BootNext::request;
+    silent_ = false;
+    if (may_be_kept_alive(slave)) return BootNext::error_control;
+    dcf_.begin(slave.concise_dcf);
+    return download(slave, result);
+  }
+
+  /// Continues with the present entry of the concise DCF, or after the last one.
+  [[nodiscard]] BootNext download(const NmtSlave& slave, BootResult& result) {
+    if (dcf_.at_end()) return BootNext::configure;
+    step_ = Step::downloading;
+    if (dcf_.data(slave.concise_dcf)) return BootNext::request;
+    result = {BootStatus::configuration, AbortCode::length_mismatch};
+    return BootNext::finish;
+  }
+
+  // Heartbeat time
+
+  /// Two heartbeats within the consumer time tolerate one that is late or lost.
+  [[nodiscard]] BootNext heartbeat_time_read(const NmtSlave& slave, const SdoAnswer& answer) {
+    const std::uint32_t consumer = slave.heartbeat_time;
+    const std::uint32_t producer =
+        little_endian_number(answer.data.first(std::min<std::size_t>(answer.data.size(), 2)));
+    const bool is_short_enough = producer != 0 && 3 * producer <= 2 * consumer;
+    if (answer.result == ok && is_short_enough) return BootNext::error_control;
+    beats_in_time_ = answer.result == ok && producer != 0 && producer < consumer;
+    const std::uint32_t wanted = std::max<std::uint32_t>(consumer / 2, 1);
+    number_ = {static_cast<std::uint8_t>(wanted), static_cast<std::uint8_t>(wanted >> 8)};
+    step_ = Step::writing_heartbeat_time;
+    return BootNext::request;
+  }
+
+  /// The slave restarts its period. One that rejects the write may keep its own time if that is short enough.
+  [[nodiscard]] BootNext heartbeat_time_written(const NmtSlave& slave, const SdoAnswer& answer,
+                                                BootResult& result) const {
+    if (answer.result == ok) return BootNext::watch;
+    if (!beats_in_time_) return failure(slave, BootStatus::no_heartbeat, answer, result);
+    return BootNext::error_control;
+  }
+
+  TimePoint deadline_{};
+  std::array<std::uint8_t, 4> number_{};  ///< read or written value
+  ConciseDcfPlace dcf_{};
+  Step step_ = Step::idle;
+  std::uint8_t check_ = 0;
+  bool asked_ = false;      ///< a request is in the queue
+  bool dropped_ = false;    ///< its response will be ignored
+  bool booted_up_ = false;  ///< its boot-up message has been received
+  bool silent_ = false;     ///< it has not responded
+  bool was_reset_ = false;
+  bool beats_in_time_ = false;  ///< 1017h is shorter than the consumer's time
+};
+
+}  // namespace canopen
