@@ -16,7 +16,6 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <list>
 #include <map>
 #include <optional>
 #include <span>
@@ -24,6 +23,7 @@
 #include <vector>
 
 #include "canopen/base/abort_code.hpp"
+#include "canopen/base/bytes.hpp"
 #include "canopen/base/clock.hpp"
 #include "canopen/base/result.hpp"
 #include "canopen/can/cob_id.hpp"
@@ -33,9 +33,11 @@
 #include "canopen/host/blocking_sdo.hpp"
 #include "canopen/host/master_remote.hpp"
 #include "canopen/host/master_text.hpp"
+#include "canopen/host/master_transfers.hpp"
 #include "canopen/nmt/nmt.hpp"
 #include "canopen/nmt_master/network_list.hpp"
 #include "canopen/nmt_master/nmt_master.hpp"
+#include "canopen/pdo/communication_parameters.hpp"
 #include "canopen/pdo/pdo_list.hpp"
 #include "canopen/sdo/sdo_queue.hpp"
 
@@ -52,7 +54,7 @@ class Master {
   static constexpr std::size_t max_slaves = 127;
   static constexpr std::size_t max_requests = 64;       ///< of the application that may wait; further ones: 060A 0023h
   static constexpr std::size_t max_nodes_at_once = 16;  ///< few enough for timely responses at 20 kbit/s
-  static constexpr std::size_t max_upload = 16 * 1024 * 1024;  ///< bytes; 0504 0005h: a value is longer
+  static constexpr std::size_t max_upload = MasterTransfers::max_upload;  ///< bytes; 0504 0005h: a value is longer
 
   explicit Master(B& can_bus, std::vector<NmtSlave> slaves = {}, NmtStartUp start_up = {},
                   SdoClientOptions options = {})
@@ -114,10 +116,9 @@ class Master {
 
   /// Reads an entry; waits for the result.
   [[nodiscard]] Result<std::vector<std::uint8_t>> upload(NodeId node_id, std::uint16_t index, std::uint8_t sub_index) {
-    const Kept kept{*this};
-    Transfer& transfer = kept.transfer;
-    const Result<void> submitted = submit_upload(transfer, node_id, index, sub_index);
-    const Result<void> done = submitted ? wait_for(transfer) : submitted;
+    Transfer& transfer = transfers_.add(node_id, index, sub_index);
+    const MasterTransfers::Awaited awaited{transfer};
+    const Result<void> done = wait_for(transfer, MasterTransfers::upload(transfer));
     if (!done) return done.abort_code();
     return std::move(transfer.bytes);
   }
@@ -125,21 +126,17 @@ class Master {
   /// Writes an entry; waits for the result.
   Result<void> download(NodeId node_id, std::uint16_t index, std::uint8_t sub_index,
                         std::span<const std::uint8_t> bytes) {
-    const Kept kept{*this};
-    const Result<void> submitted = submit_download(kept.transfer, node_id, index, sub_index, bytes);
-    return submitted ? wait_for(kept.transfer) : submitted;
+    Transfer& transfer = transfers_.add(node_id, index, sub_index);
+    const MasterTransfers::Awaited awaited{transfer};
+    return wait_for(transfer, MasterTransfers::download(transfer, bytes));
   }
 
   /// Reads an entry of up to eight bytes; waits for the result.
   [[nodiscard]] SdoAnswer read_number(NodeId node_id, std::uint16_t index, std::uint8_t sub_index,
                                       std::span<std::uint8_t> memory) {
-    const Kept kept{*this};
-    Transfer& transfer = kept.transfer;
-    transfer.bytes.resize(memory.size());
-    SdoRequest request = request_of(transfer, index, sub_index);
-    request.memory = transfer.bytes;
-    const Result<void> submitted = submit(node_id, request);
-    const Result<void> done = submitted ? wait_for(transfer) : submitted;
+    Transfer& transfer = transfers_.add(node_id, index, sub_index);
+    const MasterTransfers::Awaited awaited{transfer};
+    const Result<void> done = wait_for(transfer, MasterTransfers::upload(transfer, memory.size()));
     const std::size_t size = done ? transfer.size : 0;
     std::copy_n(transfer.bytes.begin(), size, memory.begin());
     return {done.abort_code(), memory.first(size), transfer.size_known};
@@ -150,7 +147,7 @@ class Master {
 
   /// Starts to read an entry; `done` is called from `poll`, exactly once unless this call is rejected: 060A 0023h.
   Result<void> begin_upload(NodeId node_id, std::uint16_t index, std::uint8_t sub_index, UploadDone done) {
-    Transfer& transfer = add([done = std::move(done)](Transfer& ended) {
+    Transfer& transfer = transfers_.add(node_id, index, sub_index, [done = std::move(done)](Transfer& ended) {
       if (!done) return;
       if (ended.result == ok) {
         done(std::move(ended.bytes));
@@ -158,21 +155,22 @@ class Master {
         done(ended.result);
       }
     });
-    return begun(transfer, submit_upload(transfer, node_id, index, sub_index));
+    return begin(transfer, MasterTransfers::upload(transfer));
   }
 
   /// Starts to write a copy of these bytes to an entry.
   Result<void> begin_download(NodeId node_id, std::uint16_t index, std::uint8_t sub_index,
                               std::span<const std::uint8_t> bytes, DownloadDone done) {
-    Transfer& transfer = add([done = std::move(done)](Transfer& ended) {
+    Transfer& transfer = transfers_.add(node_id, index, sub_index, [done = std::move(done)](Transfer& ended) {
       if (done) done(ended.result);
     });
-    return begun(transfer, submit_download(transfer, node_id, index, sub_index, bytes));
+    return begin(transfer, MasterTransfers::download(transfer, bytes));
   }
 
  private:
   template <class Device, BlockingBus Any>
   friend class MasterRemote;
+  using Transfer = MasterTransfers::Transfer;
 
   /// Queues the events of the NMT master until `poll`.
   struct Host {
@@ -203,22 +201,6 @@ class Master {
         if (m.on_boot_time_elapsed) m.on_boot_time_elapsed();
       });
     }
-  };
-
-  /// A transfer in the queue. The master owns it, because it may outlive the call that waits for it if the bus throws.
-  struct Transfer {
-    Master* master = nullptr;
-    std::vector<std::uint8_t> bytes;
-    NodeId node_id{};
-    std::uint16_t index = 0;
-    std::uint8_t sub_index = 0;
-    bool download = false;
-    bool requested = false;  ///< it has been passed to the NMT master
-    bool over = false;
-    bool size_known = true;
-    AbortCode result = ok;
-    std::size_t size = 0;
-    std::function<void(Transfer&)> done;  ///< called from `poll`; empty: a call is waiting
   };
 
   struct PdoHandler {
@@ -281,99 +263,31 @@ class Master {
 
   // Transfers
 
-  [[nodiscard]] Transfer& add(std::function<void(Transfer&)> done) {
-    Transfer& transfer = transfers_.emplace_back();
-    transfer.master = this;
-    transfer.done = std::move(done);
-    return transfer;
-  }
-  void remove(Transfer& transfer) {
-    transfers_.remove_if([&transfer](const Transfer& other) { return &other == &transfer; });
-  }
-
-  /// The transfer of a call that waits for it. If the bus throws, a transfer that has not ended is kept until the
-  /// master ends it.
-  struct Kept {
-    explicit Kept(Master& of) : master{of}, transfer{of.add({})} {}
-    Kept(const Kept&) = delete;
-    Kept& operator=(const Kept&) = delete;
-    ~Kept() {
-      if (transfer.over || !transfer.requested) {
-        master.remove(transfer);
-      } else {
-        transfer.done = [](Transfer&) {};
-      }
-    }
-
-    Master& master;
-    Transfer& transfer;
-  };
-
-  [[nodiscard]] static SdoRequest request_of(Transfer& transfer, std::uint16_t index, std::uint8_t sub_index) {
-    SdoRequest request;
-    request.index = index;
-    request.sub_index = sub_index;
-    request.context = &transfer;
-    request.done = [](void* context, NodeId, const SdoAnswer& answer) {
-      Transfer& ended = *static_cast<Transfer*>(context);
-      ended.result = answer.result;
-      ended.size = answer.data.size();
-      ended.size_known = answer.size_known;
-      ended.over = true;
-      ended.master->on_transfer(ended);
-    };
-    return request;
-  }
-
-  [[nodiscard]] Result<void> submit_upload(Transfer& transfer, NodeId node_id, std::uint16_t index,
-                                           std::uint8_t sub_index) {
-    SdoRequest request = request_of(transfer, index, sub_index);
-    request.sink.context = &transfer;
-    request.sink.take = [](void* context, std::uint32_t, std::span<const std::uint8_t> bytes, bool) {
-      std::vector<std::uint8_t>& value = static_cast<Transfer*>(context)->bytes;
-      if (bytes.size() > max_upload - value.size()) return AbortCode::out_of_memory;
-      value.insert(value.end(), bytes.begin(), bytes.end());
-      return ok;
-    };
-    return submit(node_id, request);
-  }
-
-  [[nodiscard]] Result<void> submit_download(Transfer& transfer, NodeId node_id, std::uint16_t index,
-                                             std::uint8_t sub_index, std::span<const std::uint8_t> bytes) {
-    transfer.bytes.assign(bytes.begin(), bytes.end());
-    transfer.node_id = node_id;
-    transfer.index = index;
-    transfer.sub_index = sub_index;
-    transfer.download = true;
-    SdoRequest request = request_of(transfer, index, sub_index);
-    request.download = true;
-    request.bytes = transfer.bytes;
-    return submit(node_id, request);
-  }
-
   /// Processes frames received before the request, so that none of them is taken for its response.
-  [[nodiscard]] Result<void> submit(NodeId node_id, const SdoRequest& request) {
+  [[nodiscard]] Result<void> submit(Transfer& transfer, const SdoRequest& request) {
     constexpr unsigned at_most = 1'000;  // the bus may receive frames continuously
     for (unsigned i = 0; i != at_most; ++i) {
       const std::optional<Frame> frame = bus_.receive(Duration{0});
       if (!frame) break;
       on_frame(*frame, bus_.now());
     }
-    bool& requested = static_cast<Transfer*>(request.context)->requested;
-    requested = true;
-    const Result<void> submitted = nmt_.request(node_id, request, bus_.now());
-    requested = static_cast<bool>(submitted);
+    transfer.requested = true;
+    const Result<void> submitted = nmt_.request(transfer.node_id, request, bus_.now());
+    transfer.requested = static_cast<bool>(submitted);
     return submitted;
   }
 
-  [[nodiscard]] Result<void> wait_for(const Transfer& transfer) {
+  [[nodiscard]] Result<void> wait_for(Transfer& transfer, const SdoRequest& request) {
+    const Result<void> submitted = submit(transfer, request);
+    if (!submitted) return submitted;
     while (!transfer.over) receive(std::chrono::milliseconds{100});
     return transfer.result;
   }
 
   /// Removes a transfer that has been rejected, because its end is not reported.
-  [[nodiscard]] Result<void> begun(Transfer& transfer, Result<void> submitted) {
-    if (!submitted) remove(transfer);
+  [[nodiscard]] Result<void> begin(Transfer& transfer, const SdoRequest& request) {
+    const Result<void> submitted = submit(transfer, request);
+    if (!submitted) transfers_.remove(transfer);
     return submitted;
   }
 
@@ -381,13 +295,13 @@ class Master {
   void on_transfer(Transfer& ended) {
     if (ended.download && ended.result == ok && is_pdo_cob_id(ended.index, ended.sub_index) &&
         ended.bytes.size() == 4) {
-      set_cob_id(ended.node_id, ended.index, number_of(ended.bytes));
+      set_cob_id(ended.node_id, ended.index, little_endian_number(ended.bytes));
     }
     if (!ended.done) return;
     keep([this, &ended] {
       const std::function<void(Transfer&)> done = std::move(ended.done);
       done(ended);
-      remove(ended);
+      transfers_.remove(ended);
     });
   }
 
@@ -420,15 +334,7 @@ class Master {
   // COB-IDs of PDOs
 
   [[nodiscard]] static bool is_pdo_cob_id(std::uint16_t index, std::uint8_t sub_index) {
-    const bool receive = index >= rpdo_indices.communication && index < rpdo_indices.mapping;
-    const bool transmit = index >= tpdo_indices.communication && index < tpdo_indices.mapping;
-    return (receive || transmit) && sub_index == pdo_parameter::cob_id;
-  }
-
-  [[nodiscard]] static std::uint32_t number_of(std::span<const std::uint8_t> bytes) {
-    std::uint32_t value = 0;
-    for (std::size_t i = bytes.size(); i > 0; --i) value = (value << 8) | bytes[i - 1];
-    return value;
+    return (is_rpdo_communication(index) || is_tpdo_communication(index)) && sub_index == pdo_parameter::cob_id;
   }
 
   /// Sets the COB-ID of a PDO of a node, for handlers and for RPDOs that are sent.
@@ -453,7 +359,7 @@ class Master {
     for (const std::uint16_t index : indices) {
       const bool last = index == indices.back();
       const auto read = [this, node_id, index, last, done](const Result<std::vector<std::uint8_t>>& bytes) {
-        if (bytes && bytes->size() == 4) set_cob_id(node_id, index, number_of(*bytes));
+        if (bytes && bytes->size() == 4) set_cob_id(node_id, index, little_endian_number(*bytes));
         if (last && done) done(bytes.abort_code());
       };
       const bool begun = static_cast<bool>(begin_upload(node_id, index, pdo_parameter::cob_id, read));
@@ -471,7 +377,7 @@ class Master {
     const Result<std::vector<std::uint8_t>> bytes = upload(node_id, index, pdo_parameter::cob_id);
     if (!bytes) return bytes.abort_code();
     if (bytes->size() != 4) return AbortCode::length_mismatch;
-    set_cob_id(node_id, index, number_of(*bytes));
+    set_cob_id(node_id, index, little_endian_number(*bytes));
     const std::uint32_t cob_id = cob_ids_[key];
     if (cob_id == no_cob_id) return AbortCode::device_state;
     return cob_id;
@@ -480,7 +386,7 @@ class Master {
   B& bus_;
   std::vector<NmtSlave> slaves_;
   NmtMaster<B, max_slaves, Host, max_requests, max_nodes_at_once> nmt_;
-  std::list<Transfer> transfers_;
+  MasterTransfers transfers_{[this](Transfer& ended) { on_transfer(ended); }};
   std::deque<PdoHandler> pdos_;
   std::map<std::pair<std::uint8_t, std::uint16_t>, std::uint32_t> cob_ids_;
   std::array<std::uint32_t, 128> boots_{};        ///< boot-up messages, by node-ID
