@@ -23,6 +23,11 @@ inline constexpr std::uint8_t positive_limit = 0x2;
 inline constexpr std::uint8_t home_switch = 0x4;
 }  // namespace input
 
+/// Whether a limit switch blocks motion in this direction.
+[[nodiscard]] constexpr bool limit_switch_blocks(std::uint32_t inputs, std::int32_t direction) {
+  return direction != 0 && (inputs & (direction > 0 ? input::positive_limit : input::negative_limit)) != 0;
+}
+
 /// A command replaces the previous one; ramps of 0 are as steep as the axis allows.
 template <class T>
 concept Axis = requires(T& axis, const T& state, std::int32_t number, std::uint32_t deceleration,

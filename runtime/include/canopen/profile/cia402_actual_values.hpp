@@ -1,0 +1,37 @@
+/// The objects that show where the axis is: demand and actual values, following error, inputs (CiA 402-2).
+#pragma once
+
+#include <cstdint>
+
+#include "canopen/base/clock.hpp"
+#include "canopen/profile/cia402_axis.hpp"
+#include "canopen/profile/cia402_objects.hpp"
+#include "canopen/profile/cia402_options.hpp"
+#include "canopen/profile/cia402_parameters.hpp"
+
+namespace canopen::cia402 {
+
+template <class Device, Options options>
+class ActualValues {
+ public:
+  /// Sets the objects; while the axis moves only at intervals, unless `at_once`.
+  template <class Node, Axis A>
+  void publish(Node& node, const A& axis, TimePoint now, bool at_once) {
+    using P = Parameters<Device, options>;
+    if (!at_once && axis.moving() && now - published_ < Duration{options.actual_values}) return;
+    published_ = now;
+    P::template set<object::PositionDemandValue>(node, axis.position_demand());
+    P::template set<object::PositionActualValue>(node, axis.position());
+    P::template set<object::VelocityDemandValue>(node, axis.velocity_demand());
+    P::template set<object::VelocityActualValue>(node, axis.velocity());
+    P::template set<object::FollowingErrorActualValue>(
+        node, static_cast<std::int32_t>(static_cast<std::uint32_t>(axis.position_demand()) -
+                                        static_cast<std::uint32_t>(axis.position())));
+    P::template set<object::DigitalInputs>(node, axis.inputs());
+  }
+
+ private:
+  TimePoint published_{};  ///< when the objects were set last
+};
+
+}  // namespace canopen::cia402

@@ -1,0 +1,101 @@
+/// Values of the objects of a drive, with the defaults of CiA 402-2 for objects that the device does not have.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "canopen/profile/cia402_axis.hpp"
+#include "canopen/profile/cia402_objects.hpp"
+#include "canopen/profile/cia402_option_code.hpp"
+#include "canopen/profile/cia402_options.hpp"
+
+namespace canopen::cia402 {
+
+template <class Device, Options options>
+struct Parameters {
+  template <class O>
+  static constexpr bool has = Device::dictionary.has(O::index, O::sub_index);
+
+  /// Whether the drive has a mode of the standard.
+  [[nodiscard]] static constexpr bool has_mode(std::int8_t wanted) {
+    return (options.modes & bit_of_mode(wanted)) != 0;
+  }
+
+  /// Returns the value of an object; `otherwise` if the device does not have it.
+  template <class O, class Node>
+  [[nodiscard]] static typename O::type value(const Node& node, typename O::type otherwise) {
+    if constexpr (has<O>) {
+      return node.template get<O>();
+    } else {
+      return otherwise;
+    }
+  }
+
+  /// Sets an object, if the device has it.
+  template <class O, class Node>
+  static void set([[maybe_unused]] Node& node, [[maybe_unused]] const typename O::type& new_value) {
+    if constexpr (has<O>) static_cast<void>(node.template set<O>(new_value));
+  }
+
+  /// Returns the braking that an option code selects, whose default is `otherwise`.
+  template <class O, class Node>
+  [[nodiscard]] static Braking braking(const Node& node, std::int16_t otherwise) {
+    return braking_of(value<O>(node, otherwise));
+  }
+
+  /// Returns 605Ah.
+  template <class Node>
+  [[nodiscard]] static std::int16_t quick_stop_option(const Node& node) {
+    return value<object::QuickStopOptionCode>(node, option_code::quick_stop);
+  }
+
+  /// Returns 6081h, 6083h and 6084h.
+  template <class Node>
+  [[nodiscard]] static Profile profile(const Node& node) {
+    return {at_most_allowed(node, value<object::ProfileVelocity>(node, options.profile.velocity)),
+            value<object::ProfileAcceleration>(node, options.profile.acceleration),
+            value<object::ProfileDeceleration>(node, options.profile.deceleration)};
+  }
+
+  /// Returns 6085h.
+  template <class Node>
+  [[nodiscard]] static std::uint32_t quick_stop_deceleration(const Node& node) {
+    return value<object::QuickStopDeceleration>(node, profile(node).deceleration);
+  }
+
+  /// Returns the deceleration of a braking with power; 0: as hard as possible.
+  template <class Node>
+  [[nodiscard]] static std::uint32_t deceleration(const Node& node, Braking braking) {
+    if (braking == Braking::slow_down_ramp) return profile(node).deceleration;
+    return braking == Braking::quick_stop_ramp ? quick_stop_deceleration(node) : 0;
+  }
+
+  /// Returns a speed limited to 607Fh, where 0 is no limit.
+  template <class Node>
+  [[nodiscard]] static std::uint32_t at_most_allowed(const Node& node, std::uint32_t speed) {
+    const std::uint32_t most = value<object::MaxProfileVelocity>(node, 0);
+    return most != 0 ? std::min(speed, most) : speed;
+  }
+
+  /// Returns a position limited to 607Dh; unchanged without limits, and if the upper one is not above the lower one.
+  template <class Node>
+  [[nodiscard]] static std::int32_t within_software_limits([[maybe_unused]] const Node& node, std::int32_t position) {
+    if constexpr (has<object::MinPositionLimit> && has<object::MaxPositionLimit>) {
+      const std::int32_t lowest = value<object::MinPositionLimit>(node, 0);
+      const std::int32_t highest = value<object::MaxPositionLimit>(node, 0);
+      if (lowest < highest) return std::clamp(position, lowest, highest);
+    }
+    return position;
+  }
+
+  /// Whether a position is at or beyond the software limit in this direction.
+  template <class Node>
+  [[nodiscard]] static bool software_limit_blocks(const Node& node, std::int32_t position, std::int32_t direction) {
+    constexpr std::int32_t highest = 0x7FFF'FFFF;
+    constexpr std::int32_t lowest = -highest - 1;
+    return (direction > 0 && within_software_limits(node, highest) <= position && position != highest) ||
+           (direction < 0 && within_software_limits(node, lowest) >= position && position != lowest);
+  }
+};
+
+}  // namespace canopen::cia402
