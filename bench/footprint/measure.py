@@ -123,7 +123,7 @@ class Bench:
         text = sheet_text(variant.sheet)
         sheet.write_text(changed(text, variant), encoding="latin-1")
         if variant.block_transfer:
-            (made / "device.options.json").write_text('{ "sdo_block_transfer": true }', encoding="utf-8")
+            (made / "device.options.json").write_text('{ "sdo": { "block_transfer": true } }', encoding="utf-8")
         flags = ["--static-mapping"] if variant.static_mapping else []
         subprocess.run([self.edsc, "generate", sheet, "-o", made, "--name", "device", *flags], check=True,
                        capture_output=True)

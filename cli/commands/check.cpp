@@ -73,7 +73,9 @@ std::string to_line(const Rule& rule) {
 
 nlohmann::ordered_json to_json(const OptionRow& row) {
   nlohmann::ordered_json json = {
-      {"name", row.name}, {"group", row.group}, {"form", to_string(row.form)}, {"meaning", row.meaning}};
+      {"name", path_of(row)}, {"group", row.group.title}, {"form", to_string(row.form)}, {"meaning", row.meaning}};
+  if (!row.flat_name.empty()) json["flat_name"] = row.flat_name;
+  if (!row.group.meaning.empty()) json["group_meaning"] = row.group.meaning;
   if (!row.default_value.empty()) json["default"] = nlohmann::ordered_json::parse(row.default_value);
   if (!row.default_text.empty()) json["default_text"] = row.default_text;
   if (row.form == OptionForm::number) json.update({{"minimum", row.min}, {"maximum", row.max}});
@@ -82,7 +84,8 @@ nlohmann::ordered_json to_json(const OptionRow& row) {
 
 std::string to_line(const OptionRow& row) {
   const std::string_view value = row.default_text.empty() ? row.default_value : row.default_text;
-  return fmt::format("{:<36} {}{}", row.name, row.meaning, value.empty() ? "" : fmt::format(" (default: {})", value));
+  return fmt::format("{:<38} {}{}", path_of(row), row.meaning,
+                     value.empty() ? "" : fmt::format(" (default: {})", value));
 }
 
 /// Lists a table, a row on each line, or as JSON.

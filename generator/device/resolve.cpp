@@ -111,12 +111,12 @@ class Resolver {
     for (const EntryKey& key : options_.settable) check(key, "settable");
     for (const EntrySelector& entry : options_.no_event) {
       if (entry.sub_index) {
-        check({entry.index, *entry.sub_index}, "no_event");
+        check({entry.index, *entry.sub_index}, "pdo.no_event");
       } else {
-        check_object(entry.index, "no_event");
+        check_object(entry.index, "pdo.no_event");
       }
     }
-    for (const std::uint16_t index : options_.static_mapping.parameters) check_object(index, "static_mapping");
+    for (const std::uint16_t index : options_.static_mapping.parameters) check_object(index, "pdo.static_mapping");
   }
 
   void check_object(std::uint16_t index, std::string_view option) {

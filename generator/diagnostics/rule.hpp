@@ -201,7 +201,7 @@ inline constexpr Rule rows[] = {
     Rule{"pdo-compatibility-entry", note, "sub-index 4 of a PDO communication parameter", "CiA 301, 7.5.2.37"},
     Rule{"pdo-sync-start", warning, "a SYNC start value without effect", "CiA 301, 7.5.2.37"},
     // Multiplex PDOs.
-    Rule{"mpdo-option", warning, "a multiplex PDO, but the option mpdo is not set", "CiA 301, 7.2.2.5"},
+    Rule{"mpdo-option", warning, "a multiplex PDO, but the option pdo.mpdo is not set", "CiA 301, 7.2.2.5"},
     Rule{"mpdo-transmission-type", warning, "a multiplex PDO whose transmission type is not 254 or 255",
          "CiA 301, 7.2.2.5"},
     Rule{"mpdo-list", warning, "an MPDO in source addressing mode without scanner or dispatching list",
@@ -220,6 +220,7 @@ inline constexpr Rule rows[] = {
     // This compiler.
     Rule{"options", error, "an unknown option or an invalid value in the options file", "edsc"},
     Rule{"options-syntax", error, "the options file is not JSON", "edsc"},
+    Rule{"deprecated-option", warning, "an option by its name outside the group of its service", "edsc"},
     Rule{"allow-comment", warning, "an invalid comment \"; edsc:\"", "edsc"},
     Rule{"allow-unused", warning, "a silenced or allowed rule without a finding", "edsc"},
     Rule{"dictionary-size", error, "the dictionary is too large", "edsc"},

@@ -15,8 +15,9 @@ namespace {
 constexpr unsigned max_mpdo_bits = 32;
 
 bool served(const Options& options) {
-  return std::ranges::any_of(
-      options.runtime, [](const RuntimeOption& option) { return option.row->name == "mpdo" && option.value != 0; });
+  const OptionRow* const mpdo = find_option("pdo", "mpdo");
+  return std::ranges::any_of(options.runtime,
+                             [&](const RuntimeOption& option) { return option.row == mpdo && option.value != 0; });
 }
 
 std::uint64_t mapped_objects(const Pdo& pdo) { return pdo.mapping->find(0)->default_value->bits; }
@@ -28,7 +29,7 @@ bool is_source_multiplexed(const Pdo& pdo) {
 void check_option(const RuleContext& context, const Pdo& pdo) {
   if (served(context.options)) return;
   context.report("mpdo-option", default_place(*pdo.mapping->find(0)),
-                 fmt::format("{} is a multiplex PDO ({} mapped objects), which requires the option \"mpdo\"",
+                 fmt::format("{} is a multiplex PDO ({} mapped objects), which requires the option \"pdo.mpdo\"",
                              pdo_label(pdo), mapped_objects(pdo)));
 }
 

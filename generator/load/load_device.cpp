@@ -139,6 +139,9 @@ void report_unused_allowances(const LoadedDevice& loaded, Diagnostics& diagnosti
 
 void resolve_and_check(LoadedDevice& loaded, const LoadSettings& settings, Diagnostics& diagnostics) {
   allow_findings(loaded, diagnostics);
+  for (const DeprecatedOption& one : loaded.options.deprecated) {
+    diagnostics.warning("deprecated-option", one.position, one.message);
+  }
   loaded.sheet = is_xml(*loaded.source) ? read_xdd(*loaded.source, diagnostics)
                                         : read_data_sheet(parse_ini(*loaded.source, diagnostics), diagnostics);
   if (loaded.sheet.objects.empty()) return;

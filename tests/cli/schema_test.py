@@ -72,9 +72,13 @@ def validator(name: str) -> jsonschema.Draft202012Validator:
 
 class Options(unittest.TestCase):
     def test_that_are_wrong_do_not(self) -> None:
-        for wrong in ({"no_such_member": 1}, {"settable": 1}, {"names": {"1017": "Not A Name"}}):
+        for wrong in ({"no_such_member": 1}, {"settable": 1}, {"names": {"1017": "Not A Name"}}, {"sdo": 1},
+                      {"sdo": {"no_such_member": 1}}, {"sdo": {"timeout": "5"}}, {"sdo_timeout": "5"}):
             with self.assertRaises(jsonschema.ValidationError):
                 validator("options").validate(wrong)
+
+    def test_may_have_their_deprecated_names(self) -> None:
+        validator("options").validate({"sdo_timeout": 5, "storing": {"6010h:01": "never"}, "pdo": {"mpdo": True}})
 
 
 class Deviations(unittest.TestCase):

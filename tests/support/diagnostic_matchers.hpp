@@ -49,6 +49,12 @@ inline std::vector<Finding> findings(const Diagnostics& diagnostics) {
   return result;
 }
 
+inline std::vector<std::string> messages(const Diagnostics& diagnostics) {
+  std::vector<std::string> result;
+  for (const Diagnostic& diagnostic : diagnostics.all()) result.push_back(diagnostic.message);
+  return result;
+}
+
 /// The findings of one rule.
 inline std::vector<Finding> findings(const Diagnostics& diagnostics, std::string_view rule) {
   std::vector<Finding> result = findings(diagnostics);

@@ -26,7 +26,7 @@ ordered_json storing_rows(const Options& options) {
   return rows;
 }
 
-/// The condition for entries that trigger an event: not in the option no_event.
+/// The condition for entries that trigger an event: not in the option pdo.no_event.
 ordered_json event_conditions(const Options& options) {
   ordered_json rows = json_array(options.no_event.size());
   for (const EntrySelector& entry : options.no_event) {
@@ -63,7 +63,7 @@ std::string cpp_value(const RuntimeOption& option) {
 ordered_json runtime_rows(const Options& options) {
   ordered_json rows = json_array(options.runtime.size());
   for (const RuntimeOption& option : options.runtime) {
-    rows.push_back(json_object("name", option.row->name, "value", cpp_value(option)));
+    rows.push_back(json_object("name", option.row->flat_name, "value", cpp_value(option)));
   }
   return rows;
 }
@@ -84,9 +84,10 @@ ordered_json lss_view(const Device& device, const Options& options) {
   if (!options.lss && !capabilities.lss_supported.value_or(false)) return nullptr;
   const LssSettings settings = options.lss.value_or(LssSettings{});
   std::string members = fmt::format(".bit_rates = 0x{:04X}", settings.bit_rates.value_or(lss_bit_rates(capabilities)));
-  for (const char* flag : lss_flags) {
-    if (const auto at = settings.flags.find(flag); at != settings.flags.end()) {
-      members += fmt::format(",\n      .{} = {}", flag, at->second);
+  for (const OptionRow& row : options_table) {
+    if (row.group.name != option_table::lss.name) continue;
+    if (const auto at = settings.flags.find(std::string{row.name}); at != settings.flags.end()) {
+      members += fmt::format(",\n      .{} = {}", row.name, at->second);
     }
   }
   return json_object("members", std::move(members));

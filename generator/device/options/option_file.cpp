@@ -3,10 +3,40 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <vector>
 
 #include "eds/number.hpp"
 
 namespace edsc {
+namespace {
+
+constexpr std::size_t max_depth = 3;  // of a member that a message names
+
+/// The end of a JSON string that begins at `start`: the position of its closing quote.
+std::size_t end_of_string(std::string_view text, std::size_t start) {
+  std::size_t end = start + 1;
+  while (end < text.size() && text[end] != '"') end += text[end] == '\\' ? 2 : 1;
+  return end;
+}
+
+/// The opening quote of the name of the first member with a path, such as `sdo.timeout`. The text is valid JSON.
+std::size_t find_member(std::string_view text, std::string_view path) {
+  std::vector<std::string_view> names;  // of the members around the position
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    if (text[at] == '{') names.emplace_back();
+    if (text[at] == '}') names.pop_back();
+    if (text[at] != '"') continue;
+    const std::size_t start = at;
+    at = end_of_string(text, start);
+    const std::size_t next = text.find_first_not_of(" \t\r\n", at + 1);
+    if (next == std::string_view::npos || text[next] != ':') continue;
+    names.back() = text.substr(start + 1, at - start - 1);
+    if (names.size() <= max_depth && fmt::format("{}", fmt::join(names, ".")) == path) return start;
+  }
+  return std::string_view::npos;
+}
+
+}  // namespace
 
 std::optional<std::uint16_t> parse_index(std::string_view text) {
   if (text.ends_with('h')) text.remove_suffix(1);
@@ -42,7 +72,8 @@ void OptionFile::syntax_error(std::optional<std::size_t> byte, std::string_view 
 }
 
 Position OptionFile::position_of(std::string_view member) const {
-  return position_of_text(fmt::format("\"{}\"", member.substr(member.rfind('/') + 1)));
+  const std::size_t at = find_member(source_.text(), member);
+  return at == std::string_view::npos ? Position{&source_} : position_at(at + 1);
 }
 
 Position OptionFile::position_of_text(std::string_view text) const {

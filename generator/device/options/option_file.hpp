@@ -26,12 +26,12 @@ class OptionFile {
 
   [[nodiscard]] const SourceFile& source() const { return source_; }
 
-  /// Reports a fault in a member, given by its path: `lss/fastscan`.
+  /// Reports a fault in a member, given by its path: `lss.fastscan`.
   void error(std::string_view member, const std::string& message);
   /// Reports that the file is not JSON, at a byte that counts from 1, or the whole file.
   void syntax_error(std::optional<std::size_t> byte, std::string_view what);
 
-  /// The position of a member's name, approximately: its first occurrence in quotes.
+  /// The position of the name of the first member with this path; objects in an array have the path of the array.
   [[nodiscard]] Position position_of(std::string_view member) const;
   /// The position of the first occurrence of a text.
   [[nodiscard]] Position position_of_text(std::string_view text) const;

@@ -6,6 +6,8 @@
 #include <canopen/base/abort_code.hpp>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "device/options/option_file.hpp"
 #include "device/options/option_table.hpp"
@@ -31,7 +33,7 @@ bool is_abort_code(std::uint32_t number) {
 }
 
 /// An option in the form of its row; nothing if the value is invalid.
-std::optional<RuntimeOption> read_option(const OptionRow& row, const json& value) {
+std::optional<RuntimeOption> parse_option(const OptionRow& row, const json& value) {
   std::optional<std::uint32_t> number;
   switch (row.form) {
     case OptionForm::flag:
@@ -76,23 +78,108 @@ std::string expected(const OptionRow& row) {
   return "";
 }
 
-std::string unknown_option(const std::string& name) {
-  std::vector<std::string_view> names{"$schema"};
-  for (const OptionRow& row : options_table) names.push_back(row.name);
-  return "unknown option" + did_you_mean(name, names);
+/// `"timeout" in "sdo"`.
+std::string in_its_group(const OptionRow& row) { return fmt::format("\"{}\" in \"{}\"", row.name, row.group.name); }
+
+/// What a user may have written, and what edsc suggests for it.
+struct Spelling {
+  std::string_view text;
+  std::string suggestion;
+};
+
+/// The options of a group; with an empty name all members of the file.
+std::vector<Spelling> spellings_in(std::string_view group) {
+  std::vector<Spelling> spellings;
+  if (group.empty()) spellings.push_back({"$schema", "\"$schema\""});
+  for (const OptionRow& row : options_table) {
+    if (row.group.name == group) spellings.push_back({row.name, fmt::format("\"{}\"", row.name)});
+    if (group.empty() && !row.group.name.empty()) {
+      spellings.push_back({row.group.name, fmt::format("\"{}\"", row.group.name)});
+      spellings.push_back({row.flat_name, in_its_group(row)});
+    } else if (row.group.name == group) {
+      spellings.push_back({row.flat_name, fmt::format("\"{}\"", row.name)});
+    }
+  }
+  return spellings;
 }
 
-void read_member(const std::string& name, const json& value, NameCheck is_name, OptionFile& file, Options& options) {
-  if (name == "$schema") return;
-  const OptionRow* const row = find_option(name);
-  if (row == nullptr) return file.error(name, unknown_option(name));
-  if (row->form == OptionForm::structured) return read_structured_option(name, value, is_name, file, options);
-  if (const auto option = read_option(*row, value)) {
-    options.runtime.push_back(*option);
-  } else {
-    file.error(name, expected(*row));
-  }
+std::string unknown_option(std::string_view group, std::string_view name) {
+  const std::vector<Spelling> spellings = spellings_in(group);
+  std::vector<std::string_view> texts;
+  for (const Spelling& spelling : spellings) texts.push_back(spelling.text);
+  const std::string_view similar = most_similar(name, texts);
+  if (similar.empty()) return "unknown option";
+  return fmt::format("unknown option; did you mean {}?",
+                     std::ranges::find(spellings, similar, &Spelling::text)->suggestion);
 }
+
+/// Reads the members of an options file.
+class OptionsReader {
+ public:
+  OptionsReader(NameCheck is_name, OptionFile& file, Options& options)
+      : is_name_{is_name}, file_{file}, options_{options} {}
+
+  void read(const json& document) {
+    for (const auto& [name, value] : document.items()) {
+      if (name == "$schema") continue;
+      if (const OptionGroup* const group = find_option_group(name)) {
+        read_group(*group, value);
+      } else if (const OptionRow* const row = find_option("", name)) {
+        read_option(*row, name, value);
+      } else if (const OptionRow* const flat = find_flat_option(name)) {
+        read_flat(*flat, value, document);
+      } else {
+        file_.error(name, unknown_option("", name));
+      }
+    }
+    std::ranges::sort(options_.runtime, {}, [](const RuntimeOption& option) { return option.row->flat_name; });
+  }
+
+ private:
+  void read_group(const OptionGroup& group, const json& members) {
+    const std::string name{group.name};
+    if (!members.is_object()) return file_.error(name, fmt::format("expected an object with {} options", group.title));
+    if (group.name == lss_group) options_.lss.emplace();
+    for (const auto& [member, value] : members.items()) {
+      const std::string path = fmt::format("{}.{}", name, member);
+      if (const OptionRow* const row = find_option(group.name, member)) {
+        read_option(*row, path, value);
+      } else {
+        file_.error(path, unknown_option(group.name, member));
+      }
+    }
+  }
+
+  /// An option by its deprecated name.
+  void read_flat(const OptionRow& row, const json& value, const json& document) {
+    const std::string flat_name{row.flat_name};
+    const auto group = document.find(row.group.name);
+    if (group != document.end() && group->contains(row.name)) {
+      return file_.error(flat_name, fmt::format("already set by {}", in_its_group(row)));
+    }
+    options_.deprecated.push_back(
+        {file_.position_of(flat_name), fmt::format("\"{}\" is deprecated; use {}", flat_name, in_its_group(row))});
+    read_option(row, flat_name, value);
+  }
+
+  /// `path` is where the file has the option.
+  void read_option(const OptionRow& row, const std::string& path, const json& value) {
+    if (row.form == OptionForm::structured) return read_structured_option(row, path, value, is_name_, file_, options_);
+    const auto option = parse_option(row, value);
+    if (!option) return file_.error(path, expected(row));
+    if (row.group.name == lss_group) {
+      options_.lss->flags[std::string{row.name}] = option->value != 0;
+    } else {
+      options_.runtime.push_back(*option);
+    }
+  }
+
+  static constexpr std::string_view lss_group = option_table::lss.name;
+
+  NameCheck is_name_;
+  OptionFile& file_;
+  Options& options_;
+};
 
 }  // namespace
 
@@ -113,7 +200,7 @@ Options read_options(const SourceFile& source, NameCheck is_name, Diagnostics& d
     file.error("", "the options file must be one JSON object");
     return options;
   }
-  for (const auto& [name, value] : document.items()) read_member(name, value, is_name, file, options);
+  OptionsReader{is_name, file, options}.read(document);
   return options;
 }
 

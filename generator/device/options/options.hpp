@@ -39,10 +39,6 @@ struct StaticMapping {
 /// The bytes of an EMCY message after error code and error register.
 using EmergencyInfo = std::array<std::uint8_t, 5>;
 
-/// Boolean members of canopen::LssOptions, in its order.
-inline constexpr std::array lss_flags = {"manufacturer_bit_timing", "unconfigurable", "fastscan", "served_in_stopped",
-                                         "served_in_operational"};
-
 /// LSS options of a device; values that are not given have the default of CiA 305.
 struct LssSettings {
   std::optional<std::uint16_t> bit_rates;  ///< canopen::LssOptions::bit_rates; otherwise those of the EDS
@@ -66,6 +62,12 @@ struct AllowedFindings {
   std::optional<EntrySelector> object;
   std::string reason;
   Position position;
+};
+
+/// An option by its deprecated name, outside its group.
+struct DeprecatedOption {
+  Position position;
+  std::string message;
 };
 
 struct OptionRow;
@@ -100,20 +102,22 @@ struct Options {
   std::map<std::uint16_t, EmergencyInfo> emergency_info;
   /// Entries for which 1010h does not follow the access type, with their enumerator of canopen::Storing.
   std::vector<std::pair<EntrySelector, std::string>> storing;
-  /// Set if the options file has LSS options: the device then supports LSS regardless of the EDS.
+  /// Set if the options file has the group `lss`: the device then supports LSS regardless of the EDS.
   std::optional<LssSettings> lss;
   StoredEds stored_eds = StoredEds::of_application;
-  /// In the order of the file.
+  /// In the order of their members of canopen::DeviceOptions by name.
   std::vector<RuntimeOption> runtime;
   /// Expected findings.
   std::vector<AllowedFindings> allow;
+  std::vector<DeprecatedOption> deprecated;
 
   [[nodiscard]] bool is_settable(std::uint16_t index, std::uint8_t sub_index) const {
     return std::ranges::find(settable, EntryKey{index, sub_index}) != settable.end();
   }
 };
 
-/// Reads an options file. Unknown members and invalid values are errors, with the path of the member.
+/// Reads an options file. Unknown members and invalid values are errors, with the path of the member. The deprecated
+/// names are in `deprecated`, and not yet reported.
 [[nodiscard]] Options read_options(const SourceFile& source, NameCheck is_name, Diagnostics& diagnostics);
 
 }  // namespace edsc

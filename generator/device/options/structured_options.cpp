@@ -47,76 +47,81 @@ auto parsed(const json& value, Parse parse) {
 
 class StructuredOptions {
  public:
-  StructuredOptions(NameCheck is_name, OptionFile& file, Options& options)
-      : is_name_{is_name}, file_{file}, options_{options} {}
+  StructuredOptions(const std::string& path, NameCheck is_name, OptionFile& file, Options& options)
+      : path_{path}, is_name_{is_name}, file_{file}, options_{options} {}
 
-  void read(std::string_view name, const json& value) {
+  void read(const OptionRow& row, const json& value) {
     struct Reader {
+      std::string_view group;
       std::string_view name;
       void (StructuredOptions::*read)(const json& value);
+
+      [[nodiscard]] constexpr bool reads(const OptionRow& other) const {
+        return other.group.name == group && other.name == name;
+      }
     };
     static constexpr Reader readers[] = {
-        {"names", &StructuredOptions::names},
-        {"string_capacity", &StructuredOptions::string_capacity},
-        {"settable", &StructuredOptions::settable},
-        {"connected_modules", &StructuredOptions::connected_modules},
-        {"silence", &StructuredOptions::silence},
-        {"allow", &StructuredOptions::allow},
-        {"static_mapping", &StructuredOptions::static_mapping},
-        {"no_event", &StructuredOptions::no_event},
-        {"emergency_info", &StructuredOptions::emergency_info},
-        {"storing", &StructuredOptions::storing},
-        {"zero_terminated_strings", &StructuredOptions::zero_terminated_strings},
-        {"lss", &StructuredOptions::lss},
-        {"stored_eds", &StructuredOptions::stored_eds},
+        {"", "names", &StructuredOptions::names},
+        {"", "string_capacity", &StructuredOptions::string_capacity},
+        {"", "settable", &StructuredOptions::settable},
+        {"", "connected_modules", &StructuredOptions::connected_modules},
+        {"", "stored_eds", &StructuredOptions::stored_eds},
+        {"", "silence", &StructuredOptions::silence},
+        {"", "allow", &StructuredOptions::allow},
+        {"pdo", "static_mapping", &StructuredOptions::static_mapping},
+        {"pdo", "no_event", &StructuredOptions::no_event},
+        {"emcy", "info", &StructuredOptions::emergency_info},
+        {"storage", "entries", &StructuredOptions::storing},
+        {"sdo", "zero_terminated_strings", &StructuredOptions::zero_terminated_strings},
+        {"lss", "bit_rates", &StructuredOptions::lss_bit_rates},
     };
-    static_assert(std::ranges::all_of(options_table, [](const OptionRow& row) {
-      const bool is_read = std::ranges::find(readers, row.name, &Reader::name) != std::end(readers);
-      return (row.form == OptionForm::structured) == is_read;
+    static_assert(std::ranges::all_of(options_table, [](const OptionRow& one) {
+      const bool is_read = std::ranges::any_of(readers, [&](const Reader& reader) { return reader.reads(one); });
+      return (one.form == OptionForm::structured) == is_read;
     }));
-    (this->*std::ranges::find(readers, name, &Reader::name)->read)(value);
+    for (const Reader& reader : readers) {
+      if (reader.reads(row)) (this->*reader.read)(value);
+    }
   }
 
  private:
   /// Calls `take` for each item of an array; it returns false for an invalid one.
   template <class Take>
-  void each_item(std::string_view name, const json& value, const char* meaning, Take take,
-                 const char* item_meaning = nullptr) {
-    if (!value.is_array()) return file_.error(name, meaning);
+  void each_item(const json& value, const char* meaning, Take take, const char* item_meaning = nullptr) {
+    if (!value.is_array()) return error(meaning);
     for (const json& item : value) {
-      if (!take(item)) file_.error(name, item_meaning != nullptr ? item_meaning : meaning);
+      if (!take(item)) error(item_meaning != nullptr ? item_meaning : meaning);
     }
   }
 
   /// The same for each member of an object, by entry.
   template <class Take>
-  void each_entry(const std::string& name, const json& value, Take take) {
-    if (!value.is_object())
-      return file_.error(name, "expected an object with one member per entry, such as \"1018h:04\"");
+  void each_entry(const json& value, Take take) {
+    if (!value.is_object()) return error("expected an object with one member per entry, such as \"1018h:04\"");
     for (const auto& [entry, v] : value.items()) {
       const auto key = parse_entry_key(entry);
       if (!key) {
-        file_.error(name + "/" + entry, "not an entry such as \"1018h:04\"");
+        error_in(entry, "not an entry such as \"1018h:04\"");
       } else if (!take(*key, v)) {
-        file_.error(name + "/" + entry, "invalid value for this option");
+        error_in(entry, "invalid value for this option");
       }
     }
   }
 
   /// Appends what `parse` reads from each text of an array.
   template <class List, class Parse>
-  void append_each(std::string_view name, const json& value, const char* meaning, List& list, Parse parse,
+  void append_each(const json& value, const char* meaning, List& list, Parse parse,
                    const char* item_meaning = nullptr) {
     const auto take = [&](const json& item) {
       const auto found = parsed(item, parse);
       if (found) list.push_back(*found);
       return found.has_value();
     };
-    each_item(name, value, meaning, take, item_meaning);
+    each_item(value, meaning, take, item_meaning);
   }
 
   void names(const json& value) {
-    each_entry("names", value, [&](EntryKey key, const json& v) {
+    each_entry(value, [&](EntryKey key, const json& v) {
       if (!v.is_string() || !is_name_(v.get_ref<const std::string&>())) return false;
       options_.names[key] = v.get<std::string>();
       return true;
@@ -124,7 +129,7 @@ class StructuredOptions {
   }
 
   void string_capacity(const json& value) {
-    each_entry("string_capacity", value, [&](EntryKey key, const json& v) {
+    each_entry(value, [&](EntryKey key, const json& v) {
       if (!v.is_number_unsigned() || v > 0xFFFFU) return false;
       options_.string_capacity[key] = v.get<std::uint16_t>();
       return true;
@@ -132,23 +137,23 @@ class StructuredOptions {
   }
 
   void settable(const json& value) {
-    append_each("settable", value, "expected an array of entries such as \"1018h:04\"", options_.settable,
-                parse_entry_key, "not an entry such as \"1018h:04\"");
+    append_each(value, "expected an array of entries such as \"1018h:04\"", options_.settable, parse_entry_key,
+                "not an entry such as \"1018h:04\"");
   }
 
   void silence(const json& value) {
-    append_each("silence", value, "expected an array of rule ids", options_.silence, [&](const std::string& rule) {
-      return std::optional{SilencedRule{rule, file_.position_of(rule)}};
+    append_each(value, "expected an array of rule ids", options_.silence, [&](const std::string& rule) {
+      return std::optional{SilencedRule{rule, file_.position_of_text(json(rule).dump())}};
     });
   }
 
   void allow(const json& value) {
-    if (!value.is_array()) return file_.error("allow", allow_form);
+    if (!value.is_array()) return error(allow_form);
     for (const json& item : value) allow_one(item);
   }
 
   void allow_one(const json& item) {
-    if (!item.is_object()) return file_.error("allow", allow_form);
+    if (!item.is_object()) return error(allow_form);
     AllowedFindings allowed;
     for (const auto& [name, v] : item.items()) {
       const std::string text = v.is_string() ? v.get<std::string>() : std::string{};
@@ -160,22 +165,21 @@ class StructuredOptions {
       } else if (name == "object" && object) {
         allowed.object = object;
       } else if (std::ranges::find(allow_members, name) == allow_members.end()) {
-        return file_.error("allow/" + name, "unknown member" + did_you_mean(name, allow_members));
+        return error_in(name, "unknown member" + did_you_mean(name, allow_members));
       } else {
-        return file_.error("allow/" + name, name == "object"
-                                                ? "not an object or entry such as \"6040h\" or \"6401h:03\""
-                                                : "expected a non-empty string");
+        return error_in(name, name == "object" ? "not an object or entry such as \"6040h\" or \"6401h:03\""
+                                               : "expected a non-empty string");
       }
     }
     if (allowed.rule.empty() || allowed.reason.empty()) {
-      return file_.error("allow", allowed.rule.empty() ? "missing member rule" : "missing member reason");
+      return error(allowed.rule.empty() ? "missing member rule" : "missing member reason");
     }
     allowed.position = file_.position_of_text(json(allowed.reason).dump());
     options_.allow.push_back(std::move(allowed));
   }
 
   void connected_modules(const json& value) {
-    each_item("connected_modules", value, "expected an array of numbers of [SupportedModules]", [&](const json& item) {
+    each_item(value, "expected an array of numbers of [SupportedModules]", [&](const json& item) {
       const bool fits = item.is_number_unsigned() && item >= 1U && item <= 0xFFFFU;
       if (fits) options_.connected_modules.push_back(item.get<std::uint16_t>());
       return fits;
@@ -187,7 +191,7 @@ class StructuredOptions {
       options_.static_mapping.all = value.get<bool>();
       return;
     }
-    append_each("static_mapping", value, "expected true, or an array of mapping parameters such as \"1A00h\"",
+    append_each(value, "expected true, or an array of mapping parameters such as \"1A00h\"",
                 options_.static_mapping.parameters, [](const std::string& text) {
                   const auto index = parse_index(text);
                   return index && contains(mapping_parameters, *index) ? index : std::nullopt;
@@ -195,14 +199,13 @@ class StructuredOptions {
   }
 
   void no_event(const json& value) {
-    append_each("no_event", value, "expected an array of objects or entries such as \"6401h\" or \"6401h:03\"",
-                options_.no_event, parse_entry_selector);
+    append_each(value, "expected an array of objects or entries such as \"6401h\" or \"6401h:03\"", options_.no_event,
+                parse_entry_selector);
   }
 
   void emergency_info(const json& value) {
     if (!value.is_object()) {
-      return file_.error("emergency_info",
-                         "expected an object with one member for each error code: {\"8210h\": \"0900000000\"}");
+      return error("expected an object with one member for each error code: {\"8210h\": \"0900000000\"}");
     }
     for (const auto& [code, bytes] : value.items()) {
       const auto number = parse_index(code);
@@ -210,67 +213,49 @@ class StructuredOptions {
       if (number && info) {
         options_.emergency_info[*number] = *info;
       } else {
-        file_.error("emergency_info/" + code,
-                    number ? "expected five bytes as ten hexadecimal digits" : "not a code such as \"8210h\"");
+        error_in(code, number ? "expected five bytes as ten hexadecimal digits" : "not a code such as \"8210h\"");
       }
     }
   }
 
   void storing(const json& value) {
     if (!value.is_object()) {
-      return file_.error("storing",
-                         "expected an object with one member for each object or entry: {\"6010h:01\": \"never\"}");
+      return error("expected an object with one member for each object or entry: {\"6010h:01\": \"never\"}");
     }
     for (const auto& [text, how] : value.items()) {
       const auto entry = parse_entry_selector(text);
       const bool known =
           std::ranges::any_of(storing_names, [&spelling = how](const char* name) { return spelling == name; });
       if (entry && how == "with_node_id" && (entry->index < 0x1000 || entry->index > 0x1FFF)) {
-        file_.error("storing/" + text, "with_node_id is for objects 1000h..1FFFh");
+        error_in(text, "with_node_id is for objects 1000h..1FFFh");
       } else if (entry && known) {
         options_.storing.emplace_back(*entry, how.get<std::string>());
       } else {
-        file_.error("storing/" + text,
-                    entry ? "expected always, never or with_node_id" : "not an object or entry such as \"6010h:01\"");
+        error_in(text,
+                 entry ? "expected always, never or with_node_id" : "not an object or entry such as \"6010h:01\"");
       }
     }
   }
 
   void zero_terminated_strings(const json& value) {
-    if (const auto on = flag("zero_terminated_strings", value)) options_.zero_terminated_strings = *on;
-  }
-
-  void lss(const json& value) {
-    if (!value.is_object()) {
-      return file_.error("lss", "expected an object: {\"bit_rates\": [125, 500], \"fastscan\": false}");
-    }
-    LssSettings& settings = options_.lss.emplace();
-    for (const auto& [name, v] : value.items()) {
-      const std::string path = "lss/" + name;
-      if (name == "bit_rates") {
-        settings.bit_rates = lss_bit_rates(path, v);
-      } else if (std::ranges::find(lss_flags, name) == lss_flags.end()) {
-        file_.error(path, "unknown option");
-      } else if (const auto on = flag(path, v)) {
-        settings.flags[name] = *on;
-      }
-    }
+    if (!value.is_boolean()) return error("expected true or false");
+    options_.zero_terminated_strings = value.get<bool>();
   }
 
   /// One bit for each index of table 0 of CiA 305; none for a fixed bit rate.
-  std::optional<std::uint16_t> lss_bit_rates(const std::string& path, const json& value) {
-    if (value == "fixed") return std::uint16_t{0};
+  void lss_bit_rates(const json& value) {
     unsigned mask = 0;
-    bool valid = value.is_array() && !value.empty();
-    for (const json& item : valid ? value : json::array()) {
+    bool valid = value == "fixed" || (value.is_array() && !value.empty());
+    for (const json& item : value.is_array() ? value : json::array()) {
       const auto bit = lss_bit_rate(item);
       valid = valid && bit.has_value();
       mask |= 1U << bit.value_or(0);
     }
-    if (valid) return static_cast<std::uint16_t>(mask);
-    file_.error(path,
-                "expected \"fixed\", or an array of bit rates of CiA 301 in kbit/s, such as [125, 500], and \"auto\"");
-    return std::nullopt;
+    if (!valid) {
+      return error(
+          "expected \"fixed\", or an array of bit rates of CiA 301 in kbit/s, such as [125, 500], and \"auto\"");
+    }
+    options_.lss->bit_rates = static_cast<std::uint16_t>(mask);
   }
 
   /// The index of table 0.
@@ -288,16 +273,15 @@ class StructuredOptions {
     } else if (value == "compressed") {
       options_.stored_eds = StoredEds::compressed;
     } else {
-      file_.error("stored_eds", "expected true, false or \"compressed\"");
+      error("expected true, false or \"compressed\"");
     }
   }
 
-  std::optional<bool> flag(std::string_view name, const json& value) {
-    if (value.is_boolean()) return value.get<bool>();
-    file_.error(name, "expected true or false");
-    return std::nullopt;
-  }
+  /// Reports a fault in the option, or in a member of its value.
+  void error(const std::string& message) { file_.error(path_, message); }
+  void error_in(const std::string& member, const std::string& message) { file_.error(path_ + "." + member, message); }
 
+  const std::string& path_;  ///< of the option, as in the file
   NameCheck is_name_;
   OptionFile& file_;
   Options& options_;
@@ -305,9 +289,9 @@ class StructuredOptions {
 
 }  // namespace
 
-void read_structured_option(std::string_view name, const nlohmann::json& value, NameCheck is_name, OptionFile& file,
-                            Options& options) {
-  StructuredOptions{is_name, file, options}.read(name, value);
+void read_structured_option(const OptionRow& row, const std::string& path, const nlohmann::json& value,
+                            NameCheck is_name, OptionFile& file, Options& options) {
+  StructuredOptions{path, is_name, file, options}.read(row, value);
 }
 
 }  // namespace edsc

@@ -108,7 +108,7 @@ class Conform(unittest.TestCase):
         self.assertIn("unused deviation: unused.json:1: case 2.1 passed: x\n", result.stdout)
 
     def test_a_named_options_file_replaces_the_one_beside_the_eds(self) -> None:
-        (self.folder / "other.json").write_text('{"inhibit_time_unit": 0}', encoding="utf-8")
+        (self.folder / "other.json").write_text('{"pdo": {"inhibit_time_unit": 0}}', encoding="utf-8")
         result = self.run_line(f"edsc conform {ADDRESS} 5 eds/rk5c.eds --only 1.0 --options other.json")
         self.assertEqual(result.returncode, 1)
         self.assertIn("other.json:1:", result.stdout)

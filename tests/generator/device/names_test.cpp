@@ -81,9 +81,9 @@ TEST(Options, MustSpeakOfObjectsThatExist) {
   for (const Diagnostic& finding : text.diagnostics.all()) {
     if (finding.rule == "options") messages.push_back(finding.message);
   }
-  EXPECT_EQ(messages, (std::vector<std::string>{"option no_event names 2000h:01, which is not in the EDS",
-                                                "option no_event names 2001h, which is not in the EDS",
-                                                "option static_mapping names 1A00h, which is not in the EDS"}));
+  EXPECT_EQ(messages, (std::vector<std::string>{"option pdo.no_event names 2000h:01, which is not in the EDS",
+                                                "option pdo.no_event names 2001h, which is not in the EDS",
+                                                "option pdo.static_mapping names 1A00h, which is not in the EDS"}));
 }
 
 }  // namespace

@@ -1,38 +1,26 @@
 #include "device/options/options.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "backend/cpp/identifier.hpp"
-#include "backend/cpp/views.hpp"
+#include "device/options/option_table.hpp"
 #include "support/diagnostic_matchers.hpp"
+#include "support/read_options.hpp"
 
 namespace edsc {
 namespace {
 
 using Findings = std::vector<Finding>;
-using Runtime = std::vector<std::pair<std::string, std::string>>;
+using Runtime = ReadOptions::Runtime;
 
-struct ReadOptions {
-  explicit ReadOptions(std::string text)
-      : source("test.options.json", std::move(text)), options(read_options(source, is_identifier, diagnostics)) {}
-
-  /// The members of canopen::DeviceOptions and their values in C++.
-  [[nodiscard]] Runtime runtime() const {
-    Runtime found;
-    for (const auto& row : options_view({}, options).runtime) {
-      found.emplace_back(row["name"].get<std::string>(), row["value"].get<std::string>());
-    }
-    return found;
-  }
-
-  SourceFile source;
-  Diagnostics diagnostics;
-  Options options;
-};
+/// An options file with one option.
+std::string in_group(const OptionRow& row, const std::string& value) {
+  return fmt::format(R"({{ "{}": {{ "{}": {} }} }})", row.group.name, row.name, value);
+}
 
 TEST(OptionsFile, MayBeEmpty) {
   const ReadOptions read(R"({ "$schema": "options.schema.json" })");
@@ -116,49 +104,48 @@ TEST(OptionsFile, RefusesAllowedFindingsWithoutRuleOrReason) {
 }
 
 TEST(OptionsFile, NamesASimilarOption) {
-  const ReadOptions read(R"({ "setable": [], "sdo_timeot": 5, "colour": 1, "allow": [{"rul": "a"}] })");
-  std::string messages;
-  for (const Diagnostic& one : read.diagnostics.all()) messages += one.message + "\n";
-  EXPECT_EQ(messages,
-            "allow/rul: unknown member; did you mean \"rule\"?\n"
-            "colour: unknown option\n"
-            "sdo_timeot: unknown option; did you mean \"sdo_timeout\"?\n"
-            "setable: unknown option; did you mean \"settable\"?\n");
+  const ReadOptions read(R"({ "setable": [], "colour": 1, "allow": [{"rul": "a"}] })");
+  EXPECT_EQ(messages(read.diagnostics), (std::vector<std::string>{
+                                            "allow.rul: unknown member; did you mean \"rule\"?",
+                                            "colour: unknown option",
+                                            "setable: unknown option; did you mean \"settable\"?",
+                                        }));
 }
 
 TEST(OptionsFile, SaysThatStringsEndWithAZero) {
-  EXPECT_TRUE(ReadOptions(R"({ "zero_terminated_strings": true })").options.zero_terminated_strings);
-  EXPECT_FALSE(ReadOptions(R"({ "zero_terminated_strings": false })").options.zero_terminated_strings);
+  EXPECT_TRUE(ReadOptions(R"({ "sdo": { "zero_terminated_strings": true } })").options.zero_terminated_strings);
+  EXPECT_FALSE(ReadOptions(R"({ "sdo": { "zero_terminated_strings": false } })").options.zero_terminated_strings);
 }
 
 TEST(OptionsFile, HandsEachDepartureToTheRuntime) {
-  for (const char* flag :
-       {"pdo_extended_ids", "tpdo_remote_frames", "inhibit_time_writable_while_valid", "event_driven_on_change",
-        "tpdo_acyclic_on_change", "pdo_mapping_writable_while_valid", "mpdo", "sdo_upload_size_indicated",
-        "restore_needs_power_cycle", "tpdo_remote_frames_can_be_disabled", "tpdo_remote_types",
-        "emcy_cob_id_writable_while_valid", "emcy_stopped_keeps_last", "sdo_length_codes"}) {
+  for (const OptionRow& row : options_table) {
+    if (row.form != OptionForm::flag || row.group.name == "lss") continue;
     for (const char* value : {"true", "false"}) {
-      const ReadOptions read("{ \"" + std::string{flag} + "\": " + value + " }");
-      EXPECT_EQ(findings(read.diagnostics), Findings{}) << flag;
-      EXPECT_EQ(read.runtime(), (Runtime{{flag, value}}));
+      const ReadOptions read(in_group(row, value));
+      EXPECT_EQ(findings(read.diagnostics), Findings{}) << row.name;
+      EXPECT_EQ(read.runtime(), (Runtime{{std::string{row.flat_name}, value}}));
     }
   }
-  for (const std::string mask : {"pdo_cob_id_writable", "sync_cob_id_writable", "emcy_cob_id_writable"}) {
-    EXPECT_EQ(ReadOptions("{ \"" + mask + "\": \"0x80000780\" }").runtime(), (Runtime{{mask, "0x80000780"}}));
+  for (const std::string group : {"pdo", "sync", "emcy"}) {
+    EXPECT_EQ(ReadOptions("{ \"" + group + R"(": { "cob_id_writable": "0x80000780" } })").runtime(),
+              (Runtime{{group + "_cob_id_writable", "0x80000780"}}));
   }
-  EXPECT_EQ(ReadOptions(R"({ "inhibit_time_unit": 1000 })").runtime(), (Runtime{{"inhibit_time_unit", "1000"}}));
-  EXPECT_EQ(ReadOptions(R"({ "emcy_inhibit_time_step": 10 })").runtime(), (Runtime{{"emcy_inhibit_time_step", "10"}}));
+  EXPECT_EQ(ReadOptions(R"({ "pdo": { "inhibit_time_unit": 1000 } })").runtime(),
+            (Runtime{{"inhibit_time_unit", "1000"}}));
+  EXPECT_EQ(ReadOptions(R"({ "emcy": { "inhibit_time_step": 10 } })").runtime(),
+            (Runtime{{"emcy_inhibit_time_step", "10"}}));
   for (const std::string value : {"0", "1000", "65535"}) {
-    EXPECT_EQ(ReadOptions("{ \"sdo_timeout\": " + value + " }").runtime(), (Runtime{{"sdo_timeout", value}}));
+    EXPECT_EQ(ReadOptions("{ \"sdo\": { \"timeout\": " + value + " } }").runtime(), (Runtime{{"sdo_timeout", value}}));
   }
-  EXPECT_EQ(ReadOptions(R"({ "pdo_reserved_can_ids": ["0x80", "0x100"] })").runtime(),
+  EXPECT_EQ(ReadOptions(R"({ "pdo": { "reserved_can_ids": ["0x80", "0x100"] } })").runtime(),
             (Runtime{{"pdo_reserved_can_ids", "{0x080, 0x100}"}}));
-  EXPECT_EQ(ReadOptions(R"({ "reset_emergency": "ff00h" })").runtime(), (Runtime{{"reset_emergency", "0xFF00"}}));
-  EXPECT_EQ(ReadOptions(R"({ "pdo_mapping_abort_code": "0x6040041" })").runtime(),
+  EXPECT_EQ(ReadOptions(R"({ "emcy": { "reset_code": "ff00h" } })").runtime(),
+            (Runtime{{"reset_emergency", "0xFF00"}}));
+  EXPECT_EQ(ReadOptions(R"({ "pdo": { "mapping_abort_code": "0x6040041" } })").runtime(),
             (Runtime{{"pdo_mapping_abort_code", "0x06040041"}}));
-  EXPECT_EQ(ReadOptions(R"({ "error_history_abort_code": "0x06090031" })").runtime(),
+  EXPECT_EQ(ReadOptions(R"({ "emcy": { "history_abort_code": "0x06090031" } })").runtime(),
             (Runtime{{"error_history_abort_code", "0x06090031"}}));
-  EXPECT_EQ(ReadOptions(R"({ "storage_signature_abort_code": "0x08000022" })").runtime(),
+  EXPECT_EQ(ReadOptions(R"({ "storage": { "signature_abort_code": "0x08000022" } })").runtime(),
             (Runtime{{"storage_signature_abort_code", "0x08000022"}}));
 }
 
@@ -194,12 +181,12 @@ TEST(OptionsFile, SaysWhatTheDeviceKeepsOfItsDataSheet) {
 }
 
 TEST(OptionsFile, MakesTheMappingOfAllPdosStatic) {
-  EXPECT_TRUE(ReadOptions(R"({ "static_mapping": true })").options.static_mapping.applies_to(0x1600));
-  EXPECT_FALSE(ReadOptions(R"({ "static_mapping": false })").options.static_mapping.applies_to(0x1600));
+  EXPECT_TRUE(ReadOptions(R"({ "pdo": { "static_mapping": true } })").options.static_mapping.applies_to(0x1600));
+  EXPECT_FALSE(ReadOptions(R"({ "pdo": { "static_mapping": false } })").options.static_mapping.applies_to(0x1600));
 }
 
 TEST(OptionsFile, MakesTheMappingOfSomePdosStatic) {
-  const ReadOptions read(R"({ "static_mapping": ["1600h", "17FF", "1A00h", "1bffh"] })");
+  const ReadOptions read(R"({ "pdo": { "static_mapping": ["1600h", "17FF", "1A00h", "1bffh"] } })");
   EXPECT_EQ(findings(read.diagnostics), Findings{});
   EXPECT_EQ(read.options.static_mapping.parameters, (std::vector<std::uint16_t>{0x1600, 0x17FF, 0x1A00, 0x1BFF}));
   EXPECT_TRUE(read.options.static_mapping.applies_to(0x1A00));
@@ -208,20 +195,21 @@ TEST(OptionsFile, MakesTheMappingOfSomePdosStatic) {
 
 TEST(OptionsFile, RefusesAStaticMappingOfWhatIsNoMappingParameter) {
   for (const char* index : {"15FFh", "1800h", "19FFh", "1C00h", "1600h:01", "", "11600h"}) {
-    const ReadOptions read("{\n  \"static_mapping\": [\"" + std::string{index} + "\"] }");
+    const ReadOptions read("{\"pdo\": {\n  \"static_mapping\": [\"" + std::string{index} + "\"] }}");
     EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(2, 3, "options")})) << index;
     EXPECT_TRUE(read.options.static_mapping.parameters.empty()) << index;
   }
 }
 
 TEST(OptionsFile, NamesObjectsAndEntriesThatRaiseNoEvent) {
-  const ReadOptions read(R"({ "no_event": ["6401h", "6000h:02", "2000h:00"] })");
+  const ReadOptions read(R"({ "pdo": { "no_event": ["6401h", "6000h:02", "2000h:00"] } })");
   EXPECT_EQ(findings(read.diagnostics), Findings{});
   EXPECT_EQ(read.options.no_event, (std::vector<EntrySelector>{{0x6401, {}}, {0x6000, 2}, {0x2000, 0}}));
 }
 
 TEST(OptionsFile, SaysWhatIsStored) {
-  const ReadOptions read(R"({ "storing": { "1005h": "with_node_id", "6010:01": "never", "6081h:00": "always" } })");
+  const ReadOptions read(
+      R"({ "storage": { "entries": { "1005h": "with_node_id", "6010:01": "never", "6081h:00": "always" } } })");
   EXPECT_EQ(findings(read.diagnostics), Findings{});
   using Row = std::pair<EntrySelector, std::string>;
   EXPECT_EQ(read.options.storing,
@@ -231,14 +219,14 @@ TEST(OptionsFile, SaysWhatIsStored) {
 TEST(OptionsFile, RefusesAnotherWayToStore) {
   for (const char* member :
        {R"("6010h": "by_access")", R"("6010h": true)", R"("6010h:100": "never")", R"("2000h": "with_node_id")"}) {
-    const ReadOptions read("{\n\"storing\": { " + std::string{member} + " } }");
+    const ReadOptions read("{\"storage\": {\n\"entries\": { " + std::string{member} + " } } }");
     EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(2, 14, "options")})) << member;
     EXPECT_TRUE(read.options.storing.empty()) << member;
   }
 }
 
 TEST(OptionsFile, GivesEmergenciesTheirBytes) {
-  const ReadOptions read(R"({ "emergency_info": { "8210h": "0900000000", "ff00": "0a0B0c0D0e" } })");
+  const ReadOptions read(R"({ "emcy": { "info": { "8210h": "0900000000", "ff00": "0a0B0c0D0e" } } })");
   EXPECT_EQ(findings(read.diagnostics), Findings{});
   EXPECT_EQ(read.options.emergency_info.at(0x8210), (EmergencyInfo{9, 0, 0, 0, 0}));
   EXPECT_EQ(read.options.emergency_info.at(0xFF00), (EmergencyInfo{0x0A, 0x0B, 0x0C, 0x0D, 0x0E}));
@@ -248,7 +236,7 @@ TEST(OptionsFile, RefusesAnEmergencyWithoutCodeOrFiveBytes) {
   for (const char* member :
        {R"("": "0900000000")", R"("10000h": "0900000000")", R"("x": "0900000000")", R"("8210h": "09")",
         R"("8210h": "090000000000")", R"("8210h": "09000000+1")", R"("8210h": "090000000x")", R"("8210h": 9)"}) {
-    const ReadOptions read("{ \"emergency_info\": { " + std::string{member} + " } }");
+    const ReadOptions read("{ \"emcy\": { \"info\": { " + std::string{member} + " } } }");
     ASSERT_EQ(read.diagnostics.errors(), 1U) << member;
     EXPECT_EQ(read.diagnostics.all().front().rule, "options") << member;
     EXPECT_TRUE(read.options.emergency_info.empty()) << member;
@@ -263,38 +251,38 @@ TEST(OptionsFile, RefusesAValueOfTheWrongType) {
                              R"("settable": [4104])",
                              R"("silence": {})",
                              R"("silence": [1])",
-                             R"("zero_terminated_strings": 1)",
-                             R"("pdo_extended_ids": "no")",
-                             R"("event_driven_on_change": null)",
-                             R"("pdo_cob_id_writable": 5)",
-                             R"("pdo_cob_id_writable": "all")",
-                             R"("pdo_cob_id_writable": "0x1FFFFFFFF")",
-                             R"("pdo_mapping_abort_code": 100925505)",
-                             R"("pdo_mapping_abort_code": "0")",
-                             R"("pdo_mapping_abort_code": "0x06040040")",
-                             R"("mpdo": 1)",
-                             R"("sync_cob_id_writable": true)",
-                             R"("inhibit_time_unit": 0)",
-                             R"("inhibit_time_unit": 32768)",
-                             R"("inhibit_time_unit": "100")",
-                             R"("emcy_inhibit_time_step": 0)",
-                             R"("emcy_inhibit_time_step": 65536)",
-                             R"("emcy_inhibit_time_step": -1)",
-                             R"("pdo_reserved_can_ids": "0x080")",
-                             R"("pdo_reserved_can_ids": ["0x080"])",
-                             R"("pdo_reserved_can_ids": ["0x100", "0x080"])",
-                             R"("pdo_reserved_can_ids": ["0x080", "0x800"])",
-                             R"("pdo_reserved_can_ids": ["x", "0x100"])",
-                             R"("pdo_reserved_can_ids": [128, 256])",
-                             R"("reset_emergency": 65280)",
-                             R"("reset_emergency": "0000h")",
-                             R"("reset_emergency": "x")",
-                             R"("static_mapping": "1600h")",
-                             R"("static_mapping": [5632])",
-                             R"("no_event": "6401h")",
-                             R"("no_event": [25601])",
-                             R"("no_event": ["6401h:100"])",
-                             R"("emergency_info": ["8210h"])"}) {
+                             R"("sdo": {"zero_terminated_strings": 1})",
+                             R"("pdo": {"extended_ids": "no"})",
+                             R"("pdo": {"event_driven_on_change": null})",
+                             R"("pdo": {"cob_id_writable": 5})",
+                             R"("pdo": {"cob_id_writable": "all"})",
+                             R"("pdo": {"cob_id_writable": "0x1FFFFFFFF"})",
+                             R"("pdo": {"mapping_abort_code": 100925505})",
+                             R"("pdo": {"mapping_abort_code": "0"})",
+                             R"("pdo": {"mapping_abort_code": "0x06040040"})",
+                             R"("pdo": {"mpdo": 1})",
+                             R"("sync": {"cob_id_writable": true})",
+                             R"("pdo": {"inhibit_time_unit": 0})",
+                             R"("pdo": {"inhibit_time_unit": 32768})",
+                             R"("pdo": {"inhibit_time_unit": "100"})",
+                             R"("emcy": {"inhibit_time_step": 0})",
+                             R"("emcy": {"inhibit_time_step": 65536})",
+                             R"("emcy": {"inhibit_time_step": -1})",
+                             R"("pdo": {"reserved_can_ids": "0x080"})",
+                             R"("pdo": {"reserved_can_ids": ["0x080"]})",
+                             R"("pdo": {"reserved_can_ids": ["0x100", "0x080"]})",
+                             R"("pdo": {"reserved_can_ids": ["0x080", "0x800"]})",
+                             R"("pdo": {"reserved_can_ids": ["x", "0x100"]})",
+                             R"("pdo": {"reserved_can_ids": [128, 256]})",
+                             R"("emcy": {"reset_code": 65280})",
+                             R"("emcy": {"reset_code": "0000h"})",
+                             R"("emcy": {"reset_code": "x"})",
+                             R"("pdo": {"static_mapping": "1600h"})",
+                             R"("pdo": {"static_mapping": [5632]})",
+                             R"("pdo": {"no_event": "6401h"})",
+                             R"("pdo": {"no_event": [25601]})",
+                             R"("pdo": {"no_event": ["6401h:100"]})",
+                             R"("emcy": {"info": ["8210h"]})"}) {
     const ReadOptions read("{ " + std::string{member} + " }");
     ASSERT_EQ(read.diagnostics.errors(), 1U) << member;
     EXPECT_EQ(read.diagnostics.all().front().rule, "options") << member;
@@ -311,14 +299,14 @@ TEST(OptionsFile, RefusesEntriesThatAreNone) {
 }
 
 TEST(OptionsFile, RefusesAnUnknownMemberWhereItStands) {
-  const ReadOptions read("{\n  \"zero_terminated_strings\": true,\n  \"colour\": 1\n}\n");
+  const ReadOptions read("{\n  \"silence\": [],\n  \"colour\": 1\n}\n");
   EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(3, 3, "options")}));
   EXPECT_NE(read.diagnostics.all().front().message.find("colour"), std::string::npos);
 }
 
 TEST(OptionsFile, NamesThePathOfTheMemberThatIsWrong) {
   const ReadOptions read("{ \"string_capacity\": { \"1008h\": true } }");
-  EXPECT_NE(read.diagnostics.all().front().message.find("string_capacity/1008h"), std::string::npos);
+  EXPECT_NE(read.diagnostics.all().front().message.find("string_capacity.1008h"), std::string::npos);
 }
 
 TEST(OptionsFile, ThatIsNoJsonIsAnErrorWhereItBreaks) {

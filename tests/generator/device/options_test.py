@@ -32,10 +32,13 @@ def table(options: list[dict]) -> str:
     """One table for each group, in the order of the options."""
     text = ""
     for group in dict.fromkeys(option["group"] for option in options):
-        text += f"\n### {group}\n\n| member | meaning | default |\n|---|---|---|\n"
-        for option in options:
-            if option["group"] != group:
-                continue
+        members = [option for option in options if option["group"] == group]
+        text += f"\n### {group}\n\n"
+        if "group_meaning" in members[0]:
+            meaning = members[0]["group_meaning"]
+            text += f"{meaning[0].upper()}{meaning[1:]}.\n\n"
+        text += "| option | meaning | default |\n|---|---|---|\n"
+        for option in members:
             default = option.get("default_text", "")
             if not default and "default" in option:
                 default = json.dumps(option["default"])
@@ -49,14 +52,27 @@ def plain(text: str) -> str:
     return re.sub(r"(, )?\[see below\]\([^)]*\)", "", text).replace("`", "")
 
 
+def schema_of_option(option: dict, old: dict) -> dict:
+    """The structure of a structured option is that of the old schema."""
+    row = dict(FORMS.get(option["form"]) or {key: old[key] for key in old if key not in ("description", "default")})
+    row |= {key: option[key] for key in ("minimum", "maximum", "default") if key in option}
+    return {"description": plain(option["meaning"]), **row}
+
+
 def schema_of(options: list[dict], schema: dict) -> dict:
-    properties = {"$schema": schema["properties"]["$schema"]}
+    properties, flat = {"$schema": schema["properties"]["$schema"]}, {}
     for option in options:
-        old = schema["properties"].get(option["name"], {})
-        row = dict(FORMS.get(option["form"]) or {key: old[key] for key in old if key not in ("description", "default")})
-        row |= {key: option[key] for key in ("minimum", "maximum", "default") if key in option}
-        properties[option["name"]] = {"description": plain(option["meaning"]), **row}
-    return schema | {"properties": properties}
+        *group, name = option["name"].split(".")
+        members, old = properties, schema["properties"]
+        if group:
+            meaning = plain(option.get("group_meaning", f"{option['group']} options"))
+            empty = {"description": meaning, "type": "object", "additionalProperties": False, "properties": {}}
+            members = properties.setdefault(group[0], empty)["properties"]
+            old = old.get(group[0], {}).get("properties", {})
+        members[name] = schema_of_option(option, old.get(name, {}))
+        if "flat_name" in option:
+            flat[option["flat_name"]] = {"deprecated": True, "$ref": f"#/properties/{group[0]}/properties/{name}"}
+    return schema | {"properties": properties | flat}
 
 
 def with_table(page: str, text: str) -> str:
@@ -64,22 +80,26 @@ def with_table(page: str, text: str) -> str:
     return head + BEGIN + text + END + rest.split(END, 1)[1]
 
 
-def runtime_problems(header: str, options: list[dict]) -> list[str]:
-    """Members of canopen::DeviceOptions without a row, and rows with another default."""
-    body = header[header.index("struct DeviceOptions {"):]
-    members = {name: (value or braces).strip() for name, value, braces in MEMBER.findall(body[:body.index("\n};")])}
-    rows = {option["name"]: option for option in options if option["form"] != "structured"}
-    problems = [f"canopen::DeviceOptions::{name} is not in the table of options" for name in members if name not in rows]
+def members_of(header: Path, name: str) -> dict[str, str]:
+    """The members of a struct of the runtime and their default values in C++."""
+    text = header.read_text(encoding="utf-8")
+    body = text[text.index(f"struct {name} {{"):]
+    return {member: (value or braces).strip() for member, value, braces in MEMBER.findall(body[:body.index("\n};")])}
+
+
+def runtime_problems(struct: str, members: dict[str, str], rows: dict[str, dict]) -> list[str]:
+    """Members of a struct of the runtime without a row, and rows with another default; `rows` by member."""
+    problems = [f"canopen::{struct}::{name} is not in the table of options" for name in members if name not in rows]
     for name, row in rows.items():
         if name not in members:
-            problems.append(f"{name} is not a member of canopen::DeviceOptions")
+            problems.append(f"{name} is not a member of canopen::{struct}")
         elif "default" in row:
             value = row["default"]
             expected = value if isinstance(value, (bool, int)) else int(value, 16)
             found = members[name].replace("'", "")
             found_value = {"true": True, "false": False}.get(found)
             if (int(found, 0) if found_value is None else found_value) != expected:
-                problems.append(f"{name}: the default is {value} in the table and {found} in canopen::DeviceOptions")
+                problems.append(f"{name}: the default is {value} in the table and {found} in canopen::{struct}")
     return problems
 
 
@@ -93,8 +113,11 @@ def main() -> int:
         page: with_table(page.read_text(encoding="utf-8"), table(options)),
         schema: json.dumps(schema_of(options, old_schema), indent=2, ensure_ascii=False) + "\n",
     }
-    header = source_dir / "runtime/include/canopen/od/device_options.hpp"
-    problems = runtime_problems(header.read_text(encoding="utf-8"), options)
+    runtime = source_dir / "runtime/include/canopen"
+    lss = {option["name"].removeprefix("lss."): option for option in options if option["name"].startswith("lss.")}
+    device = {option["flat_name"]: option for option in options if "flat_name" in option and option["form"] != "structured"}
+    problems = runtime_problems("DeviceOptions", members_of(runtime / "od/device_options.hpp", "DeviceOptions"), device)
+    problems += runtime_problems("LssOptions", members_of(runtime / "lss/lss_options.hpp", "LssOptions"), lss)
     for path, text in texts.items():
         if "--write" in sys.argv:
             path.write_text(text, encoding="utf-8")
