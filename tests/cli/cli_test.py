@@ -23,7 +23,7 @@ FIXTURES = SOURCE_DIR / "tests/fixtures"
 GOOD = FIXTURES / "every_type.eds"
 CLEAN = SOURCE_DIR / "eds/rk5c.eds"
 WRONG = FIXTURES / "wrong_mapping_over_64_bits.eds"
-HEADERS = ("dictionary.hpp", "pdo.hpp", "device.hpp", "description.hpp")
+HEADERS = re.search(r"set\(EDSC_HEADERS ([^)]*)\)", (SOURCE_DIR / "cmake/EdscHeaders.cmake").read_text(encoding="utf-8"))[1].split()
 ESCAPE = "\x1b["
 NOBODY = 65534
 

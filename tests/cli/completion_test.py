@@ -16,12 +16,9 @@ from pathlib import Path
 
 EDSC = Path(sys.argv[2]).resolve()
 KINDS = ("bash", "zsh", "man")
-GROUPS = {
-    "EDS files": ["generate", "check", "dump", "format", "diff"],
-    "Bus": ["scan", "read", "write", "configure", "save", "monitor", "nmt", "lss", "conform", "bus"],
-    "Logs": ["record", "decode"],
-    "Shell": ["completion"],
-}
+ROW = re.compile(r'^    \{"([^"]+)", "([\w-]+)",', re.MULTILINE)
+ROWS = ROW.findall((Path(sys.argv[1]) / "cli/commands/commands.hpp").read_text(encoding="utf-8"))
+GROUPS = {group: [name for other, name in ROWS if other == group] for group, _ in ROWS}
 
 
 def run(*arguments: str) -> str:
