@@ -15,6 +15,7 @@
 #include "canopen/can/cob_id.hpp"
 #include "canopen/can/frame.hpp"
 #include "canopen/emcy/error_register.hpp"
+#include "canopen/emcy/service_error.hpp"
 #include "canopen/od/device_options.hpp"
 #include "canopen/od/object_store.hpp"
 
@@ -22,24 +23,6 @@ namespace canopen {
 
 /// The manufacturer-specific bytes of an EMCY.
 using EmergencyInfo = std::array<std::uint8_t, 5>;
-
-/// Errors that services detect. All of them are communication errors.
-enum class ServiceError : std::uint8_t {
-  pdo_length,
-  rpdo_timeout,
-  sync_length,
-  mpdo_destination,
-  error_control,
-  overrun,
-  bus_passive,
-  bus_off,
-};
-
-inline constexpr std::uint16_t service_error_codes[] = {
-    emergency_code::pdo_length,       emergency_code::rpdo_timeout,  emergency_code::sync_length,
-    emergency_code::mpdo_destination, emergency_code::error_control, emergency_code::overrun,
-    emergency_code::bus_passive,      emergency_code::bus_off,
-};
 
 /// The errors of one device. Each error that appears is sent once, with the present register, and recorded in the
 /// history; each one that disappears is sent as code 0000h with the remaining register. Messages wait, in order, while
@@ -74,15 +57,15 @@ class EmergencyProducer {
 
   /// Reports an error that a service has detected.
   void appeared(ObjectStore<Device>& store, ServiceError error) {
-    service_errors_ |= bit_of(error);
+    service_errors_ |= set_of(error);
     const std::uint8_t row = static_cast<std::uint8_t>(error);
     note(store, service_error_codes[row], has_info ? infos[row] : no_info);
   }
 
   /// Ends an error that a service has detected. Returns false if it was not present.
   bool gone(ObjectStore<Device>& store, ServiceError error) {
-    if ((service_errors_ & bit_of(error)) == 0) return false;
-    service_errors_ &= static_cast<std::uint8_t>(~bit_of(error));
+    if ((service_errors_ & set_of(error)) == 0) return false;
+    service_errors_ &= static_cast<ServiceErrors>(~set_of(error));
     note_reset(store);
     return true;
   }
@@ -205,10 +188,6 @@ class EmergencyProducer {
     return bits == ErrorRegister::none ? unnamed : static_cast<std::uint8_t>(bits);
   }
 
-  [[nodiscard]] static constexpr std::uint8_t bit_of(ServiceError error) {
-    return static_cast<std::uint8_t>(1u << static_cast<std::uint8_t>(error));
-  }
-
   /// Returns 1001h for the present errors: the generic bit is set whenever there is one.
   [[nodiscard]] std::uint8_t error_register() const {
     const auto bits = static_cast<std::uint8_t>(
@@ -303,7 +282,7 @@ class EmergencyProducer {
   std::uint8_t waiting_ = 0;
   std::uint8_t first_ = 0;  ///< position of the first waiting message
   std::uint8_t application_bits_ = 0;
-  std::uint8_t service_errors_ = 0;
+  ServiceErrors service_errors_ = 0;
   std::uint16_t lost_ = 0;
   [[no_unique_address]] std::conditional_t<has_inhibit_time, Inhibit, Nothing> inhibit_{};
   std::array<FrameWords, has_cob_id ? depth : 1> queue_{};

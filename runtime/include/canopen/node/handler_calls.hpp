@@ -1,0 +1,78 @@
+/// State of a node while it calls a read or write handler.
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+#include "canopen/nmt/nmt.hpp"
+#include "canopen/node/handlers.hpp"
+#include "canopen/sdo/domain_handlers.hpp"
+
+namespace canopen {
+
+/// Records what a read or write handler does with its node: an NMT command is executed after the response of the SDO
+/// server, and a value that the handler sets itself replaces the received one.
+template <class... Handlers>
+class HandlerCalls {
+ public:
+  /// Whether the node has such handlers; if not, this class is empty.
+  static constexpr bool exist = HandlerSet<Handlers...>::has_access_handlers || DomainHandlerSet<Handlers...>::any;
+
+  /// Calls the handlers of an object by `ask`. `written` is the key of the object if it is written, otherwise 0.
+  template <class Ask>
+  [[nodiscard]] auto ask([[maybe_unused]] std::uint32_t written, Ask&& ask) {
+    if constexpr (exist) {
+      state_.key = written;
+      state_.active = true;
+      state_.has_set = false;
+      const auto answer = ask();
+      state_.active = false;
+      return answer;
+    } else {
+      return ask();
+    }
+  }
+
+  /// Records that an object is set, possibly by its own write handler.
+  void object_is_set([[maybe_unused]] std::uint32_t key) {
+    if constexpr (exist) {
+      if (state_.active && state_.key == key) state_.has_set = true;
+    }
+  }
+
+  /// Whether the write handler that has just been called has set the object itself.
+  [[nodiscard]] bool set_by_handler() const {
+    if constexpr (exist) return state_.has_set;
+    return false;
+  }
+
+  /// Defers a command if a handler is being called, and returns whether one is. The newest command replaces the others.
+  [[nodiscard]] bool defer([[maybe_unused]] NmtCommand command) {
+    if constexpr (exist) {
+      if (state_.active) state_.deferred = static_cast<std::uint8_t>(command);
+      return state_.active;
+    }
+    return false;
+  }
+  [[nodiscard]] bool has_deferred() const {
+    if constexpr (exist) return state_.deferred != 0;
+    return false;
+  }
+  [[nodiscard]] NmtCommand deferred() const requires(exist) { return static_cast<NmtCommand>(state_.deferred); }
+  void discard_deferred() {
+    if constexpr (exist) state_.deferred = 0;
+  }
+
+ private:
+  struct State {
+    std::uint32_t key;      ///< of the object that is being written
+    bool active;            ///< a handler is being called
+    bool has_set;           ///< it has set that object itself
+    std::uint8_t deferred;  ///< the NMT command that it has requested; 0: none
+  };
+  struct NoState {};
+
+  [[no_unique_address]] std::conditional_t<exist, State, NoState> state_{};
+};
+
+}  // namespace canopen

@@ -1,0 +1,50 @@
+/// Values that a node receives: the checks of services and handlers, and what follows from a new value.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "canopen/base/abort_code.hpp"
+#include "canopen/node/value_check.hpp"
+#include "canopen/od/dictionary.hpp"
+#include "canopen/od/object_store.hpp"
+
+namespace canopen {
+
+/// Checks whether a received value, whose length and limits are correct, may be written: asks the services, then calls
+/// the write handlers of the object. Both may change the bytes.
+template <class Host>
+[[nodiscard]] AbortCode before_write(Host& host, std::uint16_t index, std::uint8_t sub_index,
+                                     std::span<std::uint8_t> bytes) {
+  if (const AbortCode code = host.check_write(index, sub_index, bytes); code != ok) return code;
+  const std::uint32_t key = object_key(index, sub_index);
+  return host.handler_calls().ask(key, [&] { return host.handlers().before_write(host.node(), key, bytes); });
+}
+
+/// Applies a value from a PDO to an object by index and sub-index. A value outside its limits, or rejected by its
+/// handler, is ignored.
+template <class Host>
+void take_received(Host& host, std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
+  using Entries = EntryAccess<typename Host::Device>;
+  const entry::Word word = Entries::find(index, sub_index);
+  if (Entries::kinds.booleans && entry::is_boolean(word)) bytes[0] = bytes[0] != 0 ? 1 : 0;
+  if (host.entries().check(index, sub_index, word, bytes) != ok) return;
+  if (before_write(host, index, sub_index, bytes) != ok || host.handler_calls().set_by_handler()) return;
+  if (host.entries().holds(word, bytes)) return;
+  host.entries().write(word, bytes);
+  host.after_write(index, sub_index, true);
+}
+
+/// The same for an object that is known at compile time.
+template <DictionaryObject O, class Host>
+void take_received(Host& host, const typename O::type& value) {
+  if (check_limits<O>(value) != ok) return;
+  if constexpr (Host::Handlers::template handles_write<O>) {
+    const auto ask = [&] { return host.handlers().template before_write<O>(host.node(), value); };
+    if (host.handler_calls().ask(object_key(O::index, O::sub_index), ask) != ok) return;
+    if (host.handler_calls().set_by_handler()) return;
+  }
+  if (host.store().template set<O>(value)) host.template on_new_value<O>();
+}
+
+}  // namespace canopen

@@ -1,0 +1,318 @@
+/// The services of a node, each with the same optional functions, and the folds over them.
+///
+/// A service is a class with the functions of `ServiceDefaults` that it needs. `host` is a ServiceHost: the functions
+/// of the node that a service may call. A node calls the functions of all its services in the order of their list,
+/// which is therefore also the order of frames, if several are due.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <type_traits>
+
+#include "canopen/base/abort_code.hpp"
+#include "canopen/base/clock.hpp"
+#include "canopen/can/frame.hpp"
+#include "canopen/emcy/service_error.hpp"
+#include "canopen/nmt/nmt.hpp"
+#include "canopen/od/object.hpp"
+#include "canopen/sync/sync.hpp"
+
+namespace canopen {
+
+/// What a service does unless it has a function of its own. The parameter makes the type of each empty base its own, so
+/// that bases of several services share one address.
+template <class Service>
+struct ServiceDefaults {
+  /// Whether the device has the service; otherwise an image does not contain any of it.
+  static constexpr bool exists = true;
+  /// Whether it works in Initialisation and while the bit rate is switched. No other service is called there.
+  static constexpr bool runs_without_node_id = false;
+  /// Whether `on_frame` may receive frames with restricted CAN-IDs: those that no COB-ID can be set to.
+  static constexpr bool has_fixed_can_id = false;
+
+  // Start, reset and NMT states
+
+  /// Power-on, before the first reset.
+  template <class Host>
+  static void on_start(Host&) {}
+  /// Reset of 2000h..FFFFh; `reset_communication` follows.
+  template <class Host>
+  static void reset_application(Host&) {}
+  /// Reset of 1000h..1FFFh, before the node enters Initialisation.
+  template <class Host>
+  static void reset_communication(Host&) {}
+  /// The node has entered a state.
+  template <class Host>
+  static void on_state(Host&, [[maybe_unused]] NmtState before, [[maybe_unused]] NmtState state) {}
+
+  // Frames: returns whether the frame is one of this service
+
+  /// The frames that are received most often, before all others. Not called for a remote frame.
+  template <class Host>
+  static bool on_frequent_frame(Host&, const Frame&, [[maybe_unused]] std::uint32_t cob_id) {
+    return false;
+  }
+  /// Not called for a remote frame.
+  template <class Host>
+  static bool on_frame(Host&, const Frame&, [[maybe_unused]] std::uint32_t cob_id) {
+    return false;
+  }
+  template <class Host>
+  static bool on_remote_frame(Host&, const Frame&) {
+    return false;
+  }
+  /// A SYNC has been received, or sent by this node.
+  template <class Host>
+  static void on_sync(Host&, [[maybe_unused]] Sync sync) {}
+
+  // Time and transmission
+
+  template <class Host>
+  static void on_time(Host&) {}
+  /// Sends what is due. Returns false if the bus had no room; the rest remains due.
+  template <class Host>
+  static bool serve(Host&) {
+    return true;
+  }
+  /// Returns when `on_time` or `serve` is next due; not later than `host.now()` if it is already due.
+  template <class Host>
+  static std::optional<TimePoint> deadline(Host&) {
+    return std::nullopt;
+  }
+  /// Whether the node may not send anything now.
+  static constexpr bool silent() { return false; }
+
+  // Errors
+
+  /// Returns the errors that are present.
+  static constexpr ServiceErrors errors() { return {}; }
+
+  // Objects
+
+  /// Whether `check_write` decides about writes to an entry. One service does for each entry.
+  static constexpr bool checks([[maybe_unused]] std::uint16_t index, [[maybe_unused]] std::uint8_t sub_index) {
+    return false;
+  }
+  /// Checks whether these bytes, whose length and limits are correct, may be written; may change them.
+  template <class Host>
+  static AbortCode check_write(Host&, std::uint16_t, std::uint8_t, std::span<std::uint8_t>) {
+    return ok;
+  }
+  /// Applies a parameter of 1000h..1FFFh that has been written, with a new or the same value.
+  template <class Host>
+  static void after_write(Host&, [[maybe_unused]] std::uint16_t index, [[maybe_unused]] std::uint8_t sub_index) {}
+  /// The same for any object, in Operational. `new_value`: it differs from the previous one.
+  template <class Host>
+  static void after_operational_write(Host&, [[maybe_unused]] std::uint16_t index,
+                                      [[maybe_unused]] std::uint8_t sub_index, [[maybe_unused]] bool new_value) {}
+  /// An object that is known at compile time has a new value, in Operational. Returns whether something is to be sent.
+  template <DictionaryObject O, class Host>
+  static bool on_new_value(Host&) {
+    return false;
+  }
+  /// Checks whether an entry may be read now.
+  template <class Host>
+  static AbortCode before_read(Host&, std::uint16_t, std::uint8_t) {
+    return ok;
+  }
+  /// Whether `command` handles writes to an entry without a value.
+  static constexpr bool has_command([[maybe_unused]] std::uint16_t index) { return false; }
+  template <class Host>
+  static AbortCode command(Host&, std::uint16_t, std::uint8_t, std::span<std::uint8_t>) {
+    return AbortCode::not_stored;
+  }
+};
+
+namespace service_detail {
+
+template <class Service>
+struct Absent : ServiceDefaults<Absent<Service>> {};
+
+/// The service, or nothing if the device does not have it.
+template <class Service>
+using Present = std::conditional_t<Service::exists, Service, Absent<Service>>;
+
+}  // namespace service_detail
+
+/// The services of one node. Each function calls that of all services.
+template <class... Services>
+class ServiceSet : private service_detail::Present<Services>... {
+  template <class S>
+  using Present = service_detail::Present<S>;
+
+ public:
+  /// Whether a service works without node-ID.
+  static constexpr bool has_any_without_node_id = (Present<Services>::runs_without_node_id || ...);
+
+  /// Returns a service that the device has.
+  template <class S>
+  [[nodiscard]] S& get() {
+    return *this;
+  }
+  template <class S>
+  [[nodiscard]] const S& get() const {
+    return *this;
+  }
+
+  template <class Host>
+  void on_start(Host& host) {
+    (present<Services>().on_start(host), ...);
+  }
+  template <class Host>
+  void reset_application(Host& host) {
+    (present<Services>().reset_application(host), ...);
+  }
+  template <class Host>
+  void reset_communication(Host& host) {
+    (present<Services>().reset_communication(host), ...);
+  }
+  template <class Host>
+  void on_state(Host& host, NmtState before, NmtState state) {
+    (present<Services>().on_state(host, before, state), ...);
+  }
+
+  template <class Host>
+  [[nodiscard]] bool on_frequent_frame(Host& host, const Frame& frame, std::uint32_t cob_id) {
+    return (present<Services>().on_frequent_frame(host, frame, cob_id) || ...);
+  }
+  /// Passes each frame to the services that work without node-ID; others may process it as well.
+  template <class Host>
+  void on_frame_without_node_id(Host& host, const Frame& frame) {
+    (static_cast<void>(on_frame_if<Services, Present<Services>::runs_without_node_id>(host, frame, cob_id_of(frame))),
+     ...);
+  }
+  /// Passes a frame with a CAN-ID of the pre-defined connection set.
+  template <class Host>
+  [[nodiscard]] bool on_fixed_frame(Host& host, const Frame& frame, std::uint32_t cob_id) {
+    return (on_frame_if<Services, Present<Services>::has_fixed_can_id>(host, frame, cob_id) || ...);
+  }
+  /// Passes a frame whose CAN-ID may be that of a configured COB-ID.
+  template <class Host>
+  [[nodiscard]] bool on_frame(Host& host, const Frame& frame, std::uint32_t cob_id) {
+    return (on_frame_if<Services, is_configured<Services>>(host, frame, cob_id) || ...);
+  }
+  template <class Host>
+  [[nodiscard]] bool on_remote_frame(Host& host, const Frame& frame) {
+    return (present<Services>().on_remote_frame(host, frame) || ...);
+  }
+  template <class Host>
+  void on_sync(Host& host, Sync sync) {
+    (present<Services>().on_sync(host, sync), ...);
+  }
+
+  template <class Host>
+  void on_time_without_node_id(Host& host) {
+    (on_time_if<Services, Present<Services>::runs_without_node_id>(host), ...);
+  }
+  template <class Host>
+  void on_time(Host& host) {
+    (on_time_if<Services, !Present<Services>::runs_without_node_id>(host), ...);
+  }
+  /// Sends what is due, in the order of the services, until the bus has no room. Returns false if it has none.
+  template <class Host>
+  [[nodiscard]] bool serve(Host& host) {
+    return (present<Services>().serve(host) && ...);
+  }
+  template <class Host>
+  [[nodiscard]] bool serve_without_node_id(Host& host) {
+    return ((!Present<Services>::runs_without_node_id || present<Services>().serve(host)) && ...);
+  }
+  /// Returns the earliest deadline; of those services only that work without node-ID if `all` is not set.
+  template <class Host>
+  [[nodiscard]] std::optional<TimePoint> deadline(Host& host, bool all) const {
+    std::optional<TimePoint> next;
+    (consider<Services>(next, host, all), ...);
+    return next;
+  }
+  [[nodiscard]] bool silent() const { return (present<Services>().silent() || ...); }
+
+  [[nodiscard]] ServiceErrors errors() const {
+    return static_cast<ServiceErrors>((unsigned{present<Services>().errors()} | ...));
+  }
+
+  template <class Host>
+  [[nodiscard]] AbortCode check_write(Host& host, std::uint16_t index, std::uint8_t sub_index,
+                                      std::span<std::uint8_t> bytes) {
+    return check_first<Services...>(host, index, sub_index, bytes);
+  }
+  template <class Host>
+  void after_write(Host& host, std::uint16_t index, std::uint8_t sub_index) {
+    (present<Services>().after_write(host, index, sub_index), ...);
+  }
+  template <class Host>
+  void after_operational_write(Host& host, std::uint16_t index, std::uint8_t sub_index, bool new_value) {
+    (present<Services>().after_operational_write(host, index, sub_index, new_value), ...);
+  }
+  template <DictionaryObject O, class Host>
+  [[nodiscard]] bool on_new_value(Host& host) {
+    return (static_cast<unsigned>(present<Services>().template on_new_value<O>(host)) | ...) != 0;
+  }
+  template <class Host>
+  [[nodiscard]] AbortCode before_read(Host& host, std::uint16_t index, std::uint8_t sub_index) {
+    AbortCode code = ok;
+    static_cast<void>((((code = present<Services>().before_read(host, index, sub_index)) == ok) && ...));
+    return code;
+  }
+  template <class Host>
+  [[nodiscard]] AbortCode command(Host& host, std::uint16_t index, std::uint8_t sub_index,
+                                  std::span<std::uint8_t> bytes) {
+    AbortCode code = AbortCode::not_stored;
+    static_cast<void>((command_if<Services>(host, index, sub_index, bytes, code) || ...));
+    return code;
+  }
+
+ private:
+  template <class S>
+  static constexpr bool is_configured = !Present<S>::has_fixed_can_id && !Present<S>::runs_without_node_id;
+
+  template <class S>
+  [[nodiscard]] Present<S>& present() {
+    return *this;
+  }
+  template <class S>
+  [[nodiscard]] const Present<S>& present() const {
+    return *this;
+  }
+
+  template <class S, bool Called, class Host>
+  [[nodiscard]] bool on_frame_if([[maybe_unused]] Host& host, [[maybe_unused]] const Frame& frame,
+                                 [[maybe_unused]] std::uint32_t cob_id) {
+    if constexpr (Called) {
+      return present<S>().on_frame(host, frame, cob_id);
+    } else {
+      return false;
+    }
+  }
+
+  template <class S, bool Called, class Host>
+  void on_time_if([[maybe_unused]] Host& host) {
+    if constexpr (Called) present<S>().on_time(host);
+  }
+
+  template <class S, class Host>
+  void consider(std::optional<TimePoint>& next, Host& host, bool all) const {
+    if (!all && !Present<S>::runs_without_node_id) return;
+    const std::optional<TimePoint> other = present<S>().deadline(host);
+    if (other && (!next || *other < *next)) next = other;
+  }
+
+  /// Not a fold: with one return for each service, an image is smaller.
+  template <class S, class... Rest, class Host>
+  [[nodiscard]] AbortCode check_first(Host& host, std::uint16_t index, std::uint8_t sub_index,
+                                      std::span<std::uint8_t> bytes) {
+    if (Present<S>::checks(index, sub_index)) return present<S>().check_write(host, index, sub_index, bytes);
+    if constexpr (sizeof...(Rest) != 0) return check_first<Rest...>(host, index, sub_index, bytes);
+    return ok;
+  }
+
+  template <class S, class Host>
+  [[nodiscard]] bool command_if(Host& host, std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes,
+                                AbortCode& code) {
+    if (!Present<S>::has_command(index)) return false;
+    code = present<S>().command(host, index, sub_index, bytes);
+    return true;
+  }
+};
+
+}  // namespace canopen

@@ -1,0 +1,54 @@
+/// The list of services of a node. A service that the device does not have takes neither flash nor RAM.
+#pragma once
+
+#include "canopen/node/service_set.hpp"
+#include "canopen/node/services/bus_errors.hpp"
+#include "canopen/node/services/emergency.hpp"
+#include "canopen/node/services/emergency_consumer.hpp"
+#include "canopen/node/services/error_reaction.hpp"
+#include "canopen/node/services/guarding.hpp"
+#include "canopen/node/services/heartbeat.hpp"
+#include "canopen/node/services/heartbeat_consumer.hpp"
+#include "canopen/node/services/lss.hpp"
+#include "canopen/node/services/mpdos.hpp"
+#include "canopen/node/services/pdo_parameters.hpp"
+#include "canopen/node/services/rpdos.hpp"
+#include "canopen/node/services/sdo.hpp"
+#include "canopen/node/services/stored_eds.hpp"
+#include "canopen/node/services/sync.hpp"
+#include "canopen/node/services/time.hpp"
+#include "canopen/node/services/tpdos.hpp"
+#include "canopen/node/services/values.hpp"
+
+namespace canopen {
+
+/// One row per service. The order is that of importance: of frames that are due at the same time, the first service
+/// sends first. A reset needs the node-ID of LSS before the values, and those before the services that read them.
+// clang-format off
+template <class Device, class... Handlers>
+using NodeServices = ServiceSet<
+    service::PdoCommunication<Device>,
+    service::PdoMapping<Device>,
+    service::Sync<Device>,
+    service::BootUp<Device>,
+    service::BusErrors<Device>,
+    service::Lss<Handlers...>,
+    service::NodeGuarding<Device>,
+    service::Sdo<Device, Handlers...>,
+    service::Heartbeat<Device>,
+    service::Emergency<Device>,
+    service::DefaultValues<Device, Handlers...>,
+    service::StoredValues<Device, Handlers...>,
+    service::HeartbeatConsumer<Device>,
+    service::LifeGuarding<Device>,
+    service::HighResolutionTime<Device>,
+    service::Time<Device>,
+    service::EmergencyConsumer<Device>,
+    service::Tpdos<Device>,
+    service::Rpdos<Device>,
+    service::Mpdos<Device>,
+    service::ErrorReaction<Device>,
+    service::StoredEds<Device>>;
+// clang-format on
+
+}  // namespace canopen

@@ -1,0 +1,89 @@
+/// LSS slave in a node, if the application provides a port for it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <tuple>
+#include <type_traits>
+
+#include "canopen/lss/lss_handler.hpp"
+#include "canopen/node/service_set.hpp"
+#include "canopen/od/dictionary.hpp"
+
+namespace canopen::service {
+
+template <class... Handlers>
+class Lss : public ServiceDefaults<Lss<Handlers...>> {
+  using Handler = typename lss_detail::Find<Handlers...>::type;
+
+ public:
+  static constexpr bool exists = !std::is_void_v<Handler>;
+  static constexpr bool runs_without_node_id = true;
+
+  template <class Host>
+  void on_start(Host& host) {
+    slave_.start(host.node_id(), port(host).bit_timing());
+  }
+  /// The pending node-ID is activated by reset communication.
+  template <class Host>
+  void reset_application(Host& host) {
+    slave_.reset_application();
+    host.set_node_id(slave_.pending_node_id());
+  }
+  template <class Host>
+  void reset_communication(Host& host) {
+    host.set_node_id(slave_.reset_communication());
+  }
+  template <class Host>
+  void on_state(Host&, NmtState, NmtState state) {
+    slave_.enter(state);
+  }
+
+  template <class Host>
+  bool on_frame(Host& host, const Frame& frame, std::uint32_t) {
+    slave_.on_frame(frame, Hooks<Host>{host}, host.now());
+    if (slave_.has_reply()) host.attend();
+    return false;
+  }
+  template <class Host>
+  void on_time(Host& host) {
+    slave_.on_time(Hooks<Host>{host}, host.now());
+  }
+  template <class Host>
+  bool serve(Host& host) {
+    return slave_.serve(host.bus());
+  }
+  template <class Host>
+  std::optional<TimePoint> deadline(Host& host) const {
+    return slave_.has_reply() && !slave_.silent() ? host.now() : slave_.next_deadline();
+  }
+  /// While the bit rate is being switched.
+  bool silent() const { return slave_.silent(); }
+
+ private:
+  template <class Host>
+  [[nodiscard]] static auto& port(Host& host) {
+    return *std::get<Handler>(host.handlers().all()).port;
+  }
+
+  template <class Host>
+  struct Hooks {
+    Host& host;
+    [[nodiscard]] std::uint32_t identity(std::uint8_t sub_index) const {
+      const entry::Word word = Host::Device::dictionary.find(0x1018, sub_index);
+      return word > Dictionary::no_sub_index ? host.entries().number(word) : 0;
+    }
+    [[nodiscard]] LssError accept(NodeId node_id) const { return port(host).accept(node_id); }
+    [[nodiscard]] LssError accept(LssBitTiming timing) const { return port(host).accept(timing); }
+    [[nodiscard]] LssError store(NodeId node_id, LssBitTiming timing) const {
+      return port(host).store(node_id, timing);
+    }
+    void reset_communication() const { host.reset_communication(); }
+    void stop_communication() const { port(host).stop_communication(); }
+    void start_communication(LssBitTiming timing) const { port(host).start_communication(timing); }
+  };
+
+  [[no_unique_address]] typename lss_detail::SlaveOf<Handler>::type slave_{};
+};
+
+}  // namespace canopen::service

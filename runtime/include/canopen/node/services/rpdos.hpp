@@ -1,0 +1,137 @@
+/// RPDOs (1400h..17FFh) in a node.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "canopen/can/cob_id.hpp"
+#include "canopen/node/handlers.hpp"
+#include "canopen/node/received_value.hpp"
+#include "canopen/node/service_set.hpp"
+#include "canopen/node/services/sync.hpp"
+#include "canopen/pdo/communication_parameters.hpp"
+#include "canopen/pdo/mpdo_service.hpp"
+#include "canopen/pdo/pdo_mapping.hpp"
+#include "canopen/pdo/rpdo.hpp"
+#include "canopen/pdo/tpdo.hpp"
+
+namespace canopen::service {
+
+/// Errors of received PDOs: they end when no PDO has them any more.
+inline constexpr ServiceErrors rpdo_errors =
+    set_of(ServiceError::pdo_length) | set_of(ServiceError::rpdo_timeout) | set_of(ServiceError::mpdo_destination);
+
+/// The functions of a node that RPDOs and MPDOs call.
+template <class Host>
+struct RpdoHooks {
+  Host& host;
+
+  [[nodiscard]] auto entries() const { return host.entries(); }
+  [[nodiscard]] TimePoint now() const { return host.now(); }
+  [[nodiscard]] bool operational() const { return serves_pdo(host.state()); }
+  [[nodiscard]] bool window_over() const { return sync_window_over(host); }
+  template <DictionaryObject O>
+  void take(const typename O::type& value) const {
+    take_received<O>(host, value);
+  }
+  void take(std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) const {
+    take_received(host, index, sub_index, bytes);
+  }
+  void happened(RpdoEvent event, std::uint16_t number) const {
+    switch (event) {
+      case RpdoEvent::taken: break;
+      case RpdoEvent::too_short: host.report(ServiceError::pdo_length); break;
+      case RpdoEvent::timeout: host.report(ServiceError::rpdo_timeout); break;
+      case RpdoEvent::length_right:
+      case RpdoEvent::in_time: host.end_if_gone(rpdo_errors); break;
+    }
+    host.template tell<RpdoHandler>(event, number);
+  }
+  void destination_missing(bool missing) const {
+    missing ? host.report(ServiceError::mpdo_destination) : host.end_if_gone(rpdo_errors);
+  }
+};
+
+template <class Device>
+class Rpdos : public ServiceDefaults<Rpdos<Device>> {
+ public:
+  static constexpr bool exists = RpdoService<Device>::count > 0;
+
+  template <class Host>
+  void on_state(Host& host, NmtState, NmtState state) {
+    if (!serves_pdo(state)) return;
+    rpdos_.enter_operational(host.entries(), Watched<Host>{host});
+    host.end_if_gone(rpdo_errors);
+  }
+
+  /// Handles a frame that is an RPDO with one of the CAN-IDs that the pre-defined connection set assigns to PDOs: this
+  /// is the usual case. One with another CAN-ID is handled by `on_frame`, after the other services.
+  template <class Host>
+  bool on_frequent_frame(Host& host, const Frame& frame, std::uint32_t cob_id) {
+    if constexpr (MpdoService<Device>::exists) return false;
+    constexpr std::uint32_t first = function_code::tpdo1 + 1;
+    constexpr std::uint32_t can_ids = function_code::sdo_response - first;
+    if (cob_id - first >= can_ids || !serves_pdo(host.state())) return false;
+    return rpdos_.on_frame(frame, cob_id, RpdoHooks<Host>{host});
+  }
+  /// An MPDO can have the same COB-ID.
+  template <class Host>
+  bool on_frame(Host& host, const Frame& frame, std::uint32_t cob_id) {
+    if (serves_pdo(host.state())) rpdos_.on_frame(frame, cob_id, RpdoHooks<Host>{host});
+    return false;
+  }
+  template <class Host>
+  void on_sync(Host& host, canopen::Sync) {
+    rpdos_.on_sync(RpdoHooks<Host>{host});
+  }
+
+  template <class Host>
+  void on_time(Host& host) {
+    rpdos_.on_time(RpdoHooks<Host>{host});
+  }
+  template <class Host>
+  std::optional<TimePoint> deadline(Host& host) const {
+    return serves_pdo(host.state()) ? rpdos_.next_deadline() : std::nullopt;
+  }
+
+  ServiceErrors errors() const {
+    const auto [too_short, timeout] = rpdos_.conditions();
+    return static_cast<ServiceErrors>((too_short ? set_of(ServiceError::pdo_length) : 0) |
+                                      (timeout ? set_of(ServiceError::rpdo_timeout) : 0));
+  }
+
+  template <class Host>
+  void after_operational_write(Host& host, std::uint16_t index, std::uint8_t, bool) {
+    if (TpdoService<Device>::has_dynamic_mapping && is_tpdo_mapping(index))
+      rpdos_.watch_again(host.entries(), Watched<Host>{host});
+    if (is_rpdo_communication(index) || is_rpdo_mapping(index)) {
+      rpdos_.parameter_changed(host.entries(), index, Watched<Host>{host});
+      host.end_if_gone(rpdo_errors);
+    }
+  }
+
+ private:
+  /// Whether a received value needs more than to be stored: it has limits or a different size in memory, a handler or a
+  /// service needs it, or a TPDO maps it.
+  template <class Host>
+  struct Watched {
+    Host& host;
+    [[nodiscard]] bool operator()(MappedObject mapped) const {
+      constexpr entry::Kinds kinds = EntryAccess<Device>::kinds;
+      if (mapped.is_dummy()) return false;  // has already been marked
+      const entry::Word word = EntryAccess<Device>::find(mapped.index(), mapped.sub_index());
+      const std::uint8_t size = EntryAccess<Device>::bytes_of(word);
+      if ((word & entry::limited) != 0 || (kinds.booleans && entry::is_boolean(word)) ||
+          (kinds.padded && (size & (size - 1)) != 0))
+        return true;
+      if (is_communication_index(mapped.index()) || Host::Handlers::handles(mapped.key())) return true;
+      if (MpdoService<Device>::sends_source && (word & entry::tpdo) != 0) return true;
+      return TpdoService<Device>::carries(host.entries(), mapped.key());
+    }
+  };
+
+  RpdoService<Device> rpdos_{};
+};
+
+}  // namespace canopen::service

@@ -1,0 +1,111 @@
+/// SYNC in a node (1005h, 1006h, 1007h, 1019h): consumer, producer and synchronous window.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <type_traits>
+
+#include "canopen/node/handlers.hpp"
+#include "canopen/node/service_set.hpp"
+#include "canopen/sync/sync.hpp"
+
+namespace canopen::service {
+
+template <class Device>
+class Sync : public ServiceDefaults<Sync<Device>> {
+  using Consumer = SyncConsumer<Device>;
+  using Producer = SyncProducer<Device>;
+
+ public:
+  static constexpr bool exists = Consumer::exists;
+
+  template <class Host>
+  void on_state([[maybe_unused]] Host& host, [[maybe_unused]] NmtState before, [[maybe_unused]] NmtState state) {
+    if constexpr (Producer::exists) {
+      if (!serves_sync(state)) {
+        producer_.stop();
+      } else if (!serves_sync(before)) {
+        producer_.start(host.store(), host.now(), true);
+      }
+    }
+  }
+
+  template <class Host>
+  bool on_frame(Host& host, const Frame& frame, std::uint32_t cob_id) {
+    if (!Consumer::takes(host.store(), cob_id)) return false;
+    receive(host, Consumer::sync_of(host.store(), frame));
+    return true;
+  }
+
+  /// Sends a SYNC, which this node consumes itself. More important frames are sent before the PDOs of the SYNC.
+  template <class Host>
+  bool serve([[maybe_unused]] Host& host) {
+    if constexpr (Producer::exists) {
+      if (producer_.serve(host.store(), host.bus(), host.now())) {
+        host.set_attention(true);
+        receive(host, producer_.last(host.store()));
+        host.set_attention(false);
+      }
+    }
+    return true;
+  }
+
+  template <class Host>
+  std::optional<TimePoint> deadline(Host&) const {
+    if constexpr (Producer::exists) return producer_.next_deadline();
+    return std::nullopt;
+  }
+
+  /// Whether the synchronous window has elapsed.
+  [[nodiscard]] bool window_over(TimePoint now) const { return window_.over(now); }
+
+  static constexpr bool checks(std::uint16_t index, std::uint8_t) {
+    return index == 0x1005 || index == 0x1006 || (Consumer::has_overflow && index == 0x1019);
+  }
+  template <class Host>
+  static AbortCode check_write(Host& host, std::uint16_t index, std::uint8_t, std::span<std::uint8_t> bytes) {
+    return check_sync_parameter(host.entries(), index, bytes);
+  }
+  template <class Host>
+  void after_write([[maybe_unused]] Host& host, [[maybe_unused]] std::uint16_t index, std::uint8_t) {
+    if constexpr (Producer::exists) {
+      if ((index == 0x1005 || index == 0x1006) && serves_sync(host.state()))
+        producer_.start(host.store(), host.now(), false);
+    }
+  }
+
+ private:
+  struct NoProducer {};
+
+  template <class Host>
+  [[gnu::noinline]] static void receive(Host& host, canopen::Sync sync) {
+    if (!serves_sync(host.state())) return;
+    if constexpr (Consumer::has_overflow) {
+      if (!sync.good) {
+        host.report(ServiceError::sync_length);
+        return;
+      }
+      host.end(ServiceError::sync_length);
+    }
+    host.template service<Sync>().window_.open(host.store(), host.now());
+    host.on_sync(sync);
+    host.template tell<SyncHandler>(sync.counter);
+  }
+
+  [[no_unique_address]] std::conditional_t<Producer::exists, Producer, NoProducer> producer_{};
+  [[no_unique_address]] SyncWindow<Device> window_{};
+};
+
+/// Whether the synchronous window of a node has elapsed; never without 1007h.
+template <class Host>
+[[nodiscard]] bool sync_window_over([[maybe_unused]] Host& host) {
+  using Device = typename Host::Device;
+  if constexpr (SyncWindow<Device>::exists) {
+    return host.template service<Sync<Device>>().window_over(host.now());
+  } else {
+    return false;
+  }
+}
+
+}  // namespace canopen::service

@@ -1,0 +1,67 @@
+/// TPDOs (1800h..1BFFh) in a node.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "canopen/can/cob_id.hpp"
+#include "canopen/node/service_set.hpp"
+#include "canopen/node/services/sync.hpp"
+#include "canopen/pdo/communication_parameters.hpp"
+#include "canopen/pdo/pdo_mapping.hpp"
+#include "canopen/pdo/tpdo.hpp"
+
+namespace canopen::service {
+
+template <class Device>
+class Tpdos : public ServiceDefaults<Tpdos<Device>> {
+ public:
+  static constexpr bool exists = TpdoService<Device>::count > 0;
+
+  template <class Host>
+  void on_state(Host& host, NmtState, NmtState state) {
+    if (serves_pdo(state)) tpdos_.enter_operational(host.store(), host.now());
+  }
+
+  template <class Host>
+  bool on_remote_frame([[maybe_unused]] Host& host, [[maybe_unused]] const Frame& frame) {
+    if constexpr (Device::options.tpdo_remote_frames) {
+      if (!serves_pdo(host.state())) return false;
+      tpdos_.on_remote(host.entries(), cob_id_of(frame));
+      host.attend();
+    }
+    return true;
+  }
+  /// Sends the TPDOs of a SYNC with the present values, at once if nothing else is waiting.
+  template <class Host>
+  void on_sync(Host& host, canopen::Sync sync) {
+    if (!serves_pdo(host.state())) return;
+    if (!tpdos_.on_sync(host.store(), host.bus(), sync, host.may_send_at_once())) host.serve();
+  }
+
+  template <class Host>
+  bool serve(Host& host) {
+    if (sync_window_over(host)) tpdos_.miss_sync();
+    return !serves_pdo(host.state()) || tpdos_.serve(host.store(), host.bus(), host.now());
+  }
+  template <class Host>
+  std::optional<TimePoint> deadline(Host& host) const {
+    return serves_pdo(host.state()) ? tpdos_.next_deadline(host.now()) : std::nullopt;
+  }
+
+  template <class Host>
+  void after_operational_write(Host& host, std::uint16_t index, std::uint8_t sub_index, bool new_value) {
+    if (is_tpdo_communication(index) || is_tpdo_mapping(index))
+      tpdos_.parameter_changed(host.store(), index, sub_index, host.now());
+    if (new_value) tpdos_.changed(host.entries(), index, sub_index);
+  }
+  template <DictionaryObject O, class Host>
+  bool on_new_value(Host& host) {
+    return tpdos_.template changed<O>(host.entries());
+  }
+
+ private:
+  TpdoService<Device> tpdos_{};
+};
+
+}  // namespace canopen::service

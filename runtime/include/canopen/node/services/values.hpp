@@ -1,0 +1,103 @@
+/// The values of a node at a reset: default values, or those that are stored (1010h, 1011h, 1020h).
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "canopen/emcy/error_register.hpp"
+#include "canopen/node/handlers.hpp"
+#include "canopen/node/service_set.hpp"
+#include "canopen/node/services/emergency.hpp"
+#include "canopen/od/object_store.hpp"
+#include "canopen/storage/parameter_storage.hpp"
+
+namespace canopen::service {
+
+/// Default values at each reset. 1010h and 1011h reject every write.
+template <class Device, class... Handlers>
+class DefaultValues : public ServiceDefaults<DefaultValues<Device, Handlers...>> {
+ public:
+  static constexpr bool exists = !HandlerSet<Handlers...>::has_storage;
+
+  template <class Host>
+  static void reset_application(Host& host) {
+    host.store().reset_application(host.node_id());
+  }
+  template <class Host>
+  static void reset_communication(Host& host) {
+    host.store().reset_communication(host.node_id());
+  }
+};
+
+/// Stored values, if the application provides a storage.
+template <class Device, class... Handlers>
+class StoredValues : public ServiceDefaults<StoredValues<Device, Handlers...>> {
+  using Stored = ParameterStorage<Device>;
+
+ public:
+  static constexpr bool exists = HandlerSet<Handlers...>::has_storage;
+
+  template <class Host>
+  void on_start(Host& host) {
+    stored_.open(host.handlers().storage());
+  }
+  template <class Host>
+  void reset_application(Host& host) {
+    stored_.reset_application(host.handlers().storage(), host.store(), host.node_id());
+  }
+  /// Reports stored values that have been lost, by EMCY 6300h.
+  template <class Host>
+  void reset_communication(Host& host) {
+    stored_.reset_communication(host.handlers().storage(), host.store(), host.node_id());
+    if (!stored_.damaged()) return;
+    constexpr std::uint16_t code = emergency_code::data_set;
+    host.template service<Emergency<Device>>().report(host, code, ErrorRegister::generic, Device::emergency_info(code));
+  }
+
+  /// "save" and "load". Sub-indices of 1010h and 1011h without a range in CiA 301 are left to their write handlers.
+  static constexpr bool has_command(std::uint16_t index) {
+    return index == store_parameters || index == restore_parameters;
+  }
+  template <class Host>
+  AbortCode command(Host& host, std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
+    const std::uint32_t key = object_key(index, sub_index);
+    AbortCode code = check_storage_command(host.entries(), index, sub_index, bytes);
+    if (code == ok) {
+      code = host.handler_calls().ask(key, [&] { return host.handlers().before_write(host.node(), key, bytes); });
+    }
+    if (code != ok || (sections_of(sub_index) == 0 && host.handlers().handles(key))) return code;
+    return index == store_parameters ? save(host, sub_index) : restore(host, sub_index);
+  }
+
+  /// Stores the parameters of a sub-index of 1010h.
+  template <class Host>
+  [[nodiscard]] AbortCode save(Host& host, std::uint8_t sub_index) {
+    const SectionSet sections = sections_of(sub_index);
+    const bool saved = sections != 0 && stored_.save(host.handlers().storage(), sections, host.store());
+    return saved ? ok : AbortCode::hardware;
+  }
+  /// Restores the default values of a sub-index of 1011h.
+  template <class Host>
+  [[nodiscard]] AbortCode restore(Host& host, std::uint8_t sub_index) {
+    const SectionSet sections = sections_of(sub_index);
+    const bool restored = sections != 0 && stored_.restore(host.handlers().storage(), sections, host.store());
+    return restored ? ok : AbortCode::hardware;
+  }
+
+  /// Called before these bytes are written to an object: 1020h becomes 0 if they change the configuration.
+  template <class Host>
+  static void before_change(Host& host, std::uint16_t index, std::uint8_t sub_index,
+                            std::span<const std::uint8_t> bytes) {
+    Stored::before_write(host.store(), index, sub_index, bytes);
+  }
+  /// The same after the value of an object has changed.
+  template <DictionaryObject O, class Host>
+  static void after_change([[maybe_unused]] Host& host) {
+    if constexpr (Stored::template is_configuration<O>) Stored::clear_configuration(host.store());
+  }
+
+ private:
+  Stored stored_{};
+};
+
+}  // namespace canopen::service

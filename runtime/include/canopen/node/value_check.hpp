@@ -1,0 +1,45 @@
+/// Checks of a value whose object is known at compile time.
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+#include "canopen/base/abort_code.hpp"
+#include "canopen/od/object.hpp"
+
+namespace canopen {
+
+/// Whether an index is in the communication profile area, 1000h..1FFFh, whose objects belong to services.
+[[nodiscard]] constexpr bool is_communication_index(std::uint16_t index) { return index < 0x2000; }
+
+/// Whether `set` of the application can reject a value of the object's type: the object has limits, uses fewer bits
+/// than its type, or is a parameter of a service.
+template <DictionaryObject O>
+inline constexpr bool can_be_refused = [] {
+  using T = typename O::type;
+  if (!std::is_arithmetic_v<T>) return false;
+  if (std::is_integral_v<T> && is_communication_index(O::index)) return true;
+  return !std::is_same_v<T, bool> &&
+         (
+             requires { O::low_limit; } || requires { O::high_limit; } || O::bits < sizeof(T) * 8);
+}();
+
+/// Returns value_too_high or value_too_low for a value outside the limits of its object, invalid_value for NaN.
+template <DictionaryObject O>
+[[nodiscard]] AbortCode check_limits([[maybe_unused]] const typename O::type& value) {
+  using T = typename O::type;
+  if constexpr (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>) {
+    if constexpr (requires { O::high_limit; } || std::is_integral_v<T>) {
+      if (value > high_limit<O>()) return AbortCode::value_too_high;
+    }
+    if constexpr (requires { O::low_limit; } || std::is_integral_v<T>) {
+      if (value < low_limit<O>()) return AbortCode::value_too_low;
+    }
+    if constexpr (std::is_floating_point_v<T> && requires { O::low_limit; }) {
+      if (value != value) return AbortCode::invalid_value;
+    }
+  }
+  return ok;
+}
+
+}  // namespace canopen
