@@ -20,7 +20,7 @@
 #include "canopen/nmt_master/network_list.hpp"
 #include "canopen/nmt_master/nmt_master_event.hpp"
 #include "canopen/nmt_master/slave_boot.hpp"
-#include "canopen/nmt_master/slave_error_control.hpp"
+#include "canopen/nmt_master/slave_table.hpp"
 #include "canopen/sdo/sdo_queue.hpp"
 
 namespace canopen {
@@ -56,11 +56,7 @@ class NmtMaster {
   /// that are to be booted.
   constexpr NmtMaster(B& can_bus, std::span<const NmtSlave> slaves, NmtStartUp start_up, SdoClientOptions options,
                       Host host)
-      : bus_{can_bus},
-        slaves_{slaves.first(std::min(slaves.size(), Count))},
-        start_up_{start_up},
-        host_{std::move(host)},
-        sdo_{can_bus, options} {}
+      : bus_{can_bus}, slaves_{slaves}, start_up_{start_up}, host_{std::move(host)}, sdo_{can_bus, options} {}
   constexpr NmtMaster(B& can_bus, std::span<const NmtSlave> slaves, NmtStartUp start_up, Duration sdo_timeout,
                       Host host)
       : NmtMaster{can_bus, slaves, start_up, SdoClientOptions{.timeout = sdo_timeout}, std::move(host)} {}
@@ -70,17 +66,17 @@ class NmtMaster {
   /// Starts the boot-up: resets the communication of all nodes, or of each slave that is not to be kept alive.
   void start(TimePoint now) {
     now_ = now;
-    const bool reset_each = std::ranges::any_of(slaves_, [](const NmtSlave& slave) {
+    const bool reset_each = std::ranges::any_of(slaves_.list(), [](const NmtSlave& slave) {
       return slave.has(slave_assignment::listed) && slave.has(slave_assignment::keep_alive);
     });
     begin(reset_each ? std::nullopt : std::optional{NmtCommand::reset_communication});
     for (std::size_t i = 0; i < slaves_.size(); ++i) {
       if (!reset_each || !slaves_[i].has(slave_assignment::listed)) continue;
       if (slaves_[i].has(slave_assignment::keep_alive)) {
-        identify(i);
+        slaves_.identify(i);
       } else {
-        entries_[i].command = NmtCommand::reset_communication;
-        entries_[i].boot.set_reset(true);
+        slaves_.command(i, NmtCommand::reset_communication);
+        slaves_.boot(i).set_reset(true);
       }
     }
     serve();
@@ -89,7 +85,9 @@ class NmtMaster {
   /// Resets the communication of one slave and boots it again, for instance after a failure.
   void boot(NodeId node_id, TimePoint now) {
     now_ = now;
-    if (const std::optional<std::size_t> i = find(node_id)) reset(*i, NmtCommand::reset_communication);
+    if (const std::optional<std::size_t> i = slaves_.find(node_id)) {
+      slaves_.reset(*i, NmtCommand::reset_communication, now);
+    }
     serve();
   }
 
@@ -97,14 +95,14 @@ class NmtMaster {
   /// no effect if the slave has been lost, reset or booted up in the meantime.
   void configured(NodeId node_id, AbortCode result, TimePoint now) {
     now_ = now;
-    const std::optional<std::size_t> i = find(node_id);
-    if (!i || entries_[*i].boot.step() != Step::configuring) return;
+    const std::optional<std::size_t> i = slaves_.find(node_id);
+    if (!i || slaves_.boot(*i).step() != Step::configuring) return;
     if (result == AbortCode::timeout) {
       retry(*i, {BootStatus::no_response, result});
     } else if (result != ok) {
       finish(*i, {BootStatus::configuration, result});
     } else {
-      proceed(*i, entries_[*i].boot.on_configured(slaves_[*i]));
+      proceed(*i, slaves_.boot(*i).on_configured(slaves_[*i]));
     }
     serve();
   }
@@ -118,13 +116,7 @@ class NmtMaster {
   }
 
   /// Sends a command to one node, or to all nodes with node-ID 0. Returns false if the bus had no room; it is not sent.
-  [[nodiscard]] bool command(NmtCommand command, NodeId node_id) {
-    if (!bus_.send(nmt_frame(command, node_id))) return false;
-    for (std::size_t i = 0; i < slaves_.size(); ++i) {
-      if (node_id.value() == 0 || slaves_[i].node_id == node_id) error_control_.expect_after(command, i);
-    }
-    return true;
-  }
+  [[nodiscard]] bool command(NmtCommand command, NodeId node_id) { return slaves_.send(bus_, command, node_id); }
 
   /// Processes a frame from the bus.
   void on_frame(const Frame& frame, TimePoint now) {
@@ -138,7 +130,7 @@ class NmtMaster {
   void on_time(TimePoint now) {
     now_ = now;
     sdo_.on_time(now);
-    error_control_.on_time(now, Events{*this});
+    slaves_.error_control().on_time(now, Events{*this});
     if (booting_ && !network_started_ && boot_time_runs_ && now >= boot_deadline_) {
       boot_time_runs_ = false;
       host_.boot_time_elapsed();
@@ -148,19 +140,13 @@ class NmtMaster {
 
   /// Returns when `on_time` is next due.
   [[nodiscard]] std::optional<TimePoint> next_deadline() const {
-    if (all_command_) return now_;
-    std::optional<TimePoint> next = error_control_.next_heartbeat();
+    if (slaves_.has_command()) return now_;
+    std::optional<TimePoint> next = slaves_.next_deadline();
     const auto consider = [&next](std::optional<TimePoint> other) {
       if (other && (!next || *other < *next)) next = other;
     };
-    consider(
-        sdo_.next_deadline(std::ranges::any_of(entries_, [](const Entry& entry) { return entry.boot.wants_sdo(); })));
+    consider(sdo_.next_deadline(slaves_.wants_sdo()));
     if (booting_ && !network_started_ && boot_time_runs_) consider(boot_deadline_);
-    for (std::size_t i = 0; i < slaves_.size(); ++i) {
-      if (entries_[i].command) return now_;
-      consider(error_control_.next_guarding(i));
-      if (entries_[i].boot.has_deadline()) consider(entries_[i].boot.deadline());
-    }
     return next;
   }
 
@@ -169,14 +155,14 @@ class NmtMaster {
 
   /// Returns how the last boot-up of a slave ended; empty before that.
   [[nodiscard]] std::optional<BootStatus> status(NodeId node_id) const {
-    const std::optional<std::size_t> i = find(node_id);
-    return i ? entries_[*i].status : std::nullopt;
+    const std::optional<std::size_t> i = slaves_.find(node_id);
+    return i ? slaves_.status(*i) : std::nullopt;
   }
 
   /// Returns the last state that a slave reported by heartbeat or guarding; empty if it is unknown or lost.
   [[nodiscard]] std::optional<NmtState> state(NodeId node_id) const {
-    const std::optional<std::size_t> i = find(node_id);
-    return i ? error_control_.state_of(*i, slaves_[*i]) : std::nullopt;
+    const std::optional<std::size_t> i = slaves_.find(node_id);
+    return i ? slaves_.state(*i) : std::nullopt;
   }
 
   /// Whether a node, listed or not, has sent a boot-up message since the master was constructed.
@@ -185,16 +171,7 @@ class NmtMaster {
   }
 
  private:
-  static constexpr Duration retry_time = std::chrono::seconds{1};
-
   using Step = SlaveBoot::Step;
-
-  struct Entry {
-    SlaveBoot boot{};
-    std::optional<NmtCommand> command{};  ///< waiting to be sent
-    std::optional<BootStatus> status{};
-    bool complete = false;  ///< has booted and is not lost
-  };
 
   /// Receives the events of error control.
   struct Events {
@@ -207,61 +184,19 @@ class NmtMaster {
 
   void tell(NmtMasterEvent event, NodeId node_id, NmtState state) { host_.happened(event, node_id, state); }
 
-  // The list
-
-  [[nodiscard]] std::optional<std::size_t> find(NodeId node_id) const {
-    for (std::size_t i = 0; i < slaves_.size(); ++i) {
-      if (slaves_[i].node_id == node_id && slaves_[i].has(slave_assignment::listed)) return i;
-    }
-    return std::nullopt;
-  }
+  // The network
 
   /// Starts all slaves from the beginning, after a command to all nodes if there is one.
   void begin(std::optional<NmtCommand> to_all) {
     booting_ = true;
     network_started_ = false;
-    all_command_ = to_all;
     boot_time_runs_ = start_up_.boot_time.count() != 0;
     boot_deadline_ = now_ + start_up_.boot_time;
-    for (std::size_t i = 0; i < slaves_.size(); ++i) {
-      Entry& entry = entries_[i];
-      entry.boot.restart();
-      entry.boot.set_reset(to_all.has_value());
-      entry.command.reset();
-      entry.status.reset();
-      entry.complete = false;
-      error_control_.stop_guarding(i);
-      if (!slaves_[i].has(slave_assignment::listed)) continue;
-      error_control_.watch_heartbeat(i, slaves_[i]);
-      wait(i);
-    }
+    slaves_.restart(to_all, now_);
     check_network();
   }
 
   // The boot-up steps of one slave
-
-  void wait(std::size_t i) { entries_[i].boot.wait(now_ + retry_time); }
-
-  void reset(std::size_t i, NmtCommand command) {
-    error_control_.stop(i, slaves_[i]);
-    entries_[i].command = command;
-    entries_[i].complete = false;
-    entries_[i].boot.report_reset();
-    wait(i);
-  }
-
-  void identify(std::size_t i) {
-    error_control_.stop_guarding(i);
-    entries_[i].boot.identify();
-    entries_[i].complete = false;
-  }
-
-  /// Tries a slave again that has not responded.
-  void ask_again(std::size_t i) {
-    Entry& entry = entries_[i];
-    if (entry.boot.may_be_stopped(slaves_[i]) && !entry.command) entry.command = NmtCommand::enter_pre_operational;
-    identify(i);
-  }
 
   /// Does what follows after a step of the boot-up.
   void proceed(std::size_t i, BootNext next, const BootResult& result = {}) {
@@ -270,81 +205,42 @@ class NmtMaster {
       case BootNext::finish: return finish(i, result);
       case BootNext::retry: return retry(i, result);
       case BootNext::configure: return configure_by_host(i);
-      case BootNext::watch: error_control_.watch_heartbeat(i, slaves_[i]); [[fallthrough]];
-      case BootNext::error_control: return start_error_control(i);
+      case BootNext::watch: slaves_.error_control().watch_heartbeat(i, slaves_[i]); [[fallthrough]];
+      case BootNext::error_control: return slaves_.start_error_control(i, now_);
     }
   }
 
   void configure_by_host(std::size_t i) {
     if constexpr (requires { host_.configure(NodeId{}); }) {
-      entries_[i].boot.enter(Step::configuring);
+      slaves_.boot(i).enter(Step::configuring);
       host_.configure(slaves_[i].node_id);
     } else {
-      proceed(i, entries_[i].boot.on_configured(slaves_[i]));
+      proceed(i, slaves_.boot(i).on_configured(slaves_[i]));
     }
   }
 
-  void start_error_control(std::size_t i) {
-    SlaveBoot& boot = entries_[i].boot;
-    boot.enter(Step::starting_error_control);
-    boot.set_deadline(now_ + from_milliseconds(slaves_[i].heartbeat_time));
-    if (!slaves_[i].guarded()) return;
-    error_control_.start_guarding(i, slaves_[i], now_);
-    boot.set_deadline(now_ + Duration{0x7FFF'FFFF});  // guarding reports a loss
-  }
-
-  /// Checks whether the slave has been heard, or its time has elapsed.
-  void check_error_control(std::size_t i) {
-    const std::optional<NmtState> state = error_control_.state_of(i, slaves_[i]);
-    const bool heard = state && *state != NmtState::initialisation;
-    const NmtSlave& slave = slaves_[i];
-    if (!heard && slave.watched() && now_ < entries_[i].boot.deadline()) return;
-    if (entries_[i].boot.may_be_kept_alive(slave)) {
-      if (heard && *state == NmtState::operational) return finish(i, BootStatus::was_operational);
-      return reset(i, NmtCommand::reset_communication);
-    }
-    if (heard || !slave.watched()) return finish(i, BootStatus::booted);
-    finish(i, slave.beats() ? BootStatus::no_heartbeat : BootStatus::no_guarding);
-  }
-
-  /// Schedules the next attempt for a slave that does not respond.
   void retry(std::size_t i, const BootResult& result) {
-    entries_[i].boot.report_silence();
-    wait(i);
-    if (entries_[i].status == BootStatus::no_response) return;
-    entries_[i].status = BootStatus::no_response;
-    host_.booted(slaves_[i].node_id, result);
+    if (slaves_.retry(i, now_)) host_.booted(slaves_[i].node_id, result);
   }
-
-  void finish(std::size_t i, BootStatus status) { finish(i, BootResult{status}); }
 
   void finish(std::size_t i, const BootResult& result) {
-    const BootStatus status = result.status;
-    Entry& entry = entries_[i];
-    entry.boot.enter(Step::idle);
-    entry.status = status;
-    entry.complete = status == BootStatus::booted || status == BootStatus::was_operational;
-    if (!entry.complete) error_control_.stop_guarding(i);
+    slaves_.finish(i, result.status);
     host_.booted(slaves_[i].node_id, result);
-    if (entry.complete && !slaves_[i].watched()) {
+    if (slaves_.complete(i) && !slaves_[i].watched()) {
       tell(NmtMasterEvent::not_watched, slaves_[i].node_id, NmtState::initialisation);
     }
     const bool one_by_one = !start_up_.has(nmt_start_up::start_all) || network_started_;
     const bool may_start = slaves_[i].has(slave_assignment::boot) && !start_up_.has(nmt_start_up::no_slave_start);
-    if (status == BootStatus::booted && may_start && one_by_one) entry.command = NmtCommand::start;
+    if (result.status == BootStatus::booted && may_start && one_by_one) slaves_.command(i, NmtCommand::start);
     check_network();
   }
 
   /// Starts the network if no mandatory slave is missing.
   void check_network() {
-    if (network_started_) return;
-    for (std::size_t i = 0; i < slaves_.size(); ++i) {
-      const bool needed = slaves_[i].has(slave_assignment::listed) && slaves_[i].has(slave_assignment::mandatory);
-      if (needed && !entries_[i].complete) return;
-    }
+    if (network_started_ || !slaves_.mandatory_complete()) return;
     network_started_ = true;
     const bool start_all = start_up_.has(nmt_start_up::start_all) && !start_up_.has(nmt_start_up::no_slave_start);
-    if (start_all && !all_command_) all_command_ = NmtCommand::start;
+    if (start_all && !slaves_.all_commanded()) slaves_.command_all(NmtCommand::start);
     host_.network_started();
   }
 
@@ -356,32 +252,33 @@ class NmtMaster {
       boot_ups_[message.node_id.value() / 32u] |= std::uint32_t{1} << (message.node_id.value() % 32u);
       tell(NmtMasterEvent::boot_up, message.node_id, message.state);
     }
-    const std::optional<std::size_t> i = find(message.node_id);
+    const std::optional<std::size_t> i = slaves_.find(message.node_id);
     if (!i) {
       if (boot_up) host_.booted(message.node_id, BootResult{BootStatus::not_listed});
       return;
     }
-    error_control_.on_message(message, *i, now_, Events{*this});
+    slaves_.error_control().on_message(message, *i, now_, Events{*this});
     if (boot_up) return on_boot_up(*i);
-    const Step step = entries_[*i].boot.step();
+    const Step step = slaves_.boot(*i).step();
     const bool is_silent = step == Step::waiting || step == Step::identifying;
-    if (message.state == NmtState::stopped && is_silent && !entries_[*i].command) {
-      reset(*i, NmtCommand::reset_communication);  // it has missed the reset: it does not respond to SDO in Stopped
+    if (message.state == NmtState::stopped && is_silent && !slaves_.commanded(*i)) {
+      slaves_.reset(*i, NmtCommand::reset_communication,
+                    now_);  // it has missed the reset: it does not respond to SDO in Stopped
     }
   }
 
   /// Boots a slave again that was already booted, if 1F81h says so.
   void on_boot_up(std::size_t i) {
-    Entry& entry = entries_[i];
-    if (entry.command == NmtCommand::start || entry.command == NmtCommand::enter_pre_operational) entry.command.reset();
-    entry.boot.report_boot_up();
-    error_control_.stop(i, slaves_[i]);
+    SlaveBoot& boot = slaves_.boot(i);
+    slaves_.discard_command(i);
+    boot.report_boot_up();
+    slaves_.error_control().stop(i, slaves_[i]);
     if (!booting_) return;
-    if (entry.boot.step() != Step::idle || slaves_[i].has(slave_assignment::boot)) {
-      identify(i);
+    if (boot.step() != Step::idle || slaves_[i].has(slave_assignment::boot)) {
+      slaves_.identify(i);
     } else {
-      entry.boot.ignore_response();
-      entry.complete = false;
+      boot.ignore_response();
+      slaves_.set_incomplete(i);
     }
     // `done` of the application may call `configured`, which has no effect any more.
     sdo_.node_reset(slaves_[i].node_id, now_);
@@ -390,28 +287,28 @@ class NmtMaster {
   /// Handles the loss of a slave (CiA 302-2, error handling): all nodes are stopped or reset, or only the
   /// slave is reset.
   void on_lost(NodeId node_id, NmtState state) {
-    const std::optional<std::size_t> i = find(node_id);
-    if (i && entries_[*i].boot.is_before_error_control()) {
-      return error_control_.watch_heartbeat(*i, slaves_[*i]);  // its heartbeat has not been set up yet
+    const std::optional<std::size_t> i = slaves_.find(node_id);
+    if (i && slaves_.boot(*i).is_before_error_control()) {
+      return slaves_.error_control().watch_heartbeat(*i, slaves_[*i]);  // its heartbeat has not been set up yet
     }
     tell(NmtMasterEvent::lost, node_id, state);
     if (!i) return;
-    if (entries_[*i].boot.step() == Step::starting_error_control) {
-      error_control_.stop_guarding(*i);
-      entries_[*i].boot.set_deadline(now_);
+    if (slaves_.boot(*i).step() == Step::starting_error_control) {
+      slaves_.error_control().stop_guarding(*i);
+      slaves_.boot(*i).set_deadline(now_);
       return;
     }
-    if (!entries_[*i].complete) return;
+    if (!slaves_.complete(*i)) return;
     const bool mandatory = slaves_[*i].has(slave_assignment::mandatory);
-    entries_[*i].complete = false;
+    slaves_.set_incomplete(*i);
     if (mandatory && start_up_.has(nmt_start_up::stop_all)) {
-      all_command_ = NmtCommand::stop;
+      slaves_.command_all(NmtCommand::stop);
     } else if (mandatory && start_up_.has(nmt_start_up::reset_all)) {
       begin(NmtCommand::reset_node);
     } else if (slaves_[*i].has(slave_assignment::boot)) {
-      reset(*i, NmtCommand::reset_node);
+      slaves_.reset(*i, NmtCommand::reset_node, now_);
     } else {
-      entries_[*i].command = NmtCommand::reset_node;
+      slaves_.command(*i, NmtCommand::reset_node);
     }
   }
 
@@ -425,7 +322,7 @@ class NmtMaster {
     for (const bool booted_up : {true, false}) {
       for (std::size_t n = 0; n < slaves_.size(); ++n) {
         const std::size_t i = (first + n) % slaves_.size();
-        SlaveBoot& boot = entries_[i].boot;
+        SlaveBoot& boot = slaves_.boot(i);
         if (!boot.wants_sdo() || boot.booted_up() != booted_up) continue;
         const NodeId node_id = slaves_[i].node_id;
         if (!sdo_.busy(node_id) && !sdo_.ready(node_id, now_)) continue;
@@ -436,7 +333,7 @@ class NmtMaster {
   }
 
   [[nodiscard]] SdoRequest request_of(std::size_t i) {
-    SdoRequest request = entries_[i].boot.request(slaves_[i]);
+    SdoRequest request = slaves_.boot(i).request(slaves_[i]);
     request.done = [](void* context, NodeId node_id, const SdoAnswer& answer) {
       static_cast<NmtMaster*>(context)->on_answer(node_id, answer);
     };
@@ -445,50 +342,35 @@ class NmtMaster {
   }
 
   void on_answer(NodeId node_id, const SdoAnswer& answer) {
-    const std::optional<std::size_t> i = find(node_id);
+    const std::optional<std::size_t> i = slaves_.find(node_id);
     if (!i) return;
     BootResult result;
-    const BootNext next = entries_[*i].boot.on_answer(slaves_[*i], answer, result);
+    const BootNext next = slaves_.boot(*i).on_answer(slaves_[*i], answer, result);
     proceed(*i, next, result);
   }
 
   // Sending
 
   void serve() {
-    send_commands();
+    slaves_.send_commands(bus_);
     serve_sdo();
     for (std::size_t i = 0; i < slaves_.size(); ++i) {
-      const SlaveBoot& boot = entries_[i].boot;
-      if (boot.step() == Step::waiting && now_ >= boot.deadline()) ask_again(i);
-      error_control_.serve(bus_, i, now_, Events{*this});
-      if (boot.step() == Step::starting_error_control) check_error_control(i);
+      const SlaveBoot& boot = slaves_.boot(i);
+      if (boot.step() == Step::waiting && now_ >= boot.deadline()) slaves_.ask_again(i);
+      slaves_.error_control().serve(bus_, i, now_, Events{*this});
+      if (boot.step() != Step::starting_error_control) continue;
+      if (const std::optional<BootStatus> end = slaves_.check_error_control(i, now_)) finish(i, BootResult{*end});
     }
-    send_commands();
+    slaves_.send_commands(bus_);
     serve_sdo();
-  }
-
-  /// Sends waiting commands; those for which the bus has no room keep waiting.
-  void send_commands() {
-    if (all_command_) {
-      if (!command(*all_command_, NodeId{})) return;
-      all_command_.reset();
-    }
-    for (std::size_t i = 0; i < slaves_.size(); ++i) {
-      if (!entries_[i].command) continue;
-      if (!command(*entries_[i].command, slaves_[i].node_id)) return;
-      entries_[i].command.reset();
-    }
   }
 
   B& bus_;
-  std::span<const NmtSlave> slaves_;
+  SlaveTable<Count> slaves_;
   NmtStartUp start_up_;
   [[no_unique_address]] Host host_;
-  std::array<Entry, Count> entries_{};
-  SlaveErrorControl<Count> error_control_{};
   SdoQueue<B, Clients, Count + Requests> sdo_;
   std::array<std::uint32_t, 4> boot_ups_{};  ///< one bit per node
-  std::optional<NmtCommand> all_command_{};  ///< to all nodes, waiting to be sent
   std::size_t next_ = 0;                     ///< the slave whose turn is next
   TimePoint boot_deadline_{};
   TimePoint now_{};
