@@ -1560,62 +1560,62 @@ inline constexpr canopen::Run runs[] = {
 inline constexpr canopen::entry::Word entries[] = {
     rom | offsetof(Constants, device_type) | u32 | ro,  // 1000h:00
     ram | offsetof(Values, communication_cleared.error_register) | u8 | ro,  // 1001h:00
-    array | 0,  // 1003h  Pre-defined error field
+    array | shape(0) | offsetof(Values, communication_cleared.pre_defined_error_field),  // 1003h  Pre-defined error field
     ram | offsetof(Values, communication_preset.cob_id_sync) | u32 | rw,  // 1005h:00
     ram | offsetof(Values, communication_preset.manufacturer_device_name) | visible_string | ro | limited,  // 1008h:00
     rom | offsetof(Constants, manufacturer_hardware_version) | visible_string | ro,  // 1009h:00
     rom | offsetof(Constants, manufacturer_software_version) | visible_string | ro,  // 100Ah:00
     ram | offsetof(Values, communication_cleared.guard_time) | u16 | rw,  // 100Ch:00
     ram | offsetof(Values, communication_cleared.life_time_factor) | u8 | rw,  // 100Dh:00
-    record | 1,  // 1010h  Store parameters
-    record | 2,  // 1011h  Restore default parameters
+    record | shape(1) | 0,  // 1010h  Store parameters
+    record | shape(1) | 0,  // 1011h  Restore default parameters
     ram | offsetof(Values, communication_preset.cob_id_emcy) | u32 | rw,  // 1014h:00
     ram | offsetof(Values, communication_cleared.producer_heartbeat_time) | u16 | rw,  // 1017h:00
-    record | 3,  // 1018h  Identity object
-    record | 4,  // 1200h  SDO server parameter
-    record | 5,  // 1400h  RPDO communication parameter 1
-    record | 6,  // 1401h  RPDO communication parameter 2
-    record | 7,  // 1402h  RPDO communication parameter 3
-    record | 8,  // 1403h  RPDO communication parameter 4
-    record | 9,  // 1404h  RPDO communication parameter 5
-    record | 10,  // 1405h  RPDO communication parameter 6
-    record | 11,  // 1406h  RPDO communication parameter 7
-    record | 12,  // 1407h  RPDO communication parameter 8
-    record | 13,  // 1408h  RPDO communication parameter 9
-    record | 14,  // 1409h  RPDO communication parameter 10
-    record | 15,  // 1600h  RPDO mapping parameter 1
-    record | 16,  // 1601h  RPDO mapping parameter 2
-    record | 17,  // 1602h  RPDO mapping parameter 3
-    record | 18,  // 1603h  RPDO mapping parameter 4
-    record | 19,  // 1604h  RPDO mapping parameter 5
-    record | 20,  // 1605h  RPDO mapping parameter 6
-    record | 21,  // 1606h  RPDO mapping parameter 7
-    record | 22,  // 1607h  RPDO mapping parameter 8
-    record | 23,  // 1608h  RPDO mapping parameter 9
-    record | 24,  // 1609h  RPDO mapping parameter 10
-    record | 25,  // 1800h  TPDO communication parameter 1
-    record | 26,  // 1801h  TPDO communication parameter 2
-    record | 27,  // 1802h  TPDO communication parameter 3
-    record | 28,  // 1803h  TPDO communication parameter 4
-    record | 29,  // 1804h  TPDO communication parameter 5
-    record | 30,  // 1805h  TPDO communication parameter 6
-    record | 31,  // 1806h  TPDO communication parameter 7
-    record | 32,  // 1807h  TPDO communication parameter 8
-    record | 33,  // 1808h  TPDO communication parameter 9
-    record | 34,  // 1809h  TPDO communication parameter 10
-    record | 35,  // 1A00h  TPDO mapping parameter 1
-    record | 36,  // 1A01h  TPDO mapping parameter 2
-    record | 37,  // 1A02h  TPDO mapping parameter 3
-    record | 38,  // 1A03h  TPDO mapping parameter 4
-    record | 39,  // 1A04h  TPDO mapping parameter 5
-    record | 40,  // 1A05h  TPDO mapping parameter 6
-    record | 41,  // 1A06h  TPDO mapping parameter 7
-    record | 42,  // 1A07h  TPDO mapping parameter 8
-    record | 43,  // 1A08h  TPDO mapping parameter 9
-    record | 44,  // 1A09h  TPDO mapping parameter 10
-    array | 45,  // 6200h  Write output 8-bit
-    array | 46,  // 6206h  Error mode output 8-bit
-    array | 47,  // 6207h  Error value output 8-bit
+    record | shape(2) | offsetof(Constants, identity_object),  // 1018h  Identity object
+    record | shape(3) | 0,  // 1200h  SDO server parameter
+    record | shape(4) | offsetof(Values, communication_preset.rpdo_communication_parameter_1),  // 1400h  RPDO communication parameter 1
+    record | shape(4) | offsetof(Values, communication_preset.rpdo_communication_parameter_2),  // 1401h  RPDO communication parameter 2
+    record | shape(4) | offsetof(Values, communication_preset.rpdo_communication_parameter_3),  // 1402h  RPDO communication parameter 3
+    record | shape(4) | offsetof(Values, communication_preset.rpdo_communication_parameter_4),  // 1403h  RPDO communication parameter 4
+    record | shape(4) | offsetof(Values, communication_preset.rpdo_communication_parameter_5),  // 1404h  RPDO communication parameter 5
+    record | shape(4) | offsetof(Values, communication_preset.rpdo_communication_parameter_6),  // 1405h  RPDO communication parameter 6
+    record | shape(4) | offsetof(Values, communication_preset.rpdo_communication_parameter_7),  // 1406h  RPDO communication parameter 7
+    record | shape(4) | offsetof(Values, communication_preset.rpdo_communication_parameter_8),  // 1407h  RPDO communication parameter 8
+    record | shape(4) | offsetof(Values, communication_preset.rpdo_communication_parameter_9),  // 1408h  RPDO communication parameter 9
+    record | shape(4) | offsetof(Values, communication_preset.rpdo_communication_parameter_10),  // 1409h  RPDO communication parameter 10
+    record | shape(5) | offsetof(Values, communication_preset.rpdo_mapping_parameter_1),  // 1600h  RPDO mapping parameter 1
+    record | shape(5) | offsetof(Values, communication_cleared.rpdo_mapping_parameter_2),  // 1601h  RPDO mapping parameter 2
+    record | shape(5) | offsetof(Values, communication_cleared.rpdo_mapping_parameter_3),  // 1602h  RPDO mapping parameter 3
+    record | shape(5) | offsetof(Values, communication_cleared.rpdo_mapping_parameter_4),  // 1603h  RPDO mapping parameter 4
+    record | shape(5) | offsetof(Values, communication_cleared.rpdo_mapping_parameter_5),  // 1604h  RPDO mapping parameter 5
+    record | shape(5) | offsetof(Values, communication_cleared.rpdo_mapping_parameter_6),  // 1605h  RPDO mapping parameter 6
+    record | shape(5) | offsetof(Values, communication_cleared.rpdo_mapping_parameter_7),  // 1606h  RPDO mapping parameter 7
+    record | shape(5) | offsetof(Values, communication_cleared.rpdo_mapping_parameter_8),  // 1607h  RPDO mapping parameter 8
+    record | shape(5) | offsetof(Values, communication_cleared.rpdo_mapping_parameter_9),  // 1608h  RPDO mapping parameter 9
+    record | shape(5) | offsetof(Values, communication_cleared.rpdo_mapping_parameter_10),  // 1609h  RPDO mapping parameter 10
+    record | shape(6) | offsetof(Values, communication_preset.tpdo_communication_parameter_1),  // 1800h  TPDO communication parameter 1
+    record | shape(6) | offsetof(Values, communication_preset.tpdo_communication_parameter_2),  // 1801h  TPDO communication parameter 2
+    record | shape(6) | offsetof(Values, communication_preset.tpdo_communication_parameter_3),  // 1802h  TPDO communication parameter 3
+    record | shape(6) | offsetof(Values, communication_preset.tpdo_communication_parameter_4),  // 1803h  TPDO communication parameter 4
+    record | shape(6) | offsetof(Values, communication_preset.tpdo_communication_parameter_5),  // 1804h  TPDO communication parameter 5
+    record | shape(6) | offsetof(Values, communication_preset.tpdo_communication_parameter_6),  // 1805h  TPDO communication parameter 6
+    record | shape(6) | offsetof(Values, communication_preset.tpdo_communication_parameter_7),  // 1806h  TPDO communication parameter 7
+    record | shape(6) | offsetof(Values, communication_preset.tpdo_communication_parameter_8),  // 1807h  TPDO communication parameter 8
+    record | shape(6) | offsetof(Values, communication_preset.tpdo_communication_parameter_9),  // 1808h  TPDO communication parameter 9
+    record | shape(6) | offsetof(Values, communication_preset.tpdo_communication_parameter_10),  // 1809h  TPDO communication parameter 10
+    record | shape(5) | offsetof(Values, communication_cleared.tpdo_mapping_parameter_1),  // 1A00h  TPDO mapping parameter 1
+    record | shape(5) | offsetof(Values, communication_cleared.tpdo_mapping_parameter_2),  // 1A01h  TPDO mapping parameter 2
+    record | shape(5) | offsetof(Values, communication_cleared.tpdo_mapping_parameter_3),  // 1A02h  TPDO mapping parameter 3
+    record | shape(5) | offsetof(Values, communication_cleared.tpdo_mapping_parameter_4),  // 1A03h  TPDO mapping parameter 4
+    record | shape(5) | offsetof(Values, communication_cleared.tpdo_mapping_parameter_5),  // 1A04h  TPDO mapping parameter 5
+    record | shape(5) | offsetof(Values, communication_cleared.tpdo_mapping_parameter_6),  // 1A05h  TPDO mapping parameter 6
+    record | shape(5) | offsetof(Values, communication_cleared.tpdo_mapping_parameter_7),  // 1A06h  TPDO mapping parameter 7
+    record | shape(5) | offsetof(Values, communication_cleared.tpdo_mapping_parameter_8),  // 1A07h  TPDO mapping parameter 8
+    record | shape(5) | offsetof(Values, communication_cleared.tpdo_mapping_parameter_9),  // 1A08h  TPDO mapping parameter 9
+    record | shape(5) | offsetof(Values, communication_cleared.tpdo_mapping_parameter_10),  // 1A09h  TPDO mapping parameter 10
+    array | shape(7) | offsetof(Values, application_cleared.write_output_8_bit),  // 6200h  Write output 8-bit
+    array | shape(8) | offsetof(Values, application_preset.error_mode_output_8_bit),  // 6206h  Error mode output 8-bit
+    array | shape(8) | offsetof(Values, application_cleared.error_value_output_8_bit),  // 6207h  Error value output 8-bit
 };
 
 inline constexpr canopen::entry::Word subs[] = {
@@ -1655,55 +1655,16 @@ inline constexpr canopen::entry::Word subs[] = {
     ram | u8 | rw,
 };
 
-inline constexpr canopen::Group groups[] = {
-    {.ram = offsetof(Values, communication_cleared.pre_defined_error_field), .rom = 0, .subs = 0, .highest = 5, .stride = 4},  // 1003h
-    {.ram = 0, .rom = 0, .subs = 2, .highest = 1, .stride = 0},  // 1010h
-    {.ram = 0, .rom = 0, .subs = 2, .highest = 1, .stride = 0},  // 1011h
-    {.ram = 0, .rom = offsetof(Constants, identity_object), .subs = 4, .highest = 4, .stride = 0},  // 1018h
-    {.ram = 0, .rom = 0, .subs = 9, .highest = 2, .stride = 0},  // 1200h
-    {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_1), .rom = 0, .subs = 12, .highest = 2, .stride = 0},  // 1400h
-    {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_2), .rom = 0, .subs = 12, .highest = 2, .stride = 0},  // 1401h
-    {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_3), .rom = 0, .subs = 12, .highest = 2, .stride = 0},  // 1402h
-    {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_4), .rom = 0, .subs = 12, .highest = 2, .stride = 0},  // 1403h
-    {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_5), .rom = 0, .subs = 12, .highest = 2, .stride = 0},  // 1404h
-    {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_6), .rom = 0, .subs = 12, .highest = 2, .stride = 0},  // 1405h
-    {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_7), .rom = 0, .subs = 12, .highest = 2, .stride = 0},  // 1406h
-    {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_8), .rom = 0, .subs = 12, .highest = 2, .stride = 0},  // 1407h
-    {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_9), .rom = 0, .subs = 12, .highest = 2, .stride = 0},  // 1408h
-    {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_10), .rom = 0, .subs = 12, .highest = 2, .stride = 0},  // 1409h
-    {.ram = offsetof(Values, communication_preset.rpdo_mapping_parameter_1), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1600h
-    {.ram = offsetof(Values, communication_cleared.rpdo_mapping_parameter_2), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1601h
-    {.ram = offsetof(Values, communication_cleared.rpdo_mapping_parameter_3), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1602h
-    {.ram = offsetof(Values, communication_cleared.rpdo_mapping_parameter_4), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1603h
-    {.ram = offsetof(Values, communication_cleared.rpdo_mapping_parameter_5), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1604h
-    {.ram = offsetof(Values, communication_cleared.rpdo_mapping_parameter_6), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1605h
-    {.ram = offsetof(Values, communication_cleared.rpdo_mapping_parameter_7), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1606h
-    {.ram = offsetof(Values, communication_cleared.rpdo_mapping_parameter_8), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1607h
-    {.ram = offsetof(Values, communication_cleared.rpdo_mapping_parameter_9), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1608h
-    {.ram = offsetof(Values, communication_cleared.rpdo_mapping_parameter_10), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1609h
-    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_1), .rom = 0, .subs = 24, .highest = 5, .stride = 0},  // 1800h
-    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_2), .rom = 0, .subs = 24, .highest = 5, .stride = 0},  // 1801h
-    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_3), .rom = 0, .subs = 24, .highest = 5, .stride = 0},  // 1802h
-    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_4), .rom = 0, .subs = 24, .highest = 5, .stride = 0},  // 1803h
-    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_5), .rom = 0, .subs = 24, .highest = 5, .stride = 0},  // 1804h
-    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_6), .rom = 0, .subs = 24, .highest = 5, .stride = 0},  // 1805h
-    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_7), .rom = 0, .subs = 24, .highest = 5, .stride = 0},  // 1806h
-    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_8), .rom = 0, .subs = 24, .highest = 5, .stride = 0},  // 1807h
-    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_9), .rom = 0, .subs = 24, .highest = 5, .stride = 0},  // 1808h
-    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_10), .rom = 0, .subs = 24, .highest = 5, .stride = 0},  // 1809h
-    {.ram = offsetof(Values, communication_cleared.tpdo_mapping_parameter_1), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1A00h
-    {.ram = offsetof(Values, communication_cleared.tpdo_mapping_parameter_2), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1A01h
-    {.ram = offsetof(Values, communication_cleared.tpdo_mapping_parameter_3), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1A02h
-    {.ram = offsetof(Values, communication_cleared.tpdo_mapping_parameter_4), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1A03h
-    {.ram = offsetof(Values, communication_cleared.tpdo_mapping_parameter_5), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1A04h
-    {.ram = offsetof(Values, communication_cleared.tpdo_mapping_parameter_6), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1A05h
-    {.ram = offsetof(Values, communication_cleared.tpdo_mapping_parameter_7), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1A06h
-    {.ram = offsetof(Values, communication_cleared.tpdo_mapping_parameter_8), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1A07h
-    {.ram = offsetof(Values, communication_cleared.tpdo_mapping_parameter_9), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1A08h
-    {.ram = offsetof(Values, communication_cleared.tpdo_mapping_parameter_10), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1A09h
-    {.ram = offsetof(Values, application_cleared.write_output_8_bit), .rom = 0, .subs = 30, .highest = 2, .stride = 1},  // 6200h
-    {.ram = offsetof(Values, application_preset.error_mode_output_8_bit), .rom = 0, .subs = 32, .highest = 2, .stride = 1},  // 6206h
-    {.ram = offsetof(Values, application_cleared.error_value_output_8_bit), .rom = 0, .subs = 32, .highest = 2, .stride = 1},  // 6207h
+inline constexpr canopen::Shape shapes[] = {
+    {.subs = 0, .highest = 5, .stride = 4},  // 1003h
+    {.subs = 2, .highest = 1, .stride = 0},  // 1010h
+    {.subs = 4, .highest = 4, .stride = 0},  // 1018h
+    {.subs = 9, .highest = 2, .stride = 0},  // 1200h
+    {.subs = 12, .highest = 2, .stride = 0},  // 1400h
+    {.subs = 15, .highest = 8, .stride = 0},  // 1600h
+    {.subs = 24, .highest = 5, .stride = 0},  // 1800h
+    {.subs = 30, .highest = 2, .stride = 1},  // 6200h
+    {.subs = 32, .highest = 2, .stride = 1},  // 6206h
 };
 
 inline constexpr canopen::Limits limits[] = {
@@ -1729,7 +1690,7 @@ static_assert(sizeof(Constants) <= 0x10000, "the words of the tables hold offset
 inline constexpr canopen::Dictionary dictionary{
     .runs = table::runs,
     .entries = table::entries,
-    .groups = table::groups,
+    .shapes = table::shapes,
     .subs = table::subs,
     .limits = table::limits,
     .wide_limits = {},

@@ -780,40 +780,40 @@ inline constexpr canopen::entry::Word entries[] = {
     rom | offsetof(Constants, device_type) | u32 | ro,  // 1000h:00
     ram | offsetof(Values, communication_cleared.error_register) | u8 | ro,  // 1001h:00
     ram | offsetof(Values, communication_cleared.manufacturer_status_register) | u32 | ro,  // 1002h:00
-    array | 0,  // 1003h  Pre-defined error field
+    array | shape(0) | offsetof(Values, communication_cleared.pre_defined_error_field),  // 1003h  Pre-defined error field
     ram | offsetof(Values, communication_preset.cob_id_sync) | u32 | rw | limited,  // 1005h:00
     ram | offsetof(Values, communication_cleared.communication_cycle_period) | u32 | rw,  // 1006h:00
     rom | offsetof(Constants, manufacturer_device_name) | visible_string | ro,  // 1008h:00
     rom | offsetof(Constants, manufacturer_hardware_version) | visible_string | ro,  // 1009h:00
     rom | offsetof(Constants, manufacturer_software_version) | visible_string | ro,  // 100Ah:00
-    record | 1,  // 1010h  Store parameters
-    record | 2,  // 1011h  Restore default parameters
+    record | shape(1) | 0,  // 1010h  Store parameters
+    record | shape(1) | 0,  // 1011h  Restore default parameters
     ram | offsetof(Values, communication_cleared.high_resolution_time_stamp) | u32 | rw | tpdo | rpdo,  // 1013h:00
     immediate_plus_node_id | 0x80 | u32 | ro,  // 1014h:00
     ram | offsetof(Values, communication_cleared.inhibit_time_emcy) | u16 | rw,  // 1015h:00
-    array | 3,  // 1016h  Consumer heartbeat time
+    array | shape(2) | offsetof(Values, communication_cleared.consumer_heartbeat_time),  // 1016h  Consumer heartbeat time
     ram | offsetof(Values, communication_cleared.producer_heartbeat_time) | u16 | rw,  // 1017h:00
-    record | 4,  // 1018h  Identity object
+    record | shape(3) | offsetof(Values, communication_cleared.identity_object),  // 1018h  Identity object
     ram | offsetof(Values, communication_cleared.synchronous_counter_overflow_value) | u8 | rw | limited,  // 1019h:00
     ram | offsetof(Values, communication_cleared.store_eds) | domain | ro,  // 1021h:00
     immediate | 0 | u8 | ro,  // 1022h:00
-    record | 5,  // 1200h  SDO server parameter
-    record | 6,  // 1400h  RPDO communication parameter 1
-    record | 7,  // 1401h  RPDO communication parameter 2
-    record | 8,  // 1402h  RPDO communication parameter 3
-    record | 9,  // 1403h  RPDO communication parameter 4
-    record | 10,  // 1600h  RPDO mapping parameter 1
-    record | 11,  // 1601h  RPDO mapping parameter 2
-    record | 12,  // 1602h  RPDO mapping parameter 3
-    record | 13,  // 1603h  RPDO mapping parameter 4
-    record | 14,  // 1800h  TPDO communication parameter 1
-    record | 15,  // 1801h  TPDO communication parameter 2
-    record | 16,  // 1802h  TPDO communication parameter 3
-    record | 17,  // 1803h  TPDO communication parameter 4
-    record | 18,  // 1A00h  TPDO mapping parameter 1
-    record | 19,  // 1A01h  TPDO mapping parameter 2
-    record | 20,  // 1A02h  TPDO mapping parameter 3
-    record | 21,  // 1A03h  TPDO mapping parameter 4
+    record | shape(4) | 0,  // 1200h  SDO server parameter
+    record | shape(5) | offsetof(Values, communication_preset.rpdo_communication_parameter_1),  // 1400h  RPDO communication parameter 1
+    record | shape(5) | offsetof(Values, communication_preset.rpdo_communication_parameter_2),  // 1401h  RPDO communication parameter 2
+    record | shape(5) | offsetof(Values, communication_preset.rpdo_communication_parameter_3),  // 1402h  RPDO communication parameter 3
+    record | shape(5) | offsetof(Values, communication_preset.rpdo_communication_parameter_4),  // 1403h  RPDO communication parameter 4
+    record | shape(6) | offsetof(Values, communication_preset.rpdo_mapping_parameter_1),  // 1600h  RPDO mapping parameter 1
+    record | shape(6) | offsetof(Values, communication_preset.rpdo_mapping_parameter_2),  // 1601h  RPDO mapping parameter 2
+    record | shape(6) | offsetof(Values, communication_preset.rpdo_mapping_parameter_3),  // 1602h  RPDO mapping parameter 3
+    record | shape(6) | offsetof(Values, communication_cleared.rpdo_mapping_parameter_4),  // 1603h  RPDO mapping parameter 4
+    record | shape(7) | offsetof(Values, communication_preset.tpdo_communication_parameter_1),  // 1800h  TPDO communication parameter 1
+    record | shape(7) | offsetof(Values, communication_preset.tpdo_communication_parameter_2),  // 1801h  TPDO communication parameter 2
+    record | shape(7) | offsetof(Values, communication_preset.tpdo_communication_parameter_3),  // 1802h  TPDO communication parameter 3
+    record | shape(7) | offsetof(Values, communication_preset.tpdo_communication_parameter_4),  // 1803h  TPDO communication parameter 4
+    record | shape(6) | offsetof(Values, communication_preset.tpdo_mapping_parameter_1),  // 1A00h  TPDO mapping parameter 1
+    record | shape(6) | offsetof(Values, communication_preset.tpdo_mapping_parameter_2),  // 1A01h  TPDO mapping parameter 2
+    record | shape(6) | offsetof(Values, communication_preset.tpdo_mapping_parameter_3),  // 1A02h  TPDO mapping parameter 3
+    record | shape(6) | offsetof(Values, communication_preset.tpdo_mapping_parameter_4),  // 1A03h  TPDO mapping parameter 4
     ram | offsetof(Values, application_cleared.controlword) | u16 | rw | rpdo,  // 6040h:00
     ram | offsetof(Values, application_cleared.statusword) | u16 | ro | tpdo,  // 6041h:00
     ram | offsetof(Values, application_cleared.position_actual_value) | i32 | ro | tpdo,  // 6064h:00
@@ -858,29 +858,15 @@ inline constexpr canopen::entry::Word subs[] = {
     ram | offsetof(TpdoCommunicationParameter, event_timer) | u16 | rw,
 };
 
-inline constexpr canopen::Group groups[] = {
-    {.ram = offsetof(Values, communication_cleared.pre_defined_error_field), .rom = 0, .subs = 0, .highest = 16, .stride = 4},  // 1003h
-    {.ram = 0, .rom = 0, .subs = 2, .highest = 6, .stride = 0},  // 1010h
-    {.ram = 0, .rom = 0, .subs = 2, .highest = 6, .stride = 0},  // 1011h
-    {.ram = offsetof(Values, communication_cleared.consumer_heartbeat_time), .rom = 0, .subs = 9, .highest = 4, .stride = 4},  // 1016h
-    {.ram = offsetof(Values, communication_cleared.identity_object), .rom = 0, .subs = 11, .highest = 4, .stride = 0},  // 1018h
-    {.ram = 0, .rom = 0, .subs = 16, .highest = 2, .stride = 0},  // 1200h
-    {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_1), .rom = 0, .subs = 19, .highest = 2, .stride = 0},  // 1400h
-    {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_2), .rom = 0, .subs = 19, .highest = 2, .stride = 0},  // 1401h
-    {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_3), .rom = 0, .subs = 19, .highest = 2, .stride = 0},  // 1402h
-    {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_4), .rom = 0, .subs = 19, .highest = 2, .stride = 0},  // 1403h
-    {.ram = offsetof(Values, communication_preset.rpdo_mapping_parameter_1), .rom = 0, .subs = 22, .highest = 4, .stride = 0},  // 1600h
-    {.ram = offsetof(Values, communication_preset.rpdo_mapping_parameter_2), .rom = 0, .subs = 22, .highest = 4, .stride = 0},  // 1601h
-    {.ram = offsetof(Values, communication_preset.rpdo_mapping_parameter_3), .rom = 0, .subs = 22, .highest = 4, .stride = 0},  // 1602h
-    {.ram = offsetof(Values, communication_cleared.rpdo_mapping_parameter_4), .rom = 0, .subs = 22, .highest = 4, .stride = 0},  // 1603h
-    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_1), .rom = 0, .subs = 27, .highest = 5, .stride = 0},  // 1800h
-    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_2), .rom = 0, .subs = 27, .highest = 5, .stride = 0},  // 1801h
-    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_3), .rom = 0, .subs = 27, .highest = 5, .stride = 0},  // 1802h
-    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_4), .rom = 0, .subs = 27, .highest = 5, .stride = 0},  // 1803h
-    {.ram = offsetof(Values, communication_preset.tpdo_mapping_parameter_1), .rom = 0, .subs = 22, .highest = 4, .stride = 0},  // 1A00h
-    {.ram = offsetof(Values, communication_preset.tpdo_mapping_parameter_2), .rom = 0, .subs = 22, .highest = 4, .stride = 0},  // 1A01h
-    {.ram = offsetof(Values, communication_preset.tpdo_mapping_parameter_3), .rom = 0, .subs = 22, .highest = 4, .stride = 0},  // 1A02h
-    {.ram = offsetof(Values, communication_preset.tpdo_mapping_parameter_4), .rom = 0, .subs = 22, .highest = 4, .stride = 0},  // 1A03h
+inline constexpr canopen::Shape shapes[] = {
+    {.subs = 0, .highest = 16, .stride = 4},  // 1003h
+    {.subs = 2, .highest = 6, .stride = 0},  // 1010h
+    {.subs = 9, .highest = 4, .stride = 4},  // 1016h
+    {.subs = 11, .highest = 4, .stride = 0},  // 1018h
+    {.subs = 16, .highest = 2, .stride = 0},  // 1200h
+    {.subs = 19, .highest = 2, .stride = 0},  // 1400h
+    {.subs = 22, .highest = 4, .stride = 0},  // 1600h
+    {.subs = 27, .highest = 5, .stride = 0},  // 1800h
 };
 
 inline constexpr canopen::Limits limits[] = {
@@ -906,7 +892,7 @@ static_assert(sizeof(Constants) <= 0x10000, "the words of the tables hold offset
 inline constexpr canopen::Dictionary dictionary{
     .runs = table::runs,
     .entries = table::entries,
-    .groups = table::groups,
+    .shapes = table::shapes,
     .subs = table::subs,
     .limits = table::limits,
     .wide_limits = {},

@@ -1280,56 +1280,56 @@ inline constexpr canopen::Run runs[] = {
 inline constexpr canopen::entry::Word entries[] = {
     rom | offsetof(Constants, device_type) | u32 | ro,  // 1000h:00
     ram | offsetof(Values, communication_cleared.error_register) | u8 | ro,  // 1001h:00
-    array | 0,  // 1003h  Pre-defined error field
+    array | shape(0) | offsetof(Values, communication_cleared.pre_defined_error_field),  // 1003h  Pre-defined error field
     ram | offsetof(Values, communication_preset.cob_id_sync) | u32 | rw,  // 1005h:00
     rom | offsetof(Constants, manufacturer_device_name) | visible_string | ro,  // 1008h:00
     rom | offsetof(Constants, manufacturer_hardware_version) | visible_string | ro,  // 1009h:00
     rom | offsetof(Constants, manufacturer_software_version) | visible_string | ro,  // 100Ah:00
     ram | offsetof(Values, communication_cleared.guard_time) | u16 | rw,  // 100Ch:00
     ram | offsetof(Values, communication_cleared.life_time_factor) | u8 | rw,  // 100Dh:00
-    record | 1,  // 1010h  Store parameters
-    record | 2,  // 1011h  Restore default parameters
+    record | shape(1) | 0,  // 1010h  Store parameters
+    record | shape(1) | 0,  // 1011h  Restore default parameters
     ram | offsetof(Values, communication_preset.cob_id_emcy) | u32 | rw,  // 1014h:00
     ram | offsetof(Values, communication_cleared.inhibit_time_emcy) | u16 | rw,  // 1015h:00
-    array | 3,  // 1016h  Consumer heartbeat time
+    array | shape(2) | offsetof(Values, communication_cleared.consumer_heartbeat_time),  // 1016h  Consumer heartbeat time
     ram | offsetof(Values, communication_cleared.producer_heartbeat_time) | u16 | rw,  // 1017h:00
-    record | 4,  // 1018h  Identity object
-    array | 5,  // 1020h  Verify configuration
-    array | 6,  // 1029h  Error behaviour
-    record | 7,  // 1200h  SDO server parameter 1
-    record | 8,  // 1201h  SDO server parameter 2
-    record | 9,  // 1400h  RPDO communication parameter 1
-    record | 10,  // 1401h  RPDO communication parameter 2
-    record | 11,  // 1402h  RPDO communication parameter 3
-    record | 12,  // 1403h  RPDO communication parameter 4
-    record | 13,  // 1600h  RPDO mapping parameter 1
-    record | 14,  // 1601h  RPDO mapping parameter 2
-    record | 15,  // 1602h  RPDO mapping parameter 3
-    record | 16,  // 1603h  RPDO mapping parameter 4
-    record | 17,  // 1800h  TPDO communication parameter 1
-    record | 18,  // 1801h  TPDO communication parameter 2
-    record | 19,  // 1802h  TPDO communication parameter 3
-    record | 20,  // 1803h  TPDO communication parameter 4
-    record | 21,  // 1A00h  TPDO mapping parameter 1
-    record | 22,  // 1A01h  TPDO mapping parameter 2
-    record | 23,  // 1A02h  TPDO mapping parameter 3
-    record | 24,  // 1A03h  TPDO mapping parameter 4
+    record | shape(3) | offsetof(Constants, identity_object),  // 1018h  Identity object
+    array | shape(4) | offsetof(Values, communication_cleared.verify_configuration),  // 1020h  Verify configuration
+    array | shape(5) | offsetof(Values, communication_cleared.error_behaviour),  // 1029h  Error behaviour
+    record | shape(6) | 0,  // 1200h  SDO server parameter 1
+    record | shape(7) | offsetof(Values, communication_preset.sdo_server_parameter_2),  // 1201h  SDO server parameter 2
+    record | shape(8) | offsetof(Values, communication_preset.rpdo_communication_parameter_1),  // 1400h  RPDO communication parameter 1
+    record | shape(8) | offsetof(Values, communication_preset.rpdo_communication_parameter_2),  // 1401h  RPDO communication parameter 2
+    record | shape(8) | offsetof(Values, communication_preset.rpdo_communication_parameter_3),  // 1402h  RPDO communication parameter 3
+    record | shape(9) | offsetof(Values, communication_preset.rpdo_communication_parameter_4),  // 1403h  RPDO communication parameter 4
+    record | shape(10) | offsetof(Constants, rpdo_mapping_parameter_1),  // 1600h  RPDO mapping parameter 1
+    record | shape(11) | offsetof(Constants, rpdo_mapping_parameter_2),  // 1601h  RPDO mapping parameter 2
+    record | shape(11) | offsetof(Constants, rpdo_mapping_parameter_3),  // 1602h  RPDO mapping parameter 3
+    record | shape(12) | offsetof(Values, communication_cleared.rpdo_mapping_parameter_4),  // 1603h  RPDO mapping parameter 4
+    record | shape(13) | offsetof(Values, communication_preset.tpdo_communication_parameter_1),  // 1800h  TPDO communication parameter 1
+    record | shape(13) | offsetof(Values, communication_preset.tpdo_communication_parameter_2),  // 1801h  TPDO communication parameter 2
+    record | shape(13) | offsetof(Values, communication_preset.tpdo_communication_parameter_3),  // 1802h  TPDO communication parameter 3
+    record | shape(14) | offsetof(Values, communication_preset.tpdo_communication_parameter_4),  // 1803h  TPDO communication parameter 4
+    record | shape(10) | offsetof(Constants, tpdo_mapping_parameter_1),  // 1A00h  TPDO mapping parameter 1
+    record | shape(11) | offsetof(Constants, tpdo_mapping_parameter_2),  // 1A01h  TPDO mapping parameter 2
+    record | shape(11) | offsetof(Constants, tpdo_mapping_parameter_3),  // 1A02h  TPDO mapping parameter 3
+    record | shape(12) | offsetof(Values, communication_cleared.tpdo_mapping_parameter_4),  // 1A03h  TPDO mapping parameter 4
     ram | offsetof(Values, application_cleared.drive_status) | u16 | ro,  // 2041h:00
-    record | 25,  // 3004h  Parameter storage
-    record | 26,  // 3005h  Position interface
-    record | 27,  // 3006h  Motion settings
-    record | 28,  // 3008h  Inputs and outputs
-    record | 29,  // 3009h  Analogue inputs
-    record | 30,  // 3011h  Current limits
-    record | 31,  // 301Bh  Operating mode settings
-    record | 32,  // 301Ch  Monitoring status
-    record | 33,  // 301Fh  Motion generator
-    record | 34,  // 3020h  Current control
-    record | 35,  // 3021h  Speed control
-    record | 36,  // 3026h  Electronic gear
-    record | 37,  // 3029h  Manual movement
-    record | 38,  // 303Bh  Error memory control
-    record | 39,  // 303Ch  Error memory
+    record | shape(15) | offsetof(Values, application_cleared.parameter_storage),  // 3004h  Parameter storage
+    record | shape(16) | offsetof(Values, application_cleared.position_interface),  // 3005h  Position interface
+    record | shape(17) | offsetof(Values, application_cleared.motion_settings),  // 3006h  Motion settings
+    record | shape(18) | offsetof(Values, application_cleared.inputs_and_outputs),  // 3008h  Inputs and outputs
+    record | shape(19) | offsetof(Values, application_cleared.analogue_inputs),  // 3009h  Analogue inputs
+    record | shape(20) | offsetof(Values, application_cleared.current_limits),  // 3011h  Current limits
+    record | shape(21) | offsetof(Values, application_cleared.operating_mode_settings),  // 301Bh  Operating mode settings
+    record | shape(22) | offsetof(Values, application_cleared.monitoring_status),  // 301Ch  Monitoring status
+    record | shape(23) | offsetof(Values, application_cleared.motion_generator),  // 301Fh  Motion generator
+    record | shape(24) | offsetof(Values, application_cleared.current_control),  // 3020h  Current control
+    record | shape(25) | offsetof(Values, application_cleared.speed_control),  // 3021h  Speed control
+    record | shape(26) | offsetof(Values, application_preset.electronic_gear),  // 3026h  Electronic gear
+    record | shape(27) | offsetof(Values, application_cleared.manual_movement),  // 3029h  Manual movement
+    record | shape(28) | offsetof(Values, application_cleared.error_memory_control),  // 303Bh  Error memory control
+    record | shape(29) | offsetof(Values, application_cleared.error_memory),  // 303Ch  Error memory
     ram | offsetof(Values, application_cleared.error_code) | u16 | ro,  // 603Fh:00
     ram | offsetof(Values, application_cleared.controlword) | u16 | rw | rpdo,  // 6040h:00
     ram | offsetof(Values, application_cleared.statusword) | u16 | ro | tpdo,  // 6041h:00
@@ -1342,14 +1342,14 @@ inline constexpr canopen::entry::Word entries[] = {
     ram | offsetof(Values, application_cleared.velocity_demand_value) | i32 | ro,  // 606Bh:00
     ram | offsetof(Values, application_cleared.velocity_actual_value) | i32 | ro | tpdo,  // 606Ch:00
     ram | offsetof(Values, application_cleared.target_position) | i32 | rw | rpdo,  // 607Ah:00
-    array | 40,  // 607Dh  Software position limit
+    array | shape(30) | offsetof(Values, application_cleared.software_position_limit),  // 607Dh  Software position limit
     ram | offsetof(Values, application_cleared.max_profile_velocity) | u32 | rw,  // 607Fh:00
     ram | offsetof(Values, application_cleared.profile_velocity) | u32 | rw | rpdo,  // 6081h:00
     ram | offsetof(Values, application_cleared.profile_acceleration) | u32 | rw,  // 6083h:00
     ram | offsetof(Values, application_cleared.profile_deceleration) | u32 | rw,  // 6084h:00
     ram | offsetof(Values, application_cleared.motion_profile_type) | i16 | rw,  // 6086h:00
     ram | offsetof(Values, application_cleared.homing_method) | i8 | rw,  // 6098h:00
-    array | 41,  // 6099h  Homing speeds
+    array | shape(4) | offsetof(Values, application_cleared.homing_speeds),  // 6099h  Homing speeds
     ram | offsetof(Values, application_cleared.following_error_actual_value) | i32 | ro,  // 60F4h:00
     ram | offsetof(Values, application_cleared.target_velocity) | i32 | rw | rpdo,  // 60FFh:00
     ram | offsetof(Values, application_preset.supported_drive_modes) | u32 | ro,  // 6502h:00
@@ -1524,49 +1524,38 @@ inline constexpr canopen::entry::Word subs[] = {
     ram | i32 | rw,
 };
 
-inline constexpr canopen::Group groups[] = {
-    {.ram = offsetof(Values, communication_cleared.pre_defined_error_field), .rom = 0, .subs = 0, .highest = 1, .stride = 4},  // 1003h
-    {.ram = 0, .rom = 0, .subs = 2, .highest = 3, .stride = 0},  // 1010h
-    {.ram = 0, .rom = 0, .subs = 2, .highest = 3, .stride = 0},  // 1011h
-    {.ram = offsetof(Values, communication_cleared.consumer_heartbeat_time), .rom = 0, .subs = 6, .highest = 3, .stride = 4},  // 1016h
-    {.ram = 0, .rom = offsetof(Constants, identity_object), .subs = 8, .highest = 4, .stride = 0},  // 1018h
-    {.ram = offsetof(Values, communication_cleared.verify_configuration), .rom = 0, .subs = 13, .highest = 2, .stride = 4},  // 1020h
-    {.ram = offsetof(Values, communication_cleared.error_behaviour), .rom = 0, .subs = 15, .highest = 1, .stride = 1},  // 1029h
-    {.ram = 0, .rom = 0, .subs = 17, .highest = 2, .stride = 0},  // 1200h
-    {.ram = offsetof(Values, communication_preset.sdo_server_parameter_2), .rom = 0, .subs = 20, .highest = 3, .stride = 0},  // 1201h
-    {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_1), .rom = 0, .subs = 24, .highest = 2, .stride = 0},  // 1400h
-    {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_2), .rom = 0, .subs = 24, .highest = 2, .stride = 0},  // 1401h
-    {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_3), .rom = 0, .subs = 24, .highest = 2, .stride = 0},  // 1402h
-    {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_4), .rom = 0, .subs = 27, .highest = 2, .stride = 0},  // 1403h
-    {.ram = 0, .rom = offsetof(Constants, rpdo_mapping_parameter_1), .subs = 30, .highest = 1, .stride = 0},  // 1600h
-    {.ram = 0, .rom = offsetof(Constants, rpdo_mapping_parameter_2), .subs = 32, .highest = 4, .stride = 0},  // 1601h
-    {.ram = 0, .rom = offsetof(Constants, rpdo_mapping_parameter_3), .subs = 32, .highest = 4, .stride = 0},  // 1602h
-    {.ram = offsetof(Values, communication_cleared.rpdo_mapping_parameter_4), .rom = 0, .subs = 37, .highest = 4, .stride = 0},  // 1603h
-    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_1), .rom = 0, .subs = 42, .highest = 5, .stride = 0},  // 1800h
-    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_2), .rom = 0, .subs = 42, .highest = 5, .stride = 0},  // 1801h
-    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_3), .rom = 0, .subs = 42, .highest = 5, .stride = 0},  // 1802h
-    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_4), .rom = 0, .subs = 48, .highest = 5, .stride = 0},  // 1803h
-    {.ram = 0, .rom = offsetof(Constants, tpdo_mapping_parameter_1), .subs = 30, .highest = 1, .stride = 0},  // 1A00h
-    {.ram = 0, .rom = offsetof(Constants, tpdo_mapping_parameter_2), .subs = 32, .highest = 4, .stride = 0},  // 1A01h
-    {.ram = 0, .rom = offsetof(Constants, tpdo_mapping_parameter_3), .subs = 32, .highest = 4, .stride = 0},  // 1A02h
-    {.ram = offsetof(Values, communication_cleared.tpdo_mapping_parameter_4), .rom = 0, .subs = 37, .highest = 4, .stride = 0},  // 1A03h
-    {.ram = offsetof(Values, application_cleared.parameter_storage), .rom = 0, .subs = 54, .highest = 8, .stride = 0},  // 3004h
-    {.ram = offsetof(Values, application_cleared.position_interface), .rom = 0, .subs = 63, .highest = 2, .stride = 0},  // 3005h
-    {.ram = offsetof(Values, application_cleared.motion_settings), .rom = 0, .subs = 66, .highest = 18, .stride = 0},  // 3006h
-    {.ram = offsetof(Values, application_cleared.inputs_and_outputs), .rom = 0, .subs = 85, .highest = 1, .stride = 0},  // 3008h
-    {.ram = offsetof(Values, application_cleared.analogue_inputs), .rom = 0, .subs = 87, .highest = 5, .stride = 0},  // 3009h
-    {.ram = offsetof(Values, application_cleared.current_limits), .rom = 0, .subs = 93, .highest = 6, .stride = 0},  // 3011h
-    {.ram = offsetof(Values, application_cleared.operating_mode_settings), .rom = 0, .subs = 100, .highest = 18, .stride = 0},  // 301Bh
-    {.ram = offsetof(Values, application_cleared.monitoring_status), .rom = 0, .subs = 119, .highest = 12, .stride = 0},  // 301Ch
-    {.ram = offsetof(Values, application_cleared.motion_generator), .rom = 0, .subs = 132, .highest = 2, .stride = 0},  // 301Fh
-    {.ram = offsetof(Values, application_cleared.current_control), .rom = 0, .subs = 135, .highest = 4, .stride = 0},  // 3020h
-    {.ram = offsetof(Values, application_cleared.speed_control), .rom = 0, .subs = 140, .highest = 4, .stride = 0},  // 3021h
-    {.ram = offsetof(Values, application_preset.electronic_gear), .rom = 0, .subs = 145, .highest = 4, .stride = 0},  // 3026h
-    {.ram = offsetof(Values, application_cleared.manual_movement), .rom = 0, .subs = 150, .highest = 5, .stride = 0},  // 3029h
-    {.ram = offsetof(Values, application_cleared.error_memory_control), .rom = 0, .subs = 156, .highest = 5, .stride = 0},  // 303Bh
-    {.ram = offsetof(Values, application_cleared.error_memory), .rom = 0, .subs = 162, .highest = 1, .stride = 0},  // 303Ch
-    {.ram = offsetof(Values, application_cleared.software_position_limit), .rom = 0, .subs = 164, .highest = 2, .stride = 4},  // 607Dh
-    {.ram = offsetof(Values, application_cleared.homing_speeds), .rom = 0, .subs = 13, .highest = 2, .stride = 4},  // 6099h
+inline constexpr canopen::Shape shapes[] = {
+    {.subs = 0, .highest = 1, .stride = 4},  // 1003h
+    {.subs = 2, .highest = 3, .stride = 0},  // 1010h
+    {.subs = 6, .highest = 3, .stride = 4},  // 1016h
+    {.subs = 8, .highest = 4, .stride = 0},  // 1018h
+    {.subs = 13, .highest = 2, .stride = 4},  // 1020h
+    {.subs = 15, .highest = 1, .stride = 1},  // 1029h
+    {.subs = 17, .highest = 2, .stride = 0},  // 1200h
+    {.subs = 20, .highest = 3, .stride = 0},  // 1201h
+    {.subs = 24, .highest = 2, .stride = 0},  // 1400h
+    {.subs = 27, .highest = 2, .stride = 0},  // 1403h
+    {.subs = 30, .highest = 1, .stride = 0},  // 1600h
+    {.subs = 32, .highest = 4, .stride = 0},  // 1601h
+    {.subs = 37, .highest = 4, .stride = 0},  // 1603h
+    {.subs = 42, .highest = 5, .stride = 0},  // 1800h
+    {.subs = 48, .highest = 5, .stride = 0},  // 1803h
+    {.subs = 54, .highest = 8, .stride = 0},  // 3004h
+    {.subs = 63, .highest = 2, .stride = 0},  // 3005h
+    {.subs = 66, .highest = 18, .stride = 0},  // 3006h
+    {.subs = 85, .highest = 1, .stride = 0},  // 3008h
+    {.subs = 87, .highest = 5, .stride = 0},  // 3009h
+    {.subs = 93, .highest = 6, .stride = 0},  // 3011h
+    {.subs = 100, .highest = 18, .stride = 0},  // 301Bh
+    {.subs = 119, .highest = 12, .stride = 0},  // 301Ch
+    {.subs = 132, .highest = 2, .stride = 0},  // 301Fh
+    {.subs = 135, .highest = 4, .stride = 0},  // 3020h
+    {.subs = 140, .highest = 4, .stride = 0},  // 3021h
+    {.subs = 145, .highest = 4, .stride = 0},  // 3026h
+    {.subs = 150, .highest = 5, .stride = 0},  // 3029h
+    {.subs = 156, .highest = 5, .stride = 0},  // 303Bh
+    {.subs = 162, .highest = 1, .stride = 0},  // 303Ch
+    {.subs = 164, .highest = 2, .stride = 4},  // 607Dh
 };
 
 inline constexpr canopen::Limits limits[] = {
@@ -1595,7 +1584,7 @@ static_assert(sizeof(Constants) <= 0x10000, "the words of the tables hold offset
 inline constexpr canopen::Dictionary dictionary{
     .runs = table::runs,
     .entries = table::entries,
-    .groups = table::groups,
+    .shapes = table::shapes,
     .subs = table::subs,
     .limits = table::limits,
     .wide_limits = {},

@@ -1434,7 +1434,7 @@ inline constexpr canopen::Run runs[] = {
 inline constexpr canopen::entry::Word entries[] = {
     rom | offsetof(Constants, device_type) | u32 | ro,  // 1000h:00
     ram | offsetof(Values, communication_cleared.error_register) | u8 | ro,  // 1001h:00
-    array | 0,  // 1003h  Pre-defined error field
+    array | shape(0) | offsetof(Values, communication_cleared.pre_defined_error_field),  // 1003h  Pre-defined error field
     ram | offsetof(Values, communication_preset.cob_id_sync) | u32 | rw,  // 1005h:00
     ram | offsetof(Values, communication_cleared.communication_cycle_period) | u32 | rw,  // 1006h:00
     rom | offsetof(Constants, manufacturer_device_name) | visible_string | ro,  // 1008h:00
@@ -1443,26 +1443,26 @@ inline constexpr canopen::entry::Word entries[] = {
     ram | offsetof(Values, communication_cleared.guard_time) | u16 | rw,  // 100Ch:00
     ram | offsetof(Values, communication_cleared.life_time_factor) | u8 | rw,  // 100Dh:00
     ram | offsetof(Values, communication_preset.cob_id_emcy) | u32 | rw,  // 1014h:00
-    array | 1,  // 1016h  Consumer heartbeat time
+    array | shape(1) | offsetof(Values, communication_cleared.consumer_heartbeat_time),  // 1016h  Consumer heartbeat time
     ram | offsetof(Values, communication_cleared.producer_heartbeat_time) | u16 | rw,  // 1017h:00
-    record | 2,  // 1018h  Identity object
-    record | 3,  // 1200h  SDO server parameter
-    record | 4,  // 1400h  RPDO communication parameter 1
-    record | 5,  // 1401h  RPDO communication parameter 2
-    record | 6,  // 1402h  RPDO communication parameter 3
-    record | 7,  // 1403h  RPDO communication parameter 4
-    record | 8,  // 1600h  RPDO mapping parameter 1
-    record | 9,  // 1601h  RPDO mapping parameter 2
-    record | 10,  // 1602h  RPDO mapping parameter 3
-    record | 11,  // 1603h  RPDO mapping parameter 4
-    record | 12,  // 1800h  TPDO communication parameter 1
-    record | 13,  // 1801h  TPDO communication parameter 2
-    record | 14,  // 1802h  TPDO communication parameter 3
-    record | 15,  // 1803h  TPDO communication parameter 4
-    record | 16,  // 1A00h  TPDO mapping parameter 1
-    record | 17,  // 1A01h  TPDO mapping parameter 2
-    record | 18,  // 1A02h  TPDO mapping parameter 3
-    record | 19,  // 1A03h  TPDO mapping parameter 4
+    record | shape(2) | offsetof(Constants, identity_object),  // 1018h  Identity object
+    record | shape(3) | 0,  // 1200h  SDO server parameter
+    record | shape(4) | offsetof(Values, communication_preset.rpdo_communication_parameter_1),  // 1400h  RPDO communication parameter 1
+    record | shape(4) | offsetof(Values, communication_preset.rpdo_communication_parameter_2),  // 1401h  RPDO communication parameter 2
+    record | shape(4) | offsetof(Values, communication_preset.rpdo_communication_parameter_3),  // 1402h  RPDO communication parameter 3
+    record | shape(4) | offsetof(Values, communication_preset.rpdo_communication_parameter_4),  // 1403h  RPDO communication parameter 4
+    record | shape(5) | offsetof(Values, communication_preset.rpdo_mapping_parameter_1),  // 1600h  RPDO mapping parameter 1
+    record | shape(5) | offsetof(Values, communication_preset.rpdo_mapping_parameter_2),  // 1601h  RPDO mapping parameter 2
+    record | shape(5) | offsetof(Values, communication_preset.rpdo_mapping_parameter_3),  // 1602h  RPDO mapping parameter 3
+    record | shape(5) | offsetof(Values, communication_preset.rpdo_mapping_parameter_4),  // 1603h  RPDO mapping parameter 4
+    record | shape(6) | offsetof(Values, communication_preset.tpdo_communication_parameter_1),  // 1800h  TPDO communication parameter 1
+    record | shape(6) | offsetof(Values, communication_preset.tpdo_communication_parameter_2),  // 1801h  TPDO communication parameter 2
+    record | shape(6) | offsetof(Values, communication_preset.tpdo_communication_parameter_3),  // 1802h  TPDO communication parameter 3
+    record | shape(6) | offsetof(Values, communication_preset.tpdo_communication_parameter_4),  // 1803h  TPDO communication parameter 4
+    record | shape(5) | offsetof(Values, communication_preset.tpdo_mapping_parameter_1),  // 1A00h  TPDO mapping parameter 1
+    record | shape(5) | offsetof(Values, communication_preset.tpdo_mapping_parameter_2),  // 1A01h  TPDO mapping parameter 2
+    record | shape(5) | offsetof(Values, communication_preset.tpdo_mapping_parameter_3),  // 1A02h  TPDO mapping parameter 3
+    record | shape(5) | offsetof(Values, communication_cleared.tpdo_mapping_parameter_4),  // 1A03h  TPDO mapping parameter 4
     ram | offsetof(Values, application_cleared.integrated_current) | i16 | ro,  // 2064h:00
     ram | offsetof(Values, application_cleared.bus_voltage) | u16 | ro,  // 2065h:00
     ram | offsetof(Values, application_cleared.drive_error_code) | u16 | ro,  // 206Ch:00
@@ -1513,8 +1513,8 @@ inline constexpr canopen::entry::Word entries[] = {
     ram | offsetof(Values, application_preset.check_torque_timer) | i16 | rw,  // 211Eh:00
     ram | offsetof(Values, application_preset.torque_speed) | i16 | rw,  // 211Fh:00
     ram | offsetof(Values, application_cleared.automatic_parameter_detection) | u16 | rw | limited,  // 2127h:00
-    array | 20,  // 2190h  Digital input functions
-    array | 21,  // 21A4h  Digital output functions
+    array | shape(7) | offsetof(Values, application_cleared.digital_input_functions),  // 2190h  Digital input functions
+    array | shape(8) | offsetof(Values, application_cleared.digital_output_functions),  // 21A4h  Digital output functions
     ram | offsetof(Values, application_cleared.digital_input_logic) | u16 | wo,  // 21ADh:00
     ram | offsetof(Values, application_cleared.digital_output_logic) | u16 | wo,  // 21AEh:00
     ram | offsetof(Values, application_cleared.global_variable_1) | i32 | rw,  // 21E0h:00
@@ -1538,7 +1538,7 @@ inline constexpr canopen::entry::Word entries[] = {
     ram | offsetof(Values, application_cleared.current_actual_value) | i16 | ro,  // 6078h:00
     ram | offsetof(Values, application_cleared.target_position) | i32 | rw | rpdo,  // 607Ah:00
     ram | offsetof(Values, application_cleared.home_offset) | i32 | rw | rpdo,  // 607Ch:00
-    array | 22,  // 607Dh  Software position limit
+    array | shape(9) | offsetof(Values, application_preset.software_position_limit),  // 607Dh  Software position limit
     ram | offsetof(Values, application_cleared.profile_velocity) | u32 | rw | rpdo,  // 6081h:00
     ram | offsetof(Values, application_cleared.end_velocity) | u32 | rw | rpdo,  // 6082h:00
     ram | offsetof(Values, application_cleared.profile_acceleration) | u32 | rw | rpdo,  // 6083h:00
@@ -1546,11 +1546,11 @@ inline constexpr canopen::entry::Word entries[] = {
     ram | offsetof(Values, application_cleared.quick_stop_deceleration) | u32 | rw | rpdo,  // 6085h:00
     ram | offsetof(Values, application_cleared.torque_slope) | u32 | rw | rpdo,  // 6087h:00
     ram | offsetof(Values, application_cleared.homing_method) | i8 | rw | rpdo,  // 6098h:00
-    array | 23,  // 6099h  Homing speeds
+    array | shape(10) | offsetof(Values, application_cleared.homing_speeds),  // 6099h  Homing speeds
     ram | offsetof(Values, application_cleared.homing_acceleration) | u32 | rw | rpdo,  // 609Ah:00
     ram | offsetof(Values, application_cleared.position_offset) | i32 | rw | rpdo,  // 60B0h:00
     ram | offsetof(Values, application_cleared.digital_inputs) | u32 | ro | tpdo,  // 60FDh:00
-    array | 24,  // 60FEh  Digital outputs
+    array | shape(10) | offsetof(Values, application_cleared.digital_outputs),  // 60FEh  Digital outputs
     ram | offsetof(Values, application_cleared.target_velocity) | i32 | rw | rpdo,  // 60FFh:00
     ram | offsetof(Values, application_preset.supported_drive_modes) | u32 | ro,  // 6502h:00
 };
@@ -1596,32 +1596,18 @@ inline constexpr canopen::entry::Word subs[] = {
     ram | u32 | rw | rpdo,
 };
 
-inline constexpr canopen::Group groups[] = {
-    {.ram = offsetof(Values, communication_cleared.pre_defined_error_field), .rom = 0, .subs = 0, .highest = 8, .stride = 4},  // 1003h
-    {.ram = offsetof(Values, communication_cleared.consumer_heartbeat_time), .rom = 0, .subs = 2, .highest = 1, .stride = 4},  // 1016h
-    {.ram = 0, .rom = offsetof(Constants, identity_object), .subs = 4, .highest = 4, .stride = 0},  // 1018h
-    {.ram = 0, .rom = 0, .subs = 9, .highest = 2, .stride = 0},  // 1200h
-    {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_1), .rom = 0, .subs = 12, .highest = 2, .stride = 0},  // 1400h
-    {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_2), .rom = 0, .subs = 12, .highest = 2, .stride = 0},  // 1401h
-    {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_3), .rom = 0, .subs = 12, .highest = 2, .stride = 0},  // 1402h
-    {.ram = offsetof(Values, communication_preset.rpdo_communication_parameter_4), .rom = 0, .subs = 12, .highest = 2, .stride = 0},  // 1403h
-    {.ram = offsetof(Values, communication_preset.rpdo_mapping_parameter_1), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1600h
-    {.ram = offsetof(Values, communication_preset.rpdo_mapping_parameter_2), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1601h
-    {.ram = offsetof(Values, communication_preset.rpdo_mapping_parameter_3), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1602h
-    {.ram = offsetof(Values, communication_preset.rpdo_mapping_parameter_4), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1603h
-    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_1), .rom = 0, .subs = 24, .highest = 5, .stride = 0},  // 1800h
-    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_2), .rom = 0, .subs = 24, .highest = 5, .stride = 0},  // 1801h
-    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_3), .rom = 0, .subs = 24, .highest = 5, .stride = 0},  // 1802h
-    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_4), .rom = 0, .subs = 24, .highest = 5, .stride = 0},  // 1803h
-    {.ram = offsetof(Values, communication_preset.tpdo_mapping_parameter_1), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1A00h
-    {.ram = offsetof(Values, communication_preset.tpdo_mapping_parameter_2), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1A01h
-    {.ram = offsetof(Values, communication_preset.tpdo_mapping_parameter_3), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1A02h
-    {.ram = offsetof(Values, communication_cleared.tpdo_mapping_parameter_4), .rom = 0, .subs = 15, .highest = 8, .stride = 0},  // 1A03h
-    {.ram = offsetof(Values, application_cleared.digital_input_functions), .rom = 0, .subs = 30, .highest = 8, .stride = 2},  // 2190h
-    {.ram = offsetof(Values, application_cleared.digital_output_functions), .rom = 0, .subs = 32, .highest = 5, .stride = 2},  // 21A4h
-    {.ram = offsetof(Values, application_preset.software_position_limit), .rom = 0, .subs = 34, .highest = 2, .stride = 4},  // 607Dh
-    {.ram = offsetof(Values, application_cleared.homing_speeds), .rom = 0, .subs = 36, .highest = 2, .stride = 4},  // 6099h
-    {.ram = offsetof(Values, application_cleared.digital_outputs), .rom = 0, .subs = 36, .highest = 2, .stride = 4},  // 60FEh
+inline constexpr canopen::Shape shapes[] = {
+    {.subs = 0, .highest = 8, .stride = 4},  // 1003h
+    {.subs = 2, .highest = 1, .stride = 4},  // 1016h
+    {.subs = 4, .highest = 4, .stride = 0},  // 1018h
+    {.subs = 9, .highest = 2, .stride = 0},  // 1200h
+    {.subs = 12, .highest = 2, .stride = 0},  // 1400h
+    {.subs = 15, .highest = 8, .stride = 0},  // 1600h
+    {.subs = 24, .highest = 5, .stride = 0},  // 1800h
+    {.subs = 30, .highest = 8, .stride = 2},  // 2190h
+    {.subs = 32, .highest = 5, .stride = 2},  // 21A4h
+    {.subs = 34, .highest = 2, .stride = 4},  // 607Dh
+    {.subs = 36, .highest = 2, .stride = 4},  // 6099h
 };
 
 inline constexpr canopen::Limits limits[] = {
@@ -1657,7 +1643,7 @@ static_assert(sizeof(Constants) <= 0x10000, "the words of the tables hold offset
 inline constexpr canopen::Dictionary dictionary{
     .runs = table::runs,
     .entries = table::entries,
-    .groups = table::groups,
+    .shapes = table::shapes,
     .subs = table::subs,
     .limits = table::limits,
     .wide_limits = {},

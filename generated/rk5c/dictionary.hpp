@@ -368,20 +368,20 @@ inline constexpr canopen::entry::Word entries[] = {
     rom | offsetof(Constants, manufacturer_device_name) | visible_string | ro,  // 1008h:00
     rom | offsetof(Constants, manufacturer_hardware_version) | visible_string | ro,  // 1009h:00
     rom | offsetof(Constants, manufacturer_software_version) | visible_string | ro,  // 100Ah:00
-    record | 0,  // 1010h  Store parameters
-    record | 1,  // 1011h  Restore default parameters
+    record | shape(0) | 0,  // 1010h  Store parameters
+    record | shape(0) | 0,  // 1011h  Restore default parameters
     ram | offsetof(Values, communication_preset.cob_id_emcy) | u32 | rw,  // 1014h:00
     ram | offsetof(Values, communication_cleared.inhibit_time_emcy) | u16 | rw,  // 1015h:00
     ram | offsetof(Values, communication_cleared.producer_heartbeat_time) | u16 | rw,  // 1017h:00
-    record | 2,  // 1018h  Identity object
-    record | 3,  // 1200h  SDO server parameter
-    record | 4,  // 1800h  TPDO communication parameter 1
-    record | 5,  // 1A00h  TPDO mapping parameter 1
+    record | shape(1) | 0,  // 1018h  Identity object
+    record | shape(2) | 0,  // 1200h  SDO server parameter
+    record | shape(3) | offsetof(Values, communication_preset.tpdo_communication_parameter_1),  // 1800h  TPDO communication parameter 1
+    record | shape(4) | offsetof(Constants, tpdo_mapping_parameter_1),  // 1A00h  TPDO mapping parameter 1
     ram | offsetof(Values, application_preset.number_of_cursors) | u8 | ro,  // 2000h:00
-    array | 6,  // 6005h  Linear encoder measuring step settings
-    array | 7,  // 6010h  Preset values for multi-sensor devices
-    array | 8,  // 6020h  Position values for multi-sensor devices
-    array | 9,  // 6030h  Speed value
+    array | shape(5) | offsetof(Values, application_preset.linear_encoder_measuring_step_settings),  // 6005h  Linear encoder measuring step settings
+    array | shape(6) | offsetof(Values, application_cleared.preset_values_for_multi_sensor_devices),  // 6010h  Preset values for multi-sensor devices
+    array | shape(7) | offsetof(Values, application_cleared.position_values_for_multi_sensor_devices),  // 6020h  Position values for multi-sensor devices
+    array | shape(8) | offsetof(Values, application_cleared.speed_value),  // 6030h  Speed value
     ram | offsetof(Values, application_preset.cyclic_timer) | u16 | rw,  // 6200h:00
     ram | offsetof(Values, application_preset.measuring_step) | u32 | ro,  // 6501h:00
 };
@@ -391,9 +391,9 @@ inline constexpr canopen::entry::Word subs[] = {
     immediate | 0x1 | u32 | rw,
     immediate | 4 | u8 | ro,  // 1018h
     immediate | 0x93 | u32 | ro,
-    rom | offsetof(IdentityObject_1018, product_code) | u32 | ro,
-    rom | offsetof(IdentityObject_1018, revision_number) | u32 | ro,
-    ram | offsetof(IdentityObject, serial_number) | u32 | ro,
+    rom | offsetof(Constants, identity_object.product_code) | u32 | ro,
+    rom | offsetof(Constants, identity_object.revision_number) | u32 | ro,
+    ram | offsetof(Values, communication_cleared.identity_object.serial_number) | u32 | ro,
     immediate | 2 | u8 | ro,  // 1200h
     immediate_plus_node_id | 0x600 | u32 | ro,
     immediate_plus_node_id | 0x580 | u32 | ro,
@@ -416,17 +416,16 @@ inline constexpr canopen::entry::Word subs[] = {
     ram | i16 | ro | tpdo,
 };
 
-inline constexpr canopen::Group groups[] = {
-    {.ram = 0, .rom = 0, .subs = 0, .highest = 1, .stride = 0},  // 1010h
-    {.ram = 0, .rom = 0, .subs = 0, .highest = 1, .stride = 0},  // 1011h
-    {.ram = offsetof(Values, communication_cleared.identity_object), .rom = offsetof(Constants, identity_object), .subs = 2, .highest = 4, .stride = 0},  // 1018h
-    {.ram = 0, .rom = 0, .subs = 7, .highest = 2, .stride = 0},  // 1200h
-    {.ram = offsetof(Values, communication_preset.tpdo_communication_parameter_1), .rom = 0, .subs = 10, .highest = 5, .stride = 0},  // 1800h
-    {.ram = 0, .rom = offsetof(Constants, tpdo_mapping_parameter_1), .subs = 16, .highest = 2, .stride = 0},  // 1A00h
-    {.ram = offsetof(Values, application_preset.linear_encoder_measuring_step_settings), .rom = 0, .subs = 19, .highest = 2, .stride = 4},  // 6005h
-    {.ram = offsetof(Values, application_cleared.preset_values_for_multi_sensor_devices), .rom = 0, .subs = 21, .highest = 1, .stride = 4},  // 6010h
-    {.ram = offsetof(Values, application_cleared.position_values_for_multi_sensor_devices), .rom = 0, .subs = 23, .highest = 1, .stride = 4},  // 6020h
-    {.ram = offsetof(Values, application_cleared.speed_value), .rom = 0, .subs = 25, .highest = 1, .stride = 2},  // 6030h
+inline constexpr canopen::Shape shapes[] = {
+    {.subs = 0, .highest = 1, .stride = 0},  // 1010h
+    {.subs = 2, .highest = 4, .stride = 0},  // 1018h
+    {.subs = 7, .highest = 2, .stride = 0},  // 1200h
+    {.subs = 10, .highest = 5, .stride = 0},  // 1800h
+    {.subs = 16, .highest = 2, .stride = 0},  // 1A00h
+    {.subs = 19, .highest = 2, .stride = 4},  // 6005h
+    {.subs = 21, .highest = 1, .stride = 4},  // 6010h
+    {.subs = 23, .highest = 1, .stride = 4},  // 6020h
+    {.subs = 25, .highest = 1, .stride = 2},  // 6030h
 };
 
 inline constexpr canopen::NodeIdRelative node_id_relative_communication[] = {
@@ -441,7 +440,7 @@ static_assert(sizeof(Constants) <= 0x10000, "the words of the tables hold offset
 inline constexpr canopen::Dictionary dictionary{
     .runs = table::runs,
     .entries = table::entries,
-    .groups = table::groups,
+    .shapes = table::shapes,
     .subs = table::subs,
     .limits = {},
     .wide_limits = {},

@@ -121,13 +121,13 @@ ordered_json run_view(const RunRow& row) { return row_view(fmt::format("{{0x{:04
 
 ordered_json entry_view(const EntryRow& row) {
   if (row.word) return row_view(word_text(*row.word), entry_label(row.object->index, 0));
-  return row_view(fmt::format("{} | {}", row.is_array ? "array" : "record", row.group),
-                  fmt::format("{}  {}", index_label(row.object->index), row.object->name));
+  return row_view(
+      fmt::format("{} | shape({}) | {}", row.is_array ? "array" : "record", row.shape, offset_text(row.location)),
+      fmt::format("{}  {}", index_label(row.object->index), row.object->name));
 }
 
-ordered_json group_view(const GroupRow& row) {
-  return row_view(fmt::format("{{.ram = {}, .rom = {}, .subs = {}, .highest = {}, .stride = {}}}", offset_text(row.ram),
-                              offset_text(row.rom), row.subs, row.highest, row.stride),
+ordered_json shape_view(const ShapeRow& row) {
+  return row_view(fmt::format("{{.subs = {}, .highest = {}, .stride = {}}}", row.subs, row.highest, row.stride),
                   index_label(row.object->index));
 }
 
@@ -161,7 +161,7 @@ ordered_json layout_view(const MemoryLayout& layout) {
       "record_types", views_of(layout.record_types, record_type_view), "values", views_of(layout.values, section_view),
       "any_values", !layout.values.empty(), "constants", struct_view(layout.constants, member_view), "any_constants",
       !layout.constants.members.empty(), "runs", table_view(layout.runs, run_view), "entries",
-      table_view(layout.entries, entry_view), "groups", table_view(layout.groups, group_view), "subs",
+      table_view(layout.entries, entry_view), "shapes", table_view(layout.shapes, shape_view), "subs",
       table_view(layout.subs, sub_view), "limits", table_view(layout.limits, limit_view), "wide_limits",
       table_view(layout.wide_limits, limit_view), "node_id_relative_communication",
       table_view(layout.node_id_relative_communication, node_id_view), "node_id_relative_application",

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <tuple>
 #include <utility>
 
 #include "backend/cpp/cpp_text.hpp"
@@ -40,6 +41,7 @@ constexpr std::array taken_type_names = {"Values", "Constants", "Device"};
 /// The address range of the words of the tables.
 constexpr std::size_t max_bytes = 0x10000;
 constexpr std::size_t max_rows = 0xFFFF;
+constexpr std::size_t max_shapes = 0x4000;
 
 std::string_view section_of(std::uint16_t index, bool preset) {
   return sections[(index <= last_communication_index ? 0 : 2) + (preset ? 0 : 1)].name;
@@ -183,16 +185,19 @@ class Builder {
 
   // ---- arrays and records ----
 
+  using SubWords = std::vector<std::optional<Word>>;
+
   void add_group(const Object& object) {
     const bool is_array = placement_.is_uniform_array(object);
-    GroupRow group{&object, {}, {}, 0, object.entries.back().sub_index, is_array ? stride(object.entries.back()) : 0};
-    std::vector<std::optional<Word>> subs = is_array ? add_array(object, group) : add_record(object, group);
-    group.subs = shared_subs(std::move(subs), object);
-    layout_.entries.push_back({&object, {}, layout_.groups.size(), is_array});
-    layout_.groups.push_back(std::move(group));
+    Location begin;
+    SubWords subs = is_array ? add_array(object, begin) : add_record(object, begin);
+    const std::size_t shape = shared_shape(object, shared_subs(std::move(subs), object), is_array);
+    layout_.entries.push_back({&object, {}, std::move(begin), shape, is_array});
   }
 
-  std::vector<std::optional<Word>> add_array(const Object& object, GroupRow& group) {
+  /// Adds the elements and the count of an array. `begin` is the location to which the offsets in their words are
+  /// relative; it remains empty if one of them is in RAM and the other in flash.
+  SubWords add_array(const Object& object, Location& begin) {
     const Entry& count = object.entries.front();
     const Entry& first = object.entries[1];
     const std::size_t length = object.entries.size() - 1;
@@ -206,7 +211,7 @@ class Builder {
                     alignment_of(first),
                     stride(first) * length};
     if (placement_.place(object, first) == MemoryPlace::rom) {
-      group.rom = add_constant(std::move(elements));
+      begin = add_constant(std::move(elements));
       return {word(object, count, {}), word(object, first, {})};
     }
     const MemoryPlace count_place = placement_.place(object, count);
@@ -214,22 +219,28 @@ class Builder {
                                             object.entries.end(), [](const Entry& entry) { return !is_zero(entry); });
     const std::string_view section = section_of(object.index, preset);
     Location count_location;
-    Location first_element;
+    Location elements_location;  // as in the word
+    Location first_element;      // in Values
     if (count_place == MemoryPlace::ram) {
       Member both = counted_array(object, std::move(elements));
       count_location = {both.type, count_member};
-      first_element = group.ram = add_value(section, std::move(both));
+      first_element = begin = add_value(section, std::move(both));
       first_element.member.append(".").append(elements_member);
     } else {
-      first_element = group.ram = add_value(section, std::move(elements));
-      if (count_place == MemoryPlace::rom) group.rom = add_constant(member(object, count, object.identifier));
+      first_element = add_value(section, std::move(elements));
+      if (count_place == MemoryPlace::rom) {
+        count_location = add_constant(member(object, count, object.identifier));
+        elements_location = first_element;
+      } else {
+        begin = first_element;
+      }
     }
     for (const Entry& entry : object.entries) {
       if (entry.sub_index == 0) continue;
       note_download(entry);
       add_node_id_relative(entry, first_element, (entry.sub_index - 1U) * stride(entry));
     }
-    return {word(object, count, std::move(count_location)), word(object, first, {})};
+    return {word(object, count, std::move(count_location)), word(object, first, std::move(elements_location))};
   }
 
   /// An array whose sub-index 0 changes, such as 1003h: elements and count in one struct, elements first.
@@ -241,7 +252,8 @@ class Builder {
     return whole(object, std::move(parts));
   }
 
-  std::vector<std::optional<Word>> add_record(const Object& object, GroupRow& group) {
+  /// The same for the values of a record.
+  SubWords add_record(const Object& object, Location& begin) {
     std::vector<Member> in_ram, in_rom;
     bool preset = false;
     for (const Entry& entry : object.entries) {
@@ -250,28 +262,33 @@ class Builder {
       if (place == MemoryPlace::rom) in_rom.push_back(member(object, entry, entry.identifier));
       preset = preset || (place == MemoryPlace::ram && !is_zero(entry));
     }
-    std::string ram_type, rom_type;
+    const bool in_both = !in_ram.empty() && !in_rom.empty();
+    std::string type;
+    Location ram, rom;
     sort_by_alignment(in_ram);
     sort_by_alignment(in_rom);
     if (!in_ram.empty()) {
       Member record = whole(object, std::move(in_ram));
-      ram_type = record.type;
-      group.ram = add_value(section_of(object.index, preset), std::move(record));
+      type = record.type;
+      ram = add_value(section_of(object.index, preset), std::move(record));
     }
     if (!in_rom.empty()) {
       Member record = whole(object, std::move(in_rom));
-      rom_type = record.type;
-      group.rom = add_constant(std::move(record));
+      type = record.type;
+      rom = add_constant(std::move(record));
     }
-    std::vector<std::optional<Word>> subs;
+    if (!in_both) begin = ram.type.empty() ? rom : ram;
+    SubWords subs;
     for (const Entry& entry : object.entries) {
       subs.resize(entry.sub_index);  // with gaps
       add_limits(object, entry);
       const MemoryPlace place = placement_.place(object, entry);
-      subs.emplace_back(word(object, entry, {place == MemoryPlace::rom ? rom_type : ram_type, entry.identifier}));
+      const Location& record = place == MemoryPlace::rom ? rom : ram;
+      const Location absolute{record.type, fmt::format("{}.{}", record.member, entry.identifier)};
+      subs.emplace_back(word(object, entry, in_both ? absolute : Location{type, entry.identifier}));
       if (place != MemoryPlace::ram) continue;
       note_download(entry);
-      add_node_id_relative(entry, {group.ram.type, group.ram.member + "." + entry.identifier});
+      add_node_id_relative(entry, absolute);
     }
     return subs;
   }
@@ -299,24 +316,35 @@ class Builder {
   }
 
   /// Position of these words in the table of sub-indices, which contains equal ones only once.
-  std::size_t shared_subs(std::vector<std::optional<Word>> words, const Object& object) {
+  std::size_t shared_subs(SubWords words, const Object& object) {
     const auto [at, is_new] = sub_positions_.try_emplace(std::move(words), layout_.subs.size());
     if (is_new) {
       for (const std::optional<Word>& word : at->first) layout_.subs.push_back({word, nullptr});
       layout_.subs[at->second].first_of = &object;
-      check_rows(object);
+      check_rows(object, layout_.subs.size(), max_rows, "rows for distinct sub-indices");
+    }
+    return at->second;
+  }
+
+  /// Position of the shape with these words in the table of shapes, which contains equal ones only once.
+  std::size_t shared_shape(const Object& object, std::size_t subs, bool is_array) {
+    const std::uint8_t highest = object.entries.back().sub_index;
+    const unsigned distance = is_array ? stride(object.entries.back()) : 0;
+    const auto [at, is_new] = shape_positions_.try_emplace({subs, highest, distance}, layout_.shapes.size());
+    if (is_new) {
+      layout_.shapes.push_back({&object, subs, highest, distance});
+      check_rows(object, layout_.shapes.size(), max_shapes, "different structures of ARRAYs and RECORDs");
     }
     return at->second;
   }
 
   // ---- the end ----
 
-  void check_rows(const Object& object) {
-    if (layout_.subs.size() <= max_rows || found_too_many_rows_) return;
+  void check_rows(const Object& object, std::size_t rows, std::size_t limit, std::string_view what) {
+    if (rows <= limit || found_too_many_rows_) return;
     found_too_many_rows_ = true;
     diagnostics_.error("dictionary-size", object.position,
-                       fmt::format("{} does not fit: a dictionary can have {} rows for distinct sub-indices",
-                                   named(object), max_rows));
+                       fmt::format("{} does not fit: a dictionary can have {} {}", named(object), limit, what));
   }
 
   /// The end of a struct that begins at `begin`. Reports its first member that cannot be addressed.
@@ -361,7 +389,8 @@ class Builder {
   MemoryLayout layout_;
   std::map<std::string_view, std::vector<Member>> values_;  ///< by section
   std::map<std::vector<std::pair<std::string, std::string>>, std::string> shapes_;
-  std::map<std::vector<std::optional<Word>>, std::size_t> sub_positions_;
+  std::map<SubWords, std::size_t> sub_positions_;
+  std::map<std::tuple<std::size_t, std::uint8_t, unsigned>, std::size_t> shape_positions_;
   IdentifierScope type_scope_;
   bool found_too_many_rows_ = false;
 };

@@ -36,7 +36,7 @@ struct Struct {
 
 /// A member of a struct, whose offset is the location of a value.
 struct Location {
-  std::string type;    ///< `Values`, `Constants` or a record type; empty: the start of the group
+  std::string type;    ///< `Values`, `Constants` or a record type; empty: offset 0
   std::string member;  ///< its path: `application_preset.speed`
 
   auto operator<=>(const Location&) const = default;
@@ -61,26 +61,28 @@ struct RunRow {
   std::size_t position;
 };
 
-/// The row of an index: its word, or the position of the group of an object with sub-indices.
+/// The row of an index: its word; of an object with sub-indices, the location of its values and the position of its
+/// shape.
 struct EntryRow {
   const Object* object;
   std::optional<Word> word;
-  std::size_t group = 0;
+  Location location = {};
+  std::size_t shape = 0;
   bool is_array = false;  ///< the elements share one word
 };
 
 /// The row of a sub-index; nothing for a gap.
 struct SubRow {
   std::optional<Word> word;
-  const Object* first_of = nullptr;  ///< in the first row of a group
+  const Object* first_of = nullptr;  ///< in the first row of a shape
 };
 
-struct GroupRow {
-  const Object* object;
-  Location ram, rom;
-  std::size_t subs;
-  std::uint8_t highest;
-  unsigned stride;
+/// The structure of objects with sub-indices.
+struct ShapeRow {
+  const Object* object;  ///< the first one with it
+  std::size_t subs;      ///< position of its words
+  std::uint8_t highest;  ///< sub-index
+  unsigned stride;       ///< bytes between the elements of an array
 };
 
 struct LimitRow {
@@ -101,7 +103,7 @@ struct MemoryLayout {
   Struct constants;
   std::vector<RunRow> runs;
   std::vector<EntryRow> entries;
-  std::vector<GroupRow> groups;
+  std::vector<ShapeRow> shapes;
   std::vector<SubRow> subs;
   std::vector<LimitRow> limits, wide_limits;  ///< ascending
   std::vector<NodeIdRow> node_id_relative_communication, node_id_relative_application;

@@ -76,6 +76,20 @@ TEST(DictionarySize, NamesTheRecordWhoseRowsHaveNoRoom) {
   EXPECT_EQ(findings.front(), "2101h \"R257\" does not fit: a dictionary can have 65535 rows for distinct sub-indices");
 }
 
+TEST(DictionarySize, NamesTheRecordWhoseStructureHasNoRoom) {
+  std::string text;
+  for (int i = 0; i <= 0x4000; ++i) {  // a constant is part of the structure
+    const std::string index = fmt::format("{:04X}", 0x2000 + i);
+    text += group(index, fmt::format("R{}", i), "9", 2);
+    text += fmt::format("[{}sub0]\nParameterName=S0\nDataType=5\nAccessType=const\nDefaultValue=1\n", index);
+    text += fmt::format("[{}sub1]\nParameterName=S1\nDataType=6\nAccessType=const\nDefaultValue={}\n", index, i);
+  }
+  DeviceFromText over{text};
+  EXPECT_EQ(size_findings(over),
+            (std::vector<std::string>{"6000h \"R16384\" does not fit: a dictionary can have 16384 different structures "
+                                      "of ARRAYs and RECORDs"}));
+}
+
 TEST(DictionarySize, LeavesOutWhatFollowsTooManyEntriesInCompactForm) {
   DeviceFromText over{arrays(600)};
   EXPECT_EQ(over.line_of("dictionary-size"), "[2202]");

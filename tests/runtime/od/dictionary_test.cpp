@@ -61,7 +61,7 @@ TEST(Dictionary, RejectsRunsOutOfOrder) {
                                             entry::immediate | entry::u8 | entry::ro};
   const Dictionary dictionary{.runs = runs,
                               .entries = entries,
-                              .groups = {},
+                              .shapes = {},
                               .subs = {},
                               .limits = {},
                               .wide_limits = {},

@@ -55,7 +55,7 @@ struct Scattered {
 
   static constexpr Dictionary dictionary{.runs = runs,
                                          .entries = entries,
-                                         .groups = {},
+                                         .shapes = {},
                                          .subs = {},
                                          .limits = {},
                                          .wide_limits = {},

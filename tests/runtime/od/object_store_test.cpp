@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <rk5c/device.hpp>
 #include <sample/device.hpp>
 #include <string>
 #include <vector>
@@ -46,6 +47,14 @@ TEST(ObjectStore, AddsTheNodeIdToCobIds) {
   EXPECT_EQ(store.get<od::rpdo_communication_parameter_1::cob_id_used_by_rpdo>(), 0x205u);
   EXPECT_EQ(store.get<od::tpdo_communication_parameter_2::cob_id_used_by_tpdo>(), 0xC0000285u);
   EXPECT_EQ((store.get<od::sdo_server_parameter::cob_id_client_to_server>()), 0x605u);
+}
+
+/// 1018h has its product code in flash and its serial number, which the application sets, in RAM.
+TEST(ObjectStore, FindsTheValuesOfARecordInFlashAndInRam) {
+  canopen::ObjectStore<rk5c::Device> store;
+  store.set<rk5c::od::identity_object::serial_number>(0x12345678);
+  EXPECT_EQ(store.entries().number(0x1018, 2), 0x43354B52u);
+  EXPECT_EQ(store.entries().number(0x1018, 4), 0x12345678u);
 }
 
 TEST(ObjectStore, SaysWhetherAValueIsNew) {

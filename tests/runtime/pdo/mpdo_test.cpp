@@ -27,12 +27,12 @@ namespace entry = canopen::entry;
 template <std::uint16_t Index, entry::Word Count, entry::Word Element>
 struct DeviceWithList {
   static constexpr canopen::Run runs[] = {{Index, 0}, {0xFFFF, 1}};
-  static constexpr entry::Word entries[] = {entry::array | 0};
-  static constexpr canopen::Group groups[] = {{.ram = 0, .rom = 0, .subs = 0, .highest = 4, .stride = 8}};
+  static constexpr entry::Word entries[] = {entry::array | entry::shape(0)};
+  static constexpr canopen::Shape shapes[] = {{.subs = 0, .highest = 4, .stride = 8}};
   static constexpr entry::Word subs[] = {entry::ram | entry::rw | Count, entry::ram | entry::rw | Element | 8};
   static constexpr canopen::Dictionary dictionary{.runs = runs,
                                                   .entries = entries,
-                                                  .groups = groups,
+                                                  .shapes = shapes,
                                                   .subs = subs,
                                                   .limits = {},
                                                   .wide_limits = {},

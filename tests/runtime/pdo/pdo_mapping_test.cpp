@@ -57,7 +57,7 @@ struct DeviceOf {
   static constexpr entry::Word entries[] = {Word};
   static constexpr canopen::Dictionary dictionary{.runs = runs,
                                                   .entries = entries,
-                                                  .groups = {},
+                                                  .shapes = {},
                                                   .subs = {},
                                                   .limits = {},
                                                   .wide_limits = {},

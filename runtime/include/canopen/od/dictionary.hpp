@@ -1,10 +1,12 @@
 /// The object dictionary in flash: sorted constexpr tables, and the search by index and sub-index.
 ///
-/// Each entry is described by one 32-bit word. A VAR is its own entry; the word of an ARRAY or RECORD refers to a
-/// group, whose words for the sub-indices may be shared by all groups of the same shape. Indices are stored in runs of
-/// consecutive numbers: the search reads one pair of 16-bit numbers per run instead of one per index.
+/// Each entry is described by one 32-bit word. A VAR is its own entry; the word of an ARRAY or RECORD holds where its
+/// values begin and its shape, which has the words of the sub-indices and is shared by all objects of the same
+/// structure. Indices are stored in runs of consecutive numbers: the search reads one pair of 16-bit numbers per run
+/// instead of one per index.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -17,8 +19,11 @@ using Word = std::uint32_t;
 // Bits 0..15: location of the value: an offset in RAM or flash, or the value itself.
 // Bits 16..19: size of the value in bytes; in the special class, which type.
 // Bits 20..21: class. Bits 22..23: place. Bits 24..28: access rights and limits. Bits 30..31: kind.
+// Of an ARRAY or RECORD, bits 0..15 are the offset to which those of its sub-indices are added, and bits 16..29 its
+// shape.
 inline constexpr Word offset_mask = 0xFFFF;
 inline constexpr unsigned size_shift = 16;
+inline constexpr unsigned shape_shift = 16;
 inline constexpr unsigned class_shift = 20;
 inline constexpr unsigned place_shift = 22;
 inline constexpr unsigned kind_shift = 30;
@@ -76,6 +81,7 @@ inline constexpr Word immediate = var_at(Place::immediate);
 inline constexpr Word immediate_plus_node_id = var_at(Place::immediate_plus_node_id);
 inline constexpr Word array = static_cast<Word>(Kind::array) << kind_shift;
 inline constexpr Word record = static_cast<Word>(Kind::record) << kind_shift;
+[[nodiscard]] constexpr Word shape(Word position) { return position << shape_shift; }
 inline constexpr Word gap = 0;  ///< a sub-index of a record that does not exist
 
 [[nodiscard]] constexpr std::uint16_t offset_of(Word word) { return static_cast<std::uint16_t>(word & offset_mask); }
@@ -85,6 +91,8 @@ inline constexpr Word gap = 0;  ///< a sub-index of a record that does not exist
 [[nodiscard]] constexpr Class class_of(Word word) { return static_cast<Class>((word >> class_shift) & 3); }
 [[nodiscard]] constexpr Place place_of(Word word) { return static_cast<Place>((word >> place_shift) & 3); }
 [[nodiscard]] constexpr Kind kind_of(Word word) { return static_cast<Kind>(word >> kind_shift); }
+/// Position of the shape of an ARRAY or RECORD.
+[[nodiscard]] constexpr std::size_t shape_of(Word word) { return (word >> shape_shift) & 0x3FFF; }
 [[nodiscard]] constexpr Word type_of(Word word) { return word & (Word{0x3F} << size_shift); }
 [[nodiscard]] constexpr bool is_string(Word word) {
   return type_of(word) == visible_string || type_of(word) == octet_string;
@@ -105,13 +113,11 @@ struct Run {
   std::uint16_t position;
 };
 
-/// Location of an ARRAY's or RECORD's values and of the words of its sub-indices. Their offsets are relative to
-/// `ram` or `rom`. In an array the second word serves all elements, which are `stride` bytes apart; `stride` of a
-/// record is 0.
-struct Group {
-  std::uint16_t ram;
-  std::uint16_t rom;
-  std::uint16_t subs;
+/// The structure of an ARRAY or RECORD. The offsets of the sub-indices are relative to that of the object: all of them
+/// are in RAM, or all in flash; an object with values in both has the offset 0. In an array the second word serves all
+/// elements, which are `stride` bytes apart; `stride` of a record is 0.
+struct Shape {
+  std::uint16_t subs;    ///< position of the first word
   std::uint8_t highest;  ///< highest sub-index that exists
   std::uint8_t stride;
 };
@@ -180,7 +186,7 @@ template <class Row>
 struct Dictionary {
   std::span<const Run> runs;  ///< ascending; the last one, {0xFFFF, number of entries}, ends the search
   std::span<const entry::Word> entries;
-  std::span<const Group> groups;
+  std::span<const Shape> shapes;
   std::span<const entry::Word> subs;
   std::span<const Limits> limits;
   std::span<const WideLimits> wide_limits;
@@ -200,15 +206,13 @@ struct Dictionary {
     const entry::Kind kind = entry::kind_of(word);
     if (kind <= entry::Kind::var) return sub_index == 0 || word == no_object ? word : no_sub_index;
 
-    const Group& group = groups[entry::offset_of(word)];
-    if (sub_index > group.highest) return no_sub_index;
+    const Shape& shape = shapes[entry::shape_of(word)];
+    if (sub_index > shape.highest) return no_sub_index;
     const unsigned of_array = sub_index != 0 ? 1 : 0;
-    const entry::Word sub = subs[group.subs + (kind == entry::Kind::array ? of_array : sub_index)];
+    const entry::Word sub = subs[shape.subs + (kind == entry::Kind::array ? of_array : sub_index)];
     if (sub == entry::gap) return no_sub_index;
-    const entry::Place place = entry::place_of(sub);
-    if (place > entry::Place::rom) return sub;
-    const std::uint32_t base = place == entry::Place::ram ? group.ram : group.rom;
-    return sub + base + (sub_index - of_array) * group.stride;
+    if (entry::place_of(sub) > entry::Place::rom) return sub;
+    return sub + entry::offset_of(word) + (sub_index - of_array) * shape.stride;
   }
 
   /// Finds the word of an index as it is in the table; `no_object` if it does not exist.
@@ -229,6 +233,11 @@ struct Dictionary {
     return position < (&run + 1)->position ? entries[position] : no_object;
   }
 
+  /// Returns the highest sub-index of an object whose word is known.
+  [[nodiscard]] constexpr std::uint8_t highest_sub_index(entry::Word word) const {
+    return entry::kind_of(word) <= entry::Kind::var ? std::uint8_t{0} : shapes[entry::shape_of(word)].highest;
+  }
+
   /// Whether an entry exists.
   [[nodiscard]] constexpr bool has(std::uint16_t index, std::uint8_t sub_index) const {
     return find(index, sub_index) > no_sub_index;
@@ -239,9 +248,7 @@ struct Dictionary {
     for (unsigned index = first; index <= last; ++index) {
       const entry::Word word = find_index(static_cast<std::uint16_t>(index));
       if (word == no_object) continue;
-      const bool var = entry::kind_of(word) == entry::Kind::var;
-      const unsigned highest = var ? 0u : groups[entry::offset_of(word)].highest;
-      for (unsigned sub_index = 0; sub_index <= highest; ++sub_index) {
+      for (unsigned sub_index = 0; sub_index <= highest_sub_index(word); ++sub_index) {
         if ((sub_word(word, static_cast<std::uint8_t>(sub_index)) & entry::writable) != 0) return true;
       }
     }
@@ -255,9 +262,7 @@ struct Dictionary {
       for (std::uint32_t at = runs[run].position; at < runs[run + 1].position; ++at) {
         const auto index = static_cast<std::uint16_t>(runs[run].first + at - runs[run].position);
         const entry::Word word = entries[at];
-        const bool var = entry::kind_of(word) == entry::Kind::var;
-        const unsigned highest = var ? 0u : groups[entry::offset_of(word)].highest;
-        for (unsigned sub_index = 0; sub_index <= highest; ++sub_index) {
+        for (unsigned sub_index = 0; sub_index <= highest_sub_index(word); ++sub_index) {
           const entry::Word found = sub_word(word, static_cast<std::uint8_t>(sub_index));
           if (found > no_sub_index) visit(index, static_cast<std::uint8_t>(sub_index), found);
         }
@@ -272,7 +277,7 @@ struct Dictionary {
     return dictionary_detail::find_by_key(wide_limits, key);
   }
 
-  /// Whether the tables are as the search requires: runs in order, without overlap, covering the entries; groups inside
+  /// Whether the tables are as the search requires: runs in order, without overlap, covering the entries; shapes inside
   /// their table; limits sorted. Generated code asserts it.
   [[nodiscard]] constexpr bool well_formed() const {
     if (runs.empty() || runs.back().first != 0xFFFF || runs.back().position != entries.size()) return false;
@@ -282,8 +287,8 @@ struct Dictionary {
       if (runs[i + 1].position <= runs[i].position) return false;
       if (runs[i].first + length > runs[i + 1].first) return false;
     }
-    for (const Group& group : groups) {
-      if (group.subs >= subs.size()) return false;
+    for (const Shape& shape : shapes) {
+      if (shape.subs >= subs.size()) return false;
     }
     return dictionary_detail::sorted_by_key(limits) && dictionary_detail::sorted_by_key(wide_limits);
   }
