@@ -994,6 +994,13 @@ struct RpdoMappingParameter {
 struct RpdoMappingParameter_1601 {
   std::uint32_t mapping_entry_1;
   std::uint32_t mapping_entry_2;
+  std::uint8_t number_of_mapped_objects;
+};
+
+/// RPDO mapping parameter 4: values in RAM.
+struct RpdoMappingParameter_1603 {
+  std::uint32_t mapping_entry_1;
+  std::uint32_t mapping_entry_2;
   std::uint32_t mapping_entry_3;
   std::uint32_t mapping_entry_4;
   std::uint8_t number_of_mapped_objects;
@@ -1124,8 +1131,8 @@ struct Values {
     PreDefinedErrorField pre_defined_error_field;                   ///< 1003h  Pre-defined error field
     std::array<std::uint32_t, 3> consumer_heartbeat_time;           ///< 1016h:01..03  Consumer heartbeat time
     std::array<std::uint32_t, 2> verify_configuration;              ///< 1020h:01..02  Verify configuration
-    RpdoMappingParameter_1601 rpdo_mapping_parameter_4;             ///< 1603h  RPDO mapping parameter 4
-    RpdoMappingParameter_1601 tpdo_mapping_parameter_4;             ///< 1A03h  TPDO mapping parameter 4
+    RpdoMappingParameter_1603 rpdo_mapping_parameter_4;             ///< 1603h  RPDO mapping parameter 4
+    RpdoMappingParameter_1603 tpdo_mapping_parameter_4;             ///< 1A03h  TPDO mapping parameter 4
     std::uint16_t guard_time;                                       ///< 100Ch:00  Guard time
     std::uint16_t inhibit_time_emcy;                                ///< 1015h:00  Inhibit time EMCY
     std::uint16_t producer_heartbeat_time;                          ///< 1017h:00  Producer heartbeat time
@@ -1220,11 +1227,11 @@ inline constexpr Constants constants{
     .device_type = 0x00020192,
     .identity_object = {.vendor_id = 0x0100002E},
     .rpdo_mapping_parameter_1 = {.mapping_entry_1 = 0x60400010, .number_of_mapped_objects = 1},
-    .rpdo_mapping_parameter_2 = {.mapping_entry_1 = 0x60400010, .mapping_entry_2 = 0x607A0020, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .number_of_mapped_objects = 2},
-    .rpdo_mapping_parameter_3 = {.mapping_entry_1 = 0x60400010, .mapping_entry_2 = 0x60FF0020, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .number_of_mapped_objects = 2},
+    .rpdo_mapping_parameter_2 = {.mapping_entry_1 = 0x60400010, .mapping_entry_2 = 0x607A0020, .number_of_mapped_objects = 2},
+    .rpdo_mapping_parameter_3 = {.mapping_entry_1 = 0x60400010, .mapping_entry_2 = 0x60FF0020, .number_of_mapped_objects = 2},
     .tpdo_mapping_parameter_1 = {.mapping_entry_1 = 0x60410010, .number_of_mapped_objects = 1},
-    .tpdo_mapping_parameter_2 = {.mapping_entry_1 = 0x60410010, .mapping_entry_2 = 0x60640020, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .number_of_mapped_objects = 2},
-    .tpdo_mapping_parameter_3 = {.mapping_entry_1 = 0x60410010, .mapping_entry_2 = 0x606C0020, .mapping_entry_3 = 0x00000000, .mapping_entry_4 = 0x00000000, .number_of_mapped_objects = 2},
+    .tpdo_mapping_parameter_2 = {.mapping_entry_1 = 0x60410010, .mapping_entry_2 = 0x60640020, .number_of_mapped_objects = 2},
+    .tpdo_mapping_parameter_3 = {.mapping_entry_1 = 0x60410010, .mapping_entry_2 = 0x606C0020, .number_of_mapped_objects = 2},
     .manufacturer_device_name = {"CPDservo"},
     .manufacturer_hardware_version = {"HW 01.00"},
     .manufacturer_software_version = {"SW 01.01"},
@@ -1391,13 +1398,13 @@ inline constexpr canopen::entry::Word subs[] = {
     rom | offsetof(RpdoMappingParameter_1601, number_of_mapped_objects) | u8 | ro,  // 1601h
     rom | offsetof(RpdoMappingParameter_1601, mapping_entry_1) | u32 | ro,
     rom | offsetof(RpdoMappingParameter_1601, mapping_entry_2) | u32 | ro,
-    rom | offsetof(RpdoMappingParameter_1601, mapping_entry_3) | u32 | ro,
-    rom | offsetof(RpdoMappingParameter_1601, mapping_entry_4) | u32 | ro,
-    ram | offsetof(RpdoMappingParameter_1601, number_of_mapped_objects) | u8 | rw,  // 1603h
-    ram | offsetof(RpdoMappingParameter_1601, mapping_entry_1) | u32 | rw,
-    ram | offsetof(RpdoMappingParameter_1601, mapping_entry_2) | u32 | rw,
-    ram | offsetof(RpdoMappingParameter_1601, mapping_entry_3) | u32 | rw,
-    ram | offsetof(RpdoMappingParameter_1601, mapping_entry_4) | u32 | rw,
+    immediate | 0x0 | u32 | ro,
+    immediate | 0x0 | u32 | ro,
+    ram | offsetof(RpdoMappingParameter_1603, number_of_mapped_objects) | u8 | rw,  // 1603h
+    ram | offsetof(RpdoMappingParameter_1603, mapping_entry_1) | u32 | rw,
+    ram | offsetof(RpdoMappingParameter_1603, mapping_entry_2) | u32 | rw,
+    ram | offsetof(RpdoMappingParameter_1603, mapping_entry_3) | u32 | rw,
+    ram | offsetof(RpdoMappingParameter_1603, mapping_entry_4) | u32 | rw,
     immediate | 5 | u8 | ro,  // 1800h
     ram | offsetof(TpdoCommunicationParameter, cob_id_used_by_tpdo) | u32 | rw,
     ram | offsetof(TpdoCommunicationParameter, transmission_type) | u8 | rw,

@@ -267,7 +267,6 @@ struct TpdoCommunicationParameter {
 struct TpdoMappingParameter {
   std::uint32_t mapping_entry_1;
   std::uint32_t mapping_entry_2;
-  std::uint8_t number_of_mapped_application_objects;
 };
 
 /// The values of the device in RAM.
@@ -329,7 +328,7 @@ struct Constants {
 inline constexpr Constants constants{
     .device_type = 0x000A0196,
     .identity_object = {.product_code = 0x43354B52, .revision_number = 0x00010001},
-    .tpdo_mapping_parameter_1 = {.mapping_entry_1 = 0x60200120, .mapping_entry_2 = 0x60300110, .number_of_mapped_application_objects = 2},
+    .tpdo_mapping_parameter_1 = {.mapping_entry_1 = 0x60200120, .mapping_entry_2 = 0x60300110},
     .manufacturer_device_name = {"RK5C"},
     .manufacturer_hardware_version = {"1.0"},
     .manufacturer_software_version = {"1.0"},
@@ -403,7 +402,7 @@ inline constexpr canopen::entry::Word subs[] = {
     gap,
     gap,
     ram | offsetof(TpdoCommunicationParameter, event_timer) | u16 | rw,
-    rom | offsetof(TpdoMappingParameter, number_of_mapped_application_objects) | u8 | ro,  // 1A00h
+    immediate | 2 | u8 | ro,  // 1A00h
     rom | offsetof(TpdoMappingParameter, mapping_entry_1) | u32 | ro,
     rom | offsetof(TpdoMappingParameter, mapping_entry_2) | u32 | ro,
     immediate | 2 | u8 | ro,  // 6005h

@@ -48,6 +48,8 @@ MemoryPlace place_of_number(DataClass kind, std::uint64_t bits, bool plus_node_i
                                                                                   : MemoryPlace::rom;
 }
 
+std::uint64_t default_bits(const Entry& entry) { return entry.default_value ? entry.default_value->bits : 0; }
+
 }  // namespace
 
 Placement::Placement(const Device& device, const Options& options) : options_{options}, settable_{options.settable} {
@@ -56,6 +58,13 @@ Placement::Placement(const Device& device, const Options& options) : options_{op
     if (!pdo.dynamic) continue;
     dynamic_mappings_.push_back(pdo.mapping->index);  // ascending: RPDOs come first
     has_dynamic_tpdo_ = has_dynamic_tpdo_ || pdo.direction == PdoDirection::transmit;
+  }
+  for (const Object& object : device.objects) {
+    if (!is_static_mapping(object.index)) continue;
+    for (const Entry& entry : object.entries) {
+      const auto [at, is_new] = static_mapping_values_.try_emplace(entry.sub_index, default_bits(entry));
+      if (!is_new && at->second != default_bits(entry)) at->second.reset();
+    }
   }
 }
 
@@ -76,11 +85,11 @@ bool Placement::is_constant(const Object& object, const Entry& entry) const {
 
 MemoryPlace Placement::place(const Object& object, const Entry& entry) const {
   if (!is_constant(object, entry) || entry.type->kind == DataClass::domain) return MemoryPlace::ram;
-  // All static mapping parameters of a device then share one table of words.
-  if (contains(mapping_parameters, entry.index)) return MemoryPlace::rom;
+  // All static mapping parameters of a device share one table of words: one that contains a value has it for all.
+  if (contains(mapping_parameters, entry.index) && !static_mapping_values_.at(entry.sub_index)) return MemoryPlace::rom;
   const bool plus_node_id = entry.default_value && entry.default_value->plus_node_id;
   if (needs_address(entry)) return plus_node_id ? MemoryPlace::ram : MemoryPlace::rom;
-  return place_of_number(entry.type->kind, entry.default_value ? entry.default_value->bits : 0, plus_node_id);
+  return place_of_number(entry.type->kind, default_bits(entry), plus_node_id);
 }
 
 /// A TPDO with dynamic mapping reads its objects, including constants, from memory.

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <vector>
 
 #include "device/device.hpp"
@@ -39,6 +41,8 @@ class Placement {
   const Options& options_;
   std::vector<EntryKey> settable_;               ///< ascending
   std::vector<std::uint16_t> dynamic_mappings_;  ///< indices, ascending
+  /// By sub-index: the value in all static mapping parameters that have it; empty if they differ.
+  std::map<std::uint8_t, std::optional<std::uint64_t>> static_mapping_values_;
   bool has_dynamic_tpdo_ = false;
 };
 

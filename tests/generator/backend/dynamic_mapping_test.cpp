@@ -167,9 +167,19 @@ TEST(StaticMapping, LiesInFlashAndCannotBeWritten) {
   DeviceFromText text{tpdo(), with_static({true, {}})};
   EXPECT_EQ(subs_of(text),
             (std::vector<std::string>{"immediate | 1 | u8 | ro", "ram | offsetof(Communication, entry_1) | u32 | rw",
+                                      "immediate | 1 | u8 | ro", "rom | offsetof(Communication, entry_1) | u32 | ro",
+                                      "immediate | 0 | u32 | ro"}));
+}
+
+TEST(StaticMapping, HasAValueInTheWordsThatAllShareOnlyIfItIsThatOfAll) {
+  const std::string two_objects = group("1A01", "Mapping", "9", 3) + sub_object("1A01", 0, "5", "rw", "2") +
+                                  sub_object("1A01", 1, "7", "rw", "0x20000008") +
+                                  sub_object("1A01", 2, "7", "rw", "0");
+  DeviceFromText text{tpdo() + communication("1801") + two_objects, with_static({true, {}})};
+  EXPECT_EQ(subs_of(text),
+            (std::vector<std::string>{"immediate | 1 | u8 | ro", "ram | offsetof(Communication, entry_1) | u32 | rw",
                                       "rom | offsetof(Mapping1a, count) | u8 | ro",
-                                      "rom | offsetof(Mapping1a, entry_1) | u32 | ro",
-                                      "rom | offsetof(Mapping1a, entry_2) | u32 | ro"}));
+                                      "rom | offsetof(Mapping1a, entry_1) | u32 | ro", "immediate | 0 | u32 | ro"}));
 }
 
 TEST(DynamicMapping, SharesItsWordsWithAllOfItsShape) {
