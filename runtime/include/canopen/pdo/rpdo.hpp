@@ -78,16 +78,20 @@ class RpdoService {
 
   /// Passes a frame to every RPDO that receives it. `cob_id` is that of the frame. Returns false if there is none.
   template <class Host>
-  [[gnu::noinline]] bool on_frame(const Frame& frame, std::uint32_t cob_id, Host host) {
-    const std::size_t i = find(cob_id, host.entries(), std::make_index_sequence<count>{});
-    if (i == count) return false;
-    Slot& slot = slots_[i];
-    // Short path of an RPDO that only waits for the SYNC.
-    const bool waits = (slot.flags & ~buffered) == at_sync && frame.size >= slot.size && !host.window_over();
-    if (!waits) return receive_all(i, frame, cob_id, host);
-    slot.data = frame.data;
-    slot.flags = at_sync | buffered;
-    return true;
+  bool on_frame(const Frame& frame, std::uint32_t cob_id, Host host) {
+    std::size_t i = 0;
+    if constexpr (has_short_path) {
+      i = find(cob_id, host.entries(), std::make_index_sequence<count>{});
+      if (i == count) return false;
+      Slot& slot = slots_[i];
+      const bool waits = (slot.flags & ~buffered) == at_sync && frame.size >= slot.size && !host.window_over();
+      if (waits) {
+        slot.data = frame.data;
+        slot.flags = at_sync | buffered;
+        return true;
+      }
+    }
+    return receive_all(i, frame, cob_id, host);
   }
 
   /// Applies what has been received since the last SYNC.
@@ -142,6 +146,10 @@ class RpdoService {
     shared = 128,   ///< another RPDO may have the same CAN-ID
   };
 
+  /// Whether the frame of an RPDO that only waits for the SYNC has a path of its own: on a Cortex-M4 it saves 48
+  /// instructions of each frame, on a Cortex-M0+ it takes 200 bytes.
+  static constexpr bool has_short_path = !prefers_size;
+
   static constexpr std::uint8_t unmapped = 0xFF;  ///< a size that no frame reaches
 
   using Data = std::array<std::uint8_t, 8>;
@@ -176,7 +184,7 @@ class RpdoService {
   [[nodiscard]] static std::size_t find(std::uint32_t cob_id, EntryAccess<Device> entries, std::index_sequence<I...>) {
     constexpr std::size_t few = 8;
     std::size_t i = 0;
-    if constexpr (prefers_size || count > few) {
+    if constexpr (count > few) {
       while (i < count && cob_id_at(i, entries) != cob_id) ++i;
     } else {
       static_cast<void>((true && ... && (cob_id_at(I, entries) != cob_id && ++i != 0)));
@@ -194,10 +202,15 @@ class RpdoService {
     const std::uint32_t type = Column<pdo_parameter::transmission_type>::get(entries, i, event_driven);
     slot.flags = type <= 240 ? at_sync : type >= 254 ? at_once : 0;
     if (event_timer(i, entries) != 0) slot.flags |= timed;
+    if constexpr (has_short_path) mark_shared(i, entries);
+  }
+
+  /// Marks an RPDO and those that have the same CAN-ID.
+  void mark_shared(std::size_t i, EntryAccess<Device> entries) {
     for (std::size_t other = 0; other < count; ++other) {
       if (other == i || cob_id_at(other, entries) != cob_id_at(i, entries)) continue;
       slots_[other].flags |= shared;
-      slot.flags |= shared;
+      slots_[i].flags |= shared;
     }
   }
 
@@ -212,13 +225,16 @@ class RpdoService {
     return sizes[i];
   }
 
-  /// Passes a frame to RPDO `i` and the following ones with the same CAN-ID.
+  /// Passes a frame to those of RPDO `i` and the following ones that have its CAN-ID. Returns whether there are any.
   template <class Host>
   [[gnu::noinline]] bool receive_all(std::size_t i, const Frame& frame, std::uint32_t cob_id, Host host) {
+    bool received = false;
     for (; i < count; ++i) {
-      if (cob_id_at(i, host.entries()) == cob_id) receive(i, frame, host);
+      if (cob_id_at(i, host.entries()) != cob_id) continue;
+      receive(i, frame, host);
+      received = true;
     }
-    return true;
+    return received;
   }
 
   template <class Host>
