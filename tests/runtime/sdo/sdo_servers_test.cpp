@@ -38,6 +38,16 @@ TEST(SdoServers, SecondOneAnswersWhereItsCobIdsAreAssignedDynamically) {
   EXPECT_EQ(device.ask("680 40 01 12 01 00 00 00 00"), "4C0 43 01 12 01 80 06 00 40");
 }
 
+/// This device has no numbers of more than 32 bits.
+TEST(SdoServers, SendANumberInABlockAsItWasAtTheBeginning) {
+  Bench device;
+  EXPECT_EQ(device.ask("605 23 02 20 00 44 33 22 11"), "585 60 02 20 00 00 00 00 00");
+  EXPECT_EQ(device.ask("605 A0 02 20 00 7F 00 00 00"), "585 C6 02 20 00 04 00 00 00");
+  const std::array<std::uint8_t, 4> other{1, 2, 3, 4};
+  EXPECT_EQ(device.node.set(0x2002, 0, other), canopen::ok);
+  EXPECT_EQ(device.ask("605 A3 00 00 00 00 00 00 00"), "585 81 44 33 22 11 00 00 00");
+}
+
 TEST(SdoServers, HaveTransfersOfTheirOwn) {
   std::array<std::uint8_t, 16> memory{};
   Bench device;

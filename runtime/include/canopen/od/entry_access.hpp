@@ -32,6 +32,7 @@ struct Kinds {
   bool padded = false;  ///< numbers of 24, 40, 48 or 56 bits in RAM, stored in the next wider type
   bool constants = false;
   bool negative_immediates = false;
+  bool wide_numbers = false;  ///< numbers of more than 32 bits
 };
 
 [[nodiscard]] constexpr Kinds kinds_of(const Dictionary& dictionary) {
@@ -44,6 +45,7 @@ struct Kinds {
     if (is_boolean(word)) kinds.booleans = true;
     if ((size & (size - 1)) != 0 && in_ram) kinds.padded = true;
     if (place_of(word) == Place::rom) kinds.constants = true;
+    if (class_of(word) != Class::special && size > sizeof(std::uint32_t)) kinds.wide_numbers = true;
     if (place_of(word) == Place::immediate && class_of(word) == Class::signed_integer) kinds.negative_immediates = true;
   });
   return kinds;
@@ -79,15 +81,18 @@ class EntryAccess {
       }
       return {scratch.data(), bytes_of(word)};
     }
-    const std::uint8_t* const where = address(word);
-    if (entry::is_string(word)) {
-      return {where + string_header, load<std::uint16_t>(where) + (is_terminated(word) ? 1u : 0u)};
-    }
+    if (entry::is_string(word) || is_domain(word)) return read_variable_length(word);
+    return {address(word), bytes_of(word)};
+  }
+
+  /// The same for a string or a DOMAIN.
+  [[nodiscard]] std::span<const std::uint8_t> read_variable_length(entry::Word word) const {
     if (is_domain(word)) {
       const Domain memory = domain(word);
       return {memory.data, memory.size};
     }
-    return {where, bytes_of(word)};
+    const std::uint8_t* const where = address(word);
+    return {where + string_header, load<std::uint16_t>(where) + (is_terminated(word) ? 1u : 0u)};
   }
 
   /// Returns an unsigned value of up to 32 bits.

@@ -89,8 +89,13 @@ class SdoServerTransfer {
       size_ = sdo::unknown_size;
       if (is_domain() && hooks.streams_upload(index(), sub_index())) return ok;
     }
-    const std::span<const std::uint8_t> bytes =
-        hooks.entries().read(word_, std::span<std::uint8_t, 8>{buffer_.data(), 8});
+    std::span<const std::uint8_t> bytes;
+    if constexpr (has_long_numbers) {
+      bytes = hooks.entries().read(word_, std::span<std::uint8_t, 8>{buffer_.data(), 8});
+    } else {
+      if (has_block && entry::class_of(word_) != entry::Class::special) return open_number(hooks.entries());
+      bytes = hooks.entries().read_variable_length(word_);
+    }
     if (bytes.data() == nullptr) return AbortCode::no_data;
     bytes_ = const_cast<std::uint8_t*>(bytes.data());  // an upload only reads
     size_ = static_cast<std::uint32_t>(bytes.size());
@@ -102,6 +107,7 @@ class SdoServerTransfer {
 
   /// Copies a number that is sent in several frames, so that it does not change.
   void hold_number() {
+    if constexpr (!has_long_numbers) return;
     if (entry::class_of(word_) == entry::Class::special || bytes_ == buffer_.data()) return;
     copy_bytes(buffer_.data(), bytes_, size_);
     bytes_ = buffer_.data();
@@ -286,6 +292,19 @@ class SdoServerTransfer {
       return entry::is_string(word) && (word & entry::writable) != 0 && row.high > buffer_bytes;
     });
   }();
+
+  /// Whether there are numbers of more than four bytes, or BOOLEANs, which `answer_number` cannot send.
+  static constexpr bool has_long_numbers =
+      EntryAccess<Device>::kinds.wide_numbers || EntryAccess<Device>::kinds.booleans;
+
+  /// Copies a number for a block upload.
+  [[nodiscard]] AbortCode open_number(EntryAccess<Device> entries) {
+    const std::uint32_t value = entries.number(word_);
+    std::memcpy(std::assume_aligned<4>(buffer_.data()), &value, sizeof value);
+    bytes_ = buffer_.data();
+    size_ = entry::size_of(word_);
+    return ok;
+  }
 
   [[nodiscard]] std::uint16_t index() const { return static_cast<std::uint16_t>(multiplexer_ >> 8); }
   [[nodiscard]] std::uint8_t sub_index() const { return static_cast<std::uint8_t>(multiplexer_ >> 24); }
