@@ -84,7 +84,8 @@ class MappedPlaces {
           if (watched(mapping[i])) places[i] |= Runs::apart;
         }
       }
-      Runs::join(places, mapping.count(), bits);
+      // Without it, a PDO is copied object by object, which takes 96 bytes less on a Cortex-M0+.
+      if constexpr (!prefers_size || Runs::has_bits) Runs::join(places, mapping.count(), bits);
       return static_cast<std::uint8_t>((bits + 7) / 8);
     }
     return 0;
