@@ -77,9 +77,10 @@ class MappedPlaces {
       const MappingParameter mapping = parameter(pdo, entries);
       if (mapping.count() > capacity(pdo)) return 0;
       Place* const places = of(pdo);
-      const std::uint8_t bits = mapping.template look_up<Device>(Indices.mapping == tpdo_indices.mapping, places);
+      constexpr bool tpdo = Indices.mapping == tpdo_indices.mapping;
+      const std::uint8_t bits = mapping.template look_up<Device>(tpdo, mapping.count(), places);
       if (bits == 0) return 0;
-      if constexpr (Indices.mapping == rpdo_indices.mapping) {
+      if constexpr (!tpdo) {
         for (std::uint8_t i = 0; i < mapping.count(); ++i) {
           if (watched(mapping[i])) places[i] |= Runs::apart;
         }

@@ -145,27 +145,19 @@ class MappingParameter {
   }
 
   /// Returns the total length of the first `count` objects in bits; 0 if the mapping is invalid: one of them cannot be
-  /// mapped, or they are longer than 64 bits.
+  /// mapped, or they are longer than 64 bits. Stores their runs, unless `runs` is null.
   template <class Device>
-  [[nodiscard, gnu::noinline]] std::uint8_t bits_of(bool tpdo, std::uint8_t count) const {
+  [[nodiscard, gnu::noinline]] std::uint8_t look_up(bool tpdo, std::uint8_t count,
+                                                    typename MappedRun<Device>::Word* runs) const {
     unsigned bits = 0;
     for (std::uint8_t i = 0; i < count; ++i) {
       const MappedObject mapped = (*this)[i];
+      const entry::Word word = can_be_mapped<Device>(tpdo, mapped);
       bits += mapped.bits();
-      if (bits > 64 || can_be_mapped<Device>(tpdo, mapped) == not_mappable) return 0;
+      if (bits > 64 || word == not_mappable) return 0;
+      if (runs != nullptr) runs[i] = MappedRun<Device>::word_of(word, mapped.bits());
     }
     return static_cast<std::uint8_t>(bits);
-  }
-
-  /// Looks up the objects and stores their runs. Returns their total length in bits; 0 if the mapping is invalid.
-  template <class Device>
-  [[gnu::noinline]] std::uint8_t look_up(bool tpdo, typename MappedRun<Device>::Word* runs) const {
-    const std::uint8_t bits = bits_of<Device>(tpdo, count());
-    for (std::uint8_t i = 0; bits != 0 && i < count(); ++i) {
-      const MappedObject mapped = (*this)[i];
-      runs[i] = MappedRun<Device>::word_of(can_be_mapped<Device>(tpdo, mapped), mapped.bits());
-    }
-    return bits;
   }
 
  private:
@@ -178,7 +170,7 @@ class MappingParameter {
 template <class Device>
 [[nodiscard]] bool is_possible_mapping(const MappingParameter& mapping, bool tpdo, std::uint8_t count, std::uint8_t capacity) {
   if (count == 0 || (Device::options.mpdo && count >= source_multiplexed)) return true;
-  return count <= capacity && mapping.bits_of<Device>(tpdo, count) != 0;
+  return count <= capacity && mapping.look_up<Device>(tpdo, count, nullptr) != 0;
 }
 
 /// Checks whether these bytes, whose length is correct, may be written to a mapping parameter for up to `capacity`
