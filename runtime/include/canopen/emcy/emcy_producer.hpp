@@ -84,12 +84,13 @@ class EmergencyProducer {
                                        std::span<std::uint8_t> bytes) {
     if (index == 0x1015) {
       if constexpr (Device::options.emcy_inhibit_time_step != 1) {
-        if (bytes.size() != sizeof(std::uint16_t)) return AbortCode::internal_incompatibility;
+        if constexpr (entry::wire_bytes(Device::dictionary.find(0x1015, 0)) != 2)
+          return AbortCode::internal_incompatibility;
         if (number_in(bytes) % Device::options.emcy_inhibit_time_step != 0) return AbortCode::invalid_value;
       }
       return ok;
     }
-    if (bytes.size() != sizeof(std::uint32_t)) return AbortCode::internal_incompatibility;
+    if constexpr (entry::wire_bytes(Device::dictionary.find(0x1014, 0)) != 4) return AbortCode::internal_incompatibility;
     const CobId before{entries.template number<0x1014, 0>()};
     const CobId written{number_in(bytes)};
     const CobId after = written_cob_id(before, Device::options.emcy_cob_id_writable, bytes);

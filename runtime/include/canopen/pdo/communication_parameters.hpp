@@ -1,6 +1,7 @@
 /// Checks of writes to the communication parameters of a PDO (CiA 301, 7.5.2.35 and 7.5.2.37).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -46,6 +47,17 @@ namespace canopen {
   return remote && transmission != Transmission::reserved ? ok : AbortCode::invalid_value;
 }
 
+/// Whether this sub-index of all PDO communication parameters of a device has `size` bytes.
+template <class Device>
+[[nodiscard]] consteval bool has_pdo_parameter_size(std::uint8_t sub_index, std::size_t size) {
+  bool has = true;
+  Device::dictionary.for_each_entry([&](std::uint16_t index, std::uint8_t other, entry::Word word) {
+    if (other == sub_index && (is_rpdo_communication(index) || is_tpdo_communication(index)))
+      has = has && entry::wire_bytes(word) == size;
+  });
+  return has;
+}
+
 /// Checks whether these bytes, whose length is correct, may be written to 1400h..15FFh or 1800h..19FFh. Bits of a
 /// COB-ID that the device does not allow to change are restored in `bytes`. 0604 0047h: in the EDS, the parameter does
 /// not have the type of CiA 301.
@@ -56,7 +68,8 @@ template <class Device>
   const CobId cob_id{entries.number(index, pdo_parameter::cob_id)};
   switch (sub_index) {
     case pdo_parameter::cob_id: {
-      if (bytes.size() != sizeof(std::uint32_t)) return AbortCode::internal_incompatibility;
+      if (!has_pdo_parameter_size<Device>(pdo_parameter::cob_id, 4) && bytes.size() != 4)
+        return AbortCode::internal_incompatibility;
       const CobId after = written_cob_id(cob_id, Device::options.pdo_cob_id_writable, bytes);
       if (!may_change(cob_id, after, Device::options.pdo_extended_ids)) return AbortCode::invalid_value;
       return check_pdo_features(Device::options, tpdo, after);
@@ -64,7 +77,8 @@ template <class Device>
     case pdo_parameter::transmission_type: return check_transmission_type(Device::options, tpdo, bytes[0]);
     case pdo_parameter::inhibit_time:
       if (!tpdo || Device::options.inhibit_time_writable_while_valid) return ok;
-      if (bytes.size() != sizeof(std::uint16_t)) return AbortCode::internal_incompatibility;
+      if (!has_pdo_parameter_size<Device>(pdo_parameter::inhibit_time, 2) && bytes.size() != 2)
+        return AbortCode::internal_incompatibility;
       break;
     case pdo_parameter::sync_start:
       if (!tpdo) return ok;
