@@ -98,8 +98,12 @@ class Row:
     what: str
     value: float
     peer: float
-    peer_name: str
+    peer_name: str  # may be empty
     mark: float
+
+    @property
+    def peer_text(self) -> str:
+        return f"{self.peer:g}, {self.peer_name}" if self.peer_name else f"{self.peer:g}"
 
 
 @dataclass(frozen=True)
@@ -275,6 +279,8 @@ def counts(bench: Bench) -> list[Row]:
     server, block = bench.instructions("sdo_server", SERVER), bench.instructions("sdo_server", BLOCK_SERVER)
     static = bench.instructions("pdo", Variant("bench100", static_mapping=True))
     dynamic = bench.instructions("pdo", Variant("bench100"))
+    whole, whole_dynamic = (bench.instructions("whole_frame", Variant("bench100", static_mapping=static))
+                            for static in (True, False))
     return [
         Row("look-up of a random entry, 100 indices", look_up_100, 53, "CanFestival", 50),
         Row("look-up of a random entry, 1000 indices", look_up_1000, 44, "CanFestival", 45),
@@ -288,6 +294,12 @@ def counts(bench: Bench) -> list[Row]:
         Row("RPDO of 4 objects, taken", static["rpdo"], 150, "CANopenNode", 26),
         Row("SYNC, 4 RPDOs and 4 TPDOs, static mapping", static["sync-cycle"], 1651, "CANopenNode", 450),
         Row("SYNC, 4 RPDOs and 4 TPDOs, dynamic mapping", dynamic["sync-cycle"], 1651, "CANopenNode", 950),
+        Row("RPDO for the next SYNC, whole `on_frame`", whole["rpdo"], 294, "", 50),
+        Row("expedited upload, frame to frame, static mapping", whole["upload"], 321, "canopen-stack", 220),
+        Row("expedited upload, frame to frame, dynamic mapping", whole_dynamic["upload"], 321, "canopen-stack", 230),
+        Row("expedited download, frame to frame, static mapping", whole["download"], 310, "", 290),
+        Row("expedited download, frame to frame, dynamic mapping", whole_dynamic["download"], 310, "", 310),
+        Row("`on_time` with nothing due, Operational", whole["on-time"], 32, "", 30),
     ]
 
 
@@ -307,7 +319,7 @@ def page(bench: Bench) -> str:
     """docs/footprint.md."""
     def beside_peers(rows: Iterable[Row]) -> list[Sequence[object]]:
         return [(row.what, f"{row.value:g}", f"{row.mark:g}", f"{100 * row.value / row.mark - 100:+.0f} %",
-                 f"{row.peer:g}, {row.peer_name}", f"{row.value / row.peer:.2f}") for row in rows]
+                 row.peer_text, f"{row.value / row.peer:.2f}") for row in rows]
 
     def with_bytes(rows: Iterable[tuple[str, Size]]) -> list[Sequence[object]]:
         return [(what, size.flash, size.ram) for what, size in rows]
