@@ -23,6 +23,7 @@
 #include "canopen/node/handler_calls.hpp"
 #include "canopen/node/handler_check.hpp"
 #include "canopen/node/handlers.hpp"
+#include "canopen/node/idle_time.hpp"
 #include "canopen/node/make_node.hpp"
 #include "canopen/node/service_host.hpp"
 #include "canopen/node/services.hpp"
@@ -66,6 +67,7 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device, HandlerSe
   /// Processes a frame from the bus. Frames that are not for this node are ignored.
   void on_frame(const Frame& frame, TimePoint now) {
     now_ = now;
+    idle_.end();
     services_.on_frame_without_node_id(host(), frame);
     if (state_ == NmtState::initialisation) return serve_without_node_id();
     if (attention_) serve();
@@ -76,10 +78,13 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device, HandlerSe
   /// Processes elapsed time. Call it at `next_deadline()`, when the bus has room again, and at least every half hour.
   void on_time(TimePoint now) {
     now_ = now;
+    if (!attention_ && idle_.lasts(now)) return;
+    const bool was_idle = idle_.has_begun();
     services_.on_time_without_node_id(host());
     if (state_ == NmtState::initialisation) return serve_without_node_id();
     services_.on_time(host());
     serve();
+    if (!attention_) was_idle ? idle_.begin(now, next_deadline()) : idle_.begin();
   }
 
   /// Returns when `on_time` is next due; not later than the time of the last call if it is already due. Empty: only a
@@ -331,8 +336,6 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device, HandlerSe
     if (starts_itself(store_)) enter(NmtState::operational);
   }
 
-  // Values
-
   /// Sets a value that has passed all checks.
   template <DictionaryObject O>
   AbortCode take_over(const typename O::type& value) {
@@ -359,12 +362,11 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device, HandlerSe
     if (serves_pdo(state_) && services_.template on_new_value<O>(host())) attention_ = true;
   }
 
-  // Sending
-
   /// Sends what is due, in order of importance; what the bus has no room for remains due. A command that a handler has
   /// requested is executed after the response of the SDO server.
   [[gnu::noinline]] void serve() {
     attention_ = false;
+    idle_.end();
     if (services_.silent()) return;
     if (!services_.serve(host())) attention_ = true;
     if constexpr (HandlerCalls<Handlers...>::exist) {
@@ -389,6 +391,7 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device, HandlerSe
   NodeId node_id_{};
   NmtState state_ = NmtState::initialisation;
   bool attention_ = false;  ///< something may have become due since the last check
+  [[no_unique_address]] IdleTime idle_{};
   [[no_unique_address]] HandlerCalls<Handlers...> handler_calls_{};
   [[no_unique_address]] Services services_{};
   ObjectStore<Device> store_{};

@@ -30,6 +30,7 @@ class ServiceHost {
   void set_node_id(NodeId node_id) { node().node_id_ = node_id; }
 
   [[nodiscard]] auto& store() { return node().store_; }
+  [[nodiscard]] const auto& store() const { return node().store_; }
   [[nodiscard]] auto entries() { return node().store_.entries(); }
   [[nodiscard]] auto& bus() { return node().bus_; }
 

@@ -112,7 +112,11 @@ class SyncProducer {
     return Sync{SyncConsumer<Device>::overflow_of(store) != 0 ? counter_ : std::uint8_t{0}, true};
   }
 
-  [[nodiscard]] std::optional<TimePoint> next_deadline() const { return running_ ? std::optional{due_} : std::nullopt; }
+  /// Returns when the next SYNC is due; not later than `now` if it is already due, for however long.
+  [[nodiscard]] std::optional<TimePoint> next_deadline(const ObjectStore<Device>& store, TimePoint now) const {
+    if (!running_) return std::nullopt;
+    return is_within(due_, period_of(store), now) ? due_ : now;
+  }
 
  private:
   [[nodiscard]] static Duration period_of(const ObjectStore<Device>& store) {

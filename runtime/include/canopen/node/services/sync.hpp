@@ -52,8 +52,8 @@ class Sync : public ServiceDefaults<Sync<Device>> {
   }
 
   template <class Host>
-  std::optional<TimePoint> deadline(Host&) const {
-    if constexpr (Producer::exists) return producer_.next_deadline();
+  std::optional<TimePoint> deadline([[maybe_unused]] Host& host) const {
+    if constexpr (Producer::exists) return producer_.next_deadline(host.store(), host.now());
     return std::nullopt;
   }
 

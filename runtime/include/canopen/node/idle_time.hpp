@@ -1,0 +1,61 @@
+/// The time until a node has something to do, so that a call of `on_time` before it can return at once.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <type_traits>
+
+#include "canopen/base/clock.hpp"
+#include "canopen/base/optimization.hpp"
+
+namespace canopen {
+
+namespace node_detail {
+
+/// It begins with a call of `on_time` and ends with the next event: a frame that is received, or a check of what is to
+/// be sent. Its length is determined by the second call without an event in between: a node that calls `on_time` after
+/// each frame would pay for a deadline that it does not use.
+class IdleTime {
+ public:
+  /// Something has happened: deadlines may have changed.
+  void end() { state_ = State::unknown; }
+
+  /// Whether nothing is due.
+  [[nodiscard]] bool lasts(TimePoint now) const { return state_ == State::known && is_within(end_, longest, now); }
+
+  /// Whether `on_time` has been called since the last event.
+  [[nodiscard]] bool has_begun() const { return state_ != State::unknown; }
+
+  /// `on_time` has sent what was due.
+  void begin() { state_ = State::begun; }
+  /// The same with the earliest deadline; empty: none. One that has passed, or is far ahead, is not waited for.
+  void begin(TimePoint now, std::optional<TimePoint> deadline) {
+    end_ = deadline.value_or(now + longest);
+    state_ = is_within(end_, longest, now) ? State::known : State::begun;
+  }
+
+ private:
+  /// Services must see the time at least every half hour.
+  static constexpr Duration longest{0x4000'0000};
+
+  enum class State : std::uint8_t { unknown, begun, known };
+
+  TimePoint end_{};
+  State state_ = State::unknown;
+};
+
+/// The same for an image for size, which does not need the deadlines of all services: `on_time` always checks them.
+class NoIdleTime {
+ public:
+  static void end() {}
+  [[nodiscard]] static constexpr bool lasts(TimePoint) { return false; }
+  [[nodiscard]] static constexpr bool has_begun() { return false; }
+  static void begin() {}
+  static void begin(TimePoint, std::optional<TimePoint>) {}
+};
+
+}  // namespace node_detail
+
+using IdleTime = std::conditional_t<prefers_size, node_detail::NoIdleTime, node_detail::IdleTime>;
+
+}  // namespace canopen
