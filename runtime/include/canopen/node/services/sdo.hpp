@@ -22,7 +22,7 @@ struct SdoHooks {
   using Device = typename Host::Device;
 
   Host& host;
-  bool new_value = true;  ///< the written value differs from the present one
+  bool new_value = true;  ///< the written value differs from the present one, and TPDOs may have to know
 
   [[nodiscard]] EntryAccess<Device> entries() { return host.entries(); }
   [[nodiscard]] AbortCode before_read(std::uint16_t index, std::uint8_t sub_index) {
@@ -38,13 +38,20 @@ struct SdoHooks {
     }
     return code;
   }
+  /// Whether a value must be written.
   [[nodiscard]] bool is_new(entry::Word word, std::span<const std::uint8_t> bytes) {
-    if (host.handler_calls().set_by_handler()) new_value = false;
-    if constexpr (Tpdos<Device>::exists || MpdoService<Device>::sends_source) {
-      // TPDOs do not map DOMAINs.
-      if (new_value && (word & entry::tpdo) != 0) new_value = !entries().holds(word, bytes);
+    if (host.handler_calls().set_by_handler()) {
+      new_value = false;
+      return false;
     }
-    return new_value;
+    const bool mappable = (word & entry::tpdo) != 0;  // not a DOMAIN
+    if constexpr (MpdoService<Device>::sends_source) {
+      // Also of interest: a new value of a list of objects that are sent.
+      if (mappable) new_value = !entries().holds(word, bytes);
+    } else if constexpr (Tpdos<Device>::exists) {
+      new_value = mappable && !entries().holds(word, bytes);
+    }
+    return new_value || !mappable;
   }
   void after_write(std::uint16_t index, std::uint8_t sub_index) { host.after_write(index, sub_index, new_value); }
   [[nodiscard]] AbortCode command(std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
