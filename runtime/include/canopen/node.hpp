@@ -291,8 +291,6 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device, HandlerSe
     }
   }
 
-  // Network management
-
   /// Executes a command; an invalid code has no effect. The newest command replaces one that a handler has requested.
   [[gnu::noinline]] void carry_out(NmtCommand command) {
     handler_calls_.discard_deferred();
@@ -353,8 +351,9 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device, HandlerSe
   /// Notifies the services that an object has been written, with a new or the same value.
   void after_write(std::uint16_t index, std::uint8_t sub_index, bool new_value) {
     attention_ = true;
-    services_.after_write(host(), index, sub_index);
-    if (serves_pdo(state_)) services_.after_operational_write(host(), index, sub_index, new_value);
+    if (may_concern_services(index)) services_.after_write(host(), index, sub_index);
+    if (serves_pdo(state_) && (new_value || may_concern_services(index)))
+      services_.after_operational_write(host(), index, sub_index, new_value);
   }
   template <DictionaryObject O>
   void on_new_value() {

@@ -16,7 +16,9 @@ namespace canopen {
 template <class Host>
 [[nodiscard]] AbortCode before_write(Host& host, std::uint16_t index, std::uint8_t sub_index,
                                      std::span<std::uint8_t> bytes) {
-  if (const AbortCode code = host.check_write(index, sub_index, bytes); code != ok) return code;
+  if (may_concern_services(index)) {
+    if (const AbortCode code = host.check_write(index, sub_index, bytes); code != ok) return code;
+  }
   const std::uint32_t key = object_key(index, sub_index);
   return host.handler_calls().ask(key, [&] { return host.handlers().before_write(host.node(), key, bytes); });
 }
