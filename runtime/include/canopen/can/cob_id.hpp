@@ -78,7 +78,7 @@ struct RestrictedCanIds {
   std::uint16_t last;
 };
 
-inline constexpr RestrictedCanIds restricted_can_ids[] = {
+inline constexpr RestrictedCanIds restricted_can_ids[] = {  // ascending
     {0x000, 0x000}, {0x001, 0x07F}, {0x101, 0x180}, {0x581, 0x5FF},
     {0x601, 0x67F}, {0x6E0, 0x6FF}, {0x701, 0x77F}, {0x780, 0x7FF},
 };
@@ -92,7 +92,7 @@ inline constexpr const char* restricted_can_id_reasons[] = {
 /// Whether a configurable object may not use an 11-bit CAN-ID.
 [[nodiscard]] constexpr bool is_restricted(std::uint32_t can_id) {
   for (const auto& range : restricted_can_ids) {
-    if (can_id >= range.first && can_id <= range.last) return true;
+    if (can_id <= range.last) return can_id >= range.first;
   }
   return false;
 }
