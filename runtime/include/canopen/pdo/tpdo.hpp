@@ -99,7 +99,7 @@ class TpdoService {
   void parameter_changed(ObjectStore<Device>& store, std::uint16_t index, std::uint8_t sub_index, TimePoint now) {
     const std::size_t i = place_of_pdo<Pdos>(index);
     if (i == count) return;
-    if (!is_tpdo_mapping(index)) {
+    if (!has_dynamic_mapping || !is_tpdo_mapping(index)) {
       if (sub_index == pdo_parameter::inhibit_time) return;
       if (sub_index == pdo_parameter::event_timer) return start_event_timer(slots_[i], i, store.entries(), now);
     }

@@ -105,7 +105,7 @@ class Rpdos : public ServiceDefaults<Rpdos<Device>> {
   void after_operational_write(Host& host, std::uint16_t index, std::uint8_t, bool) {
     if (TpdoService<Device>::has_dynamic_mapping && is_tpdo_mapping(index))
       rpdos_.watch_again(host.entries(), Watched<Host>{host});
-    if (is_rpdo_communication(index) || is_rpdo_mapping(index)) {
+    if (is_rpdo_communication(index) || (RpdoService<Device>::has_dynamic_mapping && is_rpdo_mapping(index))) {
       rpdos_.parameter_changed(host.entries(), index, Watched<Host>{host});
       host.end_if_gone(rpdo_errors);
     }

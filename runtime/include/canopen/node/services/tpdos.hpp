@@ -51,7 +51,7 @@ class Tpdos : public ServiceDefaults<Tpdos<Device>> {
 
   template <class Host>
   void after_operational_write(Host& host, std::uint16_t index, std::uint8_t sub_index, bool new_value) {
-    if (is_tpdo_communication(index) || is_tpdo_mapping(index))
+    if (is_tpdo_communication(index) || (TpdoService<Device>::has_dynamic_mapping && is_tpdo_mapping(index)))
       tpdos_.parameter_changed(host.store(), index, sub_index, host.now());
     if (new_value) tpdos_.changed(host.entries(), index, sub_index);
   }
