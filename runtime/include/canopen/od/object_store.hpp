@@ -1,6 +1,7 @@
 /// The values of one device: typed access by object.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
@@ -142,14 +143,33 @@ class ObjectStore {
 
   [[nodiscard]] std::uint8_t* ram() { return reinterpret_cast<std::uint8_t*>(&values_); }
 
+  /// Whether the node-ID is added to COB-IDs only, which is the usual case: words of four bytes.
+  static constexpr bool adds_to_words = [] {
+    const auto is_word = [](const NodeIdRelative& row) { return row.size == 4 && row.offset % 4 == 0; };
+    return std::ranges::all_of(Device::node_id_relative_communication(), is_word) &&
+           std::ranges::all_of(Device::node_id_relative_application(), is_word);
+  }();
+
   void add_node_id(std::span<const NodeIdRelative> rows) {
     for (const NodeIdRelative& row : rows) {
-      unsigned carry = node_id_.value();
-      for (std::uint8_t *byte = ram() + row.offset, *const end = byte + row.size; byte != end; ++byte) {
-        carry += *byte;
-        *byte = static_cast<std::uint8_t>(carry);
-        carry >>= 8;
+      if constexpr (adds_to_words) {
+        std::uint8_t* const at = std::assume_aligned<4>(ram() + row.offset);
+        std::uint32_t value;
+        std::memcpy(&value, at, sizeof value);
+        value += node_id_.value();
+        std::memcpy(at, &value, sizeof value);
+      } else {
+        add_node_id(ram() + row.offset, row.size);
       }
+    }
+  }
+
+  void add_node_id(std::uint8_t* byte, std::size_t size) {
+    unsigned carry = node_id_.value();
+    for (const std::uint8_t* const end = byte + size; byte != end; ++byte) {
+      carry += *byte;
+      *byte = static_cast<std::uint8_t>(carry);
+      carry >>= 8;
     }
   }
 
