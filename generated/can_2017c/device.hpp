@@ -25,6 +25,7 @@ struct Device {
   static constexpr auto name = "CAN-2017C";
 
   using Values = can_2017c::Values;
+  using Objects = can_2017c::Objects;
   static constexpr const canopen::Dictionary& dictionary = can_2017c::dictionary;
 
   /// The PDOs that the runtime serves, by number.

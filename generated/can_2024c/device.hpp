@@ -25,6 +25,7 @@ struct Device {
   static constexpr auto name = "CAN-2024C";
 
   using Values = can_2024c::Values;
+  using Objects = can_2024c::Objects;
   static constexpr const canopen::Dictionary& dictionary = can_2024c::dictionary;
 
   /// The PDOs that the runtime serves, by number.

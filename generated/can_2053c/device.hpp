@@ -25,6 +25,7 @@ struct Device {
   static constexpr auto name = "CAN-2053C";
 
   using Values = can_2053c::Values;
+  using Objects = can_2053c::Objects;
   static constexpr const canopen::Dictionary& dictionary = can_2053c::dictionary;
 
   /// The PDOs that the runtime serves, by number.

@@ -25,6 +25,7 @@ struct Device {
   static constexpr auto name = "CAN-2057C";
 
   using Values = can_2057c::Values;
+  using Objects = can_2057c::Objects;
   static constexpr const canopen::Dictionary& dictionary = can_2057c::dictionary;
 
   /// The PDOs that the runtime serves, by number.

@@ -10,6 +10,7 @@
 
 #include <canopen/od/dictionary.hpp>
 #include <canopen/od/object.hpp>
+#include <canopen/od/object_list.hpp>
 
 namespace can_2057c {
 
@@ -27,9 +28,9 @@ struct error_register : canopen::Object<0x1001, 0x00, std::uint8_t, canopen::Acc
 };
 
 /// Pre-defined error field.  1003h:01..05  UNSIGNED32  ro                          can-2057c.eds:213
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct pre_defined_error_field : canopen::Object<0x1003, SubIndex, std::uint32_t, canopen::Access::ro> {
-  static_assert(SubIndex <= 5, "pre_defined_error_field has the sub-indices 0..5");
+  static_assert(SubIndex <= 5 || SubIndex == canopen::whole_array, "pre_defined_error_field has the sub-indices 0..5");
   static constexpr auto name = "Pre-defined error field";
 };
 template <>
@@ -68,9 +69,9 @@ struct life_time_factor : canopen::Object<0x100D, 0x00, std::uint8_t, canopen::A
 };
 
 /// Store parameters.  1010h:01..01  UNSIGNED32  rw                                 can-2057c.eds:328
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct store_parameters : canopen::Object<0x1010, SubIndex, std::uint32_t, canopen::Access::rw> {
-  static_assert(SubIndex <= 1, "store_parameters has the sub-indices 0..1");
+  static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "store_parameters has the sub-indices 0..1");
   static constexpr auto name = "Store parameters";
 };
 template <>
@@ -82,9 +83,9 @@ struct store_parameters<0> : canopen::Object<0x1010, 0x00, std::uint8_t, canopen
 using store_parameters_save_all_parameters = store_parameters<1>;
 
 /// Restore default parameters.  1011h:01..01  UNSIGNED32  rw                       can-2057c.eds:351
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct restore_default_parameters : canopen::Object<0x1011, SubIndex, std::uint32_t, canopen::Access::rw> {
-  static_assert(SubIndex <= 1, "restore_default_parameters has the sub-indices 0..1");
+  static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "restore_default_parameters has the sub-indices 0..1");
   static constexpr auto name = "Restore default parameters";
 };
 template <>
@@ -1346,9 +1347,9 @@ struct mapping_entry_8 : canopen::Object<0x1A09, 0x08, std::uint32_t, canopen::A
 }  // namespace tpdo_mapping_parameter_10
 
 /// Write output 8-bit.  6200h:01..02  UNSIGNED8  rww  RPDO                         can-2057c.eds:2756
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct write_output_8_bit : canopen::Object<0x6200, SubIndex, std::uint8_t, canopen::Access::rww, canopen::Mappable::rpdo> {
-  static_assert(SubIndex <= 2, "write_output_8_bit has the sub-indices 0..2");
+  static_assert(SubIndex <= 2 || SubIndex == canopen::whole_array, "write_output_8_bit has the sub-indices 0..2");
   static constexpr auto name = "Write output 8-bit";
 };
 template <>
@@ -1357,9 +1358,9 @@ struct write_output_8_bit<0> : canopen::Object<0x6200, 0x00, std::uint8_t, canop
 };
 
 /// Error mode output 8-bit.  6206h:01..02  UNSIGNED8  rw                           can-2057c.eds:2788
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct error_mode_output_8_bit : canopen::Object<0x6206, SubIndex, std::uint8_t, canopen::Access::rw> {
-  static_assert(SubIndex <= 2, "error_mode_output_8_bit has the sub-indices 0..2");
+  static_assert(SubIndex <= 2 || SubIndex == canopen::whole_array, "error_mode_output_8_bit has the sub-indices 0..2");
   static constexpr auto name = "Error mode output 8-bit";
 };
 template <>
@@ -1368,9 +1369,9 @@ struct error_mode_output_8_bit<0> : canopen::Object<0x6206, 0x00, std::uint8_t, 
 };
 
 /// Error value output 8-bit.  6207h:01..02  UNSIGNED8  rw                          can-2057c.eds:2820
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct error_value_output_8_bit : canopen::Object<0x6207, SubIndex, std::uint8_t, canopen::Access::rw> {
-  static_assert(SubIndex <= 2, "error_value_output_8_bit has the sub-indices 0..2");
+  static_assert(SubIndex <= 2 || SubIndex == canopen::whole_array, "error_value_output_8_bit has the sub-indices 0..2");
   static constexpr auto name = "Error value output 8-bit";
 };
 template <>
@@ -1379,6 +1380,293 @@ struct error_value_output_8_bit<0> : canopen::Object<0x6207, 0x00, std::uint8_t,
 };
 
 }  // namespace od
+
+/// All of them, in the order of the dictionary.
+using Objects = canopen::ObjectRows<
+    od::device_type,
+    od::error_register,
+    canopen::ArrayObjects<od::pre_defined_error_field, 5>,
+    od::cob_id_sync,
+    od::manufacturer_device_name,
+    od::manufacturer_hardware_version,
+    od::manufacturer_software_version,
+    od::guard_time,
+    od::life_time_factor,
+    canopen::ArrayObjects<od::store_parameters, 1>,
+    canopen::ArrayObjects<od::restore_default_parameters, 1>,
+    od::cob_id_emcy,
+    od::producer_heartbeat_time,
+    od::identity_object::highest_sub_index_supported,
+    od::identity_object::vendor_id,
+    od::identity_object::product_code,
+    od::identity_object::revision_number,
+    od::identity_object::serial_number,
+    od::sdo_server_parameter::highest_sub_index_supported,
+    od::sdo_server_parameter::cob_id_client_to_server,
+    od::sdo_server_parameter::cob_id_server_to_client,
+    od::rpdo_communication_parameter_1::highest_sub_index_supported,
+    od::rpdo_communication_parameter_1::cob_id_used_by_rpdo,
+    od::rpdo_communication_parameter_1::transmission_type,
+    od::rpdo_communication_parameter_2::highest_sub_index_supported,
+    od::rpdo_communication_parameter_2::cob_id_used_by_rpdo,
+    od::rpdo_communication_parameter_2::transmission_type,
+    od::rpdo_communication_parameter_3::highest_sub_index_supported,
+    od::rpdo_communication_parameter_3::cob_id_used_by_rpdo,
+    od::rpdo_communication_parameter_3::transmission_type,
+    od::rpdo_communication_parameter_4::highest_sub_index_supported,
+    od::rpdo_communication_parameter_4::cob_id_used_by_rpdo,
+    od::rpdo_communication_parameter_4::transmission_type,
+    od::rpdo_communication_parameter_5::highest_sub_index_supported,
+    od::rpdo_communication_parameter_5::cob_id_used_by_rpdo,
+    od::rpdo_communication_parameter_5::transmission_type,
+    od::rpdo_communication_parameter_6::highest_sub_index_supported,
+    od::rpdo_communication_parameter_6::cob_id_used_by_rpdo,
+    od::rpdo_communication_parameter_6::transmission_type,
+    od::rpdo_communication_parameter_7::highest_sub_index_supported,
+    od::rpdo_communication_parameter_7::cob_id_used_by_rpdo,
+    od::rpdo_communication_parameter_7::transmission_type,
+    od::rpdo_communication_parameter_8::highest_sub_index_supported,
+    od::rpdo_communication_parameter_8::cob_id_used_by_rpdo,
+    od::rpdo_communication_parameter_8::transmission_type,
+    od::rpdo_communication_parameter_9::highest_sub_index_supported,
+    od::rpdo_communication_parameter_9::cob_id_used_by_rpdo,
+    od::rpdo_communication_parameter_9::transmission_type,
+    od::rpdo_communication_parameter_10::highest_sub_index_supported,
+    od::rpdo_communication_parameter_10::cob_id_used_by_rpdo,
+    od::rpdo_communication_parameter_10::transmission_type,
+    od::rpdo_mapping_parameter_1::number_of_mapped_objects,
+    od::rpdo_mapping_parameter_1::mapping_entry_1,
+    od::rpdo_mapping_parameter_1::mapping_entry_2,
+    od::rpdo_mapping_parameter_1::mapping_entry_3,
+    od::rpdo_mapping_parameter_1::mapping_entry_4,
+    od::rpdo_mapping_parameter_1::mapping_entry_5,
+    od::rpdo_mapping_parameter_1::mapping_entry_6,
+    od::rpdo_mapping_parameter_1::mapping_entry_7,
+    od::rpdo_mapping_parameter_1::mapping_entry_8,
+    od::rpdo_mapping_parameter_2::number_of_mapped_objects,
+    od::rpdo_mapping_parameter_2::mapping_entry_1,
+    od::rpdo_mapping_parameter_2::mapping_entry_2,
+    od::rpdo_mapping_parameter_2::mapping_entry_3,
+    od::rpdo_mapping_parameter_2::mapping_entry_4,
+    od::rpdo_mapping_parameter_2::mapping_entry_5,
+    od::rpdo_mapping_parameter_2::mapping_entry_6,
+    od::rpdo_mapping_parameter_2::mapping_entry_7,
+    od::rpdo_mapping_parameter_2::mapping_entry_8,
+    od::rpdo_mapping_parameter_3::number_of_mapped_objects,
+    od::rpdo_mapping_parameter_3::mapping_entry_1,
+    od::rpdo_mapping_parameter_3::mapping_entry_2,
+    od::rpdo_mapping_parameter_3::mapping_entry_3,
+    od::rpdo_mapping_parameter_3::mapping_entry_4,
+    od::rpdo_mapping_parameter_3::mapping_entry_5,
+    od::rpdo_mapping_parameter_3::mapping_entry_6,
+    od::rpdo_mapping_parameter_3::mapping_entry_7,
+    od::rpdo_mapping_parameter_3::mapping_entry_8,
+    od::rpdo_mapping_parameter_4::number_of_mapped_objects,
+    od::rpdo_mapping_parameter_4::mapping_entry_1,
+    od::rpdo_mapping_parameter_4::mapping_entry_2,
+    od::rpdo_mapping_parameter_4::mapping_entry_3,
+    od::rpdo_mapping_parameter_4::mapping_entry_4,
+    od::rpdo_mapping_parameter_4::mapping_entry_5,
+    od::rpdo_mapping_parameter_4::mapping_entry_6,
+    od::rpdo_mapping_parameter_4::mapping_entry_7,
+    od::rpdo_mapping_parameter_4::mapping_entry_8,
+    od::rpdo_mapping_parameter_5::number_of_mapped_objects,
+    od::rpdo_mapping_parameter_5::mapping_entry_1,
+    od::rpdo_mapping_parameter_5::mapping_entry_2,
+    od::rpdo_mapping_parameter_5::mapping_entry_3,
+    od::rpdo_mapping_parameter_5::mapping_entry_4,
+    od::rpdo_mapping_parameter_5::mapping_entry_5,
+    od::rpdo_mapping_parameter_5::mapping_entry_6,
+    od::rpdo_mapping_parameter_5::mapping_entry_7,
+    od::rpdo_mapping_parameter_5::mapping_entry_8,
+    od::rpdo_mapping_parameter_6::number_of_mapped_objects,
+    od::rpdo_mapping_parameter_6::mapping_entry_1,
+    od::rpdo_mapping_parameter_6::mapping_entry_2,
+    od::rpdo_mapping_parameter_6::mapping_entry_3,
+    od::rpdo_mapping_parameter_6::mapping_entry_4,
+    od::rpdo_mapping_parameter_6::mapping_entry_5,
+    od::rpdo_mapping_parameter_6::mapping_entry_6,
+    od::rpdo_mapping_parameter_6::mapping_entry_7,
+    od::rpdo_mapping_parameter_6::mapping_entry_8,
+    od::rpdo_mapping_parameter_7::number_of_mapped_objects,
+    od::rpdo_mapping_parameter_7::mapping_entry_1,
+    od::rpdo_mapping_parameter_7::mapping_entry_2,
+    od::rpdo_mapping_parameter_7::mapping_entry_3,
+    od::rpdo_mapping_parameter_7::mapping_entry_4,
+    od::rpdo_mapping_parameter_7::mapping_entry_5,
+    od::rpdo_mapping_parameter_7::mapping_entry_6,
+    od::rpdo_mapping_parameter_7::mapping_entry_7,
+    od::rpdo_mapping_parameter_7::mapping_entry_8,
+    od::rpdo_mapping_parameter_8::number_of_mapped_objects,
+    od::rpdo_mapping_parameter_8::mapping_entry_1,
+    od::rpdo_mapping_parameter_8::mapping_entry_2,
+    od::rpdo_mapping_parameter_8::mapping_entry_3,
+    od::rpdo_mapping_parameter_8::mapping_entry_4,
+    od::rpdo_mapping_parameter_8::mapping_entry_5,
+    od::rpdo_mapping_parameter_8::mapping_entry_6,
+    od::rpdo_mapping_parameter_8::mapping_entry_7,
+    od::rpdo_mapping_parameter_8::mapping_entry_8,
+    od::rpdo_mapping_parameter_9::number_of_mapped_objects,
+    od::rpdo_mapping_parameter_9::mapping_entry_1,
+    od::rpdo_mapping_parameter_9::mapping_entry_2,
+    od::rpdo_mapping_parameter_9::mapping_entry_3,
+    od::rpdo_mapping_parameter_9::mapping_entry_4,
+    od::rpdo_mapping_parameter_9::mapping_entry_5,
+    od::rpdo_mapping_parameter_9::mapping_entry_6,
+    od::rpdo_mapping_parameter_9::mapping_entry_7,
+    od::rpdo_mapping_parameter_9::mapping_entry_8,
+    od::rpdo_mapping_parameter_10::number_of_mapped_objects,
+    od::rpdo_mapping_parameter_10::mapping_entry_1,
+    od::rpdo_mapping_parameter_10::mapping_entry_2,
+    od::rpdo_mapping_parameter_10::mapping_entry_3,
+    od::rpdo_mapping_parameter_10::mapping_entry_4,
+    od::rpdo_mapping_parameter_10::mapping_entry_5,
+    od::rpdo_mapping_parameter_10::mapping_entry_6,
+    od::rpdo_mapping_parameter_10::mapping_entry_7,
+    od::rpdo_mapping_parameter_10::mapping_entry_8,
+    od::tpdo_communication_parameter_1::highest_sub_index_supported,
+    od::tpdo_communication_parameter_1::cob_id_used_by_tpdo,
+    od::tpdo_communication_parameter_1::transmission_type,
+    od::tpdo_communication_parameter_1::inhibit_time,
+    od::tpdo_communication_parameter_1::event_timer,
+    od::tpdo_communication_parameter_2::highest_sub_index_supported,
+    od::tpdo_communication_parameter_2::cob_id_used_by_tpdo,
+    od::tpdo_communication_parameter_2::transmission_type,
+    od::tpdo_communication_parameter_2::inhibit_time,
+    od::tpdo_communication_parameter_2::event_timer,
+    od::tpdo_communication_parameter_3::highest_sub_index_supported,
+    od::tpdo_communication_parameter_3::cob_id_used_by_tpdo,
+    od::tpdo_communication_parameter_3::transmission_type,
+    od::tpdo_communication_parameter_3::inhibit_time,
+    od::tpdo_communication_parameter_3::event_timer,
+    od::tpdo_communication_parameter_4::highest_sub_index_supported,
+    od::tpdo_communication_parameter_4::cob_id_used_by_tpdo,
+    od::tpdo_communication_parameter_4::transmission_type,
+    od::tpdo_communication_parameter_4::inhibit_time,
+    od::tpdo_communication_parameter_4::event_timer,
+    od::tpdo_communication_parameter_5::highest_sub_index_supported,
+    od::tpdo_communication_parameter_5::cob_id_used_by_tpdo,
+    od::tpdo_communication_parameter_5::transmission_type,
+    od::tpdo_communication_parameter_5::inhibit_time,
+    od::tpdo_communication_parameter_5::event_timer,
+    od::tpdo_communication_parameter_6::highest_sub_index_supported,
+    od::tpdo_communication_parameter_6::cob_id_used_by_tpdo,
+    od::tpdo_communication_parameter_6::transmission_type,
+    od::tpdo_communication_parameter_6::inhibit_time,
+    od::tpdo_communication_parameter_6::event_timer,
+    od::tpdo_communication_parameter_7::highest_sub_index_supported,
+    od::tpdo_communication_parameter_7::cob_id_used_by_tpdo,
+    od::tpdo_communication_parameter_7::transmission_type,
+    od::tpdo_communication_parameter_7::inhibit_time,
+    od::tpdo_communication_parameter_7::event_timer,
+    od::tpdo_communication_parameter_8::highest_sub_index_supported,
+    od::tpdo_communication_parameter_8::cob_id_used_by_tpdo,
+    od::tpdo_communication_parameter_8::transmission_type,
+    od::tpdo_communication_parameter_8::inhibit_time,
+    od::tpdo_communication_parameter_8::event_timer,
+    od::tpdo_communication_parameter_9::highest_sub_index_supported,
+    od::tpdo_communication_parameter_9::cob_id_used_by_tpdo,
+    od::tpdo_communication_parameter_9::transmission_type,
+    od::tpdo_communication_parameter_9::inhibit_time,
+    od::tpdo_communication_parameter_9::event_timer,
+    od::tpdo_communication_parameter_10::highest_sub_index_supported,
+    od::tpdo_communication_parameter_10::cob_id_used_by_tpdo,
+    od::tpdo_communication_parameter_10::transmission_type,
+    od::tpdo_communication_parameter_10::inhibit_time,
+    od::tpdo_communication_parameter_10::event_timer,
+    od::tpdo_mapping_parameter_1::number_of_mapped_objects,
+    od::tpdo_mapping_parameter_1::mapping_entry_1,
+    od::tpdo_mapping_parameter_1::mapping_entry_2,
+    od::tpdo_mapping_parameter_1::mapping_entry_3,
+    od::tpdo_mapping_parameter_1::mapping_entry_4,
+    od::tpdo_mapping_parameter_1::mapping_entry_5,
+    od::tpdo_mapping_parameter_1::mapping_entry_6,
+    od::tpdo_mapping_parameter_1::mapping_entry_7,
+    od::tpdo_mapping_parameter_1::mapping_entry_8,
+    od::tpdo_mapping_parameter_2::number_of_mapped_objects,
+    od::tpdo_mapping_parameter_2::mapping_entry_1,
+    od::tpdo_mapping_parameter_2::mapping_entry_2,
+    od::tpdo_mapping_parameter_2::mapping_entry_3,
+    od::tpdo_mapping_parameter_2::mapping_entry_4,
+    od::tpdo_mapping_parameter_2::mapping_entry_5,
+    od::tpdo_mapping_parameter_2::mapping_entry_6,
+    od::tpdo_mapping_parameter_2::mapping_entry_7,
+    od::tpdo_mapping_parameter_2::mapping_entry_8,
+    od::tpdo_mapping_parameter_3::number_of_mapped_objects,
+    od::tpdo_mapping_parameter_3::mapping_entry_1,
+    od::tpdo_mapping_parameter_3::mapping_entry_2,
+    od::tpdo_mapping_parameter_3::mapping_entry_3,
+    od::tpdo_mapping_parameter_3::mapping_entry_4,
+    od::tpdo_mapping_parameter_3::mapping_entry_5,
+    od::tpdo_mapping_parameter_3::mapping_entry_6,
+    od::tpdo_mapping_parameter_3::mapping_entry_7,
+    od::tpdo_mapping_parameter_3::mapping_entry_8,
+    od::tpdo_mapping_parameter_4::number_of_mapped_objects,
+    od::tpdo_mapping_parameter_4::mapping_entry_1,
+    od::tpdo_mapping_parameter_4::mapping_entry_2,
+    od::tpdo_mapping_parameter_4::mapping_entry_3,
+    od::tpdo_mapping_parameter_4::mapping_entry_4,
+    od::tpdo_mapping_parameter_4::mapping_entry_5,
+    od::tpdo_mapping_parameter_4::mapping_entry_6,
+    od::tpdo_mapping_parameter_4::mapping_entry_7,
+    od::tpdo_mapping_parameter_4::mapping_entry_8,
+    od::tpdo_mapping_parameter_5::number_of_mapped_objects,
+    od::tpdo_mapping_parameter_5::mapping_entry_1,
+    od::tpdo_mapping_parameter_5::mapping_entry_2,
+    od::tpdo_mapping_parameter_5::mapping_entry_3,
+    od::tpdo_mapping_parameter_5::mapping_entry_4,
+    od::tpdo_mapping_parameter_5::mapping_entry_5,
+    od::tpdo_mapping_parameter_5::mapping_entry_6,
+    od::tpdo_mapping_parameter_5::mapping_entry_7,
+    od::tpdo_mapping_parameter_5::mapping_entry_8,
+    od::tpdo_mapping_parameter_6::number_of_mapped_objects,
+    od::tpdo_mapping_parameter_6::mapping_entry_1,
+    od::tpdo_mapping_parameter_6::mapping_entry_2,
+    od::tpdo_mapping_parameter_6::mapping_entry_3,
+    od::tpdo_mapping_parameter_6::mapping_entry_4,
+    od::tpdo_mapping_parameter_6::mapping_entry_5,
+    od::tpdo_mapping_parameter_6::mapping_entry_6,
+    od::tpdo_mapping_parameter_6::mapping_entry_7,
+    od::tpdo_mapping_parameter_6::mapping_entry_8,
+    od::tpdo_mapping_parameter_7::number_of_mapped_objects,
+    od::tpdo_mapping_parameter_7::mapping_entry_1,
+    od::tpdo_mapping_parameter_7::mapping_entry_2,
+    od::tpdo_mapping_parameter_7::mapping_entry_3,
+    od::tpdo_mapping_parameter_7::mapping_entry_4,
+    od::tpdo_mapping_parameter_7::mapping_entry_5,
+    od::tpdo_mapping_parameter_7::mapping_entry_6,
+    od::tpdo_mapping_parameter_7::mapping_entry_7,
+    od::tpdo_mapping_parameter_7::mapping_entry_8,
+    od::tpdo_mapping_parameter_8::number_of_mapped_objects,
+    od::tpdo_mapping_parameter_8::mapping_entry_1,
+    od::tpdo_mapping_parameter_8::mapping_entry_2,
+    od::tpdo_mapping_parameter_8::mapping_entry_3,
+    od::tpdo_mapping_parameter_8::mapping_entry_4,
+    od::tpdo_mapping_parameter_8::mapping_entry_5,
+    od::tpdo_mapping_parameter_8::mapping_entry_6,
+    od::tpdo_mapping_parameter_8::mapping_entry_7,
+    od::tpdo_mapping_parameter_8::mapping_entry_8,
+    od::tpdo_mapping_parameter_9::number_of_mapped_objects,
+    od::tpdo_mapping_parameter_9::mapping_entry_1,
+    od::tpdo_mapping_parameter_9::mapping_entry_2,
+    od::tpdo_mapping_parameter_9::mapping_entry_3,
+    od::tpdo_mapping_parameter_9::mapping_entry_4,
+    od::tpdo_mapping_parameter_9::mapping_entry_5,
+    od::tpdo_mapping_parameter_9::mapping_entry_6,
+    od::tpdo_mapping_parameter_9::mapping_entry_7,
+    od::tpdo_mapping_parameter_9::mapping_entry_8,
+    od::tpdo_mapping_parameter_10::number_of_mapped_objects,
+    od::tpdo_mapping_parameter_10::mapping_entry_1,
+    od::tpdo_mapping_parameter_10::mapping_entry_2,
+    od::tpdo_mapping_parameter_10::mapping_entry_3,
+    od::tpdo_mapping_parameter_10::mapping_entry_4,
+    od::tpdo_mapping_parameter_10::mapping_entry_5,
+    od::tpdo_mapping_parameter_10::mapping_entry_6,
+    od::tpdo_mapping_parameter_10::mapping_entry_7,
+    od::tpdo_mapping_parameter_10::mapping_entry_8,
+    canopen::ArrayObjects<od::write_output_8_bit, 2>,
+    canopen::ArrayObjects<od::error_mode_output_8_bit, 2>,
+    canopen::ArrayObjects<od::error_value_output_8_bit, 2>>;
 
 /// Pre-defined error field: values in RAM.
 struct PreDefinedErrorField {

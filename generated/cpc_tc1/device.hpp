@@ -26,6 +26,7 @@ struct Device {
   static constexpr auto name = "TC1/TC1-B servo drive";
 
   using Values = cpc_tc1::Values;
+  using Objects = cpc_tc1::Objects;
   static constexpr const canopen::Dictionary& dictionary = cpc_tc1::dictionary;
 
   /// The PDOs that the runtime serves, by number.

@@ -10,6 +10,7 @@
 
 #include <canopen/od/dictionary.hpp>
 #include <canopen/od/object.hpp>
+#include <canopen/od/object_list.hpp>
 
 namespace cpc_tc1 {
 
@@ -32,9 +33,9 @@ struct manufacturer_status_register : canopen::Object<0x1002, 0x00, std::uint32_
 };
 
 /// Pre-defined error field.  1003h:01..10  UNSIGNED32  ro                          cpc-tc1.eds:231
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct pre_defined_error_field : canopen::Object<0x1003, SubIndex, std::uint32_t, canopen::Access::ro> {
-  static_assert(SubIndex <= 16, "pre_defined_error_field has the sub-indices 0..16");
+  static_assert(SubIndex <= 16 || SubIndex == canopen::whole_array, "pre_defined_error_field has the sub-indices 0..16");
   static constexpr auto name = "Pre-defined error field";
 };
 template <>
@@ -70,9 +71,9 @@ struct manufacturer_software_version : canopen::Object<0x100A, 0x00, canopen::Vi
 };
 
 /// Store parameters.  1010h:01..06  UNSIGNED32  rw                                 cpc-tc1.eds:431
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct store_parameters : canopen::Object<0x1010, SubIndex, std::uint32_t, canopen::Access::rw> {
-  static_assert(SubIndex <= 6, "store_parameters has the sub-indices 0..6");
+  static_assert(SubIndex <= 6 || SubIndex == canopen::whole_array, "store_parameters has the sub-indices 0..6");
   static constexpr auto name = "Store parameters";
 };
 template <>
@@ -99,9 +100,9 @@ using store_parameters_save_virtual_machine_program = store_parameters<5>;
 using store_parameters_save_error_mapping_data = store_parameters<6>;
 
 /// Restore default parameters.  1011h:01..06  UNSIGNED32  rw                       cpc-tc1.eds:498
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct restore_default_parameters : canopen::Object<0x1011, SubIndex, std::uint32_t, canopen::Access::rw> {
-  static_assert(SubIndex <= 6, "restore_default_parameters has the sub-indices 0..6");
+  static_assert(SubIndex <= 6 || SubIndex == canopen::whole_array, "restore_default_parameters has the sub-indices 0..6");
   static constexpr auto name = "Restore default parameters";
 };
 template <>
@@ -143,9 +144,9 @@ struct inhibit_time_emcy : canopen::Object<0x1015, 0x00, std::uint16_t, canopen:
 };
 
 /// Consumer heartbeat time.  1016h:01..04  UNSIGNED32  rw                          cpc-tc1.eds:597
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct consumer_heartbeat_time : canopen::Object<0x1016, SubIndex, std::uint32_t, canopen::Access::rw> {
-  static_assert(SubIndex <= 4, "consumer_heartbeat_time has the sub-indices 0..4");
+  static_assert(SubIndex <= 4 || SubIndex == canopen::whole_array, "consumer_heartbeat_time has the sub-indices 0..4");
   static constexpr auto name = "Consumer heartbeat time";
 };
 template <>
@@ -634,6 +635,114 @@ struct target_velocity : canopen::Object<0x60FF, 0x00, std::int32_t, canopen::Ac
 };
 
 }  // namespace od
+
+/// All of them, in the order of the dictionary.
+using Objects = canopen::ObjectRows<
+    od::device_type,
+    od::error_register,
+    od::manufacturer_status_register,
+    canopen::ArrayObjects<od::pre_defined_error_field, 16>,
+    od::cob_id_sync,
+    od::communication_cycle_period,
+    od::manufacturer_device_name,
+    od::manufacturer_hardware_version,
+    od::manufacturer_software_version,
+    canopen::ArrayObjects<od::store_parameters, 6>,
+    canopen::ArrayObjects<od::restore_default_parameters, 6>,
+    od::high_resolution_time_stamp,
+    od::cob_id_emcy,
+    od::inhibit_time_emcy,
+    canopen::ArrayObjects<od::consumer_heartbeat_time, 4>,
+    od::producer_heartbeat_time,
+    od::identity_object::highest_sub_index_supported,
+    od::identity_object::vendor_id,
+    od::identity_object::product_code,
+    od::identity_object::revision_number,
+    od::identity_object::serial_number,
+    od::synchronous_counter_overflow_value,
+    od::store_eds,
+    od::store_format,
+    od::sdo_server_parameter::highest_sub_index_supported,
+    od::sdo_server_parameter::cob_id_client_to_server,
+    od::sdo_server_parameter::cob_id_server_to_client,
+    od::rpdo_communication_parameter_1::highest_sub_index_supported,
+    od::rpdo_communication_parameter_1::cob_id_used_by_rpdo,
+    od::rpdo_communication_parameter_1::transmission_type,
+    od::rpdo_communication_parameter_2::highest_sub_index_supported,
+    od::rpdo_communication_parameter_2::cob_id_used_by_rpdo,
+    od::rpdo_communication_parameter_2::transmission_type,
+    od::rpdo_communication_parameter_3::highest_sub_index_supported,
+    od::rpdo_communication_parameter_3::cob_id_used_by_rpdo,
+    od::rpdo_communication_parameter_3::transmission_type,
+    od::rpdo_communication_parameter_4::highest_sub_index_supported,
+    od::rpdo_communication_parameter_4::cob_id_used_by_rpdo,
+    od::rpdo_communication_parameter_4::transmission_type,
+    od::rpdo_mapping_parameter_1::number_of_mapped_application_objects,
+    od::rpdo_mapping_parameter_1::mapping_entry_1,
+    od::rpdo_mapping_parameter_1::mapping_entry_2,
+    od::rpdo_mapping_parameter_1::mapping_entry_3,
+    od::rpdo_mapping_parameter_1::mapping_entry_4,
+    od::rpdo_mapping_parameter_2::number_of_mapped_application_objects,
+    od::rpdo_mapping_parameter_2::mapping_entry_1,
+    od::rpdo_mapping_parameter_2::mapping_entry_2,
+    od::rpdo_mapping_parameter_2::mapping_entry_3,
+    od::rpdo_mapping_parameter_2::mapping_entry_4,
+    od::rpdo_mapping_parameter_3::number_of_mapped_application_objects,
+    od::rpdo_mapping_parameter_3::mapping_entry_1,
+    od::rpdo_mapping_parameter_3::mapping_entry_2,
+    od::rpdo_mapping_parameter_3::mapping_entry_3,
+    od::rpdo_mapping_parameter_3::mapping_entry_4,
+    od::rpdo_mapping_parameter_4::number_of_mapped_application_objects,
+    od::rpdo_mapping_parameter_4::mapping_entry_1,
+    od::rpdo_mapping_parameter_4::mapping_entry_2,
+    od::rpdo_mapping_parameter_4::mapping_entry_3,
+    od::rpdo_mapping_parameter_4::mapping_entry_4,
+    od::tpdo_communication_parameter_1::highest_sub_index_supported,
+    od::tpdo_communication_parameter_1::cob_id_used_by_tpdo,
+    od::tpdo_communication_parameter_1::transmission_type,
+    od::tpdo_communication_parameter_1::inhibit_time,
+    od::tpdo_communication_parameter_1::event_timer,
+    od::tpdo_communication_parameter_2::highest_sub_index_supported,
+    od::tpdo_communication_parameter_2::cob_id_used_by_tpdo,
+    od::tpdo_communication_parameter_2::transmission_type,
+    od::tpdo_communication_parameter_2::inhibit_time,
+    od::tpdo_communication_parameter_2::event_timer,
+    od::tpdo_communication_parameter_3::highest_sub_index_supported,
+    od::tpdo_communication_parameter_3::cob_id_used_by_tpdo,
+    od::tpdo_communication_parameter_3::transmission_type,
+    od::tpdo_communication_parameter_3::inhibit_time,
+    od::tpdo_communication_parameter_3::event_timer,
+    od::tpdo_communication_parameter_4::highest_sub_index_supported,
+    od::tpdo_communication_parameter_4::cob_id_used_by_tpdo,
+    od::tpdo_communication_parameter_4::transmission_type,
+    od::tpdo_communication_parameter_4::inhibit_time,
+    od::tpdo_communication_parameter_4::event_timer,
+    od::tpdo_mapping_parameter_1::number_of_mapped_application_objects,
+    od::tpdo_mapping_parameter_1::mapping_entry_1,
+    od::tpdo_mapping_parameter_1::mapping_entry_2,
+    od::tpdo_mapping_parameter_1::mapping_entry_3,
+    od::tpdo_mapping_parameter_1::mapping_entry_4,
+    od::tpdo_mapping_parameter_2::number_of_mapped_application_objects,
+    od::tpdo_mapping_parameter_2::mapping_entry_1,
+    od::tpdo_mapping_parameter_2::mapping_entry_2,
+    od::tpdo_mapping_parameter_2::mapping_entry_3,
+    od::tpdo_mapping_parameter_2::mapping_entry_4,
+    od::tpdo_mapping_parameter_3::number_of_mapped_application_objects,
+    od::tpdo_mapping_parameter_3::mapping_entry_1,
+    od::tpdo_mapping_parameter_3::mapping_entry_2,
+    od::tpdo_mapping_parameter_3::mapping_entry_3,
+    od::tpdo_mapping_parameter_3::mapping_entry_4,
+    od::tpdo_mapping_parameter_4::number_of_mapped_application_objects,
+    od::tpdo_mapping_parameter_4::mapping_entry_1,
+    od::tpdo_mapping_parameter_4::mapping_entry_2,
+    od::tpdo_mapping_parameter_4::mapping_entry_3,
+    od::tpdo_mapping_parameter_4::mapping_entry_4,
+    od::controlword,
+    od::statusword,
+    od::position_actual_value,
+    od::velocity_actual_value,
+    od::target_position,
+    od::target_velocity>;
 
 /// Pre-defined error field: values in RAM.
 struct PreDefinedErrorField {

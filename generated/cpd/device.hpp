@@ -25,6 +25,7 @@ struct Device {
   static constexpr auto name = "CPD";
 
   using Values = cpd::Values;
+  using Objects = cpd::Objects;
   static constexpr const canopen::Dictionary& dictionary = cpd::dictionary;
 
   /// The PDOs that the runtime serves, by number.

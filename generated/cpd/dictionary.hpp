@@ -10,6 +10,7 @@
 
 #include <canopen/od/dictionary.hpp>
 #include <canopen/od/object.hpp>
+#include <canopen/od/object_list.hpp>
 
 namespace cpd {
 
@@ -27,9 +28,9 @@ struct error_register : canopen::Object<0x1001, 0x00, std::uint8_t, canopen::Acc
 };
 
 /// Pre-defined error field.  1003h:01..01  UNSIGNED32  ro                          cpd.eds:238
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct pre_defined_error_field : canopen::Object<0x1003, SubIndex, std::uint32_t, canopen::Access::ro> {
-  static_assert(SubIndex <= 1, "pre_defined_error_field has the sub-indices 0..1");
+  static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "pre_defined_error_field has the sub-indices 0..1");
   static constexpr auto name = "Pre-defined error field";
 };
 template <>
@@ -71,9 +72,9 @@ struct life_time_factor : canopen::Object<0x100D, 0x00, std::uint8_t, canopen::A
 };
 
 /// Store parameters.  1010h:01..03  UNSIGNED32  rw                                 cpd.eds:321
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct store_parameters : canopen::Object<0x1010, SubIndex, std::uint32_t, canopen::Access::rw> {
-  static_assert(SubIndex <= 3, "store_parameters has the sub-indices 0..3");
+  static_assert(SubIndex <= 3 || SubIndex == canopen::whole_array, "store_parameters has the sub-indices 0..3");
   static constexpr auto name = "Store parameters";
 };
 template <>
@@ -91,9 +92,9 @@ using store_parameters_save_communication_parameters = store_parameters<2>;
 using store_parameters_save_application_parameters = store_parameters<3>;
 
 /// Restore default parameters.  1011h:01..03  UNSIGNED32  rw                       cpd.eds:360
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct restore_default_parameters : canopen::Object<0x1011, SubIndex, std::uint32_t, canopen::Access::rw> {
-  static_assert(SubIndex <= 3, "restore_default_parameters has the sub-indices 0..3");
+  static_assert(SubIndex <= 3 || SubIndex == canopen::whole_array, "restore_default_parameters has the sub-indices 0..3");
   static constexpr auto name = "Restore default parameters";
 };
 template <>
@@ -121,9 +122,9 @@ struct inhibit_time_emcy : canopen::Object<0x1015, 0x00, std::uint16_t, canopen:
 };
 
 /// Consumer heartbeat time.  1016h:01..03  UNSIGNED32  rw                          cpd.eds:422
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct consumer_heartbeat_time : canopen::Object<0x1016, SubIndex, std::uint32_t, canopen::Access::rw> {
-  static_assert(SubIndex <= 3, "consumer_heartbeat_time has the sub-indices 0..3");
+  static_assert(SubIndex <= 3 || SubIndex == canopen::whole_array, "consumer_heartbeat_time has the sub-indices 0..3");
   static constexpr auto name = "Consumer heartbeat time";
 };
 template <>
@@ -161,9 +162,9 @@ struct serial_number : canopen::Object<0x1018, 0x04, std::uint32_t, canopen::Acc
 }  // namespace identity_object
 
 /// Verify configuration.  1020h:01..02  UNSIGNED32  rw                             cpd.eds:472
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct verify_configuration : canopen::Object<0x1020, SubIndex, std::uint32_t, canopen::Access::rw> {
-  static_assert(SubIndex <= 2, "verify_configuration has the sub-indices 0..2");
+  static_assert(SubIndex <= 2 || SubIndex == canopen::whole_array, "verify_configuration has the sub-indices 0..2");
   static constexpr auto name = "Verify configuration";
 };
 template <>
@@ -178,9 +179,9 @@ using verify_configuration_configuration_date = verify_configuration<1>;
 using verify_configuration_configuration_time = verify_configuration<2>;
 
 /// Error behaviour.  1029h:01..01  UNSIGNED8  rw                                   cpd.eds:504
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct error_behaviour : canopen::Object<0x1029, SubIndex, std::uint8_t, canopen::Access::rw> {
-  static_assert(SubIndex <= 1, "error_behaviour has the sub-indices 0..1");
+  static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "error_behaviour has the sub-indices 0..1");
   static constexpr auto name = "Error behaviour";
 };
 template <>
@@ -875,9 +876,9 @@ struct target_position : canopen::Object<0x607A, 0x00, std::int32_t, canopen::Ac
 };
 
 /// Software position limit.  607Dh:01..02  INTEGER32  rw                           cpd.eds:1424
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct software_position_limit : canopen::Object<0x607D, SubIndex, std::int32_t, canopen::Access::rw> {
-  static_assert(SubIndex <= 2, "software_position_limit has the sub-indices 0..2");
+  static_assert(SubIndex <= 2 || SubIndex == canopen::whole_array, "software_position_limit has the sub-indices 0..2");
   static constexpr auto name = "Software position limit";
 };
 template <>
@@ -922,9 +923,9 @@ struct homing_method : canopen::Object<0x6098, 0x00, std::int8_t, canopen::Acces
 };
 
 /// Homing speeds.  6099h:01..02  UNSIGNED32  rw                                    cpd.eds:1510
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct homing_speeds : canopen::Object<0x6099, SubIndex, std::uint32_t, canopen::Access::rw> {
-  static_assert(SubIndex <= 2, "homing_speeds has the sub-indices 0..2");
+  static_assert(SubIndex <= 2 || SubIndex == canopen::whole_array, "homing_speeds has the sub-indices 0..2");
   static constexpr auto name = "Homing speeds";
 };
 template <>
@@ -954,6 +955,172 @@ struct supported_drive_modes : canopen::Object<0x6502, 0x00, std::uint32_t, cano
 };
 
 }  // namespace od
+
+/// All of them, in the order of the dictionary.
+using Objects = canopen::ObjectRows<
+    od::device_type,
+    od::error_register,
+    canopen::ArrayObjects<od::pre_defined_error_field, 1>,
+    od::cob_id_sync,
+    od::manufacturer_device_name,
+    od::manufacturer_hardware_version,
+    od::manufacturer_software_version,
+    od::guard_time,
+    od::life_time_factor,
+    canopen::ArrayObjects<od::store_parameters, 3>,
+    canopen::ArrayObjects<od::restore_default_parameters, 3>,
+    od::cob_id_emcy,
+    od::inhibit_time_emcy,
+    canopen::ArrayObjects<od::consumer_heartbeat_time, 3>,
+    od::producer_heartbeat_time,
+    od::identity_object::highest_sub_index_supported,
+    od::identity_object::vendor_id,
+    od::identity_object::product_code,
+    od::identity_object::revision_number,
+    od::identity_object::serial_number,
+    canopen::ArrayObjects<od::verify_configuration, 2>,
+    canopen::ArrayObjects<od::error_behaviour, 1>,
+    od::sdo_server_parameter_1::highest_sub_index_supported,
+    od::sdo_server_parameter_1::cob_id_client_to_server,
+    od::sdo_server_parameter_1::cob_id_server_to_client,
+    od::sdo_server_parameter_2::highest_sub_index_supported,
+    od::sdo_server_parameter_2::cob_id_client_to_server,
+    od::sdo_server_parameter_2::cob_id_server_to_client,
+    od::sdo_server_parameter_2::node_id_of_the_sdo_client,
+    od::rpdo_communication_parameter_1::highest_sub_index_supported,
+    od::rpdo_communication_parameter_1::cob_id_used_by_rpdo,
+    od::rpdo_communication_parameter_1::transmission_type,
+    od::rpdo_communication_parameter_2::highest_sub_index_supported,
+    od::rpdo_communication_parameter_2::cob_id_used_by_rpdo,
+    od::rpdo_communication_parameter_2::transmission_type,
+    od::rpdo_communication_parameter_3::highest_sub_index_supported,
+    od::rpdo_communication_parameter_3::cob_id_used_by_rpdo,
+    od::rpdo_communication_parameter_3::transmission_type,
+    od::rpdo_communication_parameter_4::highest_sub_index_supported,
+    od::rpdo_communication_parameter_4::cob_id_used_by_rpdo,
+    od::rpdo_communication_parameter_4::transmission_type,
+    od::rpdo_mapping_parameter_1::number_of_mapped_objects,
+    od::rpdo_mapping_parameter_1::mapping_entry_1,
+    od::rpdo_mapping_parameter_2::number_of_mapped_objects,
+    od::rpdo_mapping_parameter_2::mapping_entry_1,
+    od::rpdo_mapping_parameter_2::mapping_entry_2,
+    od::rpdo_mapping_parameter_2::mapping_entry_3,
+    od::rpdo_mapping_parameter_2::mapping_entry_4,
+    od::rpdo_mapping_parameter_3::number_of_mapped_objects,
+    od::rpdo_mapping_parameter_3::mapping_entry_1,
+    od::rpdo_mapping_parameter_3::mapping_entry_2,
+    od::rpdo_mapping_parameter_3::mapping_entry_3,
+    od::rpdo_mapping_parameter_3::mapping_entry_4,
+    od::rpdo_mapping_parameter_4::number_of_mapped_objects,
+    od::rpdo_mapping_parameter_4::mapping_entry_1,
+    od::rpdo_mapping_parameter_4::mapping_entry_2,
+    od::rpdo_mapping_parameter_4::mapping_entry_3,
+    od::rpdo_mapping_parameter_4::mapping_entry_4,
+    od::tpdo_communication_parameter_1::highest_sub_index_supported,
+    od::tpdo_communication_parameter_1::cob_id_used_by_tpdo,
+    od::tpdo_communication_parameter_1::transmission_type,
+    od::tpdo_communication_parameter_1::inhibit_time,
+    od::tpdo_communication_parameter_1::event_timer,
+    od::tpdo_communication_parameter_2::highest_sub_index_supported,
+    od::tpdo_communication_parameter_2::cob_id_used_by_tpdo,
+    od::tpdo_communication_parameter_2::transmission_type,
+    od::tpdo_communication_parameter_2::inhibit_time,
+    od::tpdo_communication_parameter_2::event_timer,
+    od::tpdo_communication_parameter_3::highest_sub_index_supported,
+    od::tpdo_communication_parameter_3::cob_id_used_by_tpdo,
+    od::tpdo_communication_parameter_3::transmission_type,
+    od::tpdo_communication_parameter_3::inhibit_time,
+    od::tpdo_communication_parameter_3::event_timer,
+    od::tpdo_communication_parameter_4::highest_sub_index_supported,
+    od::tpdo_communication_parameter_4::cob_id_used_by_tpdo,
+    od::tpdo_communication_parameter_4::transmission_type,
+    od::tpdo_communication_parameter_4::inhibit_time,
+    od::tpdo_communication_parameter_4::event_timer,
+    od::tpdo_mapping_parameter_1::number_of_mapped_objects,
+    od::tpdo_mapping_parameter_1::mapping_entry_1,
+    od::tpdo_mapping_parameter_2::number_of_mapped_objects,
+    od::tpdo_mapping_parameter_2::mapping_entry_1,
+    od::tpdo_mapping_parameter_2::mapping_entry_2,
+    od::tpdo_mapping_parameter_2::mapping_entry_3,
+    od::tpdo_mapping_parameter_2::mapping_entry_4,
+    od::tpdo_mapping_parameter_3::number_of_mapped_objects,
+    od::tpdo_mapping_parameter_3::mapping_entry_1,
+    od::tpdo_mapping_parameter_3::mapping_entry_2,
+    od::tpdo_mapping_parameter_3::mapping_entry_3,
+    od::tpdo_mapping_parameter_3::mapping_entry_4,
+    od::tpdo_mapping_parameter_4::number_of_mapped_objects,
+    od::tpdo_mapping_parameter_4::mapping_entry_1,
+    od::tpdo_mapping_parameter_4::mapping_entry_2,
+    od::tpdo_mapping_parameter_4::mapping_entry_3,
+    od::tpdo_mapping_parameter_4::mapping_entry_4,
+    od::drive_status,
+    od::parameter_storage::highest_sub_index_supported,
+    od::parameter_storage::save_settings_to_eeprom,
+    od::parameter_storage::reset_user_settings,
+    od::position_interface::highest_sub_index_supported,
+    od::position_interface::signal_selection,
+    od::motion_settings::highest_sub_index_supported,
+    od::motion_settings::negative_limit_switch_contact,
+    od::motion_settings::positive_limit_switch_contact,
+    od::motion_settings::direction_of_rotation_inversion,
+    od::inputs_and_outputs::highest_sub_index_supported,
+    od::inputs_and_outputs::digital_inputs_and_outputs,
+    od::analogue_inputs::highest_sub_index_supported,
+    od::analogue_inputs::analogue_input_ana1,
+    od::analogue_inputs::analogue_input_ana2,
+    od::current_limits::highest_sub_index_supported,
+    od::current_limits::quick_stop_current_limit,
+    od::current_limits::stop_current_limit,
+    od::operating_mode_settings::highest_sub_index_supported,
+    od::operating_mode_settings::manual_movement_activation,
+    od::operating_mode_settings::current_setpoint_specification,
+    od::operating_mode_settings::speed_setpoint_specification,
+    od::operating_mode_settings::gear_activation,
+    od::monitoring_status::highest_sub_index_supported,
+    od::monitoring_status::action_status,
+    od::monitoring_status::active_monitoring_signals,
+    od::monitoring_status::latched_monitoring_signals,
+    od::monitoring_status::active_warnings,
+    od::monitoring_status::latched_warnings,
+    od::motion_generator::highest_sub_index_supported,
+    od::motion_generator::ramp_position_actual_value,
+    od::current_control::highest_sub_index_supported,
+    od::current_control::current_setpoint,
+    od::speed_control::highest_sub_index_supported,
+    od::speed_control::speed_setpoint,
+    od::electronic_gear::highest_sub_index_supported,
+    od::electronic_gear::gear_denominator,
+    od::electronic_gear::gear_numerator,
+    od::manual_movement::highest_sub_index_supported,
+    od::manual_movement::slow_speed,
+    od::manual_movement::fast_speed,
+    od::error_memory_control::highest_sub_index_supported,
+    od::error_memory_control::error_memory_reset,
+    od::error_memory::highest_sub_index_supported,
+    od::error_memory::error_number,
+    od::error_code,
+    od::controlword,
+    od::statusword,
+    od::modes_of_operation,
+    od::modes_of_operation_display,
+    od::position_actual_value,
+    od::following_error_window,
+    od::position_window,
+    od::position_window_time,
+    od::velocity_demand_value,
+    od::velocity_actual_value,
+    od::target_position,
+    canopen::ArrayObjects<od::software_position_limit, 2>,
+    od::max_profile_velocity,
+    od::profile_velocity,
+    od::profile_acceleration,
+    od::profile_deceleration,
+    od::motion_profile_type,
+    od::homing_method,
+    canopen::ArrayObjects<od::homing_speeds, 2>,
+    od::following_error_actual_value,
+    od::target_velocity,
+    od::supported_drive_modes>;
 
 /// Pre-defined error field: values in RAM.
 struct PreDefinedErrorField {

@@ -25,6 +25,7 @@ struct Device {
   static constexpr auto name = "EZD-1136";
 
   using Values = ezd_1136::Values;
+  using Objects = ezd_1136::Objects;
   static constexpr const canopen::Dictionary& dictionary = ezd_1136::dictionary;
 
   /// The PDOs that the runtime serves, by number.

@@ -10,6 +10,7 @@
 
 #include <canopen/od/dictionary.hpp>
 #include <canopen/od/object.hpp>
+#include <canopen/od/object_list.hpp>
 
 namespace ezd_1136 {
 
@@ -27,9 +28,9 @@ struct error_register : canopen::Object<0x1001, 0x00, std::uint8_t, canopen::Acc
 };
 
 /// Pre-defined error field.  1003h:01..08  UNSIGNED32  ro                          ezd-1136.eds:226
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct pre_defined_error_field : canopen::Object<0x1003, SubIndex, std::uint32_t, canopen::Access::ro> {
-  static_assert(SubIndex <= 8, "pre_defined_error_field has the sub-indices 0..8");
+  static_assert(SubIndex <= 8 || SubIndex == canopen::whole_array, "pre_defined_error_field has the sub-indices 0..8");
   static constexpr auto name = "Pre-defined error field";
 };
 template <>
@@ -78,9 +79,9 @@ struct cob_id_emcy : canopen::Object<0x1014, 0x00, std::uint32_t, canopen::Acces
 };
 
 /// Consumer heartbeat time.  1016h:01..01  UNSIGNED32  rw                          ezd-1136.eds:383
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct consumer_heartbeat_time : canopen::Object<0x1016, SubIndex, std::uint32_t, canopen::Access::rw> {
-  static_assert(SubIndex <= 1, "consumer_heartbeat_time has the sub-indices 0..1");
+  static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "consumer_heartbeat_time has the sub-indices 0..1");
   static constexpr auto name = "Consumer heartbeat time";
 };
 template <>
@@ -886,9 +887,9 @@ struct automatic_parameter_detection : canopen::Object<0x2127, 0x00, std::uint16
 };
 
 /// Digital input functions.  2190h:01..08  UNSIGNED16  rw                          ezd-1136.eds:2279
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct digital_input_functions : canopen::Object<0x2190, SubIndex, std::uint16_t, canopen::Access::rw> {
-  static_assert(SubIndex <= 8, "digital_input_functions has the sub-indices 0..8");
+  static_assert(SubIndex <= 8 || SubIndex == canopen::whole_array, "digital_input_functions has the sub-indices 0..8");
   static constexpr auto name = "Digital input functions";
 };
 template <>
@@ -897,9 +898,9 @@ struct digital_input_functions<0> : canopen::Object<0x2190, 0x00, std::uint8_t, 
 };
 
 /// Digital output functions.  21A4h:01..05  UNSIGNED16  rw                         ezd-1136.eds:2357
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct digital_output_functions : canopen::Object<0x21A4, SubIndex, std::uint16_t, canopen::Access::rw> {
-  static_assert(SubIndex <= 5, "digital_output_functions has the sub-indices 0..5");
+  static_assert(SubIndex <= 5 || SubIndex == canopen::whole_array, "digital_output_functions has the sub-indices 0..5");
   static constexpr auto name = "Digital output functions";
 };
 template <>
@@ -1027,9 +1028,9 @@ struct home_offset : canopen::Object<0x607C, 0x00, std::int32_t, canopen::Access
 };
 
 /// Software position limit.  607Dh:01..02  INTEGER32  rw                           ezd-1136.eds:1546
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct software_position_limit : canopen::Object<0x607D, SubIndex, std::int32_t, canopen::Access::rw> {
-  static_assert(SubIndex <= 2, "software_position_limit has the sub-indices 0..2");
+  static_assert(SubIndex <= 2 || SubIndex == canopen::whole_array, "software_position_limit has the sub-indices 0..2");
   static constexpr auto name = "Software position limit";
 };
 template <>
@@ -1079,9 +1080,9 @@ struct homing_method : canopen::Object<0x6098, 0x00, std::int8_t, canopen::Acces
 };
 
 /// Homing speeds.  6099h:01..02  UNSIGNED32  rww  RPDO                             ezd-1136.eds:1641
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct homing_speeds : canopen::Object<0x6099, SubIndex, std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
-  static_assert(SubIndex <= 2, "homing_speeds has the sub-indices 0..2");
+  static_assert(SubIndex <= 2 || SubIndex == canopen::whole_array, "homing_speeds has the sub-indices 0..2");
   static constexpr auto name = "Homing speeds";
 };
 template <>
@@ -1111,9 +1112,9 @@ struct digital_inputs : canopen::Object<0x60FD, 0x00, std::uint32_t, canopen::Ac
 };
 
 /// Digital outputs.  60FEh:01..02  UNSIGNED32  rww  RPDO                           ezd-1136.eds:1698
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct digital_outputs : canopen::Object<0x60FE, SubIndex, std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
-  static_assert(SubIndex <= 2, "digital_outputs has the sub-indices 0..2");
+  static_assert(SubIndex <= 2 || SubIndex == canopen::whole_array, "digital_outputs has the sub-indices 0..2");
   static constexpr auto name = "Digital outputs";
 };
 template <>
@@ -1138,6 +1139,224 @@ struct supported_drive_modes : canopen::Object<0x6502, 0x00, std::uint32_t, cano
 };
 
 }  // namespace od
+
+/// All of them, in the order of the dictionary.
+using Objects = canopen::ObjectRows<
+    od::device_type,
+    od::error_register,
+    canopen::ArrayObjects<od::pre_defined_error_field, 8>,
+    od::cob_id_sync,
+    od::communication_cycle_period,
+    od::manufacturer_device_name,
+    od::manufacturer_hardware_version,
+    od::manufacturer_software_version,
+    od::guard_time,
+    od::life_time_factor,
+    od::cob_id_emcy,
+    canopen::ArrayObjects<od::consumer_heartbeat_time, 1>,
+    od::producer_heartbeat_time,
+    od::identity_object::highest_sub_index_supported,
+    od::identity_object::vendor_id,
+    od::identity_object::product_code,
+    od::identity_object::revision_number,
+    od::identity_object::serial_number,
+    od::sdo_server_parameter::highest_sub_index_supported,
+    od::sdo_server_parameter::cob_id_client_to_server,
+    od::sdo_server_parameter::cob_id_server_to_client,
+    od::rpdo_communication_parameter_1::highest_sub_index_supported,
+    od::rpdo_communication_parameter_1::cob_id_used_by_rpdo,
+    od::rpdo_communication_parameter_1::transmission_type,
+    od::rpdo_communication_parameter_2::highest_sub_index_supported,
+    od::rpdo_communication_parameter_2::cob_id_used_by_rpdo,
+    od::rpdo_communication_parameter_2::transmission_type,
+    od::rpdo_communication_parameter_3::highest_sub_index_supported,
+    od::rpdo_communication_parameter_3::cob_id_used_by_rpdo,
+    od::rpdo_communication_parameter_3::transmission_type,
+    od::rpdo_communication_parameter_4::highest_sub_index_supported,
+    od::rpdo_communication_parameter_4::cob_id_used_by_rpdo,
+    od::rpdo_communication_parameter_4::transmission_type,
+    od::rpdo_mapping_parameter_1::number_of_mapped_objects,
+    od::rpdo_mapping_parameter_1::mapping_entry_1,
+    od::rpdo_mapping_parameter_1::mapping_entry_2,
+    od::rpdo_mapping_parameter_1::mapping_entry_3,
+    od::rpdo_mapping_parameter_1::mapping_entry_4,
+    od::rpdo_mapping_parameter_1::mapping_entry_5,
+    od::rpdo_mapping_parameter_1::mapping_entry_6,
+    od::rpdo_mapping_parameter_1::mapping_entry_7,
+    od::rpdo_mapping_parameter_1::mapping_entry_8,
+    od::rpdo_mapping_parameter_2::number_of_mapped_objects,
+    od::rpdo_mapping_parameter_2::mapping_entry_1,
+    od::rpdo_mapping_parameter_2::mapping_entry_2,
+    od::rpdo_mapping_parameter_2::mapping_entry_3,
+    od::rpdo_mapping_parameter_2::mapping_entry_4,
+    od::rpdo_mapping_parameter_2::mapping_entry_5,
+    od::rpdo_mapping_parameter_2::mapping_entry_6,
+    od::rpdo_mapping_parameter_2::mapping_entry_7,
+    od::rpdo_mapping_parameter_2::mapping_entry_8,
+    od::rpdo_mapping_parameter_3::number_of_mapped_objects,
+    od::rpdo_mapping_parameter_3::mapping_entry_1,
+    od::rpdo_mapping_parameter_3::mapping_entry_2,
+    od::rpdo_mapping_parameter_3::mapping_entry_3,
+    od::rpdo_mapping_parameter_3::mapping_entry_4,
+    od::rpdo_mapping_parameter_3::mapping_entry_5,
+    od::rpdo_mapping_parameter_3::mapping_entry_6,
+    od::rpdo_mapping_parameter_3::mapping_entry_7,
+    od::rpdo_mapping_parameter_3::mapping_entry_8,
+    od::rpdo_mapping_parameter_4::number_of_mapped_objects,
+    od::rpdo_mapping_parameter_4::mapping_entry_1,
+    od::rpdo_mapping_parameter_4::mapping_entry_2,
+    od::rpdo_mapping_parameter_4::mapping_entry_3,
+    od::rpdo_mapping_parameter_4::mapping_entry_4,
+    od::rpdo_mapping_parameter_4::mapping_entry_5,
+    od::rpdo_mapping_parameter_4::mapping_entry_6,
+    od::rpdo_mapping_parameter_4::mapping_entry_7,
+    od::rpdo_mapping_parameter_4::mapping_entry_8,
+    od::tpdo_communication_parameter_1::highest_sub_index_supported,
+    od::tpdo_communication_parameter_1::cob_id_used_by_tpdo,
+    od::tpdo_communication_parameter_1::transmission_type,
+    od::tpdo_communication_parameter_1::inhibit_time,
+    od::tpdo_communication_parameter_1::event_timer,
+    od::tpdo_communication_parameter_2::highest_sub_index_supported,
+    od::tpdo_communication_parameter_2::cob_id_used_by_tpdo,
+    od::tpdo_communication_parameter_2::transmission_type,
+    od::tpdo_communication_parameter_2::inhibit_time,
+    od::tpdo_communication_parameter_2::event_timer,
+    od::tpdo_communication_parameter_3::highest_sub_index_supported,
+    od::tpdo_communication_parameter_3::cob_id_used_by_tpdo,
+    od::tpdo_communication_parameter_3::transmission_type,
+    od::tpdo_communication_parameter_3::inhibit_time,
+    od::tpdo_communication_parameter_3::event_timer,
+    od::tpdo_communication_parameter_4::highest_sub_index_supported,
+    od::tpdo_communication_parameter_4::cob_id_used_by_tpdo,
+    od::tpdo_communication_parameter_4::transmission_type,
+    od::tpdo_communication_parameter_4::inhibit_time,
+    od::tpdo_communication_parameter_4::event_timer,
+    od::tpdo_mapping_parameter_1::number_of_mapped_objects,
+    od::tpdo_mapping_parameter_1::mapping_entry_1,
+    od::tpdo_mapping_parameter_1::mapping_entry_2,
+    od::tpdo_mapping_parameter_1::mapping_entry_3,
+    od::tpdo_mapping_parameter_1::mapping_entry_4,
+    od::tpdo_mapping_parameter_1::mapping_entry_5,
+    od::tpdo_mapping_parameter_1::mapping_entry_6,
+    od::tpdo_mapping_parameter_1::mapping_entry_7,
+    od::tpdo_mapping_parameter_1::mapping_entry_8,
+    od::tpdo_mapping_parameter_2::number_of_mapped_objects,
+    od::tpdo_mapping_parameter_2::mapping_entry_1,
+    od::tpdo_mapping_parameter_2::mapping_entry_2,
+    od::tpdo_mapping_parameter_2::mapping_entry_3,
+    od::tpdo_mapping_parameter_2::mapping_entry_4,
+    od::tpdo_mapping_parameter_2::mapping_entry_5,
+    od::tpdo_mapping_parameter_2::mapping_entry_6,
+    od::tpdo_mapping_parameter_2::mapping_entry_7,
+    od::tpdo_mapping_parameter_2::mapping_entry_8,
+    od::tpdo_mapping_parameter_3::number_of_mapped_objects,
+    od::tpdo_mapping_parameter_3::mapping_entry_1,
+    od::tpdo_mapping_parameter_3::mapping_entry_2,
+    od::tpdo_mapping_parameter_3::mapping_entry_3,
+    od::tpdo_mapping_parameter_3::mapping_entry_4,
+    od::tpdo_mapping_parameter_3::mapping_entry_5,
+    od::tpdo_mapping_parameter_3::mapping_entry_6,
+    od::tpdo_mapping_parameter_3::mapping_entry_7,
+    od::tpdo_mapping_parameter_3::mapping_entry_8,
+    od::tpdo_mapping_parameter_4::number_of_mapped_objects,
+    od::tpdo_mapping_parameter_4::mapping_entry_1,
+    od::tpdo_mapping_parameter_4::mapping_entry_2,
+    od::tpdo_mapping_parameter_4::mapping_entry_3,
+    od::tpdo_mapping_parameter_4::mapping_entry_4,
+    od::tpdo_mapping_parameter_4::mapping_entry_5,
+    od::tpdo_mapping_parameter_4::mapping_entry_6,
+    od::tpdo_mapping_parameter_4::mapping_entry_7,
+    od::tpdo_mapping_parameter_4::mapping_entry_8,
+    od::integrated_current,
+    od::bus_voltage,
+    od::drive_error_code,
+    od::run_state,
+    od::locked_rotor_detection,
+    od::analog_voltage,
+    od::current_loop_kpt,
+    od::running_direction,
+    od::control_mode,
+    od::l1e6,
+    od::r1e3,
+    od::idle_current,
+    od::current_loop_ki_s,
+    od::motor_mode_setting,
+    od::lrd_threshold_speed,
+    od::lrd_threshold_gain,
+    od::lrd_maximum_count,
+    od::current_loop_kp_maximum,
+    od::filter_coefficient,
+    od::current_amplification_setting,
+    od::current_loop_ki_maximum,
+    od::current_command_setting,
+    od::resolution_setting,
+    od::half_current_time,
+    od::encoder_resolution,
+    od::in_position_range,
+    od::maximum_field_weakening,
+    od::speed_loop_kp,
+    od::speed_loop_ki,
+    od::speed_loop_kd,
+    od::maximum_speed,
+    od::position_loop_kp,
+    od::position_loop_ki,
+    od::position_loop_kd,
+    od::position_error_threshold,
+    od::reference_torque,
+    od::damping_filter_gain,
+    od::damping_gain,
+    od::current_filter_gain,
+    od::ar_gain,
+    od::ar_adjustment,
+    od::apm_gain,
+    od::brake_mode,
+    od::brake_voltage,
+    od::brake_voltage_2,
+    od::brake_idle_time,
+    od::brake_activation_delay,
+    od::check_torque_timer,
+    od::torque_speed,
+    od::automatic_parameter_detection,
+    canopen::ArrayObjects<od::digital_input_functions, 8>,
+    canopen::ArrayObjects<od::digital_output_functions, 5>,
+    od::digital_input_logic,
+    od::digital_output_logic,
+    od::global_variable_1,
+    od::global_variable_2,
+    od::global_variable_3,
+    od::global_variable_4,
+    od::global_variable_5,
+    od::error_code,
+    od::controlword,
+    od::statusword,
+    od::quick_stop_option_code,
+    od::shutdown_option_code,
+    od::disable_operation_option_code,
+    od::fault_reaction_option_code,
+    od::modes_of_operation,
+    od::modes_of_operation_display,
+    od::position_actual_value,
+    od::velocity_actual_value,
+    od::target_torque,
+    od::torque_demand_value,
+    od::current_actual_value,
+    od::target_position,
+    od::home_offset,
+    canopen::ArrayObjects<od::software_position_limit, 2>,
+    od::profile_velocity,
+    od::end_velocity,
+    od::profile_acceleration,
+    od::profile_deceleration,
+    od::quick_stop_deceleration,
+    od::torque_slope,
+    od::homing_method,
+    canopen::ArrayObjects<od::homing_speeds, 2>,
+    od::homing_acceleration,
+    od::position_offset,
+    od::digital_inputs,
+    canopen::ArrayObjects<od::digital_outputs, 2>,
+    od::target_velocity,
+    od::supported_drive_modes>;
 
 /// Pre-defined error field: values in RAM.
 struct PreDefinedErrorField {

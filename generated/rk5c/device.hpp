@@ -26,6 +26,7 @@ struct Device {
   static constexpr auto name = "RK5C";
 
   using Values = rk5c::Values;
+  using Objects = rk5c::Objects;
   static constexpr const canopen::Dictionary& dictionary = rk5c::dictionary;
 
   /// The PDOs that the runtime serves, by number.

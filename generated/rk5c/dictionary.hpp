@@ -10,6 +10,7 @@
 
 #include <canopen/od/dictionary.hpp>
 #include <canopen/od/object.hpp>
+#include <canopen/od/object_list.hpp>
 
 namespace rk5c {
 
@@ -56,9 +57,9 @@ struct manufacturer_software_version : canopen::Object<0x100A, 0x00, canopen::Vi
 };
 
 /// Store parameters.  1010h:01..01  UNSIGNED32  rw                                 rk5c.eds:245
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct store_parameters : canopen::Object<0x1010, SubIndex, std::uint32_t, canopen::Access::rw> {
-  static_assert(SubIndex <= 1, "store_parameters has the sub-indices 0..1");
+  static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "store_parameters has the sub-indices 0..1");
   static constexpr auto name = "Store parameters";
 };
 template <>
@@ -70,9 +71,9 @@ struct store_parameters<0> : canopen::Object<0x1010, 0x00, std::uint8_t, canopen
 using store_parameters_save_all_parameters = store_parameters<1>;
 
 /// Restore default parameters.  1011h:01..01  UNSIGNED32  rw                       rk5c.eds:270
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct restore_default_parameters : canopen::Object<0x1011, SubIndex, std::uint32_t, canopen::Access::rw> {
-  static_assert(SubIndex <= 1, "restore_default_parameters has the sub-indices 0..1");
+  static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "restore_default_parameters has the sub-indices 0..1");
   static constexpr auto name = "Restore default parameters";
 };
 template <>
@@ -184,9 +185,9 @@ struct number_of_cursors : canopen::Object<0x2000, 0x00, std::uint8_t, canopen::
 };
 
 /// Linear encoder measuring step settings.  6005h:01..02  UNSIGNED32  ro           rk5c.eds:443
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct linear_encoder_measuring_step_settings : canopen::Object<0x6005, SubIndex, std::uint32_t, canopen::Access::ro> {
-  static_assert(SubIndex <= 2, "linear_encoder_measuring_step_settings has the sub-indices 0..2");
+  static_assert(SubIndex <= 2 || SubIndex == canopen::whole_array, "linear_encoder_measuring_step_settings has the sub-indices 0..2");
   static constexpr auto name = "Linear encoder measuring step settings";
 };
 template <>
@@ -201,9 +202,9 @@ using linear_encoder_measuring_step_settings_position_step_setting = linear_enco
 using linear_encoder_measuring_step_settings_speed_step_setting = linear_encoder_measuring_step_settings<2>;
 
 /// Preset values for multi-sensor devices.  6010h:01..01  INTEGER32  rw            rk5c.eds:475
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct preset_values_for_multi_sensor_devices : canopen::Object<0x6010, SubIndex, std::int32_t, canopen::Access::rw> {
-  static_assert(SubIndex <= 1, "preset_values_for_multi_sensor_devices has the sub-indices 0..1");
+  static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "preset_values_for_multi_sensor_devices has the sub-indices 0..1");
   static constexpr auto name = "Preset values for multi-sensor devices";
 };
 template <>
@@ -212,9 +213,9 @@ struct preset_values_for_multi_sensor_devices<0> : canopen::Object<0x6010, 0x00,
 };
 
 /// Position values for multi-sensor devices.  6020h:01..01  INTEGER32  ro  TPDO    rk5c.eds:498
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct position_values_for_multi_sensor_devices : canopen::Object<0x6020, SubIndex, std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
-  static_assert(SubIndex <= 1, "position_values_for_multi_sensor_devices has the sub-indices 0..1");
+  static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "position_values_for_multi_sensor_devices has the sub-indices 0..1");
   static constexpr auto name = "Position values for multi-sensor devices";
 };
 template <>
@@ -223,9 +224,9 @@ struct position_values_for_multi_sensor_devices<0> : canopen::Object<0x6020, 0x0
 };
 
 /// Speed value.  6030h:01..01  INTEGER16  ro  TPDO                                 rk5c.eds:522
-template <std::uint8_t SubIndex>
+template <std::uint8_t SubIndex = canopen::whole_array>
 struct speed_value : canopen::Object<0x6030, SubIndex, std::int16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
-  static_assert(SubIndex <= 1, "speed_value has the sub-indices 0..1");
+  static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "speed_value has the sub-indices 0..1");
   static constexpr auto name = "Speed value";
 };
 template <>
@@ -244,6 +245,43 @@ struct measuring_step : canopen::Object<0x6501, 0x00, std::uint32_t, canopen::Ac
 };
 
 }  // namespace od
+
+/// All of them, in the order of the dictionary.
+using Objects = canopen::ObjectRows<
+    od::device_type,
+    od::error_register,
+    od::manufacturer_status_register,
+    od::cob_id_sync,
+    od::manufacturer_device_name,
+    od::manufacturer_hardware_version,
+    od::manufacturer_software_version,
+    canopen::ArrayObjects<od::store_parameters, 1>,
+    canopen::ArrayObjects<od::restore_default_parameters, 1>,
+    od::cob_id_emcy,
+    od::inhibit_time_emcy,
+    od::producer_heartbeat_time,
+    od::identity_object::highest_sub_index_supported,
+    od::identity_object::vendor_id,
+    od::identity_object::product_code,
+    od::identity_object::revision_number,
+    od::identity_object::serial_number,
+    od::sdo_server_parameter::highest_sub_index_supported,
+    od::sdo_server_parameter::cob_id_client_to_server_rx,
+    od::sdo_server_parameter::cob_id_server_to_client_tx,
+    od::tpdo_communication_parameter_1::highest_sub_index_supported,
+    od::tpdo_communication_parameter_1::cob_id_used_by_tpdo,
+    od::tpdo_communication_parameter_1::transmission_type,
+    od::tpdo_communication_parameter_1::event_timer,
+    od::tpdo_mapping_parameter_1::number_of_mapped_application_objects,
+    od::tpdo_mapping_parameter_1::mapping_entry_1,
+    od::tpdo_mapping_parameter_1::mapping_entry_2,
+    od::number_of_cursors,
+    canopen::ArrayObjects<od::linear_encoder_measuring_step_settings, 2>,
+    canopen::ArrayObjects<od::preset_values_for_multi_sensor_devices, 1>,
+    canopen::ArrayObjects<od::position_values_for_multi_sensor_devices, 1>,
+    canopen::ArrayObjects<od::speed_value, 1>,
+    od::cyclic_timer,
+    od::measuring_step>;
 
 /// Identity object: values in RAM.
 struct IdentityObject {

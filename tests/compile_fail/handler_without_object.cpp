@@ -1,4 +1,4 @@
-// expect: not a handler: pass on_write<object>
+// expect: not a handler: pass on_write
 // A callable alone does not specify its object.
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>

@@ -15,5 +15,5 @@ auto make(Bus& bus) {
 #else
   using object = od::access_wo;
 #endif
-  return canopen::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::on_read<object>([](std::uint8_t) {}));
+  return canopen::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::on_read<object>([] {}));
 }

@@ -75,21 +75,21 @@ ordered_json cpp_view(const Device& device, const Options& options, Diagnostics&
     return json_object("any", any_row, "rows", std::move(rows));
   };
   OptionsView view = options_view(device, options);
-  return json_object("file", cpp_comment(path.substr(path.find_last_of('/') + 1)), "namespace", device.name, "guard",
-                     upper_case("edsc_" + device.name), "product_name",
-                     cpp_string(device.product_name.empty() ? device.name : device.product_name), "types",
-                     object_types_view(device, options), "memory", layout_view(lay_out(device, options, diagnostics)),
-                     "zero_terminated_strings", options.zero_terminated_strings, "pdos", pdo_rows(device),
-                     "distinct_pdos", table(distinct_pdos(device)), "cob_ids", table(cob_id_rows(device)), "rpdos",
-                     served_pdos(device, PdoDirection::receive), "tpdos", served_pdos(device, PdoDirection::transmit),
-                     "options", std::move(view.runtime), "any_options", !options.runtime.empty(), "event_conditions",
-                     std::move(view.event_conditions), "any_event_condition", !options.no_event.empty(),
-                     "emergency_info", std::move(view.emergency_info), "any_emergency_info",
-                     !options.emergency_info.empty(), "descriptions", description_rows(device), "node_id",
-                     device.node_id ? ordered_json(*device.node_id) : ordered_json(nullptr), "dummies",
-                     dummy_mask(device), "granularity", device.information.capabilities.granularity.value_or(1), "lss",
-                     std::move(view.lss), "stored_eds", stored_eds_view(device, options), "storing",
-                     std::move(view.storing), "any_storing", !options.storing.empty());
+  return json_object(
+      "file", cpp_comment(path.substr(path.find_last_of('/') + 1)), "namespace", device.name, "guard",
+      upper_case("edsc_" + device.name), "product_name",
+      cpp_string(device.product_name.empty() ? device.name : device.product_name), "types",
+      object_types_view(device, options), "object_rows", object_rows_view(device), "memory",
+      layout_view(lay_out(device, options, diagnostics)), "zero_terminated_strings", options.zero_terminated_strings,
+      "pdos", pdo_rows(device), "distinct_pdos", table(distinct_pdos(device)), "cob_ids", table(cob_id_rows(device)),
+      "rpdos", served_pdos(device, PdoDirection::receive), "tpdos", served_pdos(device, PdoDirection::transmit),
+      "options", std::move(view.runtime), "any_options", !options.runtime.empty(), "event_conditions",
+      std::move(view.event_conditions), "any_event_condition", !options.no_event.empty(), "emergency_info",
+      std::move(view.emergency_info), "any_emergency_info", !options.emergency_info.empty(), "descriptions",
+      description_rows(device), "node_id", device.node_id ? ordered_json(*device.node_id) : ordered_json(nullptr),
+      "dummies", dummy_mask(device), "granularity", device.information.capabilities.granularity.value_or(1), "lss",
+      std::move(view.lss), "stored_eds", stored_eds_view(device, options), "storing", std::move(view.storing),
+      "any_storing", !options.storing.empty());
 }
 
 }  // namespace edsc

@@ -36,7 +36,7 @@ constexpr std::array sections = {
 };
 
 /// Other generated types except those of records.
-constexpr std::array taken_type_names = {"Values", "Constants", "Device"};
+constexpr std::array taken_type_names = {"Values", "Constants", "Device", "Objects"};
 
 /// The address range of the words of the tables.
 constexpr std::size_t max_bytes = 0x10000;

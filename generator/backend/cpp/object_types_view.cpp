@@ -191,4 +191,21 @@ ordered_json object_types_view(const Device& device, const Options& options) {
   return ObjectTypes{device, options}.view();
 }
 
+ordered_json object_rows_view(const Device& device) {
+  ordered_json rows = ordered_json::array();
+  for (const Object& object : device.objects) {
+    if (!object.has_sub_indices()) {
+      rows.push_back(fmt::format("od::{},", object.identifier));
+    } else if (describes_uniform_array(object)) {
+      rows.push_back(fmt::format("canopen::ArrayObjects<od::{}, {}>,", object.identifier, object.entries.size() - 1));
+    } else {
+      for (const Entry& entry : object.entries) {
+        rows.push_back(fmt::format("od::{}::{},", object.identifier, entry.identifier));
+      }
+    }
+  }
+  if (!rows.empty()) rows.back().get_ref<std::string&>().back() = '>';
+  return rows;
+}
+
 }  // namespace edsc

@@ -12,6 +12,9 @@ namespace edsc {
 /// One row for each object: a VAR, an ARRAY of equal elements as a template, or a namespace of entries.
 [[nodiscard]] nlohmann::ordered_json object_types_view(const Device& device, const Options& options);
 
+/// The arguments of the list of these types, with the punctuation behind each.
+[[nodiscard]] nlohmann::ordered_json object_rows_view(const Device& device);
+
 /// The structs and tables of dictionary.hpp.
 [[nodiscard]] nlohmann::ordered_json layout_view(const MemoryLayout& layout);
 

@@ -47,6 +47,15 @@ concept Bus = requires(T& bus, const Frame& frame) {
   { bus.send(frame) } -> std::same_as<bool>;
 };
 
+/// The bus of a node; does not compile if it is not a Bus.
+template <class B>
+struct CheckedBus {
+  static_assert(
+      Bus<B>,
+      "bus: it must have `bool send(const canopen::Frame&)`, which returns false if the controller has no room");
+  static constexpr bool is_good = true;
+};
+
 /// The data bytes of a frame as two words, in memory order.
 struct FrameWords {
   std::uint32_t first = 0;

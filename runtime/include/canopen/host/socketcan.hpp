@@ -96,7 +96,7 @@ class SocketCan {
   // For host_loop.hpp.
 
   /// Makes the kernel discard frames that the node ignores.
-  template <class Device, Bus B, class... Handlers>
+  template <class Device, class B, class... Handlers>
   void listen_for(Node<Device, B, Handlers...>& node) {
     constexpr std::size_t most = max_accepted_frames<Device>;
     if constexpr (most <= CAN_RAW_FILTER_MAX) {

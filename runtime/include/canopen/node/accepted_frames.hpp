@@ -19,7 +19,7 @@
 
 namespace canopen {
 
-template <class Device, Bus B, class... Handlers>
+template <class Device, class B, class... Handlers>
 class Node;
 
 /// All data or all remote frames with one CAN-ID.
@@ -118,7 +118,7 @@ inline constexpr std::array<Entry, source_count<Device>> sources = [] {
 /// Calls `visit(AcceptedFrame)` for all frames that this node does not ignore, some of them more than once, with
 /// its present COB-IDs: they change with SDO writes, resets, LSS and the application. A node without node-ID
 /// accepts only LSS.
-template <class Device, Bus B, class... Handlers, class Visit>
+template <class Device, class B, class... Handlers, class Visit>
 void for_each_accepted_frame(Node<Device, B, Handlers...>& node, Visit&& visit) {
   if constexpr (!std::is_void_v<typename lss_detail::Find<Handlers...>::type>) {
     visit(AcceptedFrame{lss::request_id, false, false});

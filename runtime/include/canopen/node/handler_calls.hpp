@@ -5,19 +5,15 @@
 #include <type_traits>
 
 #include "canopen/nmt/nmt.hpp"
-#include "canopen/node/handlers.hpp"
-#include "canopen/sdo/domain_handlers.hpp"
 
 namespace canopen {
 
 /// Records what a read or write handler does with its node: an NMT command is executed after the response of the SDO
 /// server, and a value that the handler sets itself replaces the received one.
-template <class... Handlers>
+/// `exist`: whether the node has such handlers; if not, this class is empty.
+template <bool exist>
 class HandlerCalls {
  public:
-  /// Whether the node has such handlers; if not, this class is empty.
-  static constexpr bool exist = HandlerSet<Handlers...>::has_access_handlers || DomainHandlerSet<Handlers...>::any;
-
   /// Calls the handlers of an object by `ask`. `written` is the key of the object if it is written, otherwise 0.
   template <class Ask>
   [[nodiscard]] auto ask([[maybe_unused]] std::uint32_t written, Ask&& ask) {

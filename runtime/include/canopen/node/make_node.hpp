@@ -9,19 +9,19 @@
 
 namespace canopen {
 
-template <class Device, Bus B, class... Handlers>
+template <class Device, class B, class... Handlers>
 class Node;
 
 /// Returns a node of a device on a bus, with its handlers:
 ///     auto drive = canopen::make_node<cpc_tc1::Device>(bus, canopen::NodeId{5}, canopen::on_write<...>(...));
-template <class Device, Bus B, class... Handlers>
+template <class Device, class B, class... Handlers>
 [[nodiscard]] constexpr Node<Device, B, Handlers...> make_node(B& bus, NodeId node_id, Handlers... handlers) {
   return Node<Device, B, Handlers...>{bus, node_id, std::move(handlers)...};
 }
 
 /// The same with the handlers in a tuple, as returned by a function that creates all handlers of an application:
 ///     auto pump_node = canopen::make_node<pump::Device>(bus, canopen::NodeId{5}, application.handlers());
-template <class Device, Bus B, class... Handlers>
+template <class Device, class B, class... Handlers>
 [[nodiscard]] constexpr Node<Device, B, Handlers...> make_node(B& bus, NodeId node_id,
                                                                std::tuple<Handlers...> handlers) {
   return std::apply(
@@ -32,7 +32,7 @@ template <class Device, Bus B, class... Handlers>
 }
 
 /// The same for a node whose node-ID is passed to `start`.
-template <class Device, Bus B, class... Handlers>
+template <class Device, class B, class... Handlers>
 [[nodiscard]] constexpr Node<Device, B, Handlers...> make_node(B& bus, Handlers... handlers) {
   return Node<Device, B, Handlers...>{bus, std::move(handlers)...};
 }

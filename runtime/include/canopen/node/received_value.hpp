@@ -23,6 +23,19 @@ template <class Host>
   return host.handler_calls().ask(key, [&] { return host.handlers().before_write(host.node(), key, bytes); });
 }
 
+/// Calls the handlers that use an object after it has been written. A command that they request is executed after the
+/// response of the SDO server.
+template <class Host>
+void notify_written([[maybe_unused]] Host& host, [[maybe_unused]] std::uint16_t index,
+                    [[maybe_unused]] std::uint8_t sub_index) {
+  if constexpr (Host::Handlers::has_written_handlers) {
+    static_cast<void>(host.handler_calls().ask(0, [&] {
+      host.handlers().after_write(host.node(), object_key(index, sub_index), host.store());
+      return ok;
+    }));
+  }
+}
+
 /// Applies a value from a PDO to an object by index and sub-index. A value outside its limits, or rejected by its
 /// handler, is ignored.
 template <class Host>
@@ -31,10 +44,12 @@ void take_received(Host& host, std::uint16_t index, std::uint8_t sub_index, std:
   const entry::Word word = Entries::find(index, sub_index);
   if (Entries::kinds.booleans && entry::is_boolean(word)) bytes[0] = bytes[0] != 0 ? 1 : 0;
   if (host.entries().check(index, sub_index, word, bytes) != ok) return;
-  if (before_write(host, index, sub_index, bytes) != ok || host.handler_calls().set_by_handler()) return;
-  if (host.entries().holds(word, bytes)) return;
-  host.entries().write(word, bytes);
-  host.after_write(index, sub_index, true);
+  if (before_write(host, index, sub_index, bytes) != ok) return;
+  if (!host.handler_calls().set_by_handler() && !host.entries().holds(word, bytes)) {
+    host.entries().write(word, bytes);
+    host.after_write(index, sub_index, true);
+  }
+  notify_written(host, index, sub_index);
 }
 
 /// The same for an object that is known at compile time.
@@ -44,9 +59,10 @@ void take_received(Host& host, const typename O::type& value) {
   if constexpr (Host::Handlers::template handles_write<O>) {
     const auto ask = [&] { return host.handlers().template before_write<O>(host.node(), value); };
     if (host.handler_calls().ask(object_key(O::index, O::sub_index), ask) != ok) return;
-    if (host.handler_calls().set_by_handler()) return;
+    if (host.handler_calls().set_by_handler()) return notify_written(host, O::index, O::sub_index);
   }
   if (host.store().template set<O>(value)) host.template on_new_value<O>();
+  if constexpr (Host::Handlers::template handles_written<O>) notify_written(host, O::index, O::sub_index);
 }
 
 }  // namespace canopen

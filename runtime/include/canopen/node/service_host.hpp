@@ -81,9 +81,10 @@ class ServiceHost {
 
   [[nodiscard]] auto& handlers() { return node().handlers_; }
   [[nodiscard]] auto& handler_calls() { return node().handler_calls_; }
-  template <template <class> class Kind, class... Arguments>
+  /// Calls the handlers of an event, a row of node/functions.hpp.
+  template <class Event, class... Arguments>
   void tell(const Arguments&... arguments) {
-    node().handlers_.template tell<Kind>(node(), arguments...);
+    node().handlers_.template tell<Event>(node(), arguments...);
   }
 
   // Errors

@@ -7,6 +7,7 @@
 #include "canopen/base/abort_code.hpp"
 #include "canopen/base/optimization.hpp"
 #include "canopen/od/object.hpp"
+#include "canopen/od/value_for.hpp"
 
 namespace canopen {
 
@@ -33,19 +34,8 @@ inline constexpr bool can_be_refused = [] {
 
 /// Returns value_too_high or value_too_low for a value outside the limits of its object, invalid_value for NaN.
 template <DictionaryObject O>
-[[nodiscard]] AbortCode check_limits([[maybe_unused]] const typename O::type& value) {
-  using T = typename O::type;
-  if constexpr (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>) {
-    if constexpr (requires { O::high_limit; } || std::is_integral_v<T>) {
-      if (value > high_limit<O>()) return AbortCode::value_too_high;
-    }
-    if constexpr (requires { O::low_limit; } || std::is_integral_v<T>) {
-      if (value < low_limit<O>()) return AbortCode::value_too_low;
-    }
-    if constexpr (std::is_floating_point_v<T> && requires { O::low_limit; }) {
-      if (value != value) return AbortCode::invalid_value;
-    }
-  }
+[[nodiscard]] constexpr AbortCode check_limits([[maybe_unused]] const typename O::type& value) {
+  if constexpr (NumberObject<O>) return check_value<O>(value);
   return ok;
 }
 

@@ -22,23 +22,10 @@
 #include "canopen/od/access.hpp"
 #include "canopen/od/object.hpp"
 #include "canopen/od/value.hpp"
+#include "canopen/od/value_for.hpp"
 #include "canopen/sdo/sdo_client.hpp"
 
 namespace canopen {
-
-/// A string object: its value type has a capacity.
-template <class O>
-concept StringObject = DictionaryObject<O> && requires {
-  O::type::capacity();
-};
-
-template <class O>
-concept DomainObject = DictionaryObject<O> && std::same_as<typename O::type, Domain>;
-
-/// An object whose value is a number, a BOOLEAN or a time.
-template <class O>
-concept NumberObject = DictionaryObject<O> && O::bits >
-0;
 
 /// An object of this device.
 template <class O, class Device>
@@ -51,44 +38,6 @@ concept RemoteReadable = DictionaryObject<O> && readable(O::access);
 /// An object that SDO can write.
 template <class O>
 concept RemoteWritable = DictionaryObject<O> && writable(O::access);
-
-namespace remote_detail {
-
-template <class V>
-concept Integer = std::integral<V> && !std::same_as<V, bool> && !std::same_as<V, char>;
-
-template <class V>
-concept Number = Integer<V> || std::floating_point<V>;
-
-}  // namespace remote_detail
-
-/// A value that can be written to an object: of the same type, an integer to an integer, any number to a REAL.
-template <class V, class O>
-concept ValueFor = NumberObject<O> &&
-    (std::same_as<V, typename O::type> || (remote_detail::Integer<V> && remote_detail::Integer<typename O::type>) ||
-     (remote_detail::Number<V> && std::floating_point<typename O::type>));
-
-/// Checks a value against the range of the object's type and its limits: value_too_high, value_too_low, or
-/// invalid_value for a NaN written to a REAL with limits.
-template <NumberObject O, ValueFor<O> V>
-[[nodiscard]] constexpr AbortCode check_value(V value) {
-  using T = typename O::type;
-  if constexpr (remote_detail::Integer<T>) {
-    if (std::cmp_greater(value, high_limit<O>())) return AbortCode::value_too_high;
-    if (std::cmp_less(value, low_limit<O>())) return AbortCode::value_too_low;
-  } else if constexpr (std::floating_point<T>) {
-    [[maybe_unused]] const auto real = static_cast<T>(value);
-    if constexpr (requires { O::high_limit; }) {
-      if (real != real) return AbortCode::invalid_value;
-      if (real > O::high_limit) return AbortCode::value_too_high;
-    }
-    if constexpr (requires { O::low_limit; }) {
-      if (real != real) return AbortCode::invalid_value;
-      if (real < O::low_limit) return AbortCode::value_too_low;
-    }
-  }
-  return ok;
-}
 
 /// Typed SDO client of one node. An SDO has one client, so do not use it for a node that an NmtMaster or SdoQueue
 /// accesses: two clients receive each other's segments.

@@ -48,6 +48,10 @@ inline constexpr bool is_stored_in = false;
 template <Storage S>
 inline constexpr bool is_stored_in<StoredIn<S>> = true;
 
+/// Whether a storage is among the handlers of a node.
+template <class... Handlers>
+inline constexpr bool has_storage = (is_stored_in<Handlers> || ...);
+
 }  // namespace storage_detail
 
 }  // namespace canopen

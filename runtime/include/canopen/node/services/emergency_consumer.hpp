@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "canopen/emcy/emcy_consumer.hpp"
-#include "canopen/node/handlers.hpp"
+#include "canopen/node/functions.hpp"
 #include "canopen/node/service_set.hpp"
 
 namespace canopen::service {
@@ -21,7 +21,7 @@ class EmergencyConsumer : public ServiceDefaults<EmergencyConsumer<Device>> {
   static bool on_frame(Host& host, const Frame& frame, std::uint32_t) {
     const std::optional<ConsumedEmergency> emergency = Consumer::take(host.entries(), frame);
     if (!emergency) return false;
-    if (serves_emcy(host.state())) host.template tell<EmergencyHandler>(*emergency);
+    if (serves_emcy(host.state())) host.template tell<function::OnEmergency>(*emergency);
     return true;
   }
 };

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "canopen/nmt/node_guarding.hpp"
-#include "canopen/node/handlers.hpp"
+#include "canopen/node/functions.hpp"
 #include "canopen/node/service_set.hpp"
 #include "canopen/node/services/error_reaction.hpp"
 #include "canopen/node/services/heartbeat.hpp"
@@ -31,7 +31,7 @@ class NodeGuarding : public ServiceDefaults<NodeGuarding<Device>> {
     slave_.on_request(guard_time(host), life_time_factor(host), host.now());
     if (was_lost) {
       host.end_if_gone(set_of(ServiceError::error_control));
-      host.template tell<LifeGuardingHandler>(false);
+      host.template tell<function::OnLifeGuarding>(false);
     }
     host.attend();
     return true;
@@ -90,7 +90,7 @@ class LifeGuarding : public ServiceDefaults<LifeGuarding<Device>> {
   static void on_time(Host& host) {
     if (!host.template service<NodeGuarding<Device>>().life_time_over(host)) return;
     error_control_failed(host);
-    host.template tell<LifeGuardingHandler>(true);
+    host.template tell<function::OnLifeGuarding>(true);
   }
 };
 

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "canopen/nmt/heartbeat_consumer.hpp"
-#include "canopen/node/handlers.hpp"
+#include "canopen/node/functions.hpp"
 #include "canopen/node/service_set.hpp"
 #include "canopen/node/services/error_reaction.hpp"
 #include "canopen/od/value_bits.hpp"
@@ -71,7 +71,7 @@ class HeartbeatConsumer : public ServiceDefaults<HeartbeatConsumer<Device>> {
       if (event == HeartbeatEvent::lost) error_control_failed(host);
       if (event == HeartbeatEvent::back || event == HeartbeatEvent::boot_up)
         host.end_if_gone(set_of(ServiceError::error_control));
-      host.template tell<HeartbeatHandler>(event, other, state);
+      host.template tell<function::OnHeartbeat>(event, other, state);
     }
   };
 

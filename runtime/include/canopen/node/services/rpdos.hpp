@@ -6,7 +6,7 @@
 #include <span>
 
 #include "canopen/can/cob_id.hpp"
-#include "canopen/node/handlers.hpp"
+#include "canopen/node/functions.hpp"
 #include "canopen/node/received_value.hpp"
 #include "canopen/node/service_set.hpp"
 #include "canopen/node/services/sync.hpp"
@@ -46,7 +46,7 @@ struct RpdoHooks {
       case RpdoEvent::length_right:
       case RpdoEvent::in_time: host.end_if_gone(rpdo_errors); break;
     }
-    host.template tell<RpdoHandler>(event, number);
+    host.template tell<function::OnRpdo>(event, number);
   }
   void destination_missing(bool missing) const {
     missing ? host.report(ServiceError::mpdo_destination) : host.end_if_gone(rpdo_errors);
@@ -125,7 +125,7 @@ class Rpdos : public ServiceDefaults<Rpdos<Device>> {
       if ((word & entry::limited) != 0 || (kinds.booleans && entry::is_boolean(word)) ||
           (kinds.padded && (size & (size - 1)) != 0))
         return true;
-      if (is_communication_index(mapped.index()) || Host::Handlers::handles(mapped.key())) return true;
+      if (is_communication_index(mapped.index()) || Host::Handlers::watches(mapped.key())) return true;
       if (MpdoService<Device>::sends_source && (word & entry::tpdo) != 0) return true;
       return TpdoService<Device>::carries(host.entries(), mapped.key());
     }

@@ -53,7 +53,10 @@ struct SdoHooks {
     }
     return new_value || !mappable;
   }
-  void after_write(std::uint16_t index, std::uint8_t sub_index) { host.after_write(index, sub_index, new_value); }
+  void after_write(std::uint16_t index, std::uint8_t sub_index) {
+    host.after_write(index, sub_index, new_value);
+    notify_written(host, index, sub_index);
+  }
   [[nodiscard]] AbortCode command(std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
     return host.command(index, sub_index, bytes);
   }

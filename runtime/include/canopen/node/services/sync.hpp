@@ -6,7 +6,7 @@
 #include <span>
 #include <type_traits>
 
-#include "canopen/node/handlers.hpp"
+#include "canopen/node/functions.hpp"
 #include "canopen/node/service_set.hpp"
 #include "canopen/sync/sync.hpp"
 
@@ -90,7 +90,7 @@ class Sync : public ServiceDefaults<Sync<Device>> {
     }
     host.template service<Sync>().window_.open(host.store(), host.now());
     host.on_sync(sync);
-    host.template tell<SyncHandler>(sync.counter);
+    host.template tell<function::OnSync>(sync.counter);
   }
 
   [[no_unique_address]] std::conditional_t<Producer::exists, Producer, NoProducer> producer_{};

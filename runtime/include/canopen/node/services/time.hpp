@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "canopen/node/handlers.hpp"
+#include "canopen/node/functions.hpp"
 #include "canopen/node/service_set.hpp"
 #include "canopen/od/object_store.hpp"
 #include "canopen/time/time_stamp.hpp"
@@ -23,7 +23,7 @@ class Time : public ServiceDefaults<Time<Device>> {
   static bool on_frame(Host& host, const Frame& frame, std::uint32_t) {
     const std::optional<TimeOfDay> time = TimeStamp<Device>::take(host.store(), frame);
     if (!time) return false;
-    if (serves_sync(host.state())) host.template tell<TimeHandler>(*time);
+    if (serves_sync(host.state())) host.template tell<function::OnTimeOfDay>(*time);
     return true;
   }
 

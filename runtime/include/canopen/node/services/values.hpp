@@ -5,11 +5,11 @@
 #include <span>
 
 #include "canopen/emcy/error_register.hpp"
-#include "canopen/node/handlers.hpp"
 #include "canopen/node/service_set.hpp"
 #include "canopen/node/services/emergency.hpp"
 #include "canopen/od/object_store.hpp"
 #include "canopen/storage/parameter_storage.hpp"
+#include "canopen/storage/storage.hpp"
 
 namespace canopen::service {
 
@@ -17,7 +17,7 @@ namespace canopen::service {
 template <class Device, class... Handlers>
 class DefaultValues : public ServiceDefaults<DefaultValues<Device, Handlers...>> {
  public:
-  static constexpr bool exists = !HandlerSet<Handlers...>::has_storage;
+  static constexpr bool exists = !storage_detail::has_storage<Handlers...>;
 
   template <class Host>
   static void reset_application(Host& host) {
@@ -35,7 +35,7 @@ class StoredValues : public ServiceDefaults<StoredValues<Device, Handlers...>> {
   using Stored = ParameterStorage<Device>;
 
  public:
-  static constexpr bool exists = HandlerSet<Handlers...>::has_storage;
+  static constexpr bool exists = storage_detail::has_storage<Handlers...>;
 
   template <class Host>
   void on_start(Host& host) {

@@ -1,0 +1,231 @@
+/// Checks the functions of an application class at the declaration of its node: one that the node would never call does
+/// not compile. The compiler's message names the object or the function.
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+
+#include "canopen/base/abort_code.hpp"
+#include "canopen/base/label.hpp"
+#include "canopen/base/result.hpp"
+#include "canopen/node/application.hpp"
+#include "canopen/node/functions.hpp"
+#include "canopen/od/object.hpp"
+#include "canopen/od/object_list.hpp"
+
+namespace canopen::handler_detail {
+
+/// Converts to each type: fits each parameter.
+struct AnyValue {
+  template <class T>
+  operator T() const;  // NOLINT(google-explicit-constructor): stands for a value
+};
+
+/// An object that no dictionary has: only a function for all objects accepts it.
+struct NoObject {};
+
+template <class T, class Objects>
+inline constexpr bool is_in = false;
+template <class T, class... Rows>
+inline constexpr bool is_in<T, ObjectRows<Rows...>> = std::disjunction_v<std::is_same<T, Rows>...>;
+
+template <class T, class Row>
+inline constexpr bool is_element = false;
+template <template <std::uint8_t> class Array, std::uint8_t I, std::uint8_t Highest>
+inline constexpr bool is_element<Array<I>, ArrayObjects<Array, Highest>> = I <= Highest;
+template <class T, class Objects>
+inline constexpr bool is_element_in = false;
+template <class T, class... Rows>
+inline constexpr bool is_element_in<T, ObjectRows<Rows...>> =
+    std::disjunction_v<std::bool_constant<is_element<T, Rows>>...>;
+
+/// Converts to the generated type of each object that is not one of `Device`.
+template <class Device>
+struct ObjectOfAnother {
+  template <DictionaryObject T>
+  requires(!is_in<T, typename Device::Objects> && !is_element_in<T, typename Device::Objects>) operator T()
+      const;  // NOLINT(google-explicit-constructor): stands for an object
+};
+
+/// An object of another device, in the compiler's message.
+template <class Device, class Object>
+struct KnownObject {
+  static_assert(!DictionaryObject<Object>, "application: this device does not have the object of one of its functions");
+  static constexpr bool is_good = true;
+};
+
+/// The same, as an error for the first type that it converts to.
+template <class Device>
+struct NamesObjectOfAnother {
+  template <DictionaryObject T>
+  requires(!is_in<T, typename Device::Objects> && !is_element_in<T, typename Device::Objects> &&
+           KnownObject<Device, T>::is_good)
+  operator T() const;  // NOLINT(google-explicit-constructor): stands for an object
+};
+
+/// Whether no function of an application fits; more than one may.
+template <class Function, class A, class... Values>
+inline constexpr bool none_fits = requires(typename Function::template OrNone<A>& application, Values... values) {
+  { Function::call(application, values...) } -> std::same_as<function::NoneFits>;
+};
+
+/// Selects the objects that a function accepts with a value of any type.
+template <class Function, class A, class Node>
+struct WithAnyFunction {
+  template <class O>
+  static constexpr bool selects = has_function<Function, A, Node, O, AnyValue>;
+};
+template <class A, class Node>
+struct WithAnyFunction<function::Read, A, Node> {
+  template <class O>
+  static constexpr bool selects = has_function<function::Read, A, Node, O>;
+};
+
+/// Whether a list has an object with this index.
+template <std::uint16_t Index, class List>
+inline constexpr bool has_index = false;
+template <std::uint16_t Index, class... Os>
+inline constexpr bool has_index<Index, ObjectList<Os...>> = ((Index == Os::index) || ...);
+
+/// Whether a function can be called for an object of this index: a template of an array's elements also fits those with
+/// another type or access.
+template <class Function, std::uint16_t Index, class List>
+inline constexpr bool is_reachable = false;
+template <class Function, std::uint16_t Index, class... Os>
+inline constexpr bool is_reachable<Function, Index, ObjectList<Os...>> =
+    ((Index == Os::index && (std::is_same_v<Function, function::Read> ? readable(Os::access) : writable(Os::access))) ||
+     ...);
+
+/// A function `write`, `written` or `read` of an application for one of its objects.
+template <class Application, class Function, class Object, bool TypeFits, bool Reachable, bool AnswerFits>
+struct ApplicationFunction {
+  static_assert(AnswerFits || std::is_same_v<Function, function::Read>,
+                "application: write returns an AbortCode, a Result<void> or nothing, and written nothing");
+  static_assert(AnswerFits || !std::is_same_v<Function, function::Read>,
+                "application: read returns the type of its object, a Result of it, an AbortCode or nothing");
+  static_assert(TypeFits, "application: the parameter of this function is not of the type of its object");
+  static_assert(Reachable || std::is_same_v<Function, function::Read>,
+                "application: the object is ro or const, so that this function can never be called");
+  static_assert(Reachable || !std::is_same_v<Function, function::Read>,
+                "application: the object is wo, so that this function can never be called");
+  static constexpr bool is_good = true;
+};
+
+/// The functions of an application with one of these three names.
+template <class Device, class Application, class Function, bool None>
+struct ApplicationFunctions {
+  static_assert(!None, "application: none of these functions has an object of this device and its type as parameters");
+  static constexpr bool is_good = true;
+};
+
+template <class Function, class O, class Answer>
+inline constexpr bool answer_fits = std::is_void_v<Answer>;
+template <class O, class Answer>
+inline constexpr bool answer_fits<function::Write, O, Answer> =
+    std::is_void_v<Answer> || std::is_same_v<Answer, AbortCode> || std::is_same_v<Answer, Result<void>>;
+template <class O, class Answer>
+inline constexpr bool answer_fits<function::Read, O, Answer> =
+    std::is_void_v<Answer> || std::is_same_v<Answer, AbortCode> || std::is_same_v<Answer, typename O::type> ||
+    std::is_same_v<Answer, Result<typename O::type>>;
+
+/// Whether the result of a function is one that the node can use.
+template <class Function, class A, class Node, class O>
+[[nodiscard]] constexpr bool check_answer() {
+  if constexpr (!has_function<Function, A, Node, O, typename O::type>) {
+    return !has_function<Function, A, Node, O> ||
+           answer_fits<Function, O,
+                       decltype(call_function<Function>(std::declval<A&>(), std::declval<Node&>(), std::declval<O>()))>;
+  } else {
+    return answer_fits<Function, O,
+                       decltype(call_function<Function>(std::declval<A&>(), std::declval<Node&>(), std::declval<O>(),
+                                                        std::declval<typename O::type>()))>;
+  }
+}
+
+template <class Device, class Node, class A, class Function>
+[[nodiscard]] constexpr bool check_objects() {
+  if constexpr (!Function::template is_declared<A>) {
+    return true;
+  } else {
+    using Objects = typename Device::Objects;
+    using Any = SelectObjects<WithAnyFunction<Function, A, Node>, Objects>;
+    using Exact = SelectObjects<WithFunction<Function, A, Node>, Objects>;
+    constexpr bool is_for_all =
+        has_function<Function, A, Node, NoObject, AnyValue> || has_function<Function, A, Node, NoObject>;
+    constexpr bool is_foreign = !is_for_all && !(none_fits<Function, A, ObjectOfAnother<Device>> &&
+                                                 none_fits<Function, A, ObjectOfAnother<Device>, AnyValue> &&
+                                                 none_fits<Function, A, ObjectOfAnother<Device>, AnyValue, AnyValue>);
+    bool good = true;
+    if constexpr (is_foreign) {
+      using Foreign = NamesObjectOfAnother<Device>;
+      good = !has_function<Function, A, Node, Foreign> && !has_function<Function, A, Node, Foreign, AnyValue>;
+    } else {
+      good = ApplicationFunctions<Device, A, Function, Any::size == 0>::is_good;
+    }
+    if constexpr (!is_for_all) {
+      Any::for_each([&]<class O>() {
+        constexpr bool type_fits = has_index<O::index, Exact>;
+        constexpr bool reachable = !type_fits || is_reachable<Function, O::index, Exact>;
+        constexpr bool answer_is_good = !type_fits || check_answer<Function, A, Node, O>();
+        good = good && ApplicationFunction<A, Function, O, type_fits, reachable, answer_is_good>::is_good;
+      });
+    }
+    return good;
+  }
+}
+
+/// The function of an event.
+template <class Application, class Event, class Label, bool Fits, bool Exists>
+struct ApplicationEvent {
+  static_assert(Fits, "application: the parameters of this function are not those of its event");
+  static_assert(Exists, "application: this device does not have the object that this event needs");
+  static constexpr bool is_good = true;
+};
+
+template <std::uint16_t Index>
+struct EventObject {
+  static constexpr std::uint16_t index = Index;
+  static constexpr std::uint8_t sub_index = 0;
+};
+
+template <class Device, class Node, class A, class Event>
+[[nodiscard]] constexpr bool check_event() {
+  if constexpr (!Event::template is_declared<A>) {
+    return true;
+  } else {
+    return ApplicationEvent < A, Event, pdo_detail::LabelOf<EventObject<Event::object>>, has_event<Event, A, Node>,
+           Event::object == 0 || Device::dictionary.has(Event::object, 0) > ::is_good;
+  }
+}
+
+/// A function with a name that the node does not call, but that resembles one that it calls.
+template <class Application, class Meant>
+struct MisspeltFunction {
+  static_assert(!Meant::template is_declared<Application>,
+                "application: the node does not call a function of this name; canopen/node/functions.hpp lists those "
+                "that it calls, such as write, written, read and on_state");
+  static constexpr bool is_good = true;
+};
+
+template <class A, class... Names>
+[[nodiscard]] constexpr bool check_names() {
+  return (MisspeltFunction<A, Names>::is_good && ...);
+}
+
+template <class Device, class Node, class A>
+[[nodiscard]] constexpr bool check_application() {
+  using namespace function;
+  return check_names<A, Writen, OnWrite, OnWritten, OnRead, OnNmtState, OnEmcy, OnPdo>() &&
+         check_objects<Device, Node, A, Write>() && check_objects<Device, Node, A, Written>() &&
+         check_objects<Device, Node, A, Read>() && check_event<Device, Node, A, OnState>() &&
+         check_event<Device, Node, A, OnSync>() && check_event<Device, Node, A, OnTimeOfDay>() &&
+         check_event<Device, Node, A, OnHeartbeat>() && check_event<Device, Node, A, OnLifeGuarding>() &&
+         check_event<Device, Node, A, OnEmergency>() && check_event<Device, Node, A, OnError>() &&
+         check_event<Device, Node, A, OnRpdo>();
+}
+
+}  // namespace canopen::handler_detail

@@ -1,0 +1,153 @@
+/// The handlers of one node.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <tuple>
+#include <utility>
+
+#include "canopen/base/abort_code.hpp"
+#include "canopen/node/handled.hpp"
+#include "canopen/od/dictionary.hpp"
+#include "canopen/od/object.hpp"
+#include "canopen/od/value_bits.hpp"
+#include "canopen/storage/storage.hpp"
+
+namespace canopen {
+
+namespace handler_detail {
+
+template <class O, class List>
+inline constexpr bool has_object = false;
+template <class O, class... Os>
+inline constexpr bool has_object<O, ObjectList<Os...>> = ((O::index == Os::index && O::sub_index == Os::sub_index) ||
+                                                          ...);
+
+template <class... Os>
+[[nodiscard]] constexpr bool has_key([[maybe_unused]] std::uint32_t key, ObjectList<Os...>) {
+  return ((key == object_key(Os::index, Os::sub_index)) || ...);
+}
+
+}  // namespace handler_detail
+
+/// `Node` may be incomplete.
+template <class Device, class Node, class... Handlers>
+class HandlerSet {
+  template <class H>
+  using Handled = handler_detail::Handled<Device, Node, H>;
+
+ public:
+  constexpr explicit HandlerSet(Handlers... handlers) : handlers_{std::move(handlers)...} {}
+  constexpr HandlerSet() requires(sizeof...(Handlers) > 0) = default;
+
+  /// Whether the value of `O` is checked before it is written, or used after it.
+  template <DictionaryObject O>
+  static constexpr bool handles_write = (handler_detail::has_object<O, typename Handled<Handlers>::BeforeWrite> || ...);
+  template <DictionaryObject O>
+  static constexpr bool handles_written = (handler_detail::has_object<O, typename Handled<Handlers>::AfterWrite> ||
+                                           ...);
+
+  /// Whether any handler is called after an object has been written, or before it is read.
+  static constexpr bool has_written_handlers = ((Handled<Handlers>::AfterWrite::size != 0) || ...);
+  static constexpr bool has_read_handlers = ((Handled<Handlers>::Read::size != 0) || ...);
+  /// Whether any handler is called when an object is read or written over the bus.
+  static constexpr bool has_access_handlers =
+      has_written_handlers || has_read_handlers || ((Handled<Handlers>::BeforeWrite::size != 0) || ...);
+
+  /// Whether the object with this key has a handler that is called before it is written.
+  [[nodiscard]] static bool handles([[maybe_unused]] std::uint32_t key) {
+    return (handler_detail::has_key(key, typename Handled<Handlers>::BeforeWrite{}) || ...);
+  }
+  /// The same for after or before.
+  [[nodiscard]] static bool watches([[maybe_unused]] std::uint32_t key) {
+    return handles(key) || (handler_detail::has_key(key, typename Handled<Handlers>::AfterWrite{}) || ...);
+  }
+
+  /// Calls the write handlers of `O`; returns the first abort code.
+  template <DictionaryObject O>
+  AbortCode before_write([[maybe_unused]] Node& node, [[maybe_unused]] const typename O::type& value) {
+    AbortCode code = ok;
+    for_each([&]<class H>([[maybe_unused]] H& handler) {
+      if constexpr (handler_detail::has_object<O, typename Handled<H>::BeforeWrite>) {
+        if (code == ok) code = Handled<H>::template before_write<O>(handler, node, value);
+      }
+    });
+    return code;
+  }
+
+  /// Calls the write handlers of the object with this key; returns the first abort code.
+  AbortCode before_write(Node& node, std::uint32_t key, std::span<std::uint8_t> bytes) {
+    AbortCode code = ok;
+    for_each([&]<class H>([[maybe_unused]] H& handler) {
+      Handled<H>::BeforeWrite::for_each([&]<class O>() {
+        if (code == ok && key == object_key(O::index, O::sub_index))
+          code = Handled<H>::template before_write<O>(handler, node, value_detail::value_from<O>(bytes));
+      });
+    });
+    return code;
+  }
+
+  /// Calls the handlers of `O` after it has been written.
+  template <DictionaryObject O>
+  void after_write([[maybe_unused]] Node& node, [[maybe_unused]] const typename O::type& value) {
+    for_each([&]<class H>([[maybe_unused]] H& handler) {
+      if constexpr (handler_detail::has_object<O, typename Handled<H>::AfterWrite>)
+        Handled<H>::template after_write<O>(handler, node, value);
+    });
+  }
+
+  /// The same for the object with this key; `store` has its value.
+  template <class Store>
+  void after_write(Node& node, std::uint32_t key, const Store& store) {
+    for_each([&]<class H>([[maybe_unused]] H& handler) {
+      Handled<H>::AfterWrite::for_each([&]<class O>() {
+        if (key == object_key(O::index, O::sub_index))
+          Handled<H>::template after_write<O>(handler, node, store.template get<O>());
+      });
+    });
+  }
+
+  /// Calls the read handlers of the object with this key; returns the first abort code.
+  AbortCode before_read(Node& node, std::uint32_t key) {
+    AbortCode code = ok;
+    for_each([&]<class H>([[maybe_unused]] H& handler) {
+      Handled<H>::Read::for_each([&]<class O>() {
+        if (code == ok && key == object_key(O::index, O::sub_index)) code = Handled<H>::template read<O>(handler, node);
+      });
+    });
+    return code;
+  }
+
+  /// Whether a handler of this type is in the set.
+  template <class H>
+  static constexpr bool has = (std::is_same_v<H, Handlers> || ...);
+
+  [[nodiscard]] auto& storage() requires(storage_detail::has_storage<Handlers...>) {
+    constexpr std::size_t position = [] {
+      constexpr bool stored_in[] = {storage_detail::is_stored_in<Handlers>...};
+      std::size_t i = 0;
+      while (!stored_in[i]) ++i;
+      return i;
+    }();
+    return *std::get<position>(handlers_).storage;
+  }
+
+  [[nodiscard]] std::tuple<Handlers...>& all() { return handlers_; }
+
+  /// Calls all functions of an event, a row of node/functions.hpp.
+  template <class Event, class... Arguments>
+  void tell(Node& node, const Arguments&... arguments) {
+    for_each([&]<class H>(H& handler) { Handled<H>::template tell<Event>(handler, node, arguments...); });
+  }
+
+ private:
+  template <class Visit>
+  constexpr void for_each([[maybe_unused]] Visit&& visit) {
+    std::apply([&](auto&... handler) { (visit(handler), ...); }, handlers_);
+  }
+
+  [[no_unique_address]] std::tuple<Handlers...> handlers_;
+};
+
+}  // namespace canopen

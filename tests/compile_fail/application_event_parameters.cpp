@@ -1,0 +1,21 @@
+// expect: parameters of this function are not those of its event .*OnState
+// `on_state` gets an NMT state.
+#include <canopen/node.hpp>
+#include <every_type/device.hpp>
+
+namespace od = every_type::od;
+
+struct Bus {
+  bool send(const canopen::Frame&) { return true; }
+};
+
+struct Application {
+#ifdef GOOD
+  void on_state(canopen::NmtState) {}
+#else
+  void on_state(int) {}
+#endif
+};
+
+Bus bus;
+canopen::Node<every_type::Device, Bus, Application> node{bus, canopen::NodeId{5}};

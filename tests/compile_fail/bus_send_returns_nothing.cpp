@@ -1,0 +1,15 @@
+// expect: bool send\(const canopen::Frame&\)
+// A bus reports whether it has accepted the frame.
+#include <canopen/node.hpp>
+#include <every_type/device.hpp>
+
+struct Bus {
+#ifdef GOOD
+  bool send(const canopen::Frame&) { return true; }
+#else
+  void send(const canopen::Frame&) {}
+#endif
+};
+
+Bus bus;
+canopen::Node<every_type::Device, Bus> node{bus, canopen::NodeId{5}};

@@ -1,0 +1,18 @@
+// expect: outside the limits of the object .*every_type::od::unsigned24_value|outside the limits of the object
+// .*every_type::od::integer8_value The form for constants of the type int is checked too.
+#include <canopen/node.hpp>
+#include <every_type/device.hpp>
+
+namespace od = every_type::od;
+
+struct Bus {
+  bool send(const canopen::Frame&) { return true; }
+};
+
+void set(canopen::Node<every_type::Device, Bus>& node) {
+#ifdef GOOD
+  node.set<od::integer8_value, -100>();
+#else
+  node.set<od::integer8_value, -101>();
+#endif
+}

@@ -1,0 +1,18 @@
+// expect: ConstantFor<every_type::od::access_rw>|not usable in a constant expression
+// A variable whose values may not fit is not converted.
+#include <canopen/node.hpp>
+#include <every_type/device.hpp>
+
+namespace od = every_type::od;
+
+struct Bus {
+  bool send(const canopen::Frame&) { return true; }
+};
+
+void set(canopen::Node<every_type::Device, Bus>& node, int value) {
+#ifdef GOOD
+  node.set(od::access_rw{}, static_cast<std::uint16_t>(value));
+#else
+  node.set(od::access_rw{}, value);
+#endif
+}
