@@ -9,7 +9,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/EdscAddDictionary.cmake)
 #
 #   edsc_add_dictionary(pump EDS pump.eds)
 #   enable_testing()
-#   edsc_add_conformance_test(pump_conforms pump APPLICATION pump_application.hpp PumpApplication)
+#   edsc_add_conformance_test(pump_conforms pump APPLICATION pump.hpp Pump)
 #
 # APPLICATION  a header and its class with the handlers of the device; canopen/host/simulated_device.hpp describes the class.
 #              Add sources and libraries that it needs to the target NAME, with target_sources and target_link_libraries.

@@ -1,10 +1,8 @@
 /// A pump on a simulated bus: a master starts it and sends a speed, the pump answers with its pressure.
 #include <canopen/host/virtual_bus.hpp>
-#include <canopen/node.hpp>
 #include <cstdio>
-#include <pump/device.hpp>
 
-#include "pump_application.hpp"
+#include "pump.hpp"
 
 int main() {
   canopen::VirtualBus bus;
@@ -14,13 +12,12 @@ int main() {
     if (frame.id == 0x185) std::printf("pressure %u mbar\n", unsigned{pump::Tpdo1::get<0>(frame.data)});
   };
 
-  PumpApplication application;
-  auto node = canopen::make_node<pump::Device>(port, canopen::NodeId{5}, application.handlers());
+  canopen::Node<pump::Device, canopen::VirtualBus::Endpoint, Pump> node{port, canopen::NodeId{5}};
   bus.connect(port, node);
 
   node.start(bus.now());
   master.send({.id = 0x000, .size = 2, .data = {0x01, 0x05}});                              // NMT: start node 5
   master.send({.id = 0x205, .size = pump::Rpdo1::size, .data = pump::Rpdo1::pack(1'680)});  // RPDO 1
   bus.settle();
-  return node.get<pump::od::pressure>() == 420 ? 0 : 1;
+  return node.get(od::pressure{}) == 420 ? 0 : 1;
 }

@@ -1,4 +1,4 @@
-// expect: ConstantFor<every_type::od::access_rw>|not usable in a constant expression
+// expect: ConstantFor<every_type::od::access_rw>|is not a constant expression
 // A variable whose values may not fit is not converted.
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>

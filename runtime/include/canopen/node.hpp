@@ -138,6 +138,7 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
 
   using ObjectValues<Node>::get;
   using ObjectValues<Node>::set;
+  using ObjectValues<Node>::send_mpdo;
 
   /// Returns the value of an object, whatever its access type.
   template <DictionaryObject O>
@@ -250,39 +251,6 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
     return services_.template get<service::Mpdos<Device>>().put(host(), to, value);
   }
 
-  /// The same with the value of an object.
-  template <DictionaryObject O>
-  [[nodiscard]] bool send_mpdo(const MpdoDestination& to) {
-    static_assert(O::bits >= 1 && O::bits <= 32, "a multiplex PDO carries a value of 32 bits at most");
-    constexpr std::uint32_t mask = 0xFFFF'FFFF >> (32 - O::bits);
-    return send_mpdo(to, static_cast<std::uint32_t>(value_detail::to_bits(get<O>())) & mask);
-  }
-
-  /// Binds a DOMAIN to memory: a download may fill all of it, an upload sends the first `size` bytes.
-  template <DictionaryObject O>
-  void bind(std::span<std::uint8_t> memory, std::size_t size) {
-    static_assert(std::is_same_v<typename O::type, Domain>, "only a DOMAIN is bound to memory");
-    store_.template set<O>(
-        {memory.data(), static_cast<std::uint32_t>(size), static_cast<std::uint32_t>(memory.size())});
-    services_.template get<Sdo>().domain_rebound(O::index, O::sub_index);
-    attention_ = true;
-  }
-
-  /// The same, with the whole memory as the value.
-  template <DictionaryObject O>
-  void bind(std::span<std::uint8_t> memory) {
-    bind<O>(memory, memory.size());
-  }
-
-  /// Binds a read-only DOMAIN to its bytes, which may be in flash.
-  template <DictionaryObject O>
-  void bind_constant(std::span<const std::uint8_t> bytes) {
-    static_assert(!writable(O::access), "this DOMAIN may be written over the bus");
-    store_.template set<O>({const_cast<std::uint8_t*>(bytes.data()), static_cast<std::uint32_t>(bytes.size()), 0});
-    services_.template get<Sdo>().domain_rebound(O::index, O::sub_index);
-    attention_ = true;
-  }
-
   /// Returns the values in RAM. Changes here do not send TPDOs or restart timers. Do not change mapping parameters
   /// here: services keep data derived from them.
   [[nodiscard]] typename Device::Values& values() { return store_.values(); }
@@ -295,6 +263,7 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
   using HandlerTypes = HandlerSet<Device, Node, Handlers...>;
   using Host = ServiceHost<Node, Device, HandlerTypes>;
   friend Host;
+  friend ObjectValues<Node>;
 
   using BusMember = std::conditional_t<std::is_empty_v<B>, B, B&>;
   using Services = NodeServices<Device, Handlers...>;
@@ -372,6 +341,13 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
     }
     on_new_value<O>();
     return ok;
+  }
+
+  template <DictionaryObject O>
+  void bind_domain(const Domain& memory) {
+    store_.template set<O>(memory);
+    services_.template get<Sdo>().domain_rebound(O::index, O::sub_index);
+    attention_ = true;
   }
 
   /// Notifies the services that an object has been written, with a new or the same value.

@@ -4,27 +4,24 @@
 ///     // conform.cpp; edsc_add_conformance_test writes it
 ///     #include <canopen/host/simulated_device.hpp>
 ///     #include <pump/device.hpp>
-///     #include "pump_application.hpp"
-///     int main(int argc, char** argv) { return canopen::simulate_device<pump::Device, PumpApplication>(argc, argv); }
+///     #include "pump.hpp"
+///     int main(int argc, char** argv) { return canopen::simulate_device<pump::Device, Pump>(argc, argv); }
 ///
 ///     edsc read simulated:build/conform@5 5 1018h:01 --type u32
 ///
-/// `PumpApplication` is default-constructible, once per power-on, and has what the device does with its objects. The
-/// same class serves a real bus: `canopen::make_node<pump::Device>(bus, node_id, application.handlers())`.
+/// `Pump` is default-constructible, once per power-on, and is the same class that a node on a real bus has:
+/// `canopen::Node<pump::Device, Bus, Pump>`.
 ///
-///     class PumpApplication {
-///      public:
-///       auto handlers() {  // a tuple of on_write(), on_read(), stored_in(), ...
-///         return std::tuple{canopen::on_write<od::speed_setpoint>([this](std::uint16_t speed) { speed_ = speed; })};
+///     struct Pump {
+///       void written(od::speed_setpoint, std::uint16_t speed) { speed_ = speed; }  // node/application.hpp has them
+///       all void start(auto& node) { node.set(od::pressure{}, 0); }                    // optional: after power-on
+///       void tick(auto& node, canopen::TimePoint) {                                // optional: each millisecond
+///         node.set(od::pressure{}, static_cast<std::uint16_t>(speed_ / 4));
 ///       }
-///       void start(auto& node) { node.template set<od::pressure>(0); }                     // optional: after power-on
-///       void tick(auto& node, canopen::TimePoint) {                                        // optional: each
-///       millisecond
-///         node.template set<od::pressure>(static_cast<std::uint16_t>(speed_ / 4));
-///       }
-///      private:
 ///       std::uint16_t speed_ = 0;
 ///     };
+///
+/// Instead of such functions, it may have `auto handlers()`, which returns a tuple of on_write(), on_read(), ...
 ///
 /// A device whose dictionary has 1010h or 1011h gets a storage in memory, and one with LSS a port that stores node-ID
 /// and bit rate, where the handlers do not bring their own.

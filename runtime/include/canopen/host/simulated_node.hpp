@@ -74,9 +74,7 @@ class SimulatedNode {
 };
 
 /// The application of a device that has none.
-struct NoApplication {
-  [[nodiscard]] std::tuple<> handlers() const { return {}; }
-};
+struct NoApplication {};
 
 namespace simulation_detail {
 
@@ -111,11 +109,24 @@ template <class Device, class Handlers>
   return std::tuple_cat(storage(), lss(), std::move(handlers));
 }
 
+/// The handlers of an application: those that `handlers()` returns, or the application itself, if it is a class with
+/// functions that a node calls.
+template <class Application>
+[[nodiscard]] auto handlers_of(Application& application) {
+  if constexpr (requires { application.handlers(); }) {
+    return application.handlers();
+  } else if constexpr (handler_detail::is_application<Application>) {
+    return std::tuple{application_at(application)};
+  } else {
+    return std::tuple<>{};
+  }
+}
+
 template <class Device, class Application>
 class NodeOf final : public SimulatedNode {
  public:
   NodeOf(SimulatedBus& bus, SimulatedMemory& memory)
-      : node_(make_node<Device>(bus, memory.node_id(), complete<Device>(memory, application_.handlers()))) {}
+      : node_(make_node<Device>(bus, memory.node_id(), complete<Device>(memory, handlers_of(application_)))) {}
 
   void start(TimePoint now) override {
     node_.start(now);
@@ -149,7 +160,7 @@ class NodeOf final : public SimulatedNode {
  private:
   using Node = decltype(make_node<Device>(
       std::declval<SimulatedBus&>(), NodeId{},
-      complete<Device>(std::declval<SimulatedMemory&>(), std::declval<Application&>().handlers())));
+      complete<Device>(std::declval<SimulatedMemory&>(), handlers_of(std::declval<Application&>()))));
 
   static constexpr bool has_tick = requires(Application & application, Node& node) {
     application.tick(node, TimePoint{});

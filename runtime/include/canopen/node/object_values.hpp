@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <type_traits>
 #include <utility>
 
@@ -15,8 +17,10 @@
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/object.hpp"
 #include "canopen/od/object_list.hpp"
+#include "canopen/od/value.hpp"
 #include "canopen/od/value_bits.hpp"
 #include "canopen/od/value_for.hpp"
+#include "canopen/pdo/mpdo.hpp"
 
 namespace canopen {
 
@@ -43,7 +47,8 @@ struct SetValue {
 }  // namespace object_values_detail
 
 /// Base of a node. A value has the type of its object, or is a constant, whose limits the compiler checks: a constant
-/// outside does not compile, and neither does a number of another type. All functions are those of Node without a tag.
+/// outside does not compile, and neither does a number of another type. Without a tag, the object is a template
+/// argument: `node.get<od::pressure>()`.
 template <class N>
 class ObjectValues {
  public:
@@ -100,6 +105,48 @@ class ObjectValues {
     if (sub_index == 0) return AbortCode::no_sub_index;
     return node().set(Element::index, sub_index,
                       {reinterpret_cast<const std::uint8_t*>(&value), (Element::bits + 7) / 8});
+  }
+
+  /// Sends the value of an object as a DAM-MPDO, like Node::send_mpdo.
+  template <DictionaryObject O>
+  [[nodiscard]] bool send_mpdo(const MpdoDestination& to) {
+    static_assert(O::bits >= 1 && O::bits <= 32, "a multiplex PDO carries a value of 32 bits at most");
+    constexpr std::uint32_t mask = 0xFFFF'FFFF >> (32 - O::bits);
+    return node().send_mpdo(to, static_cast<std::uint32_t>(value_detail::to_bits(node().template get<O>())) & mask);
+  }
+
+  /// Binds a DOMAIN to memory: a download may fill all of it, an upload sends the first `size` bytes.
+  template <DictionaryObject O>
+  void bind(std::span<std::uint8_t> memory, std::size_t size) {
+    static_assert(std::is_same_v<typename O::type, Domain>, "only a DOMAIN is bound to memory");
+    node().template bind_domain<O>(
+        {memory.data(), static_cast<std::uint32_t>(size), static_cast<std::uint32_t>(memory.size())});
+  }
+  template <DictionaryObject O>
+  void bind(O, std::span<std::uint8_t> memory, std::size_t size) {
+    bind<O>(memory, size);
+  }
+
+  /// The same, with the whole memory as the value.
+  template <DictionaryObject O>
+  void bind(std::span<std::uint8_t> memory) {
+    bind<O>(memory, memory.size());
+  }
+  template <DictionaryObject O>
+  void bind(O, std::span<std::uint8_t> memory) {
+    bind<O>(memory, memory.size());
+  }
+
+  /// Binds a read-only DOMAIN to its bytes, which may be in flash.
+  template <DictionaryObject O>
+  void bind_constant(std::span<const std::uint8_t> bytes) {
+    static_assert(!writable(O::access), "this DOMAIN may be written over the bus");
+    node().template bind_domain<O>(
+        {const_cast<std::uint8_t*>(bytes.data()), static_cast<std::uint32_t>(bytes.size()), 0});
+  }
+  template <DictionaryObject O>
+  void bind_constant(O, std::span<const std::uint8_t> bytes) {
+    bind_constant<O>(bytes);
   }
 
  private:
