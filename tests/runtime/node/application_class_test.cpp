@@ -93,6 +93,40 @@ TEST(Application, SuppliesTheValueOfAnUpload) {
       << "0800 0022h: not in this state";
 }
 
+/// Measures the word of TPDO 1 and a position of TPDO 2.
+struct Sensor {
+  std::uint16_t read(od::word) { return static_cast<std::uint16_t>(++measurements * 0x101); }
+  canopen::Result<std::int32_t> read(od::positions<1>) {
+    if (broken) return AbortCode::device_state;
+    return -2;
+  }
+  int measurements = 0;
+  bool broken = false;
+};
+
+TEST(Application, SuppliesTheValuesOfATpdoThatIsSent) {
+  auto device = bench::with<every_service::Device>(Sensor{});
+  EXPECT_EQ(device.ask("605 2B 00 18 05 0A 00 00 00"), "585 60 00 18 05 00 00 00 00") << "event timer: 10 ms";
+  device.ask(bench::start);
+  Sensor& sensor = device.node.application<Sensor>();
+  sensor.measurements = 0;
+  EXPECT_EQ(device.pass(10ms).substr(0, 15), "185 00 01 01 00") << "the first value";
+  EXPECT_EQ(device.pass(10ms).substr(0, 15), "185 00 02 02 00");
+  EXPECT_EQ(sensor.measurements, 2) << "once for each TPDO";
+}
+
+TEST(Application, SuppliesTheValuesOfATpdoAtASync) {
+  auto device = bench::with<every_service::Device>(Sensor{});
+  device.ask(bench::start);
+  const std::string synchronous = device.ask("080");
+  EXPECT_NE(synchronous.find("285 FE FF FF FF 00 00 00 00"), std::string::npos) << synchronous;
+  device.node.application<Sensor>().broken = true;
+  device.node.set(od::positions<1>{}, 7);
+  device.pass(0s);
+  const std::string last = device.ask("080");
+  EXPECT_NE(last.find("285 07 00 00 00 00 00 00 00"), std::string::npos) << "the last value is sent: " << last;
+}
+
 TEST(Application, LearnsOfStatesAndSyncs) {
   Device device{Application{}};
   Application& application = device.node.application<Application>();

@@ -112,6 +112,13 @@ class MappedPlaces {
     return false;
   }
 
+  /// Calls `visit(key)` for each object that a PDO maps.
+  template <class Visit>
+  static void for_each_object(std::size_t pdo, EntryAccess<Device> entries, Visit&& visit) {
+    const MappingParameter mapping = parameter(pdo, entries);
+    for (std::uint8_t i = 0; i < mapping.count() && i < capacity(pdo); ++i) visit(mapping[i].key());
+  }
+
   /// Whether the mapping of a PDO is dynamic.
   [[nodiscard]] static bool is_dynamic(std::size_t pdo) { return capacity(pdo) != 0; }
 

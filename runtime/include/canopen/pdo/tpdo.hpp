@@ -32,6 +32,11 @@ namespace canopen {
 ///   type 254, 255  when a mapped object has changed, when the event timer has elapsed, and once on entering
 ///                  Operational; never within the inhibit time after the last transmission
 ///
+/// No values to read before a TPDO is sent.
+struct NoRefresh {
+  void operator()(std::size_t) const {}
+};
+
 /// TPDOs of all types respond to a remote frame if bit 30 of their COB-ID allows it.
 template <class Device>
 class TpdoService {
@@ -108,15 +113,29 @@ class TpdoService {
     activate(i, store, now);
   }
 
+  /// Calls `visit(key)` for each object that a TPDO maps.
+  template <class Visit>
+  static void for_each_object(std::size_t which, [[maybe_unused]] EntryAccess<Device> entries, Visit&& visit) {
+    if constexpr (has_dynamic_mapping) {
+      if (Mapped::is_dynamic(which)) return Mapped::for_each_object(which, entries, visit);
+    }
+    for (const std::uint32_t row : Static::carriers) {
+      if ((row & 0xFF) == which) visit(row >> 8);
+    }
+  }
+
   /// Handles a SYNC: the TPDOs that wait for it are sent if `now` is set, otherwise they become due. Those of type 252
-  /// sample their data. Returns false if any is due.
-  template <Bus B>
-  [[nodiscard]] bool on_sync(ObjectStore<Device>& store, B& bus, Sync sync, bool now) {
+  /// sample their data. Returns false if any is due. `refresh(which)` is called before the values of a TPDO are read.
+  template <Bus B, class Refresh = NoRefresh>
+  [[nodiscard]] bool on_sync(ObjectStore<Device>& store, B& bus, Sync sync, bool now, Refresh refresh = {}) {
     for (std::size_t i = 0; i < count; ++i) {
       Slot& slot = slots_[i];
       if (slot.type > last_cyclic) {
-        if (has_samples && slot.type == remote_synchronous) sample(i, store);
+        if (!has_samples || slot.type != remote_synchronous) continue;
+        refresh(i);
+        sample(i, store);
       } else if (wants_sync(i, store.entries(), sync)) {
+        if (now) refresh(i);
         now = now && send(slot, i, store, bus);
         slot.flags = static_cast<std::uint8_t>(now ? slot.flags & ~(changed_bit | due | asked) : slot.flags | due);
       }
@@ -141,14 +160,16 @@ class TpdoService {
   }
 
   /// Sends what is due. Returns false if the bus had no room; the rest remains due.
-  template <Bus B>
-  bool serve(ObjectStore<Device>& store, B& bus, TimePoint now) {
+  template <Bus B, class Refresh = NoRefresh>
+  bool serve(ObjectStore<Device>& store, B& bus, TimePoint now, Refresh refresh = {}) {
     for (std::size_t i = 0; i < count; ++i) {
       Slot& slot = slots_[i];
-      // A TPDO that waits for a SYNC, the usual case: 7 instructions less on a Cortex-M4, 12 bytes more on a Cortex-M0+.
+      // A TPDO that waits for a SYNC, the usual case: 7 instructions less on a Cortex-M4, 12 bytes more on a
+      // Cortex-M0+.
       if (!prefers_size && (slot.flags & (due | asked | timed | inhibited | event_driven)) == 0) continue;
       if (is_inhibited(slot, now) || (!wanted(slot) && !event_timer_expired(slot, now))) continue;
       const bool is_sampled = has_samples && slot.type == remote_synchronous;
+      if (!is_sampled) refresh(i);
       if (!(is_sampled ? send_sample(slot, i, store, bus) : send(slot, i, store, bus))) return false;
       sent(slot, i, store.entries(), now);
     }

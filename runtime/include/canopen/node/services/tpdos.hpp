@@ -1,6 +1,7 @@
 /// TPDOs (1800h..1BFFh) in a node.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -36,13 +37,13 @@ class Tpdos : public ServiceDefaults<Tpdos<Device>> {
   template <class Host>
   void on_sync(Host& host, canopen::Sync sync) {
     if (!serves_pdo(host.state())) return;
-    if (!tpdos_.on_sync(host.store(), host.bus(), sync, host.may_send_at_once())) host.serve();
+    if (!tpdos_.on_sync(host.store(), host.bus(), sync, host.may_send_at_once(), Refresh<Host>{host})) host.serve();
   }
 
   template <class Host>
   bool serve(Host& host) {
     if (sync_window_over(host)) tpdos_.miss_sync();
-    return !serves_pdo(host.state()) || tpdos_.serve(host.store(), host.bus(), host.now());
+    return !serves_pdo(host.state()) || tpdos_.serve(host.store(), host.bus(), host.now(), Refresh<Host>{host});
   }
   template <class Host>
   std::optional<TimePoint> deadline(Host& host) const {
@@ -61,6 +62,19 @@ class Tpdos : public ServiceDefaults<Tpdos<Device>> {
   }
 
  private:
+  /// Lets the application supply the values of a TPDO. An abort code leaves the value as it is.
+  template <class Host>
+  struct Refresh {
+    Host& host;
+    void operator()([[maybe_unused]] std::size_t which) const {
+      if constexpr (Host::Handlers::has_read_handlers) {
+        TpdoService<Device>::for_each_object(which, host.entries(), [this](std::uint32_t key) {
+          static_cast<void>(host.handler_calls().ask(0, [&] { return host.handlers().before_read(host.node(), key); }));
+        });
+      }
+    }
+  };
+
   TpdoService<Device> tpdos_{};
 };
 
