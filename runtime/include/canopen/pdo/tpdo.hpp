@@ -18,6 +18,7 @@
 #include "canopen/pdo/pdo.hpp"
 #include "canopen/pdo/pdo_list.hpp"
 #include "canopen/pdo/static_tpdos.hpp"
+#include "canopen/pdo/tpdo_slot.hpp"
 #include "canopen/pdo/transmission_type.hpp"
 #include "canopen/sync/sync.hpp"
 
@@ -191,16 +192,6 @@ class TpdoService {
   }
 
  private:
-  enum Flag : std::uint8_t {
-    changed_bit = 2,    ///< a mapped object has a new value
-    due = 4,            ///< due at a SYNC
-    timed = 8,          ///< event_due is valid
-    inhibited = 16,     ///< inhibit_end is valid
-    event_driven = 32,  ///< of type 254 or 255
-    before_start = 64,  ///< the SYNC with the start value has not been received yet
-    asked = 128,        ///< requested by a remote frame
-  };
-
   static constexpr std::uint8_t last_cyclic = 240;
   static constexpr std::uint8_t inactive = 251;  ///< not valid, not mapped, or the node is not Operational
   static constexpr std::uint8_t remote_synchronous = 252;
@@ -218,19 +209,8 @@ class TpdoService {
   static constexpr std::uint32_t inhibit_unit = Device::options.inhibit_time_unit;
 
   using Data = std::array<std::uint8_t, 8>;
-
-  struct Times {
-    TimePoint event_due;
-    TimePoint inhibit_end;
-  };
-
-  struct Slot {
-    Times times;  ///< for type 252, which does not use them, the data of the last SYNC
-    std::uint8_t flags;
-    std::uint8_t type;
-    std::uint8_t syncs;  ///< types 1..240: SYNCs until it is due
-    std::uint8_t size;   ///< data bytes
-  };
+  using Slot = TpdoSlot;
+  using enum TpdoSlot::Flag;
 
   /// Data bytes of TPDOs with static mapping.
   static constexpr std::array<std::uint8_t, count> sizes = [] {
@@ -360,7 +340,7 @@ class TpdoService {
 
   void sample([[maybe_unused]] std::size_t which, [[maybe_unused]] ObjectStore<Device>& store) {
     if constexpr (has_samples) {
-      slots_[which].times = Times{};
+      slots_[which].times = {};
       pack(which, store, reinterpret_cast<Data&>(slots_[which].times));
     }
   }
