@@ -55,8 +55,7 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
       : bus_{can_bus}, handlers_{std::move(handlers)...}, node_id_{node_id} {
     static_assert(checked_parameters<Node, Handlers...>());
   }
-  /// For a node-ID passed to `start`. With a bus by value such a node is all zeros: it does not take flash for
-  /// initial values.
+  /// For a node-ID passed to `start`. With a bus by value such a node is all zeros, without initial values in flash.
   constexpr explicit Node(B& can_bus, Handlers... handlers) : bus_{can_bus}, handlers_{std::move(handlers)...} {
     static_assert(checked_parameters<Node, Handlers...>());
   }

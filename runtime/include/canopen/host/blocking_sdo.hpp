@@ -125,6 +125,16 @@ class BlockingObjects {
     return write<O>(std::span{reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
   }
 
+  /// The same with the object as an argument: `read(od::x{})`, `write(od::x{}, value)`.
+  template <DictionaryObject O>
+  [[nodiscard]] auto read(O) {
+    return read<O>();
+  }
+  template <DictionaryObject O, class V>
+  Result<void> write(O, const V& value) {
+    return write<O>(value);
+  }
+
  private:
   template <class O>
   [[nodiscard]] Result<void> write_number(typename O::type value) {

@@ -1,18 +1,24 @@
 /// A device of a master on a host, with its generated types.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <span>
 #include <tuple>
 #include <type_traits>
 #include <utility>
 
 #include "canopen/base/abort_code.hpp"
+#include "canopen/base/bytes.hpp"
 #include "canopen/base/result.hpp"
 #include "canopen/can/frame.hpp"
 #include "canopen/can/node_id.hpp"
 #include "canopen/host/blocking_sdo.hpp"
 #include "canopen/od/object.hpp"
 #include "canopen/pdo/pdo_list.hpp"
+#include "canopen/pdo/remapping.hpp"
 
 namespace canopen {
 
@@ -41,15 +47,19 @@ class MasterRemote {
 
   [[nodiscard]] NodeId node_id() const { return node_id_; }
 
-  /// Reads an object.
+  /// Reads an object: `read(od::x{})` or `read<od::x>()`.
   template <DictionaryObject O>
-  [[nodiscard]] auto read() {
+  [[nodiscard]] auto read(O = {}) {
     return objects().template read<O>();
   }
   /// Writes an object. A value outside the limits is rejected without sending a frame.
   template <DictionaryObject O, class V>
   Result<void> write(V value) {
     return objects().template write<O>(value);
+  }
+  template <DictionaryObject O, class V>
+  Result<void> write(O, V value) {
+    return write<O>(value);
   }
   /// Writes a constant, whose limits the compiler checks.
   template <DictionaryObject O, auto Value>
@@ -62,12 +72,28 @@ class MasterRemote {
   /// PDO is not valid; the handler is discarded.
   template <class Layout, class F>
   Result<void> on_pdo(F handler) {
-    const Result<std::uint32_t> cob_id = master_.pdo_cob_id(node_id_, tpdo_index<Layout>());
+    return on_pdo_at<Layout>(tpdo_index<Layout>(), std::move(handler));
+  }
+  /// The same for TPDO `Number`, which `map` has given this layout.
+  template <std::uint16_t Number, class Layout, class F>
+  Result<void> on_pdo(F handler) {
+    return on_pdo_at<Layout>(Remapping<Device, Number, Layout>::communication, std::move(handler));
+  }
+
+  /// Maps these objects into TPDO or RPDO `Number` of the device: `map<2, canopen::Tpdo<od::x, od::y>>()`. The PDO is
+  /// not valid while its mapping changes, and stays so after an abort code.
+  template <std::uint16_t Number, class Layout>
+  Result<void> map() {
+    using New = Remapping<Device, Number, Layout>;
+    const auto cob_id = master_.upload(node_id_, New::communication, pdo_parameter::cob_id);
     if (!cob_id) return cob_id.abort_code();
-    master_.pdos_.push_back(
-        {node_id_.value(), tpdo_index<Layout>(), *cob_id, Layout::size,
-         [handler = std::move(handler)](const Frame& frame) mutable { std::apply(handler, Layout::unpack(frame)); }});
-    return ok;
+    if (cob_id->size() != 4) return AbortCode::length_mismatch;
+    const auto write = [this](std::uint16_t index, std::uint8_t sub_index, std::uint32_t value, std::size_t size) {
+      std::array<std::uint8_t, sizeof value> bytes{};
+      std::memcpy(bytes.data(), &value, sizeof value);
+      return master_.download(node_id_, index, sub_index, std::span{bytes}.first(size)).abort_code();
+    };
+    return New::map_valid(little_endian_number(*cob_id), write);
   }
 
   /// Sends an RPDO with these values. 060A 0023h: the bus has no room.
@@ -106,6 +132,15 @@ class MasterRemote {
     frame.extended = (cob_id & 0x2000'0000) != 0;
     frame.id = cob_id & 0x1FFF'FFFF;
     return frame;
+  }
+  template <class Layout, class F>
+  Result<void> on_pdo_at(std::uint16_t index, F handler) {
+    const Result<std::uint32_t> cob_id = master_.pdo_cob_id(node_id_, index);
+    if (!cob_id) return cob_id.abort_code();
+    master_.pdos_.push_back(
+        {node_id_.value(), index, *cob_id, Layout::size,
+         [handler = std::move(handler)](const Frame& frame) mutable { std::apply(handler, Layout::unpack(frame)); }});
+    return ok;
   }
   [[nodiscard]] BlockingObjects<Device, Master<B>> objects() { return {master_, node_id_}; }
 

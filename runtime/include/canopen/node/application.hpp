@@ -120,10 +120,21 @@ struct WithFunction {
   template <class O>
   static constexpr bool selects = has_function<Function, A, Node, O, Exactly<typename O::type>>;
 };
+/// Whether `read` returns a value of an object, nothing or an abort code. A template of an array's elements also fits
+/// sub-index 0, which has another type.
+template <class A, class Node, class O, bool exists = has_function<function::Read, A, Node, O>>
+inline constexpr bool supplies = false;
+template <class A, class Node, class O>
+inline constexpr bool supplies<A, Node, O, true> = [] {
+  using Answer = decltype(call_function<function::Read>(std::declval<A&>(), std::declval<Node&>(), std::declval<O>()));
+  return std::is_void_v<Answer> || std::is_same_v<Answer, AbortCode> || std::is_same_v<Answer, typename O::type> ||
+         std::is_same_v<Answer, Result<typename O::type>>;
+}();
+
 template <class A, class Node>
 struct WithFunction<function::Read, A, Node> {
   template <class O>
-  static constexpr bool selects = has_function<function::Read, A, Node, O>;
+  static constexpr bool selects = supplies<A, Node, O>;
 };
 
 /// The objects of a device for which an application has a function.

@@ -122,27 +122,16 @@ struct ApplicationFunctions {
   static constexpr bool is_good = true;
 };
 
-template <class Function, class O, class Answer>
-inline constexpr bool answer_fits = std::is_void_v<Answer>;
-template <class O, class Answer>
-inline constexpr bool answer_fits<function::Write, O, Answer> =
-    std::is_void_v<Answer> || std::is_same_v<Answer, AbortCode> || std::is_same_v<Answer, Result<void>>;
-template <class O, class Answer>
-inline constexpr bool answer_fits<function::Read, O, Answer> =
-    std::is_void_v<Answer> || std::is_same_v<Answer, AbortCode> || std::is_same_v<Answer, typename O::type> ||
-    std::is_same_v<Answer, Result<typename O::type>>;
-
-/// Whether the result of a function is one that the node can use.
+/// Whether the result of `write` or `written` is one that the node can use.
 template <class Function, class A, class Node, class O>
 [[nodiscard]] constexpr bool check_answer() {
-  if constexpr (!has_function<Function, A, Node, O, typename O::type>) {
-    return !has_function<Function, A, Node, O> ||
-           answer_fits<Function, O,
-                       decltype(call_function<Function>(std::declval<A&>(), std::declval<Node&>(), std::declval<O>()))>;
+  if constexpr (has_function<Function, A, Node, O, typename O::type>) {
+    using Answer = decltype(call_function<Function>(std::declval<A&>(), std::declval<Node&>(), std::declval<O>(),
+                                                    std::declval<typename O::type>()));
+    return std::is_void_v<Answer> || (std::is_same_v<Function, function::Write> &&
+                                      (std::is_same_v<Answer, AbortCode> || std::is_same_v<Answer, Result<void>>));
   } else {
-    return answer_fits<Function, O,
-                       decltype(call_function<Function>(std::declval<A&>(), std::declval<Node&>(), std::declval<O>(),
-                                                        std::declval<typename O::type>()))>;
+    return true;
   }
 }
 
@@ -168,10 +157,11 @@ template <class Device, class Node, class A, class Function>
     }
     if constexpr (!is_for_all) {
       Any::for_each([&]<class O>() {
-        constexpr bool type_fits = has_index<O::index, Exact>;
-        constexpr bool reachable = !type_fits || is_reachable<Function, O::index, Exact>;
-        constexpr bool answer_is_good = !type_fits || check_answer<Function, A, Node, O>();
-        good = good && ApplicationFunction<A, Function, O, type_fits, reachable, answer_is_good>::is_good;
+        constexpr bool fits = has_index<O::index, Exact>;
+        constexpr bool reads = std::is_same_v<Function, function::Read>;
+        constexpr bool reachable = !fits || is_reachable<Function, O::index, Exact>;
+        constexpr bool answer_fits = reads ? fits : !fits || check_answer<Function, A, Node, O>();
+        good = good && ApplicationFunction < A, Function, O, fits || reads, reachable, answer_fits > ::is_good;
       });
     }
     return good;

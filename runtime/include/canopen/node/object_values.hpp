@@ -21,6 +21,7 @@
 #include "canopen/od/value_bits.hpp"
 #include "canopen/od/value_for.hpp"
 #include "canopen/pdo/mpdo.hpp"
+#include "canopen/pdo/remapping.hpp"
 
 namespace canopen {
 
@@ -105,6 +106,17 @@ class ObjectValues {
     if (sub_index == 0) return AbortCode::no_sub_index;
     return node().set(Element::index, sub_index,
                       {reinterpret_cast<const std::uint8_t*>(&value), (Element::bits + 7) / 8});
+  }
+
+  /// Maps these objects into TPDO or RPDO `Number`: `node.map<2, canopen::Tpdo<od::pressure, od::temperature>>()`. The
+  /// PDO must have a dynamic mapping; its communication parameter stays as it is.
+  template <std::uint16_t Number, class Layout>
+  AbortCode map() {
+    using Device = typename N::Host::Device;
+    return Remapping<Device, Number, Layout>::map(
+        [this](std::uint16_t index, std::uint8_t sub_index, std::uint32_t value, std::size_t bytes) {
+          return node().set(index, sub_index, {reinterpret_cast<const std::uint8_t*>(&value), bytes});
+        });
   }
 
   /// Sends the value of an object as a DAM-MPDO, like Node::send_mpdo.

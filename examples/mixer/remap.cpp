@@ -1,0 +1,44 @@
+/// A master opens the valves of a mixer with RPDO 1, loads a recipe, and gives TPDO 2 a new mapping.
+#include <canopen/host/virtual_bus.hpp>
+#include <canopen/host/virtual_bus_port.hpp>
+#include <canopen/master.hpp>
+#include <cstdio>
+#include <string_view>
+
+#include "mixer.hpp"
+
+using Delivery = canopen::Tpdo<od::litres_delivered, od::zone_temperature<2>>;
+static_assert(Delivery::bits == 48);
+
+int main() {
+  canopen::VirtualBus bus{500'000};
+  auto& port = bus.attach();
+  canopen::Node<mixer::Device, canopen::VirtualBus::Endpoint, Mixer> node{port, canopen::NodeId{5}};
+  bus.connect(port, node);
+  node.start(bus.now());
+
+  canopen::VirtualBusPort master_port{bus};
+  canopen::Master master{master_port};
+  auto remote = master.remote<mixer::Device>(canopen::NodeId{5});
+
+  if (!remote.write(od::recipe{}, std::string_view{"water, 40 deg"})) return 1;
+  const auto refused = remote.write(od::recipe{}, std::string_view{"oil"});
+  std::printf("oil: %s\n", std::string{to_text(refused.abort_code())}.c_str());
+
+  if (const auto mapped = remote.map<2, Delivery>(); !mapped) return 2;
+  std::uint32_t litres = 0;
+  std::int16_t temperature = 0;
+  const auto listening = remote.on_pdo<2, Delivery>([&](std::uint32_t value, std::int16_t degrees) {
+    litres = value;
+    temperature = degrees;
+  });
+  if (!listening) return 3;
+
+  if (!master.command(canopen::NmtCommand::start, canopen::NodeId{5})) return 4;
+  if (!remote.send<mixer::Rpdo1>(std::uint8_t{100}, std::uint8_t{50}, std::uint8_t{0}, std::uint8_t{0})) return 4;
+  master.poll(canopen::from_milliseconds(10));
+  node.set(od::litres_delivered{}, 12);
+  master.poll(canopen::from_milliseconds(10));
+  std::printf("%u litres, zone 2: %.1f degrees\n", unsigned{litres}, temperature / 10.0);
+  return litres == 12 && temperature == 250 ? 0 : 5;
+}

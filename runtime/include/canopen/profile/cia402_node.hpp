@@ -1,0 +1,89 @@
+/// A drive of CiA 402-2 as one object: a node, device control, and the axis that the user writes.
+///
+///     struct Motor { ... };  // an Axis: profile/cia402_axis.hpp
+///     canopen::cia402::DriveNode<cpc_tc1::Device, Bus, Motor> drive{bus, canopen::NodeId{5}};
+///     drive.start(now);                                   // then like a node: on_frame, on_time, next_deadline
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "canopen/base/clock.hpp"
+#include "canopen/can/bus_status.hpp"
+#include "canopen/can/frame.hpp"
+#include "canopen/can/node_id.hpp"
+#include "canopen/emcy/emcy_producer.hpp"
+#include "canopen/emcy/error_register.hpp"
+#include "canopen/nmt/nmt.hpp"
+#include "canopen/node.hpp"
+#include "canopen/profile/cia402.hpp"
+#include "canopen/profile/cia402_axis.hpp"
+#include "canopen/profile/cia402_options.hpp"
+
+namespace canopen::cia402 {
+
+/// The axis is a member. It may also have the functions of NoApplication, profile/cia402.hpp, for what is specific to
+/// the manufacturer. `Handlers`: further handlers of the node, an application class, a storage.
+template <class Device, Bus B, Axis A, Options options = Options{}, class... Handlers>
+class DriveNode {
+ public:
+  constexpr DriveNode(B& bus, NodeId node_id, Handlers... handlers)
+      : node_{bus, node_id, drive_.error_handler(), Restart{&drive_}, std::move(handlers)...} {}
+  DriveNode(const DriveNode&) = delete;
+  DriveNode& operator=(const DriveNode&) = delete;
+
+  /// Power-on: the axis has no power, and the node starts.
+  void start(TimePoint now) {
+    node_.start(now);
+    on_time(now);
+  }
+  void on_frame(const Frame& frame, TimePoint now) {
+    node_.on_frame(frame, now);
+    on_time(now);
+  }
+  /// Moves the axis and sends what is due. Call it at `next_deadline`, and after the axis has changed by itself.
+  void on_time(TimePoint now) {
+    drive_.on_time(node_, now, axis_);
+    node_.on_time(now);
+  }
+  [[nodiscard]] std::optional<TimePoint> next_deadline() const {
+    const std::optional<TimePoint> of_node = node_.next_deadline();
+    const std::optional<TimePoint> of_drive = drive_.next_deadline();
+    return of_node && of_drive ? std::min(*of_node, *of_drive) : of_node ? of_node : of_drive;
+  }
+  void on_bus_status(const BusStatus& status, TimePoint now) {
+    node_.on_bus_status(status, now);
+    on_time(now);
+  }
+
+  /// Reports an error of the drive, like Drive::fault.
+  void fault(std::uint16_t code, ErrorRegister bits, TimePoint now, const EmergencyInfo& info = {}) {
+    drive_.fault(node_, code, bits, info);
+    on_time(now);
+  }
+
+  [[nodiscard]] A& axis() { return axis_; }
+  [[nodiscard]] const A& axis() const { return axis_; }
+  [[nodiscard]] auto& drive() { return drive_; }
+  [[nodiscard]] const auto& drive() const { return drive_; }
+  [[nodiscard]] auto& node() { return node_; }
+
+ private:
+  using Control = Drive<Device, A, options>;
+
+  /// Starts device control again at power-on and at each NMT reset.
+  struct Restart {
+    Control* drive;
+    void on_state(NmtState state) {
+      if (state == NmtState::initialisation) drive->start();
+    }
+  };
+
+  A axis_{};
+  Control drive_{axis_};
+  Node<Device, B, ErrorHandler<typename Control::ErrorTaker>, Restart, Handlers...> node_;
+};
+
+}  // namespace canopen::cia402

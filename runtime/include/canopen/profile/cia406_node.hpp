@@ -1,0 +1,82 @@
+/// An encoder of CiA 406 as one object: a node, the measured values, and the sensor that the user writes.
+///
+///     struct Sensor {
+///       std::int32_t position();  // measuring steps
+///       std::int16_t speed();
+///     };
+///     canopen::cia406::EncoderNode<rk5c::Device, Bus, Sensor> encoder{bus, canopen::NodeId{5}};
+///     encoder.on_time(now);  // at next_deadline(), and as often as the position is to be measured
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include "canopen/base/clock.hpp"
+#include "canopen/can/bus_status.hpp"
+#include "canopen/can/frame.hpp"
+#include "canopen/can/node_id.hpp"
+#include "canopen/node.hpp"
+#include "canopen/profile/cia406.hpp"
+
+namespace canopen::cia406 {
+
+/// `Handlers`: further handlers of the node, an application class, a storage.
+template <class Device, Bus B, class Sensor, class... Handlers>
+class EncoderNode {
+ public:
+  constexpr EncoderNode(B& bus, NodeId node_id, Handlers... handlers)
+      : node_{bus, node_id, Written{&encoder_}, std::move(handlers)...} {}
+  EncoderNode(const EncoderNode&) = delete;
+  EncoderNode& operator=(const EncoderNode&) = delete;
+
+  void start(TimePoint now) {
+    node_.start(now);
+    on_time(now);
+  }
+  void on_frame(const Frame& frame, TimePoint now) { node_.on_frame(frame, now); }
+  /// Measures, and sends what is due.
+  void on_time(TimePoint now) {
+    encoder_.measured(node_, sensor_.position(), sensor_.speed());
+    node_.on_time(now);
+  }
+  [[nodiscard]] std::optional<TimePoint> next_deadline() const { return node_.next_deadline(); }
+  void on_bus_status(const BusStatus& status, TimePoint now) { node_.on_bus_status(status, now); }
+
+  [[nodiscard]] Sensor& sensor() { return sensor_; }
+  [[nodiscard]] Encoder<Device>& encoder() { return encoder_; }
+  [[nodiscard]] auto& node() { return node_; }
+
+ private:
+  template <class O>
+  static constexpr bool is_preset = (O::index == 0x6010 && O::sub_index == 1) || O::index == 0x6003;
+  static_assert(Device::dictionary.has(0x6010, 1) || Device::dictionary.has(0x6003, 0),
+                "the device of an encoder has a preset value, 6003h or 6010h:01");
+  static constexpr bool has_timers = Device::dictionary.has(0x6200, 0) && Device::dictionary.has(0x1800, 5);
+
+  /// The preset value changes the offset; the cyclic timer 6200h and the event timer of TPDO 1 stay equal.
+  struct Written {
+    Encoder<Device>* encoder;
+
+    template <DictionaryObject O>
+    requires is_preset<O>
+    void written(O, const typename O::type& value) { encoder->preset(static_cast<std::int32_t>(value)); }
+
+    template <DictionaryObject O>
+    requires(has_timers&& O::index == 0x6200) void written(O, const typename O::type& value, auto& node) {
+      cia406_detail::Copy<0x1800, 5>{}(node, value);
+    }
+    template <DictionaryObject O>
+    requires(has_timers&& O::index == 0x1800 && O::sub_index == 5) void written(O, const typename O::type& value,
+                                                                                auto& node) {
+      cia406_detail::Copy<0x6200, 0>{}(node, value);
+    }
+  };
+
+  Sensor sensor_{};
+  Encoder<Device> encoder_{};
+  Node<Device, B, Written, Handlers...> node_;
+};
+
+}  // namespace canopen::cia406
