@@ -8,6 +8,7 @@
 #include "canopen/base/label.hpp"
 #include "canopen/lss/lss_handler.hpp"
 #include "canopen/node/handlers.hpp"
+#include "canopen/node/mailbox.hpp"
 #include "canopen/od/dictionary.hpp"
 #include "canopen/sdo/domain_handlers.hpp"
 #include "canopen/storage/storage.hpp"
@@ -21,11 +22,11 @@ inline constexpr bool is_service_handler =
     is_of<H, StateHandler> || is_of<H, SyncHandler> || is_of<H, TimeHandler> || is_of<H, HeartbeatHandler> ||
     is_of<H, LifeGuardingHandler> || is_of<H, EmergencyHandler> || is_of<H, ErrorHandler> || is_of<H, RpdoHandler>;
 
-/// Whether a node accepts a type as a handler, a storage or an LSS port.
+/// Whether a node accepts a type as a handler, a storage, an LSS port or a mailbox.
 template <class H>
 inline constexpr bool is_handler =
     is_access_handler<H> || is_service_handler<H> || domain_detail::is_reader<H> || domain_detail::is_writer<H> ||
-    storage_detail::is_stored_in<H> || lss_detail::is_handler<H>;
+    storage_detail::is_stored_in<H> || lss_detail::is_handler<H> || mailbox_detail::is_values_from<H>;
 
 template <class H>
 struct KnownHandler {

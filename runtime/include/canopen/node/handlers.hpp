@@ -269,6 +269,7 @@ class HandlerSet {
   }
 
   [[nodiscard]] std::tuple<Handlers...>& all() { return handlers_; }
+  [[nodiscard]] const std::tuple<Handlers...>& all() const { return handlers_; }
 
   /// Calls all handlers of a kind, such as SyncHandler.
   template <template <class> class Kind, class Node, class... Arguments>

@@ -79,6 +79,7 @@ class ServiceHost {
   // Handlers of the application
 
   [[nodiscard]] auto& handlers() { return node().handlers_; }
+  [[nodiscard]] const auto& handlers() const { return node().handlers_; }
   [[nodiscard]] auto& handler_calls() { return node().handler_calls_; }
   template <template <class> class Kind, class... Arguments>
   void tell(const Arguments&... arguments) {
