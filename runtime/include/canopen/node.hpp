@@ -201,7 +201,8 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device, HandlerSe
   bool send_time(TimeOfDay time) { return serves_sync(state_) && TimeStamp<Device>::send(store_, bus_, time); }
 
   /// Stores parameters like "save" to this sub-index of 1010h: 1 all, 2 those of 1000h..1FFFh, 3 of 6000h..9FFFh, 4 of
-  /// 2000h..5FFFh. hardware: the storage has failed, or the range is not one of these.
+  /// 2000h..5FFFh. hardware: the storage has failed, or the range is not one of these. With a storage that is written
+  /// in steps, `ok` means that it has begun; device_state: the command before it has not ended yet.
   [[nodiscard]] AbortCode save(std::uint8_t sub_index = 1) requires(HandlerSet<Handlers...>::has_storage) {
     return services_.template get<StoredValues>().save(host(), sub_index);
   }

@@ -258,7 +258,7 @@ class HandlerSet {
   /// Whether the node has a storage.
   static constexpr bool has_storage = (storage_detail::is_stored_in<Handlers> || ...);
 
-  [[nodiscard]] auto& storage() requires has_storage {
+  [[nodiscard]] auto& storage() const requires has_storage {
     constexpr std::size_t position = [] {
       constexpr bool stored_in[] = {storage_detail::is_stored_in<Handlers>...};
       std::size_t i = 0;

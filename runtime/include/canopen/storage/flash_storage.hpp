@@ -76,6 +76,10 @@ class FlashStorage {
     return pages_.erase(spare());
   }
 
+  /// Whether the last erase has been completed, for pages whose `erase` starts it and returns.
+  [[nodiscard]] bool ready() requires requires(Pages& pages) { pages.ready(); }
+  { return pages_.ready(); }
+
   [[nodiscard]] bool write(std::span<const std::uint8_t> bytes) {
     if (bytes.size() > header_.size - written_) return false;
     header_.image_crc = crc16_ccitt(header_.image_crc, bytes);
