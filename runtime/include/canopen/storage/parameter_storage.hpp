@@ -47,18 +47,10 @@ template <class Device>
 class ParameterStorage {
  public:
   using Layout = ParameterLayout<Device>;
-  static constexpr std::uint32_t header_bytes = 8;
 
   /// Whether this device stores 1020h.
   static constexpr bool has_configuration =
       Layout::stores(verify_configuration, 1) && Layout::stores(verify_configuration, 2);
-
-  /// Size of an image with all sections.
-  static constexpr std::uint32_t max_image = [] {
-    std::uint32_t size = 0;
-    for (const std::uint16_t section : Layout::sizes) size += section == 0 ? 0u : section + header_bytes;
-    return size;
-  }();
 
   /// Opens the storage at power-on.
   template <Storage S>
@@ -146,7 +138,7 @@ class ParameterStorage {
     std::uint8_t node_id;   ///< node-ID when they were stored
     std::uint8_t given_up;  ///< 1: valid until the next power-on
   };
-  static_assert(sizeof(Header) == header_bytes);
+  static_assert(sizeof(Header) == Layout::header_bytes);
 
   /// A section of this device in storage.
   struct Record {

@@ -154,7 +154,7 @@ class StoredValues : public ServiceDefaults<StoredValues<Device, Handlers...>> {
   template <class Host>
   void finish([[maybe_unused]] Host& host) {
     if constexpr (is_stepped) {
-      static_assert(std::remove_reference_t<decltype(host.handlers().storage())>::capacity >= Stored::max_image,
+      static_assert(std::remove_reference_t<decltype(host.handlers().storage())>::capacity >= Stored::Layout::max_image,
                     "the storage is smaller than the parameters of this device");
       host.handlers().storage().finish();
       progress_ = {};
