@@ -19,13 +19,15 @@ struct CortexMInterrupts {
   static void restore(std::uint32_t before) { __asm__ volatile("msr primask, %0" : : "r"(before) : "memory"); }
 };
 
-/// Sleeps until an interrupt, unless `awake()` is true. The test and the sleep are one step for interrupts: `wfi` also
-/// returns for an interrupt that is disabled here and served directly afterwards.
+/// Sleeps until an interrupt, unless `awake()` is true; returns whether it has slept. The test and the sleep are one
+/// step for interrupts: `wfi` also returns for an interrupt that is disabled here and served directly afterwards.
 template <class Awake>
-void sleep_unless(Awake&& awake) {
+bool sleep_unless(Awake&& awake) {
   const std::uint32_t before = CortexMInterrupts::disable();
-  if (!awake()) __asm__ volatile("dsb\n wfi" : : : "memory");
+  const bool sleeps = !awake();
+  if (sleeps) __asm__ volatile("dsb\n wfi" : : : "memory");
   CortexMInterrupts::restore(before);
+  return sleeps;
 }
 
 using CortexMInterruptLock = InterruptLock<CortexMInterrupts>;
