@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""examples/tickless_firmware on QEMU: frames from the UART's interrupt and values from a timer's interrupt reach the node, and the
-core sleeps unless there is work.
+"""examples/tickless_firmware on QEMU: frames from the UART's interrupt and values from a timer's interrupt reach the node, and
+the core sleeps unless there is work.
 
     tickless_test.py IMAGE [unittest arguments]
 """

@@ -219,6 +219,27 @@ TEST(BackgroundStorage, AResetWaitsForTheImage) {
   EXPECT_EQ(device.pass(0ms), "");
 }
 
+/// Ready after it has been asked ten times.
+struct PatientFlash : SlowFlash::Cells {
+  int asked = 10;
+  [[nodiscard]] bool ready() { return asked == 10 || ++asked == 10; }
+  [[nodiscard]] bool erase(std::uint8_t page) {
+    asked = 0;
+    return SlowFlash::Cells::erase(page);
+  }
+  [[nodiscard]] bool write(std::uint8_t page, std::uint32_t offset, std::span<const std::uint8_t> words) {
+    return asked == 10 && SlowFlash::Cells::write(page, offset, words);
+  }
+};
+
+TEST(FlashStorage, WaitsForAnEraseThatHasOnlyBeenStarted) {
+  PatientFlash pages;
+  FlashStorage<PatientFlash> storage{pages};
+  auto device = bench::with<stored_device::Device>(canopen::stored_in(storage));
+  EXPECT_EQ(device.ask(save_all), saved_all);
+  EXPECT_EQ(pages.erased[0], 1);
+}
+
 TEST(BackgroundStorage, APowerLossLeavesTheOldValuesOrTheNewOnes) {
   for (int last = 0; last < 100; ++last) {
     Memory memory;
