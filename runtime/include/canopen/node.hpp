@@ -231,7 +231,8 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
   bool send_time(TimeOfDay time) { return serves_sync(state_) && TimeStamp<Device>::send(store_, bus_, time); }
 
   /// Stores parameters like "save" to this sub-index of 1010h: 1 all, 2 those of 1000h..1FFFh, 3 of 6000h..9FFFh, 4 of
-  /// 2000h..5FFFh. hardware: the storage has failed, or the range is not one of these.
+  /// 2000h..5FFFh. hardware: the storage has failed, or the range is not one of these. With a storage that is written
+  /// in steps, `ok` means that it has begun; device_state: the command before it has not ended yet.
   [[nodiscard]] AbortCode save(std::uint8_t sub_index = 1) requires(storage_detail::has_storage<Handlers...>) {
     return services_.template get<StoredValues>().save(host(), sub_index);
   }
@@ -391,7 +392,9 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
   NodeId node_id_{};
   NmtState state_ = NmtState::initialisation;
   bool attention_ = false;  ///< something may have become due since the last check
-  [[no_unique_address]] IdleTime idle_{};
+  /// A value can be posted at any time: a node with a mailbox asks its services each time.
+  using Idle = std::conditional_t<service::PostedValues<Device, Handlers...>::exists, NoIdleTime, IdleTime>;
+  [[no_unique_address]] Idle idle_{};
   [[no_unique_address]] HandlerCalls<calls_handlers> handler_calls_{};
   [[no_unique_address]] Services services_{};
   ObjectStore<Device> store_{};

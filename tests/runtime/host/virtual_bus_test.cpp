@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <canopen/host/key_tree.hpp>
+#include <canopen/host/virtual/key_tree.hpp>
 #include <canopen/host/virtual_bus.hpp>
 #include <canopen/node.hpp>
 

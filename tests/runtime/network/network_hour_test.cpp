@@ -219,6 +219,7 @@ struct Master {
 class Network {
  public:
   Network() {
+    bus.assume_independent_endpoints();
     while (bus.now() != TimePoint{begin}) bus.run_for(std::min<Duration>(20min, TimePoint{begin} - bus.now()));
     producer.emplace_back(bus, std::uint8_t{1});
     for (std::uint8_t id = 2; id < 42; ++id) drives.emplace_back(bus, id);

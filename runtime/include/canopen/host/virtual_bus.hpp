@@ -15,7 +15,9 @@
 #include "canopen/base/clock.hpp"
 #include "canopen/can/arbitration.hpp"
 #include "canopen/can/frame.hpp"
-#include "canopen/host/key_tree.hpp"
+#include "canopen/host/virtual/acceptance_table.hpp"
+#include "canopen/host/virtual/key_tree.hpp"
+#include "canopen/node/accepted_frames.hpp"
 
 namespace canopen {
 
@@ -34,6 +36,9 @@ namespace canopen {
 /// after a frame has been transmitted, and after `on_time` or `send` of this endpoint. An application may therefore use
 /// its nodes freely between two calls of `run_for`, and in all callbacks of a frame. Only if `on_time` of one endpoint
 /// changes the node of another, `Endpoint::deadline_changed()` must be called.
+///
+/// The time for a frame grows with the number of endpoints. On a large network, `assume_independent_endpoints()` makes
+/// a frame cost the time of its receivers alone.
 class VirtualBus {
  public:
   /// One participant: a Bus for the frames it sends. It lives as long as the bus and does not move.
@@ -56,7 +61,8 @@ class VirtualBus {
       deadline_changed();
     }
 
-    /// Makes the bus read the deadline again. Only needed if `on_time` of another endpoint has changed it.
+    /// Makes the bus read deadline and accepted frames again. Only needed if `on_time` of another endpoint has changed
+    /// them, or any callback of another endpoint after `assume_independent_endpoints()`.
     void deadline_changed() {
       if (!std::exchange(outdated_, true)) bus_.outdated_.push_back(place_);
     }
@@ -66,6 +72,9 @@ class VirtualBus {
     /// Called when the time returned by `next_deadline` has come.
     std::function<void(TimePoint now)> on_time;
     std::function<std::optional<TimePoint>()> next_deadline;
+    /// Appends the frames that `on_frame` does not ignore. Used after `assume_independent_endpoints()` only; an
+    /// endpoint without this function receives all frames.
+    std::function<void(std::vector<AcceptedFrame>&)> accepted_frames;
     /// Maximum number of frames that wait for the wire.
     std::size_t queue_limit = 16;
 
@@ -103,7 +112,18 @@ class VirtualBus {
     endpoint.on_frame = [&node](const Frame& frame, TimePoint now) { node.on_frame(frame, now); };
     endpoint.on_time = [&node](TimePoint now) { node.on_time(now); };
     endpoint.next_deadline = [&node] { return node.next_deadline(); };
+    if constexpr (requires { for_each_accepted_frame(node, [](const AcceptedFrame&) {}); }) {
+      endpoint.accepted_frames = [&node](std::vector<AcceptedFrame>& frames) {
+        for_each_accepted_frame(node, [&frames](const AcceptedFrame& frame) { frames.push_back(frame); });
+      };
+    }
   }
+
+  /// For large networks: declares that the callbacks of an endpoint, with the handlers of its node, use no other
+  /// endpoint's node, and that listeners use none; where they do, `Endpoint::deadline_changed()` must be called. A
+  /// frame is then passed only to the endpoints that accept it, and only their deadlines are read again. The frames on
+  /// the bus and their times are the same.
+  void assume_independent_endpoints() { independent_ = true; }
 
   void listen(Listener listener) { listeners_.push_back(std::move(listener)); }
 
@@ -197,7 +217,19 @@ class VirtualBus {
       endpoint.outdated_ = false;
       const auto deadline = endpoint.next_deadline ? endpoint.next_deadline() : std::nullopt;
       deadlines_.set(endpoint.place_, deadline ? time_of(*deadline) : KeyTree::none);
+      if (independent_) ask_for_accepted_frames(endpoint);
     }
+  }
+
+  void ask_for_accepted_frames(const Endpoint& endpoint) {
+    if (acceptance_.size() != endpoints_.size()) {
+      acceptance_.resize(endpoints_.size());
+      all_deadlines_changed();
+    }
+    if (!endpoint.accepted_frames) return acceptance_.accept_all(endpoint.place_);
+    accepted_.clear();
+    endpoint.accepted_frames(accepted_);
+    acceptance_.accept(endpoint.place_, accepted_);
   }
 
   void all_deadlines_changed() {
@@ -232,11 +264,23 @@ class VirtualBus {
   void end_frame() {
     const OnWire done = *std::exchange(on_wire_, std::nullopt);
     for (const Listener& listener : listeners_) listener(done.frame, now());
-    for (std::size_t i = 0; i < endpoints_.size(); ++i) {
-      Endpoint& endpoint = *endpoints_[i];
-      if (&endpoint != done.sender && endpoint.on_frame) endpoint.on_frame(done.frame, now());
-    }
+    if (independent_ && now_ - passed_to_all_ < longest_pause) return pass_to_receivers(done);
+    passed_to_all_ = now_;
+    for (std::size_t i = 0; i < endpoints_.size(); ++i) pass(done, *endpoints_[i]);
     all_deadlines_changed();
+  }
+
+  void pass_to_receivers(const OnWire& done) {
+    ask_for_deadlines();  // a listener may have changed which frames are accepted
+    for (std::size_t i = 0; (i = acceptance_.first_receiver(done.frame, i)) != AcceptanceTable::no_place; ++i) {
+      pass(done, *endpoints_[i]);
+      endpoints_[i]->deadline_changed();
+    }
+    done.sender->deadline_changed();
+  }
+
+  void pass(const OnWire& done, Endpoint& endpoint) const {
+    if (&endpoint != done.sender && endpoint.on_frame) endpoint.on_frame(done.frame, now());
   }
 
   std::vector<std::unique_ptr<Endpoint>> endpoints_;
@@ -245,8 +289,14 @@ class VirtualBus {
   KeyTree deadlines_;                  ///< a Time for each endpoint, except those in `outdated_`
   std::vector<std::size_t> outdated_;  ///< positions of endpoints whose deadline must be read
   std::optional<OnWire> on_wire_;
+  AcceptanceTable acceptance_;           ///< of independent endpoints, except those in `outdated_`
+  std::vector<AcceptedFrame> accepted_;  ///< of the endpoint that is being asked
+  bool independent_ = false;
   static constexpr Time start_ = Time{1} << 32;
+  /// A node compares times that are less than 35 minutes apart: each one gets a frame in a quarter of an hour.
+  static constexpr Time longest_pause = 900'000'000;
   Time now_ = start_;
+  Time passed_to_all_ = start_;  ///< when all endpoints have received a frame
   Time wire_free_ = now_;
   std::uint32_t bit_rate_ = 0;
 };

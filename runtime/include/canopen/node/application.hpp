@@ -28,6 +28,7 @@
 #include "canopen/node/functions.hpp"
 #include "canopen/node/handled.hpp"
 #include "canopen/node/handlers.hpp"
+#include "canopen/node/mailbox.hpp"
 #include "canopen/od/object_list.hpp"
 #include "canopen/sdo/domain_handlers.hpp"
 #include "canopen/storage/storage.hpp"

@@ -10,6 +10,7 @@
 #include "canopen/node/application.hpp"
 #include "canopen/node/application_check.hpp"
 #include "canopen/node/handlers.hpp"
+#include "canopen/node/mailbox.hpp"
 #include "canopen/od/dictionary.hpp"
 #include "canopen/sdo/domain_handlers.hpp"
 #include "canopen/storage/storage.hpp"

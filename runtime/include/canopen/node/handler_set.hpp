@@ -123,7 +123,7 @@ class HandlerSet {
   template <class H>
   static constexpr bool has = (std::is_same_v<H, Handlers> || ...);
 
-  [[nodiscard]] auto& storage() requires(storage_detail::has_storage<Handlers...>) {
+  [[nodiscard]] auto& storage() const requires(storage_detail::has_storage<Handlers...>) {
     constexpr std::size_t position = [] {
       constexpr bool stored_in[] = {storage_detail::is_stored_in<Handlers>...};
       std::size_t i = 0;
@@ -134,6 +134,7 @@ class HandlerSet {
   }
 
   [[nodiscard]] std::tuple<Handlers...>& all() { return handlers_; }
+  [[nodiscard]] const std::tuple<Handlers...>& all() const { return handlers_; }
 
   /// Calls all functions of an event, a row of node/functions.hpp.
   template <class Event, class... Arguments>

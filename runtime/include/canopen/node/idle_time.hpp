@@ -56,6 +56,7 @@ class NoIdleTime {
 
 }  // namespace node_detail
 
+using NoIdleTime = node_detail::NoIdleTime;
 using IdleTime = std::conditional_t<prefers_size, node_detail::NoIdleTime, node_detail::IdleTime>;
 
 }  // namespace canopen

@@ -80,6 +80,7 @@ class ServiceHost {
   // Handlers of the application
 
   [[nodiscard]] auto& handlers() { return node().handlers_; }
+  [[nodiscard]] const auto& handlers() const { return node().handlers_; }
   [[nodiscard]] auto& handler_calls() { return node().handler_calls_; }
   /// Calls the handlers of an event, a row of node/functions.hpp.
   template <class Event, class... Arguments>

@@ -75,6 +75,18 @@ class SdoServer {
     transfer_.drop_reply();
   }
 
+  /// The request has started a command that takes longer: its response waits for `command_ended`.
+  void hold_reply() { transfer_.hold_reply(); }
+  /// The client does not wait for the response any more.
+  void discard_held_reply() {
+    if (transfer_.holds_reply()) transfer_.drop_reply();
+  }
+  /// The command has ended: a response that is held is sent, as an abort if the code is not `ok`.
+  void command_ended(AbortCode code) {
+    if (!transfer_.holds_reply()) return;
+    code == ok ? transfer_.release_reply() : transfer_.abort(code);
+  }
+
   /// Whether segments of a block download are expected, whose first byte is not a command.
   [[nodiscard]] bool takes_segments() const { return has_block && transfer_.state() == State::block_downloading; }
 

@@ -19,6 +19,7 @@ namespace canopen {
 ///   AbortCode command(index, sub_index, bytes);         a write to an entry without a value, such as 1010h
 /// and, optionally:
 ///   bool is_new(word, bytes);                           after before_write: whether they still need to be stored
+///   bool started_command();                             whether the request started a command that has not ended yet
 template <class T, class Device>
 concept SdoServerHooks = requires(T hooks, std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
   { hooks.entries() } -> std::same_as<EntryAccess<Device>>;

@@ -258,10 +258,14 @@ class SdoServerTransfer {
   // Response
 
   /// Whether a response is waiting to be sent.
-  [[nodiscard]] bool has_reply() const { return has_reply_; }
+  [[nodiscard]] bool has_reply() const { return reply_state_ == ReplyState::ready; }
   [[nodiscard]] const sdo::Data& reply() const { return reply_; }
   [[nodiscard]] sdo::Data& reply() { return reply_; }
-  void drop_reply() { has_reply_ = false; }
+  void drop_reply() { reply_state_ = ReplyState::none; }
+  /// Keeps the response until `release_reply` or `abort`.
+  void hold_reply() { reply_state_ = ReplyState::held; }
+  [[nodiscard]] bool holds_reply() const { return reply_state_ == ReplyState::held; }
+  void release_reply() { reply_state_ = ReplyState::ready; }
 
   /// Sets a response of a command byte and zeroes.
   void clear_reply(std::uint8_t command) { put_reply(command, 0); }
@@ -376,14 +380,15 @@ class SdoServerTransfer {
   void put_reply(std::uint32_t low, std::uint32_t high) {
     std::memcpy(std::assume_aligned<4>(reply_.data()), &low, sizeof low);
     std::memcpy(std::assume_aligned<4>(reply_.data() + 4), &high, sizeof high);
-    has_reply_ = true;
+    reply_state_ = ReplyState::ready;
   }
 
+  enum class ReplyState : std::uint8_t { none, ready, held };
   struct NoProgress {};
 
   // Bytes first: a Cortex-M0+ accesses offsets up to 31 with one instruction.
   State state_ = State::idle;
-  bool has_reply_ = false;
+  ReplyState reply_state_ = ReplyState::none;
   std::uint8_t toggle_ = 0;
   bool size_indicated_ = false;
   [[no_unique_address]] std::conditional_t<has_block, SdoBlockProgress, NoProgress> progress_{};

@@ -46,7 +46,11 @@ class SdoServers {
       if constexpr (count > 1) {
         if (!servers_[i].takes_segments()) take_domain_from_others(i, frame.data);
       }
+      if constexpr (requires { hooks.started_command(); }) servers_[i].discard_held_reply();
       servers_[i].on_request(frame.data, hooks, now);
+      if constexpr (requires { hooks.started_command(); }) {
+        if (hooks.started_command()) servers_[i].hold_reply();
+      }
       return true;
     }
     return false;
@@ -84,6 +88,11 @@ class SdoServers {
       if (own && (!next || *own < *next)) next = own;
     }
     return next;
+  }
+
+  /// A command has ended: the response that waits for it is sent.
+  void command_ended(AbortCode code) {
+    for (SdoServer<Device>& server : servers_) server.command_ended(code);
   }
 
   void reset() {

@@ -15,6 +15,7 @@ namespace canopen {
 
 /// Two pages, 0 and 1, of `page_size` bytes. After an erase each word can be written once; a word has `word_size`
 /// bytes, a power of two, 32 at most. Offsets and sizes of `write` are multiples of it. False: the medium has failed.
+/// Pages with a function `bool ready()` may return from `erase` before it is complete: it is then false until it is.
 template <class T>
 concept FlashPages = requires(T& pages, std::uint8_t page, std::uint32_t offset, std::span<const std::uint8_t> words,
                               std::span<std::uint8_t> to) {
@@ -76,6 +77,10 @@ class FlashStorage {
     return pages_.erase(spare());
   }
 
+  /// Whether the last erase is complete.
+  [[nodiscard]] bool ready() requires requires(Pages& pages) { pages.ready(); }
+  { return pages_.ready(); }
+
   [[nodiscard]] bool write(std::span<const std::uint8_t> bytes) {
     if (bytes.size() > header_.size - written_) return false;
     header_.image_crc = crc16_ccitt(header_.image_crc, bytes);
@@ -123,13 +128,25 @@ class FlashStorage {
     return crc16_ccitt(first_crc, {reinterpret_cast<const std::uint8_t*>(&header), sizeof header - sizeof header.crc});
   }
 
-  [[nodiscard]] bool write_word(std::uint32_t offset) { return pages_.write(spare(), offset, word_); }
+  [[nodiscard]] bool write_word(std::uint32_t offset) {
+    wait_until_erased();
+    return pages_.write(spare(), offset, word_);
+  }
+
+  /// A BackgroundStorage writes only when the pages are ready, and does not wait here.
+  void wait_until_erased() const {
+    if constexpr (requires { pages_.ready(); }) {
+      while (!pages_.ready()) {
+      }
+    }
+  }
 
   // Separate functions, so that their buffers are not on the stack at the same time.
   [[nodiscard, gnu::noinline]] bool write_header() const {
     std::array<std::uint8_t, image_at> bytes;
     bytes.fill(0xFF);
     std::memcpy(bytes.data(), &header_, sizeof header_);
+    wait_until_erased();
     return pages_.write(spare(), 0, bytes);
   }
 

@@ -281,6 +281,15 @@ class ParameterLayout {
     return bytes;
   }();
 
+  /// Bytes before the values of each section.
+  static constexpr std::uint32_t header_bytes = 8;
+  /// Bytes of an image with all sections.
+  static constexpr std::uint32_t max_image = [] {
+    std::uint32_t bytes = 0;
+    for (const std::uint16_t size : sizes) bytes += size == 0 ? 0u : size + header_bytes;
+    return bytes;
+  }();
+
   /// Identifies the stored bytes of each section, so that those of another dictionary are not loaded: a hash of the
   /// entries, their types, limits and positions in storage.
   static constexpr std::array<std::uint32_t, parameter_sections> signatures = [] {

@@ -138,7 +138,7 @@ class ParameterStorage {
     std::uint8_t node_id;   ///< node-ID when they were stored
     std::uint8_t given_up;  ///< 1: valid until the next power-on
   };
-  static_assert(sizeof(Header) == 8);
+  static_assert(sizeof(Header) == Layout::header_bytes);
 
   /// A section of this device in storage.
   struct Record {

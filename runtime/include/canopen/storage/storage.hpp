@@ -25,6 +25,18 @@ concept Storage = requires(T& storage, std::uint32_t number, std::span<std::uint
   { storage.commit() } -> std::same_as<bool>;          ///< completes it
 };
 
+/// A storage that `commit` only asks to write the image, of at most `capacity` bytes: `step` does so, a part at a time,
+/// as long as it is busy. BackgroundStorage is one.
+template <class T>
+concept SteppedStorage = Storage<T> && requires(T& storage) {
+  { T::capacity } -> std::convertible_to<std::uint32_t>;
+  { storage.busy() } -> std::same_as<bool>;    ///< steps are left
+  { storage.ready() } -> std::same_as<bool>;   ///< the next one can be executed now
+  { storage.failed() } -> std::same_as<bool>;  ///< the last image could not be written
+  storage.step();
+  storage.finish();  ///< all steps that are left
+};
+
 /// The storage of a node, passed with its handlers. It must outlive the node.
 template <Storage S>
 struct StoredIn {
@@ -51,6 +63,10 @@ inline constexpr bool is_stored_in<StoredIn<S>> = true;
 /// Whether a storage is among the handlers of a node.
 template <class... Handlers>
 inline constexpr bool has_storage = (is_stored_in<Handlers> || ...);
+template <class Handler>
+inline constexpr bool is_stepped = false;
+template <Storage S>
+inline constexpr bool is_stepped<StoredIn<S>> = SteppedStorage<S>;
 
 }  // namespace storage_detail
 

@@ -61,6 +61,11 @@ struct SdoHooks {
     return host.command(index, sub_index, bytes);
   }
 
+  /// Whether the request started to store parameters in steps.
+  [[nodiscard]] bool started_command() requires(StoredValues<Device, Handlers...>::is_stepped) {
+    return host.template service<StoredValues<Device, Handlers...>>().take_started();
+  }
+
   // DOMAINs that the application streams
   using Streams = DomainHandlerSet<Handlers...>;
   [[nodiscard]] bool streams_upload(std::uint16_t index, std::uint8_t sub_index) const requires(Streams::any) {
@@ -111,6 +116,10 @@ class Sdo : public ServiceDefaults<Sdo<Device, Handlers...>> {
   }
   template <class Host>
   bool serve(Host& host) {
+    if constexpr (StoredValues<Device, Handlers...>::is_stepped) {
+      const auto result = host.template service<StoredValues<Device, Handlers...>>().take_result();
+      if (result) servers_.command_ended(*result);
+    }
     return servers_.serve(host.store(), host.bus(), Hooks<Host>{host}, host.now());
   }
   template <class Host>

@@ -2,8 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <type_traits>
+#include <utility>
 
+#include "canopen/base/clock.hpp"
 #include "canopen/emcy/error_register.hpp"
 #include "canopen/node/service_set.hpp"
 #include "canopen/node/services/emergency.hpp"
@@ -36,6 +40,8 @@ class StoredValues : public ServiceDefaults<StoredValues<Device, Handlers...>> {
 
  public:
   static constexpr bool exists = storage_detail::has_storage<Handlers...>;
+  /// Whether the storage is written while the node works.
+  static constexpr bool is_stepped = (storage_detail::is_stepped<Handlers> || ...);
 
   template <class Host>
   void on_start(Host& host) {
@@ -43,15 +49,44 @@ class StoredValues : public ServiceDefaults<StoredValues<Device, Handlers...>> {
   }
   template <class Host>
   void reset_application(Host& host) {
+    finish(host);
     stored_.reset_application(host.handlers().storage(), host.store(), host.node_id());
   }
   /// Reports stored values that have been lost, by EMCY 6300h.
   template <class Host>
   void reset_communication(Host& host) {
+    finish(host);
     stored_.reset_communication(host.handlers().storage(), host.store(), host.node_id());
     if (!stored_.damaged()) return;
     constexpr std::uint16_t code = emergency_code::data_set;
     host.template service<Emergency<Device>>().report(host, code, ErrorRegister::generic, Device::emergency_info(code));
+  }
+
+  /// Writes the next part of an image.
+  template <class Host>
+  void on_time([[maybe_unused]] Host& host) {
+    if constexpr (is_stepped) {
+      auto& storage = host.handlers().storage();
+      if (!storage.busy() || !storage.ready()) return;
+      storage.step();
+      progress_.ended = !storage.busy();
+      progress_.failed = storage.failed();
+    }
+  }
+  template <class Host>
+  static std::optional<TimePoint> deadline([[maybe_unused]] Host& host) {
+    if constexpr (is_stepped) {
+      auto& storage = host.handlers().storage();
+      if (storage.busy()) return host.now() + (storage.ready() ? Duration{0} : poll_period);
+    }
+    return std::nullopt;
+  }
+  /// Whether the last command has started to write an image; once.
+  [[nodiscard]] bool take_started() requires(is_stepped) { return std::exchange(progress_.started, false); }
+  /// Returns the result when an image has been written; once.
+  [[nodiscard]] std::optional<AbortCode> take_result() requires(is_stepped) {
+    if (!std::exchange(progress_.ended, false)) return std::nullopt;
+    return progress_.failed ? AbortCode::hardware : ok;
   }
 
   /// "save" and "load". Sub-indices of 1010h and 1011h without a range in CiA 301 are left to their write handlers.
@@ -66,12 +101,15 @@ class StoredValues : public ServiceDefaults<StoredValues<Device, Handlers...>> {
       code = host.handler_calls().ask(key, [&] { return host.handlers().before_write(host.node(), key, bytes); });
     }
     if (code != ok || (sections_of(sub_index) == 0 && host.handlers().handles(key))) return code;
-    return index == store_parameters ? save(host, sub_index) : restore(host, sub_index);
+    code = index == store_parameters ? save(host, sub_index) : restore(host, sub_index);
+    if constexpr (is_stepped) progress_.started = code == ok && host.handlers().storage().busy();
+    return code;
   }
 
-  /// Stores the parameters of a sub-index of 1010h.
+  /// Stores the parameters of a sub-index of 1010h. device_state: those before are still being written.
   template <class Host>
   [[nodiscard]] AbortCode save(Host& host, std::uint8_t sub_index) {
+    if (is_writing(host)) return AbortCode::device_state;
     const SectionSet sections = sections_of(sub_index);
     const bool saved = sections != 0 && stored_.save(host.handlers().storage(), sections, host.store());
     return saved ? ok : AbortCode::hardware;
@@ -79,6 +117,7 @@ class StoredValues : public ServiceDefaults<StoredValues<Device, Handlers...>> {
   /// Restores the default values of a sub-index of 1011h.
   template <class Host>
   [[nodiscard]] AbortCode restore(Host& host, std::uint8_t sub_index) {
+    if (is_writing(host)) return AbortCode::device_state;
     const SectionSet sections = sections_of(sub_index);
     const bool restored = sections != 0 && stored_.restore(host.handlers().storage(), sections, host.store());
     return restored ? ok : AbortCode::hardware;
@@ -97,7 +136,33 @@ class StoredValues : public ServiceDefaults<StoredValues<Device, Handlers...>> {
   }
 
  private:
+  struct Progress {
+    bool started = false;  ///< by the last command
+    bool ended = false;    ///< the result has not been reported yet
+    bool failed = false;
+  };
+  struct NoProgress {};
+  /// How often a storage that is not ready is asked again.
+  static constexpr Duration poll_period{1'000};
+
+  template <class Host>
+  [[nodiscard]] static bool is_writing([[maybe_unused]] Host& host) {
+    if constexpr (is_stepped) return host.handlers().storage().busy();
+    return false;
+  }
+  /// Completes an image before it is read. The response to its command is not sent: a reset ends all transfers.
+  template <class Host>
+  void finish([[maybe_unused]] Host& host) {
+    if constexpr (is_stepped) {
+      static_assert(std::remove_reference_t<decltype(host.handlers().storage())>::capacity >= Stored::Layout::max_image,
+                    "the storage is smaller than the parameters of this device");
+      host.handlers().storage().finish();
+      progress_ = {};
+    }
+  }
+
   Stored stored_{};
+  [[no_unique_address]] std::conditional_t<is_stepped, Progress, NoProgress> progress_{};
 };
 
 }  // namespace canopen::service

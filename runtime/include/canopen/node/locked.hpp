@@ -1,0 +1,103 @@
+/// A node that several contexts use, one at a time.
+///
+///     std::mutex mutex;
+///     canopen::Locked pump{node, mutex};
+///     pump.on_time(now());                       // the task of the node
+///     pump.set<od::pressure>(420);               // another task
+///     pump.with([](auto& locked) { ... });       // several calls, or those that are not listed here
+#pragma once
+
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include "canopen/base/clock.hpp"
+#include "canopen/base/lock.hpp"
+#include "canopen/can/bus_status.hpp"
+#include "canopen/can/frame.hpp"
+#include "canopen/can/node_id.hpp"
+#include "canopen/emcy/error_register.hpp"
+#include "canopen/nmt/nmt.hpp"
+#include "canopen/od/object.hpp"
+
+namespace canopen {
+
+/// Holds the lock during each call. Handlers are called with the lock held and get the node itself: they must not use
+/// this class, unless the lock may be taken twice. A context that makes the node due, as `set` does, wakes the loop
+/// afterwards. With an InterruptLock no interrupt is served during `on_frame` and `on_time`; a Mailbox does not have
+/// this delay. The node and the lock must outlive this object.
+template <class Node, Lock L = NoLock>
+class Locked {
+ public:
+  constexpr explicit Locked(Node& node) requires(std::is_same_v<L, NoLock>) : node_{node} {}
+  constexpr Locked(Node& node, L& lock) : node_{node}, lock_{lock} {}
+
+  /// Calls `use(node)` and returns its result.
+  template <class Use>
+  decltype(auto) with(Use&& use) {
+    const Guard guard{lock_};
+    return std::forward<Use>(use)(node_);
+  }
+
+  // The same functions as those of Node.
+
+  void start(TimePoint now) {
+    with([&](Node& node) { node.start(now); });
+  }
+  void start(NodeId node_id, TimePoint now) {
+    with([&](Node& node) { node.start(node_id, now); });
+  }
+  void on_frame(const Frame& frame, TimePoint now) {
+    with([&](Node& node) { node.on_frame(frame, now); });
+  }
+  void on_time(TimePoint now) {
+    with([&](Node& node) { node.on_time(now); });
+  }
+  void on_bus_status(const BusStatus& status, TimePoint now) {
+    with([&](Node& node) { node.on_bus_status(status, now); });
+  }
+  [[nodiscard]] std::optional<TimePoint> next_deadline() {
+    return with([](Node& node) { return node.next_deadline(); });
+  }
+  [[nodiscard]] NmtState state() {
+    return with([](Node& node) { return node.state(); });
+  }
+  void request(NmtCommand command, TimePoint now) {
+    with([&](Node& node) { node.request(command, now); });
+  }
+  template <DictionaryObject O>
+  [[nodiscard]] typename O::type get() {
+    return with([](Node& node) { return node.template get<O>(); });
+  }
+  template <DictionaryObject O>
+  auto set(const typename O::type& value) {
+    return with([&](Node& node) { return node.template set<O>(value); });
+  }
+  void emergency(std::uint16_t code, ErrorRegister bits) {
+    with([&](Node& node) { node.emergency(code, bits); });
+  }
+  void emergency_over(ErrorRegister bits) {
+    with([&](Node& node) { node.emergency_over(bits); });
+  }
+
+ private:
+  using LockMember = std::conditional_t<std::is_empty_v<L>, L, L&>;
+
+  struct Guard {
+    explicit constexpr Guard(LockMember& held) : lock{held} { lock.lock(); }
+    ~Guard() { lock.unlock(); }
+    Guard(const Guard&) = delete;
+    Guard& operator=(const Guard&) = delete;
+    std::remove_reference_t<LockMember>& lock;
+  };
+
+  Node& node_;
+  [[no_unique_address]] LockMember lock_{};
+};
+
+template <class Node>
+Locked(Node&) -> Locked<Node, NoLock>;
+template <class Node, Lock L>
+Locked(Node&, L&) -> Locked<Node, L>;
+
+}  // namespace canopen

@@ -1,0 +1,48 @@
+/// Values that other contexts have posted to the mailboxes of a node.
+#pragma once
+
+#include <optional>
+#include <tuple>
+
+#include "canopen/base/clock.hpp"
+#include "canopen/node/mailbox.hpp"
+#include "canopen/node/service_set.hpp"
+
+namespace canopen::service {
+
+template <class Device, class... Handlers>
+class PostedValues : public ServiceDefaults<PostedValues<Device, Handlers...>> {
+ public:
+  static constexpr bool exists = (mailbox_detail::is_values_from<Handlers> || ...);
+
+  template <class Host>
+  static void on_time(Host& host) {
+    std::apply([&](const auto&... handlers) { (take_over(handlers, host), ...); }, host.handlers().all());
+  }
+  template <class Host>
+  static std::optional<TimePoint> deadline(Host& host) {
+    const bool any =
+        std::apply([](const auto&... handlers) { return (pending(handlers) || ...); }, host.handlers().all());
+    return any ? std::optional{host.now()} : std::nullopt;
+  }
+
+ private:
+  template <class Handler, class Host>
+  static void take_over(const Handler&, Host&) {}
+  template <class M, class Host>
+  static void take_over(const ValuesFrom<M>& values, Host& host) {
+    static_assert(M::template fits<Device>, "values_from: this device does not have an object of the mailbox");
+    values.mailbox->take_over(host.node());
+  }
+
+  template <class Handler>
+  [[nodiscard]] static bool pending(const Handler&) {
+    return false;
+  }
+  template <class M>
+  [[nodiscard]] static bool pending(const ValuesFrom<M>& values) {
+    return values.mailbox->pending();
+  }
+};
+
+}  // namespace canopen::service

@@ -1,0 +1,94 @@
+#include <gtest/gtest.h>
+
+#include <canopen/base/lock.hpp>
+#include <canopen/node/locked.hpp>
+#include <canopen/port/cortex_m.hpp>
+
+#include <string>
+
+#include "support/bench.hpp"
+
+namespace {
+
+using canopen::InterruptLock;
+using canopen::Locked;
+namespace od = sample::od;
+
+/// Records what happens to a lock, and what the node sends meanwhile.
+struct RecordingLock {
+  std::string& log;
+  void lock() { log += "("; }
+  void unlock() { log += ")"; }
+};
+
+struct LoggingBus {
+  std::string& log;
+  bool send(const canopen::Frame& frame) {
+    log += bench::text(frame);
+    return true;
+  }
+};
+
+TEST(Locked, HoldsTheLockWhileTheNodeWorks) {
+  std::string log;
+  LoggingBus bus{log};
+  RecordingLock lock{log};
+  auto node = canopen::make_node<sample::Device>(bus, canopen::NodeId{5});
+  Locked locked{node, lock};
+  locked.start(canopen::TimePoint{});
+  EXPECT_EQ(log, "(705 00)");
+  log.clear();
+  locked.on_frame(bench::frame(bench::start), {});
+  log.clear();
+  EXPECT_EQ(locked.set<od::statusword>(0x1234), canopen::ok);
+  EXPECT_EQ(locked.next_deadline(), canopen::TimePoint{});
+  locked.on_time({});
+  EXPECT_EQ(log, "()()(185 34 12 00 00 00 00)");
+  log.clear();
+  EXPECT_EQ(locked.get<od::statusword>(), 0x1234);
+  EXPECT_EQ(locked.state(), canopen::NmtState::operational);
+  locked.emergency(0x1000, canopen::ErrorRegister::generic);
+  EXPECT_EQ(log, "()()()");
+  EXPECT_EQ(locked.with([](auto& device) { return device.node_id(); }), canopen::NodeId{5});
+  EXPECT_EQ(log, "()()()()");
+}
+
+TEST(Locked, WithoutALockIsAReference) {
+  bench::RecordingBus bus;
+  auto node = canopen::make_node<sample::Device>(bus, canopen::NodeId{5});
+  Locked plain{node};
+  plain.start(canopen::TimePoint{});
+  EXPECT_EQ(bus.take(), "705 00");
+  EXPECT_EQ(sizeof plain, sizeof(void*));
+}
+
+struct FakeInterrupts {
+  static inline std::uint32_t masked = 0;
+  static inline std::string log;
+  static std::uint32_t disable() {
+    log += "d";
+    return std::exchange(masked, 1u);
+  }
+  static void restore(std::uint32_t before) {
+    log += before == 0 ? "e" : "-";
+    masked = before;
+  }
+};
+
+TEST(InterruptLock, EnablesInterruptsOnlyWhereTheyWereEnabled) {
+  InterruptLock<FakeInterrupts> lock;
+  lock.lock();
+  EXPECT_EQ(FakeInterrupts::masked, 1u);
+  lock.lock();
+  lock.unlock();
+  EXPECT_EQ(FakeInterrupts::masked, 1u);
+  lock.unlock();
+  EXPECT_EQ(FakeInterrupts::masked, 0u);
+  EXPECT_EQ(FakeInterrupts::log, "dde");
+  FakeInterrupts::masked = 1;  // within an interrupt of the same priority, or a critical section
+  lock.lock();
+  lock.unlock();
+  EXPECT_EQ(FakeInterrupts::masked, 1u);
+}
+
+}  // namespace
