@@ -26,8 +26,11 @@ bool parse_seconds(std::string_view text, std::int64_t& microseconds) {
   constexpr std::size_t max_digits = 12;
   std::int64_t number = 0;
   std::size_t at = 0;
-  for (; at < text.size() && is_digit(text[at]); ++at) number = number * 10 + (text[at] - '0');
-  if (at == 0 || at > max_digits) return false;
+  for (; at < text.size() && is_digit(text[at]); ++at) {
+    if (at == max_digits) return false;
+    number = number * 10 + (text[at] - '0');
+  }
+  if (at == 0) return false;
   std::size_t decimals = 0;
   if (at < text.size() && text[at] == '.') {
     for (++at; at < text.size() && is_digit(text[at]); ++at) {
