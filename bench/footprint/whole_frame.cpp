@@ -44,7 +44,7 @@ void program() {
   node.on_time(start);
   print_mean("on-time", [](std::uint32_t) { node.on_time(later); });
   print_mean("rpdo", [=](std::uint32_t) { receive(0x305, 8, 1, 2); });
-  print_mean("upload", [=](std::uint32_t) { receive(0x605, 8, 0x0060'8340, 0); });         // 6083h
+  print_mean("upload", [=](std::uint32_t) { receive(0x605, 8, 0x0060'8340, 0); });          // 6083h
   print_mean("download", [=](std::uint32_t i) { receive(0x605, 8, 0x0060'8323, i + 1); });  // with a new value
   end_program();
 }

@@ -102,8 +102,6 @@ class Builder {
     layout_.runs.push_back({0xFFFF, device_.objects.size()});
   }
 
-  // ---- words ----
-
   [[nodiscard]] Word word(const Object& object, const Entry& entry, Location location) const {
     Word word;
     word.place = placement_.place(object, entry);
@@ -150,8 +148,6 @@ class Builder {
     }
   }
 
-  // ---- single values ----
-
   /// Adds a value to its section, and returns its word.
   Word add_single(const Object& object, const Entry& entry) {
     add_limits(object, entry);
@@ -182,8 +178,6 @@ class Builder {
     layout_.constants.members.push_back(std::move(member));
     return location;
   }
-
-  // ---- arrays and records ----
 
   using SubWords = std::vector<std::optional<Word>>;
 
@@ -337,8 +331,6 @@ class Builder {
     }
     return at->second;
   }
-
-  // ---- the end ----
 
   void check_rows(const Object& object, std::size_t rows, std::size_t limit, std::string_view what) {
     if (rows <= limit || found_too_many_rows_) return;

@@ -135,9 +135,7 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
     serve();
   }
 
-  using ObjectValues<Node>::get;
-  using ObjectValues<Node>::set;
-  using ObjectValues<Node>::send_mpdo;
+  using ObjectValues<Node>::get, ObjectValues<Node>::set, ObjectValues<Node>::send_mpdo;
 
   /// Returns the value of an object, whatever its access type.
   template <DictionaryObject O>
@@ -392,9 +390,7 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
   NodeId node_id_{};
   NmtState state_ = NmtState::initialisation;
   bool attention_ = false;  ///< something may have become due since the last check
-  /// A value can be posted at any time: a node with a mailbox asks its services each time.
-  using Idle = std::conditional_t<service::PostedValues<Device, Handlers...>::exists, NoIdleTime, IdleTime>;
-  [[no_unique_address]] Idle idle_{};
+  [[no_unique_address]] IdleTimeOf<service::PostedValues<Device, Handlers...>::exists> idle_{};
   [[no_unique_address]] HandlerCalls<calls_handlers> handler_calls_{};
   [[no_unique_address]] Services services_{};
   ObjectStore<Device> store_{};

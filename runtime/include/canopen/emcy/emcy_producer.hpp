@@ -90,7 +90,8 @@ class EmergencyProducer {
       }
       return ok;
     }
-    if constexpr (entry::wire_bytes(Device::dictionary.find(0x1014, 0)) != 4) return AbortCode::internal_incompatibility;
+    if constexpr (entry::wire_bytes(Device::dictionary.find(0x1014, 0)) != 4)
+      return AbortCode::internal_incompatibility;
     const CobId before{entries.template number<0x1014, 0>()};
     const CobId written{number_in(bytes)};
     const CobId after = written_cob_id(before, Device::options.emcy_cob_id_writable, bytes);

@@ -56,7 +56,8 @@ class NoIdleTime {
 
 }  // namespace node_detail
 
-using NoIdleTime = node_detail::NoIdleTime;
-using IdleTime = std::conditional_t<prefers_size, node_detail::NoIdleTime, node_detail::IdleTime>;
+/// A value can be posted to a mailbox at any time: a node with mailboxes asks its services at each call.
+template <bool has_mailboxes>
+using IdleTimeOf = std::conditional_t<prefers_size || has_mailboxes, node_detail::NoIdleTime, node_detail::IdleTime>;
 
 }  // namespace canopen

@@ -168,7 +168,8 @@ class MappingParameter {
 /// Whether the first `count` objects of a mapping parameter for up to `capacity` objects are a valid mapping, including
 /// an empty one.
 template <class Device>
-[[nodiscard]] bool is_possible_mapping(const MappingParameter& mapping, bool tpdo, std::uint8_t count, std::uint8_t capacity) {
+[[nodiscard]] bool is_possible_mapping(const MappingParameter& mapping, bool tpdo, std::uint8_t count,
+                                       std::uint8_t capacity) {
   if (count == 0 || (Device::options.mpdo && count >= source_multiplexed)) return true;
   return count <= capacity && mapping.look_up<Device>(tpdo, count, nullptr) != 0;
 }

@@ -347,14 +347,10 @@ class SdoServerTransfer {
   }
 
   [[nodiscard]] bool is_new(std::span<const std::uint8_t> bytes, auto& hooks) const {
-    if constexpr (requires { hooks.is_new(word_, bytes); }) {
-      return hooks.is_new(word_, bytes);
-    } else {
-      return true;
-    }
+    if constexpr (requires { hooks.is_new(word_, bytes); }) return hooks.is_new(word_, bytes);
+    return true;
   }
 
-  /// If the size was announced, the length has already been checked.
   [[nodiscard]] AbortCode check_length(EntryAccess<Device> entries) const {
     return size_indicated_ ? ok : entries.check_length(index(), sub_index(), word_, position_);
   }

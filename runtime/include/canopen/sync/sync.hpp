@@ -170,7 +170,8 @@ template <class Device>
 [[nodiscard]] AbortCode check_sync_parameter(EntryAccess<Device> entries, std::uint16_t index,
                                              std::span<std::uint8_t> bytes) {
   if (index == 0x1005) {
-    if constexpr (entry::wire_bytes(Device::dictionary.find(0x1005, 0)) != 4) return AbortCode::internal_incompatibility;
+    if constexpr (entry::wire_bytes(Device::dictionary.find(0x1005, 0)) != 4)
+      return AbortCode::internal_incompatibility;
     const CobId before{entries.template number<0x1005, 0>()};
     const CobId written{number_in(bytes)};
     const CobId after = written_cob_id(before, Device::options.sync_cob_id_writable, bytes);
