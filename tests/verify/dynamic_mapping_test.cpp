@@ -24,8 +24,8 @@ constexpr entry::Place place(std::uint16_t index, std::uint8_t sub_index) {
   return entry::place_of(dictionary.find(index, sub_index));
 }
 
-constexpr const canopen::Group& group(std::uint16_t index) {
-  return dictionary.groups[entry::offset_of(dictionary.find_index(index))];
+constexpr const canopen::Shape& shape(std::uint16_t index) {
+  return dictionary.shapes[entry::shape_of(dictionary.find_index(index))];
 }
 
 /// Sub-indices 0 and 1 are in RAM, each further entry 4 bytes after the one before it, all of them aligned.
@@ -33,7 +33,7 @@ constexpr bool is_dynamic(std::uint16_t index) {
   if (place(index, 0) != entry::Place::ram) return false;
   const std::uint16_t first = entry::offset_of(dictionary.find(index, 1));
   if (first % alignof(std::uint32_t) != 0) return false;
-  for (std::uint8_t i = 1; i <= group(index).highest; ++i) {
+  for (std::uint8_t i = 1; i <= shape(index).highest; ++i) {
     const entry::Word word = dictionary.find(index, i);
     if (entry::place_of(word) != entry::Place::ram || entry::offset_of(word) != first + 4 * (i - 1)) return false;
   }
@@ -41,9 +41,9 @@ constexpr bool is_dynamic(std::uint16_t index) {
 }
 
 constexpr bool is_static(std::uint16_t index) {
-  for (std::uint8_t i = 0; i <= group(index).highest; ++i) {
+  for (std::uint8_t i = 0; i <= shape(index).highest; ++i) {
     const entry::Word word = dictionary.find(index, i);
-    if (entry::place_of(word) != entry::Place::rom || (word & entry::writable) != 0) return false;
+    if (entry::place_of(word) == entry::Place::ram || (word & entry::writable) != 0) return false;
   }
   return true;
 }
@@ -51,8 +51,8 @@ constexpr bool is_static(std::uint16_t index) {
 // 1600h, 1A00h, 1A01h: rw. 1A03h: an ARRAY. 1601h: ro. 1A02h: static by option.
 static_assert(is_dynamic(0x1600) && is_dynamic(0x1A00) && is_dynamic(0x1A01) && is_dynamic(0x1A03));
 static_assert(is_static(0x1601) && is_static(0x1A02));
-static_assert(group(0x1600).subs == group(0x1A00).subs && group(0x1600).subs == group(0x1A01).subs);
-static_assert(group(0x1601).subs == group(0x1A02).subs && group(0x1601).subs != group(0x1600).subs);
+static_assert(shape(0x1600).subs == shape(0x1A00).subs && shape(0x1600).subs == shape(0x1A01).subs);
+static_assert(shape(0x1601).subs == shape(0x1A02).subs && shape(0x1601).subs != shape(0x1600).subs);
 
 // PDOs that map no object are listed if their mapping can change.
 static_assert(Device::Rpdos::count == 2 && Device::Tpdos::count == 4);

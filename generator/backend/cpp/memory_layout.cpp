@@ -184,9 +184,8 @@ class Builder {
   void add_group(const Object& object) {
     const bool is_array = placement_.is_uniform_array(object);
     Location begin;
-    SubWords subs = is_array ? add_array(object, begin) : add_record(object, begin);
-    const std::size_t shape = shared_shape(object, shared_subs(std::move(subs), object), is_array);
-    layout_.entries.push_back({&object, {}, std::move(begin), shape, is_array});
+    const std::size_t subs = shared_subs(is_array ? add_array(object, begin) : add_record(object, begin), object);
+    layout_.entries.push_back({&object, {}, std::move(begin), shared_shape(object, subs, is_array), is_array});
   }
 
   /// Adds the elements and the count of an array. `begin` is the location to which the offsets in their words are
@@ -222,12 +221,9 @@ class Builder {
       first_element.member.append(".").append(elements_member);
     } else {
       first_element = add_value(section, std::move(elements));
-      if (count_place == MemoryPlace::rom) {
-        count_location = add_constant(member(object, count, object.identifier));
-        elements_location = first_element;
-      } else {
-        begin = first_element;
-      }
+      const bool apart = count_place == MemoryPlace::rom;
+      if (apart) count_location = add_constant(member(object, count, object.identifier));
+      (apart ? elements_location : begin) = first_element;
     }
     for (const Entry& entry : object.entries) {
       if (entry.sub_index == 0) continue;
@@ -246,7 +242,7 @@ class Builder {
     return whole(object, std::move(parts));
   }
 
-  /// The same for the values of a record.
+  /// Adds the values of a record, with `begin` as for an array.
   SubWords add_record(const Object& object, Location& begin) {
     std::vector<Member> in_ram, in_rom;
     bool preset = false;

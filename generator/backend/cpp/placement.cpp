@@ -85,9 +85,10 @@ bool Placement::is_constant(const Object& object, const Entry& entry) const {
 
 MemoryPlace Placement::place(const Object& object, const Entry& entry) const {
   if (!is_constant(object, entry) || entry.type->kind == DataClass::domain) return MemoryPlace::ram;
-  // All static mapping parameters of a device share one table of words: one that contains a value has it for all.
-  if (contains(mapping_parameters, entry.index) && !static_mapping_values_.at(entry.sub_index)) return MemoryPlace::rom;
   const bool plus_node_id = entry.default_value && entry.default_value->plus_node_id;
+  // All static mapping parameters of a device share one table of words: one that contains a value has it for all.
+  const bool is_mapping = contains(mapping_parameters, entry.index);
+  if (is_mapping && (plus_node_id || !static_mapping_values_.at(entry.sub_index))) return MemoryPlace::rom;
   if (needs_address(entry)) return plus_node_id ? MemoryPlace::ram : MemoryPlace::rom;
   return place_of_number(entry.type->kind, default_bits(entry), plus_node_id);
 }

@@ -72,14 +72,13 @@ class CobId {
   return CobId{after};
 }
 
-/// A range of CAN-IDs that no configurable object may use (CiA 301, 7.3.5, table 41).
+/// A range of CAN-IDs that no configurable object may use (CiA 301, 7.3.5, table 41). The table is ascending.
 struct RestrictedCanIds {
   std::uint16_t first;
   std::uint16_t last;
 };
 
 inline constexpr RestrictedCanIds restricted_can_ids[] = {
-    // ascending
     {0x000, 0x000}, {0x001, 0x07F}, {0x101, 0x180}, {0x581, 0x5FF},
     {0x601, 0x67F}, {0x6E0, 0x6FF}, {0x701, 0x77F}, {0x780, 0x7FF},
 };

@@ -14,8 +14,8 @@ namespace canopen {
 /// Whether an index is in the communication profile area, 1000h..1FFFh, whose objects belong to services.
 [[nodiscard]] constexpr bool is_communication_index(std::uint16_t index) { return index < 0x2000; }
 
-/// Whether services check or apply writes to an object. For speed, not those to objects of the application; each
-/// service compares the index anyway.
+/// Whether services are asked about a write to an object. None has one of the application; for size, all are asked, and
+/// compare the index anyway.
 [[nodiscard]] constexpr bool may_concern_services(std::uint16_t index) {
   return prefers_size || is_communication_index(index);
 }
