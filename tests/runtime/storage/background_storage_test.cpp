@@ -3,6 +3,7 @@
 
 #include <canopen/storage/background_storage.hpp>
 #include <canopen/storage/flash_storage.hpp>
+#include <every_service/device.hpp>
 #include <stored_device/device.hpp>
 
 #include <algorithm>
@@ -187,6 +188,24 @@ TEST(BackgroundStorage, ASecondCommandIsRejectedWhileTheFirstOneRuns) {
   EXPECT_TRUE(memory.storage.busy());
   EXPECT_EQ(slow.device.pass(1s), "");
   EXPECT_FALSE(memory.storage.failed());
+}
+
+TEST(BackgroundStorage, AnotherClientIsAnsweredMeanwhile) {
+  SlowFlash pages;
+  FlashStorage<SlowFlash> flash{pages};
+  BackgroundStorage<FlashStorage<SlowFlash>, 512> storage{flash};
+  bench::Bench<every_service::Device, canopen::StoredIn<decltype(storage)>> device{canopen::stored_in(storage)};
+  pages.now = &device.now;
+  device.ask("605 23 01 12 01 A5 06 00 00");
+  device.ask("605 23 01 12 02 B5 06 00 00");
+  device.bus.take();
+  EXPECT_EQ(device.ask(save_all), "");
+  EXPECT_EQ(device.ask("6A5 40 18 10 00 00 00 00 00"), "6B5 4F 18 10 00 04 00 00 00");
+  EXPECT_EQ(device.ask("6A5 23 10 10 01 73 61 76 65"), "6B5 80 10 10 01 22 00 00 08");
+  EXPECT_TRUE(storage.busy());
+  EXPECT_NE(device.pass(1s).find(saved_all), std::string::npos);
+  EXPECT_EQ(device.ask("6A5 23 10 10 01 73 61 76 65"), "");
+  EXPECT_NE(device.pass(1s).find("6B5 60 10 10 01 00 00 00 00"), std::string::npos);
 }
 
 TEST(BackgroundStorage, AClientThatAbortsGetsNoResponse) {

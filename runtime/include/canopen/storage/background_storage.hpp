@@ -87,7 +87,7 @@ class BackgroundStorage {
     }
   }
 
-  /// Executes all steps that are left, and waits for the other storage between them.
+  /// Executes all steps that are left, and waits for the other storage between them: it must become ready.
   void finish() {
     while (busy()) {
       if (ready()) {
