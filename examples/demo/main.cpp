@@ -55,7 +55,7 @@ std::uint16_t statusword_after(std::uint16_t controlword) {
 /// A drive's answer to its controlword.
 template <class Statusword>
 constexpr auto answer_controlword =
-    [](auto& node, std::uint16_t controlword) { node.template set<Statusword>(statusword_after(controlword)); };
+    [](auto& node, std::uint16_t controlword) { node.set(Statusword{}, statusword_after(controlword)); };
 
 template <class VendorId, class ProductCode, class RevisionNumber, class DeviceName>
 void show_identity(demo::Master& master, NodeId node) {
@@ -149,7 +149,7 @@ int run_demo(demo::CandumpLog& log) {
   auto drive = canopen::make_node<cpc_tc1::Device>(
       drive_port, drive_id, canopen::on_write<cpc_tc1::od::controlword>(answer_controlword<cpc_tc1::od::statusword>),
       canopen::on_write<cpc_tc1::od::target_velocity>(
-          [](auto& node, std::int32_t velocity) { node.template set<cpc_tc1::od::velocity_actual_value>(velocity); }));
+          [](auto& node, std::int32_t velocity) { node.set(cpc_tc1::od::velocity_actual_value{}, velocity); }));
   auto& inputs_port = bus.attach();
   auto inputs = canopen::make_node<can_2053c::Device>(inputs_port, inputs_id);
   auto& sensor_port = bus.attach();

@@ -14,15 +14,20 @@ namespace {
 
 std::atomic<bool> stop{false};
 
-/// The CiA 402 statusword after shutdown (06h), switch on (07h) and enable operation (0Fh).
-std::uint16_t statusword_after(std::uint16_t controlword) {
-  switch (controlword & 0x0F) {
-    case 0x06: return 0x0231;
-    case 0x07: return 0x0233;
-    case 0x0F: return 0x0237;
-    default: return 0x0250;
+struct Drive {
+  /// The CiA 402 statusword after shutdown (06h), switch on (07h) and enable operation (0Fh).
+  static std::uint16_t statusword_after(std::uint16_t controlword) {
+    switch (controlword & 0x0F) {
+      case 0x06: return 0x0231;
+      case 0x07: return 0x0233;
+      case 0x0F: return 0x0237;
+      default: return 0x0250;
+    }
   }
-}
+  void written(od::controlword, std::uint16_t controlword, auto& node) {
+    node.set(od::statusword{}, statusword_after(controlword));
+  }
+};
 
 canopen::NodeId parse_node_id(std::string_view text) {
   unsigned value = 0;
@@ -43,10 +48,7 @@ int main(int argc, char** argv) {
   std::signal(SIGTERM, [](int) { stop = true; });
   try {
     canopen::SocketCan bus{argv[1]};
-    auto drive = canopen::make_node<cpc_tc1::Device>(
-        bus, id, canopen::on_write<od::controlword>([](auto& node, std::uint16_t controlword) {
-          node.template set<od::statusword>(statusword_after(controlword));
-        }));
+    canopen::Node<cpc_tc1::Device, canopen::SocketCan, Drive> drive{bus, id};
     bus.run(drive, stop);
   } catch (const std::system_error& problem) {
     std::fprintf(stderr, "%s: %s\n", argv[1], problem.what());

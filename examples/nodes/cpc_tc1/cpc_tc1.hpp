@@ -102,7 +102,7 @@ class CpcTc1 : private ConfiguredByLss, public Base<CpcTc1<B>, B> {
              {{&motor_on_}}} {}
 
   void restarted() {
-    static_cast<void>(node_.template set<od::identity_object::serial_number>(this->around_.serial_number));
+    static_cast<void>(node_.set(od::identity_object::serial_number{}, this->around_.serial_number));
     phase_found_ = false;
   }
 
@@ -110,12 +110,12 @@ class CpcTc1 : private ConfiguredByLss, public Base<CpcTc1<B>, B> {
   void watch() {
     motor_on_ = canopen::cia402::has_power(drive_.state());
     phase_found_ = phase_found_ || motor_on_;
-    std::uint32_t bits = node_.template get<od::statusword>();
+    std::uint32_t bits = node_.get(od::statusword{});
     if (external_enable_) bits |= status::external_enable;
     if (motor_on_) bits |= status::motor_on;
     if (phase_found_) bits |= status::phase_found;
     if (axis_.velocity() == 0) bits |= status::stationary;
-    static_cast<void>(node_.template set<od::manufacturer_status_register>(bits));
+    static_cast<void>(node_.set(od::manufacturer_status_register{}, bits));
   }
 
   bool take_line(const nodes::InputLine& line) {

@@ -243,11 +243,11 @@ class Cpd : public Base<Cpd<B>, B> {
  private:
   template <class O>
   void set(typename O::type value) {
-    static_cast<void>(node_.template set<O>(value));
+    static_cast<void>(node_.set(O{}, value));
   }
   template <class O>
   [[nodiscard]] typename O::type get() const {
-    return node_.template get<O>();
+    return node_.get(O{});
   }
 
   void run_at(std::int32_t velocity) {

@@ -176,7 +176,7 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
   void watch() {
     if (alarm_ != 0 && drive_.state() == State::switch_on_disabled) alarm_ = 0;  // fault reset
     const std::uint32_t deviation = canopen::cia402::distance(axis_.position_demand(), axis_.position());
-    const std::uint16_t most = node_.template get<od::position_error_threshold>();
+    const std::uint16_t most = node_.get(od::position_error_threshold{});
     if (most != 0 && deviation > most && drive_.state() == State::operation_enabled) raise(25);
     report_warnings();
     set<od::bus_voltage>(static_cast<std::uint16_t>(supply_ * 100));
@@ -231,11 +231,11 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
  private:
   template <class O>
   void set(typename O::type value) {
-    static_cast<void>(node_.template set<O>(value));
+    static_cast<void>(node_.set(O{}, value));
   }
   template <class O>
   [[nodiscard]] bool is_0() const {
-    return node_.template get<O>() == 0;
+    return node_.get(O{}) == 0;
   }
 
   /// Returns false if the alarm does not exist.
@@ -284,11 +284,11 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
     const std::int32_t position = axis_.position();
     std::uint16_t bits = injected_;
     if ((inputs & canopen::cia402::input::positive_limit) != 0 ||
-        position >= node_.template get<od::software_position_limit<2>>()) {
+        position >= node_.get(od::software_position_limit<2>{})) {
       bits |= warning::positive_limit;
     }
     if ((inputs & canopen::cia402::input::negative_limit) != 0 ||
-        position <= node_.template get<od::software_position_limit<1>>()) {
+        position <= node_.get(od::software_position_limit<1>{})) {
       bits |= warning::negative_limit;
     }
     if (drive_.homing().failed()) bits |= warning::homing_failed;

@@ -140,7 +140,7 @@ class Rk5c {
   /// At power-on and at each reset: loads the settings that become valid, and reports the errors that still exist.
   void initialise() {
     if (around_.serial_number != 0) {
-      static_cast<void>(node_.template set<rk5c::od::identity_object::serial_number>(around_.serial_number));
+      static_cast<void>(node_.set(rk5c::od::identity_object::serial_number{}, around_.serial_number));
     }
     data_set_error_reported_ = around_.parameters.state() == canopen::StorageState::damaged;  // by the node itself
     if (data_set_error_reported_) data_set_error_ = true;
@@ -212,8 +212,8 @@ class Rk5c {
   }
   /// Sets position and speed without a measurement.
   void show(std::int32_t position, std::int16_t speed) {
-    static_cast<void>(node_.template set<rk5c::od::position_values_for_multi_sensor_devices<1>>(position));
-    static_cast<void>(node_.template set<rk5c::od::speed_value<1>>(speed));
+    static_cast<void>(node_.set(rk5c::od::position_values_for_multi_sensor_devices<1>{}, position));
+    static_cast<void>(node_.set(rk5c::od::speed_value<1>{}, speed));
   }
 
   [[nodiscard]] bool in_range() const { return position_ >= 0 && position_ <= range; }
@@ -230,10 +230,10 @@ class Rk5c {
     return static_cast<std::uint8_t>(bits);
   }
   void show_status() {
-    const std::uint32_t before = node_.template get<rk5c::od::manufacturer_status_register>();
+    const std::uint32_t before = node_.get(rk5c::od::manufacturer_status_register{});
     const std::uint32_t after = status();
     if (after == before) return;
-    static_cast<void>(node_.template set<rk5c::od::manufacturer_status_register>(after));
+    static_cast<void>(node_.set(rk5c::od::manufacturer_status_register{}, after));
     char line[32];
     std::snprintf(line, sizeof line, "status 0x%02X", static_cast<unsigned>(after));
     around_.log(line);
