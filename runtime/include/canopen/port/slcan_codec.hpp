@@ -1,12 +1,12 @@
 /// SLCAN, the ASCII protocol of the Lawicel adapters: CAN frames as lines on a serial line. The text, for hosts and
 /// targets: no operating system, no heap. slcan_adapter.hpp and slcan_host.hpp have the two sides.
 ///
-///   t12320011<CR>          data frame 123h, 2 bytes 00 11        r1232<CR>       remote frame
-///   T123456782AABB<CR>     the same with 29 bits                 R123456782<CR>
+///   t12320011[CR]          data frame 123h, 2 bytes 00 11        r1232[CR]       remote frame
+///   T123456782AABB[CR]     the same with 29 bits                 R123456782[CR]
 ///
 /// Commands to the adapter: S0..S8 bit rate, sxxyy bit timing registers, O open, L open to listen only, C close,
 /// Mxxxxxxxx and mxxxxxxxx acceptance code and mask, Z0 and Z1 time stamps, F status flags, V version, N serial number.
-/// The adapter responds with <CR>, or with <BEL> to a command that it rejects.
+/// The adapter responds with [CR], or with [BEL] to a command that it rejects.
 #pragma once
 
 #include <array>
@@ -126,7 +126,7 @@ constexpr char* put_hex(char* to, std::uint32_t number, unsigned digits) {
 /// is longer than any frame, the beginning is kept, which is not a valid frame.
 class LineReader {
  public:
-  /// Returns the line that this character ends, without it; valid until the next call. A <BEL> is a line of its own.
+  /// Returns the line that this character ends, without it; valid until the next call. A [BEL] is a line of its own.
   [[nodiscard]] std::optional<std::string_view> take(char character) {
     if (character == end || character == refusal) {
       const std::string_view line{text_.data(), size_};
