@@ -3,8 +3,8 @@
 
     format.py SOURCE_DIR [--fix] [FILE]...
 
-Lists the places that differ; --fix rewrites the files instead. FILE, relative to SOURCE_DIR: only these. Files that
-.clang-format-ignore names are left as they are.
+Lists the places that differ; --fix rewrites the files instead. FILE, relative to SOURCE_DIR: only these, or the
+sources in this folder. Files that .clang-format-ignore names are left as they are.
 """
 
 from __future__ import annotations
@@ -19,17 +19,18 @@ from os import cpu_count
 from pathlib import Path
 
 BATCH = 50
+SUFFIXES = (".cpp", ".hpp", ".h", ".c")
 VIOLATION = re.compile(r"^(.+?:\d+):\d+: error: code should be clang-formatted", re.MULTILINE)
 
 
 def sources(source_dir: Path, files: list[str]) -> list[str]:
     """Returns the files that git tracks or would track, of the given ones if any are, without the ignored ones."""
     listed = subprocess.run(["git", "-C", source_dir, "ls-files", "--cached", "--others", "--exclude-standard",
-                             *(files or ("*.cpp", "*.hpp", "*.h", "*.c"))], capture_output=True, text=True, check=True)
+                             *(files or (f"*{suffix}" for suffix in SUFFIXES))], capture_output=True, text=True, check=True)
     lines = (source_dir / ".clang-format-ignore").read_text(encoding="utf-8").splitlines()
     ignored = [line for line in lines if line and not line.startswith("#")]
     return [name for name in sorted(set(listed.stdout.splitlines()))
-            if (source_dir / name).is_file() and not any(fnmatch(name, pattern) for pattern in ignored)]
+            if name.endswith(SUFFIXES) and (source_dir / name).is_file() and not any(fnmatch(name, pattern) for pattern in ignored)]
 
 
 def run(program: str, source_dir: Path, names: list[str], *options: str) -> tuple[list[str], str]:
