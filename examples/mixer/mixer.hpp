@@ -1,7 +1,6 @@
 /// A mixer with four valves and two zones: arrays and a string.
 #pragma once
 
-#include <array>
 #include <canopen/node.hpp>
 #include <cstdint>
 #include <mixer/device.hpp>
@@ -9,26 +8,20 @@
 namespace od = mixer::od;
 
 struct Mixer {
-  /// One function for all valves.
+  /// One function for all valves: an open valve warms its zone, in 0.1 °C.
   template <std::uint8_t I>
-  void written(od::valve<I>, std::uint8_t percent) {
-    opening[I] = percent;
+  void written(od::valve<I>, std::uint8_t percent, auto& node) {
+    const std::uint8_t zone = I <= 2 ? 1 : 2;  // a sub-index at run time
+    static_cast<void>(node.set(od::zone_temperature{}, zone, static_cast<std::int16_t>(200 + percent)));
   }
 
-  /// Temperatures are measured when a TPDO or an upload needs them, in 0.1 °C.
-  template <std::uint8_t I>
-  std::int16_t read(od::zone_temperature<I>) {
-    return static_cast<std::int16_t>(200 + opening[I]);
-  }
+  /// Read when a TPDO or an upload needs it.
+  std::uint32_t read(od::litres_delivered) { return litres; }
 
   /// Only known recipes are accepted.
   canopen::AbortCode write(od::recipe, const od::recipe::type& name) {
     return name.view().starts_with("water") ? canopen::ok : canopen::AbortCode::invalid_value;
   }
-  void written(od::recipe, const od::recipe::type&, auto& node) {
-    for (std::uint8_t i = 1; i <= 4; ++i) static_cast<void>(node.set(od::valve{}, i, 0));  // sub-index at run time
-    opening = {};
-  }
 
-  std::array<std::uint8_t, 5> opening{};  ///< percent, by sub-index
+  std::uint32_t litres = 0;
 };

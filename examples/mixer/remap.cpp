@@ -35,9 +35,8 @@ int main() {
   if (!listening) return 3;
 
   if (!master.command(canopen::NmtCommand::start, canopen::NodeId{5})) return 4;
-  if (!remote.send<mixer::Rpdo1>(std::uint8_t{100}, std::uint8_t{50}, std::uint8_t{0}, std::uint8_t{0})) return 4;
-  master.poll(canopen::from_milliseconds(10));
-  node.set(od::litres_delivered{}, 12);
+  node.application<Mixer>().litres = 12;
+  if (!remote.send<mixer::Rpdo1>(std::uint8_t{0}, std::uint8_t{0}, std::uint8_t{0}, std::uint8_t{50})) return 4;
   master.poll(canopen::from_milliseconds(10));
   std::printf("%u litres, zone 2: %.1f degrees\n", unsigned{litres}, temperature / 10.0);
   return litres == 12 && temperature == 250 ? 0 : 5;
