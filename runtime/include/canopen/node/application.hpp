@@ -65,7 +65,7 @@ inline constexpr bool is_event_handler<EventHandler<Event, F>> = true;
 template <class H>
 inline constexpr bool is_handler =
     is_access_handler<H> || is_event_handler<H> || domain_detail::is_reader<H> || domain_detail::is_writer<H> ||
-    storage_detail::is_stored_in<H> || lss_detail::is_handler<H>;
+    storage_detail::is_stored_in<H> || lss_detail::is_handler<H> || mailbox_detail::is_values_from<H>;
 
 /// The class of an application, which a node has as a handler; any other type for a handler.
 template <class H>
