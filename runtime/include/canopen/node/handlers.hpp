@@ -2,10 +2,11 @@
 /// keeps by value and finds by comparing numbers, without heap or indirect calls. An application with more than a few
 /// of them is a class: node/application.hpp.
 ///
-///     canopen::Node drive{canopen::device<cpc_tc1::Device>, bus, canopen::NodeId{5},
+///     auto drive = canopen::make_node<cpc_tc1::Device>(
+///         bus, canopen::NodeId{5},
 ///         canopen::on_write(od::controlword{}, [](std::uint16_t command) { return accept(command); }),
 ///         canopen::on_read(od::temperature{}, [] { return measure(); }),
-///         canopen::on_state([](canopen::NmtState state) { show(state); })};
+///         canopen::on_state([](canopen::NmtState state) { show(state); }));
 #pragma once
 
 #include <type_traits>
