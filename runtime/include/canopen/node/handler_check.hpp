@@ -86,6 +86,17 @@ struct ServiceHandler {
   static constexpr bool is_good = KnownHandler<H>::is_good;
 };
 
+/// A mailbox with objects of this device.
+template <class Device, class H>
+inline constexpr bool mailbox_fits = true;
+template <class Device, class M>
+inline constexpr bool mailbox_fits<Device, ValuesFrom<M>> = M::template fits<Device>;
+template <class Device, class H>
+struct MailboxHandler {
+  static_assert(mailbox_fits<Device, H>, "values_from: this device does not have an object of the mailbox");
+  static constexpr bool is_good = true;
+};
+
 template <class Device, class Node, class H, class... Handlers>
 [[nodiscard]] constexpr bool check_handler() {
   using Application = typename ApplicationOf<H>::type;
@@ -97,7 +108,7 @@ template <class Device, class Node, class H, class... Handlers>
     return ObjectHandler<Object, pdo_detail::LabelOf<Object>, called<H>,
                          Device::dictionary.find(Object::index, Object::sub_index), count>::is_good;
   } else {
-    return ServiceHandler<Device, H>::is_good;
+    return MailboxHandler<Device, H>::is_good && ServiceHandler<Device, H>::is_good;
   }
 }
 
