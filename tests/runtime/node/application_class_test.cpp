@@ -127,6 +127,32 @@ TEST(Application, SuppliesTheValuesOfATpdoAtASync) {
   EXPECT_NE(last.find("285 07 00 00 00 00 00 00 00"), std::string::npos) << "the last value is sent: " << last;
 }
 
+TEST(Application, SuppliesAValueOfTwoTpdosWithoutEnd) {
+  auto device = bench::with<every_service::Device>(Sensor{});
+  for (const auto* request : {"605 23 01 18 01 85 02 00 80", "605 2F 01 18 02 FF 00 00 00",  // TPDO 2: event-driven,
+                              "605 2F 01 1A 00 00 00 00 00", "605 23 01 1A 01 10 00 01 20",  // maps the word as well
+                              "605 2F 01 1A 00 01 00 00 00", "605 23 01 18 01 85 02 00 00"})
+    device.ask(request);
+  const std::string first = device.ask(bench::start);
+  EXPECT_EQ(first.substr(0, 33), "185 00 01 01 00 | 285 02 02 | 485") << "each with a value of its own";
+  EXPECT_EQ(device.pass(0s), "");
+  EXPECT_EQ(device.node.next_deadline(), std::nullopt);
+  device.node.set(od::word{}, 7);
+  EXPECT_EQ(device.pass(0s).substr(0, 27), "185 00 03 03 00 | 285 04 04") << "both are sent, once";
+  EXPECT_EQ(device.pass(0s), "");
+}
+
+/// Measures with the node.
+struct Converter {
+  std::uint8_t read(od::byte, auto& node) { return static_cast<std::uint8_t>(node.get(od::word{}) / 2); }
+};
+
+TEST(Application, SuppliesAValueWithItsNode) {
+  auto device = bench::with<every_service::Device>(Converter{});
+  device.node.set(od::word{}, 8);
+  EXPECT_EQ(device.ask("605 40 00 20 00 00 00 00 00"), "585 4F 00 20 00 04 00 00 00");
+}
+
 TEST(Application, LearnsOfStatesAndSyncs) {
   Device device{Application{}};
   Application& application = device.node.application<Application>();
