@@ -195,6 +195,64 @@ TEST(Application, MayRequestAnNmtCommandAfterItsValueIsStored) {
   EXPECT_EQ(device.ask("605 2F 00 20 00 09 00 00 00"), "585 60 00 20 00 00 00 00 00 | 705 00");
 }
 
+struct Starts {
+  void on_state(NmtState state, auto& node) {
+    if (state == NmtState::pre_operational) node.request(canopen::NmtCommand::start, canopen::TimePoint{});
+  }
+};
+struct Follows {
+  void on_state(NmtState state) { states.push_back(state); }
+  std::vector<NmtState> states;
+};
+
+TEST(Application, AfterOneThatLeavesAStateLearnsOfTheNewOneOnly) {
+  auto device = bench::with<every_service::Device>(Starts{}, Follows{});
+  EXPECT_EQ(device.node.state(), NmtState::operational);
+  EXPECT_EQ(device.node.application<Follows>().states, (std::vector{NmtState::initialisation, NmtState::operational}));
+}
+
+struct StopsAtAnError {
+  void on_rpdo(canopen::RpdoEvent event, std::uint16_t, auto& node) {
+    if (event == canopen::RpdoEvent::length_right) node.request(canopen::NmtCommand::stop, canopen::TimePoint{});
+  }
+};
+
+TEST(Application, GetsNoValuesOfAnRpdoAtWhichItLeavesOperational) {
+  auto device = bench::with<every_service::Device>(StopsAtAnError{});
+  device.ask(bench::start);
+  device.ask("205 01");  // too short
+  device.ask("205 09 01 00 FF FF FF FF");
+  EXPECT_EQ(device.node.state(), NmtState::stopped);
+  EXPECT_EQ(device.node.get(od::byte{}), 0);
+}
+
+/// Maps the RPDO, or the TPDO, of which it gets a value.
+struct Remaps {
+  void written(od::word, std::uint16_t value, auto& node) {
+    if (value == 1) mapped = node.template map<1, canopen::Rpdo<od::word, od::byte>>();
+    if (value == 2) mapped = node.template map<1, canopen::Rpdo<od::byte>>();
+    if (value == 3) mapped = node.template map<1, canopen::Tpdo<od::byte, od::positions<1>>>();
+    if (value == 4) mapped = node.template map<1, canopen::Tpdo<od::word>>();
+  }
+  AbortCode mapped = AbortCode::general;
+};
+
+TEST(Application, MayMapAPdoAnewWhenItGetsAValueOfIt) {
+  const auto after = [](const char* frame, std::int32_t position) {
+    auto device = bench::with<every_service::Device>(Remaps{});
+    device.ask(bench::start);
+    device.ask(frame);
+    EXPECT_EQ(device.node.application<Remaps>().mapped, canopen::ok) << frame;
+    EXPECT_EQ(device.node.get(od::positions<1>{}), position) << frame;
+    device.ask("205 0A 0B 0C 0D 0E 0F 10 11");
+    return std::to_string(device.node.get(od::byte{})) + " " + std::to_string(device.node.get(od::word{}));
+  };
+  EXPECT_EQ(after("205 09 01 00 07 00 00 00", 0), "12 2826") << "the rest of the frame has no object any more";
+  EXPECT_EQ(after("205 09 02 00 07 00 00 00", 0), "10 2");
+  EXPECT_EQ(after("205 09 03 00 07 00 00 00", 7), "10 3083") << "of another PDO: the rest is applied";
+  EXPECT_EQ(after("205 09 04 00 07 00 00 00", 7), "10 3083");
+}
+
 /// One function for all objects.
 struct Log {
   void written(auto object, const auto&) { ++count[object.index]; }
