@@ -308,7 +308,8 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
     state_ = next;
     services_.on_state(host(), before, next);
     attention_ = true;
-    handlers_.template tell<function::OnState>(*this, next);
+    handlers_.template tell_while<function::OnState>(
+        *this, [&] { return state_ == next; }, next);
   }
 
   void reset_node() {

@@ -127,6 +127,32 @@ TEST(Application, SuppliesTheValuesOfATpdoAtASync) {
   EXPECT_NE(last.find("285 07 00 00 00 00 00 00 00"), std::string::npos) << "the last value is sent: " << last;
 }
 
+TEST(Application, SuppliesAValueOfTwoTpdosWithoutEnd) {
+  auto device = bench::with<every_service::Device>(Sensor{});
+  for (const auto* request : {"605 23 01 18 01 85 02 00 80", "605 2F 01 18 02 FF 00 00 00",  // TPDO 2: event-driven,
+                              "605 2F 01 1A 00 00 00 00 00", "605 23 01 1A 01 10 00 01 20",  // maps the word as well
+                              "605 2F 01 1A 00 01 00 00 00", "605 23 01 18 01 85 02 00 00"})
+    device.ask(request);
+  const std::string first = device.ask(bench::start);
+  EXPECT_EQ(first.substr(0, 33), "185 00 01 01 00 | 285 02 02 | 485") << "each with a value of its own";
+  EXPECT_EQ(device.pass(0s), "");
+  EXPECT_EQ(device.node.next_deadline(), std::nullopt);
+  device.node.set(od::word{}, 7);
+  EXPECT_EQ(device.pass(0s).substr(0, 27), "185 00 03 03 00 | 285 04 04") << "both are sent, once";
+  EXPECT_EQ(device.pass(0s), "");
+}
+
+/// Measures with the node.
+struct Converter {
+  std::uint8_t read(od::byte, auto& node) { return static_cast<std::uint8_t>(node.get(od::word{}) / 2); }
+};
+
+TEST(Application, SuppliesAValueWithItsNode) {
+  auto device = bench::with<every_service::Device>(Converter{});
+  device.node.set(od::word{}, 8);
+  EXPECT_EQ(device.ask("605 40 00 20 00 00 00 00 00"), "585 4F 00 20 00 04 00 00 00");
+}
+
 TEST(Application, LearnsOfStatesAndSyncs) {
   Device device{Application{}};
   Application& application = device.node.application<Application>();
@@ -167,6 +193,64 @@ struct Resets {
 TEST(Application, MayRequestAnNmtCommandAfterItsValueIsStored) {
   auto device = bench::with<every_service::Device>(Resets{});
   EXPECT_EQ(device.ask("605 2F 00 20 00 09 00 00 00"), "585 60 00 20 00 00 00 00 00 | 705 00");
+}
+
+struct Starts {
+  void on_state(NmtState state, auto& node) {
+    if (state == NmtState::pre_operational) node.request(canopen::NmtCommand::start, canopen::TimePoint{});
+  }
+};
+struct Follows {
+  void on_state(NmtState state) { states.push_back(state); }
+  std::vector<NmtState> states;
+};
+
+TEST(Application, AfterOneThatLeavesAStateLearnsOfTheNewOneOnly) {
+  auto device = bench::with<every_service::Device>(Starts{}, Follows{});
+  EXPECT_EQ(device.node.state(), NmtState::operational);
+  EXPECT_EQ(device.node.application<Follows>().states, (std::vector{NmtState::initialisation, NmtState::operational}));
+}
+
+struct StopsAtAnError {
+  void on_rpdo(canopen::RpdoEvent event, std::uint16_t, auto& node) {
+    if (event == canopen::RpdoEvent::length_right) node.request(canopen::NmtCommand::stop, canopen::TimePoint{});
+  }
+};
+
+TEST(Application, GetsNoValuesOfAnRpdoAtWhichItLeavesOperational) {
+  auto device = bench::with<every_service::Device>(StopsAtAnError{});
+  device.ask(bench::start);
+  device.ask("205 01");  // too short
+  device.ask("205 09 01 00 FF FF FF FF");
+  EXPECT_EQ(device.node.state(), NmtState::stopped);
+  EXPECT_EQ(device.node.get(od::byte{}), 0);
+}
+
+/// Maps the RPDO, or the TPDO, of which it gets a value.
+struct Remaps {
+  void written(od::word, std::uint16_t value, auto& node) {
+    if (value == 1) mapped = node.template map<1, canopen::Rpdo<od::word, od::byte>>();
+    if (value == 2) mapped = node.template map<1, canopen::Rpdo<od::byte>>();
+    if (value == 3) mapped = node.template map<1, canopen::Tpdo<od::byte, od::positions<1>>>();
+    if (value == 4) mapped = node.template map<1, canopen::Tpdo<od::word>>();
+  }
+  AbortCode mapped = AbortCode::general;
+};
+
+TEST(Application, MayMapAPdoAnewWhenItGetsAValueOfIt) {
+  const auto after = [](const char* frame, std::int32_t position) {
+    auto device = bench::with<every_service::Device>(Remaps{});
+    device.ask(bench::start);
+    device.ask(frame);
+    EXPECT_EQ(device.node.application<Remaps>().mapped, canopen::ok) << frame;
+    EXPECT_EQ(device.node.get(od::positions<1>{}), position) << frame;
+    device.ask("205 0A 0B 0C 0D 0E 0F 10 11");
+    return std::to_string(device.node.get(od::byte{})) + " " + std::to_string(device.node.get(od::word{}));
+  };
+  EXPECT_EQ(after("205 09 01 00 07 00 00 00", 0), "12 2826") << "the rest of the frame has no object any more";
+  EXPECT_EQ(after("205 09 02 00 07 00 00 00", 0), "10 2");
+  EXPECT_EQ(after("205 09 03 00 07 00 00 00", 7), "10 3083") << "of another PDO: the rest is applied";
+  EXPECT_EQ(after("205 09 04 00 07 00 00 00", 7), "10 3083");
 }
 
 /// One function for all objects.

@@ -190,6 +190,28 @@ TEST(BackgroundStorage, ASecondCommandIsRejectedWhileTheFirstOneRuns) {
   EXPECT_FALSE(memory.storage.failed());
 }
 
+TEST(BackgroundStorage, ASaveOfTheApplicationBeginsWhileTheNodeIsIdle) {
+  Memory memory;
+  Device slow{memory};
+  const auto finish = [&] {
+    for (int i = 0; i < 200 && memory.storage.busy(); ++i) {
+      slow.device.now = slow.device.now + 1ms;
+      slow.device.node.on_time(slow.device.now);
+    }
+    return !memory.storage.busy();
+  };
+  const auto idle = [&] {
+    for (int i = 0; i < 3; ++i) slow.device.node.on_time(slow.device.now);
+  };
+  idle();
+  EXPECT_EQ(slow.device.node.save(), canopen::ok);
+  EXPECT_TRUE(finish());
+  idle();
+  EXPECT_EQ(slow.device.node.restore(), canopen::ok);
+  EXPECT_TRUE(memory.storage.busy());
+  EXPECT_TRUE(finish());
+}
+
 TEST(BackgroundStorage, AnotherClientIsAnsweredMeanwhile) {
   SlowFlash pages;
   FlashStorage<SlowFlash> flash{pages};

@@ -67,11 +67,56 @@ struct NamesObjectOfAnother {
   operator T() const;  // NOLINT(google-explicit-constructor): stands for an object
 };
 
+template <class T, class List>
+inline constexpr bool is_listed = false;
+template <class T, class... Os>
+inline constexpr bool is_listed<T, ObjectList<Os...>> = (std::is_same_v<T, Os> || ...);
+
+/// A function with an object that the node does not call for it.
+template <class Application, class Function, class Object>
+struct UncalledFunction {
+  static_assert(!DictionaryObject<Object> || std::is_same_v<Function, function::Read>,
+                "application: the node calls write and written with (object, value) or (object, value, node); a value "
+                "is passed by value or as const&");
+  static_assert(!DictionaryObject<Object> || !std::is_same_v<Function, function::Read>,
+                "application: the node calls read with (object) or (object, node)");
+  static constexpr bool is_good = true;
+};
+
+/// Converts to each object of `Device` that is not one of `Called`.
+template <class Device, class Called>
+struct UncalledObject {
+  template <DictionaryObject T>
+  requires((is_in<T, typename Device::Objects> || is_element_in<T, typename Device::Objects>)&&!is_listed<T, Called>)
+  operator T() const;  // NOLINT(google-explicit-constructor): stands for an object
+};
+
+/// The same, as an error for the first type that it converts to.
+template <class Device, class Called, class Application, class Function>
+struct NamesUncalledObject {
+  template <DictionaryObject T>
+  requires((is_in<T, typename Device::Objects> || is_element_in<T, typename Device::Objects>)&&!is_listed<T, Called> &&
+           UncalledFunction<Application, Function, T>::is_good)
+  operator T() const;  // NOLINT(google-explicit-constructor): stands for an object
+};
+
+/// Converts to each type and to references: fits each parameter except `T&&`.
+struct AnyReference {
+  template <class T>
+  operator T&() const;  // NOLINT(google-explicit-constructor): stands for a value or the node
+};
+
 /// Whether no function of an application fits; more than one may.
 template <class Function, class A, class... Values>
 inline constexpr bool none_fits = requires(typename Function::template OrNone<A>& application, Values... values) {
   { Function::call(application, values...) } -> std::same_as<function::NoneFits>;
 };
+
+/// The same for up to three further arguments of any type.
+template <class Function, class A, class Object>
+inline constexpr bool none_fits_anything = none_fits<Function, A, Object>&&
+    none_fits<Function, A, Object, AnyReference>&& none_fits<Function, A, Object, AnyReference, AnyReference>&&
+        none_fits<Function, A, Object, AnyReference, AnyReference, AnyReference>;
 
 /// Selects the objects that a function accepts with a value of any type.
 template <class Function, class A, class Node>
@@ -125,7 +170,7 @@ struct ApplicationFunctions {
 /// Whether the result of `write` or `written` is one that the node can use.
 template <class Function, class A, class Node, class O>
 [[nodiscard]] constexpr bool check_answer() {
-  if constexpr (has_function<Function, A, Node, O, typename O::type>) {
+  if constexpr (!std::is_same_v<Function, function::Read> && has_function<Function, A, Node, O, typename O::type>) {
     using Answer = decltype(call_function<Function>(std::declval<A&>(), std::declval<Node&>(), std::declval<O>(),
                                                     std::declval<typename O::type>()));
     return std::is_void_v<Answer> || (std::is_same_v<Function, function::Write> &&
@@ -155,6 +200,8 @@ template <class Device, class Node, class A, class Function>
     } else {
       good = ApplicationFunctions<Device, A, Function, Any::size == 0>::is_good;
     }
+    if constexpr (!is_for_all && !none_fits_anything<Function, A, UncalledObject<Device, Any>>)
+      good = none_fits_anything<Function, A, NamesUncalledObject<Device, Any, A, Function>>;
     if constexpr (!is_for_all) {
       Any::for_each([&]<class O>() {
         constexpr bool fits = has_index<O::index, Exact>;

@@ -49,12 +49,12 @@ struct NoneFits {};
 CANOPEN_FUNCTION(Write, write, 0, );
 /// `written(od::x, value)`: after it has been stored, even if it is the same as before.
 CANOPEN_FUNCTION(Written, written, 0, );
-/// `read(od::x)`: before an SDO upload, and before a TPDO with this object is sent. Returns the value, a Result of it, an
-/// AbortCode, or nothing: the value in the node is sent.
+/// `read(od::x)`: before an SDO upload, and before a TPDO with this object is sent. Returns the value, a Result of
+/// it, an AbortCode, or nothing: the value in the node is sent. A value for a TPDO does not send other TPDOs.
 CANOPEN_FUNCTION(Read, read, 0, );
 
 /// The node has entered an NMT state. Initialisation is reported at start and at each reset, after the default values
-/// have been set.
+/// have been set. A state that an application leaves in this function is not reported to those after it.
 CANOPEN_FUNCTION(OnState, on_state, 0, NmtState);
 /// A SYNC in Pre-operational or Operational, after synchronous TPDOs have been sent and synchronous RPDOs applied; with
 /// its counter, 0 if the network does not use it.

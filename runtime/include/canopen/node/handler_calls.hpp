@@ -29,6 +29,23 @@ class HandlerCalls {
     }
   }
 
+  /// Calls the read handlers of an object for a TPDO.
+  template <class Ask>
+  void ask_for_tpdo(std::uint32_t key, Ask&& ask) requires(exist) {
+    state_.key = key;
+    state_.active = true;
+    state_.for_tpdo = true;
+    ask();
+    state_.for_tpdo = false;
+    state_.active = false;
+  }
+
+  /// Whether an object is set by its own read handler for a TPDO.
+  [[nodiscard]] bool is_supplied([[maybe_unused]] std::uint32_t key) const {
+    if constexpr (exist) return state_.for_tpdo && state_.key == key;
+    return false;
+  }
+
   /// Records that an object is set, possibly by its own write handler.
   void object_is_set([[maybe_unused]] std::uint32_t key) {
     if constexpr (exist) {
@@ -61,8 +78,9 @@ class HandlerCalls {
 
  private:
   struct State {
-    std::uint32_t key;      ///< of the object that is being written
+    std::uint32_t key;      ///< of the object that is being written, or read for a TPDO
     bool active;            ///< a handler is being called
+    bool for_tpdo;          ///< it is a read handler, for a TPDO
     bool has_set;           ///< it has set that object itself
     std::uint8_t deferred;  ///< the NMT command that it has requested; 0: none
   };

@@ -141,6 +141,13 @@ class HandlerSet {
   void tell(Node& node, const Arguments&... arguments) {
     for_each([&]<class H>(H& handler) { Handled<H>::template tell<Event>(handler, node, arguments...); });
   }
+  /// The same while `holds()` is true: a function may end what it learns of.
+  template <class Event, class Holds, class... Arguments>
+  void tell_while(Node& node, const Holds& holds, const Arguments&... arguments) {
+    for_each([&]<class H>(H& handler) {
+      if (holds()) Handled<H>::template tell<Event>(handler, node, arguments...);
+    });
+  }
 
  private:
   template <class Visit>

@@ -73,6 +73,7 @@ class RpdoService {
       for (std::size_t i = 0; i < count; ++i) {
         if (Mapped::is_dynamic(i)) slots_[i].size = look_up(i, entries, watched);
       }
+      applied_.looked_up = true;
     }
   }
 
@@ -196,6 +197,9 @@ class RpdoService {
 
   template <class Watched>
   void activate(std::size_t i, EntryAccess<Device> entries, Watched watched) {
+    if constexpr (has_dynamic_mapping) {
+      if (applied_.pdo == i + 1) applied_ = {0, true};
+    }
     Slot& slot = slots_[i];
     slot.size = look_up(i, entries, watched);
     constexpr std::uint32_t event_driven = 255;
@@ -231,6 +235,7 @@ class RpdoService {
     bool received = false;
     for (; i < count; ++i) {
       if (cob_id_at(i, host.entries()) != cob_id) continue;
+      if (received && !host.operational()) break;
       receive(i, frame, host);
       received = true;
     }
@@ -241,7 +246,10 @@ class RpdoService {
   void receive(std::size_t i, const Frame& frame, Host host) {
     Slot& slot = slots_[i];
     if (frame.size < slot.size) return cut(i, host);
-    if ((slot.flags & (cut_short | monitored | missed)) != 0) settle(i, host);
+    if ((slot.flags & (cut_short | monitored | missed)) != 0) {
+      settle(i, host);
+      if (!host.operational()) return;
+    }
     start_deadline(i, host);
     if ((slot.flags & at_sync) != 0 && !host.window_over()) {
       slot.data = frame.data;
@@ -332,10 +340,12 @@ class RpdoService {
     if constexpr (!is_dummy<O>) host.template take<O>(value);
   }
 
+  /// A handler may change mappings: if it changes that of this PDO, the rest of the frame is discarded.
   template <class Host>
   void take_mapped(std::size_t which, const Data& data, Host host) {
     using Runs = typename Mapped::Runs;
     const EntryAccess<Device> entries = host.entries();
+    applied_ = {static_cast<std::uint16_t>(which + 1), false};
     const auto* run = places_.of(which);
     for (unsigned at = 0, end = slots_[which].size * 8u / Runs::unit; at < end; ++run) {
       const unsigned length = Runs::length(*run);
@@ -344,9 +354,16 @@ class RpdoService {
         take_bits_into(to, data.data(), at * Runs::unit, length * Runs::unit);
       } else if ((*run & Runs::nothing) != Runs::nothing) {
         take_watched(which, data, at * Runs::unit, host);
+        if (applied_.looked_up) {
+          if (applied_.pdo == 0) return;
+          applied_.looked_up = false;
+          run = places_.of(which);
+          for (unsigned before = 0; before < at; ++run) before += Runs::length(*run);
+        }
       }
       at += length;
     }
+    applied_ = {};
   }
 
   /// Passes on the value of the object that begins at a bit.
@@ -369,8 +386,14 @@ class RpdoService {
     copy_value(to, from, (bits + 7) / 8);
   }
 
+  struct Applied {
+    std::uint16_t pdo;  ///< whose values are being applied, from 1; 0: none
+    bool looked_up;     ///< a handler has changed a mapping
+  };
+
   std::array<Slot, count> slots_{};
   struct Nothing {};
+  [[no_unique_address]] std::conditional_t<has_dynamic_mapping, Applied, Nothing> applied_{};
   [[no_unique_address]] std::conditional_t<has_dynamic_mapping, Mapped, Nothing> places_{};
 };
 

@@ -24,6 +24,11 @@
 
 namespace canopen {
 
+/// No values to read before a TPDO is sent.
+struct NoRefresh {
+  void operator()(std::size_t) const {}
+};
+
 /// All TPDOs of one device, with the present values of 1800h and the following parameters.
 ///
 ///   type 0         at the SYNC after a mapped object has changed
@@ -33,11 +38,6 @@ namespace canopen {
 ///   type 254, 255  when a mapped object has changed, when the event timer has elapsed, and once on entering
 ///                  Operational; never within the inhibit time after the last transmission
 ///
-/// No values to read before a TPDO is sent.
-struct NoRefresh {
-  void operator()(std::size_t) const {}
-};
-
 /// TPDOs of all types respond to a remote frame if bit 30 of their COB-ID allows it.
 template <class Device>
 class TpdoService {

@@ -54,22 +54,26 @@ class Tpdos : public ServiceDefaults<Tpdos<Device>> {
   void after_operational_write(Host& host, std::uint16_t index, std::uint8_t sub_index, bool new_value) {
     if (is_tpdo_communication(index) || (TpdoService<Device>::has_dynamic_mapping && is_tpdo_mapping(index)))
       tpdos_.parameter_changed(host.store(), index, sub_index, host.now());
-    if (new_value) tpdos_.changed(host.entries(), index, sub_index);
+    if (new_value && !host.handler_calls().is_supplied(object_key(index, sub_index)))
+      tpdos_.changed(host.entries(), index, sub_index);
   }
   template <DictionaryObject O, class Host>
   bool on_new_value(Host& host) {
+    if (host.handler_calls().is_supplied(object_key(O::index, O::sub_index))) return false;
     return tpdos_.template changed<O>(host.entries());
   }
 
  private:
-  /// Lets the application supply the values of a TPDO. An abort code leaves the value as it is.
+  /// Lets the application supply the values of a TPDO. An abort code leaves the value as it is. A new value does not
+  /// send the other TPDOs with the object: they would let the application supply it again, and so on.
   template <class Host>
   struct Refresh {
     Host& host;
     void operator()([[maybe_unused]] std::size_t which) const {
       if constexpr (Host::Handlers::has_read_handlers) {
         TpdoService<Device>::for_each_object(which, host.entries(), [this](std::uint32_t key) {
-          static_cast<void>(host.handler_calls().ask(0, [&] { return host.handlers().before_read(host.node(), key); }));
+          host.handler_calls().ask_for_tpdo(key,
+                                            [&] { static_cast<void>(host.handlers().before_read(host.node(), key)); });
         });
       }
     }

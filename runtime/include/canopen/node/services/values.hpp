@@ -112,6 +112,7 @@ class StoredValues : public ServiceDefaults<StoredValues<Device, Handlers...>> {
     if (is_writing(host)) return AbortCode::device_state;
     const SectionSet sections = sections_of(sub_index);
     const bool saved = sections != 0 && stored_.save(host.handlers().storage(), sections, host.store());
+    if constexpr (is_stepped) host.attend();
     return saved ? ok : AbortCode::hardware;
   }
   /// Restores the default values of a sub-index of 1011h.
@@ -120,6 +121,7 @@ class StoredValues : public ServiceDefaults<StoredValues<Device, Handlers...>> {
     if (is_writing(host)) return AbortCode::device_state;
     const SectionSet sections = sections_of(sub_index);
     const bool restored = sections != 0 && stored_.restore(host.handlers().storage(), sections, host.store());
+    if constexpr (is_stepped) host.attend();
     return restored ? ok : AbortCode::hardware;
   }
 
