@@ -304,6 +304,14 @@ TEST(ObjectValues, TakeAnElementByItsNumberAtRunTime) {
   EXPECT_TRUE(*device.node.get(od::contacts{}, 1));
 }
 
+TEST(ObjectValues, AskTheServiceOfAnElement) {
+  bench::Bench<every_service::Device> device;
+  EXPECT_EQ(device.node.set(od::consumer_heartbeat_time{}, 1, 0x000A'0064), canopen::ok);
+  EXPECT_EQ(device.node.set(od::consumer_heartbeat_time{}, 2, 0x000A'0064), AbortCode::parameter_incompatible)
+      << "1016h:01 consumes node 10";
+  EXPECT_EQ(device.node.get(od::consumer_heartbeat_time<2>{}), 0u);
+}
+
 TEST(ObjectValues, CheckAValueOfTheRunningProgram) {
   bench::Bench<every_service::Device> device;
   std::uint8_t value = 100;

@@ -98,14 +98,17 @@ class ObjectValues {
     return value_detail::value_from<Element>(bytes);
   }
 
-  /// Sets an element. no_sub_index: it does not exist.
+  /// Sets an element, with the checks of `set`. no_sub_index: it does not exist.
   template <template <std::uint8_t> class Array>
   requires object_values_detail::Arithmetic<Array<whole_array>>
   [[nodiscard]] AbortCode set(Array<whole_array>, std::uint8_t sub_index, typename Array<whole_array>::type value) {
     using Element = Array<whole_array>;
     if (sub_index == 0) return AbortCode::no_sub_index;
-    return node().set(Element::index, sub_index,
-                      {reinterpret_cast<const std::uint8_t*>(&value), (Element::bits + 7) / 8});
+    const std::span<std::uint8_t> bytes{reinterpret_cast<std::uint8_t*>(&value), (Element::bits + 7) / 8};
+    if constexpr (is_communication_index(Element::index)) {
+      if (const AbortCode code = node().host().check_write(Element::index, sub_index, bytes); code != ok) return code;
+    }
+    return node().set(Element::index, sub_index, bytes);
   }
 
   /// Maps these objects into TPDO or RPDO `Number`: `node.map<2, canopen::Tpdo<od::pressure, od::temperature>>()`. The
