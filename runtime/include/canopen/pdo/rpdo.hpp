@@ -345,7 +345,7 @@ class RpdoService {
   void take_mapped(std::size_t which, const Data& data, Host host) {
     using Runs = typename Mapped::Runs;
     const EntryAccess<Device> entries = host.entries();
-    applied_ = {static_cast<std::uint16_t>(which + 1), false};
+    if constexpr (Host::may_change_mappings) applied_ = {static_cast<std::uint16_t>(which + 1), false};
     const auto* run = places_.of(which);
     for (unsigned at = 0, end = slots_[which].size * 8u / Runs::unit; at < end; ++run) {
       const unsigned length = Runs::length(*run);
@@ -354,7 +354,7 @@ class RpdoService {
         take_bits_into(to, data.data(), at * Runs::unit, length * Runs::unit);
       } else if ((*run & Runs::nothing) != Runs::nothing) {
         take_watched(which, data, at * Runs::unit, host);
-        if (applied_.looked_up) {
+        if (Host::may_change_mappings && applied_.looked_up) {
           if (applied_.pdo == 0) return;
           applied_.looked_up = false;
           run = places_.of(which);
@@ -363,7 +363,7 @@ class RpdoService {
       }
       at += length;
     }
-    applied_ = {};
+    if constexpr (Host::may_change_mappings) applied_ = {};
   }
 
   /// Passes on the value of the object that begins at a bit.

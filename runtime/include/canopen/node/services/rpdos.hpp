@@ -22,9 +22,22 @@ namespace canopen::service {
 inline constexpr ServiceErrors rpdo_errors =
     set_of(ServiceError::pdo_length) | set_of(ServiceError::rpdo_timeout) | set_of(ServiceError::mpdo_destination);
 
+/// Whether an RPDO can map a mapping parameter.
+[[nodiscard]] constexpr bool has_mappable_mapping(const Dictionary& dictionary) {
+  bool any = false;
+  dictionary.for_each_entry([&](std::uint16_t index, std::uint8_t, entry::Word word) {
+    any = any || ((is_rpdo_mapping(index) || is_tpdo_mapping(index)) && (word & entry::rpdo) != 0);
+  });
+  return any;
+}
+
 /// The functions of a node that RPDOs and MPDOs call.
 template <class Host>
 struct RpdoHooks {
+  /// Whether mappings may change while an RPDO is applied: by a handler, or because the RPDO maps one of them.
+  static constexpr bool may_change_mappings =
+      Host::Handlers::has_access_handlers || has_mappable_mapping(Host::Device::dictionary);
+
   Host& host;
 
   [[nodiscard]] auto entries() const { return host.entries(); }
