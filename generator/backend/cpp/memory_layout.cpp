@@ -294,6 +294,7 @@ class Builder {
   /// Finds or creates the struct for a shape: the same member types and names in the same order.
   std::string record_type(const Object& object, const std::vector<Member>& members) {
     std::vector<std::pair<std::string, std::string>> shape;
+    shape.reserve(members.size());
     for (const Member& member : members) shape.emplace_back(member.type, member.name);
     const auto [at, is_new] = shapes_.try_emplace(std::move(shape));
     if (!is_new) return at->second;
