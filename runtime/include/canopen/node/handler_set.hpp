@@ -119,10 +119,6 @@ class HandlerSet {
     return code;
   }
 
-  /// Whether a handler of this type is in the set.
-  template <class H>
-  static constexpr bool has = (std::is_same_v<H, Handlers> || ...);
-
   [[nodiscard]] auto& storage() const requires(storage_detail::has_storage<Handlers...>) {
     constexpr std::size_t position = [] {
       constexpr bool stored_in[] = {storage_detail::is_stored_in<Handlers>...};

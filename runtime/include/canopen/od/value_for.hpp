@@ -83,7 +83,8 @@ class ConstantFor {
   using type = typename O::type;
 
   template <ValueFor<O> V>
-  consteval ConstantFor(V value) : value_{static_cast<type>(value)} {  // NOLINT(google-explicit-constructor)
+  // NOLINTNEXTLINE(google-explicit-constructor): `set(od::x{}, 420)` converts the number
+  consteval ConstantFor(V value) : value_{static_cast<type>(value)} {
     const AbortCode code = check_value<O>(value);
     if (code == AbortCode::value_too_high) value_for_detail::constant_is_above_the_high_limit<O>();
     if (code == AbortCode::value_too_low) value_for_detail::constant_is_below_the_low_limit<O>();
