@@ -8,7 +8,7 @@
 #include <span>
 
 #include "device/types/little_endian.hpp"
-#include "values/number_text.hpp"
+#include "text/number_text.hpp"
 #include "values/parse_value.hpp"
 
 namespace edsc {

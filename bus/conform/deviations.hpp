@@ -8,8 +8,8 @@
 
 #include "conform/verdict.hpp"
 #include "diagnostics/diagnostics.hpp"
+#include "load/find_entry.hpp"
 #include "text/source_file.hpp"
-#include "values/find_entry.hpp"
 
 namespace edsc::conform {
 

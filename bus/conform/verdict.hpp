@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "conform/case.hpp"
-#include "values/find_entry.hpp"
+#include "load/find_entry.hpp"
 
 namespace edsc::conform {
 

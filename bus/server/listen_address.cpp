@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "values/number_text.hpp"
+#include "text/number_text.hpp"
 
 namespace edsc {
 

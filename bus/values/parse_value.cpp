@@ -11,8 +11,8 @@
 #include "device/types/value.hpp"
 #include "eds/ini.hpp"
 #include "text/ascii.hpp"
+#include "text/number_text.hpp"
 #include "text/utf8.hpp"
-#include "values/number_text.hpp"
 #include "values/value_text.hpp"
 
 namespace edsc {

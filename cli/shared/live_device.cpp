@@ -7,12 +7,12 @@
 #include <fstream>
 #include <iterator>
 
+#include "load/find_entry.hpp"
 #include "online/identity.hpp"
 #include "shared/common_options.hpp"
 #include "shared/exit_code.hpp"
 #include "text/counted.hpp"
 #include "text/printable.hpp"
-#include "values/find_entry.hpp"
 
 namespace edsc {
 namespace {

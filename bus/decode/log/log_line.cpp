@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include "text/ascii.hpp"
-#include "values/number_text.hpp"
+#include "text/number_text.hpp"
 
 namespace edsc {
 namespace {

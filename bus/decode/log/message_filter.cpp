@@ -7,7 +7,7 @@
 
 #include "eds/number.hpp"
 #include "text/ascii.hpp"
-#include "values/number_text.hpp"
+#include "text/number_text.hpp"
 
 namespace edsc {
 namespace {

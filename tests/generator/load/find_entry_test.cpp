@@ -1,4 +1,4 @@
-#include "values/find_entry.hpp"
+#include "load/find_entry.hpp"
 
 #include <gtest/gtest.h>
 

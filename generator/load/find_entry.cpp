@@ -1,4 +1,4 @@
-#include "values/find_entry.hpp"
+#include "load/find_entry.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "backend/cpp/identifier.hpp"
 #include "eds/ini.hpp"
 #include "text/ascii.hpp"
-#include "values/number_text.hpp"
+#include "text/number_text.hpp"
 
 namespace edsc {
 namespace {
