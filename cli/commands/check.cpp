@@ -7,15 +7,13 @@
 
 #include "commands/commands.hpp"
 #include "device/options/option_table.hpp"
-#include "diagnostics/place.hpp"
-#include "diagnostics/print.hpp"
 #include "diagnostics/rule.hpp"
-#include "diagnostics/sarif.hpp"
 #include "diagnostics/unknown_rule.hpp"
 #include "load/load_device.hpp"
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
+#include "shared/findings_report.hpp"
 #include "shared/left_out_text.hpp"
 #include "text/printable.hpp"
 
@@ -43,8 +41,6 @@ struct Settings {
   std::string explained_rule;
   ColorOption color;
 };
-
-std::string url_of(const Rule& rule) { return fmt::format("{}rules.md#{}", EDSC_DOCS_URL, rule.id); }
 
 nlohmann::ordered_json to_json(const Rule& rule) {
   nlohmann::ordered_json severities = {to_string(rule.severity)};
@@ -100,68 +96,6 @@ int list(const Rows& table, const std::string& format) {
   return exit_fine;
 }
 
-/// Prints the findings of the files in one of the formats.
-class Report {
- public:
-  Report(std::string format, const ColorOption& color) : format_{std::move(format)}, color_{color} {}
-
-  void add(const Diagnostics& diagnostics) {
-    if (format_ == "text") {
-      print_findings(stdout, diagnostics, color_, true);
-    } else if (format_ == "sarif") {
-      sarif_.add(diagnostics);
-    } else {
-      add_json(print_json(diagnostics));
-    }
-  }
-
-  /// In SARIF they are notifications: they are consequences of the findings, and do not have a rule.
-  void add_left_out(const std::vector<LeftOut>& left_out) {
-    if (format_ == "text") fmt::print("{}", left_out_text(left_out));
-    for (const LeftOut& one : left_out) {
-      if (format_ == "sarif") sarif_.notify(one.position, "left out: " + one.what);
-      const Place place = place_of(one.position);
-      json_["left_out"].push_back(
-          {{"file", place.file}, {"line", place.line}, {"column", place.column}, {"what", one.what}});
-    }
-  }
-
-  void finish() const {
-    if (format_ == "json") fmt::print("{}\n", json_text(json_));
-    if (format_ == "sarif") fmt::print("{}\n", json_text(sarif_.document()));
-  }
-
- private:
-  static std::vector<SarifRule> sarif_rules() {
-    std::vector<SarifRule> rules;
-    for (const Rule& rule : all_rules())
-      rules.push_back({rule.id, rule.severity, rule.meaning, rule.source, url_of(rule)});
-    return rules;
-  }
-
-  void add_json(const nlohmann::json& one) {
-    for (const char* list : {"diagnostics", "allowed_diagnostics", "suppressed"}) {
-      for (const auto& row : one[list]) json_[list].push_back(row);
-    }
-    for (const char* count : {"errors", "warnings", "notes", "allowed"}) {
-      json_[count] = json_[count].get<std::size_t>() + one[count].get<std::size_t>();
-    }
-  }
-
-  std::string format_;
-  const ColorOption& color_;
-  SarifLog sarif_{EDSC_VERSION, sarif_rules()};
-  nlohmann::json json_ = {{"version", 1},
-                          {"diagnostics", nlohmann::json::array()},
-                          {"allowed_diagnostics", nlohmann::json::array()},
-                          {"suppressed", nlohmann::json::array()},
-                          {"left_out", nlohmann::json::array()},
-                          {"errors", 0},
-                          {"warnings", 0},
-                          {"notes", 0},
-                          {"allowed", 0}};
-};
-
 int check(const Settings& settings) {
   if (settings.list_rules) return list(all_rules(), settings.format);
   if (settings.list_options) return list(options_table, settings.format);
@@ -171,7 +105,7 @@ int check(const Settings& settings) {
     return exit_wrong_usage;
   }
   int exit_code = exit_fine;
-  Report report{settings.format, settings.color};
+  FindingsReport report{settings.format, settings.color};
   for (const std::string& path : settings.paths) {
     Diagnostics diagnostics;
     if (settings.strict) diagnostics.treat_warnings_as_errors();

@@ -11,7 +11,7 @@ several such pairs:
 - a line with only `^` means that the position of the finding is in the line above, in this column; without it, in line 1
 Words after `bad` and `good`: `raw` (the whole file, not a change), `escaped` (Python's escapes, and `x{n}` for n times
 x), `file=NAME`, `column=N` (of the line with the caret), `command=generate|format` (instead of check), `missing` (no
-file). `@@ bad options` is the options file. `severity=S` is the severity of the finding if the rule has two.
+file), `network` (a network file; its nodes are tests/generator/network/node.eds, and it has findings of this rule only). `@@ bad options` is the options file. `severity=S` is the severity of the finding if the rule has two.
 
 Each finding of an example must be of a rule of the table, with a severity of its row.
 """
@@ -20,12 +20,14 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
 
+NETWORK_SHEET = Path(__file__).parent.parent / "network/node.eds"
 FINDING = re.compile(r"^(.*?):(\d+):(\d+): (error|warning|note): (.*) \[([a-z0-9-]+)\]$", re.MULTILINE)
 CARET = re.compile(r"^ *\^$")
 OBJECT = re.compile(r"^([0-9A-F]{4})(sub([0-9A-F]{1,2})|Name|Value)?$", re.IGNORECASE)
@@ -191,7 +193,7 @@ def unescape(text: str) -> str:
 
 def lines_of(block: Block, base: str, file: str) -> list[Line]:
     lines = [Line(unescape(line.text) if "escaped" in block.words else line.text, line.column) for line in block.lines]
-    if "raw" in block.words:
+    if "raw" in block.words or "network" in block.words:
         return lines
     sheet = Sheet(base.replace("FileName=example.eds", f"FileName={file}"))
     sheet.apply(lines)
@@ -207,7 +209,10 @@ class Place:
 def run(edsc: Path, folder: Path, example: Example, kind: str, base: str) -> tuple[list[tuple[str, str, Place]], Place]:
     """The findings of edsc in an example, and the position of its caret."""
     block = example.blocks.get(kind, Block([kind]))
-    file = block.option("file", "example.eds")
+    is_network = "network" in block.words
+    file = "plant.json" if is_network else block.option("file", "example.eds")
+    if is_network:
+        shutil.copy(NETWORK_SHEET, folder)
     lines = lines_of(block, base, file)
     if "missing" not in block.words:
         (folder / file).write_text("".join(f"{line.text}\n" for line in lines), encoding="utf-8")
@@ -219,7 +224,8 @@ def run(edsc: Path, folder: Path, example: Example, kind: str, base: str) -> tup
             marked = options.lines
     command = block.option("command", "check")
     arguments = {"check": [], "generate": ["-o", "out"], "format": ["--check"]}[command]
-    result = subprocess.run([edsc, command, file, *arguments], cwd=folder, capture_output=True, text=True, timeout=600)
+    words = ["network", "check", file] if is_network else [command, file, *arguments]
+    result = subprocess.run([edsc, *words], cwd=folder, capture_output=True, text=True, timeout=600)
     column = int(block.option("column", "0"))
     place = next((Place(n, column or line.column) for n, line in enumerate(marked, 1) if line.column), Place(1, 1))
     output = result.stdout + result.stderr
@@ -238,6 +244,9 @@ def check_example(edsc: Path, example: Example, base: str, severities: dict[str,
         places = [place for rule, severity, place in found if rule == example.rule and severity.startswith(wanted)]
         if kind == "good" and places:
             problems.append(f"{example.rule}: reported for the right example at {places}")
+        others = sorted({rule for rule, severity, _ in found if severity != "note"} - {example.rule})
+        if others and "network" in example.blocks[kind].words:
+            problems.append(f"{example.rule}: the {kind} network has findings of other rules: {others}")
         if kind == "bad" and expected not in places:
             problems.append(f"{example.rule}: expected for the wrong example at {expected}, got {found}")
     return problems

@@ -1,0 +1,138 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "commands/commands.hpp"
+#include "diagnostics/rule.hpp"
+#include "diagnostics/unknown_rule.hpp"
+#include "network/check_network.hpp"
+#include "network/network.hpp"
+#include "shared/common_options.hpp"
+#include "shared/define_command.hpp"
+#include "shared/exit_code.hpp"
+#include "shared/findings_report.hpp"
+#include "shared/output.hpp"
+#include "text/printable.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr const char* examples = R"(Examples:
+  edsc network check plant.json                   findings as compiler messages; exit code 1 if there are errors
+  edsc network check plant.json --format sarif    the same for a code review (SARIF 2.1.0)
+  edsc network check plant.json --strict          warnings count as errors
+  edsc network members                            every member of a network file with its meaning)";
+
+struct Settings {
+  std::vector<std::string> paths;
+  std::string format = "text";
+  std::vector<std::string> silence;
+  bool strict = false;
+  ColorOption color;
+  int (*action)(const Settings&) = nullptr;  ///< the subcommand
+};
+
+int run(const Settings& settings) { return settings.action(settings); }
+
+int check(const Settings& settings) {
+  int exit_code = exit_fine;
+  FindingsReport report{settings.format, settings.color};
+  for (const std::string& path : settings.paths) {
+    Diagnostics diagnostics;
+    if (settings.strict) diagnostics.treat_warnings_as_errors();
+    diagnostics.silence_errors();
+    for (const std::string& rule : settings.silence) diagnostics.silence(rule);
+    const auto loaded = load_network(path, diagnostics);
+    check_network(loaded->network, diagnostics);
+    report.add(diagnostics);
+    if (diagnostics.errors() > 0) exit_code = std::max<int>(exit_code, exit_input_has_errors);
+    if (loaded->unreadable) exit_code = exit_wrong_usage;
+  }
+  report.finish();
+  return exit_code;
+}
+
+/// In the format of CLI11: an error message, or nothing.
+std::string check_rule(const std::string& id) {
+  if (find_rule(id) != nullptr) return {};
+  return fmt::format("{} (see edsc check --list-rules)", unknown_rule(id));
+}
+
+void add_network_check_options(CLI::App& command, Settings& settings) {
+  command.add_option("FILE", settings.paths, "network files (JSON)")->required();
+  add_choice(command, "--format", settings.format, {"text", "json", "sarif"}, "text, json or sarif");
+  command.add_option("--silence", settings.silence, "rule not to report; may be given more than once")
+      ->allow_extra_args(false)
+      ->check(check_rule);
+  command.add_flag("--strict", settings.strict, "warnings count as errors; notes do not");
+  settings.color.add_to(command);
+}
+
+std::string_view to_string(MemberForm form) {
+  switch (form) {
+    case MemberForm::text: return "text";
+    case MemberForm::number: return "number";
+    case MemberForm::flag: return "flag";
+    case MemberForm::texts: return "texts";
+    case MemberForm::values: return "values";
+  }
+  return "";
+}
+
+using Json = nlohmann::ordered_json;
+
+/// The members of one kind of object, `owner` as in `nodes.*`.
+template <class Owner, std::size_t N>
+void list_members(std::string_view owner, const MemberRow<Owner> (&rows)[N], const std::string& format, Json& json) {
+  for (const MemberRow<Owner>& row : rows) {
+    const std::string name = fmt::format("{}{}{}", owner, owner.empty() ? "" : ".", row.name);
+    if (format == "text") print_visibly(stdout, "{:<32} {:<7} {}\n", name, to_string(row.form()), row.meaning);
+    Json one{{"owner", owner}, {"name", row.name}, {"form", to_string(row.form())}, {"meaning", row.meaning}};
+    if (row.form() == MemberForm::number) one.update({{"minimum", row.min}, {"maximum", row.max}});
+    json.push_back(std::move(one));
+  }
+}
+
+int members(const Settings& settings) {
+  Json json = Json::array();
+  list_members("", network_members, settings.format, json);
+  list_members("sync", sync_members, settings.format, json);
+  list_members("assume", assume_members, settings.format, json);
+  list_members("nodes.*", node_members, settings.format, json);
+  list_members("signals[]", signal_members, settings.format, json);
+  if (settings.format == "json") fmt::print("{}\n", json_text(json));
+  return exit_fine;
+}
+
+void add_members_options(CLI::App& command, Settings& settings) {
+  add_choice(command, "--format", settings.format, {"text", "json"}, "text or json");
+}
+
+struct ActionRow {
+  const char* name;
+  const char* description;
+  int (*run)(const Settings&);
+  void (*add_options)(CLI::App& command, Settings& settings);
+};
+
+constexpr ActionRow actions[] = {
+    {"check", "check the nodes, CAN-IDs, PDO links, SYNC and error control of a network", check,
+     add_network_check_options},
+    {"members", "list the members of a network file", members, add_members_options},
+};
+
+}  // namespace
+
+void add_network_options(CLI::App& command, int& exit_code) {
+  Settings& settings = define_command(command, examples, run, exit_code);
+  command.require_subcommand(1);
+  for (const ActionRow& row : actions) {
+    CLI::App* const action = command.add_subcommand(row.name, row.description);
+    action->callback([&settings, &row] { settings.action = row.run; });
+    row.add_options(*action, settings);
+  }
+}
+
+}  // namespace edsc

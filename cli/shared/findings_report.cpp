@@ -1,0 +1,76 @@
+#include "shared/findings_report.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "diagnostics/place.hpp"
+#include "diagnostics/print.hpp"
+#include "diagnostics/rule.hpp"
+#include "shared/left_out_text.hpp"
+#include "text/printable.hpp"
+
+namespace edsc {
+namespace {
+
+std::vector<SarifRule> sarif_rules() {
+  std::vector<SarifRule> rules;
+  for (const Rule& rule : all_rules()) {
+    rules.push_back({rule.id, rule.severity, rule.meaning, rule.source, url_of(rule)});
+  }
+  return rules;
+}
+
+}  // namespace
+
+std::string url_of(const Rule& rule) { return fmt::format("{}rules.md#{}", EDSC_DOCS_URL, rule.id); }
+
+FindingsReport::FindingsReport(std::string format, const ColorOption& color)
+    : format_{std::move(format)},
+      color_{color},
+      sarif_{EDSC_VERSION, sarif_rules()},
+      json_{{"version", 1},
+            {"diagnostics", nlohmann::json::array()},
+            {"allowed_diagnostics", nlohmann::json::array()},
+            {"suppressed", nlohmann::json::array()},
+            {"left_out", nlohmann::json::array()},
+            {"errors", 0},
+            {"warnings", 0},
+            {"notes", 0},
+            {"allowed", 0}} {}
+
+void FindingsReport::add(const Diagnostics& diagnostics) {
+  if (format_ == "text") {
+    print_findings(stdout, diagnostics, color_, true);
+  } else if (format_ == "sarif") {
+    sarif_.add(diagnostics);
+  } else {
+    add_json(print_json(diagnostics));
+  }
+}
+
+void FindingsReport::add_left_out(const std::vector<LeftOut>& left_out) {
+  if (format_ == "text") fmt::print("{}", left_out_text(left_out));
+  for (const LeftOut& one : left_out) {
+    if (format_ == "sarif") sarif_.notify(one.position, "left out: " + one.what);
+    const Place place = place_of(one.position);
+    json_["left_out"].push_back(
+        {{"file", place.file}, {"line", place.line}, {"column", place.column}, {"what", one.what}});
+  }
+}
+
+void FindingsReport::finish() const {
+  if (format_ == "json") fmt::print("{}\n", json_text(json_));
+  if (format_ == "sarif") fmt::print("{}\n", json_text(sarif_.document()));
+}
+
+void FindingsReport::add_json(const nlohmann::json& one) {
+  for (const char* list : {"diagnostics", "allowed_diagnostics", "suppressed"}) {
+    for (const auto& row : one[list]) json_[list].push_back(row);
+  }
+  for (const char* count : {"errors", "warnings", "notes", "allowed"}) {
+    json_[count] = json_[count].get<std::size_t>() + one[count].get<std::size_t>();
+  }
+}
+
+}  // namespace edsc

@@ -1,0 +1,288 @@
+#include "network/assign_signals.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <canopen/can/cob_id.hpp>
+#include <canopen/pdo/transmission_type.hpp>
+#include <map>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "device/cob_id_parameter.hpp"
+#include "device/pdo/pdo_defaults.hpp"
+#include "network/communication_objects.hpp"
+#include "network/node_settings.hpp"
+#include "network/resolve_signals.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr unsigned max_bits = 64;
+constexpr std::size_t max_entries = 8;            // of a new PDO, as in devices with 8 entries
+constexpr std::uint16_t first_received = 0x2000;  // of a master without a file: + node-ID of the sender
+constexpr std::uint16_t first_sent = 0x2100;      // + node-ID of the receiver
+constexpr std::uint8_t event_timer_sub_index = 5;
+
+/// Signals that share PDOs: one sender, one timing, the same receivers.
+struct SignalGroup {
+  std::vector<const Signal*> signals;
+  unsigned bits = 0;
+};
+
+bool same_receivers(const Signal& a, const Signal& b) {
+  return std::ranges::equal(a.to, b.to, {}, &SignalEnd::node, &SignalEnd::node);
+}
+
+std::uint32_t number_or_0(const WrittenNumber& number) { return number ? number->value : 0; }
+
+bool same_timing(const SignalDescription& a, const SignalDescription& b) {
+  const auto timing = [](const SignalDescription& one) {
+    return std::tuple{number_or_0(one.every_ms), number_or_0(one.every_sync), one.event && one.event->value};
+  };
+  return timing(a) == timing(b);
+}
+
+bool may_share_pdo(const SignalGroup& group, const Signal& signal) {
+  const Signal& first = *group.signals.front();
+  return first.from.node == signal.from.node && same_timing(*first.description, *signal.description) &&
+         same_receivers(first, signal) && group.signals.size() < max_entries &&
+         group.bits + signal.from.entry->type->bits <= max_bits;
+}
+
+std::vector<SignalGroup> group(const std::vector<Signal>& signals) {
+  std::vector<SignalGroup> groups;
+  for (const Signal& signal : signals) {
+    auto at = std::ranges::find_if(groups, [&](const SignalGroup& one) { return may_share_pdo(one, signal); });
+    if (at == groups.end()) at = groups.insert(groups.end(), SignalGroup{});
+    at->signals.push_back(&signal);
+    at->bits += signal.from.entry->type->bits;
+  }
+  return groups;
+}
+
+std::uint32_t mapping_value(std::uint16_t index, std::uint8_t sub_index, unsigned bits) {
+  return std::uint32_t{index} << 16 | std::uint32_t{sub_index} << 8 | bits;
+}
+
+/// All CAN-IDs that a device has in a COB-ID that exists.
+void add_can_ids(const Device& device, std::set<std::uint32_t>& can_ids) {
+  for (const Object& object : device.objects) {
+    for (const Entry& entry : object.entries) {
+      const CobIdParameter* const row = find_cob_id_parameter(entry.index, entry.sub_index);
+      if (row == nullptr || !entry.default_value) continue;
+      const canopen::CobId cob_id{static_cast<std::uint32_t>(entry.default_value->bits)};
+      if (!row->has_valid_bit || cob_id.valid()) can_ids.insert(cob_id.can_id());
+    }
+  }
+}
+
+class SignalPlanner {
+ public:
+  SignalPlanner(const Network& network, Diagnostics& diagnostics) : network_{network}, diagnostics_{diagnostics} {
+    for (const NetworkNode& node : network.nodes) add_can_ids(node.device, used_);
+  }
+
+  SignalPlan plan(const std::vector<Signal>& signals) {
+    for (const SignalGroup& one : group(signals)) add(one);
+    return std::move(plan_);
+  }
+
+ private:
+  using PdoKey = std::tuple<const NetworkNode*, PdoDirection, std::uint16_t>;
+
+  void add(const SignalGroup& group) {
+    const Signal& first = *group.signals.front();
+    auto sender = choose(*first.from.node, PdoDirection::transmit, sent_mapping(group), first);
+    if (!sender) return;
+    std::vector<PlannedPdo> receivers;
+    for (std::size_t i = 0; i < first.to.size(); ++i) {
+      auto receiver = choose(*first.to[i].node, PdoDirection::receive, received_mapping(group, i), first);
+      if (!receiver) return;
+      receivers.push_back(*std::move(receiver));
+    }
+    const std::uint32_t can_id = choose_can_id(*sender, receivers.front());
+    sender->cob_id = can_id | (sender->cob_id & canopen::CobId::no_rtr_bit);
+    set_timing(*first.description, *sender);
+    plan_.pdos.push_back(*std::move(sender));
+    for (PlannedPdo& receiver : receivers) {
+      receiver.cob_id = can_id;
+      plan_.pdos.push_back(std::move(receiver));
+    }
+  }
+
+  std::vector<std::uint32_t> sent_mapping(const SignalGroup& group) {
+    std::vector<std::uint32_t> mapping;
+    for (const Signal* const signal : group.signals) mapping.push_back(mapped(signal->from, *signal, true));
+    return mapping;
+  }
+
+  std::vector<std::uint32_t> received_mapping(const SignalGroup& group, std::size_t receiver) {
+    std::vector<std::uint32_t> mapping;
+    for (const Signal* const signal : group.signals) mapping.push_back(mapped(signal->to[receiver], *signal, false));
+    return mapping;
+  }
+
+  std::uint32_t mapped(const SignalEnd& end, const Signal& signal, bool is_sent) {
+    const Entry& entry = *end.entry;
+    if (end.node->has_file()) return mapping_value(entry.index, entry.sub_index, entry.type->bits);
+    const MasterEntry& copy = master_entry(end, signal, is_sent);
+    return mapping_value(copy.index, copy.sub_index, entry.type->bits);
+  }
+
+  /// The copy of an entry in a master without a file.
+  const MasterEntry& master_entry(const SignalEnd& end, const Signal& /*signal*/, bool is_sent) {
+    const auto index = static_cast<std::uint16_t>((is_sent ? first_sent : first_received) + end.owner->node_id);
+    std::uint8_t sub_index = 1;
+    for (const MasterEntry& one : plan_.master_entries) {
+      if (one.index != index) continue;
+      if (one.original == end.entry) return one;
+      sub_index = static_cast<std::uint8_t>(one.sub_index + 1);
+    }
+    const Object& object = *end.owner->device.find(end.entry->index);
+    const std::string name =
+        object.has_sub_indices() ? fmt::format("{} {}", object.name, end.entry->name) : object.name;
+    plan_.master_entries.push_back({index, sub_index, end.owner->name, name, end.entry, is_sent});
+    return plan_.master_entries.back();
+  }
+
+  /// A PDO of the node that has the mapping, or can get it.
+  std::optional<PlannedPdo> choose(const NetworkNode& node, PdoDirection direction, std::vector<std::uint32_t> mapping,
+                                   const Signal& first) {
+    PlannedPdo planned{node.name, direction, 1, 0, 255, {}, std::move(mapping), first.description->position};
+    if (!node.has_file()) {
+      planned.number = ++master_pdos_[{&node, direction}];
+      return planned;
+    }
+    const Pdo* chosen = find_pdo(node, direction, [&](const Pdo& pdo) { return has_mapping(pdo, planned.mapping); });
+    if (chosen == nullptr) {
+      chosen = find_pdo(node, direction, [&](const Pdo& pdo) {
+        return pdo.dynamic && pdo.mapping->entries.size() > planned.mapping.size();
+      });
+    }
+    if (chosen == nullptr) {
+      const bool receives = direction == PdoDirection::receive;
+      diagnostics_.error(
+          "network-signal", planned.position,
+          fmt::format("node {} does not have a free {}PDO for {} entries: the others are in use, or their "
+                      "mapping cannot be changed",
+                      node.name, receives ? "R" : "T", planned.mapping.size()));
+      return std::nullopt;
+    }
+    taken_.insert({&node, direction, chosen->number});
+    planned.number = chosen->number;
+    planned.cob_id =
+        static_cast<std::uint32_t>(communication_default(*chosen, 1).value_or(canopen::CobId::invalid_bit));
+    const auto type = communication_default(*chosen, transmission_type_sub_index).value_or(255);
+    planned.transmission_type = static_cast<std::uint8_t>(type);
+    return planned;
+  }
+
+  template <class Condition>
+  const Pdo* find_pdo(const NetworkNode& node, PdoDirection direction, Condition condition) const {
+    const auto at = std::ranges::find_if(node.device.pdos, [&](const Pdo& pdo) {
+      return pdo.direction == direction && pdo.communication != nullptr && pdo.mapping != nullptr &&
+             !taken_.contains({&node, direction, pdo.number}) && condition(pdo);
+    });
+    return at == node.device.pdos.end() ? nullptr : &*at;
+  }
+
+  static bool has_mapping(const Pdo& pdo, const std::vector<std::uint32_t>& mapping) {
+    return std::ranges::equal(pdo.entries, mapping, {}, [](const PdoEntry& entry) {
+      return mapping_value(entry.index, entry.sub_index, entry.bits);
+    });
+  }
+
+  /// The CAN-ID of the sender's PDO; for a master without a file that of the receiver's PDO; otherwise a free one.
+  std::uint32_t choose_can_id(const PlannedPdo& sender, const PlannedPdo& receiver) {
+    const bool is_master = !network_.find(sender.node)->has_file();
+    const canopen::CobId own{is_master ? receiver.cob_id : sender.cob_id};
+    const std::uint32_t can_id = own.can_id();
+    const bool is_usable =
+        !own.extended() && can_id >= canopen::function_code::tpdo1 + 1U && !canopen::is_restricted(can_id);
+    if (is_usable && (own.valid() || !used_.contains(can_id)) && assigned_.insert(can_id).second) {
+      used_.insert(can_id);
+      return can_id;
+    }
+    std::uint32_t free = canopen::function_code::tpdo1 + 1U;
+    while (used_.contains(free)) ++free;
+    used_.insert(free);
+    assigned_.insert(free);
+    return free;
+  }
+
+  static bool is_event_driven(std::uint8_t type) {
+    return canopen::transmission_of(type) == canopen::Transmission::event_driven;
+  }
+
+  static void set_timing(const SignalDescription& signal, PlannedPdo& sender) {
+    if (signal.every_sync) {
+      sender.transmission_type = static_cast<std::uint8_t>(signal.every_sync->value);
+    } else {
+      if (!is_event_driven(sender.transmission_type)) sender.transmission_type = 255;
+      sender.event_timer_ms = static_cast<std::uint16_t>(number_or_0(signal.every_ms));
+    }
+  }
+
+  const Network& network_;
+  Diagnostics& diagnostics_;
+  SignalPlan plan_;
+  std::set<PdoKey> taken_;
+  std::map<std::pair<const NetworkNode*, PdoDirection>, std::uint16_t> master_pdos_;
+  std::set<std::uint32_t> used_;      ///< CAN-IDs of the devices
+  std::set<std::uint32_t> assigned_;  ///< CAN-IDs of planned PDOs
+};
+
+/// RPDOs apply at the SYNC what was sent at a SYNC.
+void set_receiver_timing(SignalPlan& plan) {
+  std::uint8_t sent = 255;
+  for (PlannedPdo& pdo : plan.pdos) {
+    if (pdo.direction == PdoDirection::transmit) {
+      sent = pdo.transmission_type;
+    } else if (communication::is_synchronous(pdo.transmission_type) != communication::is_synchronous(sent)) {
+      pdo.transmission_type = communication::is_synchronous(sent) ? 1 : 255;
+    }
+  }
+}
+
+/// Sets an entry unless it has the value.
+void set_if_different(NetworkNode& node, std::uint16_t index, std::uint8_t sub_index, std::uint64_t number,
+                      const Position& position, Diagnostics& diagnostics) {
+  if (value_of(node.device, index, sub_index) == number) return;
+  set_number(node, index, sub_index, number, position, diagnostics);
+}
+
+void apply(NetworkNode& node, const PlannedPdo& pdo, Diagnostics& diagnostics) {
+  const bool receives = pdo.direction == PdoDirection::receive;
+  const auto offset = static_cast<std::uint16_t>(pdo.number - 1);
+  const auto communication = static_cast<std::uint16_t>((receives ? 0x1400 : 0x1800) + offset);
+  const auto mapping = static_cast<std::uint16_t>((receives ? 0x1600 : 0x1A00) + offset);
+  const auto set = [&](std::uint16_t index, std::size_t sub_index, std::uint64_t number) {
+    set_if_different(node, index, static_cast<std::uint8_t>(sub_index), number, pdo.position, diagnostics);
+  };
+  set(communication, 1, pdo.cob_id);
+  set(communication, transmission_type_sub_index, pdo.transmission_type);
+  const bool has_timer = node.device.find(communication, event_timer_sub_index) != nullptr;
+  if (pdo.event_timer_ms && (has_timer || *pdo.event_timer_ms != 0)) {
+    set(communication, event_timer_sub_index, *pdo.event_timer_ms);
+  }
+  set(mapping, 0, pdo.mapping.size());
+  for (std::size_t i = 0; i < pdo.mapping.size(); ++i) set(mapping, i + 1, pdo.mapping[i]);
+}
+
+}  // namespace
+
+SignalPlan plan_signals(const Network& network, Diagnostics& diagnostics) {
+  SignalPlan plan = SignalPlanner{network, diagnostics}.plan(resolve_signals(network, diagnostics));
+  set_receiver_timing(plan);
+  return plan;
+}
+
+void apply_signals(NetworkNode& node, const SignalPlan& plan, Diagnostics& diagnostics) {
+  for (const PlannedPdo& pdo : plan.pdos) {
+    if (pdo.node == node.name) apply(node, pdo, diagnostics);
+  }
+}
+
+}  // namespace edsc

@@ -1,0 +1,48 @@
+/// Assigns PDOs to the signals of a network file.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "network/network.hpp"
+
+namespace edsc {
+
+/// An entry of a master without a file: the copy of an entry of another node, which it sends or receives.
+struct MasterEntry {
+  std::uint16_t index = 0;
+  std::uint8_t sub_index = 0;
+  std::string node;  ///< whose entry it copies
+  std::string name;
+  const Entry* original = nullptr;
+  bool is_sent = false;
+};
+
+/// A PDO of a node, as the signals need it.
+struct PlannedPdo {
+  std::string node;
+  PdoDirection direction = PdoDirection::receive;
+  std::uint16_t number = 1;
+  std::uint32_t cob_id = 0;
+  std::uint8_t transmission_type = 255;
+  std::optional<std::uint16_t> event_timer_ms;
+  std::vector<std::uint32_t> mapping;  ///< values of the mapping parameter
+  Position position;                   ///< of its first signal
+};
+
+struct SignalPlan {
+  std::vector<MasterEntry> master_entries;
+  std::vector<PlannedPdo> pdos;
+};
+
+/// Packs the signals of one sender with the same timing and the same receivers into PDOs, in the order of the file. A
+/// PDO of a device is used if it has the mapping already, or if its mapping can be changed; the lowest number first.
+/// What cannot be assigned is reported.
+[[nodiscard]] SignalPlan plan_signals(const Network& network, Diagnostics& diagnostics);
+
+/// Sets the parameters of the planned PDOs of a node.
+void apply_signals(NetworkNode& node, const SignalPlan& plan, Diagnostics& diagnostics);
+
+}  // namespace edsc

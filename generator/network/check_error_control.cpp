@@ -1,0 +1,117 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "network/check_groups.hpp"
+#include "network/communication_objects.hpp"
+
+namespace edsc {
+namespace {
+
+std::uint64_t heartbeat_of(const NetworkNode& node) {
+  return value_of(node.device, communication::producer_heartbeat).value_or(0);
+}
+
+bool is_guarded(const NetworkNode& node) {
+  return value_of(node.device, communication::guard_time).value_or(0) != 0 &&
+         value_of(node.device, communication::life_time_factor).value_or(0) != 0;
+}
+
+/// The NMT masters: nodes of the network file with `master`.
+void check_master(const NetworkContext& context) {
+  std::vector<const NetworkNode*> masters;
+  for (const NetworkNode& node : context.network.nodes) {
+    if (node.is_master) masters.push_back(&node);
+  }
+  for (std::size_t i = 1; i < masters.size(); ++i) {
+    context.diagnostics.warning("network-nmt-master", masters[i]->position,
+                                fmt::format("nodes {} and {} are NMT masters", masters[0]->name, masters[i]->name),
+                                {{masters[0]->position, masters[0]->name}});
+  }
+  if (masters.empty()) {
+    context.diagnostics.warning("network-nmt-master", Position{context.network.source.get()},
+                                "no node is the NMT master: \"master\": true");
+  }
+}
+
+class HeartbeatCheck {
+ public:
+  explicit HeartbeatCheck(const NetworkContext& context) : context_{context} {}
+
+  void check() {
+    for (const NetworkNode& node : context_.network.nodes) check_consumer(node);
+    for (const NetworkNode& node : context_.network.nodes) {
+      check_guarding(node);
+      check_monitoring(node);
+    }
+  }
+
+ private:
+  void check_consumer(const NetworkNode& consumer) {
+    const Object* const object = consumer.device.find(communication::consumer_heartbeat);
+    if (object == nullptr) return;
+    for (const Entry& entry : object->entries) {
+      if (entry.sub_index == 0 || !entry.default_value) continue;
+      const auto value = static_cast<std::uint32_t>(entry.default_value->bits);
+      const unsigned node_id = value >> 16 & 0xFF;
+      const unsigned time = value & 0xFFFF;
+      if (node_id != 0 && time != 0) check_pair(consumer, entry, node_id, time);
+    }
+  }
+
+  void check_pair(const NetworkNode& consumer, const Entry& entry, unsigned node_id, unsigned time) {
+    const auto error = [&](std::string_view why) {
+      context_.diagnostics.error(
+          "network-heartbeat", default_place(entry),
+          fmt::format("node {} monitors the heartbeat of node-ID {} in {} ms, {}", consumer.name, node_id, time, why));
+    };
+    const auto producer = std::ranges::find(context_.network.nodes, node_id, &NetworkNode::node_id);
+    if (producer == context_.network.nodes.end()) return error("which is not in the network");
+    if (&*producer == &consumer) return error("which is itself");
+    monitored_.insert(&*producer);
+    const std::uint64_t produced = heartbeat_of(*producer);
+    if (produced == 0) return error(fmt::format("but {} does not produce a heartbeat (1017h is 0)", producer->name));
+    if (time <= produced) error(fmt::format("but {} produces it every {} ms (1017h)", producer->name, produced));
+  }
+
+  void check_guarding(const NetworkNode& node) {
+    if (!is_guarded(node)) return;
+    if (heartbeat_of(node) != 0) {
+      context_.diagnostics.warning("network-guarding", place_of_value(node.device, communication::guard_time),
+                                   fmt::format("node {} has guarding (100Ch, 100Dh) and a heartbeat (1017h); the "
+                                               "heartbeat is used",
+                                               node.name),
+                                   {{place_of_value(node.device, communication::producer_heartbeat), "the heartbeat"}});
+      return;
+    }
+    if (context_.network.master() == nullptr) {
+      context_.diagnostics.warning(
+          "network-guarding", place_of_value(node.device, communication::guard_time),
+          fmt::format("node {} expects guarding, but the network has no NMT master", node.name));
+    }
+  }
+
+  void check_monitoring(const NetworkNode& node) {
+    if (node.is_master || monitored_.contains(&node)) return;
+    const bool is_guarded_by_master = is_guarded(node) && heartbeat_of(node) == 0;
+    if (is_guarded_by_master && context_.network.master() != nullptr) return;
+    context_.diagnostics.warning("network-unmonitored", node.position,
+                                 heartbeat_of(node) == 0
+                                     ? fmt::format("node {} has neither heartbeat nor guarding", node.name)
+                                     : fmt::format("no node monitors the heartbeat of node {}", node.name),
+                                 {}, "error control");
+  }
+
+  const NetworkContext& context_;
+  std::set<const NetworkNode*> monitored_;
+};
+
+}  // namespace
+
+void check_error_control(const NetworkContext& context) {
+  check_master(context);
+  HeartbeatCheck{context}.check();
+}
+
+}  // namespace edsc

@@ -1,0 +1,159 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include "network/check_groups.hpp"
+
+namespace edsc {
+namespace {
+
+/// An entry of a PDO, and its place in the frame.
+struct PlacedEntry {
+  const PdoEntry* entry = nullptr;
+  unsigned number = 1;
+  unsigned first_bit = 0;
+};
+
+std::vector<PlacedEntry> placed(const Pdo& pdo) {
+  std::vector<PlacedEntry> entries;
+  unsigned bit = 0;
+  for (const PdoEntry& entry : pdo.entries) {
+    entries.push_back({&entry, static_cast<unsigned>(entries.size() + 1), bit});
+    bit += entry.bits;
+  }
+  return entries;
+}
+
+std::string text(const PdoEntry& entry) {
+  return entry.object != nullptr ? named(*entry.object) : entry_label(entry.index, entry.sub_index);
+}
+
+/// A TPDO and an RPDO with one CAN-ID.
+class PdoLink {
+ public:
+  PdoLink(const NetworkContext& context, const CobIdUse& sender, const CobIdUse& receiver)
+      : context_{context}, sender_{sender}, receiver_{receiver}, sent_{placed(*sender.pdo)} {}
+
+  void check() {
+    const unsigned sent = sender_.pdo->bits();
+    const unsigned expected = receiver_.pdo->bits();
+    if (expected > sent) {
+      context_.diagnostics.error(
+          "network-pdo-length", place(*receiver_.pdo),
+          fmt::format("{} expects {} bits, {} sends {}", named(receiver_), expected, named(sender_), sent), note());
+    }
+    for (const PlacedEntry& entry : placed(*receiver_.pdo)) {
+      if (entry.entry->object != nullptr && entry.first_bit + entry.entry->bits <= sent) check(entry);
+    }
+  }
+
+ private:
+  static Position place(const Pdo& pdo) {
+    return pdo.mapping != nullptr ? default_place(*pdo.mapping->find(0)) : pdo.position;
+  }
+
+  [[nodiscard]] std::vector<Note> note() const { return {{place(*sender_.pdo), named(sender_)}}; }
+
+  [[nodiscard]] std::string title(const PlacedEntry& entry) const {
+    return fmt::format("{} entry {}, {}", named(receiver_), entry.number, text(*entry.entry));
+  }
+
+  void check(const PlacedEntry& received) {
+    const auto same = std::ranges::find_if(sent_, [&](const PlacedEntry& one) {
+      return one.first_bit == received.first_bit && one.entry->bits == received.entry->bits;
+    });
+    const PdoEntry& entry = *received.entry;
+    if (same == sent_.end()) {
+      const unsigned last = received.first_bit + entry.bits - 1;
+      context_.diagnostics.warning("network-pdo-layout", entry.place,
+                                   fmt::format("{}: bits {} to {} of {} are not one entry", title(received),
+                                               received.first_bit, last, named(sender_)),
+                                   note());
+      return;
+    }
+    if (same->entry->object == nullptr) return;
+    const Entry& from = *same->entry->object;
+    const Entry& to = *entry.object;
+    if (from.type != to.type) {
+      context_.diagnostics.warning("network-pdo-type", entry.place,
+                                   fmt::format("{} is {}, but {} sends {} as {}", title(received), to.type->name,
+                                               named(sender_), named(from), from.type->name),
+                                   {{same->entry->place, named(sender_)}});
+    }
+    if (!from.unit.empty() && !to.unit.empty() && from.unit != to.unit) {
+      context_.diagnostics.warning("network-pdo-unit", entry.place,
+                                   fmt::format("{} is in {}, but {} sends {} in {}", title(received), to.unit,
+                                               named(sender_), named(from), from.unit),
+                                   {{same->entry->place, named(sender_)}});
+    }
+  }
+
+  const NetworkContext& context_;
+  const CobIdUse& sender_;
+  const CobIdUse& receiver_;
+  std::vector<PlacedEntry> sent_;
+};
+
+/// A master without a file may process PDOs that the network file does not list as signals.
+bool has_unknown_master(const Network& network) {
+  const NetworkNode* const master = network.master();
+  return master != nullptr && !master->has_file();
+}
+
+void report_partner(const NetworkContext& context, const CobIdUse& use) {
+  const std::string can_id = can_id_text(use.can_id, use.extended);
+  const std::string message = use.transmits ? fmt::format("{} ({}) has no receiver", named(use), can_id)
+                                            : fmt::format("{} ({}) has no transmitter", named(use), can_id);
+  const std::string cause = fmt::format("{} {}", use.node->name, use.transmits);
+  const auto report = [&](RuleId<Severity::warning, Severity::note> rule) {
+    if (has_unknown_master(context.network)) {
+      context.diagnostics.note(rule, use.position, message, {}, cause);
+    } else {
+      context.diagnostics.warning(rule, use.position, message, {}, cause);
+    }
+  };
+  if (use.transmits) {
+    report("network-pdo-unheard");
+  } else {
+    report("network-pdo-unsent");
+  }
+}
+
+bool is_link(const CobIdUse& sender, const CobIdUse& receiver) {
+  return sender.service == FrameService::pdo && sender.transmits && receiver.service == FrameService::pdo &&
+         !receiver.transmits && sender.can_id == receiver.can_id && sender.extended == receiver.extended;
+}
+
+/// Granularity: the lengths of entries that the device can map (CiA 306-1, 4.5).
+void check_granularity(const NetworkContext& context, const CobIdUse& use) {
+  const auto granularity = use.node->device.information.capabilities.granularity;
+  if (!granularity || *granularity == 0) return;
+  for (const PdoEntry& entry : use.pdo->entries) {
+    if (entry.place.file != context.network.source.get() || entry.bits % *granularity == 0) continue;
+    context.diagnostics.error("network-pdo-mapping", entry.place,
+                              fmt::format("node {}: {} maps {} with {} bits, but the Granularity of the device is {}",
+                                          use.node->name, use.what, text(entry), entry.bits, *granularity));
+  }
+}
+
+}  // namespace
+
+void check_pdo_links(const NetworkContext& context) {
+  for (const CobIdUse& use : context.uses) {
+    if (use.service != FrameService::pdo) continue;
+    check_granularity(context, use);
+    bool has_partner = false;
+    for (const CobIdUse& other : context.uses) {
+      const bool linked = use.transmits ? is_link(use, other) : is_link(other, use);
+      if (!linked) continue;
+      has_partner = true;
+      const bool has_layout =
+          !use.pdo->multiplexed && !other.pdo->multiplexed && !use.pdo->broken && !other.pdo->broken;
+      if (use.transmits && has_layout) PdoLink{context, use, other}.check();
+    }
+    if (!has_partner) report_partner(context, use);
+  }
+}
+
+}  // namespace edsc

@@ -1,0 +1,37 @@
+/// The CAN-IDs that the nodes of a network use: who transmits what, and who receives it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "device/cob_id_parameter.hpp"
+#include "network/network.hpp"
+
+namespace edsc {
+
+enum class FrameService : std::uint8_t { nmt, sync, time, emcy, sdo, pdo, error_control };
+
+/// A CAN-ID that a node transmits or receives.
+struct CobIdUse {
+  const NetworkNode* node = nullptr;
+  FrameService service = FrameService::pdo;
+  bool transmits = false;
+  std::uint32_t can_id = 0;
+  bool extended = false;
+  bool is_configurable = true;  ///< an object contains it
+  const Pdo* pdo = nullptr;
+  std::string what;   ///< `TPDO 2`, `SDO server 1 response`
+  Position position;  ///< of the value, or of the node
+};
+
+/// The uses of all nodes: configured COB-IDs that exist, and the fixed ones of NMT, the default SDO and error control.
+[[nodiscard]] std::vector<CobIdUse> cob_id_uses(const Network& network);
+
+/// `185h`, or `1234h (29 bits)`.
+[[nodiscard]] std::string can_id_text(std::uint32_t can_id, bool extended);
+
+/// `axis1 TPDO 2`
+[[nodiscard]] std::string named(const CobIdUse& use);
+
+}  // namespace edsc

@@ -1,0 +1,129 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <utility>
+
+#include "diagnostics/quote.hpp"
+#include "network/assign_signals.hpp"
+#include "network/master_sheet.hpp"
+#include "network/network.hpp"
+#include "network/node_settings.hpp"
+
+namespace edsc {
+namespace {
+
+namespace fs = std::filesystem;
+
+class NetworkLoader {
+ public:
+  NetworkLoader(LoadedNetwork& loaded, Diagnostics& diagnostics)
+      : loaded_{loaded}, network_{loaded.network}, diagnostics_{diagnostics} {}
+
+  void load() {
+    for (const NodeDescription& node : network_.description.nodes) add_node(node);
+    check_sync_producer();
+    const SignalPlan plan = plan_signals(network_, diagnostics_);
+    for (NetworkNode& node : network_.nodes) {
+      if (!node.has_file()) add_master_sheet(node, network_, plan);
+    }
+    for (NetworkNode& node : network_.nodes) {
+      apply_sync(node, network_.description.sync, diagnostics_);
+      apply_signals(node, plan, diagnostics_);
+      apply_node_members(node, diagnostics_);
+      update_pdos(node, *network_.source, diagnostics_);
+    }
+  }
+
+ private:
+  void add_node(const NodeDescription& description) {
+    NetworkNode node;
+    node.name = description.name.value;
+    node.position = description.name.position;
+    node.description = &description;
+    node.is_master = description.master && description.master->value;
+    if (description.node_id) node.node_id = static_cast<std::uint8_t>(description.node_id->value);
+    if (node.has_file() && !load_file(node)) return;
+    if (node.node_id == 0) return;
+    network_.nodes.push_back(std::move(node));
+  }
+
+  /// Loads the EDS or DCF of a node; false if it has no device.
+  bool load_file(NetworkNode& node) {
+    const NodeDescription& description = *node.description;
+    const Written<std::string>& file = description.dcf ? *description.dcf : *description.eds;
+    LoadSettings settings;
+    settings.path = beside_network_file(file.value);
+    if (description.options) settings.options_path = beside_network_file(description.options->value);
+    settings.keep_going = description.keep_going && description.keep_going->value;
+    if (node.node_id != 0) settings.node_id = node.node_id;
+    settings.check = checked_.insert(settings.path).second;
+    Diagnostics of_file;
+    network_.files.push_back(load_device(settings, of_file));
+    LoadedDevice& loaded = *network_.files.back();
+    report_errors(of_file, file.position, loaded);
+    if (!loaded.device) return false;
+    node.loaded = &loaded;
+    node.device = *std::move(loaded.device);
+    loaded.device.reset();
+    check_node_id(node, description);
+    return true;
+  }
+
+  [[nodiscard]] std::string beside_network_file(const std::string& path) const {
+    return (fs::path{network_.source->name()}.parent_path() / path).string();
+  }
+
+  void report_errors(const Diagnostics& of_file, const Position& file, const LoadedDevice& loaded) {
+    if (loaded.unreadable) {
+      for (const Diagnostic& one : of_file.all()) diagnostics_.error("network-file", file, one.message);
+      loaded_.unreadable = true;
+    } else {
+      for (const Diagnostic& one : of_file.all()) {
+        if (one.severity == Severity::error) diagnostics_.report(one);
+      }
+    }
+  }
+
+  /// A DCF states the node-ID, which the network file may repeat.
+  void check_node_id(NetworkNode& node, const NodeDescription& description) {
+    if (description.node_id) return;
+    if (node.device.node_id) {
+      node.node_id = *node.device.node_id;
+    } else {
+      diagnostics_.error("network-file", node.position,
+                         fmt::format("node {} needs \"node_id\": its DCF has no NodeID", quote(node.name)));
+    }
+  }
+
+  void check_sync_producer() {
+    const WrittenText& producer = network_.description.sync.producer;
+    if (!producer || network_.find(producer->value) != nullptr) return;
+    diagnostics_.error("network-file", producer->position, network_.unknown_node(producer->value));
+  }
+
+  LoadedNetwork& loaded_;
+  Network& network_;
+  Diagnostics& diagnostics_;
+  std::set<std::string> checked_;  ///< files whose rules were checked
+};
+
+}  // namespace
+
+std::unique_ptr<LoadedNetwork> load_network(const std::string& path, Diagnostics& diagnostics) {
+  auto loaded = std::make_unique<LoadedNetwork>();
+  std::string problem;
+  loaded->network.source = read_source_file(path, problem);
+  if (loaded->network.source == nullptr) {
+    loaded->network.source = std::make_unique<SourceFile>(path, std::string{});
+    diagnostics.error("unreadable-file", Position{loaded->network.source.get()}, problem);
+    loaded->unreadable = true;
+    return loaded;
+  }
+  loaded->network.description = read_network_file(*loaded->network.source, diagnostics);
+  NetworkLoader{*loaded, diagnostics}.load();
+  return loaded;
+}
+
+}  // namespace edsc

@@ -1,0 +1,221 @@
+#include "network/network_description.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <utility>
+
+#include "diagnostics/json_file.hpp"
+#include "diagnostics/quote.hpp"
+#include "text/suggestion.hpp"
+
+namespace edsc {
+namespace {
+
+using Json = JsonFile::Json;
+using Pointer = JsonFile::Pointer;
+
+/// A number or text of `set` in the notation of an EDS.
+std::optional<std::string> eds_text(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_boolean()) return value.get<bool>() ? "1" : "0";
+  if (value.is_number()) return value.dump();
+  return std::nullopt;
+}
+
+class NetworkReader {
+ public:
+  NetworkReader(const JsonFile& file, Diagnostics& diagnostics) : file_{file}, diagnostics_{diagnostics} {}
+
+  NetworkDescription read() {
+    NetworkDescription network;
+    network.source = &file_.source();
+    const Json& root = file_.root();
+    if (!root.is_object()) {
+      error(Pointer{}, "a network file is a JSON object");
+      return network;
+    }
+    read_members(root, Pointer{}, network, network_members, {"$schema", "sync", "assume", "nodes", "signals"});
+    if (const Json* const sync = object_at(root, "sync")) {
+      read_members(*sync, Pointer{"/sync"}, network.sync, sync_members, {});
+    }
+    if (const Json* const assume = object_at(root, "assume")) {
+      read_members(*assume, Pointer{"/assume"}, network.assume, assume_members, {});
+    }
+    read_nodes(root, network);
+    read_signals(root, network);
+    if (!network.bit_rate) error(Pointer{}, "missing \"bit_rate\", the bit rate in kbit/s");
+    return network;
+  }
+
+ private:
+  using Names = std::initializer_list<std::string_view>;
+
+  void error(const Pointer& pointer, std::string message) {
+    diagnostics_.error("network-file", file_.name_position(pointer), std::move(message));
+  }
+  void value_error(const Pointer& pointer, std::string message) {
+    diagnostics_.error("network-file", file_.value_position(pointer), std::move(message));
+  }
+
+  /// The member if it is an object; any other value is an error.
+  const Json* object_at(const Json& owner, const std::string& name) {
+    const auto at = owner.find(name);
+    if (at == owner.end()) return nullptr;
+    if (at->is_object()) return &*at;
+    error(Pointer{"/" + name}, fmt::format("{} must be an object", quote(name)));
+    return nullptr;
+  }
+
+  template <class Owner, std::size_t N>
+  void read_members(const Json& json, const Pointer& pointer, Owner& owner, const MemberRow<Owner> (&rows)[N],
+                    Names others) {
+    for (const auto& [name, value] : json.items()) {
+      const auto row = std::ranges::find(rows, std::string_view{name}, &MemberRow<Owner>::name);
+      if (row != std::end(rows)) {
+        read_member(value, pointer / name, owner, *row);
+      } else if (std::ranges::find(others, name) == others.end()) {
+        std::vector<std::string_view> names{others};
+        for (const MemberRow<Owner>& one : rows) names.push_back(one.name);
+        error(pointer / name, fmt::format("unknown member {}{}", quote(name), did_you_mean(name, names)));
+      }
+    }
+  }
+
+  template <class Owner>
+  void read_member(const Json& value, const Pointer& pointer, Owner& owner, const MemberRow<Owner>& row) {
+    const Position position = file_.value_position(pointer);
+    const auto expect = [&](bool is_valid, std::string_view what) {
+      if (!is_valid) value_error(pointer, fmt::format("{} must be {}", quote(row.name), what));
+      return is_valid;
+    };
+    switch (row.form()) {
+      case MemberForm::number: {
+        const bool fits = value.is_number_unsigned() && value >= row.min && value <= row.max;
+        if (!expect(fits, fmt::format("a number from {} to {}", row.min, row.max))) return;
+        owner.*std::get<typename MemberRow<Owner>::Number>(row.member) =
+            Written<std::uint32_t>{value.template get<std::uint32_t>(), position};
+        return;
+      }
+      case MemberForm::text:
+        if (!expect(value.is_string(), "a text")) return;
+        owner.*std::get<typename MemberRow<Owner>::Text>(row.member) =
+            Written<std::string>{value.template get<std::string>(), position};
+        return;
+      case MemberForm::flag:
+        if (!expect(value.is_boolean(), "true or false")) return;
+        owner.*std::get<typename MemberRow<Owner>::Flag>(row.member) =
+            Written<bool>{value.template get<bool>(), position};
+        return;
+      case MemberForm::texts:
+        owner.*std::get<typename MemberRow<Owner>::Texts>(row.member) = read_texts(value, pointer, row.name);
+        return;
+      case MemberForm::values:
+        if (!expect(value.is_object(), "an object with a value for each entry")) return;
+        owner.*std::get<typename MemberRow<Owner>::Values>(row.member) = read_values(value, pointer);
+        return;
+    }
+  }
+
+  /// A text, or an array of texts.
+  std::vector<Written<std::string>> read_texts(const Json& value, const Pointer& pointer, std::string_view name) {
+    if (value.is_string()) return {{value.get<std::string>(), file_.value_position(pointer)}};
+    std::vector<Written<std::string>> texts;
+    bool is_valid = value.is_array();
+    for (std::size_t i = 0; is_valid && i < value.size(); ++i) {
+      is_valid = value[i].is_string();
+      if (is_valid) texts.push_back({value[i].get<std::string>(), file_.value_position(pointer / i)});
+    }
+    if (!is_valid) value_error(pointer, fmt::format("{} must be a text or an array of texts", quote(name)));
+    return texts;
+  }
+
+  std::vector<WrittenValue> read_values(const Json& json, const Pointer& pointer) {
+    std::vector<WrittenValue> values;
+    for (const auto& [entry, value] : json.items()) {
+      const Pointer at = pointer / entry;
+      const auto text = eds_text(value);
+      if (text) {
+        values.push_back({{entry, file_.name_position(at)}, {*text, file_.value_position(at)}});
+      } else {
+        value_error(at, fmt::format("the value of {} must be a number, a text, true or false", quote(entry)));
+      }
+    }
+    return values;
+  }
+
+  void read_nodes(const Json& root, NetworkDescription& network) {
+    const Json* const nodes = object_at(root, "nodes");
+    if (nodes == nullptr) {
+      if (!root.contains("nodes")) error(Pointer{}, "missing \"nodes\", an object with a member for each node");
+      return;
+    }
+    for (const auto& [name, json] : nodes->items()) {
+      const Pointer pointer = Pointer{"/nodes"} / name;
+      if (!json.is_object()) {
+        error(pointer, fmt::format("node {} must be an object", quote(name)));
+        continue;
+      }
+      NodeDescription node;
+      node.name = {name, file_.name_position(pointer)};
+      read_members(json, pointer, node, node_members, {});
+      check_node(pointer, node);
+      network.nodes.push_back(std::move(node));
+    }
+    if (nodes->empty()) error(Pointer{"/nodes"}, "the network does not have a node");
+  }
+
+  void check_node(const Pointer& pointer, const NodeDescription& node) {
+    if (node.eds && node.dcf) error(pointer / "dcf", "a node has either \"eds\" or \"dcf\"");
+    const bool is_master = node.master && node.master->value;
+    if (!node.eds && !node.dcf && !is_master) {
+      error(pointer, fmt::format("node {} needs \"eds\" or \"dcf\"", quote(node.name.value)));
+    }
+    if (!node.node_id && !node.dcf) error(pointer, fmt::format("node {} needs \"node_id\"", quote(node.name.value)));
+    const bool has_separator = node.name.value.find('.') != std::string::npos;
+    if (node.name.value.empty() || has_separator) error(pointer, "the name of a node is not empty and has no period");
+  }
+
+  void read_signals(const Json& root, NetworkDescription& network) {
+    const auto signals = root.find("signals");
+    if (signals == root.end()) return;
+    if (!signals->is_array()) return error(Pointer{"/signals"}, "\"signals\" must be an array of objects");
+    for (std::size_t i = 0; i < signals->size(); ++i) {
+      const Pointer pointer = Pointer{"/signals"} / i;
+      const Json& json = (*signals)[i];
+      if (!json.is_object()) {
+        value_error(pointer, "a signal must be an object");
+        continue;
+      }
+      SignalDescription signal;
+      signal.position = file_.value_position(pointer);
+      read_members(json, pointer, signal, signal_members, {});
+      check_signal(pointer, signal);
+      network.signals.push_back(std::move(signal));
+    }
+  }
+
+  void check_signal(const Pointer& pointer, const SignalDescription& signal) {
+    if (!signal.from) value_error(pointer, "a signal needs \"from\", the name of a node");
+    if (!signal.object) value_error(pointer, "a signal needs \"object\", the entry that is sent");
+    const int ways = (signal.every_ms ? 1 : 0) + (signal.every_sync ? 1 : 0);
+    if (ways == 2) value_error(pointer, "a signal has either \"every_ms\" or \"every_sync\"");
+    if (signal.every_sync && signal.event) value_error(pointer, "a signal has either \"every_sync\" or \"event\"");
+    if (ways == 0 && !signal.event) value_error(pointer, "a signal needs \"every_ms\", \"every_sync\" or \"event\"");
+  }
+
+  const JsonFile& file_;
+  Diagnostics& diagnostics_;
+};
+
+}  // namespace
+
+NetworkDescription read_network_file(const SourceFile& source, Diagnostics& diagnostics) {
+  const JsonFile file{source, "network-syntax", diagnostics};
+  if (file.root().is_null()) return {&source, {}, {}, {}, {}, {}, {}, {}, {}};
+  return NetworkReader{file, diagnostics}.read();
+}
+
+}  // namespace edsc

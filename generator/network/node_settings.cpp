@@ -1,0 +1,118 @@
+#include "network/node_settings.hpp"
+#include "network/communication_objects.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <canopen/can/cob_id.hpp>
+#include <utility>
+
+#include "device/pdo/resolve_pdos.hpp"
+#include "device/types/value.hpp"
+#include "diagnostics/quote.hpp"
+#include "load/find_entry.hpp"
+
+namespace edsc {
+namespace {
+
+Entry* find_entry(Device& device, std::uint16_t index, std::uint8_t sub_index) {
+  return const_cast<Entry*>(std::as_const(device).find(index, sub_index));
+}
+
+bool same(const std::optional<Value>& a, const Value& b) {
+  return a && a->bits == b.bits && a->bytes == b.bytes && a->plus_node_id == b.plus_node_id;
+}
+
+bool is_outside_limits(const Entry& entry, const Value& value) {
+  if (!value.bytes.empty()) return false;
+  return (entry.low_limit && is_less(*entry.type, value.bits, entry.low_limit->bits)) ||
+         (entry.high_limit && is_less(*entry.type, entry.high_limit->bits, value.bits));
+}
+
+/// Sets a value whose position is that in the network file.
+void set_value(NetworkNode& node, Entry& entry, Value value, Diagnostics& diagnostics) {
+  const auto error = [&](std::string_view why) {
+    diagnostics.error("network-value", value.position, fmt::format("node {}: {} {}", node.name, named(entry), why));
+  };
+  if (!canopen::writable(entry.access) && !same(entry.default_value, value)) {
+    return error(fmt::format("cannot be written (AccessType {})", canopen::row_of(entry.access).name));
+  }
+  if (is_outside_limits(entry, value)) return error("is outside its limits");
+  entry.default_value = value;
+  node.settings.push_back({entry.index, entry.sub_index, std::move(value)});
+}
+
+/// Sets an object that the device may lack.
+void set_if_present(NetworkNode& node, std::uint16_t index, const WrittenNumber& number, Diagnostics& diagnostics) {
+  if (!number || find_entry(node.device, index, 0) == nullptr) return;
+  set_number(node, index, 0, number->value, number->position, diagnostics);
+}
+
+}  // namespace
+
+void set_number(NetworkNode& node, std::uint16_t index, std::uint8_t sub_index, std::uint64_t number,
+                const Position& position, Diagnostics& diagnostics) {
+  Entry* const entry = find_entry(node.device, index, sub_index);
+  if (entry == nullptr) {
+    diagnostics.error("network-value", position,
+                      fmt::format("node {} does not have {}", node.name, entry_label(index, sub_index)));
+    return;
+  }
+  set_value(node, *entry, Value{.bits = number, .position = position}, diagnostics);
+}
+
+void set_text(NetworkNode& node, const WrittenValue& written, Diagnostics& diagnostics) {
+  const FoundEntry found = find_one_entry(node.device, written.entry.value);
+  if (!found.ok()) {
+    diagnostics.error("network-value", written.entry.position, fmt::format("node {}: {}", node.name, found.problem));
+    return;
+  }
+  Diagnostics of_value;
+  const Field field{written.value.value, written.value.position, true};
+  const auto value = parse_value(field, *found.entry->type, node.node_id, of_value);
+  for (const Diagnostic& one : of_value.all()) {
+    diagnostics.error("network-value", one.position, fmt::format("node {}: {}", node.name, one.message));
+  }
+  if (!value || of_value.errors() > 0) return;
+  set_value(node, *find_entry(node.device, found.entry->index, found.entry->sub_index), *value, diagnostics);
+}
+
+void apply_sync(NetworkNode& node, const SyncDescription& sync, Diagnostics& diagnostics) {
+  if (sync.producer) {
+    const bool is_producer = sync.producer->value == node.name;
+    constexpr std::uint32_t produces = canopen::CobId::no_rtr_bit;
+    const auto cob_id = value_of(node.device, communication::cob_id_sync);
+    const Position& position = sync.producer->position;
+    if (is_producer && !cob_id) {
+      diagnostics.error("network-value", position,
+                        fmt::format("node {} does not have 1005h and cannot produce SYNC", node.name));
+    } else if (cob_id && ((*cob_id & produces) != 0) != is_producer) {
+      set_number(node, communication::cob_id_sync, 0, *cob_id ^ produces, position, diagnostics);
+    }
+    if (is_producer && sync.period_us) {
+      set_number(node, communication::cycle_period, 0, sync.period_us->value, sync.period_us->position, diagnostics);
+    }
+  }
+  set_if_present(node, communication::window_length, sync.window_us, diagnostics);
+  set_if_present(node, communication::sync_overflow, sync.overflow, diagnostics);
+}
+
+void apply_node_members(NetworkNode& node, Diagnostics& diagnostics) {
+  if (const WrittenNumber& time = node.description->heartbeat_ms) {
+    set_number(node, communication::producer_heartbeat, 0, time->value, time->position, diagnostics);
+  }
+  for (const WrittenValue& value : node.description->set) set_text(node, value, diagnostics);
+}
+
+void update_pdos(NetworkNode& node, const SourceFile& network_file, Diagnostics& diagnostics) {
+  node.device.pdos.clear();
+  resolve_pdos(node.device, node.loaded->options);
+  Diagnostics of_mapping;
+  mark_broken_pdos(node.device, node.loaded->options, of_mapping);
+  for (const Diagnostic& one : of_mapping.all()) {
+    if (one.position.file != &network_file || one.severity != Severity::error) continue;
+    diagnostics.error("network-pdo-mapping", one.position, fmt::format("node {}: {}", node.name, one.message));
+  }
+}
+
+}  // namespace edsc

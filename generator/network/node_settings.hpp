@@ -1,0 +1,29 @@
+/// Settings of a network file for a node: they become the default values of its device.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "network/network.hpp"
+
+namespace edsc {
+
+/// Sets the default value of a writable entry, and records the setting. A missing entry, one that cannot be written,
+/// and a value outside its limits are reported.
+void set_number(NetworkNode& node, std::uint16_t index, std::uint8_t sub_index, std::uint64_t number,
+                const Position& position, Diagnostics& diagnostics);
+
+/// The same for a value in the notation of an EDS, of an entry by name or address.
+void set_text(NetworkNode& node, const WrittenValue& written, Diagnostics& diagnostics);
+
+/// The settings of `sync`, for all nodes that have its objects.
+void apply_sync(NetworkNode& node, const SyncDescription& sync, Diagnostics& diagnostics);
+
+/// The settings of the node itself: `heartbeat_ms`, `set`.
+void apply_node_members(NetworkNode& node, Diagnostics& diagnostics);
+
+/// Resolves the PDOs of the device again, after settings of their parameters. Reports mappings of the network file that
+/// the device does not allow.
+void update_pdos(NetworkNode& node, const SourceFile& network_file, Diagnostics& diagnostics);
+
+}  // namespace edsc

@@ -1,0 +1,153 @@
+#include "network/resolve_signals.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "diagnostics/quote.hpp"
+#include "load/find_entry.hpp"
+
+namespace edsc {
+namespace {
+
+class SignalResolver {
+ public:
+  SignalResolver(const Network& network, Diagnostics& diagnostics) : network_{network}, diagnostics_{diagnostics} {}
+
+  std::optional<Signal> resolve(const SignalDescription& description) {
+    if (!description.from || !description.object) return std::nullopt;
+    Signal signal;
+    signal.description = &description;
+    const NetworkNode* const from = find_node(description.from->value, description.from->position);
+    if (from == nullptr) return std::nullopt;
+    const bool resolved = from->has_file() ? resolve_from_device(*from, signal) : resolve_from_master(*from, signal);
+    if (!resolved || !types_agree(signal)) return std::nullopt;
+    return signal;
+  }
+
+ private:
+  bool error(const Position& position, std::string message) {
+    diagnostics_.error("network-signal", position, std::move(message));
+    return false;
+  }
+
+  const NetworkNode* find_node(std::string_view name, const Position& position) {
+    const NetworkNode* const node = network_.find(name);
+    if (node == nullptr) error(position, network_.unknown_node(name));
+    return node;
+  }
+
+  bool resolve_from_device(const NetworkNode& from, Signal& signal) {
+    const SignalDescription& description = *signal.description;
+    const Entry* const entry =
+        find_entry(from, description.object->value, PdoDirection::transmit, description.object->position);
+    if (entry == nullptr) return false;
+    signal.from = {&from, entry, &from};
+    if (description.to.empty()) return error(description.position, "a signal needs \"to\", its receivers");
+    for (const Written<std::string>& text : description.to) {
+      if (!add_receiver(text, signal)) return false;
+    }
+    return true;
+  }
+
+  /// `"object": "axis1.controlword"` is the entry that receives the signal.
+  bool resolve_from_master(const NetworkNode& master, Signal& signal) {
+    const SignalDescription& description = *signal.description;
+    const auto end = receiver(*description.object);
+    if (!end) return false;
+    if (!end->node->has_file()) {
+      return error(description.object->position,
+                   "a signal of a master without a file names the entry that receives it");
+    }
+    signal.from = {&master, end->entry, end->node};
+    signal.to.push_back(*end);
+    for (const Written<std::string>& text : description.to) {
+      if (!add_receiver(text, signal)) return false;
+    }
+    return true;
+  }
+
+  bool add_receiver(const Written<std::string>& text, Signal& signal) {
+    auto end = receiver(text);
+    if (!end) return false;
+    if (end->entry == nullptr) {
+      end->entry = signal.from.entry;
+      end->owner = signal.from.owner;
+    }
+    if (end->node == signal.from.node) return error(text.position, "a node cannot receive its own signal");
+    for (const SignalEnd& other : signal.to) {
+      if (other.node == end->node) {
+        return error(text.position, fmt::format("node {} receives this signal twice", end->node->name));
+      }
+    }
+    signal.to.push_back(*end);
+    return true;
+  }
+
+  /// `axis1.607Ah`; of a master without a file its name alone, without an entry.
+  std::optional<SignalEnd> receiver(const Written<std::string>& text) {
+    const std::string_view name = text.value;
+    const std::size_t period = name.find('.');
+    const NetworkNode* const node = find_node(name.substr(0, period), text.position);
+    if (node == nullptr) return std::nullopt;
+    if (!node->has_file()) return SignalEnd{node, nullptr, nullptr};
+    if (period == std::string_view::npos) {
+      error(text.position, fmt::format("{} needs an entry: \"{}.ENTRY\"", quote(name), name));
+      return std::nullopt;
+    }
+    const Entry* const entry = find_entry(*node, name.substr(period + 1), PdoDirection::receive, text.position);
+    if (entry == nullptr) return std::nullopt;
+    return SignalEnd{node, entry, node};
+  }
+
+  const Entry* find_entry(const NetworkNode& node, std::string_view name, PdoDirection direction,
+                          const Position& position) {
+    const FoundEntry found = find_one_entry(node.device, name);
+    if (!found.ok()) {
+      error(position, fmt::format("node {}: {}", node.name, found.problem));
+      return nullptr;
+    }
+    const bool receives = direction == PdoDirection::receive;
+    if (!allows(found.entry->mappable(), receives ? canopen::Mappable::rpdo : canopen::Mappable::tpdo)) {
+      error(position, fmt::format("node {}: {} is not {}PDO-mappable (AccessType {}, PDOMapping {})", node.name,
+                                  named(*found.entry), receives ? "R" : "T", canopen::row_of(found.entry->access).name,
+                                  found.entry->pdo_mapping ? 1 : 0));
+      return nullptr;
+    }
+    if (found.entry->type->bits == 0) {
+      error(position, fmt::format("node {}: {} has the variable-length data type {}", node.name, named(*found.entry),
+                                  found.entry->type->name));
+      return nullptr;
+    }
+    return found.entry;
+  }
+
+  bool types_agree(const Signal& signal) {
+    const Entry& sent = *signal.from.entry;
+    for (const SignalEnd& end : signal.to) {
+      if (end.entry->type == sent.type) continue;
+      return error(signal.description->position,
+                   fmt::format("node {} sends {} as {}, node {} receives {} as {}", signal.from.node->name, named(sent),
+                               sent.type->name, end.node->name, named(*end.entry), end.entry->type->name));
+    }
+    return true;
+  }
+
+  const Network& network_;
+  Diagnostics& diagnostics_;
+};
+
+}  // namespace
+
+std::vector<Signal> resolve_signals(const Network& network, Diagnostics& diagnostics) {
+  std::vector<Signal> signals;
+  SignalResolver resolver{network, diagnostics};
+  for (const SignalDescription& description : network.description.signals) {
+    if (auto signal = resolver.resolve(description)) signals.push_back(*std::move(signal));
+  }
+  return signals;
+}
+
+}  // namespace edsc
