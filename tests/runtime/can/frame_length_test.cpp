@@ -84,7 +84,7 @@ TEST(FrameLength, WithAllStuffBitsIsReachedByTheWorstBits) {
 
 TEST(FrameLength, OfEncodedFramesIsWithinTheLimits) {
   std::minstd_rand random{11898};
-  std::size_t most_stuff_bits = 0;
+  std::size_t max_stuff_bits = 0;
   for (int i = 0; i < 20'000; ++i) {
     Frame frame{
         .size = static_cast<std::uint8_t>(random() % 9), .extended = random() % 2 == 0, .remote = random() % 8 == 0};
@@ -96,9 +96,9 @@ TEST(FrameLength, OfEncodedFramesIsWithinTheLimits) {
     const std::size_t length = length_with_stuff_bits(bits) + not_stuffed;
     ASSERT_EQ(bits.size() + not_stuffed, bits_on_wire(frame));
     ASSERT_LE(length, max_bits_on_wire(frame));
-    most_stuff_bits = std::max(most_stuff_bits, length - bits_on_wire(frame));
+    max_stuff_bits = std::max(max_stuff_bits, length - bits_on_wire(frame));
   }
-  EXPECT_GE(most_stuff_bits, 15U);
+  EXPECT_GE(max_stuff_bits, 15U);
 }
 
 }  // namespace
