@@ -1,6 +1,6 @@
 #include "monitor/monitor_state.hpp"
 
-#include <canopen/host/virtual_bus.hpp>
+#include <canopen/can/frame_length.hpp>
 
 #include "values/nmt_text.hpp"
 

@@ -7,7 +7,7 @@
 #include "commands/commands.hpp"
 #include "diagnostics/rule.hpp"
 #include "diagnostics/unknown_rule.hpp"
-#include "network/check_network.hpp"
+#include "network/checks/check_network.hpp"
 #include "network/network.hpp"
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"

@@ -11,6 +11,7 @@ inline constexpr std::uint16_t cycle_period = 0x1006;
 inline constexpr std::uint16_t window_length = 0x1007;
 inline constexpr std::uint16_t guard_time = 0x100C;
 inline constexpr std::uint16_t life_time_factor = 0x100D;
+inline constexpr std::uint16_t inhibit_time_emcy = 0x1015;
 inline constexpr std::uint16_t consumer_heartbeat = 0x1016;
 inline constexpr std::uint16_t producer_heartbeat = 0x1017;
 inline constexpr std::uint16_t identity = 0x1018;

@@ -15,18 +15,12 @@
 #include "canopen/base/clock.hpp"
 #include "canopen/can/arbitration.hpp"
 #include "canopen/can/frame.hpp"
+#include "canopen/can/frame_length.hpp"
 #include "canopen/host/virtual/acceptance_table.hpp"
 #include "canopen/host/virtual/key_tree.hpp"
 #include "canopen/node/accepted_frames.hpp"
 
 namespace canopen {
-
-/// Returns the bits of a frame on the wire without stuff bits, from start of frame to the end of the intermission
-/// (ISO 11898-1).
-[[nodiscard]] constexpr std::uint32_t bits_on_wire(const Frame& frame) {
-  const std::uint32_t data = frame.remote ? 0u : 8u * frame.size;
-  return (frame.extended ? 67u : 47u) + data;
-}
 
 /// A bus with endpoints: each frame that one sends is received by all others, lowest CAN-ID first among those that
 /// wait. With a bit rate, a frame takes its time on the wire; without one it takes none. Frames sent while others are

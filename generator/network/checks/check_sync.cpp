@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "device/pdo/pdo_defaults.hpp"
-#include "network/check_groups.hpp"
+#include "network/checks/check_groups.hpp"
 #include "network/communication_objects.hpp"
 
 namespace edsc {

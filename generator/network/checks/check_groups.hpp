@@ -27,5 +27,7 @@ void check_pdo_links(const NetworkContext& context);
 void check_sync(const NetworkContext& context);
 /// NMT master, heartbeat, node guarding.
 void check_error_control(const NetworkContext& context);
+/// Load, response times, synchronous window.
+void check_timing(const NetworkContext& context);
 
 }  // namespace edsc

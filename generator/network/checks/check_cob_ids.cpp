@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "network/check_groups.hpp"
+#include "network/checks/check_groups.hpp"
 
 namespace edsc {
 namespace {

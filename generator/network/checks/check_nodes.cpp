@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "eds/number.hpp"
-#include "network/check_groups.hpp"
+#include "network/checks/check_groups.hpp"
 #include "network/communication_objects.hpp"
 
 namespace edsc {

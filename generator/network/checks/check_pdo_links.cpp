@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "network/check_groups.hpp"
+#include "network/checks/check_groups.hpp"
 
 namespace edsc {
 namespace {

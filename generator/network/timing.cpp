@@ -1,0 +1,220 @@
+#include "network/timing.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include "device/complete_device.hpp"
+#include "device/pdo/pdo_defaults.hpp"
+#include "network/communication_objects.hpp"
+
+namespace edsc {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+
+constexpr std::uint8_t inhibit_time_sub_index = 3;
+constexpr std::uint8_t event_timer_sub_index = 5;
+constexpr std::uint8_t time_of_day_bytes = 6;
+constexpr std::uint8_t nmt_command_bytes = 2;
+
+milliseconds interval(const WrittenNumber& number, unsigned default_ms) {
+  return milliseconds{number ? number->value : default_ms};
+}
+
+/// Inhibit times of 1015h and of PDOs are in multiples of 100 us.
+Nanoseconds inhibit_time(std::uint64_t value) { return microseconds{100} * static_cast<std::int64_t>(value); }
+
+class MessageCollector {
+ public:
+  MessageCollector(const Network& network, const std::vector<CobIdUse>& uses)
+      : network_{network}, uses_{uses}, assume_{network.description.assume}, sync_period_{sync_period()} {}
+
+  std::vector<TimedMessage> collect() {
+    for (const CobIdUse& use : uses_) {
+      if (use.transmits && use.service != FrameService::sdo) add(use);
+    }
+    add_sdo(true);
+    add_sdo(false);
+    std::ranges::stable_sort(messages_, {}, [](const TimedMessage& one) { return one.message.can_id; });
+    return std::move(messages_);
+  }
+
+ private:
+  [[nodiscard]] Nanoseconds sync_period() const {
+    for (const CobIdUse& use : uses_) {
+      if (use.service != FrameService::sync || !use.transmits) continue;
+      const auto period = value_of(use.node->device, communication::cycle_period).value_or(0);
+      return microseconds{static_cast<std::int64_t>(period)};
+    }
+    return {};
+  }
+
+  void add(const CobIdUse& use) {
+    switch (use.service) {
+      case FrameService::pdo: return add_pdo(use);
+      case FrameService::sync: {
+        const bool is_counted = value_of(use.node->device, communication::sync_overflow).value_or(0) != 0;
+        return add(use, is_counted ? 1 : 0, sync_period_);
+      }
+      case FrameService::time: return add_assumed(use, time_of_day_bytes, interval(assume_.time_ms, 1000));
+      case FrameService::nmt: return add_assumed(use, nmt_command_bytes, interval(assume_.nmt_ms, 1000));
+      case FrameService::emcy: {
+        const auto inhibit = value_of(use.node->device, communication::inhibit_time_emcy).value_or(0);
+        if (inhibit != 0) return add(use, 8, inhibit_time(inhibit));
+        return add_assumed(use, 8, interval(assume_.emcy_ms, 1000));
+      }
+      case FrameService::error_control: return add_error_control(use);
+      case FrameService::sdo: return;
+    }
+  }
+
+  TimedMessage message_of(const CobIdUse& use, std::size_t size, Nanoseconds period) const {
+    TimedMessage one;
+    one.name = named(use);
+    one.position = use.position;
+    one.service = use.service;
+    one.message.can_id = use.can_id;
+    one.message.extended = use.extended;
+    one.message.size = static_cast<std::uint8_t>(std::min<std::size_t>(size, 8));
+    one.message.period = period;
+    return one;
+  }
+
+  void add(const CobIdUse& use, std::size_t size, Nanoseconds period) {
+    if (period > Nanoseconds{}) messages_.push_back(message_of(use, size, period));
+  }
+
+  void add_assumed(const CobIdUse& use, std::size_t size, Nanoseconds period) {
+    messages_.push_back(message_of(use, size, period));
+    messages_.back().has_assumed_period = true;
+  }
+
+  void add_pdo(const CobIdUse& use) {
+    const auto type = communication_default(*use.pdo, transmission_type_sub_index).value_or(default_transmission_type);
+    const std::size_t size = use.pdo->multiplexed ? 8 : (use.pdo->bits() + 7) / 8;
+    switch (canopen::transmission_of(static_cast<std::uint32_t>(type))) {
+      case canopen::Transmission::synchronous: return add_synchronous(use, size, std::max<std::uint64_t>(type, 1));
+      case canopen::Transmission::event_driven: return add_event_driven(use, size);
+      case canopen::Transmission::remote_synchronous:
+      case canopen::Transmission::remote:
+      case canopen::Transmission::reserved: return;
+    }
+  }
+
+  void add_synchronous(const CobIdUse& use, std::size_t size, std::uint64_t cycles) {
+    if (sync_period_ == Nanoseconds{}) return;
+    TimedMessage one = message_of(use, size, sync_period_ * static_cast<std::int64_t>(cycles));
+    one.is_synchronous = true;
+    const auto window = value_of(use.node->device, communication::window_length).value_or(0);
+    one.message.deadline = window != 0 ? microseconds{static_cast<std::int64_t>(window)} : sync_period_;
+    messages_.push_back(std::move(one));
+  }
+
+  void add_event_driven(const CobIdUse& use, std::size_t size) {
+    const Nanoseconds inhibit = inhibit_time(communication_default(*use.pdo, inhibit_time_sub_index).value_or(0));
+    const milliseconds timer{
+        static_cast<std::int64_t>(communication_default(*use.pdo, event_timer_sub_index).value_or(0))};
+    TimedMessage one = message_of(use, size, inhibit != Nanoseconds{} ? inhibit : timer);
+    if (one.message.period == Nanoseconds{}) {
+      one.message.period = interval(assume_.event_ms, 100);
+      one.has_assumed_period = true;
+    }
+    one.message.deadline = std::max<Nanoseconds>(timer, one.message.period);
+    messages_.push_back(std::move(one));
+  }
+
+  /// Heartbeat, or node guarding with a request of the master.
+  void add_error_control(const CobIdUse& use) {
+    const Device& device = use.node->device;
+    const auto heartbeat = value_of(device, communication::producer_heartbeat).value_or(0);
+    if (heartbeat != 0) {
+      messages_.push_back(message_of(use, 1, milliseconds{static_cast<std::int64_t>(heartbeat)}));
+      messages_.back().name = use.node->name + " heartbeat";
+      messages_.back().message.deadline = slack_of_heartbeat(*use.node, heartbeat);
+      return;
+    }
+    const milliseconds guard{static_cast<std::int64_t>(value_of(device, communication::guard_time).value_or(0))};
+    const bool is_guarded = value_of(device, communication::life_time_factor).value_or(0) != 0;
+    if (guard == milliseconds{} || !is_guarded) return;
+    messages_.push_back(message_of(use, 1, guard));
+    messages_.push_back(message_of(use, 1, guard));
+    messages_.back().message.remote = true;
+    messages_.back().name += " request";
+  }
+
+  /// The time by which a heartbeat may be late before the first of its consumers reports the node.
+  [[nodiscard]] Nanoseconds slack_of_heartbeat(const NetworkNode& producer, std::uint64_t heartbeat) const {
+    std::optional<std::uint64_t> shortest;
+    for (const NetworkNode& node : network_.nodes) {
+      const Object* const object = node.device.find(communication::consumer_heartbeat);
+      if (object == nullptr) continue;
+      for (const Entry& entry : object->entries) {
+        const std::uint64_t value = entry.sub_index != 0 && entry.default_value ? entry.default_value->bits : 0;
+        const std::uint64_t time = value & 0xFFFF;
+        if ((value >> 16 & 0xFF) == producer.node_id && time > heartbeat) {
+          shortest = std::min(shortest.value_or(time), time);
+        }
+      }
+    }
+    const std::uint64_t slack = shortest ? *shortest - heartbeat : heartbeat;
+    return milliseconds{static_cast<std::int64_t>(slack)};
+  }
+
+  /// The request or response of highest priority, for all SDOs of the network.
+  void add_sdo(bool is_request) {
+    const CobIdUse* first = nullptr;
+    for (const CobIdUse& use : uses_) {
+      const bool is_kind = use.service == FrameService::sdo && use.transmits && !use.extended &&
+                           use.what.ends_with(is_request ? "request" : "response");
+      if (is_kind && (first == nullptr || use.can_id < first->can_id)) first = &use;
+    }
+    if (first == nullptr) return;
+    add_assumed(*first, 8, interval(assume_.sdo_ms, 10));
+    messages_.back().name = is_request ? "SDO requests" : "SDO responses";
+  }
+
+  const Network& network_;
+  const std::vector<CobIdUse>& uses_;
+  const AssumedIntervals& assume_;
+  Nanoseconds sync_period_;
+  std::vector<TimedMessage> messages_;
+};
+
+std::vector<ResponseTime> responses(const std::vector<TimedMessage>& messages, const BusTiming& bus) {
+  std::vector<CanMessage> plain;
+  for (const TimedMessage& one : messages) plain.push_back(one.message);
+  return response_times(plain, bus);
+}
+
+/// A synchronous PDO cannot be queued before SYNC was received.
+void add_sync_jitter(std::vector<TimedMessage>& messages, const std::vector<ResponseTime>& found) {
+  Nanoseconds sync{};
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (messages[i].service == FrameService::sync) sync = found[i].worst.value_or(Nanoseconds{});
+  }
+  for (TimedMessage& one : messages) {
+    if (one.is_synchronous) one.message.jitter = sync;
+  }
+}
+
+}  // namespace
+
+NetworkTiming network_timing(const Network& network, const std::vector<CobIdUse>& uses) {
+  NetworkTiming timing;
+  if (!network.description.bit_rate) return timing;
+  BusTiming bus{network.description.bit_rate->value * 1000, {}};
+  if (const WrittenNumber& error = network.description.error_interval_ms) bus.error_interval = milliseconds{error->value};
+  timing.messages = MessageCollector{network, uses}.collect();
+  add_sync_jitter(timing.messages, responses(timing.messages, bus));
+  const std::vector<ResponseTime> found = responses(timing.messages, bus);
+  for (std::size_t i = 0; i < found.size(); ++i) timing.messages[i].response = found[i];
+  std::vector<CanMessage> plain;
+  for (const TimedMessage& one : timing.messages) plain.push_back(one.message);
+  timing.load = bus_load(plain, bus);
+  return timing;
+}
+
+}  // namespace edsc

@@ -1,0 +1,33 @@
+/// Load and response times of a network: all frames that its nodes send, with their periods and deadlines.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "network/cob_id_use.hpp"
+#include "network/network.hpp"
+#include "network/response_times.hpp"
+
+namespace edsc {
+
+/// A message of the network, and its worst-case response time.
+struct TimedMessage {
+  std::string name;  ///< `axis1 TPDO 2`
+  Position position;
+  FrameService service = FrameService::pdo;
+  CanMessage message;
+  bool is_synchronous = false;      ///< the response time counts from the moment when SYNC was due
+  bool has_assumed_period = false;  ///< from `assume`, since nothing limits the rate
+  ResponseTime response;
+};
+
+struct NetworkTiming {
+  std::vector<TimedMessage> messages;  ///< ascending by CAN-ID
+  BusLoad load;
+};
+
+/// Computes load and response times. A PDO is as long as its mapping; RTR-only PDOs are left out. One SDO request and
+/// one response are counted for the whole network. Empty if the network does not have a valid bit rate.
+[[nodiscard]] NetworkTiming network_timing(const Network& network, const std::vector<CobIdUse>& uses);
+
+}  // namespace edsc
