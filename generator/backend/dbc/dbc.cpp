@@ -84,9 +84,10 @@ class DbcWriter {
   [[nodiscard]] Dbc write() {
     for (const Pdo& pdo : device_.pdos) {
       if (const std::string reason = why_left_out(pdo); !reason.empty()) {
-        notes_.push_back(fmt::format("{}: {}", pdo_label(pdo), reason));
+        add_note(pdo, reason);
       } else {
         add_message(pdo);
+        last_reason_.clear();
       }
     }
     return {text(), std::move(notes_)};
@@ -103,6 +104,17 @@ class DbcWriter {
       return fmt::format("CAN-ID {:03X}h is that of another PDO", cob_id.can_id());
     }
     return {};
+  }
+
+  /// Consecutive PDOs with the same reason are one note: `TPDO 3 to TPDO 8: disabled by default`.
+  void add_note(const Pdo& pdo, const std::string& reason) {
+    if (reason != last_reason_ || notes_.empty()) {
+      notes_.emplace_back();
+      first_left_out_ = pdo_label(pdo);
+      last_reason_ = reason;
+    }
+    const std::string last = pdo_label(pdo);
+    notes_.back() = first_left_out_ + (last == first_left_out_ ? "" : " to " + last) + ": " + reason;
   }
 
   [[nodiscard]] static canopen::CobId cob_id_of(const Pdo& pdo) {
@@ -188,6 +200,7 @@ BA_DEF_DEF_ "SystemSignalLongSymbol" "";
   std::set<std::pair<std::uint32_t, bool>> can_ids_;
   Sections sections_;
   std::vector<std::string> notes_;
+  std::string first_left_out_, last_reason_;
 };
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace edsc {
 
 struct Dbc {
   std::string text;                ///< in code page 1252, which tools expect; other characters are `?`
-  std::vector<std::string> notes;  ///< PDOs that are left out, and why: `TPDO 3: disabled by default`
+  std::vector<std::string> notes;  ///< PDOs that are left out, and why: `TPDO 3 to TPDO 8: disabled by default`
 };
 
 /// Returns a message for each default PDO that is enabled. `device` has a node-ID and the identifiers of its objects.

@@ -97,9 +97,10 @@ TEST(Dbc, ShortensLongNamesAndKeepsThemInAttributes) {
 TEST(Dbc, NamesThePdosThatItDoesNotHave) {
   const Dbc dbc = dbc_from(pdo("1800", "1A00", "$NODEID+0x180", {"0x60410010"}) +
                            pdo("1801", "1A01", "$NODEID+0x180", {"0x60410010"}) +
-                           pdo("1802", "1A02", "$NODEID+0x80000380", {"0x60410010"}));
-  EXPECT_EQ(dbc.notes,
-            (std::vector<std::string>{"TPDO 2: CAN-ID 185h is that of another PDO", "TPDO 3: disabled by default"}));
+                           pdo("1802", "1A02", "$NODEID+0x80000380", {"0x60410010"}) +
+                           pdo("1803", "1A03", "$NODEID+0x80000480", {"0x60410010"}));
+  EXPECT_EQ(dbc.notes, (std::vector<std::string>{"TPDO 2: CAN-ID 185h is that of another PDO",
+                                                 "TPDO 3 to TPDO 4: disabled by default"}));
 }
 
 TEST(DbcString, CannotBeEndedByItsContents) {
