@@ -6,6 +6,7 @@
 
 #include "backend/cpp/cpp_view.hpp"
 #include "backend/cpp/identifier.hpp"
+#include "backend/dbc/dbc.hpp"
 #include "backend/render.hpp"
 #include "commands/commands.hpp"
 #include "load/load_device.hpp"
@@ -25,11 +26,13 @@ namespace fs = std::filesystem;
 constexpr const char* examples = R"(Examples:
   edsc generate eds/drive.eds -o build/generated           headers for namespace drive
   edsc generate drive.eds -o out --name axis1 --node-id 5  a second one, with its node-ID fixed
-  edsc generate vendor.eds -o out --keep-going             leave out what is wrong in the EDS of a purchased device)";
+  edsc generate vendor.eds -o out --keep-going             leave out what is wrong in the EDS of a purchased device
+  edsc generate drive.eds --node-id 5 --dbc drive.dbc      the PDOs of node 5 for CAN tools, without headers)";
 
 struct Settings {
   LoadSettings load;
   std::string output;
+  std::string dbc;
   std::string depfile;
   std::string depfile_target;
   std::string templates;
@@ -114,6 +117,14 @@ std::vector<OutputFile> render_all(const Settings& settings, LoadedDevice& loade
   return files;
 }
 
+/// The DBC file. Prints which PDOs it does not have.
+OutputFile render_dbc(const Settings& settings, const Device& device) {
+  if (!device.node_id) throw CLI::RequiresError("--dbc", "--node-id or a DCF, since CAN-IDs depend on the node-ID");
+  Dbc dbc = dbc_of(device);
+  for (const std::string& note : dbc.notes) fmt::print(stderr, "edsc: not in the DBC file: {}\n", note);
+  return {settings.dbc, std::move(dbc.text)};
+}
+
 /// A hint, if `--keep-going` would make warnings of all errors.
 constexpr const char* keep_going_hint =
     "edsc: nothing was generated. For a file that you cannot change, --keep-going (KEEP_GOING in CMake) generates the rest of the "
@@ -126,6 +137,8 @@ bool lists_all(const Diagnostics& diagnostics) {
 }
 
 int generate(const Settings& settings) {
+  if (settings.output.empty() && settings.dbc.empty()) throw CLI::RequiredError("--output or --dbc");
+  if (settings.output.empty() && !settings.depfile.empty()) throw CLI::RequiresError("--depfile", "--output");
   Diagnostics diagnostics;
   diagnostics.drop_notes();
   const auto loaded = load_device(settings.load, diagnostics);
@@ -135,7 +148,13 @@ int generate(const Settings& settings) {
   const bool is_device = loaded->device.has_value();
   if (is_device) left_out = all_left_out(*loaded);
   const bool has_hint = can_keep_going(*loaded, diagnostics);
-  if (is_device && diagnostics.errors() == 0) files = render_all(settings, *loaded, diagnostics, inputs);
+  if (is_device && diagnostics.errors() == 0) {
+    std::vector<OutputFile> dbc;
+    inputs = {settings.load.path};
+    if (!settings.dbc.empty()) dbc.push_back(render_dbc(settings, *loaded->device));
+    if (!settings.output.empty()) files = render_all(settings, *loaded, diagnostics, inputs);
+    files.insert(files.end(), std::make_move_iterator(dbc.begin()), std::make_move_iterator(dbc.end()));
+  }
   print_findings(stderr, diagnostics, settings.color);
   if (loaded->unreadable) return exit_wrong_usage;
   if (!is_device || diagnostics.errors() > 0) {
@@ -157,8 +176,8 @@ int generate(const Settings& settings) {
 void add_generate_options(CLI::App& command, int& exit_code) {
   Settings& settings = define_command(command, examples, generate, exit_code);
   command.add_option("FILE", settings.load.path, "EDS, DCF, XDD or XDC")->required();
-  command.add_option("-o,--output", settings.output, "folder; the headers are written to its subfolder NAME")
-      ->required();
+  command.add_option("-o,--output", settings.output, "folder; the headers are written to its subfolder NAME");
+  command.add_option("--dbc", settings.dbc, "write the PDOs of the device as a DBC file; needs the node-ID");
   command.add_option("--name", settings.load.name, "C++ namespace (default: the file's name)")
       ->check([](const std::string& name) {
         if (!name.empty() && to_namespace(name) == name) return std::string{};

@@ -239,6 +239,8 @@ class WrongUsage(CommandLine):
     def test_is_exit_code_2_with_a_hint(self) -> None:
         for arguments in ((), ("compile",), ("generate",), ("generate", GOOD), ("check",), ("dump",),
                           ("generate", GOOD, "-o", "out", "--no-such-option"),
+                          ("generate", GOOD, "--dbc", "out.dbc"),
+                          ("generate", GOOD, "--dbc", "out.dbc", "--node-id", "1", "--depfile", "out.d"),
                           ("generate", GOOD, "-o", "out", "--node-id", "0"),
                           ("generate", GOOD, "-o", "out", "--node-id", "128"),
                           ("generate", GOOD, "-o", "out", "--node-id", "five"),

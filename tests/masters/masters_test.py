@@ -13,7 +13,6 @@ from __future__ import annotations
 import argparse
 import ctypes
 import importlib.util
-import shutil
 import signal
 import subprocess
 import sys
@@ -23,7 +22,8 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 DATA_SHEETS = HERE.parent.parent / "eds"
 EXCEPTIONS = HERE / "exceptions.tsv"
-sys.path.insert(0, str(HERE))
+sys.path[:0] = [str(HERE), str(HERE.parent / "support")]
+from npm_packages import Skipped, install_npm_packages  # noqa: E402
 
 # Program and node-ID of each node.
 NODES = {"can_2017c": 1, "can_2024c": 2, "can_2053c": 3, "can_2057c": 4, "cpc_tc1": 5, "cpd": 6, "ezd_1136": 7, "rk5c": 8}
@@ -32,10 +32,6 @@ SKIPPED = 77
 
 def data_sheet_of(node: str) -> Path:
     return DATA_SHEETS / f"{node.replace('_', '-')}.eds"
-
-
-class Skipped(Exception):
-    pass
 
 
 def end_with_parent() -> None:
@@ -121,18 +117,7 @@ def with_python_can(plant: Plant, short: bool) -> int:
 
 def install_node_canopen(work: Path) -> Path:
     """Returns its program, after installing the packages of the lock file in the same folder."""
-    for program in ("node", "npm"):
-        if shutil.which(program) is None:
-            raise Skipped(f"{program} is not installed")
-    source = HERE / "node_canopen"
-    lock, installed = source / "package-lock.json", work / "installed.json"
-    shutil.copytree(source, work, dirs_exist_ok=True)
-    if not installed.exists() or installed.read_bytes() != lock.read_bytes():
-        npm = subprocess.run(["npm", "ci", "--ignore-scripts", "--no-audit", "--no-fund", "--fetch-retries=1"], cwd=work,
-                             capture_output=True, text=True, check=False)
-        if npm.returncode != 0:
-            raise Skipped(f"npm cannot install canopen:\n{npm.stderr}")
-        installed.write_bytes(lock.read_bytes())
+    install_npm_packages(HERE / "node_canopen", work)
     return work / "master.js"
 
 

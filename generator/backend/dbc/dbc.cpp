@@ -1,0 +1,210 @@
+#include "backend/dbc/dbc.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <canopen/can/cob_id.hpp>
+#include <charconv>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "backend/dbc/dbc_name.hpp"
+#include "device/pdo/pdo_defaults.hpp"
+#include "device/types/little_endian.hpp"
+#include "device/types/value_bytes.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr std::uint8_t event_timer_sub_index = 5;
+constexpr std::uint64_t first_event_driven_type = 254;
+constexpr std::uint32_t extended_message = 0x8000'0000;  ///< in the number of a message
+
+/// The sections of the file after the messages, which are filled message by message.
+struct Sections {
+  std::string messages, comments, attributes, value_types;
+};
+
+struct Range {
+  std::string min = "0", max = "0";  ///< both 0: no limits
+};
+
+/// The factor of a vendor's key; 1 if it is missing or not a number.
+[[nodiscard]] double factor_of(const Entry& entry) {
+  double factor = 1;
+  const char* const end = entry.factor.data() + entry.factor.size();
+  const auto [rest, error] = std::from_chars(entry.factor.data(), end, factor);
+  return error == std::errc{} && rest == end && std::isfinite(factor) && factor != 0 ? factor : 1;
+}
+
+/// A raw value as the signal has it: times the factor.
+[[nodiscard]] std::string physical(std::uint64_t bits, const canopen::DataTypeRow& type, double factor) {
+  if (type.kind == canopen::DataClass::real) {
+    return factor == 1 ? real_text(bits, type) : fmt::format("{}", real_of(bits, type) * factor);
+  }
+  if (type.kind == canopen::DataClass::signed_integer) {
+    const auto number = static_cast<std::int64_t>(bits);
+    return factor == 1 ? fmt::format("{}", number) : fmt::format("{}", static_cast<double>(number) * factor);
+  }
+  return factor == 1 ? fmt::format("{}", bits) : fmt::format("{}", static_cast<double>(bits) * factor);
+}
+
+/// The limits of the EDS, else those of the type. A real number with one limit has none.
+[[nodiscard]] Range range_of(const Entry& entry, double factor) {
+  const canopen::DataTypeRow& type = *entry.type;
+  const bool is_real = type.kind == canopen::DataClass::real;
+  const bool is_signed = type.kind == canopen::DataClass::signed_integer;
+  if (is_real && !(entry.low_limit && entry.high_limit)) return {};
+  const std::uint64_t all = low_bits(type.bits);
+  const std::uint64_t lowest = is_signed ? ~(all >> 1) : 0;
+  const std::uint64_t highest = is_signed ? all >> 1 : all;
+  Range range{physical(entry.low_limit ? entry.low_limit->bits : lowest, type, factor),
+              physical(entry.high_limit ? entry.high_limit->bits : highest, type, factor)};
+  if (factor < 0) std::swap(range.min, range.max);
+  return range;
+}
+
+[[nodiscard]] bool is_number(const canopen::DataTypeRow& type) {
+  using enum canopen::DataClass;
+  return type.kind == boolean || type.kind == unsigned_integer || type.kind == signed_integer || type.kind == real;
+}
+
+/// The name of a signal: that of the object, and of the entry if it has sub-indices.
+[[nodiscard]] std::string signal_name(const Device& device, const Entry& entry) {
+  const Object* const object = device.find(entry.index);
+  if (object == nullptr || !object->has_sub_indices()) return entry.identifier;
+  return object->identifier + "_" + entry.identifier;
+}
+
+class DbcWriter {
+ public:
+  explicit DbcWriter(const Device& device) : device_{device}, node_{DbcNames{}.take(device.name)} {}
+
+  [[nodiscard]] Dbc write() {
+    for (const Pdo& pdo : device_.pdos) {
+      if (const std::string reason = why_left_out(pdo); !reason.empty()) {
+        add_note(pdo, reason);
+      } else {
+        add_message(pdo);
+        last_reason_.clear();
+      }
+    }
+    return {text(), std::move(notes_)};
+  }
+
+ private:
+  /// Empty if the PDO is a message.
+  [[nodiscard]] std::string why_left_out(const Pdo& pdo) {
+    if (pdo.broken) return "its mapping is invalid";
+    if (pdo.multiplexed) return "a multiplex PDO";
+    if (!on_by_default(pdo)) return "disabled by default";
+    const canopen::CobId cob_id = cob_id_of(pdo);
+    if (const auto [at, added] = can_ids_.insert({cob_id.can_id(), cob_id.extended()}); !added) {
+      return fmt::format("CAN-ID {:03X}h is that of another PDO", cob_id.can_id());
+    }
+    return {};
+  }
+
+  /// Consecutive PDOs with the same reason are one note: `TPDO 3 to TPDO 8: disabled by default`.
+  void add_note(const Pdo& pdo, const std::string& reason) {
+    if (reason != last_reason_ || notes_.empty()) {
+      notes_.emplace_back();
+      first_left_out_ = pdo_label(pdo);
+      last_reason_ = reason;
+    }
+    const std::string last = pdo_label(pdo);
+    notes_.back() = first_left_out_ + (last == first_left_out_ ? "" : " to " + last) + ": " + reason;
+  }
+
+  [[nodiscard]] static canopen::CobId cob_id_of(const Pdo& pdo) {
+    return canopen::CobId{static_cast<std::uint32_t>(communication_default(pdo, 1).value_or(0))};
+  }
+
+  void add_message(const Pdo& pdo) {
+    const bool transmits = pdo.direction == PdoDirection::transmit;
+    const canopen::CobId cob_id = cob_id_of(pdo);
+    const std::uint32_t id = cob_id.can_id() | (cob_id.extended() ? extended_message : 0);
+    const std::string suffix = fmt::format("_{}pdo_{}", transmits ? 't' : 'r', pdo.number);
+    const std::string long_name = device_.name + suffix;
+    const std::string name = device_.name.substr(0, max_dbc_name - suffix.size()) + suffix;
+    sections_.messages +=
+        fmt::format("\nBO_ {} {}: {} {}\n", id, name, (pdo.bits() + 7) / 8, transmits ? node_ : nobody);
+
+    const std::uint64_t type = communication_default(pdo, transmission_type_sub_index).value_or(0);
+    sections_.comments += fmt::format("CM_ BO_ {} \"{}, transmission type {}\";\n", id, pdo_label(pdo), type);
+    if (name != long_name) {
+      sections_.attributes += fmt::format("BA_ \"SystemMessageLongSymbol\" BO_ {} \"{}\";\n", id, long_name);
+    }
+    const std::uint64_t timer = communication_default(pdo, event_timer_sub_index).value_or(0);
+    if (transmits && type >= first_event_driven_type && timer != 0) {
+      sections_.attributes += fmt::format("BA_ \"GenMsgCycleTime\" BO_ {} {};\n", id, timer);
+    }
+    DbcNames signals;
+    unsigned start = 0;
+    for (const PdoEntry& mapped : pdo.entries) {
+      if (mapped.object != nullptr) add_signal(id, mapped, start, transmits, signals);
+      start += mapped.bits;
+    }
+  }
+
+  void add_signal(std::uint32_t message, const PdoEntry& mapped, unsigned start, bool transmits, DbcNames& names) {
+    const Entry& entry = *mapped.object;
+    const bool has_value = is_number(*entry.type);
+    const std::string long_name = signal_name(device_, entry);
+    const std::string name = names.take(long_name);
+    const double factor = has_value ? factor_of(entry) : 1;
+    const Range range = has_value ? range_of(entry, factor) : Range{};
+    const bool is_signed = entry.type->kind == canopen::DataClass::signed_integer;
+    sections_.messages +=
+        fmt::format(" SG_ {} : {}|{}@1{} ({},0) [{}|{}] {} {}\n", name, start, mapped.bits, is_signed ? '-' : '+',
+                    factor, range.min, range.max, dbc_string(entry.unit), transmits ? nobody : node_);
+    std::string comment = fmt::format("{} {}", entry_label(entry.index, entry.sub_index), entry.name);
+    if (!has_value) comment += fmt::format(", {} as a number", entry.type->name);
+    if (!entry.description.empty()) comment += ": " + entry.description;
+    sections_.comments += fmt::format("CM_ SG_ {} {} {};\n", message, name, dbc_string(comment));
+    if (name != long_name) {
+      sections_.attributes +=
+          fmt::format("BA_ \"SystemSignalLongSymbol\" SG_ {} {} \"{}\";\n", message, name, long_name);
+    }
+    if (entry.type->kind == canopen::DataClass::real) {
+      sections_.value_types += fmt::format("SIG_VALTYPE_ {} {} : {};\n", message, name, mapped.bits == 32 ? 1 : 2);
+    }
+  }
+
+  [[nodiscard]] std::string text() const {
+    return fmt::format(R"(VERSION ""
+
+NS_ :
+
+BS_:
+
+BU_: {}
+{}
+{}BA_DEF_ "BusType" STRING ;
+BA_DEF_ BO_ "GenMsgCycleTime" INT 0 65535;
+BA_DEF_ BO_ "SystemMessageLongSymbol" STRING ;
+BA_DEF_ SG_ "SystemSignalLongSymbol" STRING ;
+BA_DEF_DEF_ "BusType" "CAN";
+BA_DEF_DEF_ "GenMsgCycleTime" 0;
+BA_DEF_DEF_ "SystemMessageLongSymbol" "";
+BA_DEF_DEF_ "SystemSignalLongSymbol" "";
+{}{})",
+                       node_, sections_.messages, sections_.comments, sections_.attributes, sections_.value_types);
+  }
+
+  static constexpr const char* nobody = "Vector__XXX";  ///< the name that the format gives to an unknown node
+
+  const Device& device_;
+  std::string node_;
+  std::set<std::pair<std::uint32_t, bool>> can_ids_;
+  Sections sections_;
+  std::vector<std::string> notes_;
+  std::string first_left_out_, last_reason_;
+};
+
+}  // namespace
+
+Dbc dbc_of(const Device& device) { return DbcWriter{device}.write(); }
+
+}  // namespace edsc

@@ -1,0 +1,27 @@
+/// The PDOs of a device as a DBC file, the format in which CAN tools describe messages and signals.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "device/device.hpp"
+
+namespace edsc {
+
+struct Dbc {
+  std::string text;                ///< in code page 1252, which tools expect; other characters are `?`
+  std::vector<std::string> notes;  ///< PDOs that are left out, and why: `TPDO 3 to TPDO 8: disabled by default`
+};
+
+/// Returns a message for each default PDO that is enabled. `device` has a node-ID and the identifiers of its objects.
+///
+/// Signals are little-endian, at the bits of the mapping; dummy entries are gaps. Limits, factor and unit are those of
+/// the EDS; a factor that is not a number is ignored. An entry that is neither a number nor a BOOLEAN is an unsigned
+/// number of the same bits. Names have up to 32 characters, as the format requires; longer ones are also in the
+/// attributes SystemMessageLongSymbol and SystemSignalLongSymbol. GenMsgCycleTime is the event timer of a TPDO with
+/// transmission type 254 or 255, in milliseconds.
+///
+/// MPDOs and PDOs with an invalid mapping are left out, and those whose CAN-ID another PDO of the device already has.
+[[nodiscard]] Dbc dbc_of(const Device& device);
+
+}  // namespace edsc

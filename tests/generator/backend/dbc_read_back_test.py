@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+"""A DBC parser without edsc's code reads the files of `edsc generate --dbc` for the reference devices.
+
+    dbc_read_back_test.py SOURCE_DIR EDSC WORK_DIR
+
+Expected are the PDOs of the EDS files, which configparser reads. The parser is candied, which npm installs in WORK_DIR.
+Exit code 77: skipped.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE.parents[1] / "masters"), str(HERE.parents[1] / "support")]
+from data_sheet import TYPES, DataSheet  # noqa: E402
+from npm_packages import Skipped, install_npm_packages  # noqa: E402
+
+SKIPPED = 77
+NODE_ID = 5
+EXTENDED, INVALID = 1 << 29, 1 << 31
+DUMMIES = range(1, 0x20)
+
+
+def signal_of(sheet: DataSheet, word: int, start: int) -> dict:
+    index, sub, bits = word >> 16, word >> 8 & 0xFF, word & 0xFF
+    entry = sheet.get(index, sub)
+    low, high = (0, 1) if TYPES[entry.type][0] == "BOOLEAN" else entry.range_of_type()
+    return {"entry": f"{index:04X}h:{sub:02X}", "startBit": start, "length": bits, "signed": TYPES[entry.type][2],
+            "min": low if entry.low is None else entry.low, "max": high if entry.high is None else entry.high,
+            "endian": "Intel", "factor": 1, "offset": 0}
+
+
+def messages_of(sheet: DataSheet) -> dict[int, dict]:
+    """The enabled PDOs of the EDS, by the number of the message."""
+    messages = {}
+    for first, last, mapping in ((0x1400, 0x15FF, 0x200), (0x1800, 0x19FF, 0x200)):
+        for index in range(first, last + 1):
+            cob_id = sheet.default(index, 1, INVALID)
+            if cob_id & INVALID:
+                continue
+            signals, start = [], 0
+            for sub in range(1, sheet.default(index + mapping, 0, 0) + 1):
+                word = sheet.default(index + mapping, sub)
+                if word >> 16 not in DUMMIES:
+                    signals.append(signal_of(sheet, word, start))
+                start += word & 0xFF
+            number = cob_id & 0x1FFFFFFF | INVALID if cob_id & EXTENDED else cob_id & 0x7FF
+            timer = sheet.default(index, 5, 0) if first == 0x1800 and sheet.default(index, 2) >= 254 else 0
+            messages.setdefault(number, {"dlc": (start + 7) // 8, "cycle": timer, "signals": signals})
+    return messages
+
+
+def read_back(messages: list[dict]) -> dict[int, dict]:
+    """The same, from the output of candied. Its description of a signal begins with the index."""
+    found = {}
+    for message in messages:
+        signals = []
+        for signal in message["signals"].values():
+            keys = ("startBit", "length", "signed", "min", "max", "endian", "factor", "offset")
+            signals.append({"entry": signal["description"].split()[0], **{key: signal[key] for key in keys}})
+        number = message["id"]
+        cycle = message["attributes"].get("GenMsgCycleTime", {"value": 0})["value"]
+        found[number] = {"dlc": message["dlc"], "cycle": int(cycle), "signals": signals}
+    return found
+
+
+def main() -> int:
+    source, edsc, work = Path(sys.argv[1]), sys.argv[2], Path(sys.argv[3])
+    try:
+        install_npm_packages(HERE / "candied", work)
+    except Skipped as reason:
+        print(f"skipped: {reason}")
+        return SKIPPED
+    sheets = {path.stem: path for path in sorted((source / "eds").glob("*.eds"))}
+    problems = count = 0
+    with tempfile.TemporaryDirectory() as folder:
+        for name, path in sheets.items():
+            subprocess.run([edsc, "generate", path, "--options", path.with_suffix(".options.json"), "--node-id", str(NODE_ID),
+                            "--dbc", f"{folder}/{name}.dbc"], check=True, stderr=subprocess.DEVNULL)
+        files = [f"{folder}/{name}.dbc" for name in sheets]
+        output = subprocess.run(["node", work / "read_dbc.js", *files], check=True, capture_output=True, text=True).stdout
+        for (name, path), file in zip(sheets.items(), files):
+            expected, found = messages_of(DataSheet(path, NODE_ID)), read_back(json.loads(output)[file])
+            count += len(expected)
+            for number in sorted(expected.keys() | found.keys()):
+                if expected.get(number) != found.get(number):
+                    problems += 1
+                    print(f"{name}: message {number:X}h:\n  expected {expected.get(number)}\n  got      {found.get(number)}")
+    assert count > 8, "the EDS files have no PDOs"
+    print(f"{len(sheets)} files, {count} messages, {problems} problems")
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,111 @@
+#include "backend/dbc/dbc.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "backend/dbc/dbc_name.hpp"
+#include "support/device_from_text.hpp"
+
+namespace edsc {
+namespace {
+
+/// A communication parameter with sub-indices 1, 2 and 5, and a mapping parameter with these entries.
+std::string pdo(const std::string& index, const std::string& mapping_index, const std::string& cob_id,
+                const std::vector<std::string>& mapped, const std::string& type = "255",
+                const std::string& timer = "0") {
+  std::string text = group(index, "PDO communication parameter", "0x9", 4) +
+                     sub(index, 0, "Highest sub-index", "0x5", "DefaultValue=5\n") +
+                     sub(index, 1, "COB-ID", "0x7", "DefaultValue=" + cob_id + "\n") +
+                     sub(index, 2, "Transmission type", "0x5", "DefaultValue=" + type + "\n") +
+                     sub(index, 5, "Event timer", "0x6", "DefaultValue=" + timer + "\n");
+  text += group(mapping_index, "PDO mapping parameter", "0x9", static_cast<int>(mapped.size()) + 1) +
+          sub(mapping_index, 0, "Number of entries", "0x5", "DefaultValue=" + std::to_string(mapped.size()) + "\n");
+  int number = 0;
+  for (const std::string& entry : mapped) {
+    text += sub(mapping_index, ++number, "Entry", "0x7", "DefaultValue=" + entry + "\n");
+  }
+  return text;
+}
+
+std::string objects() {
+  const std::string mapped = "PDOMapping=1\n";
+  return "[DeviceInfo]\nGranularity=1\n[DummyUsage]\nDummy0005=1\n" + var("6040", "Controlword", "0x6", "rww", mapped) +
+         var("6041", "Statusword", "0x6", "ro", mapped + "LowLimit=1\nHighLimit=0x7FFF\n") +
+         var("6064", "Position actual value", "0x4", "ro", mapped + "Factor=0.5\nUnit=\xC2\xB0\n") +
+         var("2001", "Torque", "0x8", "ro", mapped + "Unit=Nm\n") + var("2002", "Ready", "0x1", "ro", mapped) +
+         var("2003", "Clock", "0xC", "ro", mapped) +
+         group("2010", "Axis values of the left hand side drive", "0x9", 3) +
+         sub("2010", 0, "Highest sub-index", "0x5", "DefaultValue=2\n") + sub("2010", 1, "Speed", "0x2", mapped) +
+         sub("2010", 2, "Slip", "0x2", mapped);
+}
+
+bool has_line(const Dbc& dbc, const std::string& line) {
+  return ("\n" + dbc.text).find("\n" + line + "\n") != std::string::npos;
+}
+
+Dbc dbc_from(const std::string& pdos, const std::string& name = "drive") {
+  const DeviceFromText read{objects() + pdos, {}, {.name = name, .node_id = 5}};
+  return dbc_of(read.device);
+}
+
+TEST(Dbc, HasATpdoWithTheTypesOfItsObjects) {
+  const Dbc dbc = dbc_from(
+      pdo("1800", "1A00", "$NODEID+0x180", {"0x60410010", "0x60640020", "0x20100108", "0x20020001"}, "254", "100"));
+  EXPECT_TRUE(has_line(dbc, "BU_: drive")) << dbc.text;
+  EXPECT_TRUE(has_line(dbc, "BO_ 389 drive_tpdo_1: 8 drive"));
+  EXPECT_TRUE(has_line(dbc, " SG_ statusword : 0|16@1+ (1,0) [1|32767] \"\" Vector__XXX"));
+  EXPECT_TRUE(
+      has_line(dbc, " SG_ position_actual_value : 16|32@1- (0.5,0) [-1073741824|1073741823.5] \"\xB0\" Vector__XXX"));
+  EXPECT_TRUE(has_line(dbc, " SG_ ready : 56|1@1+ (1,0) [0|1] \"\" Vector__XXX"));
+  EXPECT_TRUE(has_line(dbc, "CM_ BO_ 389 \"TPDO 1, transmission type 254\";"));
+  EXPECT_TRUE(has_line(dbc, "CM_ SG_ 389 statusword \"6041h:00 Statusword\";"));
+  EXPECT_TRUE(has_line(dbc, "BA_ \"GenMsgCycleTime\" BO_ 389 100;"));
+  EXPECT_TRUE(dbc.notes.empty());
+}
+
+TEST(Dbc, HasRealNumbersAndOtherTypesAsNumbers) {
+  const Dbc dbc = dbc_from(pdo("1801", "1A01", "0x60001234", {"0x20010020"}) +
+                           pdo("1802", "1A02", "$NODEID+0x380", {"0x20030030"}));
+  EXPECT_TRUE(has_line(dbc, "BO_ 2147488308 drive_tpdo_2: 4 drive")) << dbc.text;  // 29 bits: 8000'1234h
+  EXPECT_TRUE(has_line(dbc, " SG_ torque : 0|32@1+ (1,0) [0|0] \"Nm\" Vector__XXX"));
+  EXPECT_TRUE(has_line(dbc, "SIG_VALTYPE_ 2147488308 torque : 1;"));
+  EXPECT_TRUE(has_line(dbc, " SG_ clock : 0|48@1+ (1,0) [0|0] \"\" Vector__XXX"));
+  EXPECT_TRUE(has_line(dbc, "CM_ SG_ 901 clock \"2003h:00 Clock, TIME_OF_DAY as a number\";"));
+}
+
+TEST(Dbc, HasGapsForDummyEntriesOfAnRpdo) {
+  const Dbc dbc = dbc_from(pdo("1400", "1600", "$NODEID+0x200", {"0x00050008", "0x60400010"}));
+  EXPECT_TRUE(has_line(dbc, "BO_ 517 drive_rpdo_1: 3 Vector__XXX")) << dbc.text;
+  EXPECT_TRUE(has_line(dbc, " SG_ controlword : 8|16@1+ (1,0) [0|65535] \"\" drive"));
+}
+
+TEST(Dbc, ShortensLongNamesAndKeepsThemInAttributes) {
+  const Dbc dbc = dbc_from(pdo("1800", "1A00", "$NODEID+0x180", {"0x20100108", "0x20100208"}),
+                           "a_device_with_a_name_of_many_letters");
+  EXPECT_TRUE(has_line(dbc, "BU_: a_device_with_a_name_of_many_let")) << dbc.text;
+  EXPECT_TRUE(has_line(dbc, "BO_ 389 a_device_with_a_name_of_m_tpdo_1: 2 a_device_with_a_name_of_many_let"));
+  EXPECT_TRUE(
+      has_line(dbc, "BA_ \"SystemMessageLongSymbol\" BO_ 389 \"a_device_with_a_name_of_many_letters_tpdo_1\";"));
+  EXPECT_NE(dbc.text.find(" SG_ axis_values_of_the_left_hand_sid : 0|8@1- (1,0) [-128|127]"), std::string::npos);
+  EXPECT_NE(dbc.text.find(" SG_ axis_values_of_the_left_hand_s_2 : 8|8@1- (1,0) [-128|127]"), std::string::npos);
+  EXPECT_TRUE(has_line(dbc,
+                       "BA_ \"SystemSignalLongSymbol\" SG_ 389 axis_values_of_the_left_hand_s_2 "
+                       "\"axis_values_of_the_left_hand_side_drive_slip\";"));
+}
+
+TEST(Dbc, NamesThePdosThatItDoesNotHave) {
+  const Dbc dbc = dbc_from(pdo("1800", "1A00", "$NODEID+0x180", {"0x60410010"}) +
+                           pdo("1801", "1A01", "$NODEID+0x180", {"0x60410010"}) +
+                           pdo("1802", "1A02", "$NODEID+0x80000380", {"0x60410010"}) +
+                           pdo("1803", "1A03", "$NODEID+0x80000480", {"0x60410010"}));
+  EXPECT_EQ(dbc.notes, (std::vector<std::string>{"TPDO 2: CAN-ID 185h is that of another PDO",
+                                                 "TPDO 3 to TPDO 4: disabled by default"}));
+}
+
+TEST(DbcString, CannotBeEndedByItsContents) {
+  EXPECT_EQ(dbc_string("a \"b\"\n\xC2\xB5m \xCE\xBCm \xE2\x84\xA6"), "\"a 'b' \xB5m \xB5m ?\"");
+}
+
+}  // namespace
+}  // namespace edsc
