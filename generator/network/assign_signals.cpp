@@ -23,7 +23,6 @@ constexpr unsigned max_bits = 64;
 constexpr std::size_t max_entries = 8;            // of a new PDO, as in devices with 8 entries
 constexpr std::uint16_t first_received = 0x2000;  // of a master without a file: + node-ID of the sender
 constexpr std::uint16_t first_sent = 0x2100;      // + node-ID of the receiver
-constexpr std::uint8_t event_timer_sub_index = 5;
 
 /// Signals that share PDOs: one sender, one timing, the same receivers.
 struct SignalGroup {

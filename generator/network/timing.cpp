@@ -15,8 +15,6 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-constexpr std::uint8_t inhibit_time_sub_index = 3;
-constexpr std::uint8_t event_timer_sub_index = 5;
 constexpr std::uint8_t time_of_day_bytes = 6;
 constexpr std::uint8_t nmt_command_bytes = 2;
 

@@ -17,7 +17,6 @@
 namespace edsc {
 namespace {
 
-constexpr std::uint8_t event_timer_sub_index = 5;
 constexpr std::uint64_t first_event_driven_type = 254;
 constexpr std::uint32_t extended_message = 0x8000'0000;  ///< in the number of a message
 

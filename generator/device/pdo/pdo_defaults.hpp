@@ -9,8 +9,10 @@
 
 namespace edsc {
 
-/// Sub-index of the transmission type in a communication parameter (CiA 301, 7.5.2.35).
+/// Sub-indices of a communication parameter (CiA 301, 7.5.2.35 and 7.5.2.37).
 inline constexpr std::uint8_t transmission_type_sub_index = 2;
+inline constexpr std::uint8_t inhibit_time_sub_index = 3;  ///< in multiples of 100 us
+inline constexpr std::uint8_t event_timer_sub_index = 5;   ///< in ms
 
 /// Whether the PDO is valid after a reset: bit 31 of its COB-ID is 0.
 [[nodiscard]] bool on_by_default(const Pdo& pdo);
