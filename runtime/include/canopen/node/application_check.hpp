@@ -237,6 +237,7 @@ struct OtherThan {
   requires(!std::same_as<std::remove_cv_t<U>, T>) operator U&() const;  // NOLINT(google-explicit-constructor): a value
 };
 
+/// `T` once for each element of a pack of numbers or types.
 template <class T, std::size_t>
 using Repeated = T;
 

@@ -104,9 +104,9 @@ struct Handled<Device, Node, ReadHandler<O, F>> : HandlesNothing {
 
 template <class Device, class Node, class Event, class F>
 struct Handled<Device, Node, EventHandler<Event, F>> : HandlesNothing {
-  template <class Told, class... Arguments>
+  template <class Notified, class... Arguments>
   static constexpr void notify(EventHandler<Event, F>& handler, Node& node, const Arguments&... arguments) {
-    if constexpr (std::is_same_v<Told, Event>) call(handler.call, node, arguments...);
+    if constexpr (std::is_same_v<Notified, Event>) call(handler.call, node, arguments...);
   }
 };
 
