@@ -13,6 +13,8 @@ extern const Constructor __init_array_start__;
 extern const Constructor __init_array_end__;
 [[noreturn]] void reset();
 [[noreturn]] void halt();
+/// A program may define it instead.
+[[noreturn, gnu::nothrow, gnu::weak, gnu::alias("halt")]] void SysTick_Handler();
 }
 
 int main();
@@ -26,7 +28,8 @@ struct Vectors {
 };
 [[gnu::section(".vectors"), gnu::used]] constexpr Vectors vectors{
     &__stack_top__,
-    {reset, halt, halt, halt, halt, halt, nullptr, nullptr, nullptr, nullptr, halt, halt, nullptr, halt, halt}};
+    {reset, halt, halt, halt, halt, halt, nullptr, nullptr, nullptr, nullptr, halt, halt, nullptr, halt,
+     SysTick_Handler}};
 
 }  // namespace
 

@@ -23,15 +23,18 @@ using interrupts::MeasuringTimer;
 constinit InterruptSerialBus bus;
 constinit canopen::Mailbox<pump::od::pressure> measured;
 
-/// Measures while the node is Operational.
-auto node = canopen::make_node<pump::Device>(bus, canopen::values_from(measured),
-                                             canopen::on_state([](canopen::NmtState state) {
-                                               if (state == canopen::NmtState::operational) {
-                                                 MeasuringTimer::start(50ms);
-                                               } else {
-                                                 MeasuringTimer::stop();
-                                               }
-                                             }));
+struct MeasuringPump {
+  /// Measures while the node is Operational.
+  void on_state(canopen::NmtState state) {
+    if (state == canopen::NmtState::operational) {
+      MeasuringTimer::start(50ms);
+    } else {
+      MeasuringTimer::stop();
+    }
+  }
+};
+
+auto node = canopen::make_node<pump::Device>(bus, MeasuringPump{}, canopen::values_from(measured));
 
 void on_uart_received() {
   board::word_at(interrupts::uart_clear) = 2;

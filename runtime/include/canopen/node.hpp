@@ -308,7 +308,7 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
     state_ = next;
     services_.on_state(host(), before, next);
     attention_ = true;
-    handlers_.template tell_while<function::OnState>(
+    handlers_.template notify_while<function::OnState>(
         *this, [&] { return state_ == next; }, next);
   }
 

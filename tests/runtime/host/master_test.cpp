@@ -6,6 +6,7 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <sample/device.hpp>
 #include <string>
 #include <vector>
 
@@ -64,6 +65,51 @@ TEST(Master, DoesNotTakeALateAnswerThatIsUnreadForThatOfItsNextRequest) {
   bus.answers["605 2F 00 20 00 07 00 00 00"] = "585 80 00 20 00 31 00 09 06";
   const std::uint8_t seven = 7;
   EXPECT_EQ(master.download(NodeId{5}, 0x2000, 0, {&seven, 1}).abort_code(), AbortCode::value_too_high);
+}
+
+TEST(Master, ReadsAndWritesTypedObjectsWithoutWaiting) {
+  namespace od = sample::od;
+  ScriptedBus bus;
+  canopen::Master master{bus};
+  auto remote = master.remote<sample::Device>(NodeId{5});
+  std::optional<canopen::Result<std::int16_t>> word;
+  std::optional<canopen::Result<od::visible_string_value::type>> text;
+  std::optional<canopen::Result<void>> written;
+
+  bus.answers["605 40 02 20 00 00 00 00 00"] = "585 4B 02 20 00 34 12 00 00";
+  EXPECT_TRUE(remote.read(od::integer16_value{}, [&](canopen::Result<std::int16_t> result) { word = result; }));
+  EXPECT_FALSE(word);  // not before `poll`
+  master.poll(1ms);
+  ASSERT_TRUE(word && *word);
+  EXPECT_EQ(**word, 0x1234);
+
+  bus.answers["605 40 02 20 00 00 00 00 00"] = "585 4F 02 20 00 34 00 00 00";  // one byte
+  EXPECT_TRUE(remote.read(od::integer16_value{}, [&](const auto& result) { word = result; }));
+  master.poll(1ms);
+  EXPECT_EQ(word->abort_code(), AbortCode::length_mismatch);
+
+  bus.answers["605 2B 02 20 00 07 00 00 00"] = "585 60 02 20 00 00 00 00 00";
+  EXPECT_TRUE(remote.write(od::integer16_value{}, 7, [&](canopen::Result<void> result) { written = result; }));
+  EXPECT_FALSE(written);
+  master.poll(1ms);
+  EXPECT_TRUE(written && *written);
+
+  bus.answers["605 40 0C 20 00 00 00 00 00"] = "585 43 0C 20 00 41 42 43 44";
+  EXPECT_TRUE(remote.read(od::visible_string_value{}, [&](const auto& result) { text = result; }));
+  master.poll(1ms);
+  ASSERT_TRUE(text && *text);
+  EXPECT_EQ((**text).view(), "ABCD");
+
+  bus.answers.clear();
+  EXPECT_TRUE(remote.read(od::integer16_value{}, [&](const auto& result) { word = result; }));
+  EXPECT_TRUE(remote.write(od::integer16_value{}, 8, [&](canopen::Result<void> result) { written = result; }));
+  for (int i = 0; i < 20; ++i) master.poll(100ms);
+  EXPECT_EQ(word->abort_code(), AbortCode::timeout);
+  EXPECT_EQ(written->abort_code(), AbortCode::timeout);
+
+  const auto refused = remote.write(od::integer8_value{}, 101, [](canopen::Result<void>) { ADD_FAILURE(); });
+  EXPECT_EQ(refused.abort_code(), AbortCode::value_too_high);
+  master.poll(1s);
 }
 
 TEST(Master, StillTellsOfAFrameThatCameBeforeARequest) {

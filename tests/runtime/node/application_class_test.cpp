@@ -326,4 +326,22 @@ TEST(ObjectValues, CheckAValueOfTheRunningProgram) {
   EXPECT_EQ(device.node.get(od::signed_24_bits{}), -8'388'608);
 }
 
+struct EventForms {
+  void on_state(auto) { ++calls; }
+  void on_sync(auto...) { ++calls; }
+  void on_emergency(const canopen::ConsumedEmergency&, auto&) {}
+  void on_heartbeat(canopen::HeartbeatEvent, canopen::NodeId, NmtState, auto&) {}
+  static void on_error(std::uint16_t) {}
+  int calls = 0;
+};
+
+TEST(Application, AcceptsEachFormOfAFunctionOfAnEvent) {
+  EventForms application;
+  auto device = bench::with<every_service::Device>(canopen::application_at(application));
+  device.ask("000 01 05");
+  const int before = application.calls;
+  device.ask("080");
+  EXPECT_EQ(application.calls, before + 1);
+}
+
 }  // namespace

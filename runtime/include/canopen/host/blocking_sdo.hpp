@@ -57,6 +57,21 @@ template <NumberObject O>
   return value_detail::value_from<O>(std::span{bytes}.first(size));
 }
 
+/// Returns a string of a device from its bytes, or why it is not one: 0607 0012h if it is longer than in the EDS.
+template <StringObject O, class Device>
+[[nodiscard]] Result<typename O::type> text_from(const Result<std::vector<std::uint8_t>>& bytes) {
+  if (!bytes) return bytes.abort_code();
+  typename O::type text{};
+  std::size_t size = bytes->size();
+  constexpr bool terminated =
+      Device::dictionary.zero_terminated_strings && std::is_convertible_v<decltype(text.view()), std::string_view>;
+  if (terminated && size != 0 && bytes->back() == 0) --size;
+  if (size > text.capacity()) return AbortCode::length_too_high;
+  std::copy_n(bytes->begin(), size, text.bytes.begin());
+  text.size = static_cast<std::uint16_t>(size);
+  return text;
+}
+
 /// Access to the objects of a device by their generated types, with an `Sdo` that has
 ///   read_number(NodeId, index, sub_index, memory) -> SdoAnswer
 ///   upload(NodeId, index, sub_index) -> Result<std::vector<std::uint8_t>>
@@ -79,17 +94,7 @@ class BlockingObjects {
   template <StringObject O>
   requires ObjectOf<O, Device> && RemoteReadable<O>
   [[nodiscard]] Result<typename O::type> read() {
-    const Result<std::vector<std::uint8_t>> bytes = sdo_.upload(node_, O::index, O::sub_index);
-    if (!bytes) return bytes.abort_code();
-    typename O::type text{};
-    std::size_t size = bytes->size();
-    constexpr bool terminated =
-        Device::dictionary.zero_terminated_strings && std::is_convertible_v<decltype(text.view()), std::string_view>;
-    if (terminated && size != 0 && bytes->back() == 0) --size;
-    if (size > text.capacity()) return AbortCode::length_too_high;
-    std::copy_n(bytes->begin(), size, text.bytes.begin());
-    text.size = static_cast<std::uint16_t>(size);
-    return text;
+    return text_from<O, Device>(sdo_.upload(node_, O::index, O::sub_index));
   }
 
   /// Reads the bytes of a DOMAIN.

@@ -18,6 +18,7 @@
 #include "canopen/base/clock.hpp"
 #include "canopen/can/frame.hpp"
 #include "canopen/host/event_descriptor.hpp"
+#include "canopen/host/host_loop.hpp"
 #include "canopen/host/slcan.hpp"
 #include "canopen/host/socketcan.hpp"
 #include "canopen/host/socketcand.hpp"
@@ -44,7 +45,7 @@ class HostBus {
 
   /// Starts a node and runs it until `stop` is true, which is checked at least ten times a second.
   template <class Node>
-  void run(Node& node, const std::atomic<bool>& stop) {
+  void run(Node& node, const std::atomic<bool>& stop = host_loop::never) {
     std::visit([&](auto& port) { port.run(node, stop); }, port_);
   }
 

@@ -34,6 +34,7 @@ namespace host_loop {
 inline constexpr Duration look_at_stop{100'000};
 inline constexpr Duration try_again{1'000};     ///< after a frame for which there was no room
 inline constexpr Duration look_again{100'000};  ///< interval of checks whether a bus that is off or down is back
+inline const std::atomic<bool> never{false};    ///< as `stop`: runs until the process ends
 inline constexpr std::size_t burst = 64;        ///< maximum number of frames between two checks of the deadlines
 
 /// Passes events to the node, and the present time, which it returns.

@@ -5,10 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <span>
 #include <tuple>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "canopen/base/abort_code.hpp"
 #include "canopen/base/bytes.hpp"
@@ -16,6 +18,7 @@
 #include "canopen/can/frame.hpp"
 #include "canopen/can/node_id.hpp"
 #include "canopen/host/blocking_sdo.hpp"
+#include "canopen/host/master_transfers.hpp"
 #include "canopen/od/object.hpp"
 #include "canopen/pdo/pdo_list.hpp"
 #include "canopen/pdo/remapping.hpp"
@@ -47,7 +50,7 @@ class MasterRemote {
 
   [[nodiscard]] NodeId node_id() const { return node_id_; }
 
-  /// Reads an object: `read(od::x{})` or `read<od::x>()`.
+  /// Reads an object, and waits for the result while the master goes on: `read(od::x{})` or `read<od::x>()`.
   template <DictionaryObject O>
   [[nodiscard]] auto read(O = {}) {
     return objects().template read<O>();
@@ -65,6 +68,36 @@ class MasterRemote {
   template <DictionaryObject O, auto Value>
   Result<void> write() {
     return objects().template write<O, Value>();
+  }
+
+  /// Starts to read an object and returns; `done(result)` is called from `poll` with a Result of its type, for a DOMAIN
+  /// of its bytes, exactly once unless this call is rejected: 060A 0023h, too many requests are pending.
+  template <DictionaryObject O, class Done>
+  requires ObjectOf<O, Device> && RemoteReadable<O> Result<void> read(O, Done done) {
+    if constexpr (NumberObject<O>) {
+      auto& transfer = master_.transfers_.add(
+          node_id_, O::index, O::sub_index, [done = std::move(done)](MasterTransfers::Transfer& ended) mutable {
+            const std::size_t size = ended.result == ok ? ended.size : 0;
+            done(number_from<O>({ended.result, std::span{ended.bytes}.first(size), ended.size_known}));
+          });
+      return master_.begin(transfer, MasterTransfers::upload(transfer, sizeof(std::uint64_t)));
+    } else {
+      return master_.begin_upload(node_id_, O::index, O::sub_index,
+                                  [done = std::move(done)](const Result<std::vector<std::uint8_t>>& bytes) mutable {
+                                    if constexpr (StringObject<O>) {
+                                      done(text_from<O, Device>(bytes));
+                                    } else {
+                                      done(bytes);
+                                    }
+                                  });
+    }
+  }
+  /// Starts to write an object and returns; `done(result)` is called from `poll` with a Result<void>, exactly once
+  /// unless this call is rejected: 060A 0023h, or a value outside the limits.
+  template <DictionaryObject O, class V, class Done>
+  Result<void> write(O object, const V& value, Done done) {
+    Begins begins{master_, std::move(done)};
+    return BlockingObjects<Device, Begins>{begins, node_id_}.write(object, value);
   }
 
   /// Calls the handler from now on with the values of each TPDO with this layout: `handler(values...)`. Its COB-ID is
@@ -142,6 +175,15 @@ class MasterRemote {
          [handler = std::move(handler)](const Frame& frame) mutable { std::apply(handler, Layout::unpack(frame)); }});
     return ok;
   }
+  /// Starts a download in place of waiting for it.
+  struct Begins {
+    Master<B>& master;
+    std::function<void(Result<void>)> done;
+    Result<void> download(NodeId node_id, std::uint16_t index, std::uint8_t sub_index,
+                          std::span<const std::uint8_t> bytes) {
+      return master.begin_download(node_id, index, sub_index, bytes, std::move(done));
+    }
+  };
   [[nodiscard]] BlockingObjects<Device, Master<B>> objects() { return {master_, node_id_}; }
 
   Master<B>& master_;

@@ -72,7 +72,7 @@ class SocketCan {
   /// Starts a node and runs it until `stop` is true, which is checked after each frame and deadline, and ten
   /// times a second.
   template <class Node>
-  void run(Node& node, const std::atomic<bool>& stop) {
+  void run(Node& node, const std::atomic<bool>& stop = host_loop::never) {
     host_loop::run(*this, node, stop);
   }
 

@@ -60,7 +60,7 @@ class StreamPort {
 
   /// Starts a node and runs it until `stop` is true, which is checked at least ten times a second.
   template <class Node>
-  void run(Node& node, const std::atomic<bool>& stop) {
+  void run(Node& node, const std::atomic<bool>& stop = host_loop::never) {
     host_loop::run(*this, node, stop);
   }
 

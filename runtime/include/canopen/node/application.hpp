@@ -179,8 +179,8 @@ struct Handled<Device, Node, H> {
     });
   }
   template <class Event, class... Arguments>
-  static constexpr void tell([[maybe_unused]] H& handler, [[maybe_unused]] Node& node,
-                             [[maybe_unused]] const Arguments&... arguments) {
+  static constexpr void notify([[maybe_unused]] H& handler, [[maybe_unused]] Node& node,
+                               [[maybe_unused]] const Arguments&... arguments) {
     if constexpr (has_function<Event, Application, Node, Exactly<Arguments>...>)
       call_function<Event>(ApplicationOf<H>::get(handler), node, arguments...);
   }

@@ -216,9 +216,10 @@ template <class Device, class Node, class A, class Function>
 }
 
 /// The function of an event.
-template <class Application, class Event, class Label, bool Fits, bool Exists>
+template <class Application, class Event, class Label, bool Fits, bool Single, bool Exists>
 struct ApplicationEvent {
   static_assert(Fits, "application: the parameters of this function are not those of its event");
+  static_assert(!Fits || Single, "application: a second function of this name can never be called");
   static_assert(Exists, "application: this device does not have the object that this event needs");
   static constexpr bool is_good = true;
 };
@@ -229,13 +230,65 @@ struct EventObject {
   static constexpr std::uint8_t sub_index = 0;
 };
 
+/// Converts to references to each type but `T`.
+template <class T>
+struct OtherThan {
+  template <class U>
+  requires(!std::same_as<std::remove_cv_t<U>, T>) operator U&() const;  // NOLINT(google-explicit-constructor): a value
+};
+
+/// `T` once for each element of a pack of numbers or types.
+template <class T, std::size_t>
+using Repeated = T;
+
+/// Whether no function of an event accepts this number of arguments of any type.
+template <class Event, class A, std::size_t... I>
+[[nodiscard]] constexpr bool none_with(std::index_sequence<I...>) {
+  return none_fits<Event, A, Repeated<AnyReference, I>...>;
+}
+
+/// Whether no function of an event accepts another type than that of the argument `At`.
+template <class Event, class A, class... Arguments, std::size_t At, std::size_t... I>
+[[nodiscard]] constexpr bool none_with_another(function::ArgumentList<Arguments...>,
+                                               std::integral_constant<std::size_t, At>, std::index_sequence<I...>) {
+  return none_fits<Event, A, std::conditional_t<I == At, OtherThan<Arguments>, AnyReference>...> &&
+         none_fits<Event, A, std::conditional_t<I == At, OtherThan<Arguments>, AnyReference>..., AnyReference>;
+}
+
+/// Whether an application has no overload of the function of an event that is never called: with other parameters, or
+/// both with the node and without it. A template that accepts every type is the only function.
+template <class Event, class A, class Node, class... Arguments>
+[[nodiscard]] constexpr bool is_only(function::ArgumentList<Arguments...> arguments) {
+  using Order = std::index_sequence_for<Arguments...>;
+  constexpr std::size_t count = sizeof...(Arguments);
+  if constexpr (!none_fits<Event, A, Repeated<NoObject, sizeof(Arguments)>...> ||
+                !none_fits<Event, A, Repeated<NoObject, sizeof(Arguments)>..., NoObject>) {
+    return true;
+  } else {
+    constexpr bool with_node = requires(A & application, Node & node) {
+      Event::call(application, std::declval<Exactly<Arguments>&>()..., node);
+    };
+    constexpr bool without_node = requires(A & application) {
+      Event::call(application, std::declval<Exactly<Arguments>&>()...);
+    };
+    return !(with_node && without_node) && none_with<Event, A>(std::make_index_sequence<count - 1>{}) &&
+           none_with<Event, A>(std::make_index_sequence<count + 2>{})&& [&]<std::size_t... At>(
+               std::index_sequence<At...>) {
+      return (none_with_another<Event, A>(arguments, std::integral_constant<std::size_t, At>{}, Order{}) && ...);
+    }
+    (Order{});
+  }
+}
+template <class Event, class A, class Node>
+inline constexpr bool is_only_function = is_only<Event, A, Node>(typename Event::Arguments{});
+
 template <class Device, class Node, class A, class Event>
 [[nodiscard]] constexpr bool check_event() {
   if constexpr (!Event::template is_declared<A>) {
     return true;
   } else {
     return ApplicationEvent < A, Event, pdo_detail::LabelOf<EventObject<Event::object>>, has_event<Event, A, Node>,
-           Event::object == 0 || Device::dictionary.has(Event::object, 0) > ::is_good;
+           is_only_function<Event, A, Node>, Event::object == 0 || Device::dictionary.has(Event::object, 0) > ::is_good;
   }
 }
 

@@ -68,7 +68,7 @@ struct HandlesNothing {
   }
   /// Calls the function of an event, if the handler has it.
   template <class Event, class H, class Node, class... Arguments>
-  static constexpr void tell(H&, Node&, const Arguments&...) {}
+  static constexpr void notify(H&, Node&, const Arguments&...) {}
 };
 
 /// `Node` may be incomplete.
@@ -104,9 +104,9 @@ struct Handled<Device, Node, ReadHandler<O, F>> : HandlesNothing {
 
 template <class Device, class Node, class Event, class F>
 struct Handled<Device, Node, EventHandler<Event, F>> : HandlesNothing {
-  template <class Told, class... Arguments>
-  static constexpr void tell(EventHandler<Event, F>& handler, Node& node, const Arguments&... arguments) {
-    if constexpr (std::is_same_v<Told, Event>) call(handler.call, node, arguments...);
+  template <class Notified, class... Arguments>
+  static constexpr void notify(EventHandler<Event, F>& handler, Node& node, const Arguments&... arguments) {
+    if constexpr (std::is_same_v<Notified, Event>) call(handler.call, node, arguments...);
   }
 };
 

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #include "canopen/base/label.hpp"
 #include "canopen/lss/lss_handler.hpp"
@@ -21,8 +22,11 @@ namespace handler_detail {
 
 template <class H>
 struct KnownHandler {
+  static constexpr bool is_final = std::is_final_v<typename ApplicationOf<H>::type>;
+  static_assert(is_handler<H> || !is_final,
+                "application: the class is final; without `final` it can be one: a derived class finds its functions");
   static_assert(
-      is_handler<H> || is_application<typename ApplicationOf<H>::type>,
+      is_handler<H> || is_final || is_application<typename ApplicationOf<H>::type>,
       "not a handler: pass on_write(object, ...), on_read(object, ...), on_state(...) or another on_...(), or "
       "an application, a class with functions of canopen/node/functions.hpp; a node-ID is NodeId{n}");
   static constexpr bool is_good = true;

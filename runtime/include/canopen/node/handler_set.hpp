@@ -134,14 +134,14 @@ class HandlerSet {
 
   /// Calls all functions of an event, a row of node/functions.hpp.
   template <class Event, class... Arguments>
-  void tell(Node& node, const Arguments&... arguments) {
-    for_each([&]<class H>(H& handler) { Handled<H>::template tell<Event>(handler, node, arguments...); });
+  void notify(Node& node, const Arguments&... arguments) {
+    for_each([&]<class H>(H& handler) { Handled<H>::template notify<Event>(handler, node, arguments...); });
   }
   /// The same while `holds()` is true: a function may end what it learns of.
   template <class Event, class Holds, class... Arguments>
-  void tell_while(Node& node, const Holds& holds, const Arguments&... arguments) {
+  void notify_while(Node& node, const Holds& holds, const Arguments&... arguments) {
     for_each([&]<class H>(H& handler) {
-      if (holds()) Handled<H>::template tell<Event>(handler, node, arguments...);
+      if (holds()) Handled<H>::template notify<Event>(handler, node, arguments...);
     });
   }
 

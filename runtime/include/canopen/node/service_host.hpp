@@ -84,8 +84,8 @@ class ServiceHost {
   [[nodiscard]] auto& handler_calls() { return node().handler_calls_; }
   /// Calls the handlers of an event, a row of node/functions.hpp.
   template <class Event, class... Arguments>
-  void tell(const Arguments&... arguments) {
-    node().handlers_.template tell<Event>(node(), arguments...);
+  void notify(const Arguments&... arguments) {
+    node().handlers_.template notify<Event>(node(), arguments...);
   }
 
   // Errors

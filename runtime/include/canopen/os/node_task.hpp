@@ -32,7 +32,8 @@ concept FrameSource = requires(T& port) {
 template <class Node, FrameSource Port, TaskSystem System>
 class NodeTask {
  public:
-  constexpr NodeTask(Node& node, Port& port, System& system) : node_{node}, port_{port}, system_{system} {}
+  constexpr NodeTask(Node& task_node, Port& source, System& task_system)
+      : node_{task_node}, port_{source}, system_{task_system} {}
 
   /// Starts the node and runs it. Does not return.
   [[noreturn]] void run() {

@@ -37,7 +37,7 @@ concept InterruptingController = CanController<T> && requires(T& can) {
 template <InterruptingController Can, std::size_t Capacity = 16>
 class InterruptPort {
  public:
-  explicit constexpr InterruptPort(Can& can) : can_{can} {}
+  explicit constexpr InterruptPort(Can& driver) : can_{driver} {}
 
   /// Moves all frames of the controller to the queue.
   void on_interrupt() {

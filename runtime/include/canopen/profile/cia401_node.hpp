@@ -11,42 +11,33 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <utility>
 
 #include "canopen/base/clock.hpp"
 #include "canopen/can/bus_status.hpp"
-#include "canopen/can/frame.hpp"
 #include "canopen/can/node_id.hpp"
 #include "canopen/nmt/heartbeat_consumer.hpp"
 #include "canopen/nmt/nmt.hpp"
 #include "canopen/node.hpp"
 #include "canopen/profile/cia401.hpp"
+#include "canopen/profile/profile_node.hpp"
 
 namespace canopen::cia401 {
 
 /// `Handlers`: further handlers of the node, an application class, a storage. Blocks and channels count from 0.
 template <class Device, Bus B, class Terminals, class... Handlers>
-class ModuleNode {
+class ModuleNode : public ProfileNode<ModuleNode<Device, B, Terminals, Handlers...>> {
+  friend ProfileNode<ModuleNode>;
+
  public:
   constexpr ModuleNode(B& bus, NodeId node_id, Handlers... handlers)
       : node_{bus,
               node_id,
-              on_state(StateTeller{this}),
-              on_life_guarding(GuardTeller{this}),
-              on_heartbeat(HeartbeatTeller{this}),
+              on_state(StateWatch{this}),
+              on_life_guarding(GuardWatch{this}),
+              on_heartbeat(HeartbeatWatch{this}),
               std::move(handlers)...} {}
-  ModuleNode(const ModuleNode&) = delete;
-  ModuleNode& operator=(const ModuleNode&) = delete;
 
-  void start(TimePoint now) {
-    node_.start(now);
-    on_time(now);
-  }
-  void on_frame(const Frame& frame, TimePoint now) {
-    node_.on_frame(frame, now);
-    update();
-  }
   /// Reads the inputs, sets the outputs and sends what is due. Call it at `next_deadline`, and as often as the inputs
   /// are to be read.
   void on_time(TimePoint now) {
@@ -54,7 +45,6 @@ class ModuleNode {
     node_.on_time(now);
     update();
   }
-  [[nodiscard]] std::optional<TimePoint> next_deadline() const { return node_.next_deadline(); }
   void on_bus_status(const BusStatus& status, TimePoint now) {
     node_.on_bus_status(status, now);
     if (outputs_fail(status)) fail();
@@ -63,26 +53,29 @@ class ModuleNode {
 
   [[nodiscard]] Terminals& terminals() { return terminals_; }
   [[nodiscard]] auto& node() { return node_; }
+  [[nodiscard]] const auto& node() const { return node_; }
 
  private:
-  struct StateTeller {
+  struct StateWatch {
     ModuleNode* module;
     void operator()(NmtState state) const {
       if (outputs_fail(state)) module->fail();
     }
   };
-  struct GuardTeller {
+  struct GuardWatch {
     ModuleNode* module;
     void operator()(bool lost) const {
       if (lost) module->fail();
     }
   };
-  struct HeartbeatTeller {
+  struct HeartbeatWatch {
     ModuleNode* module;
     void operator()(HeartbeatEvent event, NodeId, NmtState) const {
       if (outputs_fail(event)) module->fail();
     }
   };
+
+  void after_event(TimePoint) { update(); }
 
   void sample() {
     for (std::uint8_t i = 0; i < DigitalInputs<Device>::blocks; ++i) {
@@ -112,7 +105,7 @@ class ModuleNode {
   [[no_unique_address]] DigitalOutputs<Device> digital_outputs_{};
   [[no_unique_address]] AnalogueInputs<Device> analogue_inputs_{};
   [[no_unique_address]] AnalogueOutputs<Device> analogue_outputs_{};
-  Node<Device, B, StateHandler<StateTeller>, LifeGuardingHandler<GuardTeller>, HeartbeatHandler<HeartbeatTeller>,
+  Node<Device, B, StateHandler<StateWatch>, LifeGuardingHandler<GuardWatch>, HeartbeatHandler<HeartbeatWatch>,
        Handlers...>
       node_;
 };

@@ -11,8 +11,6 @@
 #include <utility>
 
 #include "canopen/base/clock.hpp"
-#include "canopen/can/bus_status.hpp"
-#include "canopen/can/frame.hpp"
 #include "canopen/can/node_id.hpp"
 #include "canopen/emcy/emcy_producer.hpp"
 #include "canopen/emcy/error_register.hpp"
@@ -21,28 +19,20 @@
 #include "canopen/profile/cia402.hpp"
 #include "canopen/profile/cia402_axis.hpp"
 #include "canopen/profile/cia402_options.hpp"
+#include "canopen/profile/profile_node.hpp"
 
 namespace canopen::cia402 {
 
 /// The axis is a member. It may also have the functions of NoApplication, profile/cia402.hpp, for what is specific to
 /// the manufacturer. `Handlers`: further handlers of the node, an application class, a storage.
 template <class Device, Bus B, Axis A, Options options = Options{}, class... Handlers>
-class DriveNode {
+class DriveNode : public ProfileNode<DriveNode<Device, B, A, options, Handlers...>> {
+  friend ProfileNode<DriveNode>;
+
  public:
   constexpr DriveNode(B& bus, NodeId node_id, Handlers... handlers)
       : node_{bus, node_id, drive_.error_handler(), Restart{&drive_}, std::move(handlers)...} {}
-  DriveNode(const DriveNode&) = delete;
-  DriveNode& operator=(const DriveNode&) = delete;
 
-  /// Power-on: the axis has no power, and the node starts.
-  void start(TimePoint now) {
-    node_.start(now);
-    on_time(now);
-  }
-  void on_frame(const Frame& frame, TimePoint now) {
-    node_.on_frame(frame, now);
-    on_time(now);
-  }
   /// Moves the axis and sends what is due. Call it at `next_deadline`, and after the axis has changed by itself.
   void on_time(TimePoint now) {
     drive_.on_time(node_, now, axis_);
@@ -52,10 +42,6 @@ class DriveNode {
     const std::optional<TimePoint> of_node = node_.next_deadline();
     const std::optional<TimePoint> of_drive = drive_.next_deadline();
     return of_node && of_drive ? std::min(*of_node, *of_drive) : of_node ? of_node : of_drive;
-  }
-  void on_bus_status(const BusStatus& status, TimePoint now) {
-    node_.on_bus_status(status, now);
-    on_time(now);
   }
 
   /// Reports an error of the drive, like Drive::fault.
@@ -69,8 +55,11 @@ class DriveNode {
   [[nodiscard]] auto& drive() { return drive_; }
   [[nodiscard]] const auto& drive() const { return drive_; }
   [[nodiscard]] auto& node() { return node_; }
+  [[nodiscard]] const auto& node() const { return node_; }
 
  private:
+  void after_event(TimePoint now) { on_time(now); }
+
   using Control = Drive<Device, A, options>;
 
   /// Starts device control again at power-on and at each NMT reset.

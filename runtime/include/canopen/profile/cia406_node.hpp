@@ -9,46 +9,40 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <type_traits>
 #include <utility>
 
 #include "canopen/base/clock.hpp"
-#include "canopen/can/bus_status.hpp"
-#include "canopen/can/frame.hpp"
 #include "canopen/can/node_id.hpp"
 #include "canopen/node.hpp"
 #include "canopen/profile/cia406.hpp"
+#include "canopen/profile/profile_node.hpp"
 
 namespace canopen::cia406 {
 
 /// `Handlers`: further handlers of the node, an application class, a storage.
 template <class Device, Bus B, class Sensor, class... Handlers>
-class EncoderNode {
+class EncoderNode : public ProfileNode<EncoderNode<Device, B, Sensor, Handlers...>> {
+  friend ProfileNode<EncoderNode>;
+
  public:
   constexpr EncoderNode(B& bus, NodeId node_id, Handlers... handlers)
       : node_{bus, node_id, Written{&encoder_}, std::move(handlers)...} {}
-  EncoderNode(const EncoderNode&) = delete;
-  EncoderNode& operator=(const EncoderNode&) = delete;
 
-  void start(TimePoint now) {
-    node_.start(now);
-    on_time(now);
-  }
-  void on_frame(const Frame& frame, TimePoint now) { node_.on_frame(frame, now); }
   /// Measures, and sends what is due.
   void on_time(TimePoint now) {
     encoder_.measured(node_, sensor_.position(), sensor_.speed());
     node_.on_time(now);
   }
-  [[nodiscard]] std::optional<TimePoint> next_deadline() const { return node_.next_deadline(); }
-  void on_bus_status(const BusStatus& status, TimePoint now) { node_.on_bus_status(status, now); }
 
   [[nodiscard]] Sensor& sensor() { return sensor_; }
   [[nodiscard]] Encoder<Device>& encoder() { return encoder_; }
   [[nodiscard]] auto& node() { return node_; }
+  [[nodiscard]] const auto& node() const { return node_; }
 
  private:
+  void after_event(TimePoint) {}
+
   template <class O>
   static constexpr bool is_preset = (O::index == 0x6010 && O::sub_index == 1) || O::index == 0x6003;
   static_assert(Device::dictionary.has(0x6010, 1) || Device::dictionary.has(0x6003, 0),

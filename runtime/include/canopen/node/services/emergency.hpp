@@ -71,14 +71,14 @@ class Emergency : public ServiceDefaults<Emergency<Device>> {
   void report(Host& host, std::uint16_t code, ErrorRegister bits, const EmergencyInfo& info) {
     producer_.appeared(host.store(), code, bits, info);
     host.attend();
-    host.template tell<function::OnError>(code);
+    host.template notify<function::OnError>(code);
   }
   /// Reports an error that a service has detected.
   template <class Host>
   [[gnu::noinline]] static void report(Host& host, ServiceError error) {
     host.template service<Emergency>().producer_.appeared(host.store(), error);
     host.attend();
-    host.template tell<function::OnError>(service_error_codes[static_cast<std::uint8_t>(error)]);
+    host.template notify<function::OnError>(service_error_codes[static_cast<std::uint8_t>(error)]);
   }
   /// Ends an error of the application.
   template <class Host>

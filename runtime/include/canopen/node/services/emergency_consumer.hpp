@@ -21,7 +21,7 @@ class EmergencyConsumer : public ServiceDefaults<EmergencyConsumer<Device>> {
   static bool on_frame(Host& host, const Frame& frame, std::uint32_t) {
     const std::optional<ConsumedEmergency> emergency = Consumer::take(host.entries(), frame);
     if (!emergency) return false;
-    if (serves_emcy(host.state())) host.template tell<function::OnEmergency>(*emergency);
+    if (serves_emcy(host.state())) host.template notify<function::OnEmergency>(*emergency);
     return true;
   }
 };

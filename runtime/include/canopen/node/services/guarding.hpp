@@ -31,7 +31,7 @@ class NodeGuarding : public ServiceDefaults<NodeGuarding<Device>> {
     slave_.on_request(guard_time(host), life_time_factor(host), host.now());
     if (was_lost) {
       host.end_if_gone(set_of(ServiceError::error_control));
-      host.template tell<function::OnLifeGuarding>(false);
+      host.template notify<function::OnLifeGuarding>(false);
     }
     host.attend();
     return true;
@@ -90,7 +90,7 @@ class LifeGuarding : public ServiceDefaults<LifeGuarding<Device>> {
   static void on_time(Host& host) {
     if (!host.template service<NodeGuarding<Device>>().life_time_over(host)) return;
     error_control_failed(host);
-    host.template tell<function::OnLifeGuarding>(true);
+    host.template notify<function::OnLifeGuarding>(true);
   }
 };
 

@@ -71,7 +71,7 @@ class HeartbeatConsumer : public ServiceDefaults<HeartbeatConsumer<Device>> {
       if (event == HeartbeatEvent::lost) error_control_failed(host);
       if (event == HeartbeatEvent::back || event == HeartbeatEvent::boot_up)
         host.end_if_gone(set_of(ServiceError::error_control));
-      host.template tell<function::OnHeartbeat>(event, other, state);
+      host.template notify<function::OnHeartbeat>(event, other, state);
     }
   };
 

@@ -59,7 +59,7 @@ struct RpdoHooks {
       case RpdoEvent::length_right:
       case RpdoEvent::in_time: host.end_if_gone(rpdo_errors); break;
     }
-    host.template tell<function::OnRpdo>(event, number);
+    host.template notify<function::OnRpdo>(event, number);
   }
   void destination_missing(bool missing) const {
     missing ? host.report(ServiceError::mpdo_destination) : host.end_if_gone(rpdo_errors);

@@ -90,7 +90,7 @@ class Sync : public ServiceDefaults<Sync<Device>> {
     }
     host.template service<Sync>().window_.open(host.store(), host.now());
     host.on_sync(sync);
-    host.template tell<function::OnSync>(sync.counter);
+    host.template notify<function::OnSync>(sync.counter);
   }
 
   [[no_unique_address]] std::conditional_t<Producer::exists, Producer, NoProducer> producer_{};

@@ -23,7 +23,7 @@ class Time : public ServiceDefaults<Time<Device>> {
   static bool on_frame(Host& host, const Frame& frame, std::uint32_t) {
     const std::optional<TimeOfDay> time = TimeStamp<Device>::take(host.store(), frame);
     if (!time) return false;
-    if (serves_sync(host.state())) host.template tell<function::OnTimeOfDay>(*time);
+    if (serves_sync(host.state())) host.template notify<function::OnTimeOfDay>(*time);
     return true;
   }
 
