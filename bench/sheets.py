@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Callable, Iterable, Iterator
+from typing import Callable, Iterable, Iterator, Sequence
 
 HERE = Path(__file__).resolve().parent
 FIELD_TYPES = (0x06, 0x05, 0x04, 0x07)  # types of fields, in turn
@@ -23,12 +23,13 @@ def entry(name: str, title: str, data_type: int, default: str, access: str = "rw
                   "DefaultValue": default, "PDOMapping": "1" if access == "rw" and data_type != 0x0F else "0"}
 
 
-def record(index: int, title: str, highest: str, field: str, fields: int) -> Iterator[Section]:
+def record(index: int, title: str, highest: str, field: str, fields: int,
+           types: Sequence[int] = FIELD_TYPES) -> Iterator[Section]:
     name = f"{index:04X}"
     yield name, {"ParameterName": title, "ObjectType": "0x9", "SubNumber": f"0x{fields + 1:X}"}
     yield entry(f"{name}sub0", highest, 0x05, f"0x{fields:X}", "ro")
     for sub in range(1, fields + 1):
-        yield entry(f"{name}sub{sub:X}", f"{field}{sub}", FIELD_TYPES[(sub - 1) % 4], f"0x{sub:X}")
+        yield entry(f"{name}sub{sub:X}", f"{field}{sub}", types[(sub - 1) % len(types)], f"0x{sub:X}")
 
 
 def domains() -> Iterator[Section]:
@@ -42,10 +43,10 @@ def variables(count: int) -> Iterator[Section]:
         yield entry(f"{0x3000 + i:04X}", f"synth_{i}", 0x07, f"0x{i:X}")
 
 
-def records(count: int) -> Iterator[Section]:
+def records(count: int, types: Sequence[int] = FIELD_TYPES) -> Iterator[Section]:
     yield from domains()
     for i in range(count):
-        yield from record(0x3000 + i, f"synthrec_{i}", "n", "s", 9)
+        yield from record(0x3000 + i, f"synthrec_{i}", "n", "s", 9, types)
 
 
 def mixture(count: int) -> Iterator[Section]:
@@ -64,6 +65,7 @@ SHEETS: dict[str, Callable[[], Iterable[Section]]] = {
     "rec100x9": lambda: records(100),
     "eds1000": lambda: mixture(924),
     "eds5000": lambda: mixture(4924),
+    "rec6500x9": lambda: records(6500, (0x05,)),  # 65,000 entries, whose values take 64 KiB
 }
 
 

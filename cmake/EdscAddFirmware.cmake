@@ -1,7 +1,8 @@
 include(${CMAKE_CURRENT_LIST_DIR}/EdscAddDictionary.cmake)
+include(CheckCXXSourceCompiles)
 
 # edsc_add_firmware(TARGET EDS file BOARD board SOURCES file... [NAMESPACE name] [NODE_ID n] [OPTIONS file] [STATIC_MAPPING]
-#                   [FLASH_LIMIT bytes] [RAM_LIMIT bytes])
+#                   [NO_LTO] [FLASH_LIMIT bytes] [RAM_LIMIT bytes])
 #
 # Makes an image for a Cortex-M from an EDS or DCF and sources with a `main`, in a build with a toolchain file for it:
 # TARGET.elf, .hex and .bin, TARGET.map, and TARGET.report.txt with the sizes of symbols and of the objects of the EDS.
@@ -10,6 +11,8 @@ include(${CMAKE_CURRENT_LIST_DIR}/EdscAddDictionary.cmake)
 #
 # BOARD        a folder in boards/ beside this file, or another folder with the same files (docs/porting.md).
 # NAMESPACE    of the dictionary; default: from the file name of the EDS, cpc_tc1 for cpc-tc1.eds.
+# NO_LTO       compiles each source for itself. By default the image is optimised when it is linked (-flto), where the toolchain
+#              can do that.
 # NODE_ID      also defined for the sources as EDSC_NODE_ID.
 # FLASH_LIMIT  bytes; a larger image is an error, which lists the largest symbols and objects.
 # RAM_LIMIT    the same for RAM, without the stack.
@@ -20,7 +23,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/EdscAddDictionary.cmake)
 # The macros EDSC_DEVICE, the device type, and EDSC_DEVICE_HEADER, its header, are defined for the sources. There is no heap:
 # code that calls malloc or operator new does not link.
 function(edsc_add_firmware target)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "STATIC_MAPPING" "EDS;BOARD;NAMESPACE;NODE_ID;OPTIONS;FLASH_LIMIT;RAM_LIMIT" "SOURCES")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "STATIC_MAPPING;NO_LTO" "EDS;BOARD;NAMESPACE;NODE_ID;OPTIONS;FLASH_LIMIT;RAM_LIMIT" "SOURCES")
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "edsc_add_firmware(${target}): unknown arguments: ${arg_UNPARSED_ARGUMENTS}")
   endif()
@@ -57,6 +60,13 @@ function(edsc_add_firmware target)
   if(arg_NODE_ID)
     target_compile_definitions(${target} PRIVATE EDSC_NODE_ID=${arg_NODE_ID})
   endif()
+  _edsc_lto_flags(lto)
+  if(lto AND NOT arg_NO_LTO)
+    target_compile_options(${target} PRIVATE ${lto})
+    target_link_options(${target} PRIVATE ${lto})
+  elseif(lto)
+    target_link_options(${target} PRIVATE -fno-lto) # the board's objects can be linked either way
+  endif()
   set(map ${CMAKE_CURRENT_BINARY_DIR}/${target}.map)
   target_link_options(${target} PRIVATE -Wl,-Map=${map})
   set_target_properties(${target} PROPERTIES SUFFIX .elf ADDITIONAL_CLEAN_FILES ${map})
@@ -79,6 +89,21 @@ function(edsc_add_firmware target)
             ${image}.report.txt ${report_arguments}
     BYPRODUCTS ${image}.hex ${image}.bin ${image}.report.txt
     VERBATIM)
+endfunction()
+
+# _edsc_lto_flags(VARIABLE) sets VARIABLE to the flags for optimisation by the linker, empty if the toolchain does not have it.
+# check_ipo_supported does not tell this of a bare-metal toolchain: its program needs a C library with system calls.
+function(_edsc_lto_flags variable)
+  set(flags -flto=auto)
+  set(CMAKE_TRY_COMPILE_TARGET_TYPE EXECUTABLE)
+  set(CMAKE_REQUIRED_FLAGS ${flags})
+  set(CMAKE_REQUIRED_LINK_OPTIONS -nostdlib -nostartfiles -Wl,--entry=main)
+  set(CMAKE_REQUIRED_QUIET TRUE)
+  check_cxx_source_compiles("int main() { return 0; }" EDSC_HAS_LTO)
+  if(NOT EDSC_HAS_LTO)
+    set(flags "")
+  endif()
+  set(${variable} ${flags} PARENT_SCOPE)
 endfunction()
 
 # edsc_add_board(BOARD VARIABLE) adds a target with the start-up code and drivers of a board, and the flags for everything that
@@ -118,6 +143,10 @@ function(edsc_add_board board variable)
   target_link_libraries(${target} PUBLIC edsc::runtime)
   target_compile_options(${target} PUBLIC ${cpu} -ffunction-sections -fdata-sections -fno-exceptions -fno-rtti
                                           -fno-threadsafe-statics)
+  _edsc_lto_flags(lto)
+  if(lto)
+    target_compile_options(${target} PRIVATE ${lto} -ffat-lto-objects)
+  endif()
   # Without -O the image would be five times as large.
   if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES AND NOT CMAKE_CXX_FLAGS MATCHES "(^| )-O")
     message(STATUS "edsc_add_firmware: CMAKE_BUILD_TYPE is not set: images are compiled with -Os")

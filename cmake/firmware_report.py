@@ -63,8 +63,8 @@ def read_image(path: Path, prefix: str) -> Image:
 
 
 def short_name(name: str) -> str:
-    """Without template arguments and parameters."""
-    name = name.replace("(anonymous namespace)::", "").replace("operator()", "operator")
+    """Without template arguments, parameters and the marks of clones."""
+    name = re.sub(r" \[clone [^]]*\]", "", name).replace("(anonymous namespace)::", "").replace("operator()", "operator")
     while (shorter := re.sub(r"<[^<>]*>|\([^()]*\)|\{[^{}]*\}", "", name)) != name:
         name = shorter
     return name.removesuffix(" const").rsplit(" ", 1)[-1]

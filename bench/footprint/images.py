@@ -24,7 +24,8 @@ HEAD = """# Whole images
 `bench/footprint/images.py build/firmware/tests/firmware` prints this page, after `cmake --workflow --preset firmware`.
 
 Each image is all of a device's firmware: start-up, the board's drivers, the C library, SLCAN on a serial line, storage in flash
-where the device stores, LSS where its node-ID comes by it, and the node (`-Os`, arm-none-eabi-g++ 12). RAM is `.data` and `.bss`.
+where the device stores, LSS where its node-ID comes by it, and the node, as `edsc_add_firmware` builds it (`-Os`, `-flto`,
+arm-none-eabi-g++ 12). RAM is `.data` and `.bss`.
 The stack is what was painted at power-on and was not any more after the device had booted, served a master's walk over all of
 its entries and PDOs, and stored its parameters. Bytes:
 

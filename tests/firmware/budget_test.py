@@ -19,8 +19,8 @@ EDSC = Path(sys.argv[1]).resolve()
 SHEET = SOURCE_DIR / "examples/first_device/pump.eds"
 MAIN = SOURCE_DIR / "examples/firmware/main.cpp"
 ON_THE_HEAP = {
-    "malloc": "#include <cstdlib>\nvolatile char* p;\nint main() { p = static_cast<char*>(std::malloc(8)); }\n",
-    "new": "volatile int* p;\nint main() { p = new int{5}; }\n",
+    "malloc": "#include <cstdlib>\nchar* volatile p;\nint main() { p = static_cast<char*>(std::malloc(8)); }\n",
+    "new": "int* volatile p;\nint main() { p = new int{5}; }\n",
     "string": "#include <string>\nstd::string text;\nint main() { text += \"a text that is long enough for the heap\"; }\n",
 }
 
@@ -36,6 +36,8 @@ class Budget(unittest.TestCase):
         common = f'EDS "{SHEET}" BOARD microbit NODE_ID 5 SOURCES'
         cls.project.configure("\n".join([
             f'edsc_add_firmware(fits {common} "{MAIN}" FLASH_LIMIT 20000 RAM_LIMIT 2000)',
+            f'edsc_add_firmware(with_lto {common} "{MAIN}")',
+            f'edsc_add_firmware(without_lto {common} "{MAIN}" NO_LTO)',
             f'edsc_add_firmware(much_flash {common} "{MAIN}" FLASH_LIMIT 5000 RAM_LIMIT 2000)',
             f'edsc_add_firmware(much_ram {common} "{MAIN}" FLASH_LIMIT 20000 RAM_LIMIT 100)',
             *(f"edsc_add_firmware(heap_{name} {common} {name}.cpp)" for name in ON_THE_HEAP)]))
@@ -52,10 +54,19 @@ class Budget(unittest.TestCase):
         report = (self.project.build_dir / "fits.report.txt").read_text()
         self.assertRegex(report, r"\nflash: \d+ of objects, \d+ shared by them \(.*\), \d+ of code and its data, \d+ between\n")
 
+    def test_is_smaller_when_it_is_optimised_by_the_linker(self) -> None:
+        flash = {}
+        for target in ("with_lto", "without_lto"):
+            result = self.project.build(target)
+            self.assertEqual(result.returncode, 0, result.stdout)
+            report = (self.project.build_dir / f"{target}.report.txt").read_text()
+            flash[target] = int(re.match(r"\S+: (\d+) bytes of flash", report)[1])
+        self.assertLess(flash["with_lto"], flash["without_lto"])
+
     def test_too_much_flash(self) -> None:
         told = self.refused("much_flash")
         self.assertRegex(told, r"error: much_flash\.elf has \d+ bytes of flash, \d+ more than its limit of 5000\n"
-                               r"largest in flash:\n( +\d+  \S+\n)* +\d+  canopen::SdoServer::\w+\n")
+                               r"largest in flash:\n( +\d+  \S+\n)* +\d+  canopen::[\w:]+\n")
         largest = told.split("largest in flash:\n")[1].split("the data sheet's")[0].splitlines()
         sizes = [int(line.split()[0]) for line in largest]
         self.assertEqual(sizes, sorted(sizes, reverse=True))
