@@ -65,6 +65,30 @@ TEST(Homing, TakesTheHomeOffset) {
   EXPECT_EQ(drive.get<od::position_actual_value>(), -250);
 }
 
+TEST(Homing, EndsWhenTheDriveLeavesOperationEnabled) {
+  for (const int controlword : {0x00, 0x06, 0x07}) {
+    SCOPED_TRACE(controlword);
+    DriveBench drive;
+    drive.set<od::homing_method>(17);
+    drive.set<od::home_offset>(250);
+    drive.set<od::shutdown_option_code>(0);
+    drive.set<od::disable_operation_option_code>(0);
+    drive.enable(mode::homing);
+    drive.control(0x1F);
+    drive.pass(300ms);
+    EXPECT_EQ(drive.velocity(), -10'000);
+    drive.control(static_cast<std::uint16_t>(controlword));
+    const std::int32_t left_at = drive.position();
+    drive.input("limit negative on");  // the switch that homing was looking for
+    drive.pass(300ms);
+    drive.input("limit negative off");
+    drive.pass(3s);
+    EXPECT_LE(drive.position(), left_at) << "without a new home position";
+    for (const int word : {0x06, 0x07, 0x0F}) drive.control(static_cast<std::uint16_t>(word));
+    EXPECT_EQ(drive.statusword() & 0x3000, 0) << "home is neither attained nor missed";
+  }
+}
+
 TEST(Homing, IsInterruptedWhenBit4Falls) {
   DriveBench drive;
   drive.set<od::homing_method>(17);
