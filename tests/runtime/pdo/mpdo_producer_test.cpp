@@ -105,8 +105,6 @@ TEST(SamProducer, FollowsAListThatIsWritten) {
 
 TEST(SamProducer, ForgetsWhatIsPendingWhenTheListChanges) {
   Bench device;
-  device.ask("605 23 A1 1F 01 00 00 00 00");
-  device.ask("605 23 A1 1F 02 00 00 00 00");
   device.ask("605 23 00 18 01 85 01 00 80");
   device.ask("605 2B 00 18 03 64 00 00 00");  // 10 ms
   device.ask("605 23 00 18 01 85 01 00 00");
