@@ -65,6 +65,14 @@ std::vector<std::string> limits_of(DeviceFromText& text) {
   return limits;
 }
 
+TEST(UniformArray, HasTheLimitsOfItsElementsOnce) {
+  DeviceFromText text(
+      array_of({{"0x7", "rw", "LowLimit=1\nHighLimit=10\n"}, {"0x7", "rw", "LowLimit=1\nHighLimit=10\n"}}));
+  const std::vector<std::string> limits = limits_of(text);
+  ASSERT_EQ(limits.size(), 1U);
+  EXPECT_NE(limits[0].find("0x2000, 0x01"), std::string::npos) << limits[0];
+}
+
 TEST(UniformArray, KeepsLimitsOfEachElementWhereTheyDiffer) {
   DeviceFromText text(
       array_of({{"0x7", "rw", "LowLimit=1\nHighLimit=10\n"}, {"0x7", "rw", "LowLimit=1\nHighLimit=9\n"}}));

@@ -41,6 +41,7 @@ TEST(CompactPdo, HasASubIndexForEachBit) {
   EXPECT_EQ(text.entry(0x1400, 2).type->type, DataType::unsigned8);
   EXPECT_EQ(text.entry(0x1400, 3).type->type, DataType::unsigned16);
   EXPECT_EQ(parameter.find(4), nullptr);
+  EXPECT_EQ(text.entry(0x1400, 1).obj_flags, 0U) << "configuration tools read and write it";
   EXPECT_EQ(text.entry(0x1400, 5).type->type, DataType::unsigned16);
   EXPECT_EQ(text.line_of("object-not-listed"), "[2000]");
   EXPECT_EQ(text.source.line(parameter.position.line), "CompactPDO=0x17");

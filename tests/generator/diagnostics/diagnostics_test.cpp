@@ -6,6 +6,7 @@
 #include <string>
 
 #include "diagnostics/excerpt.hpp"
+#include "diagnostics/place.hpp"
 #include "diagnostics/print.hpp"
 #include "diagnostics/quote.hpp"
 #include "support/diagnostic_matchers.hpp"
@@ -315,6 +316,14 @@ TEST(Excerpt, KeepsThePlaceBehindTheEndOfTheLine) {
 TEST(Quote, CutsALongTextBetweenCodePoints) {
   EXPECT_EQ(quote("1018"), "\"1018\"");
   EXPECT_EQ(quote(std::string(59, 'y') + "ä" + std::string(1000, 'z')), "\"" + std::string(59, 'y') + "...\"");
+}
+
+TEST(PlaceOf, IsAllZeroWithoutAFile) {
+  const Place place = place_of({});
+  EXPECT_EQ(place.file, "");
+  EXPECT_EQ(place.line, 0U);
+  EXPECT_EQ(place.column, 0U);
+  EXPECT_EQ(place.length, 0U);
 }
 
 TEST(PrintJson, HasAStableShape) {

@@ -378,8 +378,8 @@ INSTANTIATE_TEST_SUITE_P(
                     ListCase{"OptionalObjects", "FFFF", true}, ListCase{"OptionalObjects", "1018", false},
                     ListCase{"OptionalObjects", "2000", false}, ListCase{"ManufacturerObjects", "2000", true},
                     ListCase{"ManufacturerObjects", "5FFF", true}, ListCase{"ManufacturerObjects", "1000", false},
-                    ListCase{"ManufacturerObjects", "6000", false}, ListCase{"OptionalObjects", "0040", true},
-                    ListCase{"ManufacturerObjects", "0040", true}));
+                    ListCase{"ManufacturerObjects", "6000", false}, ListCase{"ManufacturerObjects", "FFFF", false},
+                    ListCase{"OptionalObjects", "0040", true}, ListCase{"ManufacturerObjects", "0040", true}));
 
 TEST(ObjectLists, WarnOfAnObjectWithoutSection) {
   const ReadSheet read("[OptionalObjects]\nSupportedObjects=2\n1=0x1005\n2=0x1006\n[1005]\n");

@@ -115,6 +115,21 @@ TEST(ToolsSection, CountsItsTools) {
   EXPECT_EQ(findings(ReadSections("[Tool1]\nName=A\n").diagnostics, "tools"), (std::vector{warning_at(1, 2, "tools")}));
 }
 
+TEST(ToolsSection, KeepsTheFirstOfTwoWithOneNumber) {
+  const ReadSections read("[Tools]\nItems=1\n[Tool1]\nName=A\n[Tool01]\nName=B\n");
+  EXPECT_EQ(findings(read.diagnostics, "duplicate-section"), (std::vector{warning_at(5, 2, "duplicate-section")}));
+  ASSERT_EQ(read.device.information.tools.size(), 1U);
+  EXPECT_EQ(read.device.information.tools[0].name, "A");
+}
+
+TEST(ToolsSection, PlacesAMissingKeyAtTheSection) {
+  const ReadSections read("[Tools]\nItems=1\n[Tool1]\nName=A\n");
+  ASSERT_EQ(read.sheet.tools.size(), 1U);
+  EXPECT_FALSE(read.sheet.tools[0].command.present);
+  EXPECT_EQ(read.sheet.tools[0].command.position.file, &read.source);
+  EXPECT_EQ(read.sheet.tools[0].command.position.line, 3U);
+}
+
 // ---- [DynamicChannels] ----
 
 TEST(DynamicChannelsSection, HoldsSegments) {

@@ -13,11 +13,6 @@ namespace {
 
 std::string formatted(std::string text) { return Formatted(std::move(text)).text(); }
 
-/// [2000] with these keys after the usual ones.
-std::string object_with(std::string_view data_type, std::string_view keys) {
-  return "[2000]\nParameterName=a\nDataType=" + std::string{data_type} + "\nAccessType=rw\n" + std::string{keys};
-}
-
 /// The value that the canonical form gives to a key of such an object.
 std::string spelled(std::string_view data_type, std::string_view key, std::string_view value) {
   const std::string line = std::string{key} + "=" + std::string{value} + "\n";

@@ -55,4 +55,9 @@ struct Formatted {
   Device device;
 };
 
+/// [2000] with these keys after the usual ones.
+[[nodiscard]] inline std::string object_with(std::string_view data_type, std::string_view keys) {
+  return "[2000]\nParameterName=a\nDataType=" + std::string{data_type} + "\nAccessType=rw\n" + std::string{keys};
+}
+
 }  // namespace edsc

@@ -1,11 +1,14 @@
 #include <gtest/gtest.h>
 #include <canopen/can/cob_id_check.hpp>
 
+#include <cstddef>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "backend/cpp/cpp_view.hpp"
+#include "backend/cpp/views.hpp"
 #include "device/cob_id_parameter.hpp"
 #include "support/device_from_text.hpp"
 
@@ -170,6 +173,21 @@ TEST(CobIdRules, LeaveAPdoOutWhoseCobIdIsRestricted) {
     EXPECT_EQ(view["pdos"][0]["check_arguments"], ", canopen::PdoParameters{.cob_id = 0x180, .plus_node_id = true}");
     EXPECT_EQ(view["pdos"][0]["any_left_out"], false);
   }
+}
+
+TEST(CobIdRules, LeaveOutOnlyThePdosOfACanIdThatAnotherHas) {
+  std::string sheet = var("2000", "Value", "5", "ro", "PDOMapping=1\n");
+  const char* const cob_ids[] = {"$NODEID+0x180", "$NODEID+0x180", "$NODEID+0x280", "$NODEID+0x380"};
+  for (std::size_t i = 0; i < std::size(cob_ids); ++i) {
+    const std::string mapping = "1A0" + std::to_string(i);
+    sheet += sheet_with_cob_id("180" + std::to_string(i), 1, cob_ids[i]) + group(mapping, "Mapping", "0x9", 2) +
+             var(mapping + "sub0", "Count", "5", "const", "DefaultValue=1\n") +
+             var(mapping + "sub1", "Entry", "7", "const", "DefaultValue=0x20000008\n");
+  }
+  const DeviceFromText text(sheet);
+  std::vector<std::string> types;
+  for (const auto& row : distinct_pdos(text.device)) types.push_back(row["type"].get<std::string>());
+  EXPECT_EQ(types, (std::vector<std::string>{"Tpdo1", "Tpdo3", "Tpdo4"}));
 }
 
 TEST(CobIdRules, GiveTheCompilerTheCobIdsOfTheServicesThatAreOn) {

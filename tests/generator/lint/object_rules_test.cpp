@@ -29,6 +29,22 @@ TEST(ObjectRules, WarnOfEachMandatoryObjectThatIsMissing) {
   EXPECT_EQ(checked.diagnostics.errors(), 0U);
 }
 
+/// CiA 301, 7.5.2: what belongs to SYNC, to node guarding, to EMCY, or to the stored EDS.
+TEST(ObjectRules, WarnOfAnObjectWithoutTheOneThatItNeeds) {
+  const std::vector<std::vector<std::string>> pairs = {{"1006", "1005"}, {"1007", "1005"}, {"1019", "1005"},
+                                                       {"100C", "100D"}, {"100D", "100C"}, {"1015", "1014"},
+                                                       {"1022", "1021"}};
+  for (const std::vector<std::string>& pair : pairs) {
+    DeviceFromText alone(var(pair[0], "Value", "7"));
+    check_presence({alone.device, alone.sheet, alone.options, alone.diagnostics});
+    ASSERT_EQ(findings(alone.diagnostics, "needed-object").size(), 1U) << pair[0];
+    EXPECT_NE(alone.finding("needed-object").message.find("requires " + pair[1] + "h"), std::string::npos) << pair[0];
+    DeviceFromText both(var(pair[0], "Value", "7") + var(pair[1], "Value", "7"));
+    check_presence({both.device, both.sheet, both.options, both.diagnostics});
+    EXPECT_TRUE(findings(both.diagnostics, "needed-object").empty()) << pair[0];
+  }
+}
+
 TEST(ObjectLists, ThatLackManyObjectsAreOneFinding) {
   std::string sheet = var("2000", "Value 1", "5") + var("2001", "Value 2", "5");
   EXPECT_EQ(findings(CheckedObjects(sheet).diagnostics, "object-not-listed").size(), 2U);

@@ -1,11 +1,16 @@
 #include "text/write_files.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/sysmacros.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -204,6 +209,59 @@ TEST_F(WriteFiles, KeepsTheModeOfAReplacedFile) {
   EXPECT_EQ(fs::status(path("one.hpp")).permissions(), mode);
 }
 
+/// Calls `action` in a child process; returns its exit code.
+template <class Action>
+int in_a_process(Action action) {
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(action());
+  int status = 0;
+  return ::waitpid(child, &status, 0) == child && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST_F(WriteFiles, DropsTheSetIdBitsOfAFileOfAnotherUser) {
+  if (::geteuid() != 0) GTEST_SKIP() << "SKIPPED: this user may not become another one";
+  constexpr uid_t nobody = 65534;
+  constexpr auto rights = fs::perms::owner_all | fs::perms::group_exec | fs::perms::others_exec;
+  ASSERT_EQ(write_files({{path("tool"), "before"}}), "");
+  fs::permissions(path("tool"), rights | fs::perms::set_uid | fs::perms::set_gid | fs::perms::sticky_bit);
+  fs::permissions(folder_, fs::perms::all);
+  EXPECT_EQ(in_a_process([&] {
+              if (::chdir(folder_.c_str()) != 0 || ::setuid(nobody) != 0) return 2;
+              return write_files({{"tool", "after"}}).empty() ? 0 : 1;
+            }),
+            0);
+  EXPECT_EQ(content_of(path("tool")), "after");
+  EXPECT_EQ(fs::status(path("tool")).permissions(), rights);
+}
+
+/// Whether the kernel lists somebody who waits for the lock of this file.
+bool is_waited_for(const fs::path& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) return false;
+  std::ifstream locks("/proc/locks");
+  for (std::string line; std::getline(locks, line);) {
+    const std::string inode = ":" + std::to_string(status.st_ino) + " ";
+    if (line.find("-> FLOCK") != std::string::npos && line.find(inode) != std::string::npos) return true;
+  }
+  return false;
+}
+
+TEST_F(WriteFiles, WaitsForAnotherProcessThatWritesSeveralFilesIntoTheFolder) {
+  const int folder = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY);
+  ASSERT_EQ(::flock(folder, LOCK_EX), 0);
+  EXPECT_EQ(write_files({{path("alone.hpp"), "0"}}), "") << "a single file is replaced in one step";
+  std::atomic<bool> done = false;
+  std::thread writer{[&] {
+    EXPECT_EQ(write_files({{path("one.hpp"), "1"}, {path("two.hpp"), "2"}}), "");
+    done = true;
+  }};
+  while (!done && !is_waited_for(folder_)) std::this_thread::sleep_for(std::chrono::milliseconds{1});
+  EXPECT_FALSE(done);
+  ::close(folder);
+  writer.join();
+  EXPECT_EQ(files(), (Names{"alone.hpp", "one.hpp", "two.hpp"}));
+}
+
 TEST_F(WriteFiles, WritesIntoAFifo) {
   ASSERT_EQ(mkfifo(path("fifo").c_str(), 0600), 0);
   std::string read;
@@ -212,6 +270,36 @@ TEST_F(WriteFiles, WritesIntoAFifo) {
   reader.join();
   EXPECT_EQ(read, "through");
   EXPECT_TRUE(fs::is_fifo(path("fifo")));
+}
+
+/// The descriptors of this process for a file.
+std::vector<int> descriptors_of(const fs::path& path) {
+  struct stat wanted {};
+  ::stat(path.c_str(), &wanted);
+  std::vector<int> result;
+  for (const auto& entry : fs::directory_iterator{"/proc/self/fd"}) {
+    struct stat found {};
+    const bool is_same =
+        ::stat(entry.path().c_str(), &found) == 0 && found.st_dev == wanted.st_dev && found.st_ino == wanted.st_ino;
+    if (is_same) result.push_back(std::stoi(entry.path().filename()));
+  }
+  return result;
+}
+
+TEST_F(WriteFiles, OpensNoDescriptorThatAnotherProgramInherits) {
+  ASSERT_EQ(mkfifo(path("fifo").c_str(), 0600), 0);
+  const std::string more_than_a_pipe_holds(1 << 20, 'x');
+  std::thread writer{[&] { EXPECT_EQ(write_files({{path("fifo"), more_than_a_pipe_holds}}), ""); }};
+  std::ifstream in(path("fifo"), std::ios::binary);
+  EXPECT_EQ(in.get(), 'x');
+  const std::vector<int> descriptors = descriptors_of(path("fifo"));
+  EXPECT_EQ(descriptors.size(), 2U) << "the reader and the writer";
+  for (const int descriptor : descriptors) {
+    if ((::fcntl(descriptor, F_GETFL) & O_ACCMODE) != O_WRONLY) continue;
+    EXPECT_NE(::fcntl(descriptor, F_GETFD) & FD_CLOEXEC, 0);
+  }
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>{in}, {}).size(), more_than_a_pipe_holds.size() - 1);
+  writer.join();
 }
 
 TEST_F(WriteFiles, WritesIntoADevice) {

@@ -104,6 +104,13 @@ TEST(Xdd, ReadsUtf16) {
   EXPECT_EQ(ReadXdd(wide).object().parameter_name.text, "x");
 }
 
+TEST(Xdd, WarnsOfADocumentTypeDeclaration) {
+  const ReadXdd read("<!DOCTYPE ISO15745ProfileContainer [<!ENTITY e 'x'>]>" +
+                     Profile{"<CANopenObject index='2000' name='&e;'/>", "", "", ""}.text());
+  EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(0, 0, "xml-element")}));
+  EXPECT_EQ(read.object().parameter_name.text, "&e;");
+}
+
 TEST(Xdd, KeepsTextThatDoesNotStandInTheFileLikeThat) {
   DataSheet copy;
   SourceFile source("test.xdd", Profile{"<CANopenObject index='2000' name=' a &lt; &#66;&amp;c ' dataType='0005'/>", "",

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 #include <canopen/host/master.hpp>
 
+#include <malloc.h>
+
 #include <array>
 #include <deque>
 #include <map>
@@ -122,6 +124,23 @@ TEST(Master, StillTellsOfAFrameThatCameBeforeARequest) {
   ASSERT_TRUE(master.upload(NodeId{5}, 0x2000, 0));
   master.poll(0us);
   EXPECT_EQ(emergencies, 1);
+}
+
+/// Bytes that the heap has given away.
+std::size_t bytes_in_use() { return ::mallinfo2().uordblks; }
+
+TEST(Master, KeepsNothingOfARejectedTransfer) {
+  ScriptedBus bus;
+  canopen::Master master{bus};
+  canopen::Result<void> begun;
+  while (begun) begun = master.begin_upload(NodeId{5}, 0x2000, 0, {});
+  EXPECT_EQ(begun.abort_code(), AbortCode::no_resource);
+  const std::vector<std::uint8_t> value(10'000);
+  const std::size_t before = bytes_in_use();
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_EQ(master.download(NodeId{5}, 0x2000, 0, value).abort_code(), AbortCode::no_resource);
+  }
+  EXPECT_LT(bytes_in_use(), before + 10 * value.size());
 }
 
 TEST(Master, EndsATransferOnABusThatIsNeverSilent) {

@@ -43,6 +43,15 @@ TEST(LssSlave, IgnoresAnUnknownModeOfSwitchStateGlobal) {
   EXPECT_EQ(device.slave.state(), LssState::configuration);
 }
 
+/// CiA 305: the slave is waiting after a reset, also in Initialisation, where a slave without node-ID is served.
+TEST(LssSlave, WaitsAfterAResetWithoutANodeId) {
+  LssDevice device{unconfigured_node_id};
+  device.ask(to_configuration);
+  EXPECT_EQ(device.slave.state(), LssState::configuration);
+  device.reset_communication();
+  EXPECT_EQ(device.slave.state(), LssState::waiting);
+}
+
 const std::vector<std::string> selection = {"7E5 40 93 00 00 00 00 00 00", "7E5 41 52 4B 35 43 00 00 00",
                                             "7E5 42 01 00 01 00 00 00 00", "7E5 43 34 12 01 15 00 00 00"};
 

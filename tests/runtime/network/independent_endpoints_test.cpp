@@ -3,14 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <can_2053c/device.hpp>
-#include <canopen/host/virtual/acceptance_table.hpp>
 #include <canopen/host/virtual_bus.hpp>
 #include <canopen/node.hpp>
 #include <cpc_tc1/device.hpp>
 #include <cpd/device.hpp>
 #include <rk5c/device.hpp>
 
-#include <algorithm>
 #include <deque>
 #include <iterator>
 #include <random>
@@ -22,7 +20,6 @@
 namespace {
 
 using bench::frame;
-using canopen::AcceptanceTable;
 using canopen::AcceptedFrame;
 using canopen::Frame;
 using canopen::NodeId;
@@ -181,38 +178,6 @@ TEST(IndependentEndpoints, AreCalledOftenEnoughToCompareTimes) {
     bus.run_for(1min);
   }
   EXPECT_EQ(calls, (std::vector{TimePoint{15min}, TimePoint{30min}}));
-}
-
-TEST(AcceptanceTable, FindsTheReceiversThatALoopFinds) {
-  Random random{std::mt19937{1}};
-  for (const std::size_t places : {1u, 63u, 64u, 65u, 127u}) {
-    AcceptanceTable table;
-    table.resize(places);
-    std::vector<std::vector<AcceptedFrame>> lists(places);
-    const auto some_frame = [&] { return AcceptedFrame{random() % 4, random() % 8 == 0, random() % 2 == 0}; };
-    for (int round = 0; round < 500; ++round) {
-      const std::size_t place = random() % places;
-      lists[place].resize(random() % 4);
-      for (AcceptedFrame& accepted : lists[place]) accepted = some_frame();
-      const bool all = random() % 10 == 0;
-      all ? table.accept_all(place) : table.accept(place, lists[place]);
-      if (all) {
-        lists[place] = {{0, true, false}};
-        for (std::uint32_t id = 0; id < 4; ++id) {
-          lists[place].push_back({id, false, false});
-          lists[place].push_back({id, false, true});
-        }
-      }
-      const AcceptedFrame one = some_frame();
-      const std::size_t from = random() % (places + 1);
-      std::size_t expected = from;
-      const auto accepts = [&](const AcceptedFrame& other) { return one.extended ? other.extended : one == other; };
-      while (expected < places && std::none_of(lists[expected].begin(), lists[expected].end(), accepts)) ++expected;
-      if (expected == places) expected = AcceptanceTable::no_place;
-      ASSERT_EQ(table.first_receiver(Frame{.id = one.id, .extended = one.extended, .remote = one.remote}, from),
-                expected);
-    }
-  }
 }
 
 }  // namespace

@@ -49,8 +49,22 @@ TEST(Locked, HoldsTheLockWhileTheNodeWorks) {
   EXPECT_EQ(locked.state(), canopen::NmtState::operational);
   locked.emergency(0x1000, canopen::ErrorRegister::generic);
   EXPECT_EQ(log, "()()()");
+  log.clear();
+  locked.request(canopen::NmtCommand::reset_communication, {});
+  EXPECT_EQ(log, "(705 00)");
+  log.clear();
   EXPECT_EQ(locked.with([](auto& device) { return device.node_id(); }), canopen::NodeId{5});
-  EXPECT_EQ(log, "()()()()");
+  EXPECT_EQ(log, "()");
+}
+
+TEST(Locked, HoldsTheLockWhileTheNodeStartsWithANodeId) {
+  std::string log;
+  LoggingBus bus{log};
+  RecordingLock lock{log};
+  auto node = canopen::make_node<sample::Device>(bus, canopen::NodeId{});
+  Locked locked{node, lock};
+  locked.start(canopen::NodeId{9}, canopen::TimePoint{});
+  EXPECT_EQ(log, "(709 00)");
 }
 
 TEST(Locked, WithoutALockIsAReference) {

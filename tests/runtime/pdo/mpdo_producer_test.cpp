@@ -103,6 +103,29 @@ TEST(SamProducer, FollowsAListThatIsWritten) {
   EXPECT_EQ(device.pass(0s), "");
 }
 
+TEST(SamProducer, ForgetsWhatIsPendingWhenTheListChanges) {
+  Bench device;
+  device.ask("605 23 00 18 01 85 01 00 80");
+  device.ask("605 2B 00 18 03 64 00 00 00");  // 10 ms
+  device.ask("605 23 00 18 01 85 01 00 00");
+  device.ask(bench::start);
+  device.node.set<od::word>(1);
+  device.node.set<od::positions<3>>(3);
+  EXPECT_EQ(device.pass(0s), "185 05 01 20 00 01 00 00 00");
+  EXPECT_EQ(device.ask("605 23 A0 1F 02 01 02 20 01"), "585 60 A0 1F 02 00 00 00 00");  // 2002h:01 only
+  EXPECT_EQ(device.ask("605 23 A0 1F 03 00 00 20 01"), "585 60 A0 1F 03 00 00 00 00");
+  EXPECT_EQ(device.ask("605 23 A0 1F 04 00 04 20 01"), "585 60 A0 1F 04 00 00 00 00");  // in the place of 2002h:03
+  EXPECT_EQ(device.pass(1s), "");
+}
+
+TEST(SamProducer, SendsFramesOf29Bits) {
+  Running device;
+  device.ask("605 23 00 18 01 85 01 00 80");
+  EXPECT_EQ(device.ask("605 23 00 18 01 85 01 00 20"), "585 60 00 18 01 00 00 00 00");
+  device.node.set<od::word>(1);
+  EXPECT_EQ(device.pass(0s), "00000185 05 01 20 00 01 00 00 00");
+}
+
 TEST(SamProducer, RefusesElementsThatItCannotSend) {
   Running device;
   const std::string not_mappable = "585 80 A0 1F 03 41 00 04 06";

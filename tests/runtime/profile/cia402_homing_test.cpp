@@ -65,6 +65,30 @@ TEST(Homing, TakesTheHomeOffset) {
   EXPECT_EQ(drive.get<od::position_actual_value>(), -250);
 }
 
+TEST(Homing, EndsWhenTheDriveLeavesOperationEnabled) {
+  for (const int controlword : {0x10, 0x16, 0x17}) {
+    SCOPED_TRACE(controlword);
+    DriveBench drive;
+    drive.set<od::homing_method>(17);
+    drive.set<od::shutdown_option_code>(0);
+    drive.set<od::disable_operation_option_code>(0);
+    drive.enable(mode::homing);
+    drive.control(0x1F);
+    drive.pass(300ms);
+    EXPECT_EQ(drive.velocity(), -10'000);
+    drive.control(static_cast<std::uint16_t>(controlword));
+    drive.pass(3s);
+    for (const int word : {0x16, 0x17, 0x1F}) drive.control(static_cast<std::uint16_t>(word));
+    EXPECT_EQ(drive.state(), bench::State::operation_enabled);
+    drive.input("limit negative on");  // the switch that homing was looking for
+    drive.pass(300ms);
+    EXPECT_EQ(drive.velocity(), 0) << "bit 4 has not risen again";
+    drive.input("limit negative off");
+    drive.pass(3s);
+    EXPECT_EQ(drive.statusword() & 0x3000, 0) << "home is neither attained nor missed";
+  }
+}
+
 TEST(Homing, IsInterruptedWhenBit4Falls) {
   DriveBench drive;
   drive.set<od::homing_method>(17);

@@ -264,6 +264,17 @@ TEST(Modes, AreShownIn6061hWhenTheyHaveBegun) {
   EXPECT_EQ(drive.ask("605 40 61 60 00 00 00 00 00"), "585 4F 61 60 00 03 00 00 00");
 }
 
+TEST(Modes, ShowTheirOwnTargetReachedAtOnce) {
+  DriveBench drive;
+  drive.set<od::target_velocity>(10'000);
+  drive.set<od::modes_of_operation>(mode::profile_velocity);
+  drive.enable(mode::homing);
+  drive.pass(1s);
+  EXPECT_EQ(drive.statusword() & 0x0400, 0x0400) << "no homing, and the motor rests";
+  drive.ask("605 2F 60 60 00 03 00 00 00");
+  EXPECT_EQ(drive.statusword() & 0x0400, 0) << "it does not turn at 10'000 yet";
+}
+
 TEST(Modes, ChangeWhenAMotorThatTurnsHasStopped) {
   DriveBench drive;
   drive.run(10'000);

@@ -391,6 +391,8 @@ TEST_F(ProfileEncoder, HasOneCyclicTimerInTwoPlaces) {
   EXPECT_EQ(sensor.ask("605 2B 00 18 05 05 00 00 00"), "585 60 00 18 05 00 00 00 00");
   EXPECT_EQ(sensor.ask("605 40 00 62 00 00 00 00 00"), "585 4B 00 62 00 05 00 00 00");
   EXPECT_EQ(sensor.pass(5ms), "185 00 00 00 00 00 00");
+  EXPECT_EQ(sensor.ask("605 2B 00 62 00 E8 03 00 00"), "585 60 00 62 00 00 00 00 00");
+  EXPECT_EQ(sensor.ask("605 40 00 18 05 00 00 00 00"), "585 4B 00 18 05 E8 03 00 00") << "1000 ms";
   EXPECT_EQ(sensor.ask("605 2B 00 62 00 00 00 00 00"), "585 60 00 62 00 00 00 00 00");
   EXPECT_EQ(sensor.pass(1s), "");
 }

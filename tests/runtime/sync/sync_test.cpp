@@ -244,11 +244,14 @@ TEST(Time, IdentifierStaysWhileItIsInUse) {
 
 TEST(EmcyConsumer, HearsTheNodesOf1028h) {
   std::string log;
+  std::array<std::uint8_t, 5> info{};
   auto device = bench::with<sync_device::Device>(canopen::on_emergency([&](canopen::ConsumedEmergency emergency) {
+    info = emergency.message.info;
     log +=
         std::to_string(emergency.sub_index) + ":" + std::string{canopen::emergency_text(emergency.message.code)} + " ";
   }));
-  device.ask("082 10 82 11 09 00 00 00 00");
+  device.ask("082 10 82 11 01 02 03 04 05");
+  EXPECT_EQ(info, (std::array<std::uint8_t, 5>{1, 2, 3, 4, 5}));
   device.ask("082 10 82 11 09");  // incomplete EMCY
   device.ask("083 10 82 11 09 00 00 00 00");
   EXPECT_EQ(log, "2:PDO not processed, too short ");

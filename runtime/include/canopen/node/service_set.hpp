@@ -109,7 +109,7 @@ struct ServiceDefaults {
   /// An object that is known at compile time has a new value, in Operational. Returns whether something is to be sent.
   template <DictionaryObject O, class Host>
   static bool on_new_value(Host&) {
-    return false;
+    return false;  // nothing is to be sent
   }
   /// Checks whether an entry may be read now.
   template <class Host>
