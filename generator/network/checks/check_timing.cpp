@@ -40,8 +40,8 @@ void check_response(const NetworkContext& context, const TimedMessage& one) {
                                           one.name, can_id, worst, deadline));
   } else {
     context.diagnostics.error("network-response-time", one.position,
-                              fmt::format("{} ({}) may end {} after its event, later than its deadline of {}",
-                                          one.name, can_id, worst, deadline));
+                              fmt::format("{} ({}) may end {} after its event, later than its deadline of {}", one.name,
+                                          can_id, worst, deadline));
   }
 }
 
