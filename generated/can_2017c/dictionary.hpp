@@ -18,12 +18,16 @@ namespace can_2017c {
 namespace od {
 
 /// Device type.  1000h:00  UNSIGNED32  ro                                          can-2017c.eds:75
-struct device_type : canopen::Object<0x1000, 0x00, std::uint32_t, canopen::Access::ro> {
+struct device_type : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1000;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Device type";
 };
 
 /// Error register.  1001h:00  UNSIGNED8  ro                                        can-2017c.eds:84
-struct error_register : canopen::Object<0x1001, 0x00, std::uint8_t, canopen::Access::ro> {
+struct error_register : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1001;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Error register";
 };
 
@@ -34,37 +38,51 @@ struct pre_defined_error_field : canopen::Object<0x1003, SubIndex, std::uint32_t
   static constexpr auto name = "Pre-defined error field";
 };
 template <>
-struct pre_defined_error_field<0> : canopen::Object<0x1003, 0x00, std::uint8_t, canopen::Access::ro> {
+struct pre_defined_error_field<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1003;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of errors";
 };
 
 /// COB-ID SYNC.  1005h:00  UNSIGNED32  rw                                          can-2017c.eds:255
-struct cob_id_sync : canopen::Object<0x1005, 0x00, std::uint32_t, canopen::Access::rw> {
+struct cob_id_sync : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1005;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID SYNC";
 };
 
 /// Manufacturer device name.  1008h:00  VISIBLE_STRING  ro                         can-2017c.eds:267
-struct manufacturer_device_name : canopen::Object<0x1008, 0x00, canopen::VisibleString<16>, canopen::Access::ro> {
+struct manufacturer_device_name : canopen::TypedObject<canopen::VisibleString<16>, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1008;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer device name";
 };
 
 /// Manufacturer hardware version.  1009h:00  VISIBLE_STRING  ro                    can-2017c.eds:276
-struct manufacturer_hardware_version : canopen::Object<0x1009, 0x00, canopen::VisibleString<6>, canopen::Access::ro> {
+struct manufacturer_hardware_version : canopen::TypedObject<canopen::VisibleString<6>, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1009;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer hardware version";
 };
 
 /// Manufacturer software version.  100Ah:00  VISIBLE_STRING  ro                    can-2017c.eds:285
-struct manufacturer_software_version : canopen::Object<0x100A, 0x00, canopen::VisibleString<6>, canopen::Access::ro> {
+struct manufacturer_software_version : canopen::TypedObject<canopen::VisibleString<6>, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x100A;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer software version";
 };
 
 /// Guard time.  100Ch:00  UNSIGNED16  rw                                           can-2017c.eds:294
-struct guard_time : canopen::Object<0x100C, 0x00, std::uint16_t, canopen::Access::rw> {
+struct guard_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x100C;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Guard time";
 };
 
 /// Life time factor.  100Dh:00  UNSIGNED8  rw                                      can-2017c.eds:303
-struct life_time_factor : canopen::Object<0x100D, 0x00, std::uint8_t, canopen::Access::rw> {
+struct life_time_factor : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x100D;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Life time factor";
 };
 
@@ -75,7 +93,9 @@ struct store_parameters : canopen::Object<0x1010, SubIndex, std::uint32_t, canop
   static constexpr auto name = "Store parameters";
 };
 template <>
-struct store_parameters<0> : canopen::Object<0x1010, 0x00, std::uint8_t, canopen::Access::ro> {
+struct store_parameters<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1010;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 
@@ -89,7 +109,9 @@ struct restore_default_parameters : canopen::Object<0x1011, SubIndex, std::uint3
   static constexpr auto name = "Restore default parameters";
 };
 template <>
-struct restore_default_parameters<0> : canopen::Object<0x1011, 0x00, std::uint8_t, canopen::Access::ro> {
+struct restore_default_parameters<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1011;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 
@@ -97,35 +119,49 @@ struct restore_default_parameters<0> : canopen::Object<0x1011, 0x00, std::uint8_
 using restore_default_parameters_restore_all_default_parameters = restore_default_parameters<1>;
 
 /// COB-ID EMCY.  1014h:00  UNSIGNED32  rw                                          can-2017c.eds:360
-struct cob_id_emcy : canopen::Object<0x1014, 0x00, std::uint32_t, canopen::Access::rw> {
+struct cob_id_emcy : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1014;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID EMCY";
 };
 
 /// Producer heartbeat time.  1017h:00  UNSIGNED16  rw                              can-2017c.eds:369
-struct producer_heartbeat_time : canopen::Object<0x1017, 0x00, std::uint16_t, canopen::Access::rw> {
+struct producer_heartbeat_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1017;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Producer heartbeat time";
 };
 
 /// Identity object.  1018h
 namespace identity_object {
 /// Highest sub-index supported.  1018h:00  UNSIGNED8  ro                           can-2017c.eds:99
-struct highest_sub_index_supported : canopen::Object<0x1018, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1018;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// Vendor-ID.  1018h:01  UNSIGNED32  ro                                            can-2017c.eds:107
-struct vendor_id : canopen::Object<0x1018, 0x01, std::uint32_t, canopen::Access::ro> {
+struct vendor_id : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1018;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Vendor-ID";
 };
 /// Product code.  1018h:02  UNSIGNED32  ro                                         can-2017c.eds:115
-struct product_code : canopen::Object<0x1018, 0x02, std::uint32_t, canopen::Access::ro> {
+struct product_code : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1018;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Product code";
 };
 /// Revision number.  1018h:03  UNSIGNED32  ro                                      can-2017c.eds:123
-struct revision_number : canopen::Object<0x1018, 0x03, std::uint32_t, canopen::Access::ro> {
+struct revision_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1018;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Revision number";
 };
 /// Serial number.  1018h:04  UNSIGNED32  ro                                        can-2017c.eds:131
-struct serial_number : canopen::Object<0x1018, 0x04, std::uint32_t, canopen::Access::ro> {
+struct serial_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1018;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Serial number";
 };
 }  // namespace identity_object
@@ -133,15 +169,21 @@ struct serial_number : canopen::Object<0x1018, 0x04, std::uint32_t, canopen::Acc
 /// SDO server parameter.  1200h
 namespace sdo_server_parameter {
 /// Highest sub-index supported.  1200h:00  UNSIGNED8  ro                           can-2017c.eds:383
-struct highest_sub_index_supported : canopen::Object<0x1200, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1200;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID client to server.  1200h:01  UNSIGNED32  ro                              can-2017c.eds:391
-struct cob_id_client_to_server : canopen::Object<0x1200, 0x01, std::uint32_t, canopen::Access::ro> {
+struct cob_id_client_to_server : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1200;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID client to server";
 };
 /// COB-ID server to client.  1200h:02  UNSIGNED32  ro                              can-2017c.eds:399
-struct cob_id_server_to_client : canopen::Object<0x1200, 0x02, std::uint32_t, canopen::Access::ro> {
+struct cob_id_server_to_client : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1200;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "COB-ID server to client";
 };
 }  // namespace sdo_server_parameter
@@ -149,15 +191,21 @@ struct cob_id_server_to_client : canopen::Object<0x1200, 0x02, std::uint32_t, ca
 /// RPDO communication parameter 1.  1400h
 namespace rpdo_communication_parameter_1 {
 /// Highest sub-index supported.  1400h:00  UNSIGNED8  ro                           can-2017c.eds:417
-struct highest_sub_index_supported : canopen::Object<0x1400, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1400;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1400h:01  UNSIGNED32  rw                                  can-2017c.eds:425
-struct cob_id_used_by_rpdo : canopen::Object<0x1400, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1400;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1400h:02  UNSIGNED8  rw                                     can-2017c.eds:433
-struct transmission_type : canopen::Object<0x1400, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1400;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 }  // namespace rpdo_communication_parameter_1
@@ -165,15 +213,21 @@ struct transmission_type : canopen::Object<0x1400, 0x02, std::uint8_t, canopen::
 /// RPDO communication parameter 2.  1401h
 namespace rpdo_communication_parameter_2 {
 /// Highest sub-index supported.  1401h:00  UNSIGNED8  ro                           can-2017c.eds:447
-struct highest_sub_index_supported : canopen::Object<0x1401, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1401;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1401h:01  UNSIGNED32  rw                                  can-2017c.eds:455
-struct cob_id_used_by_rpdo : canopen::Object<0x1401, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1401;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1401h:02  UNSIGNED8  rw                                     can-2017c.eds:463
-struct transmission_type : canopen::Object<0x1401, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1401;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 }  // namespace rpdo_communication_parameter_2
@@ -181,15 +235,21 @@ struct transmission_type : canopen::Object<0x1401, 0x02, std::uint8_t, canopen::
 /// RPDO communication parameter 3.  1402h
 namespace rpdo_communication_parameter_3 {
 /// Highest sub-index supported.  1402h:00  UNSIGNED8  ro                           can-2017c.eds:477
-struct highest_sub_index_supported : canopen::Object<0x1402, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1402;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1402h:01  UNSIGNED32  rw                                  can-2017c.eds:485
-struct cob_id_used_by_rpdo : canopen::Object<0x1402, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1402;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1402h:02  UNSIGNED8  rw                                     can-2017c.eds:493
-struct transmission_type : canopen::Object<0x1402, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1402;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 }  // namespace rpdo_communication_parameter_3
@@ -197,15 +257,21 @@ struct transmission_type : canopen::Object<0x1402, 0x02, std::uint8_t, canopen::
 /// RPDO communication parameter 4.  1403h
 namespace rpdo_communication_parameter_4 {
 /// Highest sub-index supported.  1403h:00  UNSIGNED8  ro                           can-2017c.eds:507
-struct highest_sub_index_supported : canopen::Object<0x1403, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1403;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1403h:01  UNSIGNED32  rw                                  can-2017c.eds:515
-struct cob_id_used_by_rpdo : canopen::Object<0x1403, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1403;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1403h:02  UNSIGNED8  rw                                     can-2017c.eds:523
-struct transmission_type : canopen::Object<0x1403, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1403;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 }  // namespace rpdo_communication_parameter_4
@@ -213,15 +279,21 @@ struct transmission_type : canopen::Object<0x1403, 0x02, std::uint8_t, canopen::
 /// RPDO communication parameter 5.  1404h
 namespace rpdo_communication_parameter_5 {
 /// Highest sub-index supported.  1404h:00  UNSIGNED8  ro                           can-2017c.eds:537
-struct highest_sub_index_supported : canopen::Object<0x1404, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1404;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1404h:01  UNSIGNED32  rw                                  can-2017c.eds:545
-struct cob_id_used_by_rpdo : canopen::Object<0x1404, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1404;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1404h:02  UNSIGNED8  rw                                     can-2017c.eds:553
-struct transmission_type : canopen::Object<0x1404, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1404;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 }  // namespace rpdo_communication_parameter_5
@@ -229,15 +301,21 @@ struct transmission_type : canopen::Object<0x1404, 0x02, std::uint8_t, canopen::
 /// RPDO communication parameter 6.  1405h
 namespace rpdo_communication_parameter_6 {
 /// Highest sub-index supported.  1405h:00  UNSIGNED8  ro                           can-2017c.eds:569
-struct highest_sub_index_supported : canopen::Object<0x1405, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1405;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1405h:01  UNSIGNED32  rw                                  can-2017c.eds:577
-struct cob_id_used_by_rpdo : canopen::Object<0x1405, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1405;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1405h:02  UNSIGNED8  rw                                     can-2017c.eds:585
-struct transmission_type : canopen::Object<0x1405, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1405;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 }  // namespace rpdo_communication_parameter_6
@@ -245,15 +323,21 @@ struct transmission_type : canopen::Object<0x1405, 0x02, std::uint8_t, canopen::
 /// RPDO communication parameter 7.  1406h
 namespace rpdo_communication_parameter_7 {
 /// Highest sub-index supported.  1406h:00  UNSIGNED8  ro                           can-2017c.eds:599
-struct highest_sub_index_supported : canopen::Object<0x1406, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1406;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1406h:01  UNSIGNED32  rw                                  can-2017c.eds:607
-struct cob_id_used_by_rpdo : canopen::Object<0x1406, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1406;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1406h:02  UNSIGNED8  rw                                     can-2017c.eds:615
-struct transmission_type : canopen::Object<0x1406, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1406;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 }  // namespace rpdo_communication_parameter_7
@@ -261,15 +345,21 @@ struct transmission_type : canopen::Object<0x1406, 0x02, std::uint8_t, canopen::
 /// RPDO communication parameter 8.  1407h
 namespace rpdo_communication_parameter_8 {
 /// Highest sub-index supported.  1407h:00  UNSIGNED8  ro                           can-2017c.eds:629
-struct highest_sub_index_supported : canopen::Object<0x1407, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1407;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1407h:01  UNSIGNED32  rw                                  can-2017c.eds:637
-struct cob_id_used_by_rpdo : canopen::Object<0x1407, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1407;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1407h:02  UNSIGNED8  rw                                     can-2017c.eds:645
-struct transmission_type : canopen::Object<0x1407, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1407;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 }  // namespace rpdo_communication_parameter_8
@@ -277,15 +367,21 @@ struct transmission_type : canopen::Object<0x1407, 0x02, std::uint8_t, canopen::
 /// RPDO communication parameter 9.  1408h
 namespace rpdo_communication_parameter_9 {
 /// Highest sub-index supported.  1408h:00  UNSIGNED8  ro                           can-2017c.eds:659
-struct highest_sub_index_supported : canopen::Object<0x1408, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1408;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1408h:01  UNSIGNED32  rw                                  can-2017c.eds:667
-struct cob_id_used_by_rpdo : canopen::Object<0x1408, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1408;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1408h:02  UNSIGNED8  rw                                     can-2017c.eds:675
-struct transmission_type : canopen::Object<0x1408, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1408;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 }  // namespace rpdo_communication_parameter_9
@@ -293,15 +389,21 @@ struct transmission_type : canopen::Object<0x1408, 0x02, std::uint8_t, canopen::
 /// RPDO communication parameter 10.  1409h
 namespace rpdo_communication_parameter_10 {
 /// Highest sub-index supported.  1409h:00  UNSIGNED8  ro                           can-2017c.eds:689
-struct highest_sub_index_supported : canopen::Object<0x1409, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1409;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1409h:01  UNSIGNED32  rw                                  can-2017c.eds:697
-struct cob_id_used_by_rpdo : canopen::Object<0x1409, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1409;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1409h:02  UNSIGNED8  rw                                     can-2017c.eds:705
-struct transmission_type : canopen::Object<0x1409, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1409;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 }  // namespace rpdo_communication_parameter_10
@@ -309,39 +411,57 @@ struct transmission_type : canopen::Object<0x1409, 0x02, std::uint8_t, canopen::
 /// RPDO mapping parameter 1.  1600h
 namespace rpdo_mapping_parameter_1 {
 /// Number of mapped objects.  1600h:00  UNSIGNED8  rw                              can-2017c.eds:726
-struct number_of_mapped_objects : canopen::Object<0x1600, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1600;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1600h:01  UNSIGNED32  rw                                      can-2017c.eds:734
-struct mapping_entry_1 : canopen::Object<0x1600, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1600;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1600h:02  UNSIGNED32  rw                                      can-2017c.eds:742
-struct mapping_entry_2 : canopen::Object<0x1600, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1600;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1600h:03  UNSIGNED32  rw                                      can-2017c.eds:750
-struct mapping_entry_3 : canopen::Object<0x1600, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1600;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1600h:04  UNSIGNED32  rw                                      can-2017c.eds:758
-struct mapping_entry_4 : canopen::Object<0x1600, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1600;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1600h:05  UNSIGNED32  rw                                      can-2017c.eds:766
-struct mapping_entry_5 : canopen::Object<0x1600, 0x05, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1600;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1600h:06  UNSIGNED32  rw                                      can-2017c.eds:774
-struct mapping_entry_6 : canopen::Object<0x1600, 0x06, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1600;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1600h:07  UNSIGNED32  rw                                      can-2017c.eds:782
-struct mapping_entry_7 : canopen::Object<0x1600, 0x07, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1600;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1600h:08  UNSIGNED32  rw                                      can-2017c.eds:790
-struct mapping_entry_8 : canopen::Object<0x1600, 0x08, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1600;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
 };
 }  // namespace rpdo_mapping_parameter_1
@@ -349,39 +469,57 @@ struct mapping_entry_8 : canopen::Object<0x1600, 0x08, std::uint32_t, canopen::A
 /// RPDO mapping parameter 2.  1601h
 namespace rpdo_mapping_parameter_2 {
 /// Number of mapped objects.  1601h:00  UNSIGNED8  rw                              can-2017c.eds:803
-struct number_of_mapped_objects : canopen::Object<0x1601, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1601;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1601h:01  UNSIGNED32  rw                                      can-2017c.eds:811
-struct mapping_entry_1 : canopen::Object<0x1601, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1601;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1601h:02  UNSIGNED32  rw                                      can-2017c.eds:819
-struct mapping_entry_2 : canopen::Object<0x1601, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1601;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1601h:03  UNSIGNED32  rw                                      can-2017c.eds:827
-struct mapping_entry_3 : canopen::Object<0x1601, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1601;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1601h:04  UNSIGNED32  rw                                      can-2017c.eds:835
-struct mapping_entry_4 : canopen::Object<0x1601, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1601;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1601h:05  UNSIGNED32  rw                                      can-2017c.eds:843
-struct mapping_entry_5 : canopen::Object<0x1601, 0x05, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1601;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1601h:06  UNSIGNED32  rw                                      can-2017c.eds:851
-struct mapping_entry_6 : canopen::Object<0x1601, 0x06, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1601;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1601h:07  UNSIGNED32  rw                                      can-2017c.eds:859
-struct mapping_entry_7 : canopen::Object<0x1601, 0x07, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1601;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1601h:08  UNSIGNED32  rw                                      can-2017c.eds:867
-struct mapping_entry_8 : canopen::Object<0x1601, 0x08, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1601;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
 };
 }  // namespace rpdo_mapping_parameter_2
@@ -389,39 +527,57 @@ struct mapping_entry_8 : canopen::Object<0x1601, 0x08, std::uint32_t, canopen::A
 /// RPDO mapping parameter 3.  1602h
 namespace rpdo_mapping_parameter_3 {
 /// Number of mapped objects.  1602h:00  UNSIGNED8  rw                              can-2017c.eds:880
-struct number_of_mapped_objects : canopen::Object<0x1602, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1602;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1602h:01  UNSIGNED32  rw                                      can-2017c.eds:888
-struct mapping_entry_1 : canopen::Object<0x1602, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1602;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1602h:02  UNSIGNED32  rw                                      can-2017c.eds:896
-struct mapping_entry_2 : canopen::Object<0x1602, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1602;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1602h:03  UNSIGNED32  rw                                      can-2017c.eds:904
-struct mapping_entry_3 : canopen::Object<0x1602, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1602;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1602h:04  UNSIGNED32  rw                                      can-2017c.eds:912
-struct mapping_entry_4 : canopen::Object<0x1602, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1602;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1602h:05  UNSIGNED32  rw                                      can-2017c.eds:920
-struct mapping_entry_5 : canopen::Object<0x1602, 0x05, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1602;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1602h:06  UNSIGNED32  rw                                      can-2017c.eds:928
-struct mapping_entry_6 : canopen::Object<0x1602, 0x06, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1602;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1602h:07  UNSIGNED32  rw                                      can-2017c.eds:936
-struct mapping_entry_7 : canopen::Object<0x1602, 0x07, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1602;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1602h:08  UNSIGNED32  rw                                      can-2017c.eds:944
-struct mapping_entry_8 : canopen::Object<0x1602, 0x08, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1602;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
 };
 }  // namespace rpdo_mapping_parameter_3
@@ -429,39 +585,57 @@ struct mapping_entry_8 : canopen::Object<0x1602, 0x08, std::uint32_t, canopen::A
 /// RPDO mapping parameter 4.  1603h
 namespace rpdo_mapping_parameter_4 {
 /// Number of mapped objects.  1603h:00  UNSIGNED8  rw                              can-2017c.eds:957
-struct number_of_mapped_objects : canopen::Object<0x1603, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1603;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1603h:01  UNSIGNED32  rw                                      can-2017c.eds:965
-struct mapping_entry_1 : canopen::Object<0x1603, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1603;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1603h:02  UNSIGNED32  rw                                      can-2017c.eds:973
-struct mapping_entry_2 : canopen::Object<0x1603, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1603;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1603h:03  UNSIGNED32  rw                                      can-2017c.eds:981
-struct mapping_entry_3 : canopen::Object<0x1603, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1603;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1603h:04  UNSIGNED32  rw                                      can-2017c.eds:989
-struct mapping_entry_4 : canopen::Object<0x1603, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1603;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1603h:05  UNSIGNED32  rw                                      can-2017c.eds:997
-struct mapping_entry_5 : canopen::Object<0x1603, 0x05, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1603;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1603h:06  UNSIGNED32  rw                                      can-2017c.eds:1005
-struct mapping_entry_6 : canopen::Object<0x1603, 0x06, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1603;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1603h:07  UNSIGNED32  rw                                      can-2017c.eds:1013
-struct mapping_entry_7 : canopen::Object<0x1603, 0x07, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1603;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1603h:08  UNSIGNED32  rw                                      can-2017c.eds:1021
-struct mapping_entry_8 : canopen::Object<0x1603, 0x08, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1603;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
 };
 }  // namespace rpdo_mapping_parameter_4
@@ -469,39 +643,57 @@ struct mapping_entry_8 : canopen::Object<0x1603, 0x08, std::uint32_t, canopen::A
 /// RPDO mapping parameter 5.  1604h
 namespace rpdo_mapping_parameter_5 {
 /// Number of mapped objects.  1604h:00  UNSIGNED8  rw                              can-2017c.eds:1034
-struct number_of_mapped_objects : canopen::Object<0x1604, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1604;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1604h:01  UNSIGNED32  rw                                      can-2017c.eds:1042
-struct mapping_entry_1 : canopen::Object<0x1604, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1604;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1604h:02  UNSIGNED32  rw                                      can-2017c.eds:1050
-struct mapping_entry_2 : canopen::Object<0x1604, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1604;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1604h:03  UNSIGNED32  rw                                      can-2017c.eds:1058
-struct mapping_entry_3 : canopen::Object<0x1604, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1604;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1604h:04  UNSIGNED32  rw                                      can-2017c.eds:1066
-struct mapping_entry_4 : canopen::Object<0x1604, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1604;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1604h:05  UNSIGNED32  rw                                      can-2017c.eds:1074
-struct mapping_entry_5 : canopen::Object<0x1604, 0x05, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1604;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1604h:06  UNSIGNED32  rw                                      can-2017c.eds:1082
-struct mapping_entry_6 : canopen::Object<0x1604, 0x06, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1604;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1604h:07  UNSIGNED32  rw                                      can-2017c.eds:1090
-struct mapping_entry_7 : canopen::Object<0x1604, 0x07, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1604;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1604h:08  UNSIGNED32  rw                                      can-2017c.eds:1098
-struct mapping_entry_8 : canopen::Object<0x1604, 0x08, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1604;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
 };
 }  // namespace rpdo_mapping_parameter_5
@@ -509,39 +701,57 @@ struct mapping_entry_8 : canopen::Object<0x1604, 0x08, std::uint32_t, canopen::A
 /// RPDO mapping parameter 6.  1605h
 namespace rpdo_mapping_parameter_6 {
 /// Number of mapped objects.  1605h:00  UNSIGNED8  rw                              can-2017c.eds:1111
-struct number_of_mapped_objects : canopen::Object<0x1605, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1605;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1605h:01  UNSIGNED32  rw                                      can-2017c.eds:1119
-struct mapping_entry_1 : canopen::Object<0x1605, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1605;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1605h:02  UNSIGNED32  rw                                      can-2017c.eds:1127
-struct mapping_entry_2 : canopen::Object<0x1605, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1605;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1605h:03  UNSIGNED32  rw                                      can-2017c.eds:1135
-struct mapping_entry_3 : canopen::Object<0x1605, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1605;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1605h:04  UNSIGNED32  rw                                      can-2017c.eds:1143
-struct mapping_entry_4 : canopen::Object<0x1605, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1605;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1605h:05  UNSIGNED32  rw                                      can-2017c.eds:1151
-struct mapping_entry_5 : canopen::Object<0x1605, 0x05, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1605;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1605h:06  UNSIGNED32  rw                                      can-2017c.eds:1159
-struct mapping_entry_6 : canopen::Object<0x1605, 0x06, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1605;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1605h:07  UNSIGNED32  rw                                      can-2017c.eds:1167
-struct mapping_entry_7 : canopen::Object<0x1605, 0x07, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1605;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1605h:08  UNSIGNED32  rw                                      can-2017c.eds:1175
-struct mapping_entry_8 : canopen::Object<0x1605, 0x08, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1605;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
 };
 }  // namespace rpdo_mapping_parameter_6
@@ -549,39 +759,57 @@ struct mapping_entry_8 : canopen::Object<0x1605, 0x08, std::uint32_t, canopen::A
 /// RPDO mapping parameter 7.  1606h
 namespace rpdo_mapping_parameter_7 {
 /// Number of mapped objects.  1606h:00  UNSIGNED8  rw                              can-2017c.eds:1188
-struct number_of_mapped_objects : canopen::Object<0x1606, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1606;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1606h:01  UNSIGNED32  rw                                      can-2017c.eds:1196
-struct mapping_entry_1 : canopen::Object<0x1606, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1606;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1606h:02  UNSIGNED32  rw                                      can-2017c.eds:1204
-struct mapping_entry_2 : canopen::Object<0x1606, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1606;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1606h:03  UNSIGNED32  rw                                      can-2017c.eds:1212
-struct mapping_entry_3 : canopen::Object<0x1606, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1606;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1606h:04  UNSIGNED32  rw                                      can-2017c.eds:1220
-struct mapping_entry_4 : canopen::Object<0x1606, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1606;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1606h:05  UNSIGNED32  rw                                      can-2017c.eds:1228
-struct mapping_entry_5 : canopen::Object<0x1606, 0x05, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1606;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1606h:06  UNSIGNED32  rw                                      can-2017c.eds:1236
-struct mapping_entry_6 : canopen::Object<0x1606, 0x06, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1606;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1606h:07  UNSIGNED32  rw                                      can-2017c.eds:1244
-struct mapping_entry_7 : canopen::Object<0x1606, 0x07, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1606;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1606h:08  UNSIGNED32  rw                                      can-2017c.eds:1252
-struct mapping_entry_8 : canopen::Object<0x1606, 0x08, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1606;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
 };
 }  // namespace rpdo_mapping_parameter_7
@@ -589,39 +817,57 @@ struct mapping_entry_8 : canopen::Object<0x1606, 0x08, std::uint32_t, canopen::A
 /// RPDO mapping parameter 8.  1607h
 namespace rpdo_mapping_parameter_8 {
 /// Number of mapped objects.  1607h:00  UNSIGNED8  rw                              can-2017c.eds:1265
-struct number_of_mapped_objects : canopen::Object<0x1607, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1607;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1607h:01  UNSIGNED32  rw                                      can-2017c.eds:1273
-struct mapping_entry_1 : canopen::Object<0x1607, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1607;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1607h:02  UNSIGNED32  rw                                      can-2017c.eds:1281
-struct mapping_entry_2 : canopen::Object<0x1607, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1607;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1607h:03  UNSIGNED32  rw                                      can-2017c.eds:1289
-struct mapping_entry_3 : canopen::Object<0x1607, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1607;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1607h:04  UNSIGNED32  rw                                      can-2017c.eds:1297
-struct mapping_entry_4 : canopen::Object<0x1607, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1607;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1607h:05  UNSIGNED32  rw                                      can-2017c.eds:1305
-struct mapping_entry_5 : canopen::Object<0x1607, 0x05, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1607;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1607h:06  UNSIGNED32  rw                                      can-2017c.eds:1313
-struct mapping_entry_6 : canopen::Object<0x1607, 0x06, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1607;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1607h:07  UNSIGNED32  rw                                      can-2017c.eds:1321
-struct mapping_entry_7 : canopen::Object<0x1607, 0x07, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1607;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1607h:08  UNSIGNED32  rw                                      can-2017c.eds:1329
-struct mapping_entry_8 : canopen::Object<0x1607, 0x08, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1607;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
 };
 }  // namespace rpdo_mapping_parameter_8
@@ -629,39 +875,57 @@ struct mapping_entry_8 : canopen::Object<0x1607, 0x08, std::uint32_t, canopen::A
 /// RPDO mapping parameter 9.  1608h
 namespace rpdo_mapping_parameter_9 {
 /// Number of mapped objects.  1608h:00  UNSIGNED8  rw                              can-2017c.eds:1342
-struct number_of_mapped_objects : canopen::Object<0x1608, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1608;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1608h:01  UNSIGNED32  rw                                      can-2017c.eds:1350
-struct mapping_entry_1 : canopen::Object<0x1608, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1608;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1608h:02  UNSIGNED32  rw                                      can-2017c.eds:1358
-struct mapping_entry_2 : canopen::Object<0x1608, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1608;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1608h:03  UNSIGNED32  rw                                      can-2017c.eds:1366
-struct mapping_entry_3 : canopen::Object<0x1608, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1608;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1608h:04  UNSIGNED32  rw                                      can-2017c.eds:1374
-struct mapping_entry_4 : canopen::Object<0x1608, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1608;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1608h:05  UNSIGNED32  rw                                      can-2017c.eds:1382
-struct mapping_entry_5 : canopen::Object<0x1608, 0x05, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1608;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1608h:06  UNSIGNED32  rw                                      can-2017c.eds:1390
-struct mapping_entry_6 : canopen::Object<0x1608, 0x06, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1608;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1608h:07  UNSIGNED32  rw                                      can-2017c.eds:1398
-struct mapping_entry_7 : canopen::Object<0x1608, 0x07, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1608;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1608h:08  UNSIGNED32  rw                                      can-2017c.eds:1406
-struct mapping_entry_8 : canopen::Object<0x1608, 0x08, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1608;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
 };
 }  // namespace rpdo_mapping_parameter_9
@@ -669,39 +933,57 @@ struct mapping_entry_8 : canopen::Object<0x1608, 0x08, std::uint32_t, canopen::A
 /// RPDO mapping parameter 10.  1609h
 namespace rpdo_mapping_parameter_10 {
 /// Number of mapped objects.  1609h:00  UNSIGNED8  rw                              can-2017c.eds:1419
-struct number_of_mapped_objects : canopen::Object<0x1609, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1609;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1609h:01  UNSIGNED32  rw                                      can-2017c.eds:1427
-struct mapping_entry_1 : canopen::Object<0x1609, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1609;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1609h:02  UNSIGNED32  rw                                      can-2017c.eds:1435
-struct mapping_entry_2 : canopen::Object<0x1609, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1609;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1609h:03  UNSIGNED32  rw                                      can-2017c.eds:1443
-struct mapping_entry_3 : canopen::Object<0x1609, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1609;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1609h:04  UNSIGNED32  rw                                      can-2017c.eds:1451
-struct mapping_entry_4 : canopen::Object<0x1609, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1609;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1609h:05  UNSIGNED32  rw                                      can-2017c.eds:1459
-struct mapping_entry_5 : canopen::Object<0x1609, 0x05, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1609;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1609h:06  UNSIGNED32  rw                                      can-2017c.eds:1467
-struct mapping_entry_6 : canopen::Object<0x1609, 0x06, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1609;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1609h:07  UNSIGNED32  rw                                      can-2017c.eds:1475
-struct mapping_entry_7 : canopen::Object<0x1609, 0x07, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1609;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1609h:08  UNSIGNED32  rw                                      can-2017c.eds:1483
-struct mapping_entry_8 : canopen::Object<0x1609, 0x08, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1609;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
 };
 }  // namespace rpdo_mapping_parameter_10
@@ -709,23 +991,33 @@ struct mapping_entry_8 : canopen::Object<0x1609, 0x08, std::uint32_t, canopen::A
 /// TPDO communication parameter 1.  1800h
 namespace tpdo_communication_parameter_1 {
 /// Highest sub-index supported.  1800h:00  UNSIGNED8  ro                           can-2017c.eds:1502
-struct highest_sub_index_supported : canopen::Object<0x1800, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1800;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1800h:01  UNSIGNED32  rw                                  can-2017c.eds:1510
-struct cob_id_used_by_tpdo : canopen::Object<0x1800, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1800;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1800h:02  UNSIGNED8  rw                                     can-2017c.eds:1518
-struct transmission_type : canopen::Object<0x1800, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1800;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1800h:03  UNSIGNED16  rw                                         can-2017c.eds:1526
-struct inhibit_time : canopen::Object<0x1800, 0x03, std::uint16_t, canopen::Access::rw> {
+struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1800;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1800h:05  UNSIGNED16  rw                                          can-2017c.eds:1534
-struct event_timer : canopen::Object<0x1800, 0x05, std::uint16_t, canopen::Access::rw> {
+struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1800;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
 };
 }  // namespace tpdo_communication_parameter_1
@@ -733,23 +1025,33 @@ struct event_timer : canopen::Object<0x1800, 0x05, std::uint16_t, canopen::Acces
 /// TPDO communication parameter 2.  1801h
 namespace tpdo_communication_parameter_2 {
 /// Highest sub-index supported.  1801h:00  UNSIGNED8  ro                           can-2017c.eds:1548
-struct highest_sub_index_supported : canopen::Object<0x1801, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1801;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1801h:01  UNSIGNED32  rw                                  can-2017c.eds:1556
-struct cob_id_used_by_tpdo : canopen::Object<0x1801, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1801;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1801h:02  UNSIGNED8  rw                                     can-2017c.eds:1564
-struct transmission_type : canopen::Object<0x1801, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1801;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1801h:03  UNSIGNED16  rw                                         can-2017c.eds:1572
-struct inhibit_time : canopen::Object<0x1801, 0x03, std::uint16_t, canopen::Access::rw> {
+struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1801;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1801h:05  UNSIGNED16  rw                                          can-2017c.eds:1580
-struct event_timer : canopen::Object<0x1801, 0x05, std::uint16_t, canopen::Access::rw> {
+struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1801;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
 };
 }  // namespace tpdo_communication_parameter_2
@@ -757,23 +1059,33 @@ struct event_timer : canopen::Object<0x1801, 0x05, std::uint16_t, canopen::Acces
 /// TPDO communication parameter 3.  1802h
 namespace tpdo_communication_parameter_3 {
 /// Highest sub-index supported.  1802h:00  UNSIGNED8  ro                           can-2017c.eds:1594
-struct highest_sub_index_supported : canopen::Object<0x1802, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1802;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1802h:01  UNSIGNED32  rw                                  can-2017c.eds:1602
-struct cob_id_used_by_tpdo : canopen::Object<0x1802, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1802;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1802h:02  UNSIGNED8  rw                                     can-2017c.eds:1610
-struct transmission_type : canopen::Object<0x1802, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1802;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1802h:03  UNSIGNED16  rw                                         can-2017c.eds:1618
-struct inhibit_time : canopen::Object<0x1802, 0x03, std::uint16_t, canopen::Access::rw> {
+struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1802;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1802h:05  UNSIGNED16  rw                                          can-2017c.eds:1626
-struct event_timer : canopen::Object<0x1802, 0x05, std::uint16_t, canopen::Access::rw> {
+struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1802;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
 };
 }  // namespace tpdo_communication_parameter_3
@@ -781,23 +1093,33 @@ struct event_timer : canopen::Object<0x1802, 0x05, std::uint16_t, canopen::Acces
 /// TPDO communication parameter 4.  1803h
 namespace tpdo_communication_parameter_4 {
 /// Highest sub-index supported.  1803h:00  UNSIGNED8  ro                           can-2017c.eds:1640
-struct highest_sub_index_supported : canopen::Object<0x1803, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1803;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1803h:01  UNSIGNED32  rw                                  can-2017c.eds:1648
-struct cob_id_used_by_tpdo : canopen::Object<0x1803, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1803;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1803h:02  UNSIGNED8  rw                                     can-2017c.eds:1656
-struct transmission_type : canopen::Object<0x1803, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1803;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1803h:03  UNSIGNED16  rw                                         can-2017c.eds:1664
-struct inhibit_time : canopen::Object<0x1803, 0x03, std::uint16_t, canopen::Access::rw> {
+struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1803;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1803h:05  UNSIGNED16  rw                                          can-2017c.eds:1672
-struct event_timer : canopen::Object<0x1803, 0x05, std::uint16_t, canopen::Access::rw> {
+struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1803;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
 };
 }  // namespace tpdo_communication_parameter_4
@@ -805,23 +1127,33 @@ struct event_timer : canopen::Object<0x1803, 0x05, std::uint16_t, canopen::Acces
 /// TPDO communication parameter 5.  1804h
 namespace tpdo_communication_parameter_5 {
 /// Highest sub-index supported.  1804h:00  UNSIGNED8  ro                           can-2017c.eds:1686
-struct highest_sub_index_supported : canopen::Object<0x1804, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1804;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1804h:01  UNSIGNED32  rw                                  can-2017c.eds:1694
-struct cob_id_used_by_tpdo : canopen::Object<0x1804, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1804;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1804h:02  UNSIGNED8  rw                                     can-2017c.eds:1702
-struct transmission_type : canopen::Object<0x1804, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1804;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1804h:03  UNSIGNED16  rw                                         can-2017c.eds:1710
-struct inhibit_time : canopen::Object<0x1804, 0x03, std::uint16_t, canopen::Access::rw> {
+struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1804;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1804h:05  UNSIGNED16  rw                                          can-2017c.eds:1718
-struct event_timer : canopen::Object<0x1804, 0x05, std::uint16_t, canopen::Access::rw> {
+struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1804;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
 };
 }  // namespace tpdo_communication_parameter_5
@@ -829,23 +1161,33 @@ struct event_timer : canopen::Object<0x1804, 0x05, std::uint16_t, canopen::Acces
 /// TPDO communication parameter 6.  1805h
 namespace tpdo_communication_parameter_6 {
 /// Highest sub-index supported.  1805h:00  UNSIGNED8  ro                           can-2017c.eds:1734
-struct highest_sub_index_supported : canopen::Object<0x1805, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1805;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1805h:01  UNSIGNED32  rw                                  can-2017c.eds:1742
-struct cob_id_used_by_tpdo : canopen::Object<0x1805, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1805;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1805h:02  UNSIGNED8  rw                                     can-2017c.eds:1750
-struct transmission_type : canopen::Object<0x1805, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1805;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1805h:03  UNSIGNED16  rw                                         can-2017c.eds:1758
-struct inhibit_time : canopen::Object<0x1805, 0x03, std::uint16_t, canopen::Access::rw> {
+struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1805;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1805h:05  UNSIGNED16  rw                                          can-2017c.eds:1766
-struct event_timer : canopen::Object<0x1805, 0x05, std::uint16_t, canopen::Access::rw> {
+struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1805;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
 };
 }  // namespace tpdo_communication_parameter_6
@@ -853,23 +1195,33 @@ struct event_timer : canopen::Object<0x1805, 0x05, std::uint16_t, canopen::Acces
 /// TPDO communication parameter 7.  1806h
 namespace tpdo_communication_parameter_7 {
 /// Highest sub-index supported.  1806h:00  UNSIGNED8  ro                           can-2017c.eds:1780
-struct highest_sub_index_supported : canopen::Object<0x1806, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1806;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1806h:01  UNSIGNED32  rw                                  can-2017c.eds:1788
-struct cob_id_used_by_tpdo : canopen::Object<0x1806, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1806;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1806h:02  UNSIGNED8  rw                                     can-2017c.eds:1796
-struct transmission_type : canopen::Object<0x1806, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1806;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1806h:03  UNSIGNED16  rw                                         can-2017c.eds:1804
-struct inhibit_time : canopen::Object<0x1806, 0x03, std::uint16_t, canopen::Access::rw> {
+struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1806;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1806h:05  UNSIGNED16  rw                                          can-2017c.eds:1812
-struct event_timer : canopen::Object<0x1806, 0x05, std::uint16_t, canopen::Access::rw> {
+struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1806;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
 };
 }  // namespace tpdo_communication_parameter_7
@@ -877,23 +1229,33 @@ struct event_timer : canopen::Object<0x1806, 0x05, std::uint16_t, canopen::Acces
 /// TPDO communication parameter 8.  1807h
 namespace tpdo_communication_parameter_8 {
 /// Highest sub-index supported.  1807h:00  UNSIGNED8  ro                           can-2017c.eds:1826
-struct highest_sub_index_supported : canopen::Object<0x1807, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1807;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1807h:01  UNSIGNED32  rw                                  can-2017c.eds:1834
-struct cob_id_used_by_tpdo : canopen::Object<0x1807, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1807;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1807h:02  UNSIGNED8  rw                                     can-2017c.eds:1842
-struct transmission_type : canopen::Object<0x1807, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1807;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1807h:03  UNSIGNED16  rw                                         can-2017c.eds:1850
-struct inhibit_time : canopen::Object<0x1807, 0x03, std::uint16_t, canopen::Access::rw> {
+struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1807;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1807h:05  UNSIGNED16  rw                                          can-2017c.eds:1858
-struct event_timer : canopen::Object<0x1807, 0x05, std::uint16_t, canopen::Access::rw> {
+struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1807;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
 };
 }  // namespace tpdo_communication_parameter_8
@@ -901,23 +1263,33 @@ struct event_timer : canopen::Object<0x1807, 0x05, std::uint16_t, canopen::Acces
 /// TPDO communication parameter 9.  1808h
 namespace tpdo_communication_parameter_9 {
 /// Highest sub-index supported.  1808h:00  UNSIGNED8  ro                           can-2017c.eds:1872
-struct highest_sub_index_supported : canopen::Object<0x1808, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1808;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1808h:01  UNSIGNED32  rw                                  can-2017c.eds:1880
-struct cob_id_used_by_tpdo : canopen::Object<0x1808, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1808;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1808h:02  UNSIGNED8  rw                                     can-2017c.eds:1888
-struct transmission_type : canopen::Object<0x1808, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1808;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1808h:03  UNSIGNED16  rw                                         can-2017c.eds:1896
-struct inhibit_time : canopen::Object<0x1808, 0x03, std::uint16_t, canopen::Access::rw> {
+struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1808;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1808h:05  UNSIGNED16  rw                                          can-2017c.eds:1904
-struct event_timer : canopen::Object<0x1808, 0x05, std::uint16_t, canopen::Access::rw> {
+struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1808;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
 };
 }  // namespace tpdo_communication_parameter_9
@@ -925,23 +1297,33 @@ struct event_timer : canopen::Object<0x1808, 0x05, std::uint16_t, canopen::Acces
 /// TPDO communication parameter 10.  1809h
 namespace tpdo_communication_parameter_10 {
 /// Highest sub-index supported.  1809h:00  UNSIGNED8  ro                           can-2017c.eds:1918
-struct highest_sub_index_supported : canopen::Object<0x1809, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1809;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1809h:01  UNSIGNED32  rw                                  can-2017c.eds:1926
-struct cob_id_used_by_tpdo : canopen::Object<0x1809, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1809;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1809h:02  UNSIGNED8  rw                                     can-2017c.eds:1934
-struct transmission_type : canopen::Object<0x1809, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1809;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1809h:03  UNSIGNED16  rw                                         can-2017c.eds:1942
-struct inhibit_time : canopen::Object<0x1809, 0x03, std::uint16_t, canopen::Access::rw> {
+struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1809;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1809h:05  UNSIGNED16  rw                                          can-2017c.eds:1950
-struct event_timer : canopen::Object<0x1809, 0x05, std::uint16_t, canopen::Access::rw> {
+struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1809;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
 };
 }  // namespace tpdo_communication_parameter_10
@@ -949,39 +1331,57 @@ struct event_timer : canopen::Object<0x1809, 0x05, std::uint16_t, canopen::Acces
 /// TPDO mapping parameter 1.  1A00h
 namespace tpdo_mapping_parameter_1 {
 /// Number of mapped objects.  1A00h:00  UNSIGNED8  rw                              can-2017c.eds:1971
-struct number_of_mapped_objects : canopen::Object<0x1A00, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A00;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1A00h:01  UNSIGNED32  rw                                      can-2017c.eds:1979
-struct mapping_entry_1 : canopen::Object<0x1A00, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A00;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A00h:02  UNSIGNED32  rw                                      can-2017c.eds:1987
-struct mapping_entry_2 : canopen::Object<0x1A00, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A00;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A00h:03  UNSIGNED32  rw                                      can-2017c.eds:1995
-struct mapping_entry_3 : canopen::Object<0x1A00, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A00;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A00h:04  UNSIGNED32  rw                                      can-2017c.eds:2003
-struct mapping_entry_4 : canopen::Object<0x1A00, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A00;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1A00h:05  UNSIGNED32  rw                                      can-2017c.eds:2011
-struct mapping_entry_5 : canopen::Object<0x1A00, 0x05, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A00;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1A00h:06  UNSIGNED32  rw                                      can-2017c.eds:2019
-struct mapping_entry_6 : canopen::Object<0x1A00, 0x06, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A00;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1A00h:07  UNSIGNED32  rw                                      can-2017c.eds:2027
-struct mapping_entry_7 : canopen::Object<0x1A00, 0x07, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A00;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1A00h:08  UNSIGNED32  rw                                      can-2017c.eds:2035
-struct mapping_entry_8 : canopen::Object<0x1A00, 0x08, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A00;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
 };
 }  // namespace tpdo_mapping_parameter_1
@@ -989,39 +1389,57 @@ struct mapping_entry_8 : canopen::Object<0x1A00, 0x08, std::uint32_t, canopen::A
 /// TPDO mapping parameter 2.  1A01h
 namespace tpdo_mapping_parameter_2 {
 /// Number of mapped objects.  1A01h:00  UNSIGNED8  rw                              can-2017c.eds:2049
-struct number_of_mapped_objects : canopen::Object<0x1A01, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A01;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1A01h:01  UNSIGNED32  rw                                      can-2017c.eds:2057
-struct mapping_entry_1 : canopen::Object<0x1A01, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A01;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A01h:02  UNSIGNED32  rw                                      can-2017c.eds:2065
-struct mapping_entry_2 : canopen::Object<0x1A01, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A01;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A01h:03  UNSIGNED32  rw                                      can-2017c.eds:2073
-struct mapping_entry_3 : canopen::Object<0x1A01, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A01;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A01h:04  UNSIGNED32  rw                                      can-2017c.eds:2081
-struct mapping_entry_4 : canopen::Object<0x1A01, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A01;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1A01h:05  UNSIGNED32  rw                                      can-2017c.eds:2089
-struct mapping_entry_5 : canopen::Object<0x1A01, 0x05, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A01;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1A01h:06  UNSIGNED32  rw                                      can-2017c.eds:2097
-struct mapping_entry_6 : canopen::Object<0x1A01, 0x06, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A01;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1A01h:07  UNSIGNED32  rw                                      can-2017c.eds:2105
-struct mapping_entry_7 : canopen::Object<0x1A01, 0x07, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A01;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1A01h:08  UNSIGNED32  rw                                      can-2017c.eds:2113
-struct mapping_entry_8 : canopen::Object<0x1A01, 0x08, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A01;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
 };
 }  // namespace tpdo_mapping_parameter_2
@@ -1029,39 +1447,57 @@ struct mapping_entry_8 : canopen::Object<0x1A01, 0x08, std::uint32_t, canopen::A
 /// TPDO mapping parameter 3.  1A02h
 namespace tpdo_mapping_parameter_3 {
 /// Number of mapped objects.  1A02h:00  UNSIGNED8  rw                              can-2017c.eds:2127
-struct number_of_mapped_objects : canopen::Object<0x1A02, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A02;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1A02h:01  UNSIGNED32  rw                                      can-2017c.eds:2135
-struct mapping_entry_1 : canopen::Object<0x1A02, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A02;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A02h:02  UNSIGNED32  rw                                      can-2017c.eds:2143
-struct mapping_entry_2 : canopen::Object<0x1A02, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A02;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A02h:03  UNSIGNED32  rw                                      can-2017c.eds:2151
-struct mapping_entry_3 : canopen::Object<0x1A02, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A02;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A02h:04  UNSIGNED32  rw                                      can-2017c.eds:2159
-struct mapping_entry_4 : canopen::Object<0x1A02, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A02;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1A02h:05  UNSIGNED32  rw                                      can-2017c.eds:2167
-struct mapping_entry_5 : canopen::Object<0x1A02, 0x05, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A02;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1A02h:06  UNSIGNED32  rw                                      can-2017c.eds:2175
-struct mapping_entry_6 : canopen::Object<0x1A02, 0x06, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A02;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1A02h:07  UNSIGNED32  rw                                      can-2017c.eds:2183
-struct mapping_entry_7 : canopen::Object<0x1A02, 0x07, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A02;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1A02h:08  UNSIGNED32  rw                                      can-2017c.eds:2191
-struct mapping_entry_8 : canopen::Object<0x1A02, 0x08, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A02;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
 };
 }  // namespace tpdo_mapping_parameter_3
@@ -1069,39 +1505,57 @@ struct mapping_entry_8 : canopen::Object<0x1A02, 0x08, std::uint32_t, canopen::A
 /// TPDO mapping parameter 4.  1A03h
 namespace tpdo_mapping_parameter_4 {
 /// Number of mapped objects.  1A03h:00  UNSIGNED8  rw                              can-2017c.eds:2204
-struct number_of_mapped_objects : canopen::Object<0x1A03, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A03;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1A03h:01  UNSIGNED32  rw                                      can-2017c.eds:2212
-struct mapping_entry_1 : canopen::Object<0x1A03, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A03;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A03h:02  UNSIGNED32  rw                                      can-2017c.eds:2220
-struct mapping_entry_2 : canopen::Object<0x1A03, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A03;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A03h:03  UNSIGNED32  rw                                      can-2017c.eds:2228
-struct mapping_entry_3 : canopen::Object<0x1A03, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A03;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A03h:04  UNSIGNED32  rw                                      can-2017c.eds:2236
-struct mapping_entry_4 : canopen::Object<0x1A03, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A03;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1A03h:05  UNSIGNED32  rw                                      can-2017c.eds:2244
-struct mapping_entry_5 : canopen::Object<0x1A03, 0x05, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A03;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1A03h:06  UNSIGNED32  rw                                      can-2017c.eds:2252
-struct mapping_entry_6 : canopen::Object<0x1A03, 0x06, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A03;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1A03h:07  UNSIGNED32  rw                                      can-2017c.eds:2260
-struct mapping_entry_7 : canopen::Object<0x1A03, 0x07, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A03;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1A03h:08  UNSIGNED32  rw                                      can-2017c.eds:2268
-struct mapping_entry_8 : canopen::Object<0x1A03, 0x08, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A03;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
 };
 }  // namespace tpdo_mapping_parameter_4
@@ -1109,39 +1563,57 @@ struct mapping_entry_8 : canopen::Object<0x1A03, 0x08, std::uint32_t, canopen::A
 /// TPDO mapping parameter 5.  1A04h
 namespace tpdo_mapping_parameter_5 {
 /// Number of mapped objects.  1A04h:00  UNSIGNED8  rw                              can-2017c.eds:2281
-struct number_of_mapped_objects : canopen::Object<0x1A04, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A04;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1A04h:01  UNSIGNED32  rw                                      can-2017c.eds:2289
-struct mapping_entry_1 : canopen::Object<0x1A04, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A04;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A04h:02  UNSIGNED32  rw                                      can-2017c.eds:2297
-struct mapping_entry_2 : canopen::Object<0x1A04, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A04;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A04h:03  UNSIGNED32  rw                                      can-2017c.eds:2305
-struct mapping_entry_3 : canopen::Object<0x1A04, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A04;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A04h:04  UNSIGNED32  rw                                      can-2017c.eds:2313
-struct mapping_entry_4 : canopen::Object<0x1A04, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A04;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1A04h:05  UNSIGNED32  rw                                      can-2017c.eds:2321
-struct mapping_entry_5 : canopen::Object<0x1A04, 0x05, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A04;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1A04h:06  UNSIGNED32  rw                                      can-2017c.eds:2329
-struct mapping_entry_6 : canopen::Object<0x1A04, 0x06, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A04;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1A04h:07  UNSIGNED32  rw                                      can-2017c.eds:2337
-struct mapping_entry_7 : canopen::Object<0x1A04, 0x07, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A04;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1A04h:08  UNSIGNED32  rw                                      can-2017c.eds:2345
-struct mapping_entry_8 : canopen::Object<0x1A04, 0x08, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A04;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
 };
 }  // namespace tpdo_mapping_parameter_5
@@ -1149,39 +1621,57 @@ struct mapping_entry_8 : canopen::Object<0x1A04, 0x08, std::uint32_t, canopen::A
 /// TPDO mapping parameter 6.  1A05h
 namespace tpdo_mapping_parameter_6 {
 /// Number of mapped objects.  1A05h:00  UNSIGNED8  rw                              can-2017c.eds:2358
-struct number_of_mapped_objects : canopen::Object<0x1A05, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A05;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1A05h:01  UNSIGNED32  rw                                      can-2017c.eds:2366
-struct mapping_entry_1 : canopen::Object<0x1A05, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A05;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A05h:02  UNSIGNED32  rw                                      can-2017c.eds:2374
-struct mapping_entry_2 : canopen::Object<0x1A05, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A05;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A05h:03  UNSIGNED32  rw                                      can-2017c.eds:2382
-struct mapping_entry_3 : canopen::Object<0x1A05, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A05;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A05h:04  UNSIGNED32  rw                                      can-2017c.eds:2390
-struct mapping_entry_4 : canopen::Object<0x1A05, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A05;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1A05h:05  UNSIGNED32  rw                                      can-2017c.eds:2398
-struct mapping_entry_5 : canopen::Object<0x1A05, 0x05, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A05;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1A05h:06  UNSIGNED32  rw                                      can-2017c.eds:2406
-struct mapping_entry_6 : canopen::Object<0x1A05, 0x06, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A05;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1A05h:07  UNSIGNED32  rw                                      can-2017c.eds:2414
-struct mapping_entry_7 : canopen::Object<0x1A05, 0x07, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A05;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1A05h:08  UNSIGNED32  rw                                      can-2017c.eds:2422
-struct mapping_entry_8 : canopen::Object<0x1A05, 0x08, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A05;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
 };
 }  // namespace tpdo_mapping_parameter_6
@@ -1189,39 +1679,57 @@ struct mapping_entry_8 : canopen::Object<0x1A05, 0x08, std::uint32_t, canopen::A
 /// TPDO mapping parameter 7.  1A06h
 namespace tpdo_mapping_parameter_7 {
 /// Number of mapped objects.  1A06h:00  UNSIGNED8  rw                              can-2017c.eds:2435
-struct number_of_mapped_objects : canopen::Object<0x1A06, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A06;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1A06h:01  UNSIGNED32  rw                                      can-2017c.eds:2443
-struct mapping_entry_1 : canopen::Object<0x1A06, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A06;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A06h:02  UNSIGNED32  rw                                      can-2017c.eds:2451
-struct mapping_entry_2 : canopen::Object<0x1A06, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A06;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A06h:03  UNSIGNED32  rw                                      can-2017c.eds:2459
-struct mapping_entry_3 : canopen::Object<0x1A06, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A06;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A06h:04  UNSIGNED32  rw                                      can-2017c.eds:2467
-struct mapping_entry_4 : canopen::Object<0x1A06, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A06;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1A06h:05  UNSIGNED32  rw                                      can-2017c.eds:2475
-struct mapping_entry_5 : canopen::Object<0x1A06, 0x05, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A06;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1A06h:06  UNSIGNED32  rw                                      can-2017c.eds:2483
-struct mapping_entry_6 : canopen::Object<0x1A06, 0x06, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A06;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1A06h:07  UNSIGNED32  rw                                      can-2017c.eds:2491
-struct mapping_entry_7 : canopen::Object<0x1A06, 0x07, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A06;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1A06h:08  UNSIGNED32  rw                                      can-2017c.eds:2499
-struct mapping_entry_8 : canopen::Object<0x1A06, 0x08, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A06;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
 };
 }  // namespace tpdo_mapping_parameter_7
@@ -1229,39 +1737,57 @@ struct mapping_entry_8 : canopen::Object<0x1A06, 0x08, std::uint32_t, canopen::A
 /// TPDO mapping parameter 8.  1A07h
 namespace tpdo_mapping_parameter_8 {
 /// Number of mapped objects.  1A07h:00  UNSIGNED8  rw                              can-2017c.eds:2512
-struct number_of_mapped_objects : canopen::Object<0x1A07, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A07;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1A07h:01  UNSIGNED32  rw                                      can-2017c.eds:2520
-struct mapping_entry_1 : canopen::Object<0x1A07, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A07;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A07h:02  UNSIGNED32  rw                                      can-2017c.eds:2528
-struct mapping_entry_2 : canopen::Object<0x1A07, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A07;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A07h:03  UNSIGNED32  rw                                      can-2017c.eds:2536
-struct mapping_entry_3 : canopen::Object<0x1A07, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A07;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A07h:04  UNSIGNED32  rw                                      can-2017c.eds:2544
-struct mapping_entry_4 : canopen::Object<0x1A07, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A07;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1A07h:05  UNSIGNED32  rw                                      can-2017c.eds:2552
-struct mapping_entry_5 : canopen::Object<0x1A07, 0x05, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A07;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1A07h:06  UNSIGNED32  rw                                      can-2017c.eds:2560
-struct mapping_entry_6 : canopen::Object<0x1A07, 0x06, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A07;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1A07h:07  UNSIGNED32  rw                                      can-2017c.eds:2568
-struct mapping_entry_7 : canopen::Object<0x1A07, 0x07, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A07;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1A07h:08  UNSIGNED32  rw                                      can-2017c.eds:2576
-struct mapping_entry_8 : canopen::Object<0x1A07, 0x08, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A07;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
 };
 }  // namespace tpdo_mapping_parameter_8
@@ -1269,39 +1795,57 @@ struct mapping_entry_8 : canopen::Object<0x1A07, 0x08, std::uint32_t, canopen::A
 /// TPDO mapping parameter 9.  1A08h
 namespace tpdo_mapping_parameter_9 {
 /// Number of mapped objects.  1A08h:00  UNSIGNED8  rw                              can-2017c.eds:2589
-struct number_of_mapped_objects : canopen::Object<0x1A08, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A08;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1A08h:01  UNSIGNED32  rw                                      can-2017c.eds:2597
-struct mapping_entry_1 : canopen::Object<0x1A08, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A08;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A08h:02  UNSIGNED32  rw                                      can-2017c.eds:2605
-struct mapping_entry_2 : canopen::Object<0x1A08, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A08;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A08h:03  UNSIGNED32  rw                                      can-2017c.eds:2613
-struct mapping_entry_3 : canopen::Object<0x1A08, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A08;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A08h:04  UNSIGNED32  rw                                      can-2017c.eds:2621
-struct mapping_entry_4 : canopen::Object<0x1A08, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A08;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1A08h:05  UNSIGNED32  rw                                      can-2017c.eds:2629
-struct mapping_entry_5 : canopen::Object<0x1A08, 0x05, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A08;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1A08h:06  UNSIGNED32  rw                                      can-2017c.eds:2637
-struct mapping_entry_6 : canopen::Object<0x1A08, 0x06, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A08;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1A08h:07  UNSIGNED32  rw                                      can-2017c.eds:2645
-struct mapping_entry_7 : canopen::Object<0x1A08, 0x07, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A08;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1A08h:08  UNSIGNED32  rw                                      can-2017c.eds:2653
-struct mapping_entry_8 : canopen::Object<0x1A08, 0x08, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A08;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
 };
 }  // namespace tpdo_mapping_parameter_9
@@ -1309,39 +1853,57 @@ struct mapping_entry_8 : canopen::Object<0x1A08, 0x08, std::uint32_t, canopen::A
 /// TPDO mapping parameter 10.  1A09h
 namespace tpdo_mapping_parameter_10 {
 /// Number of mapped objects.  1A09h:00  UNSIGNED8  rw                              can-2017c.eds:2666
-struct number_of_mapped_objects : canopen::Object<0x1A09, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A09;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1A09h:01  UNSIGNED32  rw                                      can-2017c.eds:2674
-struct mapping_entry_1 : canopen::Object<0x1A09, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A09;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A09h:02  UNSIGNED32  rw                                      can-2017c.eds:2682
-struct mapping_entry_2 : canopen::Object<0x1A09, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A09;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A09h:03  UNSIGNED32  rw                                      can-2017c.eds:2690
-struct mapping_entry_3 : canopen::Object<0x1A09, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A09;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A09h:04  UNSIGNED32  rw                                      can-2017c.eds:2698
-struct mapping_entry_4 : canopen::Object<0x1A09, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A09;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1A09h:05  UNSIGNED32  rw                                      can-2017c.eds:2706
-struct mapping_entry_5 : canopen::Object<0x1A09, 0x05, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A09;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1A09h:06  UNSIGNED32  rw                                      can-2017c.eds:2714
-struct mapping_entry_6 : canopen::Object<0x1A09, 0x06, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A09;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1A09h:07  UNSIGNED32  rw                                      can-2017c.eds:2722
-struct mapping_entry_7 : canopen::Object<0x1A09, 0x07, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A09;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1A09h:08  UNSIGNED32  rw                                      can-2017c.eds:2730
-struct mapping_entry_8 : canopen::Object<0x1A09, 0x08, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A09;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
 };
 }  // namespace tpdo_mapping_parameter_10
@@ -1353,7 +1915,9 @@ struct read_analogue_input_16_bit : canopen::Object<0x6401, SubIndex, std::int16
   static constexpr auto name = "Read analogue input 16-bit";
 };
 template <>
-struct read_analogue_input_16_bit<0> : canopen::Object<0x6401, 0x00, std::uint8_t, canopen::Access::ro> {
+struct read_analogue_input_16_bit<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x6401;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 

@@ -18,17 +18,23 @@ namespace cpc_tc1 {
 namespace od {
 
 /// Device type.  1000h:00  UNSIGNED32  const                                       cpc-tc1.eds:89
-struct device_type : canopen::Object<0x1000, 0x00, std::uint32_t, canopen::Access::constant> {
+struct device_type : canopen::TypedObject<std::uint32_t, canopen::Access::constant> {
+  static constexpr std::uint16_t index = 0x1000;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Device type";
 };
 
 /// Error register.  1001h:00  UNSIGNED8  ro                                        cpc-tc1.eds:101
-struct error_register : canopen::Object<0x1001, 0x00, std::uint8_t, canopen::Access::ro> {
+struct error_register : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1001;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Error register";
 };
 
 /// Manufacturer status register.  1002h:00  UNSIGNED32  ro                         cpc-tc1.eds:204
-struct manufacturer_status_register : canopen::Object<0x1002, 0x00, std::uint32_t, canopen::Access::ro> {
+struct manufacturer_status_register : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1002;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer status register";
 };
 
@@ -39,34 +45,46 @@ struct pre_defined_error_field : canopen::Object<0x1003, SubIndex, std::uint32_t
   static constexpr auto name = "Pre-defined error field";
 };
 template <>
-struct pre_defined_error_field<0> : canopen::Object<0x1003, 0x00, std::uint8_t, canopen::Access::rw> {
+struct pre_defined_error_field<0> : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1003;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of errors";
 };
 
 /// COB-ID SYNC.  1005h:00  UNSIGNED32  rw                                          cpc-tc1.eds:365
-struct cob_id_sync : canopen::Object<0x1005, 0x00, std::uint32_t, canopen::Access::rw> {
+struct cob_id_sync : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1005;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID SYNC";
   static constexpr type low_limit = 0x00000000;
   static constexpr type high_limit = 0x800007FF;
 };
 
 /// Communication cycle period.  1006h:00  UNSIGNED32  rw                           cpc-tc1.eds:378
-struct communication_cycle_period : canopen::Object<0x1006, 0x00, std::uint32_t, canopen::Access::rw> {
+struct communication_cycle_period : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1006;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Communication cycle period";
 };
 
 /// Manufacturer device name.  1008h:00  VISIBLE_STRING  const                      cpc-tc1.eds:387
-struct manufacturer_device_name : canopen::Object<0x1008, 0x00, canopen::VisibleString<9>, canopen::Access::constant> {
+struct manufacturer_device_name : canopen::TypedObject<canopen::VisibleString<9>, canopen::Access::constant> {
+  static constexpr std::uint16_t index = 0x1008;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer device name";
 };
 
 /// Manufacturer hardware version.  1009h:00  VISIBLE_STRING  const                 cpc-tc1.eds:396
-struct manufacturer_hardware_version : canopen::Object<0x1009, 0x00, canopen::VisibleString<6>, canopen::Access::constant> {
+struct manufacturer_hardware_version : canopen::TypedObject<canopen::VisibleString<6>, canopen::Access::constant> {
+  static constexpr std::uint16_t index = 0x1009;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer hardware version";
 };
 
 /// Manufacturer software version.  100Ah:00  VISIBLE_STRING  const                 cpc-tc1.eds:406
-struct manufacturer_software_version : canopen::Object<0x100A, 0x00, canopen::VisibleString<6>, canopen::Access::constant> {
+struct manufacturer_software_version : canopen::TypedObject<canopen::VisibleString<6>, canopen::Access::constant> {
+  static constexpr std::uint16_t index = 0x100A;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer software version";
 };
 
@@ -77,7 +95,9 @@ struct store_parameters : canopen::Object<0x1010, SubIndex, std::uint32_t, canop
   static constexpr auto name = "Store parameters";
 };
 template <>
-struct store_parameters<0> : canopen::Object<0x1010, 0x00, std::uint8_t, canopen::Access::constant> {
+struct store_parameters<0> : canopen::TypedObject<std::uint8_t, canopen::Access::constant> {
+  static constexpr std::uint16_t index = 0x1010;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 
@@ -106,7 +126,9 @@ struct restore_default_parameters : canopen::Object<0x1011, SubIndex, std::uint3
   static constexpr auto name = "Restore default parameters";
 };
 template <>
-struct restore_default_parameters<0> : canopen::Object<0x1011, 0x00, std::uint8_t, canopen::Access::constant> {
+struct restore_default_parameters<0> : canopen::TypedObject<std::uint8_t, canopen::Access::constant> {
+  static constexpr std::uint16_t index = 0x1011;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 
@@ -129,17 +151,23 @@ using restore_default_parameters_restore_virtual_machine_program = restore_defau
 using restore_default_parameters_restore_error_mapping_data = restore_default_parameters<6>;
 
 /// High resolution time stamp.  1013h:00  UNSIGNED32  rw  PDO                      cpc-tc1.eds:548
-struct high_resolution_time_stamp : canopen::Object<0x1013, 0x00, std::uint32_t, canopen::Access::rw, canopen::Mappable::both> {
+struct high_resolution_time_stamp : canopen::TypedObject<std::uint32_t, canopen::Access::rw, canopen::Mappable::both> {
+  static constexpr std::uint16_t index = 0x1013;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "High resolution time stamp";
 };
 
 /// COB-ID EMCY.  1014h:00  UNSIGNED32  ro                                          cpc-tc1.eds:561
-struct cob_id_emcy : canopen::Object<0x1014, 0x00, std::uint32_t, canopen::Access::ro> {
+struct cob_id_emcy : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1014;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID EMCY";
 };
 
 /// Inhibit time EMCY.  1015h:00  UNSIGNED16  rw                                    cpc-tc1.eds:571
-struct inhibit_time_emcy : canopen::Object<0x1015, 0x00, std::uint16_t, canopen::Access::rw> {
+struct inhibit_time_emcy : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1015;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Inhibit time EMCY";
 };
 
@@ -150,72 +178,98 @@ struct consumer_heartbeat_time : canopen::Object<0x1016, SubIndex, std::uint32_t
   static constexpr auto name = "Consumer heartbeat time";
 };
 template <>
-struct consumer_heartbeat_time<0> : canopen::Object<0x1016, 0x00, std::uint8_t, canopen::Access::constant> {
+struct consumer_heartbeat_time<0> : canopen::TypedObject<std::uint8_t, canopen::Access::constant> {
+  static constexpr std::uint16_t index = 0x1016;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 
 /// Producer heartbeat time.  1017h:00  UNSIGNED16  rw                              cpc-tc1.eds:630
-struct producer_heartbeat_time : canopen::Object<0x1017, 0x00, std::uint16_t, canopen::Access::rw> {
+struct producer_heartbeat_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1017;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Producer heartbeat time";
 };
 
 /// Identity object.  1018h
 namespace identity_object {
 /// Highest sub-index supported.  1018h:00  UNSIGNED8  ro                           cpc-tc1.eds:116
-struct highest_sub_index_supported : canopen::Object<0x1018, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1018;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
   static constexpr type low_limit = 4;
   static constexpr type high_limit = 4;
 };
 /// Vendor-ID.  1018h:01  UNSIGNED32  ro                                            cpc-tc1.eds:126
-struct vendor_id : canopen::Object<0x1018, 0x01, std::uint32_t, canopen::Access::ro> {
+struct vendor_id : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1018;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Vendor-ID";
 };
 /// Product code.  1018h:02  UNSIGNED32  ro                                         cpc-tc1.eds:134
-struct product_code : canopen::Object<0x1018, 0x02, std::uint32_t, canopen::Access::ro> {
+struct product_code : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1018;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Product code";
 };
 /// Revision number.  1018h:03  UNSIGNED32  ro                                      cpc-tc1.eds:142
-struct revision_number : canopen::Object<0x1018, 0x03, std::uint32_t, canopen::Access::ro> {
+struct revision_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1018;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Revision number";
 };
 /// Serial number.  1018h:04  UNSIGNED32  ro                                        cpc-tc1.eds:150
-struct serial_number : canopen::Object<0x1018, 0x04, std::uint32_t, canopen::Access::ro> {
+struct serial_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1018;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Serial number";
 };
 }  // namespace identity_object
 
 /// Synchronous counter overflow value.  1019h:00  UNSIGNED8  rw                    cpc-tc1.eds:644
-struct synchronous_counter_overflow_value : canopen::Object<0x1019, 0x00, std::uint8_t, canopen::Access::rw> {
+struct synchronous_counter_overflow_value : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1019;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Synchronous counter overflow value";
   static constexpr type low_limit = 0;
   static constexpr type high_limit = 240;
 };
 
 /// Store EDS.  1021h:00  DOMAIN  ro                                                cpc-tc1.eds:656
-struct store_eds : canopen::Object<0x1021, 0x00, canopen::Domain, canopen::Access::ro> {
+struct store_eds : canopen::TypedObject<canopen::Domain, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1021;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Store EDS";
 };
 
 /// Store format.  1022h:00  UNSIGNED8  ro                                          cpc-tc1.eds:667
-struct store_format : canopen::Object<0x1022, 0x00, std::uint8_t, canopen::Access::ro> {
+struct store_format : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1022;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Store format";
 };
 
 /// SDO server parameter.  1200h
 namespace sdo_server_parameter {
 /// Highest sub-index supported.  1200h:00  UNSIGNED8  const                        cpc-tc1.eds:684
-struct highest_sub_index_supported : canopen::Object<0x1200, 0x00, std::uint8_t, canopen::Access::constant> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::constant> {
+  static constexpr std::uint16_t index = 0x1200;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
   static constexpr type low_limit = 2;
   static constexpr type high_limit = 2;
 };
 /// COB-ID client to server.  1200h:01  UNSIGNED32  const                           cpc-tc1.eds:694
-struct cob_id_client_to_server : canopen::Object<0x1200, 0x01, std::uint32_t, canopen::Access::constant> {
+struct cob_id_client_to_server : canopen::TypedObject<std::uint32_t, canopen::Access::constant> {
+  static constexpr std::uint16_t index = 0x1200;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID client to server";
 };
 /// COB-ID server to client.  1200h:02  UNSIGNED32  ro                              cpc-tc1.eds:702
-struct cob_id_server_to_client : canopen::Object<0x1200, 0x02, std::uint32_t, canopen::Access::ro> {
+struct cob_id_server_to_client : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1200;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "COB-ID server to client";
 };
 }  // namespace sdo_server_parameter
@@ -223,17 +277,23 @@ struct cob_id_server_to_client : canopen::Object<0x1200, 0x02, std::uint32_t, ca
 /// RPDO communication parameter 1.  1400h
 namespace rpdo_communication_parameter_1 {
 /// Highest sub-index supported.  1400h:00  UNSIGNED8  const                        cpc-tc1.eds:718
-struct highest_sub_index_supported : canopen::Object<0x1400, 0x00, std::uint8_t, canopen::Access::constant> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::constant> {
+  static constexpr std::uint16_t index = 0x1400;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
   static constexpr type low_limit = 2;
   static constexpr type high_limit = 2;
 };
 /// COB-ID used by RPDO.  1400h:01  UNSIGNED32  rw                                  cpc-tc1.eds:728
-struct cob_id_used_by_rpdo : canopen::Object<0x1400, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1400;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1400h:02  UNSIGNED8  rw                                     cpc-tc1.eds:736
-struct transmission_type : canopen::Object<0x1400, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1400;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 }  // namespace rpdo_communication_parameter_1
@@ -241,17 +301,23 @@ struct transmission_type : canopen::Object<0x1400, 0x02, std::uint8_t, canopen::
 /// RPDO communication parameter 2.  1401h
 namespace rpdo_communication_parameter_2 {
 /// Highest sub-index supported.  1401h:00  UNSIGNED8  const                        cpc-tc1.eds:750
-struct highest_sub_index_supported : canopen::Object<0x1401, 0x00, std::uint8_t, canopen::Access::constant> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::constant> {
+  static constexpr std::uint16_t index = 0x1401;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
   static constexpr type low_limit = 2;
   static constexpr type high_limit = 2;
 };
 /// COB-ID used by RPDO.  1401h:01  UNSIGNED32  rw                                  cpc-tc1.eds:760
-struct cob_id_used_by_rpdo : canopen::Object<0x1401, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1401;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1401h:02  UNSIGNED8  rw                                     cpc-tc1.eds:768
-struct transmission_type : canopen::Object<0x1401, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1401;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 }  // namespace rpdo_communication_parameter_2
@@ -259,17 +325,23 @@ struct transmission_type : canopen::Object<0x1401, 0x02, std::uint8_t, canopen::
 /// RPDO communication parameter 3.  1402h
 namespace rpdo_communication_parameter_3 {
 /// Highest sub-index supported.  1402h:00  UNSIGNED8  const                        cpc-tc1.eds:782
-struct highest_sub_index_supported : canopen::Object<0x1402, 0x00, std::uint8_t, canopen::Access::constant> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::constant> {
+  static constexpr std::uint16_t index = 0x1402;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
   static constexpr type low_limit = 2;
   static constexpr type high_limit = 2;
 };
 /// COB-ID used by RPDO.  1402h:01  UNSIGNED32  rw                                  cpc-tc1.eds:792
-struct cob_id_used_by_rpdo : canopen::Object<0x1402, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1402;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1402h:02  UNSIGNED8  rw                                     cpc-tc1.eds:800
-struct transmission_type : canopen::Object<0x1402, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1402;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 }  // namespace rpdo_communication_parameter_3
@@ -277,17 +349,23 @@ struct transmission_type : canopen::Object<0x1402, 0x02, std::uint8_t, canopen::
 /// RPDO communication parameter 4.  1403h
 namespace rpdo_communication_parameter_4 {
 /// Highest sub-index supported.  1403h:00  UNSIGNED8  const                        cpc-tc1.eds:814
-struct highest_sub_index_supported : canopen::Object<0x1403, 0x00, std::uint8_t, canopen::Access::constant> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::constant> {
+  static constexpr std::uint16_t index = 0x1403;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
   static constexpr type low_limit = 2;
   static constexpr type high_limit = 2;
 };
 /// COB-ID used by RPDO.  1403h:01  UNSIGNED32  rw                                  cpc-tc1.eds:824
-struct cob_id_used_by_rpdo : canopen::Object<0x1403, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1403;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1403h:02  UNSIGNED8  rw                                     cpc-tc1.eds:832
-struct transmission_type : canopen::Object<0x1403, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1403;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 }  // namespace rpdo_communication_parameter_4
@@ -295,25 +373,35 @@ struct transmission_type : canopen::Object<0x1403, 0x02, std::uint8_t, canopen::
 /// RPDO mapping parameter 1.  1600h
 namespace rpdo_mapping_parameter_1 {
 /// Number of mapped application objects.  1600h:00  UNSIGNED8  rw                  cpc-tc1.eds:847
-struct number_of_mapped_application_objects : canopen::Object<0x1600, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1600;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped application objects";
   static constexpr type low_limit = 0;
   static constexpr type high_limit = 4;
 };
 /// Mapping entry 1.  1600h:01  UNSIGNED32  rw                                      cpc-tc1.eds:857
-struct mapping_entry_1 : canopen::Object<0x1600, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1600;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1600h:02  UNSIGNED32  rw                                      cpc-tc1.eds:865
-struct mapping_entry_2 : canopen::Object<0x1600, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1600;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1600h:03  UNSIGNED32  rw                                      cpc-tc1.eds:873
-struct mapping_entry_3 : canopen::Object<0x1600, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1600;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1600h:04  UNSIGNED32  rw                                      cpc-tc1.eds:881
-struct mapping_entry_4 : canopen::Object<0x1600, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1600;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 }  // namespace rpdo_mapping_parameter_1
@@ -321,25 +409,35 @@ struct mapping_entry_4 : canopen::Object<0x1600, 0x04, std::uint32_t, canopen::A
 /// RPDO mapping parameter 2.  1601h
 namespace rpdo_mapping_parameter_2 {
 /// Number of mapped application objects.  1601h:00  UNSIGNED8  rw                  cpc-tc1.eds:895
-struct number_of_mapped_application_objects : canopen::Object<0x1601, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1601;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped application objects";
   static constexpr type low_limit = 0;
   static constexpr type high_limit = 4;
 };
 /// Mapping entry 1.  1601h:01  UNSIGNED32  rw                                      cpc-tc1.eds:905
-struct mapping_entry_1 : canopen::Object<0x1601, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1601;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1601h:02  UNSIGNED32  rw                                      cpc-tc1.eds:913
-struct mapping_entry_2 : canopen::Object<0x1601, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1601;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1601h:03  UNSIGNED32  rw                                      cpc-tc1.eds:921
-struct mapping_entry_3 : canopen::Object<0x1601, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1601;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1601h:04  UNSIGNED32  rw                                      cpc-tc1.eds:929
-struct mapping_entry_4 : canopen::Object<0x1601, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1601;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 }  // namespace rpdo_mapping_parameter_2
@@ -347,25 +445,35 @@ struct mapping_entry_4 : canopen::Object<0x1601, 0x04, std::uint32_t, canopen::A
 /// RPDO mapping parameter 3.  1602h
 namespace rpdo_mapping_parameter_3 {
 /// Number of mapped application objects.  1602h:00  UNSIGNED8  rw                  cpc-tc1.eds:943
-struct number_of_mapped_application_objects : canopen::Object<0x1602, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1602;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped application objects";
   static constexpr type low_limit = 0;
   static constexpr type high_limit = 4;
 };
 /// Mapping entry 1.  1602h:01  UNSIGNED32  rw                                      cpc-tc1.eds:953
-struct mapping_entry_1 : canopen::Object<0x1602, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1602;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1602h:02  UNSIGNED32  rw                                      cpc-tc1.eds:961
-struct mapping_entry_2 : canopen::Object<0x1602, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1602;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1602h:03  UNSIGNED32  rw                                      cpc-tc1.eds:969
-struct mapping_entry_3 : canopen::Object<0x1602, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1602;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1602h:04  UNSIGNED32  rw                                      cpc-tc1.eds:977
-struct mapping_entry_4 : canopen::Object<0x1602, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1602;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 }  // namespace rpdo_mapping_parameter_3
@@ -373,25 +481,35 @@ struct mapping_entry_4 : canopen::Object<0x1602, 0x04, std::uint32_t, canopen::A
 /// RPDO mapping parameter 4.  1603h
 namespace rpdo_mapping_parameter_4 {
 /// Number of mapped application objects.  1603h:00  UNSIGNED8  rw                  cpc-tc1.eds:991
-struct number_of_mapped_application_objects : canopen::Object<0x1603, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1603;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped application objects";
   static constexpr type low_limit = 0;
   static constexpr type high_limit = 4;
 };
 /// Mapping entry 1.  1603h:01  UNSIGNED32  rw                                      cpc-tc1.eds:1001
-struct mapping_entry_1 : canopen::Object<0x1603, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1603;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1603h:02  UNSIGNED32  rw                                      cpc-tc1.eds:1009
-struct mapping_entry_2 : canopen::Object<0x1603, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1603;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1603h:03  UNSIGNED32  rw                                      cpc-tc1.eds:1017
-struct mapping_entry_3 : canopen::Object<0x1603, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1603;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1603h:04  UNSIGNED32  rw                                      cpc-tc1.eds:1025
-struct mapping_entry_4 : canopen::Object<0x1603, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1603;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 }  // namespace rpdo_mapping_parameter_4
@@ -399,25 +517,35 @@ struct mapping_entry_4 : canopen::Object<0x1603, 0x04, std::uint32_t, canopen::A
 /// TPDO communication parameter 1.  1800h
 namespace tpdo_communication_parameter_1 {
 /// Highest sub-index supported.  1800h:00  UNSIGNED8  const                        cpc-tc1.eds:1048
-struct highest_sub_index_supported : canopen::Object<0x1800, 0x00, std::uint8_t, canopen::Access::constant> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::constant> {
+  static constexpr std::uint16_t index = 0x1800;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
   static constexpr type low_limit = 2;
   static constexpr type high_limit = 5;
 };
 /// COB-ID used by TPDO.  1800h:01  UNSIGNED32  rw                                  cpc-tc1.eds:1058
-struct cob_id_used_by_tpdo : canopen::Object<0x1800, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1800;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1800h:02  UNSIGNED8  rw                                     cpc-tc1.eds:1066
-struct transmission_type : canopen::Object<0x1800, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1800;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1800h:03  UNSIGNED16  rw                                         cpc-tc1.eds:1074
-struct inhibit_time : canopen::Object<0x1800, 0x03, std::uint16_t, canopen::Access::rw> {
+struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1800;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1800h:05  UNSIGNED16  rw                                          cpc-tc1.eds:1082
-struct event_timer : canopen::Object<0x1800, 0x05, std::uint16_t, canopen::Access::rw> {
+struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1800;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
 };
 }  // namespace tpdo_communication_parameter_1
@@ -425,25 +553,35 @@ struct event_timer : canopen::Object<0x1800, 0x05, std::uint16_t, canopen::Acces
 /// TPDO communication parameter 2.  1801h
 namespace tpdo_communication_parameter_2 {
 /// Highest sub-index supported.  1801h:00  UNSIGNED8  const                        cpc-tc1.eds:1096
-struct highest_sub_index_supported : canopen::Object<0x1801, 0x00, std::uint8_t, canopen::Access::constant> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::constant> {
+  static constexpr std::uint16_t index = 0x1801;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
   static constexpr type low_limit = 2;
   static constexpr type high_limit = 5;
 };
 /// COB-ID used by TPDO.  1801h:01  UNSIGNED32  rw                                  cpc-tc1.eds:1106
-struct cob_id_used_by_tpdo : canopen::Object<0x1801, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1801;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1801h:02  UNSIGNED8  rw                                     cpc-tc1.eds:1114
-struct transmission_type : canopen::Object<0x1801, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1801;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1801h:03  UNSIGNED16  rw                                         cpc-tc1.eds:1122
-struct inhibit_time : canopen::Object<0x1801, 0x03, std::uint16_t, canopen::Access::rw> {
+struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1801;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1801h:05  UNSIGNED16  rw                                          cpc-tc1.eds:1130
-struct event_timer : canopen::Object<0x1801, 0x05, std::uint16_t, canopen::Access::rw> {
+struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1801;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
 };
 }  // namespace tpdo_communication_parameter_2
@@ -451,25 +589,35 @@ struct event_timer : canopen::Object<0x1801, 0x05, std::uint16_t, canopen::Acces
 /// TPDO communication parameter 3.  1802h
 namespace tpdo_communication_parameter_3 {
 /// Highest sub-index supported.  1802h:00  UNSIGNED8  const                        cpc-tc1.eds:1144
-struct highest_sub_index_supported : canopen::Object<0x1802, 0x00, std::uint8_t, canopen::Access::constant> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::constant> {
+  static constexpr std::uint16_t index = 0x1802;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
   static constexpr type low_limit = 2;
   static constexpr type high_limit = 5;
 };
 /// COB-ID used by TPDO.  1802h:01  UNSIGNED32  rw                                  cpc-tc1.eds:1154
-struct cob_id_used_by_tpdo : canopen::Object<0x1802, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1802;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1802h:02  UNSIGNED8  rw                                     cpc-tc1.eds:1162
-struct transmission_type : canopen::Object<0x1802, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1802;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1802h:03  UNSIGNED16  rw                                         cpc-tc1.eds:1170
-struct inhibit_time : canopen::Object<0x1802, 0x03, std::uint16_t, canopen::Access::rw> {
+struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1802;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1802h:05  UNSIGNED16  rw                                          cpc-tc1.eds:1178
-struct event_timer : canopen::Object<0x1802, 0x05, std::uint16_t, canopen::Access::rw> {
+struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1802;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
 };
 }  // namespace tpdo_communication_parameter_3
@@ -477,25 +625,35 @@ struct event_timer : canopen::Object<0x1802, 0x05, std::uint16_t, canopen::Acces
 /// TPDO communication parameter 4.  1803h
 namespace tpdo_communication_parameter_4 {
 /// Highest sub-index supported.  1803h:00  UNSIGNED8  const                        cpc-tc1.eds:1192
-struct highest_sub_index_supported : canopen::Object<0x1803, 0x00, std::uint8_t, canopen::Access::constant> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::constant> {
+  static constexpr std::uint16_t index = 0x1803;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
   static constexpr type low_limit = 2;
   static constexpr type high_limit = 5;
 };
 /// COB-ID used by TPDO.  1803h:01  UNSIGNED32  rw                                  cpc-tc1.eds:1202
-struct cob_id_used_by_tpdo : canopen::Object<0x1803, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1803;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1803h:02  UNSIGNED8  rw                                     cpc-tc1.eds:1210
-struct transmission_type : canopen::Object<0x1803, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1803;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1803h:03  UNSIGNED16  rw                                         cpc-tc1.eds:1218
-struct inhibit_time : canopen::Object<0x1803, 0x03, std::uint16_t, canopen::Access::rw> {
+struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1803;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1803h:05  UNSIGNED16  rw                                          cpc-tc1.eds:1226
-struct event_timer : canopen::Object<0x1803, 0x05, std::uint16_t, canopen::Access::rw> {
+struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1803;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
 };
 }  // namespace tpdo_communication_parameter_4
@@ -503,25 +661,35 @@ struct event_timer : canopen::Object<0x1803, 0x05, std::uint16_t, canopen::Acces
 /// TPDO mapping parameter 1.  1A00h
 namespace tpdo_mapping_parameter_1 {
 /// Number of mapped application objects.  1A00h:00  UNSIGNED8  rw                  cpc-tc1.eds:1243
-struct number_of_mapped_application_objects : canopen::Object<0x1A00, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A00;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped application objects";
   static constexpr type low_limit = 0;
   static constexpr type high_limit = 4;
 };
 /// Mapping entry 1.  1A00h:01  UNSIGNED32  rw                                      cpc-tc1.eds:1253
-struct mapping_entry_1 : canopen::Object<0x1A00, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A00;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A00h:02  UNSIGNED32  rw                                      cpc-tc1.eds:1261
-struct mapping_entry_2 : canopen::Object<0x1A00, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A00;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A00h:03  UNSIGNED32  rw                                      cpc-tc1.eds:1269
-struct mapping_entry_3 : canopen::Object<0x1A00, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A00;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A00h:04  UNSIGNED32  rw                                      cpc-tc1.eds:1277
-struct mapping_entry_4 : canopen::Object<0x1A00, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A00;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 }  // namespace tpdo_mapping_parameter_1
@@ -529,25 +697,35 @@ struct mapping_entry_4 : canopen::Object<0x1A00, 0x04, std::uint32_t, canopen::A
 /// TPDO mapping parameter 2.  1A01h
 namespace tpdo_mapping_parameter_2 {
 /// Number of mapped application objects.  1A01h:00  UNSIGNED8  rw                  cpc-tc1.eds:1291
-struct number_of_mapped_application_objects : canopen::Object<0x1A01, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A01;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped application objects";
   static constexpr type low_limit = 0;
   static constexpr type high_limit = 4;
 };
 /// Mapping entry 1.  1A01h:01  UNSIGNED32  rw                                      cpc-tc1.eds:1301
-struct mapping_entry_1 : canopen::Object<0x1A01, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A01;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A01h:02  UNSIGNED32  rw                                      cpc-tc1.eds:1309
-struct mapping_entry_2 : canopen::Object<0x1A01, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A01;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A01h:03  UNSIGNED32  rw                                      cpc-tc1.eds:1317
-struct mapping_entry_3 : canopen::Object<0x1A01, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A01;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A01h:04  UNSIGNED32  rw                                      cpc-tc1.eds:1325
-struct mapping_entry_4 : canopen::Object<0x1A01, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A01;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 }  // namespace tpdo_mapping_parameter_2
@@ -555,25 +733,35 @@ struct mapping_entry_4 : canopen::Object<0x1A01, 0x04, std::uint32_t, canopen::A
 /// TPDO mapping parameter 3.  1A02h
 namespace tpdo_mapping_parameter_3 {
 /// Number of mapped application objects.  1A02h:00  UNSIGNED8  rw                  cpc-tc1.eds:1339
-struct number_of_mapped_application_objects : canopen::Object<0x1A02, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A02;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped application objects";
   static constexpr type low_limit = 0;
   static constexpr type high_limit = 4;
 };
 /// Mapping entry 1.  1A02h:01  UNSIGNED32  rw                                      cpc-tc1.eds:1349
-struct mapping_entry_1 : canopen::Object<0x1A02, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A02;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A02h:02  UNSIGNED32  rw                                      cpc-tc1.eds:1357
-struct mapping_entry_2 : canopen::Object<0x1A02, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A02;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A02h:03  UNSIGNED32  rw                                      cpc-tc1.eds:1365
-struct mapping_entry_3 : canopen::Object<0x1A02, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A02;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A02h:04  UNSIGNED32  rw                                      cpc-tc1.eds:1373
-struct mapping_entry_4 : canopen::Object<0x1A02, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A02;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 }  // namespace tpdo_mapping_parameter_3
@@ -581,56 +769,78 @@ struct mapping_entry_4 : canopen::Object<0x1A02, 0x04, std::uint32_t, canopen::A
 /// TPDO mapping parameter 4.  1A03h
 namespace tpdo_mapping_parameter_4 {
 /// Number of mapped application objects.  1A03h:00  UNSIGNED8  rw                  cpc-tc1.eds:1388
-struct number_of_mapped_application_objects : canopen::Object<0x1A03, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A03;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped application objects";
   static constexpr type low_limit = 0;
   static constexpr type high_limit = 4;
 };
 /// Mapping entry 1.  1A03h:01  UNSIGNED32  rw                                      cpc-tc1.eds:1398
-struct mapping_entry_1 : canopen::Object<0x1A03, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A03;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A03h:02  UNSIGNED32  rw                                      cpc-tc1.eds:1406
-struct mapping_entry_2 : canopen::Object<0x1A03, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A03;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A03h:03  UNSIGNED32  rw                                      cpc-tc1.eds:1414
-struct mapping_entry_3 : canopen::Object<0x1A03, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A03;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A03h:04  UNSIGNED32  rw                                      cpc-tc1.eds:1422
-struct mapping_entry_4 : canopen::Object<0x1A03, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A03;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 }  // namespace tpdo_mapping_parameter_4
 
 /// Controlword.  6040h:00  UNSIGNED16  rww  RPDO                                   cpc-tc1.eds:1432
-struct controlword : canopen::Object<0x6040, 0x00, std::uint16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+struct controlword : canopen::TypedObject<std::uint16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  static constexpr std::uint16_t index = 0x6040;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Controlword";
 };
 
 /// Statusword.  6041h:00  UNSIGNED16  ro  TPDO                                     cpc-tc1.eds:1442
-struct statusword : canopen::Object<0x6041, 0x00, std::uint16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+struct statusword : canopen::TypedObject<std::uint16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  static constexpr std::uint16_t index = 0x6041;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Statusword";
 };
 
 /// Position actual value.  6064h:00  INTEGER32  ro  TPDO                           cpc-tc1.eds:1452
-struct position_actual_value : canopen::Object<0x6064, 0x00, std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+struct position_actual_value : canopen::TypedObject<std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  static constexpr std::uint16_t index = 0x6064;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Position actual value";
 };
 
 /// Velocity actual value.  606Ch:00  INTEGER32  ro  TPDO                           cpc-tc1.eds:1462
-struct velocity_actual_value : canopen::Object<0x606C, 0x00, std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+struct velocity_actual_value : canopen::TypedObject<std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  static constexpr std::uint16_t index = 0x606C;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Velocity actual value";
 };
 
 /// Target position.  607Ah:00  INTEGER32  rww  RPDO                                cpc-tc1.eds:1472
-struct target_position : canopen::Object<0x607A, 0x00, std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+struct target_position : canopen::TypedObject<std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  static constexpr std::uint16_t index = 0x607A;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Target position";
 };
 
 /// Target velocity.  60FFh:00  INTEGER32  rww  RPDO                                cpc-tc1.eds:1482
-struct target_velocity : canopen::Object<0x60FF, 0x00, std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+struct target_velocity : canopen::TypedObject<std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  static constexpr std::uint16_t index = 0x60FF;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Target velocity";
 };
 

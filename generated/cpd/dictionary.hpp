@@ -18,12 +18,16 @@ namespace cpd {
 namespace od {
 
 /// Device type.  1000h:00  UNSIGNED32  ro                                          cpd.eds:94
-struct device_type : canopen::Object<0x1000, 0x00, std::uint32_t, canopen::Access::ro> {
+struct device_type : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1000;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Device type";
 };
 
 /// Error register.  1001h:00  UNSIGNED8  ro                                        cpd.eds:105
-struct error_register : canopen::Object<0x1001, 0x00, std::uint8_t, canopen::Access::ro> {
+struct error_register : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1001;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Error register";
 };
 
@@ -34,7 +38,9 @@ struct pre_defined_error_field : canopen::Object<0x1003, SubIndex, std::uint32_t
   static constexpr auto name = "Pre-defined error field";
 };
 template <>
-struct pre_defined_error_field<0> : canopen::Object<0x1003, 0x00, std::uint8_t, canopen::Access::rw> {
+struct pre_defined_error_field<0> : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1003;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of errors";
 };
 
@@ -42,32 +48,44 @@ struct pre_defined_error_field<0> : canopen::Object<0x1003, 0x00, std::uint8_t, 
 using pre_defined_error_field_error_field = pre_defined_error_field<1>;
 
 /// COB-ID SYNC.  1005h:00  UNSIGNED32  rw                                          cpd.eds:250
-struct cob_id_sync : canopen::Object<0x1005, 0x00, std::uint32_t, canopen::Access::rw> {
+struct cob_id_sync : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1005;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID SYNC";
 };
 
 /// Manufacturer device name.  1008h:00  VISIBLE_STRING  ro                         cpd.eds:260
-struct manufacturer_device_name : canopen::Object<0x1008, 0x00, canopen::VisibleString<8>, canopen::Access::ro> {
+struct manufacturer_device_name : canopen::TypedObject<canopen::VisibleString<8>, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1008;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer device name";
 };
 
 /// Manufacturer hardware version.  1009h:00  VISIBLE_STRING  ro                    cpd.eds:269
-struct manufacturer_hardware_version : canopen::Object<0x1009, 0x00, canopen::VisibleString<8>, canopen::Access::ro> {
+struct manufacturer_hardware_version : canopen::TypedObject<canopen::VisibleString<8>, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1009;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer hardware version";
 };
 
 /// Manufacturer software version.  100Ah:00  VISIBLE_STRING  ro                    cpd.eds:278
-struct manufacturer_software_version : canopen::Object<0x100A, 0x00, canopen::VisibleString<8>, canopen::Access::ro> {
+struct manufacturer_software_version : canopen::TypedObject<canopen::VisibleString<8>, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x100A;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer software version";
 };
 
 /// Guard time.  100Ch:00  UNSIGNED16  rw                                           cpd.eds:287
-struct guard_time : canopen::Object<0x100C, 0x00, std::uint16_t, canopen::Access::rw> {
+struct guard_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x100C;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Guard time";
 };
 
 /// Life time factor.  100Dh:00  UNSIGNED8  rw                                      cpd.eds:298
-struct life_time_factor : canopen::Object<0x100D, 0x00, std::uint8_t, canopen::Access::rw> {
+struct life_time_factor : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x100D;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Life time factor";
 };
 
@@ -78,7 +96,9 @@ struct store_parameters : canopen::Object<0x1010, SubIndex, std::uint32_t, canop
   static constexpr auto name = "Store parameters";
 };
 template <>
-struct store_parameters<0> : canopen::Object<0x1010, 0x00, std::uint8_t, canopen::Access::ro> {
+struct store_parameters<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1010;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 
@@ -98,7 +118,9 @@ struct restore_default_parameters : canopen::Object<0x1011, SubIndex, std::uint3
   static constexpr auto name = "Restore default parameters";
 };
 template <>
-struct restore_default_parameters<0> : canopen::Object<0x1011, 0x00, std::uint8_t, canopen::Access::ro> {
+struct restore_default_parameters<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1011;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 
@@ -112,12 +134,16 @@ using restore_default_parameters_restore_communication_default_parameters = rest
 using restore_default_parameters_restore_application_default_parameters = restore_default_parameters<3>;
 
 /// COB-ID EMCY.  1014h:00  UNSIGNED32  rw                                          cpd.eds:389
-struct cob_id_emcy : canopen::Object<0x1014, 0x00, std::uint32_t, canopen::Access::rw> {
+struct cob_id_emcy : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1014;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID EMCY";
 };
 
 /// Inhibit time EMCY.  1015h:00  UNSIGNED16  rw                                    cpd.eds:398
-struct inhibit_time_emcy : canopen::Object<0x1015, 0x00, std::uint16_t, canopen::Access::rw> {
+struct inhibit_time_emcy : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1015;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Inhibit time EMCY";
 };
 
@@ -128,35 +154,49 @@ struct consumer_heartbeat_time : canopen::Object<0x1016, SubIndex, std::uint32_t
   static constexpr auto name = "Consumer heartbeat time";
 };
 template <>
-struct consumer_heartbeat_time<0> : canopen::Object<0x1016, 0x00, std::uint8_t, canopen::Access::ro> {
+struct consumer_heartbeat_time<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1016;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 
 /// Producer heartbeat time.  1017h:00  UNSIGNED16  rw                              cpd.eds:448
-struct producer_heartbeat_time : canopen::Object<0x1017, 0x00, std::uint16_t, canopen::Access::rw> {
+struct producer_heartbeat_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1017;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Producer heartbeat time";
 };
 
 /// Identity object.  1018h
 namespace identity_object {
 /// Highest sub-index supported.  1018h:00  UNSIGNED8  ro                           cpd.eds:119
-struct highest_sub_index_supported : canopen::Object<0x1018, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1018;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// Vendor-ID.  1018h:01  UNSIGNED32  ro                                            cpd.eds:127
-struct vendor_id : canopen::Object<0x1018, 0x01, std::uint32_t, canopen::Access::ro> {
+struct vendor_id : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1018;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Vendor-ID";
 };
 /// Product code.  1018h:02  UNSIGNED32  ro                                         cpd.eds:135
-struct product_code : canopen::Object<0x1018, 0x02, std::uint32_t, canopen::Access::ro> {
+struct product_code : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1018;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Product code";
 };
 /// Revision number.  1018h:03  UNSIGNED32  ro                                      cpd.eds:143
-struct revision_number : canopen::Object<0x1018, 0x03, std::uint32_t, canopen::Access::ro> {
+struct revision_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1018;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Revision number";
 };
 /// Serial number.  1018h:04  UNSIGNED32  ro                                        cpd.eds:151
-struct serial_number : canopen::Object<0x1018, 0x04, std::uint32_t, canopen::Access::ro> {
+struct serial_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1018;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Serial number";
 };
 }  // namespace identity_object
@@ -168,7 +208,9 @@ struct verify_configuration : canopen::Object<0x1020, SubIndex, std::uint32_t, c
   static constexpr auto name = "Verify configuration";
 };
 template <>
-struct verify_configuration<0> : canopen::Object<0x1020, 0x00, std::uint8_t, canopen::Access::ro> {
+struct verify_configuration<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1020;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 
@@ -185,7 +227,9 @@ struct error_behaviour : canopen::Object<0x1029, SubIndex, std::uint8_t, canopen
   static constexpr auto name = "Error behaviour";
 };
 template <>
-struct error_behaviour<0> : canopen::Object<0x1029, 0x00, std::uint8_t, canopen::Access::ro> {
+struct error_behaviour<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1029;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 
@@ -195,15 +239,21 @@ using error_behaviour_communication_error = error_behaviour<1>;
 /// SDO server parameter 1.  1200h
 namespace sdo_server_parameter_1 {
 /// Highest sub-index supported.  1200h:00  UNSIGNED8  ro                           cpd.eds:518
-struct highest_sub_index_supported : canopen::Object<0x1200, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1200;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID client to server.  1200h:01  UNSIGNED32  ro                              cpd.eds:526
-struct cob_id_client_to_server : canopen::Object<0x1200, 0x01, std::uint32_t, canopen::Access::ro> {
+struct cob_id_client_to_server : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1200;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID client to server";
 };
 /// COB-ID server to client.  1200h:02  UNSIGNED32  ro                              cpd.eds:534
-struct cob_id_server_to_client : canopen::Object<0x1200, 0x02, std::uint32_t, canopen::Access::ro> {
+struct cob_id_server_to_client : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1200;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "COB-ID server to client";
 };
 }  // namespace sdo_server_parameter_1
@@ -211,19 +261,27 @@ struct cob_id_server_to_client : canopen::Object<0x1200, 0x02, std::uint32_t, ca
 /// SDO server parameter 2.  1201h
 namespace sdo_server_parameter_2 {
 /// Highest sub-index supported.  1201h:00  UNSIGNED8  ro                           cpd.eds:548
-struct highest_sub_index_supported : canopen::Object<0x1201, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1201;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID client to server.  1201h:01  UNSIGNED32  rw                              cpd.eds:556
-struct cob_id_client_to_server : canopen::Object<0x1201, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_client_to_server : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1201;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID client to server";
 };
 /// COB-ID server to client.  1201h:02  UNSIGNED32  rw                              cpd.eds:564
-struct cob_id_server_to_client : canopen::Object<0x1201, 0x02, std::uint32_t, canopen::Access::rw> {
+struct cob_id_server_to_client : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1201;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "COB-ID server to client";
 };
 /// Node-ID of the SDO client.  1201h:03  UNSIGNED8  rw                             cpd.eds:574
-struct node_id_of_the_sdo_client : canopen::Object<0x1201, 0x03, std::uint8_t, canopen::Access::rw> {
+struct node_id_of_the_sdo_client : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1201;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Node-ID of the SDO client";
   static constexpr type low_limit = 1;
   static constexpr type high_limit = 127;
@@ -233,15 +291,21 @@ struct node_id_of_the_sdo_client : canopen::Object<0x1201, 0x03, std::uint8_t, c
 /// RPDO communication parameter 1.  1400h
 namespace rpdo_communication_parameter_1 {
 /// Highest sub-index supported.  1400h:00  UNSIGNED8  ro                           cpd.eds:592
-struct highest_sub_index_supported : canopen::Object<0x1400, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1400;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1400h:01  UNSIGNED32  rw                                  cpd.eds:600
-struct cob_id_used_by_rpdo : canopen::Object<0x1400, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1400;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1400h:02  UNSIGNED8  rw                                     cpd.eds:608
-struct transmission_type : canopen::Object<0x1400, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1400;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 }  // namespace rpdo_communication_parameter_1
@@ -249,15 +313,21 @@ struct transmission_type : canopen::Object<0x1400, 0x02, std::uint8_t, canopen::
 /// RPDO communication parameter 2.  1401h
 namespace rpdo_communication_parameter_2 {
 /// Highest sub-index supported.  1401h:00  UNSIGNED8  ro                           cpd.eds:631
-struct highest_sub_index_supported : canopen::Object<0x1401, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1401;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1401h:01  UNSIGNED32  rw                                  cpd.eds:639
-struct cob_id_used_by_rpdo : canopen::Object<0x1401, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1401;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1401h:02  UNSIGNED8  rw                                     cpd.eds:647
-struct transmission_type : canopen::Object<0x1401, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1401;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 }  // namespace rpdo_communication_parameter_2
@@ -265,15 +335,21 @@ struct transmission_type : canopen::Object<0x1401, 0x02, std::uint8_t, canopen::
 /// RPDO communication parameter 3.  1402h
 namespace rpdo_communication_parameter_3 {
 /// Highest sub-index supported.  1402h:00  UNSIGNED8  ro                           cpd.eds:670
-struct highest_sub_index_supported : canopen::Object<0x1402, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1402;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1402h:01  UNSIGNED32  rw                                  cpd.eds:678
-struct cob_id_used_by_rpdo : canopen::Object<0x1402, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1402;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1402h:02  UNSIGNED8  rw                                     cpd.eds:686
-struct transmission_type : canopen::Object<0x1402, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1402;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 }  // namespace rpdo_communication_parameter_3
@@ -281,15 +357,21 @@ struct transmission_type : canopen::Object<0x1402, 0x02, std::uint8_t, canopen::
 /// RPDO communication parameter 4.  1403h
 namespace rpdo_communication_parameter_4 {
 /// Highest sub-index supported.  1403h:00  UNSIGNED8  ro                           cpd.eds:706
-struct highest_sub_index_supported : canopen::Object<0x1403, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1403;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1403h:01  UNSIGNED32  rw                                  cpd.eds:714
-struct cob_id_used_by_rpdo : canopen::Object<0x1403, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1403;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1403h:02  UNSIGNED8  ro                                     cpd.eds:722
-struct transmission_type : canopen::Object<0x1403, 0x02, std::uint8_t, canopen::Access::ro> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1403;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 }  // namespace rpdo_communication_parameter_4
@@ -297,13 +379,17 @@ struct transmission_type : canopen::Object<0x1403, 0x02, std::uint8_t, canopen::
 /// RPDO mapping parameter 1.  1600h
 namespace rpdo_mapping_parameter_1 {
 /// Number of mapped objects.  1600h:00  UNSIGNED8  ro                              cpd.eds:740
-struct number_of_mapped_objects : canopen::Object<0x1600, 0x00, std::uint8_t, canopen::Access::ro> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1600;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
   static constexpr type low_limit = 1;
   static constexpr type high_limit = 8;
 };
 /// Mapping entry 1.  1600h:01  UNSIGNED32  ro                                      cpd.eds:750
-struct mapping_entry_1 : canopen::Object<0x1600, 0x01, std::uint32_t, canopen::Access::ro> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1600;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 }  // namespace rpdo_mapping_parameter_1
@@ -311,25 +397,35 @@ struct mapping_entry_1 : canopen::Object<0x1600, 0x01, std::uint32_t, canopen::A
 /// RPDO mapping parameter 2.  1601h
 namespace rpdo_mapping_parameter_2 {
 /// Number of mapped objects.  1601h:00  UNSIGNED8  ro                              cpd.eds:769
-struct number_of_mapped_objects : canopen::Object<0x1601, 0x00, std::uint8_t, canopen::Access::ro> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1601;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
   static constexpr type low_limit = 1;
   static constexpr type high_limit = 8;
 };
 /// Mapping entry 1.  1601h:01  UNSIGNED32  ro                                      cpd.eds:779
-struct mapping_entry_1 : canopen::Object<0x1601, 0x01, std::uint32_t, canopen::Access::ro> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1601;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1601h:02  UNSIGNED32  ro                                      cpd.eds:787
-struct mapping_entry_2 : canopen::Object<0x1601, 0x02, std::uint32_t, canopen::Access::ro> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1601;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1601h:03  UNSIGNED32  ro                                      cpd.eds:795
-struct mapping_entry_3 : canopen::Object<0x1601, 0x03, std::uint32_t, canopen::Access::ro> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1601;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1601h:04  UNSIGNED32  ro                                      cpd.eds:803
-struct mapping_entry_4 : canopen::Object<0x1601, 0x04, std::uint32_t, canopen::Access::ro> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1601;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 }  // namespace rpdo_mapping_parameter_2
@@ -337,25 +433,35 @@ struct mapping_entry_4 : canopen::Object<0x1601, 0x04, std::uint32_t, canopen::A
 /// RPDO mapping parameter 3.  1602h
 namespace rpdo_mapping_parameter_3 {
 /// Number of mapped objects.  1602h:00  UNSIGNED8  ro                              cpd.eds:820
-struct number_of_mapped_objects : canopen::Object<0x1602, 0x00, std::uint8_t, canopen::Access::ro> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1602;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
   static constexpr type low_limit = 1;
   static constexpr type high_limit = 8;
 };
 /// Mapping entry 1.  1602h:01  UNSIGNED32  ro                                      cpd.eds:830
-struct mapping_entry_1 : canopen::Object<0x1602, 0x01, std::uint32_t, canopen::Access::ro> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1602;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1602h:02  UNSIGNED32  ro                                      cpd.eds:838
-struct mapping_entry_2 : canopen::Object<0x1602, 0x02, std::uint32_t, canopen::Access::ro> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1602;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1602h:03  UNSIGNED32  ro                                      cpd.eds:846
-struct mapping_entry_3 : canopen::Object<0x1602, 0x03, std::uint32_t, canopen::Access::ro> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1602;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1602h:04  UNSIGNED32  ro                                      cpd.eds:854
-struct mapping_entry_4 : canopen::Object<0x1602, 0x04, std::uint32_t, canopen::Access::ro> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1602;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 }  // namespace rpdo_mapping_parameter_3
@@ -363,23 +469,33 @@ struct mapping_entry_4 : canopen::Object<0x1602, 0x04, std::uint32_t, canopen::A
 /// RPDO mapping parameter 4.  1603h
 namespace rpdo_mapping_parameter_4 {
 /// Number of mapped objects.  1603h:00  UNSIGNED8  rw                              cpd.eds:871
-struct number_of_mapped_objects : canopen::Object<0x1603, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1603;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1603h:01  UNSIGNED32  rw                                      cpd.eds:879
-struct mapping_entry_1 : canopen::Object<0x1603, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1603;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1603h:02  UNSIGNED32  rw                                      cpd.eds:887
-struct mapping_entry_2 : canopen::Object<0x1603, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1603;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1603h:03  UNSIGNED32  rw                                      cpd.eds:895
-struct mapping_entry_3 : canopen::Object<0x1603, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1603;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1603h:04  UNSIGNED32  rw                                      cpd.eds:903
-struct mapping_entry_4 : canopen::Object<0x1603, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1603;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 }  // namespace rpdo_mapping_parameter_4
@@ -387,23 +503,33 @@ struct mapping_entry_4 : canopen::Object<0x1603, 0x04, std::uint32_t, canopen::A
 /// TPDO communication parameter 1.  1800h
 namespace tpdo_communication_parameter_1 {
 /// Highest sub-index supported.  1800h:00  UNSIGNED8  ro                           cpd.eds:919
-struct highest_sub_index_supported : canopen::Object<0x1800, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1800;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1800h:01  UNSIGNED32  rw                                  cpd.eds:927
-struct cob_id_used_by_tpdo : canopen::Object<0x1800, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1800;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1800h:02  UNSIGNED8  rw                                     cpd.eds:935
-struct transmission_type : canopen::Object<0x1800, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1800;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1800h:03  UNSIGNED16  rw                                         cpd.eds:943
-struct inhibit_time : canopen::Object<0x1800, 0x03, std::uint16_t, canopen::Access::rw> {
+struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1800;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1800h:05  UNSIGNED16  rw                                          cpd.eds:951
-struct event_timer : canopen::Object<0x1800, 0x05, std::uint16_t, canopen::Access::rw> {
+struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1800;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
 };
 }  // namespace tpdo_communication_parameter_1
@@ -411,23 +537,33 @@ struct event_timer : canopen::Object<0x1800, 0x05, std::uint16_t, canopen::Acces
 /// TPDO communication parameter 2.  1801h
 namespace tpdo_communication_parameter_2 {
 /// Highest sub-index supported.  1801h:00  UNSIGNED8  ro                           cpd.eds:972
-struct highest_sub_index_supported : canopen::Object<0x1801, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1801;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1801h:01  UNSIGNED32  rw                                  cpd.eds:980
-struct cob_id_used_by_tpdo : canopen::Object<0x1801, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1801;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1801h:02  UNSIGNED8  rw                                     cpd.eds:988
-struct transmission_type : canopen::Object<0x1801, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1801;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1801h:03  UNSIGNED16  rw                                         cpd.eds:996
-struct inhibit_time : canopen::Object<0x1801, 0x03, std::uint16_t, canopen::Access::rw> {
+struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1801;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1801h:05  UNSIGNED16  rw                                          cpd.eds:1004
-struct event_timer : canopen::Object<0x1801, 0x05, std::uint16_t, canopen::Access::rw> {
+struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1801;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
 };
 }  // namespace tpdo_communication_parameter_2
@@ -435,23 +571,33 @@ struct event_timer : canopen::Object<0x1801, 0x05, std::uint16_t, canopen::Acces
 /// TPDO communication parameter 3.  1802h
 namespace tpdo_communication_parameter_3 {
 /// Highest sub-index supported.  1802h:00  UNSIGNED8  ro                           cpd.eds:1025
-struct highest_sub_index_supported : canopen::Object<0x1802, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1802;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1802h:01  UNSIGNED32  rw                                  cpd.eds:1033
-struct cob_id_used_by_tpdo : canopen::Object<0x1802, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1802;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1802h:02  UNSIGNED8  rw                                     cpd.eds:1041
-struct transmission_type : canopen::Object<0x1802, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1802;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1802h:03  UNSIGNED16  rw                                         cpd.eds:1049
-struct inhibit_time : canopen::Object<0x1802, 0x03, std::uint16_t, canopen::Access::rw> {
+struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1802;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1802h:05  UNSIGNED16  rw                                          cpd.eds:1057
-struct event_timer : canopen::Object<0x1802, 0x05, std::uint16_t, canopen::Access::rw> {
+struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1802;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
 };
 }  // namespace tpdo_communication_parameter_3
@@ -459,23 +605,33 @@ struct event_timer : canopen::Object<0x1802, 0x05, std::uint16_t, canopen::Acces
 /// TPDO communication parameter 4.  1803h
 namespace tpdo_communication_parameter_4 {
 /// Highest sub-index supported.  1803h:00  UNSIGNED8  ro                           cpd.eds:1077
-struct highest_sub_index_supported : canopen::Object<0x1803, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1803;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1803h:01  UNSIGNED32  rw                                  cpd.eds:1085
-struct cob_id_used_by_tpdo : canopen::Object<0x1803, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1803;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1803h:02  UNSIGNED8  ro                                     cpd.eds:1093
-struct transmission_type : canopen::Object<0x1803, 0x02, std::uint8_t, canopen::Access::ro> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1803;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1803h:03  UNSIGNED16  rw                                         cpd.eds:1101
-struct inhibit_time : canopen::Object<0x1803, 0x03, std::uint16_t, canopen::Access::rw> {
+struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1803;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1803h:05  UNSIGNED16  rw                                          cpd.eds:1109
-struct event_timer : canopen::Object<0x1803, 0x05, std::uint16_t, canopen::Access::rw> {
+struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1803;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
 };
 }  // namespace tpdo_communication_parameter_4
@@ -483,13 +639,17 @@ struct event_timer : canopen::Object<0x1803, 0x05, std::uint16_t, canopen::Acces
 /// TPDO mapping parameter 1.  1A00h
 namespace tpdo_mapping_parameter_1 {
 /// Number of mapped objects.  1A00h:00  UNSIGNED8  ro                              cpd.eds:1125
-struct number_of_mapped_objects : canopen::Object<0x1A00, 0x00, std::uint8_t, canopen::Access::ro> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1A00;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
   static constexpr type low_limit = 1;
   static constexpr type high_limit = 8;
 };
 /// Mapping entry 1.  1A00h:01  UNSIGNED32  ro                                      cpd.eds:1135
-struct mapping_entry_1 : canopen::Object<0x1A00, 0x01, std::uint32_t, canopen::Access::ro> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1A00;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 }  // namespace tpdo_mapping_parameter_1
@@ -497,25 +657,35 @@ struct mapping_entry_1 : canopen::Object<0x1A00, 0x01, std::uint32_t, canopen::A
 /// TPDO mapping parameter 2.  1A01h
 namespace tpdo_mapping_parameter_2 {
 /// Number of mapped objects.  1A01h:00  UNSIGNED8  ro                              cpd.eds:1153
-struct number_of_mapped_objects : canopen::Object<0x1A01, 0x00, std::uint8_t, canopen::Access::ro> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1A01;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
   static constexpr type low_limit = 1;
   static constexpr type high_limit = 8;
 };
 /// Mapping entry 1.  1A01h:01  UNSIGNED32  ro                                      cpd.eds:1163
-struct mapping_entry_1 : canopen::Object<0x1A01, 0x01, std::uint32_t, canopen::Access::ro> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1A01;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A01h:02  UNSIGNED32  ro                                      cpd.eds:1171
-struct mapping_entry_2 : canopen::Object<0x1A01, 0x02, std::uint32_t, canopen::Access::ro> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1A01;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A01h:03  UNSIGNED32  ro                                      cpd.eds:1179
-struct mapping_entry_3 : canopen::Object<0x1A01, 0x03, std::uint32_t, canopen::Access::ro> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1A01;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A01h:04  UNSIGNED32  ro                                      cpd.eds:1187
-struct mapping_entry_4 : canopen::Object<0x1A01, 0x04, std::uint32_t, canopen::Access::ro> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1A01;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 }  // namespace tpdo_mapping_parameter_2
@@ -523,25 +693,35 @@ struct mapping_entry_4 : canopen::Object<0x1A01, 0x04, std::uint32_t, canopen::A
 /// TPDO mapping parameter 3.  1A02h
 namespace tpdo_mapping_parameter_3 {
 /// Number of mapped objects.  1A02h:00  UNSIGNED8  ro                              cpd.eds:1204
-struct number_of_mapped_objects : canopen::Object<0x1A02, 0x00, std::uint8_t, canopen::Access::ro> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1A02;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
   static constexpr type low_limit = 1;
   static constexpr type high_limit = 8;
 };
 /// Mapping entry 1.  1A02h:01  UNSIGNED32  ro                                      cpd.eds:1214
-struct mapping_entry_1 : canopen::Object<0x1A02, 0x01, std::uint32_t, canopen::Access::ro> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1A02;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A02h:02  UNSIGNED32  ro                                      cpd.eds:1222
-struct mapping_entry_2 : canopen::Object<0x1A02, 0x02, std::uint32_t, canopen::Access::ro> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1A02;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A02h:03  UNSIGNED32  ro                                      cpd.eds:1230
-struct mapping_entry_3 : canopen::Object<0x1A02, 0x03, std::uint32_t, canopen::Access::ro> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1A02;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A02h:04  UNSIGNED32  ro                                      cpd.eds:1238
-struct mapping_entry_4 : canopen::Object<0x1A02, 0x04, std::uint32_t, canopen::Access::ro> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1A02;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 }  // namespace tpdo_mapping_parameter_3
@@ -549,44 +729,62 @@ struct mapping_entry_4 : canopen::Object<0x1A02, 0x04, std::uint32_t, canopen::A
 /// TPDO mapping parameter 4.  1A03h
 namespace tpdo_mapping_parameter_4 {
 /// Number of mapped objects.  1A03h:00  UNSIGNED8  rw                              cpd.eds:1254
-struct number_of_mapped_objects : canopen::Object<0x1A03, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A03;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1A03h:01  UNSIGNED32  rw                                      cpd.eds:1262
-struct mapping_entry_1 : canopen::Object<0x1A03, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A03;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A03h:02  UNSIGNED32  rw                                      cpd.eds:1270
-struct mapping_entry_2 : canopen::Object<0x1A03, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A03;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A03h:03  UNSIGNED32  rw                                      cpd.eds:1278
-struct mapping_entry_3 : canopen::Object<0x1A03, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A03;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A03h:04  UNSIGNED32  rw                                      cpd.eds:1286
-struct mapping_entry_4 : canopen::Object<0x1A03, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A03;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 }  // namespace tpdo_mapping_parameter_4
 
 /// Drive status.  2041h:00  UNSIGNED16  ro                                         cpd.eds:1576
-struct drive_status : canopen::Object<0x2041, 0x00, std::uint16_t, canopen::Access::ro> {
+struct drive_status : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x2041;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Drive status";
 };
 
 /// Parameter storage.  3004h
 namespace parameter_storage {
 /// Highest sub-index supported.  3004h:00  UNSIGNED8  ro                           cpd.eds:1592
-struct highest_sub_index_supported : canopen::Object<0x3004, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x3004;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// Save settings to EEPROM.  3004h:01  UNSIGNED16  rw                              cpd.eds:1600
-struct save_settings_to_eeprom : canopen::Object<0x3004, 0x01, std::uint16_t, canopen::Access::rw> {
+struct save_settings_to_eeprom : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x3004;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Save settings to EEPROM";
 };
 /// Reset user settings.  3004h:08  UNSIGNED16  rw                                  cpd.eds:1608
-struct reset_user_settings : canopen::Object<0x3004, 0x08, std::uint16_t, canopen::Access::rw> {
+struct reset_user_settings : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x3004;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Reset user settings";
 };
 }  // namespace parameter_storage
@@ -594,11 +792,15 @@ struct reset_user_settings : canopen::Object<0x3004, 0x08, std::uint16_t, canope
 /// Position interface.  3005h
 namespace position_interface {
 /// Highest sub-index supported.  3005h:00  UNSIGNED8  ro                           cpd.eds:1622
-struct highest_sub_index_supported : canopen::Object<0x3005, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x3005;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// Signal selection.  3005h:02  UNSIGNED16  rw                                     cpd.eds:1630
-struct signal_selection : canopen::Object<0x3005, 0x02, std::uint16_t, canopen::Access::rw> {
+struct signal_selection : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x3005;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Signal selection";
 };
 }  // namespace position_interface
@@ -606,23 +808,31 @@ struct signal_selection : canopen::Object<0x3005, 0x02, std::uint16_t, canopen::
 /// Motion settings.  3006h
 namespace motion_settings {
 /// Highest sub-index supported.  3006h:00  UNSIGNED8  ro                           cpd.eds:1647
-struct highest_sub_index_supported : canopen::Object<0x3006, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x3006;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// Negative limit switch contact.  3006h:0F  UNSIGNED16  rw                        cpd.eds:1655
-struct negative_limit_switch_contact : canopen::Object<0x3006, 0x0F, std::uint16_t, canopen::Access::rw> {
+struct negative_limit_switch_contact : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x3006;
+  static constexpr std::uint8_t sub_index = 0x0F;
   static constexpr auto name = "Negative limit switch contact";
   static constexpr type low_limit = 0;
   static constexpr type high_limit = 2;
 };
 /// Positive limit switch contact.  3006h:10  UNSIGNED16  rw                        cpd.eds:1665
-struct positive_limit_switch_contact : canopen::Object<0x3006, 0x10, std::uint16_t, canopen::Access::rw> {
+struct positive_limit_switch_contact : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x3006;
+  static constexpr std::uint8_t sub_index = 0x10;
   static constexpr auto name = "Positive limit switch contact";
   static constexpr type low_limit = 0;
   static constexpr type high_limit = 2;
 };
 /// Direction of rotation inversion.  3006h:12  UNSIGNED16  rw                      cpd.eds:1675
-struct direction_of_rotation_inversion : canopen::Object<0x3006, 0x12, std::uint16_t, canopen::Access::rw> {
+struct direction_of_rotation_inversion : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x3006;
+  static constexpr std::uint8_t sub_index = 0x12;
   static constexpr auto name = "Direction of rotation inversion";
 };
 }  // namespace motion_settings
@@ -630,11 +840,15 @@ struct direction_of_rotation_inversion : canopen::Object<0x3006, 0x12, std::uint
 /// Inputs and outputs.  3008h
 namespace inputs_and_outputs {
 /// Highest sub-index supported.  3008h:00  UNSIGNED8  ro                           cpd.eds:1690
-struct highest_sub_index_supported : canopen::Object<0x3008, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x3008;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// Digital inputs and outputs.  3008h:01  UNSIGNED16  ro  TPDO                     cpd.eds:1698
-struct digital_inputs_and_outputs : canopen::Object<0x3008, 0x01, std::uint16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+struct digital_inputs_and_outputs : canopen::TypedObject<std::uint16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  static constexpr std::uint16_t index = 0x3008;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Digital inputs and outputs";
 };
 }  // namespace inputs_and_outputs
@@ -642,15 +856,21 @@ struct digital_inputs_and_outputs : canopen::Object<0x3008, 0x01, std::uint16_t,
 /// Analogue inputs.  3009h
 namespace analogue_inputs {
 /// Highest sub-index supported.  3009h:00  UNSIGNED8  ro                           cpd.eds:1712
-struct highest_sub_index_supported : canopen::Object<0x3009, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x3009;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// Analogue input ANA1.  3009h:01  INTEGER16  ro  TPDO                             cpd.eds:1720
-struct analogue_input_ana1 : canopen::Object<0x3009, 0x01, std::int16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+struct analogue_input_ana1 : canopen::TypedObject<std::int16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  static constexpr std::uint16_t index = 0x3009;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Analogue input ANA1";
 };
 /// Analogue input ANA2.  3009h:05  INTEGER16  ro  TPDO                             cpd.eds:1728
-struct analogue_input_ana2 : canopen::Object<0x3009, 0x05, std::int16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+struct analogue_input_ana2 : canopen::TypedObject<std::int16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  static constexpr std::uint16_t index = 0x3009;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Analogue input ANA2";
 };
 }  // namespace analogue_inputs
@@ -658,15 +878,21 @@ struct analogue_input_ana2 : canopen::Object<0x3009, 0x05, std::int16_t, canopen
 /// Current limits.  3011h
 namespace current_limits {
 /// Highest sub-index supported.  3011h:00  UNSIGNED8  ro                           cpd.eds:1742
-struct highest_sub_index_supported : canopen::Object<0x3011, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x3011;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// Quick stop current limit.  3011h:05  UNSIGNED16  rw                             cpd.eds:1750
-struct quick_stop_current_limit : canopen::Object<0x3011, 0x05, std::uint16_t, canopen::Access::rw> {
+struct quick_stop_current_limit : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x3011;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Quick stop current limit";
 };
 /// Stop current limit.  3011h:06  UNSIGNED16  rw                                   cpd.eds:1758
-struct stop_current_limit : canopen::Object<0x3011, 0x06, std::uint16_t, canopen::Access::rw> {
+struct stop_current_limit : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x3011;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Stop current limit";
 };
 }  // namespace current_limits
@@ -674,23 +900,33 @@ struct stop_current_limit : canopen::Object<0x3011, 0x06, std::uint16_t, canopen
 /// Operating mode settings.  301Bh
 namespace operating_mode_settings {
 /// Highest sub-index supported.  301Bh:00  UNSIGNED8  ro                           cpd.eds:1773
-struct highest_sub_index_supported : canopen::Object<0x301B, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x301B;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// Manual movement activation.  301Bh:09  UNSIGNED16  rww  RPDO                    cpd.eds:1781
-struct manual_movement_activation : canopen::Object<0x301B, 0x09, std::uint16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+struct manual_movement_activation : canopen::TypedObject<std::uint16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  static constexpr std::uint16_t index = 0x301B;
+  static constexpr std::uint8_t sub_index = 0x09;
   static constexpr auto name = "Manual movement activation";
 };
 /// Current setpoint specification.  301Bh:10  UNSIGNED16  rw                       cpd.eds:1789
-struct current_setpoint_specification : canopen::Object<0x301B, 0x10, std::uint16_t, canopen::Access::rw> {
+struct current_setpoint_specification : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x301B;
+  static constexpr std::uint8_t sub_index = 0x10;
   static constexpr auto name = "Current setpoint specification";
 };
 /// Speed setpoint specification.  301Bh:11  UNSIGNED16  rw                         cpd.eds:1797
-struct speed_setpoint_specification : canopen::Object<0x301B, 0x11, std::uint16_t, canopen::Access::rw> {
+struct speed_setpoint_specification : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x301B;
+  static constexpr std::uint8_t sub_index = 0x11;
   static constexpr auto name = "Speed setpoint specification";
 };
 /// Gear activation.  301Bh:12  UNSIGNED16  rw                                      cpd.eds:1805
-struct gear_activation : canopen::Object<0x301B, 0x12, std::uint16_t, canopen::Access::rw> {
+struct gear_activation : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x301B;
+  static constexpr std::uint8_t sub_index = 0x12;
   static constexpr auto name = "Gear activation";
 };
 }  // namespace operating_mode_settings
@@ -698,27 +934,39 @@ struct gear_activation : canopen::Object<0x301B, 0x12, std::uint16_t, canopen::A
 /// Monitoring status.  301Ch
 namespace monitoring_status {
 /// Highest sub-index supported.  301Ch:00  UNSIGNED8  ro                           cpd.eds:1820
-struct highest_sub_index_supported : canopen::Object<0x301C, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x301C;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// Action status.  301Ch:04  UNSIGNED16  ro  TPDO                                  cpd.eds:1828
-struct action_status : canopen::Object<0x301C, 0x04, std::uint16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+struct action_status : canopen::TypedObject<std::uint16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  static constexpr std::uint16_t index = 0x301C;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Action status";
 };
 /// Active monitoring signals.  301Ch:07  UNSIGNED16  ro                            cpd.eds:1836
-struct active_monitoring_signals : canopen::Object<0x301C, 0x07, std::uint16_t, canopen::Access::ro> {
+struct active_monitoring_signals : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x301C;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Active monitoring signals";
 };
 /// Latched monitoring signals.  301Ch:08  UNSIGNED16  ro                           cpd.eds:1844
-struct latched_monitoring_signals : canopen::Object<0x301C, 0x08, std::uint16_t, canopen::Access::ro> {
+struct latched_monitoring_signals : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x301C;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Latched monitoring signals";
 };
 /// Active warnings.  301Ch:0B  UNSIGNED16  ro                                      cpd.eds:1852
-struct active_warnings : canopen::Object<0x301C, 0x0B, std::uint16_t, canopen::Access::ro> {
+struct active_warnings : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x301C;
+  static constexpr std::uint8_t sub_index = 0x0B;
   static constexpr auto name = "Active warnings";
 };
 /// Latched warnings.  301Ch:0C  UNSIGNED16  ro                                     cpd.eds:1860
-struct latched_warnings : canopen::Object<0x301C, 0x0C, std::uint16_t, canopen::Access::ro> {
+struct latched_warnings : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x301C;
+  static constexpr std::uint8_t sub_index = 0x0C;
   static constexpr auto name = "Latched warnings";
 };
 }  // namespace monitoring_status
@@ -726,11 +974,15 @@ struct latched_warnings : canopen::Object<0x301C, 0x0C, std::uint16_t, canopen::
 /// Motion generator.  301Fh
 namespace motion_generator {
 /// Highest sub-index supported.  301Fh:00  UNSIGNED8  ro                           cpd.eds:1874
-struct highest_sub_index_supported : canopen::Object<0x301F, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x301F;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// Ramp position actual value.  301Fh:02  INTEGER32  ro  TPDO                      cpd.eds:1882
-struct ramp_position_actual_value : canopen::Object<0x301F, 0x02, std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+struct ramp_position_actual_value : canopen::TypedObject<std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  static constexpr std::uint16_t index = 0x301F;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Ramp position actual value";
 };
 }  // namespace motion_generator
@@ -738,11 +990,15 @@ struct ramp_position_actual_value : canopen::Object<0x301F, 0x02, std::int32_t, 
 /// Current control.  3020h
 namespace current_control {
 /// Highest sub-index supported.  3020h:00  UNSIGNED8  ro                           cpd.eds:1896
-struct highest_sub_index_supported : canopen::Object<0x3020, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x3020;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// Current setpoint.  3020h:04  INTEGER16  rww  RPDO                               cpd.eds:1904
-struct current_setpoint : canopen::Object<0x3020, 0x04, std::int16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+struct current_setpoint : canopen::TypedObject<std::int16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  static constexpr std::uint16_t index = 0x3020;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Current setpoint";
 };
 }  // namespace current_control
@@ -750,11 +1006,15 @@ struct current_setpoint : canopen::Object<0x3020, 0x04, std::int16_t, canopen::A
 /// Speed control.  3021h
 namespace speed_control {
 /// Highest sub-index supported.  3021h:00  UNSIGNED8  ro                           cpd.eds:1918
-struct highest_sub_index_supported : canopen::Object<0x3021, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x3021;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// Speed setpoint.  3021h:04  INTEGER16  rww  RPDO                                 cpd.eds:1926
-struct speed_setpoint : canopen::Object<0x3021, 0x04, std::int16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+struct speed_setpoint : canopen::TypedObject<std::int16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  static constexpr std::uint16_t index = 0x3021;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Speed setpoint";
 };
 }  // namespace speed_control
@@ -762,15 +1022,21 @@ struct speed_setpoint : canopen::Object<0x3021, 0x04, std::int16_t, canopen::Acc
 /// Electronic gear.  3026h
 namespace electronic_gear {
 /// Highest sub-index supported.  3026h:00  UNSIGNED8  ro                           cpd.eds:1941
-struct highest_sub_index_supported : canopen::Object<0x3026, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x3026;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// Gear denominator.  3026h:03  INTEGER32  rww  RPDO                               cpd.eds:1949
-struct gear_denominator : canopen::Object<0x3026, 0x03, std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+struct gear_denominator : canopen::TypedObject<std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  static constexpr std::uint16_t index = 0x3026;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Gear denominator";
 };
 /// Gear numerator.  3026h:04  INTEGER32  rww  RPDO                                 cpd.eds:1957
-struct gear_numerator : canopen::Object<0x3026, 0x04, std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+struct gear_numerator : canopen::TypedObject<std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  static constexpr std::uint16_t index = 0x3026;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Gear numerator";
 };
 }  // namespace electronic_gear
@@ -778,15 +1044,21 @@ struct gear_numerator : canopen::Object<0x3026, 0x04, std::int32_t, canopen::Acc
 /// Manual movement.  3029h
 namespace manual_movement {
 /// Highest sub-index supported.  3029h:00  UNSIGNED8  ro                           cpd.eds:1971
-struct highest_sub_index_supported : canopen::Object<0x3029, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x3029;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// Slow speed.  3029h:04  UNSIGNED16  rw                                           cpd.eds:1979
-struct slow_speed : canopen::Object<0x3029, 0x04, std::uint16_t, canopen::Access::rw> {
+struct slow_speed : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x3029;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Slow speed";
 };
 /// Fast speed.  3029h:05  UNSIGNED16  rw                                           cpd.eds:1987
-struct fast_speed : canopen::Object<0x3029, 0x05, std::uint16_t, canopen::Access::rw> {
+struct fast_speed : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x3029;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Fast speed";
 };
 }  // namespace manual_movement
@@ -794,11 +1066,15 @@ struct fast_speed : canopen::Object<0x3029, 0x05, std::uint16_t, canopen::Access
 /// Error memory control.  303Bh
 namespace error_memory_control {
 /// Highest sub-index supported.  303Bh:00  UNSIGNED8  ro                           cpd.eds:2002
-struct highest_sub_index_supported : canopen::Object<0x303B, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x303B;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// Error memory reset.  303Bh:05  UNSIGNED16  rw                                   cpd.eds:2010
-struct error_memory_reset : canopen::Object<0x303B, 0x05, std::uint16_t, canopen::Access::rw> {
+struct error_memory_reset : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x303B;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Error memory reset";
 };
 }  // namespace error_memory_control
@@ -806,72 +1082,100 @@ struct error_memory_reset : canopen::Object<0x303B, 0x05, std::uint16_t, canopen
 /// Error memory.  303Ch
 namespace error_memory {
 /// Highest sub-index supported.  303Ch:00  UNSIGNED8  ro                           cpd.eds:2024
-struct highest_sub_index_supported : canopen::Object<0x303C, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x303C;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// Error number.  303Ch:01  UNSIGNED16  ro                                         cpd.eds:2032
-struct error_number : canopen::Object<0x303C, 0x01, std::uint16_t, canopen::Access::ro> {
+struct error_number : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x303C;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Error number";
 };
 }  // namespace error_memory
 
 /// Error code.  603Fh:00  UNSIGNED16  ro                                           cpd.eds:1295
-struct error_code : canopen::Object<0x603F, 0x00, std::uint16_t, canopen::Access::ro> {
+struct error_code : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x603F;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Error code";
 };
 
 /// Controlword.  6040h:00  UNSIGNED16  rww  RPDO                                   cpd.eds:1304
-struct controlword : canopen::Object<0x6040, 0x00, std::uint16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+struct controlword : canopen::TypedObject<std::uint16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  static constexpr std::uint16_t index = 0x6040;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Controlword";
 };
 
 /// Statusword.  6041h:00  UNSIGNED16  ro  TPDO                                     cpd.eds:1314
-struct statusword : canopen::Object<0x6041, 0x00, std::uint16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+struct statusword : canopen::TypedObject<std::uint16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  static constexpr std::uint16_t index = 0x6041;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Statusword";
 };
 
 /// Modes of operation.  6060h:00  INTEGER8  rw                                     cpd.eds:1325
-struct modes_of_operation : canopen::Object<0x6060, 0x00, std::int8_t, canopen::Access::rw> {
+struct modes_of_operation : canopen::TypedObject<std::int8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x6060;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Modes of operation";
 };
 
 /// Modes of operation display.  6061h:00  INTEGER8  ro  TPDO                       cpd.eds:1335
-struct modes_of_operation_display : canopen::Object<0x6061, 0x00, std::int8_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+struct modes_of_operation_display : canopen::TypedObject<std::int8_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  static constexpr std::uint16_t index = 0x6061;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Modes of operation display";
 };
 
 /// Position actual value.  6064h:00  INTEGER32  ro  TPDO                           cpd.eds:1344
-struct position_actual_value : canopen::Object<0x6064, 0x00, std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+struct position_actual_value : canopen::TypedObject<std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  static constexpr std::uint16_t index = 0x6064;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Position actual value";
 };
 
 /// Following error window.  6065h:00  UNSIGNED32  rw                               cpd.eds:1353
-struct following_error_window : canopen::Object<0x6065, 0x00, std::uint32_t, canopen::Access::rw> {
+struct following_error_window : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x6065;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Following error window";
 };
 
 /// Position window.  6067h:00  UNSIGNED32  rw                                      cpd.eds:1362
-struct position_window : canopen::Object<0x6067, 0x00, std::uint32_t, canopen::Access::rw> {
+struct position_window : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x6067;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Position window";
 };
 
 /// Position window time.  6068h:00  UNSIGNED16  rw                                 cpd.eds:1371
-struct position_window_time : canopen::Object<0x6068, 0x00, std::uint16_t, canopen::Access::rw> {
+struct position_window_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x6068;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Position window time";
 };
 
 /// Velocity demand value.  606Bh:00  INTEGER32  ro                                 cpd.eds:1380
-struct velocity_demand_value : canopen::Object<0x606B, 0x00, std::int32_t, canopen::Access::ro> {
+struct velocity_demand_value : canopen::TypedObject<std::int32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x606B;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Velocity demand value";
 };
 
 /// Velocity actual value.  606Ch:00  INTEGER32  ro  TPDO                           cpd.eds:1389
-struct velocity_actual_value : canopen::Object<0x606C, 0x00, std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+struct velocity_actual_value : canopen::TypedObject<std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  static constexpr std::uint16_t index = 0x606C;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Velocity actual value";
 };
 
 /// Target position.  607Ah:00  INTEGER32  rww  RPDO                                cpd.eds:1398
-struct target_position : canopen::Object<0x607A, 0x00, std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+struct target_position : canopen::TypedObject<std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  static constexpr std::uint16_t index = 0x607A;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Target position";
 };
 
@@ -882,7 +1186,9 @@ struct software_position_limit : canopen::Object<0x607D, SubIndex, std::int32_t,
   static constexpr auto name = "Software position limit";
 };
 template <>
-struct software_position_limit<0> : canopen::Object<0x607D, 0x00, std::uint8_t, canopen::Access::ro> {
+struct software_position_limit<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x607D;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 
@@ -893,32 +1199,44 @@ using software_position_limit_min_position_limit = software_position_limit<1>;
 using software_position_limit_max_position_limit = software_position_limit<2>;
 
 /// Max profile velocity.  607Fh:00  UNSIGNED32  rw                                 cpd.eds:1441
-struct max_profile_velocity : canopen::Object<0x607F, 0x00, std::uint32_t, canopen::Access::rw> {
+struct max_profile_velocity : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x607F;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Max profile velocity";
 };
 
 /// Profile velocity.  6081h:00  UNSIGNED32  rww  RPDO                              cpd.eds:1450
-struct profile_velocity : canopen::Object<0x6081, 0x00, std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+struct profile_velocity : canopen::TypedObject<std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  static constexpr std::uint16_t index = 0x6081;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Profile velocity";
 };
 
 /// Profile acceleration.  6083h:00  UNSIGNED32  rw                                 cpd.eds:1460
-struct profile_acceleration : canopen::Object<0x6083, 0x00, std::uint32_t, canopen::Access::rw> {
+struct profile_acceleration : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x6083;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Profile acceleration";
 };
 
 /// Profile deceleration.  6084h:00  UNSIGNED32  rw                                 cpd.eds:1470
-struct profile_deceleration : canopen::Object<0x6084, 0x00, std::uint32_t, canopen::Access::rw> {
+struct profile_deceleration : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x6084;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Profile deceleration";
 };
 
 /// Motion profile type.  6086h:00  INTEGER16  rw                                   cpd.eds:1479
-struct motion_profile_type : canopen::Object<0x6086, 0x00, std::int16_t, canopen::Access::rw> {
+struct motion_profile_type : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x6086;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Motion profile type";
 };
 
 /// Homing method.  6098h:00  INTEGER8  rw                                          cpd.eds:1488
-struct homing_method : canopen::Object<0x6098, 0x00, std::int8_t, canopen::Access::rw> {
+struct homing_method : canopen::TypedObject<std::int8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x6098;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Homing method";
 };
 
@@ -929,7 +1247,9 @@ struct homing_speeds : canopen::Object<0x6099, SubIndex, std::uint32_t, canopen:
   static constexpr auto name = "Homing speeds";
 };
 template <>
-struct homing_speeds<0> : canopen::Object<0x6099, 0x00, std::uint8_t, canopen::Access::ro> {
+struct homing_speeds<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x6099;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 
@@ -940,17 +1260,23 @@ using homing_speeds_speed_during_search_for_switch = homing_speeds<1>;
 using homing_speeds_speed_during_search_for_zero = homing_speeds<2>;
 
 /// Following error actual value.  60F4h:00  INTEGER32  ro                          cpd.eds:1527
-struct following_error_actual_value : canopen::Object<0x60F4, 0x00, std::int32_t, canopen::Access::ro> {
+struct following_error_actual_value : canopen::TypedObject<std::int32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x60F4;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Following error actual value";
 };
 
 /// Target velocity.  60FFh:00  INTEGER32  rww  RPDO                                cpd.eds:1536
-struct target_velocity : canopen::Object<0x60FF, 0x00, std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+struct target_velocity : canopen::TypedObject<std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  static constexpr std::uint16_t index = 0x60FF;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Target velocity";
 };
 
 /// Supported drive modes.  6502h:00  UNSIGNED32  ro                                cpd.eds:1546
-struct supported_drive_modes : canopen::Object<0x6502, 0x00, std::uint32_t, canopen::Access::ro> {
+struct supported_drive_modes : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x6502;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Supported drive modes";
 };
 

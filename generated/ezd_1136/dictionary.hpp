@@ -18,12 +18,16 @@ namespace ezd_1136 {
 namespace od {
 
 /// Device type.  1000h:00  UNSIGNED32  ro                                          ezd-1136.eds:79
-struct device_type : canopen::Object<0x1000, 0x00, std::uint32_t, canopen::Access::ro> {
+struct device_type : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1000;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Device type";
 };
 
 /// Error register.  1001h:00  UNSIGNED8  ro                                        ezd-1136.eds:89
-struct error_register : canopen::Object<0x1001, 0x00, std::uint8_t, canopen::Access::ro> {
+struct error_register : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1001;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Error register";
 };
 
@@ -34,47 +38,65 @@ struct pre_defined_error_field : canopen::Object<0x1003, SubIndex, std::uint32_t
   static constexpr auto name = "Pre-defined error field";
 };
 template <>
-struct pre_defined_error_field<0> : canopen::Object<0x1003, 0x00, std::uint8_t, canopen::Access::rw> {
+struct pre_defined_error_field<0> : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1003;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of errors";
 };
 
 /// COB-ID SYNC.  1005h:00  UNSIGNED32  rw                                          ezd-1136.eds:291
-struct cob_id_sync : canopen::Object<0x1005, 0x00, std::uint32_t, canopen::Access::rw> {
+struct cob_id_sync : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1005;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID SYNC";
 };
 
 /// Communication cycle period.  1006h:00  UNSIGNED32  rw                           ezd-1136.eds:301
-struct communication_cycle_period : canopen::Object<0x1006, 0x00, std::uint32_t, canopen::Access::rw> {
+struct communication_cycle_period : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1006;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Communication cycle period";
 };
 
 /// Manufacturer device name.  1008h:00  VISIBLE_STRING  const                      ezd-1136.eds:311
-struct manufacturer_device_name : canopen::Object<0x1008, 0x00, canopen::VisibleString<8>, canopen::Access::constant> {
+struct manufacturer_device_name : canopen::TypedObject<canopen::VisibleString<8>, canopen::Access::constant> {
+  static constexpr std::uint16_t index = 0x1008;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer device name";
 };
 
 /// Manufacturer hardware version.  1009h:00  VISIBLE_STRING  const                 ezd-1136.eds:320
-struct manufacturer_hardware_version : canopen::Object<0x1009, 0x00, canopen::VisibleString<3>, canopen::Access::constant> {
+struct manufacturer_hardware_version : canopen::TypedObject<canopen::VisibleString<3>, canopen::Access::constant> {
+  static constexpr std::uint16_t index = 0x1009;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer hardware version";
 };
 
 /// Manufacturer software version.  100Ah:00  VISIBLE_STRING  const                 ezd-1136.eds:329
-struct manufacturer_software_version : canopen::Object<0x100A, 0x00, canopen::VisibleString<3>, canopen::Access::constant> {
+struct manufacturer_software_version : canopen::TypedObject<canopen::VisibleString<3>, canopen::Access::constant> {
+  static constexpr std::uint16_t index = 0x100A;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer software version";
 };
 
 /// Guard time.  100Ch:00  UNSIGNED16  rw                                           ezd-1136.eds:338
-struct guard_time : canopen::Object<0x100C, 0x00, std::uint16_t, canopen::Access::rw> {
+struct guard_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x100C;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Guard time";
 };
 
 /// Life time factor.  100Dh:00  UNSIGNED8  rw                                      ezd-1136.eds:348
-struct life_time_factor : canopen::Object<0x100D, 0x00, std::uint8_t, canopen::Access::rw> {
+struct life_time_factor : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x100D;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Life time factor";
 };
 
 /// COB-ID EMCY.  1014h:00  UNSIGNED32  rw                                          ezd-1136.eds:357
-struct cob_id_emcy : canopen::Object<0x1014, 0x00, std::uint32_t, canopen::Access::rw> {
+struct cob_id_emcy : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1014;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID EMCY";
 };
 
@@ -85,35 +107,49 @@ struct consumer_heartbeat_time : canopen::Object<0x1016, SubIndex, std::uint32_t
   static constexpr auto name = "Consumer heartbeat time";
 };
 template <>
-struct consumer_heartbeat_time<0> : canopen::Object<0x1016, 0x00, std::uint8_t, canopen::Access::ro> {
+struct consumer_heartbeat_time<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1016;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 
 /// Producer heartbeat time.  1017h:00  UNSIGNED16  rw                              ezd-1136.eds:393
-struct producer_heartbeat_time : canopen::Object<0x1017, 0x00, std::uint16_t, canopen::Access::rw> {
+struct producer_heartbeat_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1017;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Producer heartbeat time";
 };
 
 /// Identity object.  1018h
 namespace identity_object {
 /// Highest sub-index supported.  1018h:00  UNSIGNED8  ro                           ezd-1136.eds:103
-struct highest_sub_index_supported : canopen::Object<0x1018, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1018;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// Vendor-ID.  1018h:01  UNSIGNED32  ro                                            ezd-1136.eds:112
-struct vendor_id : canopen::Object<0x1018, 0x01, std::uint32_t, canopen::Access::ro> {
+struct vendor_id : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1018;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Vendor-ID";
 };
 /// Product code.  1018h:02  UNSIGNED32  ro                                         ezd-1136.eds:121
-struct product_code : canopen::Object<0x1018, 0x02, std::uint32_t, canopen::Access::ro> {
+struct product_code : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1018;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Product code";
 };
 /// Revision number.  1018h:03  UNSIGNED32  ro                                      ezd-1136.eds:130
-struct revision_number : canopen::Object<0x1018, 0x03, std::uint32_t, canopen::Access::ro> {
+struct revision_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1018;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Revision number";
 };
 /// Serial number.  1018h:04  UNSIGNED32  ro                                        ezd-1136.eds:139
-struct serial_number : canopen::Object<0x1018, 0x04, std::uint32_t, canopen::Access::ro> {
+struct serial_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1018;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Serial number";
 };
 }  // namespace identity_object
@@ -121,15 +157,21 @@ struct serial_number : canopen::Object<0x1018, 0x04, std::uint32_t, canopen::Acc
 /// SDO server parameter.  1200h
 namespace sdo_server_parameter {
 /// Highest sub-index supported.  1200h:00  UNSIGNED8  ro                           ezd-1136.eds:407
-struct highest_sub_index_supported : canopen::Object<0x1200, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1200;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID client to server.  1200h:01  UNSIGNED32  ro                              ezd-1136.eds:415
-struct cob_id_client_to_server : canopen::Object<0x1200, 0x01, std::uint32_t, canopen::Access::ro> {
+struct cob_id_client_to_server : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1200;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID client to server";
 };
 /// COB-ID server to client.  1200h:02  UNSIGNED32  ro                              ezd-1136.eds:423
-struct cob_id_server_to_client : canopen::Object<0x1200, 0x02, std::uint32_t, canopen::Access::ro> {
+struct cob_id_server_to_client : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1200;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "COB-ID server to client";
 };
 }  // namespace sdo_server_parameter
@@ -137,15 +179,21 @@ struct cob_id_server_to_client : canopen::Object<0x1200, 0x02, std::uint32_t, ca
 /// RPDO communication parameter 1.  1400h
 namespace rpdo_communication_parameter_1 {
 /// Highest sub-index supported.  1400h:00  UNSIGNED8  ro                           ezd-1136.eds:437
-struct highest_sub_index_supported : canopen::Object<0x1400, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1400;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1400h:01  UNSIGNED32  rw                                  ezd-1136.eds:446
-struct cob_id_used_by_rpdo : canopen::Object<0x1400, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1400;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1400h:02  UNSIGNED8  rw                                     ezd-1136.eds:456
-struct transmission_type : canopen::Object<0x1400, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1400;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 }  // namespace rpdo_communication_parameter_1
@@ -153,15 +201,21 @@ struct transmission_type : canopen::Object<0x1400, 0x02, std::uint8_t, canopen::
 /// RPDO communication parameter 2.  1401h
 namespace rpdo_communication_parameter_2 {
 /// Highest sub-index supported.  1401h:00  UNSIGNED8  ro                           ezd-1136.eds:470
-struct highest_sub_index_supported : canopen::Object<0x1401, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1401;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1401h:01  UNSIGNED32  rw                                  ezd-1136.eds:478
-struct cob_id_used_by_rpdo : canopen::Object<0x1401, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1401;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1401h:02  UNSIGNED8  rw                                     ezd-1136.eds:486
-struct transmission_type : canopen::Object<0x1401, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1401;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 }  // namespace rpdo_communication_parameter_2
@@ -169,15 +223,21 @@ struct transmission_type : canopen::Object<0x1401, 0x02, std::uint8_t, canopen::
 /// RPDO communication parameter 3.  1402h
 namespace rpdo_communication_parameter_3 {
 /// Highest sub-index supported.  1402h:00  UNSIGNED8  ro                           ezd-1136.eds:500
-struct highest_sub_index_supported : canopen::Object<0x1402, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1402;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1402h:01  UNSIGNED32  rw                                  ezd-1136.eds:508
-struct cob_id_used_by_rpdo : canopen::Object<0x1402, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1402;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1402h:02  UNSIGNED8  rw                                     ezd-1136.eds:516
-struct transmission_type : canopen::Object<0x1402, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1402;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 }  // namespace rpdo_communication_parameter_3
@@ -185,15 +245,21 @@ struct transmission_type : canopen::Object<0x1402, 0x02, std::uint8_t, canopen::
 /// RPDO communication parameter 4.  1403h
 namespace rpdo_communication_parameter_4 {
 /// Highest sub-index supported.  1403h:00  UNSIGNED8  ro                           ezd-1136.eds:530
-struct highest_sub_index_supported : canopen::Object<0x1403, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1403;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1403h:01  UNSIGNED32  rw                                  ezd-1136.eds:538
-struct cob_id_used_by_rpdo : canopen::Object<0x1403, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1403;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1403h:02  UNSIGNED8  rw                                     ezd-1136.eds:546
-struct transmission_type : canopen::Object<0x1403, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1403;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 }  // namespace rpdo_communication_parameter_4
@@ -201,40 +267,58 @@ struct transmission_type : canopen::Object<0x1403, 0x02, std::uint8_t, canopen::
 /// RPDO mapping parameter 1.  1600h
 namespace rpdo_mapping_parameter_1 {
 /// Number of mapped objects.  1600h:00  UNSIGNED8  rw                              ezd-1136.eds:561
-struct number_of_mapped_objects : canopen::Object<0x1600, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1600;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
   static constexpr type high_limit = 8;
 };
 /// Mapping entry 1.  1600h:01  UNSIGNED32  rw                                      ezd-1136.eds:570
-struct mapping_entry_1 : canopen::Object<0x1600, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1600;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1600h:02  UNSIGNED32  rw                                      ezd-1136.eds:578
-struct mapping_entry_2 : canopen::Object<0x1600, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1600;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1600h:03  UNSIGNED32  rw                                      ezd-1136.eds:586
-struct mapping_entry_3 : canopen::Object<0x1600, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1600;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1600h:04  UNSIGNED32  rw                                      ezd-1136.eds:594
-struct mapping_entry_4 : canopen::Object<0x1600, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1600;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1600h:05  UNSIGNED32  rw                                      ezd-1136.eds:602
-struct mapping_entry_5 : canopen::Object<0x1600, 0x05, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1600;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1600h:06  UNSIGNED32  rw                                      ezd-1136.eds:610
-struct mapping_entry_6 : canopen::Object<0x1600, 0x06, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1600;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1600h:07  UNSIGNED32  rw                                      ezd-1136.eds:618
-struct mapping_entry_7 : canopen::Object<0x1600, 0x07, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1600;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1600h:08  UNSIGNED32  rw                                      ezd-1136.eds:626
-struct mapping_entry_8 : canopen::Object<0x1600, 0x08, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1600;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
 };
 }  // namespace rpdo_mapping_parameter_1
@@ -242,40 +326,58 @@ struct mapping_entry_8 : canopen::Object<0x1600, 0x08, std::uint32_t, canopen::A
 /// RPDO mapping parameter 2.  1601h
 namespace rpdo_mapping_parameter_2 {
 /// Number of mapped objects.  1601h:00  UNSIGNED8  rw                              ezd-1136.eds:640
-struct number_of_mapped_objects : canopen::Object<0x1601, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1601;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
   static constexpr type high_limit = 8;
 };
 /// Mapping entry 1.  1601h:01  UNSIGNED32  rw                                      ezd-1136.eds:649
-struct mapping_entry_1 : canopen::Object<0x1601, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1601;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1601h:02  UNSIGNED32  rw                                      ezd-1136.eds:657
-struct mapping_entry_2 : canopen::Object<0x1601, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1601;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1601h:03  UNSIGNED32  rw                                      ezd-1136.eds:665
-struct mapping_entry_3 : canopen::Object<0x1601, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1601;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1601h:04  UNSIGNED32  rw                                      ezd-1136.eds:673
-struct mapping_entry_4 : canopen::Object<0x1601, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1601;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1601h:05  UNSIGNED32  rw                                      ezd-1136.eds:681
-struct mapping_entry_5 : canopen::Object<0x1601, 0x05, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1601;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1601h:06  UNSIGNED32  rw                                      ezd-1136.eds:689
-struct mapping_entry_6 : canopen::Object<0x1601, 0x06, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1601;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1601h:07  UNSIGNED32  rw                                      ezd-1136.eds:697
-struct mapping_entry_7 : canopen::Object<0x1601, 0x07, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1601;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1601h:08  UNSIGNED32  rw                                      ezd-1136.eds:705
-struct mapping_entry_8 : canopen::Object<0x1601, 0x08, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1601;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
 };
 }  // namespace rpdo_mapping_parameter_2
@@ -283,40 +385,58 @@ struct mapping_entry_8 : canopen::Object<0x1601, 0x08, std::uint32_t, canopen::A
 /// RPDO mapping parameter 3.  1602h
 namespace rpdo_mapping_parameter_3 {
 /// Number of mapped objects.  1602h:00  UNSIGNED8  rw                              ezd-1136.eds:719
-struct number_of_mapped_objects : canopen::Object<0x1602, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1602;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
   static constexpr type high_limit = 8;
 };
 /// Mapping entry 1.  1602h:01  UNSIGNED32  rw                                      ezd-1136.eds:728
-struct mapping_entry_1 : canopen::Object<0x1602, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1602;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1602h:02  UNSIGNED32  rw                                      ezd-1136.eds:736
-struct mapping_entry_2 : canopen::Object<0x1602, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1602;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1602h:03  UNSIGNED32  rw                                      ezd-1136.eds:744
-struct mapping_entry_3 : canopen::Object<0x1602, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1602;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1602h:04  UNSIGNED32  rw                                      ezd-1136.eds:752
-struct mapping_entry_4 : canopen::Object<0x1602, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1602;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1602h:05  UNSIGNED32  rw                                      ezd-1136.eds:760
-struct mapping_entry_5 : canopen::Object<0x1602, 0x05, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1602;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1602h:06  UNSIGNED32  rw                                      ezd-1136.eds:768
-struct mapping_entry_6 : canopen::Object<0x1602, 0x06, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1602;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1602h:07  UNSIGNED32  rw                                      ezd-1136.eds:776
-struct mapping_entry_7 : canopen::Object<0x1602, 0x07, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1602;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1602h:08  UNSIGNED32  rw                                      ezd-1136.eds:784
-struct mapping_entry_8 : canopen::Object<0x1602, 0x08, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1602;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
 };
 }  // namespace rpdo_mapping_parameter_3
@@ -324,40 +444,58 @@ struct mapping_entry_8 : canopen::Object<0x1602, 0x08, std::uint32_t, canopen::A
 /// RPDO mapping parameter 4.  1603h
 namespace rpdo_mapping_parameter_4 {
 /// Number of mapped objects.  1603h:00  UNSIGNED8  rw                              ezd-1136.eds:798
-struct number_of_mapped_objects : canopen::Object<0x1603, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1603;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
   static constexpr type high_limit = 8;
 };
 /// Mapping entry 1.  1603h:01  UNSIGNED32  rw                                      ezd-1136.eds:807
-struct mapping_entry_1 : canopen::Object<0x1603, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1603;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1603h:02  UNSIGNED32  rw                                      ezd-1136.eds:815
-struct mapping_entry_2 : canopen::Object<0x1603, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1603;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1603h:03  UNSIGNED32  rw                                      ezd-1136.eds:823
-struct mapping_entry_3 : canopen::Object<0x1603, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1603;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1603h:04  UNSIGNED32  rw                                      ezd-1136.eds:831
-struct mapping_entry_4 : canopen::Object<0x1603, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1603;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1603h:05  UNSIGNED32  rw                                      ezd-1136.eds:839
-struct mapping_entry_5 : canopen::Object<0x1603, 0x05, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1603;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1603h:06  UNSIGNED32  rw                                      ezd-1136.eds:847
-struct mapping_entry_6 : canopen::Object<0x1603, 0x06, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1603;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1603h:07  UNSIGNED32  rw                                      ezd-1136.eds:855
-struct mapping_entry_7 : canopen::Object<0x1603, 0x07, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1603;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1603h:08  UNSIGNED32  rw                                      ezd-1136.eds:863
-struct mapping_entry_8 : canopen::Object<0x1603, 0x08, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1603;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
 };
 }  // namespace rpdo_mapping_parameter_4
@@ -365,23 +503,33 @@ struct mapping_entry_8 : canopen::Object<0x1603, 0x08, std::uint32_t, canopen::A
 /// TPDO communication parameter 1.  1800h
 namespace tpdo_communication_parameter_1 {
 /// Highest sub-index supported.  1800h:00  UNSIGNED8  ro                           ezd-1136.eds:877
-struct highest_sub_index_supported : canopen::Object<0x1800, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1800;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1800h:01  UNSIGNED32  rw                                  ezd-1136.eds:886
-struct cob_id_used_by_tpdo : canopen::Object<0x1800, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1800;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1800h:02  UNSIGNED8  rw                                     ezd-1136.eds:896
-struct transmission_type : canopen::Object<0x1800, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1800;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1800h:03  UNSIGNED16  rw                                         ezd-1136.eds:905
-struct inhibit_time : canopen::Object<0x1800, 0x03, std::uint16_t, canopen::Access::rw> {
+struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1800;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1800h:05  UNSIGNED16  rw                                          ezd-1136.eds:914
-struct event_timer : canopen::Object<0x1800, 0x05, std::uint16_t, canopen::Access::rw> {
+struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1800;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
 };
 }  // namespace tpdo_communication_parameter_1
@@ -389,23 +537,33 @@ struct event_timer : canopen::Object<0x1800, 0x05, std::uint16_t, canopen::Acces
 /// TPDO communication parameter 2.  1801h
 namespace tpdo_communication_parameter_2 {
 /// Highest sub-index supported.  1801h:00  UNSIGNED8  ro                           ezd-1136.eds:928
-struct highest_sub_index_supported : canopen::Object<0x1801, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1801;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1801h:01  UNSIGNED32  rw                                  ezd-1136.eds:936
-struct cob_id_used_by_tpdo : canopen::Object<0x1801, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1801;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1801h:02  UNSIGNED8  rw                                     ezd-1136.eds:944
-struct transmission_type : canopen::Object<0x1801, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1801;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1801h:03  UNSIGNED16  rw                                         ezd-1136.eds:953
-struct inhibit_time : canopen::Object<0x1801, 0x03, std::uint16_t, canopen::Access::rw> {
+struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1801;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1801h:05  UNSIGNED16  rw                                          ezd-1136.eds:961
-struct event_timer : canopen::Object<0x1801, 0x05, std::uint16_t, canopen::Access::rw> {
+struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1801;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
 };
 }  // namespace tpdo_communication_parameter_2
@@ -413,23 +571,33 @@ struct event_timer : canopen::Object<0x1801, 0x05, std::uint16_t, canopen::Acces
 /// TPDO communication parameter 3.  1802h
 namespace tpdo_communication_parameter_3 {
 /// Highest sub-index supported.  1802h:00  UNSIGNED8  ro                           ezd-1136.eds:975
-struct highest_sub_index_supported : canopen::Object<0x1802, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1802;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1802h:01  UNSIGNED32  rw                                  ezd-1136.eds:983
-struct cob_id_used_by_tpdo : canopen::Object<0x1802, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1802;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1802h:02  UNSIGNED8  rw                                     ezd-1136.eds:991
-struct transmission_type : canopen::Object<0x1802, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1802;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1802h:03  UNSIGNED16  rw                                         ezd-1136.eds:999
-struct inhibit_time : canopen::Object<0x1802, 0x03, std::uint16_t, canopen::Access::rw> {
+struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1802;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1802h:05  UNSIGNED16  rw                                          ezd-1136.eds:1007
-struct event_timer : canopen::Object<0x1802, 0x05, std::uint16_t, canopen::Access::rw> {
+struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1802;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
 };
 }  // namespace tpdo_communication_parameter_3
@@ -437,23 +605,33 @@ struct event_timer : canopen::Object<0x1802, 0x05, std::uint16_t, canopen::Acces
 /// TPDO communication parameter 4.  1803h
 namespace tpdo_communication_parameter_4 {
 /// Highest sub-index supported.  1803h:00  UNSIGNED8  ro                           ezd-1136.eds:1022
-struct highest_sub_index_supported : canopen::Object<0x1803, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1803;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1803h:01  UNSIGNED32  rw                                  ezd-1136.eds:1030
-struct cob_id_used_by_tpdo : canopen::Object<0x1803, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1803;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1803h:02  UNSIGNED8  rw                                     ezd-1136.eds:1038
-struct transmission_type : canopen::Object<0x1803, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1803;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1803h:03  UNSIGNED16  rw                                         ezd-1136.eds:1046
-struct inhibit_time : canopen::Object<0x1803, 0x03, std::uint16_t, canopen::Access::rw> {
+struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1803;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1803h:05  UNSIGNED16  rw                                          ezd-1136.eds:1054
-struct event_timer : canopen::Object<0x1803, 0x05, std::uint16_t, canopen::Access::rw> {
+struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1803;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
 };
 }  // namespace tpdo_communication_parameter_4
@@ -461,40 +639,58 @@ struct event_timer : canopen::Object<0x1803, 0x05, std::uint16_t, canopen::Acces
 /// TPDO mapping parameter 1.  1A00h
 namespace tpdo_mapping_parameter_1 {
 /// Number of mapped objects.  1A00h:00  UNSIGNED8  rw                              ezd-1136.eds:1069
-struct number_of_mapped_objects : canopen::Object<0x1A00, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A00;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
   static constexpr type high_limit = 8;
 };
 /// Mapping entry 1.  1A00h:01  UNSIGNED32  rw                                      ezd-1136.eds:1078
-struct mapping_entry_1 : canopen::Object<0x1A00, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A00;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A00h:02  UNSIGNED32  rw                                      ezd-1136.eds:1086
-struct mapping_entry_2 : canopen::Object<0x1A00, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A00;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A00h:03  UNSIGNED32  rw                                      ezd-1136.eds:1094
-struct mapping_entry_3 : canopen::Object<0x1A00, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A00;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A00h:04  UNSIGNED32  rw                                      ezd-1136.eds:1102
-struct mapping_entry_4 : canopen::Object<0x1A00, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A00;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1A00h:05  UNSIGNED32  rw                                      ezd-1136.eds:1110
-struct mapping_entry_5 : canopen::Object<0x1A00, 0x05, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A00;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1A00h:06  UNSIGNED32  rw                                      ezd-1136.eds:1118
-struct mapping_entry_6 : canopen::Object<0x1A00, 0x06, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A00;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1A00h:07  UNSIGNED32  rw                                      ezd-1136.eds:1126
-struct mapping_entry_7 : canopen::Object<0x1A00, 0x07, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A00;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1A00h:08  UNSIGNED32  rw                                      ezd-1136.eds:1134
-struct mapping_entry_8 : canopen::Object<0x1A00, 0x08, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A00;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
 };
 }  // namespace tpdo_mapping_parameter_1
@@ -502,40 +698,58 @@ struct mapping_entry_8 : canopen::Object<0x1A00, 0x08, std::uint32_t, canopen::A
 /// TPDO mapping parameter 2.  1A01h
 namespace tpdo_mapping_parameter_2 {
 /// Number of mapped objects.  1A01h:00  UNSIGNED8  rw                              ezd-1136.eds:1148
-struct number_of_mapped_objects : canopen::Object<0x1A01, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A01;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
   static constexpr type high_limit = 8;
 };
 /// Mapping entry 1.  1A01h:01  UNSIGNED32  rw                                      ezd-1136.eds:1157
-struct mapping_entry_1 : canopen::Object<0x1A01, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A01;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A01h:02  UNSIGNED32  rw                                      ezd-1136.eds:1165
-struct mapping_entry_2 : canopen::Object<0x1A01, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A01;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A01h:03  UNSIGNED32  rw                                      ezd-1136.eds:1173
-struct mapping_entry_3 : canopen::Object<0x1A01, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A01;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A01h:04  UNSIGNED32  rw                                      ezd-1136.eds:1181
-struct mapping_entry_4 : canopen::Object<0x1A01, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A01;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1A01h:05  UNSIGNED32  rw                                      ezd-1136.eds:1189
-struct mapping_entry_5 : canopen::Object<0x1A01, 0x05, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A01;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1A01h:06  UNSIGNED32  rw                                      ezd-1136.eds:1197
-struct mapping_entry_6 : canopen::Object<0x1A01, 0x06, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A01;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1A01h:07  UNSIGNED32  rw                                      ezd-1136.eds:1205
-struct mapping_entry_7 : canopen::Object<0x1A01, 0x07, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A01;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1A01h:08  UNSIGNED32  rw                                      ezd-1136.eds:1213
-struct mapping_entry_8 : canopen::Object<0x1A01, 0x08, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A01;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
 };
 }  // namespace tpdo_mapping_parameter_2
@@ -543,40 +757,58 @@ struct mapping_entry_8 : canopen::Object<0x1A01, 0x08, std::uint32_t, canopen::A
 /// TPDO mapping parameter 3.  1A02h
 namespace tpdo_mapping_parameter_3 {
 /// Number of mapped objects.  1A02h:00  UNSIGNED8  rw                              ezd-1136.eds:1227
-struct number_of_mapped_objects : canopen::Object<0x1A02, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A02;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
   static constexpr type high_limit = 8;
 };
 /// Mapping entry 1.  1A02h:01  UNSIGNED32  rw                                      ezd-1136.eds:1236
-struct mapping_entry_1 : canopen::Object<0x1A02, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A02;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A02h:02  UNSIGNED32  rw                                      ezd-1136.eds:1244
-struct mapping_entry_2 : canopen::Object<0x1A02, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A02;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A02h:03  UNSIGNED32  rw                                      ezd-1136.eds:1252
-struct mapping_entry_3 : canopen::Object<0x1A02, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A02;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A02h:04  UNSIGNED32  rw                                      ezd-1136.eds:1260
-struct mapping_entry_4 : canopen::Object<0x1A02, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A02;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1A02h:05  UNSIGNED32  rw                                      ezd-1136.eds:1268
-struct mapping_entry_5 : canopen::Object<0x1A02, 0x05, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A02;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1A02h:06  UNSIGNED32  rw                                      ezd-1136.eds:1276
-struct mapping_entry_6 : canopen::Object<0x1A02, 0x06, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A02;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1A02h:07  UNSIGNED32  rw                                      ezd-1136.eds:1284
-struct mapping_entry_7 : canopen::Object<0x1A02, 0x07, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A02;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1A02h:08  UNSIGNED32  rw                                      ezd-1136.eds:1292
-struct mapping_entry_8 : canopen::Object<0x1A02, 0x08, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A02;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
 };
 }  // namespace tpdo_mapping_parameter_3
@@ -584,304 +816,422 @@ struct mapping_entry_8 : canopen::Object<0x1A02, 0x08, std::uint32_t, canopen::A
 /// TPDO mapping parameter 4.  1A03h
 namespace tpdo_mapping_parameter_4 {
 /// Number of mapped objects.  1A03h:00  UNSIGNED8  rw                              ezd-1136.eds:1306
-struct number_of_mapped_objects : canopen::Object<0x1A03, 0x00, std::uint8_t, canopen::Access::rw> {
+struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A03;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
   static constexpr type high_limit = 8;
 };
 /// Mapping entry 1.  1A03h:01  UNSIGNED32  rw                                      ezd-1136.eds:1315
-struct mapping_entry_1 : canopen::Object<0x1A03, 0x01, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A03;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A03h:02  UNSIGNED32  rw                                      ezd-1136.eds:1323
-struct mapping_entry_2 : canopen::Object<0x1A03, 0x02, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A03;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A03h:03  UNSIGNED32  rw                                      ezd-1136.eds:1331
-struct mapping_entry_3 : canopen::Object<0x1A03, 0x03, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A03;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A03h:04  UNSIGNED32  rw                                      ezd-1136.eds:1339
-struct mapping_entry_4 : canopen::Object<0x1A03, 0x04, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A03;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1A03h:05  UNSIGNED32  rw                                      ezd-1136.eds:1347
-struct mapping_entry_5 : canopen::Object<0x1A03, 0x05, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A03;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1A03h:06  UNSIGNED32  rw                                      ezd-1136.eds:1355
-struct mapping_entry_6 : canopen::Object<0x1A03, 0x06, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A03;
+  static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1A03h:07  UNSIGNED32  rw                                      ezd-1136.eds:1363
-struct mapping_entry_7 : canopen::Object<0x1A03, 0x07, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A03;
+  static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1A03h:08  UNSIGNED32  rw                                      ezd-1136.eds:1371
-struct mapping_entry_8 : canopen::Object<0x1A03, 0x08, std::uint32_t, canopen::Access::rw> {
+struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1A03;
+  static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
 };
 }  // namespace tpdo_mapping_parameter_4
 
 /// Integrated current.  2064h:00  INTEGER16  ro                                    ezd-1136.eds:1795
-struct integrated_current : canopen::Object<0x2064, 0x00, std::int16_t, canopen::Access::ro> {
+struct integrated_current : canopen::TypedObject<std::int16_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x2064;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Integrated current";
 };
 
 /// Bus voltage.  2065h:00  UNSIGNED16  ro                                          ezd-1136.eds:1804
-struct bus_voltage : canopen::Object<0x2065, 0x00, std::uint16_t, canopen::Access::ro> {
+struct bus_voltage : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x2065;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Bus voltage";
 };
 
 /// Drive error code.  206Ch:00  UNSIGNED16  ro                                     ezd-1136.eds:1813
-struct drive_error_code : canopen::Object<0x206C, 0x00, std::uint16_t, canopen::Access::ro> {
+struct drive_error_code : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x206C;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Drive error code";
 };
 
 /// Run state.  206Dh:00  INTEGER16  ro                                             ezd-1136.eds:1823
-struct run_state : canopen::Object<0x206D, 0x00, std::int16_t, canopen::Access::ro> {
+struct run_state : canopen::TypedObject<std::int16_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x206D;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Run state";
 };
 
 /// Locked rotor detection.  207Ch:00  UNSIGNED16  ro  TPDO                         ezd-1136.eds:1832
-struct locked_rotor_detection : canopen::Object<0x207C, 0x00, std::uint16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+struct locked_rotor_detection : canopen::TypedObject<std::uint16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  static constexpr std::uint16_t index = 0x207C;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Locked rotor detection";
 };
 
 /// Analog voltage.  2090h:00  UNSIGNED16  ro                                       ezd-1136.eds:1841
-struct analog_voltage : canopen::Object<0x2090, 0x00, std::uint16_t, canopen::Access::ro> {
+struct analog_voltage : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x2090;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Analog voltage";
 };
 
 /// Current loop Kpt.  20C8h:00  UNSIGNED16  rw                                     ezd-1136.eds:1850
-struct current_loop_kpt : canopen::Object<0x20C8, 0x00, std::uint16_t, canopen::Access::rw> {
+struct current_loop_kpt : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x20C8;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Current loop Kpt";
 };
 
 /// Running direction.  20C9h:00  UNSIGNED16  rw                                    ezd-1136.eds:1860
-struct running_direction : canopen::Object<0x20C9, 0x00, std::uint16_t, canopen::Access::rw> {
+struct running_direction : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x20C9;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Running direction";
   static constexpr type high_limit = 3;
 };
 
 /// Control mode.  20CEh:00  UNSIGNED16  wo                                         ezd-1136.eds:1872
-struct control_mode : canopen::Object<0x20CE, 0x00, std::uint16_t, canopen::Access::wo> {
+struct control_mode : canopen::TypedObject<std::uint16_t, canopen::Access::wo> {
+  static constexpr std::uint16_t index = 0x20CE;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Control mode";
   static constexpr type high_limit = 6;
 };
 
 /// L1e6.  20D0h:00  UNSIGNED16  rw                                                 ezd-1136.eds:1882
-struct l1e6 : canopen::Object<0x20D0, 0x00, std::uint16_t, canopen::Access::rw> {
+struct l1e6 : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x20D0;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "L1e6";
 };
 
 /// R1e3.  20D1h:00  UNSIGNED16  rw                                                 ezd-1136.eds:1891
-struct r1e3 : canopen::Object<0x20D1, 0x00, std::uint16_t, canopen::Access::rw> {
+struct r1e3 : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x20D1;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "R1e3";
 };
 
 /// Idle current.  20D5h:00  UNSIGNED16  rw                                         ezd-1136.eds:1901
-struct idle_current : canopen::Object<0x20D5, 0x00, std::uint16_t, canopen::Access::rw> {
+struct idle_current : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x20D5;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Idle current";
   static constexpr type low_limit = 10;
   static constexpr type high_limit = 100;
 };
 
 /// Current loop KiS.  20D7h:00  UNSIGNED16  rw                                     ezd-1136.eds:1912
-struct current_loop_ki_s : canopen::Object<0x20D7, 0x00, std::uint16_t, canopen::Access::rw> {
+struct current_loop_ki_s : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x20D7;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Current loop KiS";
 };
 
 /// Motor mode setting.  20D9h:00  INTEGER16  rw                                    ezd-1136.eds:1921
-struct motor_mode_setting : canopen::Object<0x20D9, 0x00, std::int16_t, canopen::Access::rw> {
+struct motor_mode_setting : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x20D9;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Motor mode setting";
   static constexpr type low_limit = 0;
   static constexpr type high_limit = 1;
 };
 
 /// LRD threshold speed.  20DBh:00  UNSIGNED16  rw                                  ezd-1136.eds:1932
-struct lrd_threshold_speed : canopen::Object<0x20DB, 0x00, std::uint16_t, canopen::Access::rw> {
+struct lrd_threshold_speed : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x20DB;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "LRD threshold speed";
 };
 
 /// LRD threshold gain.  20DCh:00  UNSIGNED16  rw                                   ezd-1136.eds:1941
-struct lrd_threshold_gain : canopen::Object<0x20DC, 0x00, std::uint16_t, canopen::Access::rw> {
+struct lrd_threshold_gain : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x20DC;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "LRD threshold gain";
 };
 
 /// LRD maximum count.  20DDh:00  UNSIGNED16  rw                                    ezd-1136.eds:1950
-struct lrd_maximum_count : canopen::Object<0x20DD, 0x00, std::uint16_t, canopen::Access::rw> {
+struct lrd_maximum_count : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x20DD;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "LRD maximum count";
 };
 
 /// Current loop Kp maximum.  20DEh:00  UNSIGNED16  rw                              ezd-1136.eds:1959
-struct current_loop_kp_maximum : canopen::Object<0x20DE, 0x00, std::uint16_t, canopen::Access::rw> {
+struct current_loop_kp_maximum : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x20DE;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Current loop Kp maximum";
 };
 
 /// Filter coefficient.  20E0h:00  UNSIGNED16  rw                                   ezd-1136.eds:1969
-struct filter_coefficient : canopen::Object<0x20E0, 0x00, std::uint16_t, canopen::Access::rw> {
+struct filter_coefficient : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x20E0;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Filter coefficient";
   static constexpr type high_limit = 700;
 };
 
 /// Current amplification setting.  20E1h:00  UNSIGNED16  rw                        ezd-1136.eds:1979
-struct current_amplification_setting : canopen::Object<0x20E1, 0x00, std::uint16_t, canopen::Access::rw> {
+struct current_amplification_setting : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x20E1;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Current amplification setting";
 };
 
 /// Current loop Ki maximum.  20E4h:00  UNSIGNED16  rw                              ezd-1136.eds:1988
-struct current_loop_ki_maximum : canopen::Object<0x20E4, 0x00, std::uint16_t, canopen::Access::rw> {
+struct current_loop_ki_maximum : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x20E4;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Current loop Ki maximum";
 };
 
 /// Current command setting.  20F1h:00  INTEGER16  rw                               ezd-1136.eds:1997
-struct current_command_setting : canopen::Object<0x20F1, 0x00, std::int16_t, canopen::Access::rw> {
+struct current_command_setting : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x20F1;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Current command setting";
   static constexpr type low_limit = 100;
   static constexpr type high_limit = 6500;
 };
 
 /// Resolution setting.  20F2h:00  UNSIGNED32  rw                                   ezd-1136.eds:2008
-struct resolution_setting : canopen::Object<0x20F2, 0x00, std::uint32_t, canopen::Access::rw> {
+struct resolution_setting : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x20F2;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Resolution setting";
   static constexpr type low_limit = 200;
   static constexpr type high_limit = 102400;
 };
 
 /// Half current time.  20F5h:00  UNSIGNED16  rw                                    ezd-1136.eds:2020
-struct half_current_time : canopen::Object<0x20F5, 0x00, std::uint16_t, canopen::Access::rw> {
+struct half_current_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x20F5;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Half current time";
   static constexpr type low_limit = 1;
   static constexpr type high_limit = 30000;
 };
 
 /// Encoder resolution.  20F6h:00  UNSIGNED16  rw                                   ezd-1136.eds:2031
-struct encoder_resolution : canopen::Object<0x20F6, 0x00, std::uint16_t, canopen::Access::rw> {
+struct encoder_resolution : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x20F6;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Encoder resolution";
 };
 
 /// In position range.  20F7h:00  UNSIGNED16  rw                                    ezd-1136.eds:2040
-struct in_position_range : canopen::Object<0x20F7, 0x00, std::uint16_t, canopen::Access::rw> {
+struct in_position_range : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x20F7;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "In position range";
 };
 
 /// Maximum field weakening.  20F8h:00  UNSIGNED16  rw                              ezd-1136.eds:2049
-struct maximum_field_weakening : canopen::Object<0x20F8, 0x00, std::uint16_t, canopen::Access::rw> {
+struct maximum_field_weakening : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x20F8;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Maximum field weakening";
 };
 
 /// Speed loop Kp.  20FBh:00  UNSIGNED16  rw                                        ezd-1136.eds:2058
-struct speed_loop_kp : canopen::Object<0x20FB, 0x00, std::uint16_t, canopen::Access::rw> {
+struct speed_loop_kp : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x20FB;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Speed loop Kp";
 };
 
 /// Speed loop Ki.  20FCh:00  UNSIGNED16  rw                                        ezd-1136.eds:2067
-struct speed_loop_ki : canopen::Object<0x20FC, 0x00, std::uint16_t, canopen::Access::rw> {
+struct speed_loop_ki : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x20FC;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Speed loop Ki";
 };
 
 /// Speed loop Kd.  20FDh:00  UNSIGNED16  rw                                        ezd-1136.eds:2076
-struct speed_loop_kd : canopen::Object<0x20FD, 0x00, std::uint16_t, canopen::Access::rw> {
+struct speed_loop_kd : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x20FD;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Speed loop Kd";
 };
 
 /// Maximum speed.  20FEh:00  INTEGER16  rw                                         ezd-1136.eds:2085
-struct maximum_speed : canopen::Object<0x20FE, 0x00, std::int16_t, canopen::Access::rw> {
+struct maximum_speed : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x20FE;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Maximum speed";
 };
 
 /// Position loop Kp.  20FFh:00  UNSIGNED16  rw                                     ezd-1136.eds:2094
-struct position_loop_kp : canopen::Object<0x20FF, 0x00, std::uint16_t, canopen::Access::rw> {
+struct position_loop_kp : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x20FF;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Position loop Kp";
 };
 
 /// Position loop Ki.  2100h:00  UNSIGNED16  rw                                     ezd-1136.eds:2103
-struct position_loop_ki : canopen::Object<0x2100, 0x00, std::uint16_t, canopen::Access::rw> {
+struct position_loop_ki : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x2100;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Position loop Ki";
 };
 
 /// Position loop Kd.  2101h:00  UNSIGNED16  rw                                     ezd-1136.eds:2112
-struct position_loop_kd : canopen::Object<0x2101, 0x00, std::uint16_t, canopen::Access::rw> {
+struct position_loop_kd : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x2101;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Position loop Kd";
 };
 
 /// Position error threshold.  2102h:00  UNSIGNED16  rw                             ezd-1136.eds:2121
-struct position_error_threshold : canopen::Object<0x2102, 0x00, std::uint16_t, canopen::Access::rw> {
+struct position_error_threshold : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x2102;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Position error threshold";
 };
 
 /// Reference torque.  2103h:00  INTEGER16  rw                                      ezd-1136.eds:2130
-struct reference_torque : canopen::Object<0x2103, 0x00, std::int16_t, canopen::Access::rw> {
+struct reference_torque : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x2103;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Reference torque";
 };
 
 /// Damping filter gain.  2108h:00  UNSIGNED16  rw                                  ezd-1136.eds:2139
-struct damping_filter_gain : canopen::Object<0x2108, 0x00, std::uint16_t, canopen::Access::rw> {
+struct damping_filter_gain : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x2108;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Damping filter gain";
 };
 
 /// Damping gain.  2109h:00  UNSIGNED16  rw                                         ezd-1136.eds:2148
-struct damping_gain : canopen::Object<0x2109, 0x00, std::uint16_t, canopen::Access::rw> {
+struct damping_gain : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x2109;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Damping gain";
 };
 
 /// Current filter gain.  2110h:00  UNSIGNED16  rw                                  ezd-1136.eds:2157
-struct current_filter_gain : canopen::Object<0x2110, 0x00, std::uint16_t, canopen::Access::rw> {
+struct current_filter_gain : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x2110;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Current filter gain";
 };
 
 /// AR gain.  2113h:00  UNSIGNED16  rw                                              ezd-1136.eds:2166
-struct ar_gain : canopen::Object<0x2113, 0x00, std::uint16_t, canopen::Access::rw> {
+struct ar_gain : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x2113;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "AR gain";
 };
 
 /// AR adjustment.  2114h:00  UNSIGNED16  rw                                        ezd-1136.eds:2175
-struct ar_adjustment : canopen::Object<0x2114, 0x00, std::uint16_t, canopen::Access::rw> {
+struct ar_adjustment : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x2114;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "AR adjustment";
 };
 
 /// APM gain.  2115h:00  UNSIGNED16  rw                                             ezd-1136.eds:2184
-struct apm_gain : canopen::Object<0x2115, 0x00, std::uint16_t, canopen::Access::rw> {
+struct apm_gain : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x2115;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "APM gain";
 };
 
 /// Brake mode.  2116h:00  UNSIGNED16  rw                                           ezd-1136.eds:2193
-struct brake_mode : canopen::Object<0x2116, 0x00, std::uint16_t, canopen::Access::rw> {
+struct brake_mode : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x2116;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Brake mode";
 };
 
 /// Brake voltage.  2117h:00  UNSIGNED16  rw                                        ezd-1136.eds:2202
-struct brake_voltage : canopen::Object<0x2117, 0x00, std::uint16_t, canopen::Access::rw> {
+struct brake_voltage : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x2117;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Brake voltage";
 };
 
 /// Brake voltage 2.  2118h:00  UNSIGNED16  rw                                      ezd-1136.eds:2211
-struct brake_voltage_2 : canopen::Object<0x2118, 0x00, std::uint16_t, canopen::Access::rw> {
+struct brake_voltage_2 : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x2118;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Brake voltage 2";
 };
 
 /// Brake idle time.  2119h:00  UNSIGNED16  rw                                      ezd-1136.eds:2220
-struct brake_idle_time : canopen::Object<0x2119, 0x00, std::uint16_t, canopen::Access::rw> {
+struct brake_idle_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x2119;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Brake idle time";
 };
 
 /// Brake activation delay.  211Ah:00  UNSIGNED16  rw                               ezd-1136.eds:2229
-struct brake_activation_delay : canopen::Object<0x211A, 0x00, std::uint16_t, canopen::Access::rw> {
+struct brake_activation_delay : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x211A;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Brake activation delay";
 };
 
 /// Check torque timer.  211Eh:00  INTEGER16  rw                                    ezd-1136.eds:2238
-struct check_torque_timer : canopen::Object<0x211E, 0x00, std::int16_t, canopen::Access::rw> {
+struct check_torque_timer : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x211E;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Check torque timer";
 };
 
 /// Torque speed.  211Fh:00  INTEGER16  rw                                          ezd-1136.eds:2247
-struct torque_speed : canopen::Object<0x211F, 0x00, std::int16_t, canopen::Access::rw> {
+struct torque_speed : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x211F;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Torque speed";
 };
 
 /// Automatic parameter detection.  2127h:00  UNSIGNED16  rw                        ezd-1136.eds:2256
-struct automatic_parameter_detection : canopen::Object<0x2127, 0x00, std::uint16_t, canopen::Access::rw> {
+struct automatic_parameter_detection : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x2127;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Automatic parameter detection";
   static constexpr type high_limit = 1;
 };
@@ -893,7 +1243,9 @@ struct digital_input_functions : canopen::Object<0x2190, SubIndex, std::uint16_t
   static constexpr auto name = "Digital input functions";
 };
 template <>
-struct digital_input_functions<0> : canopen::Object<0x2190, 0x00, std::uint8_t, canopen::Access::ro> {
+struct digital_input_functions<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x2190;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 
@@ -904,126 +1256,174 @@ struct digital_output_functions : canopen::Object<0x21A4, SubIndex, std::uint16_
   static constexpr auto name = "Digital output functions";
 };
 template <>
-struct digital_output_functions<0> : canopen::Object<0x21A4, 0x00, std::uint8_t, canopen::Access::ro> {
+struct digital_output_functions<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x21A4;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 
 /// Digital input logic.  21ADh:00  UNSIGNED16  wo                                  ezd-1136.eds:2398
-struct digital_input_logic : canopen::Object<0x21AD, 0x00, std::uint16_t, canopen::Access::wo> {
+struct digital_input_logic : canopen::TypedObject<std::uint16_t, canopen::Access::wo> {
+  static constexpr std::uint16_t index = 0x21AD;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Digital input logic";
 };
 
 /// Digital output logic.  21AEh:00  UNSIGNED16  wo                                 ezd-1136.eds:2407
-struct digital_output_logic : canopen::Object<0x21AE, 0x00, std::uint16_t, canopen::Access::wo> {
+struct digital_output_logic : canopen::TypedObject<std::uint16_t, canopen::Access::wo> {
+  static constexpr std::uint16_t index = 0x21AE;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Digital output logic";
 };
 
 /// Global variable 1.  21E0h:00  INTEGER32  rw                                     ezd-1136.eds:2416
-struct global_variable_1 : canopen::Object<0x21E0, 0x00, std::int32_t, canopen::Access::rw> {
+struct global_variable_1 : canopen::TypedObject<std::int32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x21E0;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Global variable 1";
 };
 
 /// Global variable 2.  21E2h:00  INTEGER32  rw                                     ezd-1136.eds:2425
-struct global_variable_2 : canopen::Object<0x21E2, 0x00, std::int32_t, canopen::Access::rw> {
+struct global_variable_2 : canopen::TypedObject<std::int32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x21E2;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Global variable 2";
 };
 
 /// Global variable 3.  21E4h:00  INTEGER32  rw                                     ezd-1136.eds:2434
-struct global_variable_3 : canopen::Object<0x21E4, 0x00, std::int32_t, canopen::Access::rw> {
+struct global_variable_3 : canopen::TypedObject<std::int32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x21E4;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Global variable 3";
 };
 
 /// Global variable 4.  21E6h:00  INTEGER32  rw                                     ezd-1136.eds:2443
-struct global_variable_4 : canopen::Object<0x21E6, 0x00, std::int32_t, canopen::Access::rw> {
+struct global_variable_4 : canopen::TypedObject<std::int32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x21E6;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Global variable 4";
 };
 
 /// Global variable 5.  21E8h:00  INTEGER32  rw                                     ezd-1136.eds:2452
-struct global_variable_5 : canopen::Object<0x21E8, 0x00, std::int32_t, canopen::Access::rw> {
+struct global_variable_5 : canopen::TypedObject<std::int32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x21E8;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Global variable 5";
 };
 
 /// Error code.  603Fh:00  UNSIGNED16  ro  TPDO                                     ezd-1136.eds:1381
-struct error_code : canopen::Object<0x603F, 0x00, std::uint16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+struct error_code : canopen::TypedObject<std::uint16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  static constexpr std::uint16_t index = 0x603F;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Error code";
 };
 
 /// Controlword.  6040h:00  UNSIGNED16  rww  RPDO                                   ezd-1136.eds:1391
-struct controlword : canopen::Object<0x6040, 0x00, std::uint16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+struct controlword : canopen::TypedObject<std::uint16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  static constexpr std::uint16_t index = 0x6040;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Controlword";
 };
 
 /// Statusword.  6041h:00  UNSIGNED16  ro  TPDO                                     ezd-1136.eds:1400
-struct statusword : canopen::Object<0x6041, 0x00, std::uint16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+struct statusword : canopen::TypedObject<std::uint16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  static constexpr std::uint16_t index = 0x6041;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Statusword";
 };
 
 /// Quick stop option code.  605Ah:00  INTEGER16  rw                                ezd-1136.eds:1409
-struct quick_stop_option_code : canopen::Object<0x605A, 0x00, std::int16_t, canopen::Access::rw> {
+struct quick_stop_option_code : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x605A;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Quick stop option code";
   static constexpr type low_limit = 1;
   static constexpr type high_limit = 6;
 };
 
 /// Shutdown option code.  605Bh:00  INTEGER16  rw                                  ezd-1136.eds:1420
-struct shutdown_option_code : canopen::Object<0x605B, 0x00, std::int16_t, canopen::Access::rw> {
+struct shutdown_option_code : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x605B;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Shutdown option code";
 };
 
 /// Disable operation option code.  605Ch:00  INTEGER16  rw                         ezd-1136.eds:1429
-struct disable_operation_option_code : canopen::Object<0x605C, 0x00, std::int16_t, canopen::Access::rw> {
+struct disable_operation_option_code : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x605C;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Disable operation option code";
 };
 
 /// Fault reaction option code.  605Eh:00  INTEGER16  rw                            ezd-1136.eds:1438
-struct fault_reaction_option_code : canopen::Object<0x605E, 0x00, std::int16_t, canopen::Access::rw> {
+struct fault_reaction_option_code : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x605E;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Fault reaction option code";
 };
 
 /// Modes of operation.  6060h:00  INTEGER8  rww  RPDO                              ezd-1136.eds:1448
-struct modes_of_operation : canopen::Object<0x6060, 0x00, std::int8_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+struct modes_of_operation : canopen::TypedObject<std::int8_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  static constexpr std::uint16_t index = 0x6060;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Modes of operation";
   static constexpr type low_limit = 1;
   static constexpr type high_limit = 8;
 };
 
 /// Modes of operation display.  6061h:00  INTEGER8  ro  TPDO                       ezd-1136.eds:1459
-struct modes_of_operation_display : canopen::Object<0x6061, 0x00, std::int8_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+struct modes_of_operation_display : canopen::TypedObject<std::int8_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  static constexpr std::uint16_t index = 0x6061;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Modes of operation display";
 };
 
 /// Position actual value.  6064h:00  INTEGER32  ro  TPDO                           ezd-1136.eds:1468
-struct position_actual_value : canopen::Object<0x6064, 0x00, std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+struct position_actual_value : canopen::TypedObject<std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  static constexpr std::uint16_t index = 0x6064;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Position actual value";
 };
 
 /// Velocity actual value.  606Ch:00  INTEGER32  ro  TPDO                           ezd-1136.eds:1477
-struct velocity_actual_value : canopen::Object<0x606C, 0x00, std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+struct velocity_actual_value : canopen::TypedObject<std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  static constexpr std::uint16_t index = 0x606C;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Velocity actual value";
 };
 
 /// Target torque.  6071h:00  INTEGER16  rww  RPDO                                  ezd-1136.eds:1487
-struct target_torque : canopen::Object<0x6071, 0x00, std::int16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+struct target_torque : canopen::TypedObject<std::int16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  static constexpr std::uint16_t index = 0x6071;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Target torque";
 };
 
 /// Torque demand value.  6074h:00  INTEGER16  ro                                   ezd-1136.eds:1496
-struct torque_demand_value : canopen::Object<0x6074, 0x00, std::int16_t, canopen::Access::ro> {
+struct torque_demand_value : canopen::TypedObject<std::int16_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x6074;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Torque demand value";
 };
 
 /// Current actual value.  6078h:00  INTEGER16  ro                                  ezd-1136.eds:1505
-struct current_actual_value : canopen::Object<0x6078, 0x00, std::int16_t, canopen::Access::ro> {
+struct current_actual_value : canopen::TypedObject<std::int16_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x6078;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Current actual value";
 };
 
 /// Target position.  607Ah:00  INTEGER32  rww  RPDO                                ezd-1136.eds:1514
-struct target_position : canopen::Object<0x607A, 0x00, std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+struct target_position : canopen::TypedObject<std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  static constexpr std::uint16_t index = 0x607A;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Target position";
 };
 
 /// Home offset.  607Ch:00  INTEGER32  rww  RPDO                                    ezd-1136.eds:1524
-struct home_offset : canopen::Object<0x607C, 0x00, std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+struct home_offset : canopen::TypedObject<std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  static constexpr std::uint16_t index = 0x607C;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Home offset";
 };
 
@@ -1034,7 +1434,9 @@ struct software_position_limit : canopen::Object<0x607D, SubIndex, std::int32_t,
   static constexpr auto name = "Software position limit";
 };
 template <>
-struct software_position_limit<0> : canopen::Object<0x607D, 0x00, std::uint8_t, canopen::Access::ro> {
+struct software_position_limit<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x607D;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 
@@ -1045,37 +1447,51 @@ using software_position_limit_minimum_software_position_limit = software_positio
 using software_position_limit_maximum_software_position_limit = software_position_limit<2>;
 
 /// Profile velocity.  6081h:00  UNSIGNED32  rww  RPDO                              ezd-1136.eds:1563
-struct profile_velocity : canopen::Object<0x6081, 0x00, std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+struct profile_velocity : canopen::TypedObject<std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  static constexpr std::uint16_t index = 0x6081;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Profile velocity";
 };
 
 /// End velocity.  6082h:00  UNSIGNED32  rww  RPDO                                  ezd-1136.eds:1573
-struct end_velocity : canopen::Object<0x6082, 0x00, std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+struct end_velocity : canopen::TypedObject<std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  static constexpr std::uint16_t index = 0x6082;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "End velocity";
 };
 
 /// Profile acceleration.  6083h:00  UNSIGNED32  rww  RPDO                          ezd-1136.eds:1583
-struct profile_acceleration : canopen::Object<0x6083, 0x00, std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+struct profile_acceleration : canopen::TypedObject<std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  static constexpr std::uint16_t index = 0x6083;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Profile acceleration";
 };
 
 /// Profile deceleration.  6084h:00  UNSIGNED32  rww  RPDO                          ezd-1136.eds:1592
-struct profile_deceleration : canopen::Object<0x6084, 0x00, std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+struct profile_deceleration : canopen::TypedObject<std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  static constexpr std::uint16_t index = 0x6084;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Profile deceleration";
 };
 
 /// Quick stop deceleration.  6085h:00  UNSIGNED32  rww  RPDO                       ezd-1136.eds:1601
-struct quick_stop_deceleration : canopen::Object<0x6085, 0x00, std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+struct quick_stop_deceleration : canopen::TypedObject<std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  static constexpr std::uint16_t index = 0x6085;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Quick stop deceleration";
 };
 
 /// Torque slope.  6087h:00  UNSIGNED32  rww  RPDO                                  ezd-1136.eds:1610
-struct torque_slope : canopen::Object<0x6087, 0x00, std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+struct torque_slope : canopen::TypedObject<std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  static constexpr std::uint16_t index = 0x6087;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Torque slope";
 };
 
 /// Homing method.  6098h:00  INTEGER8  rww  RPDO                                   ezd-1136.eds:1619
-struct homing_method : canopen::Object<0x6098, 0x00, std::int8_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+struct homing_method : canopen::TypedObject<std::int8_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  static constexpr std::uint16_t index = 0x6098;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Homing method";
 };
 
@@ -1086,7 +1502,9 @@ struct homing_speeds : canopen::Object<0x6099, SubIndex, std::uint32_t, canopen:
   static constexpr auto name = "Homing speeds";
 };
 template <>
-struct homing_speeds<0> : canopen::Object<0x6099, 0x00, std::uint8_t, canopen::Access::ro> {
+struct homing_speeds<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x6099;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 
@@ -1097,17 +1515,23 @@ using homing_speeds_speed_during_search_for_switch = homing_speeds<1>;
 using homing_speeds_speed_during_search_for_zero = homing_speeds<2>;
 
 /// Homing acceleration.  609Ah:00  UNSIGNED32  rww  RPDO                           ezd-1136.eds:1658
-struct homing_acceleration : canopen::Object<0x609A, 0x00, std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+struct homing_acceleration : canopen::TypedObject<std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  static constexpr std::uint16_t index = 0x609A;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Homing acceleration";
 };
 
 /// Position offset.  60B0h:00  INTEGER32  rww  RPDO                                ezd-1136.eds:1667
-struct position_offset : canopen::Object<0x60B0, 0x00, std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+struct position_offset : canopen::TypedObject<std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  static constexpr std::uint16_t index = 0x60B0;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Position offset";
 };
 
 /// Digital inputs.  60FDh:00  UNSIGNED32  ro  TPDO                                 ezd-1136.eds:1676
-struct digital_inputs : canopen::Object<0x60FD, 0x00, std::uint32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+struct digital_inputs : canopen::TypedObject<std::uint32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  static constexpr std::uint16_t index = 0x60FD;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Digital inputs";
 };
 
@@ -1118,7 +1542,9 @@ struct digital_outputs : canopen::Object<0x60FE, SubIndex, std::uint32_t, canope
   static constexpr auto name = "Digital outputs";
 };
 template <>
-struct digital_outputs<0> : canopen::Object<0x60FE, 0x00, std::uint8_t, canopen::Access::ro> {
+struct digital_outputs<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x60FE;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 
@@ -1129,12 +1555,16 @@ using digital_outputs_physical_outputs = digital_outputs<1>;
 using digital_outputs_bit_mask = digital_outputs<2>;
 
 /// Target velocity.  60FFh:00  INTEGER32  rww  RPDO                                ezd-1136.eds:1715
-struct target_velocity : canopen::Object<0x60FF, 0x00, std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+struct target_velocity : canopen::TypedObject<std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  static constexpr std::uint16_t index = 0x60FF;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Target velocity";
 };
 
 /// Supported drive modes.  6502h:00  UNSIGNED32  ro                                ezd-1136.eds:1724
-struct supported_drive_modes : canopen::Object<0x6502, 0x00, std::uint32_t, canopen::Access::ro> {
+struct supported_drive_modes : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x6502;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Supported drive modes";
 };
 

@@ -18,41 +18,55 @@ namespace rk5c {
 namespace od {
 
 /// Device type.  1000h:00  UNSIGNED32  ro                                          rk5c.eds:79
-struct device_type : canopen::Object<0x1000, 0x00, std::uint32_t, canopen::Access::ro> {
+struct device_type : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1000;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Device type";
 };
 
 /// Error register.  1001h:00  UNSIGNED8  ro                                        rk5c.eds:90
-struct error_register : canopen::Object<0x1001, 0x00, std::uint8_t, canopen::Access::ro> {
+struct error_register : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1001;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Error register";
   static constexpr type low_limit = 0x00;
   static constexpr type high_limit = 0x81;
 };
 
 /// Manufacturer status register.  1002h:00  UNSIGNED32  ro                         rk5c.eds:181
-struct manufacturer_status_register : canopen::Object<0x1002, 0x00, std::uint32_t, canopen::Access::ro> {
+struct manufacturer_status_register : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1002;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer status register";
   static constexpr type low_limit = 0x00000000;
   static constexpr type high_limit = 0x0000007F;
 };
 
 /// COB-ID SYNC.  1005h:00  UNSIGNED32  rw                                          rk5c.eds:195
-struct cob_id_sync : canopen::Object<0x1005, 0x00, std::uint32_t, canopen::Access::rw> {
+struct cob_id_sync : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1005;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID SYNC";
 };
 
 /// Manufacturer device name.  1008h:00  VISIBLE_STRING  ro                         rk5c.eds:204
-struct manufacturer_device_name : canopen::Object<0x1008, 0x00, canopen::VisibleString<4>, canopen::Access::ro> {
+struct manufacturer_device_name : canopen::TypedObject<canopen::VisibleString<4>, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1008;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer device name";
 };
 
 /// Manufacturer hardware version.  1009h:00  VISIBLE_STRING  ro                    rk5c.eds:213
-struct manufacturer_hardware_version : canopen::Object<0x1009, 0x00, canopen::VisibleString<3>, canopen::Access::ro> {
+struct manufacturer_hardware_version : canopen::TypedObject<canopen::VisibleString<3>, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1009;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer hardware version";
 };
 
 /// Manufacturer software version.  100Ah:00  VISIBLE_STRING  ro                    rk5c.eds:222
-struct manufacturer_software_version : canopen::Object<0x100A, 0x00, canopen::VisibleString<3>, canopen::Access::ro> {
+struct manufacturer_software_version : canopen::TypedObject<canopen::VisibleString<3>, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x100A;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer software version";
 };
 
@@ -63,7 +77,9 @@ struct store_parameters : canopen::Object<0x1010, SubIndex, std::uint32_t, canop
   static constexpr auto name = "Store parameters";
 };
 template <>
-struct store_parameters<0> : canopen::Object<0x1010, 0x00, std::uint8_t, canopen::Access::ro> {
+struct store_parameters<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1010;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 
@@ -77,7 +93,9 @@ struct restore_default_parameters : canopen::Object<0x1011, SubIndex, std::uint3
   static constexpr auto name = "Restore default parameters";
 };
 template <>
-struct restore_default_parameters<0> : canopen::Object<0x1011, 0x00, std::uint8_t, canopen::Access::ro> {
+struct restore_default_parameters<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1011;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 
@@ -85,40 +103,56 @@ struct restore_default_parameters<0> : canopen::Object<0x1011, 0x00, std::uint8_
 using restore_default_parameters_restore_all_default_parameters = restore_default_parameters<1>;
 
 /// COB-ID EMCY.  1014h:00  UNSIGNED32  rw                                          rk5c.eds:280
-struct cob_id_emcy : canopen::Object<0x1014, 0x00, std::uint32_t, canopen::Access::rw> {
+struct cob_id_emcy : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1014;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID EMCY";
 };
 
 /// Inhibit time EMCY.  1015h:00  UNSIGNED16  rw                                    rk5c.eds:289
-struct inhibit_time_emcy : canopen::Object<0x1015, 0x00, std::uint16_t, canopen::Access::rw> {
+struct inhibit_time_emcy : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1015;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Inhibit time EMCY";
 };
 
 /// Producer heartbeat time.  1017h:00  UNSIGNED16  rw                              rk5c.eds:298
-struct producer_heartbeat_time : canopen::Object<0x1017, 0x00, std::uint16_t, canopen::Access::rw> {
+struct producer_heartbeat_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1017;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Producer heartbeat time";
 };
 
 /// Identity object.  1018h
 namespace identity_object {
 /// Highest sub-index supported.  1018h:00  UNSIGNED8  ro                           rk5c.eds:109
-struct highest_sub_index_supported : canopen::Object<0x1018, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1018;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// Vendor-ID.  1018h:01  UNSIGNED32  ro                                            rk5c.eds:118
-struct vendor_id : canopen::Object<0x1018, 0x01, std::uint32_t, canopen::Access::ro> {
+struct vendor_id : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1018;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Vendor-ID";
 };
 /// Product code.  1018h:02  UNSIGNED32  ro                                         rk5c.eds:127
-struct product_code : canopen::Object<0x1018, 0x02, std::uint32_t, canopen::Access::ro> {
+struct product_code : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1018;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Product code";
 };
 /// Revision number.  1018h:03  UNSIGNED32  ro                                      rk5c.eds:136
-struct revision_number : canopen::Object<0x1018, 0x03, std::uint32_t, canopen::Access::ro> {
+struct revision_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1018;
+  static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Revision number";
 };
 /// Serial number.  1018h:04  UNSIGNED32  ro                                        rk5c.eds:146
-struct serial_number : canopen::Object<0x1018, 0x04, std::uint32_t, canopen::Access::ro> {
+struct serial_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1018;
+  static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Serial number";
 };
 }  // namespace identity_object
@@ -126,17 +160,23 @@ struct serial_number : canopen::Object<0x1018, 0x04, std::uint32_t, canopen::Acc
 /// SDO server parameter.  1200h
 namespace sdo_server_parameter {
 /// Highest sub-index supported.  1200h:00  UNSIGNED8  ro                           rk5c.eds:313
-struct highest_sub_index_supported : canopen::Object<0x1200, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1200;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID client to server (rx).  1200h:01  UNSIGNED32  ro                         rk5c.eds:322
-struct cob_id_client_to_server_rx : canopen::Object<0x1200, 0x01, std::uint32_t, canopen::Access::ro> {
+struct cob_id_client_to_server_rx : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1200;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID client to server (rx)";
   static constexpr type low_limit = 0x00000601;
   static constexpr type high_limit = 0x0000067F;
 };
 /// COB-ID server to client (tx).  1200h:02  UNSIGNED32  ro                         rk5c.eds:335
-struct cob_id_server_to_client_tx : canopen::Object<0x1200, 0x02, std::uint32_t, canopen::Access::ro> {
+struct cob_id_server_to_client_tx : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1200;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "COB-ID server to client (tx)";
   static constexpr type low_limit = 0x00000581;
   static constexpr type high_limit = 0x000005FF;
@@ -146,19 +186,27 @@ struct cob_id_server_to_client_tx : canopen::Object<0x1200, 0x02, std::uint32_t,
 /// TPDO communication parameter 1.  1800h
 namespace tpdo_communication_parameter_1 {
 /// Highest sub-index supported.  1800h:00  UNSIGNED8  ro                           rk5c.eds:351
-struct highest_sub_index_supported : canopen::Object<0x1800, 0x00, std::uint8_t, canopen::Access::ro> {
+struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1800;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1800h:01  UNSIGNED32  rw                                  rk5c.eds:361
-struct cob_id_used_by_tpdo : canopen::Object<0x1800, 0x01, std::uint32_t, canopen::Access::rw> {
+struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1800;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1800h:02  UNSIGNED8  rw                                     rk5c.eds:373
-struct transmission_type : canopen::Object<0x1800, 0x02, std::uint8_t, canopen::Access::rw> {
+struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1800;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Event timer.  1800h:05  UNSIGNED16  rw                                          rk5c.eds:382
-struct event_timer : canopen::Object<0x1800, 0x05, std::uint16_t, canopen::Access::rw> {
+struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x1800;
+  static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
 };
 }  // namespace tpdo_communication_parameter_1
@@ -166,21 +214,29 @@ struct event_timer : canopen::Object<0x1800, 0x05, std::uint16_t, canopen::Acces
 /// TPDO mapping parameter 1.  1A00h
 namespace tpdo_mapping_parameter_1 {
 /// Number of mapped application objects.  1A00h:00  UNSIGNED8  ro                  rk5c.eds:398
-struct number_of_mapped_application_objects : canopen::Object<0x1A00, 0x00, std::uint8_t, canopen::Access::ro> {
+struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1A00;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped application objects";
 };
 /// Mapping entry 1.  1A00h:01  UNSIGNED32  ro                                      rk5c.eds:407
-struct mapping_entry_1 : canopen::Object<0x1A00, 0x01, std::uint32_t, canopen::Access::ro> {
+struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1A00;
+  static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A00h:02  UNSIGNED32  ro                                      rk5c.eds:416
-struct mapping_entry_2 : canopen::Object<0x1A00, 0x02, std::uint32_t, canopen::Access::ro> {
+struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x1A00;
+  static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 }  // namespace tpdo_mapping_parameter_1
 
 /// Number of cursors.  2000h:00  UNSIGNED8  ro                                     rk5c.eds:556
-struct number_of_cursors : canopen::Object<0x2000, 0x00, std::uint8_t, canopen::Access::ro> {
+struct number_of_cursors : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x2000;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of cursors";
 };
 
@@ -191,7 +247,9 @@ struct linear_encoder_measuring_step_settings : canopen::Object<0x6005, SubIndex
   static constexpr auto name = "Linear encoder measuring step settings";
 };
 template <>
-struct linear_encoder_measuring_step_settings<0> : canopen::Object<0x6005, 0x00, std::uint8_t, canopen::Access::ro> {
+struct linear_encoder_measuring_step_settings<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x6005;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 
@@ -208,7 +266,9 @@ struct preset_values_for_multi_sensor_devices : canopen::Object<0x6010, SubIndex
   static constexpr auto name = "Preset values for multi-sensor devices";
 };
 template <>
-struct preset_values_for_multi_sensor_devices<0> : canopen::Object<0x6010, 0x00, std::uint8_t, canopen::Access::ro> {
+struct preset_values_for_multi_sensor_devices<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x6010;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 
@@ -219,7 +279,9 @@ struct position_values_for_multi_sensor_devices : canopen::Object<0x6020, SubInd
   static constexpr auto name = "Position values for multi-sensor devices";
 };
 template <>
-struct position_values_for_multi_sensor_devices<0> : canopen::Object<0x6020, 0x00, std::uint8_t, canopen::Access::ro> {
+struct position_values_for_multi_sensor_devices<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x6020;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 
@@ -230,17 +292,23 @@ struct speed_value : canopen::Object<0x6030, SubIndex, std::int16_t, canopen::Ac
   static constexpr auto name = "Speed value";
 };
 template <>
-struct speed_value<0> : canopen::Object<0x6030, 0x00, std::uint8_t, canopen::Access::ro> {
+struct speed_value<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x6030;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
 
 /// Cyclic timer.  6200h:00  UNSIGNED16  rw                                         rk5c.eds:531
-struct cyclic_timer : canopen::Object<0x6200, 0x00, std::uint16_t, canopen::Access::rw> {
+struct cyclic_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  static constexpr std::uint16_t index = 0x6200;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Cyclic timer";
 };
 
 /// Measuring step.  6501h:00  UNSIGNED32  ro                                       rk5c.eds:543
-struct measuring_step : canopen::Object<0x6501, 0x00, std::uint32_t, canopen::Access::ro> {
+struct measuring_step : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  static constexpr std::uint16_t index = 0x6501;
+  static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Measuring step";
 };
 

@@ -74,14 +74,14 @@ class ObjectTypes {
 
  private:
   [[nodiscard]] ordered_json object_row(const Object& object) {
-    if (!object.has_sub_indices()) return json_object("var", entry_row(object.entries.front(), hexadecimal(0)));
+    if (!object.has_sub_indices()) return json_object("var", entry_row(object.entries.front()));
     if (describes_uniform_array(object)) return json_object("array", array_row(object));
     return json_object("record", record_row(object));
   }
 
   [[nodiscard]] ordered_json record_row(const Object& object) const {
     ordered_json entries = json_array(object.entries.size());
-    for (const Entry& entry : object.entries) entries.push_back(entry_row(entry, hexadecimal(entry.sub_index)));
+    for (const Entry& entry : object.entries) entries.push_back(entry_row(entry));
     return json_object("identifier", object.identifier, "comment",
                        fmt::format("{}.  {}", cpp_comment(object.name), index_label(object.index)), "entries",
                        std::move(entries));
@@ -91,11 +91,12 @@ class ObjectTypes {
     const Entry& first = object.entries[1];
     const std::size_t length = object.entries.size() - 1;
     const std::string label = fmt::format("{}:01..{:02X}", index_label(object.index), length);
-    ordered_json count = entry_row(object.entries.front(), "0x00");
+    ordered_json count = entry_row(object.entries.front());
     count["array_identifier"] = object.identifier;
-    return json_object("comment", comment(first, object.name, label), "identifier", object.identifier, "name",
-                       cpp_string(object.name), "base", base(first, "SubIndex"), "constants", constants(first),
-                       "length", length, "count", std::move(count), "elements", element_names(object));
+    return json_object(
+        "comment", comment(first, object.name, label), "identifier", object.identifier, "name", cpp_string(object.name),
+        "base", fmt::format("canopen::Object<{}, SubIndex, {}>", index_of(first), attributes(first)), "constants",
+        constants(first), "length", length, "count", std::move(count), "elements", element_names(object));
   }
 
   /// Elements that have their own name, such as `gains_p` for `gains<1>`; null if there are none.
@@ -133,10 +134,11 @@ class ObjectTypes {
     return name.starts_with(object.identifier + "_") ? name : object.identifier + "_" + name;
   }
 
-  [[nodiscard]] ordered_json entry_row(const Entry& entry, const std::string& sub_index) const {
+  [[nodiscard]] ordered_json entry_row(const Entry& entry) const {
     return json_object("comment", comment(entry, entry.name, entry_label(entry.index, entry.sub_index)), "identifier",
-                       entry.identifier, "name", cpp_string(entry.name), "base", base(entry, sub_index), "constants",
-                       constants(entry));
+                       entry.identifier, "name", cpp_string(entry.name), "base",
+                       fmt::format("canopen::TypedObject<{}>", attributes(entry)), "index", index_of(entry),
+                       "sub_index", fmt::format("0x{:02X}", entry.sub_index), "constants", constants(entry));
   }
 
   [[nodiscard]] static ordered_json constants(const Entry& entry) {
@@ -150,11 +152,12 @@ class ObjectTypes {
     return rows;
   }
 
-  [[nodiscard]] static std::string hexadecimal(std::uint8_t sub_index) { return fmt::format("0x{:02X}", sub_index); }
+  [[nodiscard]] static std::string index_of(const Entry& entry) { return fmt::format("0x{:04X}", entry.index); }
 
-  [[nodiscard]] std::string base(const Entry& entry, const std::string& sub_index) const {
-    std::string text = fmt::format("canopen::Object<0x{:04X}, {}, {}, canopen::Access::{}", entry.index, sub_index,
-                                   cpp_type(entry, options_), access_enumerator(entry.access));
+  /// The arguments of canopen::TypedObject.
+  [[nodiscard]] std::string attributes(const Entry& entry) const {
+    std::string text =
+        fmt::format("{}, canopen::Access::{}", cpp_type(entry, options_), access_enumerator(entry.access));
     const bool odd_size =
         (entry.type->kind == DataClass::signed_integer || entry.type->kind == DataClass::unsigned_integer) &&
         entry.type->bits % 8 == 0 && (entry.type->bits & (entry.type->bits - 1)) != 0;
@@ -163,7 +166,7 @@ class ObjectTypes {
       text += mappable_enumerator(entry.mappable());
     }
     if (odd_size) text += fmt::format(", {}", entry.type->bits);
-    return text + ">";
+    return text;
   }
 
   /// `Statusword.  6041h:00  UNSIGNED16  ro  TPDO                cpc-tc1.eds:412`

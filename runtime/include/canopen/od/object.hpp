@@ -20,17 +20,23 @@ inline constexpr std::uint16_t wire_bits<TimeOfDay> = 48;
 template <>
 inline constexpr std::uint16_t wire_bits<TimeDifference> = 48;
 
-/// Index, sub-index, type and access rights of one entry. A generated type derives from it and adds the name, limits
-/// and default value of the EDS.
-template <std::uint16_t Index, std::uint8_t SubIndex, class T, Access A, Mappable M = Mappable::no,
-          std::uint16_t Bits = wire_bits<T>>
-struct Object {
+/// Type and access rights of an entry. A generated type derives from it and adds index, sub-index, name, limits and
+/// default value of the EDS. Entries with the same type and access rights share the base: a compiler needs time for
+/// each instance of a template, in a namespace of many names the more.
+template <class T, Access A, Mappable M = Mappable::no, std::uint16_t Bits = wire_bits<T>>
+struct TypedObject {
   using type = T;
-  static constexpr std::uint16_t index = Index;
-  static constexpr std::uint8_t sub_index = SubIndex;
   static constexpr Access access = A;
   static constexpr Mappable mappable = M;
   static constexpr std::uint16_t bits = Bits;
+};
+
+/// The same with index and sub-index, for objects that are not generated and for elements of an ARRAY.
+template <std::uint16_t Index, std::uint8_t SubIndex, class T, Access A, Mappable M = Mappable::no,
+          std::uint16_t Bits = wire_bits<T>>
+struct Object : TypedObject<T, A, M, Bits> {
+  static constexpr std::uint16_t index = Index;
+  static constexpr std::uint8_t sub_index = SubIndex;
 };
 
 /// A type with the attributes of an object.
