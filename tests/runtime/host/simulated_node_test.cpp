@@ -14,7 +14,6 @@ namespace {
 
 using canopen::AbortCode;
 using canopen::ErrorRegister;
-using canopen::LssBitTiming;
 using canopen::NodeId;
 using canopen::SimulatedMemory;
 using canopen::SimulatedNode;
