@@ -197,8 +197,8 @@ class SignalPlanner {
     const auto is_of_pdo = [&](std::uint16_t index, std::uint8_t sub_index) {
       return index == pdo.mapping->index || (index == pdo.communication->index && sub_index == 1);
     };
-    const bool is_set = std::ranges::any_of(
-        node.settings, [&](const Setting& one) { return is_of_pdo(one.index, one.sub_index); });
+    const bool is_set =
+        std::ranges::any_of(node.settings, [&](const Setting& one) { return is_of_pdo(one.index, one.sub_index); });
     if (is_set || !node.loaded->sheet.is_dcf) return is_set;
     for (const ObjectDescription& object : node.loaded->sheet.objects) {
       for (const SubObjectDescription& sub_object : object.sub_objects) {

@@ -140,7 +140,7 @@ class NetworkLoader {
   LoadedNetwork& loaded_;
   Network& network_;
   Diagnostics& diagnostics_;
-  std::set<std::string> checked_;   ///< files whose rules were checked
+  std::set<std::string> checked_;  ///< files whose rules were checked
   std::set<FindingKey> reported_;  ///< errors in files of nodes
 };
 

@@ -123,8 +123,8 @@ class MessageCollector {
   }
 
   void add_event_driven(const CobIdUse& use, std::size_t size) {
-    const Nanoseconds inhibit = inhibit_time(communication_default(*use.pdo, inhibit_time_sub_index).value_or(0),
-                                             inhibit_time_unit(*use.node));
+    const Nanoseconds inhibit =
+        inhibit_time(communication_default(*use.pdo, inhibit_time_sub_index).value_or(0), inhibit_time_unit(*use.node));
     const milliseconds timer{
         static_cast<std::int64_t>(communication_default(*use.pdo, event_timer_sub_index).value_or(0))};
     TimedMessage one = message_of(use, size, inhibit != Nanoseconds{} ? inhibit : timer);
@@ -218,7 +218,8 @@ NetworkTiming network_timing(const Network& network, const std::vector<CobIdUse>
   NetworkTiming timing;
   if (!network.description.bit_rate) return timing;
   BusTiming bus{network.description.bit_rate->value * 1000, {}};
-  if (const WrittenNumber& error = network.description.error_interval_ms) bus.error_interval = milliseconds{error->value};
+  if (const WrittenNumber& error = network.description.error_interval_ms)
+    bus.error_interval = milliseconds{error->value};
   timing.messages = MessageCollector{network, uses}.collect();
   add_sync_jitter(timing.messages, responses(timing.messages, bus));
   const std::vector<ResponseTime> found = responses(timing.messages, bus);

@@ -70,7 +70,8 @@ class HeartbeatCheck {
     if (producer == context_.network.nodes.end()) {  // monitoring starts with the first heartbeat: it has no effect
       context_.diagnostics.warning(
           "network-heartbeat", default_place(entry),
-          fmt::format("node {} monitors the heartbeat of node-ID {}, which is not in the network", consumer.name, node_id));
+          fmt::format("node {} monitors the heartbeat of node-ID {}, which is not in the network", consumer.name,
+                      node_id));
       return;
     }
     if (&*producer == &consumer) return error("which is itself");
