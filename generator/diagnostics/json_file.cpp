@@ -43,6 +43,12 @@ std::string_view reason(std::string_view message) {
   return colon == std::string_view::npos ? message : message.substr(colon + 2);
 }
 
+/// The message without its number, which brackets enclose.
+std::string_view without_number(std::string_view message) {
+  const std::size_t bracket = message.find("] ");
+  return bracket == std::string_view::npos ? message : message.substr(bracket + 2);
+}
+
 struct DuplicateMember {
   std::string name;
   Position position;
@@ -74,6 +80,7 @@ class JsonPlaceScanner {
  private:
   struct Level {
     bool is_array = false;
+    bool is_duplicate = false;  ///< below a member that is a duplicate
     std::size_t element = 0;
     std::string name;  ///< of the member
     Position name_position;
@@ -86,7 +93,7 @@ class JsonPlaceScanner {
       if (rest.starts_with("//")) {
         at_ += std::min(rest.find('\n'), rest.size());
       } else if (rest.starts_with("/*")) {
-        const std::size_t end = rest.find("*/");
+        const std::size_t end = rest.find("*/", 2);
         at_ += end == std::string_view::npos ? rest.size() : end + 2;
       } else if (std::string_view{" \t\r\n"}.find(text_[at_]) != std::string_view::npos) {
         ++at_;
@@ -98,8 +105,8 @@ class JsonPlaceScanner {
   }
 
   void open() {
-    record(at_, 1);
-    levels_.push_back({text_[at_] == '[', 0, {}, {}});
+    const bool is_duplicate = record(at_, 1);
+    levels_.push_back({text_[at_] == '[', is_duplicate, 0, {}, {}});
     ++at_;
   }
 
@@ -136,8 +143,9 @@ class JsonPlaceScanner {
     record(start, at_ - start);
   }
 
-  void record(std::size_t start, std::size_t length) {
-    if (levels_.size() > JsonFile::max_depth) return;
+  /// Whether the value belongs to a member that is a duplicate. The parser uses the last one, and so do the places.
+  bool record(std::size_t start, std::size_t length) {
+    if (levels_.size() > JsonFile::max_depth) return true;
     Pointer pointer;
     for (const Level& level : levels_) {
       if (level.is_array) {
@@ -149,8 +157,11 @@ class JsonPlaceScanner {
     const Position value = counter_.at(start, length);
     const bool is_member = !levels_.empty() && !levels_.back().is_array;
     const Position name = is_member ? levels_.back().name_position : value;
-    const auto [at, is_new] = places_.emplace(pointer.to_string(), JsonPlace{name, value});
-    if (!is_new) duplicates_.push_back({levels_.back().name, name, at->second.name});
+    const auto [at, is_new] = places_.try_emplace(pointer.to_string(), JsonPlace{name, value});
+    if (is_new) return !levels_.empty() && levels_.back().is_duplicate;
+    if (!levels_.back().is_duplicate) duplicates_.push_back({levels_.back().name, name, at->second.name});
+    at->second = {name, value};
+    return true;
   }
 
   JsonPlaces& places_;
@@ -172,7 +183,11 @@ JsonFile::JsonFile(const SourceFile& source, ErrorRule syntax_rule, Diagnostics&
     if (problem.byte > 0) position = PlaceCounter{source}.at(problem.byte - 1, 1);
     diagnostics.error(syntax_rule, position, fmt::format("not JSON: {}", reason(problem.what())));
     return;
+  } catch (const Json::out_of_range& problem) {  // a number that does not fit into a double
+    diagnostics.error(syntax_rule, Position{&source}, fmt::format("not JSON: {}", without_number(problem.what())));
+    return;
   }
+  is_valid_ = true;
   for (const DuplicateMember& one : JsonPlaceScanner{source, places_}.scan()) {
     diagnostics.error(syntax_rule, one.position, fmt::format("duplicate member {}", quote(one.name)),
                       {{one.first, "the first one"}});

@@ -28,6 +28,8 @@ class JsonFile {
   /// Parses the text. A text that is not JSON is reported as a finding of `syntax_rule`; the root is then null.
   JsonFile(const SourceFile& source, ErrorRule syntax_rule, Diagnostics& diagnostics);
 
+  /// Whether the text is JSON; a text that is not was reported.
+  [[nodiscard]] bool is_valid() const { return is_valid_; }
   [[nodiscard]] const Json& root() const { return root_; }
   [[nodiscard]] const SourceFile& source() const { return source_; }
 
@@ -41,6 +43,7 @@ class JsonFile {
  private:
   const SourceFile& source_;
   Json root_;
+  bool is_valid_ = false;
   JsonPlaces places_;
 };
 

@@ -21,6 +21,7 @@ namespace {
 
 constexpr unsigned max_bits = 64;
 constexpr std::size_t max_entries = 8;            // of a new PDO, as in devices with 8 entries
+constexpr std::uint32_t max_can_id = 0x6DF;       // the IDs above are restricted
 constexpr std::uint16_t first_received = 0x2000;  // of a master without a file: + node-ID of the sender
 constexpr std::uint16_t first_sent = 0x2100;      // + node-ID of the receiver
 
@@ -102,6 +103,10 @@ class SignalPlanner {
       receivers.push_back(*std::move(receiver));
     }
     const std::uint32_t can_id = choose_can_id(*sender, receivers.front());
+    if (can_id > max_can_id) {
+      diagnostics_.error("network-signal", first.description->position, "all CAN-IDs for PDOs are in use");
+      return;
+    }
     sender->cob_id = can_id | (sender->cob_id & canopen::CobId::no_rtr_bit);
     set_timing(*first.description, *sender);
     plan_.pdos.push_back(*std::move(sender));
@@ -157,7 +162,7 @@ class SignalPlanner {
     const Pdo* chosen = find_pdo(node, direction, [&](const Pdo& pdo) { return has_mapping(pdo, planned.mapping); });
     if (chosen == nullptr) {
       chosen = find_pdo(node, direction, [&](const Pdo& pdo) {
-        return pdo.dynamic && pdo.mapping->entries.size() > planned.mapping.size();
+        return pdo.dynamic && pdo.mapping->entries.size() > planned.mapping.size() && !is_configured(node, pdo);
       });
     }
     if (chosen == nullptr) {
@@ -187,6 +192,22 @@ class SignalPlanner {
     return at == node.device.pdos.end() ? nullptr : &*at;
   }
 
+  /// Whether `set` or a DCF configures the CAN-ID or the mapping: another signal must not change them.
+  static bool is_configured(const NetworkNode& node, const Pdo& pdo) {
+    const auto is_of_pdo = [&](std::uint16_t index, std::uint8_t sub_index) {
+      return index == pdo.mapping->index || (index == pdo.communication->index && sub_index == 1);
+    };
+    const bool is_set =
+        std::ranges::any_of(node.settings, [&](const Setting& one) { return is_of_pdo(one.index, one.sub_index); });
+    if (is_set || !node.loaded->sheet.is_dcf) return is_set;
+    for (const ObjectDescription& object : node.loaded->sheet.objects) {
+      for (const SubObjectDescription& sub_object : object.sub_objects) {
+        if (!sub_object.parameter_value.empty() && is_of_pdo(object.index, sub_object.sub_index)) return true;
+      }
+    }
+    return false;
+  }
+
   static bool has_mapping(const Pdo& pdo, const std::vector<std::uint32_t>& mapping) {
     return std::ranges::equal(pdo.entries, mapping, {}, [](const PdoEntry& entry) {
       return mapping_value(entry.index, entry.sub_index, entry.bits);
@@ -194,6 +215,7 @@ class SignalPlanner {
   }
 
   /// The CAN-ID of the sender's PDO; for a master without a file that of the receiver's PDO; otherwise a free one.
+  /// Above `max_can_id` if none is free.
   std::uint32_t choose_can_id(const PlannedPdo& sender, const PlannedPdo& receiver) {
     const bool is_master = !network_.find(sender.node)->has_file();
     const canopen::CobId own{is_master ? receiver.cob_id : sender.cob_id};
@@ -205,7 +227,9 @@ class SignalPlanner {
       return can_id;
     }
     std::uint32_t free = canopen::function_code::tpdo1 + 1U;
-    while (used_.contains(free)) ++free;
+    while (used_.contains(free) || canopen::is_restricted(free)) {
+      if (++free > max_can_id) return free;
+    }
     used_.insert(free);
     assigned_.insert(free);
     return free;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <set>
+#include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "diagnostics/quote.hpp"
@@ -24,19 +26,30 @@ class NetworkLoader {
   void load() {
     for (const NodeDescription& node : network_.description.nodes) add_node(node);
     check_sync_producer();
+    check_heartbeat_timeouts();
+    for (NetworkNode& node : network_.nodes) {
+      if (node.has_file()) apply_settings(node);
+    }
     const SignalPlan plan = plan_signals(network_, diagnostics_);
     for (NetworkNode& node : network_.nodes) {
       if (!node.has_file()) add_master_sheet(node, network_, plan);
     }
     for (NetworkNode& node : network_.nodes) {
-      apply_sync(node, network_.description.sync, diagnostics_);
+      if (!node.has_file()) apply_settings(node);
       apply_signals(node, plan, diagnostics_);
-      apply_node_members(node, diagnostics_);
       update_pdos(node, *network_.source, diagnostics_);
     }
   }
 
  private:
+  /// The settings that do not depend on signals. Signals use the PDOs that they leave.
+  void apply_settings(NetworkNode& node) {
+    apply_sync(node, network_.description.sync, diagnostics_);
+    apply_node_members(node, diagnostics_);
+    Diagnostics of_mapping;  // reported when the signals are assigned
+    update_pdos(node, *network_.source, of_mapping);
+  }
+
   void add_node(const NodeDescription& description) {
     NetworkNode node;
     node.name = description.name.value;
@@ -44,6 +57,7 @@ class NetworkLoader {
     node.description = &description;
     node.is_master = description.master && description.master->value;
     if (description.node_id) node.node_id = static_cast<std::uint8_t>(description.node_id->value);
+    if (!node.has_file() && !node.is_master) return;
     if (node.has_file() && !load_file(node)) return;
     if (node.node_id == 0) return;
     network_.nodes.push_back(std::move(node));
@@ -81,9 +95,15 @@ class NetworkLoader {
       loaded_.unreadable = true;
     } else {
       for (const Diagnostic& one : of_file.all()) {
-        if (one.severity == Severity::error) diagnostics_.report(one);
+        if (one.severity == Severity::error && is_new(one)) diagnostics_.report(one);
       }
     }
+  }
+
+  /// An error in a file of several nodes is reported once.
+  bool is_new(const Diagnostic& one) {
+    const std::string_view file = one.position.file != nullptr ? one.position.file->name() : "";
+    return reported_.emplace(file, one.position.line, one.position.column, one.message).second;
   }
 
   /// A DCF states the node-ID, which the network file may repeat.
@@ -99,14 +119,29 @@ class NetworkLoader {
 
   void check_sync_producer() {
     const WrittenText& producer = network_.description.sync.producer;
-    if (!producer || network_.find(producer->value) != nullptr) return;
+    if (!producer || network_.lists(producer->value)) return;
     diagnostics_.error("network-file", producer->position, network_.unknown_node(producer->value));
   }
+
+  /// 1016h of a master with a file is that of the file and of `set`.
+  void check_heartbeat_timeouts() {
+    const NetworkNode* const master = network_.master();
+    if (master != nullptr && !master->has_file()) return;
+    for (const NetworkNode& node : network_.nodes) {
+      const WrittenNumber& timeout = node.description->heartbeat_timeout_ms;
+      if (!timeout) continue;
+      diagnostics_.error("network-value", timeout->position,
+                         "\"heartbeat_timeout_ms\" needs a master without a file; \"set\" 1016h of another consumer");
+    }
+  }
+
+  using FindingKey = std::tuple<std::string, std::uint32_t, std::uint32_t, std::string>;
 
   LoadedNetwork& loaded_;
   Network& network_;
   Diagnostics& diagnostics_;
   std::set<std::string> checked_;  ///< files whose rules were checked
+  std::set<FindingKey> reported_;  ///< errors in files of nodes
 };
 
 }  // namespace

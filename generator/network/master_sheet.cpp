@@ -34,7 +34,7 @@ class SheetText {
         "[FileInfo]\nFileName={}.eds\nFileVersion=1\nFileRevision=0\nEDSVersion=4.0\n\n"
         "[DeviceInfo]\nVendorName=\nProductName={}\nBaudRate_10=1\nBaudRate_20=1\nBaudRate_50=1\nBaudRate_125=1\n"
         "BaudRate_250=1\nBaudRate_500=1\nBaudRate_800=1\nBaudRate_1000=1\nSimpleBootUpMaster=1\nSimpleBootUpSlave=0\n"
-        "Granularity=8\nDynamicChannelsSupported=0\nGroupMessaging=0\nLSS_Supported=0\n\n"
+        "Granularity=1\nDynamicChannelsSupported=0\nGroupMessaging=0\nLSS_Supported=0\n\n"
         "[DummyUsage]\nDummy0001=0\nDummy0002=1\nDummy0003=1\nDummy0004=1\nDummy0005=1\nDummy0006=1\nDummy0007=1\n\n",
         name, name);
   }
@@ -112,7 +112,7 @@ class MasterSheet {
     if (network_.description.sync.overflow) {
       sheet_.add_var(0x1019, {0, "Synchronous counter overflow value", unsigned8, "rw", "0"});
     }
-    add_sdo_clients();
+    if (network_.master() == &master_) add_sdo_clients();  // each server has one client
     add_pdos(PdoDirection::receive);
     add_pdos(PdoDirection::transmit);
     add_slaves();
@@ -134,11 +134,11 @@ class MasterSheet {
     std::vector<SheetEntry> consumers;
     for_each_slave([&](const NetworkNode& node) {
       const NodeDescription& description = *node.description;
-      const std::uint32_t produced =
-          description.heartbeat_ms
-              ? description.heartbeat_ms->value
-              : static_cast<std::uint32_t>(value_of(node.device, communication::producer_heartbeat).value_or(0));
-      if (produced == 0) return;
+      const auto of_device =
+          static_cast<std::uint32_t>(value_of(node.device, communication::producer_heartbeat).value_or(0));
+      const std::uint32_t of_master = description.heartbeat_ms ? description.heartbeat_ms->value : 0;
+      const std::uint32_t produced = node.has_file() ? of_device : of_master;
+      if (produced == 0 || (produced == 0xFFFF && !description.heartbeat_timeout_ms)) return;
       const std::uint32_t timeout =
           description.heartbeat_timeout_ms ? description.heartbeat_timeout_ms->value : std::min(produced * 2, 0xFFFFu);
       const auto sub_index = static_cast<std::uint8_t>(consumers.size() + 1);
@@ -221,6 +221,25 @@ class MasterSheet {
   SheetText sheet_;
 };
 
+/// The text of the EDS is not a file that the user can open: values are where the network file implies them.
+void move_positions(NetworkNode& master, const Network& network) {
+  for (Object& object : master.device.objects) {
+    object.position = master.position;
+    for (Entry& entry : object.entries) {
+      entry.position = master.position;
+      if (entry.default_value) entry.default_value->position = master.position;
+      if (object.index != communication::consumer_heartbeat || !entry.default_value) continue;
+      for (const NetworkNode& node : network.nodes) {
+        if (entry.sub_index == 0 || (entry.default_value->bits >> 16 & 0xFF) != node.node_id) continue;
+        const NodeDescription& of_node = *node.description;
+        entry.default_value->position = of_node.heartbeat_timeout_ms ? of_node.heartbeat_timeout_ms->position
+                                        : of_node.heartbeat_ms       ? of_node.heartbeat_ms->position
+                                                                     : node.position;
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void add_master_sheet(NetworkNode& master, Network& network, const SignalPlan& plan) {
@@ -235,6 +254,7 @@ void add_master_sheet(NetworkNode& master, Network& network, const SignalPlan& p
   resolve_and_check(*loaded, settings, of_sheet);
   master.device = *std::move(loaded->device);
   loaded->device.reset();
+  move_positions(master, network);
   master.loaded = loaded.get();
   network.files.push_back(std::move(loaded));
 }

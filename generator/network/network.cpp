@@ -14,6 +14,10 @@ const NetworkNode* Network::find(std::string_view name) const {
   return at == nodes.end() ? nullptr : &*at;
 }
 
+bool Network::lists(std::string_view name) const {
+  return std::ranges::any_of(description.nodes, [&](const NodeDescription& one) { return one.name.value == name; });
+}
+
 std::string Network::unknown_node(std::string_view name) const {
   std::vector<std::string_view> names;
   for (const NetworkNode& node : nodes) names.push_back(node.name);

@@ -42,6 +42,8 @@ struct Network {
   std::vector<NetworkNode> nodes;                    ///< those whose device could be read, in the order of the file
 
   [[nodiscard]] const NetworkNode* find(std::string_view name) const;
+  /// Whether the network file lists a node, even one without a device.
+  [[nodiscard]] bool lists(std::string_view name) const;
   /// `unknown node "axsi1"; did you mean "axis1"?`
   [[nodiscard]] std::string unknown_node(std::string_view name) const;
   /// The NMT master; null if there is none.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -25,6 +26,19 @@ std::optional<std::string> eds_text(const Json& value) {
   return std::nullopt;
 }
 
+constexpr std::size_t max_name_length = 64;
+
+/// A name is also that of files and, without its blanks, of C++. Bytes above 7Fh are parts of letters in UTF-8.
+bool is_node_name(std::string_view name) {
+  const auto is_valid = [](char one) {
+    const auto byte = static_cast<unsigned char>(one);
+    return byte >= 0x80 || (byte >= '0' && byte <= '9') || (byte >= 'A' && byte <= 'Z') ||
+           (byte >= 'a' && byte <= 'z') || byte == '_' || byte == '-' || byte == ' ';
+  };
+  return !name.empty() && name.size() <= max_name_length && name.front() != ' ' && name.back() != ' ' &&
+         std::ranges::all_of(name, is_valid);
+}
+
 class NetworkReader {
  public:
   NetworkReader(const JsonFile& file, Diagnostics& diagnostics) : file_{file}, diagnostics_{diagnostics} {}
@@ -41,12 +55,15 @@ class NetworkReader {
     if (const Json* const sync = object_at(root, "sync")) {
       read_members(*sync, Pointer{"/sync"}, network.sync, sync_members, {});
     }
+    if (const WrittenNumber& overflow = network.sync.overflow; overflow && overflow->value == 1) {
+      value_error(Pointer{"/sync/overflow"}, "\"overflow\" must be 0 or a number from 2 to 240: 1 is reserved");
+    }
     if (const Json* const assume = object_at(root, "assume")) {
       read_members(*assume, Pointer{"/assume"}, network.assume, assume_members, {});
     }
     read_nodes(root, network);
     read_signals(root, network);
-    if (!network.bit_rate) error(Pointer{}, "missing \"bit_rate\", the bit rate in kbit/s");
+    if (!root.contains("bit_rate")) error(Pointer{}, "missing \"bit_rate\", the bit rate in kbit/s");
     return network;
   }
 
@@ -161,21 +178,26 @@ class NetworkReader {
       NodeDescription node;
       node.name = {name, file_.name_position(pointer)};
       read_members(json, pointer, node, node_members, {});
-      check_node(pointer, node);
+      check_node(pointer, json, node);
       network.nodes.push_back(std::move(node));
     }
     if (nodes->empty()) error(Pointer{"/nodes"}, "the network does not have a node");
   }
 
-  void check_node(const Pointer& pointer, const NodeDescription& node) {
+  void check_node(const Pointer& pointer, const Json& json, const NodeDescription& node) {
     if (node.eds && node.dcf) error(pointer / "dcf", "a node has either \"eds\" or \"dcf\"");
+    const bool has_file = json.contains("eds") || json.contains("dcf");
     const bool is_master = node.master && node.master->value;
-    if (!node.eds && !node.dcf && !is_master) {
+    if (!has_file && !is_master) {
       error(pointer, fmt::format("node {} needs \"eds\" or \"dcf\"", quote(node.name.value)));
     }
-    if (!node.node_id && !node.dcf) error(pointer, fmt::format("node {} needs \"node_id\"", quote(node.name.value)));
-    const bool has_separator = node.name.value.find('.') != std::string::npos;
-    if (node.name.value.empty() || has_separator) error(pointer, "the name of a node is not empty and has no period");
+    if (!json.contains("node_id") && !json.contains("dcf")) {
+      error(pointer, fmt::format("node {} needs \"node_id\"", quote(node.name.value)));
+    }
+    if (!is_node_name(node.name.value)) {
+      error(pointer, fmt::format("{} is not a name for a node: 1 to {} letters, digits, blanks, _ and -",
+                                 quote(node.name.value), max_name_length));
+    }
   }
 
   void read_signals(const Json& root, NetworkDescription& network) {
@@ -192,18 +214,21 @@ class NetworkReader {
       SignalDescription signal;
       signal.position = file_.value_position(pointer);
       read_members(json, pointer, signal, signal_members, {});
-      check_signal(pointer, signal);
+      check_signal(pointer, json, signal);
       network.signals.push_back(std::move(signal));
     }
   }
 
-  void check_signal(const Pointer& pointer, const SignalDescription& signal) {
-    if (!signal.from) value_error(pointer, "a signal needs \"from\", the name of a node");
-    if (!signal.object) value_error(pointer, "a signal needs \"object\", the entry that is sent");
-    const int ways = (signal.every_ms ? 1 : 0) + (signal.every_sync ? 1 : 0);
-    if (ways == 2) value_error(pointer, "a signal has either \"every_ms\" or \"every_sync\"");
-    if (signal.every_sync && signal.event) value_error(pointer, "a signal has either \"every_sync\" or \"event\"");
-    if (ways == 0 && !signal.event) value_error(pointer, "a signal needs \"every_ms\", \"every_sync\" or \"event\"");
+  void check_signal(const Pointer& pointer, const Json& json, const SignalDescription& signal) {
+    if (!json.contains("from")) value_error(pointer, "a signal needs \"from\", the name of a node");
+    if (!json.contains("object")) value_error(pointer, "a signal needs \"object\", the entry that is sent");
+    const bool has_interval = json.contains("every_ms") || json.contains("every_sync");
+    const bool is_event = signal.event && signal.event->value;
+    if (signal.every_ms && signal.every_sync) {
+      value_error(pointer, "a signal has either \"every_ms\" or \"every_sync\"");
+    }
+    if (signal.every_sync && is_event) value_error(pointer, "a signal has either \"every_sync\" or \"event\"");
+    if (!has_interval && !is_event) value_error(pointer, "a signal needs \"every_ms\", \"every_sync\" or \"event\"");
   }
 
   const JsonFile& file_;
@@ -214,7 +239,7 @@ class NetworkReader {
 
 NetworkDescription read_network_file(const SourceFile& source, Diagnostics& diagnostics) {
   const JsonFile file{source, "network-syntax", diagnostics};
-  if (file.root().is_null()) return {&source, {}, {}, {}, {}, {}, {}, {}, {}};
+  if (!file.is_valid()) return {&source, {}, {}, {}, {}, {}, {}, {}, {}};
   return NetworkReader{file, diagnostics}.read();
 }
 

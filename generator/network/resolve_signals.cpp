@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -35,7 +36,7 @@ class SignalResolver {
 
   const NetworkNode* find_node(std::string_view name, const Position& position) {
     const NetworkNode* const node = network_.find(name);
-    if (node == nullptr) error(position, network_.unknown_node(name));
+    if (node == nullptr && !network_.lists(name)) error(position, network_.unknown_node(name));
     return node;
   }
 
@@ -139,6 +140,21 @@ class SignalResolver {
   Diagnostics& diagnostics_;
 };
 
+/// An entry that receives two signals has the value of the one that came last.
+void report_shared_receivers(const std::vector<Signal>& signals, Diagnostics& diagnostics) {
+  std::map<const Entry*, const Signal*> first;
+  for (const Signal& signal : signals) {
+    for (const SignalEnd& end : signal.to) {
+      if (!end.node->has_file()) continue;
+      const auto [at, is_new] = first.emplace(end.entry, &signal);
+      if (is_new) continue;
+      diagnostics.warning("network-signal", signal.description->position,
+                          fmt::format("two signals set {} of node {}", named(*end.entry), end.node->name),
+                          {{at->second->description->position, "the first one"}});
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<Signal> resolve_signals(const Network& network, Diagnostics& diagnostics) {
@@ -147,6 +163,7 @@ std::vector<Signal> resolve_signals(const Network& network, Diagnostics& diagnos
   for (const SignalDescription& description : network.description.signals) {
     if (auto signal = resolver.resolve(description)) signals.push_back(*std::move(signal));
   }
+  report_shared_receivers(signals, diagnostics);
   return signals;
 }
 

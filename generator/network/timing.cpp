@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "device/complete_device.hpp"
+#include "device/options/option_table.hpp"
 #include "device/pdo/pdo_defaults.hpp"
 #include "network/communication_objects.hpp"
 
@@ -23,7 +24,17 @@ milliseconds interval(const WrittenNumber& number, unsigned default_ms) {
 }
 
 /// Inhibit times of 1015h and of PDOs are in multiples of 100 us.
-Nanoseconds inhibit_time(std::uint64_t value) { return microseconds{100} * static_cast<std::int64_t>(value); }
+Nanoseconds inhibit_time(std::uint64_t value, std::uint32_t unit_us = 100) {
+  return microseconds{unit_us} * static_cast<std::int64_t>(value);
+}
+
+/// The unit of the inhibit times of PDOs, which differs in some devices.
+std::uint32_t inhibit_time_unit(const NetworkNode& node) {
+  for (const RuntimeOption& one : node.loaded->options.runtime) {
+    if (one.row->flat_name == "inhibit_time_unit") return one.value;
+  }
+  return 100;
+}
 
 class MessageCollector {
  public:
@@ -112,7 +123,8 @@ class MessageCollector {
   }
 
   void add_event_driven(const CobIdUse& use, std::size_t size) {
-    const Nanoseconds inhibit = inhibit_time(communication_default(*use.pdo, inhibit_time_sub_index).value_or(0));
+    const Nanoseconds inhibit =
+        inhibit_time(communication_default(*use.pdo, inhibit_time_sub_index).value_or(0), inhibit_time_unit(*use.node));
     const milliseconds timer{
         static_cast<std::int64_t>(communication_default(*use.pdo, event_timer_sub_index).value_or(0))};
     TimedMessage one = message_of(use, size, inhibit != Nanoseconds{} ? inhibit : timer);
@@ -120,7 +132,9 @@ class MessageCollector {
       one.message.period = interval(assume_.event_ms, 100);
       one.has_assumed_period = true;
     }
-    one.message.deadline = std::max<Nanoseconds>(timer, one.message.period);
+    // Without an event timer, the network does not state when the value is needed.
+    const Nanoseconds needed = timer != milliseconds{} ? Nanoseconds{timer} : interval(assume_.event_ms, 100);
+    one.message.deadline = std::max(needed, one.message.period);
     messages_.push_back(std::move(one));
   }
 

@@ -67,7 +67,13 @@ class HeartbeatCheck {
           fmt::format("node {} monitors the heartbeat of node-ID {} in {} ms, {}", consumer.name, node_id, time, why));
     };
     const auto producer = std::ranges::find(context_.network.nodes, node_id, &NetworkNode::node_id);
-    if (producer == context_.network.nodes.end()) return error("which is not in the network");
+    if (producer == context_.network.nodes.end()) {  // monitoring starts with the first heartbeat: it has no effect
+      context_.diagnostics.warning(
+          "network-heartbeat", default_place(entry),
+          fmt::format("node {} monitors the heartbeat of node-ID {}, which is not in the network", consumer.name,
+                      node_id));
+      return;
+    }
     if (&*producer == &consumer) return error("which is itself");
     monitored_.insert(&*producer);
     const std::uint64_t produced = heartbeat_of(*producer);

@@ -71,14 +71,15 @@ void check_bit_rate(const NetworkContext& context) {
   }
 }
 
-/// The serial number of a node: that of the network file, of the DCF, or of 1018h:04. 0 is unknown.
+/// The serial number of a node: that of the network file or of the DCF. 0 is unknown: 1018h:04 of an EDS is that of a
+/// type of device.
 std::uint32_t serial_number(const NetworkNode& node) {
   if (node.description->serial_number) return node.description->serial_number->value;
   const auto& commissioning = node.device.information.commissioning;
   if (node.description->dcf && commissioning && commissioning->lss_serial_number) {
     return *commissioning->lss_serial_number;
   }
-  return static_cast<std::uint32_t>(value_of(node.device, communication::identity, 4).value_or(0));
+  return 0;
 }
 
 void check_lss_addresses(const NetworkContext& context) {
