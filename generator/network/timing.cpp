@@ -204,7 +204,8 @@ NetworkTiming network_timing(const Network& network, const std::vector<CobIdUse>
   NetworkTiming timing;
   if (!network.description.bit_rate) return timing;
   BusTiming bus{network.description.bit_rate->value * 1000, {}};
-  if (const WrittenNumber& error = network.description.error_interval_ms) bus.error_interval = milliseconds{error->value};
+  if (const WrittenNumber& error = network.description.error_interval_ms)
+    bus.error_interval = milliseconds{error->value};
   timing.messages = MessageCollector{network, uses}.collect();
   add_sync_jitter(timing.messages, responses(timing.messages, bus));
   const std::vector<ResponseTime> found = responses(timing.messages, bus);
