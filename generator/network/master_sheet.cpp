@@ -96,6 +96,9 @@ class SheetText {
   }
 
   static std::string keys_of(const SheetEntry& entry) {
+    if (entry.type == canopen::DataType::domain) {
+      return fmt::format("DataType=0x{:04X}\nAccessType={}\n", static_cast<unsigned>(entry.type), entry.access);
+    }
     return fmt::format("DataType=0x{:04X}\nAccessType={}\nDefaultValue={}\nPDOMapping={}\n",
                        static_cast<unsigned>(entry.type), entry.access, entry.value, entry.is_mappable ? 1 : 0);
   }
