@@ -1,10 +1,10 @@
-/// The order in which the values of a DCF are written to a node: values that can change only while a service is
-/// disabled are written while it is disabled.
+/// The values of a DCF as steps at a live node.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
+#include "format/dcf/write_order.hpp"
 #include "online/live_entry.hpp"
 
 namespace edsc {
@@ -16,14 +16,7 @@ struct ConfigurationValue {
   Position position;  ///< in the DCF; no file for a concise DCF
 };
 
-enum class StepKind : std::uint8_t {
-  write,       ///< the value
-  switch_off,  ///< COB-ID: read it, and write it with the bits that disable it; nothing if it is disabled
-  switch_on,   ///< COB-ID: write the value, or the value read before if the DCF has none
-  clear,       ///< write 0: the number of mapped objects, or a period
-  restore,     ///< write the value that `clear` read, or `bytes` if that is greater
-};
-
+/// A step of `order_writes`.
 struct ConfigurationStep {
   StepKind kind = StepKind::write;
   LiveEntry entry;
@@ -50,9 +43,8 @@ struct ConfigurationStep {
 /// Whether the value has an effect: not a mapping entry above the number of mapped objects in the DCF.
 [[nodiscard]] bool has_effect(const ConfigurationValue& value, const std::vector<ConfigurationValue>& values);
 
-/// The steps, in order: communication parameters, application, then for each PDO: COB-ID disabled, number of mapped
-/// objects 0, mapping, number, other parameters, COB-ID; finally node-ID and bit rate. `values` must outlive them;
-/// `device` is null for a concise DCF.
+/// The steps in the order of `order_writes`; finally node-ID and bit rate. `values` must outlive them; `device` is null
+/// for a concise DCF.
 [[nodiscard]] std::vector<ConfigurationStep> plan_configuration(const std::vector<ConfigurationValue>& values,
                                                                 const Device* device);
 

@@ -1,5 +1,6 @@
 #include "configure/configuration_values.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 
@@ -50,8 +51,13 @@ std::optional<Configuration> configuration_of(std::string_view concise_dcf, cons
   if (!entries) return std::nullopt;
   Configuration configuration;
   for (const ConciseEntry& entry : *entries) {
-    configuration.values.push_back(
-        {live_entry(device, entry.index, entry.sub_index), {entry.data.begin(), entry.data.end()}, {}});
+    auto value = std::ranges::find_if(configuration.values, [&](const ConfigurationValue& one) {
+      return one.entry.index == entry.index && one.entry.sub_index == entry.sub_index;
+    });
+    if (value == configuration.values.end()) {
+      value = configuration.values.insert(value, {live_entry(device, entry.index, entry.sub_index), {}, {}});
+    }
+    value->bytes.assign(entry.data.begin(), entry.data.end());
   }
   leave_out(configuration);
   return configuration;

@@ -23,7 +23,8 @@ struct Configuration {
 /// and left out. The result refers to `device`, which is that of `dcf`, with the node-ID.
 [[nodiscard]] Configuration configuration_of(const DataSheet& dcf, const Device& device, Diagnostics& diagnostics);
 
-/// The values of a concise DCF; nothing if its length does not match its contents. `device` may be null.
+/// The values of a concise DCF, of an entry that it writes twice the last one; nothing if its length does not match its
+/// contents. `device` may be null.
 [[nodiscard]] std::optional<Configuration> configuration_of(std::string_view concise_dcf, const Device* device);
 
 }  // namespace edsc

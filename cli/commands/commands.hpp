@@ -44,7 +44,7 @@ inline constexpr CommandRow commands[] = {
     {"EDS files", "format", "write an EDS or DCF in canonical form; make DCFs; convert XDD and XDC",
      add_format_options},
     {"EDS files", "diff", "compare two EDS files; report breaking changes", add_diff_options},
-    {"Networks", "network", "check a network of devices from a network file", add_network_options},
+    {"Networks", "network", "check a network of devices from a network file; make its DCFs", add_network_options},
     {"Bus", "scan", "find and identify the nodes on a bus", add_scan_options},
     {"Bus", "read", "read objects of a node over SDO", add_read_options},
     {"Bus", "write", "write an object of a node over SDO", add_write_options},

@@ -15,6 +15,7 @@
 #include "shared/exit_code.hpp"
 #include "shared/left_out_text.hpp"
 #include "shared/output.hpp"
+#include "text/depfile.hpp"
 #include "text/printable.hpp"
 #include "text/write_files.hpp"
 
@@ -70,29 +71,6 @@ std::vector<ChosenTemplate> choose_templates(const std::string& folder) {
     chosen.push_back(std::move(one));
   }
   return chosen;
-}
-
-/// A path in a make rule: blanks, dollars and hashes escaped.
-std::string make_path(std::string_view path) {
-  std::string out;
-  for (const char c : path) {
-    if (c == ' ' || c == '#') out += '\\';
-    if (c == '$') out += '$';
-    out += c;
-  }
-  return out;
-}
-
-/// A make rule: `target`, or the outputs if it is empty, depend on the inputs.
-std::string depfile_text(const std::string& target, const std::vector<OutputFile>& outputs,
-                         const std::vector<std::string>& inputs) {
-  std::string text = make_path(target);
-  for (const OutputFile& output : outputs) {
-    if (target.empty()) text += fmt::format("{}{}", text.empty() ? "" : " ", make_path(output.path));
-  }
-  text += ":";
-  for (const std::string& input : inputs) text += " \\\n  " + make_path(input);
-  return text + "\n";
 }
 
 /// Returns the headers and the depfile, and the names of all `inputs`.

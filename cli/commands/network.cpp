@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "commands/commands.hpp"
+#include "commands/network_generate.hpp"
 #include "diagnostics/rule.hpp"
 #include "diagnostics/unknown_rule.hpp"
 #include "network/checks/check_network.hpp"
@@ -23,7 +24,8 @@ constexpr const char* examples = R"(Examples:
   edsc network check plant.json                   findings as compiler messages; exit code 1 if there are errors
   edsc network check plant.json --format sarif    the same for a code review (SARIF 2.1.0)
   edsc network check plant.json --strict          warnings count as errors
-  edsc network members                            every member of a network file with its meaning)";
+  edsc network members                            every member of a network file with its meaning
+  edsc network generate plant.json -o build       DCFs, concise DCFs, the EDS of the master, DBC file and graph)";
 
 struct Settings {
   std::vector<std::string> paths;
@@ -31,6 +33,7 @@ struct Settings {
   std::vector<std::string> silence;
   bool strict = false;
   ColorOption color;
+  NetworkGenerateSettings generate;
   int (*action)(const Settings&) = nullptr;  ///< the subcommand
 };
 
@@ -110,6 +113,12 @@ void add_members_options(CLI::App& command, Settings& settings) {
   add_choice(command, "--format", settings.format, {"text", "json"}, "text or json");
 }
 
+int generate_files(const Settings& settings) { return run_network_generate(settings.generate); }
+
+void add_generate_files_options(CLI::App& command, Settings& settings) {
+  add_network_generate_options(command, settings.generate);
+}
+
 struct ActionRow {
   const char* name;
   const char* description;
@@ -120,6 +129,8 @@ struct ActionRow {
 constexpr ActionRow actions[] = {
     {"check", "check the nodes, CAN-IDs, PDO links, SYNC and error control of a network", check,
      add_network_check_options},
+    {"generate", "write the DCFs of the nodes, and a DBC file and a graph of the network", generate_files,
+     add_generate_files_options},
     {"members", "list the members of a network file", members, add_members_options},
 };
 

@@ -46,18 +46,12 @@ class SheetText {
 
   void add_record(std::uint16_t index, std::string_view name, const std::vector<SheetEntry>& entries,
                   std::string_view count_access = "const") {
-    indices_.push_back(index);
-    text_ +=
-        fmt::format("[{:04X}]\nParameterName={}\nObjectType=0x9\nSubNumber={}\n\n", index, name, entries.size() + 1);
-    const bool is_mapping = count_access == "rw";
-    const SheetEntry count{0,
-                           "Highest sub-index supported",
-                           canopen::DataType::unsigned8,
-                           count_access,
-                           is_mapping ? "0" : std::to_string(entries.empty() ? 0 : entries.back().sub_index),
-                           false};
-    add_entry(index, count);
-    for (const SheetEntry& entry : entries) add_entry(index, entry);
+    add_group(index, name, ObjectType::record, entries, count_access);
+  }
+
+  /// Elements of one data type, not necessarily consecutive.
+  void add_array(std::uint16_t index, std::string_view name, const std::vector<SheetEntry>& entries) {
+    add_group(index, name, ObjectType::array, entries, "const");
   }
 
   [[nodiscard]] std::string finish() {
@@ -79,12 +73,32 @@ class SheetText {
   }
 
  private:
+  void add_group(std::uint16_t index, std::string_view name, ObjectType type, const std::vector<SheetEntry>& entries,
+                 std::string_view count_access) {
+    indices_.push_back(index);
+    text_ += fmt::format("[{:04X}]\nParameterName={}\nObjectType=0x{:X}\nSubNumber={}\n\n", index, name,
+                         static_cast<unsigned>(type), entries.size() + 1);
+    const bool is_mapping = count_access == "rw";
+    const SheetEntry count{0,
+                           "Highest sub-index supported",
+                           canopen::DataType::unsigned8,
+                           count_access,
+                           is_mapping ? "0" : std::to_string(entries.empty() ? 0 : entries.back().sub_index),
+                           false};
+    add_entry(index, count);
+    for (const SheetEntry& entry : entries) add_entry(index, entry);
+  }
+
   void add_entry(std::uint16_t index, const SheetEntry& entry) {
-    text_ += fmt::format("[{:04X}sub{:X}]\nParameterName={}\nObjectType=0x7\n{}\n", index, entry.sub_index, entry.name,
-                         keys_of(entry));
+    const ObjectType type = entry.type == canopen::DataType::domain ? ObjectType::domain : ObjectType::var;
+    text_ += fmt::format("[{:04X}sub{:X}]\nParameterName={}\nObjectType=0x{:X}\n{}\n", index, entry.sub_index,
+                         entry.name, static_cast<unsigned>(type), keys_of(entry));
   }
 
   static std::string keys_of(const SheetEntry& entry) {
+    if (entry.type == canopen::DataType::domain) {
+      return fmt::format("DataType=0x{:04X}\nAccessType={}\n", static_cast<unsigned>(entry.type), entry.access);
+    }
     return fmt::format("DataType=0x{:04X}\nAccessType={}\nDefaultValue={}\nPDOMapping={}\n",
                        static_cast<unsigned>(entry.type), entry.access, entry.value, entry.is_mappable ? 1 : 0);
   }
@@ -144,7 +158,7 @@ class MasterSheet {
       const auto sub_index = static_cast<std::uint8_t>(consumers.size() + 1);
       consumers.push_back({sub_index, node.name, unsigned32, "rw", hex(std::uint32_t{node.node_id} << 16 | timeout)});
     });
-    if (!consumers.empty()) sheet_.add_record(0x1016, "Consumer heartbeat time", consumers);
+    if (!consumers.empty()) sheet_.add_array(0x1016, "Consumer heartbeat time", consumers);
     sheet_.add_var(0x1017, {0, "Producer heartbeat time", unsigned16, "rw", "0"});
   }
 
@@ -160,18 +174,44 @@ class MasterSheet {
     });
   }
 
-  /// The slaves and their identity (CiA 302-2, 1F80h, 1F81h, 1F85h to 1F88h).
+  /// The slaves with their configuration (CiA 302-3, 1F22h) and their identity (CiA 302-2, 1F80h, 1F81h, 1F84h to
+  /// 1F88h).
   void add_slaves() {
     using enum canopen::DataType;
     constexpr std::uint32_t is_slave = 0x1;
     constexpr std::uint32_t is_booted = 0x4;
     sheet_.add_var(0x1F80, {0, "NMT startup", unsigned32, "rw", "0x1"});
-    std::vector<SheetEntry> assignment;
-    for_each_slave([&](const NetworkNode& node) {
-      assignment.push_back({node.node_id, node.name, unsigned32, "rw", hex(is_slave | is_booted)});
+    add_for_slaves(0x1F22, "Concise DCF", domain, [](const NetworkNode&) { return std::string{}; });
+    add_for_slaves(0x1F81, "NMT slave assignment", unsigned32,
+                   [](const NetworkNode&) { return hex(is_slave | is_booted); });
+    add_for_slaves(0x1F84, "Device type identification", unsigned32,
+                   [](const NetworkNode& node) { return identity_value(node, 0x1000, 0); });
+    add_for_slaves(0x1F85, "Vendor identification", unsigned32,
+                   [](const NetworkNode& node) { return identity_value(node, communication::identity, 1); });
+    add_for_slaves(0x1F86, "Product code", unsigned32,
+                   [](const NetworkNode& node) { return identity_value(node, communication::identity, 2); });
+    add_for_slaves(0x1F87, "Revision number", unsigned32,
+                   [](const NetworkNode& node) { return identity_value(node, communication::identity, 3); });
+    add_for_slaves(0x1F88, "Serial number", unsigned32, [](const NetworkNode& node) {
+      const WrittenNumber& serial = node.description->serial_number;
+      return hex(serial ? serial->value : 0);
     });
-    std::ranges::sort(assignment, {}, &SheetEntry::sub_index);
-    if (!assignment.empty()) sheet_.add_record(0x1F81, "NMT slave assignment", assignment);
+  }
+
+  /// 0 if the EDS of the node does not state it: the master does not compare it.
+  static std::string identity_value(const NetworkNode& node, std::uint16_t index, std::uint8_t sub_index) {
+    return hex(static_cast<std::uint32_t>(value_of(node.device, index, sub_index).value_or(0)));
+  }
+
+  /// An ARRAY with the value of each slave at its node-ID.
+  template <class ValueOf>
+  void add_for_slaves(std::uint16_t index, std::string_view name, canopen::DataType type, ValueOf value_of_node) {
+    std::vector<SheetEntry> entries;
+    for_each_slave([&](const NetworkNode& node) {
+      entries.push_back({node.node_id, node.name, type, "rw", value_of_node(node)});
+    });
+    std::ranges::sort(entries, {}, &SheetEntry::sub_index);
+    if (!entries.empty()) sheet_.add_array(index, name, entries);
   }
 
   void add_pdos(PdoDirection direction) {

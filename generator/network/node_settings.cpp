@@ -7,6 +7,7 @@
 #include <canopen/can/cob_id.hpp>
 #include <utility>
 
+#include "device/index_range.hpp"
 #include "device/pdo/resolve_pdos.hpp"
 #include "device/types/value.hpp"
 #include "diagnostics/quote.hpp"
@@ -58,7 +59,9 @@ void set_number(NetworkNode& node, std::uint16_t index, std::uint8_t sub_index, 
                       fmt::format("node {} does not have {}", node.name, entry_label(index, sub_index)));
     return;
   }
-  set_value(node, *entry, Value{.bits = number, .position = position}, diagnostics);
+  const bool is_hexadecimal =
+      contains(mapping_parameters, index) || (entry->default_value && entry->default_value->hexadecimal);
+  set_value(node, *entry, Value{.bits = number, .hexadecimal = is_hexadecimal, .position = position}, diagnostics);
 }
 
 void set_text(NetworkNode& node, const WrittenValue& written, Diagnostics& diagnostics) {

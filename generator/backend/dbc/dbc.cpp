@@ -6,7 +6,7 @@
 #include <canopen/can/cob_id.hpp>
 #include <charconv>
 #include <cmath>
-#include <set>
+#include <map>
 #include <utility>
 
 #include "backend/dbc/dbc_name.hpp"
@@ -76,102 +76,167 @@ struct Range {
   return object->identifier + "_" + entry.identifier;
 }
 
+/// The CAN-ID of a message, and whether it has 29 bits.
+using MessageId = std::pair<std::uint32_t, bool>;
+
+[[nodiscard]] MessageId message_id(const Pdo& pdo) {
+  const canopen::CobId cob_id{static_cast<std::uint32_t>(communication_default(pdo, 1).value_or(0))};
+  return {cob_id.can_id(), cob_id.extended()};
+}
+
+/// A PDO and the node that sends or receives it.
+struct NodePdo {
+  const DbcNode* node = nullptr;
+  const Pdo* pdo = nullptr;
+
+  [[nodiscard]] bool transmits() const { return pdo->direction == PdoDirection::transmit; }
+};
+
+/// Whether the PDO maps an object to one of these bits.
+[[nodiscard]] bool uses_bits(const Pdo& pdo, unsigned first, unsigned bits) {
+  unsigned start = 0;
+  for (const PdoEntry& mapped : pdo.entries) {
+    if (mapped.object != nullptr && start < first + bits && first < start + mapped.bits) return true;
+    start += mapped.bits;
+  }
+  return false;
+}
+
 class DbcWriter {
  public:
-  explicit DbcWriter(const Device& device) : device_{device}, node_{DbcNames{}.take(device.name)} {}
+  explicit DbcWriter(const std::vector<DbcNode>& nodes) : nodes_{nodes} {
+    DbcNames names;
+    for (const DbcNode& node : nodes) names_.emplace(&node, names.take(node.name));
+  }
 
   [[nodiscard]] Dbc write() {
-    for (const Pdo& pdo : device_.pdos) {
-      if (const std::string reason = why_left_out(pdo); !reason.empty()) {
-        add_note(pdo, reason);
-      } else {
-        add_message(pdo);
+    for_each_pdo([&](const NodePdo& one) { assign(one); });
+    for_each_pdo([&](const NodePdo& one) {
+      if (const std::string reason = why_left_out(one); !reason.empty()) {
+        add_note(one, reason);
+      } else if (messages_.at(message_id(*one.pdo)).pdo == one.pdo) {
+        add_message(one);
         last_reason_.clear();
       }
-    }
+    });
     return {text(), std::move(notes_)};
   }
 
  private:
-  /// Empty if the PDO is a message.
-  [[nodiscard]] std::string why_left_out(const Pdo& pdo) {
+  template <class Visit>
+  void for_each_pdo(Visit visit) const {
+    for (const DbcNode& node : nodes_) {
+      for (const Pdo& pdo : node.device->pdos) visit(NodePdo{&node, &pdo});
+    }
+  }
+
+  [[nodiscard]] static bool is_usable(const Pdo& pdo) { return !pdo.broken && !pdo.multiplexed && on_by_default(pdo); }
+
+  /// The message of a CAN-ID is the first TPDO with it, or else the first RPDO.
+  void assign(const NodePdo& one) {
+    if (!is_usable(*one.pdo)) return;
+    const auto [at, added] = messages_.emplace(message_id(*one.pdo), one);
+    if (!added && one.transmits() && !at->second.transmits()) at->second = one;
+  }
+
+  /// Empty if the PDO is a message or receives one.
+  [[nodiscard]] std::string why_left_out(const NodePdo& one) const {
+    const Pdo& pdo = *one.pdo;
     if (pdo.broken) return "its mapping is invalid";
     if (pdo.multiplexed) return "a multiplex PDO";
     if (!on_by_default(pdo)) return "disabled by default";
-    const canopen::CobId cob_id = cob_id_of(pdo);
-    if (const auto [at, added] = can_ids_.insert({cob_id.can_id(), cob_id.extended()}); !added) {
-      return fmt::format("CAN-ID {:03X}h is that of another PDO", cob_id.can_id());
-    }
-    return {};
+    const NodePdo& message = messages_.at(message_id(pdo));
+    const bool receives = !one.transmits() && message.node != one.node;
+    if (message.pdo == one.pdo || receives) return {};
+    return fmt::format("CAN-ID {:03X}h is that of another PDO", message_id(pdo).first);
   }
 
-  /// Consecutive PDOs with the same reason are one note: `TPDO 3 to TPDO 8: disabled by default`.
-  void add_note(const Pdo& pdo, const std::string& reason) {
-    if (reason != last_reason_ || notes_.empty()) {
+  /// `TPDO 1`, of several nodes `axis1 TPDO 1`.
+  [[nodiscard]] std::string label(const NodePdo& one) const {
+    return nodes_.size() == 1 ? pdo_label(*one.pdo) : one.node->name + " " + pdo_label(*one.pdo);
+  }
+
+  /// Consecutive PDOs of a node with the same reason are one note: `TPDO 3 to TPDO 8: disabled by default`.
+  void add_note(const NodePdo& one, const std::string& reason) {
+    if (reason != last_reason_ || one.node != last_node_ || notes_.empty()) {
       notes_.emplace_back();
-      first_left_out_ = pdo_label(pdo);
+      first_left_out_ = label(one);
       last_reason_ = reason;
+      last_node_ = one.node;
     }
-    const std::string last = pdo_label(pdo);
-    notes_.back() = first_left_out_ + (last == first_left_out_ ? "" : " to " + last) + ": " + reason;
+    const std::string last = pdo_label(*one.pdo);
+    notes_.back() = first_left_out_ + (label(one) == first_left_out_ ? "" : " to " + last) + ": " + reason;
   }
 
-  [[nodiscard]] static canopen::CobId cob_id_of(const Pdo& pdo) {
-    return canopen::CobId{static_cast<std::uint32_t>(communication_default(pdo, 1).value_or(0))};
-  }
-
-  void add_message(const Pdo& pdo) {
-    const bool transmits = pdo.direction == PdoDirection::transmit;
-    const canopen::CobId cob_id = cob_id_of(pdo);
-    const std::uint32_t id = cob_id.can_id() | (cob_id.extended() ? extended_message : 0);
-    const std::string suffix = fmt::format("_{}pdo_{}", transmits ? 't' : 'r', pdo.number);
-    const std::string long_name = device_.name + suffix;
-    const std::string name = device_.name.substr(0, max_dbc_name - suffix.size()) + suffix;
-    sections_.messages +=
-        fmt::format("\nBO_ {} {}: {} {}\n", id, name, (pdo.bits() + 7) / 8, transmits ? node_ : nobody);
+  void add_message(const NodePdo& one) {
+    const Pdo& pdo = *one.pdo;
+    const std::string& device = one.node->name;
+    const auto [can_id, is_extended] = message_id(pdo);
+    const std::uint32_t id = can_id | (is_extended ? extended_message : 0);
+    const std::string suffix = fmt::format("_{}pdo_{}", one.transmits() ? 't' : 'r', pdo.number);
+    const std::string long_name = device + suffix;
+    const std::string name = message_names_.take(device.substr(0, max_dbc_name - suffix.size()) + suffix);
+    sections_.messages += fmt::format("\nBO_ {} {}: {} {}\n", id, name, (pdo.bits() + 7) / 8,
+                                      one.transmits() ? names_.at(one.node) : nobody);
 
     const std::uint64_t type = communication_default(pdo, transmission_type_sub_index).value_or(0);
-    sections_.comments += fmt::format("CM_ BO_ {} \"{}, transmission type {}\";\n", id, pdo_label(pdo), type);
+    sections_.comments += fmt::format("CM_ BO_ {} \"{}, transmission type {}\";\n", id, label(one), type);
     if (name != long_name) {
       sections_.attributes += fmt::format("BA_ \"SystemMessageLongSymbol\" BO_ {} \"{}\";\n", id, long_name);
     }
     const std::uint64_t timer = communication_default(pdo, event_timer_sub_index).value_or(0);
-    if (transmits && type >= first_event_driven_type && timer != 0) {
+    if (one.transmits() && type >= first_event_driven_type && timer != 0) {
       sections_.attributes += fmt::format("BA_ \"GenMsgCycleTime\" BO_ {} {};\n", id, timer);
     }
     DbcNames signals;
     unsigned start = 0;
     for (const PdoEntry& mapped : pdo.entries) {
-      if (mapped.object != nullptr) add_signal(id, mapped, start, transmits, signals);
+      if (mapped.object != nullptr) add_signal(id, one, mapped, start, signals);
       start += mapped.bits;
     }
   }
 
-  void add_signal(std::uint32_t message, const PdoEntry& mapped, unsigned start, bool transmits, DbcNames& names) {
+  /// The nodes with an RPDO that maps an object to these bits of the message.
+  [[nodiscard]] std::string receivers(const NodePdo& message, unsigned first, unsigned bits) const {
+    std::string receivers;
+    const DbcNode* last = nullptr;
+    for_each_pdo([&](const NodePdo& one) {
+      const bool receives = !one.transmits() && is_usable(*one.pdo) &&
+                            message_id(*one.pdo) == message_id(*message.pdo) &&
+                            (one.pdo == message.pdo || one.node != message.node) && uses_bits(*one.pdo, first, bits);
+      if (!receives || one.node == last) return;
+      receivers += fmt::format("{}{}", receivers.empty() ? "" : ",", names_.at(one.node));
+      last = one.node;
+    });
+    return receivers.empty() ? nobody : receivers;
+  }
+
+  void add_signal(std::uint32_t id, const NodePdo& message, const PdoEntry& mapped, unsigned start, DbcNames& names) {
     const Entry& entry = *mapped.object;
     const bool has_value = is_number(*entry.type);
-    const std::string long_name = signal_name(device_, entry);
+    const std::string long_name = signal_name(*message.node->device, entry);
     const std::string name = names.take(long_name);
     const double factor = has_value ? factor_of(entry) : 1;
     const Range range = has_value ? range_of(entry, factor) : Range{};
     const bool is_signed = entry.type->kind == canopen::DataClass::signed_integer;
     sections_.messages +=
         fmt::format(" SG_ {} : {}|{}@1{} ({},0) [{}|{}] {} {}\n", name, start, mapped.bits, is_signed ? '-' : '+',
-                    factor, range.min, range.max, dbc_string(entry.unit), transmits ? nobody : node_);
+                    factor, range.min, range.max, dbc_string(entry.unit), receivers(message, start, mapped.bits));
     std::string comment = fmt::format("{} {}", entry_label(entry.index, entry.sub_index), entry.name);
     if (!has_value) comment += fmt::format(", {} as a number", entry.type->name);
     if (!entry.description.empty()) comment += ": " + entry.description;
-    sections_.comments += fmt::format("CM_ SG_ {} {} {};\n", message, name, dbc_string(comment));
+    sections_.comments += fmt::format("CM_ SG_ {} {} {};\n", id, name, dbc_string(comment));
     if (name != long_name) {
-      sections_.attributes +=
-          fmt::format("BA_ \"SystemSignalLongSymbol\" SG_ {} {} \"{}\";\n", message, name, long_name);
+      sections_.attributes += fmt::format("BA_ \"SystemSignalLongSymbol\" SG_ {} {} \"{}\";\n", id, name, long_name);
     }
     if (entry.type->kind == canopen::DataClass::real) {
-      sections_.value_types += fmt::format("SIG_VALTYPE_ {} {} : {};\n", message, name, mapped.bits == 32 ? 1 : 2);
+      sections_.value_types += fmt::format("SIG_VALTYPE_ {} {} : {};\n", id, name, mapped.bits == 32 ? 1 : 2);
     }
   }
 
   [[nodiscard]] std::string text() const {
+    std::string node_list;
+    for (const DbcNode& node : nodes_) node_list += (node_list.empty() ? "" : " ") + names_.at(&node);
     return fmt::format(R"(VERSION ""
 
 NS_ :
@@ -189,21 +254,25 @@ BA_DEF_DEF_ "GenMsgCycleTime" 0;
 BA_DEF_DEF_ "SystemMessageLongSymbol" "";
 BA_DEF_DEF_ "SystemSignalLongSymbol" "";
 {}{})",
-                       node_, sections_.messages, sections_.comments, sections_.attributes, sections_.value_types);
+                       node_list, sections_.messages, sections_.comments, sections_.attributes, sections_.value_types);
   }
 
   static constexpr const char* nobody = "Vector__XXX";  ///< the name that the format gives to an unknown node
 
-  const Device& device_;
-  std::string node_;
-  std::set<std::pair<std::uint32_t, bool>> can_ids_;
+  const std::vector<DbcNode>& nodes_;
+  std::map<const DbcNode*, std::string> names_;
+  DbcNames message_names_;
+  std::map<MessageId, NodePdo> messages_;
   Sections sections_;
   std::vector<std::string> notes_;
   std::string first_left_out_, last_reason_;
+  const DbcNode* last_node_ = nullptr;
 };
 
 }  // namespace
 
-Dbc dbc_of(const Device& device) { return DbcWriter{device}.write(); }
+Dbc dbc_of(const Device& device) { return dbc_of(std::vector<DbcNode>{{device.name, &device}}); }
+
+Dbc dbc_of(const std::vector<DbcNode>& nodes) { return DbcWriter{nodes}.write(); }
 
 }  // namespace edsc

@@ -13,6 +13,12 @@ struct Dbc {
   std::vector<std::string> notes;  ///< PDOs that are left out, and why: `TPDO 3 to TPDO 8: disabled by default`
 };
 
+/// A device of a network, which has a node-ID and the identifiers of its objects.
+struct DbcNode {
+  std::string name;  ///< an identifier
+  const Device* device = nullptr;
+};
+
 /// Returns a message for each default PDO that is enabled. `device` has a node-ID and the identifiers of its objects.
 ///
 /// Signals are little-endian, at the bits of the mapping; dummy entries are gaps. Limits, factor and unit are those of
@@ -23,5 +29,9 @@ struct Dbc {
 ///
 /// MPDOs and PDOs with an invalid mapping are left out, and those whose CAN-ID another PDO of the device already has.
 [[nodiscard]] Dbc dbc_of(const Device& device);
+
+/// The same for several devices. The RPDOs with the CAN-ID of a TPDO are not messages; their nodes receive the signals
+/// that they map. An RPDO without a TPDO is a message without a sender.
+[[nodiscard]] Dbc dbc_of(const std::vector<DbcNode>& nodes);
 
 }  // namespace edsc

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "configure/configuration_values.hpp"
 #include "configure/configure_node.hpp"
 #include "format/dcf/concise_dcf.hpp"
 #include "support/device_from_text.hpp"
@@ -213,6 +214,15 @@ TEST(ReadConciseDcf, GivesTheEntriesOfTheStream) {
   EXPECT_EQ((*entries)[1].index, 0x2000);
   EXPECT_EQ((*entries)[1].sub_index, 3);
   EXPECT_EQ((*entries)[1].data, "");
+}
+
+TEST(ReadConciseDcf, TakesTheLastValueOfAnEntry) {
+  const auto configuration = configuration_of(
+      bytes({3, 0, 0, 0, 0, 0x1A, 0, 1, 0, 0, 0, 0, 1, 0x1A, 0, 1, 0, 0, 0, 7, 0, 0x1A, 0, 1, 0, 0, 0, 2}), nullptr);
+  ASSERT_TRUE(configuration);
+  ASSERT_EQ(configuration->values.size(), 2U);
+  EXPECT_EQ(configuration->values[0].entry.index, 0x1A00);
+  EXPECT_EQ(configuration->values[0].bytes, std::vector<std::uint8_t>{2});
 }
 
 TEST(ReadConciseDcf, RefusesAStreamOfAnotherLength) {

@@ -89,6 +89,77 @@ TEST(ConciseDcf, GoesUpByIndexAndSubIndex) {
   EXPECT_EQ(Concise(text).hex(), "03 00 00 00 00 20 01 01 00 00 00 02 00 20 02 01 00 00 00 03 01 20 00 01 00 00 00 01");
 }
 
+/// Node 5 with TPDO 1: COB-ID 185h, one entry.
+std::string tpdo(const char* cob_id, const char* type, const char* count, const char* entry) {
+  const auto value = [](const char* keys, const char* parameter_value) {
+    return std::string{keys} + (*parameter_value != 0 ? "ParameterValue=" + std::string{parameter_value} + "\n" : "");
+  };
+  return commissioning + group("1800", "TPDO 1", "9", 3) + var("1800sub0", "n", "5", "const", "DefaultValue=2\n") +
+         var("1800sub1", "COB-ID", "7", "rw", value("DefaultValue=0x185\n", cob_id)) +
+         var("1800sub2", "Type", "5", "rw", value("DefaultValue=255\n", type)) + group("1A00", "Mapping", "9", 3) +
+         var("1A00sub0", "n", "5", "rw", value("DefaultValue=1\n", count)) +
+         var("1A00sub1", "1", "7", "rw", value("DefaultValue=0x20000008\n", count[0] != 0 ? "0x20000008" : "")) +
+         var("1A00sub2", "2", "7", "rw", value("DefaultValue=0\n", entry)) +
+         var("2000", "a", "5", "ro", "PDOMapping=1\n") + var("2001", "b", "5", "ro", "PDOMapping=1\n");
+}
+
+TEST(ConciseDcf, DisablesAPdoWhileItsMappingChanges) {
+  EXPECT_EQ(Concise(tpdo("0x40000285", "1", "2", "0x20010008")).hex(),
+            "07 00 00 00"
+            " 00 18 01 04 00 00 00 85 01 00 80"  // disabled, with the CAN-ID that the device has
+            " 00 1A 00 01 00 00 00 00"           // number of mapped objects
+            " 00 1A 01 04 00 00 00 08 00 00 20"
+            " 00 1A 02 04 00 00 00 08 00 01 20"
+            " 00 1A 00 01 00 00 00 02"
+            " 00 18 02 01 00 00 00 01"  // transmission type
+            " 00 18 01 04 00 00 00 85 02 00 40");
+}
+
+TEST(ConciseDcf, EnablesAPdoAgainWhoseCobIdRemains) {
+  EXPECT_EQ(Concise(tpdo("", "1", "", "")).hex(),
+            "03 00 00 00"
+            " 00 18 01 04 00 00 00 85 01 00 80"
+            " 00 18 02 01 00 00 00 01"
+            " 00 18 01 04 00 00 00 85 01 00 00");
+}
+
+TEST(ConciseDcf, LeavesOutMappingEntriesAboveTheNumberOfMappedObjects) {
+  const std::string hex = Concise(tpdo("", "", "0", "0x20010008")).hex();
+  EXPECT_EQ(hex,
+            "04 00 00 00"
+            " 00 18 01 04 00 00 00 85 01 00 80"
+            " 00 1A 00 01 00 00 00 00"
+            " 00 1A 00 01 00 00 00 00"
+            " 00 18 01 04 00 00 00 85 01 00 00");
+}
+
+TEST(ConciseDcf, ClearsTheSyncPeriodWhileTheOverflowChanges) {
+  const std::string text = commissioning +
+                           var("1005", "SYNC", "7", "rw", "DefaultValue=0x80\nParameterValue=0x40000080\n") +
+                           var("1006", "Period", "7", "rw", "DefaultValue=5000\nParameterValue=10000\n") +
+                           var("1019", "Overflow", "5", "rw", "DefaultValue=0\nParameterValue=10\n");
+  EXPECT_EQ(Concise(text).hex(),
+            "05 00 00 00"
+            " 06 10 00 04 00 00 00 00 00 00 00"
+            " 19 10 00 01 00 00 00 0A"
+            " 06 10 00 04 00 00 00 10 27 00 00"
+            " 05 10 00 04 00 00 00 80 00 00 00"
+            " 05 10 00 04 00 00 00 80 00 00 40");
+}
+
+TEST(ConciseDcf, EndsWithTheDateOfTheConfiguration) {
+  const std::string text = commissioning + group("1020", "Verify configuration", "8", 3) +
+                           var("1020sub0", "n", "5", "ro", "DefaultValue=2\n") +
+                           var("1020sub1", "Date", "7", "rw", "DefaultValue=0\nParameterValue=1\n") +
+                           var("1020sub2", "Time", "7", "rw", "DefaultValue=0\nParameterValue=2\n") +
+                           var("2000", "a", "5", "rw", "DefaultValue=0\nParameterValue=3\n");
+  EXPECT_EQ(Concise(text).hex(),
+            "03 00 00 00"
+            " 00 20 00 01 00 00 00 03"
+            " 20 10 01 04 00 00 00 01 00 00 00"
+            " 20 10 02 04 00 00 00 02 00 00 00");
+}
+
 TEST(ConciseDcf, TakesTheValuesOfACompactForm) {
   const std::string text = std::string{commissioning} +
                            "[1016]\nParameterName=Consumer heartbeat time\nObjectType=8\nDataType=7\nAccessType=rw\n"

@@ -1,0 +1,51 @@
+#include "commands/network_generate.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "network/checks/check_network.hpp"
+#include "network/generate/generate_network.hpp"
+#include "network/network.hpp"
+#include "shared/exit_code.hpp"
+#include "shared/output.hpp"
+#include "text/depfile.hpp"
+#include "text/printable.hpp"
+
+namespace edsc {
+
+void add_network_generate_options(CLI::App& command, NetworkGenerateSettings& settings) {
+  command.add_option("FILE", settings.path, "network file (JSON)")->required();
+  command.add_option("-o,--output", settings.output, "folder for the files")->required();
+  auto* depfile =
+      command.add_option("--depfile", settings.depfile, "write what the files depend on, for make and ninja");
+  command.add_option("--depfile-target", settings.depfile_target, "target of the dependencies (default: the files)")
+      ->needs(depfile);
+  command.add_flag("-v,--verbose", settings.verbose, "print the names of the files that are written");
+  settings.color.add_to(command);
+}
+
+int run_network_generate(const NetworkGenerateSettings& settings) {
+  Diagnostics diagnostics;
+  diagnostics.drop_notes();
+  const auto loaded = load_network(settings.path, diagnostics);
+  check_network(loaded->network, diagnostics);
+  GeneratedNetwork generated;
+  if (diagnostics.errors() == 0) generated = generate_network(loaded->network, diagnostics);
+  print_findings(stderr, diagnostics, settings.color);
+  if (loaded->unreadable) return exit_wrong_usage;
+  if (diagnostics.errors() > 0) return exit_input_has_errors;
+  for (const std::string& note : generated.notes) print_visibly(stderr, "edsc: not in the DBC file: {}\n", note);
+  std::vector<OutputFile>& files = generated.files;
+  for (OutputFile& file : files) file.path = (std::filesystem::path{settings.output} / file.path).string();
+  if (!settings.depfile.empty()) {
+    files.push_back({settings.depfile, depfile_text(settings.depfile_target, files, generated.inputs)});
+  }
+  write_all_files(files, generated.inputs);
+  if (settings.verbose) {
+    for (const OutputFile& file : files) print_visibly(stdout, "{}\n", file.path);
+  }
+  return exit_fine;
+}
+
+}  // namespace edsc

@@ -1,0 +1,56 @@
+#include "network/generate/generate_network.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "backend/cpp/identifier.hpp"
+#include "backend/dbc/dbc.hpp"
+#include "network/generate/network_dot.hpp"
+#include "network/generate/node_dcf.hpp"
+
+namespace edsc {
+namespace {
+
+void add_input(std::vector<std::string>& inputs, const std::string& path) {
+  if (std::ranges::find(inputs, path) == inputs.end()) inputs.push_back(path);
+}
+
+std::vector<std::string> inputs_of(const Network& network) {
+  std::vector<std::string> inputs{network.source->name()};
+  for (const NetworkNode& node : network.nodes) {
+    if (!node.has_file()) continue;
+    add_input(inputs, node.loaded->source->name());
+    if (node.loaded->options_source) add_input(inputs, node.loaded->options_source->name());
+  }
+  return inputs;
+}
+
+Dbc dbc_of(const Network& network) {
+  std::vector<DbcNode> nodes;
+  for (const NetworkNode& node : network.nodes) nodes.push_back({to_namespace(node.name), &node.device});
+  return dbc_of(nodes);
+}
+
+}  // namespace
+
+GeneratedNetwork generate_network(const Network& network, Diagnostics& diagnostics) {
+  GeneratedNetwork generated;
+  for (const NetworkNode& node : network.nodes) {
+    NodeDcf dcf = make_node_dcf(network, node, diagnostics);
+    if (!node.has_file()) {
+      generated.files.push_back({node_file(node, "eds"), std::string{node.loaded->source->text()}});
+    }
+    generated.files.push_back({node_file(node, "dcf"), std::move(dcf.text)});
+    generated.files.push_back({node_file(node, "cdcf"), std::move(dcf.concise)});
+  }
+  const std::string name = std::filesystem::path{network.source->name()}.stem().string();
+  Dbc dbc = dbc_of(network);
+  generated.files.push_back({name + ".dbc", std::move(dbc.text)});
+  generated.files.push_back({name + ".dot", network_dot(network)});
+  generated.inputs = inputs_of(network);
+  generated.notes = std::move(dbc.notes);
+  return generated;
+}
+
+}  // namespace edsc

@@ -1,0 +1,15 @@
+/// Dependencies of generated files, for make and ninja.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "text/write_files.hpp"
+
+namespace edsc {
+
+/// A make rule: `target`, or the outputs if it is empty, depend on the inputs.
+[[nodiscard]] std::string depfile_text(const std::string& target, const std::vector<OutputFile>& outputs,
+                                       const std::vector<std::string>& inputs);
+
+}  // namespace edsc

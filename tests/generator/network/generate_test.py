@@ -1,0 +1,221 @@
+#!/usr/bin/env python3
+"""edsc network generate, with expectations worked out by hand and with readers that are not edsc's: configparser for the values
+of the DCFs, npm's canopen as a tool that loads them, npm's candied for the DBC file.
+
+    generate_test.py SOURCE_DIR EDSC CANDIED_WORK_DIR CANOPEN_WORK_DIR [unittest arguments]
+"""
+
+from __future__ import annotations
+
+import configparser
+import json
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+SOURCE_DIR = Path(sys.argv[1]).resolve()
+EDSC = Path(sys.argv[2]).resolve()
+CANDIED, CANOPEN = Path(sys.argv[3]).resolve(), Path(sys.argv[4]).resolve()
+sys.path.insert(0, str(SOURCE_DIR / "tests/support"))
+from npm_packages import Skipped, install_npm_packages  # noqa: E402
+
+PLANT = """{
+  "bit_rate": 500, "length_m": 40,
+  "sync": {"producer": "master", "period_us": 10000},
+  "nodes": {
+    "master": {"node_id": 127, "master": true, "heartbeat_ms": 100},
+    "a": {"node_id": 1, "eds": "node.eds", "heartbeat_ms": 50, "set": {"ramp": 250}},
+    "b": {"node_id": 2, "eds": "node.eds", "heartbeat_ms": 50, "serial_number": 4711}
+  },
+  "signals": [
+    {"from": "a", "object": "position", "to": ["b.target_position", "master"], "every_ms": 10},
+    {"from": "a", "object": "speed", "to": ["b.target_speed", "master"], "every_ms": 10},
+    {"from": "master", "object": "a.target_position", "every_sync": 1}
+  ]
+}
+"""
+TINY = """{
+  "bit_rate": 500,
+  "nodes": {"a": {"node_id": 1, "eds": "node.eds"}, "b": {"node_id": 2, "eds": "node.eds", "set": {"ramp": 250}}},
+  "signals": [{"from": "a", "object": "speed", "to": "b.target_speed", "every_ms": 10}]
+}
+"""
+LOAD = """const {Eds} = require("canopen");
+const found = {};
+for (const file of process.argv.slice(1)) {
+  const eds = Eds.fromFile(file);
+  found[file.split("/").pop()] = [eds.getEntry(0x1017).dataType, eds.getEntry(0x1A00).subNumber];
+}
+console.log(JSON.stringify(found));"""
+
+
+def parameter_values(path: Path) -> dict[str, int]:
+    file = configparser.RawConfigParser(strict=True, comment_prefixes=(";",), delimiters=("=",))
+    file.read_string(path.read_text())
+    return {section.upper().replace("SUB", ":"): int(file[section]["ParameterValue"], 0) for section in file.sections()
+            if re.match("[0-9A-Fa-f]{4}", section) and "ParameterValue" in file[section]}
+
+
+class Generate(unittest.TestCase):
+    maxDiff = None
+
+    def setUp(self) -> None:
+        self.folder = Path(tempfile.mkdtemp(prefix="edsc-network-"))
+        self.addCleanup(shutil.rmtree, self.folder)
+        shutil.copy(SOURCE_DIR / "tests/generator/network/node.eds", self.folder)
+        self.out = self.folder / "out"
+
+    def edsc(self, *arguments: object, exit_code: int = 0) -> subprocess.CompletedProcess[str]:
+        result = subprocess.run([EDSC, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual(result.returncode, exit_code, result.stderr)
+        return result
+
+    def generate(self, text: str = PLANT, *arguments: object, exit_code: int = 0) -> subprocess.CompletedProcess[str]:
+        (self.folder / "plant.json").write_text(text)
+        return self.edsc("network", "generate", "plant.json", "-o", "out", *arguments, exit_code=exit_code)
+
+    def npm(self, source: str, work: Path) -> None:
+        try:
+            install_npm_packages(SOURCE_DIR / source, work)
+        except Skipped as reason:
+            self.skipTest(str(reason))
+
+    def test_the_files(self) -> None:
+        self.generate()
+        self.assertEqual(sorted(path.name for path in self.out.iterdir()),
+                         ["a.cdcf", "a.dcf", "b.cdcf", "b.dcf", "master.cdcf", "master.dcf", "master.eds", "plant.dbc",
+                          "plant.dot"])
+
+    def test_a_dcf_has_the_values_of_the_network_file_and_a_mapping_as_a_whole(self) -> None:
+        self.generate()
+        self.assertEqual(parameter_values(self.out / "a.dcf"), {
+            "1017": 50, "2006": 250,
+            "1400:1": 0x201, "1400:2": 1,
+            "1600:0": 1, "1600:1": 0x20030020, "1600:2": 0x20030020, "1600:3": 0, "1600:4": 0,
+            "1800:1": 0x40000181, "1800:5": 10,
+            "1A00:0": 2, "1A00:1": 0x20010020, "1A00:2": 0x20000010, "1A00:3": 0, "1A00:4": 0})
+        self.assertEqual(parameter_values(self.out / "b.dcf"), {
+            "1017": 50, "1400:1": 0x181,
+            "1600:0": 2, "1600:1": 0x20030020, "1600:2": 0x20020010, "1600:3": 0, "1600:4": 0})
+        master = parameter_values(self.out / "master.dcf")
+        self.assertEqual({entry: master[entry] for entry in ("1005", "1006", "1017", "1400:1", "1800:1", "1800:2")},
+                         {"1005": 0x40000080, "1006": 10000, "1017": 100, "1400:1": 0x181, "1800:1": 0x201, "1800:2": 1})
+
+    def test_a_dcf_commissions_its_node(self) -> None:
+        self.generate()
+        for name, node_id, manager in (("a", 1, 0), ("b", 2, 0), ("master", 127, 1)):
+            text = (self.out / f"{name}.dcf").read_text()
+            serial = "LSS_SerialNumber=4711\n" if name == "b" else ""
+            self.assertIn(f"[DeviceComissioning]\nNodeID={node_id}\nNodeName={name}\nBaudrate=500\nNetNumber=0\n"
+                          f"NetworkName=plant\nCANopenManager={manager}\n{serial}\n", text)
+            self.assertIn(f"FileName={name}.dcf\n", text)
+
+    def test_check_has_no_findings(self) -> None:
+        self.generate()
+        result = self.edsc("check", "--strict", *self.out.glob("*.dcf"), *self.out.glob("*.eds"))
+        self.assertEqual((result.stdout, result.stderr), ("", ""))
+
+    def test_npm_canopen_loads_the_files(self) -> None:
+        self.npm("tests/masters/node_canopen", CANOPEN)
+        self.generate()
+        result = subprocess.run(["node", "-e", LOAD, *self.out.glob("*.dcf"), self.out / "master.eds"], cwd=CANOPEN,
+                                capture_output=True, text=True)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(json.loads(result.stdout), {"a.dcf": [6, 5], "b.dcf": [6, 5], "master.dcf": [6, 9], "master.eds": [6, 9]})
+
+    def test_the_bytes_of_a_concise_dcf(self) -> None:
+        self.generate(TINY)
+        pieces = ("08 00 00 00"
+                  "0620 00 02000000 FA00"        # ramp 250
+                  "0014 01 04000000 02020080"    # RPDO 1 disabled, CAN-ID 202h as by default
+                  "0016 00 01000000 00"
+                  "0016 01 04000000 10000220"    # 2002h:00, 16 bits
+                  "0016 00 01000000 01"
+                  "0014 01 04000000 81010000")   # CAN-ID 181h
+        self.assertEqual((self.out / "b.cdcf").read_bytes()[4:].hex().upper(), pieces.replace(" ", "")[8:])
+        self.assertEqual((self.out / "b.cdcf").read_bytes()[0], 6)
+
+    def test_the_concise_dcf_is_that_of_the_dcf(self) -> None:
+        self.generate()
+        for name in ("a", "b", "master"):
+            self.edsc("format", self.out / f"{name}.dcf", "--concise", "-o", "concise")
+            self.assertEqual((self.folder / "concise").read_bytes(), (self.out / f"{name}.cdcf").read_bytes())
+
+    def test_the_master_knows_its_slaves(self) -> None:
+        self.generate()
+        file = configparser.RawConfigParser(comment_prefixes=(";",), delimiters=("=",))
+        file.read(self.out / "master.dcf")
+        for entry, value in (("1F81sub1", 5), ("1F81sub2", 5), ("1F84sub1", 0), ("1F85sub1", 1), ("1F86sub2", 2),
+                             ("1F87sub1", 0x10003), ("1F88sub1", 0), ("1F88sub2", 4711), ("1016sub1", 0x010064)):
+            self.assertEqual(int(file[entry]["DefaultValue"], 0), value, entry)
+        self.assertEqual([file[f"1F22sub{i}"]["DownloadFile"] for i in (1, 2)], ["a.cdcf", "b.cdcf"])
+        for extension in ("eds", "dcf"):
+            self.edsc("generate", self.out / f"master.{extension}", "-o", "headers")
+
+    def test_a_master_with_a_file_refers_to_the_concise_dcfs(self) -> None:
+        self.generate()
+        shutil.copy(self.out / "master.eds", self.folder / "control.eds")
+        self.generate(PLANT.replace('"master": true', '"eds": "control.eds", "master": true').split('"signals"')[0]
+                      .rstrip().rstrip(",") + "\n}\n")
+        self.assertEqual((self.out / "master.dcf").read_text().count("DownloadFile="), 2)
+
+    def test_the_dcf_of_a_node_keeps_its_values(self) -> None:
+        self.edsc("format", "node.eds", "--dcf", "--node-id", 1, "-o", "axis.dcf")
+        text = (self.folder / "axis.dcf").read_text()
+        for section, value in (("2008", 7), ("1007", 9)):
+            text = re.sub(rf"(\[{section}\][^\[]*?)(\n\n)", rf"\g<1>\nParameterValue={value}\2", text, count=1)
+        (self.folder / "axis.dcf").write_text(text)
+        self.generate(TINY.replace('"node_id": 1, "eds": "node.eds"', '"dcf": "axis.dcf", "set": {"1007h": 8}'))
+        values = parameter_values(self.out / "a.dcf")
+        self.assertEqual({entry: values[entry] for entry in ("2008", "1007")}, {"2008": 7, "1007": 8})
+
+    def test_candied_reads_senders_and_receivers(self) -> None:
+        self.npm("tests/generator/backend/candied", CANDIED)
+        result = self.generate()
+        output = subprocess.run(["node", CANDIED / "read_dbc.js", self.out / "plant.dbc"], check=True, capture_output=True,
+                                text=True).stdout
+        found = {message["id"]: (message["sendingNode"], message["dlc"],
+                                 {signal["name"]: (signal["startBit"], signal["length"], signal["receivingNodes"])
+                                  for signal in message["signals"].values()})
+                 for message in json.loads(output)[str(self.out / "plant.dbc")]}
+        self.assertEqual(found, {
+            0x181: ("a", 6, {"position": (0, 32, ["master", "b"]), "speed": (32, 16, ["master", "b"])}),
+            0x201: ("master", 4, {"a_commands_target_position": (0, 32, ["a"])})})
+        self.assertIn("edsc: not in the DBC file: a RPDO 2: disabled by default\n", result.stderr)
+
+    def test_the_graph_has_an_arrow_for_each_link(self) -> None:
+        self.generate()
+        self.assertEqual(re.findall(r'"(\w+)" -> "(\w+)" \[label="(.*?)\\n', (self.out / "plant.dot").read_text()),
+                         [("master", "a", "TPDO 1 to RPDO 1, 201h"), ("a", "master", "TPDO 1 to RPDO 1, 181h"),
+                          ("a", "b", "TPDO 1 to RPDO 1, 181h")])
+
+    def test_a_network_with_errors_writes_nothing(self) -> None:
+        for text in (TINY.replace('"node_id": 2', '"node_id": 1'), TINY.replace("b.target_speed", "b.ramp"), "{"):
+            self.generate(text, "--depfile", "plant.d", exit_code=1)
+            self.assertFalse(self.out.exists())
+            self.assertFalse((self.folder / "plant.d").exists())
+        self.generate(TINY.replace("node.eds", "missing.eds"), exit_code=2)
+        self.assertFalse(self.out.exists())
+
+    def test_an_input_is_not_replaced(self) -> None:
+        self.generate()
+        before = shutil.copy(self.out / "a.dcf", self.folder / "a.dcf")
+        text = Path(before).read_bytes()
+        (self.folder / "plant.json").write_text(TINY.replace('"node_id": 1, "eds": "node.eds"', '"dcf": "a.dcf"'))
+        self.edsc("network", "generate", "plant.json", "-o", ".", exit_code=2)
+        self.assertEqual(Path(before).read_bytes(), text)
+        self.assertFalse((self.folder / "b.dcf").exists())
+
+    def test_the_depfile_has_every_input(self) -> None:
+        (self.folder / "node.options.json").write_text("{}")
+        self.generate(TINY, "--depfile", "plant.d", "--depfile-target", "plant.stamp")
+        self.assertEqual((self.folder / "plant.d").read_text(),
+                         "plant.stamp: \\\n  plant.json \\\n  node.eds \\\n  node.options.json\n")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[5:]])
