@@ -47,12 +47,6 @@ std::string written_by(const ConfigurationStep& step) {
   return {};
 }
 
-std::string text_before(const ConfigurationChange& change) {
-  if (change.before) return shown(change.value.entry, *change.before);
-  const Entry* entry = change.value.entry.entry;
-  return entry != nullptr && !canopen::readable(entry->access) ? "(write-only)" : "(cannot be read)";
-}
-
 std::string compared_text(const ConfigurationRun& run) {
   const auto unknown = static_cast<std::size_t>(
       std::ranges::count_if(run.changes, [](const ConfigurationChange& change) { return !change.before.has_value(); }));
@@ -63,20 +57,12 @@ std::string compared_text(const ConfigurationRun& run) {
   return text;
 }
 
-Json entry_json(const LiveEntry& entry, const ConfigurationValue* value) {
-  Json row{{"index", entry.index}, {"sub_index", entry.sub_index}};
-  row["name"] = entry.name.empty() ? Json(nullptr) : Json(entry.name);
-  const bool placed = value != nullptr && value->position.file != nullptr;
-  row["line"] = placed ? Json(value->position.line) : Json(nullptr);
-  return row;
-}
-
 Json changes_json(const std::vector<ConfigurationChange>& changes) {
   Json rows = Json::array();
   for (const ConfigurationChange& change : changes) {
     Json row = entry_json(change.value.entry, &change.value);
     row["before"] = change.before ? Json(shown(change.value.entry, *change.before)) : Json(nullptr);
-    row["wanted"] = shown(change.value.entry, change.value.bytes);
+    row["wanted"] = wanted_text(change);
     rows.push_back(std::move(row));
   }
   return rows;
@@ -106,9 +92,24 @@ Json failures_json(const std::vector<ConfigurationFailure>& failures) {
 
 }  // namespace
 
+Json entry_json(const LiveEntry& entry, const ConfigurationValue* value) {
+  Json row{{"index", entry.index}, {"sub_index", entry.sub_index}};
+  row["name"] = entry.name.empty() ? Json(nullptr) : Json(entry.name);
+  const bool placed = value != nullptr && value->position.file != nullptr;
+  row["line"] = placed ? Json(value->position.line) : Json(nullptr);
+  return row;
+}
+
+std::string found_text(const ConfigurationChange& change) {
+  if (change.before) return shown(change.value.entry, *change.before);
+  const Entry* entry = change.value.entry.entry;
+  return entry != nullptr && !canopen::readable(entry->access) ? "(write-only)" : "(cannot be read)";
+}
+
+std::string wanted_text(const ConfigurationChange& change) { return shown(change.value.entry, change.value.bytes); }
+
 std::string change_text(const ConfigurationChange& change) {
-  return fmt::format("{}: {} -> {}", title(change.value.entry), text_before(change),
-                     shown(change.value.entry, change.value.bytes));
+  return fmt::format("{}: {} -> {}", title(change.value.entry), found_text(change), wanted_text(change));
 }
 
 std::string withheld_text(const ConfigurationRun& run, const ConfigurationChange& change) {
@@ -120,14 +121,14 @@ std::string step_text(const ConfigurationStep& step) {
   return fmt::format("{:<10}  {}{}", verb_of(step.kind), title(step.entry), written_by(step));
 }
 
-std::string failure_text(const ConfigurationFailure& failure) {
+std::string failure_text(const ConfigurationFailure& failure, std::string_view node) {
   std::string place = "edsc: ";
   if (failure.value != nullptr && failure.value->position.file != nullptr) {
     const Place found = place_of(failure.value->position);
     place = fmt::format("{}:{}:{}: error: ", found.file, found.line, found.column);
   }
   const std::string wanted = failure.value == nullptr ? "" : " = " + shown(failure.entry, failure.value->bytes);
-  return fmt::format("{}{}{}: {}", place, title(failure.entry), wanted, failure.what);
+  return fmt::format("{}{}{}{}: {}", place, node, title(failure.entry), wanted, failure.what);
 }
 
 std::string summary_text(const ConfigurationRun& run) {

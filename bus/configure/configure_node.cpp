@@ -61,6 +61,7 @@ class Run {
  private:
   [[nodiscard]] bool is_lost() {
     if (hooks_.restarted()) result_.lost = result_.restarted = true;
+    if (result_.lost && last_ != nullptr) result_.lost_at = *last_;
     return result_.lost;
   }
 
@@ -69,6 +70,7 @@ class Run {
   }
 
   void carry_out(const ConfigurationStep& step) {
+    last_ = &step.entry;
     switch (step.kind) {
       case StepKind::write: return write(step, step.bytes);
       case StepKind::switch_off: return switch_off(step);
@@ -129,6 +131,7 @@ class Run {
 
   void verify(const ConfigurationStep& step) {
     if (!can_be_read(step.entry)) return;
+    last_ = &step.entry;
     const SdoOutcome outcome = upload(node_, step.entry);
     const bool is_write_only = outcome.end == SdoEnd::refused && outcome.code == canopen::AbortCode::write_only;
     if (is_write_only) return;
@@ -156,6 +159,7 @@ class Run {
   const std::vector<ConfigurationStep>& steps_;
   const ConfigurationHooks& hooks_;
   ConfigurationResult result_;
+  const LiveEntry* last_ = nullptr;  ///< of the last transfer
   std::vector<const ConfigurationStep*> refused_, written_;
   std::map<std::uint32_t, std::uint32_t> before_;
   std::map<std::uint32_t, Bytes> cleared_;

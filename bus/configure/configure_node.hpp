@@ -22,9 +22,10 @@ struct ConfigurationFailure {
 struct ConfigurationResult {
   std::size_t values = 0;  ///< to be written
   std::size_t written = 0;
-  std::size_t verified = 0;  ///< read back, and equal
-  bool lost = false;         ///< the node stopped answering, or restarted: the rest was not tried
-  bool restarted = false;    ///< values written before may be lost
+  std::size_t verified = 0;          ///< read back, and equal
+  bool lost = false;                 ///< the node stopped answering, or restarted: the rest was not tried
+  bool restarted = false;            ///< values written before may be lost
+  std::optional<LiveEntry> lost_at;  ///< the last transfer before that; nothing if none was made
   std::vector<ConfigurationFailure> failures;
 
   [[nodiscard]] bool done() const { return failures.empty() && !lost; }

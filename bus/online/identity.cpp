@@ -46,6 +46,11 @@ Identity read_identity(SdoAccess& node) {
   return identity;
 }
 
+bool fits(IdentityMatch match) {
+  using enum IdentityMatch;
+  return match == same || match == minor_revision || match == major_revision;
+}
+
 std::string_view to_text(IdentityMatch match) {
   constexpr std::string_view texts[] = {"same device", "other minor revision", "other major revision", "other device",
                                         "not known"};

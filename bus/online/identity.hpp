@@ -50,6 +50,9 @@ inline constexpr IdentityNumber identity_numbers[] = {
 /// number 0 means unknown.
 [[nodiscard]] Identity identity_of(const Device& device);
 
+/// Whether the EDS describes the device, at least in another revision.
+[[nodiscard]] bool fits(IdentityMatch match);
+
 /// `same device`
 [[nodiscard]] std::string_view to_text(IdentityMatch match);
 

@@ -28,6 +28,12 @@ AddOptions add_record_options;
 AddOptions add_decode_options;
 AddOptions add_completion_options;
 
+// Subcommands of `network`.
+AddOptions add_network_apply_options;
+AddOptions add_network_generate_options;
+AddOptions add_network_scan_options;
+AddOptions add_network_verify_options;
+
 /// A command, and the group that the help and the manual page list it in.
 struct CommandRow {
   const char* group;
@@ -44,7 +50,7 @@ inline constexpr CommandRow commands[] = {
     {"EDS files", "format", "write an EDS or DCF in canonical form; make DCFs; convert XDD and XDC",
      add_format_options},
     {"EDS files", "diff", "compare two EDS files; report breaking changes", add_diff_options},
-    {"Networks", "network", "check a network of devices from a network file; make its DCFs", add_network_options},
+    {"Networks", "network", "check, generate, verify and configure a network of devices", add_network_options},
     {"Bus", "scan", "find and identify the nodes on a bus", add_scan_options},
     {"Bus", "read", "read objects of a node over SDO", add_read_options},
     {"Bus", "write", "write an object of a node over SDO", add_write_options},

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "commands/commands.hpp"
-#include "commands/network_generate.hpp"
 #include "diagnostics/rule.hpp"
 #include "diagnostics/unknown_rule.hpp"
 #include "network/checks/check_network.hpp"
@@ -25,21 +24,24 @@ constexpr const char* examples = R"(Examples:
   edsc network check plant.json --format sarif    the same for a code review (SARIF 2.1.0)
   edsc network check plant.json --strict          warnings count as errors
   edsc network members                            every member of a network file with its meaning
-  edsc network generate plant.json -o build       DCFs, concise DCFs, the EDS of the master, DBC file and graph)";
+  edsc network generate plant.json -o build       DCFs, concise DCFs, the EDS of the master, DBC file and graph
+  edsc network scan socketcan:can0 --sheets eds -o plant.json    the network file of the nodes on a bus
+  edsc network verify socketcan:can0 plant.json                  what differs from it
+  edsc network apply socketcan:can0 plant.json --start           configure all nodes, then start them)";
 
-struct Settings {
+struct CheckSettings {
   std::vector<std::string> paths;
   std::string format = "text";
   std::vector<std::string> silence;
   bool strict = false;
   ColorOption color;
-  NetworkGenerateSettings generate;
-  int (*action)(const Settings&) = nullptr;  ///< the subcommand
 };
 
-int run(const Settings& settings) { return settings.action(settings); }
+struct MembersSettings {
+  std::string format = "text";
+};
 
-int check(const Settings& settings) {
+int check(const CheckSettings& settings) {
   int exit_code = exit_fine;
   FindingsReport report{settings.format, settings.color};
   for (const std::string& path : settings.paths) {
@@ -63,7 +65,8 @@ std::string check_rule(const std::string& id) {
   return fmt::format("{} (see edsc check --list-rules)", unknown_rule(id));
 }
 
-void add_network_check_options(CLI::App& command, Settings& settings) {
+void add_network_check_options(CLI::App& command, int& exit_code) {
+  CheckSettings& settings = define_command(command, "", check, exit_code);
   command.add_option("FILE", settings.paths, "network files (JSON)")->required();
   add_choice(command, "--format", settings.format, {"text", "json", "sarif"}, "text, json or sarif");
   command.add_option("--silence", settings.silence, "rule not to report; may be given more than once")
@@ -98,7 +101,7 @@ void list_members(std::string_view owner, const MemberRow<Owner> (&rows)[N], con
   }
 }
 
-int members(const Settings& settings) {
+int members(const MembersSettings& settings) {
   Json json = Json::array();
   list_members("", network_members, settings.format, json);
   list_members("sync", sync_members, settings.format, json);
@@ -109,40 +112,34 @@ int members(const Settings& settings) {
   return exit_fine;
 }
 
-void add_members_options(CLI::App& command, Settings& settings) {
+void add_members_options(CLI::App& command, int& exit_code) {
+  MembersSettings& settings = define_command(command, "", members, exit_code);
   add_choice(command, "--format", settings.format, {"text", "json"}, "text or json");
-}
-
-int generate_files(const Settings& settings) { return run_network_generate(settings.generate); }
-
-void add_generate_files_options(CLI::App& command, Settings& settings) {
-  add_network_generate_options(command, settings.generate);
 }
 
 struct ActionRow {
   const char* name;
   const char* description;
-  int (*run)(const Settings&);
-  void (*add_options)(CLI::App& command, Settings& settings);
+  AddOptions* add_options;
 };
 
 constexpr ActionRow actions[] = {
-    {"check", "check the nodes, CAN-IDs, PDO links, SYNC and error control of a network", check,
-     add_network_check_options},
-    {"generate", "write the DCFs of the nodes, and a DBC file and a graph of the network", generate_files,
-     add_generate_files_options},
-    {"members", "list the members of a network file", members, add_members_options},
+    {"check", "check the nodes, CAN-IDs, PDO links, SYNC and error control of a network", add_network_check_options},
+    {"generate", "write the DCFs of the nodes, and a DBC file and a graph of the network",
+     add_network_generate_options},
+    {"members", "list the members of a network file", add_members_options},
+    {"scan", "write a network file of the nodes on a bus", add_network_scan_options},
+    {"verify", "compare the nodes on a bus with a network file", add_network_verify_options},
+    {"apply", "configure the nodes on a bus as a network file states", add_network_apply_options},
 };
 
 }  // namespace
 
 void add_network_options(CLI::App& command, int& exit_code) {
-  Settings& settings = define_command(command, examples, run, exit_code);
+  command.footer(examples);
   command.require_subcommand(1);
   for (const ActionRow& row : actions) {
-    CLI::App* const action = command.add_subcommand(row.name, row.description);
-    action->callback([&settings, &row] { settings.action = row.run; });
-    row.add_options(*action, settings);
+    row.add_options(*command.add_subcommand(row.name, row.description), exit_code);
   }
 }
 

@@ -1,12 +1,14 @@
-#include "commands/network_generate.hpp"
-
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <string>
 
+#include "commands/commands.hpp"
 #include "network/checks/check_network.hpp"
 #include "network/generate/generate_network.hpp"
 #include "network/network.hpp"
+#include "shared/common_options.hpp"
+#include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/output.hpp"
 #include "text/depfile.hpp"
@@ -14,18 +16,18 @@
 
 namespace edsc {
 
-void add_network_generate_options(CLI::App& command, NetworkGenerateSettings& settings) {
-  command.add_option("FILE", settings.path, "network file (JSON)")->required();
-  command.add_option("-o,--output", settings.output, "folder for the files")->required();
-  auto* depfile =
-      command.add_option("--depfile", settings.depfile, "write what the files depend on, for make and ninja");
-  command.add_option("--depfile-target", settings.depfile_target, "target of the dependencies (default: the files)")
-      ->needs(depfile);
-  command.add_flag("-v,--verbose", settings.verbose, "print the names of the files that are written");
-  settings.color.add_to(command);
-}
+namespace {
 
-int run_network_generate(const NetworkGenerateSettings& settings) {
+struct Settings {
+  std::string path;
+  std::string output;
+  std::string depfile;
+  std::string depfile_target;
+  bool verbose = false;
+  ColorOption color;
+};
+
+int generate(const Settings& settings) {
   Diagnostics diagnostics;
   diagnostics.drop_notes();
   const auto loaded = load_network(settings.path, diagnostics);
@@ -46,6 +48,20 @@ int run_network_generate(const NetworkGenerateSettings& settings) {
     for (const OutputFile& file : files) print_visibly(stdout, "{}\n", file.path);
   }
   return exit_fine;
+}
+
+}  // namespace
+
+void add_network_generate_options(CLI::App& command, int& exit_code) {
+  Settings& settings = define_command(command, "", generate, exit_code);
+  command.add_option("FILE", settings.path, "network file (JSON)")->required();
+  command.add_option("-o,--output", settings.output, "folder for the files")->required();
+  auto* depfile =
+      command.add_option("--depfile", settings.depfile, "write what the files depend on, for make and ninja");
+  command.add_option("--depfile-target", settings.depfile_target, "target of the dependencies (default: the files)")
+      ->needs(depfile);
+  command.add_flag("-v,--verbose", settings.verbose, "print the names of the files that are written");
+  settings.color.add_to(command);
 }
 
 }  // namespace edsc

@@ -31,8 +31,7 @@ constexpr const char* examples = R"(Examples:
 
 struct Settings {
   std::string bus;
-  std::string nodes = "1..127";
-  ScanSettings scan;
+  ScanOptions scan;
   std::vector<std::string> sheets;
   bool lss = false;
   unsigned lss_step_ms = 20;
@@ -55,11 +54,6 @@ struct Findings {
 using Json = nlohmann::ordered_json;
 
 std::string hex_or_dash(std::optional<std::uint32_t> number) { return number ? fmt::format("{:08X}h", *number) : "-"; }
-
-bool fits(IdentityMatch match) {
-  using enum IdentityMatch;
-  return match == same || match == minor_revision || match == major_revision;
-}
 
 std::string fits_text(const FoundNode& node, const std::vector<Candidate>& candidates) {
   std::string text;
@@ -192,12 +186,10 @@ std::vector<Candidate> load_candidates(const Settings& settings) {
 }
 
 void find_nodes(LiveBus& bus, const Settings& settings, Findings& found) {
-  ScanSettings nodes = settings.scan;
-  nodes.nodes = parse_node_list(settings.nodes);
-  scan(bus, nodes, found.nodes);
+  scan(bus, settings.scan.parsed(), found.nodes);
   if (!settings.lss) return;
   canopen::LssTimeouts timeouts;
-  timeouts.answer = canopen::Duration{settings.scan.timeout_ms * 1000U};
+  timeouts.answer = canopen::Duration{settings.scan.times.timeout_ms * 1000U};
   timeouts.fastscan_step = canopen::Duration{settings.lss_step_ms * 1000U};
   const LssResult result = LssSession{bus, timeouts}.find_unconfigured(
       [&](const canopen::LssAddress& address) { found.unconfigured.push_back(address); });
@@ -234,15 +226,7 @@ int run_scan(const Settings& settings) {
 void add_scan_options(CLI::App& command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_scan, exit_code);
   add_bus_argument(command, settings.bus);
-  command.add_option("--nodes", settings.nodes, "node-IDs to scan: 1..127, or a list such as 1,3,8..20")
-      ->check([](const std::string& text) {
-        return parse_node_list(text).empty() ? "\"" + text + "\" is not a list of node-IDs" : std::string{};
-      })
-      ->capture_default_str();
-  add_timeout_option(command, settings.scan.timeout_ms);
-  command.add_option("--listen", settings.scan.listen_ms, "minimum ms to listen for heartbeats")
-      ->check(CLI::Range(0, 600'000))
-      ->capture_default_str();
+  add_scanned_nodes(command, settings.scan);
   command.add_option("--eds", settings.sheets, "EDS to compare with; may be given more than once")
       ->allow_extra_args(false)
       ->type_name("FILE");

@@ -90,6 +90,24 @@ std::vector<std::uint8_t> parse_node_list(const std::string& text) {
   return {nodes.begin(), nodes.end()};
 }
 
+ScanSettings ScanOptions::parsed() const {
+  ScanSettings settings = times;
+  settings.nodes = parse_node_list(nodes);
+  return settings;
+}
+
+void add_scanned_nodes(CLI::App& command, ScanOptions& options) {
+  command.add_option("--nodes", options.nodes, "node-IDs to scan: 1..127, or a list such as 1,3,8..20")
+      ->check([](const std::string& text) {
+        return parse_node_list(text).empty() ? "\"" + text + "\" is not a list of node-IDs" : std::string{};
+      })
+      ->capture_default_str();
+  add_timeout_option(command, options.times.timeout_ms);
+  command.add_option("--listen", options.times.listen_ms, "minimum ms to listen for heartbeats")
+      ->check(CLI::Range(0, 600'000))
+      ->capture_default_str();
+}
+
 CLI::Option* add_count_option(CLI::App& command, const std::string& name, std::optional<std::uint32_t>& number,
                               const std::string& description) {
   const auto parse = [](const std::string& text) { return parse_count(text); };

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "online/scan.hpp"
 #include "online/sdo_access.hpp"
 
 namespace edsc {
@@ -48,6 +49,18 @@ CLI::Option* add_type_option(CLI::App& command, const canopen::DataTypeRow*& typ
 
 /// Parses `1..127`, `5` or `1,3,8..20`: ascending, each once. Empty if invalid.
 [[nodiscard]] std::vector<std::uint8_t> parse_node_list(const std::string& text);
+
+/// Which nodes are scanned, and how long.
+struct ScanOptions {
+  std::string nodes = "1..127";
+  ScanSettings times;
+
+  /// With the nodes.
+  [[nodiscard]] ScanSettings parsed() const;
+};
+
+/// `--nodes`, `--timeout` and `--listen`.
+void add_scanned_nodes(CLI::App& command, ScanOptions& options);
 
 /// Adds an option or argument with such a number.
 CLI::Option* add_count_option(CLI::App& command, const std::string& name, std::optional<std::uint32_t>& number,

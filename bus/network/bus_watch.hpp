@@ -1,0 +1,39 @@
+/// Boot-up messages and SDO responses of all nodes, while a command does something else.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "online/live_bus.hpp"
+
+namespace edsc {
+
+/// During its lifetime, counts the frames that show that a node restarted, or that two nodes have its node-ID.
+class BusWatch {
+ public:
+  explicit BusWatch(LiveBus& bus);
+  ~BusWatch();
+  BusWatch(const BusWatch&) = delete;
+  BusWatch& operator=(const BusWatch&) = delete;
+
+  /// The number of boot-up messages with this node-ID so far.
+  [[nodiscard]] unsigned boot_ups(std::uint8_t node_id) const { return counts_[node_id].boot_ups; }
+
+  /// Whether the default SDO of this node-ID sent more responses than it received requests, those of other clients
+  /// included. This holds for segmented transfers only, in which the server responds once to each request.
+  [[nodiscard]] bool has_extra_responses(std::uint8_t node_id) const {
+    return counts_[node_id].responses > counts_[node_id].requests;
+  }
+
+ private:
+  struct Counts {
+    unsigned boot_ups = 0, requests = 0, responses = 0;
+  };
+
+  void count(const canopen::Frame& frame);
+
+  LiveBus& bus_;
+  std::array<Counts, 128> counts_{};
+};
+
+}  // namespace edsc

@@ -1,0 +1,28 @@
+/// Writes the network file of the nodes found on a bus.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "network/sheet_folder.hpp"
+#include "online/scan.hpp"
+
+namespace edsc {
+
+struct DescribeSettings {
+  std::string folder;                ///< of the network file; the paths of the files are relative to it
+  std::optional<unsigned> bit_rate;  ///< kbit/s
+};
+
+struct DescribedNetwork {
+  std::string text;                 ///< JSON with comments
+  std::vector<std::string> notes;   ///< about nodes for which the choice of a file is not certain
+  std::vector<std::string> errors;  ///< about nodes without a file
+};
+
+/// Each node gets the file that fits best, and the heartbeat time that it has. Nodes without a file are comments.
+[[nodiscard]] DescribedNetwork describe_network(const std::vector<FoundNode>& nodes,
+                                                const std::vector<SheetFile>& sheets, const DescribeSettings& settings);
+
+}  // namespace edsc

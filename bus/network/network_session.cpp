@@ -1,0 +1,181 @@
+#include "network/network_session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <canopen/nmt_master/nmt_master.hpp>
+#include <utility>
+
+#include "network/node_configuration.hpp"
+
+namespace edsc {
+namespace {
+
+/// For the response of a second node with the node-ID, and for boot-up messages.
+constexpr canopen::Duration settling_time = canopen::from_milliseconds(50);
+
+canopen::NodeId id_of(const LiveNode& live) { return canopen::NodeId{live.node->node_id}; }
+
+/// `at 2004h:00 Speed`: the place in the configuration, for a node that was lost.
+std::string place_text(const ConfigurationResult& result) {
+  return result.lost_at ? " at " + title(*result.lost_at) : std::string{};
+}
+
+}  // namespace
+
+NetworkSession::NetworkSession(LiveBus& bus, std::vector<LiveNode>& nodes, SdoSettings sdo, NetworkHooks hooks)
+    : bus_{bus}, nodes_{nodes}, hooks_{std::move(hooks)}, sdo_{sdo}, watch_{bus} {
+  for (LiveNode& live : nodes_) live.access = std::make_unique<SdoAccess>(bus_, id_of(live), sdo);
+}
+
+bool NetworkSession::identify(bool wakes) {
+  for (LiveNode& live : nodes_) {
+    hooks_.progress(live, "identified", 0, 1);
+    live.answers = identify(live, wakes);
+  }
+  bus_.listen(settling_time);
+  check_extra_responses();
+  return !has_problems();
+}
+
+bool NetworkSession::identify(LiveNode& live, bool wakes) {
+  SdoAccess& access = *live.access;
+  SdoOutcome first = access.upload(0x1000, 0);
+  if (first.end == SdoEnd::no_answer && wakes) {
+    enter_pre_operational(bus_, id_of(live));
+    first = access.upload(0x1000, 0);
+  }
+  if (first.end == SdoEnd::no_answer) {
+    live.problems.push_back(label(*live.node) + " does not answer");
+    return false;
+  }
+  live.identity = read_identity(access);
+  const Identity expected = expected_identity(*live.node);
+  const IdentityMatch match = compare_identity(expected, live.identity);
+  if (match == IdentityMatch::major_revision || match == IdentityMatch::other) {
+    live.problems.push_back(fmt::format("{} is not the device of {}: {}", label(*live.node), file_of(*live.node),
+                                        identity_differences(expected, live.identity)));
+  }
+  return true;
+}
+
+void NetworkSession::check_extra_responses() {
+  for (LiveNode& live : nodes_) {
+    if (!live.problems.empty() || !watch_.has_extra_responses(live.node->node_id)) continue;
+    live.problems.push_back(fmt::format("{}: an SDO request got more than one response; two nodes may have node-ID {}",
+                                        label(*live.node), live.node->node_id));
+  }
+}
+
+bool NetworkSession::compare() {
+  for (LiveNode& live : nodes_) {
+    if (live.problems.empty() && !compare(live)) {
+      live.problems.push_back(label(*live.node) + " no longer answers");
+    }
+  }
+  check_extra_responses();
+  return !has_problems();
+}
+
+bool NetworkSession::compare(LiveNode& live) {
+  live.run = {};
+  live.run.node = live.node->node_id;
+  live.run.left_out = live.configuration.left_out;
+  live.boot_ups = watch_.boot_ups(live.node->node_id);
+  if (!choose_different(live.run, *live.access, live.configuration, false, hooks_for(live, "compared"))) return false;
+  live.run.steps = plan_configuration(live.run.values, &live.node->device);
+  live.is_compared = true;
+  hooks_.compared(live);
+  return true;
+}
+
+bool NetworkSession::apply(const ApplySettings& settings) {
+  const bool writes = std::ranges::any_of(nodes_, [](const LiveNode& live) { return !live.run.steps.empty(); });
+  if (writes) {
+    for (const LiveNode& live : nodes_) enter_pre_operational(bus_, id_of(live));
+  }
+  configure_all(settings);
+  bus_.listen(settling_time);
+  check_restarts(settings);
+  if (settings.store && (all_succeeded() || settings.on_error == OnError::keep_going)) {
+    for (LiveNode& live : nodes_) {
+      if (!live.succeeded()) continue;
+      hooks_.progress(live, "stored", 0, 1);
+      store_parameters(live.run, *live.access, sdo_.timeout_ms);
+    }
+    bus_.listen(settling_time);
+    check_restarts({});
+  }
+  check_extra_responses();
+  if (!all_succeeded()) return false;
+  if (settings.start) {
+    for (const LiveNode& live : nodes_) bus_.send_all(canopen::nmt_frame(canopen::NmtCommand::start, id_of(live)));
+  }
+  return true;
+}
+
+void NetworkSession::configure_all(const ApplySettings& settings) {
+  for (LiveNode& live : nodes_) {
+    configure(live, settings);
+    hooks_.configured(live);
+    if (!live.succeeded() && settings.on_error != OnError::keep_going) return;
+  }
+}
+
+void NetworkSession::configure(LiveNode& live, const ApplySettings& settings) {
+  const unsigned most = settings.on_error == OnError::retry ? settings.retries + 1 : 1;
+  do {
+    live.problems.clear();
+    ++live.attempts;
+    if (live.attempts > 1) {
+      enter_pre_operational(bus_, id_of(live));
+      if (!compare(live)) {
+        live.problems.push_back(label(*live.node) + " no longer answers");
+        continue;
+      }
+    }
+    write(live);
+  } while (!live.succeeded() && live.attempts < most);
+}
+
+void NetworkSession::write(LiveNode& live) {
+  ConfigurationRun& run = live.run;
+  run.result = configure_node(*live.access, run.steps, hooks_for(live, "done"));
+  if (run.result.done()) write_time(run, *live.access, live.configuration);
+  if (has_restarted(live)) {
+    live.problems.push_back(fmt::format("{} restarted{} while it was configured: it may have lost what was written",
+                                        label(*live.node), place_text(run.result)));
+  }
+  check_extra_responses();
+}
+
+/// Nodes that restarted after they were configured are configured again, or have a problem.
+void NetworkSession::check_restarts(const ApplySettings& settings) {
+  for (LiveNode& live : nodes_) {
+    if (!live.succeeded() || !has_restarted(live)) continue;
+    if (settings.on_error == OnError::retry && live.attempts <= settings.retries) {
+      configure(live, settings);
+      hooks_.configured(live);
+    } else {
+      live.problems.push_back(
+          fmt::format("{} restarted after it was configured: it may have lost what was written", label(*live.node)));
+    }
+  }
+}
+
+bool NetworkSession::has_restarted(const LiveNode& live) const {
+  return watch_.boot_ups(live.node->node_id) != live.boot_ups;
+}
+
+bool NetworkSession::has_problems() const {
+  return std::ranges::any_of(nodes_, [](const LiveNode& live) { return !live.problems.empty(); });
+}
+
+bool NetworkSession::all_succeeded() const { return std::ranges::all_of(nodes_, &LiveNode::succeeded); }
+
+ConfigurationHooks NetworkSession::hooks_for(const LiveNode& live, std::string_view doing) const {
+  return {[this, &live, doing](std::size_t done, std::size_t of) { hooks_.progress(live, doing, done, of); },
+          [this, &live] { return has_restarted(live); }};
+}
+
+}  // namespace edsc

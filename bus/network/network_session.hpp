@@ -1,0 +1,98 @@
+/// Compares the nodes of a network file with those on a bus, and configures them.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "configure/configuration_run.hpp"
+#include "network/bus_watch.hpp"
+#include "network/network.hpp"
+#include "online/identity.hpp"
+#include "online/live_bus.hpp"
+#include "online/sdo_access.hpp"
+
+namespace edsc {
+
+/// A node of the network file, and what was found on the bus.
+struct LiveNode {
+  const NetworkNode* node = nullptr;
+  Configuration configuration;
+  std::unique_ptr<SdoAccess> access;
+  bool answers = false;
+  Identity identity;                  ///< found
+  bool is_compared = false;           ///< its values were read
+  ConfigurationRun run;               ///< the comparison, and the last attempt to configure it
+  unsigned attempts = 0;              ///< to configure it
+  unsigned boot_ups = 0;              ///< seen before the last comparison
+  std::vector<std::string> problems;  ///< each with the name of the node
+
+  /// Whether it was configured.
+  [[nodiscard]] bool succeeded() const { return attempts != 0 && problems.empty() && run.succeeded(); }
+};
+
+enum class OnError : std::uint8_t {
+  abort,       ///< do not write to further nodes
+  keep_going,  ///< configure the other nodes
+  retry,       ///< configure the node again, then abort
+};
+
+struct ApplySettings {
+  bool store = false;
+  bool start = false;
+  OnError on_error = OnError::abort;
+  unsigned retries = 3;
+};
+
+/// Callbacks of a session.
+struct NetworkHooks {
+  /// Before each transfer: the node, what is done, and how far.
+  std::function<void(const LiveNode& node, std::string_view doing, std::size_t done, std::size_t of)> progress;
+  /// After the differences of a node are known, and before they are written.
+  std::function<void(const LiveNode& node)> compared;
+  /// After the last attempt to configure a node.
+  std::function<void(const LiveNode& node)> configured;
+};
+
+/// The nodes of a network that have a file, on a bus. All functions throw Interrupted, BusLost.
+class NetworkSession {
+ public:
+  /// `nodes` must outlive the session; their members `node` and `configuration` are set.
+  NetworkSession(LiveBus& bus, std::vector<LiveNode>& nodes, SdoSettings sdo, NetworkHooks hooks);
+
+  /// Reads the identity of all nodes. Missing nodes, other products, and node-IDs of two nodes become problems. Returns
+  /// false if there are any. A node that does not answer is set to Pre-operational first if `wakes`: it may be in
+  /// Stopped.
+  bool identify(bool wakes);
+
+  /// Reads the configured values of the nodes without a problem. Returns false if there is a problem.
+  bool compare();
+
+  /// After `identify` and `compare` without problems: configures the nodes in Pre-operational. Stores the parameters of
+  /// the nodes that succeeded, unless an error aborts. Starts all nodes, if all succeeded; returns whether they did.
+  bool apply(const ApplySettings& settings);
+
+ private:
+  bool identify(LiveNode& live, bool wakes);
+  bool compare(LiveNode& live);
+  void check_extra_responses();
+  void write(LiveNode& live);
+  void configure(LiveNode& live, const ApplySettings& settings);
+  void configure_all(const ApplySettings& settings);
+  void check_restarts(const ApplySettings& settings);
+  ConfigurationHooks hooks_for(const LiveNode& live, std::string_view doing) const;
+  [[nodiscard]] bool has_restarted(const LiveNode& live) const;
+  [[nodiscard]] bool has_problems() const;
+  [[nodiscard]] bool all_succeeded() const;
+
+  LiveBus& bus_;
+  std::vector<LiveNode>& nodes_;
+  NetworkHooks hooks_;
+  SdoSettings sdo_;
+  BusWatch watch_;
+};
+
+}  // namespace edsc

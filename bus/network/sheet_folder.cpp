@@ -1,0 +1,93 @@
+#include "network/sheet_folder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
+#include <tuple>
+
+#include "diagnostics/diagnostics.hpp"
+#include "eds/number.hpp"
+#include "load/load_device.hpp"
+#include "network/communication_objects.hpp"
+#include "network/network.hpp"
+#include "text/ascii.hpp"
+
+namespace edsc {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::string_view, 4> extensions = {".eds", ".dcf", ".xdd", ".xdc"};
+
+std::vector<std::string> sheet_paths(const std::string& folder, std::vector<std::string>& problems) {
+  std::vector<std::string> paths;
+  std::error_code error;
+  fs::recursive_directory_iterator at{folder, fs::directory_options::skip_permission_denied, error};
+  for (; !error && at != fs::recursive_directory_iterator{}; at.increment(error)) {
+    std::error_code of_file;
+    const std::string extension = to_lower(at->path().extension().string());
+    const bool is_sheet = std::ranges::find(extensions, extension) != extensions.end();
+    if (is_sheet && at->is_regular_file(of_file)) paths.push_back(at->path().string());
+  }
+  if (error) problems.push_back(fmt::format("{}: {}", folder, error.message()));
+  std::ranges::sort(paths);
+  return paths;
+}
+
+/// Nothing if the file is not a device description. Errors in the values of a file do not matter here.
+std::optional<SheetFile> read_sheet(const std::string& path) {
+  constexpr std::uint8_t any_node_id = 1;  // the identity does not depend on it
+  Diagnostics ignored;
+  LoadSettings settings;
+  settings.path = path;
+  settings.node_id = any_node_id;
+  settings.check = false;
+  const auto loaded = load_device(settings, ignored);
+  if (!loaded->device || loaded->device->objects.empty()) return std::nullopt;
+  const Device& device = *loaded->device;
+  SheetFile file{path, loaded->sheet.is_dcf, {}, {}, identity_of(device)};
+  if (file.is_dcf) {
+    const auto node_id = parse_unsigned(loaded->sheet.commissioning.node_id.text);
+    if (node_id && *node_id >= 1 && *node_id <= 127) file.node_id = static_cast<std::uint8_t>(*node_id);
+    if (device.information.commissioning) file.node_name = device.information.commissioning->node_name;
+  }
+  const Entry* const heartbeat = device.find(communication::producer_heartbeat, 0);
+  file.has_heartbeat = heartbeat != nullptr && canopen::writable(heartbeat->access);
+  file.heartbeat_ms = static_cast<std::uint32_t>(value_of(device, communication::producer_heartbeat).value_or(0));
+  return file;
+}
+
+}  // namespace
+
+SheetFolder read_sheet_folder(const std::string& folder) {
+  SheetFolder read;
+  for (const std::string& path : sheet_paths(folder, read.problems)) {
+    if (auto file = read_sheet(path)) {
+      read.files.push_back(*std::move(file));
+    } else {
+      read.problems.push_back(path + ": cannot be read as an EDS, DCF or XDD file (\"edsc check\" lists why)");
+    }
+  }
+  return read;
+}
+
+std::vector<FittingSheet> fitting_sheets(const std::vector<SheetFile>& files, std::uint8_t node_id,
+                                         const Identity& identity) {
+  std::vector<FittingSheet> fitting;
+  for (const SheetFile& file : files) {
+    const IdentityMatch match = compare_identity(file.identity, identity);
+    const bool is_for_another_node = file.node_id && *file.node_id != node_id;
+    if (!fits(match) || is_for_another_node) continue;
+    fitting.push_back({&file, match, not_compared(file.identity, identity).size()});
+  }
+  std::ranges::stable_sort(fitting, {}, [](const FittingSheet& one) {
+    return std::tuple{one.match, one.not_compared, !one.file->node_id.has_value()};
+  });
+  return fitting;
+}
+
+}  // namespace edsc

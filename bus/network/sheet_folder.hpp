@@ -1,0 +1,45 @@
+/// The EDS, DCF and XDD files of a folder, to find the one that describes a device.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "online/identity.hpp"
+
+namespace edsc {
+
+/// A file, and what a network file needs of it.
+struct SheetFile {
+  std::string path;
+  bool is_dcf = false;
+  std::optional<std::uint8_t> node_id;  ///< of a DCF
+  std::string node_name;                ///< of a DCF
+  Identity identity;
+  bool has_heartbeat = false;      ///< 1017h can be written
+  std::uint32_t heartbeat_ms = 0;  ///< default value of 1017h
+};
+
+struct SheetFolder {
+  std::vector<SheetFile> files;       ///< ascending by path
+  std::vector<std::string> problems;  ///< files that could not be read
+};
+
+/// Reads the files of a folder and its subfolders, by their extension: .eds, .dcf, .xdd, .xdc. A folder that cannot be
+/// read is a problem.
+[[nodiscard]] SheetFolder read_sheet_folder(const std::string& folder);
+
+/// A file that fits a device.
+struct FittingSheet {
+  const SheetFile* file = nullptr;
+  IdentityMatch match = IdentityMatch::same;
+  std::size_t not_compared = 0;  ///< numbers of the identity
+};
+
+/// The files that fit the device with this node-ID, the best first: same revision before minor and major revision, then
+/// more numbers compared, then a DCF for the node-ID. A DCF for another node-ID does not fit.
+[[nodiscard]] std::vector<FittingSheet> fitting_sheets(const std::vector<SheetFile>& files, std::uint8_t node_id,
+                                                       const Identity& identity);
+
+}  // namespace edsc

@@ -1,0 +1,115 @@
+#include <fmt/format.h>
+
+#include "commands/commands.hpp"
+#include "configure/configuration_report.hpp"
+#include "network/network_report.hpp"
+#include "network/node_configuration.hpp"
+#include "shared/common_options.hpp"
+#include "shared/define_command.hpp"
+#include "shared/exit_code.hpp"
+#include "shared/live_network.hpp"
+#include "shared/with_bus.hpp"
+#include "text/printable.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr const char* examples = R"(Examples:
+  edsc network verify socketcan:can0 plant.json                     what would be written
+  edsc network apply socketcan:can0 plant.json                      write what differs, read it back
+  edsc network apply socketcan:can0 plant.json --store --start      store the parameters, then start all nodes
+  edsc network apply socketcan:can0 plant.json --on-error retry     configure a failed node again, up to three times)";
+
+struct Settings : LiveNetworkSettings {
+  ApplySettings apply;
+  std::string on_error = "abort";
+};
+
+OnError on_error_of(const Settings& settings) {
+  if (settings.on_error == "continue") return OnError::keep_going;
+  return settings.on_error == "retry" ? OnError::retry : OnError::abort;
+}
+
+void print_differences(const LiveNode& live) {
+  for (const ConfigurationChange& change : live.run.changes) {
+    print_visibly(stdout, "{}: {}\n", label(*live.node), change_text(change));
+  }
+  for (const ConfigurationChange& change : live.run.withheld) {
+    print_visibly(stderr, "edsc: {}: not written, the node's own node-ID or bit rate: {}\n", label(*live.node),
+                  withheld_text(live.run, change));
+  }
+  std::fflush(stdout);
+}
+
+void print_result(const LiveNode& live, bool text) {
+  for (const ConfigurationFailure& failure : live.run.result.failures) {
+    print_visibly(stderr, "{}\n", failure_text(failure, label(*live.node) + ": "));
+  }
+  if (text) print_visibly(stdout, "{}: {}\n", live.node->name, summary_text(live.run));
+  std::fflush(stdout);
+}
+
+void print_problems(const std::vector<LiveNode>& nodes) {
+  for (const LiveNode& live : nodes) {
+    for (const std::string& problem : live.problems) print_visibly(stderr, "edsc: {}\n", problem);
+    for (const std::string& problem : live.run.problems) {
+      print_visibly(stderr, "edsc: {}: {}\n", label(*live.node), problem);
+    }
+  }
+}
+
+int apply(LiveBus& bus, const Settings& settings, LiveNetwork& network) {
+  const bool text = settings.format == "text";
+  ApplySettings apply = settings.apply;
+  apply.on_error = on_error_of(settings);
+  bool succeeded = false;
+  bool is_expected = false;
+  {
+    ProgressLine progress;
+    NetworkHooks hooks;
+    hooks.progress = show_progress(progress, network.nodes);
+    hooks.compared = [&](const LiveNode& live) {
+      progress.hide();
+      if (text) print_differences(live);
+    };
+    hooks.configured = [&](const LiveNode& live) {
+      progress.hide();
+      print_result(live, text);
+    };
+    NetworkSession session{bus, network.nodes, settings.sdo, std::move(hooks)};
+    is_expected = session.identify(true) && session.compare();
+    if (is_expected) succeeded = session.apply(apply);
+  }
+  const bool started = succeeded && apply.start;
+  print_problems(network.nodes);
+  report_identities_not_compared(network.nodes);
+  if (!text) {
+    fmt::print("{}\n", json_text(apply_json(network.nodes, started)));
+  } else if (is_expected) {
+    print_visibly(stdout, "{}\n", apply_summary(network.nodes, started));
+  } else {
+    print_visibly(stderr, "edsc: nothing written\n");
+  }
+  return succeeded ? exit_fine : exit_device_failed;
+}
+
+int run_apply(const Settings& settings) {
+  LiveNetwork network = load_live_network(settings);
+  return with_bus(settings.bus, [&](LiveBus& bus) { return apply(bus, settings, network); });
+}
+
+}  // namespace
+
+void add_network_apply_options(CLI::App& command, int& exit_code) {
+  Settings& settings = define_command(command, examples, run_apply, exit_code);
+  add_live_network_options(command, settings);
+  command.add_flag("--store", settings.apply.store, "store the parameters of the nodes (1010h) after success");
+  command.add_flag("--start", settings.apply.start, "start all nodes, if all were configured");
+  add_choice(command, "--on-error", settings.on_error, {"abort", "continue", "retry"},
+             "after a node that cannot be configured: abort, continue with the others, or retry");
+  command.add_option("--retries", settings.apply.retries, "of --on-error retry, for each node")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+}
+
+}  // namespace edsc

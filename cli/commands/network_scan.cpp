@@ -1,0 +1,74 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "commands/commands.hpp"
+#include "network/describe_network.hpp"
+#include "online/scan.hpp"
+#include "shared/define_command.hpp"
+#include "shared/exit_code.hpp"
+#include "shared/live_options.hpp"
+#include "shared/output.hpp"
+#include "shared/with_bus.hpp"
+#include "text/counted.hpp"
+#include "text/printable.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr const char* examples = R"(Examples:
+  edsc network scan socketcan:can0 --sheets eds --bit-rate 500 -o plant.json
+  edsc network scan socketcan:can0 --sheets eds --nodes 1..10      a part of the bus, to standard output)";
+
+struct Settings {
+  std::string bus;
+  std::string folder;
+  std::string output;
+  ScanOptions scan;
+  std::optional<unsigned> bit_rate;
+};
+
+int scan_network(LiveBus& bus, const Settings& settings, const SheetFolder& sheets) {
+  std::vector<FoundNode> found;
+  scan(bus, settings.scan.parsed(), found);
+  if (found.empty()) fail("no node answers on " + settings.bus, exit_device_failed);
+  DescribeSettings describe;
+  describe.folder = std::filesystem::path{settings.output}.parent_path().string();
+  describe.bit_rate = settings.bit_rate;
+  const DescribedNetwork network = describe_network(found, sheets.files, describe);
+  std::vector<std::string> inputs;
+  for (const SheetFile& file : sheets.files) inputs.push_back(file.path);
+  write_output(settings.output, network.text, inputs);
+  for (const std::string& note : network.notes) print_visibly(stderr, "edsc: {}\n", note);
+  if (!settings.bit_rate) print_visibly(stderr, "edsc: the bit rate is not known; --bit-rate states it\n");
+  for (const std::string& error : network.errors) print_visibly(stderr, "edsc: {}\n", error);
+  if (!settings.output.empty()) {
+    print_visibly(stdout, "{}: {} of {}\n", settings.output, found.size() - network.errors.size(),
+                  counted(found.size(), "node"));
+  }
+  return network.errors.empty() ? exit_fine : exit_device_failed;
+}
+
+int run_scan(const Settings& settings) {
+  const SheetFolder sheets = read_sheet_folder(settings.folder);
+  for (const std::string& problem : sheets.problems) print_visibly(stderr, "edsc: {}\n", problem);
+  if (sheets.files.empty()) fail(settings.folder + " does not contain an EDS, DCF or XDD file");
+  return with_bus(settings.bus, [&](LiveBus& bus) { return scan_network(bus, settings, sheets); });
+}
+
+}  // namespace
+
+void add_network_scan_options(CLI::App& command, int& exit_code) {
+  Settings& settings = define_command(command, examples, run_scan, exit_code);
+  add_bus_argument(command, settings.bus);
+  command.add_option("--sheets", settings.folder, "folder with EDS, DCF and XDD files, and its subfolders")
+      ->required()
+      ->type_name("FOLDER");
+  command.add_option("-o,--output", settings.output, "network file to write (default: standard output)")
+      ->type_name("FILE");
+  command.add_option("--bit-rate", settings.bit_rate, "kbit/s of the bus")->check(CLI::Range(10, 1000));
+  add_scanned_nodes(command, settings.scan);
+}
+
+}  // namespace edsc
