@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cctype>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -115,10 +114,8 @@ class NetworkText {
   std::string name_of(const FoundNode& node, const SheetFile& sheet) {
     const bool is_usable = !sheet.node_name.empty() && sheet.node_name.find('.') == std::string::npos;
     if (is_usable && names_.insert(sheet.node_name).second) return sheet.node_name;
-    std::string name = to_lower(fs::path{sheet.path}.stem().string());
-    for (char& c : name) {
-      if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
-    }
+    std::string name = fs::path{sheet.path}.stem().string();
+    for (char& c : name) c = is_letter(c) || is_digit(c) ? to_lower(c) : '_';
     name += fmt::format("_{}", node.node_id);
     while (!names_.insert(name).second) name += '_';
     return name;

@@ -29,7 +29,8 @@ std::vector<std::string> sheet_paths(const std::string& folder, std::vector<std:
   fs::recursive_directory_iterator at{folder, fs::directory_options::skip_permission_denied, error};
   for (; !error && at != fs::recursive_directory_iterator{}; at.increment(error)) {
     std::error_code of_file;
-    const std::string extension = to_lower(at->path().extension().string());
+    std::string extension = at->path().extension().string();
+    std::ranges::transform(extension, extension.begin(), to_lower);
     const bool is_sheet = std::ranges::find(extensions, extension) != extensions.end();
     if (is_sheet && at->is_regular_file(of_file)) paths.push_back(at->path().string());
   }
