@@ -13,7 +13,8 @@ from live import EDSC, FINE, LiveTest, run
 
 PLANT = """{
   "bit_rate": 500,
-  "nodes": {"a": {"node_id": 5, "eds": "device.eds"}, "b": {"node_id": 6, "eds": "device.eds", "set": {"speed": 1200}}},
+  "nodes": {"a": {"node_id": 5, "eds": "device.eds", "serial_number": 256},
+            "b": {"node_id": 6, "eds": "device.eds", "serial_number": 257, "set": {"speed": 1200}}},
   "signals": [{"from": "a", "object": "position_actual_value", "to": "b.target_velocity", "event": true}]
 }
 """
