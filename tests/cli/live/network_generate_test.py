@@ -13,7 +13,8 @@ from live import EDSC, FINE, LiveTest, run
 
 PLANT = """{
   "bit_rate": 500,
-  "nodes": {"a": {"node_id": 5, "eds": "device.eds"}, "b": {"node_id": 6, "eds": "device.eds", "set": {"speed": 1200}}},
+  "nodes": {"a": {"node_id": 5, "eds": "device.eds", "serial_number": 256},
+            "b": {"node_id": 6, "eds": "device.eds", "serial_number": 257, "set": {"speed": 1200}}},
   "signals": [{"from": "a", "object": "position_actual_value", "to": "b.target_velocity", "event": true}]
 }
 """
@@ -33,11 +34,14 @@ class Generated(LiveTest):
 
     def expect_link(self) -> None:
         """Node 5 sends its position, 123456, on entering Operational; node 6 gets it as target velocity."""
-        self.expect(self.edsc("nmt", "start", 6, "--wait", 60_000), FINE)
-        self.expect(self.edsc("nmt", "start", 5, "--wait", 60_000), FINE)
+        client = self.network.client()
+        self.expect(self.edsc("nmt", "start", 6), FINE)
+        self.expect(self.edsc("nmt", "start", 5), FINE)
+        while client.receive() != "185 40 E2 01 00":
+            pass
         self.expect(self.edsc("read", 6, "60FFh", "2004h", "--eds", "device.eds"), FINE,
                     "60FFh:00 Target velocity = 123456 inc/s\n2004h:00 Speed = 1200 rpm\n")
-        self.assertIn("185 40 E2 01 00", self.network.frames("185"))
+        self.network.close()
 
     def test_configured_by_the_dcfs(self) -> None:
         for node, name in ((5, "a"), (6, "b")):
