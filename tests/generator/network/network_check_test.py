@@ -1,0 +1,110 @@
+#!/usr/bin/env python3
+"""edsc network check: hostile network files, and settings and signals that meet each other; the examples have no findings.
+
+    network_check_test.py SOURCE_DIR EDSC
+
+The expected findings are the rule and, where a position matters, its line and column, counted by hand.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+TEXTS = {  # name: (text, exit code, findings as (severity, rule, line, column))
+    "null": ("null", 1, [("error", "network-file", 1, 1)]),
+    "number_too_large": ('{"bit_rate": 1e999}', 1, [("error", "network-syntax", 1, 1)]),
+    "value_out_of_range": ('{"bit_rate": -5, "nodes": {"m": {"node_id": 1, "master": true}}}', 1,
+                           [("error", "network-file", 1, 14)]),
+    "comment_with_slash": ('/*/ " */ { // "\n "x": 1, "bit_rate": 500,\n /**/ "nodes": {"m": {"node_id": 1, "master": true}}}', 1,
+                           [("error", "network-file", 2, 2)]),
+    "escape_in_a_name": ('{"bit_rate": 500, "a\\"b": 1, "nodes": {"m": {"node_id": 1, "master": true}}}', 1,
+                         [("error", "network-file", 1, 19)]),
+    "duplicate_member": ('{"bit_rate": 500, "nodes": {"m": {"node_id": 2},\n "m": {"node_id": 1, "master": true}}}', 1,
+                         [("error", "network-syntax", 2, 2)]),
+    "name_with_line_end": ('{"bit_rate": 500, "nodes": {"m": {"node_id": 1, "master": true},\n "a/b": {"node_id": 2, '
+                           '"master": true}}}', 1, [("error", "network-file", 2, 2)]),
+    "reserved_overflow": ('{"bit_rate": 500, "sync": {"overflow": 1}, "nodes": {"m": {"node_id": 1, "master": true}}}', 1,
+                          [("error", "network-file", 1, 40)]),
+}
+
+
+def signal(source: str, entry: str, *receivers: str, **timing: object) -> dict:
+    return {"from": source, "object": entry, "to": list(receivers), **(timing or {"every_ms": 10})}
+
+
+def network(*signals: dict, **nodes: dict) -> dict:
+    slave = {"eds": "node.eds", "heartbeat_ms": 100}
+    return {"bit_rate": 500, "sync": {"producer": "m", "period_us": 10000},
+            "nodes": {"m": {"node_id": 127, "master": True}, "a": {"node_id": 1, **slave}, "b": {"node_id": 2, **slave},
+                      "c": {"node_id": 3, **slave}, **nodes},
+            "signals": list(signals)}
+
+
+SPEED = ("a", "2000h", "b.2002h", "m")
+NODE_A = {"node_id": 1, "eds": "node.eds", "heartbeat_ms": 100}
+NETWORKS = {  # name: (network, errors and warnings as severity and rule)
+    "one_sender_for_several_nodes": (network(signal("a", "2001h", "b.2003h", "c.2003h", "m")), []),
+    "two_signals_set_one_entry": (network(signal("a", "2001h", "b.2003h"), signal("c", "2001h", "b.2003h")),
+                                  [("warning", "network-signal")]),
+    "event_false": (network(signal(*SPEED, event=False)), [("error", "network-file")]),
+    "heartbeat_by_set": (network(a={"node_id": 1, "eds": "node.eds", "set": {"1017h": 200}}), []),
+    "longest_heartbeat": (network(a={"node_id": 1, "eds": "node.eds", "heartbeat_ms": 65535}),
+                          [("warning", "network-unmonitored")]),
+    "timeout_too_short": (network(a={**NODE_A, "heartbeat_timeout_ms": 50}), [("error", "network-heartbeat")]),
+    "timeout_of_a_master_with_a_file": (
+        network(m={"node_id": 127, "master": True, "eds": "node.eds"}, a={**NODE_A, "heartbeat_timeout_ms": 500}),
+        [("error", "network-value")] + [("warning", "network-unmonitored")]),
+    "configured_pdo_is_not_changed": (
+        network(signal(*SPEED),
+                a={**NODE_A, "set": {"1A00h:00": 1, "1A00h:01": "0x20010020", "1800h:01": "0x1A5", "1800h:05": 10}}), []),
+    "configured_pdo_is_used": (
+        network(signal(*SPEED),
+                a={**NODE_A, "set": {"1A00h:00": 1, "1A00h:01": "0x20000010", "1800h:01": "0x1A5"}}), []),
+    "second_master_without_a_file": (network(m2={"node_id": 126, "master": True}), [("warning", "network-nmt-master")]),
+    "node_without_a_file": (network(x={"node_id": 4}), [("error", "network-file")]),
+    "signals_of_an_unreadable_node": (
+        network(signal("x", "2000h", "m"), signal("a", "2000h", "x.2002h"), x={"node_id": 4, "eds": "missing.eds"}),
+        [("error", "network-file")]),
+}
+
+
+def check(edsc: Path, folder: Path, name: str, text: str) -> tuple[int, list[dict]]:
+    path = folder / f"{name}.json"
+    path.write_text(text, encoding="utf-8")
+    ran = subprocess.run([edsc, "network", "check", path, "--format", "json"], capture_output=True, text=True)
+    return ran.returncode, json.loads(ran.stdout)["diagnostics"] if ran.stdout else []
+
+
+def main() -> int:
+    source, edsc = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+    problems = []
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary)
+        (folder / "node.eds").write_bytes((Path(__file__).parent / "node.eds").read_bytes())
+        for name, (text, code, expected) in TEXTS.items():
+            got_code, found = check(edsc, folder, name, text)
+            places = [(one["severity"], one["rule"], one["line"], one["column"]) for one in found
+                      if one["severity"] == "error"]
+            if (got_code, places) != (code, expected):
+                problems.append(f"{name}: expected {code} {expected}, got {got_code} {places}")
+        for name, (value, expected) in NETWORKS.items():
+            _, found = check(edsc, folder, name, json.dumps(value))
+            rules = [(one["severity"], one["rule"]) for one in found if one["severity"] != "note"]
+            if rules != expected:
+                problems.append(f"{name}: expected {expected}, got {[one['message'] for one in found]} {rules}")
+    examples = sorted((source / "examples/networks").glob("*.json"))
+    for example in examples:
+        ran = subprocess.run([edsc, "network", "check", example, "--strict"], capture_output=True, text=True)
+        if ran.returncode != 0:
+            problems.append(f"{example.name}:\n{ran.stdout}{ran.stderr}")
+    print("\n".join(problems))
+    print(f"{len(TEXTS) + len(NETWORKS)} networks, {len(examples)} examples, {len(problems)} problems")
+    return 1 if problems or not examples else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
