@@ -77,6 +77,9 @@ class NetworkText {
                                    best.is_dcf ? "dcf" : "eds", quoted(beside_network_file(best.path)));
     const std::uint32_t heartbeat = node.heartbeat_ms.value_or(best.heartbeat_ms);
     if (best.has_heartbeat && heartbeat != best.heartbeat_ms) line += fmt::format(", \"heartbeat_ms\": {}", heartbeat);
+    if (const std::uint32_t serial_number = node.identity.serial_number.value_or(0); serial_number != 0) {
+      line += fmt::format(", \"serial_number\": {}", serial_number);
+    }
     last_node_ = lines_.size();
     lines_.push_back(line + "}");
     is_node_.push_back(true);

@@ -1,0 +1,208 @@
+#!/usr/bin/env python3
+"""edsc network scan, verify and apply with live nodes on the virtual bus of `edsc bus`.
+
+    network_commands_test.py SOURCE_DIR EDSC LIVE_NODES [unittest arguments]
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from pathlib import Path
+
+from live import EDSC, FAILED, FINE, PATIENCE_MS, SHEET, LiveTest, run
+
+
+class NetworkCommands(LiveTest):
+    nodes = (5, 6)
+
+    def plant(self, nodes: dict, **members: object) -> Path:
+        path = self.folder / "plant.json"
+        path.write_text(json.dumps({"bit_rate": 500, "nodes": nodes, **members}, indent=2) + "\n")
+        return path
+
+    def two_axes(self, **settings: object) -> Path:
+        """`axis1` with these values, `axis2` without."""
+        return self.plant({"axis1": {"node_id": 5, "serial_number": 0x100, "eds": "device.eds", "set": settings},
+                           "axis2": {"node_id": 6, "serial_number": 0x101, "eds": "device.eds", "set": {"2004h": 1100}}})
+
+    def network_command(self, action: str, *arguments: object,
+                        timeout: int = PATIENCE_MS) -> subprocess.CompletedProcess[str]:
+        return subprocess.run([str(EDSC), "network", action, self.network.address, *map(str, arguments), "--timeout",
+                               str(timeout)], cwd=self.folder, capture_output=True, text=True, timeout=600)
+
+    def expect_nothing_started(self) -> None:
+        self.assertFalse([frame for frame in self.network.frames("000") if frame.startswith("000 01")])
+
+    def expect_nothing_written(self) -> None:
+        frames = self.network.frames("000", "605", "606", "607")
+        self.assertFalse([frame for frame in frames if frame.startswith("000 01") or frame[4] == "2"])
+
+    def fake_axis(self, *after_download: str, after_upload: tuple[str, ...] = ()) -> None:
+        """Adds a node 7 with the identity of the EDS, which sends these frames after each response."""
+        values = {"00 10 00": "92 01 02 00", "18 10 01": "EF CD AB 00", "18 10 02": "01 10 00 00",
+                  "18 10 03": "02 00 01 00", "04 20 00": "E8 03", "05 20 00": "B8 0B"}
+
+        def answer(frame: str) -> list[str]:
+            command, entry = frame[4:6], frame[7:15]
+            if frame[:3] != "607" or command == "80":
+                return []
+            if entry not in values:
+                return [f"587 80 {entry} 00 00 02 06"]
+            if command == "40":
+                size = len(values[entry].split())
+                response = f"587 {'43' if size == 4 else '4B'} {entry} {values[entry]}" + " 00" * (4 - size)
+                return [response, *after_upload]
+            values[entry] = frame[16:21]
+            return [f"587 60 {entry} 00 00 00 00", *after_download]
+
+        self.network.device(answer)
+
+    def three_axes(self) -> Path:
+        eds = {"eds": "device.eds"}
+        return self.plant({"axis1": {"node_id": 5, "serial_number": 0x100, **eds, "set": {"2004h": 1200}},
+                           "axis3": {"node_id": 7, "serial_number": 0, **eds, "set": {"2004h": 1300, "2005h": 2900}},
+                           "axis2": {"node_id": 6, "serial_number": 0x101, **eds, "set": {"2004h": 1100}}})
+
+    def test_a_good_plant(self) -> None:
+        self.plant({"axis1": {"node_id": 5, "serial_number": 0x100, "eds": "device.eds", "heartbeat_ms": 250},
+                    "axis2": {"node_id": 6, "serial_number": 0x101, "eds": "device.eds", "set": {"2004h": 1200}}})
+        self.expect(self.network_command("verify", "plant.json"), FAILED, """\
+node axis1 (5): 1017h:00 Producer heartbeat time is 0 ms, expected 250 ms
+node axis1 (5): 1 of 1 value differs
+node axis2 (6): 2004h:00 Speed is 1000 rpm, expected 1200 rpm
+node axis2 (6): 1 of 1 value differs
+0 of 2 nodes as in plant.json
+""")
+        self.expect(self.network_command("apply", "plant.json", "--store", "--start"), FINE, """\
+node axis1 (5): 1017h:00 Producer heartbeat time: 0 ms -> 250 ms
+node axis2 (6): 2004h:00 Speed: 1000 rpm -> 1200 rpm
+axis1: node 5: 1 of 1 value differs; 1 of 1 value written, 1 verified, 1020h written
+axis2: node 6: 1 of 1 value differs; 1 of 1 value written, 1 verified, 1020h written
+2 of 2 nodes configured, stored, started
+""")
+        self.expect(self.network_command("verify", "plant.json"), FINE, """\
+node axis1 (5): 0 of 1 value differ
+node axis2 (6): 0 of 1 value differ
+2 of 2 nodes as in plant.json
+""")
+        frames = self.network.frames("000", "605", "606")
+        written = [frame for frame in frames if frame[:3] == "000" or (frame[4] == "2" and frame[7:12] != "20 10")]
+        self.assertEqual(written, ["000 80 05", "000 80 06", "605 2B 17 10 00 FA 00 00 00", "606 2B 04 20 00 B0 04 00 00",
+                                   "605 23 10 10 01 73 61 76 65", "606 23 10 10 01 73 61 76 65",
+                                   "000 01 05", "000 01 06"])
+
+    def test_a_missing_node(self) -> None:
+        self.three_axes()
+        result = self.network_command("apply", "plant.json", "--start", timeout=1000)
+        self.expect(result, FAILED, stderr="edsc: node axis3 (7) does not answer\nedsc: nothing written\n")
+        result = self.network_command("verify", "plant.json", "--format", "json", timeout=1000)
+        found = self.expect_json(result, "network_verify.schema.json", FAILED)
+        self.assertEqual([(node["name"], node["answers"], node["same"]) for node in found["nodes"]],
+                         [("axis1", True, False), ("axis3", False, False), ("axis2", True, False)])
+        self.assertEqual([(one["index"], one["wanted"], one["found"]) for one in found["nodes"][0]["differences"]],
+                         [(0x2004, "1200 rpm", "1000 rpm")])
+        self.expect_nothing_written()
+
+    def test_another_product(self) -> None:
+        (self.folder / "device.eds").write_text(SHEET.read_text())
+        (self.folder / "other.eds").write_text(SHEET.read_text().replace("0x00001001", "0x00001002"))
+        self.plant({"axis1": {"node_id": 5, "serial_number": 0x100, "eds": "device.eds", "set": {"2004h": 1200}},
+                    "axis2": {"node_id": 6, "serial_number": 0x101, "eds": "other.eds"}})
+        difference = "node axis2 (6) is not the device of other.eds: product code is 00001001h, expected 00001002h\n"
+        self.expect(self.network_command("apply", "plant.json", "--start"), FAILED,
+                    stderr=f"edsc: {difference}edsc: nothing written\n")
+        result = self.network_command("verify", "plant.json")
+        self.assertIn(difference, result.stdout)
+        self.assertEqual(result.returncode, FAILED)
+        self.expect_nothing_written()
+
+    def test_another_mapping(self) -> None:
+        """The network links a TPDO with the mapping of the EDS; the node has stored another one."""
+        self.plant({"axis1": {"node_id": 5, "serial_number": 0x100, "eds": "device.eds"},
+                    "axis2": {"node_id": 6, "serial_number": 0x101, "eds": "device.eds"},
+                    "master": {"node_id": 127, "master": True}},
+                   signals=[{"from": "axis1", "object": "6041h", "to": ["master"], "event": True},
+                            {"from": "axis1", "object": "6064h", "to": ["master"], "event": True}])
+        self.edsc("write", 5, "1800h:01", 0x80000185, "--type", "u32")
+        self.edsc("write", 5, "1A00h:00", 0, "--type", "u8")
+        self.edsc("write", 5, "1A00h:01", 0x60640020, "--type", "u32")
+        self.edsc("write", 5, "1A00h:02", 0x60410010, "--type", "u32")
+        self.edsc("write", 5, "1A00h:00", 2, "--type", "u8")
+        self.edsc("write", 5, "1800h:01", 0x185, "--type", "u32")
+        result = self.network_command("verify", "plant.json")
+        self.assertIn("node axis1 (5): 1A00h:01 TPDO mapping parameter 1, Mapping entry 1 is 60640020h, "
+                      "expected 60410010h\n", result.stdout)
+        self.assertEqual(result.returncode, FAILED)
+        self.assertEqual(self.network_command("apply", "plant.json").returncode, FINE)
+        self.assertEqual(self.network_command("verify", "plant.json").returncode, FINE)
+
+    def test_a_refused_value(self) -> None:
+        self.two_axes(**{"2004h": 4000})
+        result = self.network_command("apply", "plant.json", "--start", "--store")
+        self.assertEqual(result.returncode, FAILED)
+        self.assertIn("error: node axis1 (5): 2004h:00 Speed = 4000 rpm: refused by the device: 0609 0031h, value too high",
+                      result.stderr)
+        self.assertTrue(result.stdout.endswith("0 of 2 nodes configured; none started\n"), result.stdout)
+        self.expect(self.edsc("read", 6, "2004h", "--type", "u16"), FINE, "2004h:00 = 1000\n")
+        result = self.network_command("apply", "plant.json", "--start", "--on-error", "continue", "--format", "json")
+        found = self.expect_json(result, "network_apply.schema.json", FAILED)
+        self.assertEqual([(node["name"], node["succeeded"], node["attempts"]) for node in found["nodes"]],
+                         [("axis1", False, 1), ("axis2", True, 1)])
+        result = self.network_command("apply", "plant.json", "--on-error", "retry", "--retries", 2, "--format", "json")
+        self.assertEqual([node["attempts"] for node in self.expect_json(result, "network_apply.schema.json", FAILED)["nodes"]],
+                         [3, 0])
+        self.expect_nothing_started()
+
+    def test_two_nodes_with_one_node_id(self) -> None:
+        self.three_axes()
+        self.fake_axis(after_upload=("587 43 18 10 04 01 00 00 00",))
+        self.expect(self.network_command("apply", "plant.json", "--start"), FAILED,
+                    stderr="edsc: node axis3 (7): an SDO request got more than one response; two nodes may have node-ID 7\n"
+                           "edsc: nothing written\n")
+        self.expect_nothing_written()
+
+    def test_a_node_that_restarts_in_the_middle(self) -> None:
+        self.three_axes()
+        self.fake_axis("707 00")
+        result = self.network_command("apply", "plant.json", "--start", "--store")
+        self.assertEqual(result.returncode, FAILED)
+        self.assertIn("edsc: node axis3 (7) restarted at 2004h:00 Speed while it was configured: it may have lost what "
+                      "was written\n", result.stderr)
+        self.assertTrue(result.stdout.endswith("1 of 3 nodes configured; none started\n"), result.stdout)
+        frames = self.network.frames("000", "605", "606", "607")
+        self.assertFalse([frame for frame in frames if frame.startswith("000 01") or frame[4:15] == "23 10 10 01"])
+
+    def test_scan_writes_the_network_file(self) -> None:
+        sheets = self.folder / "sheets"
+        sheets.mkdir()
+        (sheets / "drive.eds").write_text(SHEET.read_text())
+        (sheets / "newer.eds").write_text(SHEET.read_text().replace("0x00010002", "0x00010003"))
+        self.edsc("write", 6, "1017h", 300, "--type", "u16")
+        some = ("--sheets", "sheets", "--nodes", "5,6,7", "--listen", "100", "-o", "plant.json")
+        result = self.network_command("scan", *some, "--bit-rate", "500", timeout=5000)
+        self.assertEqual((result.stdout, result.returncode), ("plant.json: 2 of 2 nodes\n", FINE), result.stderr)
+        self.assertIn("edsc: node 5: sheets/newer.eds fits too; using sheets/drive.eds\n", result.stderr)
+        text = (self.folder / "plant.json").read_text()
+        found = json.loads("\n".join(line for line in text.splitlines() if not line.strip().startswith("//")))
+        self.assertEqual(found, {"bit_rate": 500, "nodes": {
+            "drive_5": {"node_id": 5, "eds": "sheets/drive.eds", "serial_number": 0x100},
+            "drive_6": {"node_id": 6, "eds": "sheets/drive.eds", "heartbeat_ms": 300, "serial_number": 0x101}}})
+        check = subprocess.run([EDSC, "network", "check", "plant.json"], cwd=self.folder, capture_output=True, text=True,
+                               timeout=600)
+        self.assertEqual(check.returncode, FINE, check.stdout + check.stderr)
+        self.assertEqual(self.network_command("verify", "plant.json").returncode, FINE)
+
+    def test_scan_of_a_node_without_a_file(self) -> None:
+        sheets = self.folder / "sheets"
+        sheets.mkdir()
+        (sheets / "other.eds").write_text(SHEET.read_text().replace("0x00001001", "0x00001002"))
+        result = self.network_command("scan", "--sheets", "sheets", "--nodes", "5", "--listen", "100", timeout=5000)
+        self.assertEqual(result.returncode, FAILED)
+        self.assertIn("edsc: node 5: no file fits; the closest is sheets/other.eds: product code is 00001001h, "
+                      "expected 00001002h\n", result.stderr)
+        self.assertIn('// "node_5": {"node_id": 5, "serial_number": 0x100, "eds": ""}', result.stdout)
+
+
+if __name__ == "__main__":
+    run()
