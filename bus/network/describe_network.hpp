@@ -21,7 +21,8 @@ struct DescribedNetwork {
   std::vector<std::string> errors;  ///< about nodes without a file
 };
 
-/// Each node gets the file that fits best, and the heartbeat time and serial number that it has. Nodes without a file are comments.
+/// Each node gets the file that fits best, and the heartbeat time and serial number that it has. Nodes without a file
+/// are comments.
 [[nodiscard]] DescribedNetwork describe_network(const std::vector<FoundNode>& nodes,
                                                 const std::vector<SheetFile>& sheets, const DescribeSettings& settings);
 
