@@ -175,7 +175,7 @@ class HostSide:
                 process.send_signal(signal.SIGINT)
         watchdog.cancel()
         self.check("monitor", (process.wait(), sorted(told)), (0, sorted(words)))
-        self.check("monitor, state", "operational" in told.get("heartbeat", ""), True)
+        self.check("monitor, state", bool(re.search(r"(?<!pre-)operational", told.get("heartbeat", ""))), True)
         if index is not None:
             self.check("monitor, values", told.get("TPDO", "").count(" = "), self.sheet.default(index + 0x200))
 

@@ -188,6 +188,28 @@ TEST(SlcanPort, SendsUrgentFramesFirstWhenTheLineIsFull) {
   EXPECT_GE(line.size() - line.find("t0800\r"), 63 * heartbeat.size()) << "it has overtaken those that waited";
 }
 
+TEST(SlcanPort, LeavesTheFramesOfAnEarlierPortOnTheLine) {
+  Device device;
+  const std::string_view heartbeat = "t705105\r";
+  constexpr std::size_t frames = 700;  // more than the adapter's end holds: flushing the line discards the rest
+  {
+    std::optional<HostBus> bus;
+    {
+      const Worker worker{[&] { device.work(); }};
+      bus.emplace("slcan:" + device.name());
+    }
+    for (std::size_t i = 0; i < frames; ++i) ASSERT_TRUE(bus->send(bench::frame("705 05")));
+    ASSERT_EQ(bus->waiting(), 0u) << "all are on the line";
+  }
+  const HostBus next{"slcan:" + device.name()};
+  std::string line;
+  for (std::string part = read_some(device.line()); !part.empty(); part = read_some(device.line())) line += part;
+  std::size_t found = 0;
+  for (std::size_t at = line.find(heartbeat); at != line.npos; at = line.find(heartbeat, at + 1)) ++found;
+  EXPECT_EQ(found, frames);
+  EXPECT_TRUE(line.ends_with("\rC\rO\r")) << "and the next port opens the channel after them";
+}
+
 TEST(SlcanPort, HasAnEventWhenAFullLineHasRoomAgain) {
   Device device;
   std::optional<HostBus> bus;

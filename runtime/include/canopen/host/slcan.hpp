@@ -58,7 +58,8 @@ class SlcanPort : public StreamPort<SlcanHost> {
     settings.c_cflag |= CLOCAL | CREAD;
     if (baud != 0) ::cfsetspeed(&settings, line_rate(baud));
     if (::tcsetattr(line.number(), TCSANOW, &settings) != 0) throw_errno(device);
-    static_cast<void>(::tcflush(line.number(), TCIOFLUSH));
+    // Input only: the adapter may not have received the last frames of an earlier port yet.
+    static_cast<void>(::tcflush(line.number(), TCIFLUSH));
     return line;
   }
 
