@@ -85,7 +85,7 @@ void choose_values(const SavedDcfInput& input, SavedDcf& saved) {
     if (!(input.all && !by_clause) && !choice.takes(value)) continue;
     if (auto text = parameter_text(entry, value.bytes)) {
       saved.values[&entry] = std::move(*text);
-    } else if (!value.bytes.empty()) {
+    } else if (!value.bytes.empty() || entry.type->bits != 0) {
       report_not_expressible(value, saved);
     }
   }

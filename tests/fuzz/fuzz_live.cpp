@@ -11,6 +11,7 @@
 #include "configure/read_configuration.hpp"
 #include "decode/decoder.hpp"
 #include "device/types/value_bytes.hpp"
+#include "format/dcf/parameter_text.hpp"
 #include "live_port.hpp"
 #include "load/load_device.hpp"
 #include "monitor/monitor_view.hpp"
@@ -74,8 +75,9 @@ void read_node(LiveBus& bus, const Axis& axis) {
           "each entry counts once");
   for (const ReadValue& value : found.values) {
     const unsigned bits = value.entry.type->bits;
-    require(bits == 0 ? value.bytes.size() <= 4096 : value.bytes.size() == (bits + 7u) / 8u,
-            "a value has the size of its type");
+    require(value.bytes.size() <= 4096, "a value has no more bytes than allowed");
+    require(bits == 0 || value.bytes.size() == (bits + 7u) / 8u || !parameter_text(*value.entry.entry, value.bytes),
+            "a value that does not have the size of its type is not saved");
   }
 }
 

@@ -176,6 +176,14 @@ class SaveOfForeignSlaves(LiveTest):
             "edsc: 2000h:00 Speed: a DCF cannot hold the value 4660 (00001234h) (4 bytes, UNSIGNED16 has 2)",
             'edsc: 2001h:00 Label: a DCF cannot hold the value "two\\x0Alines"'])
 
+    def test_a_number_without_bytes_is_listed(self) -> None:
+        slave = self.slave()
+        slave.entries[(0x2000, 0)] = b""
+        result = self.edsc("save", 5, "foreign.eds", "-o", "axis.dcf")
+        self.assertEqual(result.returncode, FAILED)
+        self.assertEqual(result.stderr.splitlines()[-1],
+                         "edsc: 2000h:00 Speed: a DCF cannot hold the value nothing (0 bytes, UNSIGNED16 has 2)")
+
 
 if __name__ == "__main__":
     run()
