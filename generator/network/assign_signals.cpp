@@ -21,7 +21,7 @@ namespace edsc {
 namespace {
 
 constexpr unsigned max_bits = 64;
-constexpr std::size_t max_entries = 8;            // of a new PDO, as in devices with 8 entries
+constexpr std::size_t max_entries = 8;  // of a new PDO, as in devices with 8 entries
 constexpr std::uint8_t max_sub_index = 254;
 constexpr std::uint32_t max_can_id = 0x6DF;       // the IDs above are restricted
 constexpr std::uint16_t first_received = 0x2000;  // of a master without a file: + node-ID of the sender
