@@ -62,7 +62,7 @@ inline constexpr CommandRow commands[] = {
     {"Bus", "conform", "test a node against CiA 301 and its EDS", add_conform_options},
     {"Bus", "bus", "virtual CAN buses on this machine, for socketcand clients", add_bus_options},
     {"Logs", "record", "write the frames of a bus as a candump log", add_record_options},
-    {"Logs", "decode", "decode the frames of a candump log", add_decode_options},
+    {"Logs", "decode", "decode the frames of a log", add_decode_options},
     {"Shell", "completion", "print the completion for a shell, or the manual page", add_completion_options},
 };
 

@@ -33,8 +33,7 @@ class NodeLabels {
 /// One line: time, interface, CAN-ID, data, service, node and meaning.
 void append_text(std::string& out, const LogLine& line, const Message& message, const NodeLabels& labels, bool color);
 
-/// One JSON object on a line, by docs/schema/message.schema.json. `line_number` counts from 1.
-void append_json(std::string& out, const LogLine& line, std::size_t line_number, const Message& message,
-                 const NodeLabels& labels);
+/// One JSON object on a line, by docs/schema/message.schema.json.
+void append_json(std::string& out, const LogLine& line, const Message& message, const NodeLabels& labels);
 
 }  // namespace edsc
