@@ -23,16 +23,18 @@ class TextSource final : public LogSource {
 
   [[nodiscard]] bool next(LogLine& line) override {
     std::string_view text;
-    if (!reader_.next(text)) return false;
+    if (at_end_ || !reader_.next(text)) return false;
     line = parser_.parse(text);
     line.number = reader_.line_number();
     line.text = text;
+    at_end_ = line.kind == LogLineKind::unreadable;
     return true;
   }
 
  private:
   LogReader reader_;
   Parser parser_;
+  bool at_end_ = false;
 };
 
 template <class Parser>

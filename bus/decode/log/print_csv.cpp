@@ -56,6 +56,7 @@ constexpr CsvColumn csv_columns[] = {
      [](std::string& out, const CsvRecord& of) {
        if (of.message.number != 0) append_decimal(out, of.message.number);
      }},
+    {"step", [](std::string& out, const CsvRecord& of) { out += step_name(of.message.step); }},
     {"object",
      [](std::string& out, const CsvRecord& of) {
        if (of.value != nullptr) append_entry_label(out, of.value->index, of.value->sub_index);

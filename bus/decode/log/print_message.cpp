@@ -101,12 +101,10 @@ void append_values(std::string& out, const Message& message) {
   out += ']';
 }
 
-constexpr std::string_view step_names[] = {"", "part", "finished", "aborted"};
-
 void append_transfer(std::string& out, const Message& message) {
   append_key(out, "transfer");
   out += message.download ? "{\"direction\":\"download\"" : "{\"direction\":\"upload\"";
-  append_member(out, "step", step_names[static_cast<std::size_t>(message.step)]);
+  append_member(out, "step", step_name(message.step));
   append_member(out, "index", message.index);
   append_member(out, "sub_index", message.sub_index);
   append_member(out, "bytes", message.size);
@@ -136,6 +134,11 @@ void NodeLabels::pad() {
     const std::size_t size = count_code_points(label);
     if (size < width) label.append(width - size, ' ');
   }
+}
+
+std::string_view step_name(TransferStep step) {
+  constexpr std::string_view names[] = {"", "part", "finished", "aborted"};
+  return names[static_cast<std::size_t>(step)];
 }
 
 std::string service_label(const Message& message) {

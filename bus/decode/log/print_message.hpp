@@ -27,6 +27,9 @@ class NodeLabels {
   std::array<std::string, 128> names_, padded_;
 };
 
+/// `part`, `finished`, `aborted`; empty for none.
+[[nodiscard]] std::string_view step_name(TransferStep step);
+
 /// `TPDO 2`, `SDO >`
 [[nodiscard]] std::string service_label(const Message& message);
 
