@@ -31,11 +31,11 @@ constexpr LineColor line_colors[] = {{"#0072b2", "#56b4e9"}, {"#d55e00", "#ff8c4
 
 std::string style_text() {
   std::string style =
-      "\nsvg { background: #ffffff; font: 12px sans-serif }\n"
+      "\nsvg { font: 12px sans-serif }\n.background { fill: #ffffff }\n"
       "text { fill: #222222 }\n.title { font-size: 16px }\n.frame { fill: none; stroke: #888888 }\n"
       ".grid { stroke: #dddddd }\n.line { fill: none; stroke-width: 1.5; stroke-linecap: round; stroke-linejoin: round }\n";
   std::string dark =
-      "svg { background: #181818 }\ntext { fill: #eeeeee }\n.frame { stroke: #999999 }\n.grid { stroke: #3a3a3a }\n";
+      ".background { fill: #181818 }\ntext { fill: #eeeeee }\n.frame { stroke: #999999 }\n.grid { stroke: #3a3a3a }\n";
   for (std::size_t i = 0; i < std::size(line_colors); ++i) {
     style += fmt::format(".c{} {{ stroke: {} }}\n", i, line_colors[i].light);
     dark += fmt::format(".c{} {{ stroke: {} }}\n", i, line_colors[i].dark);
@@ -253,6 +253,9 @@ std::string plot_svg(const Plot& plot) {
   }
   svg.append_child("desc").text().set(printable(description).c_str());
   svg.append_child("style").text().set(style_text().c_str());
+  pugi::xml_node background = append_element(svg, "rect", "background");
+  background.append_attribute("width").set_value("100%");
+  background.append_attribute("height").set_value("100%");
   append_text_at(svg, plot_left, title_height - 12, "start", plot.title).append_attribute("class").set_value("title");
   double y = title_height;
   for (const Panel& panel : panels) {
