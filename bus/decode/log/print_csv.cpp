@@ -76,7 +76,10 @@ constexpr CsvColumn csv_columns[] = {
        if (of.value != nullptr) append_field_text(out, of.value->unit);
      }},
     {"problem", [](std::string& out, const CsvRecord& of) { out += of.message.problem ? "true" : "false"; }},
-    {"text", [](std::string& out, const CsvRecord& of) { append_field_text(out, of.message.text); }},
+    {"text",
+     [](std::string& out, const CsvRecord& of) {
+       append_field_text(out, of.value != nullptr ? text_of_value(of) : std::string_view{of.message.text});
+     }},
 };
 
 void append_record(std::string& out, const CsvRecord& record) {

@@ -12,7 +12,7 @@ namespace edsc {
 /// The names of the columns, as a record.
 void append_csv_header(std::string& out);
 
-/// A record for each value of the message, or one without a value.
+/// A record for each value of the message, with its text; or one without a value, with the text of the message.
 void append_csv(std::string& out, const LogLine& line, const Message& message, const NodeLabels& labels);
 
 }  // namespace edsc

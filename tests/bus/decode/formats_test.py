@@ -173,8 +173,9 @@ class Formats(unittest.TestCase):
             one = json.loads(line)
             for value in one.get("values", [None]):
                 row = next(records)
+                text = one["text"] if value is None else value["text"]
                 self.assertEqual((row["line"], row["time"], row["bus"], row["data"], row["service"], row["text"]),
-                                 (str(one["line"]), one["time"], one["interface"], one["data"], one["service"], one["text"]))
+                                 (str(one["line"]), one["time"], one["interface"], one["data"], one["service"], text))
                 self.assertEqual(row["node"], str(one.get("node", "")))
                 self.assertEqual(row["problem"], "true" if one.get("problem") else "false")
                 if value is None:
