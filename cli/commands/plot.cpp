@@ -155,6 +155,7 @@ int plot(const Settings& settings) {
     if (log.frames % some_frames == 0 && progress.due()) progress.show(counted(log.frames, "frame"));
   };
   const auto fail_if_unreadable = read_log(settings, use, print_complaints);
+  decoder.finish(complaints);
   print_complaints();
   progress.hide();
   fail_if_unreadable();

@@ -60,7 +60,7 @@ LogLine AscParser::parse_event(std::string_view time, std::string_view rest) {
   LogLine line;
   const auto microseconds = parse_decimal(time, 6);
   if (!microseconds) return broken(line, "the time is not a number of seconds");
-  sum_ = relative_ ? (sum_ + *microseconds) & INT64_MAX : *microseconds;
+  sum_ = relative_ ? std::min(sum_ + *microseconds, max_log_time_us) : *microseconds;
   line.has_time = true;
   line.microseconds = sum_;
   time_.clear();

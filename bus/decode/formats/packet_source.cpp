@@ -95,7 +95,8 @@ class PacketSource final : public LogSource {
       return true;
     }
     line.has_time = true;
-    line.microseconds = (std::int64_t{header->ts.tv_sec} * 1'000'000 + header->ts.tv_usec) & INT64_MAX;
+    const std::int64_t seconds = std::clamp<std::int64_t>(header->ts.tv_sec, 0, max_log_time_us / 1'000'000 - 1);
+    line.microseconds = seconds * 1'000'000 + std::clamp<std::int64_t>(header->ts.tv_usec, 0, 999'999);
     time_.clear();
     append_seconds(time_, line.microseconds);
     line.time = time_;

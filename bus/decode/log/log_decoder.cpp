@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 #include <utility>
 
@@ -52,7 +53,7 @@ void LogDecoder::count_time(LogLine& line) {
   has_time_ = true;
   last_time_ = line.microseconds;
   if (!deltas_) return;
-  sum_ += line.microseconds;
+  sum_ = std::min(sum_ + line.microseconds, max_log_time_us);
   line.microseconds = sum_;
 }
 

@@ -27,6 +27,9 @@ enum class LogLineKind : std::uint8_t {
   unreadable,  ///< broken, as is the rest of the log
 };
 
+/// Times of a log are at most this long after its origin, so that their sums and differences can be computed.
+inline constexpr std::int64_t max_log_time_us = 4'000'000'000'000'000'000;
+
 /// Texts are views of the line, or of its parser.
 struct LogLine {
   LogLineKind kind = LogLineKind::blank;
