@@ -26,6 +26,7 @@ AddOptions add_conform_options;
 AddOptions add_bus_options;
 AddOptions add_record_options;
 AddOptions add_decode_options;
+AddOptions add_plot_options;
 AddOptions add_completion_options;
 
 // Subcommands of `network`.
@@ -62,7 +63,8 @@ inline constexpr CommandRow commands[] = {
     {"Bus", "conform", "test a node against CiA 301 and its EDS", add_conform_options},
     {"Bus", "bus", "virtual CAN buses on this machine, for socketcand clients", add_bus_options},
     {"Logs", "record", "write the frames of a bus as a candump log", add_record_options},
-    {"Logs", "decode", "decode the frames of a candump log", add_decode_options},
+    {"Logs", "decode", "decode the frames of a log", add_decode_options},
+    {"Logs", "plot", "plot values of a log over time, as SVG", add_plot_options},
     {"Shell", "completion", "print the completion for a shell, or the manual page", add_completion_options},
 };
 
