@@ -51,7 +51,6 @@ Json field_view(const Device& device, const PdoEntry& mapped, unsigned start) {
   const bool is_number = mapped.object != nullptr && mapped.object->type->kind != canopen::DataClass::string;
   return {{"x", bit_x(start)},
           {"width", width},
-          {"end", bit_x(start) + width},
           {"text_x", bit_x(start) + text_margin},
           {"text_end", bit_x(start) + width - text_margin},
           {"field_class", mapped.dummy != nullptr    ? "dummy"

@@ -71,7 +71,7 @@ class SyncCycle {
     return {{"cycle_label", label},
             {"cycle_text", time_text(period_)},
             {"window_text", window_ == Nanoseconds{} ? Json(nullptr) : Json(time_text(window_))},
-            {"cycle_view_width", cycle_left + cycle_width + 20},
+            {"cycle_view_width", static_cast<unsigned>(cycle_left + cycle_width + 20)},
             {"cycle_height", height},
             {"cycle_bottom", height - 4},
             {"marks", marks()},

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -16,12 +17,21 @@ namespace {
 
 /// The drawing in units of SVG: a column for each node, a row for each CAN-ID.
 constexpr std::size_t label_width = 150;
-constexpr std::size_t column_width = 132;
 constexpr std::size_t head_height = 52;
 constexpr std::size_t row_height = 34;
 constexpr std::size_t box_width = 118;
 constexpr std::size_t max_name = 16;       ///< characters in the box of a node
 constexpr std::size_t max_row_label = 21;  ///< characters before a row
+
+/// The column of a node, narrower if there are many.
+struct Column {
+  std::size_t width, box;
+  std::size_t max_name;  ///< characters in its box
+};
+
+constexpr Column wide_column{132, 118, 16};
+constexpr Column narrow_column{86, 80, 11};
+constexpr std::size_t max_wide_columns = 8;
 
 /// A CAN-ID, the node that sends it, and those that receive it.
 struct Link {
@@ -48,7 +58,6 @@ std::vector<Link> links_of(const std::vector<CobIdUse>& uses) {
   return links;
 }
 
-std::size_t column_x(std::size_t column) { return label_width + column * column_width + column_width / 2; }
 std::size_t row_y(std::size_t row) { return head_height + row * row_height + row_height / 2 + 6; }
 
 /// `Statusword, Position actual value` of a PDO.
@@ -80,12 +89,13 @@ class Topology {
     for (const Link& link : links_) links.push_back(link_view(link));
     view["has_links"] = !links.empty();
     view["links"] = std::move(links);
-    view["topology"] = links_.empty() ? Json(nullptr) : drawing();
+    view["topology"] = drawn_.empty() ? Json(nullptr) : drawing();
   }
 
  private:
-  [[nodiscard]] std::size_t column_of(const NetworkNode* node) const {
-    return static_cast<std::size_t>(node - network_.nodes.data());
+  [[nodiscard]] std::size_t column_x(const NetworkNode* node) const {
+    const auto number = static_cast<std::size_t>(node - network_.nodes.data());
+    return label_width + number * column_.width + column_.width / 2;
   }
 
   [[nodiscard]] static std::string receivers_text(const Link& link) {
@@ -104,35 +114,34 @@ class Topology {
 
   [[nodiscard]] Json drawing() const {
     Json nodes = Json::array();
-    const std::size_t height = head_height + links_.size() * row_height + 12;
+    const std::size_t height = head_height + drawn_.size() * row_height + 12;
     for (const NetworkNode& node : network_.nodes) {
-      const std::size_t x = column_x(column_of(&node));
+      const std::size_t x = column_x(&node);
       nodes.push_back({{"node_x", x},
-                       {"box_x", x - box_width / 2},
+                       {"box_x", x - column_.box / 2},
                        {"node_name", node.name},
-                       {"node_short", shortened(node.name, max_name)},
+                       {"node_short", shortened(node.name, column_.max_name)},
                        {"node_id", node.node_id},
                        {"role", node.is_master ? " master" : ""}});
     }
     Json rows = Json::array();
     std::string label = "Who sends what to whom.";
-    for (std::size_t row = 0; row < links_.size(); ++row) {
-      rows.push_back(row_view(links_[row], row));
-      const std::string to = receivers_text(links_[row]);
-      label += fmt::format(" {} to {}.", named(*links_[row].sender), to.empty() ? "no node" : to);
+    for (std::size_t row = 0; row < drawn_.size(); ++row) {
+      rows.push_back(row_view(drawn_[row], row));
+      label += fmt::format(" {} to {}.", named(*drawn_[row].sender), receivers_text(drawn_[row]));
     }
-    return {{"topology_label", label},   {"topology_width", label_width + network_.nodes.size() * column_width},
+    return {{"topology_label", label},   {"topology_width", label_width + network_.nodes.size() * column_.width},
             {"topology_height", height}, {"line_end", height - 6},
-            {"box_width", box_width},    {"nodes", std::move(nodes)},
+            {"box_width", column_.box},  {"nodes", std::move(nodes)},
             {"rows", std::move(rows)}};
   }
 
   [[nodiscard]] Json row_view(const Link& link, std::size_t row) const {
     const std::size_t y = row_y(row);
-    const std::size_t from = column_x(column_of(link.sender->node));
+    const std::size_t from = column_x(link.sender->node);
     Json arrows = Json::array();
     for (const CobIdUse* receiver : link.receivers) {
-      const std::size_t to = column_x(column_of(receiver->node));
+      const std::size_t to = column_x(receiver->node);
       const std::size_t back = to > from ? to - 9 : to + 9;
       arrows.push_back(
           {{"to", to}, {"shaft", back}, {"head", fmt::format("{},{} {},{} {},{}", to, y, back, y - 5, back, y + 5)}});
@@ -154,6 +163,8 @@ class Topology {
   const Network& network_;
   std::vector<CobIdUse> uses_;
   std::vector<Link> links_;
+  std::vector<Link> drawn_;  ///< with receivers
+  Column column_ = network_.nodes.size() > max_wide_columns ? narrow_column : wide_column;
 };
 
 }  // namespace

@@ -8,7 +8,7 @@
     const target = byId(decodeURIComponent(location.hash.slice(1)));
     if (!target) return;
     const object = target.closest('.object');
-    if (object && object.hidden && form) form.reset();
+    if (object && form && object.closest('[hidden]')) form.reset();
     for (let one = target; one; one = one.parentElement) if (one.localName === 'details') one.open = true;
     target.scrollIntoView();
   };
