@@ -26,9 +26,17 @@ std::string with_parts(std::string_view name, std::string_view extension) {
   return text;
 }
 
+/// Empties the lines `~`. The template library removes an empty line after one that only has a tag, so that the
+/// templates of Markdown have these. In a value, ~ is escaped.
+std::string with_empty_lines(std::string text) {
+  constexpr std::string_view mark = "\n~\n";
+  for (std::size_t at = 0; (at = text.find(mark, at)) != std::string::npos;) text.replace(at, mark.size(), "\n\n");
+  return text;
+}
+
 /// Renders the template of this name: `device` or `network`.
 std::string rendered(std::string_view name, Json view, DocumentFormat format) {
-  if (format == DocumentFormat::markdown) return render_markdown(with_parts(name, "md"), view);
+  if (format == DocumentFormat::markdown) return with_empty_lines(render_markdown(with_parts(name, "md"), view));
   view["style"] = report_template("document.css");
   view["script"] = report_template("document.js");
   return render_html(with_parts(name, "html"), view);

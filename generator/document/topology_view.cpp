@@ -82,7 +82,9 @@ std::string pdo_transmission(const CobIdUse& use) {
 
 class Topology {
  public:
-  explicit Topology(const Network& network) : network_{network}, uses_{cob_id_uses(network)}, links_{links_of(uses_)} {}
+  explicit Topology(const Network& network) : network_{network}, uses_{cob_id_uses(network)}, links_{links_of(uses_)} {
+    std::ranges::copy_if(links_, std::back_inserter(drawn_), [](const Link& link) { return !link.receivers.empty(); });
+  }
 
   void add(Json& view) const {
     Json links = Json::array();

@@ -104,6 +104,13 @@ async function speed(page, [file]) {
   }, loaded);
 }
 
+// The objects that a checkbox leaves.
+async function check(page, [file, box]) {
+  await open(page, file);
+  await page.click(box);
+  return results(page);
+}
+
 // Texts of elements, by the selectors that follow the file.
 async function texts(page, [file, ...selectors]) {
   const seen = watch(page);
@@ -115,6 +122,6 @@ async function texts(page, [file, ...selectors]) {
   return found;
 }
 
-const commands = { audit, 'audit-expanded': (page, files) => audit(page, files, true), use, drawings, speed, texts };
+const commands = { audit, 'audit-expanded': (page, files) => audit(page, files, true), use, drawings, speed, check, texts };
 const [chromium, command, ...rest] = process.argv.slice(2);
 console.log(JSON.stringify(await withPage(chromium, (page) => commands[command](page, rest))));
