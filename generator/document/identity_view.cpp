@@ -61,7 +61,7 @@ struct ServiceRow {
   std::uint16_t first, last;
 };
 
-/// Services whose objects tell whether the device has them (CiA 301, 7.5.2).
+/// Services that a device has if it has their object (CiA 301, 7.5.2).
 constexpr ServiceRow service_objects[] = {
     {"SYNC", 0x1005, 0x1005},
     {"TIME", 0x1012, 0x1012},

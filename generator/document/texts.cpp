@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <canopen/pdo/transmission_type.hpp>
 #include <vector>
 
@@ -17,6 +18,11 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
 }
 
+/// The text of a comment line.
+std::string_view without_semicolons(std::string_view line) {
+  return trimmed(line.substr(std::min(line.find_first_not_of(';'), line.size())));
+}
+
 }  // namespace
 
 std::string file_name_of(std::string_view path) { return std::string{path.substr(path.find_last_of("/\\") + 1)}; }
@@ -32,9 +38,7 @@ std::string comment_before(const Position& section) {
   for (std::uint32_t number = section.line; number > 1; --number) {
     const std::string_view line = trimmed(section.file->line(number - 1));
     if (!line.starts_with(';')) break;
-    if (!is_for_edsc(line))
-      lines.push_back(trimmed(line.substr(
-          line.find_first_not_of(';') == std::string_view::npos ? line.size() : line.find_first_not_of(';'))));
+    if (!is_for_edsc(line)) lines.push_back(without_semicolons(line));
   }
   std::string text;
   for (auto line = lines.rbegin(); line != lines.rend(); ++line) {

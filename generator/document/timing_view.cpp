@@ -64,7 +64,7 @@ class SyncCycle {
     for (const TimedMessage& one : timing_.messages) {
       if (one.service != FrameService::sync && !one.is_synchronous) continue;
       rows.push_back(row_view(one, at, rows.size()));
-      label += fmt::format(" {}: sent by {} at the latest.", one.name, bound_text(one.response));
+      label += fmt::format(" {}: worst response time {}.", one.name, bound_text(one.response));
       at += one.response.transmission;
     }
     const std::size_t height = cycle_head + rows.size() * cycle_row + 8;

@@ -19,8 +19,6 @@ namespace {
 constexpr std::size_t label_width = 150;
 constexpr std::size_t head_height = 52;
 constexpr std::size_t row_height = 34;
-constexpr std::size_t box_width = 118;
-constexpr std::size_t max_name = 16;       ///< characters in the box of a node
 constexpr std::size_t max_row_label = 21;  ///< characters before a row
 
 /// The column of a node, narrower if there are many.
@@ -123,8 +121,7 @@ class Topology {
                        {"box_x", x - column_.box / 2},
                        {"node_name", node.name},
                        {"node_short", shortened(node.name, column_.max_name)},
-                       {"node_id", node.node_id},
-                       {"role", node.is_master ? " master" : ""}});
+                       {"node_role", fmt::format("{} {}", node.is_master ? "master" : "node", node.node_id)}});
     }
     Json rows = Json::array();
     std::string label = "Who sends what to whom.";

@@ -138,8 +138,7 @@ class DevicePage(DocumentCase):
         self.assertEqual(counts["3456h"], "1 of 10000 objects")
         self.assertEqual(counts["nothing"], "0 of 10000 objects")
         self.assertEqual(counts[""], "10000 objects")
-        # "parameter 99": the decimal number of the object or of its line contains 99, or its index does.
-        self.assertLess(max(times.values()), 5000)
+        self.assertLess(max(times.values()), 5000)  # usually less than 50 ms; here for a busy machine
 
 
 if __name__ == "__main__":
