@@ -13,6 +13,7 @@ AddOptions add_check_options;
 AddOptions add_dump_options;
 AddOptions add_format_options;
 AddOptions add_diff_options;
+AddOptions add_document_options;
 AddOptions add_network_options;
 AddOptions add_scan_options;
 AddOptions add_read_options;
@@ -51,6 +52,7 @@ inline constexpr CommandRow commands[] = {
     {"EDS files", "format", "write an EDS or DCF in canonical form; make DCFs; convert XDD and XDC",
      add_format_options},
     {"EDS files", "diff", "compare two EDS files; report breaking changes", add_diff_options},
+    {"EDS files", "document", "write a device or a network as an HTML page or as Markdown", add_document_options},
     {"Networks", "network", "check, generate, verify and configure a network of devices", add_network_options},
     {"Bus", "scan", "find and identify the nodes on a bus", add_scan_options},
     {"Bus", "read", "read objects of a node over SDO", add_read_options},

@@ -18,13 +18,19 @@ struct Template {
 /// The templates of the generated headers, in the order of writing their files.
 [[nodiscard]] const std::vector<Template>& built_in_templates();
 
-/// The templates of reports in HTML, in templates/html.
+/// The templates of reports, with their styles and scripts: templates/html and templates/document.
 [[nodiscard]] const std::vector<Template>& report_templates();
+
+/// The text of a report template, by the name of its file without `.mustache`. An unknown name is a fault of edsc.
+[[nodiscard]] std::string_view report_template(std::string_view file_name);
 
 /// Renders a template. Throws std::runtime_error with a message if the template is invalid.
 [[nodiscard]] std::string render(std::string_view text, const nlohmann::ordered_json& view);
 
 /// The same for HTML: each value becomes printable, and <, >, &, " and ' in it become entities.
 [[nodiscard]] std::string render_html(std::string_view text, const nlohmann::ordered_json& view);
+
+/// The same for Markdown: each value becomes printable, and markup in it is escaped.
+[[nodiscard]] std::string render_markdown(std::string_view text, const nlohmann::ordered_json& view);
 
 }  // namespace edsc
