@@ -26,21 +26,24 @@ std::size_t LogInput::fetch(char* to, std::size_t most) {
 }
 
 std::string_view LogInput::beginning() {
-  while (!at_end_ && beginning_.size() < max_beginning && !is_enough(beginning_)) {
-    const std::size_t size = beginning_.size();
-    beginning_.resize(max_beginning);
-    beginning_.resize(size + fetch(beginning_.data() + size, max_beginning - size));
+  while (!at_end_ && end_ < buffer_size && !is_enough({buffer_.data(), end_})) {
+    end_ += fetch(buffer_.data() + end_, buffer_size - end_);
   }
-  return beginning_;
+  return {buffer_.data() + begin_, end_ - begin_};
 }
 
 std::size_t LogInput::read(char* to, std::size_t most) {
-  std::size_t count = std::min(most, beginning_.size() - begin_);
-  if (count > 0) {
-    std::memcpy(to, beginning_.data() + begin_, count);
-    begin_ += count;
-  } else {
+  std::size_t count = 0;
+  if (begin_ == end_ && most >= buffer_size) {
     count = fetch(to, most);
+  } else {
+    if (begin_ == end_) {
+      begin_ = 0;
+      end_ = fetch(buffer_.data(), buffer_size);
+    }
+    count = std::min(most, end_ - begin_);
+    std::memcpy(to, buffer_.data() + begin_, count);
+    begin_ += count;
   }
   position_ += count;
   return count;
