@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The pages of edsc document in headless Chromium: axe-core finds no violation, search, filters and links are used as a user does,
-tidy reads the HTML, and the drawings are compared with mappings worked out by hand.
+"""The pages of edsc document in headless Chromium: axe-core finds no violation, search, filters and links are used as a
+user does, tidy reads the HTML, and the drawings are compared with mappings worked out by hand.
 
     device_page_test.py SOURCE_DIR EDSC WORK_DIR [unittest arguments]
 
@@ -75,7 +75,7 @@ class DevicePage(DocumentCase):
             var(0x2002, "Actual value", AccessType="ro", PDOMapping="1"), var(0x2003, "Small", DataType="2"),
             var(0x6041, "Status", AccessType="ro", PDOMapping="1"),
             var(0x1018, "Identity").replace("ObjectType=7", "ObjectType=9\nSubNumber=5").replace("DataType=6\n", ""),
-            *(var(0x1018, f"Number {sub}", DataType="7" if sub else "5", AccessType="ro", DefaultValue="4" if sub == 0 else "7")
+            *(var(0x1018, f"Number {sub}", DataType="7" if sub else "5", AccessType="ro", DefaultValue="7" if sub else "4")
               .replace("[1018]", f"[1018sub{sub}]") for sub in range(5))))
         found = self.browse("use", self.document(path, "--keep-going"))
         self.assertEqual(found["access wo"]["objects"], ["2001h"])
@@ -115,7 +115,8 @@ class DevicePage(DocumentCase):
 
     def test_texts_of_the_eds_are_not_markup(self) -> None:
         path = self.write("evil.eds", sheet(
-            "; a comment with </script>\n" + var(0x2000, EVIL, Description=EVIL, Unit=EVIL, DataType="9", DefaultValue=EVIL),
+            "; a comment with </script>\n" +
+            var(0x2000, EVIL, Description=EVIL, Unit=EVIL, DataType="9", DefaultValue=EVIL),
             vendor=EVIL, product=EVIL))
         page = self.document(path, "--keep-going")
         self.assertNotIn("\u202e", page.read_text())

@@ -79,7 +79,8 @@ class NetworkPage(DocumentCase):
             self.assertIn("is for devices, not for networks", result.stderr)
 
     def test_a_network_with_errors_is_not_written(self) -> None:
-        self.write("broken.json", '{"nodes": {"a": {"node_id": 1, "eds": "node.eds"}, "b": {"node_id": 1, "eds": "node.eds"}}}')
+        node = '{"node_id": 1, "eds": "node.eds"}'
+        self.write("broken.json", f'{{"nodes": {{"a": {node}, "b": {node}}}}}')
         shutil.copy(SOURCE_DIR / "tests/generator/network/node.eds", self.folder)
         self.edsc("document", "broken.json", "-o", "page.html", exit_code=1)
         self.assertFalse((self.folder / "page.html").exists())
