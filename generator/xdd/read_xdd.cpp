@@ -115,8 +115,8 @@ class XddReader {
     for (const std::string_view known : body_types) {
       if (type.starts_with(known)) return true;
     }
-    xml_.diagnostics().warning("xml-element", xml_.position(body),
-                               fmt::format("profile type {} is not CANopen; it is left out", quote(type)));
+    xml_.diagnostics().note("xml-element", xml_.position(body),
+                            fmt::format("profile type {} is not CANopen; it is left out", quote(type)));
     return false;
   }
 
