@@ -249,7 +249,7 @@ class Ways(unittest.TestCase):
     def test_fetch_content_without_an_installed_edsc(self) -> None:
         archive = self.archive()
         project = Project(self.folder / "not found", blocks(WITHOUT_COMPILING, "cmake")[0])
-        self.check_host(project, f"-DEDSC_EXECUTABLE={EDSC}", f"-DEDSC_ARCHIVE={archive}", "-DCMAKE_FIND_USE_CMAKE_SYSTEM_PATH=OFF")
+        self.check_host(project, f"-DEDSC_EXECUTABLE={EDSC}", f"-DEDSC_ARCHIVE={archive}", "-DCMAKE_DISABLE_FIND_PACKAGE_edsc=ON")
         self.assertTrue((project.build_dir / "_deps/edsc-src/runtime").is_dir())
 
     def test_a_file_with_errors_that_cannot_be_changed(self) -> None:
