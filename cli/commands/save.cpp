@@ -15,6 +15,7 @@
 #include "shared/output.hpp"
 #include "shared/with_bus.hpp"
 #include "text/printable.hpp"
+#include "xdd/read_xdd.hpp"
 
 namespace edsc {
 namespace {

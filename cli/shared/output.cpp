@@ -11,7 +11,6 @@
 #include <system_error>
 #include <utility>
 
-#include "eds/ini.hpp"
 #include "shared/exit_code.hpp"
 
 namespace edsc {
@@ -57,11 +56,6 @@ void write_output(const std::string& path, std::string text, const std::vector<s
 
 void write_all_files(const std::vector<OutputFile>& files, const std::vector<std::string>& inputs) {
   if (const std::string failure = write_files(files, inputs); !failure.empty()) fail(failure);
-}
-
-std::string xdd_name_problem(const std::string& path) {
-  if (!ends_with_ignoring_case(path, ".xdd") && !ends_with_ignoring_case(path, ".xdc")) return "";
-  return path + ": edsc reads XDD and XDC files, but does not write them; name the file .eds or .dcf";
 }
 
 void flush_output() {

@@ -27,10 +27,6 @@ void write_output(const std::string& path, std::string text, const std::vector<s
 /// Writes all files or none; ends the command if one of them cannot be written, or is one of `inputs`.
 void write_all_files(const std::vector<OutputFile>& files, const std::vector<std::string>& inputs = {});
 
-/// Why no EDS or DCF is written to a file of this name: it names an XDD or XDC, which edsc only reads. Empty for all
-/// others.
-[[nodiscard]] std::string xdd_name_problem(const std::string& path);
-
 /// Flushes standard output immediately, for commands that run until they are interrupted. Throws std::system_error on a
 /// write error.
 void flush_output();
