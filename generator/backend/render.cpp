@@ -58,6 +58,10 @@ std::string render_escaped(std::string_view text, const nlohmann::ordered_json& 
 
 }  // namespace
 
+bool is_needed(const Template& header, const nlohmann::ordered_json& view) {
+  return header.needed.empty() || !view.at(std::string{header.needed}).is_null();
+}
+
 std::string render(std::string_view text, const nlohmann::ordered_json& view) {
   return render_escaped(text, view, [](const std::string& plain) { return plain; });
 }

@@ -18,8 +18,14 @@ struct Template {
 /// The templates of the generated headers, in the order of writing their files.
 [[nodiscard]] const std::vector<Template>& built_in_templates();
 
+/// The template of the header of a network, in templates/network.
+[[nodiscard]] const std::vector<Template>& network_templates();
+
 /// The templates of reports in HTML, in templates/html.
 [[nodiscard]] const std::vector<Template>& report_templates();
+
+/// Whether a header is generated for this view.
+[[nodiscard]] bool is_needed(const Template& header, const nlohmann::ordered_json& view);
 
 /// Renders a template. Throws std::runtime_error with a message if the template is invalid.
 [[nodiscard]] std::string render(std::string_view text, const nlohmann::ordered_json& view);
