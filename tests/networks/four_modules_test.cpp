@@ -1,7 +1,10 @@
 /// The master of examples/networks/four_modules.json with its four modules.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
+#include <string>
+#include <vector>
 
 #include "networks/four_modules_control.hpp"
 #include "plant_bench.hpp"
@@ -28,7 +31,12 @@ TEST(FourModules, AllNodesAreConfiguredAndStarted) {
   bench.start();
   ASSERT_TRUE(bench.boot(10s));
   bench.bus.run_for(1s);
-  EXPECT_TRUE(bench.faults.empty()) << bench.faults.front();
+  // Manual 003: the modules report each reset.
+  std::ranges::sort(bench.faults);
+  EXPECT_EQ(bench.faults,
+            (std::vector<std::string>{
+                "analog_inputs: EMCY FF00h: device specific", "analog_outputs: EMCY FF00h: device specific",
+                "digital_inputs: EMCY FF00h: device specific", "digital_outputs: EMCY FF00h: device specific"}));
   for (const char* name : {"digital_outputs", "digital_inputs", "analog_outputs", "analog_inputs"}) {
     EXPECT_EQ(bench.boots[name], 1) << name;
   }
@@ -64,7 +72,8 @@ TEST(FourModules, ANodeThatLosesPowerIsBootedAgainWhileTheOthersRun) {
   bench.analog_inputs.switch_off();
   bench.forget();
   bench.bus.run_for(3s);
-  ASSERT_EQ(bench.faults.front(), "analog_inputs: lost, last state operational");
+  ASSERT_FALSE(bench.faults.empty());
+  EXPECT_EQ(bench.faults.front(), "analog_inputs: lost, last state operational");
   EXPECT_FALSE(bench.plant().analog_inputs.booted());
   EXPECT_FALSE(bench.plant().analog_inputs.read_analogue_input_16_bit_1().has_value());
   bench.digital_inputs.node().set(can_2053c::od::read_input_8_bit<1>{}, std::uint8_t{0x3C});
@@ -77,7 +86,7 @@ TEST(FourModules, ANodeThatLosesPowerIsBootedAgainWhileTheOthersRun) {
   bench.bus.run_for(2s);
   EXPECT_EQ(bench.boots["analog_inputs"], 2);
   EXPECT_EQ(bench.boots["digital_outputs"], 1);
-  EXPECT_EQ(bench.count(0x701) + bench.count(0x702), 2 * bench.count(0x701));
+  EXPECT_EQ(bench.count_boot_ups(1) + bench.count_boot_ups(2) + bench.count_boot_ups(3), 0U);
   EXPECT_EQ(bench.analog_inputs.node().state(), NmtState::operational);
   EXPECT_EQ(bench.analog_inputs.node().get(can_2017c::od::tpdo_communication_parameter_2::event_timer{}), 1000);
   EXPECT_TRUE(bench.plant().analog_inputs.read_analogue_input_16_bit_1().has_value());
@@ -87,6 +96,7 @@ TEST(FourModules, AFaultNamesTheNode) {
   Modules bench;
   bench.start();
   ASSERT_TRUE(bench.boot(10s));
+  bench.forget();
   bench.digital_outputs.node().emergency(0x5000, canopen::ErrorRegister::generic);
   bench.bus.run_for(100ms);
   ASSERT_EQ(bench.faults.size(), 1U);

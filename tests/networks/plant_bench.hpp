@@ -67,7 +67,7 @@ class PlantBench {
     return control.plant.all_booted();
   }
 
-  /// The frames with a CAN-ID since the last call of `forget`.
+  /// Frames with a CAN-ID since the last call of `forget`.
   [[nodiscard]] std::size_t count(std::uint32_t can_id) const {
     std::size_t found = 0;
     for (const canopen::Frame& frame : frames) found += frame.id == can_id;
@@ -80,7 +80,17 @@ class PlantBench {
     }
     return {};
   }
-  void forget() { frames.clear(); }
+  [[nodiscard]] std::size_t count_boot_ups(std::uint8_t node_id) const {
+    std::size_t found = 0;
+    for (const canopen::Frame& frame : frames) found += frame.id == 0x700U + node_id && frame.data[0] == 0;
+    return found;
+  }
+
+  /// Forgets frames and faults.
+  void forget() {
+    frames.clear();
+    faults.clear();
+  }
 
   canopen::VirtualBus bus;
 

@@ -147,7 +147,7 @@ class PlantHeader {
       for (; begin != end; ++begin) bytes += fmt::format("0x{:02X},", static_cast<unsigned char>(*begin));
       rows.push_back({{"bytes", bytes}, {"comment", comment}});
     };
-    add(begin + sizeof(std::uint32_t), fmt::format("{} entries", entries->size()));
+    add(begin + sizeof(std::uint32_t), fmt::format("number of entries: {}", entries->size()));
     for (const ConciseEntry& entry : *entries) {
       const Entry* const known = node.device.find(entry.index, entry.sub_index);
       add(entry.data.data() + entry.data.size(),
