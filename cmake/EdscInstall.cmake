@@ -35,7 +35,8 @@ write_basic_package_version_file(${generated_dir}/edscConfigVersion.cmake COMPAT
 install(
   FILES ${generated_dir}/edscConfig.cmake ${generated_dir}/edscConfigVersion.cmake
         ${PROJECT_SOURCE_DIR}/cmake/EdscAddConformanceTest.cmake ${PROJECT_SOURCE_DIR}/cmake/EdscAddDictionary.cmake
-        ${PROJECT_SOURCE_DIR}/cmake/EdscAddFirmware.cmake ${PROJECT_SOURCE_DIR}/cmake/EdscHeaders.cmake
+        ${PROJECT_SOURCE_DIR}/cmake/EdscAddFirmware.cmake ${PROJECT_SOURCE_DIR}/cmake/EdscAddNetwork.cmake
+        ${PROJECT_SOURCE_DIR}/cmake/EdscHeaders.cmake
         ${PROJECT_SOURCE_DIR}/cmake/firmware_report.py
   DESTINATION ${package_dir} COMPONENT development)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/cmake/boards ${PROJECT_SOURCE_DIR}/cmake/toolchains DESTINATION ${package_dir}

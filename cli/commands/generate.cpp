@@ -86,7 +86,7 @@ std::vector<OutputFile> render_all(const Settings& settings, LoadedDevice& loade
   inputs = {settings.load.path};
   if (loaded.options_source) inputs.push_back(loaded.options_source->name());
   for (const ChosenTemplate& one : templates) {
-    if (!one.built_in.needed.empty() && view.at(std::string{one.built_in.needed}).is_null()) continue;
+    if (!is_needed(one.built_in, view)) continue;
     files.push_back({(folder / one.built_in.file_name).string(), one.rendered(view)});
     if (one.replacement) inputs.push_back(one.replacement->name());
   }

@@ -65,6 +65,10 @@ std::string_view report_template(std::string_view file_name) {
   return found->text;
 }
 
+bool is_needed(const Template& header, const nlohmann::ordered_json& view) {
+  return header.needed.empty() || !view.at(std::string{header.needed}).is_null();
+}
+
 std::string render(std::string_view text, const nlohmann::ordered_json& view) {
   return render_escaped(text, view, [](const std::string& plain) { return plain; });
 }

@@ -126,6 +126,8 @@ class MasterSheet {
     if (network_.description.sync.overflow) {
       sheet_.add_var(0x1019, {0, "Synchronous counter overflow value", unsigned8, "rw", "0"});
     }
+    // The master does not leave Operational if it loses a node.
+    sheet_.add_array(0x1029, "Error behaviour", {{1, "Communication error", unsigned8, "rw", "1"}});
     if (network_.master() == &master_) add_sdo_clients();  // each server has one client
     add_pdos(PdoDirection::receive);
     add_pdos(PdoDirection::transmit);

@@ -135,8 +135,7 @@ std::string parameters_text(const PdoParameters& parameters) {
 }
 
 /// The template arguments after dictionary, number and layout.
-std::string check_arguments(const Provable& provable) {
-  const std::string parameters = parameters_text(provable.parameters);
+std::string check_arguments(const Provable& provable, const std::string& parameters) {
   if (provable.granularity != 1) return fmt::format(", {}, {}", parameters, provable.granularity);
   return parameters == "canopen::PdoParameters{}" ? "" : ", " + parameters;
 }
@@ -172,7 +171,9 @@ ordered_json pdo_rows(const Device& device) {
     if (is_checked(pdo)) {
       const Provable provable = provable_of(device, pdo);
       row["check"] = receive ? "canopen::CheckedRpdo" : "canopen::CheckedTpdo";
-      row["check_arguments"] = check_arguments(provable);
+      row["parameters"] = parameters_text(provable.parameters);
+      row["granularity"] = provable.granularity;
+      row["check_arguments"] = check_arguments(provable, row["parameters"]);
       row["any_left_out"] = !provable.left_out.empty();
       row["left_out"] = fmt::format("{}", fmt::join(provable.left_out, ", "));
     }

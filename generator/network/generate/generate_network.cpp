@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <utility>
 
 #include "backend/cpp/identifier.hpp"
 #include "backend/dbc/dbc.hpp"
+#include "network/generate/device_headers.hpp"
 #include "network/generate/network_dot.hpp"
 #include "network/generate/node_dcf.hpp"
+#include "network/generate/plant_header.hpp"
 
 namespace edsc {
 namespace {
@@ -36,18 +39,25 @@ Dbc dbc_of(const Network& network) {
 
 GeneratedNetwork generate_network(const Network& network, Diagnostics& diagnostics) {
   GeneratedNetwork generated;
+  PlantParts parts;
   for (const NetworkNode& node : network.nodes) {
     NodeDcf dcf = make_node_dcf(network, node, diagnostics);
     if (!node.has_file()) {
       generated.files.push_back({node_file(node, "eds"), std::string{node.loaded->source->text()}});
     }
     generated.files.push_back({node_file(node, "dcf"), std::move(dcf.text)});
+    parts.concise_dcfs.push_back(dcf.concise);
     generated.files.push_back({node_file(node, "cdcf"), std::move(dcf.concise)});
   }
   const std::string name = std::filesystem::path{network.source->name()}.stem().string();
   Dbc dbc = dbc_of(network);
   generated.files.push_back({name + ".dbc", std::move(dbc.text)});
   generated.files.push_back({name + ".dot", network_dot(network)});
+  const std::string plant = to_namespace(name);
+  DeviceHeaders headers = device_headers(network, plant, diagnostics);
+  parts.devices = std::move(headers.names);
+  std::ranges::move(headers.files, std::back_inserter(generated.files));
+  generated.files.push_back({plant + ".hpp", plant_header(network, plant, parts)});
   generated.inputs = inputs_of(network);
   generated.notes = std::move(dbc.notes);
   return generated;

@@ -15,7 +15,8 @@ struct GeneratedNetwork {
   std::vector<std::string> notes;   ///< PDOs that are not in the DBC file
 };
 
-/// Returns DCF and concise DCF of each node, the EDS of a master without a file, and DBC file and graph of the network.
+/// Returns DCF and concise DCF of each node, the EDS of a master without a file, DBC file and graph of the network, and
+/// its C++ headers.
 /// Requires a network without errors; reports values that a DCF cannot express.
 [[nodiscard]] GeneratedNetwork generate_network(const Network& network, Diagnostics& diagnostics);
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "network/cob_id_use.hpp"
+#include "network/generate/plant_links.hpp"
 
 namespace edsc {
 namespace {
@@ -42,11 +43,6 @@ std::string objects(const NetworkNode& node, const Pdo& pdo) {
   return lines;
 }
 
-bool is_link(const CobIdUse& sender, const CobIdUse& receiver) {
-  return sender.pdo != nullptr && receiver.pdo != nullptr && sender.transmits && !receiver.transmits &&
-         sender.node != receiver.node && sender.can_id == receiver.can_id && sender.extended == receiver.extended;
-}
-
 }  // namespace
 
 std::string network_dot(const Network& network) {
@@ -54,13 +50,10 @@ std::string network_dot(const Network& network) {
   std::string text = fmt::format("digraph \"{}\" {{\n  rankdir=LR;\n  node [shape=box];\n", escaped(name));
   for (const NetworkNode& node : network.nodes) text += box(network, node);
   const std::vector<CobIdUse> uses = cob_id_uses(network);
-  for (const CobIdUse& sender : uses) {
-    for (const CobIdUse& receiver : uses) {
-      if (!is_link(sender, receiver)) continue;
-      text += fmt::format("  \"{}\" -> \"{}\" [label=\"{} to {}, {}{}\"];\n", escaped(sender.node->name),
-                          escaped(receiver.node->name), pdo_label(*sender.pdo), pdo_label(*receiver.pdo),
-                          can_id_text(sender.can_id, sender.extended), objects(*sender.node, *sender.pdo));
-    }
+  for (const auto& [sender, receiver] : pdo_links(uses)) {
+    text += fmt::format("  \"{}\" -> \"{}\" [label=\"{} to {}, {}{}\"];\n", escaped(sender->node->name),
+                        escaped(receiver->node->name), pdo_label(*sender->pdo), pdo_label(*receiver->pdo),
+                        can_id_text(sender->can_id, sender->extended), objects(*sender->node, *sender->pdo));
   }
   return text + "}\n";
 }

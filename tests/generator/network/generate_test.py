@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """edsc network generate, with expectations worked out by hand and with readers that are not edsc's: configparser for the values
-of the DCFs, npm's canopen as a tool that loads them, npm's candied for the DBC file.
+of the DCFs, npm's canopen as a tool that loads them, npm's candied for the DBC file, the
+compiler for the headers.
 
     generate_test.py SOURCE_DIR EDSC CANDIED_WORK_DIR CANOPEN_WORK_DIR [unittest arguments]
 """
@@ -87,8 +88,11 @@ class Generate(unittest.TestCase):
     def test_the_files(self) -> None:
         self.generate()
         self.assertEqual(sorted(path.name for path in self.out.iterdir()),
-                         ["a.cdcf", "a.dcf", "b.cdcf", "b.dcf", "master.cdcf", "master.dcf", "master.eds", "plant.dbc",
-                          "plant.dot"])
+                         ["a.cdcf", "a.dcf", "b.cdcf", "b.dcf", "master", "master.cdcf", "master.dcf", "master.eds", "node",
+                          "plant.dbc", "plant.dot", "plant.hpp"])
+        for device in ("master", "node"):
+            self.assertEqual(sorted(path.name for path in (self.out / device).iterdir()),
+                             ["description.hpp", "device.hpp", "dictionary.hpp", "pdo.hpp"])
 
     def test_a_dcf_has_the_values_of_the_network_file_and_a_mapping_as_a_whole(self) -> None:
         self.generate()
@@ -191,6 +195,50 @@ class Generate(unittest.TestCase):
         self.assertEqual(re.findall(r'"(\w+)" -> "(\w+)" \[label="(.*?)\\n', (self.out / "plant.dot").read_text()),
                          [("master", "a", "TPDO 1 to RPDO 1, 201h"), ("a", "master", "TPDO 1 to RPDO 1, 181h"),
                           ("a", "b", "TPDO 1 to RPDO 1, 181h")])
+
+    def test_the_headers_of_a_device_are_those_of_edsc_generate(self) -> None:
+        self.generate()
+        self.edsc("generate", "node.eds", "-o", "headers")
+        for path in (self.folder / "headers/node").iterdir():
+            self.assertEqual((self.out / "node" / path.name).read_text(), path.read_text(), path.name)
+
+    def test_names_in_cpp_differ(self) -> None:
+        """A node and a sheet with the name of the network, and two nodes whose names differ in case."""
+        shutil.copy(self.folder / "node.eds", self.folder / "plant.eds")
+        self.generate(PLANT.replace('"a": {"node_id": 1, "eds": "node.eds"', '"B": {"node_id": 1, "eds": "plant.eds"')
+                      .replace('"a"', '"B"').replace('"a.', '"B.'))
+        text = (self.out / "plant.hpp").read_text()
+        for line in ("namespace b {", "namespace b_2 {", "using ::plant_device::Device;", "using ::node::Device;",
+                     '{ "B", b::node_id, 0x81 },', '{ "b", b_2::node_id, 0x82 },'):
+            self.assertIn(line, text)
+        self.compile("plant.hpp")
+
+    def test_the_header_of_a_network_without_a_master(self) -> None:
+        self.generate(TINY)
+        text = (self.out / "plant.hpp").read_text()
+        self.assertIn("canopen::LinkedPdos<::plant::a::Tpdo1, ::plant::b::Rpdo1>", text)
+        self.assertNotIn("struct Network", text)
+        self.compile("plant.hpp")
+
+    def test_the_header_proves_its_links(self) -> None:
+        """A CAN-ID, and a mapping, that are changed in the header are not compiled."""
+        self.generate()
+        self.compile("plant.hpp")
+        header = self.out / "plant.hpp"
+        text = header.read_text()
+        for old, new, message in ((".cob_id = 0x40000181", ".cob_id = 0x40000182", "different COB-IDs"),
+                                  ("Rpdo<od::target_position, od::target_speed>", "Rpdo<od::target_speed, od::target_position>",
+                                   "PDO link: the entry of the TPDO has another length")):
+            self.assertIn(old, text)
+            header.write_text(text.replace(old, new, 1))
+            self.assertIn(message, self.compile("plant.hpp", fails=True))
+
+    def compile(self, header: str, fails: bool = False) -> str:
+        result = subprocess.run(["c++", "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion",
+                                 "-Werror", "-I", SOURCE_DIR / "runtime/include", "-I", self.out, "-x", "c++", "-"],
+                                input=f"#include <{header}>\n", capture_output=True, text=True)
+        self.assertEqual(result.returncode != 0, fails, result.stderr)
+        return result.stderr
 
     def test_a_network_with_errors_writes_nothing(self) -> None:
         for text in (TINY.replace('"node_id": 2', '"node_id": 1'), TINY.replace("b.target_speed", "b.ramp"), "{"):

@@ -12,14 +12,14 @@
 
 namespace canopen {
 
-/// `node 5: product code 1018h:02 is not the one of 1F86h: expected 00010001h, seen 00020001h`
-[[nodiscard]] inline std::string boot_text(NodeId node_id, const BootResult& result) {
+/// `axis1: product code 1018h:02 is not the one of 1F86h: expected 00010001h, seen 00020001h`
+[[nodiscard]] inline std::string boot_text(const std::string& who, const BootResult& result) {
   const auto print = [](const char* format, auto... numbers) {
     char text[64];
     std::snprintf(text, sizeof text, format, numbers...);
     return std::string{text};
   };
-  std::string text = "node " + std::to_string(node_id.value()) + ": " + std::string{to_text(result.status)};
+  std::string text = who + ": " + std::string{to_text(result.status)};
   if (result.abort_code != ok) {
     const auto code = static_cast<unsigned>(result.abort_code);
     if (result.index != 0) text += print(": %04Xh:%02X", unsigned{result.index}, unsigned{result.sub_index});
@@ -28,6 +28,11 @@ namespace canopen {
     text += print(": expected %08Xh, seen %08Xh", unsigned{result.expected}, unsigned{result.seen});
   }
   return text;
+}
+
+/// `node 5: no answer, or device type 1000h could not be read: 1000h:00: ...`
+[[nodiscard]] inline std::string boot_text(NodeId node_id, const BootResult& result) {
+  return boot_text("node " + std::to_string(node_id.value()), result);
 }
 
 /// `node 5: lost, last state operational`

@@ -1,0 +1,33 @@
+/// The master of eight_devices.json: the outputs follow the inputs, and two analogue outputs show the sensor and the axis.
+#pragma once
+
+#include <algorithm>
+#include <canopen/plant/plant.hpp>
+#include <cstdint>
+#include <eight_devices.hpp>
+
+template <canopen::Bus B>
+class EightDevices {
+ public:
+  explicit EightDevices(B& bus) : plant{bus} {
+    namespace signals = eight_devices::signals;
+    plant.on(signals::digital_inputs::read_input_8_bit_1{},
+             [this](std::uint8_t levels) { plant.digital_outputs.write_output_8_bit_1(levels); });
+    plant.on(signals::digital_inputs::read_input_8_bit_2{},
+             [this](std::uint8_t levels) { plant.digital_outputs.write_output_8_bit_2(levels); });
+    plant.on(signals::analog_inputs::read_analogue_input_16_bit_1{},
+             [this](std::int16_t level) { plant.analog_outputs.write_analogue_output_16_bit_1(level); });
+    plant.on(signals::sensor::speed_value_1{},
+             [this](std::int16_t speed) { plant.analog_outputs.write_analogue_output_16_bit_2(speed); });
+    plant.on(signals::axis::position_actual_value{},
+             [this](std::int32_t position) { plant.analog_outputs.write_analogue_output_16_bit_3(level_of(position)); });
+  }
+
+  canopen::Plant<eight_devices::Network, B> plant;
+
+ private:
+  /// The full scale of the output is 32,767 increments.
+  [[nodiscard]] static std::int16_t level_of(std::int32_t position) {
+    return static_cast<std::int16_t>(std::clamp(position, -32'768, 32'767));
+  }
+};

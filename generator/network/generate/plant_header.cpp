@@ -1,0 +1,308 @@
+#include "network/generate/plant_header.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "backend/cpp/cpp_text.hpp"
+#include "backend/cpp/identifier.hpp"
+#include "backend/cpp/views.hpp"
+#include "backend/render.hpp"
+#include "format/dcf/concise_dcf.hpp"
+#include "network/cob_id_use.hpp"
+#include "network/communication_objects.hpp"
+#include "network/generate/plant_links.hpp"
+#include "text/ascii.hpp"
+
+namespace edsc {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string hex_text(std::uint64_t number) { return fmt::format("0x{:X}", number); }
+
+std::string pdo_type_name(const Pdo& pdo) {
+  return fmt::format("{}{}", pdo.direction == PdoDirection::receive ? "Rpdo" : "Tpdo", pdo.number);
+}
+
+ordered_json with_separators(ordered_json rows, std::string_view separator) {
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i]["separator"] = i == 0 ? std::string_view{} : separator;
+  return rows;
+}
+
+/// The names of a node that are not available for its signals: members of canopen::PlantNodeAccess.
+constexpr std::string_view access_members[] = {"boot", "booted", "node_id", "plant", "state"};
+
+class PlantHeader {
+ public:
+  PlantHeader(const Network& network, const std::string& name, const PlantParts& parts)
+      : network_{network}, name_{name}, parts_{parts}, uses_{cob_id_uses(network)}, links_{pdo_links(uses_)} {
+    IdentifierScope names;
+    static_cast<void>(names.take("signals", ""));
+    for (const NetworkNode& node : network_.nodes) {
+      const std::string wanted = to_snake_case(node.name);
+      identifiers_.push_back(names.take(wanted.empty() ? "node" : wanted, std::to_string(node.node_id)));
+    }
+  }
+
+  std::string text() {
+    std::string guard = "edsc_network_" + name_;
+    std::ranges::transform(guard, guard.begin(), to_upper);
+    const std::string& path = network_.source->name();
+    ordered_json view{{"file", cpp_comment(path.substr(path.find_last_of('/') + 1))},
+                      {"guard", guard},
+                      {"namespace", name_},
+                      {"headers", std::set<std::string>{parts_.devices.begin(), parts_.devices.end()}},
+                      {"nodes", node_rows()},
+                      {"links", link_rows()},
+                      {"network", network_view()}};
+    return render(network_templates().front().text, view);
+  }
+
+ private:
+  [[nodiscard]] std::size_t position_in_file(const NetworkNode& node) const {
+    return static_cast<std::size_t>(&node - network_.nodes.data());
+  }
+  [[nodiscard]] const std::string& identifier(const NetworkNode& node) const {
+    return identifiers_[position_in_file(node)];
+  }
+  /// Position of a node in the network description, which does not have the master.
+  [[nodiscard]] std::size_t slave_position(const NetworkNode& node) const {
+    const NetworkNode* const master = network_.master();
+    return position_in_file(node) - (master != nullptr && master < &node ? 1 : 0);
+  }
+  /// `::plant::axis1::Tpdo1`
+  [[nodiscard]] std::string full_name(const CobIdUse& use) const {
+    return fmt::format("::{}::{}::{}", name_, identifier(*use.node), pdo_type_name(*use.pdo));
+  }
+  [[nodiscard]] static std::string label(const NetworkNode& node) {
+    const std::string& path = node.loaded->source->name();
+    const std::string file = node.has_file() ? path.substr(path.find_last_of('/') + 1) : "no EDS";
+    return cpp_comment(fmt::format("{}: node-ID {}, {}", node.name, node.node_id, file));
+  }
+
+  // Nodes with their PDOs and configuration
+
+  [[nodiscard]] ordered_json node_rows() const {
+    ordered_json rows = ordered_json::array();
+    for (const NetworkNode& node : network_.nodes) {
+      ordered_json bytes = configuration_rows(node);
+      const bool any = !bytes.empty() && &node != network_.master();
+      rows.push_back({{"label", label(node)},
+                      {"identifier", identifier(node)},
+                      {"device", parts_.devices[position_in_file(node)]},
+                      {"node_id", node.node_id},
+                      {"pdos", pdo_structs(node)},
+                      {"any_configuration", any},
+                      {"configuration", std::move(bytes)}});
+    }
+    return rows;
+  }
+
+  /// The PDOs that are valid and have a layout.
+  [[nodiscard]] ordered_json pdo_structs(const NetworkNode& node) const {
+    ordered_json rows = ordered_json::array();
+    const ordered_json of_device = pdo_rows(node.device);
+    for (const CobIdUse& use : uses_) {
+      if (use.node != &node || use.pdo == nullptr) continue;
+      const std::string type = pdo_type_name(*use.pdo);
+      const auto at = std::ranges::find_if(of_device, [&](const ordered_json& one) { return one["type"] == type; });
+      if (at == of_device.end() || !has_struct(use)) continue;
+      ordered_json row = *at;
+      row["can_id"] = can_id_text(use.can_id, use.extended);
+      row["members"] = with_separators(members(node.device, *use.pdo), ", ");
+      rows.push_back(std::move(row));
+    }
+    return rows;
+  }
+
+  [[nodiscard]] static bool has_struct(const CobIdUse& use) {
+    return !is_left_out(*use.pdo) && !use.pdo->multiplexed && use.pdo->mapping != nullptr && !use.pdo->entries.empty();
+  }
+
+  [[nodiscard]] static ordered_json members(const Device& device, const Pdo& pdo) {
+    ordered_json rows = ordered_json::array();
+    IdentifierScope names;
+    for (std::size_t i = 0; i < pdo.entries.size(); ++i) {
+      if (pdo.entries[i].object == nullptr) continue;
+      rows.push_back({{"name", names.take(signal_identifier(device, pdo.entries[i]), "again")}, {"position", i}});
+    }
+    return rows;
+  }
+
+  /// One row for each entry of the concise DCF; none if it is empty.
+  [[nodiscard]] ordered_json configuration_rows(const NetworkNode& node) const {
+    ordered_json rows = ordered_json::array();
+    const std::string& stream = parts_.concise_dcfs[position_in_file(node)];
+    const auto entries = read_concise_dcf(stream);
+    if (!entries || entries->empty()) return rows;
+    const char* begin = stream.data();
+    const auto add = [&](const char* end, const std::string& comment) {
+      std::string bytes;
+      for (; begin != end; ++begin) bytes += fmt::format("0x{:02X},", static_cast<unsigned char>(*begin));
+      rows.push_back({{"bytes", bytes}, {"comment", comment}});
+    };
+    add(begin + sizeof(std::uint32_t), fmt::format("number of entries: {}", entries->size()));
+    for (const ConciseEntry& entry : *entries) {
+      const Entry* const known = node.device.find(entry.index, entry.sub_index);
+      add(entry.data.data() + entry.data.size(),
+          fmt::format("{} {}", entry_label(entry.index, entry.sub_index), cpp_comment(known ? known->name : "")));
+    }
+    return rows;
+  }
+
+  // Links
+
+  [[nodiscard]] ordered_json link_rows() const {
+    ordered_json rows = ordered_json::array();
+    for (const PdoLink& link : links_) {
+      if (!has_struct(*link.sender) || !has_struct(*link.receiver)) continue;
+      rows.push_back({{"comment", cpp_comment(link_text(link))},
+                      {"produced", full_name(*link.sender)},
+                      {"consumed", full_name(*link.receiver)}});
+    }
+    return rows;
+  }
+
+  [[nodiscard]] static std::string link_text(const PdoLink& link) {
+    return fmt::format("{} to {}, {}", named(*link.sender), named(*link.receiver),
+                       can_id_text(link.sender->can_id, link.sender->extended));
+  }
+
+  // The network for canopen::Plant
+
+  struct Signals {
+    ordered_json received = ordered_json::array();
+    ordered_json sent = ordered_json::array();
+  };
+
+  [[nodiscard]] Signals signals_of(const NetworkNode& node) const {
+    Signals signals;
+    IdentifierScope names;
+    for (const std::string_view member : access_members) static_cast<void>(names.take(std::string{member}, ""));
+    std::set<std::pair<bool, const Entry*>> known;
+    for (const PdoLink& link : links_) {
+      const bool is_received = link.sender->node == &node && link.receiver->node == network_.master();
+      const bool is_sent = link.receiver->node == &node && link.sender->node == network_.master();
+      if ((!is_received && !is_sent) || !has_struct(*link.sender) || !has_struct(*link.receiver)) continue;
+      for (const LinkedValue& value : linked_values(link)) {
+        const PdoEntry& entry =
+            is_received ? link.sender->pdo->entries[value.sent] : link.receiver->pdo->entries[value.taken];
+        if (!known.emplace(is_received, entry.object).second) continue;
+        const std::string name = names.take(signal_identifier(node.device, entry), is_sent ? "command" : "signal");
+        (is_received ? signals.received : signals.sent).push_back(signal_row(node, link, value, entry, name));
+      }
+    }
+    return signals;
+  }
+
+  [[nodiscard]] ordered_json signal_row(const NetworkNode& node, const PdoLink& link, const LinkedValue& value,
+                                        const PdoEntry& entry, const std::string& name) const {
+    const std::string unit = entry.object->unit.empty() ? "" : fmt::format(" in {}", entry.object->unit);
+    const bool is_limited = entry.object->low_limit || entry.object->high_limit;
+    return {{"name", name},
+            {"type", fmt::format("::{}::signals::{}::{}", name_, identifier(node), name)},
+            {"comment", cpp_comment(fmt::format("{} {}{}, {}, bits {}..{}", named(*entry.object), entry.object->type->name,
+                                                unit, link_text(link), value.first_bit,
+                                                value.first_bit + entry.bits - 1U))},
+            {"tpdo", full_name(*link.sender)},
+            {"rpdo", full_name(*link.receiver)},
+            {"sent", value.sent},
+            {"taken", value.taken},
+            {"nodiscard", is_limited ? "[[nodiscard]] " : ""}};
+  }
+
+  [[nodiscard]] ordered_json network_view() const {
+    const NetworkNode* const master = network_.master();
+    if (master == nullptr) return nullptr;
+    ordered_json slaves = ordered_json::array();
+    ordered_json received = ordered_json::array();
+    ordered_json sent = ordered_json::array();
+    for (const NetworkNode& node : network_.nodes) {
+      if (&node == master) continue;
+      Signals signals = signals_of(node);
+      for (const ordered_json& one : signals.received) received.push_back({{"type", one["type"]}});
+      for (const ordered_json& one : signals.sent) sent.push_back({{"type", one["type"]}});
+      ordered_json row = slave_row(*master, node);
+      row["any_signal"] = !signals.received.empty() || !signals.sent.empty();
+      row["received"] = std::move(signals.received);
+      row["sent_signals"] = std::move(signals.sent);
+      slaves.push_back(std::move(row));
+    }
+    const std::size_t count = slaves.size();
+    return {{"master_name", cpp_comment(master->name)},
+            {"master_device", parts_.devices[position_in_file(*master)]},
+            {"master_id", master->node_id},
+            {"start_up", hex_text(value_of(master->device, 0x1F80).value_or(0))},
+            {"boot_time_us", value_of(master->device, 0x1F89).value_or(0) * 1000},
+            {"count", count},
+            {"slaves", with_separators(std::move(slaves), ", ")},
+            {"received_list", with_separators(std::move(received), ", ")},
+            {"sent_list", with_separators(std::move(sent), ", ")}};
+  }
+
+  /// The row of the network list (CiA 302-2): 1F81h and 1F84h to 1F88h of the master, where they are not 0; otherwise
+  /// the identity in the EDS of the node.
+  [[nodiscard]] ordered_json slave_row(const NetworkNode& master, const NetworkNode& node) const {
+    constexpr std::uint64_t listed_and_booted = 0x5;
+    const auto number = [&](std::uint16_t list, std::uint16_t index, std::uint8_t sub_index) {
+      const std::uint64_t of_master = value_of(master.device, list, node.node_id).value_or(0);
+      return hex_text(of_master != 0 ? of_master : value_of(node.device, index, sub_index).value_or(0));
+    };
+    const WrittenNumber& serial = node.description->serial_number;
+    const std::uint64_t serial_of_master = value_of(master.device, 0x1F88, node.node_id).value_or(0);
+    const std::uint64_t assignment = value_of(master.device, 0x1F81, node.node_id).value_or(0);
+    return {{"label", label(node)},
+            {"identifier", identifier(node)},
+            {"class_name", to_camel_case(identifier(node)) + "Node"},
+            {"text_name", cpp_string(node.name)},
+            {"position", slave_position(node)},
+            {"emcy", emcy_cob_id(node)},
+            {"assignment", hex_text(assignment != 0 ? assignment : listed_and_booted)},
+            {"device_type", number(0x1F84, 0x1000, 0)},
+            {"vendor_id", number(0x1F85, communication::identity, 1)},
+            {"product_code", number(0x1F86, communication::identity, 2)},
+            {"revision_number", number(0x1F87, communication::identity, 3)},
+            {"serial_number", hex_text(serial ? serial->value : serial_of_master)},
+            {"heartbeat_time", heartbeat_timeout(master, node)},
+            {"any_configuration", !configuration_rows(node).empty()}};
+  }
+
+  /// Bits of an EMCY COB-ID that a received frame has; 0x80000000: the node does not send EMCY.
+  [[nodiscard]] static std::string emcy_cob_id(const NetworkNode& node) {
+    constexpr std::uint64_t invalid = 0x8000'0000;
+    return hex_text(value_of(node.device, 0x1014).value_or(invalid) & 0xBFFF'FFFF);
+  }
+
+  /// 1016h of the master for this node; 0 if it does not have it.
+  [[nodiscard]] static std::uint64_t heartbeat_timeout(const NetworkNode& master, const NetworkNode& node) {
+    const Object* const consumers = master.device.find(communication::consumer_heartbeat);
+    if (consumers == nullptr) return 0;
+    for (const Entry& entry : consumers->entries) {
+      if (entry.sub_index == 0 || !entry.default_value) continue;
+      const std::uint64_t value = entry.default_value->bits;
+      if ((value >> 16 & 0xFF) == node.node_id) return value & 0xFFFF;
+    }
+    return 0;
+  }
+
+  const Network& network_;
+  const std::string& name_;
+  const PlantParts& parts_;
+  std::vector<CobIdUse> uses_;
+  std::vector<PdoLink> links_;
+  std::vector<std::string> identifiers_;
+};
+
+}  // namespace
+
+std::string plant_header(const Network& network, const std::string& name, const PlantParts& parts) {
+  return PlantHeader{network, name, parts}.text();
+}
+
+}  // namespace edsc

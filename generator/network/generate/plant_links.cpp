@@ -1,0 +1,53 @@
+#include "network/generate/plant_links.hpp"
+
+#include <fmt/format.h>
+
+#include "device/complete_device.hpp"
+
+namespace edsc {
+namespace {
+
+bool is_linked(const CobIdUse& sender, const CobIdUse& receiver) {
+  return sender.pdo != nullptr && receiver.pdo != nullptr && sender.transmits && !receiver.transmits &&
+         sender.node != receiver.node && sender.can_id == receiver.can_id && sender.extended == receiver.extended;
+}
+
+}  // namespace
+
+std::vector<PdoLink> pdo_links(const std::vector<CobIdUse>& uses) {
+  std::vector<PdoLink> links;
+  for (const CobIdUse& sender : uses) {
+    for (const CobIdUse& receiver : uses) {
+      if (is_linked(sender, receiver)) links.push_back({&sender, &receiver});
+    }
+  }
+  return links;
+}
+
+std::vector<LinkedValue> linked_values(const PdoLink& link) {
+  std::vector<LinkedValue> values;
+  unsigned taken_bit = 0;
+  for (std::size_t taken = 0; taken < link.receiver->pdo->entries.size(); ++taken) {
+    const PdoEntry& consumer = link.receiver->pdo->entries[taken];
+    unsigned sent_bit = 0;
+    for (std::size_t sent = 0; sent < link.sender->pdo->entries.size(); ++sent) {
+      const PdoEntry& producer = link.sender->pdo->entries[sent];
+      const bool is_value = producer.object != nullptr && consumer.object != nullptr;
+      if (is_value && sent_bit == taken_bit && producer.bits == consumer.bits) {
+        values.push_back({sent, taken, sent_bit});
+      }
+      sent_bit += producer.bits;
+    }
+    taken_bit += consumer.bits;
+  }
+  return values;
+}
+
+std::string signal_identifier(const Device& device, const PdoEntry& entry) {
+  const Object& object = *device.find(entry.index);
+  if (!object.has_sub_indices()) return object.identifier;
+  if (describes_uniform_array(object)) return fmt::format("{}_{}", object.identifier, entry.sub_index);
+  return fmt::format("{}_{}", object.identifier, entry.object->identifier);
+}
+
+}  // namespace edsc

@@ -1,0 +1,39 @@
+/// Texts for the log of a plant on a host.
+#pragma once
+
+#include <cstdio>
+#include <string>
+
+#include "canopen/emcy/emcy_consumer.hpp"
+#include "canopen/host/master_text.hpp"
+#include "canopen/plant/plant_fault.hpp"
+#include "canopen/plant/plant_node.hpp"
+
+namespace canopen {
+
+/// `axis1: lost, last state operational`, `axis1: product code 1018h:02 is not the one of 1F86h: expected ...`; a node
+/// that the network file does not list is `node 9`.
+[[nodiscard]] inline std::string fault_text(const PlantNode& node, const PlantFault& fault) {
+  const std::string who =
+      node.name.empty() ? "node " + std::to_string(node.node_id.value()) : std::string{node.name};
+  if (fault.kind == PlantFaultKind::boot) return boot_text(who, fault.boot);
+  std::string text = who + ": " + std::string{to_text(fault.kind)};
+  switch (fault.kind) {
+    case PlantFaultKind::lost: return text + ", last state " + std::string{to_text(fault.state)};
+    case PlantFaultKind::unexpected_state:
+    case PlantFaultKind::toggle_error: return text + ": " + std::string{to_text(fault.state)};
+    case PlantFaultKind::emergency: {
+      char code[8];
+      std::snprintf(code, sizeof code, " %04Xh", unsigned{fault.emergency.code});
+      return text + code + ": " + std::string{emergency_text(fault.emergency.code)};
+    }
+    case PlantFaultKind::pdo_missing:
+    case PlantFaultKind::pdo_too_short: return text + ": RPDO " + std::to_string(fault.rpdo) + " of the master";
+    case PlantFaultKind::boot:
+    case PlantFaultKind::not_watched:
+    case PlantFaultKind::emergency_over: break;
+  }
+  return text;
+}
+
+}  // namespace canopen
