@@ -1,7 +1,7 @@
 /// Faults that a simulation injects: `lost:axis1@10s`.
 #pragma once
 
-#include <canopen/host/network_simulation/network_plan.hpp>
+#include <canopen/host/network_simulation/simulation_protocol.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -16,15 +16,15 @@ using FaultKind = canopen::network_simulation::PlannedFault::Kind;
 
 struct SimulationFault {
   FaultKind kind = FaultKind::lost;
-  std::size_t node = 0;        ///< place in Network::nodes, unless the fault is of the bus
-  std::uint64_t time_us = 0;   ///< after the start of the nodes; of errors: the interval
-  std::string text;            ///< as written
+  std::size_t node = 0;       ///< place in Network::nodes, unless the fault is of the bus
+  std::uint64_t time_us = 0;  ///< after the start of the nodes; of errors: the interval
+  std::string text;           ///< as written
 };
 
 struct FaultRow {
   FaultKind kind;
   std::string_view name;
-  std::string_view form;     ///< of what follows `name:`
+  std::string_view form;  ///< of what follows `name:`
   std::string_view meaning;
 };
 
@@ -41,7 +41,7 @@ inline constexpr FaultRow fault_rows[] = {
 /// Reads a fault. Returns an error message; empty on success.
 [[nodiscard]] std::string parse_fault(std::string_view text, const Network& network, SimulationFault& fault);
 
-/// `the node loses its power` of each kind, for help texts: `lost:NODE@TIME, ...`.
+/// `lost:NODE@TIME, ...`
 [[nodiscard]] std::string fault_forms();
 
 }  // namespace edsc

@@ -1,7 +1,6 @@
 #include "simulate/simulation_result.hpp"
 
-#include <array>
-#include <canopen/host/network_simulation/network_simulation.hpp>
+#include <canopen/host/network_simulation/simulation_protocol.hpp>
 #include <canopen/host/simulation_codec.hpp>
 
 namespace edsc {

@@ -1,4 +1,4 @@
-/// What a simulation has seen: the output of its program (canopen/host/network_simulation/network_simulation.hpp).
+/// What a simulation has seen: the output of its program (canopen/host/network_simulation/simulation_protocol.hpp).
 #pragma once
 
 #include <canopen/nmt/nmt.hpp>
@@ -31,12 +31,12 @@ struct OtherFrames {
 struct SimulationEvent {
   enum class Kind : std::uint8_t { emergency, heartbeat_lost, heartbeat_back, state };
   Kind kind = Kind::emergency;
-  std::int64_t time_us = 0;          ///< from the start of the nodes; negative before
-  std::size_t node = 0;              ///< place in Network::nodes
-  unsigned code = 0;                 ///< of an emergency
-  unsigned error_register = 0;       ///< of an emergency
-  unsigned other = 0;                ///< of a heartbeat: the node-ID
-  canopen::NmtState state{};         ///< of a state
+  std::int64_t time_us = 0;     ///< from the start of the nodes; negative before
+  std::size_t node = 0;         ///< place in Network::nodes
+  unsigned code = 0;            ///< of an emergency
+  unsigned error_register = 0;  ///< of an emergency
+  unsigned other = 0;           ///< of a heartbeat: the node-ID
+  canopen::NmtState state{};    ///< of a state
 };
 
 struct SimulatedNodeEnd {

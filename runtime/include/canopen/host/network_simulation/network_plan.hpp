@@ -55,12 +55,4 @@ struct NetworkPlan {
   std::span<const PlannedMessage> messages;
 };
 
-/// The arguments of a run. Times are in us after all nodes were started.
-struct PlannedFault {
-  enum class Kind : std::uint8_t { lost, babbling, errors };
-  Kind kind;
-  std::size_t node;    ///< of `lost` and `babbling`
-  std::uint64_t time;  ///< of `errors`: the interval
-};
-
 }  // namespace canopen::network_simulation

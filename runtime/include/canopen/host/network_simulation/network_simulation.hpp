@@ -1,35 +1,17 @@
 /// A network whose nodes are devices that edsc has generated, on a VirtualBus with the lengths and the arbitration of
-/// CAN. `edsc network simulate` writes and runs a program of it:
-///
-///     simulate DURATION SEED [lost NODE TIME | babbling NODE TIME | errors 0 INTERVAL]...
-///
-/// DURATION, TIME and INTERVAL are in us, the first two from the start of the nodes; NODE is a place in the plan. The
-/// nodes power on at different times, are configured through their SDO servers without the bus, and are started two
-/// seconds later. The program prints lines of words; numbers are decimal:
-///
-///     edsc-network-simulation 1
-///     progress TIME                            now and then
-///     refused NODE INDEX SUB ABORT-CODE        an entry of the DCF
-///     emergency TIME NODE CODE REGISTER        queued by a node
-///     heartbeat TIME NODE OTHER lost|back      of the heartbeat consumer of a node; OTHER is a node-ID
-///     state TIME NODE STATE                    as in a heartbeat
-///     message PLACE COUNT WORST AT             of NetworkPlan::messages
-///     frame CAN-ID EXTENDED REMOTE NODE COUNT WORST AT     not in the plan; NODE is that of the sender, -1 for SDO
-///                                              requests and NMT commands
-///     changes PLACE COUNT                      events of a message
-///     node NODE CONDITION STATE                at the end; CONDITION as in Station::Condition
-///     bus MEASURED BUSY BUSIEST FRAMES ERRORS  times in us; BUSIEST is that of one second
-///     end
-///
-/// Host side.
+/// CAN. `edsc network simulate` writes and runs a program of it (simulation_protocol.hpp). The nodes power on at
+/// different times, are configured through their SDO servers without the bus, and are started two seconds later. Host
+/// side.
 #pragma once
 
+#include <algorithm>
 #include <charconv>
 #include <cinttypes>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <deque>
+#include <iterator>
 #include <optional>
 #include <random>
 #include <span>
@@ -40,11 +22,10 @@
 #include "canopen/can/cob_id.hpp"
 #include "canopen/host/network_simulation/frame_statistics.hpp"
 #include "canopen/host/network_simulation/network_plan.hpp"
+#include "canopen/host/network_simulation/simulation_protocol.hpp"
 #include "canopen/host/network_simulation/station.hpp"
 
 namespace canopen::network_simulation {
-
-inline constexpr std::string_view greeting = "edsc-network-simulation 1";
 
 class NetworkSimulation final : private StationLog {
  public:
@@ -214,17 +195,17 @@ class NetworkSimulation final : private StationLog {
     if (at < words.size()) (void)std::from_chars(words[at].data(), words[at].data() + words[at].size(), value);
     return value;
   };
-  constexpr std::string_view kinds[] = {"lost", "babbling", "errors"};
   const std::uint64_t duration = number(0);
   const std::uint64_t seed = number(1);
   if (duration > std::uint64_t{1} << 50 || seed > UINT32_MAX || words.size() % 3 != 2) return 2;
   std::printf("%s\n", greeting.data());
   NetworkSimulation simulation{plan, static_cast<std::uint32_t>(seed)};
   for (std::size_t i = 2; i < words.size(); i += 3) {
-    const auto kind = std::ranges::find(kinds, words[i]);
+    const auto kind = std::ranges::find(fault_names, words[i]);
     const std::uint64_t node = number(i + 1);
-    if (kind == std::end(kinds) || node >= plan.nodes.size() || number(i + 2) > duration) return 2;
-    simulation.add({static_cast<PlannedFault::Kind>(kind - kinds), static_cast<std::size_t>(node), number(i + 2)});
+    if (kind == std::end(fault_names) || node >= plan.nodes.size() || number(i + 2) > duration) return 2;
+    simulation.add(
+        {static_cast<PlannedFault::Kind>(kind - fault_names), static_cast<std::size_t>(node), number(i + 2)});
   }
   simulation.run(duration);
   return 0;
