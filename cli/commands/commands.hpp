@@ -34,6 +34,7 @@ AddOptions add_completion_options;
 AddOptions add_network_apply_options;
 AddOptions add_network_generate_options;
 AddOptions add_network_scan_options;
+AddOptions add_network_simulate_options;
 AddOptions add_network_verify_options;
 
 /// A command, and the group that the help and the manual page list it in.

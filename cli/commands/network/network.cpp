@@ -23,6 +23,7 @@ constexpr const char* examples = R"(Examples:
   edsc network check plant.json                   findings as compiler messages; exit code 1 if there are errors
   edsc network check plant.json --format sarif    the same for a code review (SARIF 2.1.0)
   edsc network check plant.json --strict          warnings count as errors
+  edsc network simulate plant.json --for 1h       load and response times seen beside those computed
   edsc network members                            every member of a network file with its meaning
   edsc network generate plant.json -o build       DCFs, concise DCFs, the EDS of the master, DBC file and graph
   edsc network scan socketcan:can0 --sheets eds -o plant.json    the network file of the nodes on a bus
@@ -127,6 +128,8 @@ constexpr ActionRow actions[] = {
     {"check", "check the nodes, CAN-IDs, PDO links, SYNC and error control of a network", add_network_check_options},
     {"generate", "write the DCFs of the nodes, and a DBC file and a graph of the network",
      add_network_generate_options},
+    {"simulate", "run the generated devices of a network on a simulated bus: load, response times and faults",
+     add_network_simulate_options},
     {"members", "list the members of a network file", add_members_options},
     {"scan", "write a network file of the nodes on a bus", add_network_scan_options},
     {"verify", "compare the nodes on a bus with a network file", add_network_verify_options},

@@ -82,6 +82,14 @@ TEST(FrameLength, WithAllStuffBitsIsReachedByTheWorstBits) {
             max_bits_on_wire({.size = 8, .extended = true}));
 }
 
+/// Counted by hand. CAN-ID 0 without data: 19 zeros and a CRC of 15 zeros, with a stuff bit after each five of these
+/// 34. CAN-ID 555h of a remote frame with data length 5: no five equal bits before the CRC, which has 15.
+TEST(FrameLength, WithTheStuffBitsOfTheContents) {
+  EXPECT_EQ(stuffed_bits_on_wire({}), 47U + 6U);
+  EXPECT_EQ(stuffed_bits_on_wire({.data = {0xFF}}), 47U + 6U);
+  EXPECT_LE(stuffed_bits_on_wire({.id = 0x555, .size = 5, .remote = true}), 47U + 3U);
+}
+
 TEST(FrameLength, OfEncodedFramesIsWithinTheLimits) {
   std::minstd_rand random{11898};
   std::size_t max_stuff_bits = 0;
@@ -96,6 +104,7 @@ TEST(FrameLength, OfEncodedFramesIsWithinTheLimits) {
     const std::size_t length = length_with_stuff_bits(bits) + not_stuffed;
     ASSERT_EQ(bits.size() + not_stuffed, bits_on_wire(frame));
     ASSERT_LE(length, max_bits_on_wire(frame));
+    ASSERT_EQ(length, stuffed_bits_on_wire(frame));
     max_stuff_bits = std::max(max_stuff_bits, length - bits_on_wire(frame));
   }
   EXPECT_GE(max_stuff_bits, 15U);

@@ -1,4 +1,4 @@
-/// Length of frames on the wire.
+/// Length of frames on the wire: without stuff bits, with the largest number of them, and with those of the contents.
 #pragma once
 
 #include <cstdint>
@@ -23,6 +23,67 @@ namespace canopen {
   constexpr std::uint32_t not_stuffed = 13;
   const std::uint32_t bits = bits_on_wire(frame);
   return bits + (bits - not_stuffed - 1) / 4;
+}
+
+namespace frame_length_detail {
+
+/// Counts the stuff bits of a bit sequence, and computes its CRC (ISO 11898-1, 10.4.2.6).
+class StuffedBits {
+ public:
+  /// Appends the low `count` bits of a number, most significant first.
+  constexpr void add(std::uint32_t number, unsigned count) {
+    for (unsigned i = count; i-- > 0;) {
+      const std::uint32_t bit = (number >> i) & 1u;
+      crc_ = (crc_ << 1) ^ ((((crc_ >> 14) ^ bit) & 1u) * polynomial);
+      stuff(bit);
+    }
+  }
+
+  /// Appends the CRC sequence of all bits before.
+  constexpr void add_crc() { add(crc_ & 0x7FFF, 15); }
+
+  /// Returns the number of stuff bits.
+  [[nodiscard]] constexpr std::uint32_t count() const { return count_; }
+
+ private:
+  static constexpr std::uint32_t polynomial = 0x4599;
+
+  /// After five equal bits, a complementary one follows, which is the first of the next sequence.
+  constexpr void stuff(std::uint32_t bit) {
+    run_ = bit == last_ ? run_ + 1 : 1;
+    last_ = bit;
+    if (run_ < 5) return;
+    ++count_;
+    last_ ^= 1u;
+    run_ = 1;
+  }
+
+  std::uint32_t crc_ = 0;
+  std::uint32_t last_ = 2;  ///< no bit yet
+  std::uint32_t run_ = 0;
+  std::uint32_t count_ = 0;
+};
+
+}  // namespace frame_length_detail
+
+/// Returns the bits of this frame on the wire with the stuff bits that its identifier, data and CRC need, from start of
+/// frame to the end of the intermission: between `bits_on_wire` and `max_bits_on_wire`.
+[[nodiscard]] constexpr std::uint32_t stuffed_bits_on_wire(const Frame& frame) {
+  frame_length_detail::StuffedBits bits;
+  bits.add(0, 1);  // start of frame
+  if (frame.extended) {
+    bits.add(frame.id >> 18, 11);
+    bits.add(0b11, 2);  // SRR, IDE
+    bits.add(frame.id, 18);
+    bits.add(frame.remote ? 0b100 : 0b000, 3);  // RTR, two reserved bits
+  } else {
+    bits.add(frame.id, 11);
+    bits.add(frame.remote ? 0b100 : 0b000, 3);  // RTR, IDE, a reserved bit
+  }
+  bits.add(frame.size, 4);
+  for (std::uint32_t i = 0; i < frame.size && !frame.remote; ++i) bits.add(frame.data[i], 8);
+  bits.add_crc();
+  return bits_on_wire(frame) + bits.count();
 }
 
 }  // namespace canopen

@@ -11,10 +11,12 @@
 #include <string_view>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "canopen/host/memory_storage.hpp"
 #include "canopen/lss/lss_handler.hpp"
 #include "canopen/node.hpp"
+#include "canopen/node/accepted_frames.hpp"
 #include "canopen/storage/storage.hpp"
 
 namespace canopen {
@@ -65,6 +67,9 @@ class SimulatedNode {
   virtual void on_frame(const Frame& frame, TimePoint now) = 0;
   virtual void on_time(TimePoint now) = 0;
   [[nodiscard]] virtual std::optional<TimePoint> next_deadline() const = 0;
+  [[nodiscard]] virtual NmtState state() const = 0;
+  /// Appends the frames that `on_frame` does not ignore.
+  virtual void accepted_frames(std::vector<AcceptedFrame>& frames) = 0;
 
   /// What the application does without a request of the bus: Node::set, Node::emergency and Node::emergency_over.
   [[nodiscard]] virtual AbortCode set(std::uint16_t index, std::uint8_t sub_index,
@@ -149,6 +154,11 @@ class NodeOf final : public SimulatedNode {
     TimePoint next = has_tick ? next_tick_ : serve_until_;
     if (const auto of_node = node_.next_deadline(); of_node && *of_node < next) next = *of_node;
     return next;
+  }
+
+  [[nodiscard]] NmtState state() const override { return node_.state(); }
+  void accepted_frames(std::vector<AcceptedFrame>& frames) override {
+    for_each_accepted_frame(node_, [&frames](const AcceptedFrame& frame) { frames.push_back(frame); });
   }
 
   AbortCode set(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> bytes) override {

@@ -22,6 +22,15 @@
 
 namespace canopen {
 
+/// How a VirtualBus treats frames.
+enum class WireModel : std::uint8_t {
+  /// Frames have no stuff bits, and an endpoint sends its frames in their order.
+  plain,
+  /// Frames have the stuff bits of their contents, and an endpoint sends the waiting frame of highest priority first;
+  /// those of one CAN-ID keep their order.
+  exact,
+};
+
 /// A bus with endpoints: each frame that one sends is received by all others, lowest CAN-ID first among those that
 /// wait. With a bit rate, a frame takes its time on the wire; without one it takes none. Frames sent while others are
 /// delivered wait for their turn: there is no recursion.
@@ -41,11 +50,16 @@ class VirtualBus {
     /// Appends a frame to the endpoint's queue; false if `queue_limit` frames are already waiting.
     bool send(const Frame& frame) {
       if (waiting_.size() >= queue_limit) return false;
-      waiting_.push_back(frame);
-      if (waiting_.size() == 1) bus_.waits(*this);
+      const auto at = bus_.model_ == WireModel::plain ? waiting_.end() : after_more_dominant(frame);
+      const bool is_first = at == waiting_.begin();
+      waiting_.insert(at, Waiting{frame, bus_.elapsed()});
+      if (is_first) bus_.waits(*this);
       deadline_changed();
       return true;
     }
+
+    /// Returns the number of frames that wait for the wire.
+    [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
 
     /// Discards the waiting frames and the one on the wire, like a device that loses power.
     void discard() {
@@ -74,20 +88,56 @@ class VirtualBus {
 
    private:
     friend class VirtualBus;
+    struct Waiting {
+      Frame frame;
+      std::uint64_t since;  ///< of `elapsed()`
+    };
+
     Endpoint(VirtualBus& bus, std::size_t place) : bus_{bus}, place_{place} {}
+
+    [[nodiscard]] std::deque<Waiting>::iterator after_more_dominant(const Frame& frame) {
+      const auto is_before = [](std::uint64_t priority, const Waiting& one) {
+        return priority < arbitration_value(one.frame);
+      };
+      return std::upper_bound(waiting_.begin(), waiting_.end(), arbitration_value(frame), is_before);
+    }
+
+    /// Makes a destroyed frame the next one again, after those that have become more dominant meanwhile.
+    void repeat(const Waiting& destroyed) {
+      const auto is_before = [](const Waiting& one, std::uint64_t priority) {
+        return arbitration_value(one.frame) < priority;
+      };
+      const auto at = bus_.model_ == WireModel::plain ? waiting_.begin()
+                                                      : std::lower_bound(waiting_.begin(), waiting_.end(),
+                                                                         arbitration_value(destroyed.frame), is_before);
+      waiting_.insert(at, destroyed);
+      bus_.waits(*this);
+    }
 
     VirtualBus& bus_;
     std::size_t place_;
     bool outdated_ = false;  ///< the bus must read the deadline again
-    std::deque<Frame> waiting_;
+    std::deque<Waiting> waiting_;
   };
+
+  /// A frame that was on the wire. Times are those of `elapsed()`.
+  struct Transmission {
+    Frame frame;
+    const Endpoint* sender;
+    std::uint64_t queued;   ///< when the sender queued it
+    std::uint64_t started;  ///< of the present attempt
+    std::uint64_t ended;    ///< of the intermission, or of the error frame
+    bool is_destroyed;      ///< by an error: it is sent again
+  };
+  using Observer = std::function<void(const Transmission&)>;
 
   /// Called with each frame after its transmission.
   using Listener = std::function<void(const Frame&, TimePoint now)>;
 
   VirtualBus() = default;
   /// Bit rate in bit/s; 0: frames take no time.
-  explicit VirtualBus(std::uint32_t bit_rate) : bit_rate_{bit_rate} {}
+  explicit VirtualBus(std::uint32_t bit_rate, WireModel model = WireModel::plain)
+      : bit_rate_{bit_rate}, model_{model} {}
   VirtualBus(const VirtualBus&) = delete;
   VirtualBus& operator=(const VirtualBus&) = delete;
 
@@ -121,6 +171,19 @@ class VirtualBus {
 
   void listen(Listener listener) { listeners_.push_back(std::move(listener)); }
 
+  /// Calls `observer` when the wire becomes free, before the frame is received. It must not use the bus.
+  void observe(Observer observer) { observer_ = std::move(observer); }
+
+  /// Destroys the frame on the wire each time this interval has elapsed. An error costs `bits_of_error` and the frame,
+  /// which is sent again; on an idle bus it has no effect. Interval 0: no further errors. Needs a bit rate.
+  void make_errors(Duration interval) {
+    error_interval_ = interval.count();
+    next_error_ = now_ + error_interval_;
+  }
+
+  /// The longest time from an error to the next start of frame in bits (Davis and others, 2007, section 3.7).
+  static constexpr std::uint32_t bits_of_error = 31;
+
   [[nodiscard]] TimePoint now() const { return TimePoint{Duration{static_cast<std::uint32_t>(now_)}}; }
 
   /// Returns the microseconds since the bus was created. Does not wrap.
@@ -129,7 +192,7 @@ class VirtualBus {
   /// Returns how long this frame occupies the wire.
   [[nodiscard]] Duration duration_of(const Frame& frame) const {
     if (bit_rate_ == 0) return Duration{0};
-    return Duration{static_cast<std::uint32_t>(std::uint64_t{bits_on_wire(frame)} * 1'000'000 / bit_rate_)};
+    return duration_of(model_ == WireModel::plain ? bits_on_wire(frame) : stuffed_bits_on_wire(frame));
   }
 
   /// Lets this time pass: frames and deadlines in their order, including those at its end.
@@ -173,8 +236,14 @@ class VirtualBus {
 
   struct OnWire {
     Endpoint* sender;
-    Frame frame;
+    Endpoint::Waiting waiting;
+    std::uint64_t started;
+    bool is_destroyed = false;
   };
+
+  [[nodiscard]] Duration duration_of(std::uint32_t bits) const {
+    return Duration{static_cast<std::uint32_t>(std::uint64_t{bits} * 1'000'000 / bit_rate_)};
+  }
 
   /// Executes the next event until `end`; false if there is none.
   bool step(Time end) {
@@ -239,7 +308,7 @@ class VirtualBus {
   /// Updates arbitration after a change of the endpoint's first waiting frame.
   void waits(const Endpoint& endpoint) {
     const bool any = !endpoint.waiting_.empty();
-    waiting_.set(endpoint.place_, any ? arbitration_value(endpoint.waiting_.front()) : KeyTree::none);
+    waiting_.set(endpoint.place_, any ? arbitration_value(endpoint.waiting_.front().frame) : KeyTree::none);
   }
 
   /// Starts the frame that wins arbitration, if the wire is free.
@@ -247,17 +316,32 @@ class VirtualBus {
     if (on_wire_) return true;
     if (waiting_.least() == KeyTree::none) return false;
     Endpoint& winner = *endpoints_[waiting_.first_up_to(waiting_.least())];
-    on_wire_ = OnWire{&winner, winner.waiting_.front()};
+    on_wire_ = OnWire{&winner, winner.waiting_.front(), elapsed()};
     winner.waiting_.pop_front();
     waits(winner);
     winner.deadline_changed();  // it has room again
-    wire_free_ = now_ + duration_of(on_wire_->frame).count();
+    wire_free_ = now_ + duration_of(on_wire_->waiting.frame).count();
+    if (error_interval_ != 0) meet_error();
     return true;
+  }
+
+  /// Ends the frame on the wire with an error frame if the next error is due before its end.
+  void meet_error() {
+    if (next_error_ < now_)
+      next_error_ += (now_ - next_error_ + error_interval_ - 1) / error_interval_ * error_interval_;
+    if (next_error_ >= wire_free_) return;
+    on_wire_->is_destroyed = true;
+    wire_free_ = next_error_ + duration_of(bits_of_error).count();
+    next_error_ += error_interval_;
   }
 
   void end_frame() {
     const OnWire done = *std::exchange(on_wire_, std::nullopt);
-    for (const Listener& listener : listeners_) listener(done.frame, now());
+    if (observer_) {
+      observer_({done.waiting.frame, done.sender, done.waiting.since, done.started, elapsed(), done.is_destroyed});
+    }
+    if (done.is_destroyed) return done.sender->repeat(done.waiting);
+    for (const Listener& listener : listeners_) listener(done.waiting.frame, now());
     if (independent_ && now_ - passed_to_all_ < longest_pause) return pass_to_receivers(done);
     passed_to_all_ = now_;
     for (std::size_t i = 0; i < endpoints_.size(); ++i) pass(done, *endpoints_[i]);
@@ -266,7 +350,7 @@ class VirtualBus {
 
   void pass_to_receivers(const OnWire& done) {
     ask_for_deadlines();  // a listener may have changed which frames are accepted
-    for (std::size_t i = 0; (i = acceptance_.first_receiver(done.frame, i)) != AcceptanceTable::no_place; ++i) {
+    for (std::size_t i = 0; (i = acceptance_.first_receiver(done.waiting.frame, i)) != AcceptanceTable::no_place; ++i) {
       pass(done, *endpoints_[i]);
       endpoints_[i]->deadline_changed();
     }
@@ -274,7 +358,7 @@ class VirtualBus {
   }
 
   void pass(const OnWire& done, Endpoint& endpoint) const {
-    if (&endpoint != done.sender && endpoint.on_frame) endpoint.on_frame(done.frame, now());
+    if (&endpoint != done.sender && endpoint.on_frame) endpoint.on_frame(done.waiting.frame, now());
   }
 
   std::vector<std::unique_ptr<Endpoint>> endpoints_;
@@ -293,6 +377,10 @@ class VirtualBus {
   Time passed_to_all_ = start_;  ///< when all endpoints have received a frame
   Time wire_free_ = now_;
   std::uint32_t bit_rate_ = 0;
+  WireModel model_ = WireModel::plain;
+  Observer observer_;
+  Time error_interval_ = 0;  ///< 0: there are no errors
+  Time next_error_ = 0;
 };
 
 }  // namespace canopen

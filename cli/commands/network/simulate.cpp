@@ -1,0 +1,180 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "commands/commands.hpp"
+#include "monitor/progress_line.hpp"
+#include "network/checks/check_network.hpp"
+#include "network/network.hpp"
+#include "network/simulate/simulation_source.hpp"
+#include "online/interruption.hpp"
+#include "shared/common_options.hpp"
+#include "shared/define_command.hpp"
+#include "shared/exit_code.hpp"
+#include "shared/output.hpp"
+#include "simulate/simulation_fault.hpp"
+#include "simulate/simulation_program.hpp"
+#include "simulate/simulation_report.hpp"
+#include "text/printable.hpp"
+
+namespace edsc {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* examples = R"(Examples:
+  edsc network simulate plant.json                                load and response times of a minute
+  edsc network simulate plant.json --for 1h -o build/simulation   keep the program
+  edsc network simulate plant.json --fault lost:axis1@10s         who notices a lost node
+  edsc network simulate plant.json --fault errors:1/10ms          an error frame every 10 ms
+  edsc network simulate plant.json --format json                  for a program)";
+
+constexpr std::uint64_t default_duration_us = 60'000'000;
+
+struct Settings {
+  std::string path;
+  std::string output;
+  std::string include_folder;
+  std::string format = "text";
+  std::uint64_t duration_us = default_duration_us;
+  std::uint32_t seed = 1;
+  std::vector<std::string> faults;
+  ColorOption color;
+};
+
+/// A folder that is removed at the end, unless the user has named one.
+class WorkFolder {
+ public:
+  explicit WorkFolder(const std::string& named) : path_{named}, is_temporary_{named.empty()} {
+    if (!is_temporary_) return;
+    std::string pattern = (fs::temp_directory_path() / "edsc-simulation-XXXXXX").string();
+    if (mkdtemp(pattern.data()) == nullptr) fail("cannot create a temporary folder " + pattern);
+    path_ = pattern;
+  }
+  ~WorkFolder() {
+    std::error_code ignored;
+    if (is_temporary_) fs::remove_all(path_, ignored);
+  }
+  WorkFolder(const WorkFolder&) = delete;
+  WorkFolder& operator=(const WorkFolder&) = delete;
+
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+  bool is_temporary_;
+};
+
+std::vector<SimulationFault> parse_faults(const Settings& settings, const Network& network) {
+  std::vector<SimulationFault> faults;
+  for (const std::string& text : settings.faults) {
+    SimulationFault& fault = faults.emplace_back();
+    if (const std::string problem = parse_fault(text, network, fault); !problem.empty()) {
+      fail("--fault: " + problem);
+    }
+    if (fault.time_us > settings.duration_us) fail(fmt::format("--fault: {} is later than the end of the run", text));
+  }
+  return faults;
+}
+
+/// The response times hold for the errors of the simulation as well.
+void assume_errors(NetworkDescription& description, const std::vector<SimulationFault>& faults) {
+  for (const SimulationFault& fault : faults) {
+    if (fault.kind != FaultKind::errors) continue;
+    const auto interval_ms = static_cast<std::uint32_t>(fault.time_us / 1000);
+    description.error_interval_ms = Written<std::uint32_t>{std::max(interval_ms, 1U), {}};
+  }
+}
+
+SimulationResult run(const Settings& settings, SimulationSource source, SimulationRun run) {
+  const WorkFolder folder{settings.output};
+  const std::string include_folder =
+      settings.include_folder.empty() ? runtime_include_folder() : settings.include_folder;
+  if (include_folder.empty()) fail("cannot find the headers of the runtime; --runtime names their folder");
+  for (OutputFile& file : source.files) file.path = (fs::path{folder.path()} / file.path).string();
+  write_all_files(source.files);
+  const std::size_t sources = source.sources.size();
+  ProgressLine progress;
+  progress.show(fmt::format("compiling {} files", sources));
+  run.program = build_simulation({folder.path(), std::move(source.sources), include_folder}, [&](std::size_t done) {
+    progress.show(fmt::format("compiling {} of {}", done, sources));
+  });
+  return run_simulation(run, [&](std::uint64_t time_us) {
+    progress.show(fmt::format("simulating {:.0f} of {:.0f} s", static_cast<double>(time_us) / 1e6,
+                              static_cast<double>(run.duration_us) / 1e6));
+  });
+}
+
+int report(const Settings& settings, const SimulatedNetwork& simulated) {
+  const std::vector<std::string> problems = simulation_problems(simulated);
+  if (settings.format == "json") {
+    fmt::print("{}\n", json_text(simulation_json(simulated)));
+  } else {
+    for (const std::string& line : simulation_lines(simulated)) print_visibly(stdout, "{}\n", line);
+  }
+  for (const std::string& problem : problems) print_visibly(stderr, "edsc: {}\n", problem);
+  return problems.empty() ? exit_fine : exit_device_failed;
+}
+
+int simulate(const Settings& settings) {
+  Diagnostics diagnostics;
+  diagnostics.drop_notes();
+  const auto loaded = load_network(settings.path, diagnostics);
+  Network& network = loaded->network;
+  check_network(network, diagnostics);
+  SimulationSource source;
+  NetworkTiming timing;
+  std::vector<SimulationFault> faults;
+  if (diagnostics.errors() == 0) {
+    if (!network.description.bit_rate) fail(settings.path + ": a simulation needs \"bit_rate\"");
+    faults = parse_faults(settings, network);
+    assume_errors(network.description, faults);
+    timing = network_timing(network, cob_id_uses(network));
+    source = simulation_source(network, timing, diagnostics);
+  }
+  print_findings(stderr, diagnostics, settings.color);
+  if (loaded->unreadable) return exit_wrong_usage;
+  if (diagnostics.errors() > 0) return exit_input_has_errors;
+  const Interruption interruption;
+  try {
+    const SimulationResult result =
+        run(settings, std::move(source),
+            {{}, settings.duration_us, settings.seed, faults, network.nodes.size(), timing.messages.size()});
+    return report(settings, {network, timing, faults, result});
+  } catch (const SimulationError& problem) {
+    if (Interruption::noted()) {
+      print_visibly(stderr, "edsc: interrupted\n");
+      return exit_interrupted;
+    }
+    fmt::print(stderr, "edsc: {}\n", problem.what());
+    return exit_wrong_usage;
+  }
+}
+
+}  // namespace
+
+void add_network_simulate_options(CLI::App& command, int& exit_code) {
+  Settings& settings = define_command(command, examples, simulate, exit_code);
+  command.add_option("FILE", settings.path, "network file (JSON)")->required();
+  add_parsed(command, "--for", settings.duration_us, parse_simulated_time, "a time, such as 10s, 500ms or 1h",
+             "simulated time (default: 1min)");
+  command.add_option("--fault", settings.faults, "fault to inject: " + fault_forms() + "; may be given more than once")
+      ->allow_extra_args(false);
+  command.add_option("--seed", settings.seed, "of the phases and values; the same seed has the same result")
+      ->check(CLI::Range(std::uint32_t{1}, std::numeric_limits<std::uint32_t>::max()))
+      ->capture_default_str();
+  command.add_option("-o,--output", settings.output, "folder for the program (default: a temporary one)");
+  command.add_option("--runtime", settings.include_folder, "include folder of the runtime (default: that of edsc)")
+      ->check(CLI::ExistingDirectory);
+  add_choice(command, "--format", settings.format, {"text", "json"}, "text or json");
+  settings.color.add_to(command);
+}
+
+}  // namespace edsc
