@@ -11,8 +11,6 @@
 
 #include "text/source_file.hpp"
 
-extern char** environ;
-
 namespace edsc {
 namespace {
 
@@ -70,6 +68,7 @@ void drain(const Pipe& output, const Pipe& errors, ProgramOutcome& outcome,
 std::optional<ProgramOutcome> run_program(std::vector<std::string> words,
                                           const std::function<void(std::string_view)>& on_output) {
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   Pipe output;
