@@ -34,6 +34,13 @@ TEST(NetworkList, HasTheSlavesOf1F81h) {
   EXPECT_EQ(slaves[1].node_id, NodeId{3});
   EXPECT_EQ(slaves[1].heartbeat_time, 100) << "from 1016h";
   EXPECT_EQ(slaves[1].product_code, 0u);
+  EXPECT_EQ(slaves[1].configuration_date, 15'668u);
+  EXPECT_EQ(slaves[1].configuration_time, 43'200'000u);
+  EXPECT_EQ(slaves[1].software, 0x10203u);
+  EXPECT_EQ(slaves[1].restored_parameters, 2);
+  EXPECT_TRUE(slaves[1].has(canopen::slave_assignment::software_version));
+  EXPECT_FALSE(slaves[1].has(canopen::slave_assignment::software_update));
+  EXPECT_TRUE(slaves[1].has(canopen::slave_assignment::restore));
   EXPECT_EQ(slaves[2].node_id, NodeId{5});
   EXPECT_TRUE(slaves[2].has(canopen::slave_assignment::keep_alive));
 }

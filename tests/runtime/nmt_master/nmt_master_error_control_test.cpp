@@ -175,6 +175,41 @@ TEST(NmtMaster, ASlaveToBeKeptAliveThatIsNotOperationalIsReset) {
                    "585 43 00 10 00 91 01 0F 00", "(5 state 7F)", "(5 0)", "000 01 05"}));
 }
 
+TEST(NmtMaster, ASlaveToBeKeptAliveIsNotResetWhileItsStateIsUnknown) {
+  NmtSlave alive{NodeId{5}, mandatory | assignment::keep_alive};
+  alive.heartbeat_time = 100;
+  Network network{{alive}, {}};
+  network.slave(5, false).switch_on();  // without a heartbeat
+  network.pass(0ms);
+  network.master.start(network.bus.now());
+  EXPECT_EQ(network.pass(10s), (Lines{"605 40 00 10 00 00 00 00 00", "585 43 00 10 00 91 01 0F 00", "(5 E)"}));
+  EXPECT_FALSE(network.master.network_started());
+}
+
+TEST(NmtMaster, TheStateOfASlaveToBeKeptAliveIsInquiredWhereTheListHasNoTimes) {
+  Network network{{NmtSlave{NodeId{5}, plain | assignment::keep_alive}}, {}};
+  network.with_error_control = true;
+  Slave& device = network.slave(5, false);
+  device.switch_on();
+  network.bus.attach().send(bench::frame("000 01 05"));
+  network.pass(10ms);
+  network.master.start(network.bus.now());
+  EXPECT_EQ(network.pass(10s), (Lines{"(network started)", "605 40 00 10 00 00 00 00 00", "585 43 00 10 00 91 01 0F 00",
+                                      "705 R 1", "705 05", "(5 state 05)", "(5 L)"}));
+  EXPECT_EQ(device.state(), NmtState::operational);
+}
+
+TEST(NmtMaster, ASlaveToBeKeptAliveThatDoesNotAnswerGuardingIsNotReset) {
+  Network network{{NmtSlave{NodeId{5}, plain | assignment::keep_alive}}, {}};
+  network.with_error_control = true;
+  network.pass(0ms);
+  network.master.start(network.bus.now());
+  EXPECT_EQ(network.pass(0ms), (Lines{"(network started)", "605 40 00 10 00 00 00 00 00"}));
+  network.bus.attach().send(bench::frame("585 43 00 10 00 91 01 0F 00"));
+  EXPECT_EQ(network.pass(10s),
+            (Lines{"585 43 00 10 00 91 01 0F 00", "705 R 1", "705 R 1", "705 R 1", "(5 lost 00)", "(5 F)"}));
+}
+
 // A lost slave
 
 TEST(NmtMaster, ResetsALostSlaveAndBootsItAgain) {

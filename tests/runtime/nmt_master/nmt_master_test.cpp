@@ -314,7 +314,7 @@ TEST(BootStatus, HasALetterAndATextForEach) {
     letters += static_cast<char>(row.status);
     EXPECT_EQ(to_text(row.status), row.text);
   }
-  EXPECT_EQ(letters, "0ABCDFJKLMNO");
+  EXPECT_EQ(letters, "0ABCDEFGHIJKLMNO");
   EXPECT_EQ(to_text(static_cast<BootStatus>('Z')), "unknown boot status");
 }
 

@@ -108,6 +108,9 @@ class Master {
   /// Returns the last state that a slave reported; empty if it is unknown or lost.
   [[nodiscard]] std::optional<NmtState> state(NodeId node_id) const { return nmt_.state(node_id); }
 
+  /// Returns what the NMT master knows of its slaves.
+  [[nodiscard]] const auto& nmt() const { return nmt_; }
+
   /// Returns a node with the types of its device. It must not outlive the master.
   template <class Device>
   [[nodiscard]] MasterRemote<Device, B> remote(NodeId node_id) {

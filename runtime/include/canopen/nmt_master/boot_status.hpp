@@ -8,14 +8,18 @@
 
 namespace canopen {
 
-/// The letters are those of CiA 302-2. G, H and I are for program download, which this master does not support.
+/// The letters are those of CiA 302-2.
 enum class BootStatus : char {
   booted = '0',
   not_listed = 'A',
   no_response = 'B',
   device_type = 'C',
   vendor_id = 'D',
+  no_state = 'E',
   no_guarding = 'F',
+  software_unknown = 'G',
+  software_not_allowed = 'H',
+  software_update = 'I',
   configuration = 'J',
   no_heartbeat = 'K',
   was_operational = 'L',
@@ -35,7 +39,11 @@ inline constexpr BootStatusText boot_status_texts[] = {
     {BootStatus::no_response, "no answer, or device type 1000h could not be read"},
     {BootStatus::device_type, "device type 1000h is not the one of 1F84h"},
     {BootStatus::vendor_id, "vendor-ID 1018h:01 is not the one of 1F85h"},
+    {BootStatus::no_state, "no heartbeat of a node that is not to be reset if it is Operational"},
     {BootStatus::no_guarding, "no answer to guarding when error control was started"},
+    {BootStatus::software_unknown, "software 1F56h:01 could not be read, or 1F55h has no value to compare it with"},
+    {BootStatus::software_not_allowed, "software 1F56h:01 is not the one of 1F55h, and 1F81h does not allow an update"},
+    {BootStatus::software_update, "software 1F56h:01 is not the one of 1F55h; the application has to update it"},
     {BootStatus::configuration, "configuration failed"},
     {BootStatus::no_heartbeat, "no heartbeat when error control was started"},
     {BootStatus::was_operational, "node was Operational already and stays so"},
@@ -51,14 +59,15 @@ inline constexpr BootStatusText boot_status_texts[] = {
   return "unknown boot status";
 }
 
-/// How a boot-up ended, and why.
+/// How a boot-up ended, and why. A failure is explained by the entry of the slave that was the last step, and by the
+/// abort code or the two values.
 struct BootResult {
   BootStatus status = BootStatus::booted;
   AbortCode abort_code = ok;  ///< of the SDO transfer that caused the status, or of the application's configuration
-  std::uint16_t index = 0;    ///< entry of that transfer, or of the identity number that differs; 0: none
+  std::uint16_t index = 0;    ///< entry of that transfer, or of the number that differs; 0: none
   std::uint8_t sub_index = 0;
-  std::uint32_t expected = 0;  ///< identity number in the network list
-  std::uint32_t seen = 0;      ///< identity number of the node, if `abort_code` is `ok`
+  std::uint32_t expected = 0;  ///< identity number or software version in the network list
+  std::uint32_t seen = 0;      ///< the one of the node, if `abort_code` is `ok`
 
   constexpr operator BootStatus() const { return status; }  // NOLINT(google-explicit-constructor): the short form
 };

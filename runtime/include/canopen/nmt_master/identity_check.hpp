@@ -1,4 +1,5 @@
-/// The identity of a slave, which an NMT master compares with 1F84h to 1F88h (CiA 302-2).
+/// The numbers of a slave that an NMT master compares with its network list (CiA 302-2): the identity with 1F84h to
+/// 1F88h, the date and time of the configuration with 1F26h and 1F27h.
 #pragma once
 
 #include <cstdint>
@@ -23,6 +24,18 @@ inline constexpr IdentityCheck identity_checks[] = {
     {0x1018, 2, &NmtSlave::product_code, BootStatus::product_code},
     {0x1018, 3, &NmtSlave::revision_number, BootStatus::revision_number},
     {0x1018, 4, &NmtSlave::serial_number, BootStatus::serial_number},
+};
+
+/// One number of 1020h: its sub-index, and the expected value.
+struct ConfigurationCheck {
+  std::uint8_t sub_index;
+  std::uint32_t NmtSlave::*expected;
+};
+
+/// If both are equal, the slave has its configuration already.
+inline constexpr ConfigurationCheck configuration_checks[] = {
+    {1, &NmtSlave::configuration_date},
+    {2, &NmtSlave::configuration_time},
 };
 
 }  // namespace canopen

@@ -1,4 +1,4 @@
-/// The slaves that an NMT master manages, from 1F80h to 1F89h (CiA 302-2).
+/// The slaves that an NMT master manages, from 1F80h to 1F8Ah (CiA 302-2).
 #pragma once
 
 #include <cstddef>
@@ -16,10 +16,13 @@ namespace canopen {
 
 /// Bits of NMT slave assignment 1F81h. Bits 15..8 are the life time factor, bits 31..16 the guard time in ms.
 namespace slave_assignment {
-inline constexpr std::uint32_t listed = 0x01;      ///< the node is a slave of this master
-inline constexpr std::uint32_t boot = 0x04;        ///< it is started, and booted again after each boot-up message
-inline constexpr std::uint32_t mandatory = 0x08;   ///< the network is started only with it
-inline constexpr std::uint32_t keep_alive = 0x10;  ///< it is not reset if it is already Operational
+inline constexpr std::uint32_t listed = 0x01;            ///< the node is a slave of this master
+inline constexpr std::uint32_t boot = 0x04;              ///< it is started, and booted again after each boot-up message
+inline constexpr std::uint32_t mandatory = 0x08;         ///< the network is started only with it
+inline constexpr std::uint32_t keep_alive = 0x10;        ///< it is not reset if it is already Operational
+inline constexpr std::uint32_t software_version = 0x20;  ///< 1F56h:01 is compared with 1F55h
+inline constexpr std::uint32_t software_update = 0x40;   ///< a different software may be updated, by the application
+inline constexpr std::uint32_t restore = 0x80;  ///< its default values are restored before it is configured: 1F8Ah
 }  // namespace slave_assignment
 
 /// One slave. An identity number of 0 is not compared.
@@ -34,7 +37,12 @@ struct NmtSlave {
   /// Time in ms without a heartbeat after which the slave is lost, as in 1016h. During boot-up, half of it is written
   /// to 1017h of the slave if that is 0 or too long. 0: guarding with the times of `assignment`.
   std::uint16_t heartbeat_time = 0;
-  /// Concise DCF as in 1F22h, written to the slave at each boot-up. It must outlive the master.
+  std::uint8_t restored_parameters = 0;  ///< 1F8Ah, with bit `restore`: sub-index of 1011h that is written; 0: none
+  std::uint32_t software = 0;            ///< 1F55h, compared with 1F56h:01 if bit `software_version` is set
+  std::uint32_t configuration_date = 0;  ///< 1F26h, compared with 1020h:01: days since 1984-01-01
+  std::uint32_t configuration_time = 0;  ///< 1F27h, compared with 1020h:02: ms since midnight
+  /// Concise DCF as in 1F22h, written to the slave at each boot-up unless 1020h has the date and the time above, both
+  /// other than 0. It must outlive the master.
   std::span<const std::uint8_t> concise_dcf{};
 
   [[nodiscard]] constexpr bool has(std::uint32_t bit) const { return (assignment & bit) != 0; }
@@ -92,6 +100,10 @@ std::size_t read_network_list(EntryAccess<Device> entries, std::span<NmtSlave> s
       slave.product_code = number_or_zero(entries, 0x1F86, node_id);
       slave.revision_number = number_or_zero(entries, 0x1F87, node_id);
       slave.serial_number = number_or_zero(entries, 0x1F88, node_id);
+      slave.software = number_or_zero(entries, 0x1F55, node_id);
+      slave.configuration_date = number_or_zero(entries, 0x1F26, node_id);
+      slave.configuration_time = number_or_zero(entries, 0x1F27, node_id);
+      slave.restored_parameters = static_cast<std::uint8_t>(number_or_zero(entries, 0x1F8A, node_id));
       for (std::size_t i = 1; i <= consumer_heartbeat_times(entries.dictionary()); ++i) {
         const ConsumerHeartbeatTime time{number_or_zero(entries, 0x1016, static_cast<std::uint8_t>(i))};
         if (time.used() && time.node_id() == slave.node_id) slave.heartbeat_time = time.milliseconds();

@@ -27,15 +27,16 @@ namespace canopen {
 
 /// Boots up to `Count` slaves and monitors them (CiA 302-2, boot NMT slave). Each slave is reset. After its boot-up
 /// message, or after a second because the message may have been missed, it is
-///   1. identified by SDO; a wrong identity ends the boot-up until the next boot-up message,
-///   2. configured: its concise DCF (1F22h) is written, then the application configures it,
+///   1. identified by SDO; a wrong identity or software ends the boot-up until the next boot-up message,
+///   2. configured: unless 1020h has the date and time of the list, its default values are restored if 1F81h says so
+///      and its concise DCF (1F22h) is written; then the application configures it,
 ///   3. given its heartbeat time: if the list has one, 1017h is read, and written if it is 0 or too long,
 ///   4. monitored by heartbeat or guarding, and
 ///   5. started.
 /// A slave that does not respond is tried again every second, after a command to enter Pre-operational, because SDO is
-/// not available in Stopped. A slave with `keep_alive` that is already Operational is not reset or configured;
-/// detecting this requires heartbeat or guarding. The network is started when all mandatory slaves have booted; later
-/// slaves are booted when they appear.
+/// not available in Stopped. A slave with `keep_alive` that is already Operational is not reset or configured; one that
+/// does not report its state is left alone. The network is started when all mandatory slaves have booted; later slaves
+/// are booted when they appear.
 ///
 /// The master and the application share the SDO of a slave: `request` appends a transfer to the queue of its node,
 /// which the boot-up uses as well. Up to `Clients` nodes are served at the same time; up to `Requests` requests of the
@@ -165,6 +166,12 @@ class NmtMaster {
     return i ? slaves_.state(*i) : std::nullopt;
   }
 
+  /// Whether 1020h of a slave had the date and time of the list at its boot-up: its configuration was not written.
+  [[nodiscard]] bool configuration_is_current(NodeId node_id) const {
+    const std::optional<std::size_t> i = slaves_.find(node_id);
+    return i && slaves_.boot(*i).configuration_is_current();
+  }
+
   /// Whether a node, listed or not, has sent a boot-up message since the master was constructed.
   [[nodiscard]] bool has_booted(NodeId node_id) const {
     return (boot_ups_[node_id.value() / 32u] >> (node_id.value() % 32u) & 1u) != 0;
@@ -204,6 +211,7 @@ class NmtMaster {
       case BootNext::request: return;
       case BootNext::finish: return finish(i, result);
       case BootNext::retry: return retry(i, result);
+      case BootNext::reset: return slaves_.reset_restored(i, now_);
       case BootNext::configure: return configure_by_host(i);
       case BootNext::watch: slaves_.error_control().watch_heartbeat(i, slaves_[i]); [[fallthrough]];
       case BootNext::error_control: return slaves_.start_error_control(i, now_);

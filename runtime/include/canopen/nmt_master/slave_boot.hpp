@@ -1,4 +1,5 @@
-/// Boot-up of one slave as a state machine: identity, configuration, heartbeat time (CiA 302-2, boot NMT slave).
+/// Boot-up of one slave as a state machine: identity, software, configuration, heartbeat time (CiA 302-2, boot NMT
+/// slave).
 #pragma once
 
 #include <algorithm>
@@ -25,6 +26,7 @@ enum class BootNext : std::uint8_t {
   request,        ///< the next request of the boot-up, or nothing
   finish,         ///< the boot-up has ended, with a result
   retry,          ///< the slave does not respond; the result says to what
+  reset,          ///< the slave is reset: its default values have been restored
   configure,      ///< the application configures the slave
   watch,          ///< its heartbeat time has been written: error control is started with its next heartbeat
   error_control,  ///< error control is started
@@ -38,6 +40,9 @@ class SlaveBoot {
     idle,                    ///< not started, or ended
     waiting,                 ///< for a boot-up message, or for the next attempt without one
     identifying,             ///< reading the number `check_`, or about to read it
+    checking_software,       ///< reading 1F56h:01
+    checking_configuration,  ///< reading date or time of 1020h
+    restoring,               ///< writing "load" to 1011h
     downloading,             ///< writing an entry of the concise DCF
     configuring,             ///< by the application
     reading_heartbeat_time,  ///< of 1017h
@@ -47,6 +52,10 @@ class SlaveBoot {
 
   [[nodiscard]] Step step() const { return step_; }
   void enter(Step next) { step_ = next; }
+  void end() {
+    step_ = Step::idle;
+    restored_ = false;
+  }
 
   /// Whether the slave is in a step before error control.
   [[nodiscard]] bool is_before_error_control() const {
@@ -92,7 +101,10 @@ class SlaveBoot {
   void report_reset() {
     was_reset_ = true;
     booted_up_ = false;
+    restored_ = false;
   }
+  /// It is being reset after its default values have been restored, and configured afterwards.
+  void report_restored() { restored_ = true; }
   void report_silence() {
     booted_up_ = false;
     silent_ = true;
@@ -113,12 +125,18 @@ class SlaveBoot {
     return slave.has(slave_assignment::keep_alive) && !was_reset_ && !booted_up_;
   }
 
+  /// Whether 1020h had the expected date and time at this boot-up, so that the configuration was not written.
+  [[nodiscard]] bool configuration_is_current() const { return is_current_; }
+
   // SDO
 
   /// Whether the boot-up continues with a request, which is not in the queue yet.
   [[nodiscard]] bool wants_sdo() const {
     switch (step_) {
       case Step::identifying:
+      case Step::checking_software:
+      case Step::checking_configuration:
+      case Step::restoring:
       case Step::downloading:
       case Step::reading_heartbeat_time:
       case Step::writing_heartbeat_time: return !asked_;
@@ -134,9 +152,11 @@ class SlaveBoot {
   [[nodiscard]] SdoRequest request(const NmtSlave& slave) {
     SdoRequest request;
     std::tie(request.index, request.sub_index) = entry(slave);
-    request.download = step_ == Step::downloading || step_ == Step::writing_heartbeat_time;
+    request.download = step_ == Step::restoring || step_ == Step::downloading || step_ == Step::writing_heartbeat_time;
     if (step_ == Step::downloading) {
       request.bytes = *dcf_.data(slave.concise_dcf);
+    } else if (step_ == Step::restoring) {
+      request.bytes = load_signature;
     } else if (request.download) {
       request.bytes = std::span{number_}.first(2);
     } else {
@@ -153,6 +173,11 @@ class SlaveBoot {
     if (answer.result == AbortCode::timeout) return no_response(slave, answer, result);
     switch (step_) {
       case Step::identifying: return identity_read(slave, answer, result);
+      case Step::checking_software: return software_read(slave, answer, result);
+      case Step::checking_configuration: return configuration_read(slave, answer, result);
+      case Step::restoring:
+        if (answer.result != ok) return failure(slave, BootStatus::configuration, answer, result);
+        return BootNext::reset;
       case Step::downloading:
         if (answer.result != ok) return failure(slave, BootStatus::configuration, answer, result);
         dcf_.advance(slave.concise_dcf);
@@ -176,12 +201,24 @@ class SlaveBoot {
 
  private:
   static constexpr std::size_t checks = std::size(identity_checks);
+  static constexpr std::array<std::uint8_t, 4> load_signature{'l', 'o', 'a', 'd'};
 
   /// Returns the index and sub-index of the present request.
   [[nodiscard]] std::pair<std::uint16_t, std::uint8_t> entry(const NmtSlave& slave) const {
-    if (step_ == Step::identifying) return {identity_checks[check_].index, identity_checks[check_].sub_index};
-    if (step_ != Step::downloading) return {std::uint16_t{0x1017}, std::uint8_t{0}};
-    return {dcf_.index(slave.concise_dcf), dcf_.sub_index(slave.concise_dcf)};
+    switch (step_) {
+      case Step::identifying: return {identity_checks[check_].index, identity_checks[check_].sub_index};
+      case Step::checking_software: return {std::uint16_t{0x1F56}, std::uint8_t{1}};
+      case Step::checking_configuration: return {std::uint16_t{0x1020}, configuration_checks[check_].sub_index};
+      case Step::restoring: return {std::uint16_t{0x1011}, slave.restored_parameters};
+      case Step::downloading: return {dcf_.index(slave.concise_dcf), dcf_.sub_index(slave.concise_dcf)};
+      case Step::reading_heartbeat_time:
+      case Step::writing_heartbeat_time:
+      case Step::idle:
+      case Step::waiting:
+      case Step::configuring:
+      case Step::starting_error_control: break;
+    }
+    return {std::uint16_t{0x1017}, std::uint8_t{0}};
   }
 
   /// The boot-up ends because of a failed transfer.
@@ -190,6 +227,15 @@ class SlaveBoot {
     const auto [index, sub_index] = entry(slave);
     result = {status, answer.result, index, sub_index};
     return BootNext::finish;
+  }
+
+  /// The boot-up ends because a number is not the expected one, or could not be read.
+  [[nodiscard]] BootNext difference(const NmtSlave& slave, BootStatus status, const SdoAnswer& answer,
+                                    std::uint32_t expected, BootResult& result) const {
+    const BootNext next = failure(slave, status, answer, result);
+    result.expected = expected;
+    result.seen = little_endian_number(answer.data);
+    return next;
   }
 
   [[nodiscard]] BootNext no_response(const NmtSlave& slave, const SdoAnswer& answer, BootResult& result) const {
@@ -205,10 +251,7 @@ class SlaveBoot {
     if (check_ == 0 && !answered) return no_response(slave, answer, result);
     const std::uint32_t expected = slave.*check.expected;
     if (expected != 0 && (!answered || little_endian_number(answer.data) != expected)) {
-      const BootNext next = failure(slave, check.failure, answer, result);
-      result.expected = expected;
-      result.seen = little_endian_number(answer.data);
-      return next;
+      return difference(slave, check.failure, answer, expected, result);
     }
     do {
       ++check_;
@@ -216,6 +259,57 @@ class SlaveBoot {
     if (check_ < checks) return BootNext::request;
     silent_ = false;
     if (may_be_kept_alive(slave)) return BootNext::error_control;
+    return check_software(slave, result);
+  }
+
+  // Software version
+
+  [[nodiscard]] BootNext check_software(const NmtSlave& slave, BootResult& result) {
+    if (!slave.has(slave_assignment::software_version)) return check_configuration(slave, result);
+    if (slave.software == 0) {
+      result = {BootStatus::software_unknown};
+      return BootNext::finish;
+    }
+    step_ = Step::checking_software;
+    return BootNext::request;
+  }
+
+  /// A slave to be kept alive is not updated.
+  [[nodiscard]] BootNext software_read(const NmtSlave& slave, const SdoAnswer& answer, BootResult& result) {
+    if (answer.result != ok) return failure(slave, BootStatus::software_unknown, answer, result);
+    if (little_endian_number(answer.data) == slave.software) return check_configuration(slave, result);
+    const bool may_update = slave.has(slave_assignment::software_update) && !slave.has(slave_assignment::keep_alive);
+    const BootStatus status = may_update ? BootStatus::software_update : BootStatus::software_not_allowed;
+    return difference(slave, status, answer, slave.software, result);
+  }
+
+  // Configuration: 1020h, the default values, then the concise DCF
+
+  [[nodiscard]] BootNext check_configuration(const NmtSlave& slave, BootResult& result) {
+    is_current_ = false;
+    check_ = 0;
+    const bool is_dated = slave.configuration_date != 0 && slave.configuration_time != 0;
+    if (restored_ || !is_dated) return restore(slave, result);
+    step_ = Step::checking_configuration;
+    return BootNext::request;
+  }
+
+  /// A slave without 1020h is configured.
+  [[nodiscard]] BootNext configuration_read(const NmtSlave& slave, const SdoAnswer& answer, BootResult& result) {
+    const std::uint32_t expected = slave.*configuration_checks[check_].expected;
+    if (answer.result != ok || little_endian_number(answer.data) != expected) return restore(slave, result);
+    if (++check_ < std::size(configuration_checks)) return BootNext::request;
+    is_current_ = true;
+    return BootNext::configure;
+  }
+
+  /// Restores the default values once, before the configuration is written.
+  [[nodiscard]] BootNext restore(const NmtSlave& slave, BootResult& result) {
+    const bool wanted = slave.has(slave_assignment::restore) && slave.restored_parameters != 0;
+    if (wanted && !std::exchange(restored_, false)) {
+      step_ = Step::restoring;
+      return BootNext::request;
+    }
     dcf_.begin(slave.concise_dcf);
     return download(slave, result);
   }
@@ -263,6 +357,8 @@ class SlaveBoot {
   bool booted_up_ = false;  ///< its boot-up message has been received
   bool silent_ = false;     ///< it has not responded
   bool was_reset_ = false;
+  bool restored_ = false;       ///< its default values have been restored: it is configured next
+  bool is_current_ = false;     ///< 1020h has the expected date and time
   bool beats_in_time_ = false;  ///< 1017h is shorter than the consumer's time
 };
 

@@ -33,9 +33,12 @@ class SlaveErrorControl {
     heartbeats_.configure(i, ConsumerHeartbeatTime{slave.node_id, slave.heartbeat_time});
   }
 
-  /// Starts to send guarding requests.
+  /// Starts to send guarding requests; to a slave without guarding times only to learn its state.
   void start_guarding(std::size_t i, const NmtSlave& slave, TimePoint now) {
-    guards_[i].start(slave.node_id, slave.guard_time(), slave.life_time_factor(), now);
+    constexpr std::uint16_t inquiry_time = 100;  // ms
+    constexpr std::uint8_t inquiries = 3;
+    if (slave.guarded()) return guards_[i].start(slave.node_id, slave.guard_time(), slave.life_time_factor(), now);
+    guards_[i].start(slave.node_id, inquiry_time, inquiries, now);
   }
   void stop_guarding(std::size_t i) { guards_[i].stop(); }
 

@@ -44,6 +44,7 @@ class SlaveTable {
   }
 
   [[nodiscard]] SlaveBoot& boot(std::size_t i) { return entries_[i].boot; }
+  [[nodiscard]] const SlaveBoot& boot(std::size_t i) const { return entries_[i].boot; }
   [[nodiscard]] SlaveErrorControl<Count>& error_control() { return error_control_; }
   [[nodiscard]] const SlaveErrorControl<Count>& error_control() const { return error_control_; }
 
@@ -99,6 +100,14 @@ class SlaveTable {
     wait(i, now);
   }
 
+  /// Resets a slave whose default values have been restored; they take effect with the reset (CiA 301, 7.5.2.14).
+  void reset_restored(std::size_t i, TimePoint now) {
+    constexpr std::uint8_t communication_parameters = 2;
+    const bool communication = list_[i].restored_parameters == communication_parameters;
+    reset(i, communication ? NmtCommand::reset_communication : NmtCommand::reset_node, now);
+    entries_[i].boot.report_restored();
+  }
+
   void identify(std::size_t i) {
     error_control_.stop_guarding(i);
     entries_[i].boot.identify();
@@ -125,7 +134,7 @@ class SlaveTable {
     SlaveBoot& boot = entries_[i].boot;
     boot.enter(Step::starting_error_control);
     boot.set_deadline(now + from_milliseconds(list_[i].heartbeat_time));
-    if (!list_[i].guarded()) return;
+    if (list_[i].beats() || !(list_[i].guarded() || boot.may_be_kept_alive(list_[i]))) return;
     error_control_.start_guarding(i, list_[i], now);
     boot.set_deadline(now + longest_span);  // guarding reports a loss
   }
@@ -136,9 +145,11 @@ class SlaveTable {
     const NmtSlave& slave = list_[i];
     const std::optional<NmtState> heard_state = state(i);
     const bool heard = heard_state && *heard_state != NmtState::initialisation;
-    if (!heard && slave.watched() && now < entries_[i].boot.deadline()) return std::nullopt;
-    if (entries_[i].boot.may_be_kept_alive(slave)) {
-      if (heard && *heard_state == NmtState::operational) return BootStatus::was_operational;
+    const bool may_be_kept_alive = entries_[i].boot.may_be_kept_alive(slave);
+    if (!heard && (slave.watched() || may_be_kept_alive) && now < entries_[i].boot.deadline()) return std::nullopt;
+    if (may_be_kept_alive) {
+      if (!heard) return slave.beats() ? BootStatus::no_state : BootStatus::no_guarding;
+      if (*heard_state == NmtState::operational) return BootStatus::was_operational;
       reset(i, NmtCommand::reset_communication, now);
       return std::nullopt;
     }
@@ -149,10 +160,10 @@ class SlaveTable {
   /// Ends the boot-up of a slave.
   void finish(std::size_t i, BootStatus status) {
     Entry& entry = entries_[i];
-    entry.boot.enter(Step::idle);
+    entry.boot.end();
     entry.status = status;
     entry.complete = status == BootStatus::booted || status == BootStatus::was_operational;
-    if (!entry.complete) error_control_.stop_guarding(i);
+    if (!entry.complete || !list_[i].guarded()) error_control_.stop_guarding(i);
   }
 
   // Commands
