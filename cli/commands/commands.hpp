@@ -22,6 +22,7 @@ AddOptions add_configure_options;
 AddOptions add_save_options;
 AddOptions add_monitor_options;
 AddOptions add_nmt_options;
+AddOptions add_send_options;
 AddOptions add_lss_options;
 AddOptions add_conform_options;
 AddOptions add_bus_options;
@@ -62,6 +63,7 @@ inline constexpr CommandRow commands[] = {
     {"Bus", "save", "read the configuration of a node and write it as a DCF", add_save_options},
     {"Bus", "monitor", "show nodes, states, PDO values, rates and load of a bus, live", add_monitor_options},
     {"Bus", "nmt", "start, stop or reset nodes", add_nmt_options},
+    {"Bus", "send", "send SYNC, TIME, a PDO or a frame, once or periodically", add_send_options},
     {"Bus", "lss", "configure node-ID and bit rate of devices (CiA 305)", add_lss_options},
     {"Bus", "conform", "test a node against CiA 301 and its EDS", add_conform_options},
     {"Bus", "bus", "virtual CAN buses on this machine, for socketcand clients", add_bus_options},

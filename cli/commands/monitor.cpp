@@ -35,19 +35,6 @@ struct Settings {
   ColorOption color;
 };
 
-/// `5=drive.eds`
-struct NodeFile {
-  std::uint8_t node_id = 0;
-  std::string path;
-};
-
-std::optional<NodeFile> parse_node_file(const std::string& text) {
-  const std::size_t equals = text.find('=');
-  const auto node_id = parse_node(text.substr(0, equals));
-  if (equals == std::string::npos || equals + 1 == text.size() || !node_id) return std::nullopt;
-  return NodeFile{*node_id, text.substr(equals + 1)};
-}
-
 constexpr canopen::Duration between_pictures = canopen::from_milliseconds(100);
 
 /// Prints the events on the bus as text.

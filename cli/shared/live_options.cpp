@@ -74,6 +74,13 @@ std::optional<std::uint8_t> parse_node(const std::string& text) {
   return static_cast<std::uint8_t>(*number);
 }
 
+std::optional<NodeFile> parse_node_file(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const auto node_id = parse_node(text.substr(0, equals));
+  if (equals == std::string::npos || equals + 1 == text.size() || !node_id) return std::nullopt;
+  return NodeFile{*node_id, text.substr(equals + 1)};
+}
+
 std::vector<std::uint8_t> parse_node_list(const std::string& text) {
   std::set<std::uint8_t> nodes;
   std::size_t begin = 0;

@@ -47,6 +47,15 @@ CLI::Option* add_type_option(CLI::App& command, const canopen::DataTypeRow*& typ
 /// Parses a node-ID, 1 to 127.
 [[nodiscard]] std::optional<std::uint8_t> parse_node(const std::string& text);
 
+/// A node-ID and its EDS.
+struct NodeFile {
+  std::uint8_t node_id = 0;
+  std::string path;
+};
+
+/// Parses `5=drive.eds`.
+[[nodiscard]] std::optional<NodeFile> parse_node_file(const std::string& text);
+
 /// Parses `1..127`, `5` or `1,3,8..20`: ascending, each once. Empty if invalid.
 [[nodiscard]] std::vector<std::uint8_t> parse_node_list(const std::string& text);
 

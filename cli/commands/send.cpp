@@ -1,0 +1,221 @@
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "commands/commands.hpp"
+#include "decode/compose_pdo.hpp"
+#include "decode/log/log_line.hpp"
+#include "device/types/little_endian.hpp"
+#include "online/live_bus.hpp"
+#include "shared/common_options.hpp"
+#include "shared/define_command.hpp"
+#include "shared/exit_code.hpp"
+#include "shared/live_device.hpp"
+#include "shared/live_options.hpp"
+#include "shared/with_bus.hpp"
+#include "values/parse_value.hpp"
+#include "values/value_text.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr const char* examples = R"(Examples:
+  edsc send socketcan:can0 sync --every 10                      SYNC every 10 ms, until Ctrl-C
+  edsc send socketcan:can0 sync --overflow 240 --every 10 --count 500
+  edsc send socketcan:can0 time                                 the time of day of this computer, UTC
+  edsc send socketcan:can0 pdo 5=drive.eds 1 controlword=0x0F "target_velocity=1500 rpm"
+  edsc send socketcan:can0 pdo 5=drive.eds 2 statusword=0x27 position_actual_value=0 --tpdo
+  edsc send socketcan:can0 frame 181#0102)";
+
+struct Settings {
+  std::string bus;
+  std::uint32_t every_ms = 0;  ///< 0: one frame, or `count` of them at once
+  std::optional<std::uint32_t> count;
+  std::optional<std::uint32_t> can_id;
+  std::optional<std::uint32_t> overflow;
+  std::string time;
+  NodeFile node;
+  std::uint32_t number = 0;
+  std::vector<std::string> values;
+  bool transmit = false;
+  canopen::Frame frame;
+
+  canopen::Frame (*compose)(const Settings&, std::uint32_t sent) = nullptr;  ///< the subcommand; see KindRow
+};
+
+canopen::Frame frame_with(std::uint32_t can_id, std::span<const std::uint8_t> bytes) {
+  canopen::Frame frame;
+  frame.id = can_id;
+  frame.extended = can_id > 0x7FF;
+  frame.size = static_cast<std::uint8_t>(bytes.size());
+  std::ranges::copy(bytes, frame.data.begin());
+  return frame;
+}
+
+/// The counter of CiA 301, 7.2.5.3, goes from 1 to the overflow value of 1019h.
+canopen::Frame compose_sync(const Settings& settings, std::uint32_t sent) {
+  std::vector<std::uint8_t> counter;
+  if (settings.overflow) counter.push_back(static_cast<std::uint8_t>(sent % *settings.overflow + 1));
+  return frame_with(settings.can_id.value_or(canopen::function_code::sync), counter);
+}
+
+/// The present time as TIME_OF_DAY: ms after midnight, then days since 1984-01-01 (CiA 301, 7.1.6.6).
+std::vector<std::uint8_t> present_time() {
+  const auto now = std::chrono::floor<std::chrono::milliseconds>(std::chrono::system_clock::now());
+  const auto day = std::chrono::floor<std::chrono::days>(now);
+  const auto days = static_cast<std::uint64_t>((day - time_epoch).count());
+  return bytes_of(static_cast<std::uint64_t>((now - day).count()) | days << 32, 6);
+}
+
+canopen::Frame compose_time(const Settings& settings, std::uint32_t /*sent*/) {
+  std::vector<std::uint8_t> bytes;
+  if (settings.time.empty()) {
+    bytes = present_time();
+  } else {
+    const ParsedValue parsed = parse_value_text(*find_type("TIME_OF_DAY"), settings.time);
+    if (!parsed.ok()) fail(parsed.problem);
+    bytes = parsed.bytes;
+  }
+  return frame_with(settings.can_id.value_or(canopen::function_code::time), bytes);
+}
+
+/// `statusword=0x27`
+PdoValue pdo_value(const Device& device, const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) fail(fmt::format("\"{}\" is not of the form OBJECT=VALUE", text));
+  const LiveEntry entry = name_entry(&device, text.substr(0, equals));
+  return {entry.index, entry.sub_index, text.substr(equals + 1)};
+}
+
+canopen::Frame compose_pdo_of_file(const Settings& settings, std::uint32_t /*sent*/) {
+  const auto loaded = load_live_device(settings.node.path, settings.node.node_id);
+  const NodeModel model{settings.node.node_id, *loaded->device};
+  const PdoDirection direction = settings.transmit ? PdoDirection::transmit : PdoDirection::receive;
+  const auto pdo = std::ranges::find_if(
+      model.pdos(), [&](const PdoLayout& one) { return one.direction == direction && one.number == settings.number; });
+  if (pdo == model.pdos().end()) {
+    fail(fmt::format("{} does not have {} {}", settings.node.path, settings.transmit ? "TPDO" : "RPDO",
+                     settings.number));
+  }
+  std::vector<PdoValue> values;
+  for (const std::string& text : settings.values) values.push_back(pdo_value(*loaded->device, text));
+  const ComposedPdo composed = compose_pdo(*pdo, values);
+  if (!composed.ok()) fail(composed.problem);
+  return composed.frame;
+}
+
+canopen::Frame given_frame(const Settings& settings, std::uint32_t /*sent*/) { return settings.frame; }
+
+/// Sends the frames in their period, without drift; SYNC and TIME differ from frame to frame.
+int send_frames(LiveBus& bus, const Settings& settings, canopen::Frame frame) {
+  const canopen::Duration period = canopen::Duration{settings.every_ms * 1000U};
+  const bool endless = settings.every_ms != 0 && !settings.count;
+  const std::uint32_t count = settings.count.value_or(1);
+  const bool changes = settings.compose == compose_sync || settings.compose == compose_time;
+  canopen::TimePoint due = bus.now();
+  for (std::uint32_t sent = 0; endless || sent < count; ++sent) {
+    if (sent != 0) {
+      due = due + period;
+      const canopen::TimePoint present = bus.now();
+      if (due > present) bus.listen(due - present);
+      if (changes) frame = settings.compose(settings, sent);
+    }
+    bus.send_all(frame);
+  }
+  bus.listen(canopen::from_milliseconds(10));  // the port may still hold the last frame
+  return exit_fine;
+}
+
+int run_send(const Settings& settings) {
+  const canopen::Frame first = settings.compose(settings, 0);  // errors before the bus is opened
+  return with_bus(settings.bus, [&](LiveBus& bus) { return send_frames(bus, settings, first); });
+}
+
+void add_can_id_option(CLI::App& command, Settings& settings) {
+  add_parsed(
+      command, "--id", settings.can_id, [](const std::string& text) { return parse_count(text, 0x1FFF'FFFF); },
+      "a CAN-ID up to 1FFFFFFFh", "another CAN-ID, such as 81h; above 7FFh an extended one");
+}
+
+void add_sync_options(CLI::App& command, Settings& settings) {
+  const auto parse = [](const std::string& text) {
+    const auto number = parse_count(text, 240);
+    return number && *number >= 2 ? number : std::nullopt;
+  };
+  add_parsed(command, "--overflow", settings.overflow, parse, "a number from 2 to 240",
+             "send a counter from 1 to this number, as in 1019h");
+  add_can_id_option(command, settings);
+}
+
+void add_time_options(CLI::App& command, Settings& settings) {
+  command.add_option("TIME", settings.time, "\"2026-01-31 12:00:00\" (default: the present time, UTC)");
+  add_can_id_option(command, settings);
+}
+
+void add_pdo_options(CLI::App& command, Settings& settings) {
+  add_parsed(command, "NODE=FILE", settings.node, parse_node_file, "of the form NODE-ID=FILE",
+             "node-ID of the PDO, and its EDS, DCF, XDD or XDC")
+      ->required();
+  add_parsed(
+      command, "NUMBER", settings.number, [](const std::string& text) { return parse_count(text, 512); },
+      "a number from 1 to 512", "number of the RPDO: 1 is 1400h")
+      ->required();
+  command.add_option("OBJECT=VALUE", settings.values, "a value for each mapped object, by name or address");
+  command.add_flag("--tpdo", settings.transmit, "send a TPDO of the node in its place");
+}
+
+void add_frame_options(CLI::App& command, Settings& settings) {
+  const auto parse = [](const std::string& text) -> std::optional<canopen::Frame> {
+    const LogLine line = parse_log_line(text);
+    if (line.kind != LogLineKind::frame || text.find('#') == std::string::npos) return std::nullopt;
+    return line.frame;
+  };
+  add_parsed(command, "FRAME", settings.frame, parse, "a frame such as 181#0102",
+             "CAN-ID of 3 or 8 digits, # and bytes, or R and the length of a remote frame: 181#0102, 705#R1")
+      ->required();
+}
+
+/// A subcommand.
+struct KindRow {
+  const char* name;
+  const char* description;
+  canopen::Frame (*compose)(const Settings& settings, std::uint32_t sent);  ///< ends the command if it is impossible
+  void (*add_options)(CLI::App& command, Settings& settings);
+};
+
+constexpr KindRow kinds[] = {
+    {"sync", "send SYNC", compose_sync, add_sync_options},
+    {"time", "send TIME, the time of day", compose_time, add_time_options},
+    {"pdo", "send a PDO to a node, with values by name", compose_pdo_of_file, add_pdo_options},
+    {"frame", "send a frame", given_frame, add_frame_options},
+};
+
+/// `10`, `10ms`, `2s`
+std::optional<std::uint32_t> parse_period(const std::string& text) {
+  constexpr std::uint32_t max_ms = 600'000;
+  const std::size_t unit_at = std::min(text.find_first_not_of("0123456789"), text.size());
+  const std::string unit = text.substr(unit_at);
+  if (!unit.empty() && unit != "ms" && unit != "s") return std::nullopt;
+  const auto number = parse_count(text.substr(0, unit_at), unit == "s" ? max_ms / 1000 : max_ms);
+  if (!number || *number == 0) return std::nullopt;
+  return unit == "s" ? *number * 1000 : *number;
+}
+
+}  // namespace
+
+void add_send_options(CLI::App& command, int& exit_code) {
+  Settings& settings = define_command(command, examples, run_send, exit_code);
+  command.require_subcommand(1);
+  add_bus_argument(command, settings.bus);
+  add_parsed(command, "--every", settings.every_ms, parse_period, "a time from 1 ms to 600 s",
+             "ms between two frames; without --count until Ctrl-C");
+  add_count_option(command, "--count", settings.count, "number of frames (default: 1)")->check(CLI::PositiveNumber);
+  for (const KindRow& row : kinds) {
+    CLI::App* kind = command.add_subcommand(row.name, row.description);
+    kind->fallthrough();
+    kind->callback([&settings, &row] { settings.compose = row.compose; });
+    row.add_options(*kind, settings);
+  }
+}
+
+}  // namespace edsc
