@@ -53,8 +53,8 @@ class Compilation {
 
   /// Returns the first error message; empty on success.
   std::string run() {
-    const std::size_t count =
-        std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, std::max<std::size_t>(build_.sources.size(), 1));
+    const std::size_t count = std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1,
+                                                      std::max<std::size_t>(build_.sources.size(), 1));
     std::vector<std::jthread> others;
     for (std::size_t i = 1; i < count; ++i) others.emplace_back([this] { work(); });
     work();

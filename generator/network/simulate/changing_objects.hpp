@@ -32,7 +32,7 @@ struct ChangingPdo {
 /// Returns the TPDOs of a node with the objects that they map. An object that several TPDOs map belongs to the one with
 /// the longest interval, event-driven ones first, so that none is sent more often than `timing` assumes. The values are
 /// within the limits of the sender and of all receivers. Strings and times do not change.
-[[nodiscard]] std::vector<ChangingPdo> changing_pdos(const NetworkNode& node,
-                                                     const std::vector<CobIdUse>& uses, const NetworkTiming& timing);
+[[nodiscard]] std::vector<ChangingPdo> changing_pdos(const NetworkNode& node, const std::vector<CobIdUse>& uses,
+                                                     const NetworkTiming& timing);
 
 }  // namespace edsc

@@ -53,14 +53,16 @@ class SourceWriter {
   SimulationSource write() {
     std::string nodes;
     for (std::size_t i = 0; i < network_.nodes.size(); ++i) nodes += node_text(network_.nodes[i], i);
-    std::string text = fmt::format("// Written by edsc network simulate.\n"
-                                   "#include <canopen/host/network_simulation/network_simulation.hpp>\n\n"
-                                   "namespace simulation = canopen::network_simulation;\n\n{}\nnamespace {{\n\n",
-                                   declarations_);
+    std::string text = fmt::format(
+        "// Written by edsc network simulate.\n"
+        "#include <canopen/host/network_simulation/network_simulation.hpp>\n\n"
+        "namespace simulation = canopen::network_simulation;\n\n{}\nnamespace {{\n\n",
+        declarations_);
     text += tables_ + messages_text();
     text += fmt::format("constexpr simulation::PlannedNode nodes[] = {{\n{}}};\n\n", nodes) + plan_text();
-    text += "\n}  // namespace\n\nint main(int argc, char** argv) { "
-            "return simulation::simulate_network(argc, argv, plan); }\n";
+    text +=
+        "\n}  // namespace\n\nint main(int argc, char** argv) { "
+        "return simulation::simulate_network(argc, argv, plan); }\n";
     source_.files.push_back({"simulate.cpp", std::move(text)});
     source_.sources.insert(source_.sources.begin(), "simulate.cpp");
     return std::move(source_);
@@ -144,8 +146,10 @@ class SourceWriter {
       rows += fmt::format("    {{{}, {}, {}, {}, {}}},\n", pdo.message, in_microseconds(pdo.interval),
                           pdo.is_event_driven, pdo.is_event_driven && !pdo.has_event_timer, name);
     }
-    if (rows.empty()) return fmt::format("constexpr std::span<const simulation::PlannedChange> {};\n\n", changes_name(place));
-    return fmt::format("{}constexpr simulation::PlannedChange {}[] = {{\n{}}};\n\n", objects, changes_name(place), rows);
+    if (rows.empty())
+      return fmt::format("constexpr std::span<const simulation::PlannedChange> {};\n\n", changes_name(place));
+    return fmt::format("{}constexpr simulation::PlannedChange {}[] = {{\n{}}};\n\n", objects, changes_name(place),
+                       rows);
   }
 
   static std::string dcf_name(std::size_t place) { return fmt::format("dcf_{}", place); }
