@@ -88,7 +88,12 @@ class ChangingPdoCollector {
     pdo.is_event_driven = !at->is_synchronous;
     pdo.has_event_timer = communication_default(*use.pdo, event_timer_sub_index).value_or(0) != 0 &&
                           communication_default(*use.pdo, inhibit_time_sub_index).value_or(0) == 0;
+    pdo.has_receiver = std::ranges::any_of(uses_, [&](const CobIdUse& one) { return receives(one, use); });
     pdos_.push_back({&use, std::move(pdo)});
+  }
+
+  static bool receives(const CobIdUse& use, const CobIdUse& sender) {
+    return use.pdo != nullptr && !use.transmits && use.can_id == sender.can_id && use.extended == sender.extended;
   }
 
   void add_objects(Row& row) {
@@ -104,9 +109,7 @@ class ChangingPdoCollector {
     if (!range || !used_.emplace(entry.index, entry.sub_index).second) return;
     limit(*range, entry, entry.type->kind);
     for (const CobIdUse& use : uses_) {
-      const bool receives =
-          use.pdo != nullptr && !use.transmits && use.can_id == row.use->can_id && use.extended == row.use->extended;
-      if (!receives) continue;
+      if (!receives(use, *row.use)) continue;
       if (const Entry* const received = entry_at(*use.pdo, first_bit)) limit(*range, *received, entry.type->kind);
     }
     if (!is_less(range->low, range->high, entry.type->kind)) return;

@@ -26,6 +26,7 @@ struct ChangingPdo {
   Nanoseconds interval{};
   bool is_event_driven = false;
   bool has_event_timer = false;  ///< and nothing else limits its rate
+  bool has_receiver = false;     ///< a node of the network has an RPDO for it
   std::vector<ChangingObject> objects;
 };
 

@@ -144,7 +144,7 @@ class SourceWriter {
       }
       objects += "};\n";
       rows += fmt::format("    {{{}, {}, {}, {}, {}}},\n", pdo.message, in_microseconds(pdo.interval),
-                          pdo.is_event_driven, pdo.is_event_driven && !pdo.has_event_timer, name);
+                          pdo.is_event_driven && pdo.has_receiver, pdo.is_event_driven && !pdo.has_event_timer, name);
     }
     if (rows.empty())
       return fmt::format("constexpr std::span<const simulation::PlannedChange> {};\n\n", changes_name(place));

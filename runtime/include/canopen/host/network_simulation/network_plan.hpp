@@ -23,7 +23,7 @@ struct PlannedObject {
 struct PlannedChange {
   std::size_t message;     ///< of NetworkPlan::messages
   std::uint64_t interval;  ///< in us; the shortest one
-  bool is_event;           ///< the TPDO is sent because of the change
+  bool is_expected;        ///< a node expects the TPDO because of the change
   bool varies;             ///< the interval is up to an eighth longer
   std::span<const PlannedObject> objects;
 };

@@ -165,7 +165,7 @@ class NetworkSimulation final : private StationLog {
     }
     for (const Station& station : stations_) {
       station.values().for_each([](const PlannedChange& change, std::uint64_t count) {
-        if (change.is_event) std::printf("changes %zu %" PRIu64 "\n", change.message, count);
+        if (change.is_expected) std::printf("changes %zu %" PRIu64 "\n", change.message, count);
       });
     }
   }
