@@ -45,7 +45,7 @@ class FrameStatistics {
       return;
     }
     const bool is_sync = one.frame.id == sync_can_id_ && !one.frame.extended;
-    if (is_sync) syncs_[next_sync_++ % syncs_.size()] = {one.queued, one.ended};
+    if (is_sync) syncs_[next_sync_++ % syncs_.size()] = {one.sender, one.queued, one.ended};
     if (one.queued < begin_) return;
     ++frames_;
     FrameRow& row = rows_[arbitration_value(one.frame)];
@@ -53,7 +53,7 @@ class FrameStatistics {
       row.frame = one.frame;
       row.sender = one.sender;
     }
-    const std::uint64_t event = row.is_synchronous ? sync_before(one.queued) : one.queued;
+    const std::uint64_t event = row.is_synchronous ? sync_before(one) : one.queued;
     if (one.ended - event <= row.worst) return;
     row.worst = one.ended - event;
     row.at = one.ended;
@@ -77,6 +77,7 @@ class FrameStatistics {
 
  private:
   struct SyncTimes {
+    const VirtualBus::Endpoint* sender = nullptr;
     std::uint64_t queued = 0;
     std::uint64_t ended = 0;
   };
@@ -93,13 +94,14 @@ class FrameStatistics {
     in_second_ += time;
   }
 
-  /// When the last SYNC that was received at this time had been queued.
-  [[nodiscard]] std::uint64_t sync_before(std::uint64_t time) const {
+  /// When the SYNC that caused this frame had been queued: the last one that the sender had received, or had queued
+  /// itself.
+  [[nodiscard]] std::uint64_t sync_before(const VirtualBus::Transmission& one) const {
     for (std::size_t back = 1; back <= std::min(next_sync_, syncs_.size()); ++back) {
       const SyncTimes& sync = syncs_[(next_sync_ - back) % syncs_.size()];
-      if (sync.ended <= time) return sync.queued;
+      if ((sync.sender == one.sender ? sync.queued : sync.ended) <= one.queued) return sync.queued;
     }
-    return time;
+    return one.queued;
   }
 
   std::uint32_t sync_can_id_;
