@@ -55,7 +55,7 @@ inline constexpr CommandRow commands[] = {
      add_format_options},
     {"EDS files", "diff", "compare two EDS files; report breaking changes", add_diff_options},
     {"EDS files", "document", "write a device or a network as an HTML page or as Markdown", add_document_options},
-    {"Networks", "network", "check, generate, verify and configure a network of devices", add_network_options},
+    {"Networks", "network", "check, generate, simulate, verify and configure a network", add_network_options},
     {"Bus", "scan", "find and identify the nodes on a bus", add_scan_options},
     {"Bus", "read", "read objects of a node over SDO", add_read_options},
     {"Bus", "write", "write an object of a node over SDO", add_write_options},
