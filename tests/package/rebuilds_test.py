@@ -30,6 +30,30 @@ int main() {
   return store.get<sensor::od::cob_id_emcy>() == 0x85 ? 0 : 1;
 }
 """
+LINE = """
+edsc_add_network(line_network line.json)
+add_executable(line_test line.cpp)
+target_link_libraries(line_test PRIVATE line_network)
+"""
+LINE_FILE = """{
+  "bit_rate": 500,
+  "nodes": {"control": {"node_id": 127, "master": true}, "sensor": {"node_id": 5, "eds": "sensor.eds", "heartbeat_ms": 100}},
+  "signals": [{"from": "sensor", "object": "6030h:01", "to": "control", "every_ms": 100}]
+}
+"""
+LINE_MAIN = """#include <canopen/plant/plant.hpp>
+#include <line.hpp>
+
+struct Bus {
+  bool send(const canopen::Frame&) { return true; }
+};
+
+int main() {
+  Bus bus;
+  canopen::Plant<line::Network, Bus> plant{bus};
+  return plant.sensor.speed_value_1() ? 1 : 0;
+}
+"""
 OTHER = """#include <sensor/pdo.hpp>
 
 unsigned bits_of_the_first_tpdo() { return sensor::Tpdo1::bits; }
@@ -91,6 +115,44 @@ class Rebuilds(PackageTest):
         shutil.rmtree(self.dictionary.parent)
         self.build()
         self.assertTrue(self.dictionary.exists())
+
+
+class Network(PackageTest):
+    """A network file of one node, and a program that includes its header."""
+
+    def setUp(self) -> None:
+        super().setUp()
+        self.project = Project(self.folder / "project", more=LINE)
+        self.sheet = self.project.source / "sensor.eds"
+        self.network = self.project.source / "line.json"
+        self.header = self.project.build_dir / "edsc/line_network/line.hpp"
+        (self.project.source / "line.cpp").write_text(LINE_MAIN)
+        shutil.copy(SHEET, self.sheet)
+        self.network.write_text(LINE_FILE)
+        self.project.configure(f"-DCMAKE_PREFIX_PATH={self.install()}")
+        self.project.build("line_test")
+        time.sleep(0.01)
+
+    def test_what_is_generated_again(self) -> None:
+        self.assertIn("no work to do", self.project.build("line_test"))
+        os.utime(self.network)
+        log = self.project.build("line_test")
+        self.assertIn("Generating line_network", log)
+        self.assertNotIn("Building CXX object", log)
+        self.network.write_text(LINE_FILE.replace('"node_id": 5', '"node_id": 6'))
+        self.assertIn("Building CXX object", self.project.build("line_test"))
+        self.assertIn("node_id{ 6 }", self.header.read_text())
+        self.sheet.write_text(self.sheet.read_text().replace("ParameterName=Cyclic timer", "ParameterName=Cycle time"))
+        self.project.build("line_test")
+        self.assertIn("struct cycle_time ", (self.header.parent / "sensor/dictionary.hpp").read_text())
+        self.assertIn("no work to do", self.project.build("line_test"))
+
+    def test_the_build_fails_where_check_does(self) -> None:
+        self.network.write_text(LINE_FILE.replace('"node_id": 5', '"node_id": 127'))
+        with self.assertRaisesRegex(AssertionError, "(?s)line.json:.*node-ID 127"):
+            self.project.build("line_test")
+        self.network.write_text(LINE_FILE)
+        self.project.build("line_test")
 
 
 @unittest.skipIf(WITHOUT_ARM, WITHOUT_ARM)

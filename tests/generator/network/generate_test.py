@@ -203,13 +203,13 @@ class Generate(unittest.TestCase):
             self.assertEqual((self.out / "node" / path.name).read_text(), path.read_text(), path.name)
 
     def test_names_in_cpp_differ(self) -> None:
-        """A node and a sheet with the name of the network, and two nodes whose names differ in a character that C++ lacks."""
+        """A node and a sheet with the name of the network, and two nodes whose names differ in case."""
         shutil.copy(self.folder / "node.eds", self.folder / "plant.eds")
-        self.generate(PLANT.replace('"a": {"node_id": 1, "eds": "node.eds"', '"b!": {"node_id": 1, "eds": "plant.eds"')
-                      .replace('"a"', '"b!"').replace('"a.', '"b!.'))
+        self.generate(PLANT.replace('"a": {"node_id": 1, "eds": "node.eds"', '"B": {"node_id": 1, "eds": "plant.eds"')
+                      .replace('"a"', '"B"').replace('"a.', '"B.'))
         text = (self.out / "plant.hpp").read_text()
         for line in ("namespace b {", "namespace b_2 {", "using ::plant_device::Device;", "using ::node::Device;",
-                     '{ "b!", b::node_id, 0x81 },', '{ "b", b_2::node_id, 0x82 },'):
+                     '{ "B", b::node_id, 0x81 },', '{ "b", b_2::node_id, 0x82 },'):
             self.assertIn(line, text)
         self.compile("plant.hpp")
 
