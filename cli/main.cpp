@@ -45,8 +45,10 @@ void take_marks_off(CLI::App& app) {
 void parse(CLI::App& app, int argc, char** argv) {
   take_marks_off(app);
   std::vector<std::string> arguments;
+  arguments.reserve(static_cast<std::size_t>(argc));
   for (int i = 0; i < argc; ++i) arguments.push_back(marked(argv[i]));
   std::vector<const char*> pointers;
+  pointers.reserve(arguments.size());
   for (const std::string& argument : arguments) pointers.push_back(argument.c_str());
   app.parse(argc, pointers.data());
 }

@@ -78,6 +78,7 @@ bool has_effect(const ConfigurationValue& value, const std::vector<Configuration
 std::vector<ConfigurationValue> values_to_write(const std::vector<ConfigurationValue>& values,
                                                 const std::vector<bool>& differs) {
   std::vector<WriteValue> writes;
+  writes.reserve(values.size());
   for (const ConfigurationValue& value : values) writes.push_back(write_value(value));
   const std::vector<bool> wanted = with_dependent_values(writes, differs);
   std::vector<ConfigurationValue> chosen;

@@ -76,10 +76,11 @@ enum class TransferStep : std::uint8_t { none, part, finished, aborted };
 
 struct Message {
   Service service = Service::unknown;
-  std::uint8_t node_id = 0;  ///< 0: none, or all
-  std::uint16_t number = 0;  ///< of a PDO
-  bool from_client = false;  ///< SDO, LSS: to the server or slave
-  bool problem = false;      ///< an error or anomaly
+  std::uint8_t node_id = 0;      ///< 0: none, or all
+  std::uint8_t values_node = 0;  ///< of a multiplex PDO: the node with the object; 0: `node_id`
+  std::uint16_t number = 0;      ///< of a PDO
+  bool from_client = false;      ///< SDO, LSS: to the server or slave
+  bool problem = false;          ///< an error or anomaly
   std::string text;
   std::vector<MessageValue> values;
 

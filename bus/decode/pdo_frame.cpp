@@ -84,6 +84,7 @@ void decode_mpdo(const Frame& frame, MpdoAddress address, const NodeModel* owner
     if (field.type->bits > 0 && field.type->bits < 32) field.bits = field.type->bits;
     field.name += " " + display_name(*object, *field.entry);
   }
+  message.values_node = address.node_id;
   message.text += address.destination ? "to " : "from ";
   message.text += address.node_id == 0 ? "all nodes, " : fmt::format("node {}, ", address.node_id);
   append_field(message.text, field, number_of(data_of(frame)), message);

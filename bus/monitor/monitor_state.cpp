@@ -58,7 +58,8 @@ void MonitorState::add_command(const canopen::Frame& frame) {
   const bool resets = row->leads_to == canopen::NmtState::initialisation;
   const std::string_view state = resets ? "" : nmt_state_text(row->leads_to);
   const std::uint8_t node_id = frame.data[1];
-  for (std::uint8_t id = 1; id < commanded_.size(); ++id) {
+  for (std::size_t i = 1; i < commanded_.size(); ++i) {
+    const auto id = static_cast<std::uint8_t>(i);
     if (node_id != 0 && id != node_id) continue;
     commanded_[id] = state;
     if (nodes_.contains(id)) assume(id, state);

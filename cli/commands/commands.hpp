@@ -13,6 +13,7 @@ AddOptions add_check_options;
 AddOptions add_dump_options;
 AddOptions add_format_options;
 AddOptions add_diff_options;
+AddOptions add_document_options;
 AddOptions add_network_options;
 AddOptions add_scan_options;
 AddOptions add_read_options;
@@ -26,6 +27,7 @@ AddOptions add_conform_options;
 AddOptions add_bus_options;
 AddOptions add_record_options;
 AddOptions add_decode_options;
+AddOptions add_plot_options;
 AddOptions add_completion_options;
 
 // Subcommands of `network`.
@@ -50,6 +52,7 @@ inline constexpr CommandRow commands[] = {
     {"EDS files", "format", "write an EDS or DCF in canonical form; make DCFs; convert XDD and XDC",
      add_format_options},
     {"EDS files", "diff", "compare two EDS files; report breaking changes", add_diff_options},
+    {"EDS files", "document", "write a device or a network as an HTML page or as Markdown", add_document_options},
     {"Networks", "network", "check, generate, verify and configure a network of devices", add_network_options},
     {"Bus", "scan", "find and identify the nodes on a bus", add_scan_options},
     {"Bus", "read", "read objects of a node over SDO", add_read_options},
@@ -62,7 +65,8 @@ inline constexpr CommandRow commands[] = {
     {"Bus", "conform", "test a node against CiA 301 and its EDS", add_conform_options},
     {"Bus", "bus", "virtual CAN buses on this machine, for socketcand clients", add_bus_options},
     {"Logs", "record", "write the frames of a bus as a candump log", add_record_options},
-    {"Logs", "decode", "decode the frames of a candump log", add_decode_options},
+    {"Logs", "decode", "decode the frames of a log", add_decode_options},
+    {"Logs", "plot", "plot values of a log over time, as SVG", add_plot_options},
     {"Shell", "completion", "print the completion for a shell, or the manual page", add_completion_options},
 };
 

@@ -1,19 +1,16 @@
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <utility>
 #include <vector>
 
-#include "backend/cpp/identifier.hpp"
 #include "commands/commands.hpp"
 #include "compare/compare_devices.hpp"
 #include "compare/print_changes.hpp"
-#include "diagnostics/rule.hpp"
 #include "load/load_device.hpp"
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
-#include "shared/git_file.hpp"
+#include "shared/git_device.hpp"
 #include "text/printable.hpp"
 
 namespace edsc {
@@ -25,8 +22,6 @@ constexpr const char* examples = R"(Examples:
   edsc diff drive.eds axis1.dcf --node-id 5              a DCF against its EDS, both as node 5
   edsc diff --against git:main drive.eds --format markdown    a comment for a pull request
   edsc diff --against git:HEAD --fail-on any eds/*.eds   exit code 1 if a device differs from its commit)";
-
-constexpr std::string_view git_prefix = "git:";
 
 struct Settings {
   std::vector<std::string> files;
@@ -63,19 +58,13 @@ std::unique_ptr<LoadedDevice> load(const std::string& path, const Settings& sett
   return reported(std::move(loaded), diagnostics, settings);
 }
 
-/// The device of a source file, with the options file beside it in the same revision.
-std::unique_ptr<LoadedDevice> load_committed(std::unique_ptr<SourceFile> source, const std::string& revision,
-                                             const std::string& path, const Settings& settings) {
+std::unique_ptr<LoadedDevice> load_committed(GitFile committed, const std::string& revision, const std::string& path,
+                                             const Settings& settings) {
   Diagnostics diagnostics;
   diagnostics.drop_notes();
-  auto loaded = std::make_unique<LoadedDevice>();
-  loaded->source = std::move(source);
-  if (settings.keep_going) diagnostics.keep_going(loaded->source.get(), fatal_rules());
-  const std::string options_path = std::filesystem::path{path}.replace_extension(".options.json").string();
-  loaded->options_source = read_git_file(revision, options_path).source;
-  if (loaded->options_source) loaded->options = read_options(*loaded->options_source, is_identifier, diagnostics);
-  silence_by_options(*loaded, diagnostics);
-  resolve_and_check(*loaded, {path, "", "", settings.node_id}, diagnostics);
+  LoadSettings load{path, "", "", settings.node_id};
+  load.keep_going = settings.keep_going;
+  auto loaded = load_git_device(std::move(committed), revision, load, diagnostics);
   return reported(std::move(loaded), diagnostics, settings);
 }
 
@@ -95,7 +84,7 @@ std::optional<std::vector<Pair>> load_pairs(const Settings& settings) {
     Pair pair;
     GitFile committed = read_git_file(revision, path);
     if (committed.source) {
-      pair.before = load_committed(std::move(committed.source), revision, path, settings);
+      pair.before = load_committed(std::move(committed), revision, path, settings);
     } else if (!committed.is_missing || !settings.allow_new) {
       print_visibly(stderr, "edsc: {}\n", committed.error);
     }
@@ -157,8 +146,7 @@ void add_diff_options(CLI::App& command, int& exit_code) {
       ->required();
   command.add_option("--against", settings.against, "git:REF: compare each FILE with the one of this git revision")
       ->check([](const std::string& value) {
-        const bool is_git = value.starts_with(git_prefix) && value.size() > git_prefix.size();
-        return is_git ? std::string{} : fmt::format("expected git:REF, got {}", value);
+        return names_git_revision(value) ? std::string{} : fmt::format("expected git:REF, got {}", value);
       });
   command.add_flag("--allow-new", settings.allow_new, "with --against: a FILE that REF does not have is new");
   add_choice(command, "--format", settings.format, {"text", "json", "markdown"}, "text, json or markdown");

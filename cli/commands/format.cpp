@@ -138,6 +138,8 @@ void write(const Settings& settings, const SourceFile& source, const std::string
   if (source.packing() == Packing::gzip && is_file_of(source, path)) {
     fail(fmt::format("{}: a gzip file is not replaced by its text; name another file with -o", path));
   }
+  if (const std::string problem = xdd_name_problem(path); !problem.empty())
+    fail(problem);  // an EDS of this name, in place
   write_output(path, std::move(content));
   const bool is_utf8 = source.encoding() == Encoding::ascii || source.encoding() == Encoding::utf8;
   if (!path.empty() && !is_utf8 && !settings.concise) {
@@ -206,7 +208,8 @@ void add_format_options(CLI::App& command, int& exit_code) {
   Settings& settings = define_command(command, examples, format, exit_code);
   command.add_option("FILE", settings.paths, "EDS, DCF, XDD or XDC; - is standard input")->required();
   auto* output =
-      command.add_option("-o,--output", settings.output, "file to write; may be FILE (default: standard output)");
+      command.add_option("-o,--output", settings.output, "file to write; may be FILE (default: standard output)")
+          ->check(xdd_name_problem);
   auto* in_place = command.add_flag("-i,--in-place", settings.in_place, "write each FILE itself");
   auto* check = command.add_flag("--check", settings.check,
                                  "write nothing; list each FILE that is not canonical; exit code 1 if there is one");

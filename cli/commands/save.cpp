@@ -15,6 +15,7 @@
 #include "shared/output.hpp"
 #include "shared/with_bus.hpp"
 #include "text/printable.hpp"
+#include "xdd/read_xdd.hpp"
 
 namespace edsc {
 namespace {
@@ -115,7 +116,9 @@ void add_save_options(CLI::App& command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_save, exit_code);
   add_node_arguments(command, settings);
   command.add_option("FILE", settings.path, "EDS of the node, or a DCF")->required();
-  command.add_option("-o,--output", settings.output, "DCF to write (default: standard output)")->type_name("FILE");
+  command.add_option("-o,--output", settings.output, "DCF to write (default: standard output)")
+      ->type_name("FILE")
+      ->check(xdd_name_problem);
   command.add_flag("--all", settings.all, "all values, not only those that differ from the EDS");
   command.add_option("--bit-rate", settings.bit_rate, "kbit/s of the bus, for [DeviceComissioning]")
       ->check(CLI::Range(5, 1000));

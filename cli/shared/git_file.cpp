@@ -19,8 +19,6 @@
 
 #include "text/gzip.hpp"
 
-extern char** environ;
-
 namespace edsc {
 namespace {
 
@@ -82,6 +80,7 @@ void drain(const Pipe& output, const Pipe& errors, Outcome& outcome) {
 std::optional<Outcome> run_git(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), "git");
   std::vector<char*> words;
+  words.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) words.push_back(argument.data());
   words.push_back(nullptr);
   Pipe output;

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "backend/json_context.hpp"
+#include "text/markdown.hpp"
 #include "text/printable.hpp"
 
 namespace edsc {
@@ -62,6 +63,12 @@ bool is_needed(const Template& header, const nlohmann::ordered_json& view) {
   return header.needed.empty() || !view.at(std::string{header.needed}).is_null();
 }
 
+std::string_view report_template(std::string_view file_name) {
+  const auto found = std::ranges::find(report_templates(), file_name, &Template::file_name);
+  if (found == report_templates().end()) throw std::logic_error{"unknown template " + std::string{file_name}};
+  return found->text;
+}
+
 std::string render(std::string_view text, const nlohmann::ordered_json& view) {
   return render_escaped(text, view, [](const std::string& plain) { return plain; });
 }
@@ -69,6 +76,10 @@ std::string render(std::string_view text, const nlohmann::ordered_json& view) {
 std::string render_html(std::string_view text, const nlohmann::ordered_json& view) {
   return render_escaped(text, view,
                         [](const std::string& plain) { return kainjow::mustache::html_escape(printable(plain)); });
+}
+
+std::string render_markdown(std::string_view text, const nlohmann::ordered_json& view) {
+  return render_escaped(text, view, [](const std::string& plain) { return markdown_text(plain); });
 }
 
 }  // namespace edsc

@@ -21,8 +21,11 @@ struct Template {
 /// The template of the header of a network, in templates/network.
 [[nodiscard]] const std::vector<Template>& network_templates();
 
-/// The templates of reports in HTML, in templates/html.
+/// The templates of reports, with their styles and scripts: templates/html and templates/document.
 [[nodiscard]] const std::vector<Template>& report_templates();
+
+/// The text of a report template, by the name of its file without `.mustache`. An unknown name is a fault of edsc.
+[[nodiscard]] std::string_view report_template(std::string_view file_name);
 
 /// Whether a header is generated for this view.
 [[nodiscard]] bool is_needed(const Template& header, const nlohmann::ordered_json& view);
@@ -32,5 +35,8 @@ struct Template {
 
 /// The same for HTML: each value becomes printable, and <, >, &, " and ' in it become entities.
 [[nodiscard]] std::string render_html(std::string_view text, const nlohmann::ordered_json& view);
+
+/// The same for Markdown: each value becomes printable, and markup in it is escaped.
+[[nodiscard]] std::string render_markdown(std::string_view text, const nlohmann::ordered_json& view);
 
 }  // namespace edsc

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "text/markdown.hpp"
 #include "text/printable.hpp"
 #include "text/source_file.hpp"
 
@@ -31,39 +32,11 @@ std::vector<std::string_view> broken_by(const Change& change) {
   return broken;
 }
 
-/// `breaks master and PDO partner`
-std::string verdict_of(const Change& change) {
-  const std::vector<std::string_view> broken = broken_by(change);
-  if (broken.empty()) return "compatible";
-  std::string text{"breaks "};
-  for (std::size_t i = 0; i < broken.size(); ++i) {
-    if (i > 0) text += i + 1 < broken.size() ? ", " : " and ";
-    text += broken[i];
-  }
-  return text;
-}
-
-/// Text for a cell of a table, with markup escaped.
-std::string cell(std::string_view text) {
-  std::string out;
-  for (const char c : printable(text)) {
-    if (c == '<') {
-      out += "&lt;";
-    } else if (c == '&') {
-      out += "&amp;";
-    } else {
-      if (std::string_view{"\\`*_[]|~$>"}.find(c) != std::string_view::npos) out += '\\';
-      out += c;
-    }
-  }
-  return out;
-}
-
 std::string markdown_row(const Change& change) {
-  const std::string name = change.name.empty() ? "" : " " + cell(change.name);
+  const std::string name = change.name.empty() ? "" : " " + markdown_text(change.name);
   const std::string line = change.new_position.line == 0 ? "-" : fmt::format("{}", change.new_position.line);
   const std::vector<std::string_view> broken = broken_by(change);
-  return fmt::format("| {}{} | {} | {} | {} | `{}` |\n", change.entry, name, cell(message_of(change)),
+  return fmt::format("| {}{} | {} | {} | {} | `{}` |\n", change.entry, name, markdown_text(message_of(change)),
                      broken.empty() ? "-" : fmt::format("{}", fmt::join(broken, ", ")), line, kind_of(change.id).name);
 }
 
@@ -97,6 +70,17 @@ nlohmann::ordered_json change_json(const Change& change) {
 
 }  // namespace
 
+std::string verdict_text(const Change& change) {
+  const std::vector<std::string_view> broken = broken_by(change);
+  if (broken.empty()) return "compatible";
+  std::string text{"breaks "};
+  for (std::size_t i = 0; i < broken.size(); ++i) {
+    if (i > 0) text += i + 1 < broken.size() ? ", " : " and ";
+    text += broken[i];
+  }
+  return text;
+}
+
 std::string changes_as_text(const Changes& changes, bool colour) {
   std::string text;
   for (const Change& change : changes.all()) {
@@ -104,7 +88,7 @@ std::string changes_as_text(const Changes& changes, bool colour) {
     const std::string name = change.name.empty() ? "" : fmt::format(" \"{}\"", change.name);
     text +=
         fmt::format("{}: {}{}{}: {}{}: {} [{}] (was {})\n", printable(place_text(change.new_position)), start,
-                    verdict_of(change), colour ? "\x1B[0m" : "", change.entry, printable(name),
+                    verdict_text(change), colour ? "\x1B[0m" : "", change.entry, printable(name),
                     printable(message_of(change)), kind_of(change.id).name, printable(place_text(change.old_position)));
   }
   return text +
@@ -114,8 +98,8 @@ std::string changes_as_text(const Changes& changes, bool colour) {
 std::string changes_as_markdown(const Changes& changes, std::string_view before, std::string_view after) {
   const std::size_t breaking = changes.breaking();
   const std::size_t compatible = changes.all().size() - breaking;
-  std::string text = fmt::format("### {} against {}\n\n**{} breaking**, {} compatible\n", cell(after), cell(before),
-                                 breaking, compatible);
+  std::string text = fmt::format("### {} against {}\n\n**{} breaking**, {} compatible\n", markdown_text(after),
+                                 markdown_text(before), breaking, compatible);
   if (breaking > 0) text += "\n" + markdown_table(changes, true);
   if (compatible > 0) {
     text += fmt::format("\n<details>\n<summary>{} compatible</summary>\n\n{}\n</details>\n", compatible,
@@ -124,7 +108,7 @@ std::string changes_as_markdown(const Changes& changes, std::string_view before,
   return text;
 }
 
-std::string new_file_as_markdown(std::string_view name) { return fmt::format("### {} is new\n", cell(name)); }
+std::string new_file_as_markdown(std::string_view name) { return fmt::format("### {} is new\n", markdown_text(name)); }
 
 nlohmann::ordered_json changes_as_json(const Changes& changes) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();

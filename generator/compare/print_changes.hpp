@@ -9,6 +9,9 @@
 
 namespace edsc {
 
+/// `breaks master and PDO partner`, or `compatible`.
+[[nodiscard]] std::string verdict_text(const Change& change);
+
 /// A line for each change, in the format of compiler messages, and a summary.
 [[nodiscard]] std::string changes_as_text(const Changes& changes, bool colour);
 

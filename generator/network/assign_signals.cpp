@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "device/cob_id_parameter.hpp"
+#include "device/limits.hpp"
 #include "device/pdo/pdo_defaults.hpp"
 #include "network/communication_objects.hpp"
 #include "network/node_settings.hpp"
@@ -20,7 +21,8 @@ namespace edsc {
 namespace {
 
 constexpr unsigned max_bits = 64;
-constexpr std::size_t max_entries = 8;            // of a new PDO, as in devices with 8 entries
+constexpr std::size_t max_entries = 8;  // of a new PDO, as in devices with 8 entries
+constexpr std::uint8_t max_sub_index = 254;
 constexpr std::uint32_t max_can_id = 0x6DF;       // the IDs above are restricted
 constexpr std::uint16_t first_received = 0x2000;  // of a master without a file: + node-ID of the sender
 constexpr std::uint16_t first_sent = 0x2100;      // + node-ID of the receiver
@@ -131,17 +133,23 @@ class SignalPlanner {
   std::uint32_t mapped(const SignalEnd& end, const Signal& signal, bool is_sent) {
     const Entry& entry = *end.entry;
     if (end.node->has_file()) return mapping_value(entry.index, entry.sub_index, entry.type->bits);
-    const MasterEntry& copy = master_entry(end, signal, is_sent);
+    const MasterEntry& copy = master_entry(end, signal.description->position, is_sent);
     return mapping_value(copy.index, copy.sub_index, entry.type->bits);
   }
 
-  /// The copy of an entry in a master without a file.
-  const MasterEntry& master_entry(const SignalEnd& end, const Signal& /*signal*/, bool is_sent) {
+  /// The copy of an entry in a master without a file. If its object has the most sub-indices already, reports an error.
+  const MasterEntry& master_entry(const SignalEnd& end, const Position& position, bool is_sent) {
     const auto index = static_cast<std::uint16_t>((is_sent ? first_sent : first_received) + end.owner->node_id);
     std::uint8_t sub_index = 1;
     for (const MasterEntry& one : plan_.master_entries) {
       if (one.index != index) continue;
       if (one.original == end.entry) return one;
+      if (one.sub_index == max_sub_index) {
+        diagnostics_.error("network-signal", position,
+                           fmt::format("the master has room for {} entries that it {} node {}", max_sub_index,
+                                       is_sent ? "sends to" : "receives from", end.owner->name));
+        return one;
+      }
       sub_index = static_cast<std::uint8_t>(one.sub_index + 1);
     }
     const Object& object = *end.owner->device.find(end.entry->index);
@@ -157,7 +165,11 @@ class SignalPlanner {
     PlannedPdo planned{node.name, direction, 1, 0, 255, {}, std::move(mapping), first.description->position};
     if (!node.has_file()) {
       planned.number = ++master_pdos_[{&node, direction}];
-      return planned;
+      if (planned.number <= max_pdos) return planned;
+      diagnostics_.error("network-signal", planned.position,
+                         fmt::format("the master can have {} {}PDOs at most", max_pdos,
+                                     direction == PdoDirection::receive ? "R" : "T"));
+      return std::nullopt;
     }
     const Pdo* chosen = find_pdo(node, direction, [&](const Pdo& pdo) { return has_mapping(pdo, planned.mapping); });
     if (chosen == nullptr) {

@@ -197,6 +197,7 @@ class MessageCollector {
 
 std::vector<ResponseTime> responses(const std::vector<TimedMessage>& messages, const BusTiming& bus) {
   std::vector<CanMessage> plain;
+  plain.reserve(messages.size());
   for (const TimedMessage& one : messages) plain.push_back(one.message);
   return response_times(plain, bus);
 }

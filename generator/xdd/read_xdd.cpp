@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -115,8 +116,8 @@ class XddReader {
     for (const std::string_view known : body_types) {
       if (type.starts_with(known)) return true;
     }
-    xml_.diagnostics().warning("xml-element", xml_.position(body),
-                               fmt::format("profile type {} is not CANopen; it is left out", quote(type)));
+    xml_.diagnostics().note("xml-element", xml_.position(body),
+                            fmt::format("profile type {} is not CANopen; it is left out", quote(type)));
     return false;
   }
 
@@ -211,6 +212,11 @@ DataSheet read_xdd(const SourceFile& source, Diagnostics& diagnostics, std::vect
   DataSheet sheet = reader.read();
   if (not_in_eds != nullptr) *not_in_eds = reader.take_not_in_eds();
   return sheet;
+}
+
+std::string xdd_name_problem(const std::string& path) {
+  if (!ends_with_ignoring_case(path, ".xdd") && !ends_with_ignoring_case(path, ".xdc")) return "";
+  return path + ": edsc reads XDD and XDC files, but does not write them; name the file .eds or .dcf";
 }
 
 }  // namespace edsc

@@ -31,6 +31,19 @@ std::string_view without_prefix(std::string_view name) { return name.substr(name
 /// XML 1.0, 2.2: no other control characters.
 bool is_forbidden(char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' && c != '\r'; }
 
+/// XML 1.0, 4.6: these need no declaration.
+constexpr std::string_view predefined_entities[] = {"amp;", "lt;", "gt;", "apos;", "quot;", "#"};
+
+bool uses_declared_entity(std::string_view text) {
+  for (std::size_t at = text.find('&'); at != std::string_view::npos; at = text.find('&', at + 1)) {
+    const std::string_view name = text.substr(at + 1);
+    if (std::ranges::none_of(predefined_entities, [&](std::string_view known) { return name.starts_with(known); })) {
+      return true;
+    }
+  }
+  return false;
+}
+
 bool is_text(pugi::xml_node node) { return node.type() == pugi::node_pcdata || node.type() == pugi::node_cdata; }
 
 }  // namespace
@@ -89,8 +102,7 @@ void XmlDocument::parse() {
 void XmlDocument::find_root() {
   for (const pugi::xml_node node : document_.children()) {
     if (node.type() == pugi::node_doctype) {
-      diagnostics_.warning("xml-element", {&source_},
-                           "the document type declaration is not read; entities that it defines are not replaced");
+      report_doctype(node);
     } else if (is_text(node)) {
       diagnostics_.warning("xml-syntax", {&source_}, "text outside of the root element is left out");
     } else if (node.type() == pugi::node_element && root_) {
@@ -99,6 +111,18 @@ void XmlDocument::find_root() {
     } else if (node.type() == pugi::node_element) {
       root_ = node;
     }
+  }
+}
+
+/// Harmless if the name of a DTD is all that it has: values are written in the file itself.
+void XmlDocument::report_doctype(pugi::xml_node doctype) {
+  constexpr const char* message =
+      "the document type declaration is not read; entities that it defines are not replaced";
+  const bool has_declarations = std::string_view{doctype.value()}.find('[') != std::string_view::npos;
+  if (has_declarations || uses_declared_entity(source_.text())) {
+    diagnostics_.warning("xml-element", {&source_}, message);
+  } else {
+    diagnostics_.note("xml-element", {&source_}, message);
   }
 }
 

@@ -70,6 +70,7 @@ class XmlDocument {
  private:
   void parse();
   void find_root();
+  void report_doctype(pugi::xml_node doctype);
   [[nodiscard]] bool report_unreadable_text();
   [[nodiscard]] Position position_of(std::size_t offset, std::size_t length) const;
   [[nodiscard]] Position position_of(std::string_view part) const;

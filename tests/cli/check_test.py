@@ -98,6 +98,20 @@ class Severities(CheckTest):
         self.assertEqual((returncode, findings["diagnostics"]), (FINE, []))
 
 
+class Merging(CheckTest):
+    def test_of_process_data_that_cannot_be_mapped(self) -> None:
+        """One finding for each access type, with all its places."""
+        entry = "\n[{:04X}]\nParameterName=Value {}\nObjectType=0x7\nDataType=0x0006\nAccessType={}\nPDOMapping=0\n"
+        words = ("rwr", "rwr", "rww", "rwr", "rww")
+        text = BASE + "".join(entry.format(0x3000 + number, number, word) for number, word in enumerate(words))
+        (self.folder / "example.eds").write_text(text, encoding="utf-8")
+        lines = {word: [i for i, line in enumerate(text.splitlines(), 1)
+                        if line == f"AccessType={word}" and i > BASE.count("\n")] for word in words}
+        found = [one for one in self.check("example.eds")[1]["diagnostics"] if one["rule"] == "process-data-not-mappable"]
+        places = [[one["line"], *(also["line"] for also in one["notes"])] for one in found]
+        self.assertEqual(sorted(places), sorted(lines.values()))
+
+
 class Silence(CheckTest):
     def test_by_the_command_line(self) -> None:
         sheet = self.sheet(NOTE, WARNING, ERROR)

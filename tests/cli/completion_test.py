@@ -148,7 +148,7 @@ _edsc_decode
 """
         result = subprocess.run(["zsh", "-f"], input=script, capture_output=True, text=True, timeout=600, check=False)
         self.assertEqual(result.stderr, "")
-        self.assertIn("--format[text or json, an object on each line]:text|json:(text json)\n", result.stdout)
+        self.assertIn("--format[text; json, an object on each line; or csv, a record for each value]:text|json|csv:(text json csv)\n", result.stdout)
 
 
 class ManPage(unittest.TestCase):

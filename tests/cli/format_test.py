@@ -231,6 +231,23 @@ class FromXdd(CommandLine):
         self.expect(FINE, self.edsc("diff", XDD, dcf, "--node-id", 7, "--keep-going"))
         self.assertIn("NodeID=7", dcf.read_text())
 
+    def test_is_not_written(self) -> None:
+        sheet = self.write("pump.eds", SMALL)
+        for options in ((), ("--dcf", "--node-id", 5), ("--concise",)):
+            for name in ("pump.xdd", "pump.XDC"):
+                with self.subTest(options=options, name=name):
+                    result = self.edsc("format", sheet, *options, "-o", name)
+                    self.expect(WRONG_USAGE, result, f"{name}: edsc reads XDD and XDC files, but does not write them")
+                    self.assertIn("name the file .eds or .dcf", result.stderr)
+                    self.assertFalse((self.folder / name).exists())
+        result = self.edsc("save", "socketcan:none", 5, sheet, "-o", "pump.xdd")  # before the node is read
+        self.expect(WRONG_USAGE, result, "edsc reads XDD and XDC files, but does not write them")
+
+    def test_of_this_name_is_not_written_in_place(self) -> None:
+        sheet = self.write("pump.xdd", SMALL)
+        self.expect(WRONG_USAGE, self.edsc("format", "--in-place", sheet), f"{sheet}: edsc reads XDD and XDC files")
+        self.assertEqual(sheet.read_text(), SMALL)
+
     def test_goes_to_standard_output(self) -> None:
         result = self.edsc("format", XDD)
         self.expect(FINE, result)

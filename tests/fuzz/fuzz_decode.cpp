@@ -1,7 +1,9 @@
-/// A candump log -> text and JSON lines, summary and problems, with an axis (node 6) and a device with multiplex
-/// PDOs (node 7).
+/// A log of any format -> text, JSON lines and CSV, summary and problems, with an axis (node 6) and a device with
+/// multiplex PDOs (node 7).
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "decode/formats/log_formats.hpp"
 #include "decode/log/log_decoder.hpp"
 #include "fuzz.hpp"
 #include "load/load_device.hpp"
@@ -37,22 +39,40 @@ void check_text(std::string_view text) {
   }
 }
 
-void decode(const Nodes& nodes, std::string_view log, bool json) {
+/// The bytes of a log in pieces of different lengths, as of a pipe.
+LogInput pieces_of(std::string_view log) {
+  return LogInput{[log, size = std::size_t{1}](char* to, std::size_t most) mutable -> std::ptrdiff_t {
+    size = size * 5 % 97 + 1;
+    const std::size_t count = std::min({size, most, log.size()});
+    std::copy_n(log.data(), count, to);
+    log.remove_prefix(count);
+    return static_cast<std::ptrdiff_t>(count);
+  }};
+}
+
+/// `format`: null: by the content.
+void decode(const Nodes& nodes, std::string_view log, LogOutput output, const LogFormat* format) {
   LogDecoderSettings settings;
   settings.log_name = "fuzz.log";
-  settings.json = json;
+  settings.output = output;
   LogDecoder decoder{nodes.known(), NodeLabels{}, std::move(settings)};
+  LogInput input = pieces_of(log);
   std::string out, complaints;
-  std::size_t number = 0;
-  for (std::size_t begin = 0; begin < log.size();) {
-    const std::size_t end = std::min(log.find('\n', begin), log.size());
+  const auto source = (format != nullptr ? *format : detect_format(input)).open(input, complaints);
+  check_text(complaints);
+  if (source == nullptr) return require(!complaints.empty(), "a log that cannot be read has a reason");
+  LogLine line;
+  for (std::size_t lines = 0; source->next(line); ++lines) {
+    require(lines <= log.size(), "a log ends");
     out.clear();
-    decoder.decode(log.substr(begin, end - begin), ++number, out, complaints);
+    decoder.decode(line, out, complaints);
     require(out.size() < max_output_per_line, "a frame is told in a line of bearable length");
-    require(out.empty() || (out.ends_with('\n') && out.find('\n') == out.size() - 1), "a frame is one line");
+    if (output != LogOutput::csv) {
+      require(out.empty() || (out.ends_with('\n') && out.find('\n') == out.size() - 1), "a frame is one line");
+    }
+    if (output == LogOutput::csv) std::erase(out, '\r');
     check_text(out);
-    if (json && !out.empty()) require(nlohmann::json::accept(out), "a line of JSON is JSON");
-    begin = end + 1;
+    if (output == LogOutput::json && !out.empty()) require(nlohmann::json::accept(out), "a line of JSON is JSON");
   }
   decoder.finish(complaints);
   check_text(complaints);
@@ -66,7 +86,11 @@ void decode(const Nodes& nodes, std::string_view log, bool json) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const edsc::fuzz::Nodes nodes;
   const std::string log = edsc::fuzz::text_of(data, size);
-  edsc::fuzz::decode(nodes, log, false);
-  edsc::fuzz::decode(nodes, log, true);
+  for (const auto output : {edsc::LogOutput::text, edsc::LogOutput::json, edsc::LogOutput::csv}) {
+    edsc::fuzz::decode(nodes, log, output, nullptr);
+  }
+  for (const edsc::LogFormat& format : edsc::log_formats()) {
+    edsc::fuzz::decode(nodes, log, edsc::LogOutput::text, &format);
+  }
   return 0;
 }

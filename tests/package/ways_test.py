@@ -24,6 +24,7 @@ from consumer import (BUILD_DIR, EM_ARM, ENVIRONMENT, FROM_PACKAGE, SOURCE_DIR, 
 
 BLOCK = re.compile(r"<!-- run by: tests/package/ways_test.py -->\n```(\w+)\n(.*?)```", re.DOTALL)
 EDSC = BUILD_DIR / "generator/edsc"
+WITHOUT_COMPILING = "Without compiling edsc in each project"
 WITHOUT_DPKG = "" if shutil.which("dpkg-shlibdeps") and shutil.which("file") else "SKIPPED: dpkg-dev or file is not installed"
 
 # A toolchain file that searches everything but programs in its own root.
@@ -166,7 +167,7 @@ class Ways(unittest.TestCase):
                 self.assertEqual(run("dpkg-deb", "-f", package, field).strip(), value)
             self.assertRegex(run("dpkg-deb", "-f", package, "Maintainer"), r"maintainers <.+@.+>")
             self.assertRegex(run("dpkg-deb", "-f", package, "Description"), r"Compiler for CANopen.*\n .+")
-        for library in ("libc6", "libstdc", "libfmt", "libpugixml", "libnettle", "zlib1g"):
+        for library in ("libc6", "libstdc", "libfmt", "libpcap0.8", "libpugixml", "libnettle", "zlib1g"):
             self.assertIn(library, run("dpkg-deb", "-f", program, "Depends"))
         self.assertEqual(run("dpkg-deb", "-f", development, "Depends").strip(), "edsc (= 0.1.0)")
 
@@ -218,11 +219,16 @@ class Ways(unittest.TestCase):
             for name in variables:
                 del ENVIRONMENT[name]
 
+    def archive(self) -> Path:
+        archive = self.folder / "edsc.tar.gz"
+        if not archive.exists():
+            with tarfile.open(archive, "w:gz", compresslevel=1) as tar:
+                tar.add(self.sources, "edsc-0.1.0", filter=lambda entry: None if "/build" in entry.name else entry)
+        return archive
+
     def test_fetch_content(self) -> None:
         """FetchContent with an archive."""
-        archive = self.folder / "edsc.tar.gz"
-        with tarfile.open(archive, "w:gz", compresslevel=1) as tar:
-            tar.add(self.sources, "edsc-0.1.0", filter=lambda entry: None if "/build" in entry.name else entry)
+        archive = self.archive()
         project = Project(self.folder / "fetched/project", blocks("FetchContent", "cmake")[0])
         self.check_host(project, f"-DEDSC_ARCHIVE={archive}", f"-DFETCHCONTENT_BASE_DIR={project.source}",
                         "-DCMAKE_BUILD_TYPE=")
@@ -232,6 +238,33 @@ class Ways(unittest.TestCase):
         project = Project(self.folder / "fetched-arm", blocks("FetchContent", "cmake")[0], build_dir=self.sources / "m3-b")
         self.check_cross(project, f"-DCMAKE_TOOLCHAIN_FILE={self.sources / 'cmake' / TOOLCHAIN}", "-DEDSC_ARCHIVE=",
                          f"-DFETCHCONTENT_SOURCE_DIR_EDSC={self.sources}")
+
+    def test_fetch_content_of_an_installed_edsc(self) -> None:
+        """The sources are not read."""
+        self.built()
+        project = Project(self.folder / "found", blocks(WITHOUT_COMPILING, "cmake")[0])
+        self.check_host(project, f"-DCMAKE_PREFIX_PATH={self.prefix}", "-DEDSC_ARCHIVE=/does/not/exist.tar.gz")
+        self.assertIn(f"edsc_DIR:PATH={self.prefix}/", (project.build_dir / "CMakeCache.txt").read_text())
+
+    def test_fetch_content_without_an_installed_edsc(self) -> None:
+        archive = self.archive()
+        project = Project(self.folder / "not found", blocks(WITHOUT_COMPILING, "cmake")[0])
+        self.check_host(project, f"-DEDSC_EXECUTABLE={EDSC}", f"-DEDSC_ARCHIVE={archive}", "-DCMAKE_DISABLE_FIND_PACKAGE_edsc=ON")
+        self.assertTrue((project.build_dir / "_deps/edsc-src/runtime").is_dir())
+
+    def test_a_file_with_errors_that_cannot_be_changed(self) -> None:
+        """KEEP_GOING: the object in error becomes a DOMAIN; without it nothing is generated."""
+        project = Project(self.folder / "keep going", f'add_subdirectory("{self.sources}" edsc)')
+        text = project.sheet.read_text().replace("SupportedObjects=1\n1=0x2000", "SupportedObjects=2\n1=0x2000\n2=0x2001")
+        project.sheet.write_text(text + "[2001]\nParameterName=Odd\nObjectType=0x7\nDataType=0x7F00\nAccessType=ro\n")
+        project.configure(f"-DEDSC_EXECUTABLE={EDSC}")
+        with self.assertRaisesRegex(AssertionError, r"\[data-type\](.|\n)*--keep-going \(KEEP_GOING in CMake\)"):
+            project.build()
+        lists = project.lists.read_text()
+        project.lists.write_text(lists.replace("edsc_add_dictionary(valve EDS valve.eds)",
+                                               "edsc_add_dictionary(valve EDS valve.eds KEEP_GOING)"))
+        self.assertIn("[data-type]", project.build())
+        run(project.build_dir / "valve_test")
 
     def test_sources_with_a_program_that_is_there(self) -> None:
         """edsc is not compiled, and its folder has a blank in its path."""

@@ -7,8 +7,8 @@ namespace edsc::conform {
 
 namespace sdo = canopen::sdo;
 
-std::string milliseconds_text(std::uint64_t microseconds) {
-  return fmt::format("{}.{:03} ms", microseconds / 1000, microseconds % 1000);
+std::string milliseconds_text(std::uint64_t time_us) {
+  return fmt::format("{}.{:03} ms", time_us / 1000, time_us % 1000);
 }
 
 void Dut::fail(std::string expected, std::string got, std::vector<EntryAddress> failed_entries) {

@@ -143,7 +143,7 @@ std::string html_report(const RunReport& run, const Device& sheet) {
                      {"totals", totals},
                      {"filters", filters},
                      {"areas", std::move(areas)}};
-  return render_html(report_templates().front().text, view);
+  return render_html(report_template("conform.html"), view);
 }
 
 }  // namespace edsc::conform

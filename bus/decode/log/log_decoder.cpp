@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 #include <utility>
 
 #include "decode/error_frame_text.hpp"
+#include "decode/log/print_csv.hpp"
 #include "text/counted.hpp"
 #include "text/printable.hpp"
 #include "values/value_text.hpp"
@@ -13,12 +15,20 @@
 namespace edsc {
 namespace {
 
-std::string broken_line_text(const LogLine& line, std::string_view text) {
+std::string broken_line_text(const LogLine& line) {
   constexpr std::size_t max_shown = 60;
-  std::string sentence = fmt::format("skipped, {}: ", line.problem);
-  append_quoted(sentence, text.substr(0, max_shown));
-  if (text.size() > max_shown) sentence += "...";
+  if (line.kind == LogLineKind::unreadable) return fmt::format("the rest cannot be read: {}", line.problem);
+  std::string sentence = fmt::format("skipped, {}", line.problem);
+  if (line.byte) return sentence;
+  sentence += ": ";
+  append_quoted(sentence, line.text.substr(0, max_shown));
+  if (line.text.size() > max_shown) sentence += "...";
   return sentence;
+}
+
+/// `12`, `packet 12 at byte 345`
+std::string place_text(const LogLine& line) {
+  return line.byte ? fmt::format(" packet {} at byte {}", line.number, *line.byte) : std::to_string(line.number);
 }
 
 }  // namespace
@@ -26,9 +36,9 @@ std::string broken_line_text(const LogLine& line, std::string_view text) {
 LogDecoder::LogDecoder(const std::vector<KnownNode>& nodes, NodeLabels labels, LogDecoderSettings settings)
     : settings_{std::move(settings)}, labels_{std::move(labels)}, decoder_{nodes} {}
 
-void LogDecoder::complain(std::size_t line_number, std::string_view what, std::string& complaints) {
+void LogDecoder::complain(const LogLine& line, std::string_view what, std::string& complaints) {
   if (++complaints_ > max_complaints) return;
-  fmt::format_to(std::back_inserter(complaints), "{}:{}: {}\n", printable(settings_.log_name), line_number,
+  fmt::format_to(std::back_inserter(complaints), "{}:{}: {}\n", printable(settings_.log_name), place_text(line),
                  printable(what));
 }
 
@@ -43,22 +53,24 @@ void LogDecoder::count_time(LogLine& line) {
   has_time_ = true;
   last_time_ = line.microseconds;
   if (!deltas_) return;
-  sum_ += line.microseconds;
+  sum_ = std::min(sum_ + line.microseconds, max_log_time_us);
   line.microseconds = sum_;
 }
 
-void LogDecoder::decode(std::string_view text, std::size_t line_number, std::string& out, std::string& complaints) {
-  LogLine line = parse_log_line(text);
-  if (!settings_.interface.empty() && !line.interface.empty() && line.interface != settings_.interface) return;
+const Message* LogDecoder::evaluate(LogLine& line, std::string& complaints) {
+  if (!settings_.interface.empty() && !line.interface.empty() && line.interface != settings_.interface) return nullptr;
   switch (line.kind) {
     case LogLineKind::blank:
-    case LogLineKind::remark: return;
+    case LogLineKind::remark: return nullptr;
     case LogLineKind::can_fd:
       summary_.add_can_fd();
-      return complain(line_number, "a CAN FD frame is ignored", complaints);
+      complain(line, "a CAN FD frame is ignored", complaints);
+      return nullptr;
     case LogLineKind::broken:
+    case LogLineKind::unreadable:
       summary_.add_broken_line();
-      return complain(line_number, broken_line_text(line, text), complaints);
+      complain(line, broken_line_text(line), complaints);
+      return nullptr;
     case LogLineKind::frame:
       count_time(line);
       decoder_.decode({line.frame, line.has_time, line.microseconds}, message_);
@@ -72,11 +84,16 @@ void LogDecoder::decode(std::string_view text, std::size_t line_number, std::str
       break;
   }
   summary_.add(line, message_);
-  if (!settings_.filter.passes(line, message_)) return;
-  if (settings_.json) {
-    append_json(out, line, line_number, message_, labels_);
-  } else {
-    append_text(out, line, message_, labels_, settings_.color);
+  return &message_;
+}
+
+void LogDecoder::decode(LogLine& line, std::string& out, std::string& complaints) {
+  const Message* const message = evaluate(line, complaints);
+  if (message == nullptr || !settings_.filter.passes(line, *message)) return;
+  switch (settings_.output) {
+    case LogOutput::text: return append_text(out, line, *message, labels_, settings_.color);
+    case LogOutput::json: return append_json(out, line, *message, labels_);
+    case LogOutput::csv: return append_csv(out, line, *message, labels_);
   }
 }
 

@@ -1,4 +1,4 @@
-/// A candump log, line by line, to text or JSON.
+/// The lines or packets of a log, one by one, to text, JSON or CSV.
 #pragma once
 
 #include <cstddef>
@@ -15,10 +15,12 @@
 
 namespace edsc {
 
+enum class LogOutput : std::uint8_t { text, json, csv };
+
 struct LogDecoderSettings {
   std::string log_name;   ///< in error messages
   std::string interface;  ///< ignore frames of other interfaces; empty: all
-  bool json = false;
+  LogOutput output = LogOutput::text;
   bool color = false;
   MessageFilter filter;  ///< frames to show; all frames are evaluated
 };
@@ -31,7 +33,10 @@ class LogDecoder {
   LogDecoder(const std::vector<KnownNode>& nodes, NodeLabels labels, LogDecoderSettings settings);
 
   /// Appends the decoded line to `out`, and errors to `complaints`.
-  void decode(std::string_view line, std::size_t line_number, std::string& out, std::string& complaints);
+  void decode(LogLine& line, std::string& out, std::string& complaints);
+
+  /// Returns the message of a frame, valid until the next call; null for other lines and interfaces. Errors as above.
+  [[nodiscard]] const Message* evaluate(LogLine& line, std::string& complaints);
 
   /// Appends the errors at the end of the log: unfinished transfers, and the number of errors that were not listed.
   void finish(std::string& complaints);
@@ -40,7 +45,7 @@ class LogDecoder {
   [[nodiscard]] bool skipped_lines() const { return summary_.broken_lines() > 0; }
 
  private:
-  void complain(std::size_t line_number, std::string_view what, std::string& complaints);
+  void complain(const LogLine& line, std::string_view what, std::string& complaints);
   void count_time(LogLine& line);
 
   LogDecoderSettings settings_;

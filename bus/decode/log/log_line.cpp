@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "text/ascii.hpp"
-#include "text/number_text.hpp"
+#include "decode/formats/words.hpp"
 
 namespace edsc {
 namespace {
@@ -12,34 +11,11 @@ namespace {
 /// Bit 29 of an eight-digit CAN-ID: an error frame.
 constexpr std::uint32_t error_flag = 0x2000'0000;
 
-/// Removes the next word and the blanks before it from the text.
-std::string_view take_word(std::string_view& text) {
-  constexpr std::string_view blanks = " \t";
-  text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
-  const std::string_view word = text.substr(0, text.find_first_of(blanks));
-  text.remove_prefix(word.size());
-  return word;
-}
-
 /// `1436509052.249713`
 bool parse_seconds(std::string_view text, std::int64_t& microseconds) {
-  constexpr std::size_t max_digits = 12;
-  std::int64_t number = 0;
-  std::size_t at = 0;
-  for (; at < text.size() && is_digit(text[at]); ++at) {
-    if (at == max_digits) return false;
-    number = number * 10 + (text[at] - '0');
-  }
-  if (at == 0) return false;
-  std::size_t decimals = 0;
-  if (at < text.size() && text[at] == '.') {
-    for (++at; at < text.size() && is_digit(text[at]); ++at) {
-      if (++decimals <= 6) number = number * 10 + (text[at] - '0');  // candump -N has nanoseconds
-    }
-  }
-  for (; decimals < 6; ++decimals) number *= 10;
-  microseconds = number;
-  return at == text.size();
+  const auto number = parse_decimal(text, 6);  // candump -N has nanoseconds
+  microseconds = number.value_or(0);
+  return number.has_value();
 }
 
 /// `2015-07-10 08:17:32.249713`
@@ -57,12 +33,6 @@ bool parse_date(std::string_view text, std::int64_t& microseconds) {
   const auto days = std::chrono::sys_days{date}.time_since_epoch().count();
   microseconds = ((std::int64_t{days} * 24 + hour) * 60 + minute) * 60'000'000 + seconds;
   return true;
-}
-
-LogLine broken(LogLine line, std::string_view problem) {
-  line.kind = LogLineKind::broken;
-  line.problem = problem;
-  return line;
 }
 
 /// Three digits, or eight of an extended CAN-ID or of the flags of an error frame.
@@ -139,6 +109,12 @@ LogLine parse_columns(std::string_view rest, LogLine line) {
 }
 
 }  // namespace
+
+LogLine broken(LogLine line, std::string_view problem) {
+  line.kind = LogLineKind::broken;
+  line.problem = problem;
+  return line;
+}
 
 LogLine parse_log_line(std::string_view text) {
   LogLine line;

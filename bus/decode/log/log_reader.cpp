@@ -1,15 +1,11 @@
 #include "decode/log/log_reader.hpp"
 
-#include <unistd.h>
-
-#include <cerrno>
 #include <cstring>
 #include <utility>
 
 namespace edsc {
 
-LogReader::LogReader(int file_descriptor, std::function<bool()> before_reading)
-    : file_descriptor_{file_descriptor}, before_reading_{std::move(before_reading)}, buffer_(2 * longest_line, '\0') {}
+LogReader::LogReader(LogInput& input) : input_{input}, buffer_(2 * longest_line, '\0') {}
 
 /// Reads more bytes after the incomplete line. Returns false at the end.
 bool LogReader::fill() {
@@ -17,15 +13,9 @@ bool LogReader::fill() {
   std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
   end_ -= begin_;
   begin_ = 0;
-  at_end_ = !before_reading_();
-  if (at_end_) return false;
-  ssize_t count = 0;
-  do {
-    count = ::read(file_descriptor_, buffer_.data() + end_, buffer_.size() - end_);
-  } while (count < 0 && errno == EINTR);
-  if (count < 0) error_ = errno;
-  at_end_ = count <= 0;
-  if (!at_end_) end_ += static_cast<std::size_t>(count);
+  const std::size_t count = input_.read(buffer_.data() + end_, buffer_.size() - end_);
+  end_ += count;
+  at_end_ = count == 0;
   return !at_end_;
 }
 

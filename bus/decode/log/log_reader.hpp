@@ -1,10 +1,11 @@
-/// Reads the lines of a file, pipe or terminal as soon as they are available.
+/// Reads the lines of a log as soon as they are available.
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <string>
 #include <string_view>
+
+#include "decode/formats/log_input.hpp"
 
 namespace edsc {
 
@@ -12,9 +13,8 @@ class LogReader {
  public:
   static constexpr std::size_t longest_line = std::size_t{64} * 1024;
 
-  /// `before_reading` is called before waiting for input, when no complete line is left, to flush output. False: stop
-  /// reading.
-  LogReader(int file_descriptor, std::function<bool()> before_reading);
+  /// `input` must outlive the reader.
+  explicit LogReader(LogInput& input);
 
   /// The next line without its line end, valid until the next call; truncated to `longest_line`. Returns false at the
   /// end and on a read error.
@@ -22,21 +22,17 @@ class LogReader {
 
   /// Number of the line, from 1.
   [[nodiscard]] std::size_t line_number() const { return line_number_; }
-  /// errno of the read error; 0: none.
-  [[nodiscard]] int error() const { return error_; }
 
  private:
   [[nodiscard]] bool fill();
 
-  int file_descriptor_;
-  std::function<bool()> before_reading_;
+  LogInput& input_;
   std::string buffer_;
   std::size_t begin_ = 0;  ///< of the unread bytes
   std::size_t end_ = 0;
   std::size_t line_number_ = 0;
   bool in_piece_ = false;  ///< of a truncated line
   bool at_end_ = false;
-  int error_ = 0;
 };
 
 }  // namespace edsc

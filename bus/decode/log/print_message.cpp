@@ -1,23 +1,19 @@
 #include "decode/log/print_message.hpp"
 
-#include <fmt/compile.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "device/types/little_endian.hpp"
+#include "decode/log/value_number.hpp"
 #include "text/printable.hpp"
 #include "text/utf8.hpp"
 #include "values/append.hpp"
 
 namespace edsc {
 namespace {
-
-using canopen::DataClass;
 
 constexpr std::string_view problem_color = "\x1b[31m", quiet_color = "\x1b[2m", no_color = "\x1b[0m";
 constexpr std::size_t data_width = 8 * 3, id_width = 8, label_width = 9;
@@ -70,28 +66,16 @@ void append_member(std::string& out, std::string_view key, std::uint64_t number)
 
 /// Numbers as numbers, BOOLEANs as booleans, other types as their text. JSON cannot express infinity and NaN.
 void append_json_value(std::string& out, const MessageValue& value, std::string_view text) {
-  const unsigned bits = value.bits != 0 ? value.bits : static_cast<unsigned>(value.bytes.size()) * 8;
-  const std::uint64_t number = value.bits != 0 ? value.number : number_of(value.bytes);
-  if (bits == 0 || bits > 64 || value.type == nullptr) return append_json_string(out, text);
-  const auto append_real = [&out](auto real) { fmt::format_to(std::back_inserter(out), FMT_COMPILE("{}"), real); };
-  switch (value.type->kind) {
-    case DataClass::boolean: out += number != 0 ? "true" : "false"; return;
-    case DataClass::unsigned_integer: return append_decimal(out, number);
-    case DataClass::signed_integer: return append_decimal(out, sign_extended(number, bits));
-    case DataClass::real: {
-      const auto single = std::bit_cast<float>(static_cast<std::uint32_t>(number));
-      const auto real = std::bit_cast<double>(number);
-      if (bits == 32 && std::isfinite(single)) return append_real(single);
-      if (bits == 64 && std::isfinite(real)) return append_real(real);
-      if (bits != 64) break;
-      out += "null";
-      return;
-    }
-    case DataClass::time:
-    case DataClass::string:
-    case DataClass::domain: break;
+  const auto number = plain_number(value);
+  if (!number) return append_json_string(out, text);
+  const auto* const single = std::get_if<float>(&*number);
+  const auto* const real = std::get_if<double>(&*number);
+  if (single != nullptr && !std::isfinite(*single)) return append_json_string(out, text);
+  if (real != nullptr && !std::isfinite(*real)) {
+    out += "null";
+    return;
   }
-  append_json_string(out, text);
+  append_number(out, *number);
 }
 
 void append_values(std::string& out, const Message& message) {
@@ -117,12 +101,10 @@ void append_values(std::string& out, const Message& message) {
   out += ']';
 }
 
-constexpr std::string_view step_names[] = {"", "part", "finished", "aborted"};
-
 void append_transfer(std::string& out, const Message& message) {
   append_key(out, "transfer");
   out += message.download ? "{\"direction\":\"download\"" : "{\"direction\":\"upload\"";
-  append_member(out, "step", step_names[static_cast<std::size_t>(message.step)]);
+  append_member(out, "step", step_name(message.step));
   append_member(out, "index", message.index);
   append_member(out, "sub_index", message.sub_index);
   append_member(out, "bytes", message.size);
@@ -152,6 +134,11 @@ void NodeLabels::pad() {
     const std::size_t size = count_code_points(label);
     if (size < width) label.append(width - size, ' ');
   }
+}
+
+std::string_view step_name(TransferStep step) {
+  constexpr std::string_view names[] = {"", "part", "finished", "aborted"};
+  return names[static_cast<std::size_t>(step)];
 }
 
 std::string service_label(const Message& message) {
@@ -191,10 +178,9 @@ void append_text(std::string& out, const LogLine& line, const Message& message, 
   out += '\n';
 }
 
-void append_json(std::string& out, const LogLine& line, std::size_t line_number, const Message& message,
-                 const NodeLabels& labels) {
+void append_json(std::string& out, const LogLine& line, const Message& message, const NodeLabels& labels) {
   out += "{\"line\":";
-  append_decimal(out, line_number);
+  append_decimal(out, line.number);
   if (line.has_time) append_member(out, "time", line.time);
   if (!line.interface.empty()) append_member(out, "interface", line.interface);
   append_member(out, "can_id", line.frame.id);

@@ -27,14 +27,16 @@ class NodeLabels {
   std::array<std::string, 128> names_, padded_;
 };
 
+/// `part`, `finished`, `aborted`; empty for none.
+[[nodiscard]] std::string_view step_name(TransferStep step);
+
 /// `TPDO 2`, `SDO >`
 [[nodiscard]] std::string service_label(const Message& message);
 
 /// One line: time, interface, CAN-ID, data, service, node and meaning.
 void append_text(std::string& out, const LogLine& line, const Message& message, const NodeLabels& labels, bool color);
 
-/// One JSON object on a line, by docs/schema/message.schema.json. `line_number` counts from 1.
-void append_json(std::string& out, const LogLine& line, std::size_t line_number, const Message& message,
-                 const NodeLabels& labels);
+/// One JSON object on a line, by docs/schema/message.schema.json.
+void append_json(std::string& out, const LogLine& line, const Message& message, const NodeLabels& labels);
 
 }  // namespace edsc

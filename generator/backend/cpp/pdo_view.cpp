@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "backend/cpp/cpp_name.hpp"
 #include "backend/cpp/cpp_text.hpp"
 #include "backend/cpp/placement.hpp"
 #include "device/cob_id_parameter.hpp"
@@ -26,20 +27,9 @@ std::string type_name(const Pdo& pdo) { return fmt::format("{}{}", is_receive(pd
 
 // ---- the layout ----
 
-/// The type of a mapped object, regardless of its length in the PDO.
-std::string mapped_object(const Device& device, const PdoEntry& entry) {
-  const Object& object = *device.find(entry.index);
-  if (!object.has_sub_indices()) return fmt::format("od::{}", object.identifier);
-  if (describes_uniform_array(object) && entry.sub_index > 0) {
-    return fmt::format("od::{}<{}>", object.identifier, entry.sub_index);
-  }
-  if (describes_uniform_array(object)) return fmt::format("od::{}<0>", object.identifier);
-  return fmt::format("od::{}::{}", object.identifier, entry.object->identifier);
-}
-
 std::string entry_type(const Device& device, const PdoEntry& entry) {
   if (entry.dummy != nullptr) return fmt::format("canopen::Dummy<0x{:04X}, {}>", entry.index, entry.bits);
-  const std::string object = mapped_object(device, entry);
+  const std::string object = cpp_name(*device.find(entry.index), *entry.object);
   const canopen::DataTypeRow& type = *entry.object->type;
   if (type.kind == DataClass::string) return fmt::format("canopen::FixedString<{}, {}>", object, entry.bits / 8);
   return entry.bits == type.bits ? object : fmt::format("canopen::Padded<{}, {}>", object, entry.bits);

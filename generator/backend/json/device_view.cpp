@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <canopen/can/cob_id.hpp>
 
+#include "backend/json/configured_value.hpp"
 #include "backend/json/information_view.hpp"
-#include "device/types/value.hpp"
 #include "device/types/value_bytes.hpp"
 #include "text/source_file.hpp"
 
@@ -154,26 +154,17 @@ ordered_json object_view(const Object& object) {
   return view;
 }
 
-/// A value that CiA 301 fixes remains the default value.
 void separate(const Entry& entry, const DataSheet& sheet, const ObjectDescription& object, const Device& device,
               ordered_json& row) {
-  const bool has_sub_indices = device.find(entry.index)->has_sub_indices();
-  const ValueFields fields = sheet.values_of(object, entry.sub_index, has_sub_indices);
-  // A value in the section of a compact form is not that of one element.
-  const bool is_common = has_sub_indices && fields.parameter_value == &object.parameter_value;
-  if (is_common || fields.parameter_value == nullptr || !fields.parameter_value->present ||
-      fields.parameter_value->empty())
-    return;
-  if (!entry.default_value || !entry.default_value->clause.empty()) return;
-  Diagnostics ignored;
-  const auto default_value = parse_value(*fields.default_value, *entry.type, device.node_id, ignored);
+  const auto configured = configured_value(entry, sheet, object, device);
+  if (!configured) return;
   ordered_json separated;
   for (auto& [key, value] : row.items()) {
     if (key != "default_value") {
       separated[key] = std::move(value);
       continue;
     }
-    if (default_value) separated["default_value"] = value_view(*default_value, *entry.type);
+    if (configured->default_value) separated["default_value"] = value_view(*configured->default_value, *entry.type);
     separated["parameter_value"] = std::move(value);
   }
   row = std::move(separated);

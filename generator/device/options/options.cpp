@@ -106,6 +106,7 @@ std::vector<Spelling> spellings_in(std::string_view group) {
 std::string unknown_option(std::string_view group, std::string_view name) {
   const std::vector<Spelling> spellings = spellings_in(group);
   std::vector<std::string_view> texts;
+  texts.reserve(spellings.size());
   for (const Spelling& spelling : spellings) texts.push_back(spelling.text);
   const std::string_view similar = most_similar(name, texts);
   if (similar.empty()) return "unknown option";

@@ -89,7 +89,7 @@ class ObjectReader {
     } else if (section.name.kind == SectionKind::compact_denotations) {
       object.compact_denotations = read_list(*section.section);
     } else if (section.name.kind == SectionKind::object_links) {
-      object.object_links = read_numbered_section(source_, *section.section, object_links, diagnostics_);
+      object.object_links = read_numbered_section(source_, *section.section, object_link_count, diagnostics_);
     }
   }
 

@@ -110,19 +110,19 @@ inline constexpr SectionKey comments_keys[] = {{"Lines"}, {"Line#"}};
 // Counted lists.
 inline constexpr CountKey supported_objects{"SupportedObjects", "Supported Objects", "object-list-count", true};
 inline constexpr CountKey nr_of_entries{"NrOfEntries", {}, "entry-count", false};
-inline constexpr CountKey object_links{"ObjectLinks", {}, "entry-count", true};
+inline constexpr CountKey object_link_count{"ObjectLinks", {}, "entry-count", true};
 
 inline constexpr SectionKey object_list_keys[] = {{supported_objects.name, count}, {"#", number, unsigned16}};
 inline constexpr SectionKey compact_value_keys[] = {{nr_of_entries.name, count}, {"#", typed}};
 inline constexpr SectionKey compact_text_keys[] = {{nr_of_entries.name, count}, {"#"}};
-inline constexpr SectionKey object_links_keys[] = {{object_links.name, count}, {"#", number, unsigned16}};
+inline constexpr SectionKey object_links_keys[] = {{object_link_count.name, count}, {"#", number, unsigned16}};
 
 }  // namespace section_keys
 
 using section_keys::baud_rate_prefix, section_keys::comments_keys, section_keys::commissioning_keys,
     section_keys::compact_text_keys, section_keys::compact_value_keys, section_keys::device_info_keys,
     section_keys::dummy_usage_keys, section_keys::entry_keys, section_keys::file_info_keys, section_keys::nr_of_entries,
-    section_keys::object_keys, section_keys::object_links, section_keys::object_links_keys,
+    section_keys::object_keys, section_keys::object_link_count, section_keys::object_links_keys,
     section_keys::object_list_keys, section_keys::place_of_object_keys, section_keys::supported_objects;
 
 /// The keys without their destinations.

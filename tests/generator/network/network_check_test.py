@@ -44,6 +44,57 @@ def network(*signals: dict, **nodes: dict) -> dict:
             "signals": list(signals)}
 
 
+def wide_sheet(tpdos: int = 33) -> str:
+    """A sheet with 255 bytes that can be mapped: 2000h:01 to 2000h:FE and 2001h."""
+    text = (Path(__file__).parent / "node.eds").read_text(encoding="utf-8")
+    start = "[DeviceInfo]" + text.split("[DeviceInfo]")[1].split("\n[")[0].replace("NrOfTXPDO", ";NrOfTXPDO")
+    objects = ["2000", "2001"] + [f"{base + i:04X}" for base in (0x1800, 0x1A00) for i in range(tpdos)]
+    lists = {"MandatoryObjects": ["1000", "1001", "1018"], "OptionalObjects": ["1017"] + objects[2:],
+             "ManufacturerObjects": objects[:2]}
+    parts = [start, f"NrOfTXPDO={tpdos}"]
+    for name, members in lists.items():
+        parts += [f"[{name}]", f"SupportedObjects={len(members)}"] + [f"{i}=0x{one}" for i, one in enumerate(members, 1)]
+
+    def entry(section: str, name: str, kind: int, access: str, value: str, mapped: int = 0) -> None:
+        parts.extend([f"[{section}]", f"ParameterName={name}", "ObjectType=0x7", f"DataType=0x{kind:04X}",
+                      f"AccessType={access}", f"DefaultValue={value}", f"PDOMapping={mapped}"])
+
+    def record(index: str, name: str, kind: int, count: int) -> None:
+        parts.extend([f"[{index}]", f"ParameterName={name}", f"ObjectType=0x{kind}", f"SubNumber={count}"])
+
+    entry("1000", "Device type", 7, "ro", "0")
+    entry("1001", "Error register", 5, "ro", "0")
+    entry("1017", "Producer heartbeat time", 6, "rw", "0")
+    record("1018", "Identity object", 9, 2)
+    entry("1018sub0", "Highest sub-index supported", 5, "const", "1")
+    entry("1018sub1", "Vendor-ID", 7, "ro", "0x1")
+    record("2000", "Bytes", 8, 255)
+    entry("2000sub0", "Highest sub-index supported", 5, "const", "254")
+    for sub in range(1, 255):
+        entry(f"2000sub{sub:X}", f"Byte {sub}", 5, "ro", "0", 1)
+    entry("2001", "Last byte", 5, "ro", "0", 1)
+    for i in range(tpdos):
+        communication, mapping = f"{0x1800 + i:04X}", f"{0x1A00 + i:04X}"
+        record(communication, f"TPDO {i + 1} communication", 9, 4)
+        entry(f"{communication}sub0", "Highest sub-index supported", 5, "const", "5")
+        entry(f"{communication}sub1", "COB-ID", 7, "rw", "0x80000000")
+        entry(f"{communication}sub2", "Transmission type", 5, "rw", "254")
+        entry(f"{communication}sub5", "Event timer", 6, "rw", "0")
+        record(mapping, f"TPDO {i + 1} mapping", 9, 9)
+        entry(f"{mapping}sub0", "Highest sub-index supported", 5, "rw", "0")
+        for sub in range(1, 9):
+            entry(f"{mapping}sub{sub}", f"Entry {sub}", 7, "rw", "0")
+    return "\n".join(parts) + "\n"
+
+
+def wide(node_id: int) -> dict:
+    return {"node_id": node_id, "eds": "wide.eds", "heartbeat_ms": 100}
+
+
+def bytes_of_wide(count: int) -> list[str]:
+    return [f"2000h:{sub:02X}" for sub in range(1, min(count, 254) + 1)] + ["2001h"] * (count > 254)
+
+
 SPEED = ("a", "2000h", "b.2002h", "m")
 NODE_A = {"node_id": 1, "eds": "node.eds", "heartbeat_ms": 100}
 NETWORKS = {  # name: (network, errors and warnings as severity and rule)
@@ -64,6 +115,16 @@ NETWORKS = {  # name: (network, errors and warnings as severity and rule)
     "configured_pdo_is_used": (
         network(signal(*SPEED),
                 a={**NODE_A, "set": {"1A00h:00": 1, "1A00h:01": "0x20000010", "1800h:01": "0x1A5"}}), []),
+    "254_entries_of_a_node": (network(*[signal("w", one, "m", every_ms=100) for one in bytes_of_wide(254)], w=wide(9)), []),
+    "255_entries_of_a_node": (network(*[signal("w", one, "m", every_ms=100) for one in bytes_of_wide(255)], w=wide(9)),
+                              [("error", "network-signal")]),
+    "512_pdos_of_the_master": (
+        network(*[signal(f"w{node}", one, "m", every_ms=1000 + i) for node in range(10, 26)
+                  for i, one in enumerate(bytes_of_wide(32))], **{f"w{node}": wide(node) for node in range(10, 26)}), []),
+    "513_pdos_of_the_master": (
+        network(*[signal(f"w{node}", one, "m", every_ms=1000 + i) for node in range(10, 26)
+                  for i, one in enumerate(bytes_of_wide(32))], signal("a", "2000h", "m"),
+                **{f"w{node}": wide(node) for node in range(10, 26)}), [("error", "network-signal")]),
     "second_master_without_a_file": (network(m2={"node_id": 126, "master": True}), [("warning", "network-nmt-master")]),
     "node_without_a_file": (network(x={"node_id": 4}), [("error", "network-file")]),
     "signals_of_an_unreadable_node": (
@@ -85,6 +146,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
         (folder / "node.eds").write_bytes((Path(__file__).parent / "node.eds").read_bytes())
+        (folder / "wide.eds").write_text(wide_sheet())
         for name, (text, code, expected) in TEXTS.items():
             got_code, found = check(edsc, folder, name, text)
             places = [(one["severity"], one["rule"], one["line"], one["column"]) for one in found

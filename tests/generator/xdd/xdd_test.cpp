@@ -111,6 +111,16 @@ TEST(Xdd, WarnsOfADocumentTypeDeclaration) {
   EXPECT_EQ(read.object().parameter_name.text, "&e;");
 }
 
+TEST(Xdd, NotesADocumentTypeDeclarationWithoutEffect) {
+  const std::string object = Profile{"<CANopenObject index='2000' name='&lt;&#65;&amp;'/>", "", "", ""}.text();
+  const ReadXdd read("<!DOCTYPE ISO15745ProfileContainer SYSTEM 'profile.dtd'>" + object);
+  EXPECT_EQ(findings(read.diagnostics), (Findings{note_at(0, 0, "xml-element")}));
+  EXPECT_EQ(read.object().parameter_name.text, "<A&");
+  const ReadXdd external("<!DOCTYPE ISO15745ProfileContainer SYSTEM 'profile.dtd'>" +
+                         Profile{"<CANopenObject index='2000' name='&e;'/>", "", "", ""}.text());
+  EXPECT_EQ(findings(external.diagnostics), (Findings{warning_at(0, 0, "xml-element")}));
+}
+
 TEST(Xdd, KeepsTextThatDoesNotStandInTheFileLikeThat) {
   DataSheet copy;
   SourceFile source("test.xdd", Profile{"<CANopenObject index='2000' name=' a &lt; &#66;&amp;c ' dataType='0005'/>", "",
@@ -259,6 +269,16 @@ TEST(XddErrors, ReportsXmlThatIsNoProfile) {
       "</ISO15745Profile></ISO15745ProfileContainer>");
   EXPECT_EQ(findings(other.diagnostics, "xml-profile").size(), 1U);
   EXPECT_EQ(findings(other.diagnostics, "xml-element").size(), 1U);
+}
+
+TEST(XddErrors, NotesAProfileOfAnotherNetwork) {
+  const ReadXdd read(
+      "<ISO15745ProfileContainer>\n<ISO15745Profile><ProfileBody xsi:type='ProfileBody_Device_Powerlink'/></ISO15745Profile>"
+      "<ISO15745Profile><ProfileBody><ApplicationLayers><CANopenObjectList>" +
+      one_xdd_object +
+      "</CANopenObjectList></ApplicationLayers></ProfileBody></ISO15745Profile></ISO15745ProfileContainer>");
+  EXPECT_EQ(findings(read.diagnostics), (Findings{note_at(2, 19, "xml-element")}));
+  EXPECT_EQ(read.sheet.objects.size(), 1U);
 }
 
 TEST(XddErrors, ReportsAnEmptyObjectList) {

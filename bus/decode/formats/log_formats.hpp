@@ -1,0 +1,34 @@
+/// The formats of logs: candump, Vector ASC, PEAK TRC, pcap and pcapng.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "decode/formats/log_input.hpp"
+#include "decode/formats/log_source.hpp"
+
+namespace edsc {
+
+struct LogFormat {
+  std::string_view name;
+  std::string_view description;
+
+  /// Whether a log that begins with these bytes has the format.
+  bool (*is_format)(std::string_view beginning);
+
+  /// Returns null and sets `problem`, a clause, if the log cannot be read. `input` must outlive the source.
+  std::unique_ptr<LogSource> (*open)(LogInput& input, std::string& problem);
+};
+
+/// In the order of detection; the last one is that of all other logs.
+[[nodiscard]] std::span<const LogFormat> log_formats();
+
+/// The format that the content has.
+[[nodiscard]] const LogFormat& detect_format(LogInput& input);
+
+/// Null if no format has this name.
+[[nodiscard]] const LogFormat* find_format(std::string_view name);
+
+}  // namespace edsc

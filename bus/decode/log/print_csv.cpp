@@ -1,0 +1,108 @@
+#include "decode/log/print_csv.hpp"
+
+#include "decode/log/value_number.hpp"
+#include "text/printable.hpp"
+#include "values/append.hpp"
+
+namespace edsc {
+namespace {
+
+/// In quotation marks if it has a comma, a quotation mark or a line end (RFC 4180, 2).
+void append_field_text(std::string& out, std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) {
+    append_printable(out, text);
+    return;
+  }
+  out += '"';
+  for (const char c : printable(text)) {
+    if (c == '"') out += '"';
+    out += c;
+  }
+  out += '"';
+}
+
+/// What the fields of a record are made of.
+struct CsvRecord {
+  const LogLine& line;
+  const Message& message;
+  const NodeLabels& labels;
+  const MessageValue* value;  ///< may be null
+};
+
+[[nodiscard]] std::string_view text_of_value(const CsvRecord& record) {
+  const MessageValue& value = *record.value;
+  return std::string_view{record.message.text}.substr(value.text_begin, value.text_end - value.text_begin);
+}
+
+struct CsvColumn {
+  std::string_view name;
+  void (*append)(std::string& out, const CsvRecord& record);
+};
+
+constexpr CsvColumn csv_columns[] = {
+    {"line", [](std::string& out, const CsvRecord& of) { append_decimal(out, of.line.number); }},
+    {"time", [](std::string& out, const CsvRecord& of) { append_field_text(out, of.line.time); }},
+    {"bus", [](std::string& out, const CsvRecord& of) { append_field_text(out, of.line.interface); }},
+    {"can_id", [](std::string& out, const CsvRecord& of) { append_can_id(out, of.line.frame); }},
+    {"data", [](std::string& out, const CsvRecord& of) { append_hex_bytes(out, data_of(of.line.frame), ""); }},
+    {"node",
+     [](std::string& out, const CsvRecord& of) {
+       if (of.message.node_id != 0) append_decimal(out, of.message.node_id);
+     }},
+    {"node_name",
+     [](std::string& out, const CsvRecord& of) { append_field_text(out, of.labels.name(of.message.node_id)); }},
+    {"service", [](std::string& out, const CsvRecord& of) { out += row_of(of.message.service).name; }},
+    {"pdo",
+     [](std::string& out, const CsvRecord& of) {
+       if (of.message.number != 0) append_decimal(out, of.message.number);
+     }},
+    {"step", [](std::string& out, const CsvRecord& of) { out += step_name(of.message.step); }},
+    {"object",
+     [](std::string& out, const CsvRecord& of) {
+       if (of.value != nullptr) append_entry_label(out, of.value->index, of.value->sub_index);
+     }},
+    {"name",
+     [](std::string& out, const CsvRecord& of) {
+       if (of.value != nullptr) append_field_text(out, of.value->name);
+     }},
+    {"value",
+     [](std::string& out, const CsvRecord& of) {
+       if (of.value == nullptr) return;
+       if (const auto number = plain_number(*of.value)) return append_number(out, *number);
+       append_field_text(out, text_of_value(of));
+     }},
+    {"unit",
+     [](std::string& out, const CsvRecord& of) {
+       if (of.value != nullptr) append_field_text(out, of.value->unit);
+     }},
+    {"problem", [](std::string& out, const CsvRecord& of) { out += of.message.problem ? "true" : "false"; }},
+    {"text",
+     [](std::string& out, const CsvRecord& of) {
+       append_field_text(out, of.value != nullptr ? text_of_value(of) : std::string_view{of.message.text});
+     }},
+};
+
+void append_record(std::string& out, const CsvRecord& record) {
+  for (const CsvColumn& column : csv_columns) {
+    if (&column != csv_columns) out += ',';
+    column.append(out, record);
+  }
+  out += "\r\n";
+}
+
+}  // namespace
+
+void append_csv_header(std::string& out) {
+  for (const CsvColumn& column : csv_columns) {
+    if (&column != csv_columns) out += ',';
+    out += column.name;
+  }
+  out += "\r\n";
+}
+
+void append_csv(std::string& out, const LogLine& line, const Message& message, const NodeLabels& labels) {
+  if (message.values.empty()) append_record(out, {line, message, labels, nullptr});
+  for (const MessageValue& value : message.values) append_record(out, {line, message, labels, &value});
+}
+
+}  // namespace edsc

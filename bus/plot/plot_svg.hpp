@@ -1,0 +1,32 @@
+/// Values over time as an SVG picture.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "plot/value_series.hpp"
+
+namespace edsc {
+
+/// A line of the plot.
+struct PlotLine {
+  std::string name;    ///< `node 6 Position actual value`
+  std::string unit;    ///< may be empty
+  std::string panel;   ///< lines with the same text share a value axis
+  bool steps = false;  ///< the value remains until the next one; otherwise values are connected
+  bool whole = false;  ///< only integers: ticks are at integers
+  ValueSeries series;  ///< not empty
+};
+
+struct Plot {
+  std::string title;
+  std::int64_t first_us = 0, last_us = 0;  ///< of the log
+  std::vector<PlotLine> lines;
+};
+
+/// One panel above the other, with a common time axis, in colours for a light or a dark background. If the times of the
+/// log are times of day since 1970, the axis begins at its first frame; otherwise it has the times of the log.
+[[nodiscard]] std::string plot_svg(const Plot& plot);
+
+}  // namespace edsc

@@ -1,0 +1,129 @@
+#include "document/document.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <utility>
+
+#include "commands/commands.hpp"
+#include "compare/compare_devices.hpp"
+#include "network/checks/check_network.hpp"
+#include "shared/common_options.hpp"
+#include "shared/define_command.hpp"
+#include "shared/exit_code.hpp"
+#include "shared/git_device.hpp"
+#include "shared/output.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr const char* examples = R"(Examples:
+  edsc document drive.eds -o drive.html                       a page that needs no other file: objects, PDOs, findings
+  edsc document drive.eds -o drive.md                         the same as Markdown, for a repository
+  edsc document drive.eds --against drive-1.0.eds -o drive.html    with what changed and what it breaks
+  edsc document drive.eds --against git:HEAD~1 -o drive.html  against the version of a git revision
+  edsc document axis1.dcf -o axis1.html                       with the values that differ from the default
+  edsc document plant.json -o plant.html                      a network: topology, SYNC cycle, load, response times)";
+
+struct Settings {
+  LoadSettings load;
+  std::string output;
+  std::string format;
+  std::string against;
+  ColorOption color;
+};
+
+DocumentFormat format_of(const Settings& settings) {
+  const bool is_markdown = settings.format.empty() ? settings.output.ends_with(".md") : settings.format == "markdown";
+  return is_markdown ? DocumentFormat::markdown : DocumentFormat::html;
+}
+
+/// The older version, and the files it was read from. Ends the command if it has errors, which are printed.
+std::unique_ptr<LoadedDevice> load_older(const Settings& settings, std::vector<std::string>& inputs) {
+  Diagnostics diagnostics;
+  diagnostics.drop_notes();
+  LoadSettings load = settings.load;
+  std::unique_ptr<LoadedDevice> older;
+  if (names_git_revision(settings.against)) {
+    const std::string revision = settings.against.substr(git_prefix.size());
+    GitFile committed = read_git_file(revision, load.path);
+    if (!committed.source) fail(committed.error);
+    older = load_git_device(std::move(committed), revision, load, diagnostics);
+  } else {
+    load.path = settings.against;
+    load.options_path.clear();
+    inputs.push_back(load.path);
+    older = load_device(load, diagnostics);
+  }
+  if (older->device && diagnostics.errors() == 0) return older;
+  print_findings(stderr, diagnostics, settings.color);
+  throw Exit{older->unreadable ? exit_wrong_usage : exit_input_has_errors};
+}
+
+std::string name_of_older(const Settings& settings, const LoadedDevice& older) {
+  if (names_git_revision(settings.against)) return settings.against;
+  const std::string& path = older.source->name();
+  return path.substr(path.find_last_of('/') + 1);
+}
+
+int document_device(const Settings& settings) {
+  Diagnostics diagnostics;
+  const auto loaded = load_device(settings.load, diagnostics);
+  if (loaded->device) report_unused_allowances(*loaded, diagnostics);
+  if (loaded->unreadable || !loaded->device || diagnostics.errors() > 0) {
+    print_findings(stderr, diagnostics, settings.color);
+    if (can_keep_going(*loaded, diagnostics)) {
+      fmt::print(stderr, "edsc: nothing was written; --keep-going documents the rest of the device\n");
+    }
+    return loaded->unreadable ? exit_wrong_usage : exit_input_has_errors;
+  }
+  std::vector<std::string> inputs = {settings.load.path};
+  if (loaded->options_source) inputs.push_back(loaded->options_source->name());
+  std::optional<ComparedWith> compared;
+  std::unique_ptr<LoadedDevice> older;
+  if (!settings.against.empty()) {
+    older = load_older(settings, inputs);
+    compared = ComparedWith{name_of_older(settings, *older), compare_devices(*older->device, *loaded->device)};
+  }
+  const DeviceToDocument device{*loaded, diagnostics, compared ? &*compared : nullptr};
+  write_output(settings.output, document_of(device, format_of(settings)), inputs);
+  return exit_fine;
+}
+
+int document_network(const Settings& settings) {
+  if (!settings.against.empty()) throw CLI::ValidationError("--against", "is for devices, not for networks");
+  if (settings.load.node_id) throw CLI::ValidationError("--node-id", "is for devices, not for networks");
+  Diagnostics diagnostics;
+  const auto loaded = load_network(settings.load.path, diagnostics);
+  check_network(loaded->network, diagnostics);
+  if (loaded->unreadable || diagnostics.errors() > 0) {
+    print_findings(stderr, diagnostics, settings.color);
+    return loaded->unreadable ? exit_wrong_usage : exit_input_has_errors;
+  }
+  std::vector<std::string> inputs = {settings.load.path};
+  for (const auto& file : loaded->network.files) inputs.push_back(file->source->name());
+  write_output(settings.output, document_of(loaded->network, diagnostics, format_of(settings)), inputs);
+  return exit_fine;
+}
+
+int document(const Settings& settings) {
+  const bool is_network = settings.load.path.ends_with(".json");
+  return is_network ? document_network(settings) : document_device(settings);
+}
+
+}  // namespace
+
+void add_document_options(CLI::App& command, int& exit_code) {
+  Settings& settings = define_command(command, examples, document, exit_code);
+  command.add_option("FILE", settings.load.path, "EDS, DCF, XDD, XDC, or network file (*.json)")->required();
+  command.add_option("-o,--output", settings.output, "file to write (default: standard output)");
+  command.add_option("--format", settings.format, "html or markdown (default: by the name of the output; html)")
+      ->check(CLI::IsMember({"html", "markdown"}));
+  command.add_option("--against", settings.against, "older version of the device: a file, or git:REF");
+  add_node_id_option(command, settings.load.node_id);
+  add_options_option(command, settings.load.options_path);
+  command.add_flag("--keep-going", settings.load.keep_going, keep_going_help);
+  settings.color.add_to(command);
+}
+
+}  // namespace edsc

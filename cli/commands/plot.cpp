@@ -1,0 +1,194 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "commands/commands.hpp"
+#include "decode/log/log_decoder.hpp"
+#include "decode/log/value_number.hpp"
+#include "load/find_entry.hpp"
+#include "monitor/progress_line.hpp"
+#include "plot/plot_svg.hpp"
+#include "shared/define_command.hpp"
+#include "shared/exit_code.hpp"
+#include "shared/log_options.hpp"
+#include "shared/output.hpp"
+#include "text/counted.hpp"
+#include "text/number_text.hpp"
+#include "text/printable.hpp"
+#include "values/append.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr const char* examples = R"(Examples:
+  edsc plot can0.log position_actual_value --node 5=drive.eds -o position.svg
+  edsc plot can0.log 6064h 606Ch 6041h --node 5=drive.eds -o drive.svg    a panel for each unit
+  edsc plot trip.asc 5/6064h 6/6064h --node 5=drive.eds --node 6=drive.eds -o axes.svg
+  edsc plot capture.pcapng 6064h --node axis1.dcf --title "Axis 1" > axis1.svg)";
+
+struct Settings : LogSettings {
+  std::vector<std::string> objects;
+  std::string title;
+  std::string output;
+};
+
+/// An object of a node whose values are plotted.
+struct Wanted {
+  std::uint8_t node_id = 0;
+  std::uint16_t index = 0;
+  std::uint8_t sub_index = 0;
+  PlotLine line;
+};
+
+PlotLine line_of(std::uint8_t node_id, const NodeLabels& labels, const Object& object, const Entry& entry) {
+  using canopen::DataClass;
+  PlotLine line;
+  const std::string_view node_name = labels.name(node_id);
+  line.name =
+      fmt::format("node {} {}{}{} ", node_id, node_name, node_name.empty() ? "" : " ", display_name(object, entry));
+  append_entry_label(line.name, object.index, entry.sub_index);
+  line.unit = entry.unit;
+  line.panel = entry.unit.empty() ? fmt::format("{:04X}:{:02X}", object.index, entry.sub_index) : "unit " + entry.unit;
+  line.whole = entry.type->kind != DataClass::real;
+  line.steps = entry.type->kind == DataClass::boolean || (line.whole && entry.unit.empty());
+  return line;
+}
+
+bool is_plain(const Entry& entry) {
+  using canopen::DataClass;
+  switch (entry.type->kind) {
+    case DataClass::boolean:
+    case DataClass::unsigned_integer:
+    case DataClass::signed_integer:
+    case DataClass::real: return true;
+    case DataClass::time:
+    case DataClass::string:
+    case DataClass::domain: break;
+  }
+  return false;
+}
+
+/// `6064h`, of all nodes that have it, or `5/6064h`.
+void add_object(const std::string& text, const LogNodes& nodes, std::vector<Wanted>& wanted) {
+  const std::size_t slash = text.find('/');
+  const auto node_id =
+      slash == std::string::npos ? std::nullopt : parse_whole<std::uint8_t>(std::string_view{text}.substr(0, slash));
+  const std::string name = node_id ? text.substr(slash + 1) : text;
+  if (node_id && !nodes.loaded.contains(*node_id))
+    fail(fmt::format("{}: node {} is not one of --node", text, *node_id));
+  std::string problem;
+  const std::size_t before = wanted.size();
+  for (const auto& [id, loaded] : nodes.loaded) {
+    if (node_id && id != *node_id) continue;
+    const FoundEntry found = find_one_entry(*loaded->device, name);
+    if (!found.ok()) {
+      problem = found.problem;
+      continue;
+    }
+    if (found.entry->type == nullptr || !is_plain(*found.entry)) {
+      problem = fmt::format("{}: the values are not numbers", text);
+      continue;
+    }
+    const bool known = std::ranges::any_of(wanted, [&, id = id](const Wanted& one) {
+      return one.node_id == id && one.index == found.object->index && one.sub_index == found.entry->sub_index;
+    });
+    if (known) fail(fmt::format("{}: the object of node {} is given twice", text, id));
+    wanted.push_back(
+        {id, found.object->index, found.entry->sub_index, line_of(id, nodes.labels, *found.object, *found.entry)});
+  }
+  if (wanted.size() == before) fail(problem);
+}
+
+/// PDOs, and the ends of SDO transfers; the request of a write has the value, too, but it may be rejected.
+bool has_values(const Message& message) {
+  return message.service != Service::sdo || message.step == TransferStep::finished;
+}
+
+struct PlottedLog {
+  std::optional<std::int64_t> first_us;
+  std::int64_t last_us = 0;
+  std::uint64_t frames = 0;
+
+  void count(const LogLine& line) {
+    ++frames;
+    if (!line.has_time) return;
+    last_us = first_us ? std::max(last_us, line.microseconds) : line.microseconds;
+    first_us = std::min(first_us.value_or(line.microseconds), line.microseconds);
+  }
+};
+
+void take_values(const LogLine& line, const Message& message, std::vector<Wanted>& wanted) {
+  if (!line.has_time || !has_values(message)) return;
+  const std::uint8_t node_id = message.values_node != 0 ? message.values_node : message.node_id;
+  for (const MessageValue& value : message.values) {
+    for (Wanted& one : wanted) {
+      if (one.node_id != node_id || one.index != value.index || one.sub_index != value.sub_index) continue;
+      if (const auto number = finite_number_of(value)) one.line.series.add(line.microseconds, *number);
+    }
+  }
+}
+
+int plot(const Settings& settings) {
+  if (settings.nodes.empty()) fail("--node ID=FILE is missing; the EDS has the objects");
+  const LogNodes nodes = load_log_nodes(settings);
+  std::vector<Wanted> wanted;
+  for (const std::string& text : settings.objects) add_object(text, nodes, wanted);
+
+  LogDecoder decoder{
+      nodes.known(), nodes.labels, {settings.log_name(), settings.interface, LogOutput::text, false, {}}};
+  PlottedLog log;
+  std::string complaints;
+  ProgressLine progress;
+  const auto print_complaints = [&] {
+    if (complaints.empty()) return;
+    progress.hide();
+    std::fwrite(complaints.data(), 1, complaints.size(), stderr);
+    complaints.clear();
+  };
+  const auto use = [&](LogLine& line) {
+    const Message* const message = decoder.evaluate(line, complaints);
+    if (message == nullptr) return;
+    log.count(line);
+    take_values(line, *message, wanted);
+    constexpr std::uint64_t some_frames = 4096;
+    if (log.frames % some_frames == 0 && progress.due()) progress.show(counted(log.frames, "frame"));
+  };
+  const auto fail_if_unreadable = read_log(settings, use, print_complaints);
+  decoder.finish(complaints);
+  print_complaints();
+  progress.hide();
+  fail_if_unreadable();
+  if (log.frames == 0) fail(settings.log_name() + ": the log has no frames", exit_input_has_errors);
+  if (!log.first_us) {
+    fail(settings.log_name() + ": the frames have no times; candump writes them with -L or -t a",
+         exit_input_has_errors);
+  }
+  Plot picture{settings.title.empty() ? settings.log_name() : settings.title, *log.first_us, log.last_us, {}};
+  for (Wanted& one : wanted) {
+    if (one.line.series.empty()) {
+      print_visibly(stderr, "{}: {} has no values\n", settings.log_name(), one.line.name);
+    } else {
+      picture.lines.push_back(std::move(one.line));
+    }
+  }
+  if (picture.lines.empty()) throw Exit{exit_input_has_errors};
+  write_output(settings.output, plot_svg(picture),
+               settings.log == "-" ? std::vector<std::string>{} : std::vector{settings.log});
+  return decoder.skipped_lines() ? exit_input_has_errors : exit_fine;
+}
+
+}  // namespace
+
+void add_plot_options(CLI::App& command, int& exit_code) {
+  Settings& settings = define_command(command, examples, plot, exit_code);
+  add_log_options(command, settings)->required();
+  command
+      .add_option("OBJECT", settings.objects,
+                  "index or name of an object, of all nodes that have it; NODE/OBJECT: of one node")
+      ->required();
+  command.add_option("-o,--output", settings.output, "SVG file to write (default: standard output)")->type_name("FILE");
+  command.add_option("--title", settings.title, "title of the picture (default: the name of the log)");
+}
+
+}  // namespace edsc

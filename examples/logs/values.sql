@@ -1,0 +1,18 @@
+-- The number, range and mean of the values of each object.
+SELECT node, object, name, count(*) AS values, min(value::DOUBLE) AS min, max(value::DOUBLE) AS max,
+       round(avg(value::DOUBLE), 3) AS mean
+FROM read_csv('heater.csv', header = true, all_varchar = true)
+WHERE object IS NOT NULL
+GROUP BY ALL
+ORDER BY object;
+
+-- How long after a setpoint the first heating power follows, in milliseconds.
+WITH changes AS (
+  SELECT service, time::DOUBLE AS time, lead(service) OVER (ORDER BY line::BIGINT) AS next,
+         lead(time::DOUBLE) OVER (ORDER BY line::BIGINT) AS next_time
+  FROM read_csv('heater.csv', header = true, all_varchar = true)
+  WHERE service IN ('rpdo', 'tpdo')
+)
+SELECT count(*) AS setpoints, round(max(next_time - time) * 1000, 1) AS longest_ms
+FROM changes
+WHERE service = 'rpdo' AND next = 'tpdo';

@@ -1,0 +1,85 @@
+#include "document/document.hpp"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+#include "backend/render.hpp"
+#include "document/views.hpp"
+#include "text/counted.hpp"
+
+namespace edsc {
+namespace {
+
+using document::Json;
+
+/// The text of a template, with the templates that its lines `{{>name}}` include.
+std::string with_parts(std::string_view name, std::string_view extension) {
+  constexpr std::string_view begin = "{{>";
+  constexpr std::string_view end = "}}\n";
+  std::string text{report_template(fmt::format("{}.{}", name, extension))};
+  for (std::size_t at = 0; (at = text.find(begin, at)) != std::string::npos;) {
+    const std::size_t close = text.find(end, at);
+    const std::string part = text.substr(at + begin.size(), close - at - begin.size());
+    text.replace(at, close + end.size() - at, with_parts(part, extension));
+  }
+  return text;
+}
+
+/// Empties the lines `~`. The template library removes an empty line after one that only has a tag, so that the
+/// templates of Markdown have these. In a value, ~ is escaped.
+std::string with_empty_lines(std::string text) {
+  constexpr std::string_view mark = "\n~\n";
+  for (std::size_t at = 0; (at = text.find(mark, at)) != std::string::npos;) text.replace(at, mark.size(), "\n\n");
+  return text;
+}
+
+/// Renders the template of this name: `device` or `network`.
+std::string rendered(std::string_view name, Json view, DocumentFormat format) {
+  if (format == DocumentFormat::markdown) return with_empty_lines(render_markdown(with_parts(name, "md"), view));
+  view["style"] = report_template("document.css");
+  view["script"] = report_template("document.js");
+  return render_html(with_parts(name, "html"), view);
+}
+
+Json node_view(const NetworkNode& node) {
+  const Device& device = node.device;
+  return {{"name", node.name},
+          {"node_id", node.node_id},
+          {"role", node.is_master ? "NMT master" : ""},
+          {"vendor", device.vendor_name},
+          {"product", device.product_name},
+          {"file", node.has_file() ? document::file_name_of(device.source->name()) : "generated"},
+          {"settings", node.settings.size()}};
+}
+
+}  // namespace
+
+std::string document_of(const DeviceToDocument& device, DocumentFormat format) {
+  Json view;
+  document::add_identity(*device.loaded.device, view);
+  document::add_findings(device.diagnostics, view);
+  document::add_changes(device.compared, view);
+  document::add_pdos(*device.loaded.device, view);
+  document::add_objects(device, view);
+  view["page_title"] = view["title"].get<std::string>() + ", CANopen device";
+  return rendered("device", std::move(view), format);
+}
+
+std::string document_of(const Network& network, const Diagnostics& diagnostics, DocumentFormat format) {
+  Json view;
+  view["source"] = document::file_name_of(network.source->name());
+  view["page_title"] = document::file_name_of(network.source->name()) + ", CANopen network";
+  view["bit_rate"] = network.description.bit_rate ? Json(network.description.bit_rate->value) : Json(nullptr);
+  view["length"] = network.description.length_m ? Json(network.description.length_m->value) : Json(nullptr);
+  view["node_count"] = counted(network.nodes.size(), "node");
+  Json nodes = Json::array();
+  for (const NetworkNode& node : network.nodes) nodes.push_back(node_view(node));
+  view["members"] = std::move(nodes);
+  document::add_findings(diagnostics, view);
+  document::add_topology(network, view);
+  document::add_timing(network, view);
+  return rendered("network", std::move(view), format);
+}
+
+}  // namespace edsc

@@ -1,0 +1,65 @@
+/// The parts of the views for the templates in templates/document. A member without a value is null, so that the
+/// template does not find that of an outer section.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "compare/change.hpp"
+#include "document/document.hpp"
+
+namespace edsc::document {
+
+using Json = nlohmann::ordered_json;
+
+/// Null for an empty text.
+[[nodiscard]] inline Json shown(std::string_view text) { return text.empty() ? Json(nullptr) : Json(text); }
+
+/// A row of a list of properties.
+[[nodiscard]] inline Json property(std::string_view name, std::string_view value) {
+  return {{"key", name}, {"value", value}};
+}
+
+/// Adds a property if it has a value.
+inline void add_property(Json& rows, std::string_view name, std::string_view value) {
+  if (!value.empty()) rows.push_back(property(name, value));
+}
+
+/// The name of a file without its folders.
+[[nodiscard]] std::string file_name_of(std::string_view path);
+
+/// `identity`, `services`, `file` and `commissioning`: lists of properties; `bit_rates`, with those not supported.
+void add_identity(const Device& device, Json& view);
+
+/// `areas` of the object dictionary with their objects, and the choices of the filters.
+void add_objects(const DeviceToDocument& device, Json& view);
+
+/// `pdo_groups`, with the drawing of each PDO.
+void add_pdos(const Device& device, Json& view);
+
+/// `findings` and a sentence that counts them.
+void add_findings(const Diagnostics& diagnostics, Json& view);
+
+/// `changes` since another version, with a sentence that counts them.
+void add_changes(const ComparedWith* compared, Json& view);
+
+/// The identifier of an entry in the page: `6041h`, `1018h-01` with a sub-index.
+[[nodiscard]] std::string anchor_of(const Object& object, const Entry& entry);
+
+/// The comment lines directly before a section of an EDS, without their semicolons and without those for edsc.
+[[nodiscard]] std::string comment_before(const Position& section);
+
+/// `every SYNC`, `event-driven (device profile)`.
+[[nodiscard]] std::string transmission_text(std::uint64_t transmission_type);
+
+/// At most `max` code points; the last one is an ellipsis if the text is longer.
+[[nodiscard]] std::string shortened(std::string_view text, std::size_t max);
+
+/// `topology`: boxes and arrows of the nodes and their PDOs; `links`: the same as rows.
+void add_topology(const Network& network, Json& view);
+
+/// `sync`: the cycle of SYNC as a drawing; null without SYNC or bit rate. `messages`: load and response times.
+void add_timing(const Network& network, Json& view);
+
+}  // namespace edsc::document

@@ -1,0 +1,202 @@
+#!/usr/bin/env python3
+"""The same frames in the formats of other programs decode to the same text; damaged captures; input in a stream.
+
+    formats_test.py SOURCE_DIR EDSC
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import os
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+from collections.abc import Callable
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+import log_frames  # noqa: E402
+from log_frames import Frame  # noqa: E402
+
+SOURCE_DIR = Path(sys.argv[1]).resolve()
+EDSC = Path(sys.argv[2]).resolve()
+AXIS = SOURCE_DIR / "tests/bus/decode/axis.dcf"
+FINE, INPUT_HAS_ERRORS, WRONG_USAGE = 0, 1, 2
+
+
+def edsc(*arguments: str | Path, log: bytes = b"") -> subprocess.CompletedProcess[bytes]:
+    return subprocess.run([EDSC, "decode", "--color", "never", "--node", AXIS, *arguments], input=log, capture_output=True,
+                          timeout=600, check=False)
+
+
+def without_interface(text: str) -> list[str]:
+    return [" ".join(line.split(" ")[:1] + line.split(" ")[2:]) for line in text.splitlines()]
+
+
+class Formats(unittest.TestCase):
+    maxDiff = None
+
+    def setUp(self) -> None:
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def text(self, path: Path, *arguments: str) -> str:
+        result = edsc(path, *arguments)
+        self.assertEqual(result.returncode, FINE, result.stderr)
+        return result.stdout.decode()
+
+    def same(self, log: list[Frame], write: Callable[[Path, list[Frame]], None], has_interface: bool) -> None:
+        """The foreign log, and that of candump."""
+        reference, foreign = self.folder / "reference.log", self.folder / "foreign"
+        log_frames.candump(reference, log)
+        write(foreign, log)
+        wanted = self.text(reference).splitlines()
+        self.assertEqual(len(wanted), len(log))
+        self.assertEqual(wanted if has_interface else without_interface("\n".join(wanted)), self.text(foreign).splitlines())
+        self.assertEqual(self.text(foreign), edsc("-", log=foreign.read_bytes()).stdout.decode())
+
+    def test_asc_of_python_can(self) -> None:
+        for seed in range(5):
+            log = log_frames.frames(200, seed)
+            log.append(Frame(log[-1].time_us + 100, 0x706, remote=True))
+            with self.subTest(seed=seed):
+                self.same(log, log_frames.python_can_asc, True)
+
+    def test_asc_of_can_utils(self) -> None:
+        for seed in range(5):
+            with self.subTest(seed=seed):
+                self.same(log_frames.frames(200, seed), log_frames.log2asc, True)
+
+    def test_trc_of_python_can(self) -> None:
+        for seed in range(5):
+            log = log_frames.frames(200, seed)
+            with self.subTest(seed=seed):
+                self.same(log, lambda path, frames: log_frames.python_can_trc(path, frames, "V2_1"), True)
+            for number, one in enumerate(log):
+                one.time_us = number * 1000
+            with self.subTest(seed=seed, version="1.0"):
+                self.same(log, lambda path, frames: log_frames.python_can_trc(path, frames, "V1_0"), False)
+
+    def test_captures_of_scapy(self) -> None:
+        for writer in ("RawPcapWriter", "RawPcapNgWriter"):
+            for seed in range(3):
+                with self.subTest(seed=seed, writer=writer):
+                    self.same(log_frames.frames(200, seed),
+                              lambda path, frames, writer=writer: log_frames.scapy_capture(path, frames, writer), False)
+
+    def test_captures_of_all_byte_orders_and_resolutions(self) -> None:
+        log = log_frames.frames(200, 7)
+        log.append(Frame(log[-1].time_us + 100, 0x706, remote=True))
+        for order in "<>":
+            for name, capture in (("pcap", log_frames.pcap(log, order)), ("nanoseconds", log_frames.pcap(log, order, True)),
+                                  ("pcapng", log_frames.pcapng(log, order)), ("ns pcapng", log_frames.pcapng(log, order, 9)),
+                                  ("2^-30 s", log_frames.pcapng(log, order, 0x80 | 30))):
+                with self.subTest(order=order, name=name):
+                    self.same(log, lambda path, _, capture=capture: path.write_bytes(capture) and None, False)
+
+    def test_a_forced_format(self) -> None:
+        log = b"1.000000 1 706 Rx d 1 05\n"  # without a header
+        self.assertIn(b"1.000000 1 706 05", edsc("--log-format", "asc", log=log).stdout)
+        self.assertEqual(edsc(log=log).returncode, INPUT_HAS_ERRORS)
+        refused = edsc("--log-format", "pcap", log=log)
+        self.assertEqual(refused.returncode, WRONG_USAGE)
+        self.assertRegex(refused.stderr, rb"not a log of format pcap: byte \d+: ")
+
+    def test_a_link_type_that_is_not_can(self) -> None:
+        for capture in (log_frames.pcap([], link_type=1), log_frames.pcapng([], link_type=1)):
+            refused = edsc(log=capture)
+            self.assertEqual(refused.returncode, WRONG_USAGE)
+            self.assertIn(b"the link type is EN10MB, not CAN_SOCKETCAN (227)", refused.stderr)
+
+    def test_a_truncated_capture(self) -> None:
+        log = [Frame(0, 0x706, b"\x05"), Frame(100, 0x706, b"\x05")]
+        for capture, end in ((log_frames.pcap(log), 24 + 16 + 9), (log_frames.pcapng(log), 28 + 20 + 44)):
+            with self.subTest(length=len(capture)):
+                cut = edsc(log=capture[:-3])
+                self.assertEqual(cut.returncode, INPUT_HAS_ERRORS)
+                self.assertEqual(cut.stdout.decode().splitlines(),
+                                 ["0.000000 706 05                      HEART    node 6 axis-y operational"])
+                self.assertIn(f"<stdin>: packet 2 at byte {end}: the rest cannot be read: ", cut.stderr.decode())
+
+    def test_packets_that_are_not_frames(self) -> None:
+        """Too short, too long, CAN FD, an error frame and a good one: 16 bytes of packet header, 24 of the file."""
+        packets = [b"\0\0\7\6\1", struct.pack(">IB3x", 0x706, 9) + bytes(8), struct.pack(">IB3x", 0x706, 8) + bytes(4),
+                   struct.pack(">IB3x", 0x706, 16) + bytes(64), struct.pack(">IBBxx", 0x706, 1, 4) + b"\5",
+                   struct.pack(">IB3x", log_frames.ERROR | 4, 8) + bytes.fromhex("0008000000000000"),
+                   struct.pack(">IB3x", 0x706, 1) + b"\5"]
+        capture = log_frames.pcap([])
+        for packet in packets:
+            capture += struct.pack("<IIII", 1, 0, len(packet), len(packet)) + packet
+        result = edsc(log=capture)
+        self.assertEqual(result.returncode, INPUT_HAS_ERRORS)
+        self.assertEqual(result.stderr.decode().splitlines(), [
+            "<stdin>: packet 1 at byte 24: skipped, the packet is shorter than the header of a frame",
+            "<stdin>: packet 2 at byte 45: skipped, the length is not 0 to 8",
+            "<stdin>: packet 3 at byte 77: skipped, fewer bytes than the length states",
+            "<stdin>: packet 4 at byte 105: a CAN FD frame is ignored",
+            "<stdin>: packet 5 at byte 193: a CAN FD frame is ignored"])
+        lines = result.stdout.decode().splitlines()
+        self.assertEqual(len(lines), 2)
+        self.assertIn("controller (warning level of transmit errors)", lines[0])
+        self.assertIn("operational", lines[1])
+
+    def test_frames_of_a_pipe_are_decoded_at_once(self) -> None:
+        log = [Frame(0, 0x706, b"\x05"), Frame(100, 0x706, b"\x7F")]
+        asc = b"base hex timestamps absolute\n0.0 1 706 Rx d 1 05\n"
+        for name, first, second in (("pcap", log_frames.pcap(log[:1]), log_frames.pcap(log)[49:]),
+                                    ("pcapng", log_frames.pcapng(log[:1]), log_frames.pcapng(log)[92:]),
+                                    ("asc", asc, b"0.1 1 706 Rx d 1 7F\n")):
+            with self.subTest(format=name), subprocess.Popen([EDSC, "decode", "-"], stdin=subprocess.PIPE,
+                                                             stdout=subprocess.PIPE) as program:
+                os.write(program.stdin.fileno(), first)
+                self.assertIn(b"operational", program.stdout.readline())  # while the pipe is open
+                os.write(program.stdin.fileno(), second)
+                self.assertIn(b"pre-operational", program.stdout.readline())
+                program.stdin.close()
+                self.assertEqual(program.wait(timeout=600), FINE)
+
+    def test_csv_has_the_values_of_json(self) -> None:
+        path = self.folder / "log"
+        log_frames.candump(path, log_frames.frames(300, 11))
+        text = edsc(path, "--format", "csv").stdout.decode()
+        self.assertEqual(text.count("\n"), text.count("\r\n"))  # RFC 4180, 2.1
+        rows = list(csv.DictReader(io.StringIO(text, newline=""), strict=True))
+        records = iter(rows)
+        for line in edsc(path, "--format", "json").stdout.decode().splitlines():
+            one = json.loads(line)
+            for value in one.get("values", [None]):
+                row = next(records)
+                text = one["text"] if value is None else value["text"]
+                self.assertEqual((row["line"], row["time"], row["bus"], row["data"], row["service"], row["text"]),
+                                 (str(one["line"]), one["time"], one["interface"], one["data"], one["service"], text))
+                self.assertEqual(row["node"], str(one.get("node", "")))
+                self.assertEqual(row["problem"], "true" if one.get("problem") else "false")
+                if value is None:
+                    self.assertEqual(row["object"] + row["value"], "")
+                    continue
+                self.assertEqual(row["object"], f"{value['index']:04X}h:{value['sub_index']:02X}")
+                self.assertEqual((row["name"], row["unit"]), (value.get("name", ""), value.get("unit", "")))
+                if isinstance(value["value"], bool | str):
+                    self.assertIn(row["value"], (str(value["value"]).lower(), str(value["value"])))
+                elif value["value"] is not None:
+                    self.assertEqual(float(row["value"]), float(value["value"]))
+        self.assertIsNone(next(records, None))
+
+    def test_csv_of_an_empty_log(self) -> None:
+        self.assertEqual(len(edsc("--format", "csv").stdout.splitlines()), 1)
+        refused = edsc("--format", "csv", "--summary")
+        self.assertEqual(refused.returncode, WRONG_USAGE)
+        self.assertIn(b"--summary", refused.stderr)
+
+
+if __name__ == "__main__":
+    if shutil.which("log2asc") is None:
+        sys.exit("log2asc of can-utils is missing")
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:])

@@ -1,0 +1,153 @@
+"""The same frames as logs of other programs: candump, python-can, can-utils, scapy, and captures by the specification.
+
+Frames have times in steps of 100 us from 0, which all formats can express.
+"""
+
+from __future__ import annotations
+
+import random
+import struct
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+SOCKETCAN = 227  # LINKTYPE_CAN_SOCKETCAN
+EXTENDED, REMOTE, ERROR = 1 << 31, 1 << 30, 1 << 29
+
+
+@dataclass
+class Frame:
+    time_us: int
+    can_id: int
+    data: bytes = b""
+    extended: bool = False
+    remote: bool = False
+
+    @property
+    def seconds(self) -> str:
+        return f"{self.time_us // 1_000_000}.{self.time_us % 1_000_000:06}"
+
+    @property
+    def packet(self) -> bytes:
+        flags = (EXTENDED if self.extended else 0) | (REMOTE if self.remote else 0)
+        return struct.pack(">IB3x", self.can_id | flags, len(self.data)) + self.data
+
+
+def frames(count: int, seed: int) -> list[Frame]:
+    """Of the axis of axis.dcf: PDOs, SDO, error control and unknown CAN-IDs."""
+    choose = random.Random(seed)
+    result = []
+    for number in range(count):
+        kind = choose.randrange(8)
+        one = Frame(number * 700, 0x706, b"\x05")
+        if kind == 0:
+            one = Frame(one.time_us, 0x186, b"\x37\x02" + choose.randbytes(4))
+        elif kind == 1:
+            one = Frame(one.time_us, 0x12346, choose.randbytes(8), extended=True)
+        elif kind == 2:
+            one = Frame(one.time_us, 0x286, choose.randbytes(8))
+        elif kind == 3:
+            one = Frame(one.time_us, 0x606, bytes.fromhex("4064600000000000"))
+        elif kind == 4:
+            one = Frame(one.time_us, 0x586, bytes.fromhex("43646000") + choose.randbytes(4))
+        elif kind == 5:
+            one = Frame(one.time_us, choose.randrange(0x800), choose.randbytes(choose.randrange(9)))
+        elif kind == 6:
+            one = Frame(one.time_us, choose.randrange(0x800, 0x2000_0000), choose.randbytes(choose.randrange(9)), extended=True)
+        result.append(one)
+    return result
+
+
+def candump(path: Path, log: list[Frame], interface: str = "1", seconds: int = 0) -> None:
+    """`seconds`: time of the first frame."""
+    with path.open("w") as file:
+        for one in log:
+            digits = 8 if one.extended else 3
+            data = "R" if one.remote else one.data.hex().upper()
+            time = Frame(one.time_us + seconds * 1_000_000, 0).seconds
+            file.write(f"({time}) {interface} {one.can_id:0{digits}X}#{data}\n")
+
+
+def message(one: Frame):  # noqa: ANN201
+    import can  # noqa: PLC0415
+
+    return can.Message(timestamp=one.time_us / 1e6, arbitration_id=one.can_id, data=one.data, is_extended_id=one.extended,
+                       is_remote_frame=one.remote, channel=0)
+
+
+def python_can_asc(path: Path, log: list[Frame]) -> None:
+    from can.io import ASCWriter  # noqa: PLC0415
+
+    writer = ASCWriter(str(path))
+    for one in log:
+        writer.on_message_received(message(one))
+    writer.stop()
+
+
+def python_can_trc(path: Path, log: list[Frame], version: str) -> None:
+    """Version 1.0, with times in whole milliseconds, or 2.1."""
+    from can.io.trc import TRCFileVersion, TRCWriter  # noqa: PLC0415
+
+    writer = TRCWriter(str(path))
+    writer.file_version = TRCFileVersion[version]
+    for one in log:
+        writer.on_message_received(message(one))
+    writer.stop()
+
+
+def log2asc(path: Path, log: list[Frame]) -> None:
+    source = path.with_suffix(".candump")
+    candump(source, log, "can0", 1_000_000_000)  # it regards a time of 0 s as missing
+    subprocess.run(["log2asc", "-I", source, "-O", path, "can0"], check=True, timeout=600)
+
+
+def scapy_capture(path: Path, log: list[Frame], writer_name: str) -> None:
+    """`RawPcapWriter` or `RawPcapNgWriter`."""
+    import scapy.utils  # noqa: PLC0415
+
+    if writer_name == "RawPcapWriter":
+        writer = scapy.utils.RawPcapWriter(str(path), linktype=SOCKETCAN, sync=True)
+    else:
+        writer = scapy.utils.RawPcapNgWriter(str(path))
+        writer.linktype = SOCKETCAN
+    writer.write_header(None)
+    for one in log:
+        seconds, microseconds = divmod(one.time_us, 1_000_000)
+        if writer_name == "RawPcapWriter":
+            writer.write_packet(one.packet, sec=seconds, usec=microseconds)
+        else:
+            time = (one.time_us + 0.5) / 1e6  # it truncates
+            writer._write_packet(one.packet, sec=time, caplen=len(one.packet), wirelen=len(one.packet))
+    writer.close()
+
+
+def pcap(log: list[Frame], order: str = "<", nanoseconds: bool = False, link_type: int = SOCKETCAN) -> bytes:
+    """draft-ietf-opsawg-pcap, clauses 4 and 5."""
+    capture = struct.pack(order + "IHHIIII", 0xA1B23C4D if nanoseconds else 0xA1B2C3D4, 2, 4, 0, 0, 262144, link_type)
+    for one in log:
+        seconds, rest = divmod(one.time_us, 1_000_000)
+        packet = one.packet
+        capture += struct.pack(order + "IIII", seconds, rest * 1000 if nanoseconds else rest, len(packet), len(packet)) + packet
+    return capture
+
+
+def pcapng_block(order: str, kind: int, body: bytes) -> bytes:
+    body += bytes(-len(body) % 4)
+    return struct.pack(order + "II", kind, len(body) + 12) + body + struct.pack(order + "I", len(body) + 12)
+
+
+def pcapng(log: list[Frame], order: str = "<", resolution: int | None = None, link_type: int = SOCKETCAN) -> bytes:
+    """draft-ietf-opsawg-pcapng, clauses 4.1 to 4.3: a section, an interface with if_tsresol, enhanced packets.
+
+    `resolution`: the option, 9 for nanoseconds, 0x80 | 20 for 2^-20 s; None: microseconds, without the option."""
+    capture = pcapng_block(order, 0x0A0D0D0A, struct.pack(order + "IHHq", 0x1A2B3C4D, 1, 0, -1))
+    option = b"" if resolution is None else struct.pack(order + "HHB3xHH", 9, 1, resolution, 0, 0)
+    capture += pcapng_block(order, 1, struct.pack(order + "HHI", link_type, 0, 0) + option)
+    exponent = 6 if resolution is None else resolution
+    per_second = 2 ** (exponent & 0x7F) if exponent & 0x80 else 10 ** exponent
+    for one in log:
+        ticks = -(-one.time_us * per_second // 1_000_000)  # the first tick that is not earlier
+        packet = one.packet
+        body = struct.pack(order + "IIIII", 0, ticks >> 32, ticks & 0xFFFF_FFFF, len(packet), len(packet))
+        capture += pcapng_block(order, 6, body + packet + bytes(-len(packet) % 4))
+    return capture

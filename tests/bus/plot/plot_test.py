@@ -1,0 +1,187 @@
+#!/usr/bin/env python3
+"""edsc plot: values are at the positions that the ticks of the axes state, in logs of several formats.
+
+    plot_test.py SOURCE_DIR EDSC
+"""
+
+from __future__ import annotations
+
+import re
+import resource
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+SOURCE_DIR = Path(sys.argv[1]).resolve()
+EDSC = Path(sys.argv[2]).resolve()
+AXIS = SOURCE_DIR / "tests/bus/decode/axis.dcf"
+SVG = "{http://www.w3.org/2000/svg}"
+FINE, INPUT_HAS_ERRORS, WRONG_USAGE = 0, 1, 2
+PATH = re.compile(r"([MLHVh])(-?[\d.]+)(?: (-?[\d.]+))?")
+PIXEL = 0.02  # coordinates have two decimals
+
+
+def edsc(*arguments: str, log: str = "", node: tuple[str, ...] = ("--node", str(AXIS))) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([EDSC, "plot", "-", *arguments, *node], input=log, capture_output=True, text=True, timeout=600, check=False)
+
+
+def points(path: str) -> list[tuple[float, float]]:
+    """The corners of a path of absolute commands."""
+    x = y = 0.0
+    result = []
+    for command, first, second in PATH.findall(path):
+        if command in "ML":
+            x, y = float(first), float(second)
+        elif command == "H":
+            x = float(first)
+        elif command == "V":
+            y = float(first)
+        else:
+            continue  # h0
+        result.append((x, y))
+    return result
+
+
+class Axis:
+    """A linear scale, by two of its ticks: pixel and label."""
+
+    def __init__(self, ticks: list[tuple[float, str]]) -> None:
+        (self.pixel, first), (last_pixel, last) = ticks[0], ticks[-1]
+        self.value = float(first)
+        self.scale = (last_pixel - self.pixel) / (float(last) - self.value)
+        for pixel, label in ticks:
+            assert abs(self.at(float(label)) - pixel) < PIXEL, ticks
+
+    def at(self, value: float) -> float:
+        return self.pixel + (value - self.value) * self.scale
+
+
+class Picture:
+    def __init__(self, text: str) -> None:
+        self.root = ET.fromstring(text)
+        axis = self.root.find(f"{SVG}g[@class='time-axis']")
+        self.time = Axis([(float(text.get("x")), text.text) for text in axis.iter(f"{SVG}text")])
+        self.panels = self.root.findall(f"{SVG}g[@class='panel']")
+
+    def values(self, panel: int) -> Axis:
+        grid = [float(line.get("y1")) for line in self.panels[panel].iter(f"{SVG}line") if line.get("class") == "grid value"]
+        labels = [text.text for text in self.panels[panel].iter(f"{SVG}text") if text.get("text-anchor") == "end"]
+        return Axis(list(zip(grid, labels, strict=True)))
+
+    def paths(self, panel: int) -> list[list[tuple[float, float]]]:
+        return [points(path.get("d")) for path in self.panels[panel].iter(f"{SVG}path")]
+
+    def legend(self, panel: int) -> list[str]:
+        return [text.text for text in self.panels[panel].iter(f"{SVG}text") if text.get("text-anchor") == "start"]
+
+
+def position(value: int) -> str:
+    """TPDO 1: statusword and position."""
+    return "186#3702" + value.to_bytes(4, "little", signed=True).hex()
+
+
+class Plot(unittest.TestCase):
+    def assert_points(self, picture: Picture, panel: int, found: list[tuple[float, float]], wanted: list[tuple[float, float]]) -> None:
+        values = picture.values(panel)
+        self.assertEqual(len(found), len(wanted), found)
+        for (x, y), (time, value) in zip(found, wanted, strict=True):
+            self.assertAlmostEqual(x, picture.time.at(time), delta=PIXEL)
+            self.assertAlmostEqual(y, values.at(value), delta=PIXEL)
+
+    def test_values_with_a_unit_are_connected(self) -> None:
+        log = "".join(f"({time}) can0 {position(value)}\n" for time, value in ((1.0, 0), (2.5, 1000), (4.0, -500), (11.0, 200)))
+        result = edsc("6064h", log=log)
+        self.assertEqual(result.returncode, FINE, result.stderr)
+        picture = Picture(result.stdout)
+        self.assertEqual(picture.legend(0), ["node 6 axis-y Position actual value 6064h:00 in inc"])
+        self.assert_points(picture, 0, picture.paths(0)[0], [(1.0, 0), (2.5, 1000), (4.0, -500), (11.0, 200)])
+
+    def test_values_without_a_unit_are_steps(self) -> None:
+        """TPDO 2 has the BOOLEAN Ready in bit 0, and the INTEGER8 Step in bits 4..7: Ah is -6."""
+        log = "".join(f"({time}) can0 286#{bits:02X}FFFFFF00002040\n" for time, bits in ((0.0, 0xA3), (3.0, 0x02), (10.0, 0x43)))
+        picture = Picture(edsc("2003h", "2005h", "2007h", log=log).stdout)
+        self.assertEqual(len(picture.panels), 3)
+        self.assert_points(picture, 0, picture.paths(0)[0], [(0, 1), (3, 1), (3, 0), (10, 0), (10, 1)])
+        self.assert_points(picture, 1, picture.paths(1)[0], [(0, -6), (3, -6), (3, 0), (10, 0), (10, 4)])
+        self.assert_points(picture, 2, picture.paths(2)[0], [(0, 2.5), (3, 2.5), (10, 2.5)])  # REAL32
+
+    def test_sdo_values_count_when_the_transfer_has_ended(self) -> None:
+        log = ("(1.0) can0 606#4064600000000000\n(1.5) can0 586#4364600010270000\n"  # 10,000 at 1.5 s
+               "(2.0) can0 606#2364600020000000\n(2.5) can0 586#8064600000000106\n"  # aborted
+               "(9.0) can0 606#4064600000000000\n(9.5) can0 586#4364600000000000\n")
+        picture = Picture(edsc("position_actual_value", log=log).stdout)
+        self.assert_points(picture, 0, picture.paths(0)[0], [(1.5, 10_000), (9.5, 0)])
+
+    def test_two_nodes_and_times_of_day(self) -> None:
+        """The same unit: one panel. The axis begins at the first frame: 2015-07-10 08:17:32.25 UTC is 1436516252.25."""
+        log = (f"(1436516252.250000) can0 {position(5)}\n(1436516253.250000) can0 {position(7).replace('186', '187')}\n"
+               f"(1436516262.250000) can0 {position(6)}\n")
+        node = ("--node", str(AXIS), "--node", f"7={AXIS}")
+        picture = Picture(edsc("6/6064h", "7/6064h", "--title", "Two <axes> & more", log=log, node=node).stdout)
+        self.assertEqual(picture.root.find(f"{SVG}title").text, "Two <axes> & more")
+        self.assertEqual(len(picture.panels), 1)
+        self.assertEqual(len(picture.legend(0)), 2)
+        self.assert_points(picture, 0, picture.paths(0)[0], [(0, 5), (10, 6)])
+        self.assert_points(picture, 0, picture.paths(0)[1], [(1, 7)])
+        texts = [text.text for text in picture.root.iter(f"{SVG}text")]
+        self.assertIn("time in s since 2015-07-10 08:17:32.250000 UTC", texts)
+
+    def test_a_light_and_a_dark_background(self) -> None:
+        style = Picture(edsc("6064h", log=f"(1.0) can0 {position(5)}\n").stdout).root.find(f"{SVG}style").text
+        light, dark = style.split("@media (prefers-color-scheme: dark)")
+        for rule in (".background", "text", ".grid", ".c0"):
+            self.assertIn(f"{rule} {{", light)
+            self.assertIn(f"{rule} {{", dark)
+
+    def test_a_single_value_is_a_dot(self) -> None:
+        picture = Picture(edsc("6064h", log=f"(1.0) can0 {position(5)}\n").stdout)
+        self.assertTrue(next(picture.panels[0].iter(f"{SVG}path")).get("d").endswith("h0"))
+
+    def test_a_peak_of_many_values_remains(self) -> None:
+        """400,000 values of 0, two peaks: a small picture, with the peaks at their place, in little memory."""
+        count, peaks = 400_000, {123_456: 5000, 300_001: -3000}
+        with tempfile.TemporaryDirectory() as folder:
+            log, output = Path(folder) / "log", Path(folder) / "plot.svg"
+            with log.open("w") as file:
+                for i in range(count):
+                    file.write(f"({i // 1000}.{i % 1000:03}) can0 {position(peaks.get(i, 0))}\n")
+            subprocess.run([EDSC, "plot", log, "6064h", "--node", AXIS, "-o", output], check=True, timeout=600)
+            self.assertLess(output.stat().st_size, 100_000)
+            picture = Picture(output.read_text())
+        values, path = picture.values(0), picture.paths(0)[0]
+        for place, value in peaks.items():
+            extreme = min(path, key=lambda point, value=value: abs(point[1] - values.at(value)))
+            self.assertAlmostEqual(extreme[1], values.at(value), delta=PIXEL)
+            self.assertAlmostEqual(extreme[0], picture.time.at(place / 1000), delta=1.1)
+        self.assertLess(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss, 200 * 1024)  # KiB
+
+    def test_other_formats(self) -> None:
+        asc = "base hex  timestamps absolute\n0.0 1 186 Rx d 6 37 02 05 00 00 00\n8.0 1 186 Rx d 6 37 02 07 00 00 00\n"
+        trc = ";$FILEVERSION=1.1\n 1) 0.0 Rx 0186 6 37 02 05 00 00 00\n 2) 8000.0 Rx 0186 6 37 02 07 00 00 00\n"
+        for log in (asc, trc):
+            picture = Picture(edsc("6064h", log=log).stdout)
+            self.assert_points(picture, 0, picture.paths(0)[0], [(0, 5), (8, 7)])
+
+    def test_what_cannot_be_plotted(self) -> None:
+        log = f"(1.0) can0 {position(5)}\n"
+        for arguments, code, words in (
+                (("6064h",), WRONG_USAGE, "--node ID=FILE is missing"),
+                (("1008h", "--node", str(AXIS)), WRONG_USAGE, "the values are not numbers"),
+                (("5/6064h", "--node", str(AXIS)), WRONG_USAGE, "node 5 is not one of --node"),
+                (("6064h", "6064h", "--node", str(AXIS)), WRONG_USAGE, "given twice"),
+                (("no_such_object", "--node", str(AXIS)), WRONG_USAGE, "no_such_object"),
+                (("2003h", "--node", str(AXIS)), INPUT_HAS_ERRORS, "has no values")):
+            with self.subTest(arguments=arguments):
+                result = edsc(*arguments, log=log, node=())
+                self.assertEqual(result.returncode, code, result.stderr)
+                self.assertIn(words, result.stderr)
+                self.assertEqual(result.stdout, "")
+        self.assertIn("the frames have no times", edsc("6064h", log=f"{position(5)}\n").stderr)
+        self.assertIn("the log has no frames", edsc("6064h").stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:])

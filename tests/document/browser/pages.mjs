@@ -1,0 +1,127 @@
+// pages.mjs CHROMIUM COMMAND FILE...: prints what it sees as JSON.
+import { inScheme, open, openAll, results, type, violations, watch, withPage } from './browser.mjs';
+
+// Each page in light and dark, with everything expanded if the name of the command says so.
+async function audit(first, files, isExpanded) {
+  const found = {};
+  for (const file of files) {
+    for (const scheme of ['light', 'dark']) {
+      const page = await first.browser().newPage();
+      const seen = watch(page);
+      await inScheme(page, scheme);
+      await open(page, file);
+      if (isExpanded) await openAll(page);
+      found[`${file} ${scheme}`] = { ...seen, violations: await violations(page) };
+      await page.close();
+    }
+  }
+  return found;
+}
+
+// Searches and filters, keyboard and links of a device page.
+async function use(page, [file]) {
+  const seen = watch(page);
+  const found = { seen };
+  await open(page, file);
+  found.all = await results(page);
+  await page.keyboard.press('/');
+  found.focused = await page.evaluate(() => document.activeElement.id);
+  for (const text of ['6041h', '6041', '0x6041', '1018h:04', 'target position', 'od::statusword', 'no such object']) {
+    await type(page, text);
+    found[text] = await results(page);
+  }
+  await type(page, '1018h:04');
+  found.hits = await page.$$eval('tr.hit', (rows) => rows.map((row) => row.id));
+  await page.keyboard.press('Escape');
+  found.escaped = await results(page);
+  for (const [filter, value] of [['area', '6000'], ['access', 'wo'], ['type', 'INTEGER8'], ['pdo', 'rpdo'], ['pdo', 'tpdo'],
+    ['pdo', 'mapped']]) {
+    await page.select(`#${filter}`, value);
+    found[`${filter} ${value}`] = await results(page);
+    await page.click('button[type=reset]');
+  }
+  found.reset = await results(page);
+  await page.select('#area', '6000');
+  await page.evaluate(() => { location.hash = '#1018h-02'; });
+  await page.waitForFunction(() => document.getElementById('1018h').open);
+  found.link = await page.evaluate(() => {
+    const row = document.getElementById('1018h-02').getBoundingClientRect();
+    return { isVisible: row.top >= 0 && row.bottom <= innerHeight, target: document.querySelector(':target').id };
+  });
+  await page.click('#objects tr[id="1018h-02"] .copy');
+  await page.waitForSelector('.copy.done');
+  found.copied = await page.$eval('.copy.done', (button) => button.textContent);
+  await open(page, file, '#1018h-03');
+  await page.waitForFunction(() => document.getElementById('1018h').open);
+  await page.click('#close');
+  await page.focus('[id="1018h"] > summary');
+  await page.keyboard.press('Enter');
+  found.opensByKey = await page.$eval('[id="1018h"]', (one) => one.open);
+  await page.click('#open');
+  found.expanded = await page.$$eval('.object', (all) => all.every((one) => one.open));
+  await page.click('#close');
+  await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
+  await page.emulateMediaType('print');
+  found.printed = await page.evaluate(() => ({
+    isOpen: [...document.querySelectorAll('details')].every((one) => one.open),
+    tools: document.querySelector('form.tools').checkVisibility(),
+  }));
+  await page.evaluate(() => dispatchEvent(new Event('afterprint')));
+  found.after = await page.$$eval('.object', (all) => all.some((one) => one.open));
+  return found;
+}
+
+// The rectangles of the drawings by PDO, and their names.
+async function drawings(page, [file]) {
+  await open(page, file);
+  return page.evaluate(() => Object.fromEntries([...document.querySelectorAll('.pdo')].map((pdo) => [pdo.id, {
+    label: pdo.querySelector('svg')?.getAttribute('aria-label') ?? null,
+    fields: [...pdo.querySelectorAll('rect.field')].map((one) => [Number(one.getAttribute('x')),
+      Number(one.getAttribute('width')), one.parentElement.querySelector('title').textContent]),
+    properties: Object.fromEntries([...pdo.querySelectorAll('dt')].map(
+      (one) => [one.textContent, one.nextElementSibling.textContent])),
+  }])));
+}
+
+// Milliseconds from an input to the layout of its result.
+async function speed(page, [file]) {
+  const start = Date.now();
+  await open(page, file);
+  const loaded = Date.now() - start;
+  await page.waitForFunction(() => document.querySelector('[role=status]'));
+  await new Promise((resolve) => setTimeout(resolve, 2000));
+  return page.evaluate((load) => {
+    const query = document.getElementById('query');
+    const times = {};
+    for (const text of ['s', 'sp', 'speed 7', 'object', '3456h', 'nothing', 'parameter 99', '']) {
+      const begin = performance.now();
+      query.value = text;
+      query.dispatchEvent(new Event('input', { bubbles: true }));
+      document.body.getBoundingClientRect();
+      times[text] = [performance.now() - begin, document.querySelector('[role=status]').textContent];
+    }
+    return { loaded: load, times };
+  }, loaded);
+}
+
+// The objects that a checkbox leaves.
+async function check(page, [file, box]) {
+  await open(page, file);
+  await page.click(box);
+  return results(page);
+}
+
+// Texts of elements, by the selectors that follow the file.
+async function texts(page, [file, ...selectors]) {
+  const seen = watch(page);
+  await open(page, file);
+  const found = { seen };
+  for (const selector of selectors) {
+    found[selector] = await page.$$eval(selector, (all) => all.map((one) => one.textContent.trim()));
+  }
+  return found;
+}
+
+const commands = { audit, 'audit-expanded': (page, files) => audit(page, files, true), use, drawings, speed, check, texts };
+const [chromium, command, ...rest] = process.argv.slice(2);
+console.log(JSON.stringify(await withPage(chromium, (page) => commands[command](page, rest))));

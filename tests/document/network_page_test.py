@@ -1,0 +1,90 @@
+#!/usr/bin/env python3
+"""The page of a network in headless Chromium, compared with links and times worked out by hand.
+
+    network_page_test.py SOURCE_DIR EDSC WORK_DIR [unittest arguments]
+
+npm installs puppeteer-core and axe-core in WORK_DIR. Exit code 77: skipped.
+"""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+
+from document_case import SOURCE_DIR, DocumentCase, main
+
+NETWORKS = sorted((SOURCE_DIR / "examples/networks").glob("*.json"))
+PLANT = """{
+  "bit_rate": 500, "length_m": 40,
+  "sync": {"producer": "master", "period_us": 10000},
+  "nodes": {
+    "master": {"node_id": 127, "master": true, "heartbeat_ms": 100},
+    "a": {"node_id": 1, "eds": "node.eds", "heartbeat_ms": 50},
+    "b": {"node_id": 2, "eds": "node.eds", "heartbeat_ms": 50}
+  },
+  "signals": [
+    {"from": "a", "object": "position", "to": ["b.target_position", "master"], "every_ms": 10},
+    {"from": "a", "object": "speed", "to": ["b.target_speed", "master"], "every_ms": 10},
+    {"from": "master", "object": "a.target_position", "every_sync": 1}
+  ]
+}
+"""
+
+
+class NetworkPage(DocumentCase):
+    def plant(self) -> object:
+        shutil.copy(SOURCE_DIR / "tests/generator/network/node.eds", self.folder)
+        return self.document(self.write("plant.json", PLANT))
+
+    def test_the_pages_are_clean_in_light_and_dark(self) -> None:
+        self.assert_clean(self.browse("audit-expanded", *(self.document(path) for path in NETWORKS)))
+
+    def test_tidy_reads_the_html_without_errors(self) -> None:
+        if shutil.which("tidy") is None:
+            self.skipTest("tidy is not installed")
+        for path in NETWORKS:
+            tidy = subprocess.run(["tidy", "-q", "-e", "--drop-empty-elements", "no", self.document(path)],
+                                  capture_output=True, text=True)
+            self.assertEqual((tidy.stderr, tidy.returncode), ("", 0), path.name)
+
+    def test_who_sends_what_to_whom(self) -> None:
+        found = self.browse("texts", self.plant(), "#links tbody td:nth-child(1)", "#links tbody td:nth-child(2)",
+                            "#links tbody td:nth-child(3)", "#links tbody td:nth-child(4)", "#links svg g polygon",
+                            "#links svg g circle", "#nodes tbody td:nth-child(2)")
+        self.assertEqual(found["#nodes tbody td:nth-child(2)"], ["master", "a", "b"])
+        # SYNC to both nodes, a's TPDO 1 to b and the master, the master's TPDO 1 to a; an arrow for each receiver.
+        self.assertEqual(found["#links tbody td:nth-child(1)"], ["080h", "181h", "201h"])
+        self.assertEqual(found["#links tbody td:nth-child(2)"], ["master SYNC", "a TPDO 1", "master TPDO 1"])
+        self.assertEqual(found["#links tbody td:nth-child(3)"][1:], ["master RPDO 1, b RPDO 1", "a RPDO 1"])
+        self.assertEqual(found["#links tbody td:nth-child(4)"], ["", "event-driven (device profile)", "every SYNC"])
+        self.assertEqual((len(found["#links svg g circle"]), len(found["#links svg g polygon"])), (3, 5))
+
+    def test_times_of_the_frames(self) -> None:
+        found = self.browse("texts", self.plant(), "#messages tbody td:nth-child(2)", "#messages tbody td:nth-child(3)",
+                            "#messages tbody td:nth-child(5)", "#messages-title", "#sync svg g title", "#sync-title")
+        frames = dict(zip(found["#messages tbody td:nth-child(2)"],
+                          zip(found["#messages tbody td:nth-child(3)"], found["#messages tbody td:nth-child(5)"])))
+        # Davis et al. 2007: 55 + 10 s bits with all stuff bits, 2 us each: s = 0, 6 (32 + 16 bits), 4 (32 bits), 1.
+        self.assertEqual(frames["master SYNC"], ("0", "0.110 ms"))
+        self.assertEqual(frames["a TPDO 1"], ("6", "0.230 ms"))
+        self.assertEqual(frames["master TPDO 1"], ("4", "0.190 ms"))
+        self.assertEqual(frames["a heartbeat"], ("1", "0.130 ms"))
+        self.assertEqual([title.split(":")[0] for title in found["#sync svg g title"]], ["master SYNC", "master TPDO 1"])
+        self.assertIn("10.000 ms", found["#sync-title"][0])
+
+    def test_options_for_devices_are_errors(self) -> None:
+        self.plant()
+        for option in (("--against", "old.json"), ("--node-id", "5")):
+            result = self.edsc("document", "plant.json", *option, exit_code=2)
+            self.assertIn("is for devices, not for networks", result.stderr)
+
+    def test_a_network_with_errors_is_not_written(self) -> None:
+        node = '{"node_id": 1, "eds": "node.eds"}'
+        self.write("broken.json", f'{{"nodes": {{"a": {node}, "b": {node}}}}}')
+        shutil.copy(SOURCE_DIR / "tests/generator/network/node.eds", self.folder)
+        self.edsc("document", "broken.json", "-o", "page.html", exit_code=1)
+        self.assertFalse((self.folder / "page.html").exists())
+
+
+if __name__ == "__main__":
+    main()
