@@ -1,4 +1,5 @@
-/// The master of eight_devices.json: the outputs follow the inputs, and two analogue outputs show the sensor and the axis.
+/// The master of eight_devices.json: the outputs follow the inputs, and two analogue outputs show the sensor and the
+/// axis.
 #pragma once
 
 #include <algorithm>
@@ -19,8 +20,9 @@ class EightDevices {
              [this](std::int16_t level) { plant.analog_outputs.write_analogue_output_16_bit_1(level); });
     plant.on(signals::sensor::speed_value_1{},
              [this](std::int16_t speed) { plant.analog_outputs.write_analogue_output_16_bit_2(speed); });
-    plant.on(signals::axis::position_actual_value{},
-             [this](std::int32_t position) { plant.analog_outputs.write_analogue_output_16_bit_3(level_of(position)); });
+    plant.on(signals::axis::position_actual_value{}, [this](std::int32_t position) {
+      plant.analog_outputs.write_analogue_output_16_bit_3(level_of(position));
+    });
   }
 
   canopen::Plant<eight_devices::Network, B> plant;

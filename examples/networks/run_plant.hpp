@@ -34,7 +34,8 @@ template <template <class Bus> class Control>
 int run_plant(int argc, char** argv) {
   using run_plant_detail::stop;
   if (argc != 2) {
-    std::fprintf(stderr, "usage: %s BUS\nBUS is socketcan:can0, slcan:/dev/ttyACM0 or socketcand:127.0.0.1:29536/vcan0\n",
+    std::fprintf(stderr,
+                 "usage: %s BUS\nBUS is socketcan:can0, slcan:/dev/ttyACM0 or socketcand:127.0.0.1:29536/vcan0\n",
                  argv[0]);
     return 2;
   }

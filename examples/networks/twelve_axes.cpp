@@ -1,4 +1,4 @@
-#include "twelve_axes_control.hpp"
 #include "run_plant.hpp"
+#include "twelve_axes_control.hpp"
 
 int main(int argc, char** argv) { return run_plant<TwelveAxes>(argc, argv); }

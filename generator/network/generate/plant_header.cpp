@@ -207,9 +207,9 @@ class PlantHeader {
     const bool is_limited = entry.object->low_limit || entry.object->high_limit;
     return {{"name", name},
             {"type", fmt::format("::{}::signals::{}::{}", name_, identifier(node), name)},
-            {"comment", cpp_comment(fmt::format("{} {}{}, {}, bits {}..{}", named(*entry.object), entry.object->type->name,
-                                                unit, link_text(link), value.first_bit,
-                                                value.first_bit + entry.bits - 1U))},
+            {"comment",
+             cpp_comment(fmt::format("{} {}{}, {}, bits {}..{}", named(*entry.object), entry.object->type->name, unit,
+                                     link_text(link), value.first_bit, value.first_bit + entry.bits - 1U))},
             {"tpdo", full_name(*link.sender)},
             {"rpdo", full_name(*link.receiver)},
             {"sent", value.sent},

@@ -10,7 +10,7 @@ namespace edsc {
 
 /// The parts of the header that are generated before it, each in the order of the nodes.
 struct PlantParts {
-  std::vector<std::string> devices;      ///< namespace and folder of the device's headers
+  std::vector<std::string> devices;       ///< namespace and folder of the device's headers
   std::vector<std::string> concise_dcfs;  ///< bytes for 1F22h
 };
 

@@ -267,17 +267,22 @@ class Generate(unittest.TestCase):
         self.compile("plant.hpp")
 
     def test_the_header_proves_its_links(self) -> None:
-        """A CAN-ID, and a mapping, that are changed in the header are not compiled."""
+        """A CAN-ID, and a mapping, that are changed in the header are not compiled; the message names nodes and objects."""
         self.generate()
         self.compile("plant.hpp")
         header = self.out / "plant.hpp"
         text = header.read_text()
-        for old, new, message in ((".cob_id = 0x40000181", ".cob_id = 0x40000182", "different COB-IDs"),
-                                  ("Rpdo<od::target_position, od::target_speed>", "Rpdo<od::target_speed, od::target_position>",
-                                   "PDO link: the entry of the TPDO has another length")):
+        for old, new, messages in (
+                (".cob_id = 0x40000181", ".cob_id = 0x40000182",
+                 ("different COB-IDs", "plant::a::Tpdo1, plant::master::Rpdo1", "plant::a::Tpdo1, plant::b::Rpdo1")),
+                ("Rpdo<od::target_position, od::target_speed>", "Rpdo<od::target_speed, od::target_position>",
+                 ("PDO link: the entry of the TPDO has another length", "plant::a::Tpdo1, plant::b::Rpdo1",
+                  "node::od::target_speed", "node::od::position"))):
             self.assertIn(old, text)
             header.write_text(text.replace(old, new, 1))
-            self.assertIn(message, self.compile("plant.hpp", fails=True))
+            found = self.compile("plant.hpp", fails=True)
+            for message in messages:
+                self.assertIn(message, found)
 
     def compile(self, header: str, fails: bool = False) -> str:
         result = subprocess.run(["c++", "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion",

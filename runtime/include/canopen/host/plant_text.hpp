@@ -14,8 +14,7 @@ namespace canopen {
 /// `axis1: lost, last state operational`, `axis1: product code 1018h:02 is not the one of 1F86h: expected ...`; a node
 /// that the network file does not list is `node 9`.
 [[nodiscard]] inline std::string fault_text(const PlantNode& node, const PlantFault& fault) {
-  const std::string who =
-      node.name.empty() ? "node " + std::to_string(node.node_id.value()) : std::string{node.name};
+  const std::string who = node.name.empty() ? "node " + std::to_string(node.node_id.value()) : std::string{node.name};
   if (fault.kind == PlantFaultKind::boot) return boot_text(who, fault.boot);
   std::string text = who + ": " + std::string{to_text(fault.kind)};
   switch (fault.kind) {

@@ -206,9 +206,9 @@ class Plant : public NetworkDescription::template Nodes<Plant<NetworkDescription
   /// is sent.
   void send_again(std::size_t position) {
     Network::Sent::for_each([&]<class S, std::size_t I>() {
-      constexpr bool is_on_change = S::Tpdo::parameters.event_timer == 0 &&
-                                    (S::Tpdo::parameters.transmission_type == 0 ||
-                                     S::Tpdo::parameters.transmission_type >= 254);
+      constexpr bool is_on_change =
+          S::Tpdo::parameters.event_timer == 0 &&
+          (S::Tpdo::parameters.transmission_type == 0 || S::Tpdo::parameters.transmission_type >= 254);
       if constexpr (is_on_change && std::is_arithmetic_v<typename S::type>) {
         if (S::node != position) return;
         using O = typename S::object;

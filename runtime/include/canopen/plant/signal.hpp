@@ -55,7 +55,7 @@ struct ReceivedSignal : LinkedEntry<Produced, Sent, Consumed, Taken> {
 template <std::size_t Position, class Produced, std::size_t Sent, class Consumed, std::size_t Taken>
 struct SentSignal : LinkedEntry<Produced, Sent, Consumed, Taken> {
   static constexpr std::size_t node = Position;
-  using object = typename SentSignal::sent_object;      ///< of the master
+  using object = typename SentSignal::sent_object;     ///< of the master
   using receiver = typename SentSignal::taken_object;  ///< of the node, with its limits
 };
 
