@@ -90,8 +90,8 @@ class Generate(unittest.TestCase):
     def test_the_files(self) -> None:
         self.generate()
         self.assertEqual(sorted(path.name for path in self.out.iterdir()),
-                         ["a.cdcf", "a.dcf", "b.cdcf", "b.dcf", "master", "master.cdcf", "master.dcf", "master.eds", "node",
-                          "plant.dbc", "plant.dot", "plant.hpp", "plant.svg", "plant_cycle.svg"])
+                         ["a.cdcf", "a.dcf", "b.cdcf", "b.dcf", "master", "master.cdcf", "master.dcf", "master.eds",
+                          "network-devices.hpp", "node", "plant.dbc", "plant.dot", "plant.hpp", "plant.svg", "plant_cycle.svg"])
         for device in ("master", "node"):
             self.assertEqual(sorted(path.name for path in (self.out / device).iterdir()),
                              ["description.hpp", "device.hpp", "dictionary.hpp", "pdo.hpp"])
