@@ -8,7 +8,7 @@ cmake_policy(VERSION 3.25) # the depfile is read as CMake 3.20 and later do
 #   edsc_add_network(line plant.json)
 #   target_link_libraries(control PRIVATE line)        # #include <plant.hpp>
 #
-# The DCFs, concise DCFs, DBC file and graph of the network are in the same folder, the property EDSC_FOLDER of the target.
+# The DCFs, concise DCFs, DBC file and drawings of the network are in the same folder, the property EDSC_FOLDER of the target.
 #
 # The files are generated again when the network file, an EDS, DCF or options file of a node, or edsc itself changes.
 function(edsc_add_network target file)
@@ -24,9 +24,11 @@ function(edsc_add_network target file)
   set(stamp ${output_dir}.stamp)
   set(depfile ${output_dir}.d)
   # edsc does not write unchanged headers, to avoid needless recompilation; ninja compares the stamp. The names of the headers
-  # depend on the contents of the network file: a build of the target waits for all of them.
+  # depend on the contents of the network file. Each of them changes network-devices.hpp, which the header of the network
+  # includes.
   add_custom_command(
     OUTPUT ${stamp}
+    BYPRODUCTS ${output_dir}/network-devices.hpp
     COMMAND edsc::edsc network generate ${network} -o ${output_dir} --depfile ${depfile} --depfile-target ${stamp}
     COMMAND ${CMAKE_COMMAND} -E touch ${stamp}
     DEPENDS ${network} edsc::edsc $<TARGET_FILE:edsc::edsc>

@@ -1,5 +1,5 @@
-# Writes OUTPUT: TEMPLATES, NETWORK_TEMPLATES and REPORT_TEMPLATES (lists of files, most of them *.mustache) as string literals.
-# Those that are in OPTIONAL need the member of the view of their name. Run with cmake -P.
+# Writes OUTPUT: TEMPLATES and REPORT_TEMPLATES (lists of files, most of them *.mustache) as string literals. Those that are in OPTIONAL need
+# the member of the view of their name. Run with cmake -P.
 cmake_policy(VERSION 3.25)
 set(text "#include \"backend/render.hpp\"\n\nnamespace edsc {\n")
 
@@ -20,6 +20,5 @@ function(embed function)
 endfunction()
 
 embed(built_in_templates ${TEMPLATES})
-embed(network_templates ${NETWORK_TEMPLATES})
 embed(report_templates ${REPORT_TEMPLATES})
 file(WRITE ${OUTPUT} "${text}\n}  // namespace edsc\n")

@@ -59,14 +59,14 @@ std::string render_escaped(std::string_view text, const nlohmann::ordered_json& 
 
 }  // namespace
 
+bool is_needed(const Template& header, const nlohmann::ordered_json& view) {
+  return header.needed.empty() || !view.at(std::string{header.needed}).is_null();
+}
+
 std::string_view report_template(std::string_view file_name) {
   const auto found = std::ranges::find(report_templates(), file_name, &Template::file_name);
   if (found == report_templates().end()) throw std::logic_error{"unknown template " + std::string{file_name}};
   return found->text;
-}
-
-bool is_needed(const Template& header, const nlohmann::ordered_json& view) {
-  return header.needed.empty() || !view.at(std::string{header.needed}).is_null();
 }
 
 std::string render(std::string_view text, const nlohmann::ordered_json& view) {

@@ -18,13 +18,10 @@ struct Template {
 /// The templates of the generated headers, in the order of writing their files.
 [[nodiscard]] const std::vector<Template>& built_in_templates();
 
-/// The template of the header of a network, in templates/network.
-[[nodiscard]] const std::vector<Template>& network_templates();
-
-/// The templates of reports, with their styles and scripts: templates/html and templates/document.
+/// The other templates: of reports, with their styles and scripts, and of networks.
 [[nodiscard]] const std::vector<Template>& report_templates();
 
-/// The text of a report template, by the name of its file without `.mustache`. An unknown name is a fault of edsc.
+/// The text of one of these, by the name of its file without `.mustache`. An unknown name is a fault of edsc.
 [[nodiscard]] std::string_view report_template(std::string_view file_name);
 
 /// Whether a header is generated for this view.

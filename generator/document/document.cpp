@@ -13,19 +13,6 @@ namespace {
 
 using document::Json;
 
-/// The text of a template, with the templates that its lines `{{>name}}` include.
-std::string with_parts(std::string_view name, std::string_view extension) {
-  constexpr std::string_view begin = "{{>";
-  constexpr std::string_view end = "}}\n";
-  std::string text{report_template(fmt::format("{}.{}", name, extension))};
-  for (std::size_t at = 0; (at = text.find(begin, at)) != std::string::npos;) {
-    const std::size_t close = text.find(end, at);
-    const std::string part = text.substr(at + begin.size(), close - at - begin.size());
-    text.replace(at, close + end.size() - at, with_parts(part, extension));
-  }
-  return text;
-}
-
 /// Empties the lines `~`. The template library removes an empty line after one that only has a tag, so that the
 /// templates of Markdown have these. In a value, ~ is escaped.
 std::string with_empty_lines(std::string text) {
@@ -36,10 +23,13 @@ std::string with_empty_lines(std::string text) {
 
 /// Renders the template of this name: `device` or `network`.
 std::string rendered(std::string_view name, Json view, DocumentFormat format) {
-  if (format == DocumentFormat::markdown) return with_empty_lines(render_markdown(with_parts(name, "md"), view));
-  view["style"] = report_template("document.css");
+  using document::with_parts;
+  if (format == DocumentFormat::markdown) {
+    return with_empty_lines(render_markdown(with_parts(fmt::format("{}.md", name)), view));
+  }
+  view["style"] = with_parts("document.css");
   view["script"] = report_template("document.js");
-  return render_html(with_parts(name, "html"), view);
+  return render_html(with_parts(fmt::format("{}.html", name)), view);
 }
 
 Json node_view(const NetworkNode& node) {

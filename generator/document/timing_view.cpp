@@ -71,7 +71,7 @@ class SyncCycle {
     return {{"cycle_label", label},
             {"cycle_text", time_text(period_)},
             {"window_text", window_ == Nanoseconds{} ? Json(nullptr) : Json(time_text(window_))},
-            {"cycle_view_width", static_cast<unsigned>(cycle_left + cycle_width + 20)},
+            {"cycle_width", static_cast<unsigned>(cycle_left + cycle_width + 20)},
             {"cycle_height", height},
             {"cycle_bottom", height - 4},
             {"marks", marks()},
@@ -147,6 +147,11 @@ void add_timing(const Network& network, Json& view) {
   view["load_min"] = percent(timing.load.min);
   view["load_max"] = percent(timing.load.max);
   view["messages"] = std::move(messages);
+}
+
+Json cycle_drawing(const Network& network) {
+  const std::vector<CobIdUse> uses = cob_id_uses(network);
+  return sync_view(uses, network_timing(network, uses));
 }
 
 }  // namespace edsc::document

@@ -92,26 +92,6 @@ class Topology {
     view["topology"] = drawn_.empty() ? Json(nullptr) : drawing();
   }
 
- private:
-  [[nodiscard]] std::size_t column_x(const NetworkNode* node) const {
-    const auto number = static_cast<std::size_t>(node - network_.nodes.data());
-    return label_width + number * column_.width + column_.width / 2;
-  }
-
-  [[nodiscard]] static std::string receivers_text(const Link& link) {
-    std::string text;
-    for (const CobIdUse* receiver : link.receivers) text += (text.empty() ? "" : ", ") + named(*receiver);
-    return text;
-  }
-
-  [[nodiscard]] static Json link_view(const Link& link) {
-    return {{"can_id", can_id_text(link.sender->can_id, link.sender->extended)},
-            {"sender", named(*link.sender)},
-            {"receivers", shown(receivers_text(link))},
-            {"contents", contents_of(*link.sender)},
-            {"transmission", pdo_transmission(*link.sender)}};
-  }
-
   [[nodiscard]] Json drawing() const {
     Json nodes = Json::array();
     const std::size_t height = head_height + drawn_.size() * row_height + 12;
@@ -133,6 +113,26 @@ class Topology {
             {"topology_height", height}, {"line_end", height - 6},
             {"box_width", column_.box},  {"nodes", std::move(nodes)},
             {"rows", std::move(rows)}};
+  }
+
+ private:
+  [[nodiscard]] std::size_t column_x(const NetworkNode* node) const {
+    const auto number = static_cast<std::size_t>(node - network_.nodes.data());
+    return label_width + number * column_.width + column_.width / 2;
+  }
+
+  [[nodiscard]] static std::string receivers_text(const Link& link) {
+    std::string text;
+    for (const CobIdUse* receiver : link.receivers) text += (text.empty() ? "" : ", ") + named(*receiver);
+    return text;
+  }
+
+  [[nodiscard]] static Json link_view(const Link& link) {
+    return {{"can_id", can_id_text(link.sender->can_id, link.sender->extended)},
+            {"sender", named(*link.sender)},
+            {"receivers", shown(receivers_text(link))},
+            {"contents", contents_of(*link.sender)},
+            {"transmission", pdo_transmission(*link.sender)}};
   }
 
   [[nodiscard]] Json row_view(const Link& link, std::size_t row) const {
@@ -169,5 +169,7 @@ class Topology {
 }  // namespace
 
 void add_topology(const Network& network, Json& view) { Topology{network}.add(view); }
+
+Json topology_drawing(const Network& network) { return Topology{network}.drawing(); }
 
 }  // namespace edsc::document

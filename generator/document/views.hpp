@@ -56,10 +56,20 @@ void add_changes(const ComparedWith* compared, Json& view);
 /// At most `max` code points; the last one is an ellipsis if the text is longer.
 [[nodiscard]] std::string shortened(std::string_view text, std::size_t max);
 
-/// `topology`: boxes and arrows of the nodes and their PDOs; `links`: the same as rows.
+/// The text of a template, with the templates that its lines `{{>name}}` include. A part without an extension has that
+/// of the template.
+[[nodiscard]] std::string with_parts(std::string_view name);
+
+/// `topology`: the drawing; null if no node receives a PDO or SYNC of another one. `links`: the same as rows.
 void add_topology(const Network& network, Json& view);
+
+/// Boxes of the nodes, and arrows for their PDOs and SYNC.
+[[nodiscard]] Json topology_drawing(const Network& network);
 
 /// `sync`: the cycle of SYNC as a drawing; null without SYNC or bit rate. `messages`: load and response times.
 void add_timing(const Network& network, Json& view);
+
+/// The cycle of SYNC as in `sync` of `add_timing`.
+[[nodiscard]] Json cycle_drawing(const Network& network);
 
 }  // namespace edsc::document

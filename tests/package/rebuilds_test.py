@@ -38,7 +38,10 @@ target_link_libraries(line_test PRIVATE line_network)
 LINE_FILE = """{
   "bit_rate": 500,
   "nodes": {"control": {"node_id": 127, "master": true}, "sensor": {"node_id": 5, "eds": "sensor.eds", "heartbeat_ms": 100}},
-  "signals": [{"from": "sensor", "object": "6030h:01", "to": "control", "every_ms": 100}]
+  "signals": [
+    {"from": "sensor", "object": "6020h:01", "to": "control", "every_ms": 100},
+    {"from": "sensor", "object": "6030h:01", "to": "control", "every_ms": 100}
+  ]
 }
 """
 LINE_MAIN = """#include <canopen/plant/plant.hpp>
@@ -143,7 +146,7 @@ class Network(PackageTest):
         self.assertIn("Building CXX object", self.project.build("line_test"))
         self.assertIn("node_id{ 6 }", self.header.read_text())
         self.sheet.write_text(self.sheet.read_text().replace("ParameterName=Cyclic timer", "ParameterName=Cycle time"))
-        self.project.build("line_test")
+        self.assertIn("Building CXX object", self.project.build("line_test"))
         self.assertIn("struct cycle_time ", (self.header.parent / "sensor/dictionary.hpp").read_text())
         self.assertIn("no work to do", self.project.build("line_test"))
 

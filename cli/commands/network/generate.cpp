@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <string>
 
 #include "commands/commands.hpp"
+#include "document/network_drawings.hpp"
 #include "network/checks/check_network.hpp"
 #include "network/generate/generate_network.hpp"
 #include "network/network.hpp"
@@ -39,6 +42,7 @@ int generate(const Settings& settings) {
   if (diagnostics.errors() > 0) return exit_input_has_errors;
   for (const std::string& note : generated.notes) print_visibly(stderr, "edsc: not in the DBC file: {}\n", note);
   std::vector<OutputFile>& files = generated.files;
+  std::ranges::move(network_drawings(loaded->network), std::back_inserter(files));
   for (OutputFile& file : files) file.path = (std::filesystem::path{settings.output} / file.path).string();
   if (!settings.depfile.empty()) {
     files.push_back({settings.depfile, depfile_text(settings.depfile_target, files, generated.inputs)});

@@ -25,7 +25,7 @@ constexpr const char* examples = R"(Examples:
   edsc network check plant.json --strict          warnings count as errors
   edsc network simulate plant.json --for 1h       load and response times seen beside those computed
   edsc network members                            every member of a network file with its meaning
-  edsc network generate plant.json -o build       DCFs, concise DCFs, the EDS of the master, DBC file and graph
+  edsc network generate plant.json -o build       DCFs, concise DCFs, C++ headers, DBC file, drawings
   edsc network scan socketcan:can0 --sheets eds -o plant.json    the network file of the nodes on a bus
   edsc network verify socketcan:can0 plant.json                  what differs from it
   edsc network apply socketcan:can0 plant.json --start           configure all nodes, then start them)";
@@ -126,7 +126,7 @@ struct ActionRow {
 
 constexpr ActionRow actions[] = {
     {"check", "check the nodes, CAN-IDs, PDO links, SYNC and error control of a network", add_network_check_options},
-    {"generate", "write the DCFs of the nodes, and a DBC file and a graph of the network",
+    {"generate", "write the DCFs of the nodes, and C++, a DBC file and drawings of the network",
      add_network_generate_options},
     {"simulate", "run the generated devices of a network on a simulated bus: load, response times and faults",
      add_network_simulate_options},

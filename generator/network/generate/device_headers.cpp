@@ -32,7 +32,7 @@ class HeaderWriter {
   /// The device with the values of the network. The PDOs of a master without a file cannot be mapped otherwise.
   std::string add_master(const NetworkNode& node) {
     Device device = node.device;
-    device.name = namespaces_.take(to_namespace(node.name), "_device");
+    device.name = namespaces_.take(to_namespace(node.name), "device");
     Options options = node.loaded->options;
     if (!node.has_file()) options.static_mapping.all = true;
     add(device, options);
@@ -45,7 +45,7 @@ class HeaderWriter {
     const std::string options = node.loaded->options_source ? node.loaded->options_source->name() : "";
     std::string& name = sheets_[{path, options, keeps_going}];
     if (!name.empty()) return name;
-    name = namespaces_.take(to_namespace(std::filesystem::path{path}.stem().string()), "_device");
+    name = namespaces_.take(to_namespace(std::filesystem::path{path}.stem().string()), "device");
     LoadSettings settings;
     settings.path = path;
     settings.options_path = options;

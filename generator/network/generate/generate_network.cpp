@@ -56,8 +56,9 @@ GeneratedNetwork generate_network(const Network& network, Diagnostics& diagnosti
   const std::string plant = to_namespace(name);
   DeviceHeaders headers = device_headers(network, plant, diagnostics);
   parts.devices = std::move(headers.names);
+  headers.files.push_back({plant + ".hpp", plant_header(network, plant, parts)});
+  headers.files.push_back({"network-devices.hpp", devices_header(network, parts, headers.files)});
   std::ranges::move(headers.files, std::back_inserter(generated.files));
-  generated.files.push_back({plant + ".hpp", plant_header(network, plant, parts)});
   generated.inputs = inputs_of(network);
   generated.notes = std::move(dbc.notes);
   return generated;

@@ -1,9 +1,11 @@
 #include "network/generate/plant_header.hpp"
 
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -35,6 +37,11 @@ ordered_json with_separators(ordered_json rows, std::string_view separator) {
   return rows;
 }
 
+/// The name of the network file without its folders.
+std::string file_comment(const Network& network) {
+  return cpp_comment(std::filesystem::path{network.source->name()}.filename().string());
+}
+
 /// The names of a node that are not available for its signals: members of canopen::PlantNodeAccess.
 constexpr std::string_view access_members[] = {"boot", "booted", "node_id", "plant", "state"};
 
@@ -53,15 +60,9 @@ class PlantHeader {
   std::string text() {
     std::string guard = "edsc_network_" + name_;
     std::ranges::transform(guard, guard.begin(), to_upper);
-    const std::string& path = network_.source->name();
-    ordered_json view{{"file", cpp_comment(path.substr(path.find_last_of('/') + 1))},
-                      {"guard", guard},
-                      {"namespace", name_},
-                      {"headers", std::set<std::string>{parts_.devices.begin(), parts_.devices.end()}},
-                      {"nodes", node_rows()},
-                      {"links", link_rows()},
-                      {"network", network_view()}};
-    return render(network_templates().front().text, view);
+    ordered_json view{{"file", file_comment(network_)}, {"guard", guard},       {"namespace", name_},
+                      {"nodes", node_rows()},           {"links", link_rows()}, {"network", network_view()}};
+    return render(report_template("plant.hpp"), view);
   }
 
  private:
@@ -303,6 +304,17 @@ class PlantHeader {
 
 std::string plant_header(const Network& network, const std::string& name, const PlantParts& parts) {
   return PlantHeader{network, name, parts}.text();
+}
+
+std::string devices_header(const Network& network, const PlantParts& parts, const std::vector<OutputFile>& headers) {
+  uLong checksum = crc32(0, nullptr, 0);
+  for (const OutputFile& header : headers) {
+    checksum = crc32_z(checksum, reinterpret_cast<const Bytef*>(header.content.data()), header.content.size());
+  }
+  return render(report_template("network-devices.hpp"),
+                {{"file", file_comment(network)},
+                 {"checksum", fmt::format("{:08X}", checksum)},
+                 {"headers", std::set<std::string>{parts.devices.begin(), parts.devices.end()}}});
 }
 
 }  // namespace edsc

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "network/network.hpp"
+#include "text/write_files.hpp"
 
 namespace edsc {
 
@@ -17,5 +18,10 @@ struct PlantParts {
 /// Returns the text of `NAME.hpp`, with the namespace `name`. Without an NMT master, it does not have the description
 /// for canopen::Plant.
 [[nodiscard]] std::string plant_header(const Network& network, const std::string& name, const PlantParts& parts);
+
+/// Returns the text of `network-devices.hpp`, which `NAME.hpp` includes: the headers of the devices, and a checksum of
+/// all headers. Its name does not depend on the network and is not one of a namespace, so that a build can know it.
+[[nodiscard]] std::string devices_header(const Network& network, const PlantParts& parts,
+                                         const std::vector<OutputFile>& headers);
 
 }  // namespace edsc

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """edsc network generate, with expectations worked out by hand and with readers that are not edsc's: configparser for the values
-of the DCFs, npm's canopen as a tool that loads them, npm's candied for the DBC file, the
-compiler for the headers.
+of the DCFs, npm's canopen as a tool that loads them, npm's candied for the DBC file,
+ElementTree for the drawings, the compiler for the headers.
 
     generate_test.py SOURCE_DIR EDSC CANDIED_WORK_DIR CANOPEN_WORK_DIR [unittest arguments]
 """
@@ -17,6 +17,7 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+from xml.etree import ElementTree
 
 SOURCE_DIR = Path(sys.argv[1]).resolve()
 EDSC = Path(sys.argv[2]).resolve()
@@ -24,6 +25,7 @@ CANDIED, CANOPEN = Path(sys.argv[3]).resolve(), Path(sys.argv[4]).resolve()
 sys.path.insert(0, str(SOURCE_DIR / "tests/support"))
 from npm_packages import Skipped, install_npm_packages  # noqa: E402
 
+SVG = {"svg": "http://www.w3.org/2000/svg"}
 PLANT = """{
   "bit_rate": 500, "length_m": 40,
   "sync": {"producer": "master", "period_us": 10000},
@@ -88,8 +90,8 @@ class Generate(unittest.TestCase):
     def test_the_files(self) -> None:
         self.generate()
         self.assertEqual(sorted(path.name for path in self.out.iterdir()),
-                         ["a.cdcf", "a.dcf", "b.cdcf", "b.dcf", "master", "master.cdcf", "master.dcf", "master.eds", "node",
-                          "plant.dbc", "plant.dot", "plant.hpp"])
+                         ["a.cdcf", "a.dcf", "b.cdcf", "b.dcf", "master", "master.cdcf", "master.dcf", "master.eds",
+                          "network-devices.hpp", "node", "plant.dbc", "plant.dot", "plant.hpp", "plant.svg", "plant_cycle.svg"])
         for device in ("master", "node"):
             self.assertEqual(sorted(path.name for path in (self.out / device).iterdir()),
                              ["description.hpp", "device.hpp", "dictionary.hpp", "pdo.hpp"])
@@ -196,6 +198,50 @@ class Generate(unittest.TestCase):
                          [("master", "a", "TPDO 1 to RPDO 1, 201h"), ("a", "master", "TPDO 1 to RPDO 1, 181h"),
                           ("a", "b", "TPDO 1 to RPDO 1, 181h")])
 
+    def svg(self, name: str) -> ElementTree.Element:
+        """Of a drawing whose colours do not depend on variables, for light and dark."""
+        root = ElementTree.parse(self.out / name).getroot()
+        style = root.findtext("svg:style", "", SVG)
+        self.assertNotIn("var(", style)
+        colors = [re.search(r"\.page \{ fill: (#\w+)", part)[1] for part in style.split("@media (prefers-color-scheme: dark)")]
+        self.assertEqual(colors, ["#ffffff", "#14171b"])
+        self.assertEqual([child.tag for child in root[:2]], [f"{{{SVG['svg']}}}title", f"{{{SVG['svg']}}}desc"])
+        return root
+
+    def test_the_drawing_has_an_arrow_for_each_link(self) -> None:
+        self.generate()
+        root = self.svg("plant.svg")
+        columns = {group.findtext("svg:title", "", SVG): group.find("svg:line", SVG).get("x1")
+                   for group in root.findall("svg:g", SVG) if group.find("svg:rect", SVG) is not None}
+        self.assertEqual(list(columns), ["master", "a", "b"])
+        names = {x: name for name, x in columns.items()}
+        arrows = {(row.findtext("svg:text", "", SVG), names[row.find("svg:circle", SVG).get("cx")]):
+                  [names[arrow.get("points").split(",")[0]] for arrow in row.findall("svg:polygon", SVG)]
+                  for row in root.findall("svg:g", SVG) if row.find("svg:circle", SVG) is not None}
+        self.assertEqual(arrows, {("080h SYNC", "master"): ["a", "b"], ("181h TPDO 1", "a"): ["master", "b"],
+                                  ("201h TPDO 1", "master"): ["a"]})
+        self.assertIn("a TPDO 1 to master RPDO 1, b RPDO 1.", root.findtext("svg:desc", "", SVG))
+
+    def test_the_drawing_of_the_sync_cycle(self) -> None:
+        self.generate()
+        root = self.svg("plant_cycle.svg")
+        rows = [group for group in root.findall("svg:g", SVG) if group.find("svg:rect", SVG) is not None]
+        self.assertEqual([row.findtext("svg:text", "", SVG) for row in rows], ["master SYNC", "master TPDO 1"])
+        bars = [row.find("svg:rect", SVG) for row in rows]
+        # 640 units are 10 ms. Davis et al. 2007: 55 and 95 bits with all stuff bits, 2 us each.
+        for bar, begin, length in zip(bars, (0.0, 0.11), (0.11, 0.19)):
+            self.assertAlmostEqual(float(bar.get("x")) - 190, begin * 64, delta=0.1)
+            self.assertAlmostEqual(float(bar.get("width")), length * 64, delta=0.1)
+
+    def test_a_network_without_pdos_and_sync(self) -> None:
+        """Its drawing has the nodes, and characters that XML reserves."""
+        (self.folder / "p&l <1>.json").write_text('{"bit_rate": 500, "nodes": {"a": {"node_id": 1, "eds": "node.eds"}}}')
+        self.edsc("network", "generate", "p&l <1>.json", "-o", "out")
+        root = self.svg("p&l <1>.svg")
+        self.assertEqual(root.findtext("svg:title", "", SVG), "p&l <1>")
+        self.assertEqual(root.findtext("svg:g/svg:text", "", SVG), "a")
+        self.assertEqual(list(self.out.glob("*_cycle.svg")), [])
+
     def test_the_headers_of_a_device_are_those_of_edsc_generate(self) -> None:
         self.generate()
         self.edsc("generate", "node.eds", "-o", "headers")
@@ -221,17 +267,22 @@ class Generate(unittest.TestCase):
         self.compile("plant.hpp")
 
     def test_the_header_proves_its_links(self) -> None:
-        """A CAN-ID, and a mapping, that are changed in the header are not compiled."""
+        """A CAN-ID, and a mapping, that are changed in the header are not compiled; the message names nodes and objects."""
         self.generate()
         self.compile("plant.hpp")
         header = self.out / "plant.hpp"
         text = header.read_text()
-        for old, new, message in ((".cob_id = 0x40000181", ".cob_id = 0x40000182", "different COB-IDs"),
-                                  ("Rpdo<od::target_position, od::target_speed>", "Rpdo<od::target_speed, od::target_position>",
-                                   "PDO link: the entry of the TPDO has another length")):
+        for old, new, messages in (
+                (".cob_id = 0x40000181", ".cob_id = 0x40000182",
+                 ("different COB-IDs", "plant::a::Tpdo1, plant::master::Rpdo1", "plant::a::Tpdo1, plant::b::Rpdo1")),
+                ("Rpdo<od::target_position, od::target_speed>", "Rpdo<od::target_speed, od::target_position>",
+                 ("PDO link: the entry of the TPDO has another length", "plant::a::Tpdo1, plant::b::Rpdo1",
+                  "node::od::target_speed", "node::od::position"))):
             self.assertIn(old, text)
             header.write_text(text.replace(old, new, 1))
-            self.assertIn(message, self.compile("plant.hpp", fails=True))
+            found = self.compile("plant.hpp", fails=True)
+            for message in messages:
+                self.assertIn(message, found)
 
     def compile(self, header: str, fails: bool = False) -> str:
         result = subprocess.run(["c++", "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion",

@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+"""The masters of examples/networks and the nodes of their plants as programs on a bus of `edsc bus`, in real time.
+
+    live_test.py SOURCE_DIR EDSC MASTERS NODES [unittest arguments]      MASTERS, NODES: folders of the programs
+
+A busy machine delays heartbeats, so that more nodes may be lost and booted than expected here: the tests on a virtual bus count
+them.
+"""
+
+from __future__ import annotations
+
+import json
+import queue
+import re
+import subprocess
+import sys
+import threading
+import time
+import unittest
+from pathlib import Path
+
+SOURCE_DIR, EDSC, MASTERS, NODES = (Path(argument).resolve() for argument in sys.argv[1:5])
+NETWORKS = SOURCE_DIR / "examples/networks"
+LATE = 300.0  # maximum seconds until a line on a busy machine
+
+
+class Lines:
+    """The lines that a program prints, as they come."""
+
+    def __init__(self, program: subprocess.Popen[str]) -> None:
+        self.queue: queue.Queue[str] = queue.Queue()
+        self.thread = threading.Thread(target=self.read, args=(program,), daemon=True)
+        self.thread.start()
+
+    def read(self, program: subprocess.Popen[str]) -> None:
+        for line in program.stdout:
+            self.queue.put(line.rstrip("\n"))
+
+    def wait_for(self, expected: set[str]) -> None:
+        """Reads until a line has matched each of these expressions; they need not be in this order."""
+        missing, seen, end = set(expected), [], time.monotonic() + LATE
+        while missing:
+            try:
+                seen.append(self.queue.get(timeout=max(0.0, end - time.monotonic())))
+            except queue.Empty:
+                raise AssertionError(f"not printed: {sorted(missing)}\nprinted:\n" + "\n".join(seen)) from None
+            missing = {line for line in missing if not re.fullmatch(line, seen[-1])}
+
+
+class Masters(unittest.TestCase):
+    def start(self, *command: object) -> subprocess.Popen[str]:
+        program = subprocess.Popen(list(map(str, command)), stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        self.addCleanup(self.end, program)
+        return program
+
+    @staticmethod
+    def end(program: subprocess.Popen[str]) -> None:
+        program.kill()
+        program.communicate()
+
+    def start_node(self, name: str) -> subprocess.Popen[str]:
+        node = self.nodes[name]
+        program = Path(node["eds"]).stem.replace("-", "_")
+        process = self.start(NODES / program, self.address, "--node-id", node["node_id"])
+        Lines(process)  # what it prints must not fill the pipe
+        return process
+
+    def check_plant(self, plant: str, lost: str) -> None:
+        self.nodes = json.loads(re.sub(r"^\s*//.*$", "", (NETWORKS / f"{plant}.json").read_text(), flags=re.MULTILINE))["nodes"]
+        slaves = [name for name, node in self.nodes.items() if "eds" in node]
+        self.address = self.start(EDSC, "bus", "--listen", "127.0.0.1:0").stdout.readline().strip()
+        running = {name: self.start_node(name) for name in slaves}
+        master = self.start(MASTERS / plant, self.address)
+        lines = Lines(master)
+        lines.wait_for({f"{name}: booted" for name in slaves})
+        self.end(running[lost])
+        lines.wait_for({f"{lost}: lost, last state [a-z-]+"})
+        self.start_node(lost)
+        lines.wait_for({f"{lost}: booted"})
+        master.terminate()
+        self.assertEqual(master.wait(timeout=LATE), 0)
+
+    def test_four_modules(self) -> None:
+        self.check_plant("four_modules", "analog_inputs")
+
+    def test_twelve_axes(self) -> None:
+        self.check_plant("twelve_axes", "axis5")
+
+    def test_eight_devices(self) -> None:
+        self.check_plant("eight_devices", "sensor")
+
+    def test_usage(self) -> None:
+        result = subprocess.run([MASTERS / "four_modules"], capture_output=True, text=True)
+        self.assertEqual((result.returncode, result.stdout), (2, ""))
+        self.assertIn("usage: ", result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[5:]])
