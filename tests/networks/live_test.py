@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
-"""The masters of examples/networks and the nodes of their plants as programs on a bus of `edsc bus`, in real time.
+"""The masters of examples/networks and the nodes of their plants as programs, in real time.
 
-    live_test.py SOURCE_DIR EDSC MASTERS NODES [unittest arguments]      MASTERS, NODES: folders of the programs
+    live_test.py SOURCE_DIR EDSC MASTERS NODES [--bus BUS] [unittest arguments]      MASTERS, NODES: folders of the programs
+
+Without --bus they are on a bus of `edsc bus`.
 
 A busy machine delays heartbeats, so that more nodes may be lost and booted than expected here: the tests on a virtual bus count
 them.
@@ -20,6 +22,7 @@ import unittest
 from pathlib import Path
 
 SOURCE_DIR, EDSC, MASTERS, NODES = (Path(argument).resolve() for argument in sys.argv[1:5])
+BUS = sys.argv[6] if sys.argv[5:6] == ["--bus"] else None
 NETWORKS = SOURCE_DIR / "examples/networks"
 LATE = 300.0  # maximum seconds until a line on a busy machine
 
@@ -68,7 +71,7 @@ class Masters(unittest.TestCase):
     def check_plant(self, plant: str, lost: str) -> None:
         self.nodes = json.loads(re.sub(r"^\s*//.*$", "", (NETWORKS / f"{plant}.json").read_text(), flags=re.MULTILINE))["nodes"]
         slaves = [name for name, node in self.nodes.items() if "eds" in node]
-        self.address = self.start(EDSC, "bus", "--listen", "127.0.0.1:0").stdout.readline().strip()
+        self.address = BUS or self.start(EDSC, "bus", "--listen", "127.0.0.1:0").stdout.readline().strip()
         running = {name: self.start_node(name) for name in slaves}
         master = self.start(MASTERS / plant, self.address)
         lines = Lines(master)
@@ -96,4 +99,4 @@ class Masters(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0], *sys.argv[5:]])
+    unittest.main(argv=[sys.argv[0], *sys.argv[7 if BUS else 5:]])
