@@ -16,6 +16,7 @@
 #include "network/communication_objects.hpp"
 #include "network/node_settings.hpp"
 #include "network/resolve_signals.hpp"
+#include "text/counted.hpp"
 
 namespace edsc {
 namespace {
@@ -181,9 +182,10 @@ class SignalPlanner {
       const bool receives = direction == PdoDirection::receive;
       diagnostics_.error(
           "network-signal", planned.position,
-          fmt::format("node {} does not have a free {}PDO for {} entries: the others are in use, or their "
-                      "mapping cannot be changed",
-                      node.name, receives ? "R" : "T", planned.mapping.size()));
+          fmt::format("node {} does not have a free {}PDO for {}: the others are in use, or their mapping cannot be "
+                      "changed{}",
+                      node.name, receives ? "R" : "T", counted(planned.mapping.size(), "entry", "entries"),
+                      fixed_mapping(node, planned)));
       return std::nullopt;
     }
     taken_.insert({&node, direction, chosen->number});
@@ -193,6 +195,26 @@ class SignalPlanner {
     const auto type = communication_default(*chosen, transmission_type_sub_index).value_or(255);
     planned.transmission_type = static_cast<std::uint8_t>(type);
     return planned;
+  }
+
+  /// Names a free PDO with a fixed mapping of these entries and others; empty if there is none.
+  [[nodiscard]] std::string fixed_mapping(const NetworkNode& node, const PlannedPdo& planned) const {
+    const Pdo* const pdo = find_pdo(node, planned.direction, [&](const Pdo& one) {
+      return std::ranges::all_of(planned.mapping, [&](std::uint32_t value) {
+        return std::ranges::any_of(one.entries, [value](const PdoEntry& entry) {
+          return mapping_value(entry.index, entry.sub_index, entry.bits) == value;
+        });
+      });
+    });
+    if (pdo == nullptr) return {};
+    std::string labels;
+    for (const PdoEntry& entry : pdo->entries) {
+      labels += (labels.empty() ? "" : ", ") + entry_label(entry.index, entry.sub_index);
+    }
+    return fmt::format(
+        "; its {} always maps {}: it can be used by signals with the same rate and receivers for all of "
+        "them, in this order",
+        pdo_label(*pdo), labels);
   }
 
   template <class Condition>

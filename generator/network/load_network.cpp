@@ -102,7 +102,7 @@ class NetworkLoader {
 
   /// An error in a file of several nodes is reported once.
   bool is_new(const Diagnostic& one) {
-    const std::string_view file = one.position.file != nullptr ? one.position.file->name() : "";
+    const std::string_view file = one.position.file != nullptr ? std::string_view{one.position.file->name()} : "";
     return reported_.emplace(file, one.position.line, one.position.column, one.message).second;
   }
 

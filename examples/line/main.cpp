@@ -1,0 +1,25 @@
+/// The master of docs/networks.md: the outputs follow the inputs while the encoder stands still.
+#include <canopen/host/host_bus.hpp>
+#include <canopen/host/plant_text.hpp>
+#include <canopen/plant/plant.hpp>
+#include <cstdint>
+#include <cstdio>
+#include <line.hpp>
+
+int main(int argc, char** argv) {
+  if (argc != 2) return 2;
+  canopen::HostBus bus{argv[1]};
+  canopen::Plant<line::Network, canopen::HostBus> plant{bus};
+  plant.on(line::signals::inputs::read_input_8_bit_1{}, [&plant](std::uint8_t levels) {
+    const bool stands_still = plant.encoder.speed_value_1() == 0;
+    plant.outputs.write_output_8_bit_1(stands_still ? levels : std::uint8_t{0});
+  });
+  plant.on_booted = [](const canopen::PlantNode& node) {
+    std::printf("%.*s: booted\n", static_cast<int>(node.name.size()), node.name.data());
+    std::fflush(stdout);
+  };
+  plant.on_fault = [](const canopen::PlantNode& node, const canopen::PlantFault& fault) {
+    std::fprintf(stderr, "%s\n", fault_text(node, fault).c_str());
+  };
+  bus.run(plant);
+}
