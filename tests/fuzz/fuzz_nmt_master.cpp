@@ -59,16 +59,21 @@ struct Bus {
       const unsigned node_id = frame.id & 0x7F;
       require(world.is_slave(node_id), "a slave is guarded");
       const NmtSlave& slave = world.slaves[node_id - 1];
-      require(slave.heartbeat_time == 0 && slave.guard_time() != 0, "who has a heartbeat is not guarded");
+      require(slave.heartbeat_time == 0, "who has a heartbeat is not guarded");
+      require(slave.guard_time() != 0 || slave.has(canopen::slave_assignment::keep_alive),
+              "who is not guarded is asked only whether it runs already");
     } else {
       require((frame.id & 0x780) == 0x600 && !frame.remote && frame.size == 8, "all else are SDO requests");
       require(world.is_slave(frame.id & 0x7F), "a slave is identified");
       const unsigned specifier = frame.data[0] >> 5;
-      const bool heartbeat_time = frame.data[1] == 0x17 && frame.data[2] == 0x10 && frame.data[3] == 0;
-      require(specifier == 2 || specifier == 3 || specifier == 4 || (specifier == 1 && heartbeat_time),
-              "a master that boots a slave reads, and writes 1017h");
-      require(specifier != 1 || world.slaves[(frame.id & 0x7F) - 1].heartbeat_time != 0,
-              "who is guarded has no heartbeat");
+      const NmtSlave& slave = world.slaves[(frame.id & 0x7F) - 1];
+      const unsigned index = frame.data[1] | frame.data[2] << 8;
+      const bool heartbeat_time = index == 0x1017 && frame.data[3] == 0;
+      const bool restores = index == 0x1011 && frame.data[3] == 1 && std::memcmp(&frame.data[4], "load", 4) == 0;
+      require(specifier == 2 || specifier == 3 || specifier == 4 || (specifier == 1 && (heartbeat_time || restores)),
+              "a master that boots a slave reads, and writes 1017h and 1011h");
+      require(specifier != 1 || !heartbeat_time || slave.heartbeat_time != 0, "who is guarded has no heartbeat");
+      require(specifier != 1 || !restores || slave.has(canopen::slave_assignment::restore), "its values are restored");
     }
     return world.take();
   }
@@ -116,7 +121,8 @@ struct Host {
 
 constexpr NmtCommand commands[] = {NmtCommand::start, NmtCommand::stop, NmtCommand::enter_pre_operational,
                                    NmtCommand::reset_node, NmtCommand::reset_communication};
-constexpr std::uint32_t asked[] = {0x100000, 0x101801, 0x101802, 0x101803, 0x101804, 0x101700};
+constexpr std::uint32_t asked[] = {0x100000, 0x101801, 0x101802, 0x101803, 0x101804,
+                                   0x101700, 0x1F5601, 0x102001, 0x102002, 0x101101};
 constexpr std::uint8_t states[] = {0, 4, 5, 127, 0x80, 0x84, 0x85, 0xFF, 1, 3};
 
 /// Mostly a matching answer or message.
@@ -174,6 +180,11 @@ class Run {
       if ((bits & 8) != 0) slave.assignment |= 50u << 16 | static_cast<std::uint32_t>(bits >> 6) << 8;
       if ((bits & 16) != 0) slave.heartbeat_time = 100;
       if ((bits & 32) != 0) slave.device_type = 1, slave.vendor_id = 2, slave.product_code = 3, slave.serial_number = 5;
+      if ((bits & 64) != 0) slave.assignment |= canopen::slave_assignment::software_version, slave.software = 7;
+      if ((bits & 128) != 0) {
+        slave.configuration_date = 8, slave.configuration_time = 9, slave.restored_parameters = 1;
+        slave.assignment |= canopen::slave_assignment::restore;
+      }
     }
     start_up.bits = static_cast<std::uint32_t>(settings[0] & 0x7F);
     if ((settings[0] & 0x80) != 0) start_up.boot_time = canopen::Duration{3s};
