@@ -37,6 +37,7 @@ struct World : Room {
   std::map<std::uint8_t, BootStatus> status{};
   std::array<bool, 128> boot_up{};
   bool network_started = false;
+  bool restarts = false;  ///< 1F80h: the loss of a mandatory slave resets all nodes
 
   [[nodiscard]] bool is_slave(unsigned node_id) const {
     return node_id >= 1 && node_id <= slave_count && slaves[node_id - 1].has(canopen::slave_assignment::listed);
@@ -92,7 +93,12 @@ struct Host {
                   state == NmtState::pre_operational,
               "a state is one of four");
       world.told[node_id.value()] = state;
-      if (event == NmtMasterEvent::lost) world.told.erase(node_id.value());
+      if (event == NmtMasterEvent::lost) {
+        world.told.erase(node_id.value());
+        if (world.restarts && world.slaves[node_id.value() - 1U].has(canopen::slave_assignment::mandatory)) {
+          world.network_started = false;
+        }
+      }
     }
   }
   void booted(NodeId node_id, BootStatus status) {
@@ -106,7 +112,7 @@ struct Host {
     world.status[node_id.value()] = status;
   }
   void network_started() {
-    require(!world.network_started, "a network is started once");
+    require(!world.network_started, "a network is started once, unless all nodes are reset");
     world.network_started = true;
     for (const NmtSlave& slave : world.slaves) {
       if (!slave.has(canopen::slave_assignment::listed) || !slave.has(canopen::slave_assignment::mandatory)) continue;
@@ -187,6 +193,7 @@ class Run {
       }
     }
     start_up.bits = static_cast<std::uint32_t>(settings[0] & 0x7F);
+    world.restarts = start_up.has(canopen::nmt_start_up::reset_all);
     if ((settings[0] & 0x80) != 0) start_up.boot_time = canopen::Duration{3s};
   }
 
