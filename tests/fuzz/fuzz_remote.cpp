@@ -73,7 +73,9 @@ void read(Remote& remote, const Step&, TimePoint now) {
 }
 
 void begin(Remote& remote, Bus& bus, const Step& step, TimePoint now, std::vector<std::uint8_t>& memory) {
-  if (!remote.busy()) memory = std::vector<std::uint8_t>(step.other);
+  constexpr unsigned text = 16;
+  // A refused write keeps the result of the transfer before, and the memory that it has used.
+  if (!remote.busy() && step.choice % 20 == text) memory = std::vector<std::uint8_t>(step.other);
   switch (step.choice % 20) {
     case 0: return read<od::boolean_value>(remote, step, now);
     case 1: return read<od::integer8_value>(remote, step, now);
@@ -91,7 +93,7 @@ void begin(Remote& remote, Bus& bus, const Step& step, TimePoint now, std::vecto
     case 13: return write<od::unsigned24_value>(remote, bus, step, now);
     case 14: return write<od::integer64_value>(remote, bus, step, now);
     case 15: return write<od::unsigned40_value>(remote, bus, step, now);
-    case 16: (void)remote.read<od::manufacturer_device_name>(memory, now); return;
+    case text: (void)remote.read<od::manufacturer_device_name>(memory, now); return;
     case 17: return read<od::error_register>(remote, step, now);
     case 18: return write<od::producer_heartbeat_time>(remote, bus, step, now);
     default: return read<od::producer_heartbeat_time>(remote, step, now);
