@@ -10,6 +10,7 @@ In README.md and docs/*.md
 - a block under `<!-- run by: path -->` is run by that test, which names the document.
 - a block under `<!-- path -->` is part of that file, character by character.
 - a block under `<!-- output: command -->` is the output of the command.
+- the syntax of a ```python block, which is for another library, is checked.
 """
 
 from __future__ import annotations
@@ -46,6 +47,14 @@ def check_commands(document: Path, text: str, folder: Path, environment: dict[st
     return problems
 
 
+def check_python(document: Path, text: str) -> list[str]:
+    try:
+        compile(text, str(document), "exec")
+    except SyntaxError as error:
+        return [f"{document}: line {error.lineno} of a block: {error.msg}"]
+    return []
+
+
 def check_block(document: Path, block: re.Match[str], source: Path, folder: Path, environment: dict[str, str]) -> list[str]:
     mark, text = block["mark"], block["text"]
     if mark and mark.startswith("output: "):
@@ -59,6 +68,8 @@ def check_block(document: Path, block: re.Match[str], source: Path, folder: Path
         return [] if found else [f"{document}: the block under {mark} is not in that file"]
     if block["language"] == "sh":
         return check_commands(document, text, folder, environment)
+    if block["language"] == "python":
+        return check_python(document, text)
     return []
 
 

@@ -84,12 +84,16 @@ class DocumentTest(unittest.TestCase):
             program.end()
 
     def run_document(self, document: str) -> dict[str, str]:
-        """Returns what each command has printed."""
+        """Returns what each command has printed, the last time if it occurs twice."""
+        return dict(self.run_commands(document))
+
+    def run_commands(self, document: str) -> list[tuple[str, str]]:
+        """Returns each command and what it has printed."""
         mark = Path(sys.argv[0]).name
         blocks = re.compile(rf"<!-- run by: tests/package/{re.escape(mark)} -->\n```sh\n(.*?)```", re.DOTALL)
         commands = [line for block in blocks.findall((SOURCE_DIR / document).read_text()) for line in block.splitlines()]
         self.assertGreater(len(commands), 5)
-        return {command: self.run_command(command) for command in commands}
+        return [(command, self.run_command(command)) for command in commands]
 
     def run_command(self, line: str) -> str:
         line = line.replace("29536", self.port)
