@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The commands of docs/coming-from-python-canopen.md, docs/storage.md and docs/lss.md in their order.
+"""The commands of docs/coming-from-python-canopen.md, docs/pdos.md, docs/storage.md and docs/lss.md in their order.
 
     pages_test.py SOURCE_DIR BUILD_DIR [unittest arguments]
 """
@@ -26,6 +26,11 @@ class Pages(DocumentTest):
         (read,) = [json.loads(output) for output in outputs if output.startswith("{")]
         self.assertEqual(read["entries"][0]["value"], 500)
         self.assertIn(" operational ", outputs[-1])
+
+    def test_mapping(self) -> None:
+        printed = self.run_commands("docs/pdos.md")
+        self.assertIn("60640020h", printed[-1][1])
+        self.assertIn("60410010h", printed[-1][1])
 
     def test_storage(self) -> None:
         printed = self.run_commands("docs/storage.md")
