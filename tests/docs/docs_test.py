@@ -4,7 +4,7 @@ links exist, and the output of commands is as printed.
 
     docs_test.py SOURCE_DIR EDSC
 
-In README.md and docs/*.md
+In README.md, CONTRIBUTING.md, CHANGELOG.md and all *.md of docs
 - each line of a ```sh block is run in a copy of the repository, with edsc in the PATH. `./demo.sh` builds and runs there;
   `./test.sh` is not run, but must exist.
 - a block under `<!-- run by: path -->` is run by that test, which names the document.
@@ -85,7 +85,7 @@ def check_links(document: Path, text: str, source: Path) -> list[str]:
 def main() -> int:
     source, edsc = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
     documents = [Path("README.md"), Path("CONTRIBUTING.md"), Path("CHANGELOG.md"), *sorted(
-        path.relative_to(source) for path in (source / "docs").glob("*.md"))]
+        path.relative_to(source) for path in (source / "docs").rglob("*.md"))]
     problems: list[str] = []
     blocks = 0
     with tempfile.TemporaryDirectory() as temporary:

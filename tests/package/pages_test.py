@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The commands of docs/coming-from-python-canopen.md, docs/pdos.md, docs/storage.md and docs/lss.md in their order.
+"""The commands of docs/how-to/coming-from-python-canopen.md, docs/pdos.md, docs/how-to/storage.md and docs/how-to/lss.md in their order.
 
     pages_test.py SOURCE_DIR BUILD_DIR [unittest arguments]
 """
@@ -20,7 +20,7 @@ class Pages(DocumentTest):
         program.wait_for("state initialisation, node-ID none")  # it waits for LSS
 
     def test_python_canopen(self) -> None:
-        printed = self.run_document("docs/coming-from-python-canopen.md")
+        printed = self.run_document("docs/how-to/coming-from-python-canopen.md")
         outputs = list(printed.values())
         self.assertIn('1008h:00 Manufacturer device name = "TC1-8/230"\n', outputs)
         (read,) = [json.loads(output) for output in outputs if output.startswith("{")]
@@ -33,13 +33,13 @@ class Pages(DocumentTest):
         self.assertIn("60410010h", printed[-1][1])
 
     def test_storage(self) -> None:
-        printed = self.run_commands("docs/storage.md")
+        printed = self.run_commands("docs/how-to/storage.md")
         reads = [output for command, output in printed if command.startswith("edsc read")]
         self.assertEqual(reads, ["1017h:00 Producer heartbeat time = 250 (00FAh)\n",
                                  "1017h:00 Producer heartbeat time = 0\n"])
 
     def test_lss(self) -> None:
-        printed = self.run_document("docs/lss.md")
+        printed = self.run_document("docs/how-to/lss.md")
         self.assertIn("node-ID 7", printed["edsc lss $BUS inquire"])
         self.assertEqual(list(printed.values())[-1], "1018h:04 Identity object, Serial number = 00000001h\n")
 
