@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The commands of docs/how-to/coming-from-python-canopen.md, docs/pdos.md, docs/how-to/storage.md and docs/how-to/lss.md in their order.
+"""The commands of docs/pdos.md and of docs/how-to/{coming-from-python-canopen,lss,storage}.md in their order.
 
     pages_test.py SOURCE_DIR BUILD_DIR [unittest arguments]
 """
