@@ -102,6 +102,11 @@ NodeModel* Decoder::model_of(std::uint8_t node_id) {
   return found == nodes_.end() ? nullptr : &*found;
 }
 
+const NodeModel* Decoder::find_model(std::uint8_t node_id) const {
+  const auto found = std::ranges::find(nodes_, node_id, &NodeModel::node_id);
+  return found == nodes_.end() ? nullptr : &*found;
+}
+
 // Use of CAN-IDs
 
 Decoder::Route Decoder::predefined_route(const Frame& frame) {
@@ -220,6 +225,7 @@ void Decoder::decode_pdo(const Frame& frame, std::span<const Route> routes, Mess
   message.service = pdo.direction == PdoDirection::transmit ? Service::tpdo : Service::rpdo;
   message.node_id = node.node_id();
   message.number = pdo.number;
+  message.pdo = &pdo;
   if (frame.remote) {
     message.text += "requested";
     return;
@@ -237,7 +243,9 @@ void Decoder::decode_pdo(const Frame& frame, std::span<const Route> routes, Mess
     const bool sender = taken.direction == PdoDirection::transmit;
     fmt::format_to(std::back_inserter(message.text), " -> {}PDO {} of node {}", sender ? 'T' : 'R', taken.number,
                    route.node_id);
-    if (sender) message.problem = true;
+    if (!sender) continue;
+    message.problem = true;
+    message.other_sender = route.node_id;
   }
 }
 
@@ -246,7 +254,11 @@ void Decoder::decode_sdo(const TimedFrame& frame, std::size_t follower, bool req
   message.service = Service::sdo;
   message.node_id = channel.node_id;
   message.from_client = request;
-  if (frame.frame.remote || frame.frame.size != 8) return wrong_length(frame.frame, "8", message);
+  message.channel = static_cast<std::uint16_t>(follower);
+  if (frame.frame.remote || frame.frame.size != 8) {
+    message.fault = SdoFault::length;
+    return wrong_length(frame.frame, "8", message);
+  }
   NodeModel* const model = model_of(channel.node_id);
   channel.sdo.follow(frame, request, model, message);
   if (model == nullptr || message.step != TransferStep::finished) return;

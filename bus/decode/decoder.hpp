@@ -35,6 +35,9 @@ class Decoder {
   /// Clears the message and fills it; its values are valid until the next call.
   void decode(const TimedFrame& frame, Message& message);
 
+  /// The node with the values in force after the frames so far; null if it is not known.
+  [[nodiscard]] const NodeModel* find_model(std::uint8_t node_id) const;
+
   /// `node 5: read of 1008h:00 Manufacturer device name after 7 bytes`, for each unfinished transfer.
   [[nodiscard]] std::vector<std::string> open_transfers() const;
 

@@ -71,16 +71,33 @@ struct MessageValue {
   std::size_t text_end = 0;
 };
 
+/// A violation of the SDO protocol (CiA 301, 7.2.4.3).
+enum class SdoFault : std::uint8_t {
+  none,
+  length,       ///< not 8 bytes, or a remote frame
+  command,      ///< unknown, or does not fit the transfer in progress
+  unrequested,  ///< a response without a request
+  unfinished,   ///< a new request before the end of the transfer
+  toggle,       ///< wrong toggle bit of a segment, its request or its confirmation
+  sequence,     ///< wrong sequence number in a block transfer
+  size,         ///< other number of bytes than announced
+  crc,          ///< wrong CRC of a block transfer
+};
+
 /// The progress of an SDO transfer.
 enum class TransferStep : std::uint8_t { none, part, finished, aborted };
 
+struct PdoLayout;
+
 struct Message {
   Service service = Service::unknown;
-  std::uint8_t node_id = 0;      ///< 0: none, or all
-  std::uint8_t values_node = 0;  ///< of a multiplex PDO: the node with the object; 0: `node_id`
-  std::uint16_t number = 0;      ///< of a PDO
-  bool from_client = false;      ///< SDO, LSS: to the server or slave
-  bool problem = false;          ///< an error or anomaly
+  std::uint8_t node_id = 0;        ///< 0: none, or all
+  std::uint8_t values_node = 0;    ///< of a multiplex PDO: the node with the object; 0: `node_id`
+  std::uint16_t number = 0;        ///< of a PDO
+  const PdoLayout* pdo = nullptr;  ///< the layout in force of a PDO, until the next frame
+  std::uint8_t other_sender = 0;   ///< a second node whose TPDO has this CAN-ID; 0: none
+  bool from_client = false;        ///< SDO, LSS: to the server or slave
+  bool problem = false;            ///< an error or anomaly
   std::string text;
   std::vector<MessageValue> values;
 
@@ -97,6 +114,8 @@ struct Message {
   std::uint32_t size = 0;         ///< bytes so far
   std::int64_t duration_us = -1;  ///< of a finished transfer, if the log has time stamps
   std::uint32_t abort_code = 0;
+  std::uint16_t channel = 0;  ///< of SDO: the node-ID for its default SDO; larger numbers for additional servers
+  SdoFault fault = SdoFault::none;
 
   /// Resets to the initial state, but keeps the memory of its texts.
   void clear() {
@@ -108,6 +127,19 @@ struct Message {
     values.clear();
   }
 };
+
+/// Whether the node of a message is its sender.
+[[nodiscard]] inline bool is_from_node(const Message& message) {
+  switch (message.service) {
+    case Service::boot_up:
+    case Service::heartbeat:
+    case Service::guarding: return !message.state.empty();
+    case Service::emcy:
+    case Service::tpdo: return true;
+    case Service::sdo: return !message.from_client;
+    default: return false;
+  }
+}
 
 /// A frame and its time.
 struct TimedFrame {

@@ -1,5 +1,6 @@
 #include "decode/node_model.hpp"
 
+#include <array>
 #include <canopen/pdo/pdo_mapping.hpp>
 
 #include "device/cob_id_parameter.hpp"
@@ -24,6 +25,11 @@ constexpr std::uint32_t key_of(std::uint16_t index, std::uint8_t sub_index) {
 bool counts(std::uint16_t index, std::uint8_t sub_index) {
   return canopen::find_cob_id_entries(index, sub_index).has_value() || contains(mapping_parameters, index);
 }
+
+/// Parameters that change when frames are sent: SYNC, EMCY, heartbeat and NMT start-up, communication of PDOs.
+constexpr std::array timing_parameters = {IndexRange{0x1005, 0x1007}, IndexRange{0x1014, 0x1017},
+                                          IndexRange{0x1019, 0x1019}, IndexRange{0x1400, 0x15FF},
+                                          IndexRange{0x1800, 0x19FF}, IndexRange{0x1F80, 0x1F80}};
 
 constexpr std::uint16_t from_communication_to_mapping = 0x200;
 
@@ -144,9 +150,11 @@ bool NodeModel::learn(std::uint16_t index, std::uint8_t sub_index, std::span<con
   const bool of_communication = sub_index == 1 || sub_index == communication;
   if (written && index == store && of_communication && number == save_signature) stored_ = written_;
   if (written && index == restore && of_communication && number == load_signature) stored_.clear();
-  if (!counts(index, sub_index) || device_->find(index) == nullptr) return false;
-  if (parameter(index, sub_index) == number) return false;
+  const bool changes_meaning = counts(index, sub_index);
+  if (!changes_meaning && !contains(timing_parameters, index)) return false;
+  if (device_->find(index) == nullptr || parameter(index, sub_index) == number) return false;
   written_[key_of(index, sub_index)] = number;
+  if (!changes_meaning) return false;
   for (std::size_t at = 0; at < pdos_.size(); ++at) {
     const std::uint16_t first = communication_of(pdos_[at]);
     if (index == first || index == first + from_communication_to_mapping) lay_out(at);

@@ -65,6 +65,10 @@ class NodeModel {
   /// Whether an entry is a controlword or statusword of this device.
   [[nodiscard]] DriveWord drive_word(std::uint16_t index, std::uint8_t sub_index) const;
 
+  /// The value in force of a COB-ID, mapping or timing parameter: of the EDS, or as written or read in the log. Empty
+  /// if neither states one.
+  [[nodiscard]] std::optional<std::uint32_t> parameter(std::uint16_t index, std::uint8_t sub_index) const;
+
   /// `Statusword, 16 bits`: the meaning of a value of a mapping parameter.
   [[nodiscard]] std::string mapped_name(std::uint32_t mapping) const;
 
@@ -80,7 +84,6 @@ class NodeModel {
   using Key = std::uint32_t;
   using Parameters = std::map<Key, std::uint32_t>;
 
-  [[nodiscard]] std::optional<std::uint32_t> parameter(std::uint16_t index, std::uint8_t sub_index) const;
   [[nodiscard]] canopen::CobId cob_id(std::uint16_t index, std::uint8_t sub_index = 0) const;
   [[nodiscard]] PdoField field(std::uint32_t mapping) const;
   void lay_out(std::size_t pdo);

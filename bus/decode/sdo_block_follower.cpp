@@ -28,9 +28,10 @@ void SdoFollower::block_segment(const Step& step) {
   const bool last = (step.data[0] & canopen::sdo::last_block_segment) != 0;
   if (sequence == 0) {
     step.message.text += (download_ ? "write " : "read ") + label_ + ", a segment with the sequence number 0";
-    step.message.problem = true;
+    report(SdoFault::sequence, step);
     return;
   }
+  if (sequence != highest_ + 1) step.message.fault = SdoFault::sequence;
   const std::size_t at = (sequence - 1U) * segment_bytes;
   std::copy_n(step.data.begin() + 1, segment_bytes, block_.begin() + static_cast<std::ptrdiff_t>(at));
   seen_.set(sequence);
@@ -64,6 +65,8 @@ void SdoFollower::block_confirmed(const Step& step) {
   if (taken < highest_) {
     fmt::format_to(std::back_inserter(what), " of {}; the others are repeated", highest_);
     step.message.problem = true;
+  } else if (taken > highest_) {
+    step.message.fault = SdoFault::sequence;
   }
   part(what, step);
   const bool all = last_seen_ && taken >= highest_;
@@ -83,7 +86,7 @@ void SdoFollower::block_end(const Step& step) {
   part(", end of the blocks", step);
   if (crc_used_ && complete_ && crc != crc_) {
     fmt::format_to(std::back_inserter(step.message.text), ", wrong CRC {:04X}h, expected {:04X}h", crc, crc_);
-    step.message.problem = true;
+    report(SdoFault::crc, step);
   }
   phase_ = Phase::block_ended;
 }
@@ -114,7 +117,7 @@ void SdoFollower::block_download_answer(const Step& step) {
       if (continues(phase_ == Phase::block_ended, "end", step)) finish(step);
       return;
     case 2: return block_confirmed(step);
-    default: step.message.text += "an unknown SDO response"; step.message.problem = true;
+    default: step.message.text += "an unknown SDO response"; report(SdoFault::command, step);
   }
 }
 

@@ -63,11 +63,17 @@ void SdoFollower::part(std::string_view what, const Step& step) const {
   put_transfer(TransferStep::part, step.message);
 }
 
+void SdoFollower::report(SdoFault fault, const Step& step) const {
+  step.message.problem = true;
+  step.message.fault = fault;
+}
+
 /// Whether the frame continues the transfer as expected; else reports it as a part of a transfer that is not known.
 bool SdoFollower::continues(bool expected, std::string_view what, const Step& step) const {
   if (expected) return true;
   step.message.text += what;
   step.message.text += " of a transfer whose start is not in the log";
+  if (begun_) step.message.fault = open() || step.message.from_client ? SdoFault::command : SdoFault::unrequested;
   return false;
 }
 
@@ -127,9 +133,10 @@ void SdoFollower::append(std::span<const std::uint8_t> bytes) {
 void SdoFollower::begin(const Step& step, bool download, std::string_view how) {
   if (open()) {
     step.message.text += "(the " + description() + " was not finished) ";
-    step.message.problem = true;
+    report(SdoFault::unfinished, step);
   }
   phase_ = Phase::asked;
+  begun_ = true;
   download_ = download;
   expedited_ = last_seen_ = toggle_ = holds_ = client_crc_ = crc_used_ = false;
   complete_ = true;
@@ -168,11 +175,11 @@ void SdoFollower::finish(const Step& step) {
   if (!expedited_) message.text += ", " + counted(total_, "byte");
   if (announced_ && *announced_ != total_ && !expedited_) {
     fmt::format_to(std::back_inserter(message.text), " of {} announced", *announced_);
-    message.problem = true;
+    report(SdoFault::size, step);
   }
   if (!complete_) {
     message.text += ", not all of them in the log";
-    message.problem = true;
+    report(SdoFault::sequence, step);
   }
   put_duration(step);
   phase_ = Phase::idle;
@@ -228,6 +235,7 @@ void SdoFollower::upload_answer(const Step& step) {
     append_entry_label(step.message.text, canopen::sdo::index_of(data), data[3]);
     step.message.text += open() && other ? ", which was not requested" : " that is not in the log";
     step.message.problem = open();
+    if (begun_) step.message.fault = open() ? SdoFault::command : SdoFault::unrequested;
     return;
   }
   expedited_ = (data[0] & canopen::sdo::expedited) != 0;
@@ -247,7 +255,7 @@ void SdoFollower::segment(const Step& step, bool from_client) {
   const std::uint32_t bytes = canopen::sdo::segment_bytes - (data[0] >> 1 & 7U);
   const bool last = (data[0] & canopen::sdo::last_segment) != 0;
   if (((data[0] & canopen::sdo::toggle) != 0) != toggle_) {
-    step.message.problem = true;
+    report(SdoFault::toggle, step);
     return part(", a segment with the wrong toggle bit", step);
   }
   put_bytes(total_, bytes, last, step);
@@ -263,7 +271,9 @@ void SdoFollower::segment(const Step& step, bool from_client) {
 /// The confirmation of a segment by the server; the client confirms one of an upload by its next request.
 void SdoFollower::segment_confirmed(const Step& step) {
   if (!continues(phase_ == Phase::segments && download_, "confirmation of a segment", step)) return;
-  part(", segment confirmed", step);
+  const bool right = ((step.data[0] & canopen::sdo::toggle) != 0) == toggle_;
+  if (!right) report(SdoFault::toggle, step);
+  part(right ? ", segment confirmed" : ", segment confirmed with the wrong toggle bit", step);
   toggle_ = !toggle_;
   if (!last_seen_) return;
   step.message.text += "; ";
@@ -286,7 +296,9 @@ void SdoFollower::request(const Step& step) {
     case ClientCommand::initiate_upload: return begin(step, false);
     case ClientCommand::upload_segment:
       if (!continues(phase_ == Phase::segments && !download_, "request for a segment", step)) return;
-      return part(", next segment", step);
+      if (((step.data[0] & canopen::sdo::toggle) != 0) == toggle_) return part(", next segment", step);
+      report(SdoFault::toggle, step);
+      return part(", next segment with the wrong toggle bit", step);
     case ClientCommand::abort: return abort(step);
     case ClientCommand::block_upload: return block_upload_command(step);
     case ClientCommand::block_download:
@@ -294,7 +306,7 @@ void SdoFollower::request(const Step& step) {
     case ClientCommand::reserved: break;
   }
   step.message.text += "an unknown SDO request";
-  step.message.problem = true;
+  report(SdoFault::command, step);
 }
 
 void SdoFollower::response(const Step& step) {
@@ -304,6 +316,12 @@ void SdoFollower::response(const Step& step) {
     case ServerCommand::initiate_upload: return upload_answer(step);
     case ServerCommand::initiate_download:
       if (!continues(phase_ == Phase::asked && download_, "confirmation", step)) return;
+      if (canopen::sdo::index_of(step.data) != index_ || step.data[3] != sub_index_) {
+        step.message.text += "confirmation of a write of ";
+        append_entry_label(step.message.text, canopen::sdo::index_of(step.data), step.data[3]);
+        step.message.text += ", which was not requested";
+        return report(SdoFault::command, step);
+      }
       if (expedited_) return finish(step);
       phase_ = Phase::segments;
       return part(", ready for the segments", step);
@@ -313,7 +331,7 @@ void SdoFollower::response(const Step& step) {
     case ServerCommand::reserved: break;
   }
   step.message.text += "an unknown SDO response";
-  step.message.problem = true;
+  report(SdoFault::command, step);
 }
 
 }  // namespace edsc

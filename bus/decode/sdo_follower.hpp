@@ -56,6 +56,7 @@ class SdoFollower {
 
   void request(const Step& step);
   void response(const Step& step);
+  void report(SdoFault fault, const Step& step) const;
   [[nodiscard]] bool continues(bool expected, std::string_view what, const Step& step) const;
   void part(std::string_view what, const Step& step) const;
   void begin(const Step& step, bool download, std::string_view how = {});
@@ -88,6 +89,7 @@ class SdoFollower {
   void put_transfer(TransferStep transfer_step, Message& message) const;
 
   Phase phase_ = Phase::idle;
+  bool begun_ = false;  ///< the log has the start of a transfer
   bool download_ = false;
   bool expedited_ = false;
   bool last_seen_ = false;

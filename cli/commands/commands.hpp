@@ -29,6 +29,7 @@ AddOptions add_bus_options;
 AddOptions add_record_options;
 AddOptions add_decode_options;
 AddOptions add_plot_options;
+AddOptions add_audit_options;
 AddOptions add_completion_options;
 
 // Subcommands of `network`.
@@ -69,6 +70,7 @@ inline constexpr CommandRow commands[] = {
     {"Bus", "bus", "virtual CAN buses on this machine, for socketcand clients", add_bus_options},
     {"Logs", "record", "write the frames of a bus as a candump log", add_record_options},
     {"Logs", "decode", "decode the frames of a log", add_decode_options},
+    {"Logs", "audit", "judge a log by the EDS files of its nodes", add_audit_options},
     {"Logs", "plot", "plot values of a log over time, as SVG", add_plot_options},
     {"Shell", "completion", "print the completion for a shell, or the manual page", add_completion_options},
 };

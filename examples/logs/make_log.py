@@ -19,7 +19,7 @@ def frames():
         if tick % 6000 == 2:
             yield tick, "205#" + setpoint.to_bytes(2, "little").hex().upper()
         if tick % 360_000 == 3000:
-            yield tick, "085#1042080000000000"
+            yield tick, "085#1042090000000000"
 
 
 def main() -> None:

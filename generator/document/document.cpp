@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "backend/render.hpp"
+#include "backend/template_parts.hpp"
 #include "document/views.hpp"
 #include "text/counted.hpp"
 
@@ -23,7 +24,6 @@ std::string with_empty_lines(std::string text) {
 
 /// Renders the template of this name: `device` or `network`.
 std::string rendered(std::string_view name, Json view, DocumentFormat format) {
-  using document::with_parts;
   if (format == DocumentFormat::markdown) {
     return with_empty_lines(render_markdown(with_parts(fmt::format("{}.md", name)), view));
   }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "backend/render.hpp"
+#include "backend/template_parts.hpp"
 #include "document/views.hpp"
 
 namespace edsc {
@@ -56,7 +57,7 @@ std::string svg(std::string_view section, std::string title, const Json& drawing
             {"topology", nullptr},
             {"sync", nullptr}};
   view[std::string{section}] = drawing;
-  return render_html(document::with_parts("drawing.svg"), view);
+  return render_html(with_parts("drawing.svg"), view);
 }
 
 }  // namespace

@@ -56,10 +56,6 @@ void add_changes(const ComparedWith* compared, Json& view);
 /// At most `max` code points; the last one is an ellipsis if the text is longer.
 [[nodiscard]] std::string shortened(std::string_view text, std::size_t max);
 
-/// The text of a template, with the templates that its lines `{{>name}}` include. A part without an extension has that
-/// of the template.
-[[nodiscard]] std::string with_parts(std::string_view name);
-
 /// `topology`: the drawing; null if no node receives a PDO or SYNC of another one. `links`: the same as rows.
 void add_topology(const Network& network, Json& view);
 

@@ -42,6 +42,7 @@ class LogDecoder {
   void finish(std::string& complaints);
 
   [[nodiscard]] const Summary& summary() const { return summary_; }
+  [[nodiscard]] const Decoder& decoder() const { return decoder_; }
   [[nodiscard]] bool skipped_lines() const { return summary_.broken_lines() > 0; }
 
  private:

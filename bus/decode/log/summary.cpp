@@ -15,19 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Whether the node is the sender of the frame.
-bool is_of_node(const Message& message) {
-  switch (message.service) {
-    case Service::boot_up:
-    case Service::heartbeat:
-    case Service::guarding: return !message.state.empty();
-    case Service::emcy:
-    case Service::tpdo: return true;
-    case Service::sdo: return !message.from_client;
-    default: return false;
-  }
-}
-
 /// `1, 3..8`
 std::string ranges_of(const std::vector<std::size_t>& ids) {
   std::string text;
@@ -105,7 +92,7 @@ void Summary::add(const LogLine& line, const Message& message) {
   Node& node = nodes_[message.node_id % node_ids];
   ++frames_;
   ++node.frames[static_cast<std::size_t>(message.service)];
-  if (is_of_node(message)) node.sends = true;
+  if (is_from_node(message)) node.sends = true;
   if (message.problem) ++problems_;
   if (line.has_time) {
     last_us_ = first_us_ ? std::max(last_us_, line.microseconds) : line.microseconds;

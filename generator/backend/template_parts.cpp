@@ -1,10 +1,11 @@
+#include "backend/template_parts.hpp"
+
 #include <string>
 #include <string_view>
 
 #include "backend/render.hpp"
-#include "document/views.hpp"
 
-namespace edsc::document {
+namespace edsc {
 
 std::string with_parts(std::string_view name) {
   constexpr std::string_view begin = "{{>";
@@ -19,4 +20,4 @@ std::string with_parts(std::string_view name) {
   return text;
 }
 
-}  // namespace edsc::document
+}  // namespace edsc

@@ -1,0 +1,198 @@
+#include "audit/audit_report.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "backend/render.hpp"
+#include "backend/template_parts.hpp"
+#include "text/counted.hpp"
+#include "text/printable.hpp"
+#include "values/append.hpp"
+
+namespace edsc::audit {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+/// `1.234567 s`
+std::string time_text(const Moment& moment) {
+  if (!moment.has_time) return {};
+  return fmt::format("{}.{:06} s", moment.us / 1'000'000, moment.us % 1'000'000);
+}
+
+/// `node 5 axis1, 1800h:05 TPDO communication parameter`
+std::string subject_text(const Finding& finding, const Report& report) {
+  const Subject& subject = finding.subject;
+  std::string text;
+  if (subject.node_id != 0) {
+    text = fmt::format("node {}", unsigned{subject.node_id});
+    if (const std::string_view name = report.labels->name(subject.node_id); !name.empty())
+      text += fmt::format(" {}", name);
+  }
+  const auto separate = [&text] { text += text.empty() ? "" : ", "; };
+  const bool has_can_id = subject.can_id != 0 && subject.rule != RuleId::sdo_abort;
+  if (has_can_id) {
+    separate();
+    text += fmt::format("CAN-ID {:0{}X}h", subject.can_id, subject.extended ? 8 : 3);
+  }
+  if (subject.index == 0) return text.empty() ? "bus" : text;
+  separate();
+  const bool is_tpdo = subject.index >= 0x1800 && subject.index < 0x1A00;
+  const bool is_rpdo = subject.index >= 0x1400 && subject.index < 0x1600;
+  if (is_tpdo || is_rpdo) {
+    return text + fmt::format("{}PDO {}", is_tpdo ? 'T' : 'R', subject.index - (is_tpdo ? 0x1800 : 0x1400) + 1);
+  }
+  append_entry_label(text, subject.index, subject.sub_index);
+  const NodeModel* const model = report.decoder->find_model(subject.node_id);
+  const Object* const object = model != nullptr ? model->device().find(subject.index) : nullptr;
+  return object != nullptr ? fmt::format("{} {}", text, object->name) : text;
+}
+
+std::string occurrence_text(const Finding& finding) {
+  if (finding.count == 1) return finding.first.has_time ? "at " + time_text(finding.first) : std::string{};
+  std::string text = counted(finding.count, "time");
+  if (finding.first.has_time) text += ", first at " + time_text(finding.first);
+  if (finding.worst.line == finding.first.line) return text;
+  text += fmt::format(", the shown one in line {}", finding.worst.line);
+  if (finding.worst.has_time) text += " at " + time_text(finding.worst);
+  return text;
+}
+
+std::string load_text(const Report& report) {
+  if (report.limits.bit_rate == 0) return {};
+  const Totals& totals = report.totals;
+  return fmt::format(", load {}.{} %, at most {}.{} % over 100 ms", totals.mean_load / 10, totals.mean_load % 10,
+                     totals.max_load / 10, totals.max_load % 10);
+}
+
+/// `12,345 frames of 3 nodes in 60.5 s, load 12.3 %, ...`
+std::string totals_text(const Report& report) {
+  const Totals& totals = report.totals;
+  const std::string nodes = counted(totals.nodes, "node");
+  if (!totals.has_times) {
+    return fmt::format("{} of {}, without times: cycles and delays were not judged", counted(totals.frames, "frame"),
+                       nodes);
+  }
+  return fmt::format("{} of {} in {}.{:03} s{}", counted(totals.frames, "frame"), nodes, totals.duration_us / 1'000'000,
+                     totals.duration_us / 1000 % 1000, load_text(report));
+}
+
+std::string verdict_text(const Report& report) {
+  const Findings& findings = *report.findings;
+  const std::size_t listed = findings.in_order().size();
+  if (listed == 0) return "no findings";
+  std::string text = fmt::format("{}, {}, {}", counted(findings.count(Severity::error), "error"),
+                                 counted(findings.count(Severity::warning), "warning"),
+                                 counted(findings.count(Severity::note), "note"));
+  if (findings.not_listed() > 0) text += fmt::format(", {} not listed", counted(findings.not_listed(), "occurrence"));
+  return text;
+}
+
+std::string_view color_of(Severity severity) {
+  switch (severity) {
+    case Severity::error: return "\033[1;31m";
+    case Severity::warning: return "\033[1;35m";
+    case Severity::note: break;
+  }
+  return "\033[1;36m";
+}
+
+json moment_object(const Moment& moment) {
+  return {{"line", moment.line}, {"at_us", moment.has_time ? json(moment.us) : json(nullptr)}};
+}
+
+json finding_object(const Finding& finding, const Report& report) {
+  const Rule& rule = row_of(finding.subject.rule);
+  const Subject& subject = finding.subject;
+  const bool has_can_id = subject.can_id != 0 && subject.rule != RuleId::sdo_abort;
+  const auto or_null = [](bool has, auto value) { return has ? json(value) : json(nullptr); };
+  return {{"rule", rule.id},
+          {"severity", to_string(rule.severity)},
+          {"node_id", or_null(subject.node_id != 0, unsigned{subject.node_id})},
+          {"index", or_null(subject.index != 0, subject.index)},
+          {"sub_index", or_null(subject.index != 0, unsigned{subject.sub_index})},
+          {"can_id", or_null(has_can_id, subject.can_id)},
+          {"abort_code", or_null(subject.rule == RuleId::sdo_abort, subject.can_id)},
+          {"subject", printable(subject_text(finding, report))},
+          {"meaning", rule.meaning},
+          {"source", rule.source},
+          {"expected", printable(finding.expected)},
+          {"seen", printable(finding.seen)},
+          {"count", finding.count},
+          {"first", moment_object(finding.first)},
+          {"shown", moment_object(finding.worst)}};
+}
+
+}  // namespace
+
+bool Report::is_clean() const {
+  return findings->count(Severity::error) == 0 && findings->count(Severity::warning) == 0;
+}
+
+std::string text_report(const Report& report, bool color) {
+  std::string text;
+  for (const Finding* const finding : report.findings->in_order()) {
+    const Rule& rule = row_of(finding->subject.rule);
+    const std::string_view begin = color ? color_of(rule.severity) : std::string_view{};
+    text +=
+        fmt::format("{}:{}: {}{}:{} {}: {} [{}]\n    expected {}; seen: {}", printable(report.log), finding->first.line,
+                    begin, to_string(rule.severity), color ? "\033[0m" : "", printable(subject_text(*finding, report)),
+                    rule.meaning, rule.id, printable(finding->expected), printable(finding->seen));
+    if (const std::string occurrence = occurrence_text(*finding); !occurrence.empty()) text += "; " + occurrence;
+    text += '\n';
+  }
+  return text + fmt::format("{}: {}: {}\n", printable(report.log), totals_text(report), verdict_text(report));
+}
+
+std::string json_report(const Report& report) {
+  json findings = json::array();
+  for (const Finding* const finding : report.findings->in_order()) findings.push_back(finding_object(*finding, report));
+  const Totals& totals = report.totals;
+  const bool has_load = report.limits.bit_rate > 0 && totals.has_times;
+  const auto percent = [&](std::uint64_t tenths) {
+    return has_load ? json(static_cast<double>(tenths) / 10) : json(nullptr);
+  };
+  const json document = {{"version", 1},
+                         {"log", printable(report.log)},
+                         {"clean", report.is_clean()},
+                         {"frames", totals.frames},
+                         {"nodes", totals.nodes},
+                         {"duration_us", totals.has_times ? json(totals.duration_us) : json(nullptr)},
+                         {"mean_load_percent", percent(totals.mean_load)},
+                         {"max_load_percent", percent(totals.max_load)},
+                         {"errors", report.findings->count(Severity::error)},
+                         {"warnings", report.findings->count(Severity::warning)},
+                         {"notes", report.findings->count(Severity::note)},
+                         {"not_listed", report.findings->not_listed()},
+                         {"findings", std::move(findings)}};
+  return json_text(document) + '\n';
+}
+
+std::string html_report(const Report& report) {
+  json findings = json::array();
+  for (const Finding* const finding : report.findings->in_order()) {
+    const Rule& rule = row_of(finding->subject.rule);
+    findings.push_back({{"severity", to_string(rule.severity)},
+                        {"subject", subject_text(*finding, report)},
+                        {"meaning", rule.meaning},
+                        {"advice", rule.advice},
+                        {"rule", rule.id},
+                        {"source", rule.source},
+                        {"expected", finding->expected},
+                        {"seen", finding->seen},
+                        {"count", finding->count},
+                        {"line", finding->first.line},
+                        {"time", time_text(finding->first)}});
+  }
+  json view = {{"page_title", "Audit of " + report.log},
+               {"style", with_parts("document.css")},
+               {"log", report.log},
+               {"totals", totals_text(report)},
+               {"verdict", verdict_text(report)},
+               {"has_findings", !findings.empty()},
+               {"findings", findings}};
+  return render_html(with_parts("audit.html"), view);
+}
+
+}  // namespace edsc::audit

@@ -1,0 +1,31 @@
+/// The findings of an audit as text, JSON and HTML.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "audit/auditor.hpp"
+#include "decode/log/print_message.hpp"
+
+namespace edsc::audit {
+
+struct Report {
+  std::string log;
+  Totals totals;
+  Limits limits;
+  const Decoder* decoder = nullptr;
+  const NodeLabels* labels = nullptr;
+  const Findings* findings = nullptr;
+
+  /// Whether no finding is an error or a warning.
+  [[nodiscard]] bool is_clean() const;
+};
+
+/// A line for each finding, as of a compiler, and a summary.
+[[nodiscard]] std::string text_report(const Report& report, bool color);
+/// By docs/schema/audit.schema.json.
+[[nodiscard]] std::string json_report(const Report& report);
+/// A page without links to other files.
+[[nodiscard]] std::string html_report(const Report& report);
+
+}  // namespace edsc::audit

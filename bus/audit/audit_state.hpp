@@ -1,0 +1,83 @@
+/// What the checks of an audit share: limits, findings, and the nodes with their NMT state and values in force.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <canopen/can/frame.hpp>
+#include <canopen/nmt/nmt.hpp>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "audit/findings.hpp"
+#include "audit/node_settings.hpp"
+#include "decode/decoder.hpp"
+#include "decode/message.hpp"
+
+namespace edsc::audit {
+
+struct Limits {
+  unsigned tolerance = 10;  ///< of a time, in percent
+  std::int64_t sdo_timeout_us = 1'000'000;
+  std::uint32_t bit_rate = 0;  ///< in bit/s; 0: the load is not computed
+  unsigned max_load = 80;      ///< in percent of the bit rate
+
+  /// How much a time may differ from the nominal one. At least a millisecond, but at most half of the time: a frame
+  /// waits for others on the bus, and devices count in milliseconds.
+  [[nodiscard]] std::int64_t slack(std::int64_t us) const {
+    constexpr std::int64_t tick = 1000;
+    return std::max(us * static_cast<std::int64_t>(tolerance) / 100, std::min(us / 2, tick));
+  }
+};
+
+/// The time that a node has to obey an NMT command, or to report an event: in between both states are right.
+inline constexpr std::int64_t reaction_us = 100'000;
+/// The time from a reset command to the boot-up message.
+inline constexpr std::int64_t max_boot_us = 5'000'000;
+
+struct NodeState {
+  const NodeModel* model = nullptr;  ///< null without an EDS
+  NodeSettings settings;
+  std::int64_t settings_since = 0;
+  std::optional<Moment> first_seen;  ///< the first frame that the node sent
+
+  std::optional<canopen::NmtState> state, previous;  ///< empty if not known
+  Moment state_since;
+  std::optional<std::int64_t> last_emcy_us;
+  std::optional<std::int64_t> last_heartbeat_error_us;  ///< EMCY 8130h
+
+  [[nodiscard]] bool is_operational() const { return state == canopen::NmtState::operational; }
+
+  /// Whether the node may be in this state: it is not known, the right one, or a command has just ended it.
+  [[nodiscard]] bool may_be(canopen::NmtState wanted, const Moment& now) const {
+    if (!state || *state == wanted) return true;
+    if (previous && *previous != wanted) return false;
+    return !now.has_time || now.us - state_since.us < reaction_us;
+  }
+
+  /// Since when the state and the settings have been as they are.
+  [[nodiscard]] std::int64_t unchanged_since() const { return std::max(settings_since, state_since.us); }
+};
+
+/// A frame with its meaning; the state of the nodes is that before it.
+struct SeenMessage {
+  const canopen::Frame& frame;
+  const Message& message;
+  Moment at;
+};
+
+struct AuditState {
+  static constexpr std::size_t node_ids = 128;
+
+  Limits limits;
+  Findings findings;
+  std::array<NodeState, node_ids> nodes;
+  std::vector<std::uint8_t> known;  ///< the node-IDs with an EDS
+
+  [[nodiscard]] NodeState& sender(const Message& message) { return nodes[message.node_id % node_ids]; }
+};
+
+/// `152.3 ms`
+[[nodiscard]] std::string milliseconds(std::int64_t us);
+
+}  // namespace edsc::audit

@@ -1,0 +1,85 @@
+#include "audit/auditor.hpp"
+
+#include <algorithm>
+
+namespace edsc::audit {
+
+Auditor::Auditor(const Decoder& decoder, const Limits& limits)
+    : nmt_{[this](std::uint8_t node_id, const Moment& now) { end_stretch(node_id, now); }} {
+  audit_.limits = limits;
+  for (std::size_t id = 1; id < AuditState::node_ids; ++id) {
+    NodeState& node = audit_.nodes[id];
+    node.model = decoder.find_model(static_cast<std::uint8_t>(id));
+    if (node.model == nullptr) continue;
+    node.settings = settings_of(*node.model);
+    audit_.known.push_back(static_cast<std::uint8_t>(id));
+  }
+}
+
+/// A time before that of an earlier frame, as in logs of two interfaces, counts as the same time.
+Moment Auditor::moment_of(const LogLine& line) {
+  Moment moment{line.number, line.has_time, now_.us};
+  if (!line.has_time) return moment;
+  if (!begin_us_) begin_us_ = line.microseconds;
+  moment.us = std::max(now_.us, line.microseconds - *begin_us_);
+  return moment;
+}
+
+void Auditor::end_stretch(std::uint8_t node_id, const Moment& now) {
+  heartbeat_.end_stretch(node_id, now, audit_);
+  pdo_.end_stretch(node_id, now, audit_);
+}
+
+/// A finished transfer or a boot-up message may have changed what is in force.
+void Auditor::read_settings(const Message& message) {
+  const bool of_communication = message.index >= 0x1000 && message.index < 0x2000;
+  const bool transferred = message.step == TransferStep::finished && of_communication;
+  if (!transferred && message.service != Service::boot_up) return;
+  NodeState& node = audit_.sender(message);
+  if (node.model == nullptr) return;
+  NodeSettings settings = settings_of(*node.model);
+  if (settings == node.settings) return;
+  end_stretch(message.node_id, now_);
+  node.settings = std::move(settings);
+  node.settings_since = now_.us;
+}
+
+void Auditor::see(const LogLine& line, const Message& message) {
+  now_ = moment_of(line);
+  ++frames_;
+  const SeenMessage seen{line.frame, message, now_};
+  bus_.see(seen, audit_);
+  heartbeat_.see(seen, audit_);
+  nmt_.see(seen, audit_);
+  sync_.see(seen, audit_);
+  pdo_.see(seen, audit_);
+  emergency_.see(seen, audit_);
+  sdo_.see(seen, audit_);
+  lss_.see(seen, audit_);
+  NodeState& node = audit_.sender(message);
+  if (!node.first_seen && is_from_node(message) && !line.frame.remote) node.first_seen = now_;
+  read_settings(message);
+}
+
+void Auditor::finish() {
+  nmt_.finish(now_, audit_);
+  heartbeat_.finish(now_, audit_);
+  sync_.finish(now_, audit_);
+  pdo_.finish(now_, audit_);
+  emergency_.finish(audit_);
+  sdo_.finish(now_, audit_);
+  bus_.finish(now_, audit_);
+}
+
+Totals Auditor::totals() const {
+  const auto nodes =
+      std::ranges::count_if(audit_.nodes, [](const NodeState& node) { return node.first_seen.has_value(); });
+  return {frames_,
+          begin_us_.has_value(),
+          now_.us,
+          static_cast<std::size_t>(nodes),
+          bus_.mean_load(now_, audit_.limits),
+          bus_.max_load()};
+}
+
+}  // namespace edsc::audit

@@ -1,0 +1,71 @@
+/// A verdict on a recorded bus: each frame is judged by the parameters in force of the nodes, with memory that does not
+/// grow with the log.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "audit/audit_state.hpp"
+#include "audit/checks/bus_check.hpp"
+#include "audit/checks/emergency_check.hpp"
+#include "audit/checks/heartbeat_check.hpp"
+#include "audit/checks/lss_check.hpp"
+#include "audit/checks/nmt_check.hpp"
+#include "audit/checks/pdo_check.hpp"
+#include "audit/checks/sdo_check.hpp"
+#include "audit/checks/sync_check.hpp"
+#include "decode/decoder.hpp"
+#include "decode/log/log_line.hpp"
+
+namespace edsc::audit {
+
+/// What an audit has seen, beside its findings.
+struct Totals {
+  std::uint64_t frames = 0;
+  bool has_times = false;
+  std::int64_t duration_us = 0;
+  std::size_t nodes = 0;        ///< that sent at least one frame
+  std::uint64_t mean_load = 0;  ///< in tenths of a percent
+  std::uint64_t max_load = 0;   ///< over 100 ms, in tenths of a percent
+};
+
+class Auditor {
+ public:
+  /// The decoder, which evaluates the same frames, must outlive the auditor.
+  Auditor(const Decoder& decoder, const Limits& limits);
+  Auditor(const Auditor&) = delete;
+  Auditor& operator=(const Auditor&) = delete;
+
+  void silence(RuleId rule) { audit_.findings.silence(rule); }
+
+  /// Judges a frame whose message the decoder has just returned.
+  void see(const LogLine& line, const Message& message);
+
+  /// Judges what is missing at the end of the log.
+  void finish();
+
+  [[nodiscard]] const Findings& findings() const { return audit_.findings; }
+  /// After `finish()`.
+  [[nodiscard]] Totals totals() const;
+
+ private:
+  [[nodiscard]] Moment moment_of(const LogLine& line);
+  void end_stretch(std::uint8_t node_id, const Moment& now);
+  void read_settings(const Message& message);
+
+  AuditState audit_;
+  NmtCheck nmt_;
+  HeartbeatCheck heartbeat_;
+  SyncCheck sync_;
+  PdoCheck pdo_;
+  EmergencyCheck emergency_;
+  SdoCheck sdo_;
+  LssCheck lss_;
+  BusCheck bus_;
+  std::uint64_t frames_ = 0;
+  std::optional<std::int64_t> begin_us_;
+  Moment now_;
+};
+
+}  // namespace edsc::audit

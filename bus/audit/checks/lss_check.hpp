@@ -1,0 +1,26 @@
+/// LSS (CiA 305): responses fit requests, and configuration needs the configuration state.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "audit/audit_state.hpp"
+
+namespace edsc::audit {
+
+class LssCheck {
+ public:
+  void see(const SeenMessage& seen, AuditState& audit);
+
+ private:
+  /// Whether a slave is in the configuration state.
+  enum class Slaves : std::uint8_t { unknown, waiting, configure };
+
+  void request(const SeenMessage& seen, AuditState& audit);
+  void response(const SeenMessage& seen, AuditState& audit);
+
+  std::optional<std::uint8_t> last_request_;
+  Slaves slaves_ = Slaves::unknown;
+};
+
+}  // namespace edsc::audit

@@ -1,0 +1,41 @@
+/// PDOs against their parameters: state, length, event timer, inhibit time, transmission type and synchronous window.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "audit/audit_state.hpp"
+
+namespace edsc::audit {
+
+class PdoCheck {
+ public:
+  void see(const SeenMessage& seen, AuditState& audit);
+  /// The state or the settings of a node change: until then the old ones are in force.
+  void end_stretch(std::uint8_t node_id, const Moment& now, AuditState& audit);
+  void finish(const Moment& end, AuditState& audit);
+
+ private:
+  /// A TPDO since the state and the settings of its node changed.
+  struct Tpdo {
+    std::optional<std::int64_t> last_us;
+    std::uint32_t last_sync = 0;  ///< the number of SYNCs before it
+    bool sent = false;
+    bool requested = false;  ///< by a remote frame
+  };
+  struct Node {
+    std::vector<Tpdo> tpdos;  ///< by number - 1
+    std::uint32_t syncs = 0;  ///< since the state and the settings changed
+    std::optional<std::int64_t> sync_us;
+  };
+
+  void count_sync(const SeenMessage& seen, AuditState& audit);
+  void judge_frame(const SeenMessage& seen, AuditState& audit);
+  void judge_tpdo(const SeenMessage& seen, AuditState& audit);
+
+  std::array<Node, AuditState::node_ids> nodes_;
+};
+
+}  // namespace edsc::audit

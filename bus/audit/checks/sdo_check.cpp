@@ -1,0 +1,83 @@
+#include "audit/checks/sdo_check.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace edsc::audit {
+namespace {
+
+using Texts = std::pair<std::string, std::string>;
+
+struct FaultRow {
+  SdoFault fault;
+  RuleId rule;
+  std::string_view expected;
+};
+
+constexpr FaultRow fault_rows[] = {
+    {SdoFault::length, RuleId::sdo_length, "8 bytes"},
+    {SdoFault::command, RuleId::sdo_command, "a command that fits the transfer"},
+    {SdoFault::unrequested, RuleId::sdo_unrequested, "a request before"},
+    {SdoFault::unfinished, RuleId::sdo_unfinished, "the end of the transfer before"},
+    {SdoFault::toggle, RuleId::sdo_toggle, "the other toggle bit"},
+    {SdoFault::sequence, RuleId::sdo_sequence, "the next sequence number"},
+    {SdoFault::size, RuleId::sdo_size, "the announced number of bytes"},
+    {SdoFault::crc, RuleId::sdo_crc, "the CRC of the data"},
+};
+
+void judge_fault(const SeenMessage& seen, AuditState& audit) {
+  const Message& message = seen.message;
+  for (const FaultRow& row : fault_rows) {
+    if (row.fault != message.fault) continue;
+    audit.findings.add({row.rule, message.node_id, message.index, message.sub_index}, seen.at, 0, [&] {
+      return Texts{row.expected, message.text};
+    });
+  }
+}
+
+/// A node that never sent anything is not on the bus.
+bool answers(const NodeState& node) {
+  return node.first_seen && node.state != canopen::NmtState::initialisation && node.state != canopen::NmtState::stopped;
+}
+
+}  // namespace
+
+/// Returns whether the server has not answered in time. A node that boots or is stopped does not answer any more.
+bool SdoCheck::judge_answer(Channel& channel, const Moment& now, AuditState& audit) {
+  if (!channel.asked_us || !now.has_time) return false;
+  const NodeState& node = audit.nodes[channel.node_id];
+  const std::int64_t until = !answers(node) && node.state_since.us > *channel.asked_us ? node.state_since.us : now.us;
+  const std::int64_t waited = until - *channel.asked_us;
+  if (waited <= audit.limits.sdo_timeout_us) return false;
+  audit.findings.add({RuleId::sdo_timeout, channel.node_id, channel.index, channel.sub_index}, now, waited, [&] {
+    return Texts{"within " + milliseconds(audit.limits.sdo_timeout_us), "none for " + milliseconds(waited)};
+  });
+  return true;
+}
+
+void SdoCheck::see(const SeenMessage& seen, AuditState& audit) {
+  const Message& message = seen.message;
+  if (message.service != Service::sdo) return;
+  if (channels_.size() <= message.channel) channels_.resize(message.channel + 1U);
+  Channel& channel = channels_[message.channel];
+  channel.node_id = message.node_id;
+  const bool late = judge_answer(channel, seen.at, audit);
+  // The client gave up after its time: the transfer that it did not finish is one finding, not two.
+  const bool gave_up = late && message.fault == SdoFault::unfinished;
+  if (message.fault != SdoFault::none && !gave_up) judge_fault(seen, audit);
+  if (message.step == TransferStep::aborted) {
+    const Subject subject{RuleId::sdo_abort, message.node_id, message.index, message.sub_index, message.abort_code};
+    audit.findings.add(subject, seen.at, 0, [&] { return Texts{"the end of the transfer", message.text}; });
+  }
+  channel.asked_us.reset();
+  if (!message.from_client || message.step != TransferStep::part || !seen.at.has_time) return;
+  if (!answers(audit.sender(message))) return;
+  channel = {message.node_id, seen.at.us, message.index, message.sub_index};
+}
+
+void SdoCheck::finish(const Moment& end, AuditState& audit) {
+  for (Channel& channel : channels_) (void)judge_answer(channel, end, audit);
+}
+
+}  // namespace edsc::audit

@@ -1,0 +1,38 @@
+#include "audit/findings.hpp"
+
+#include <algorithm>
+
+namespace edsc::audit {
+
+Finding* Findings::count(const Subject& subject, const Moment& moment, std::int64_t badness) {
+  if (silenced_.contains(subject.rule)) return nullptr;
+  const auto found = findings_.find(subject);
+  if (found == findings_.end() && findings_.size() >= max_findings) {
+    ++not_listed_;
+    return nullptr;
+  }
+  Finding& finding = found != findings_.end() ? found->second : findings_[subject];
+  const bool is_first = finding.count++ == 0;
+  if (!is_first && badness <= finding.badness) return nullptr;
+  if (is_first) {
+    finding.subject = subject;
+    finding.first = moment;
+  }
+  finding.worst = moment;
+  finding.badness = badness;
+  return &finding;
+}
+
+std::vector<const Finding*> Findings::in_order() const {
+  std::vector<const Finding*> sorted;
+  for (const auto& [subject, finding] : findings_) sorted.push_back(&finding);
+  std::ranges::stable_sort(sorted, {}, [](const Finding* one) { return one->first.line; });
+  return sorted;
+}
+
+std::size_t Findings::count(Severity severity) const {
+  const auto has_severity = [severity](const auto& one) { return row_of(one.first.rule).severity == severity; };
+  return static_cast<std::size_t>(std::ranges::count_if(findings_, has_severity));
+}
+
+}  // namespace edsc::audit

@@ -1,0 +1,140 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "audit/audit_report.hpp"
+#include "commands/commands.hpp"
+#include "decode/log/log_decoder.hpp"
+#include "monitor/progress_line.hpp"
+#include "shared/define_command.hpp"
+#include "shared/exit_code.hpp"
+#include "shared/log_options.hpp"
+#include "shared/output.hpp"
+#include "text/counted.hpp"
+#include "text/printable.hpp"
+#include "text/suggestion.hpp"
+
+namespace edsc {
+namespace {
+
+using audit::RuleId;
+
+constexpr const char* examples = R"(Examples:
+  edsc audit can0.log --node 5=drive.eds --node 6=axis2.dcf       exit code 1 if there are errors or warnings
+  edsc audit trip.asc --node axis1.dcf --bit-rate 500             also the load of the bus
+  edsc audit capture.pcapng --node axis1.dcf --format html -o audit.html
+  candump -L can0 | edsc audit --node axis1.dcf --silence can-id-unknown
+  edsc audit --list-rules                                         every rule with its meaning)";
+
+struct Settings : LogSettings {
+  audit::Limits limits;
+  std::int64_t sdo_timeout_ms = 1000;
+  std::uint32_t bit_rate_kbit = 0;
+  std::vector<std::string> silence;
+  std::string format = "text";
+  std::string output;
+  bool list_rules = false;
+};
+
+int list_rules(const Settings& settings) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const audit::Rule& rule : audit::rule_table::rows) {
+    if (settings.format == "text") {
+      fmt::print("{:<20} {:<8} {} ({})\n", rule.id, to_string(rule.severity), rule.meaning, rule.source);
+    }
+    rows.push_back({{"id", rule.id},
+                    {"severity", to_string(rule.severity)},
+                    {"meaning", rule.meaning},
+                    {"source", rule.source},
+                    {"advice", rule.advice}});
+  }
+  if (settings.format != "text") fmt::print("{}\n", json_text(rows));
+  return exit_fine;
+}
+
+std::string report_text(const audit::Report& report, const Settings& settings) {
+  if (settings.format == "json") return json_report(report);
+  if (settings.format == "html") return html_report(report);
+  return text_report(report, settings.output.empty() && settings.color.on(stdout));
+}
+
+int audit_log(const Settings& given) {
+  if (given.list_rules) return list_rules(given);
+  Settings settings = given;
+  if (settings.nodes.empty()) fail("--node ID=FILE is missing; the EDS states how the node must behave");
+  settings.limits.sdo_timeout_us = settings.sdo_timeout_ms * 1000;
+  settings.limits.bit_rate = settings.bit_rate_kbit * 1000;
+  const LogNodes nodes = load_log_nodes(settings);
+  LogDecoder decoder{
+      nodes.known(), nodes.labels, {settings.log_name(), settings.interface, LogOutput::text, false, {}}};
+  audit::Auditor auditor{decoder.decoder(), settings.limits};
+  for (const std::string& id : settings.silence) auditor.silence(audit::find_rule(id)->rule);
+
+  std::uint64_t frames = 0;
+  std::string complaints;
+  ProgressLine progress;
+  const auto print_complaints = [&] {
+    if (complaints.empty()) return;
+    progress.hide();
+    std::fwrite(complaints.data(), 1, complaints.size(), stderr);
+    complaints.clear();
+  };
+  const auto use = [&](LogLine& line) {
+    const Message* const message = decoder.evaluate(line, complaints);
+    if (message == nullptr) return;
+    auditor.see(line, *message);
+    constexpr std::uint64_t some_frames = 4096;
+    if (++frames % some_frames == 0 && progress.due()) progress.show(counted(frames, "frame"));
+  };
+  const auto fail_if_unreadable = read_log(settings, use, print_complaints);
+  auditor.finish();
+  print_complaints();
+  progress.hide();
+  if (frames == 0) {
+    fail_if_unreadable();
+    fail(settings.log_name() + ": the log has no frames", exit_input_has_errors);
+  }
+  const audit::Report report{settings.log_name(), auditor.totals(), settings.limits,
+                             &decoder.decoder(),  &nodes.labels,    &auditor.findings()};
+  write_output(settings.output, report_text(report, settings),
+               settings.log == "-" ? std::vector<std::string>{} : std::vector{settings.log});
+  fail_if_unreadable();
+  return report.is_clean() && !decoder.skipped_lines() ? exit_fine : exit_input_has_errors;
+}
+
+/// In the format of CLI11: an error message, or nothing.
+std::string check_audit_rule(const std::string& id) {
+  if (audit::find_rule(id) != nullptr) return {};
+  std::vector<std::string_view> ids;
+  for (const audit::Rule& rule : audit::rule_table::rows) ids.push_back(rule.id);
+  return fmt::format("unknown rule \"{}\"{} (see --list-rules)", printable(id), did_you_mean(id, ids));
+}
+
+}  // namespace
+
+void add_audit_options(CLI::App& command, int& exit_code) {
+  Settings& settings = define_command(command, examples, audit_log, exit_code);
+  add_log_options(command, settings);
+  command
+      .add_option("--tolerance", settings.limits.tolerance,
+                  "how much a time may differ from the nominal one, in percent; at least 1 ms or half of a short time")
+      ->check(CLI::Range(0, 1000))
+      ->capture_default_str();
+  command.add_option("--sdo-timeout", settings.sdo_timeout_ms, "time that an SDO server has to respond, in ms")
+      ->check(CLI::Range(1, 3'600'000))
+      ->capture_default_str();
+  command.add_option("--bit-rate", settings.bit_rate_kbit, "of the bus, in kbit/s, to compute its load")
+      ->check(CLI::Range(1, 1000));
+  command.add_option("--max-load", settings.limits.max_load, "limit of the load over 100 ms, in percent")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  command.add_option("--silence", settings.silence, "rule not to report; may be given more than once")
+      ->allow_extra_args(false)
+      ->check(check_audit_rule);
+  add_choice(command, "--format", settings.format, {"text", "json", "html"}, "text, json or html");
+  command.add_option("-o,--output", settings.output, "file to write (default: standard output)")->type_name("FILE");
+  command.add_flag("--list-rules", settings.list_rules, "list the rules and end");
+}
+
+}  // namespace edsc

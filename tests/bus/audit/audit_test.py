@@ -1,0 +1,288 @@
+#!/usr/bin/env python3
+"""edsc audit: each rule has a log that breaks just it, made from a log that is silent; reports, options and documents.
+
+    audit_test.py SOURCE_DIR EDSC [--write]
+
+--write writes the table of rules in docs/how-to/audit.md.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+from collections.abc import Callable
+from dataclasses import dataclass
+from html.parser import HTMLParser
+from pathlib import Path
+
+import jsonschema
+from plant import (END_MS, STOP_MS, Frame, Parameters, axis, block_upload, changed, clean, eds_of, log_of, repeated_block_upload, sdo,
+                   segmented_upload, supply, without)
+
+SOURCE_DIR = Path(sys.argv[1]).resolve()
+EDSC = Path(sys.argv[2]).resolve()
+SCHEMA = json.loads((SOURCE_DIR / "docs/schema/audit.schema.json").read_text())
+PAGE = SOURCE_DIR / "docs/how-to/audit.md"
+FINE, INPUT_HAS_ERRORS, WRONG_USAGE = 0, 1, 2
+ERROR_FRAME = "(1700000001.200000) can0 20000004#0004000000000000\n"
+
+Change = Callable[[list[Frame]], list[Frame]]
+
+
+@dataclass(frozen=True)
+class Broken:
+    change: Change = lambda frames: frames
+    axis: Parameters | None = None
+    supply: Parameters | None = None
+    arguments: tuple[str, ...] = ()
+    line: str = ""  # of the log, beside the frames
+    node_id: int | None = None  # of the finding
+
+
+def add(*frames: Frame) -> Change:
+    return lambda log: [*log, *frames]
+
+
+def data(text: str) -> bytes:
+    return bytes.fromhex(text)
+
+
+def replaced(old: list[Frame], position: int, content: str) -> Change:
+    """Another content of one of these frames."""
+    return lambda log: [Frame(one.ms, one.can_id, data(content)) if one == old[position] else one for one in log]
+
+
+def silent_supply(log: list[Frame]) -> list[Frame]:
+    return without(log, 0x706, 1550, 2100)
+
+
+BROKEN = {
+    "pdo-event-timer": Broken(lambda log: without(log, 0x185, 1200), node_id=5),
+    "pdo-inhibit-time": Broken(add(Frame(1207, 0x185, bytes(2))), node_id=5),
+    "pdo-sync-cycle": Broken(lambda log: without(log, 0x285, 1200), node_id=5),
+    "pdo-sync-window": Broken(lambda log: changed(log, 0x285, 1220, ms=1250), node_id=5),
+    "pdo-not-requested": Broken(lambda log: without(log, 0x385, 1000), node_id=5),
+    "pdo-length": Broken(lambda log: changed(log, 0x185, 1200, data=bytes(3)), node_id=5),
+    "pdo-state": Broken(add(Frame(350, 0x185, bytes(2))), node_id=5),
+    "sync-period": Broken(lambda log: changed(log, 0x080, 220, ms=235), node_id=6),
+    "sync-counter": Broken(lambda log: changed(log, 0x080, 220, data=b"\x09"), node_id=6),
+    "sync-producers": Broken(axis=axis(i1005="0x40000080")),
+    "heartbeat-late": Broken(lambda log: without(log, 0x705, 1200), node_id=5),
+    "heartbeat-early": Broken(add(Frame(1240, 0x705, b"\x05")), node_id=5),
+    "heartbeat-consumer": Broken(silent_supply, supply=supply(i1017="0"), node_id=5),
+    "nmt-command": Broken(add(Frame(1200, 0x000, b"\x03\x05"))),
+    "nmt-state": Broken(lambda log: changed(log, 0x705, 1200, data=b"\x7F"), node_id=5),
+    "nmt-boot-up": Broken(lambda log: [*without(log, 0x705, 2900), Frame(2900, 0x000, b"\x81\x05"),
+                                       *(Frame(ms, 0x706, b"\x04") for ms in range(END_MS, 9000, 100))], node_id=5),
+    "nmt-reset": Broken(add(Frame(250, 0x705, b"\0")), node_id=5),
+    "stopped-service": Broken(add(Frame(STOP_MS + 300, 0x085, bytes(8))), node_id=5),
+    "emcy-length": Broken(add(Frame(2000, 0x085, bytes(7))), node_id=5),
+    "emcy-cob-id": Broken(axis=axis(i1014="0x80000085"), node_id=5),
+    "emcy-register": Broken(lambda log: changed(log, 0x085, 1500, data=data("1081100000000000")), node_id=5),
+    "emcy-register-value": Broken(add(*sdo(2000, 5, "4001100000000000", "4F01100010000000")), node_id=5),
+    "emcy-inhibit-time": Broken(add(Frame(1503, 0x085, data("2081110000000000"))), node_id=5),
+    "emcy-not-reset": Broken(lambda log: without(log, 0x085, 1700), node_id=5),
+    "sdo-length": Broken(add(Frame(1200, 0x605, data("40001000"))), node_id=5),
+    "sdo-command": Broken(add(Frame(1200, 0x605, data("E000100000000000"))), node_id=5),
+    "sdo-unrequested": Broken(add(Frame(603, 0x585, data("4300100000000000"))), node_id=5),
+    "sdo-unfinished": Broken(add(Frame(599, 0x605, data("4018100100000000"))), node_id=5),
+    "sdo-toggle": Broken(replaced(segmented_upload(640), 4, "6000000000000000"), node_id=5),
+    "sdo-sequence": Broken(lambda log: [one for one in log if one not in block_upload(680)] + repeated_block_upload(680), node_id=5),
+    "sdo-size": Broken(replaced(segmented_upload(640), 1, "4108100011000000"), node_id=5),
+    "sdo-crc": Broken(replaced(block_upload(680), 6, "C100000000000000"), node_id=5),
+    "sdo-timeout": Broken(add(Frame(1200, 0x605, data("4000100000000000"))), node_id=5),
+    "sdo-abort": Broken(add(*sdo(1200, 5, "4000300000000000", "8000300000000206")), node_id=5),
+    "lss-response": Broken(add(Frame(304, 0x7E4, data("1100000000000000")))),
+    "lss-mode": Broken(add(Frame(350, 0x7E5, data("1120000000000000")))),
+    "bus-load": Broken(arguments=("--bit-rate", "10", "--max-load", "25")),
+    "error-frame": Broken(line=ERROR_FRAME),
+    "can-id-unknown": Broken(add(Frame(1200, 0x2FF, b"\0"))),
+    "can-id-senders": Broken(supply=supply(i1800s01="0x185", i1800s05="0")),
+    "node-unknown": Broken(add(Frame(1200, 0x709, b"\x05")), node_id=9),
+    "node-silent": Broken(arguments=("--node", "7=axis.eds"), node_id=7),
+}
+
+
+class Audits(unittest.TestCase):
+    def setUp(self) -> None:
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def run_edsc(self, *arguments: str, log: str | None = None) -> subprocess.CompletedProcess[str]:
+        return subprocess.run([EDSC, "audit", *arguments], input=log, cwd=self.folder, capture_output=True, text=True,
+                              timeout=600, check=False)
+
+    def audit(self, case: Broken, *arguments: str) -> subprocess.CompletedProcess[str]:
+        (self.folder / "axis.eds").write_text(eds_of(case.axis or axis()))
+        (self.folder / "supply.eds").write_text(eds_of(case.supply or supply()))
+        (self.folder / "can0.log").write_text(log_of(case.change(clean())) + case.line)
+        return self.run_edsc("can0.log", "--node", "5=axis.eds", "--node", "6=supply.eds", *case.arguments, *arguments)
+
+    def report(self, case: Broken, *arguments: str) -> dict:
+        result = self.audit(case, "--format", "json", *arguments)
+        self.assertEqual(result.stderr, "")
+        report = json.loads(result.stdout)
+        jsonschema.Draft202012Validator(SCHEMA).validate(report)
+        return report
+
+
+class Rules(Audits):
+    def test_a_clean_log_has_no_findings(self) -> None:
+        report = self.report(Broken(arguments=("--bit-rate", "125")))
+        self.assertEqual(report["findings"], [])
+        self.assertEqual((report["clean"], report["nodes"], report["frames"]), (True, 2, len(clean())))
+
+    def test_each_broken_log_has_just_its_finding(self) -> None:
+        for rule, case in BROKEN.items():
+            with self.subTest(rule):
+                report = self.report(case)
+                self.assertEqual({one["rule"] for one in report["findings"]}, {rule}, json.dumps(report["findings"], indent=1))
+                if case.node_id is not None:
+                    self.assertEqual({one["node_id"] for one in report["findings"]}, {case.node_id})
+
+    def test_each_rule_has_a_broken_log(self) -> None:
+        rules = json.loads(self.run_edsc("--list-rules", "--format", "json").stdout)
+        self.assertEqual([rule["id"] for rule in rules], list(BROKEN))
+
+    def test_numbers(self) -> None:
+        one = self.report(BROKEN["pdo-event-timer"])["findings"][0]
+        self.assertEqual((one["index"], one["count"], one["expected"], one["seen"]), (0x1800, 1, "at most 100 ms", "none for 200 ms"))
+        self.assertEqual(one["first"]["at_us"], 1_305_000)
+        mean = self.report(BROKEN["bus-load"])["mean_load_percent"]
+        self.assertGreater(mean, 0)
+
+
+class Options(Audits):
+    def test_tolerance(self) -> None:
+        case = Broken(lambda log: changed(log, 0x185, 1205, ms=1230))
+        self.assertEqual([one["rule"] for one in self.report(case)["findings"]], ["pdo-event-timer"])
+        self.assertEqual(self.report(case, "--tolerance", "30")["findings"], [])
+
+    def test_sdo_timeout(self) -> None:
+        case = Broken(add(*sdo(1200, 5, "4000100000000000", "4300100000000000", 300)))
+        self.assertEqual(self.report(case)["findings"], [])
+        self.assertEqual([one["rule"] for one in self.report(case, "--sdo-timeout", "200")["findings"]], ["sdo-timeout"])
+
+    def test_silence(self) -> None:
+        self.assertEqual(self.report(BROKEN["nmt-reset"], "--silence", "nmt-reset")["findings"], [])
+        unknown = self.audit(Broken(), "--silence", "nmt-rest")
+        self.assertEqual(unknown.returncode, WRONG_USAGE)
+        self.assertIn('did you mean "nmt-reset"?', unknown.stderr)
+
+    def test_exit_codes(self) -> None:
+        self.assertEqual(self.audit(Broken()).returncode, FINE)
+        self.assertEqual(self.audit(BROKEN["sdo-abort"]).returncode, FINE)  # a note
+        self.assertEqual(self.audit(BROKEN["nmt-reset"]).returncode, INPUT_HAS_ERRORS)
+        self.assertEqual(self.audit(Broken(line="no frame\n")).returncode, INPUT_HAS_ERRORS)
+        self.assertEqual(self.run_edsc(log="").returncode, WRONG_USAGE)
+        self.assertEqual(self.run_edsc("missing.log", "--node", "5=axis.eds").returncode, WRONG_USAGE)
+
+
+class Behaviour(Audits):
+    def test_values_written_in_the_log_are_in_force(self) -> None:
+        """1017h of node 5 becomes 200 ms: every second heartbeat is enough."""
+        def slower(log: list[Frame]) -> list[Frame]:
+            log = [*log, *sdo(1100, 5, "2B171000C8000000", "6017100000000000")]
+            for ms in range(1200, STOP_MS + 400, 200):
+                log = without(log, 0x705, ms)
+            return log
+        self.assertEqual(self.report(Broken(slower))["findings"], [])
+        rules = {one["rule"] for one in self.report(Broken(lambda log: [one for one in slower(log) if one.ms < 1100 or one.can_id != 0x605]))["findings"]}
+        self.assertIn("heartbeat-late", rules)
+
+    def test_a_log_without_times_is_judged_by_its_sequence(self) -> None:
+        (self.folder / "axis.eds").write_text(eds_of(axis()))
+        lines = re.sub(r"(?m)^\(\S+\) can0 ", "", log_of(clean()))
+        arguments = ("--node", "5=axis.eds", "--silence", "node-unknown", "--format", "json")
+        self.assertEqual(json.loads(self.run_edsc(*arguments, log=lines).stdout)["findings"], [])
+        report = json.loads(self.run_edsc(*arguments, log=lines.replace("385#R\n", "")).stdout)
+        self.assertEqual([one["rule"] for one in report["findings"]], ["pdo-not-requested"])
+        self.assertIsNone(report["duration_us"])
+
+    def test_many_occurrences_are_one_finding(self) -> None:
+        def noisy(log: list[Frame]) -> list[Frame]:
+            return [*log, *(Frame(1000 + at, 0x2FF, b"\0") for at in range(400))]
+        findings = self.report(Broken(noisy))["findings"]
+        self.assertEqual([(one["rule"], one["count"], one["first"]["at_us"]) for one in findings], [("can-id-unknown", 400, 1_000_000)])
+
+    def test_a_silent_tpdo_is_found_without_a_frame(self) -> None:
+        report = self.report(Broken(lambda log: without(log, 0x185, 1200, END_MS)))
+        self.assertEqual([(one["rule"], one["index"]) for one in report["findings"]], [("pdo-event-timer", 0x1800)])
+
+    def test_a_scan_of_absent_nodes_is_clean(self) -> None:
+        requests = [Frame(1100 + node, 0x600 + node, data("4000100000000000")) for node in range(20, 100)]
+        self.assertEqual(self.report(Broken(add(*requests)))["findings"], [])
+
+
+class Page(HTMLParser):
+    """The cells of the table, and everything that refers to another file."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.texts: list[str] = []
+        self.references: list[str] = []
+
+    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
+        self.references += [value or "" for name, value in attributes if name in ("src", "href") and tag != "a"]
+
+    def handle_data(self, text: str) -> None:
+        self.texts.append(text)
+
+
+class Reports(Audits):
+    def test_text(self) -> None:
+        result = self.audit(BROKEN["heartbeat-late"])
+        self.assertRegex(result.stdout, r"(?m)^can0\.log:\d+: error: node 5, 1017h(:00)? \S.*: a heartbeat is later than 1017h \[heartbeat-late\]$")
+        self.assertIn("    expected every 100 ms; seen: none for 200 ms; at 1.310000 s\n", result.stdout)
+        self.assertTrue(result.stdout.endswith("1 error, 0 warnings, 0 notes\n"))
+        self.assertNotIn("\033", result.stdout)
+        self.assertIn("\033[", self.audit(BROKEN["heartbeat-late"], "--color", "always").stdout)
+
+    def test_html(self) -> None:
+        self.assertEqual(self.audit(BROKEN["nmt-reset"], "--format", "html", "-o", "audit.html").returncode, INPUT_HAS_ERRORS)
+        page = Page()
+        page.feed((self.folder / "audit.html").read_text())
+        self.assertIn("nmt-reset", page.texts)
+        self.assertEqual(page.references, ["data:,"])
+
+    def test_hostile_texts_do_not_reach_the_terminal_or_the_page(self) -> None:
+        (self.folder / "<b>\033[2J.log").write_text(log_of(BROKEN["nmt-reset"].change(clean())))
+        (self.folder / "axis.eds").write_text(eds_of(axis()))
+        for form in ("text", "json", "html"):
+            result = self.run_edsc("<b>\033[2J.log", "--node", "5=axis.eds", "--format", form)
+            self.assertNotIn("\033", result.stdout)
+            if form == "html":
+                self.assertNotIn("<b>", result.stdout)
+
+
+def table(rules: list[dict]) -> str:
+    rows = ["| rule | | meaning | source | how it is judged |", "|---|---|---|---|---|"]
+    rows += [f"| {rule['id']} | {rule['severity']} | {rule['meaning']} | {rule['source']} | {rule['advice']} |" for rule in rules]
+    return "\n".join(rows) + "\n"
+
+
+def page_with(rules: list[dict], page: str) -> str:
+    begin, end = page.index("| rule |"), page.rindex("|\n") + 2
+    return page[:begin] + table(rules) + page[end:]
+
+
+def listed_rules() -> list[dict]:
+    return json.loads(subprocess.run([EDSC, "audit", "--list-rules", "--format", "json"], check=True, capture_output=True).stdout)
+
+
+class Documents(unittest.TestCase):
+    def test_the_page_has_the_table(self) -> None:
+        page = PAGE.read_text()
+        self.assertEqual(page, page_with(listed_rules(), page), "run this test with --write")
+
+
+if __name__ == "__main__":
+    if "--write" in sys.argv:
+        PAGE.write_text(page_with(listed_rules(), PAGE.read_text()))
+        sys.exit()
+    unittest.main(argv=sys.argv[:1])
