@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "backend/cpp/placement.hpp"
 #include "device/complete_device.hpp"
 
 namespace edsc {
