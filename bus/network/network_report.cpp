@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "configure/configuration_report.hpp"
+#include "diagnostics/place.hpp"
 #include "network/node_configuration.hpp"
 #include "text/counted.hpp"
 
@@ -34,11 +35,13 @@ Json identity_json(const Identity& identity) {
 }
 
 Json node_json(const LiveNode& live) {
+  Json problems = Json::array();
+  for (const NodeProblem& problem : live.problems) problems.push_back(problem.text);
   return {{"name", live.node->name},
           {"node_id", live.node->node_id},
           {"file", file_of(*live.node)},
           {"answers", live.answers},
-          {"problems", live.problems}};
+          {"problems", std::move(problems)}};
 }
 
 Json difference_json(const ConfigurationChange& change) {
@@ -66,8 +69,14 @@ std::string identity_not_compared(const LiveNode& live) {
   return live.answers ? names_of(not_compared(expected_identity(*live.node), live.identity)) : std::string{};
 }
 
+std::string problem_text(const NodeProblem& problem) {
+  const Place place = place_of(problem.position);
+  return fmt::format("{}:{}:{}: error: {}", place.file, place.line, place.column, problem.text);
+}
+
 std::vector<std::string> verify_lines(const LiveNode& live) {
-  std::vector<std::string> lines = live.problems;
+  std::vector<std::string> lines;
+  for (const NodeProblem& problem : live.problems) lines.push_back(problem_text(problem));
   const auto differing = differences(live);
   for (const ConfigurationChange* const change : differing) {
     lines.push_back(fmt::format("{}: {} is {}, expected {}", label(*live.node), title(change->value.entry),

@@ -19,6 +19,9 @@ namespace edsc {
 /// `vendor-ID, product code`: the numbers of the identity that the file or the node does not state.
 [[nodiscard]] std::string identity_not_compared(const LiveNode& live);
 
+/// `plant.json:7:5: error: node axis3 (7) does not answer`
+[[nodiscard]] std::string problem_text(const NodeProblem& problem);
+
 /// Lines for a node: what differs, or that nothing does.
 [[nodiscard]] std::vector<std::string> verify_lines(const LiveNode& live);
 

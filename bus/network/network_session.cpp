@@ -46,15 +46,16 @@ bool NetworkSession::identify(LiveNode& live, bool wakes) {
     first = access.upload(0x1000, 0);
   }
   if (first.end == SdoEnd::no_answer) {
-    live.problems.push_back(label(*live.node) + " does not answer");
+    add_problem(live, " does not answer");
     return false;
   }
   live.identity = read_identity(access);
   const Identity expected = expected_identity(*live.node);
   const IdentityMatch match = compare_identity(expected, live.identity);
   if (match == IdentityMatch::major_revision || match == IdentityMatch::other) {
-    live.problems.push_back(fmt::format("{} is not the device of {}: {}", label(*live.node), file_of(*live.node),
-                                        identity_differences(expected, live.identity)));
+    live.problems.push_back({fmt::format("{} is not the device of {}: {}", label(*live.node), file_of(*live.node),
+                                         identity_differences(expected, live.identity)),
+                             place_of_difference(*live.node, expected, live.identity)});
   }
   return true;
 }
@@ -62,15 +63,15 @@ bool NetworkSession::identify(LiveNode& live, bool wakes) {
 void NetworkSession::check_extra_responses() {
   for (LiveNode& live : nodes_) {
     if (!live.problems.empty() || !watch_.has_extra_responses(live.node->node_id)) continue;
-    live.problems.push_back(fmt::format("{}: an SDO request got more than one response; two nodes may have node-ID {}",
-                                        label(*live.node), live.node->node_id));
+    add_problem(live, fmt::format(": an SDO request got more than one response; two nodes may have node-ID {}",
+                                  live.node->node_id));
   }
 }
 
 bool NetworkSession::compare() {
   for (LiveNode& live : nodes_) {
     if (live.problems.empty() && !compare(live)) {
-      live.problems.push_back(label(*live.node) + " no longer answers");
+      add_problem(live, " no longer answers");
     }
   }
   check_extra_responses();
@@ -130,7 +131,7 @@ void NetworkSession::configure(LiveNode& live, const ApplySettings& settings) {
     if (live.attempts > 1) {
       enter_pre_operational(bus_, id_of(live));
       if (!compare(live)) {
-        live.problems.push_back(label(*live.node) + " no longer answers");
+        add_problem(live, " no longer answers");
         continue;
       }
     }
@@ -143,8 +144,8 @@ void NetworkSession::write(LiveNode& live) {
   run.result = configure_node(*live.access, run.steps, hooks_for(live, "done"));
   if (run.result.done()) write_time(run, *live.access, live.configuration);
   if (has_restarted(live)) {
-    live.problems.push_back(fmt::format("{} restarted{} while it was configured: it may have lost what was written",
-                                        label(*live.node), place_text(run.result)));
+    add_problem(live, fmt::format(" restarted{} while it was configured: it may have lost what was written",
+                                  place_text(run.result)));
   }
   check_extra_responses();
 }
@@ -157,10 +158,14 @@ void NetworkSession::check_restarts(const ApplySettings& settings) {
       configure(live, settings);
       hooks_.configured(live);
     } else {
-      live.problems.push_back(
-          fmt::format("{} restarted after it was configured: it may have lost what was written", label(*live.node)));
+      add_problem(live, " restarted after it was configured: it may have lost what was written");
     }
   }
+}
+
+/// A problem of the node as a whole; `text` follows its name.
+void NetworkSession::add_problem(LiveNode& live, std::string_view text) {
+  live.problems.push_back({label(*live.node).append(text), live.node->position});
 }
 
 bool NetworkSession::has_restarted(const LiveNode& live) const {

@@ -17,18 +17,24 @@
 
 namespace edsc {
 
+/// Why a node cannot be configured or started.
+struct NodeProblem {
+  std::string text;   ///< with the name of the node
+  Position position;  ///< the line that it contradicts: of the network file, or of the EDS
+};
+
 /// A node of the network file, and what was found on the bus.
 struct LiveNode {
   const NetworkNode* node = nullptr;
   Configuration configuration;
   std::unique_ptr<SdoAccess> access;
   bool answers = false;
-  Identity identity;                  ///< found
-  bool is_compared = false;           ///< its values were read
-  ConfigurationRun run;               ///< the comparison, and the last attempt to configure it
-  unsigned attempts = 0;              ///< to configure it
-  unsigned boot_ups = 0;              ///< seen before the last comparison
-  std::vector<std::string> problems;  ///< each with the name of the node
+  Identity identity;         ///< found
+  bool is_compared = false;  ///< its values were read
+  ConfigurationRun run;      ///< the comparison, and the last attempt to configure it
+  unsigned attempts = 0;     ///< to configure it
+  unsigned boot_ups = 0;     ///< seen before the last comparison
+  std::vector<NodeProblem> problems;
 
   /// Whether it was configured.
   [[nodiscard]] bool succeeded() const { return attempts != 0 && problems.empty() && run.succeeded(); }
@@ -83,6 +89,7 @@ class NetworkSession {
   void configure(LiveNode& live, const ApplySettings& settings);
   void configure_all(const ApplySettings& settings);
   void check_restarts(const ApplySettings& settings);
+  static void add_problem(LiveNode& live, std::string_view text);
   ConfigurationHooks hooks_for(const LiveNode& live, std::string_view doing) const;
   [[nodiscard]] bool has_restarted(const LiveNode& live) const;
   [[nodiscard]] bool has_problems() const;

@@ -127,6 +127,19 @@ Identity expected_identity(const NetworkNode& node) {
   return identity;
 }
 
+Position place_of_difference(const NetworkNode& node, const Identity& expected, const Identity& found) {
+  const auto at = std::ranges::find_if(identity_numbers, [&](const IdentityNumber& number) {
+    const auto& wanted = expected.*number.value;
+    const auto& other = found.*number.value;
+    return wanted && other && *wanted != *other;
+  });
+  if (at == std::ranges::end(identity_numbers)) return node.position;
+  const WrittenNumber& serial_number = node.description->serial_number;
+  if (at->value == &Identity::serial_number && serial_number) return serial_number->position;
+  const bool has_entry = node.device.find(at->index, at->sub_index) != nullptr;
+  return has_entry ? place_of_value(node.device, at->index, at->sub_index) : node.position;
+}
+
 std::string label(const NetworkNode& node) { return fmt::format("node {} ({})", node.name, node.node_id); }
 
 const std::string& file_of(const NetworkNode& node) {

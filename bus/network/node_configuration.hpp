@@ -24,6 +24,9 @@ namespace edsc {
 /// The identity of the EDS or DCF, with the serial number of the network file.
 [[nodiscard]] Identity expected_identity(const NetworkNode& node);
 
+/// The line of the first number of the identity that differs: in the network file or the file of the node.
+[[nodiscard]] Position place_of_difference(const NetworkNode& node, const Identity& expected, const Identity& found);
+
 /// `node axis1 (5)`
 [[nodiscard]] std::string label(const NetworkNode& node);
 

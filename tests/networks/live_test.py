@@ -92,6 +92,19 @@ class Masters(unittest.TestCase):
     def test_eight_devices(self) -> None:
         self.check_plant("eight_devices", "sensor")
 
+    def test_failed_boot_ups_have_their_lines(self) -> None:
+        """Another module instead of one, and one that is missing: the line of the EDS, and that of the network file."""
+        plant = NETWORKS / "four_modules.json"
+        self.address = BUS or self.start(EDSC, "bus", "--listen", "127.0.0.1:0").stdout.readline().strip()
+        Lines(self.start(NODES / "can_2057c", self.address, "--node-id", 2))
+        lines = Lines(self.start(MASTERS / "four_modules", self.address))
+        sheet = (NETWORKS / "../../eds/can-2053c.eds").read_text(encoding="latin-1").splitlines()
+        section = next(at for at, line in enumerate(sheet) if line.strip() == "[1000]")
+        device_type = next(at for at in range(section, len(sheet)) if sheet[at].lower().startswith("defaultvalue="))
+        missing = next(at for at, line in enumerate(plant.read_text().splitlines()) if '"analog_outputs": {' in line)
+        lines.wait_for({rf"\.\./\.\./eds/can-2053c\.eds:{device_type + 1}: digital_inputs: device type 1000h is not .*",
+                        rf"four_modules\.json:{missing + 1}: analog_outputs: no answer, .*"})
+
     def test_usage(self) -> None:
         result = subprocess.run([MASTERS / "four_modules"], capture_output=True, text=True)
         self.assertEqual((result.returncode, result.stdout), (2, ""))

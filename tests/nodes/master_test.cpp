@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <canopen/host/plant_text.hpp>
 #include <canopen/host/virtual_bus.hpp>
 #include <canopen/host/virtual_bus_port.hpp>
 #include <functional>
@@ -320,6 +321,29 @@ TEST_F(Boot, EndsARequestToANodeThatIsSilentAndRefusesThoseThatDoNotFit) {
     refused += master->begin_upload(NodeId{9}, 0x1000, 0, {}) ? 0 : 1;
   }
   EXPECT_EQ(refused, 1) << "one runs, the others wait";
+}
+
+TEST(PlantText, AFailedBootUpHasTheLineThatItContradicts) {
+  using canopen::BootStatus;
+  constexpr NodeId axis{5};
+  constexpr canopen::PlantPlace places[] = {
+      {NodeId{4}, 0x1018, 2, "eds/io.eds", 70}, {axis, 0, 0, "plant.json", 7},
+      {axis, 0x1018, 2, "eds/drive.eds", 120},  {axis, 0x1017, 0, "plant.json", 8},
+      {axis, 0x2001, 3, "plant.json", 9},
+  };
+  const auto line = [&](const canopen::BootResult& result) {
+    canopen::PlantFault fault;
+    fault.boot = result;
+    const std::string text = fault_text({"axis1", axis}, fault, places);
+    return text.substr(0, text.find(": axis1: "));
+  };
+  EXPECT_EQ(line({BootStatus::product_code, canopen::ok, 0x1018, 2, 0x10001, 0x20001}), "eds/drive.eds:120");
+  EXPECT_EQ(line({BootStatus::configuration, canopen::AbortCode::value_too_high, 0x2001, 3}), "plant.json:9");
+  EXPECT_EQ(line({BootStatus::no_heartbeat}), "plant.json:8");
+  // Of the node: it does not answer, or an entry that no file states.
+  EXPECT_EQ(line({BootStatus::no_response, canopen::AbortCode::protocol_timed_out, 0x1018, 2}), "plant.json:7");
+  EXPECT_EQ(line({BootStatus::configuration, canopen::AbortCode::value_too_high, 0x2002, 0}), "plant.json:7");
+  EXPECT_EQ(fault_text({"", NodeId{9}}, {}, places).substr(0, 8), "node 9: ");
 }
 
 TEST(MasterText, TellsNodeEntryReasonAndNumbers) {

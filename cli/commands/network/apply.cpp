@@ -51,7 +51,7 @@ void print_result(const LiveNode& live, bool text) {
 
 void print_problems(const std::vector<LiveNode>& nodes) {
   for (const LiveNode& live : nodes) {
-    for (const std::string& problem : live.problems) print_visibly(stderr, "edsc: {}\n", problem);
+    for (const NodeProblem& problem : live.problems) print_visibly(stderr, "{}\n", problem_text(problem));
     for (const std::string& problem : live.run.problems) {
       print_visibly(stderr, "edsc: {}: {}\n", label(*live.node), problem);
     }

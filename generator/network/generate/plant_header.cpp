@@ -19,6 +19,7 @@
 #include "network/cob_id_use.hpp"
 #include "network/communication_objects.hpp"
 #include "network/generate/plant_links.hpp"
+#include "network/generate/plant_places.hpp"
 #include "text/ascii.hpp"
 
 namespace edsc {
@@ -224,8 +225,10 @@ class PlantHeader {
     ordered_json slaves = ordered_json::array();
     ordered_json received = ordered_json::array();
     ordered_json sent = ordered_json::array();
+    ordered_json places = ordered_json::array();
     for (const NetworkNode& node : network_.nodes) {
       if (&node == master) continue;
+      add_places(places, node);
       Signals signals = signals_of(node);
       for (const ordered_json& one : signals.received) received.push_back({{"type", one["type"]}});
       for (const ordered_json& one : signals.sent) sent.push_back({{"type", one["type"]}});
@@ -243,8 +246,20 @@ class PlantHeader {
             {"boot_time_us", value_of(master->device, 0x1F89).value_or(0) * 1000},
             {"count", count},
             {"slaves", with_separators(std::move(slaves), ", ")},
+            {"place_count", places.size()},
+            {"places", std::move(places)},
             {"received_list", with_separators(std::move(received), ", ")},
             {"sent_list", with_separators(std::move(sent), ", ")}};
+  }
+
+  void add_places(ordered_json& rows, const NetworkNode& node) const {
+    for (const PlantPlaceRow& place : plant_places(network_, node, parts_.concise_dcfs[position_in_file(node)])) {
+      rows.push_back({{"node", identifier(node)},
+                      {"index", hex_text(place.index)},
+                      {"sub_index", place.sub_index},
+                      {"file", cpp_string(place.file)},
+                      {"line", place.line}});
+    }
   }
 
   /// The row of the network list (CiA 302-2): 1F81h and 1F84h to 1F88h of the master, where they are not 0; otherwise

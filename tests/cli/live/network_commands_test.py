@@ -31,6 +31,13 @@ class NetworkCommands(LiveTest):
         return subprocess.run([str(EDSC), "network", action, self.network.address, *map(str, arguments), "--timeout",
                                str(timeout)], cwd=self.folder, capture_output=True, text=True, timeout=600)
 
+    def place(self, file: str, text: str, column_of: str = "") -> str:
+        """`FILE:LINE:COLUMN: error: ` of the first line with a text."""
+        for number, line in enumerate((self.folder / file).read_text().splitlines(), 1):
+            if text in line:
+                return f"{file}:{number}:{line.index(column_of or text) + 1}: error: "
+        raise AssertionError(f"{file} does not have {text}")
+
     def expect_nothing_started(self) -> None:
         self.assertFalse([frame for frame in self.network.frames("000") if frame.startswith("000 01")])
 
@@ -95,7 +102,7 @@ node axis2 (6): 0 of 1 value differ
     def test_a_missing_node(self) -> None:
         self.three_axes()
         result = self.network_command("apply", "plant.json", "--start", timeout=1000)
-        self.expect(result, FAILED, stderr="edsc: node axis3 (7) does not answer\nedsc: nothing written\n")
+        self.expect(result, FAILED, stderr=self.place("plant.json", '"axis3"') + "node axis3 (7) does not answer\nedsc: nothing written\n")
         result = self.network_command("verify", "plant.json", "--format", "json", timeout=1000)
         found = self.expect_json(result, "network_verify.schema.json", FAILED)
         self.assertEqual([(node["name"], node["answers"], node["same"]) for node in found["nodes"]],
@@ -109,9 +116,10 @@ node axis2 (6): 0 of 1 value differ
         (self.folder / "other.eds").write_text(SHEET.read_text().replace("0x00001001", "0x00001002"))
         self.plant({"axis1": {"node_id": 5, "serial_number": 0x100, "eds": "device.eds", "set": {"2004h": 1200}},
                     "axis2": {"node_id": 6, "serial_number": 0x101, "eds": "other.eds"}})
-        difference = "node axis2 (6) is not the device of other.eds: product code is 00001001h, expected 00001002h\n"
+        product_code = self.place("other.eds", "DefaultValue=0x00001002", "0x")
+        difference = f"{product_code}node axis2 (6) is not the device of other.eds: product code is 00001001h, expected 00001002h\n"
         self.expect(self.network_command("apply", "plant.json", "--start"), FAILED,
-                    stderr=f"edsc: {difference}edsc: nothing written\n")
+                    stderr=f"{difference}edsc: nothing written\n")
         result = self.network_command("verify", "plant.json")
         self.assertIn(difference, result.stdout)
         self.assertEqual(result.returncode, FAILED)
@@ -141,8 +149,8 @@ node axis2 (6): 0 of 1 value differ
         self.two_axes(**{"2004h": 4000})
         result = self.network_command("apply", "plant.json", "--start", "--store")
         self.assertEqual(result.returncode, FAILED)
-        self.assertIn("error: node axis1 (5): 2004h:00 Speed = 4000 rpm: refused by the device: 0609 0031h, value too high",
-                      result.stderr)
+        self.assertIn(self.place("plant.json", '"2004h": 4000', "4000") + "node axis1 (5): 2004h:00 Speed = 4000 rpm: refused by "
+                      "the device: 0609 0031h, value too high", result.stderr)
         self.assertTrue(result.stdout.endswith("0 of 2 nodes configured; none started\n"), result.stdout)
         self.expect(self.edsc("read", 6, "2004h", "--type", "u16"), FINE, "2004h:00 = 1000 (03E8h)\n")
         result = self.network_command("apply", "plant.json", "--start", "--on-error", "continue", "--format", "json")
@@ -158,7 +166,8 @@ node axis2 (6): 0 of 1 value differ
         self.three_axes()
         self.fake_axis(after_upload=("587 43 18 10 04 01 00 00 00",))
         self.expect(self.network_command("apply", "plant.json", "--start"), FAILED,
-                    stderr="edsc: node axis3 (7): an SDO request got more than one response; two nodes may have node-ID 7\n"
+                    stderr=self.place("plant.json", '"axis3"') +
+                    "node axis3 (7): an SDO request got more than one response; two nodes may have node-ID 7\n"
                            "edsc: nothing written\n")
         self.expect_nothing_written()
 
@@ -168,7 +177,7 @@ node axis2 (6): 0 of 1 value differ
         result = self.network_command("apply", "plant.json", "--start", "--store")
         self.assertEqual(result.returncode, FAILED)
         # The boot-up message follows the response, so that it may be noticed in the next transfer.
-        self.assertRegex(result.stderr, r"edsc: node axis3 \(7\) restarted at 200[45]h:00 (Speed|Maximum speed) while it was "
+        self.assertRegex(result.stderr, r"plant.json:\d+:5: error: node axis3 \(7\) restarted at 200[45]h:00 (Speed|Maximum speed) while it was "
                                         r"configured: it may have lost what was written\n")
         self.assertTrue(result.stdout.endswith("1 of 3 nodes configured; none started\n"), result.stdout)
         frames = self.network.frames("000", "605", "606", "607")

@@ -2,20 +2,28 @@
 #pragma once
 
 #include <cstdio>
+#include <span>
 #include <string>
 
 #include "canopen/emcy/emcy_consumer.hpp"
 #include "canopen/host/master_text.hpp"
 #include "canopen/plant/plant_fault.hpp"
 #include "canopen/plant/plant_node.hpp"
+#include "canopen/plant/plant_place.hpp"
 
 namespace canopen {
 
 /// `axis1: lost, last state operational`, `axis1: product code 1018h:02 is not the one of 1F86h: expected ...`; a node
-/// that the network file does not list is `node 9`.
-[[nodiscard]] inline std::string fault_text(const PlantNode& node, const PlantFault& fault) {
+/// that the network file does not list is `node 9`. With the `places` of the network, a failed boot-up begins with the
+/// line that it contradicts: `eds/drive.eds:120: axis1: ...`.
+[[nodiscard]] inline std::string fault_text(const PlantNode& node, const PlantFault& fault,
+                                            std::span<const PlantPlace> places = {}) {
   const std::string who = node.name.empty() ? "node " + std::to_string(node.node_id.value()) : std::string{node.name};
-  if (fault.kind == PlantFaultKind::boot) return boot_text(who, fault.boot);
+  if (fault.kind == PlantFaultKind::boot) {
+    const PlantPlace* const place = find_place(places, node.node_id, fault.boot);
+    const std::string text = boot_text(who, fault.boot);
+    return place == nullptr ? text : std::string{place->file} + ":" + std::to_string(place->line) + ": " + text;
+  }
   std::string text = who + ": " + std::string{to_text(fault.kind)};
   switch (fault.kind) {
     case PlantFaultKind::lost: return text + ", last state " + std::string{to_text(fault.state)};
