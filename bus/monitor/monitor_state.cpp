@@ -2,12 +2,14 @@
 
 #include <canopen/can/frame_length.hpp>
 
+#include "decode/log/value_number.hpp"
 #include "values/nmt_text.hpp"
 
 namespace edsc {
 namespace {
 
 constexpr std::int64_t second_us = 1'000'000;
+constexpr std::size_t max_others = 4096;
 
 }  // namespace
 
@@ -19,7 +21,7 @@ bool MonitorState::add(const canopen::Frame& frame, const Message& message, std:
     case Service::heartbeat:
     case Service::guarding: return add_state(message, now_us);
     case Service::tpdo:
-    case Service::rpdo: return add_pdo(message);
+    case Service::rpdo: return add_pdo(message, now_us);
     case Service::emcy: {
       MonitoredNode& node = node_of(message.node_id);
       ++node.emergencies;
@@ -35,7 +37,9 @@ bool MonitorState::add(const canopen::Frame& frame, const Message& message, std:
     case Service::sync:
     case Service::time:
     case Service::unknown: {
-      const auto [row, first] = others_.try_emplace(canopen::cob_id_of(frame));
+      const std::uint32_t cob_id = canopen::cob_id_of(frame);
+      if (others_.size() >= max_others && !others_.contains(cob_id)) return false;
+      const auto [row, first] = others_.try_emplace(cob_id);
       row->second.count();
       return first;
     }
@@ -87,19 +91,22 @@ bool MonitorState::add_state(const Message& message, std::int64_t now_us) {
   return changed;
 }
 
-bool MonitorState::add_pdo(const Message& message) {
+bool MonitorState::add_pdo(const Message& message, std::int64_t now_us) {
   // A node sends PDOs only in Operational.
   if (message.service == Service::tpdo && message.node_id != 0) {
     assume(message.node_id, nmt_state_text(canopen::NmtState::operational));
   }
   MonitoredPdo& pdo = pdos_[{message.node_id, message.service == Service::tpdo, message.number}];
   pdo.frames.count();
+  pdo.at_us = now_us;
   if (pdo.text == message.text && pdo.frames.total() > 1) return false;
   pdo.text = message.text;
   pdo.values.clear();
   for (const MessageValue& value : message.values) {
     if (value.text_end < value.text_begin || value.text_end > message.text.size()) continue;
-    pdo.values.emplace_back(value.name, message.text.substr(value.text_begin, value.text_end - value.text_begin));
+    pdo.values.push_back({value.index, value.sub_index, std::string{value.name},
+                          message.text.substr(value.text_begin, value.text_end - value.text_begin),
+                          std::string{value.unit}, finite_number_of(value)});
   }
   return true;
 }

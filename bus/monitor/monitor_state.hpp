@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <vector>
 
 #include "decode/message.hpp"
 
@@ -54,9 +55,20 @@ struct MonitoredNode {
   }
 };
 
+/// The value of a known object in a PDO.
+struct MonitoredValue {
+  std::uint16_t index = 0;
+  std::uint8_t sub_index = 0;
+  std::string name;
+  std::string text;  ///< with its unit
+  std::string unit;
+  std::optional<double> number;  ///< of a BOOLEAN, an integer or a finite REAL
+};
+
 struct MonitoredPdo {
-  std::string text;                                         ///< the values by name
-  std::vector<std::pair<std::string, std::string>> values;  ///< name and value of each known object
+  std::string text;  ///< the values by name
+  std::vector<MonitoredValue> values;
+  std::int64_t at_us = 0;  ///< the last frame
   Rate frames;
 };
 
@@ -81,7 +93,8 @@ class MonitorState {
 
   [[nodiscard]] const std::map<std::uint8_t, MonitoredNode>& nodes() const { return nodes_; }
   [[nodiscard]] const std::map<PdoKey, MonitoredPdo>& pdos() const { return pdos_; }
-  [[nodiscard]] const std::map<std::uint32_t, Rate>& others() const { return others_; }  ///< by COB-ID
+  /// By COB-ID; the first 4096, since noise on a bus may have any.
+  [[nodiscard]] const std::map<std::uint32_t, Rate>& others() const { return others_; }
   [[nodiscard]] const Rate& frames() const { return frames_; }
   [[nodiscard]] const Rate& bits() const { return bits_; }
   [[nodiscard]] std::int64_t start_us() const { return start_us_; }
@@ -94,7 +107,7 @@ class MonitorState {
   void add_command(const canopen::Frame& frame);
   void assume(std::uint8_t node_id, std::string_view state);
   bool add_state(const Message& message, std::int64_t now_us);
-  bool add_pdo(const Message& message);
+  bool add_pdo(const Message& message, std::int64_t now_us);
   template <class Update>
   void update_rates(Update update);
 

@@ -161,7 +161,9 @@ Json monitor_json(const MonitorState& state, const MonitorView& view, std::int64
         {"node_id", key.node_id},       {"direction", key.transmitted ? "transmit" : "receive"}, {"number", key.number},
         {"frames", pdo.frames.total()}, {"per_second", rounded(pdo.frames.per_second())},        {"text", pdo.text},
         {"values", Json::array()}};
-    for (const auto& [name, text] : pdo.values) row["values"].push_back({{"name", name}, {"text", text}});
+    for (const MonitoredValue& value : pdo.values) {
+      row["values"].push_back({{"name", value.name}, {"text", value.text}});
+    }
     json["pdos"].push_back(std::move(row));
   }
   json["others"] = Json::array();

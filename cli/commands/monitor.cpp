@@ -6,6 +6,7 @@
 #include "monitor/monitor_view.hpp"
 #include "monitor/terminal.hpp"
 #include "online/live_bus.hpp"
+#include "server/listen_address.hpp"
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
@@ -15,6 +16,10 @@
 #include "shared/with_bus.hpp"
 #include "text/counted.hpp"
 #include "text/printable.hpp"
+#include "web/live_rows.hpp"
+#include "web/monitor_page.hpp"
+#include "web/request_guard.hpp"
+#include "web/web_server.hpp"
 
 namespace edsc {
 namespace {
@@ -24,13 +29,15 @@ constexpr const char* examples = R"(Examples:
   edsc monitor socketcan:can0 --node 5=drive.eds --node 3=io.eds  PDO values by name
   edsc monitor socketcan:can0 --node 5=drive.eds | tee log        a line for each change
   edsc monitor socketcan:can0 --once 10 --bit-rate 500            ten seconds, then one table with the bus load
-  edsc monitor socketcan:can0 --once 10 --format json             for a program)";
+  edsc monitor socketcan:can0 --once 10 --format json             for a program
+  edsc monitor socketcan:can0 --node 5=drive.eds --web            values and plots in the browser)";
 
 struct Settings {
   std::string bus;
   std::vector<std::string> nodes;
   std::optional<double> once_seconds;
   std::optional<unsigned> bit_rate;
+  std::optional<ListenAddress> web;
   std::string format = "text";
   ColorOption color;
 };
@@ -67,6 +74,30 @@ class Monitor {
                       who, message.text);
         flush_output();
       });
+    }
+    return exit_fine;
+  }
+
+  /// Serves a page that is updated ten times a second, until Ctrl-C. Throws CannotListen.
+  int show_in_browser(const ListenAddress& address) {
+    LiveRows rows;
+    EmergencyLog emergencies;
+    const WebServer server{address, monitor_page(view_.bus), rows};
+    if (!RequestGuard::is_loopback(address.host)) {
+      fmt::print(stderr,
+                 "edsc: whoever sees this URL in the network can read the bus; the connection is not encrypted\n");
+    }
+    if (!has_plots()) fmt::print(stderr, "edsc: this program was built without uPlot: the page has no plots\n");
+    fmt::print("{}\n", server.url());
+    flush_output();
+    while (!Interruption::noted()) {
+      take_frames(between_pictures, [&](const Message& message) {
+        if (message.service == Service::emcy) emergencies.add(message, now_us_);
+      });
+      std::vector<LiveRow> changed = monitor_rows(state_, view_.bit_rate, now_us_);
+      std::vector<std::string> removed;
+      emergencies.take(changed, removed);
+      rows.publish(std::move(changed), removed);
     }
     return exit_fine;
   }
@@ -133,6 +164,15 @@ class Monitor {
   std::int64_t now_us_ = 0;
 };
 
+int serve(Monitor& monitor, const ListenAddress& address) {
+  try {
+    return monitor.show_in_browser(address);
+  } catch (const CannotListen& problem) {
+    fmt::print(stderr, "edsc: {}\n", problem.what());
+    return exit_wrong_usage;
+  }
+}
+
 int run_monitor(const Settings& settings) {
   if (settings.format == "json" && !settings.once_seconds) throw CLI::RequiresError("--format json", "--once");
   std::vector<std::unique_ptr<LoadedDevice>> devices;
@@ -144,6 +184,7 @@ int run_monitor(const Settings& settings) {
   }
   return with_bus(settings.bus, [&](LiveBus& bus) {
     Monitor monitor{bus, settings, known};
+    if (settings.web) return serve(monitor, *settings.web);
     if (settings.once_seconds) return monitor.print_once(*settings.once_seconds, settings.format);
     return Terminal::is_there() ? monitor.show_table(settings.color.on(stdout)) : monitor.print_changes();
   });
@@ -164,6 +205,22 @@ void add_monitor_options(CLI::App& command, int& exit_code) {
       ->check(CLI::Range(0.01, 86'400.0));
   command.add_option("--bit-rate", settings.bit_rate, "kbit/s of the bus, for its load (without stuff bits)")
       ->check(CLI::Range(5, 1000));
+  command
+      .add_option_function<std::string>(
+          "--web", [&settings](const std::string& text) { settings.web = parse_listen_address(text); },
+          "serve a page with live values and plots, at this address (default: 127.0.0.1:8080; port 0: any)")
+      ->type_name("HOST:PORT")
+      ->expected(0, 1)
+      ->default_str("127.0.0.1:8080")
+      ->excludes("--once")
+      ->check([](const std::string& text) {
+        try {
+          static_cast<void>(parse_listen_address(text));
+          return std::string{};
+        } catch (const std::invalid_argument& problem) {
+          return std::string{problem.what()};
+        }
+      });
   add_format_option(command, settings.format);
   settings.color.add_to(command);
 }

@@ -22,7 +22,7 @@ export async function withPage(chromium, use) {
   }
 }
 
-// Errors and warnings of the page, and requests of anything besides the page itself.
+// Errors and warnings of the page, and requests of anything besides the page itself, or the server that it comes from.
 export function watch(page) {
   const seen = { errors: [], requests: [] };
   page.on('console', (message) => {
@@ -34,8 +34,10 @@ export function watch(page) {
     dialog.dismiss();
   });
   page.on('request', (request) => {
-    const isPage = request.isNavigationRequest() && request.url().startsWith('file:');
-    if (!isPage && !request.url().startsWith('data:')) seen.requests.push(request.url());
+    const { origin, protocol } = new URL(request.url());
+    const isPage = request.isNavigationRequest() && ['file:', 'http:'].includes(protocol);
+    const isOwn = protocol === 'http:' && origin === new URL(page.url()).origin;
+    if (!isPage && !isOwn && protocol !== 'data:') seen.requests.push(request.url());
   });
   return seen;
 }

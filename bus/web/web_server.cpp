@@ -1,0 +1,205 @@
+#include "web/web_server.hpp"
+
+#include <fmt/format.h>
+#include <httplib.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+
+#include "web/request_guard.hpp"
+
+namespace edsc {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+/// A connection of one request, of which only so many bytes are read, within this time.
+class BoundedStream final : public httplib::Stream {
+ public:
+  explicit BoundedStream(int socket) : socket_{socket} {}
+
+  [[nodiscard]] bool is_readable() const override { return begin_ != end_ || waits_for(POLLIN, milliseconds{0}); }
+  [[nodiscard]] bool is_writable() const override { return waits_for(POLLOUT, write_time); }
+
+  ssize_t read(char* out, std::size_t size) override {
+    if (begin_ == end_ && !fill()) return -1;
+    const std::size_t count = std::min(size, end_ - begin_);
+    std::memcpy(out, buffer_.data() + begin_, count);
+    begin_ += count;
+    return static_cast<ssize_t>(count);
+  }
+
+  ssize_t write(const char* data, std::size_t size) override {
+    if (!waits_for(POLLOUT, write_time)) return -1;
+    return ::send(socket_, data, size, MSG_NOSIGNAL | MSG_DONTWAIT);
+  }
+
+  void get_remote_ip_and_port(std::string& /*ip*/, int& /*port*/) const override {}
+  void get_local_ip_and_port(std::string& /*ip*/, int& /*port*/) const override {}
+  [[nodiscard]] socket_t socket() const override { return socket_; }
+
+ private:
+  static constexpr std::size_t max_bytes = 16'384;
+  static constexpr milliseconds read_time{5'000};
+  static constexpr milliseconds write_time{5'000};
+
+  [[nodiscard]] bool waits_for(short event, milliseconds most) const {
+    pollfd waited{socket_, event, 0};
+    return poll(&waited, 1, static_cast<int>(most.count())) == 1 && (waited.revents & event) != 0;
+  }
+
+  bool fill() {
+    const auto left = std::chrono::duration_cast<milliseconds>(end_of_reading_ - steady_clock::now());
+    if (left.count() <= 0 || bytes_ >= max_bytes || !waits_for(POLLIN, left)) return false;
+    const ssize_t count = ::recv(socket_, buffer_.data(), buffer_.size(), MSG_DONTWAIT);
+    if (count <= 0) return false;
+    begin_ = 0;
+    end_ = static_cast<std::size_t>(count);
+    bytes_ += end_;
+    return true;
+  }
+
+  int socket_;
+  steady_clock::time_point end_of_reading_ = steady_clock::now() + read_time;
+  std::size_t bytes_ = 0;
+  std::size_t begin_ = 0, end_ = 0;
+  std::array<char, 4096> buffer_{};
+};
+
+/// A server with one request for each connection.
+class BoundedServer final : public httplib::Server {
+ private:
+  bool process_and_close_socket(socket_t socket) override {
+    BoundedStream stream{socket};
+    bool is_closed = false;
+    const bool is_done = process_request(stream, true, is_closed, nullptr);
+    ::shutdown(socket, SHUT_RDWR);
+    ::close(socket);
+    return is_done;
+  }
+};
+
+constexpr std::pair<const char*, const char*> headers[] = {
+    {"Cache-Control", "no-store"},
+    {"Cross-Origin-Opener-Policy", "same-origin"},
+    {"Cross-Origin-Resource-Policy", "same-origin"},
+    {"Referrer-Policy", "no-referrer"},
+    {"X-Content-Type-Options", "nosniff"},
+    {"X-Frame-Options", "DENY"},
+};
+
+std::string policy(const std::string& nonce) {
+  return fmt::format(
+      "default-src 'none'; script-src 'nonce-{0}'; style-src 'nonce-{0}'; connect-src 'self'; img-src data:; "
+      "base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+      nonce);
+}
+
+std::string with_nonce(std::string page, std::string_view nonce) {
+  constexpr std::string_view placeholder = "{{{nonce}}}";
+  for (std::size_t at = 0; (at = page.find(placeholder, at)) != std::string::npos;) {
+    page.replace(at, placeholder.size(), nonce);
+  }
+  return page;
+}
+
+}  // namespace
+
+class WebServer::Implementation {
+ public:
+  Implementation(const ListenAddress& address, std::string page, LiveRows& rows)
+      : page_{std::move(page)}, rows_{rows}, guard_{bind(address), random_token()} {
+    server_.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
+      for (const auto& [name, value] : headers) response.set_header(name, value);
+      const int status =
+          guard_.check({request.method, request.get_header_value("Host"), request.get_header_value("Origin"),
+                        request.get_header_value("Range"), request.get_param_value("token")});
+      if (status == 200) return httplib::Server::HandlerResponse::Unhandled;
+      response.status = status;
+      return httplib::Server::HandlerResponse::Handled;
+    });
+    server_.Get("/", [this](const httplib::Request&, httplib::Response& response) {
+      const std::string nonce = random_token();
+      response.set_header("Content-Security-Policy", policy(nonce));
+      response.set_content(with_nonce(page_, nonce), "text/html; charset=utf-8");
+    });
+    server_.Get("/events", [this](const httplib::Request&, httplib::Response& response) { stream_to(response); });
+    server_.new_task_queue = [] { return new httplib::ThreadPool{max_streams + other_threads}; };
+    thread_ = std::thread{[this] { server_.listen_after_bind(); }};
+    while (!server_.is_running()) std::this_thread::yield();
+  }
+
+  ~Implementation() {
+    rows_.end();
+    server_.stop();
+    thread_.join();
+  }
+  Implementation(const Implementation&) = delete;
+  Implementation& operator=(const Implementation&) = delete;
+
+  [[nodiscard]] std::string url() const { return guard_.url(); }
+
+ private:
+  static constexpr unsigned other_threads = 16;
+
+  ListenAddress bind(ListenAddress address) {
+    // Not SO_REUSEPORT, which httplib sets: another program could listen at the same port.
+    server_.set_socket_options([](socket_t socket) {
+      constexpr int yes = 1;
+      setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    });
+    const bool is_any = address.port == 0;
+    const int port = is_any                                             ? server_.bind_to_any_port(address.host)
+                     : server_.bind_to_port(address.host, address.port) ? address.port
+                                                                        : -1;
+    if (port <= 0) throw CannotListen{"cannot listen at " + to_text(address)};
+    address.port = static_cast<std::uint16_t>(port);
+    return address;
+  }
+
+  void stream_to(httplib::Response& response) {
+    if (streams_.fetch_add(1) >= max_streams) {
+      --streams_;
+      response.status = 503;
+      response.set_header("Retry-After", "5");
+      return;
+    }
+    response.set_chunked_content_provider(
+        "text/event-stream",
+        [this, version = std::uint64_t{0}](std::size_t, httplib::DataSink& sink) mutable {
+          const auto update = rows_.wait(version, milliseconds{1'000});
+          if (rows_.has_ended()) return false;
+          if (!update) return sink.write(":\n\n", 3);  // a comment: is the client still there?
+          version = update->version;
+          const std::string event = "data: " + update->json + "\n\n";
+          return sink.write(event.data(), event.size());
+        },
+        [this](bool) { --streams_; });
+  }
+
+  std::string page_;
+  LiveRows& rows_;
+  BoundedServer server_;
+  RequestGuard guard_;
+  std::atomic<unsigned> streams_ = 0;
+  std::thread thread_;
+};
+
+WebServer::WebServer(const ListenAddress& address, std::string page, LiveRows& rows)
+    : implementation_{std::make_unique<Implementation>(address, std::move(page), rows)} {}
+
+WebServer::~WebServer() = default;
+
+std::string WebServer::url() const { return implementation_->url(); }
+
+}  // namespace edsc

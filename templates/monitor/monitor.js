@@ -1,0 +1,348 @@
+'use strict';
+(() => {
+  const maxPoints = 6000;   /* of a value: ten minutes with ten changes a second */
+  const maxSeries = 400;    /* values with a history; of more, those that are plotted */
+  const maxEmcys = 200;
+  const maxPlots = 8;
+  const byId = (id) => document.getElementById(id);
+  const seconds = (us) => us / 1e6;
+  const hex = (number, digits) => number.toString(16).toUpperCase().padStart(digits, '0');
+  const canId = (cobId) => (cobId & 0x20000000 ? `${hex(cobId & 0x1FFFFFFF, 8)}h` : `${hex(cobId, 3)}h`);
+
+  /* The newest points of a value: two arrays that are overwritten in turn. */
+  class History {
+    constructor() {
+      this.times = [];
+      this.values = [];
+      this.begin = 0;
+    }
+
+    add(time, value) {
+      if (this.times.length < maxPoints) {
+        this.times.push(time);
+        this.values.push(value);
+        return;
+      }
+      this.times[this.begin] = time;
+      this.values[this.begin] = value;
+      this.begin = (this.begin + 1) % maxPoints;
+    }
+
+    inOrder(array) {
+      return this.begin === 0 ? array : array.slice(this.begin).concat(array.slice(0, this.begin));
+    }
+
+    get data() {
+      return [this.inOrder(this.times), this.inOrder(this.values)];
+    }
+  }
+
+  /* A table whose rows have keys, in their order. A cell changes only if its text does. */
+  class Table {
+    constructor(body, classes) {
+      this.body = body;
+      this.classes = classes;
+      this.rows = new Map();
+    }
+
+    row(key, order) {
+      let row = this.rows.get(key);
+      if (row) return row;
+      const element = document.createElement('tr');
+      for (const name of this.classes) element.insertCell().className = name;
+      row = { element, order, cells: [...element.cells] };
+      let next = this.body.firstElementChild;
+      while (next && next.order <= order) next = next.nextElementSibling;
+      element.order = order;
+      this.body.insertBefore(element, next);
+      this.rows.set(key, row);
+      return row;
+    }
+
+    remove(key) {
+      this.rows.get(key)?.element.remove();
+      this.rows.delete(key);
+    }
+  }
+  const setText = (cell, text) => {
+    if (cell.textContent !== text) cell.textContent = text;
+  };
+
+  const nodes = new Table(byId('nodes'), ['number', '', '', '', 'number', '']);
+  const values = new Table(byId('value-rows'), ['', 'number', '', 'number', 'mono', '', '']);
+  const emcys = new Table(byId('emcys'), ['number', 'number', '']);
+  const others = new Table(byId('others'), ['mono', 'number', 'number']);
+  const state = new Map();      /* the newest row of each node, PDO and CAN-ID, also while paused */
+  const series = new Map();     /* by key: a value with its history */
+  const plots = new Map();
+  let emcyRows = [];
+  let bus = null;
+  let isPaused = false;
+  const changed = new Set();
+
+  /* Values and plots */
+
+  const colors = () => {
+    const style = getComputedStyle(document.documentElement);
+    return Object.fromEntries(['text', 'line', 'field-line'].map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
+  };
+
+  const stepped = typeof uPlot === 'undefined' ? null : uPlot.paths.stepped({ align: 1 });
+  const plotWidth = () => Math.max(200, byId('plots').clientWidth - 26);
+
+  const makePlot = (one) => {
+    const box = document.createElement('div');
+    box.className = 'plot';
+    const heading = document.createElement('h3');
+    heading.textContent = one.title;
+    const small = document.createElement('small');
+    heading.append(small);
+    const close = document.createElement('button');
+    close.type = 'button';
+    close.textContent = '\u00D7';
+    close.setAttribute('aria-label', `Remove the plot of ${one.title}`);
+    close.addEventListener('click', () => setPlotted(one, false));
+    box.append(heading, close);
+    byId('plots').append(box);
+    const color = colors();
+    const axis = { stroke: color.text, grid: { stroke: color.line, width: 1 }, ticks: { stroke: color.line, width: 1 } };
+    const chart = new uPlot({
+      width: plotWidth(), height: 170, cursor: { sync: { key: 'time' } }, scales: { x: { time: false } },
+      axes: [{ ...axis, label: undefined, values: (_, ticks) => ticks.map((tick) => `${tick} s`) }, { ...axis, size: 70 }],
+      series: [{}, { stroke: color['field-line'], width: 1.5, paths: stepped, points: { show: false } }],
+    }, one.history.data, box);
+    const canvas = chart.root;
+    canvas.setAttribute('role', 'img');
+    canvas.setAttribute('aria-label', `Plot of ${one.title} over time`);
+    return { box, chart, small };
+  };
+
+  const setPlotted = (one, isPlotted) => {
+    if (isPlotted === plots.has(one.key)) return;
+    if (isPlotted && plots.size >= maxPlots) setPlotted(plots.values().next().value.one, false);
+    if (isPlotted) {
+      one.history ??= new History();
+      plots.set(one.key, { one, ...makePlot(one) });
+    } else {
+      const plot = plots.get(one.key);
+      plot.chart.destroy();
+      plot.box.remove();
+      plots.delete(one.key);
+    }
+    if (one.box) one.box.checked = isPlotted;
+    byId('plots-hint').hidden = plots.size > 0;
+    drawPlots();
+  };
+
+  const drawPlots = () => {
+    for (const { one, chart, small } of plots.values()) {
+      chart.setData(one.history.data);
+      setText(small, one.text);
+    }
+  };
+
+  const remakePlots = () => {
+    for (const { one } of [...plots.values()]) {
+      setPlotted(one, false);
+      setPlotted(one, true);
+    }
+  };
+
+  const valueOf = (pdo, value, position) => {
+    const key = `${pdo.node_id} ${pdo.pdo} ${position}`;
+    let one = series.get(key);
+    const object = `${hex(value.index, 4)}h:${hex(value.sub_index, 2)}`;
+    if (one && one.object === object) return one;
+    if (one) dropValue(one);  /* the PDO was mapped anew */
+    one = { key, object, node: pdo.node_id, pdo: pdo.pdo, name: value.name, unit: value.unit, position,
+      title: `node ${pdo.node_id} ${value.name || object}${value.unit ? ` in ${value.unit}` : ''}`, text: '', history: null };
+    if (value.number !== null && series.size < maxSeries) one.history = new History();
+    series.set(key, one);
+    return one;
+  };
+
+  const dropValue = (one) => {
+    if (plots.has(one.key)) setPlotted(one, false);
+    values.remove(one.key);
+    series.delete(one.key);
+  };
+
+  const record = (pdo) => {
+    pdo.values.forEach((value, position) => {
+      const one = valueOf(pdo, value, position);
+      one.text = value.text;
+      if (value.number !== null && one.history) one.history.add(seconds(pdo.at_us), value.number);
+    });
+    for (let position = pdo.values.length; series.has(`${pdo.node_id} ${pdo.pdo} ${position}`); ++position) {
+      dropValue(series.get(`${pdo.node_id} ${pdo.pdo} ${position}`));
+    }
+  };
+
+  const fits = (row) => row.element.textContent.toLowerCase().includes(byId('filter').value.trim().toLowerCase());
+
+  const pdoNumber = (name) => Number(name.slice(5)) + (name.startsWith('T') ? 0 : 1000);
+  const showPdo = (pdo) => {
+    const order = pdo.node_id * 1e6 + pdoNumber(pdo.pdo) * 100;
+    const shown = pdo.values.length ? pdo.values : [null];
+    shown.forEach((value, position) => {
+      const one = value && series.get(`${pdo.node_id} ${pdo.pdo} ${position}`);
+      const key = `${pdo.node_id} ${pdo.pdo} ${position}`;
+      const isNew = !values.rows.has(key);
+      const row = values.row(key, order + position);
+      const [plot, node, name, rate, object, label, text] = row.cells;
+      if (one && value.number !== null && stepped && !plot.firstChild) {
+        one.box = document.createElement('input');
+        one.box.type = 'checkbox';
+        one.box.setAttribute('aria-label', `Plot ${one.title}`);
+        one.box.addEventListener('change', () => setPlotted(one, one.box.checked));
+        plot.append(one.box);
+      }
+      setText(node, String(pdo.node_id));
+      setText(name, pdo.pdo);
+      setText(rate, pdo.per_second.toFixed(1));
+      setText(object, one ? one.object : '');
+      setText(label, one ? one.name : '');
+      setText(text, value ? value.text : pdo.text);
+      if (isNew) row.element.hidden = !fits(row);
+    });
+  };
+
+  /* Nodes, EMCYs, other CAN-IDs */
+
+  const heard = (node) => {
+    if (node.heard_us === null || !bus) return '-';
+    return `${Math.max(0, seconds(bus.at_us - node.heard_us)).toFixed(1)} s ago${node.late ? ', late' : ''}`;
+  };
+
+  const showNode = (node) => {
+    const { element, cells } = nodes.row(node.node_id, node.node_id);
+    setText(cells[0], String(node.node_id));
+    setText(cells[1], node.name || '-');
+    setText(cells[2], node.assumed_state ? `${node.assumed_state}?` : node.state || '-');
+    setText(cells[3], heard(node));
+    setText(cells[4], String(node.emergencies));
+    setText(cells[5], node.emergency || '-');
+    element.classList.toggle('bad', node.late || node.error_code !== 0);
+  };
+
+  const showEmcys = () => {
+    for (const [key, row] of emcys.rows) if (row.order > -emcyRows[0].number) emcys.remove(key);
+    for (const emcy of emcyRows) {
+      if (emcys.rows.has(emcy.number)) continue;
+      const { cells } = emcys.row(emcy.number, -emcy.number);
+      setText(cells[0], `${seconds(emcy.at_us).toFixed(3)} s`);
+      setText(cells[1], String(emcy.node_id));
+      setText(cells[2], emcy.text);
+    }
+  };
+
+  const showOther = (other) => {
+    const { cells } = others.row(other.cob_id, other.cob_id);
+    setText(cells[0], canId(other.cob_id));
+    setText(cells[1], other.per_second.toFixed(1));
+    setText(cells[2], String(other.frames));
+  };
+
+  const showBus = () => {
+    const load = bus.load_percent === null ? '' : `, load ${bus.load_percent.toFixed(1)} %`;
+    setText(byId('summary'), `${seconds(bus.at_us).toFixed(1)} s, ${bus.frames} frames, ${bus.per_second.toFixed(1)} per s${load}`);
+  };
+
+  const show = { node: showNode, pdo: showPdo, other: showOther };
+  const draw = () => {
+    if (isPaused || !bus) return;
+    showBus();
+    for (const key of changed) {
+      const row = state.get(key);
+      show[row.kind](row);
+    }
+    changed.clear();
+    for (const row of state.values()) if (row.kind === 'node') showNode(row);
+    if (emcyRows.length) showEmcys();
+    drawPlots();
+  };
+
+  /* The events of the server */
+
+  const keyOf = { node: (row) => `node ${row.node_id}`, pdo: (row) => `pdo ${row.node_id} ${row.pdo}`,
+    other: (row) => `other ${row.cob_id}` };
+  const take = (row) => {
+    if (row.kind === 'bus') {
+      bus = row;
+    } else if (row.kind === 'emcy') {
+      if (!emcyRows.length || row.number > emcyRows.at(-1).number) emcyRows.push(row);
+      emcyRows = emcyRows.slice(-maxEmcys);
+    } else {
+      const key = keyOf[row.kind](row);
+      state.set(key, row);
+      changed.add(key);
+      if (row.kind === 'pdo') record(row);
+    }
+  };
+
+  const connection = byId('connection');
+  const events = new EventSource(`events${location.search}`);
+  events.addEventListener('open', () => setText(connection, 'connected'));
+  events.addEventListener('error', () => setText(connection, 'not connected: is edsc monitor running?'));
+  events.addEventListener('message', (event) => {
+    const { rows } = JSON.parse(event.data);
+    /* The EMCYs come by their keys, which are texts. */
+    rows.sort((a, b) => (a.kind === 'emcy' && b.kind === 'emcy' ? a.number - b.number : 0));
+    rows.forEach(take);
+    draw();
+  });
+
+  /* Buttons and keys */
+
+  const pause = byId('pause');
+  const togglePause = () => {
+    isPaused = !isPaused;
+    pause.setAttribute('aria-pressed', String(isPaused));
+    pause.textContent = isPaused ? 'Go on' : 'Pause';
+    draw();
+  };
+  pause.addEventListener('click', togglePause);
+
+  /* RFC 4180: records end with CR LF; a field with a comma, a quotation mark or a line end is in quotation marks. */
+  const field = (text) => (/[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
+  const csv = () => {
+    const chosen = plots.size ? [...plots.values()].map((plot) => plot.one) : [...series.values()];
+    const lines = ['time,node,pdo,object,name,value,unit'];
+    for (const one of chosen) {
+      if (!one.history) continue;
+      const [times, numbers] = one.history.data;
+      const rest = [one.node, one.pdo, one.object, one.name].map((text) => field(String(text))).join(',');
+      times.forEach((time, at) => lines.push(`${time.toFixed(6)},${rest},${numbers[at]},${field(one.unit)}`));
+    }
+    return `${lines.join('\r\n')}\r\n`;
+  };
+  const save = () => {
+    const link = document.createElement('a');
+    link.href = URL.createObjectURL(new Blob([csv()], { type: 'text/csv' }));
+    link.download = 'monitor.csv';
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+  };
+  byId('export').addEventListener('click', save);
+  byId('clear').addEventListener('click', () => {
+    for (const { one } of [...plots.values()]) setPlotted(one, false);
+  });
+  byId('filter').addEventListener('input', () => {
+    for (const row of values.rows.values()) row.element.hidden = !fits(row);
+  });
+  if (!stepped) setText(byId('plots-hint'), 'This edsc was built without uPlot (npm): no plots.');
+
+  document.addEventListener('keydown', (event) => {
+    if (event.ctrlKey || event.altKey || event.metaKey || event.target.type === 'search') return;
+    if (event.key === 'p') togglePause();
+    if (event.key === 'e') save();
+    if (event.key === '/') {
+      byId('filter').focus();
+      event.preventDefault();
+    }
+  });
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', remakePlots);
+  addEventListener('resize', () => {
+    for (const { chart } of plots.values()) chart.setSize({ width: plotWidth(), height: 170 });
+  });
+})();

@@ -1,0 +1,146 @@
+#!/usr/bin/env python3
+"""The page of edsc monitor --web in Chromium, with the eight reference devices on the bus of `edsc bus`.
+
+    monitor_page_test.py SOURCE_DIR EDSC CPD WORK_DIR [--seconds N] [--screenshots FOLDER] [unittest arguments]
+
+CPD is the program of one of the devices; those of the others are in the same folder. npm installs puppeteer-core and
+axe-core in WORK_DIR. --seconds: stays open, and prints the memory of the page and of edsc. Exit code 77: skipped.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import re
+import shutil
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+WORK = Path(sys.argv.pop(4)).resolve()
+
+
+def option(name: str, default: str) -> str:
+    if name not in sys.argv:
+        return default
+    at = sys.argv.index(name)
+    value = sys.argv[at + 1]
+    del sys.argv[at:at + 2]
+    return value
+
+
+SECONDS, SCREENSHOTS = option("--seconds", "0"), option("--screenshots", "")
+FRAMES_PER_SECOND = 1000
+
+from live import LIVE_NODES, SOURCE_DIR, LiveTest, run  # noqa: E402
+
+sys.path.append(str(SOURCE_DIR / "tests/support"))
+sys.path.append(str(SOURCE_DIR / "tests/masters"))
+from npm_packages import Skipped, install_npm_packages  # noqa: E402
+
+DEVICES = ("can-2017c", "can-2024c", "can-2053c", "can-2057c", "cpc-tc1", "cpd", "ezd-1136", "rk5c")
+CHROMIUM = shutil.which("chromium")
+
+
+class Traffic(threading.Thread):
+    """1,000 frames a second: RPDO 1 of each node, with a number that counts."""
+
+    def __init__(self, test: MonitorPage) -> None:
+        super().__init__(daemon=True)
+        self.client, self.is_on, self.sent = test.network.client(), True, 0
+        threading.Thread(target=self.read, daemon=True).start()
+        self.start()
+
+    def read(self) -> None:
+        try:
+            while self.client.socket.recv(65536):
+                pass
+        except OSError:
+            pass
+
+    def run(self) -> None:
+        begin = time.monotonic()
+        while self.is_on:
+            while self.sent < FRAMES_PER_SECOND * (time.monotonic() - begin):
+                node_id = 1 + self.sent % len(DEVICES)
+                number = (self.sent // len(DEVICES)) & 0xFFFF
+                self.client.send(f"{0x200 + node_id:03X} {number & 0xFF:02X} {number >> 8:02X} 00 00 00 00 00 00")
+                self.sent += 1
+            time.sleep(0.005)
+
+
+class MonitorPage(LiveTest):
+    nodes = ()
+
+    def start_devices(self) -> None:
+        for node_id, device in enumerate(DEVICES, 1):
+            program = LIVE_NODES.parent / device.replace("-", "_")
+            process = subprocess.Popen([program, self.network.address, "--node-id", str(node_id)], stdout=subprocess.DEVNULL)
+            self.addCleanup(process.wait)
+            self.addCleanup(process.kill)
+        for node_id in range(1, len(DEVICES) + 1):
+            while f"{0x700 + node_id:03X} 00" not in self.network.log:
+                time.sleep(0.02)
+            self.assertEqual(self.edsc("write", node_id, "1017h", 500, "--type", "u16").returncode, 0)
+        self.assertEqual(self.edsc("nmt", "start", "all").returncode, 0)
+
+    def memory_kb(self) -> int:
+        return int(re.search(r"VmRSS:\s+(\d+)", Path(f"/proc/{self.monitor.pid}/status").read_text())[1])
+
+    def test_what_a_user_does(self) -> None:
+        try:
+            install_npm_packages(SOURCE_DIR / "tests/document/browser", WORK)
+            if CHROMIUM is None:
+                raise Skipped("chromium is not installed")
+        except Skipped as reason:
+            print(reason, file=sys.stderr)
+            sys.exit(77)
+        self.start_devices()
+        sheets = [f"--node={node_id}={SOURCE_DIR}/eds/{device}.eds" for node_id, device in enumerate(DEVICES, 1)]
+        self.monitor = self.start("monitor", *sheets, "--bit-rate", 1000, "--web", "127.0.0.1:0")
+        url = self.monitor.stdout.readline().strip()
+        traffic = Traffic(self)
+        self.network.client().send("085 30 81 11 00 00 00 00 00")
+        before = self.memory_kb()
+        browser = subprocess.run(["node", "monitor.mjs", CHROMIUM, url, SECONDS, *([SCREENSHOTS] if SCREENSHOTS else [])],
+                                 cwd=WORK, capture_output=True, text=True, check=False)
+        traffic.is_on = False
+        self.assertEqual(browser.returncode, 0, browser.stderr)
+        found = json.loads(browser.stdout)
+        if SECONDS != "0":
+            print(f"edsc: {before} kB, then {self.memory_kb()} kB; page: {found['memory']} bytes; {found['last']}")
+        self.assertEqual(found["seen"], {"errors": [], "requests": []})
+        self.assertEqual(found["violations"], {"light": [], "dark": []})
+        self.assertEqual(found["connection"], "connected")
+        self.assertEqual([int(node[0]) for node in found["nodes"]], list(range(1, len(DEVICES) + 1)))
+        self.assertEqual({node[2].rstrip("?") for node in found["nodes"]}, {"operational"})
+        self.assertEqual(len(found["plots"]), 2)
+        self.assertEqual(found["left"], found["plots"][1:])
+        self.assertGreater(found["drawn"], 0.01)
+        self.assertEqual(found["paused"][0], found["paused"][1])
+        self.assertEqual(found["isPressed"], "true")
+        self.assertNotEqual(found["resumed"]["summary"], found["paused"][1]["summary"])
+        self.assertNotEqual(found["resumed"]["values"], found["paused"][1]["values"])
+        self.assertEqual(found["filtered"], 0)
+        self.assertIn("8130h", "".join(found["emcys"]))
+        self.check_csv(found["csv"])
+
+    def check_csv(self, text: str) -> None:
+        self.assertTrue(text.endswith("\r\n"))
+        self.assertNotRegex(text.replace("\r\n", ""), r"[\r\n]")
+        rows = list(csv.DictReader(io.StringIO(text, newline=""), strict=True))
+        self.assertGreater(len(rows), 10)
+        self.assertEqual(list(rows[0]), ["time", "node", "pdo", "object", "name", "value", "unit"])
+        objects = {(row["node"], row["pdo"], row["object"]) for row in rows}
+        self.assertEqual(len(objects), 2, "those that are plotted")
+        for one in objects:
+            times = [float(row["time"]) for row in rows if (row["node"], row["pdo"], row["object"]) == one]
+            self.assertEqual(times, sorted(times))
+        self.assertGreater(len({float(row["value"]) for row in rows}), 5)
+
+
+if __name__ == "__main__":
+    run()
