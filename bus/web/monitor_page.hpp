@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "decode/message.hpp"
 #include "monitor/monitor_state.hpp"
 #include "web/live_rows.hpp"
 
