@@ -9,27 +9,28 @@
   const hex = (number, digits) => number.toString(16).toUpperCase().padStart(digits, '0');
   const canId = (cobId) => (cobId & 0x20000000 ? `${hex(cobId & 0x1FFFFFFF, 8)}h` : `${hex(cobId, 3)}h`);
 
-  /* The newest points of a value: two arrays that are overwritten in turn. */
+  /* The newest points of a value, in memory that does not grow: of a full history, the oldest point is overwritten. */
   class History {
     constructor() {
-      this.times = [];
-      this.values = [];
-      this.begin = 0;
+      this.times = new Float64Array(maxPoints);
+      this.values = new Float64Array(maxPoints);
+      this.count = 0;
+      this.end = 0;
     }
 
     add(time, value) {
-      if (this.times.length < maxPoints) {
-        this.times.push(time);
-        this.values.push(value);
-        return;
-      }
-      this.times[this.begin] = time;
-      this.values[this.begin] = value;
-      this.begin = (this.begin + 1) % maxPoints;
+      this.times[this.end] = time;
+      this.values[this.end] = value;
+      this.end = (this.end + 1) % maxPoints;
+      this.count = Math.min(this.count + 1, maxPoints);
     }
 
     inOrder(array) {
-      return this.begin === 0 ? array : array.slice(this.begin).concat(array.slice(0, this.begin));
+      if (this.count < maxPoints || this.end === 0) return array.subarray(0, this.count);
+      const all = new Float64Array(maxPoints);
+      all.set(array.subarray(this.end));
+      all.set(array.subarray(0, this.end), maxPoints - this.end);
+      return all;
     }
 
     get data() {
