@@ -135,8 +135,11 @@ class WebServer::Implementation {
     });
     server_.Get("/events", [this](const httplib::Request&, httplib::Response& response) { stream_to(response); });
     server_.new_task_queue = [] { return new httplib::ThreadPool{max_streams + other_threads}; };
-    thread_ = std::thread{[this] { server_.listen_after_bind(); }};
-    while (!server_.is_running()) std::this_thread::yield();
+    thread_ = std::thread{[this] {
+      server_.listen_after_bind();
+      has_ended_ = true;
+    }};
+    while (!server_.is_running() && !has_ended_) std::this_thread::yield();  // before that, stop() has no effect
   }
 
   ~Implementation() {
@@ -192,6 +195,7 @@ class WebServer::Implementation {
   BoundedServer server_;
   RequestGuard guard_;
   std::atomic<unsigned> streams_ = 0;
+  std::atomic<bool> has_ended_ = false;
   std::thread thread_;
 };
 

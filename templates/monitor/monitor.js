@@ -284,7 +284,7 @@
   const connection = byId('connection');
   const events = new EventSource(`events${location.search}`);
   events.addEventListener('open', () => setText(connection, 'connected'));
-  events.addEventListener('error', () => setText(connection, 'not connected: is edsc monitor running?'));
+  events.addEventListener('error', () => setText(connection, 'not connected: edsc monitor has ended, or too many pages are open'));
   events.addEventListener('message', (event) => {
     const { rows } = JSON.parse(event.data);
     /* The EMCYs come by their keys, which are texts. */

@@ -68,5 +68,9 @@ class LiveTest(unittest.TestCase):
 
 
 def run() -> None:
-    """Runs the tests of the script."""
-    unittest.main(argv=[sys.argv[0], *sys.argv[4:]])
+    """Runs the tests of the script. Exit code 77: all were skipped."""
+    result = unittest.main(argv=[sys.argv[0], *sys.argv[4:]], exit=False).result
+    if result.testsRun == len(result.skipped) > 0:
+        print("\n".join(reason for _, reason in result.skipped), file=sys.stderr)
+        sys.exit(77)
+    sys.exit(not result.wasSuccessful())
