@@ -12,28 +12,14 @@ import signal
 import subprocess
 import time
 
-from live import EDSC, FINE, LIVE_NODES, SOURCE_DIR, LiveTest, run
+from live import EDSC, FINE, ReferenceDevices, run
 
-DEVICES = ("can-2017c", "can-2024c", "can-2053c", "can-2057c", "cpc-tc1", "cpd", "ezd-1136", "rk5c")
 HEARTBEATS = 5
 # A busy machine is late, and the nodes have its clock.
 TIMES = ("pdo-event-timer", "pdo-inhibit-time", "heartbeat-late", "heartbeat-early", "sdo-timeout")
 
 
-class Audit(LiveTest):
-    nodes = ()
-
-    def start_devices(self) -> None:
-        for node_id, device in enumerate(DEVICES, 1):
-            program = LIVE_NODES.parent / device.replace("-", "_")
-            process = subprocess.Popen([program, self.network.address, "--node-id", str(node_id)], stdout=subprocess.DEVNULL)
-            self.addCleanup(process.wait)
-            self.addCleanup(process.kill)
-
-    def wait_for(self, frame: str, count: int = 1) -> None:
-        while self.network.log.count(frame) < count:
-            time.sleep(0.02)
-
+class Audit(ReferenceDevices):
     def record(self) -> subprocess.Popen[str]:
         process = self.start("record", "-o", "bus.log")
         client, log = self.network.client(), self.folder / "bus.log"
@@ -45,20 +31,16 @@ class Audit(LiveTest):
     def test_the_reference_devices_are_clean(self) -> None:
         recording = self.record()
         self.start_devices()
-        nodes = range(1, len(DEVICES) + 1)
-        for node_id in nodes:
-            self.wait_for(f"{0x700 + node_id:03X} 00")
-        for node_id in nodes:
+        for node_id in self.node_ids:
             self.assertEqual(self.edsc("write", node_id, "1017h", 200, "--type", "u16").returncode, FINE)
             self.assertEqual(self.edsc("read", node_id, "1018h:01").returncode, FINE)
         for command, state in (("start", 5), ("stop", 4)):
             self.assertEqual(self.edsc("nmt", command, "all").returncode, FINE)
-            for node_id in nodes:
+            for node_id in self.node_ids:
                 self.wait_for(f"{0x700 + node_id:03X} {state:02X}", HEARTBEATS)
         recording.send_signal(signal.SIGINT)
         recording.wait(timeout=600)
-        arguments = [f"--node={node_id}={SOURCE_DIR}/eds/{device}.eds" for node_id, device in enumerate(DEVICES, 1)]
-        arguments += [f"--silence={rule}" for rule in TIMES]
+        arguments = [*self.sheets, *(f"--silence={rule}" for rule in TIMES)]
         audit = subprocess.run([EDSC, "audit", self.folder / "bus.log", *arguments], capture_output=True, text=True, timeout=600,
                                check=False)
         self.assertRegex(audit.stdout, r"bus\.log: \d+ frames of 8 nodes in [\d.]+ s: no findings\n$", audit.stderr)

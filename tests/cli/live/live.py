@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -65,6 +66,30 @@ class LiveTest(unittest.TestCase):
         found = json.loads(result.stdout)
         jsonschema.validate(found, json.loads((SOURCE_DIR / "docs/schema" / schema).read_text()))
         return found
+
+
+class ReferenceDevices(LiveTest):
+    """A bus with the eight reference devices as node 1 to 8. LIVE_NODES is the program of one of them; those of the others
+    are in the same folder."""
+
+    nodes = ()
+    devices = ("can-2017c", "can-2024c", "can-2053c", "can-2057c", "cpc-tc1", "cpd", "ezd-1136", "rk5c")
+    node_ids = range(1, len(devices) + 1)
+    sheets = tuple(f"--node={node_id}={SOURCE_DIR}/eds/{device}.eds" for node_id, device in enumerate(devices, 1))
+
+    def start_devices(self) -> None:
+        """Returns after the boot-up message of each."""
+        for node_id, device in zip(self.node_ids, self.devices):
+            program = LIVE_NODES.parent / device.replace("-", "_")
+            process = subprocess.Popen([program, self.network.address, "--node-id", str(node_id)], stdout=subprocess.DEVNULL)
+            self.addCleanup(process.wait)
+            self.addCleanup(process.kill)
+        for node_id in self.node_ids:
+            self.wait_for(f"{0x700 + node_id:03X} 00")
+
+    def wait_for(self, frame: str, count: int = 1) -> None:
+        while self.network.log.count(frame) < count:
+            time.sleep(0.02)
 
 
 def run() -> None:

@@ -36,13 +36,12 @@ def option(name: str, default: str) -> str:
 SECONDS, SCREENSHOTS = option("--seconds", "0"), option("--screenshots", "")
 FRAMES_PER_SECOND = 1000
 
-from live import LIVE_NODES, SOURCE_DIR, LiveTest, run  # noqa: E402
+from live import SOURCE_DIR, ReferenceDevices, run  # noqa: E402
 
 sys.path.append(str(SOURCE_DIR / "tests/support"))
 sys.path.append(str(SOURCE_DIR / "tests/masters"))
 from npm_packages import Skipped, install_npm_packages  # noqa: E402
 
-DEVICES = ("can-2017c", "can-2024c", "can-2053c", "can-2057c", "cpc-tc1", "cpd", "ezd-1136", "rk5c")
 CHROMIUM = shutil.which("chromium")
 
 
@@ -51,7 +50,8 @@ class Traffic(threading.Thread):
 
     def __init__(self, test: MonitorPage) -> None:
         super().__init__(daemon=True)
-        self.client, self.is_on, self.sent = test.network.client(), True, 0
+        self.client, self.nodes = test.network.client(), len(test.devices)
+        self.is_on, self.sent = True, 0
         threading.Thread(target=self.read, daemon=True).start()
         self.start()
 
@@ -66,28 +66,14 @@ class Traffic(threading.Thread):
         begin = time.monotonic()
         while self.is_on:
             while self.sent < FRAMES_PER_SECOND * (time.monotonic() - begin):
-                node_id = 1 + self.sent % len(DEVICES)
-                number = (self.sent // len(DEVICES)) & 0xFFFF
+                node_id = 1 + self.sent % self.nodes
+                number = (self.sent // self.nodes) & 0xFFFF
                 self.client.send(f"{0x200 + node_id:03X} {number & 0xFF:02X} {number >> 8:02X} 00 00 00 00 00 00")
                 self.sent += 1
             time.sleep(0.005)
 
 
-class MonitorPage(LiveTest):
-    nodes = ()
-
-    def start_devices(self) -> None:
-        for node_id, device in enumerate(DEVICES, 1):
-            program = LIVE_NODES.parent / device.replace("-", "_")
-            process = subprocess.Popen([program, self.network.address, "--node-id", str(node_id)], stdout=subprocess.DEVNULL)
-            self.addCleanup(process.wait)
-            self.addCleanup(process.kill)
-        for node_id in range(1, len(DEVICES) + 1):
-            while f"{0x700 + node_id:03X} 00" not in self.network.log:
-                time.sleep(0.02)
-            self.assertEqual(self.edsc("write", node_id, "1017h", 500, "--type", "u16").returncode, 0)
-        self.assertEqual(self.edsc("nmt", "start", "all").returncode, 0)
-
+class MonitorPage(ReferenceDevices):
     def memory_kb(self) -> int:
         return int(re.search(r"VmRSS:\s+(\d+)", Path(f"/proc/{self.monitor.pid}/status").read_text())[1])
 
@@ -99,8 +85,10 @@ class MonitorPage(LiveTest):
         except Skipped as reason:
             self.skipTest(str(reason))
         self.start_devices()
-        sheets = [f"--node={node_id}={SOURCE_DIR}/eds/{device}.eds" for node_id, device in enumerate(DEVICES, 1)]
-        self.monitor = self.start("monitor", *sheets, "--bit-rate", 1000, "--web", "127.0.0.1:0")
+        for node_id in self.node_ids:
+            self.assertEqual(self.edsc("write", node_id, "1017h", 500, "--type", "u16").returncode, 0)
+        self.assertEqual(self.edsc("nmt", "start", "all").returncode, 0)
+        self.monitor = self.start("monitor", *self.sheets, "--bit-rate", 1000, "--web", "127.0.0.1:0")
         url = self.monitor.stdout.readline().strip()
         if select.select([self.monitor.stderr], [], [], 0)[0]:
             self.skipTest(self.monitor.stderr.readline().strip())  # npm could not bring uPlot when edsc was built
@@ -117,7 +105,7 @@ class MonitorPage(LiveTest):
         self.assertEqual(found["seen"], {"errors": [], "requests": []})
         self.assertEqual(found["violations"], {"light": [], "dark": []})
         self.assertEqual(found["connection"], "connected")
-        self.assertEqual([int(node[0]) for node in found["nodes"]], list(range(1, len(DEVICES) + 1)))
+        self.assertEqual([int(node[0]) for node in found["nodes"]], list(self.node_ids))
         self.assertEqual({node[2].rstrip("?") for node in found["nodes"]}, {"operational"})
         self.assertEqual(len(found["plots"]), 2)
         self.assertEqual(found["left"], found["plots"][1:])
