@@ -83,13 +83,13 @@ std::optional<std::vector<Pair>> load_pairs(const Settings& settings) {
   for (const std::string& path : settings.files) {
     Pair pair;
     GitFile committed = read_git_file(revision, path);
+    const bool is_new = committed.is_missing && settings.allow_new;
     if (committed.source) {
       pair.before = load_committed(std::move(committed), revision, path, settings);
-    } else if (!committed.is_missing || !settings.allow_new) {
+    } else if (!is_new) {
       print_visibly(stderr, "edsc: {}\n", committed.error);
     }
     pair.after = load(path, settings);
-    const bool is_new = committed.is_missing && settings.allow_new;
     failed = failed || !pair.after || (!pair.before && !is_new);
     pairs.push_back(std::move(pair));
   }

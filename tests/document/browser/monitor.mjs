@@ -56,7 +56,10 @@ async function use(page) {
   await boxes[1].focus();
   await page.keyboard.press('Space');
   found.plots = await page.$$eval('.plot h3', (all) => all.map((one) => one.firstChild.textContent));
-  await wait(3000);
+  await page.waitForFunction(() => {
+    globalThis.texts ??= new Set();
+    return globalThis.texts.add(document.querySelector('.plot small').textContent).size > 12;
+  });
   found.drawn = await drawn(page);
   for (const scheme of ['light', 'dark']) {
     await inScheme(page, scheme);
@@ -75,6 +78,9 @@ async function use(page) {
   found.paused.push(await shown(page));
   found.isPressed = await page.$eval('#pause', (one) => one.getAttribute('aria-pressed'));
   await page.click('#pause');
+  await page.waitForFunction((before) => document.getElementById('summary').textContent !== before.summary
+    && [...document.querySelectorAll('#value-rows tr')].some((row, at) => row.textContent !== before.values[at]), {},
+    found.paused[1]);
   found.resumed = await shown(page);
 
   found.csv = await exported(page);

@@ -22,7 +22,8 @@ class SmallFunction<void(Arguments...)> {
 
   template <class F>
   requires(!std::is_same_v<std::decay_t<F>, SmallFunction> && std::is_invocable_v<std::decay_t<F>&, Arguments...>)
-      SmallFunction(F&& function) {  // NOLINT(google-explicit-constructor): a function is one
+      // NOLINTNEXTLINE(bugprone-forwarding-reference-overload): clang-tidy 14 does not see the constraint
+      SmallFunction(F&& function) {
     using Kept = std::decay_t<F>;
     static_assert(sizeof(Kept) <= capacity && alignof(Kept) <= alignof(void*),
                   "the lambda captures more than two pointers or references; capture a struct by reference");
