@@ -341,7 +341,7 @@ TEST(PlantText, AFailedBootUpHasTheLineThatItContradicts) {
   EXPECT_EQ(line({BootStatus::configuration, canopen::AbortCode::value_too_high, 0x2001, 3}), "plant.json:9");
   EXPECT_EQ(line({BootStatus::no_heartbeat}), "plant.json:8");
   // Of the node: it does not answer, or an entry that no file states.
-  EXPECT_EQ(line({BootStatus::no_response, canopen::AbortCode::protocol_timed_out, 0x1018, 2}), "plant.json:7");
+  EXPECT_EQ(line({BootStatus::no_response, canopen::AbortCode::timeout, 0x1018, 2}), "plant.json:7");
   EXPECT_EQ(line({BootStatus::configuration, canopen::AbortCode::value_too_high, 0x2002, 0}), "plant.json:7");
   EXPECT_EQ(fault_text({"", NodeId{9}}, {}, places).substr(0, 8), "node 9: ");
 }
