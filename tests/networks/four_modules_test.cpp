@@ -116,7 +116,10 @@ TEST(FourModules, AnotherDeviceIsNotConfigured) {
   EXPECT_EQ(bench.boots["digital_outputs"], 0);
   std::size_t found = 0;
   for (const std::string& fault : bench.faults) {
-    found += fault == "digital_outputs: device type 1000h is not the one of 1F84h: expected 00020191h, seen 00010191h";
+    found +=
+        fault ==
+        "../../eds/can-2057c.eds:80: digital_outputs: device type 1000h is not the one of 1F84h: expected 00020191h, "
+        "seen 00010191h";
   }
   EXPECT_EQ(found, 1U);
 }
