@@ -11,6 +11,15 @@ std::string_view to_string(Severity severity) {
   return words[static_cast<std::size_t>(severity)];
 }
 
+void Diagnostic::add_place(const Position& place, std::string text) {
+  ++places;
+  if (places > max_places) {
+    ++unnamed;
+  } else {
+    notes.push_back({place, std::move(text)});
+  }
+}
+
 void Diagnostics::report(Diagnostic diagnostic) {
   if (drop_notes_ && diagnostic.severity == Severity::note) return;
   if (is_tolerated(diagnostic)) diagnostic.severity = Severity::warning;
@@ -48,13 +57,7 @@ bool Diagnostics::join(const Kind& kind, Diagnostic& diagnostic) {
       Cause{kind, diagnostic.cause}, is_listed ? all_.size() : std::numeric_limits<std::size_t>::max());
   if (is_new) return false;
   if (first->second >= all_.size()) return true;
-  Diagnostic& listed = all_[first->second];
-  ++listed.places;
-  if (listed.places > max_places) {
-    ++listed.unnamed;
-  } else {
-    listed.notes.push_back({diagnostic.position, std::move(diagnostic.message)});
-  }
+  all_[first->second].add_place(diagnostic.position, std::move(diagnostic.message));
   return true;
 }
 

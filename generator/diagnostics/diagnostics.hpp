@@ -36,6 +36,11 @@ struct Diagnostic {
   std::string cause;
   std::size_t places = 1;
   std::size_t unnamed = 0;  ///< number of places that are neither `position` nor in the notes
+
+  /// Maximum number of listed places per cause.
+  static constexpr std::size_t max_places = 4;
+  /// Adds another place with the same cause: to the notes, or only to the numbers.
+  void add_place(const Position& place, std::string text);
 };
 
 /// The number of findings of each severity.
@@ -121,8 +126,6 @@ class Diagnostics {
 
   /// Maximum number of listed findings of one rule and severity per file; any more are counted only.
   static constexpr std::size_t max_per_rule = 50;
-  /// Maximum number of listed places per cause.
-  static constexpr std::size_t max_places = 4;
 
  private:
   struct Kind {

@@ -31,7 +31,7 @@ constexpr Palette coloured{"\x1B[1m", {"\x1B[1;36m", "\x1B[1;35m", "\x1B[1;31m"}
 
 std::string file_name(const SourceFile* file) { return file == nullptr ? std::string() : printable(file->name()); }
 
-/// The numbers of findings of one file.
+/// The numbers of findings of one file. A file that several nodes of a network have is read once for each.
 struct FileSum {
   const SourceFile* file;
   SeverityCounts counts = {};
@@ -41,7 +41,9 @@ struct FileSum {
 std::vector<FileSum> sums_by_file(const Diagnostics& diagnostics, bool with_allowed) {
   std::vector<FileSum> sums;
   const auto sum_of = [&](const SourceFile* file) -> FileSum& {
-    const auto found = std::find_if(sums.begin(), sums.end(), [&](const FileSum& sum) { return sum.file == file; });
+    const auto found = std::ranges::find_if(sums, [&](const FileSum& sum) {
+      return sum.file == file || (sum.file != nullptr && file != nullptr && sum.file->name() == file->name());
+    });
     return found != sums.end() ? *found : sums.emplace_back(FileSum{file});
   };
   for (const Diagnostic& diagnostic : diagnostics.all()) {

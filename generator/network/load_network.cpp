@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <set>
 #include <string_view>
+#include <system_error>
 #include <tuple>
 #include <utility>
 
@@ -85,8 +86,12 @@ class NetworkLoader {
     return true;
   }
 
-  [[nodiscard]] std::string beside_network_file(const std::string& path) const {
-    return (fs::path{network_.source->name()}.parent_path() / path).string();
+  /// Without `..`, unless a symlink makes that another file.
+  [[nodiscard]] std::string beside_network_file(const std::string& name) const {
+    const fs::path path = fs::path{network_.source->name()}.parent_path() / name;
+    const fs::path normal = path.lexically_normal();
+    std::error_code missing;
+    return (fs::equivalent(path, normal, missing) ? normal : path).string();
   }
 
   void report_errors(const Diagnostics& of_file, const Position& file, const LoadedDevice& loaded) {

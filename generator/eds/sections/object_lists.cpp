@@ -88,7 +88,7 @@ void report_not_listed(const DataSheet& sheet, Diagnostics& diagnostics) {
   }
   for (const auto& [list, objects] : missing) {
     const std::string list_name{list ? name_of(*list) : ""};
-    const bool one_cause = objects.size() > Diagnostics::max_places;
+    const bool one_cause = objects.size() > Diagnostic::max_places;
     for (const ObjectDescription* object : objects) {
       diagnostics.warning("object-not-listed", object->position,
                           fmt::format("{:04X}h is not in any object list{}", object->index,

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "network/checks/check_groups.hpp"
+#include "network/checks/merged_note.hpp"
 
 namespace edsc {
 namespace {
@@ -101,24 +104,40 @@ bool has_unknown_master(const Network& network) {
   return master != nullptr && !master->has_file();
 }
 
-void report_partner(const NetworkContext& context, const CobIdUse& use) {
-  const std::string can_id = can_id_text(use.can_id, use.extended);
-  const std::string message = use.transmits ? fmt::format("{} ({}) has no receiver", named(use), can_id)
-                                            : fmt::format("{} ({}) has no transmitter", named(use), can_id);
-  const std::string cause = fmt::format("{} {}", use.node->name, use.transmits);
-  const auto report = [&](RuleId<Severity::warning, Severity::note> rule) {
-    if (has_unknown_master(context.network)) {
-      context.diagnostics.note(rule, use.position, message, {}, cause);
+/// PDOs that are sent or received by one node only: warnings for each node, or a note for all nodes.
+class MissingPartners {
+ public:
+  explicit MissingPartners(const NetworkContext& context)
+      : context_{context}, are_notes_{has_unknown_master(context.network)} {}
+
+  void add(const CobIdUse& use) {
+    if (use.transmits) {
+      add(use, "network-pdo-unheard", "receiver", unheard_);
     } else {
-      context.diagnostics.warning(rule, use.position, message, {}, cause);
+      add(use, "network-pdo-unsent", "transmitter", unsent_);
     }
-  };
-  if (use.transmits) {
-    report("network-pdo-unheard");
-  } else {
-    report("network-pdo-unsent");
   }
-}
+
+  void report_notes() {
+    unsent_.report(context_.diagnostics);
+    unheard_.report(context_.diagnostics);
+  }
+
+ private:
+  void add(const CobIdUse& use, RuleId<Severity::warning, Severity::note> rule, std::string_view partner,
+           MergedNote& note) {
+    std::string message = fmt::format("{} ({}) has no {}", named(use), can_id_text(use.can_id, use.extended), partner);
+    if (are_notes_) {
+      note.add(rule, use.position, std::move(message));
+    } else {
+      context_.diagnostics.warning(rule, use.position, std::move(message), {}, use.node->name);
+    }
+  }
+
+  const NetworkContext& context_;
+  bool are_notes_;
+  MergedNote unsent_, unheard_;
+};
 
 bool is_link(const CobIdUse& sender, const CobIdUse& receiver) {
   return sender.service == FrameService::pdo && sender.transmits && receiver.service == FrameService::pdo &&
@@ -140,6 +159,7 @@ void check_granularity(const NetworkContext& context, const CobIdUse& use) {
 }  // namespace
 
 void check_pdo_links(const NetworkContext& context) {
+  MissingPartners missing{context};
   for (const CobIdUse& use : context.uses) {
     if (use.service != FrameService::pdo) continue;
     check_granularity(context, use);
@@ -152,8 +172,9 @@ void check_pdo_links(const NetworkContext& context) {
           !use.pdo->multiplexed && !other.pdo->multiplexed && !use.pdo->broken && !other.pdo->broken;
       if (use.transmits && has_layout) PdoLink{context, use, other}.check();
     }
-    if (!has_partner) report_partner(context, use);
+    if (!has_partner) missing.add(use);
   }
+  missing.report_notes();
 }
 
 }  // namespace edsc

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "network/checks/check_groups.hpp"
+#include "network/checks/merged_note.hpp"
 #include "network/timing.hpp"
 
 namespace edsc {
@@ -51,14 +52,15 @@ void check_timing(const NetworkContext& context) {
   const NetworkTiming timing = network_timing(context.network, context.uses);
   if (timing.messages.empty()) return;
   check_load(context, timing.load);
+  MergedNote assumed;
   for (const TimedMessage& one : timing.messages) {
     check_response(context, one);
     if (one.service != FrameService::pdo || !one.has_assumed_period) continue;
-    context.diagnostics.note("network-event-rate", one.position,
-                             fmt::format("{} has neither inhibit time nor event timer; assuming {}", one.name,
-                                         milliseconds_text(one.message.period)),
-                             {}, "event rate");
+    assumed.add("network-event-rate", one.position,
+                fmt::format("{} has neither inhibit time nor event timer; assuming {}", one.name,
+                            milliseconds_text(one.message.period)));
   }
+  assumed.report(context.diagnostics);
 }
 
 }  // namespace edsc

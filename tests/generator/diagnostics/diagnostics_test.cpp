@@ -185,9 +185,9 @@ TEST(Diagnostics, MakeOneOfTheFindingsOfOneCause) {
   const Diagnostic& first = diagnostics.all().front();
   EXPECT_EQ(first.position.line, 1U);
   EXPECT_EQ(first.places, 160U);
-  ASSERT_EQ(first.notes.size(), Diagnostics::max_places - 1);
-  EXPECT_EQ(first.notes.back().position.line, Diagnostics::max_places);
-  EXPECT_EQ(first.unnamed, 160 - Diagnostics::max_places);
+  ASSERT_EQ(first.notes.size(), Diagnostic::max_places - 1);
+  EXPECT_EQ(first.notes.back().position.line, Diagnostic::max_places);
+  EXPECT_EQ(first.unnamed, 160 - Diagnostic::max_places);
   EXPECT_EQ(diagnostics.all().back().places, 1U);
 }
 
