@@ -59,6 +59,8 @@ void FindingsReport::add_left_out(const std::vector<LeftOut>& left_out) {
   }
 }
 
+void FindingsReport::add_network(nlohmann::json network) { json_["networks"].push_back(std::move(network)); }
+
 void FindingsReport::finish() const {
   if (format_ == "json") fmt::print("{}\n", json_text(json_));
   if (format_ == "sarif") fmt::print("{}\n", json_text(sarif_.document()));

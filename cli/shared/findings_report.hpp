@@ -26,6 +26,9 @@ class FindingsReport {
   /// In SARIF they are notifications: they are consequences of the findings, and do not have a rule.
   void add_left_out(const std::vector<LeftOut>& left_out);
 
+  /// The load and the response times of a network, for JSON.
+  void add_network(nlohmann::json network);
+
   void finish() const;
 
  private:

@@ -4,8 +4,9 @@
 #include <string>
 
 #include "document/views.hpp"
-#include "network/communication_objects.hpp"
+#include "network/sync_timing.hpp"
 #include "network/timing.hpp"
+#include "text/counted.hpp"
 
 namespace edsc::document {
 namespace {
@@ -120,19 +121,15 @@ class SyncCycle {
   const NetworkTiming& timing_;
 };
 
-/// The cycle of SYNC: 1006h of its producer.
-Json sync_view(const std::vector<CobIdUse>& uses, const NetworkTiming& timing) {
-  for (const CobIdUse& use : uses) {
-    if (use.service != FrameService::sync || !use.transmits || timing.messages.empty()) continue;
-    const auto period = value_of(use.node->device, communication::cycle_period).value_or(0);
-    const auto window = value_of(use.node->device, communication::window_length).value_or(0);
-    if (period == 0) continue;
-    const auto microseconds = [](std::uint64_t time) {
-      return Nanoseconds{std::chrono::microseconds{static_cast<std::int64_t>(time)}};
-    };
-    return SyncCycle{microseconds(period), microseconds(window), timing}.drawing();
+Json sync_view(const Network& network, const std::vector<CobIdUse>& uses, const NetworkTiming& timing) {
+  const auto sync = sync_timing(uses, timing);
+  if (!sync) return nullptr;
+  Json view = SyncCycle{sync->period, sync->window, timing}.drawing();
+  if (sync->pdos > 0) {
+    view["rule_of_thumb"] = time_text(rule_of_thumb_period(sync->pdos, network.description.bit_rate->value));
+    view["synchronous_pdos"] = counted(sync->pdos, "PDO");
   }
-  return nullptr;
+  return view;
 }
 
 }  // namespace
@@ -142,7 +139,7 @@ void add_timing(const Network& network, Json& view) {
   const NetworkTiming timing = network_timing(network, uses);
   Json messages = Json::array();
   for (const TimedMessage& one : timing.messages) messages.push_back(message_view(one));
-  view["sync"] = sync_view(uses, timing);
+  view["sync"] = sync_view(network, uses, timing);
   view["has_messages"] = !messages.empty();
   view["load_min"] = percent(timing.load.min);
   view["load_max"] = percent(timing.load.max);
@@ -151,7 +148,7 @@ void add_timing(const Network& network, Json& view) {
 
 Json cycle_drawing(const Network& network) {
   const std::vector<CobIdUse> uses = cob_id_uses(network);
-  return sync_view(uses, network_timing(network, uses));
+  return sync_view(network, uses, network_timing(network, uses));
 }
 
 }  // namespace edsc::document

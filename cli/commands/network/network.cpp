@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "commands/commands.hpp"
+#include "commands/network/timing_report.hpp"
 #include "diagnostics/rule.hpp"
 #include "diagnostics/unknown_rule.hpp"
 #include "network/checks/check_network.hpp"
@@ -23,6 +24,7 @@ constexpr const char* examples = R"(Examples:
   edsc network check plant.json                   findings as compiler messages; exit code 1 if there are errors
   edsc network check plant.json --format sarif    the same for a code review (SARIF 2.1.0)
   edsc network check plant.json --strict          warnings count as errors
+  edsc network check plant.json --times           with the worst-case response time of each message
   edsc network simulate plant.json --for 1h       load and response times seen beside those computed
   edsc network members                            every member of a network file with its meaning
   edsc network generate plant.json -o build       DCFs, concise DCFs, C++ headers, DBC file, drawings
@@ -35,12 +37,22 @@ struct CheckSettings {
   std::string format = "text";
   std::vector<std::string> silence;
   bool strict = false;
+  bool times = false;
   ColorOption color;
 };
 
 struct MembersSettings {
   std::string format = "text";
 };
+
+void add_timing(const Network& network, const CheckSettings& settings, FindingsReport& report) {
+  const TimingReport timing{network};
+  if (settings.format == "json") report.add_network(timing.json());
+  if (settings.format != "text") return;
+  for (const std::string& line : timing.summary()) print_visibly(stdout, "{}: {}\n", network.source->name(), line);
+  if (!settings.times) return;
+  for (const std::string& line : timing.table()) fmt::print("{}\n", line);
+}
 
 int check(const CheckSettings& settings) {
   int exit_code = exit_fine;
@@ -53,6 +65,7 @@ int check(const CheckSettings& settings) {
     const auto loaded = load_network(path, diagnostics);
     check_network(loaded->network, diagnostics);
     report.add(diagnostics);
+    add_timing(loaded->network, settings, report);
     if (diagnostics.errors() > 0) exit_code = std::max<int>(exit_code, exit_input_has_errors);
     if (loaded->unreadable) exit_code = exit_wrong_usage;
   }
@@ -74,6 +87,7 @@ void add_network_check_options(CLI::App& command, int& exit_code) {
       ->allow_extra_args(false)
       ->check(check_rule);
   command.add_flag("--strict", settings.strict, "warnings count as errors; notes do not");
+  command.add_flag("--times", settings.times, "print period, worst-case response time and deadline of each message");
   settings.color.add_to(command);
 }
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""edsc network check: hostile network files, and settings and signals that meet each other; the examples have no findings.
+"""edsc network check: hostile network files, and settings and signals that meet each other; the examples have no findings, and
+their load and response times are printed.
 
     network_check_test.py SOURCE_DIR EDSC
 
@@ -9,10 +10,13 @@ The expected findings are the rule and, where a position matters, its line and c
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
+
+import jsonschema
 
 TEXTS = {  # name: (text, exit code, findings as (severity, rule, line, column))
     "null": ("null", 1, [("error", "network-file", 1, 1)]),
@@ -140,6 +144,42 @@ def check(edsc: Path, folder: Path, name: str, text: str) -> tuple[int, list[dic
     return ran.returncode, json.loads(ran.stdout)["diagnostics"] if ran.stdout else []
 
 
+def problems_of_example(edsc: Path, source: Path, example: Path) -> list[str]:
+    """Notes of all nodes are merged, with paths without `..`."""
+    ran = subprocess.run([edsc, "network", "check", example.relative_to(source), "--strict"], cwd=source, capture_output=True,
+                         text=True)
+    rules = re.findall(r"^eds/\S+: note: .*\[([a-z-]+)\]$", ran.stdout, flags=re.MULTILINE)
+    sums = re.findall(r"^(\S+): 0 errors, 0 warnings", ran.stdout, flags=re.MULTILINE)
+    load = re.search(rf"^{example.relative_to(source)}: load of \d+ nodes at \d+ kbit/s: ", ran.stdout, flags=re.MULTILINE)
+    if ran.returncode == 0 and len(rules) == len(set(rules)) and len(sums) == len(set(sums)) and load:
+        return []
+    return [f"{example.name}: exit code {ran.returncode}\n{ran.stdout}{ran.stderr}"]
+
+
+def problems_of_times(edsc: Path, source: Path) -> list[str]:
+    """The table has the same messages as JSON, each at most as long as its bound; the cycle is that of the manual's example.
+
+    Manual 001 calculates 24 / 9 / 40 % + 2 ms = 8.67 ms for twelve axes with two PDOs each.
+    """
+    command = [edsc, "network", "check", source / "examples/networks/twelve_axes.json"]
+    shown = subprocess.run([*command, "--times"], capture_output=True, text=True, check=True).stdout
+    report = json.loads(subprocess.run([*command, "--format", "json"], capture_output=True, text=True, check=True).stdout)
+    jsonschema.validate(report, json.loads((source / "docs/schema/check.schema.json").read_text(encoding="utf-8")))
+    network = report["networks"][0]
+    problems = []
+    if (network["sync"]["pdos"], network["sync"]["rule_of_thumb_us"]) != (24, 8666.666) or "a cycle of 8.667 ms" not in shown:
+        problems.append(f"twelve_axes: SYNC cycle {network['sync']}\n{shown}")
+    for one in network["messages"]:
+        row = (rf"^{one['can_id']:03X}h +{one['name']} +(remote|{one['bytes']}) .* {one['worst_us'] / 1000:.3f} +"
+               rf"{one['deadline_us'] / 1000:.3f}$")
+        if not re.search(row, shown, flags=re.MULTILINE) or not one["transmission_us"] <= one["worst_us"] <= one["deadline_us"]:
+            problems.append(f"twelve_axes: {one} is not in the table")
+    synchronous = [one["worst_us"] for one in network["messages"] if one["synchronous"]]
+    if (len(synchronous), max(synchronous)) != (24, network["sync"]["worst_us"]):
+        problems.append(f"twelve_axes: {len(synchronous)} synchronous PDOs")
+    return problems
+
+
 def main() -> int:
     source, edsc = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
     problems = []
@@ -160,9 +200,8 @@ def main() -> int:
                 problems.append(f"{name}: expected {expected}, got {[one['message'] for one in found]} {rules}")
     examples = sorted((source / "examples/networks").glob("*.json"))
     for example in examples:
-        ran = subprocess.run([edsc, "network", "check", example, "--strict"], capture_output=True, text=True)
-        if ran.returncode != 0:
-            problems.append(f"{example.name}:\n{ran.stdout}{ran.stderr}")
+        problems += problems_of_example(edsc, source, example)
+    problems += problems_of_times(edsc, source)
     print("\n".join(problems))
     print(f"{len(TEXTS) + len(NETWORKS)} networks, {len(examples)} examples, {len(problems)} problems")
     return 1 if problems or not examples else 0
