@@ -12,49 +12,16 @@ import json
 import re
 import subprocess
 import sys
-import tempfile
 import unittest
-from collections.abc import Callable
-from dataclasses import dataclass
 from html.parser import HTMLParser
-from pathlib import Path
 
-import jsonschema
-from plant import (END_MS, STOP_MS, Frame, Parameters, axis, block_upload, changed, clean, eds_of, log_of, repeated_block_upload, sdo,
-                   segmented_upload, supply, without)
+from audits import EDSC, SOURCE_DIR, Audits, Broken, add, data, replaced
+from plant import (END_MS, STOP_MS, Frame, axis, block_upload, changed, clean, eds_of, log_of, repeated_block_upload, sdo, segmented_upload,
+                   supply, without)
 
-SOURCE_DIR = Path(sys.argv[1]).resolve()
-EDSC = Path(sys.argv[2]).resolve()
-SCHEMA = json.loads((SOURCE_DIR / "docs/schema/audit.schema.json").read_text())
 PAGE = SOURCE_DIR / "docs/how-to/audit.md"
 FINE, INPUT_HAS_ERRORS, WRONG_USAGE = 0, 1, 2
 ERROR_FRAME = "(1700000001.200000) can0 20000004#0004000000000000\n"
-
-Change = Callable[[list[Frame]], list[Frame]]
-
-
-@dataclass(frozen=True)
-class Broken:
-    change: Change = lambda frames: frames
-    axis: Parameters | None = None
-    supply: Parameters | None = None
-    arguments: tuple[str, ...] = ()
-    line: str = ""  # of the log, beside the frames
-    node_id: int | None = None  # of the finding
-
-
-def add(*frames: Frame) -> Change:
-    return lambda log: [*log, *frames]
-
-
-def data(text: str) -> bytes:
-    return bytes.fromhex(text)
-
-
-def replaced(old: list[Frame], position: int, content: str) -> Change:
-    """Another content of one of these frames."""
-    return lambda log: [Frame(one.ms, one.can_id, data(content)) if one == old[position] else one for one in log]
-
 
 def silent_supply(log: list[Frame]) -> list[Frame]:
     return without(log, 0x706, 1550, 2100)
@@ -105,30 +72,6 @@ BROKEN = {
     "node-unknown": Broken(add(Frame(1200, 0x709, b"\x05")), node_id=9),
     "node-silent": Broken(arguments=("--node", "7=axis.eds"), node_id=7),
 }
-
-
-class Audits(unittest.TestCase):
-    def setUp(self) -> None:
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
-
-    def run_edsc(self, *arguments: str, log: str | None = None) -> subprocess.CompletedProcess[str]:
-        return subprocess.run([EDSC, "audit", *arguments], input=log, cwd=self.folder, capture_output=True, text=True,
-                              timeout=600, check=False)
-
-    def audit(self, case: Broken, *arguments: str) -> subprocess.CompletedProcess[str]:
-        (self.folder / "axis.eds").write_text(eds_of(case.axis or axis()))
-        (self.folder / "supply.eds").write_text(eds_of(case.supply or supply()))
-        (self.folder / "can0.log").write_text(log_of(case.change(clean())) + case.line)
-        return self.run_edsc("can0.log", "--node", "5=axis.eds", "--node", "6=supply.eds", *case.arguments, *arguments)
-
-    def report(self, case: Broken, *arguments: str) -> dict:
-        result = self.audit(case, "--format", "json", *arguments)
-        self.assertEqual(result.stderr, "")
-        report = json.loads(result.stdout)
-        jsonschema.Draft202012Validator(SCHEMA).validate(report)
-        return report
 
 
 class Rules(Audits):
