@@ -42,6 +42,8 @@ const LssAnswer* find_answer(std::uint8_t request) {
 void LssCheck::request(const SeenMessage& seen, AuditState& audit) {
   const std::uint8_t command = seen.frame.data[0];
   last_request_ = command;
+  const std::uint8_t operand = seen.frame.data[1];
+  if (Command{command} == Command::configure_node_id) asked_node_id_ = operand < AuditState::node_ids ? operand : 0;
   switch (Command{command}) {
     case Command::switch_state_global:
       slaves_ = seen.frame.data[1] == static_cast<std::uint8_t>(canopen::LssState::configuration) ? Slaves::configure
@@ -64,6 +66,7 @@ void LssCheck::response(const SeenMessage& seen, AuditState& audit) {
   // The request may be before the log.
   const bool fits = !last_request_ || (row != nullptr && row->response == command && command != Command::none);
   if (command == Command::selected) slaves_ = Slaves::configure;
+  if (command == Command::configure_node_id && seen.frame.data[1] == 0) audit.lss_node_id = asked_node_id_;
   if (fits) return;
   audit.findings.add({RuleId::lss_response}, seen.at, 0, [&] {
     return Texts{"a response to the last request", seen.message.text};

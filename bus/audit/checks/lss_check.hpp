@@ -20,6 +20,7 @@ class LssCheck {
   void response(const SeenMessage& seen, AuditState& audit);
 
   std::optional<std::uint8_t> last_request_;
+  std::uint8_t asked_node_id_ = 0;
   Slaves slaves_ = Slaves::unknown;
 };
 
