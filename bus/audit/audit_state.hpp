@@ -82,6 +82,7 @@ struct AuditState {
   Findings findings;
   std::array<NodeState, node_ids> nodes;
   std::vector<std::uint8_t> known;  ///< the node-IDs with an EDS
+  std::int64_t times_since = 0;     ///< since when the times of the log are in order
   std::uint8_t lss_node_id = 0;     ///< that an LSS slave has last accepted; 0: none
 
   [[nodiscard]] NodeState& sender(const Message& message) { return nodes[message.node_id % node_ids]; }

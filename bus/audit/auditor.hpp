@@ -15,6 +15,7 @@
 #include "audit/checks/pdo_check.hpp"
 #include "audit/checks/sdo_check.hpp"
 #include "audit/checks/sync_check.hpp"
+#include "audit/cycle_times.hpp"
 #include "decode/decoder.hpp"
 #include "decode/log/log_line.hpp"
 
@@ -46,6 +47,7 @@ class Auditor {
   void finish();
 
   [[nodiscard]] const Findings& findings() const { return audit_.findings; }
+  [[nodiscard]] const CycleTimes& cycle_times() const { return cycle_times_; }
   /// After `finish()`.
   [[nodiscard]] Totals totals() const;
 
@@ -63,6 +65,7 @@ class Auditor {
   SdoCheck sdo_;
   LssCheck lss_;
   BusCheck bus_;
+  CycleTimes cycle_times_;
   std::uint64_t frames_ = 0;
   std::optional<std::int64_t> begin_us_;
   Moment now_;

@@ -56,9 +56,7 @@ const Message* LogDecoder::evaluate(LogLine& line, std::string& complaints) {
       summary_.add_broken_line();
       complain(line, broken_line_text(line), complaints);
       return nullptr;
-    case LogLineKind::frame:
-      decoder_.decode({line.frame, line.has_time, line.microseconds}, message_);
-      break;
+    case LogLineKind::frame: decoder_.decode({line.frame, line.has_time, line.microseconds}, message_); break;
     case LogLineKind::error_frame:
       message_.clear();
       message_.service = Service::error_frame;
