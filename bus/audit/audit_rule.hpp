@@ -53,6 +53,8 @@ enum class RuleId : std::uint8_t {
   can_id_senders,
   node_unknown,
   node_silent,
+  log_time,
+  log_interface,
 };
 
 struct Rule {
@@ -147,6 +149,10 @@ inline constexpr Rule rows[] = {
      "by the COB-IDs in force of both"},
     {RuleId::node_unknown, "node-unknown", note, "a node whose EDS is not given", "edsc", "--node"},
     {RuleId::node_silent, "node-silent", note, "a node of --node that does not send anything", "edsc", ""},
+    {RuleId::log_time, "log-time", note, "the times of the log go back", "edsc",
+     "by more than 100 ms: the clock was set, or two logs were joined; times before and after it are not compared"},
+    {RuleId::log_interface, "log-interface", note, "frames of more than one interface", "edsc",
+     "they are judged as those of one bus; --interface selects one"},
 };
 
 constexpr bool is_in_order() {

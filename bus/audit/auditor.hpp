@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "audit/audit_state.hpp"
@@ -53,6 +54,8 @@ class Auditor {
 
  private:
   [[nodiscard]] Moment moment_of(const LogLine& line);
+  void restart_times(const LogLine& line);
+  void judge_interface(const LogLine& line);
   void end_stretch(std::uint8_t node_id, const Moment& now);
   void read_settings(const Message& message);
 
@@ -68,6 +71,7 @@ class Auditor {
   CycleTimes cycle_times_;
   std::uint64_t frames_ = 0;
   std::optional<std::int64_t> begin_us_;
+  std::string interface_;  ///< of the first frame that has one
   Moment now_;
 };
 

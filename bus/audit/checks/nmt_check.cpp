@@ -74,7 +74,7 @@ void NmtCheck::boot_up(const SeenMessage& seen, AuditState& audit) {
   NodeState& node = audit.nodes[node_id];
   if (node.state == NmtState::initialisation) {
     judge_boot_time(node_id, node, seen.at, audit);
-  } else if (node.first_seen) {
+  } else if (node.first_seen && (node.state || node.first_seen->us >= audit.times_since)) {
     audit.findings.add({RuleId::nmt_reset, node_id}, seen.at, 0, [&] {
       return std::pair<std::string, std::string>{
           "a reset command before", fmt::format("the node was {}", node.state ? to_text(*node.state) : "on the bus")};

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import jsonschema
-from plant import Frame, Parameters, axis, clean, eds_of, log_of, supply
+from plant import Frame, Parameters, axis, clean, eds_of, in_order, log_of, supply
 
 SOURCE_DIR = Path(sys.argv[1]).resolve()
 EDSC = Path(sys.argv[2]).resolve()
@@ -31,6 +31,7 @@ class Broken:
     supply: Parameters | None = None
     arguments: tuple[str, ...] = ()
     line: str = ""  # of the log, beside the frames
+    sort: bool = True  # the frames by their times; else they have the order of the unchanged log
     node_id: int | None = None  # of the finding
 
 
@@ -60,7 +61,8 @@ class Audits(unittest.TestCase):
     def audit(self, case: Broken, *arguments: str) -> subprocess.CompletedProcess[str]:
         (self.folder / "axis.eds").write_text(eds_of(case.axis or axis()))
         (self.folder / "supply.eds").write_text(eds_of(case.supply or supply()))
-        (self.folder / "can0.log").write_text(log_of(case.change(clean())) + case.line)
+        frames = case.change(clean() if case.sort else in_order(clean()))
+        (self.folder / "can0.log").write_text(log_of(in_order(frames) if case.sort else frames) + case.line)
         return self.run_edsc("can0.log", "--node", "5=axis.eds", "--node", "6=supply.eds", *case.arguments, *arguments)
 
     def report(self, case: Broken, *arguments: str) -> dict:

@@ -10,7 +10,7 @@ import sys
 import unittest
 
 from audits import Audits, Broken, add, data
-from plant import END_MS, EVENT_MS, HEARTBEAT_MS, PRE_OPERATIONAL, START_MS, STOP_MS, UNSIGNED32, Frame, axis, clean, eds_of, supply, without
+from plant import END_MS, EVENT_MS, HEARTBEAT_MS, PRE_OPERATIONAL, START_MS, STOP_MS, UNSIGNED32, Frame, axis, clean, eds_of, in_order, log_of, supply, without
 
 
 def screen_of(frames: list[Frame], differences: bool = False) -> str:
@@ -52,6 +52,14 @@ class Times(Audits):
     def test_frames_slightly_out_of_order_are_not_differences(self) -> None:
         self.assertEqual(self.rules(swapped(screen_of(clean()), "285", "001.021000", "001.019900")), set())
         self.assertEqual(self.rules(swapped(asc_of(clean()), "285", "1.021000", "1.019900")), set())
+
+
+    def test_two_logs_in_one(self) -> None:
+        (self.folder / "axis.eds").write_text(eds_of(axis()))
+        (self.folder / "supply.eds").write_text(eds_of(supply()))
+        log = log_of(in_order(clean()))
+        joined = self.run_edsc("--node", "5=axis.eds", "--node", "6=supply.eds", log=log + log.replace("(17", "(16"))
+        self.assertEqual((joined.stdout.count("["), joined.stdout.count("[log-time]"), joined.returncode), (1, 1, 0), joined.stdout)
 
 
 class Traffic(Audits):
