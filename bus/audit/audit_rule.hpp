@@ -88,7 +88,7 @@ inline constexpr Rule rows[] = {
     {RuleId::pdo_state, "pdo-state", error, "a node sends a PDO outside of Operational", "CiA 301, 7.3.2.2",
      "the state follows from commands, boot-up and heartbeats; 100 ms after a command both states are accepted"},
     {RuleId::sync_period, "sync-period", error, "SYNC does not have the period of its producer", "CiA 301, 7.5.2.6",
-     "1006h of the node whose 1005h has bit 30"},
+     "1006h of the node whose 1005h has bit 30; the first SYNC within a period, in Pre-operational and Operational"},
     {RuleId::sync_counter, "sync-counter", error, "wrong counter of SYNC", "CiA 301, 7.5.2.22",
      "1019h: without it SYNC has no data; with it a byte that counts from 1 to the overflow value"},
     {RuleId::sync_producers, "sync-producers", error, "two nodes are configured as producer of one SYNC",

@@ -59,6 +59,7 @@ void Auditor::judge_interface(const LogLine& line) {
 
 void Auditor::end_stretch(std::uint8_t node_id, const Moment& now) {
   heartbeat_.end_stretch(node_id, now, audit_);
+  sync_.end_stretch(node_id, now, audit_);
   pdo_.end_stretch(node_id, now, audit_);
 }
 

@@ -160,6 +160,15 @@ class Behaviour(Audits):
         report = self.report(Broken(lambda log: without(log, 0x185, 1200, END_MS)))
         self.assertEqual([(one["rule"], one["index"]) for one in report["findings"]], [("pdo-event-timer", 0x1800)])
 
+    def test_a_producer_without_sync_is_found(self) -> None:
+        def silent(log: list[Frame], from_ms: int) -> list[Frame]:
+            return [one for one in log if one.can_id not in (0x080, 0x285) or one.ms < from_ms]
+        for name, from_ms, frames in (("never", 0, ()), ("not any more", 1200, ()),
+                                      ("until it is stopped", 2400, (Frame(2480, 0x000, b"\x02\x06"),))):
+            with self.subTest(name):
+                findings = self.report(Broken(lambda log: [*silent(log, from_ms), *frames]))["findings"]
+                self.assertEqual([(one["rule"], one["node_id"]) for one in findings], [("sync-period", 6)])
+
     def test_a_scan_of_absent_nodes_is_clean(self) -> None:
         requests = [Frame(1100 + node, 0x600 + node, data("4000100000000000")) for node in range(20, 100)]
         self.assertEqual(self.report(Broken(add(*requests)))["findings"], [])
