@@ -84,6 +84,7 @@ void Auditor::see(const LogLine& line, const Message& message) {
   const SeenMessage seen{line.frame, message, now_};
   bus_.see(seen, audit_);
   heartbeat_.see(seen, audit_);
+  guarding_.see(seen, audit_);
   nmt_.see(seen, audit_);
   sync_.see(seen, audit_);
   pdo_.see(seen, audit_);
@@ -99,10 +100,12 @@ void Auditor::see(const LogLine& line, const Message& message) {
 void Auditor::finish() {
   nmt_.finish(now_, audit_);
   heartbeat_.finish(now_, audit_);
+  guarding_.finish(now_, audit_);
   sync_.finish(now_, audit_);
   pdo_.finish(now_, audit_);
   emergency_.finish(audit_);
   sdo_.finish(now_, audit_);
+  lss_.finish(now_, audit_);
   bus_.finish(now_, audit_);
 }
 

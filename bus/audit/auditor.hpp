@@ -10,6 +10,7 @@
 #include "audit/audit_state.hpp"
 #include "audit/checks/bus_check.hpp"
 #include "audit/checks/emergency_check.hpp"
+#include "audit/checks/guarding_check.hpp"
 #include "audit/checks/heartbeat_check.hpp"
 #include "audit/checks/lss_check.hpp"
 #include "audit/checks/nmt_check.hpp"
@@ -62,6 +63,7 @@ class Auditor {
   AuditState audit_;
   NmtCheck nmt_;
   HeartbeatCheck heartbeat_;
+  GuardingCheck guarding_;
   SyncCheck sync_;
   PdoCheck pdo_;
   EmergencyCheck emergency_;

@@ -87,9 +87,15 @@ void NmtCheck::boot_up(const SeenMessage& seen, AuditState& audit) {
 }
 
 void NmtCheck::report(const SeenMessage& seen, AuditState& audit) {
-  const auto reported = canopen::error_control_message(seen.frame);
-  if (!reported) return;
   const std::uint8_t node_id = seen.message.node_id;
+  const auto reported = canopen::error_control_message(seen.frame);
+  if (!reported) {
+    if (seen.frame.remote || seen.frame.size != 1) return;
+    audit.findings.add({RuleId::nmt_state, node_id}, seen.at, 0, [&] {
+      return std::pair<std::string, std::string>{"an NMT state", seen.message.text};
+    });
+    return;
+  }
   const NodeState& node = audit.nodes[node_id];
   if (node.state == reported->state) return;
   if (node.state && node.may_be(reported->state, seen.at)) return;

@@ -46,6 +46,7 @@ void judge_window(const SeenMessage& seen, const NodeState& node, std::int64_t a
 }  // namespace
 
 void PdoCheck::count_sync(const SeenMessage& seen, AuditState& audit) {
+  if (seen.message.problem) return;  // nodes ignore it
   for (const std::uint8_t id : audit.known) {
     if (!is_cob_id(audit.nodes[id].settings.sync_id, canopen::cob_id_of(seen.frame))) continue;
     ++nodes_[id].syncs;

@@ -24,6 +24,22 @@ PAGE = SOURCE_DIR / "docs/how-to/audit.md"
 FINE, INPUT_HAS_ERRORS, WRONG_USAGE = 0, 1, 2
 ERROR_FRAME = "(1700000002.950000) can0 20000004#0004000000000000\n"
 
+def lss(ms: float, request: str, response: str) -> list[Frame]:
+    frames = [Frame(ms, 0x7E5, data(request.ljust(16, "0")))]
+    return [*frames, Frame(ms + 1, 0x7E4, data(response.ljust(16, "0")))] if response else frames
+
+
+def guarded(log: list[Frame], responses: tuple[int | None, ...]) -> list[Frame]:
+    """Node 5 is guarded every 200 ms from 1150 ms on, without heartbeats."""
+    log = [one for one in log if one.can_id != 0x705 or one.ms < 1120]
+    log += sdo(1125, 5, "2B17100000000000", "6017100000000000")
+    for at, response in enumerate(responses):
+        log.append(Frame(1150 + 200 * at, 0x705, remote=True))
+        if response is not None:
+            log.append(Frame(1151 + 200 * at, 0x705, bytes([response])))
+    return log
+
+
 def silent_supply(log: list[Frame]) -> list[Frame]:
     return without(log, 0x706, 1550, 2100)
 
@@ -42,6 +58,8 @@ BROKEN = {
     "heartbeat-late": Broken(lambda log: without(log, 0x705, 1200), node_id=5),
     "heartbeat-early": Broken(add(Frame(1240, 0x705, b"\x05")), node_id=5),
     "heartbeat-consumer": Broken(silent_supply, supply=supply(i1017="0"), node_id=5),
+    "guarding-toggle": Broken(lambda log: guarded(log, (0x05, 0x05, 0x85)), node_id=5),
+    "guarding-response": Broken(lambda log: guarded(log, (0x05, None, 0x85)), node_id=5),
     "nmt-command": Broken(add(Frame(1200, 0x000, b"\x03\x05"))),
     "nmt-state": Broken(lambda log: changed(log, 0x705, 1200, data=b"\x7F"), node_id=5),
     "nmt-boot-up": Broken(lambda log: [*without(log, 0x705, 2900), Frame(2900, 0x000, b"\x81\x05"),
@@ -66,8 +84,12 @@ BROKEN = {
     "sdo-abort": Broken(add(*sdo(1200, 5, "4000300000000000", "8000300000000206")), node_id=5),
     "lss-response": Broken(add(Frame(304, 0x7E4, data("1100000000000000")))),
     "lss-mode": Broken(add(Frame(350, 0x7E5, data("1120000000000000")))),
+    "lss-command": Broken(add(*lss(320, "4001000000", ""), *lss(322, "4203000000", ""))),
+    "lss-refused": Broken(add(*lss(320, "0401", ""), *lss(322, "11FE", "1101"), *lss(324, "0400", ""))),
+    "lss-timeout": Broken(add(*lss(320, "0401", ""), *lss(322, "5A", "5A01"), *lss(324, "5B", ""), *lss(470, "0400", ""))),
     "bus-load": Broken(arguments=("--bit-rate", "10", "--max-load", "25")),
     "error-frame": Broken(line=ERROR_FRAME),
+    "frame-length": Broken(add(Frame(1200, 0x100, bytes(5)))),
     "can-id-unknown": Broken(add(Frame(1200, 0x2FF, b"\0"))),
     "can-id-senders": Broken(supply=supply(i1800s01="0x185", i1800s05="0")),
     "node-unknown": Broken(add(Frame(1200, 0x709, b"\x05")), node_id=9),
@@ -168,6 +190,25 @@ class Behaviour(Audits):
             with self.subTest(name):
                 findings = self.report(Broken(lambda log: [*silent(log, from_ms), *frames]))["findings"]
                 self.assertEqual([(one["rule"], one["node_id"]) for one in findings], [("sync-period", 6)])
+
+    def test_lss_of_one_slave_and_of_all(self) -> None:
+        begin, end = lss(320, "0401", ""), lss(340, "0400", "")
+        again = [Frame(324, 0x7E4, data("1300000000000000"))]
+        self.assertEqual(self.report(Broken(add(*begin, *lss(322, "130003", "1300"), *again, *end)))["findings"], [])
+        again = [Frame(324, 0x7E4, data("5A02000000000000"))]
+        findings = self.report(Broken(add(*begin, *lss(322, "5A", "5A01"), *again, *end)))["findings"]
+        self.assertEqual([one["rule"] for one in findings], ["lss-response"])
+
+    def test_frames_of_another_length(self) -> None:
+        for frame, node_id, can_id in ((Frame(1202, 0x080, b"\1\2"), None, 0x080), (Frame(1240, 0x705, b"\5\5"), 5, 0x705),
+                                       (Frame(350, 0x7E5, bytes(4)), None, 0x7E5)):
+            with self.subTest(can_id):
+                findings = self.report(Broken(add(frame)))["findings"]
+                self.assertEqual([(one["rule"], one["node_id"], one["can_id"]) for one in findings], [("frame-length", node_id, can_id)])
+
+    def test_an_unknown_state(self) -> None:
+        findings = self.report(Broken(add(Frame(1240, 0x705, b"\x06"))))["findings"]
+        self.assertEqual([(one["rule"], one["seen"]) for one in findings], [("nmt-state", "unknown state 6")])
 
     def test_a_scan_of_absent_nodes_is_clean(self) -> None:
         requests = [Frame(1100 + node, 0x600 + node, data("4000100000000000")) for node in range(20, 100)]
