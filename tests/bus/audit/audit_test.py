@@ -210,6 +210,17 @@ class Behaviour(Audits):
         findings = self.report(Broken(add(Frame(1240, 0x705, b"\x06"))))["findings"]
         self.assertEqual([(one["rule"], one["seen"]) for one in findings], [("nmt-state", "unknown state 6")])
 
+    def test_each_frame_of_a_segmented_transfer_counts(self) -> None:
+        begun = sdo(630, 5, "4000100000000000", "4300100000000000")  # the transfer is not cut off by the beginning of the log
+        for at, frame in enumerate(segmented_upload(640)):
+            once = [one for one in [*clean(), *begun] if one != frame]
+            twice = [*clean(), *begun, replace(frame, ms=frame.ms + 0.1)]
+            for name, log in (("lost", once), ("twice", twice)):
+                with self.subTest(name, at=at):
+                    rules = {one["rule"] for one in self.report(Broken(lambda _, log=log: log))["findings"]}
+                    self.assertTrue(rules)
+                    self.assertLessEqual(rules, {"sdo-command", "sdo-toggle", "sdo-unrequested", "sdo-unfinished", "sdo-size"})
+
     def test_a_scan_of_absent_nodes_is_clean(self) -> None:
         requests = [Frame(1100 + node, 0x600 + node, data("4000100000000000")) for node in range(20, 100)]
         self.assertEqual(self.report(Broken(add(*requests)))["findings"], [])
