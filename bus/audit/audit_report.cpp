@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "audit/cycle_report.hpp"
 #include "backend/render.hpp"
 #include "backend/template_parts.hpp"
 #include "text/counted.hpp"
@@ -142,7 +143,9 @@ std::string text_report(const Report& report, bool color) {
     if (const std::string occurrence = occurrence_text(*finding); !occurrence.empty()) text += "; " + occurrence;
     text += '\n';
   }
-  return text + fmt::format("{}: {}: {}\n", printable(report.log), totals_text(report), verdict_text(report));
+  text += fmt::format("{}: {}: {}\n", printable(report.log), totals_text(report), verdict_text(report));
+  if (report.shows_cycles && report.totals.has_times) text += '\n' + cycles_text(*report.cycle_times, *report.labels);
+  return text;
 }
 
 std::string json_report(const Report& report) {
@@ -165,7 +168,8 @@ std::string json_report(const Report& report) {
                          {"warnings", report.findings->count(Severity::warning)},
                          {"notes", report.findings->count(Severity::note)},
                          {"not_listed", report.findings->not_listed()},
-                         {"findings", std::move(findings)}};
+                         {"findings", std::move(findings)},
+                         {"cycles", cycles_json(*report.cycle_times, *report.labels)}};
   return json_text(document) + '\n';
 }
 
@@ -191,7 +195,9 @@ std::string html_report(const Report& report) {
                {"totals", totals_text(report)},
                {"verdict", verdict_text(report)},
                {"has_findings", !findings.empty()},
-               {"findings", findings}};
+               {"findings", findings},
+               {"has_cycles", !report.cycle_times->cycles().empty()},
+               {"cycles", cycles_rows(*report.cycle_times, *report.labels)}};
   return render_html(with_parts("audit.html"), view);
 }
 

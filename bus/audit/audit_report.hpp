@@ -16,12 +16,14 @@ struct Report {
   const Decoder* decoder = nullptr;
   const NodeLabels* labels = nullptr;
   const Findings* findings = nullptr;
+  const CycleTimes* cycle_times = nullptr;
+  bool shows_cycles = false;  ///< in text
 
   /// Whether no finding is an error or a warning.
   [[nodiscard]] bool is_clean() const;
 };
 
-/// A line for each finding, as of a compiler, and a summary.
+/// A line for each finding, as of a compiler, a summary, and the cycle times if wanted.
 [[nodiscard]] std::string text_report(const Report& report, bool color);
 /// By docs/schema/audit.schema.json.
 [[nodiscard]] std::string json_report(const Report& report);

@@ -35,24 +35,33 @@ inline constexpr std::int64_t reaction_us = 100'000;
 /// The time from a reset command to the boot-up message.
 inline constexpr std::int64_t max_boot_us = 5'000'000;
 
+/// A state that a command or a message has ended.
+struct EndedState {
+  std::optional<canopen::NmtState> state;  ///< empty if not known
+  std::int64_t us = 0;
+};
+
 struct NodeState {
   const NodeModel* model = nullptr;  ///< null without an EDS
   NodeSettings settings;
   std::int64_t settings_since = 0;
   std::optional<Moment> first_seen;  ///< the first frame that the node sent
 
-  std::optional<canopen::NmtState> state, previous;  ///< empty if not known
+  std::optional<canopen::NmtState> state;  ///< empty if not known
   Moment state_since;
+  std::vector<EndedState> ended;  ///< since the last boot-up message, each state once, the last one at the end
   std::optional<std::int64_t> last_emcy_us;
   std::optional<std::int64_t> last_heartbeat_error_us;  ///< EMCY 8130h
 
   [[nodiscard]] bool is_operational() const { return state == canopen::NmtState::operational; }
 
-  /// Whether the node may be in this state: it is not known, the right one, or a command has just ended it.
+  /// Whether the node may be in this state: it is not known, the right one, or commands have just ended it.
   [[nodiscard]] bool may_be(canopen::NmtState wanted, const Moment& now) const {
     if (!state || *state == wanted) return true;
-    if (previous && *previous != wanted) return false;
-    return !now.has_time || now.us - state_since.us < reaction_us;
+    const auto fits = [&](const EndedState& one) { return one.state.value_or(wanted) == wanted; };
+    if (!now.has_time) return ended.empty() || fits(ended.back());
+    return std::ranges::any_of(ended,
+                               [&](const EndedState& one) { return fits(one) && now.us - one.us < reaction_us; });
   }
 
   /// Since when the state and the settings have been as they are.
@@ -73,6 +82,8 @@ struct AuditState {
   Findings findings;
   std::array<NodeState, node_ids> nodes;
   std::vector<std::uint8_t> known;  ///< the node-IDs with an EDS
+  std::int64_t times_since = 0;     ///< since when the times of the log are in order
+  std::uint8_t lss_node_id = 0;     ///< that an LSS slave has last accepted; 0: none
 
   [[nodiscard]] NodeState& sender(const Message& message) { return nodes[message.node_id % node_ids]; }
 };

@@ -1,6 +1,7 @@
 #include "audit/auditor.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace edsc::audit {
 
@@ -16,17 +17,49 @@ Auditor::Auditor(const Decoder& decoder, const Limits& limits)
   }
 }
 
-/// A time before that of an earlier frame, as in logs of two interfaces, counts as the same time.
+/// A time shortly before that of an earlier frame, as in logs of two interfaces, counts as the same time.
 Moment Auditor::moment_of(const LogLine& line) {
+  constexpr std::int64_t max_disorder_us = 100'000;
   Moment moment{line.number, line.has_time, now_.us};
   if (!line.has_time) return moment;
   if (!begin_us_) begin_us_ = line.microseconds;
+  if (line.microseconds - *begin_us_ < now_.us - max_disorder_us) restart_times(line);
   moment.us = std::max(now_.us, line.microseconds - *begin_us_);
   return moment;
 }
 
+/// The time continues a microsecond after the last frame, and no time is compared with one before. What happened in
+/// between is not known.
+void Auditor::restart_times(const LogLine& line) {
+  const std::int64_t back = now_.us - (line.microseconds - *begin_us_);
+  audit_.times_since = now_.us + 1;
+  begin_us_ = line.microseconds - audit_.times_since;
+  audit_.findings.add({RuleId::log_time}, {line.number, true, audit_.times_since}, back, [&] {
+    return std::pair<std::string, std::string>{"times in order", milliseconds(back) + " back"};
+  });
+  for (std::size_t id = 1; id < AuditState::node_ids; ++id) {
+    end_stretch(static_cast<std::uint8_t>(id), now_);
+    NodeState& node = audit_.nodes[id];
+    node.settings_since = audit_.times_since;
+    node.state.reset();
+    node.ended.clear();
+  }
+}
+
+void Auditor::judge_interface(const LogLine& line) {
+  if (line.interface.empty() || line.interface == interface_) return;
+  if (interface_.empty()) {
+    interface_ = line.interface;
+    return;
+  }
+  audit_.findings.add({RuleId::log_interface}, now_, 0, [&] {
+    return std::pair{"frames of " + interface_ + " only", "frames of " + std::string{line.interface} + ", too"};
+  });
+}
+
 void Auditor::end_stretch(std::uint8_t node_id, const Moment& now) {
   heartbeat_.end_stretch(node_id, now, audit_);
+  sync_.end_stretch(node_id, now, audit_);
   pdo_.end_stretch(node_id, now, audit_);
 }
 
@@ -47,15 +80,18 @@ void Auditor::read_settings(const Message& message) {
 void Auditor::see(const LogLine& line, const Message& message) {
   now_ = moment_of(line);
   ++frames_;
+  judge_interface(line);
   const SeenMessage seen{line.frame, message, now_};
   bus_.see(seen, audit_);
   heartbeat_.see(seen, audit_);
+  guarding_.see(seen, audit_);
   nmt_.see(seen, audit_);
   sync_.see(seen, audit_);
   pdo_.see(seen, audit_);
   emergency_.see(seen, audit_);
   sdo_.see(seen, audit_);
   lss_.see(seen, audit_);
+  cycle_times_.see(seen, audit_);
   NodeState& node = audit_.sender(message);
   if (!node.first_seen && is_from_node(message) && !line.frame.remote) node.first_seen = now_;
   read_settings(message);
@@ -64,10 +100,12 @@ void Auditor::see(const LogLine& line, const Message& message) {
 void Auditor::finish() {
   nmt_.finish(now_, audit_);
   heartbeat_.finish(now_, audit_);
+  guarding_.finish(now_, audit_);
   sync_.finish(now_, audit_);
   pdo_.finish(now_, audit_);
   emergency_.finish(audit_);
   sdo_.finish(now_, audit_);
+  lss_.finish(now_, audit_);
   bus_.finish(now_, audit_);
 }
 

@@ -4,17 +4,20 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "audit/audit_state.hpp"
 #include "audit/checks/bus_check.hpp"
 #include "audit/checks/emergency_check.hpp"
+#include "audit/checks/guarding_check.hpp"
 #include "audit/checks/heartbeat_check.hpp"
 #include "audit/checks/lss_check.hpp"
 #include "audit/checks/nmt_check.hpp"
 #include "audit/checks/pdo_check.hpp"
 #include "audit/checks/sdo_check.hpp"
 #include "audit/checks/sync_check.hpp"
+#include "audit/cycle_times.hpp"
 #include "decode/decoder.hpp"
 #include "decode/log/log_line.hpp"
 
@@ -46,25 +49,31 @@ class Auditor {
   void finish();
 
   [[nodiscard]] const Findings& findings() const { return audit_.findings; }
+  [[nodiscard]] const CycleTimes& cycle_times() const { return cycle_times_; }
   /// After `finish()`.
   [[nodiscard]] Totals totals() const;
 
  private:
   [[nodiscard]] Moment moment_of(const LogLine& line);
+  void restart_times(const LogLine& line);
+  void judge_interface(const LogLine& line);
   void end_stretch(std::uint8_t node_id, const Moment& now);
   void read_settings(const Message& message);
 
   AuditState audit_;
   NmtCheck nmt_;
   HeartbeatCheck heartbeat_;
+  GuardingCheck guarding_;
   SyncCheck sync_;
   PdoCheck pdo_;
   EmergencyCheck emergency_;
   SdoCheck sdo_;
   LssCheck lss_;
   BusCheck bus_;
+  CycleTimes cycle_times_;
   std::uint64_t frames_ = 0;
   std::optional<std::int64_t> begin_us_;
+  std::string interface_;  ///< of the first frame that has one
   Moment now_;
 };
 

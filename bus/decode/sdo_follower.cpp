@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <canopen/base/crc16.hpp>
 #include <iterator>
+#include <utility>
 
 #include "device/index_range.hpp"
 #include "device/types/little_endian.hpp"
@@ -138,7 +139,7 @@ void SdoFollower::begin(const Step& step, bool download, std::string_view how) {
   phase_ = Phase::asked;
   begun_ = true;
   download_ = download;
-  expedited_ = last_seen_ = toggle_ = holds_ = client_crc_ = crc_used_ = false;
+  expedited_ = last_seen_ = asked_ = toggle_ = holds_ = client_crc_ = crc_used_ = false;
   complete_ = true;
   start_ = step.timed.has_time ? std::optional{step.timed.microseconds} : std::nullopt;
   index_ = canopen::sdo::index_of(step.data);
@@ -256,8 +257,15 @@ void SdoFollower::segment(const Step& step, bool from_client) {
   const bool last = (data[0] & canopen::sdo::last_segment) != 0;
   if (((data[0] & canopen::sdo::toggle) != 0) != toggle_) {
     report(SdoFault::toggle, step);
+    asked_ = from_client;
     return part(", a segment with the wrong toggle bit", step);
   }
+  if (from_client == asked_) {
+    report(from_client ? SdoFault::command : SdoFault::unrequested, step);
+    if (from_client) return part(", a segment before the previous one is confirmed", step);
+    step.message.text += "(not requested) ";
+  }
+  asked_ = from_client;
   put_bytes(total_, bytes, last, step);
   append(std::span{data}.subspan(1, bytes));
   step.message.size = total_;
@@ -268,12 +276,27 @@ void SdoFollower::segment(const Step& step, bool from_client) {
   finish(step);
 }
 
+void SdoFollower::segment_requested(const Step& step) {
+  if (!continues(phase_ == Phase::segments && !download_, "request for a segment", step)) return;
+  const bool again = std::exchange(asked_, true);
+  if (((step.data[0] & canopen::sdo::toggle) != 0) != toggle_) {
+    report(SdoFault::toggle, step);
+    return part(", next segment with the wrong toggle bit", step);
+  }
+  if (again) report(SdoFault::command, step);
+  part(again ? ", next segment, before the response to the previous request" : ", next segment", step);
+}
+
 /// The confirmation of a segment by the server; the client confirms one of an upload by its next request.
 void SdoFollower::segment_confirmed(const Step& step) {
   if (!continues(phase_ == Phase::segments && download_, "confirmation of a segment", step)) return;
   const bool right = ((step.data[0] & canopen::sdo::toggle) != 0) == toggle_;
-  if (!right) report(SdoFault::toggle, step);
-  part(right ? ", segment confirmed" : ", segment confirmed with the wrong toggle bit", step);
+  const bool sent = std::exchange(asked_, false);
+  if (!right || !sent) report(right ? SdoFault::unrequested : SdoFault::toggle, step);
+  part(!right ? ", segment confirmed with the wrong toggle bit"
+       : sent ? ", segment confirmed"
+              : ", a segment confirmed that was not sent",
+       step);
   toggle_ = !toggle_;
   if (!last_seen_) return;
   step.message.text += "; ";
@@ -294,11 +317,7 @@ void SdoFollower::request(const Step& step) {
     case ClientCommand::download_segment: return segment(step, true);
     case ClientCommand::initiate_download: return initiate_download(step);
     case ClientCommand::initiate_upload: return begin(step, false);
-    case ClientCommand::upload_segment:
-      if (!continues(phase_ == Phase::segments && !download_, "request for a segment", step)) return;
-      if (((step.data[0] & canopen::sdo::toggle) != 0) == toggle_) return part(", next segment", step);
-      report(SdoFault::toggle, step);
-      return part(", next segment with the wrong toggle bit", step);
+    case ClientCommand::upload_segment: return segment_requested(step);
     case ClientCommand::abort: return abort(step);
     case ClientCommand::block_upload: return block_upload_command(step);
     case ClientCommand::block_download:

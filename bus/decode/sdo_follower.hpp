@@ -69,6 +69,7 @@ class SdoFollower {
   void initiate_download(const Step& step);
   void upload_answer(const Step& step);
   void segment(const Step& step, bool from_client);
+  void segment_requested(const Step& step);
   void segment_confirmed(const Step& step);
 
   // Block transfer: sdo_block_follower.cpp
@@ -93,6 +94,7 @@ class SdoFollower {
   bool download_ = false;
   bool expedited_ = false;
   bool last_seen_ = false;
+  bool asked_ = false;    ///< segmented transfer: the server has not answered the last request or segment
   bool complete_ = true;  ///< no part is missing from the log
   bool client_crc_ = false, crc_used_ = false;
   bool toggle_ = false;  ///< of the next segment

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "monitor/text_table.hpp"
 #include "text/counted.hpp"
+#include "text/text_table.hpp"
 #include "text/utf8.hpp"
 
 namespace edsc {

@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "device/device.hpp"
-#include "monitor/text_table.hpp"
 #include "text/counted.hpp"
+#include "text/text_table.hpp"
 #include "values/nmt_text.hpp"
 
 namespace edsc {

@@ -23,6 +23,7 @@ using audit::RuleId;
 constexpr const char* examples = R"(Examples:
   edsc audit can0.log --node 5=drive.eds --node 6=axis2.dcf       exit code 1 if there are errors or warnings
   edsc audit trip.asc --node axis1.dcf --bit-rate 500             also the load of the bus
+  edsc audit can0.log --node axis1.dcf --cycles                   also cycle times and jitter
   edsc audit capture.pcapng --node axis1.dcf --format html -o audit.html
   candump -L can0 | edsc audit --node axis1.dcf --silence can-id-unknown
   edsc audit --list-rules                                         every rule with its meaning)";
@@ -34,6 +35,7 @@ struct Settings : LogSettings {
   std::vector<std::string> silence;
   std::string format = "text";
   std::string output;
+  bool cycles = false;
   bool list_rules = false;
 };
 
@@ -95,8 +97,8 @@ int audit_log(const Settings& given) {
     fail_if_unreadable();
     fail(settings.log_name() + ": the log has no frames", exit_input_has_errors);
   }
-  const audit::Report report{settings.log_name(), auditor.totals(), settings.limits,
-                             &decoder.decoder(),  &nodes.labels,    &auditor.findings()};
+  const audit::Report report{settings.log_name(), auditor.totals(),    settings.limits,        &decoder.decoder(),
+                             &nodes.labels,       &auditor.findings(), &auditor.cycle_times(), settings.cycles};
   write_output(settings.output, report_text(report, settings),
                settings.log == "-" ? std::vector<std::string>{} : std::vector{settings.log});
   fail_if_unreadable();
@@ -134,6 +136,8 @@ void add_audit_options(CLI::App& command, int& exit_code) {
       ->check(check_audit_rule);
   add_choice(command, "--format", settings.format, {"text", "json", "html"}, "text, json or html");
   command.add_option("-o,--output", settings.output, "file to write (default: standard output)")->type_name("FILE");
+  command.add_flag("--cycles", settings.cycles,
+                   "also print cycle times and jitter of PDOs, SYNC and heartbeats; JSON and HTML always have them");
   command.add_flag("--list-rules", settings.list_rules, "list the rules and end");
 }
 

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
-#include "monitor/text_table.hpp"
 #include "online/device_profile.hpp"
 #include "online/identity.hpp"
 #include "online/lss_session.hpp"
@@ -17,6 +16,7 @@
 #include "shared/live_options.hpp"
 #include "shared/with_bus.hpp"
 #include "text/printable.hpp"
+#include "text/text_table.hpp"
 #include "values/nmt_text.hpp"
 
 namespace edsc {

@@ -5,6 +5,8 @@
 #include <canopen/can/frame_length.hpp>
 #include <utility>
 
+#include "text/counted.hpp"
+
 namespace edsc::audit {
 namespace {
 
@@ -14,6 +16,28 @@ constexpr std::int64_t interval_us = 100'000;
 constexpr std::uint64_t per_mille = 1000;
 
 std::string percent(std::uint64_t tenths) { return fmt::format("{}.{} %", tenths / 10, tenths % 10); }
+
+struct LengthRow {
+  Service service;
+  std::uint8_t min, max;
+  std::string_view expected;
+};
+
+constexpr LengthRow lengths[] = {{Service::sync, 0, 1, "0 or 1 byte"},
+                                 {Service::time, 6, 6, "6 bytes"},
+                                 {Service::heartbeat, 1, 1, "1 byte"},
+                                 {Service::lss, 8, 8, "8 bytes"}};
+
+void judge_length(const SeenMessage& seen, AuditState& audit) {
+  const canopen::Frame& frame = seen.frame;
+  const auto* const row = std::ranges::find(lengths, seen.message.service, &LengthRow::service);
+  if (row == std::end(lengths) || (!frame.remote && frame.size >= row->min && frame.size <= row->max)) return;
+  const Subject subject{RuleId::frame_length, seen.message.node_id, 0, 0, frame.id, frame.extended};
+  audit.findings.add(subject, seen.at, 0, [&] {
+    const std::string bytes = counted(unsigned{frame.size}, "byte");
+    return Texts{std::string{row->expected}, frame.remote ? "a remote frame" : bytes};
+  });
+}
 
 }  // namespace
 
@@ -45,6 +69,7 @@ void BusCheck::see(const SeenMessage& seen, AuditState& audit) {
     return;
   }
   count_bits(seen, audit);
+  judge_length(seen, audit);
   if (message.service == Service::unknown) {
     Subject subject{RuleId::can_id_unknown};
     subject.can_id = seen.frame.id;

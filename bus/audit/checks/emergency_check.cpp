@@ -41,7 +41,8 @@ void EmergencyCheck::judge_emcy(const SeenMessage& seen, AuditState& audit) {
     });
   }
   const std::int64_t inhibit = state.settings.emcy_inhibit_us;
-  if (seen.at.has_time && node.last_us && seen.at.us - *node.last_us < inhibit - audit.limits.slack(inhibit)) {
+  const bool is_timed = seen.at.has_time && node.last_us && *node.last_us >= state.settings_since;
+  if (is_timed && seen.at.us - *node.last_us < inhibit - audit.limits.slack(inhibit)) {
     const std::int64_t gap = seen.at.us - *node.last_us;
     audit.findings.add({RuleId::emcy_inhibit_time, message.node_id, 0x1015}, seen.at, -gap, [&] {
       return Texts{"at least " + milliseconds(inhibit), "after " + milliseconds(gap)};

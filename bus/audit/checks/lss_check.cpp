@@ -1,5 +1,7 @@
 #include "audit/checks/lss_check.hpp"
 
+#include <fmt/format.h>
+
 #include <canopen/lss/lss_protocol.hpp>
 #include <string>
 #include <utility>
@@ -14,22 +16,24 @@ using Texts = std::pair<std::string, std::string>;
 struct LssAnswer {
   Command request, response;
   bool in_configuration;  ///< only in LSS configuration
+  bool of_one_slave;      ///< only one slave may be in this state
+  bool has_error;         ///< byte 1 of the response is an error code
 };
 
 constexpr LssAnswer lss_answers[] = {
-    {Command::select_serial_number, Command::selected, false},
-    {Command::identify_serial_number_high, Command::identified, false},
-    {Command::identify_non_configured, Command::identified_non_configured, false},
-    {Command::fastscan, Command::identified, false},
-    {Command::configure_node_id, Command::configure_node_id, true},
-    {Command::configure_bit_timing, Command::configure_bit_timing, true},
-    {Command::activate_bit_timing, Command::none, true},
-    {Command::store_configuration, Command::store_configuration, true},
-    {Command::inquire_vendor_id, Command::inquire_vendor_id, true},
-    {Command::inquire_product_code, Command::inquire_product_code, true},
-    {Command::inquire_revision_number, Command::inquire_revision_number, true},
-    {Command::inquire_serial_number, Command::inquire_serial_number, true},
-    {Command::inquire_node_id, Command::inquire_node_id, true},
+    {Command::select_serial_number, Command::selected, false, false, false},
+    {Command::identify_serial_number_high, Command::identified, false, false, false},
+    {Command::identify_non_configured, Command::identified_non_configured, false, false, false},
+    {Command::fastscan, Command::identified, false, false, false},
+    {Command::configure_node_id, Command::configure_node_id, true, true, true},
+    {Command::configure_bit_timing, Command::configure_bit_timing, true, false, true},
+    {Command::activate_bit_timing, Command::none, true, false, false},
+    {Command::store_configuration, Command::store_configuration, true, false, true},
+    {Command::inquire_vendor_id, Command::inquire_vendor_id, true, true, false},
+    {Command::inquire_product_code, Command::inquire_product_code, true, true, false},
+    {Command::inquire_revision_number, Command::inquire_revision_number, true, true, false},
+    {Command::inquire_serial_number, Command::inquire_serial_number, true, true, false},
+    {Command::inquire_node_id, Command::inquire_node_id, true, true, false},
 };
 
 const LssAnswer* find_answer(std::uint8_t request) {
@@ -37,22 +41,57 @@ const LssAnswer* find_answer(std::uint8_t request) {
   return at == std::end(lss_answers) ? nullptr : at;
 }
 
+/// The commands with the parts of an LSS address follow each other: 40h to 43h, and 46h to 4Bh.
+bool needs_part_before(std::uint8_t command) {
+  constexpr auto first_selected = static_cast<std::uint8_t>(Command::select_vendor_id);
+  constexpr auto last_selected = static_cast<std::uint8_t>(Command::select_serial_number);
+  constexpr auto first_identified = static_cast<std::uint8_t>(Command::identify_vendor_id);
+  constexpr auto last_identified = static_cast<std::uint8_t>(Command::identify_serial_number_high);
+  return (command > first_selected && command <= last_selected) ||
+         (command > first_identified && command <= last_identified);
+}
+
 }  // namespace
 
+/// The slave that has responded in the configuration state must respond there again.
+void LssCheck::judge_silence(const Moment& now, AuditState& audit) {
+  if (!asked_us_) return;
+  const std::int64_t waited = now.us - *asked_us_;
+  asked_us_.reset();
+  if (waited < reaction_us) return;
+  audit.findings.add({RuleId::lss_timeout}, now, waited, [&] {
+    return Texts{"a response within " + milliseconds(reaction_us),
+                 fmt::format("none to {:02X}h for {}", last_request_.value_or(0), milliseconds(waited))};
+  });
+}
+
 void LssCheck::request(const SeenMessage& seen, AuditState& audit) {
-  const std::uint8_t command = seen.frame.data[0];
+  judge_silence(seen.at, audit);
+  const std::uint8_t command = seen.frame.data[0], operand = seen.frame.data[1];
+  const std::uint8_t before = last_request_.value_or(command - 1);
   last_request_ = command;
+  answered_ = false;
+  const bool lacks_part = needs_part_before(command) && before != command - 1;
+  if (seen.message.problem || lacks_part) {
+    audit.findings.add({RuleId::lss_command}, seen.at, 0, [&] {
+      return Texts{lacks_part ? fmt::format("command {:02X}h before", command - 1) : "an LSS command",
+                   seen.message.text};
+    });
+  }
   switch (Command{command}) {
     case Command::switch_state_global:
-      slaves_ = seen.frame.data[1] == static_cast<std::uint8_t>(canopen::LssState::configuration) ? Slaves::configure
-                                                                                                  : Slaves::waiting;
+      slaves_ =
+          operand == static_cast<std::uint8_t>(canopen::LssState::configuration) ? Slaves::unknown : Slaves::waiting;
       return;
     // The slave that is found enters the configuration state without a response of its own.
     case Command::fastscan: slaves_ = Slaves::unknown; return;
+    case Command::configure_node_id: asked_node_id_ = operand < AuditState::node_ids ? operand : 0; break;
     default: break;
   }
   const LssAnswer* const row = find_answer(command);
-  if (row == nullptr || !row->in_configuration || slaves_ != Slaves::waiting) return;
+  if (row == nullptr || !row->in_configuration) return;
+  if (slaves_ == Slaves::configure && row->response != Command::none && seen.at.has_time) asked_us_ = seen.at.us;
+  if (slaves_ != Slaves::waiting) return;
   audit.findings.add({RuleId::lss_mode}, seen.at, 0, [&] {
     return Texts{"switch state to configuration before", seen.message.text};
   });
@@ -61,13 +100,25 @@ void LssCheck::request(const SeenMessage& seen, AuditState& audit) {
 void LssCheck::response(const SeenMessage& seen, AuditState& audit) {
   const Command command{seen.frame.data[0]};
   const LssAnswer* const row = last_request_ ? find_answer(*last_request_) : nullptr;
+  asked_us_.reset();
   // The request may be before the log.
   const bool fits = !last_request_ || (row != nullptr && row->response == command && command != Command::none);
-  if (command == Command::selected) slaves_ = Slaves::configure;
-  if (fits) return;
-  audit.findings.add({RuleId::lss_response}, seen.at, 0, [&] {
-    return Texts{"a response to the last request", seen.message.text};
-  });
+  const bool again = fits && row != nullptr && row->of_one_slave && std::exchange(answered_, true);
+  if (!fits || again) {
+    audit.findings.add({RuleId::lss_response}, seen.at, 0, [&] {
+      return Texts{again ? "one response: one slave in configuration" : "a response to the last request",
+                   seen.message.text};
+    });
+    return;
+  }
+  if (command == Command::selected || (row != nullptr && row->in_configuration)) slaves_ = Slaves::configure;
+  if (row == nullptr || !row->has_error) return;
+  const std::uint8_t error = seen.frame.data[1];
+  if (command == Command::configure_node_id && error == 0) audit.lss_node_id = asked_node_id_;
+  if (error == 0) return;
+  Subject subject{RuleId::lss_refused};
+  subject.sub_index = static_cast<std::uint8_t>(command);
+  audit.findings.add(subject, seen.at, 0, [&] { return Texts{"done", seen.message.text}; });
 }
 
 void LssCheck::see(const SeenMessage& seen, AuditState& audit) {
@@ -78,5 +129,7 @@ void LssCheck::see(const SeenMessage& seen, AuditState& audit) {
   if (seen.message.service != Service::lss || seen.frame.size != 8 || seen.frame.remote) return;
   return seen.message.from_client ? request(seen, audit) : response(seen, audit);
 }
+
+void LssCheck::finish(const Moment& end, AuditState& audit) { judge_silence(end, audit); }
 
 }  // namespace edsc::audit

@@ -21,8 +21,16 @@ bool may_change_itself(const NodeState& node, NmtState reported, const Moment& n
   return node.state == NmtState::pre_operational && reported == NmtState::operational && node.settings.starts_itself;
 }
 
+/// Whether the node that LSS has given another node-ID boots with that one.
+bool boots_as_another(const NodeState& node, const AuditState& audit) {
+  const NodeState& other = audit.nodes[audit.lss_node_id];
+  return audit.lss_node_id != 0 && other.first_seen && other.state != NmtState::initialisation &&
+         other.state_since.us >= node.state_since.us;
+}
+
 void judge_boot_time(std::uint8_t node_id, const NodeState& node, const Moment& now, AuditState& audit) {
   if (node.state != NmtState::initialisation || !node.first_seen || !now.has_time) return;
+  if (boots_as_another(node, audit)) return;
   const std::int64_t waited = now.us - node.state_since.us;
   if (waited <= max_boot_us) return;
   audit.findings.add({RuleId::nmt_boot_up, node_id}, now, waited, [&] {
@@ -36,7 +44,8 @@ void judge_boot_time(std::uint8_t node_id, const NodeState& node, const Moment& 
 void NmtCheck::change(std::uint8_t node_id, NmtState state, const Moment& now, AuditState& audit) {
   NodeState& node = audit.nodes[node_id];
   before_change_(node_id, now);
-  node.previous = std::exchange(node.state, state);
+  std::erase_if(node.ended, [&](const EndedState& one) { return one.state == node.state; });
+  node.ended.push_back({std::exchange(node.state, state), now.us});
   node.state_since = now;
 }
 
@@ -62,23 +71,31 @@ void NmtCheck::command(const SeenMessage& seen, AuditState& audit) {
 
 void NmtCheck::boot_up(const SeenMessage& seen, AuditState& audit) {
   const std::uint8_t node_id = seen.message.node_id;
-  const NodeState& node = audit.nodes[node_id];
+  NodeState& node = audit.nodes[node_id];
   if (node.state == NmtState::initialisation) {
     judge_boot_time(node_id, node, seen.at, audit);
-  } else if (node.first_seen) {
+  } else if (node.first_seen && (node.state || node.first_seen->us >= audit.times_since)) {
     audit.findings.add({RuleId::nmt_reset, node_id}, seen.at, 0, [&] {
       return std::pair<std::string, std::string>{
           "a reset command before", fmt::format("the node was {}", node.state ? to_text(*node.state) : "on the bus")};
     });
   }
   change(node_id, NmtState::initialisation, seen.at, audit);
+  node.ended.clear();
   change(node_id, NmtState::pre_operational, seen.at, audit);
+  if (node.settings.starts_itself) node.state.reset();  // it may be Operational at once
 }
 
 void NmtCheck::report(const SeenMessage& seen, AuditState& audit) {
-  const auto reported = canopen::error_control_message(seen.frame);
-  if (!reported) return;
   const std::uint8_t node_id = seen.message.node_id;
+  const auto reported = canopen::error_control_message(seen.frame);
+  if (!reported) {
+    if (seen.frame.remote || seen.frame.size != 1) return;
+    audit.findings.add({RuleId::nmt_state, node_id}, seen.at, 0, [&] {
+      return std::pair<std::string, std::string>{"an NMT state", seen.message.text};
+    });
+    return;
+  }
   const NodeState& node = audit.nodes[node_id];
   if (node.state == reported->state) return;
   if (node.state && node.may_be(reported->state, seen.at)) return;

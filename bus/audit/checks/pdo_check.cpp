@@ -46,6 +46,7 @@ void judge_window(const SeenMessage& seen, const NodeState& node, std::int64_t a
 }  // namespace
 
 void PdoCheck::count_sync(const SeenMessage& seen, AuditState& audit) {
+  if (seen.message.problem) return;  // nodes ignore it
   for (const std::uint8_t id : audit.known) {
     if (!is_cob_id(audit.nodes[id].settings.sync_id, canopen::cob_id_of(seen.frame))) continue;
     ++nodes_[id].syncs;
@@ -80,7 +81,11 @@ void PdoCheck::judge_tpdo(const SeenMessage& seen, AuditState& audit) {
   if (at >= sent.tpdos.size()) sent.tpdos.resize(at + 1);
   const TpdoSettings& settings = node.settings.tpdos[at];
   Tpdo& tpdo = sent.tpdos[at];
-  const bool requested = std::exchange(tpdo.requested, false);
+  const std::uint32_t syncs = sent.syncs - tpdo.last_sync;
+  // A node may ignore a remote frame: a TPDO that is due is not the response.
+  const bool due = settings.is_cyclic() && syncs == settings.transmission_type;
+  const bool requested = tpdo.requests > 0 && !due;
+  if (requested) --tpdo.requests;
   if (settings.is_requested() && !requested) {
     audit.findings.add(subject_of(RuleId::pdo_not_requested, message.node_id, message.number), seen.at, 0, [] {
       return std::pair<std::string, std::string>{"a remote frame before", "none"};
@@ -89,34 +94,39 @@ void PdoCheck::judge_tpdo(const SeenMessage& seen, AuditState& audit) {
   if (seen.at.has_time && node.is_operational()) {
     const std::int64_t from = std::max(tpdo.last_us.value_or(0), node.unchanged_since());
     judge_event_timer(message.node_id, message.number, settings, seen.at.us - from, seen.at, audit);
-    if (tpdo.last_us && !requested) judge_inhibit_time(seen, settings, seen.at.us - *tpdo.last_us, audit);
+    if (tpdo.last_event_us && !requested) judge_inhibit_time(seen, settings, seen.at.us - *tpdo.last_event_us, audit);
     if (settings.is_synchronous() && sent.sync_us && !requested) {
       judge_window(seen, node, seen.at.us - *sent.sync_us, audit);
     }
   }
-  const std::uint32_t syncs = sent.syncs - tpdo.last_sync;
-  if (settings.is_cyclic() && node.is_operational() && tpdo.sent && !requested && syncs != settings.transmission_type) {
+  if (settings.is_cyclic() && node.is_operational() && tpdo.sent && !requested && !due) {
     audit.findings.add(subject_of(RuleId::pdo_sync_cycle, message.node_id, message.number), seen.at, syncs, [&] {
       return std::pair{after_syncs(settings.transmission_type),
                        syncs == 0 ? std::string{"twice after a SYNC"} : after_syncs(syncs)};
     });
   }
+  if (seen.at.has_time) tpdo.last_us = seen.at.us;
   if (requested) return;
   tpdo.sent = true;
   tpdo.last_sync = sent.syncs;
-  if (seen.at.has_time) tpdo.last_us = seen.at.us;
+  tpdo.last_event_us = tpdo.last_us;
+}
+
+/// Each remote frame for a TPDO that is sent on request only has a response.
+void PdoCheck::request(const SeenMessage& seen, AuditState& audit) {
+  const std::size_t at = seen.message.number - 1U;
+  Node& node = nodes_[seen.message.node_id % AuditState::node_ids];
+  const std::vector<TpdoSettings>& settings = audit.sender(seen.message).settings.tpdos;
+  if (node.tpdos.size() <= at) node.tpdos.resize(at + 1);
+  const bool on_request_only = at < settings.size() && settings[at].is_requested();
+  node.tpdos[at].requests = on_request_only ? node.tpdos[at].requests + 1 : 1;
 }
 
 void PdoCheck::see(const SeenMessage& seen, AuditState& audit) {
   const Message& message = seen.message;
   if (message.service == Service::sync) return count_sync(seen, audit);
   if (message.pdo == nullptr) return;
-  if (seen.frame.remote) {
-    Node& node = nodes_[message.node_id % AuditState::node_ids];
-    if (node.tpdos.size() < message.number) node.tpdos.resize(message.number);
-    node.tpdos[message.number - 1U].requested = true;
-    return;
-  }
+  if (seen.frame.remote) return request(seen, audit);
   judge_frame(seen, audit);
   if (message.service == Service::tpdo) judge_tpdo(seen, audit);
 }

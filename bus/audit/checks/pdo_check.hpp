@@ -20,10 +20,11 @@ class PdoCheck {
  private:
   /// A TPDO since the state and the settings of its node changed.
   struct Tpdo {
-    std::optional<std::int64_t> last_us;
-    std::uint32_t last_sync = 0;  ///< the number of SYNCs before it
+    std::optional<std::int64_t> last_us;        ///< the last one
+    std::optional<std::int64_t> last_event_us;  ///< the last one that is not a response to a remote frame
+    std::uint32_t last_sync = 0;                ///< the number of SYNCs before the last one at its cycle
     bool sent = false;
-    bool requested = false;  ///< by a remote frame
+    std::uint32_t requests = 0;  ///< remote frames without a response
   };
   struct Node {
     std::vector<Tpdo> tpdos;  ///< by number - 1
@@ -34,6 +35,7 @@ class PdoCheck {
   void count_sync(const SeenMessage& seen, AuditState& audit);
   void judge_frame(const SeenMessage& seen, AuditState& audit);
   void judge_tpdo(const SeenMessage& seen, AuditState& audit);
+  void request(const SeenMessage& seen, AuditState& audit);
 
   std::array<Node, AuditState::node_ids> nodes_;
 };

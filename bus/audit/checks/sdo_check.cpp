@@ -63,8 +63,8 @@ void SdoCheck::see(const SeenMessage& seen, AuditState& audit) {
   Channel& channel = channels_[message.channel];
   channel.node_id = message.node_id;
   const bool late = judge_answer(channel, seen.at, audit);
-  // The client gave up after its time: the transfer that it did not finish is one finding, not two.
-  const bool gave_up = late && message.fault == SdoFault::unfinished;
+  // The client gave up after its time, or asks again: the response that was missing is one finding, not two.
+  const bool gave_up = late && (message.fault == SdoFault::unfinished || message.fault == SdoFault::command);
   if (message.fault != SdoFault::none && !gave_up) judge_fault(seen, audit);
   if (message.step == TransferStep::aborted) {
     const Subject subject{RuleId::sdo_abort, message.node_id, message.index, message.sub_index, message.abort_code};

@@ -7,6 +7,8 @@
 namespace edsc::audit {
 namespace {
 
+using canopen::NmtState;
+
 /// The node that produces SYNC with this COB-ID; 0 if none of the known does.
 std::uint8_t find_producer(std::uint32_t cob_id, const Moment& now, AuditState& audit) {
   std::uint8_t producer = 0;
@@ -24,19 +26,36 @@ std::uint8_t find_producer(std::uint32_t cob_id, const Moment& now, AuditState& 
   return producer;
 }
 
+Subject subject_of(RuleId rule, std::uint8_t producer, std::uint16_t index, std::uint32_t id) {
+  return {rule, producer, index, 0, id & 0x1FFF'FFFF, (id >> 29 & 1) != 0};
+}
+
+/// A producer sends in Pre-operational and Operational, the first SYNC within a period.
+void judge_silence(std::uint8_t producer, std::int64_t last_us, const Moment& now, AuditState& audit) {
+  const NodeState& node = audit.nodes[producer];
+  const std::int64_t period = node.settings.sync_period_us;
+  const bool sends = node.state == NmtState::pre_operational || node.state == NmtState::operational;
+  if (!node.settings.is_sync_producer || period == 0 || !sends || !node.first_seen || !now.has_time) return;
+  const std::int64_t gap = now.us - std::max({last_us, node.unchanged_since(), node.first_seen->us});
+  if (gap <= period + audit.limits.slack(period)) return;
+  const Subject subject = subject_of(RuleId::sync_period, producer, 0x1006, node.settings.sync_id);
+  audit.findings.add(subject, now, gap - period, [&] {
+    return std::pair{"every " + milliseconds(period), "none for " + milliseconds(gap)};
+  });
+}
+
 }  // namespace
 
-void SyncCheck::judge_period(std::uint32_t id, const Sync& sync, const Moment& now, bool ended, AuditState& audit) {
+void SyncCheck::judge_period(std::uint32_t id, const Sync& sync, const Moment& now, AuditState& audit) {
   const NodeState& node = audit.nodes[sync.producer];
   const std::int64_t period = node.settings.sync_period_us;
-  if (sync.producer == 0 || period == 0 || !sync.last_us || !now.has_time) return;
-  if (*sync.last_us < node.unchanged_since() || node.state == canopen::NmtState::stopped) return;
+  if (sync.producer == 0 || period == 0 || !now.has_time || node.state == NmtState::stopped) return;
+  if (sync.last_us.value_or(-1) < node.unchanged_since()) return judge_silence(sync.producer, 0, now, audit);
   const std::int64_t gap = now.us - *sync.last_us;
-  const std::int64_t error = ended ? std::max<std::int64_t>(gap - period, 0) : std::abs(gap - period);
+  const std::int64_t error = std::abs(gap - period);
   if (error <= audit.limits.slack(period)) return;
-  const Subject subject{RuleId::sync_period, sync.producer, 0x1006, 0, id & 0x1FFF'FFFF, (id >> 29 & 1) != 0};
-  audit.findings.add(subject, now, error, [&] {
-    return std::pair{"every " + milliseconds(period), (ended ? "none for " : "after ") + milliseconds(gap)};
+  audit.findings.add(subject_of(RuleId::sync_period, sync.producer, 0x1006, id), now, error, [&] {
+    return std::pair{"every " + milliseconds(period), "after " + milliseconds(gap)};
   });
 }
 
@@ -55,8 +74,7 @@ void SyncCheck::judge_counter(std::uint32_t id, const Sync& sync, const SeenMess
     if (counter != next) expected = std::to_string(next);
   }
   if (expected.empty()) return;
-  const Subject subject{RuleId::sync_counter, sync.producer, 0x1019, 0, id & 0x1FFF'FFFF, (id >> 29 & 1) != 0};
-  audit.findings.add(subject, seen.at, 0, [&] {
+  audit.findings.add(subject_of(RuleId::sync_counter, sync.producer, 0x1019, id), seen.at, 0, [&] {
     return std::pair{expected, counter < 0 ? std::string{"no counter"} : std::to_string(counter)};
   });
 }
@@ -66,15 +84,23 @@ void SyncCheck::see(const SeenMessage& seen, AuditState& audit) {
   const std::uint32_t id = canopen::cob_id_of(seen.frame);
   Sync& sync = syncs_[id];
   sync.producer = find_producer(id, seen.at, audit);
-  judge_period(id, sync, seen.at, false, audit);
+  judge_period(id, sync, seen.at, audit);
   judge_counter(id, sync, seen, audit);
   if (seen.at.has_time) sync.last_us = seen.at.us;
   sync.counter.reset();
   if (seen.message.counter >= 0) sync.counter = static_cast<std::uint8_t>(seen.message.counter);
 }
 
+void SyncCheck::end_stretch(std::uint8_t node_id, const Moment& now, AuditState& audit) {
+  const NodeSettings& settings = audit.nodes[node_id].settings;
+  if (!settings.is_sync_producer) return;
+  const auto found = syncs_.find(settings.sync_id);
+  const std::int64_t last_us = found == syncs_.end() ? 0 : found->second.last_us.value_or(0);
+  judge_silence(node_id, last_us, now, audit);
+}
+
 void SyncCheck::finish(const Moment& end, AuditState& audit) {
-  for (const auto& [id, sync] : syncs_) judge_period(id, sync, end, true, audit);
+  for (const std::uint8_t id : audit.known) end_stretch(id, end, audit);
 }
 
 }  // namespace edsc::audit

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "decode/formats/asc_parser.hpp"
+#include "decode/formats/candump_parser.hpp"
 #include "decode/formats/packet_source.hpp"
 #include "decode/formats/trc_parser.hpp"
 #include "decode/log/log_reader.hpp"
@@ -10,16 +11,12 @@
 namespace edsc {
 namespace {
 
-class CandumpParser final : public LineParser {
- public:
-  [[nodiscard]] LogLine parse(std::string_view text) override { return parse_log_line(text); }
-};
-
 /// A log of lines.
 template <class Parser>
 class TextSource final : public LogSource {
  public:
-  explicit TextSource(LogInput& input) : reader_{input} {}
+  template <class... Settings>
+  explicit TextSource(LogInput& input, const Settings&... settings) : reader_{input}, parser_{settings...} {}
 
   [[nodiscard]] bool next(LogLine& line) override {
     std::string_view text;
@@ -42,12 +39,16 @@ std::unique_ptr<LogSource> open_text(LogInput& input, std::string& /*problem*/) 
   return std::make_unique<TextSource<Parser>>(input);
 }
 
+std::unique_ptr<LogSource> open_candump(LogInput& input, std::string& /*problem*/) {
+  return std::make_unique<TextSource<CandumpParser>>(input, input.beginning());
+}
+
 constexpr LogFormat formats[] = {
     {"pcapng", "capture of Wireshark", is_pcapng, open_packets},
     {"pcap", "capture of tcpdump", is_pcap, open_packets},
     {"trc", "trace of PEAK PCAN-View, versions 1.0 to 2.1", is_trc, open_text<TrcParser>},
     {"asc", "log of Vector CANoe and CANalyzer", is_asc, open_text<AscParser>},
-    {"candump", "log or screen output of candump", [](std::string_view) { return true; }, open_text<CandumpParser>},
+    {"candump", "log or screen output of candump", [](std::string_view) { return true; }, open_candump},
 };
 
 }  // namespace

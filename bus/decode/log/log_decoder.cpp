@@ -42,21 +42,6 @@ void LogDecoder::complain(const LogLine& line, std::string_view what, std::strin
                  printable(what));
 }
 
-/// Times that begin with 0 and decrease are differences, which are added up from then on.
-void LogDecoder::count_time(LogLine& line) {
-  if (!line.has_time) return;
-  if (!has_time_) from_zero_ = line.microseconds == 0;
-  if (has_time_ && from_zero_ && !deltas_ && line.microseconds < last_time_) {
-    deltas_ = true;
-    sum_ = last_time_;
-  }
-  has_time_ = true;
-  last_time_ = line.microseconds;
-  if (!deltas_) return;
-  sum_ = std::min(sum_ + line.microseconds, max_log_time_us);
-  line.microseconds = sum_;
-}
-
 const Message* LogDecoder::evaluate(LogLine& line, std::string& complaints) {
   if (!settings_.interface.empty() && !line.interface.empty() && line.interface != settings_.interface) return nullptr;
   switch (line.kind) {
@@ -71,12 +56,8 @@ const Message* LogDecoder::evaluate(LogLine& line, std::string& complaints) {
       summary_.add_broken_line();
       complain(line, broken_line_text(line), complaints);
       return nullptr;
-    case LogLineKind::frame:
-      count_time(line);
-      decoder_.decode({line.frame, line.has_time, line.microseconds}, message_);
-      break;
+    case LogLineKind::frame: decoder_.decode({line.frame, line.has_time, line.microseconds}, message_); break;
     case LogLineKind::error_frame:
-      count_time(line);
       message_.clear();
       message_.service = Service::error_frame;
       message_.problem = true;

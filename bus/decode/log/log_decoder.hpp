@@ -47,7 +47,6 @@ class LogDecoder {
 
  private:
   void complain(const LogLine& line, std::string_view what, std::string& complaints);
-  void count_time(LogLine& line);
 
   LogDecoderSettings settings_;
   NodeLabels labels_;
@@ -55,10 +54,6 @@ class LogDecoder {
   Message message_;
   Summary summary_;
   std::size_t complaints_ = 0;
-
-  // candump -t d writes the time since the previous frame.
-  bool has_time_ = false, from_zero_ = false, deltas_ = false;
-  std::int64_t last_time_ = 0, sum_ = 0;
 };
 
 }  // namespace edsc

@@ -12,48 +12,32 @@ import json
 import re
 import subprocess
 import sys
-import tempfile
 import unittest
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import replace
 from html.parser import HTMLParser
-from pathlib import Path
 
-import jsonschema
-from plant import (END_MS, STOP_MS, Frame, Parameters, axis, block_upload, changed, clean, eds_of, log_of, repeated_block_upload, sdo,
-                   segmented_upload, supply, without)
+from audits import EDSC, SOURCE_DIR, Audits, Broken, add, data, replaced
+from plant import (END_MS, STOP_MS, Frame, axis, block_upload, changed, clean, eds_of, in_order, log_of, repeated_block_upload, sdo, segmented_upload,
+                   supply, without)
 
-SOURCE_DIR = Path(sys.argv[1]).resolve()
-EDSC = Path(sys.argv[2]).resolve()
-SCHEMA = json.loads((SOURCE_DIR / "docs/schema/audit.schema.json").read_text())
 PAGE = SOURCE_DIR / "docs/how-to/audit.md"
 FINE, INPUT_HAS_ERRORS, WRONG_USAGE = 0, 1, 2
-ERROR_FRAME = "(1700000001.200000) can0 20000004#0004000000000000\n"
+ERROR_FRAME = "(1700000002.950000) can0 20000004#0004000000000000\n"
 
-Change = Callable[[list[Frame]], list[Frame]]
-
-
-@dataclass(frozen=True)
-class Broken:
-    change: Change = lambda frames: frames
-    axis: Parameters | None = None
-    supply: Parameters | None = None
-    arguments: tuple[str, ...] = ()
-    line: str = ""  # of the log, beside the frames
-    node_id: int | None = None  # of the finding
+def lss(ms: float, request: str, response: str) -> list[Frame]:
+    frames = [Frame(ms, 0x7E5, data(request.ljust(16, "0")))]
+    return [*frames, Frame(ms + 1, 0x7E4, data(response.ljust(16, "0")))] if response else frames
 
 
-def add(*frames: Frame) -> Change:
-    return lambda log: [*log, *frames]
-
-
-def data(text: str) -> bytes:
-    return bytes.fromhex(text)
-
-
-def replaced(old: list[Frame], position: int, content: str) -> Change:
-    """Another content of one of these frames."""
-    return lambda log: [Frame(one.ms, one.can_id, data(content)) if one == old[position] else one for one in log]
+def guarded(log: list[Frame], responses: tuple[int | None, ...]) -> list[Frame]:
+    """Node 5 is guarded every 200 ms from 1150 ms on, without heartbeats."""
+    log = [one for one in log if one.can_id != 0x705 or one.ms < 1120]
+    log += sdo(1125, 5, "2B17100000000000", "6017100000000000")
+    for at, response in enumerate(responses):
+        log.append(Frame(1150 + 200 * at, 0x705, remote=True))
+        if response is not None:
+            log.append(Frame(1151 + 200 * at, 0x705, bytes([response])))
+    return log
 
 
 def silent_supply(log: list[Frame]) -> list[Frame]:
@@ -74,6 +58,8 @@ BROKEN = {
     "heartbeat-late": Broken(lambda log: without(log, 0x705, 1200), node_id=5),
     "heartbeat-early": Broken(add(Frame(1240, 0x705, b"\x05")), node_id=5),
     "heartbeat-consumer": Broken(silent_supply, supply=supply(i1017="0"), node_id=5),
+    "guarding-toggle": Broken(lambda log: guarded(log, (0x05, 0x05, 0x85)), node_id=5),
+    "guarding-response": Broken(lambda log: guarded(log, (0x05, None, 0x85)), node_id=5),
     "nmt-command": Broken(add(Frame(1200, 0x000, b"\x03\x05"))),
     "nmt-state": Broken(lambda log: changed(log, 0x705, 1200, data=b"\x7F"), node_id=5),
     "nmt-boot-up": Broken(lambda log: [*without(log, 0x705, 2900), Frame(2900, 0x000, b"\x81\x05"),
@@ -98,37 +84,19 @@ BROKEN = {
     "sdo-abort": Broken(add(*sdo(1200, 5, "4000300000000000", "8000300000000206")), node_id=5),
     "lss-response": Broken(add(Frame(304, 0x7E4, data("1100000000000000")))),
     "lss-mode": Broken(add(Frame(350, 0x7E5, data("1120000000000000")))),
+    "lss-command": Broken(add(*lss(320, "4001000000", ""), *lss(322, "4203000000", ""))),
+    "lss-refused": Broken(add(*lss(320, "0401", ""), *lss(322, "11FE", "1101"), *lss(324, "0400", ""))),
+    "lss-timeout": Broken(add(*lss(320, "0401", ""), *lss(322, "5A", "5A01"), *lss(324, "5B", ""), *lss(470, "0400", ""))),
     "bus-load": Broken(arguments=("--bit-rate", "10", "--max-load", "25")),
     "error-frame": Broken(line=ERROR_FRAME),
+    "frame-length": Broken(add(Frame(1200, 0x100, bytes(5)))),
     "can-id-unknown": Broken(add(Frame(1200, 0x2FF, b"\0"))),
     "can-id-senders": Broken(supply=supply(i1800s01="0x185", i1800s05="0")),
     "node-unknown": Broken(add(Frame(1200, 0x709, b"\x05")), node_id=9),
     "node-silent": Broken(arguments=("--node", "7=axis.eds"), node_id=7),
+    "log-time": Broken(lambda log: [replace(one, ms=one.ms - 86_400_000) if one.ms > 1299 else one for one in log], sort=False),
+    "log-interface": Broken(line="(1700000002.950000) can1 000#0107\n"),
 }
-
-
-class Audits(unittest.TestCase):
-    def setUp(self) -> None:
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
-
-    def run_edsc(self, *arguments: str, log: str | None = None) -> subprocess.CompletedProcess[str]:
-        return subprocess.run([EDSC, "audit", *arguments], input=log, cwd=self.folder, capture_output=True, text=True,
-                              timeout=600, check=False)
-
-    def audit(self, case: Broken, *arguments: str) -> subprocess.CompletedProcess[str]:
-        (self.folder / "axis.eds").write_text(eds_of(case.axis or axis()))
-        (self.folder / "supply.eds").write_text(eds_of(case.supply or supply()))
-        (self.folder / "can0.log").write_text(log_of(case.change(clean())) + case.line)
-        return self.run_edsc("can0.log", "--node", "5=axis.eds", "--node", "6=supply.eds", *case.arguments, *arguments)
-
-    def report(self, case: Broken, *arguments: str) -> dict:
-        result = self.audit(case, "--format", "json", *arguments)
-        self.assertEqual(result.stderr, "")
-        report = json.loads(result.stdout)
-        jsonschema.Draft202012Validator(SCHEMA).validate(report)
-        return report
 
 
 class Rules(Audits):
@@ -197,7 +165,7 @@ class Behaviour(Audits):
 
     def test_a_log_without_times_is_judged_by_its_sequence(self) -> None:
         (self.folder / "axis.eds").write_text(eds_of(axis()))
-        lines = re.sub(r"(?m)^\(\S+\) can0 ", "", log_of(clean()))
+        lines = re.sub(r"(?m)^\(\S+\) can0 ", "", log_of(in_order(clean())))
         arguments = ("--node", "5=axis.eds", "--silence", "node-unknown", "--format", "json")
         self.assertEqual(json.loads(self.run_edsc(*arguments, log=lines).stdout)["findings"], [])
         report = json.loads(self.run_edsc(*arguments, log=lines.replace("385#R\n", "")).stdout)
@@ -213,6 +181,45 @@ class Behaviour(Audits):
     def test_a_silent_tpdo_is_found_without_a_frame(self) -> None:
         report = self.report(Broken(lambda log: without(log, 0x185, 1200, END_MS)))
         self.assertEqual([(one["rule"], one["index"]) for one in report["findings"]], [("pdo-event-timer", 0x1800)])
+
+    def test_a_producer_without_sync_is_found(self) -> None:
+        def silent(log: list[Frame], from_ms: int) -> list[Frame]:
+            return [one for one in log if one.can_id not in (0x080, 0x285) or one.ms < from_ms]
+        for name, from_ms, frames in (("never", 0, ()), ("not any more", 1200, ()),
+                                      ("until it is stopped", 2400, (Frame(2480, 0x000, b"\x02\x06"),))):
+            with self.subTest(name):
+                findings = self.report(Broken(lambda log: [*silent(log, from_ms), *frames]))["findings"]
+                self.assertEqual([(one["rule"], one["node_id"]) for one in findings], [("sync-period", 6)])
+
+    def test_lss_of_one_slave_and_of_all(self) -> None:
+        begin, end = lss(320, "0401", ""), lss(340, "0400", "")
+        again = [Frame(324, 0x7E4, data("1300000000000000"))]
+        self.assertEqual(self.report(Broken(add(*begin, *lss(322, "130003", "1300"), *again, *end)))["findings"], [])
+        again = [Frame(324, 0x7E4, data("5A02000000000000"))]
+        findings = self.report(Broken(add(*begin, *lss(322, "5A", "5A01"), *again, *end)))["findings"]
+        self.assertEqual([one["rule"] for one in findings], ["lss-response"])
+
+    def test_frames_of_another_length(self) -> None:
+        for frame, node_id, can_id in ((Frame(1202, 0x080, b"\1\2"), None, 0x080), (Frame(1240, 0x705, b"\5\5"), 5, 0x705),
+                                       (Frame(350, 0x7E5, bytes(4)), None, 0x7E5)):
+            with self.subTest(can_id):
+                findings = self.report(Broken(add(frame)))["findings"]
+                self.assertEqual([(one["rule"], one["node_id"], one["can_id"]) for one in findings], [("frame-length", node_id, can_id)])
+
+    def test_an_unknown_state(self) -> None:
+        findings = self.report(Broken(add(Frame(1240, 0x705, b"\x06"))))["findings"]
+        self.assertEqual([(one["rule"], one["seen"]) for one in findings], [("nmt-state", "unknown state 6")])
+
+    def test_each_frame_of_a_segmented_transfer_counts(self) -> None:
+        begun = sdo(630, 5, "4000100000000000", "4300100000000000")  # the transfer is not cut off by the beginning of the log
+        for at, frame in enumerate(segmented_upload(640)):
+            once = [one for one in [*clean(), *begun] if one != frame]
+            twice = [*clean(), *begun, replace(frame, ms=frame.ms + 0.1)]
+            for name, log in (("lost", once), ("twice", twice)):
+                with self.subTest(name, at=at):
+                    rules = {one["rule"] for one in self.report(Broken(lambda _, log=log: log))["findings"]}
+                    self.assertTrue(rules)
+                    self.assertLessEqual(rules, {"sdo-command", "sdo-toggle", "sdo-unrequested", "sdo-unfinished", "sdo-size"})
 
     def test_a_scan_of_absent_nodes_is_clean(self) -> None:
         requests = [Frame(1100 + node, 0x600 + node, data("4000100000000000")) for node in range(20, 100)]
@@ -251,7 +258,7 @@ class Reports(Audits):
         self.assertEqual(page.references, ["data:,"])
 
     def test_hostile_texts_do_not_reach_the_terminal_or_the_page(self) -> None:
-        (self.folder / "<b>\033[2J.log").write_text(log_of(BROKEN["nmt-reset"].change(clean())))
+        (self.folder / "<b>\033[2J.log").write_text(log_of(in_order(BROKEN["nmt-reset"].change(clean()))))
         (self.folder / "axis.eds").write_text(eds_of(axis()))
         for form in ("text", "json", "html"):
             result = self.run_edsc("<b>\033[2J.log", "--node", "5=axis.eds", "--format", form)

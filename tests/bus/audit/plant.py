@@ -29,8 +29,12 @@ class Frame:
         return f"({1_700_000_000 + self.ms / 1000:.6f}) can0 {self.can_id:03X}#{content}"
 
 
+def in_order(frames: list[Frame]) -> list[Frame]:
+    return sorted(frames, key=lambda frame: frame.ms)
+
+
 def log_of(frames: list[Frame]) -> str:
-    return "".join(frame.line() + "\n" for frame in sorted(frames, key=lambda frame: frame.ms))
+    return "".join(frame.line() + "\n" for frame in frames)
 
 
 def parameters(**changed: str) -> Parameters:

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "monitor/monitor_view.hpp"
-#include "monitor/text_table.hpp"
 #include "online/identity.hpp"
 #include "online/live_entry.hpp"
+#include "text/text_table.hpp"
 
 namespace edsc {
 namespace {
