@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "monitor/text_table.hpp"
+#include "text/text_table.hpp"
 #include "text/counted.hpp"
 
 namespace edsc {
