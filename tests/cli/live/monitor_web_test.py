@@ -175,6 +175,20 @@ class MonitorWeb(LiveTest):
             client.sendall(b"G")
         self.expect_alive()
 
+    def test_many_silent_clients(self) -> None:
+        """The five seconds of all pass at the same time, and none delays the end. One after another they take 50 seconds."""
+        clients = [self.connect() for _ in range(320)]
+        for client in clients:
+            client.sendall(b"G")
+        begin = time.monotonic()
+        self.assertEqual(self.answer(self.request())[0], 200)
+        self.assertLess(time.monotonic() - begin, 30)
+        clients = [self.connect() for _ in range(320)]
+        begin = time.monotonic()
+        self.monitor.send_signal(signal.SIGINT)
+        self.assertEqual((self.monitor.wait(timeout=PATIENCE), self.monitor.stderr.read()), (FINE, ""))
+        self.assertLess(time.monotonic() - begin, 30)
+
     def test_a_client_that_does_not_read(self) -> None:
         sleeper = self.open_stream(receive_buffer=4096)
         self.assertEqual(self.status_of(sleeper), 200)
