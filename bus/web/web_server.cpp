@@ -28,6 +28,12 @@ constexpr std::pair<const char*, const char*> headers[] = {
     {"X-Frame-Options", "DENY"},
 };
 
+/// What a person reads who opens an incomplete URL. It has no information of the bus.
+constexpr std::pair<int, const char*> refusals[] = {
+    {403, "This URL does not have the token. Open the URL that edsc monitor prints.\n"},
+    {421, "edsc monitor does not have this name. Open the URL that it prints, or one with its address.\n"},
+};
+
 std::string policy(const std::string& nonce) {
   return fmt::format(
       "default-src 'none'; script-src 'nonce-{0}'; style-src 'nonce-{0}'; connect-src 'self'; img-src data:; "
@@ -56,6 +62,9 @@ class WebServer::Implementation {
                         request.get_header_value("Range"), request.get_param_value("token")});
       if (status == 200) return httplib::Server::HandlerResponse::Unhandled;
       response.status = status;
+      for (const auto& [refused, text] : refusals) {
+        if (refused == status) response.set_content(text, "text/plain; charset=utf-8");
+      }
       return httplib::Server::HandlerResponse::Handled;
     });
     server_.Get("/", [this](const httplib::Request&, httplib::Response& response) {

@@ -133,6 +133,7 @@ class MonitorWeb(LiveTest):
                 self.assertEqual(status, expected)
                 self.assertNotIn(self.token, head + body)
                 self.assertNotIn("socketcand", head + body)
+        self.assertIn("Open the URL that edsc monitor prints", self.answer(self.request("/"))[2])
         for host in (f"localhost:{self.port}", f"[::1]:{self.port}"):
             self.assertEqual(self.answer(self.request(host=host))[0], 200)
         self.assertEqual(self.answer(self.request(Origin=f"http://{self.host}"))[0], 200)
