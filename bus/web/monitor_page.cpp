@@ -42,6 +42,8 @@ std::string monitor_page(const std::string& bus) {
                                                   {"uplot_style", report_template("uplot.css")},
                                                   {"uplot_script", report_template("uplot.js")},
                                                   {"style", with_parts("monitor.css")},
+                                                  {"value_history", report_template("value_history.js")},
+                                                  {"keyed_table", report_template("keyed_table.js")},
                                                   {"script", report_template("monitor.js")},
                                                   {"nonce", "{{{nonce}}}"}});
 }

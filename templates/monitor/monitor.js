@@ -1,6 +1,5 @@
-'use strict';
 (() => {
-  const maxPoints = 6000;   /* of a value: ten minutes with ten changes a second */
+  'use strict';
   const maxHistories = 400; /* values with a history; of more, those that are plotted */
   const maxEmcys = 200;
   const maxPlots = 8;
@@ -9,70 +8,15 @@
   const hex = (number, digits) => number.toString(16).toUpperCase().padStart(digits, '0');
   const canId = (cobId) => (cobId & 0x20000000 ? `${hex(cobId & 0x1FFFFFFF, 8)}h` : `${hex(cobId, 3)}h`);
 
-  /* The newest points of a value, in memory that does not grow: of a full history, the oldest point is overwritten. */
-  class History {
-    constructor() {
-      this.times = new Float64Array(maxPoints);
-      this.values = new Float64Array(maxPoints);
-      this.count = 0;
-      this.end = 0;
-    }
-
-    add(time, value) {
-      this.times[this.end] = time;
-      this.values[this.end] = value;
-      this.end = (this.end + 1) % maxPoints;
-      this.count = Math.min(this.count + 1, maxPoints);
-    }
-
-    inOrder(array) {
-      if (this.count < maxPoints || this.end === 0) return array.subarray(0, this.count);
-      const all = new Float64Array(maxPoints);
-      all.set(array.subarray(this.end));
-      all.set(array.subarray(0, this.end), maxPoints - this.end);
-      return all;
-    }
-
-    get data() {
-      return [this.inOrder(this.times), this.inOrder(this.values)];
-    }
-  }
-
-  /* A table whose rows have keys, in their order. A cell changes only if its text does. */
-  class Table {
-    constructor(body, classes) {
-      this.body = body;
-      this.classes = classes;
-      this.rows = new Map();
-    }
-
-    row(key, order) {
-      let row = this.rows.get(key);
-      if (row) return row;
-      const element = document.createElement('tr');
-      for (const name of this.classes) element.insertCell().className = name;
-      row = { element, order, cells: [...element.cells] };
-      let next = this.body.firstElementChild;
-      while (next && next.order <= order) next = next.nextElementSibling;
-      element.order = order;
-      this.body.insertBefore(element, next);
-      this.rows.set(key, row);
-      return row;
-    }
-
-    remove(key) {
-      this.rows.get(key)?.element.remove();
-      this.rows.delete(key);
-    }
-  }
+  /* A cell that does not change costs no layout. */
   const setText = (cell, text) => {
     if (cell.textContent !== text) cell.textContent = text;
   };
 
-  const nodes = new Table(byId('nodes'), ['number', '', '', '', 'number', '']);
-  const values = new Table(byId('value-rows'), ['', 'number', '', 'number', 'mono', '', '']);
-  const emcys = new Table(byId('emcys'), ['number', 'number', '']);
-  const others = new Table(byId('others'), ['mono', 'number', 'number']);
+  const nodes = new KeyedTable(byId('nodes'), ['number', '', '', '', 'number', '']);
+  const values = new KeyedTable(byId('value-rows'), ['', 'number', '', 'number', 'mono', '', '']);
+  const emcys = new KeyedTable(byId('emcys'), ['number', 'number', '']);
+  const others = new KeyedTable(byId('others'), ['mono', 'number', 'number']);
   const state = new Map();      /* the newest row of each node, PDO and CAN-ID, also while paused */
   const series = new Map();     /* by key: a value with its history */
   const plots = new Map();
@@ -147,7 +91,7 @@
 
   const keep = (one) => {
     if (one.history) return;
-    one.history = new History();
+    one.history = new ValueHistory();
     ++histories;
   };
 
@@ -312,21 +256,39 @@
   };
 
   const connection = byId('connection');
-  const events = new EventSource(`events${location.search}`);
   const showConnection = (isThere, text) => {
     setText(connection, text);
     connection.classList.toggle('bad', !isThere);
   };
-  events.addEventListener('open', () => showConnection(true, 'connected'));
-  events.addEventListener('error', () => showConnection(false,
-    'not connected, the values are old: edsc monitor has ended, or too many pages are open. A new run has a new URL.'));
-  events.addEventListener('message', (event) => {
+
+  /* The time of the bus comes ten times a second: without it, the connection is lost, even if nothing else says so. */
+  const mostSilenceMs = 3000;
+  let silence = 0;
+  const showSilence = () => showConnection(false, 'no answer from edsc monitor, the values are old');
+
+  const receive = (event) => {
     const { rows } = JSON.parse(event.data);
     /* The EMCYs come by their keys, which are texts. */
     rows.sort((a, b) => (a.kind === 'emcy' && b.kind === 'emcy' ? a.number - b.number : 0));
     rows.forEach(take);
     draw();
-  });
+    showConnection(true, 'connected');
+    clearTimeout(silence);
+    silence = setTimeout(showSilence, mostSilenceMs);
+  };
+
+  const connect = () => {
+    const events = new EventSource(`events${location.search}`);
+    events.addEventListener('message', receive);
+    events.addEventListener('error', () => {
+      clearTimeout(silence);
+      showConnection(false,
+        'not connected, the values are old: edsc monitor has ended, or too many pages are open. A new run has a new URL.');
+      /* The browser tries again if the server is lost, but not if it refuses. */
+      if (events.readyState === EventSource.CLOSED) setTimeout(connect, 5000);
+    });
+  };
+  connect();
 
   /* Buttons and keys */
 
@@ -369,7 +331,7 @@
   if (!stepped) setText(byId('plots-hint'), 'This edsc was built without uPlot (npm): no plots.');
 
   document.addEventListener('keydown', (event) => {
-    if (event.ctrlKey || event.altKey || event.metaKey || event.target.type === 'search') return;
+    if (event.repeat || event.ctrlKey || event.altKey || event.metaKey || event.target.type === 'search') return;
     if (event.key === 'p') togglePause();
     if (event.key === 'e') save();
     if (event.key === '/') {

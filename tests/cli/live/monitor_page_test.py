@@ -163,8 +163,13 @@ class MonitorPage(ReferenceDevices):
         self.assertEqual(found["mappedAnew"], {"texts": ["3.5", str(-2**63)], "plots": ["node 5 real3.5"]})
         self.assertGreater(found["wide"], 150, "the numbers of the axis are not cut off")
         self.assertGreater(found["drawn"], 0, "a value of one point is drawn")
-        self.assertEqual(found["lost"][0], "bad")
-        self.assertIn("not connected", found["lost"][1])
+        for name in ("connected", "again", "reconnected"):
+            self.assertEqual(found[name], ["", "connected"], name)
+        for name, text in (("silent", "no answer"), ("lost", "not connected")):
+            self.assertEqual(found[name][0], "bad")
+            self.assertIn(text, found[name][1])
+        self.assertEqual(found["isPressed"], "true", "a key that is held down acts once")
+        self.assertEqual(found["header"], "static", "it does not cover what has the focus")
         self.assertTrue(found["printed"], "a plot is not wider than the paper")
 
 

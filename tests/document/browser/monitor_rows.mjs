@@ -9,9 +9,14 @@ function replaceEvents() {
     constructor() {
       super();
       globalThis.send = (rows) => this.dispatchEvent(new MessageEvent('message', { data: JSON.stringify({ rows }) }));
-      globalThis.lose = () => this.dispatchEvent(new Event('error'));
+      globalThis.lose = (readyState) => {
+        this.readyState = readyState;
+        this.dispatchEvent(new Event('error'));
+      };
+      globalThis.connections = (globalThis.connections ?? 0) + 1;
     }
   };
+  globalThis.EventSource.CLOSED = 2;
 }
 
 const value = (sub, name, text, number) => ({ index: 0x2000, sub_index: sub, name, text, unit: '', number });
@@ -33,9 +38,15 @@ async function use(page) {
   const send = (...rows) => page.evaluate((all) => globalThis.send(all), rows);
   const texts = () => page.$$eval('#value-rows tr', (rows) => rows.map((row) => row.cells[6].textContent));
   const plots = () => page.$$eval('.plot h3', (all) => all.map((one) => one.textContent));
+  const connectionAfter = (...rows) => page.evaluate((all) => {
+    globalThis.send(all);
+    const one = document.getElementById('connection');
+    return [one.className, one.textContent];
+  }, rows);
   await page.evaluateOnNewDocument(replaceEvents);
   await page.goto(url, { waitUntil: 'load' });
 
+  found.connected = await connectionAfter(bus(0));
   await send(bus(1), pdo(1, 2, [value(1, 'real', 'nan', null), value(2, 'count', '7', 7)]));
   await send(bus(2), pdo(1, 1, [value(1, 'real', 'nan', null), value(2, 'count', '7', 7)]));
   found.csv.sameFrame = await exported(page);
@@ -70,8 +81,22 @@ async function use(page) {
     return count;
   });
 
-  await page.evaluate(() => globalThis.lose());
-  found.lost = await page.$eval('#connection', (one) => [one.className, one.textContent]);
+  const connection = () => page.$eval('#connection', (one) => [one.className, one.textContent]);
+  await page.waitForFunction(() => document.getElementById('connection').textContent.includes('no answer'));
+  found.silent = await connection();
+  found.again = await connectionAfter(bus(8));
+  await page.evaluate(() => globalThis.lose(0));
+  found.lost = await connection();
+  await page.evaluate(() => globalThis.lose(globalThis.EventSource.CLOSED));
+  await page.waitForFunction(() => globalThis.connections === 2);
+  found.reconnected = await connectionAfter(bus(9));
+
+  for (const repeat of [false, true, true]) {
+    await page.evaluate((one) => document.dispatchEvent(new KeyboardEvent('keydown', { key: 'p', repeat: one })), repeat);
+  }
+  found.isPressed = await page.$eval('#pause', (one) => one.getAttribute('aria-pressed'));
+  await page.setViewport({ width: 320, height: 600 });
+  found.header = await page.$eval('header', (one) => getComputedStyle(one).position);
   await page.emulateMediaType('print');
   found.printed = await page.evaluate(() => {
     document.body.style.width = '600px';
