@@ -151,6 +151,11 @@
     for (const one of missing(pdo)) one.text = notReceived;
   };
 
+  const showFound = () => {
+    const rows = [...values.rows.values()];
+    const count = rows.filter((row) => !row.element.hidden).length;
+    setText(byId('found'), byId('filter').value.trim() ? `${count} of ${rows.length} values` : '');
+  };
   const fits = (row) => row.element.textContent.toLowerCase().includes(byId('filter').value.trim().toLowerCase());
 
   const pdoNumber = (name) => Number(name.slice(5)) + (name.startsWith('T') ? 0 : 1000);
@@ -230,6 +235,7 @@
       show[row.kind](row);
     }
     changed.clear();
+    showFound();
     for (const row of state.values()) if (row.kind === 'node') showNode(row);
     if (emcyRows.length) showEmcys();
     drawPlots();
@@ -327,6 +333,7 @@
   });
   byId('filter').addEventListener('input', () => {
     for (const row of values.rows.values()) row.element.hidden = !fits(row);
+    showFound();
   });
   if (!stepped) setText(byId('plots-hint'), 'This edsc was built without uPlot (npm): no plots.');
 

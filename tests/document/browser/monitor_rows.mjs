@@ -96,6 +96,8 @@ async function use(page) {
   }
   found.isPressed = await page.$eval('#pause', (one) => one.getAttribute('aria-pressed'));
   await page.setViewport({ width: 320, height: 600 });
+  await page.type('#filter', 'REAL');
+  found.found = await page.$eval('#found', (one) => one.textContent);
   found.header = await page.$eval('header', (one) => getComputedStyle(one).position);
   await page.emulateMediaType('print');
   found.printed = await page.evaluate(() => {
