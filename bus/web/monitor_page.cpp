@@ -26,9 +26,9 @@ Json values_json(const MonitoredPdo& pdo) {
   for (const MonitoredValue& value : pdo.values) {
     values.push_back({{"index", value.index},
                       {"sub_index", value.sub_index},
-                      {"name", value.name},
-                      {"text", value.text},
-                      {"unit", value.unit},
+                      {"name", printable(value.name)},
+                      {"text", printable(value.text)},
+                      {"unit", printable(value.unit)},
                       {"number", value.number ? Json(*value.number) : Json(nullptr)}});
   }
   return values;
@@ -42,6 +42,8 @@ std::string monitor_page(const std::string& bus) {
                                                   {"uplot_style", report_template("uplot.css")},
                                                   {"uplot_script", report_template("uplot.js")},
                                                   {"style", with_parts("monitor.css")},
+                                                  {"value_history", report_template("value_history.js")},
+                                                  {"keyed_table", report_template("keyed_table.js")},
                                                   {"script", report_template("monitor.js")},
                                                   {"nonce", "{{{nonce}}}"}});
 }
@@ -55,7 +57,7 @@ void EmergencyLog::add(const Message& message, std::int64_t now_us) {
                                                               {"at_us", now_us},
                                                               {"node_id", message.node_id},
                                                               {"code", message.error_code},
-                                                              {"text", message.text}}));
+                                                              {"text", printable(message.text)}}));
   if (new_rows_.size() > max_rows) new_rows_.pop_front();
 }
 
@@ -77,14 +79,14 @@ std::vector<LiveRow> monitor_rows(const MonitorState& state, std::optional<unsig
     rows.push_back(row_of(fmt::format("node {}", node_id),
                           {{"kind", "node"},
                            {"node_id", node_id},
-                           {"name", node.name},
+                           {"name", printable(node.name)},
                            {"state", node.state},
                            {"assumed_state", node.assumed},
                            {"heard_us", node.heard_us ? Json(*node.heard_us - state.start_us()) : Json(nullptr)},
                            {"late", node.is_late(now_us)},
                            {"emergencies", node.emergencies},
                            {"error_code", node.error_code},
-                           {"emergency", node.emergency}}));
+                           {"emergency", printable(node.emergency)}}));
   }
   for (const auto& [key, pdo] : state.pdos()) {
     const char* const direction = key.transmitted ? "TPDO" : "RPDO";
@@ -94,7 +96,7 @@ std::vector<LiveRow> monitor_rows(const MonitorState& state, std::optional<unsig
                            {"pdo", fmt::format("{} {}", direction, key.number)},
                            {"at_us", pdo.at_us - state.start_us()},
                            {"per_second", rounded(pdo.frames.per_second())},
-                           {"text", pdo.text},
+                           {"text", printable(pdo.text)},
                            {"values", values_json(pdo)}}));
   }
   for (const auto& [cob_id, rate] : state.others()) {

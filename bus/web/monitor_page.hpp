@@ -35,7 +35,7 @@ class EmergencyLog {
   std::uint64_t removed_ = 0;
 };
 
-/// The rows of the state. Times are in microseconds since its start.
+/// The rows of the state, with printable texts. Times are in microseconds since its start.
 [[nodiscard]] std::vector<LiveRow> monitor_rows(const MonitorState& state, std::optional<unsigned> bit_rate,
                                                 std::int64_t now_us);
 

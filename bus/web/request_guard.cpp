@@ -5,13 +5,23 @@
 #include <netinet/in.h>
 #include <nettle/memops.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <random>
+
+#include "text/ascii.hpp"
 
 namespace edsc {
 namespace {
 
+constexpr std::uint16_t default_port = 80;
 constexpr int ok = 200, forbidden = 403, method_not_allowed = 405, misdirected = 421, no_range = 416;
+
+std::string lower(std::string_view text) {
+  std::string out{text};
+  std::ranges::transform(out, out.begin(), to_lower);
+  return out;
+}
 
 bool is_ip_address(const std::string& host) {
   in6_addr buffer;
@@ -36,20 +46,20 @@ int RequestGuard::check(const WebRequest& request) const {
 }
 
 bool RequestGuard::is_loopback(const std::string& host) {
-  return host == "localhost" || host == "::1" || (host.starts_with("127.") && is_ip_address(host));
+  return lower(host) == "localhost" || host == "::1" || (host.starts_with("127.") && is_ip_address(host));
 }
 
 /// A page of another site whose name resolves to this server sends the name of that site (DNS rebinding). An address
-/// is not a name.
+/// is not a name, and localhost is always this computer.
 bool RequestGuard::is_own_host(std::string_view host) const {
-  const std::string port = ":" + std::to_string(address_.port);
-  const bool is_default_port = address_.port == 80 && host.find_last_of(":]") == std::string_view::npos;
-  if (!host.ends_with(port) && !is_default_port) return false;
-  if (host.ends_with(port)) host.remove_suffix(port.size());
+  const std::size_t end = host.find_last_of(":]");
+  const bool has_port = end != std::string_view::npos && host[end] == ':';
+  if (has_port ? host.substr(end + 1) != std::to_string(address_.port) : address_.port != default_port) return false;
+  if (has_port) host = host.substr(0, end);
   if (host.size() > 2 && host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
-  const std::string name{host};
-  if (name == address_.host) return true;
-  return is_loopback(address_.host) ? is_loopback(name) : is_ip_address(name);
+  const std::string name = lower(host);
+  if (name == lower(address_.host) || is_loopback(name)) return true;
+  return !is_loopback(address_.host) && is_ip_address(name);
 }
 
 /// In a time that does not depend on how much of the token is right.

@@ -2,92 +2,22 @@
 
 #include <fmt/format.h>
 #include <httplib.h>
-#include <poll.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
-#include <array>
 #include <atomic>
 #include <chrono>
-#include <cstring>
 #include <string>
 #include <string_view>
 #include <thread>
 #include <utility>
 
+#include "web/bounded_server.hpp"
 #include "web/request_guard.hpp"
 
 namespace edsc {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::steady_clock;
-
-/// A connection of one request, of which only so many bytes are read, within this time.
-class BoundedStream final : public httplib::Stream {
- public:
-  explicit BoundedStream(int socket) : socket_{socket} {}
-
-  [[nodiscard]] bool is_readable() const override { return begin_ != end_ || waits_for(POLLIN, milliseconds{0}); }
-  [[nodiscard]] bool is_writable() const override { return waits_for(POLLOUT, write_time); }
-
-  ssize_t read(char* out, std::size_t size) override {
-    if (begin_ == end_ && !fill()) return -1;
-    const std::size_t count = std::min(size, end_ - begin_);
-    std::memcpy(out, buffer_.data() + begin_, count);
-    begin_ += count;
-    return static_cast<ssize_t>(count);
-  }
-
-  ssize_t write(const char* data, std::size_t size) override {
-    if (!waits_for(POLLOUT, write_time)) return -1;
-    return ::send(socket_, data, size, MSG_NOSIGNAL | MSG_DONTWAIT);
-  }
-
-  void get_remote_ip_and_port(std::string& /*ip*/, int& /*port*/) const override {}
-  void get_local_ip_and_port(std::string& /*ip*/, int& /*port*/) const override {}
-  [[nodiscard]] socket_t socket() const override { return socket_; }
-
- private:
-  static constexpr std::size_t max_bytes = 16'384;
-  static constexpr milliseconds read_time{5'000};
-  static constexpr milliseconds write_time{5'000};
-
-  [[nodiscard]] bool waits_for(short event, milliseconds most) const {
-    pollfd waited{socket_, event, 0};
-    return poll(&waited, 1, static_cast<int>(most.count())) == 1 && (waited.revents & event) != 0;
-  }
-
-  bool fill() {
-    const auto left = std::chrono::duration_cast<milliseconds>(end_of_reading_ - steady_clock::now());
-    if (left.count() <= 0 || bytes_ >= max_bytes || !waits_for(POLLIN, left)) return false;
-    const ssize_t count = ::recv(socket_, buffer_.data(), buffer_.size(), MSG_DONTWAIT);
-    if (count <= 0) return false;
-    begin_ = 0;
-    end_ = static_cast<std::size_t>(count);
-    bytes_ += end_;
-    return true;
-  }
-
-  int socket_;
-  steady_clock::time_point end_of_reading_ = steady_clock::now() + read_time;
-  std::size_t bytes_ = 0;
-  std::size_t begin_ = 0, end_ = 0;
-  std::array<char, 4096> buffer_{};
-};
-
-/// A server with one request for each connection.
-class BoundedServer final : public httplib::Server {
- private:
-  bool process_and_close_socket(socket_t socket) override {
-    BoundedStream stream{socket};
-    bool is_closed = false;
-    const bool is_done = process_request(stream, true, is_closed, nullptr);
-    ::shutdown(socket, SHUT_RDWR);
-    ::close(socket);
-    return is_done;
-  }
-};
 
 constexpr std::pair<const char*, const char*> headers[] = {
     {"Cache-Control", "no-store"},
@@ -96,6 +26,12 @@ constexpr std::pair<const char*, const char*> headers[] = {
     {"Referrer-Policy", "no-referrer"},
     {"X-Content-Type-Options", "nosniff"},
     {"X-Frame-Options", "DENY"},
+};
+
+/// What a person reads who opens an incomplete URL. It has no information of the bus.
+constexpr std::pair<int, const char*> refusals[] = {
+    {403, "This URL does not have the token. Open the URL that edsc monitor prints.\n"},
+    {421, "edsc monitor does not have this name. Open the URL that it prints, or one with its address.\n"},
 };
 
 std::string policy(const std::string& nonce) {
@@ -126,6 +62,9 @@ class WebServer::Implementation {
                         request.get_header_value("Range"), request.get_param_value("token")});
       if (status == 200) return httplib::Server::HandlerResponse::Unhandled;
       response.status = status;
+      for (const auto& [refused, text] : refusals) {
+        if (refused == status) response.set_content(text, "text/plain; charset=utf-8");
+      }
       return httplib::Server::HandlerResponse::Handled;
     });
     server_.Get("/", [this](const httplib::Request&, httplib::Response& response) {
@@ -134,7 +73,7 @@ class WebServer::Implementation {
       response.set_content(with_nonce(page_, nonce), "text/html; charset=utf-8");
     });
     server_.Get("/events", [this](const httplib::Request&, httplib::Response& response) { stream_to(response); });
-    server_.new_task_queue = [] { return new httplib::ThreadPool{max_streams + other_threads}; };
+    server_.set_threads(max_streams + other_threads);
     thread_ = std::thread{[this] {
       server_.listen_after_bind();
       has_ended_ = true;
@@ -144,6 +83,7 @@ class WebServer::Implementation {
 
   ~Implementation() {
     rows_.end();
+    server_.end_connections();
     server_.stop();
     thread_.join();
   }

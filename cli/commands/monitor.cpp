@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "commands/commands.hpp"
 #include "decode/decoder.hpp"
 #include "decode/log/print_message.hpp"
@@ -179,6 +181,9 @@ int run_monitor(const Settings& settings) {
   std::vector<KnownNode> known;
   for (const std::string& text : settings.nodes) {
     const auto node = parse_node_file(text);
+    if (std::ranges::count(known, node->node_id, &KnownNode::node_id) != 0) {
+      fail(fmt::format("--node {}: node {} is given twice", text, node->node_id));
+    }
     devices.push_back(load_live_device(node->path, node->node_id));
     known.push_back({node->node_id, &*devices.back()->device});
   }

@@ -1,7 +1,6 @@
-'use strict';
 (() => {
-  const maxPoints = 6000;   /* of a value: ten minutes with ten changes a second */
-  const maxSeries = 400;    /* values with a history; of more, those that are plotted */
+  'use strict';
+  const maxHistories = 400; /* values with a history; of more, those that are plotted */
   const maxEmcys = 200;
   const maxPlots = 8;
   const byId = (id) => document.getElementById(id);
@@ -9,73 +8,19 @@
   const hex = (number, digits) => number.toString(16).toUpperCase().padStart(digits, '0');
   const canId = (cobId) => (cobId & 0x20000000 ? `${hex(cobId & 0x1FFFFFFF, 8)}h` : `${hex(cobId, 3)}h`);
 
-  /* The newest points of a value, in memory that does not grow: of a full history, the oldest point is overwritten. */
-  class History {
-    constructor() {
-      this.times = new Float64Array(maxPoints);
-      this.values = new Float64Array(maxPoints);
-      this.count = 0;
-      this.end = 0;
-    }
-
-    add(time, value) {
-      this.times[this.end] = time;
-      this.values[this.end] = value;
-      this.end = (this.end + 1) % maxPoints;
-      this.count = Math.min(this.count + 1, maxPoints);
-    }
-
-    inOrder(array) {
-      if (this.count < maxPoints || this.end === 0) return array.subarray(0, this.count);
-      const all = new Float64Array(maxPoints);
-      all.set(array.subarray(this.end));
-      all.set(array.subarray(0, this.end), maxPoints - this.end);
-      return all;
-    }
-
-    get data() {
-      return [this.inOrder(this.times), this.inOrder(this.values)];
-    }
-  }
-
-  /* A table whose rows have keys, in their order. A cell changes only if its text does. */
-  class Table {
-    constructor(body, classes) {
-      this.body = body;
-      this.classes = classes;
-      this.rows = new Map();
-    }
-
-    row(key, order) {
-      let row = this.rows.get(key);
-      if (row) return row;
-      const element = document.createElement('tr');
-      for (const name of this.classes) element.insertCell().className = name;
-      row = { element, order, cells: [...element.cells] };
-      let next = this.body.firstElementChild;
-      while (next && next.order <= order) next = next.nextElementSibling;
-      element.order = order;
-      this.body.insertBefore(element, next);
-      this.rows.set(key, row);
-      return row;
-    }
-
-    remove(key) {
-      this.rows.get(key)?.element.remove();
-      this.rows.delete(key);
-    }
-  }
+  /* A cell that does not change costs no layout. */
   const setText = (cell, text) => {
     if (cell.textContent !== text) cell.textContent = text;
   };
 
-  const nodes = new Table(byId('nodes'), ['number', '', '', '', 'number', '']);
-  const values = new Table(byId('value-rows'), ['', 'number', '', 'number', 'mono', '', '']);
-  const emcys = new Table(byId('emcys'), ['number', 'number', '']);
-  const others = new Table(byId('others'), ['mono', 'number', 'number']);
+  const nodes = new KeyedTable(byId('nodes'), ['number', '', '', '', 'number', '']);
+  const values = new KeyedTable(byId('value-rows'), ['', 'number', '', 'number', 'mono', '', '']);
+  const emcys = new KeyedTable(byId('emcys'), ['number', 'number', '']);
+  const others = new KeyedTable(byId('others'), ['mono', 'number', 'number']);
   const state = new Map();      /* the newest row of each node, PDO and CAN-ID, also while paused */
   const series = new Map();     /* by key: a value with its history */
   const plots = new Map();
+  let histories = 0;
   let emcyRows = [];
   let bus = null;
   let isPaused = false;
@@ -90,6 +35,15 @@
 
   const stepped = typeof uPlot === 'undefined' ? null : uPlot.paths.stepped({ align: 1 });
   const plotWidth = () => Math.max(200, byId('plots').clientWidth - 26);
+
+  /* The width of the ticks, the gap and the longest number, such as those of 64 bits, beside the axis. */
+  const axisWidth = (chart, texts, at, cycle) => {
+    const axis = chart.axes[at];
+    if (cycle > 1) return axis._size;  /* as uPlot's own: widths must not swing */
+    chart.ctx.font = axis.font[0];
+    const longest = Math.max(0, ...(texts ?? []).map((text) => chart.ctx.measureText(text).width));
+    return Math.max(70, Math.ceil(axis.ticks.size + axis.gap + longest / devicePixelRatio));
+  };
 
   const makePlot = (one) => {
     const box = document.createElement('div');
@@ -109,8 +63,8 @@
     const axis = { stroke: color.text, grid: { stroke: color.line, width: 1 }, ticks: { stroke: color.line, width: 1 } };
     const chart = new uPlot({
       width: plotWidth(), height: 170, cursor: { sync: { key: 'time' } }, scales: { x: { time: false } },
-      axes: [{ ...axis, label: undefined, values: (_, ticks) => ticks.map((tick) => `${tick} s`) }, { ...axis, size: 70 }],
-      series: [{}, { stroke: color['field-line'], width: 1.5, paths: stepped, points: { show: false } }],
+      axes: [{ ...axis, label: undefined, values: (_, ticks) => ticks.map((tick) => `${tick} s`) }, { ...axis, size: axisWidth }],
+      series: [{}, { stroke: color['field-line'], width: 1.5, paths: stepped, points: { size: 4 } }],
     }, one.history.data, box);
     const canvas = chart.root;
     canvas.setAttribute('role', 'img');
@@ -122,7 +76,7 @@
     if (isPlotted === plots.has(one.key)) return;
     if (isPlotted && plots.size >= maxPlots) setPlotted(plots.values().next().value.one, false);
     if (isPlotted) {
-      one.history ??= new History();
+      keep(one);
       plots.set(one.key, { one, ...makePlot(one) });
     } else {
       const plot = plots.get(one.key);
@@ -133,6 +87,12 @@
     if (one.box) one.box.checked = isPlotted;
     byId('plots-hint').hidden = plots.size > 0;
     drawPlots();
+  };
+
+  const keep = (one) => {
+    if (one.history) return;
+    one.history = new ValueHistory();
+    ++histories;
   };
 
   const drawPlots = () => {
@@ -156,8 +116,8 @@
     if (one && one.object === object) return one;
     if (one) dropValue(one);  /* the PDO was mapped anew */
     one = { key, object, node: pdo.node_id, pdo: pdo.pdo, name: value.name, unit: value.unit, position,
-      title: `node ${pdo.node_id} ${value.name || object}${value.unit ? ` in ${value.unit}` : ''}`, text: '', history: null };
-    if (value.number !== null && series.size < maxSeries) one.history = new History();
+      title: `node ${pdo.node_id} ${value.name || object}${value.unit ? ` in ${value.unit}` : ''}`, text: '',
+      isNumber: false, history: null };
     series.set(key, one);
     return one;
   };
@@ -166,32 +126,49 @@
     if (plots.has(one.key)) setPlotted(one, false);
     values.remove(one.key);
     series.delete(one.key);
+    if (one.history) --histories;
+  };
+
+  /* The values that earlier frames of a PDO had and its last one does not have, such as one that is too short. */
+  const notReceived = 'not in the last frame';
+  const missing = (pdo) => {
+    const found = [];
+    for (let position = pdo.values.length; series.has(`${pdo.node_id} ${pdo.pdo} ${position}`); ++position) {
+      found.push(series.get(`${pdo.node_id} ${pdo.pdo} ${position}`));
+    }
+    return found;
   };
 
   const record = (pdo) => {
     pdo.values.forEach((value, position) => {
       const one = valueOf(pdo, value, position);
       one.text = value.text;
-      if (value.number !== null && one.history) one.history.add(seconds(pdo.at_us), value.number);
+      if (value.number === null) return;
+      one.isNumber = true;
+      if (histories < maxHistories) keep(one);
+      one.history?.add(seconds(pdo.at_us), value.number);
     });
-    for (let position = pdo.values.length; series.has(`${pdo.node_id} ${pdo.pdo} ${position}`); ++position) {
-      dropValue(series.get(`${pdo.node_id} ${pdo.pdo} ${position}`));
-    }
+    for (const one of missing(pdo)) one.text = notReceived;
   };
 
+  const showFound = () => {
+    const rows = [...values.rows.values()];
+    const count = rows.filter((row) => !row.element.hidden).length;
+    setText(byId('found'), byId('filter').value.trim() ? `${count} of ${rows.length} values` : '');
+  };
   const fits = (row) => row.element.textContent.toLowerCase().includes(byId('filter').value.trim().toLowerCase());
 
   const pdoNumber = (name) => Number(name.slice(5)) + (name.startsWith('T') ? 0 : 1000);
   const showPdo = (pdo) => {
     const order = pdo.node_id * 1e6 + pdoNumber(pdo.pdo) * 100;
-    const shown = pdo.values.length ? pdo.values : [null];
-    shown.forEach((value, position) => {
-      const one = value && series.get(`${pdo.node_id} ${pdo.pdo} ${position}`);
+    const count = Math.max(1, pdo.values.length + missing(pdo).length);
+    for (let position = 0; position < count; ++position) {
       const key = `${pdo.node_id} ${pdo.pdo} ${position}`;
+      const one = series.get(key);
       const isNew = !values.rows.has(key);
       const row = values.row(key, order + position);
       const [plot, node, name, rate, object, label, text] = row.cells;
-      if (one && value.number !== null && stepped && !plot.firstChild) {
+      if (one?.isNumber && stepped && !plot.firstChild) {
         one.box = document.createElement('input');
         one.box.type = 'checkbox';
         one.box.setAttribute('aria-label', `Plot ${one.title}`);
@@ -203,9 +180,9 @@
       setText(rate, pdo.per_second.toFixed(1));
       setText(object, one ? one.object : '');
       setText(label, one ? one.name : '');
-      setText(text, value ? value.text : pdo.text);
+      setText(text, one ? one.text : pdo.text);
       if (isNew) row.element.hidden = !fits(row);
-    });
+    }
   };
 
   /* Nodes, EMCYs, other CAN-IDs */
@@ -258,6 +235,7 @@
       show[row.kind](row);
     }
     changed.clear();
+    showFound();
     for (const row of state.values()) if (row.kind === 'node') showNode(row);
     if (emcyRows.length) showEmcys();
     drawPlots();
@@ -275,23 +253,48 @@
       emcyRows = emcyRows.slice(-maxEmcys);
     } else {
       const key = keyOf[row.kind](row);
+      const before = state.get(key);
       state.set(key, row);
       changed.add(key);
-      if (row.kind === 'pdo') record(row);
+      /* A row also comes if only its rate has changed, and after a new connection. */
+      if (row.kind === 'pdo' && row.at_us !== before?.at_us) record(row);
     }
   };
 
   const connection = byId('connection');
-  const events = new EventSource(`events${location.search}`);
-  events.addEventListener('open', () => setText(connection, 'connected'));
-  events.addEventListener('error', () => setText(connection, 'not connected: edsc monitor has ended, or too many pages are open'));
-  events.addEventListener('message', (event) => {
+  const showConnection = (isThere, text) => {
+    setText(connection, text);
+    connection.classList.toggle('bad', !isThere);
+  };
+
+  /* The time of the bus comes ten times a second: without it, the connection is lost, even if nothing else says so. */
+  const mostSilenceMs = 3000;
+  let silence = 0;
+  const showSilence = () => showConnection(false, 'no answer from edsc monitor, the values are old');
+
+  const receive = (event) => {
     const { rows } = JSON.parse(event.data);
     /* The EMCYs come by their keys, which are texts. */
     rows.sort((a, b) => (a.kind === 'emcy' && b.kind === 'emcy' ? a.number - b.number : 0));
     rows.forEach(take);
     draw();
-  });
+    showConnection(true, 'connected');
+    clearTimeout(silence);
+    silence = setTimeout(showSilence, mostSilenceMs);
+  };
+
+  const connect = () => {
+    const events = new EventSource(`events${location.search}`);
+    events.addEventListener('message', receive);
+    events.addEventListener('error', () => {
+      clearTimeout(silence);
+      showConnection(false,
+        'not connected, the values are old: edsc monitor has ended, or too many pages are open. A new run has a new URL.');
+      /* The browser tries again if the server is lost, but not if it refuses. */
+      if (events.readyState === EventSource.CLOSED) setTimeout(connect, 5000);
+    });
+  };
+  connect();
 
   /* Buttons and keys */
 
@@ -330,11 +333,12 @@
   });
   byId('filter').addEventListener('input', () => {
     for (const row of values.rows.values()) row.element.hidden = !fits(row);
+    showFound();
   });
   if (!stepped) setText(byId('plots-hint'), 'This edsc was built without uPlot (npm): no plots.');
 
   document.addEventListener('keydown', (event) => {
-    if (event.ctrlKey || event.altKey || event.metaKey || event.target.type === 'search') return;
+    if (event.repeat || event.ctrlKey || event.altKey || event.metaKey || event.target.type === 'search') return;
     if (event.key === 'p') togglePause();
     if (event.key === 'e') save();
     if (event.key === '/') {

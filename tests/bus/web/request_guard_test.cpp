@@ -17,7 +17,7 @@ WebRequest request(std::string host, std::string origin = "") {
 
 TEST(RequestGuard, HostsOfAServerForThisComputer) {
   const RequestGuard guard{{"127.0.0.1", 8080}, token};
-  for (const char* host : {"127.0.0.1:8080", "localhost:8080", "[::1]:8080", "127.9.9.9:8080"}) {
+  for (const char* host : {"127.0.0.1:8080", "localhost:8080", "[::1]:8080", "127.9.9.9:8080", "LocalHost:8080"}) {
     EXPECT_EQ(guard.check(request(host)), 200) << host;
   }
   for (const char* host : {"", ":8080", "127.0.0.1", "127.0.0.1:80", "127.0.0.1:80801", "evil.example:8080",
@@ -31,11 +31,30 @@ TEST(RequestGuard, HostsOfAServerForOtherComputers) {
   const RequestGuard any{{"0.0.0.0", 8080}, token};
   EXPECT_EQ(any.check(request("192.168.0.5:8080")), 200);
   EXPECT_EQ(any.check(request("[fe80::1]:8080")), 200);
+  EXPECT_EQ(any.check(request("localhost:8080")), 200);
   EXPECT_EQ(any.check(request("rebound.example:8080")), 421);
   const RequestGuard named{{"bench.example", 80}, token};
   EXPECT_EQ(named.check(request("bench.example")), 200);
   EXPECT_EQ(named.check(request("bench.example:80")), 200);
   EXPECT_EQ(named.check(request("other.example")), 421);
+}
+
+TEST(RequestGuard, NamesAreNotCaseSensitive) {
+  const RequestGuard guard{{"Bench.Example", 8080}, token};
+  EXPECT_EQ(guard.check(request("bench.example:8080")), 200);
+  EXPECT_TRUE(RequestGuard::is_loopback("LOCALHOST"));
+}
+
+TEST(RequestGuard, ThePortOfHttpCanBeLeftOut) {
+  for (const char* host : {"127.0.0.1", "::1"}) {
+    const RequestGuard guard{{host, 80}, token};
+    for (const char* own : {"127.0.0.1", "127.0.0.1:80", "[::1]", "[::1]:80"}) {
+      EXPECT_EQ(guard.check(request(own)), 200) << own;
+    }
+    for (const char* other : {"127.0.0.1:", "127.0.0.1:8080", "[::1]:8080", "[::1]x"}) {
+      EXPECT_EQ(guard.check(request(other)), 421) << other;
+    }
+  }
 }
 
 TEST(RequestGuard, OriginTokenMethodAndRange) {

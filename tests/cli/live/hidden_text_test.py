@@ -14,6 +14,7 @@ import sys
 import tempfile
 import unicodedata
 import unittest
+import urllib.request
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -189,6 +190,24 @@ class OfDevices(HiddenTextTest):
             shown, said = monitor.communicate(timeout=600)
             self.assertEqual(hidden(shown.decode()) + hidden(said.decode()), [])
             self.assertIn("Gain", shown.decode())
+
+    def test_the_page_of_the_monitor(self) -> None:
+        monitor = subprocess.Popen([EDSC, "monitor", self.network.address, "--node", "5=device.eds", "--web", "127.0.0.1:0"],
+                                   cwd=self.folder, stdout=subprocess.PIPE, text=True)
+        self.addCleanup(monitor.communicate)
+        self.addCleanup(monitor.kill)
+        events = monitor.stdout.readline().strip().replace("/?", "/events?")
+        self.network.client().send("185 01 02 03 04 05 06 07 08")
+        rows = {}
+        with urllib.request.urlopen(events, timeout=600) as stream:
+            while "pdo" not in rows:
+                data = stream.readline().decode().removeprefix("data: ")
+                if data.startswith("{"):
+                    rows.update((row["kind"], row) for row in json.loads(data)["rows"])
+        texts = [rows["node"]["name"], rows["pdo"]["text"], *(value["name"] for value in rows["pdo"]["values"])]
+        self.assertEqual(hidden("".join(texts)), [])
+        self.assertIn("<U+202E>", rows["node"]["name"])
+        self.assertIn("Gain", rows["pdo"]["text"])
 
 
 if __name__ == "__main__":

@@ -77,29 +77,39 @@ class MonitorPage(ReferenceDevices):
     def memory_kb(self) -> int:
         return int(re.search(r"VmRSS:\s+(\d+)", Path(f"/proc/{self.monitor.pid}/status").read_text())[1])
 
-    def test_what_a_user_does(self) -> None:
+    def install(self) -> None:
         try:
             install_npm_packages(SOURCE_DIR / "tests/document/browser", WORK)
             if CHROMIUM is None:
                 raise Skipped("chromium is not installed")
         except Skipped as reason:
             self.skipTest(str(reason))
+
+    def start_monitor(self, *arguments: object) -> str:
+        """Returns the URL."""
+        self.monitor = self.start("monitor", *arguments, "--web", "127.0.0.1:0")
+        url = self.monitor.stdout.readline().strip()
+        if select.select([self.monitor.stderr], [], [], 0)[0]:
+            self.skipTest(self.monitor.stderr.readline().strip())  # npm could not bring uPlot when edsc was built
+        return url
+
+    def browse(self, script: str, *arguments: str) -> dict:
+        browser = subprocess.run(["node", script, CHROMIUM, *arguments], cwd=WORK, capture_output=True, text=True, check=False)
+        self.assertEqual(browser.returncode, 0, browser.stderr)
+        return json.loads(browser.stdout)
+
+    def test_what_a_user_does(self) -> None:
+        self.install()
         self.start_devices()
         for node_id in self.node_ids:
             self.assertEqual(self.edsc("write", node_id, "1017h", 500, "--type", "u16").returncode, 0)
         self.assertEqual(self.edsc("nmt", "start", "all").returncode, 0)
-        self.monitor = self.start("monitor", *self.sheets, "--bit-rate", 1000, "--web", "127.0.0.1:0")
-        url = self.monitor.stdout.readline().strip()
-        if select.select([self.monitor.stderr], [], [], 0)[0]:
-            self.skipTest(self.monitor.stderr.readline().strip())  # npm could not bring uPlot when edsc was built
+        url = self.start_monitor(*self.sheets, "--bit-rate", 1000)
         traffic = Traffic(self)
         self.network.client().send("085 30 81 11 00 00 00 00 00")
         before = self.memory_kb()
-        browser = subprocess.run(["node", "monitor.mjs", CHROMIUM, url, SECONDS, *([SCREENSHOTS] if SCREENSHOTS else [])],
-                                 cwd=WORK, capture_output=True, text=True, check=False)
+        found = self.browse("monitor.mjs", url, SECONDS, *([SCREENSHOTS] if SCREENSHOTS else []))
         traffic.is_on = False
-        self.assertEqual(browser.returncode, 0, browser.stderr)
-        found = json.loads(browser.stdout)
         if SECONDS != "0":
             print(f"edsc: {before} kB, then {self.memory_kb()} kB; page: {found['memory']} bytes; {found['last']}")
         self.assertEqual(found["seen"], {"errors": [], "requests": []})
@@ -130,6 +140,38 @@ class MonitorPage(ReferenceDevices):
             times = [float(row["time"]) for row in rows if (row["node"], row["pdo"], row["object"]) == one]
             self.assertEqual(times, sorted(times))
         self.assertGreater(len({float(row["value"]) for row in rows}), 5)
+
+    def test_rows_of_any_kind(self) -> None:
+        self.install()
+        found = self.browse("monitor_rows.mjs", self.start_monitor())
+        self.assertEqual(found["seen"], {"errors": [], "requests": []})
+
+        def record(time: int, object_: str, number: object) -> str:
+            return f"{time}.000000,5,TPDO 1,{object_},{number},\r\n"
+
+        head = "time,node,pdo,object,name,value,unit\r\n"
+        real, count = "2000h:01,real", "2000h:02,count"
+        self.assertEqual(found["csv"]["sameFrame"], head + record(1, count, 7))
+        self.assertEqual(found["csv"]["afterNan"], head + record(3, real, 1.5) + record(1, count, 7) + record(3, count, 8))
+        absent = "not in the last frame"
+        self.assertEqual(found["short"], {"texts": ["2.5", absent], "plots": ["node 5 real2.5", "node 5 count" + absent]})
+        self.assertEqual(found["empty"], {"texts": [absent] * 2, "plots": ["node 5 real" + absent, "node 5 count" + absent]})
+        self.assertEqual(found["whole"], {"texts": ["3.5", "9"], "plots": ["node 5 real3.5", "node 5 count9"]})
+        self.assertEqual(found["csv"]["afterShort"],
+                         head + record(3, real, 1.5) + record(4, real, 2.5) + record(6, real, 3.5)
+                         + record(1, count, 7) + record(3, count, 8) + record(6, count, 9))
+        self.assertEqual(found["mappedAnew"], {"texts": ["3.5", str(-2**63)], "plots": ["node 5 real3.5"]})
+        self.assertGreater(found["wide"], 150, "the numbers of the axis are not cut off")
+        self.assertGreater(found["drawn"], 0, "a value of one point is drawn")
+        for name in ("connected", "again", "reconnected"):
+            self.assertEqual(found[name], ["", "connected"], name)
+        for name, text in (("silent", "no answer"), ("lost", "not connected")):
+            self.assertEqual(found[name][0], "bad")
+            self.assertIn(text, found[name][1])
+        self.assertEqual(found["isPressed"], "true", "a key that is held down acts once")
+        self.assertEqual(found["found"], "1 of 2 values")
+        self.assertEqual(found["header"], "static", "it does not cover what has the focus")
+        self.assertTrue(found["printed"], "a plot is not wider than the paper")
 
 
 if __name__ == "__main__":

@@ -103,6 +103,8 @@ class Monitor(LiveTest):
         for arguments in (("--node", "5"), ("--node", "0=device.eds"), ("--format", "json"), ("--once", 0),
                           ("--node", "5=missing.eds")):
             self.assertEqual(self.edsc("monitor", *arguments).returncode, WRONG_USAGE, arguments)
+        twice = self.edsc("monitor", "--node", "5=device.eds", "--node", "5=device.eds", "--once", 1)
+        self.expect(twice, WRONG_USAGE, stderr="edsc: --node 5=device.eds: node 5 is given twice\n")
 
 
 if __name__ == "__main__":

@@ -133,6 +133,7 @@ class MonitorWeb(LiveTest):
                 self.assertEqual(status, expected)
                 self.assertNotIn(self.token, head + body)
                 self.assertNotIn("socketcand", head + body)
+        self.assertIn("Open the URL that edsc monitor prints", self.answer(self.request("/"))[2])
         for host in (f"localhost:{self.port}", f"[::1]:{self.port}"):
             self.assertEqual(self.answer(self.request(host=host))[0], 200)
         self.assertEqual(self.answer(self.request(Origin=f"http://{self.host}"))[0], 200)
@@ -174,6 +175,20 @@ class MonitorWeb(LiveTest):
         for client in clients[:25]:
             client.sendall(b"G")
         self.expect_alive()
+
+    def test_many_silent_clients(self) -> None:
+        """The five seconds of all pass at the same time, and none delays the end. One after another they take 50 seconds."""
+        clients = [self.connect() for _ in range(320)]
+        for client in clients:
+            client.sendall(b"G")
+        begin = time.monotonic()
+        self.assertEqual(self.answer(self.request())[0], 200)
+        self.assertLess(time.monotonic() - begin, 30)
+        clients = [self.connect() for _ in range(320)]
+        begin = time.monotonic()
+        self.monitor.send_signal(signal.SIGINT)
+        self.assertEqual((self.monitor.wait(timeout=PATIENCE), self.monitor.stderr.read()), (FINE, ""))
+        self.assertLess(time.monotonic() - begin, 30)
 
     def test_a_client_that_does_not_read(self) -> None:
         sleeper = self.open_stream(receive_buffer=4096)

@@ -1,0 +1,30 @@
+/// An HTTP server whose clients cost it a bounded time and memory.
+#pragma once
+
+#include <httplib.h>
+
+#include <cstddef>
+#include <mutex>
+#include <unordered_set>
+
+namespace edsc {
+
+/// Answers one request for each connection. It reads at most 16 kB of it, within five seconds of its acceptance.
+class BoundedServer final : public httplib::Server {
+ public:
+  void set_threads(std::size_t count);
+
+  /// Closes all connections, and each later one at once, so that stop() does not wait for a client.
+  void end_connections();
+
+ private:
+  bool process_and_close_socket(socket_t socket) override;
+  [[nodiscard]] bool begin_connection(socket_t socket);
+  void end_connection(socket_t socket);
+
+  std::mutex mutex_;
+  std::unordered_set<socket_t> open_;
+  bool has_ended_ = false;
+};
+
+}  // namespace edsc
